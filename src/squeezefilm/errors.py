@@ -1,0 +1,92 @@
+"""The one exception tree of squeezefilm, and its warnings.
+
+Every message answers three questions: what was asked (with value and unit), what is allowed,
+and what to do about it. `InputError` and its children are the user's to mend: the command line
+turns them into one message and exit code 2.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+
+class SqueezefilmError(Exception):
+    """Anything squeezefilm raises on purpose."""
+
+
+class InputError(SqueezefilmError, ValueError):
+    """A value, a file or a combination of them that cannot be used."""
+
+
+class QuantityError(InputError):
+    """A text that is no quantity, or a quantity of the wrong dimension."""
+
+
+class ConfigError(InputError):
+    """A configuration that cannot be used: names file, line and key where they are known."""
+
+    def __init__(
+        self,
+        message: str,
+        *,
+        file: str | Path | None = None,
+        line: int | None = None,
+        key: str | None = None,
+    ) -> None:
+        self.message = message
+        self.file = None if file is None else str(file)
+        self.line = line
+        self.key = key
+        super().__init__(self.__str__())
+
+    def __str__(self) -> str:
+        place = self.file or ""
+        if self.line is not None:
+            place += f", line {self.line}"
+        parts = [part for part in (place, self.key) if part]
+        return ": ".join([*parts, self.message])
+
+
+class GeometryError(InputError):
+    """A layout that cannot be built: overlap, overhang, a closed gap."""
+
+
+class OutOfRangeError(InputError):
+    """A model was asked outside the range in which it holds."""
+
+
+class ContradictionError(InputError):
+    """Data that contradict each other, refused because strictness was asked for."""
+
+
+class UnreachableError(InputError):
+    """A target (an amplitude, a friction) that the device cannot reach."""
+
+
+class ConvergenceError(SqueezefilmError):
+    """A solve that did not converge; carries what it had.
+
+    `partial` is the last iterate in the solver's own result type, `residual` its residual norm
+    and `iterations` the number of iterations made.
+    """
+
+    def __init__(
+        self, message: str, *, partial: Any = None, residual: float = float("nan"), iterations: int = 0
+    ) -> None:
+        super().__init__(message)
+        self.partial = partial
+        self.residual = residual
+        self.iterations = iterations
+
+
+class SqueezefilmWarning(UserWarning):
+    """Anything squeezefilm warns of."""
+
+
+class OutOfRangeWarning(SqueezefilmWarning):
+    """A model was used outside the range in which it holds, because the caller allowed it."""
+
+
+class ContradictionWarning(SqueezefilmWarning):
+    """Data that contradict each other; the message names both and says which one is used."""

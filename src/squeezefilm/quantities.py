@@ -1,0 +1,401 @@
+"""Units in the type, quantity text, and the registry of closed forms.
+
+Inside the package every number is an SI float; its unit stands in its annotation
+(`Metre = Annotated[float, Unit("m")]`). Outside, in TOML and on the command line, a quantity is
+text with its unit: `"2 um"`. This module reads and writes that text with exact decimals, so that
+`"50 um"` is the float 5e-05 and not 4.9999999999999996e-05.
+
+Three families of aliases: `Metre` is a scalar, `MetreArray` an array, and `MetreLike` either,
+for closed forms that broadcast.
+"""
+
+from __future__ import annotations
+
+import functools
+import inspect
+import re
+import typing
+import warnings
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from decimal import Decimal, InvalidOperation, localcontext
+from typing import Annotated, Any, ParamSpec, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from squeezefilm.errors import InputError, OutOfRangeError, OutOfRangeWarning, QuantityError
+
+FloatArray = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+FloatLike = float | FloatArray
+
+# kg, m, s, A, K, rad. The radian is counted, so that "100 rad/s" is not taken for 100 Hz.
+Dimension = tuple[int, int, int, int, int, int]
+_NONE: Dimension = (0, 0, 0, 0, 0, 0)
+
+_UNITS: dict[str, tuple[Decimal, Dimension, bool]] = {}
+
+
+def _unit(symbols: str, scale: str, dimension: Dimension, prefixed: bool = True) -> None:
+    for symbol in symbols.split():
+        _UNITS[symbol] = (Decimal(scale), dimension, prefixed)
+
+
+_unit("m", "1", (0, 1, 0, 0, 0, 0))
+_unit("g", "1e-3", (1, 0, 0, 0, 0, 0))
+_unit("s", "1", (0, 0, 1, 0, 0, 0))
+_unit("min", "60", (0, 0, 1, 0, 0, 0), False)
+_unit("h", "3600", (0, 0, 1, 0, 0, 0), False)
+_unit("A", "1", (0, 0, 0, 1, 0, 0))
+_unit("K", "1", (0, 0, 0, 0, 1, 0))
+_unit("rad", "1", (0, 0, 0, 0, 0, 1))
+_unit("deg °", "0.01745329251994329576923690768488612713", (0, 0, 0, 0, 0, 1), False)
+_unit("Hz", "1", (0, 0, -1, 0, 0, 0))
+_unit("N", "1", (1, 1, -2, 0, 0, 0))
+_unit("Pa", "1", (1, -1, -2, 0, 0, 0))
+_unit("bar", "1e5", (1, -1, -2, 0, 0, 0))
+_unit("atm", "101325", (1, -1, -2, 0, 0, 0), False)
+_unit("J", "1", (1, 2, -2, 0, 0, 0))
+_unit("W", "1", (1, 2, -3, 0, 0, 0))
+_unit("V", "1", (1, 2, -3, -1, 0, 0))
+_unit("C", "1", (0, 0, 1, 1, 0, 0))
+_unit("F", "1", (-1, -2, 4, 2, 0, 0))
+_unit("ohm Ohm Ω", "1", (1, 2, -3, -2, 0, 0))
+_unit("1", "1", _NONE, False)
+_unit("%", "1e-2", _NONE, False)
+
+_PREFIXES = {
+    "p": "1e-12", "n": "1e-9", "u": "1e-6", "µ": "1e-6", "μ": "1e-6", "m": "1e-3",
+    "c": "1e-2", "d": "1e-1", "k": "1e3", "M": "1e6", "G": "1e9",
+}  # fmt: skip
+
+_FACTOR = re.compile(r"([^\s*/^·\d]+|1)\s*(?:\^|\*\*)?\s*(-?\d+)?")
+_QUANTITY = re.compile(
+    r"\s*(?P<number>[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?|[+-]?(?:nan|inf(?:inity)?))"
+    r"\s*(?P<unit>\S.*?)?\s*",
+    re.IGNORECASE,
+)
+
+
+def _factor(symbol: str) -> tuple[Decimal, Dimension]:
+    if symbol in _UNITS:
+        scale, dimension, _ = _UNITS[symbol]
+        return scale, dimension
+    prefix, rest = symbol[:1], symbol[1:]
+    if prefix in _PREFIXES and rest in _UNITS and _UNITS[rest][2]:
+        scale, dimension, _ = _UNITS[rest]
+        return scale * Decimal(_PREFIXES[prefix]), dimension
+    raise QuantityError(f"unknown unit '{symbol}'")
+
+
+@functools.lru_cache(maxsize=512)
+def parse_unit(text: str) -> tuple[Decimal, Dimension]:
+    """The scale to SI and the dimension of a unit text such as ``"kg/m3"`` or ``"N*m"``.
+
+    Raises `QuantityError` for a unit that is unknown or not well formed.
+    """
+    scale, total = Decimal(1), list(_NONE)
+    for position, part in enumerate(text.replace("·", "*").split("/")):
+        sign = 1 if position == 0 else -1
+        for piece in re.split(r"(?<!\*)\*(?!\*)|\s+", part.strip()):
+            match = _FACTOR.fullmatch(piece.strip())
+            if match is None:
+                raise QuantityError(f"'{text}' is no unit; write one like m, mm, kHz, N/m or kg/m3")
+            power = sign * int(match.group(2) or 1)
+            factor, dimension = _factor(match.group(1))
+            with localcontext() as context:
+                context.prec = 40
+                scale *= factor**power
+            total = [t + power * d for t, d in zip(total, dimension, strict=True)]
+    a, b, c, d, e, f = total
+    return scale, (a, b, c, d, e, f)
+
+
+@dataclass(frozen=True)
+class Unit:
+    """The SI unit of a number, carried in its annotation: ``Annotated[float, Unit("m")]``."""
+
+    symbol: str
+
+    @property
+    def dimension(self) -> Dimension:
+        """The exponents of kg, m, s, A, K and rad."""
+        return parse_unit(self.symbol)[1]
+
+    @property
+    def suffix(self) -> str:
+        """What a JSON key or a CSV column ends with, e.g. ``_N_per_m``; empty if dimensionless."""
+        if self.symbol == "1":
+            return ""
+        return "_" + self.symbol.replace("*", "_").replace("/", "_per_").replace("^", "")
+
+    @property
+    def label(self) -> str:
+        """The symbol as an axis or a table shows it."""
+        return "" if self.symbol == "1" else self.symbol
+
+
+# What to offer a person who wrote no unit, or the wrong one.
+_EXAMPLES = {
+    "m": "m, mm, um, nm",
+    "Hz": "Hz, kHz",
+    "s": "s, ms",
+    "N": "N, mN",
+    "Pa": "Pa, kPa, MPa, GPa",
+    "V": "V, mV",
+    "Pa*s": "Pa*s",
+    "kg/m3": "kg/m3",
+    "m/s": "m/s, mm/s",
+    "m2": "m2, cm2, mm2",
+    "m/V": "m/V, pm/V",
+    "C/m2": "C/m2",
+    "m2/N": "m2/N",
+    "F/m": "F/m, nF/m",
+    "rad": "rad, deg",
+}
+
+
+def allowed_units(unit: Unit) -> str:
+    """The units a person may write for `unit`, as a short list for messages."""
+    return _EXAMPLES.get(unit.symbol, unit.symbol)
+
+
+def parse_quantity(text: str, unit: Unit) -> float:
+    """The SI value of a quantity text such as ``"2 um"``, correctly rounded to the nearest float.
+
+    Raises `QuantityError` for a text without a number, without a unit (unless the quantity is
+    dimensionless), of another dimension, not finite, or too large for a float.
+    """
+    match = _QUANTITY.fullmatch(text)
+    if match is None:
+        raise QuantityError(
+            f"'{text}' is no quantity; write a number and a unit, like \"{_example(unit)}\""
+        )
+    try:
+        number = Decimal(match.group("number"))
+    except InvalidOperation as error:  # pragma: no cover - the pattern admits only numbers
+        raise QuantityError(f"'{text}' has no readable number") from error
+    if not number.is_finite():
+        raise QuantityError(f"'{text}' is not a finite number; a quantity must be finite")
+    symbol = match.group("unit")
+    if symbol is None:
+        if unit.symbol != "1":
+            raise QuantityError(
+                f"'{text}' has no unit; write it with one of {allowed_units(unit)}, "
+                f'like "{_example(unit)}"'
+            )
+        symbol = "1"
+    try:
+        scale, dimension = parse_unit(symbol)
+    except QuantityError as error:
+        raise QuantityError(f"'{text}': {error}; allowed here: {allowed_units(unit)}") from error
+    if dimension != unit.dimension:
+        raise QuantityError(
+            f"'{text}' has the wrong dimension; a quantity in "
+            f"{unit.label or 'no unit (dimensionless)'} is wanted, in one of {allowed_units(unit)}"
+        )
+    with localcontext() as context:
+        context.prec = 60
+        value = float(number * scale)
+    if not np.isfinite(value):
+        raise QuantityError(f"'{text}' is too large to be represented")
+    return value
+
+
+def _example(unit: Unit) -> str:
+    first = allowed_units(unit).split(",")[0]
+    return "0.5" if unit.symbol == "1" else f"2 {first}"
+
+
+_READABLE = [("G", 9), ("M", 6), ("k", 3), ("", 0), ("m", -3), ("u", -6), ("n", -9), ("p", -12)]
+_SCALED = {"m", "Hz", "s", "N", "Pa", "V", "A", "W", "J", "F", "C", "m/V", "m/s", "N/m"}
+
+
+def format_quantity(value: float, unit: Unit, digits: int = 4) -> str:
+    """A readable quantity text, e.g. ``"2 um"``, which `parse_quantity` reads back.
+
+    `digits` significant digits are kept (17 keep every float).
+    """
+    if unit.symbol == "1":
+        return f"{value:.{digits}g}"
+    if unit.symbol not in _SCALED or value == 0 or not np.isfinite(value):
+        return f"{value:.{digits}g} {unit.symbol}"
+    with localcontext() as context:
+        context.prec = 60
+        exact = Decimal(repr(float(value)))
+        rounded = Decimal(f"{exact:.{digits - 1}e}")
+        exponent = rounded.adjusted()
+        for prefix, power in _READABLE:
+            if exponent >= power:
+                break
+        number = rounded.scaleb(-power).normalize()
+    text = f"{number:f}" if -4 < number.adjusted() < 7 else f"{number:e}"
+    return f"{text} {prefix}{unit.symbol}"
+
+
+def did_you_mean(word: str, known: Iterable[str]) -> str:
+    """A hint such as ``" Did you mean 'thickness'?"``, or an empty text if nothing is near."""
+    import difflib
+
+    near = difflib.get_close_matches(word, list(known), n=1, cutoff=0.6)
+    return f" Did you mean '{near[0]}'?" if near else ""
+
+
+def unit_of(annotation: Any) -> Unit | None:
+    """The `Unit` in an annotation (also below ``X | None``), or None where it carries none."""
+    if typing.get_origin(annotation) is Annotated:
+        for item in annotation.__metadata__:
+            if isinstance(item, Unit):
+                return item
+    for part in typing.get_args(annotation):
+        if typing.get_origin(part) is Annotated and (found := unit_of(part)) is not None:
+            return found
+    return None
+
+
+# --- the vocabulary -------------------------------------------------------------------------
+
+Dimensionless = Annotated[float, Unit("1")]
+Metre = Annotated[float, Unit("m")]
+SquareMetre = Annotated[float, Unit("m2")]
+Second = Annotated[float, Unit("s")]
+Hertz = Annotated[float, Unit("Hz")]
+RadianPerSecond = Annotated[float, Unit("rad/s")]
+PerMetre = Annotated[float, Unit("1/m")]
+Radian = Annotated[float, Unit("rad")]
+MetrePerSecond = Annotated[float, Unit("m/s")]
+Kilogram = Annotated[float, Unit("kg")]
+Newton = Annotated[float, Unit("N")]
+NewtonMetre = Annotated[float, Unit("N*m")]
+NewtonPerMetre = Annotated[float, Unit("N/m")]
+NewtonPerVolt = Annotated[float, Unit("N/V")]
+Pascal = Annotated[float, Unit("Pa")]
+PascalSecond = Annotated[float, Unit("Pa*s")]
+KilogramPerCubicMetre = Annotated[float, Unit("kg/m3")]
+KilogramPerSquareMetre = Annotated[float, Unit("kg/m2")]
+Volt = Annotated[float, Unit("V")]
+Ampere = Annotated[float, Unit("A")]
+Farad = Annotated[float, Unit("F")]
+FaradPerMetre = Annotated[float, Unit("F/m")]
+MetrePerVolt = Annotated[float, Unit("m/V")]
+CoulombPerSquareMetre = Annotated[float, Unit("C/m2")]
+SquareMetrePerNewton = Annotated[float, Unit("m2/N")]
+Kelvin = Annotated[float, Unit("K")]
+
+DimensionlessArray = Annotated[FloatArray, Unit("1")]
+MetreArray = Annotated[FloatArray, Unit("m")]
+SecondArray = Annotated[FloatArray, Unit("s")]
+HertzArray = Annotated[FloatArray, Unit("Hz")]
+PascalArray = Annotated[FloatArray, Unit("Pa")]
+MetrePerSecondArray = Annotated[FloatArray, Unit("m/s")]
+MetrePerVoltArray = Annotated[FloatArray, Unit("m/V")]
+
+DimensionlessLike = Annotated[FloatLike, Unit("1")]
+MetreLike = Annotated[FloatLike, Unit("m")]
+SecondLike = Annotated[FloatLike, Unit("s")]
+HertzLike = Annotated[FloatLike, Unit("Hz")]
+NewtonLike = Annotated[FloatLike, Unit("N")]
+PascalLike = Annotated[FloatLike, Unit("Pa")]
+VoltLike = Annotated[FloatLike, Unit("V")]
+
+# --- checks and closed forms ----------------------------------------------------------------
+
+
+def require(
+    name: str,
+    value: Any,
+    unit: Unit = Unit("1"),  # noqa: B008 - immutable
+    *,
+    above: float | None = None,
+    at_least: float | None = None,
+    below: float | None = None,
+    at_most: float | None = None,
+) -> None:
+    """Refuse a value (scalar or array) that is not finite or not within the bounds given in SI.
+
+    Raises `InputError` that names the quantity, the offending value with its unit and the bound.
+    """
+    array = np.asarray(getattr(value, "magnitude", value), dtype=float)
+    wanted: list[str] = []
+    good = np.isfinite(array)
+    for bound, word, holds in (
+        (above, "above", np.greater),
+        (at_least, "at least", np.greater_equal),
+        (below, "below", np.less),
+        (at_most, "at most", np.less_equal),
+    ):
+        if bound is not None:
+            good = good & holds(array, bound)
+            wanted.append(f"{word} {format_quantity(bound, unit)}")
+    if not np.all(good):
+        offender = float(np.atleast_1d(array)[np.flatnonzero(~np.atleast_1d(good))[0]])
+        allowed = " and ".join(["finite", *wanted])
+        raise InputError(
+            f"{name} = {format_quantity(offender, unit)} cannot be used: it must be {allowed}"
+        )
+
+
+def require_valid(
+    name: str, value: Any, low: float, high: float, because: str, *, strict: bool = True
+) -> None:
+    """Refuse (strict) or warn of a dimensionless group outside the validity range of a model.
+
+    Raises `OutOfRangeError`, or warns `OutOfRangeWarning` if not `strict`.
+    """
+    array = np.atleast_1d(np.asarray(getattr(value, "magnitude", value), dtype=float))
+    outside = ~((array >= low) & (array <= high))
+    if not np.any(outside):
+        return
+    offender = float(array[np.flatnonzero(outside)[0]])
+    message = f"{name} = {offender:.4g} is outside {low:.4g} to {high:.4g}, where {because}"
+    if strict:
+        raise OutOfRangeError(f"{message}; pass strict=False to compute it all the same")
+    warnings.warn(message, OutOfRangeWarning, stacklevel=3)
+
+
+_P = ParamSpec("_P")
+_R = TypeVar("_R")
+
+CLOSED_FORMS: dict[str, Callable[..., Any]] = {}
+"""Every closed form by its dotted name, so that one test can call them all with pint quantities."""
+
+
+def closed_form(
+    *, positive: str = "", nonnegative: str = ""
+) -> Callable[[Callable[_P, _R]], Callable[_P, _R]]:
+    """Mark a formula: it enters `CLOSED_FORMS`, and its arguments are checked before it runs.
+
+    `positive` and `nonnegative` name arguments (separated by blanks); every other argument with a
+    unit in its annotation must be finite. The formula itself must use only arithmetic and NumPy
+    functions, so that it can be called with pint quantities.
+    """
+    strictly, weakly = set(positive.split()), set(nonnegative.split())
+
+    def mark(function: Callable[_P, _R]) -> Callable[_P, _R]:
+        signature = inspect.signature(function)
+        unknown = (strictly | weakly) - set(signature.parameters)
+        if unknown:
+            raise TypeError(f"{function.__qualname__} has no argument {sorted(unknown)}")
+        units: dict[str, Unit] = {}
+
+        @functools.wraps(function)
+        def checked(*args: _P.args, **kwargs: _P.kwargs) -> _R:
+            if not units:
+                hints = typing.get_type_hints(function, include_extras=True)
+                units.update({k: u for k, h in hints.items() if (u := unit_of(h)) is not None})
+            for name, value in signature.bind(*args, **kwargs).arguments.items():
+                if name in units and value is not None:
+                    require(
+                        name,
+                        value,
+                        units[name],
+                        above=0.0 if name in strictly else None,
+                        at_least=0.0 if name in weakly else None,
+                    )
+            return function(*args, **kwargs)
+
+        CLOSED_FORMS[f"{function.__module__}.{function.__qualname__}"] = checked
+        return checked
+
+    return mark
