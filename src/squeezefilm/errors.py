@@ -72,7 +72,12 @@ class ConvergenceError(SqueezefilmError):
     """
 
     def __init__(
-        self, message: str, *, partial: Any = None, residual: float = float("nan"), iterations: int = 0
+        self,
+        message: str,
+        *,
+        partial: Any = None,
+        residual: float = float("nan"),
+        iterations: int = 0,
     ) -> None:
         super().__init__(message)
         self.partial = partial

@@ -18,7 +18,7 @@ import typing
 import warnings
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from decimal import Decimal, InvalidOperation, localcontext
+from decimal import Decimal, localcontext
 from typing import Annotated, Any, ParamSpec, TypeVar
 
 import numpy as np
@@ -172,10 +172,7 @@ def parse_quantity(text: str, unit: Unit) -> float:
         raise QuantityError(
             f"'{text}' is no quantity; write a number and a unit, like \"{_example(unit)}\""
         )
-    try:
-        number = Decimal(match.group("number"))
-    except InvalidOperation as error:  # pragma: no cover - the pattern admits only numbers
-        raise QuantityError(f"'{text}' has no readable number") from error
+    number = Decimal(match.group("number"))
     if not number.is_finite():
         raise QuantityError(f"'{text}' is not a finite number; a quantity must be finite")
     symbol = match.group("unit")
@@ -226,9 +223,7 @@ def format_quantity(value: float, unit: Unit, digits: int = 4) -> str:
         exact = Decimal(repr(float(value)))
         rounded = Decimal(f"{exact:.{digits - 1}e}")
         exponent = rounded.adjusted()
-        for prefix, power in _READABLE:
-            if exponent >= power:
-                break
+        prefix, power = next((item for item in _READABLE if exponent >= item[1]), _READABLE[-1])
         number = rounded.scaleb(-power).normalize()
     text = f"{number:f}" if -4 < number.adjusted() < 7 else f"{number:e}"
     return f"{text} {prefix}{unit.symbol}"
@@ -305,7 +300,7 @@ VoltLike = Annotated[FloatLike, Unit("V")]
 def require(
     name: str,
     value: Any,
-    unit: Unit = Unit("1"),  # noqa: B008 - immutable
+    unit: Unit = Unit("1"),
     *,
     above: float | None = None,
     at_least: float | None = None,
