@@ -16,7 +16,14 @@ class SqueezefilmError(Exception):
 
 
 class InputError(SqueezefilmError, ValueError):
-    """A value, a file or a combination of them that cannot be used."""
+    """A value, a file or a combination of them that cannot be used.
+
+    `quantity` names the argument or field at fault where there is one.
+    """
+
+    def __init__(self, message: str, *, quantity: str | None = None) -> None:
+        super().__init__(message)
+        self.quantity = quantity
 
 
 class QuantityError(InputError):
@@ -38,7 +45,7 @@ class ConfigError(InputError):
         self.file = None if file is None else str(file)
         self.line = line
         self.key = key
-        super().__init__(self.__str__())
+        super().__init__(str(self), quantity=key)
 
     def __str__(self) -> str:
         place = self.file or ""

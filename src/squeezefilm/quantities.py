@@ -180,7 +180,7 @@ def parse_quantity(text: str, unit: Unit) -> float:
         if unit.symbol != "1":
             raise QuantityError(
                 f"'{text}' has no unit; write it with one of {allowed_units(unit)}, "
-                f'like "{_example(unit)}"'
+                f'like "{match.group("number")} {_second(unit)}"'
             )
         symbol = "1"
     try:
@@ -198,6 +198,11 @@ def parse_quantity(text: str, unit: Unit) -> float:
     if not np.isfinite(value):
         raise QuantityError(f"'{text}' is too large to be represented")
     return value
+
+
+def _second(unit: Unit) -> str:
+    units = allowed_units(unit).split(", ")
+    return units[min(1, len(units) - 1)]
 
 
 def _example(unit: Unit) -> str:
@@ -265,9 +270,11 @@ Newton = Annotated[float, Unit("N")]
 NewtonMetre = Annotated[float, Unit("N*m")]
 NewtonPerMetre = Annotated[float, Unit("N/m")]
 NewtonPerVolt = Annotated[float, Unit("N/V")]
+NewtonSecondPerMetre = Annotated[float, Unit("N*s/m")]
 Pascal = Annotated[float, Unit("Pa")]
 PascalSecond = Annotated[float, Unit("Pa*s")]
 KilogramPerCubicMetre = Annotated[float, Unit("kg/m3")]
+KilogramPerMetre = Annotated[float, Unit("kg/m")]
 KilogramPerSquareMetre = Annotated[float, Unit("kg/m2")]
 Volt = Annotated[float, Unit("V")]
 Ampere = Annotated[float, Unit("A")]
@@ -287,11 +294,13 @@ MetrePerSecondArray = Annotated[FloatArray, Unit("m/s")]
 MetrePerVoltArray = Annotated[FloatArray, Unit("m/V")]
 
 DimensionlessLike = Annotated[FloatLike, Unit("1")]
+DimensionlessComplexLike = Annotated[complex | ComplexArray, Unit("1")]
 MetreLike = Annotated[FloatLike, Unit("m")]
 SecondLike = Annotated[FloatLike, Unit("s")]
 HertzLike = Annotated[FloatLike, Unit("Hz")]
 NewtonLike = Annotated[FloatLike, Unit("N")]
 PascalLike = Annotated[FloatLike, Unit("Pa")]
+MetrePerVoltLike = Annotated[FloatLike, Unit("m/V")]
 VoltLike = Annotated[FloatLike, Unit("V")]
 
 # --- checks and closed forms ----------------------------------------------------------------
@@ -327,7 +336,8 @@ def require(
         offender = float(np.atleast_1d(array)[np.flatnonzero(~np.atleast_1d(good))[0]])
         allowed = " and ".join(["finite", *wanted])
         raise InputError(
-            f"{name} = {format_quantity(offender, unit)} cannot be used: it must be {allowed}"
+            f"{name} = {format_quantity(offender, unit)} cannot be used: it must be {allowed}",
+            quantity=name,
         )
 
 

@@ -1,0 +1,56 @@
+# Two commands matter: `make demo` and `make test`. Both set up what they need in .venv.
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+OUT ?= out/demo
+WORKERS ?= auto
+
+.PHONY: help demo test check lint types layers docs bench nightly wheel clean
+
+help:  ## show this list
+	@grep -E '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 12
+
+# A fresh virtual environment has pip; the constraints pin everything else.
+$(VENV)/run.stamp: pyproject.toml constraints.txt
+	@echo "Setting up $(VENV) (once; takes a minute or two)"
+	@test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e .
+	@touch $@
+
+$(VENV)/test.stamp: $(VENV)/run.stamp
+	@echo "Adding what tests and docs need to $(VENV)"
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[test,docs]'
+	@touch $@
+
+demo: $(VENV)/run.stamp  ## analyse the paper's plate and write a report
+	@$(BIN)/squeezefilm analyze biet2008-plate --out $(OUT)
+
+test: $(VENV)/test.stamp  ## run every test (slow ones: make nightly)
+	@$(BIN)/python -m pytest -n $(WORKERS) -m "not nightly"
+
+nightly: $(VENV)/test.stamp  ## run every test, the slow ones too
+	@$(BIN)/python -m pytest -n $(WORKERS)
+
+check: lint types layers docs  ## everything that is read and not run
+
+lint: $(VENV)/test.stamp  ## style
+	@$(BIN)/ruff check .
+	@$(BIN)/ruff format --check .
+
+types: $(VENV)/test.stamp  ## mypy, strict
+	@$(BIN)/mypy
+
+layers: $(VENV)/test.stamp  ## who may import whom
+	@$(BIN)/lint-imports
+
+docs: $(VENV)/test.stamp  ## build the documentation, strictly
+	@NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --quiet
+
+bench: $(VENV)/test.stamp  ## measure speed against peers, as ratios
+	@for file in benchmarks/*.py; do $(BIN)/python $$file || exit 1; done
+
+wheel: $(VENV)/test.stamp  ## build a wheel into dist/
+	@$(BIN)/python -m build --wheel --no-isolation
+
+clean:  ## remove what was built
+	rm -rf $(VENV) dist build site out .mypy_cache .ruff_cache .pytest_cache .import_linter_cache

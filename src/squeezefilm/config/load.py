@@ -1,0 +1,194 @@
+"""`load(type, path)`: read, check and build, with errors that name file, line, key and value."""
+
+from __future__ import annotations
+
+import dataclasses
+import tomllib
+import types
+import typing
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any, TypeVar, Union
+
+from pydantic import BaseModel, ValidationError
+
+from squeezefilm.config.lines import locate
+from squeezefilm.config.provenance import split_provenance
+from squeezefilm.config.schema import model_of, reads_from_file
+from squeezefilm.errors import ConfigError, InputError
+from squeezefilm.quantities import did_you_mean
+
+T = TypeVar("T")
+_LIMIT = 4_000_000  # bytes; a description of a display is a few kilobytes
+
+
+def load(cls: type[T], path: str | Path) -> T:
+    """The dataclass `cls` read from a TOML file.
+
+    A field of `cls` named ``provenance`` (with ``metadata={"loader": True}``) receives the sources
+    of the values by their dotted path. Raises `ConfigError` for anything that is not right, with
+    file, line, key, what is allowed and a did-you-mean; it reports every error it can see at once.
+    """
+    path = Path(path)
+    if path.is_dir():
+        raise ConfigError("is a directory; give a TOML file", file=path)
+    if not path.exists():
+        raise ConfigError("does not exist; give the path of a TOML file", file=path)
+    try:
+        if path.stat().st_size > _LIMIT:
+            raise ConfigError(f"is larger than {_LIMIT} bytes, no configuration", file=path)
+        text = path.read_text(encoding="utf-8")
+    except UnicodeDecodeError as error:
+        raise ConfigError("is not UTF-8 text; give a TOML file", file=path) from error
+    except OSError as error:
+        raise ConfigError(f"cannot be read: {error.strerror}", file=path) from error
+    return load_text(cls, text, file=path)
+
+
+def load_text(cls: type[T], text: str, *, file: str | Path | None = None) -> T:
+    """The dataclass `cls` read from TOML text; `file` is what messages name. See `load`."""
+    try:
+        raw = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise ConfigError(f"is not valid TOML: {error}", file=file) from error
+    if not raw:
+        keys = ", ".join(field.name for field in dataclasses.fields(cls) if reads_from_file(field))  # type: ignore[arg-type]
+        raise ConfigError(f"is empty; a {cls.__name__.lower()} needs the keys {keys}", file=file)
+    try:
+        plain, sources = split_provenance(raw)
+    except ConfigError as error:
+        place = locate(text, (error.key or "").split("."))
+        raise ConfigError(error.message, file=file, line=place, key=error.key) from error
+    try:
+        model = model_of(cls).model_validate(plain)
+    except ValidationError as error:
+        raise _all_errors(cls, error, text, file) from error
+    extra: dict[str, Any] = {}
+    if any(field.name == "provenance" for field in dataclasses.fields(cls)):  # type: ignore[arg-type]
+        extra["provenance"] = types.MappingProxyType(sources)
+    return typing.cast(T, _build(cls, model, (), text, file, extra))
+
+
+def _build(
+    cls: type[Any],
+    model: BaseModel,
+    path: tuple[str | int, ...],
+    text: str,
+    file: str | Path | None,
+    extra: Mapping[str, Any],
+) -> Any:
+    hints = typing.get_type_hints(cls, include_extras=True)
+    values: dict[str, Any] = dict(extra)
+    for name in type(model).model_fields:
+        here = (*path, name)
+        values[name] = _built_value(hints[name], getattr(model, name), here, text, file)
+    try:
+        return cls(**values)
+    except ConfigError:
+        raise
+    except InputError as error:
+        key = getattr(error, "quantity", None)
+        at = (*path, key) if key in values else path
+        raise ConfigError(
+            str(error), file=file, line=locate(text, at), key=_dotted(at) or None
+        ) from error
+
+
+def _built_value(
+    hint: Any, value: Any, path: tuple[str | int, ...], text: str, file: str | Path | None
+) -> Any:
+    if isinstance(value, BaseModel):
+        return _build(_dataclass_of(hint, value), value, path, text, file, {})
+    if isinstance(value, list):
+        item_hint = typing.get_args(hint)[0]
+        return tuple(
+            _built_value(item_hint, item, (*path, index), text, file)
+            for index, item in enumerate(value)
+        )
+    return value
+
+
+def _dataclass_of(hint: Any, model: BaseModel) -> type[Any]:
+    candidates = [hint]
+    if typing.get_origin(hint) in (Union, types.UnionType):
+        candidates = [part for part in typing.get_args(hint) if dataclasses.is_dataclass(part)]
+    found: type[Any] = next(cls for cls in candidates if model_of(cls) is type(model))
+    return found
+
+
+def _dotted(path: Sequence[str | int]) -> str:
+    return ".".join(str(part + 1) if isinstance(part, int) else part for part in path)
+
+
+def _all_errors(
+    cls: type[Any], error: ValidationError, text: str, file: str | Path | None
+) -> ConfigError:
+    found: list[ConfigError] = []
+    for item in error.errors():
+        path, owner = _path_and_owner(cls, item["loc"])
+        message = _message(item, path, owner)
+        found.append(
+            ConfigError(message, file=file, line=locate(text, path), key=_dotted(path) or None)
+        )
+    if len(found) == 1:
+        return found[0]
+    lines = "\n".join(f"  {one.key}: {one.message}" + _at(one.line) for one in found)
+    return ConfigError(
+        f"{len(found)} things are not right:\n{lines}", file=file, line=None, key=None
+    )
+
+
+def _at(line: int | None) -> str:
+    return "" if line is None else f" (line {line})"
+
+
+def _path_and_owner(
+    cls: type[Any], location: Sequence[str | int]
+) -> tuple[tuple[str | int, ...], type[Any]]:
+    """Strip the union tags that pydantic puts into a location; find the dataclass that owns the
+    last key."""
+    path: list[str | int] = []
+    owner, hint = cls, typing.cast(Any, cls)
+    for part in location:
+        options = [p for p in typing.get_args(hint) if dataclasses.is_dataclass(p)]
+        tagged = [p for p in options if _tag(p) == part]
+        if typing.get_origin(hint) in (Union, types.UnionType) and tagged:
+            hint = tagged[0]
+            continue
+        path.append(part)
+        if isinstance(part, int):
+            hint = typing.get_args(hint)[0]
+            continue
+        if dataclasses.is_dataclass(hint):
+            owner = typing.cast("type[Any]", hint)
+            hints = typing.get_type_hints(owner, include_extras=True)
+            hint = hints.get(str(part), Any)
+    return tuple(path), owner
+
+
+def _tag(cls: Any) -> Any:
+    return next((f.default for f in dataclasses.fields(cls) if f.name == "type"), None)
+
+
+def _message(item: Any, path: Sequence[str | int], owner: type[Any]) -> str:
+    known = [field.name for field in dataclasses.fields(owner) if reads_from_file(field)]
+    kind = item["type"]
+    if kind == "extra_forbidden":
+        hint = did_you_mean(str(path[-1]), known)
+        return f"unknown key '{path[-1]}'.{hint} Allowed here: {', '.join(known)}"
+    if kind == "missing":
+        return f"the key '{path[-1]}' is missing; a {owner.__name__} needs {', '.join(known)}"
+    if kind == "union_tag_invalid":
+        tag = str(item["ctx"]["tag"])
+        allowed = [part.strip(" '") for part in str(item["ctx"]["expected_tags"]).split(",")]
+        return f"type = '{tag}' is not known.{did_you_mean(tag, allowed)} Allowed: " + ", ".join(
+            allowed
+        )
+    if kind == "union_tag_not_found":
+        return "the key 'type' is missing; it says which kind of actuator this is"
+    if kind in ("model_type", "model_attributes_type"):
+        return f"{item['input']!r} is no table; write it as [table] with keys"
+    if kind == "literal_error":
+        return f"{item['input']!r} is not allowed; allowed: {item['ctx']['expected']}"
+    message = str(item["msg"]).removeprefix("Value error, ")
+    return message if kind == "value_error" else f"{item['input']!r}: {message}"

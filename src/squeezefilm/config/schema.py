@@ -1,0 +1,88 @@
+"""A pydantic model for every frozen dataclass that a room owns, built from its annotations.
+
+The rooms stay free of pydantic: a field annotated `Metre` becomes one that reads quantity text
+with a dimension of length; unknown keys are refused.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import types
+import typing
+from collections.abc import Callable
+from typing import Annotated, Any, Literal, Union
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, create_model
+
+from squeezefilm.errors import QuantityError
+from squeezefilm.quantities import Unit, format_quantity, parse_quantity, unit_of
+
+
+def _reads(unit: Unit) -> Callable[[Any], Any]:
+    def read(value: Any) -> float:
+        if isinstance(value, str):
+            return parse_quantity(value, unit)
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            raise QuantityError(
+                f'{value!r} is no quantity; write a text like "{format_quantity(2.0, unit)}"'
+            )
+        # Only a number without dimension may stand bare; parse_quantity says so otherwise.
+        return parse_quantity(repr(value), unit)
+
+    return read
+
+
+def _field_type(annotation: Any) -> Any:
+    if isinstance(annotation, str):
+        raise TypeError("annotations must be resolved before they are translated")
+    if (unit := unit_of(annotation)) is not None:
+        optional = type(None) in typing.get_args(annotation)
+        number = Annotated[float, BeforeValidator(_reads(unit))]
+        return (number | None) if optional else number
+    origin, parts = typing.get_origin(annotation), typing.get_args(annotation)
+    if origin is tuple and len(parts) == 2 and parts[1] is Ellipsis:
+        return list[_field_type(parts[0])]  # type: ignore[misc]
+    if origin in (Union, types.UnionType):
+        models = tuple(_field_type(part) for part in parts)
+        if all(dataclasses.is_dataclass(part) for part in parts):
+            return Annotated[Union[models], Field(discriminator="type")]  # noqa: UP007
+        return Union[models]  # noqa: UP007
+    if dataclasses.is_dataclass(annotation):
+        return model_of(typing.cast(type, annotation))
+    return annotation
+
+
+def reads_from_file(field: dataclasses.Field[Any]) -> bool:
+    """Whether a field is the user's to write (and not filled in by the loader)."""
+    return bool(field.init and not field.metadata.get("loader", False))
+
+
+def model_of(cls: type[Any]) -> type[BaseModel]:
+    """The pydantic model that reads the dataclass `cls`, built once."""
+    if cls not in _MODELS:
+        _MODELS[cls] = _build_model(cls)
+    return _MODELS[cls]
+
+
+_MODELS: dict[type[Any], type[BaseModel]] = {}
+
+
+def _build_model(cls: type[Any]) -> type[BaseModel]:
+    hints = typing.get_type_hints(cls, include_extras=True)
+    fields: dict[str, Any] = {}
+    for field in dataclasses.fields(cls):
+        if not reads_from_file(field):
+            continue
+        default: Any = ...
+        if field.default is not dataclasses.MISSING:
+            default = field.default
+        # A discriminator must be written by the user, whatever default the dataclass has.
+        if typing.get_origin(hints[field.name]) is Literal and field.name == "type":
+            default = ...
+        fields[field.name] = (_field_type(hints[field.name]), default)
+    return create_model(
+        cls.__name__,
+        __config__=ConfigDict(extra="forbid", strict=True, frozen=True),
+        __doc__=cls.__doc__,
+        **fields,
+    )

@@ -1,0 +1,314 @@
+"""The film under small vibration: stiffness, damping and the mean load to second order.
+
+The force of the film on a rigid surface vibrating with amplitude ε h over an area A at ambient
+pressure p0 is p0 A ε Re[(−fk − i fd) exp(iT)]: fk is the relative stiffness, fd the relative
+damping, both functions of the squeeze number σ = 12 η ω ℓ² / (p0 h²) and of the planform. ℓ is the
+strip's width, the disc's radius or the rectangle's shorter side. A polytropic gas takes
+n f(σ/n), first-order slip f(σ/(1 + 6 Kn)).
+
+Sources: Langlois 1962, Quarterly of Applied Mathematics 20, 131; Blech 1983, 10.1115/1.3254692.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+import numpy as np
+
+from squeezefilm.errors import InputError
+from squeezefilm.quantities import (
+    Dimensionless,
+    DimensionlessComplexLike,
+    DimensionlessLike,
+    HertzLike,
+    MetreLike,
+    NewtonPerMetre,
+    NewtonSecondPerMetre,
+    Pascal,
+    PascalSecond,
+    SquareMetre,
+    closed_form,
+    require,
+    require_valid,
+)
+
+Planform = Literal["strip", "disc", "rectangle"]
+PLANFORMS: tuple[Planform, ...] = ("strip", "disc", "rectangle")
+
+# Below: continued fraction. Above: exponential (strip) or asymptotic (disc) form.
+_SWITCH = 900.0
+_MODES = 301
+
+
+def _continued_fraction(u: Any, first: int, step: int) -> Any:
+    """u / (u + c1 + u/(c2 + u/(c3 + …))) with c = first, first + step, …
+
+    Every partial sum has positive real and imaginary parts, so that neither part of the result
+    cancels however small |u|.
+    """
+    tail = first + step * 120.0 + 0 * u
+    for k in range(119, 0, -1):
+        tail = first + step * k + u / tail
+    return u / (u + first + u / tail)
+
+
+def _strip(sigma: Any) -> Any:
+    """fk + i fd = 1 − tanh z / z with z = √(iσ)/2."""
+    u = 1j * np.minimum(sigma, _SWITCH) / 4
+    z = np.sqrt(1j * np.maximum(sigma, _SWITCH)) / 2
+    decay = np.exp(-2 * z)
+    return np.where(
+        sigma <= _SWITCH, _continued_fraction(u, 3, 2), 1 - (1 - decay) / ((1 + decay) * z)
+    )
+
+
+def _bessel_ratio_coefficients(count: int) -> list[float]:
+    """c of I1(s)/I0(s) ~ Σ c_k s^-k, from the Riccati equation r' = 1 − r/s − r²."""
+    c = [1.0]
+    for m in range(1, count):
+        products = sum(c[j] * c[m - j] for j in range(1, m))
+        c.append(((m - 2) * c[m - 1] - products) / 2)
+    return c
+
+
+_RATIO = _bessel_ratio_coefficients(20)
+
+
+def _disc(sigma: Any) -> Any:
+    """fk + i fd = 1 − 2 I1(s) / (s I0(s)) with s = √(iσ)."""
+    u = 1j * np.minimum(sigma, _SWITCH) / 4
+    s = np.sqrt(1j * np.maximum(sigma, _SWITCH))
+    ratio = np.zeros_like(s)
+    for c in reversed(_RATIO):
+        ratio = c + ratio / s
+    return np.where(sigma <= _SWITCH, _continued_fraction(u, 2, 1), 1 - 2 * ratio / s)
+
+
+def _rectangle(sigma: Any, beta: float) -> Any:
+    """Blech's double series over odd m, n with the sum over n done in closed form:
+
+    fk + i fd = strip(σ) − Σ_m 16 β/(π² m²) iσ/q³ tanh(q/2β),  q² = π² m² + iσ.
+
+    Beyond m = 301 tanh is 1 and the tail is its integral with the first midpoint correction;
+    the integral of 1/(m² q³) from M is 1/(M q (πM + q)²).
+    """
+    sigma = np.asarray(sigma, dtype=float)
+    i_sigma = 1j * sigma[..., np.newaxis]
+    m = np.arange(1, _MODES + 1, 2, dtype=float)
+    q = np.sqrt((np.pi * m) ** 2 + i_sigma)
+    ends = np.sum(np.tanh(q / (2 * beta)) / (m**2 * q**3), axis=-1)
+    M = _MODES + 1.0
+    Q = np.sqrt((np.pi * M) ** 2 + 1j * sigma)
+    integral = 1 / (M * Q * (np.pi * M + Q) ** 2)
+    slope = -(2 / M + 3 * np.pi**2 * M / Q**2) / (M**2 * Q**3)
+    tail = (integral + slope / 6) / 2
+    return _strip(sigma) - 16 * beta / np.pi**2 * 1j * sigma * (ends + tail)
+
+
+def _aspect(aspect_ratio: float) -> None:
+    require("aspect_ratio", aspect_ratio, above=0, at_most=1)
+
+
+@closed_form(nonnegative="squeeze_number")
+def strip_force(squeeze_number: DimensionlessLike) -> DimensionlessComplexLike:
+    """The complex force −fk − i fd on a long strip over p0 A ε (dimensionless); broadcasts.
+
+    fk + i fd = 1 − tanh z / z, z = √(iσ)/2, σ on the width. Relative error of either part below
+    1e-12 for every σ ≥ 0 (fd underflows nowhere, fk only where σ² does).
+    """
+    return -_strip(squeeze_number)
+
+
+@closed_form(nonnegative="squeeze_number")
+def disc_force(squeeze_number: DimensionlessLike) -> DimensionlessComplexLike:
+    """The complex force −fk − i fd on a disc over p0 A ε (dimensionless); broadcasts.
+
+    −1 + 2 I1(s)/(s I0(s)), s = √(iσ), σ on the radius. Accuracy as `strip_force`.
+    """
+    return -_disc(squeeze_number)
+
+
+@closed_form(nonnegative="squeeze_number", positive="aspect_ratio")
+def rectangle_force(
+    squeeze_number: DimensionlessLike, aspect_ratio: Dimensionless
+) -> DimensionlessComplexLike:
+    """The complex force −fk − i fd on a rectangle over p0 A ε (dimensionless); broadcasts over σ.
+
+    σ on the shorter side, aspect_ratio = shorter/longer side in (0, 1]; 0 is the strip. Blech's
+    double series, one sum in closed form and the tail of the other accelerated: relative error
+    below 1e-9. Raises `InputError` for an aspect ratio outside (0, 1].
+    """
+    _aspect(aspect_ratio)
+    return -_rectangle(squeeze_number, aspect_ratio)
+
+
+def _force(planform: Planform, sigma: Any, aspect_ratio: float) -> Any:
+    if planform == "strip":
+        return _strip(sigma)
+    if planform == "disc":
+        return _disc(sigma)
+    if planform == "rectangle":
+        _aspect(aspect_ratio)
+        return _rectangle(sigma, aspect_ratio)
+    raise InputError(f"planform = '{planform}' is unknown; allowed are {', '.join(PLANFORMS)}")
+
+
+def _plain(value: Any) -> Any:
+    return float(value) if np.ndim(value) == 0 else value
+
+
+def _effective(sigma: Any, n: float, knudsen: Any) -> Any:
+    require("polytropic_index", n, at_least=1, at_most=5 / 3)
+    return sigma / (n * (1 + 6 * knudsen))
+
+
+@closed_form(nonnegative="squeeze_number knudsen_number", positive="polytropic_index aspect_ratio")
+def relative_stiffness(
+    squeeze_number: DimensionlessLike,
+    planform: Planform = "strip",
+    aspect_ratio: Dimensionless = 1.0,
+    polytropic_index: Dimensionless = 1.0,
+    knudsen_number: DimensionlessLike = 0.0,
+) -> DimensionlessLike:
+    """The film's stiffness over p0 A/h: n fk(σ / (n (1 + 6 Kn))) (dimensionless); broadcasts.
+
+    Small amplitudes; first-order slip, Kn up to about 0.1; n from 1 (isothermal) to 1.4 (air,
+    adiabatic). `aspect_ratio` (shorter/longer) counts for the rectangle only. Raises `InputError`
+    for an unknown planform, n outside 1 to 5/3 or an aspect ratio outside (0, 1].
+    """
+    sigma = _effective(squeeze_number, polytropic_index, knudsen_number)
+    return _plain(polytropic_index * np.real(_force(planform, sigma, aspect_ratio)))
+
+
+@closed_form(nonnegative="squeeze_number knudsen_number", positive="polytropic_index aspect_ratio")
+def relative_damping(
+    squeeze_number: DimensionlessLike,
+    planform: Planform = "strip",
+    aspect_ratio: Dimensionless = 1.0,
+    polytropic_index: Dimensionless = 1.0,
+    knudsen_number: DimensionlessLike = 0.0,
+) -> DimensionlessLike:
+    """The film's damping times ω over p0 A/h: n fd(σ / (n (1 + 6 Kn))) (dimensionless).
+
+    Arguments, range and errors as `relative_stiffness`; broadcasts.
+    """
+    sigma = _effective(squeeze_number, polytropic_index, knudsen_number)
+    return _plain(polytropic_index * np.imag(_force(planform, sigma, aspect_ratio)))
+
+
+@closed_form(nonnegative="squeeze_number")
+def strip_damping_low_squeeze(squeeze_number: DimensionlessLike) -> DimensionlessLike:
+    """fd → σ/12 of a strip as σ → 0 (dimensionless), n = 1; relative error 17/1680 · σ²/… < 1 %
+    below σ = 1. A purely viscous damper."""
+    return squeeze_number / 12
+
+
+@closed_form(nonnegative="squeeze_number")
+def strip_stiffness_low_squeeze(squeeze_number: DimensionlessLike) -> DimensionlessLike:
+    """fk → σ²/120 of a strip as σ → 0 (dimensionless), n = 1; error below 1 % under σ = 0.9."""
+    return squeeze_number**2 / 120
+
+
+@closed_form(nonnegative="squeeze_number")
+def disc_damping_low_squeeze(squeeze_number: DimensionlessLike) -> DimensionlessLike:
+    """fd → σ/8 of a disc as σ → 0 (dimensionless), n = 1."""
+    return squeeze_number / 8
+
+
+@closed_form(nonnegative="squeeze_number")
+def disc_stiffness_low_squeeze(squeeze_number: DimensionlessLike) -> DimensionlessLike:
+    """fk → σ²/48 of a disc as σ → 0 (dimensionless), n = 1."""
+    return squeeze_number**2 / 48
+
+
+@closed_form(positive="area film_thickness ambient_pressure", nonnegative="relative_stiffness")
+def film_stiffness(
+    relative_stiffness: DimensionlessLike,
+    area: SquareMetre,
+    film_thickness: MetreLike,
+    ambient_pressure: Pascal,
+) -> NewtonPerMetre:
+    """The film's dynamic stiffness p0 A fk / h in N/m; broadcasts. Small amplitudes."""
+    return relative_stiffness * ambient_pressure * area / film_thickness
+
+
+@closed_form(
+    positive="area film_thickness ambient_pressure frequency", nonnegative="relative_damping"
+)
+def film_damping(
+    relative_damping: DimensionlessLike,
+    area: SquareMetre,
+    film_thickness: MetreLike,
+    ambient_pressure: Pascal,
+    frequency: HertzLike,
+) -> NewtonSecondPerMetre:
+    """The film's damping coefficient p0 A fd / (h ω) in N·s/m; broadcasts. Small amplitudes."""
+    omega = 2 * np.pi * frequency
+    return relative_damping * ambient_pressure * area / (film_thickness * omega)
+
+
+@closed_form(positive="viscosity area length film_thickness")
+def incompressible_strip_damping(
+    viscosity: PascalSecond, area: SquareMetre, length: MetreLike, film_thickness: MetreLike
+) -> NewtonSecondPerMetre:
+    """The damping coefficient η A ℓ²/h³ in N·s/m of a strip of width ℓ at low squeeze number.
+
+    The limit of `film_damping` as σ → 0, where the gas does not compress; broadcasts.
+    """
+    return viscosity * area * length**2 / film_thickness**3
+
+
+def crossover_squeeze_number(
+    planform: Planform = "strip", aspect_ratio: Dimensionless = 1.0
+) -> Dimensionless:
+    """The squeeze number at which fk = fd (dimensionless): below it the film damps, above it
+    springs. Strip 10.134, disc 6.233 (on the radius), square 21.635 (on the side).
+
+    Raises `InputError` for an unknown planform or an aspect ratio outside (0, 1].
+    """
+    from scipy.optimize import brentq
+
+    def difference(log_sigma: float) -> float:
+        force = complex(_force(planform, np.exp(log_sigma), aspect_ratio))
+        return force.real - force.imag
+
+    return float(np.exp(brentq(difference, np.log(0.1), np.log(1e4), xtol=1e-13, rtol=1e-13)))
+
+
+@closed_form(
+    nonnegative="amplitude_ratio squeeze_number knudsen_number",
+    positive="polytropic_index aspect_ratio",
+)
+def second_order_mean_load(
+    amplitude_ratio: DimensionlessLike,
+    squeeze_number: DimensionlessLike,
+    planform: Planform = "strip",
+    aspect_ratio: Dimensionless = 1.0,
+    polytropic_index: Dimensionless = 1.0,
+    knudsen_number: DimensionlessLike = 0.0,
+    *,
+    strict: bool = True,
+) -> DimensionlessLike:
+    """The mean load W over p0 A of a rigid surface over a uniform gap, to second order in ε.
+
+    W = 1 + ε² n fk(σ/(n g)) [5/4 + 6 Kn − (3/2) Kn (1 − n)] / g with g = 1 + 6 Kn: 1 + (5/4) ε² n
+    fk(σ/n) without slip. Any planform; first-order slip with the local mean free path. Broadcasts.
+
+    Valid for ε ≤ 0.3, where the over-pressure W − 1 is some 10 % low at most. Beyond, and for
+    Kn > 0.1, raises `OutOfRangeError`, or warns if not `strict`.
+
+    Derivation: average the Reynolds equation over a period to O(ε²). With p1 and H1 the first-order
+    pressure and gap, g⟨p2⟩ = −(3 + 12 Kn)⟨H1 p1⟩ − ½ (1/n + 6 Kn (1/n − 1))⟨p1²⟩; the linear
+    equation gives the area means ⟨H1 p1⟩ = −F/2 and ⟨p1²⟩ = n F/2 with F = n fk(σ/(n g)).
+    """
+    require_valid(
+        "amplitude_ratio", amplitude_ratio, 0, 0.3,
+        "the second order in ε keeps the over-pressure within some 10 %", strict=strict,
+    )  # fmt: skip
+    require_valid(
+        "knudsen_number", knudsen_number, 0, 0.1, "first-order slip holds", strict=strict
+    )
+    sigma = _effective(squeeze_number, polytropic_index, knudsen_number)
+    stiffness = polytropic_index * np.real(_force(planform, sigma, aspect_ratio))
+    slip = 1.25 + 6 * knudsen_number - 1.5 * knudsen_number * (1 - polytropic_index)
+    return _plain(1 + amplitude_ratio**2 * stiffness * slip / (1 + 6 * knudsen_number))
