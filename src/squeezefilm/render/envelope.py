@@ -23,13 +23,13 @@ from squeezefilm.quantities import (
     HertzLike,
     MetreArray,
     MetreLike,
+    MetrePerSecondLike,
     Second,
     SecondLike,
     Unit,
     closed_form,
     require,
 )
-from squeezefilm.render.texture import MetrePerSecondLike
 
 Shape = Literal["square", "sine"]
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Annotated, Protocol
+from typing import Protocol
 
 import numpy as np
 
@@ -17,18 +17,16 @@ from squeezefilm.errors import InputError
 from squeezefilm.quantities import (
     Dimensionless,
     FloatArray,
-    FloatLike,
     Metre,
     MetreArray,
     MetreLike,
+    MetrePerSecondLike,
     Radian,
     SecondLike,
     Unit,
     format_quantity,
     require,
 )
-
-MetrePerSecondLike = Annotated[FloatLike, Unit("m/s")]
 
 _METRE = Unit("m")
 # No vibrating plate reaches a millimetre and no display is ten metres long: what lies beyond is

@@ -1,0 +1,144 @@
+"""Laws that hold for every grating, stroke and resonator."""
+
+import math
+
+import numpy as np
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+from squeezefilm.render.envelope import (
+    envelope_response,
+    fastest_speed,
+    finest_period,
+    sine_swing_kept,
+    square_swing_kept,
+)
+from squeezefilm.render.stroke import Stroke
+from squeezefilm.render.texture import Sine, Square
+
+periods = st.floats(1e-4, 0.05)
+speeds = st.floats(1e-3, 1.0)
+taus = st.floats(1e-5, 1e-2)
+shares = st.floats(0.01, 0.999)
+positions = st.floats(-0.2, 0.2)
+phases = st.floats(-10, 10)
+shapes = st.sampled_from(["square", "sine"])
+
+
+@st.composite
+def gratings(draw: st.DrawFn) -> Square | Sine:
+    low = draw(st.floats(0, 1e-6))
+    high = low + draw(st.floats(1e-9, 5e-6))
+    period, phase = draw(periods), draw(phases)
+    if draw(st.booleans()):
+        return Sine(period, low, high, phase)
+    return Square(period, low, high, draw(st.floats(0.05, 0.95)), phase)
+
+
+def near_an_edge(texture: Square | Sine, x: float) -> bool:
+    """Whether rounding may put x on the other side of an edge of a square."""
+    if isinstance(texture, Sine):
+        return False
+    cycle = (x / texture.spatial_period + texture.phase / (2 * math.pi)) % 1.0
+    return min(cycle, 1 - cycle, abs(cycle - texture.duty)) < 1e-9
+
+
+@given(gratings(), positions, st.integers(-50, 50))
+def test_a_grating_repeats_after_whole_periods(texture: Square | Sine, x: float, n: int) -> None:
+    assume(not near_an_edge(texture, x))
+    here = texture(x, 0.0, 0.1, 0.0)
+    there = texture(x + n * texture.spatial_period, 0.0, 0.1, 0.0)
+    assert abs(there - here) <= 1e-6 * (texture.high - texture.low)
+
+
+@given(gratings(), st.lists(positions, min_size=1))
+def test_a_grating_stays_between_low_and_high(texture: Square | Sine, x: list[float]) -> None:
+    values = texture(np.array(x), 0.0, 0.1, 0.0)
+    assert np.all(values >= texture.low * (1 - 1e-15))
+    assert np.all(values <= texture.high * (1 + 1e-15))
+
+
+@given(gratings(), positions, st.floats(-1, 1), st.floats(0, 1), st.floats(0, 1))
+def test_a_grating_depends_on_x_alone(
+    texture: Square | Sine, x: float, y: float, v: float, t: float
+) -> None:
+    assert texture(x, y, v, t) == texture(x, 0.0, 0.0, 0.0)
+
+
+@given(periods, speeds, taus, st.floats(0.01, 0.99))
+def test_a_swing_kept_is_a_share(period: float, speed: float, tau: float, duty: float) -> None:
+    for kept in (
+        square_swing_kept(period, speed, tau, duty),
+        sine_swing_kept(period, speed, tau),
+    ):
+        assert 0 < kept <= 1
+
+
+@given(periods, speeds, taus, st.floats(0.01, 0.99), st.floats(1.001, 10))
+def test_a_faster_finger_keeps_less(
+    period: float, speed: float, tau: float, duty: float, faster: float
+) -> None:
+    slow, fast = (square_swing_kept(period, v, tau, duty) for v in (speed, speed * faster))
+    assert fast <= slow * (1 + 1e-15)
+    slow, fast = (sine_swing_kept(period, v, tau) for v in (speed, speed * faster))
+    assert fast < slow or slow > 1 - 1e-12
+
+
+@given(periods, speeds, taus, st.floats(0.01, 0.99))
+def test_grooves_and_ridges_exchanged_keep_the_same(
+    period: float, speed: float, tau: float, duty: float
+) -> None:
+    one, other = (square_swing_kept(period, speed, tau, d) for d in (duty, 1 - duty))
+    assert math.isclose(one, other, rel_tol=1e-9)
+    # Equal halves leave both ends the most time.
+    assert one <= square_swing_kept(period, speed, tau) * (1 + 1e-12)
+
+
+@given(speeds, taus, shares, shapes)
+def test_finest_period_and_fastest_speed_are_inverses(
+    speed: float, tau: float, kept: float, shape: str
+) -> None:
+    period = finest_period(speed, tau, kept, shape)
+    assert math.isclose(fastest_speed(period, tau, kept, shape), speed, rel_tol=1e-12)
+    law = square_swing_kept if shape == "square" else sine_swing_kept
+    assert math.isclose(law(period, speed, tau), kept, rel_tol=1e-9)
+
+
+commands = st.lists(st.floats(0, 1e-5), min_size=1, max_size=40)
+
+
+@given(commands, st.floats(0, 1e-5), st.floats(1e-6, 1e-1), taus)
+def test_a_response_never_leaves_the_range_of_what_drives_it(
+    command: list[float], initial: float, step: float, tau: float
+) -> None:
+    response = envelope_response(np.array(command), step, tau, initial)
+    assert response[0] == initial
+    assert np.all(response >= min(*command, initial) - 1e-18)
+    assert np.all(response <= max(*command, initial) + 1e-18)
+
+
+@given(commands, st.floats(-5, 5), st.floats(1e-6, 1e-1), taus)
+def test_a_response_is_linear(command: list[float], factor: float, step: float, tau: float) -> None:
+    once = envelope_response(np.array(command), step, tau)
+    scaled = envelope_response(factor * np.array(command), step, tau)
+    assert np.allclose(scaled, factor * once, rtol=1e-9, atol=1e-18)
+
+
+@given(speeds, st.floats(1e-3, 0.3), st.integers(1, 6), st.floats(-1, 1), st.floats(0, 1))
+def test_a_stroke_stays_on_its_line_and_moves_at_its_speed(
+    speed: float, length: float, passes: int, start: float, when: float
+) -> None:
+    stroke = Stroke(speed, length, passes, start)
+    first, second = when * stroke.duration, min(1.0, when + 1e-3) * stroke.duration
+    here, there = stroke.position(np.array([first, second]))
+    for x in (here, there):
+        assert start - 1e-12 <= x <= start + length + 1e-12
+    assert abs(there - here) <= speed * (second - first) + 1e-12
+
+
+@given(speeds, st.floats(1e-3, 0.3), st.floats(0, 1))
+def test_there_and_back_is_the_same_way(speed: float, length: float, when: float) -> None:
+    stroke = Stroke(speed, length, passes=2)
+    t = when * stroke.pass_duration
+    back = max(0.0, stroke.duration - t)
+    assert math.isclose(stroke.position(t), stroke.position(back), abs_tol=1e-12)

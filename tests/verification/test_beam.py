@@ -1,0 +1,205 @@
+"""Free–free beams against analysis: tabulated roots, limits, orthogonality, an independent solver,
+and the harmonic response against a direct solution of the driven equations."""
+
+import dataclasses
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.linalg import eigh
+
+from squeezefilm.display import load_display
+from squeezefilm.errors import InputError
+from squeezefilm.plate.beam import (
+    euler_bernoulli_frequency,
+    euler_bernoulli_half_wavelength,
+    free_beam_mode,
+    timoshenko_frequency,
+)
+from squeezefilm.plate.laminate import Laminate, Layer, laminate, plate_laminate
+from squeezefilm.plate.layout import RectangularPlate
+from squeezefilm.plate.response import BeamResponse, beam_response
+from squeezefilm.plate.working_mode import working_mode
+
+
+@pytest.fixture(scope="module")
+def plate() -> RectangularPlate:
+    actuator = load_display("biet2008-plate").actuator
+    assert isinstance(actuator, RectangularPlate)
+    return actuator
+
+
+@pytest.fixture(scope="module")
+def section(plate: RectangularPlate) -> Laminate:
+    return plate_laminate(plate, "paper")
+
+
+@pytest.mark.parametrize(
+    ("nodal_lines", "beta_length"),
+    [
+        (2, 4.730040744862704),
+        (3, 7.853204624095838),
+        (4, 10.995607838001671),
+        (5, 14.13716549125746),
+        (8, 23.561944902040455),
+    ],
+)
+def test_euler_bernoulli_roots(section: Laminate, nodal_lines: int, beta_length: float) -> None:
+    length = 0.083
+    mode = free_beam_mode(section, length, nodal_lines, "euler_bernoulli")
+    assert math.pi * length / mode.half_wavelength == pytest.approx(beta_length, rel=1e-9)
+    assert len(mode.nodal_positions) == nodal_lines
+    assert mode.frequency == pytest.approx(
+        euler_bernoulli_frequency(
+            length * math.pi / beta_length, section.bending_stiffness, section.mass_per_area
+        ),
+        rel=1e-9,
+    )
+
+
+def test_thin_timoshenko_tends_to_euler_bernoulli_with_second_order() -> None:
+    errors = []
+    thicknesses = [2e-3, 1e-3, 0.5e-3]
+    for thickness in thicknesses:
+        thin = laminate([Layer(thickness, 123e9, 47e9, 8250.0)])
+        euler = free_beam_mode(thin, 0.1, 4, "euler_bernoulli").frequency
+        errors.append(1 - free_beam_mode(thin, 0.1, 4).frequency / euler)
+    assert all(error > 0 for error in errors)  # shear and rotation only soften
+    orders = np.diff(np.log(errors)) / np.diff(np.log(thicknesses))
+    assert orders == pytest.approx([2, 2], abs=0.05)
+
+
+def _ritz(section: Laminate, length: float, points: int, loss: complex = 1.0) -> tuple[Any, Any]:
+    """Stiffness and mass of a free Timoshenko beam in Legendre polynomials for w and ψ: an
+    independent solver (free ends are natural), stiffness scaled by `loss`."""
+    nodes, weights = np.polynomial.legendre.leggauss(2 * points)
+    V = np.polynomial.legendre.legvander(nodes, points - 1)
+    slopes = [np.polynomial.legendre.legder(row) for row in np.eye(points)]
+    D = np.stack([np.polynomial.legendre.legval(nodes, slope) for slope in slopes], axis=1)
+    D, w = D * 2 / length, weights * length / 2
+    G, S = section.bending_stiffness * loss, section.shear_stiffness * loss
+    M, J = section.mass_per_area, section.rotary_inertia
+    VV, VD, DD = ((a.T * w) @ b for a, b in ((V, V), (V, D), (D, D)))
+    stiffness = np.block([[S * DD, -S * VD.T], [-S * VD, S * VV + G * DD]])
+    zero = np.zeros((points, points))
+    return stiffness, np.block([[M * VV, zero], [zero, J * VV]])
+
+
+@pytest.mark.parametrize("nodal_lines", [2, 3, 7, 8, 9, 13])
+def test_timoshenko_agrees_with_an_independent_ritz_solver(
+    section: Laminate, nodal_lines: int
+) -> None:
+    # Two rigid motions come first (w = const, rotation).
+    values = eigh(*_ritz(section, 0.083, 40), eigvals_only=True)
+    reference = math.sqrt(values[nodal_lines]) / (2 * math.pi)
+    assert free_beam_mode(section, 0.083, nodal_lines).frequency == pytest.approx(
+        reference, rel=1e-9
+    )
+
+
+def test_modes_are_orthogonal_in_the_kinetic_energy(section: Laminate) -> None:
+    modes = [free_beam_mode(section, 0.083, n, points=8001) for n in (4, 6, 8, 9)]
+    x = modes[0].position
+    for i, a in enumerate(modes):
+        for b in modes[:i]:
+            cross = np.trapezoid(
+                section.mass_per_area * a.deflection * b.deflection
+                + section.rotary_inertia * a.rotation * b.rotation,
+                x,
+            )
+            scale = math.sqrt(a.modal_mass_per_width * b.modal_mass_per_width)
+            assert abs(cross) / scale < 1e-5
+
+
+def test_mode_shape_is_scaled_to_its_largest_inner_lobe(section: Laminate) -> None:
+    mode = free_beam_mode(section, 0.083, 8)
+    inside = (mode.position > mode.nodal_positions[0]) & (mode.position < mode.nodal_positions[-1])
+    assert np.max(np.abs(mode.deflection[inside])) == pytest.approx(1, abs=1e-12)
+    assert mode.deflection == pytest.approx(mode.deflection[::-1])  # eight lines: symmetric
+    odd = free_beam_mode(section, 0.083, 7)
+    assert odd.deflection == pytest.approx(-odd.deflection[::-1])
+
+
+def test_waves_and_their_inverse(section: Laminate) -> None:
+    G, M = section.bending_stiffness, section.mass_per_area
+    for half in (5e-3, 11e-3, 40e-3):
+        f = euler_bernoulli_frequency(half, G, M)
+        assert euler_bernoulli_half_wavelength(f, G, M) == pytest.approx(half, rel=1e-12)
+        assert timoshenko_frequency(half, section) < f
+    # The end effects of a long beam are small: its half wavelength gives its frequency.
+    mode = free_beam_mode(section, 0.5, 60)
+    assert timoshenko_frequency(mode.half_wavelength, section) == pytest.approx(
+        mode.frequency, rel=1e-9
+    )
+
+
+def test_neutral_axis_balances_the_section(section: Laminate) -> None:
+    # ∫ E z dz = 0 about the neutral axis; one material twice is the same as once.
+    total = sum(
+        layer.modulus * layer.thickness * section.moment_arm(i)
+        for i, layer in enumerate(section.layers)
+    )
+    assert abs(total) < 1e-6 * section.layers[0].modulus * section.layers[0].thickness ** 2
+    layer = Layer(1e-3, 123e9, 47e9, 8250.0)
+    twice, once = laminate([layer, layer]), laminate([Layer(2e-3, 123e9, 47e9, 8250.0)])
+    assert twice.bending_stiffness == pytest.approx(once.bending_stiffness, rel=1e-12)
+    assert once.bending_stiffness == pytest.approx(123e9 * (2e-3) ** 3 / 12, rel=1e-12)
+    with pytest.raises(InputError, match="no layers"):
+        laminate([])
+
+
+def _driven_beam(response: BeamResponse, frequency: float, points: int = 60) -> np.ndarray:
+    """w per volt by Ritz on the driven equations, the piezo moment as a load on ψ at patch ends."""
+    plate, section = response.plate, response.section
+    half = plate.length / 2
+    K, mass = _ritz(section, plate.length, points, 1 + 1j / plate.quality_factor)
+    moment = plate.ceramic.effective_stress_coefficient * section.moment_arm(1)
+    load = np.zeros(2 * points)
+    for patch in plate.patches:
+        for edge, sign in ((patch.x + patch.length, 1), (patch.x, -1)):
+            at = np.polynomial.legendre.legvander(np.array([edge / half - 1]), points - 1)[0]
+            load[points:] += moment * patch.polarity * sign * at
+    solution = np.linalg.solve(K - (2 * np.pi * frequency) ** 2 * mass, load)
+    x = np.linspace(0, plate.length, 401) / half - 1
+    return np.asarray(np.polynomial.legendre.legvander(x, points - 1) @ solution[:points])
+
+
+def test_amplitude_per_volt_agrees_with_the_driven_equations(plate: RectangularPlate) -> None:
+    response = beam_response(plate)
+    frequency = response.mode.frequency
+    driven = _driven_beam(response, frequency)
+    x = np.linspace(0, plate.length, 401)
+    superposed = response.transfer(np.array([frequency]), x)[0]
+    peak = np.max(np.abs(driven))
+    # The superposition lacks the modes above twice the frequency: 1 % of the peak.
+    assert np.max(np.abs(superposed - driven)) < 0.01 * peak
+    inside = (x > response.mode.nodal_positions[0]) & (x < response.mode.nodal_positions[-1])
+    assert response.amplitude_per_volt == pytest.approx(np.max(np.abs(driven[inside])), rel=0.015)
+
+
+def test_one_mode_law_follows_the_superposition_near_resonance(plate: RectangularPlate) -> None:
+    mode = working_mode(plate)
+    assert mode.beam is not None
+    frequency = mode.resonance_frequency * np.linspace(0.99, 1.01, 41)
+    full = mode.beam.amplitude_at(frequency, plate.length / 2)
+    assert mode.amplitude_per_volt_at(frequency) == pytest.approx(full, rel=0.03)
+    assert mode.amplitude_per_volt_at(mode.resonance_frequency) == mode.amplitude_per_volt
+
+
+def test_reversed_polarity_reverses_and_equal_polarity_hardly_drives(
+    plate: RectangularPlate,
+) -> None:
+    response = beam_response(plate)
+    flipped = dataclasses.replace(
+        plate,
+        patches=tuple(dataclasses.replace(p, polarity=-p.polarity) for p in plate.patches),  # type: ignore[arg-type]
+    )
+    at = response.modes.index(response.mode)
+    assert beam_response(flipped).modal_force_per_width[at] == pytest.approx(
+        -response.modal_force_per_width[at]
+    )
+    same = dataclasses.replace(
+        plate, patches=tuple(dataclasses.replace(p, polarity=1) for p in plate.patches)
+    )
+    assert beam_response(same).amplitude_per_volt < 0.25 * response.amplitude_per_volt
