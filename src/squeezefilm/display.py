@@ -92,3 +92,27 @@ def load_display(name_or_path: str | Path) -> Display:
     from squeezefilm import config, presets
 
     return config.load(Display, presets.resolve(name_or_path))
+
+
+def new_display_file(file: Path, preset: str, *, replace: bool = False) -> None:
+    """Write a commented TOML file that starts from a preset, named for the file.
+
+    Raises `InputError` if the file exists and is not to be replaced, `ConfigError` for a preset
+    that is not known.
+    """
+    import re
+
+    from squeezefilm import presets
+    from squeezefilm.results import write_whole
+
+    text = presets.path(preset).read_text(encoding="utf-8")
+    if file.is_dir():
+        raise InputError(f"{file} is a directory; give the name of a TOML file to write")
+    if file.exists() and not replace:
+        raise InputError(f"{file} exists; give another name, or --force to replace it")
+    name = re.sub(r"[^A-Za-z0-9._-]+", "-", file.stem) or "display"
+    own = re.sub(r'(?m)^name = ".*"$', f'name = "{name}"', text, count=1)
+    header = (
+        f"# Started from the preset {preset}: change what is yours, and say where it is from.\n"
+    )
+    write_whole(file, header + own)

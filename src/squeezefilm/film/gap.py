@@ -18,7 +18,6 @@ from squeezefilm.quantities import (
     Dimensionless,
     DimensionlessLike,
     FloatArray,
-    Hertz,
     HertzLike,
     Metre,
     MetreLike,

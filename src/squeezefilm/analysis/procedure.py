@@ -1,0 +1,237 @@
+"""The paper's design procedure (section 3.1) as a calculation, with its contradictions shown.
+
+Workspace → frequency criterion (σ ≥ 10) → half wavelength → friction criterion (µ′/µ ≤ 0.7) →
+ceramics and plate that follow.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from squeezefilm.contact.paper import vibration_amplitude_for
+from squeezefilm.errors import InputError, UnreachableError
+from squeezefilm.film.gap import PaperGap, frequency_for_squeeze_number
+from squeezefilm.plate.beam import (
+    euler_bernoulli_half_wavelength,
+    free_beam_mode,
+    timoshenko_frequency,
+)
+from squeezefilm.plate.laminate import Laminate
+from squeezefilm.quantities import (
+    Dimensionless,
+    Hertz,
+    Metre,
+    MetreArray,
+    Newton,
+    Pascal,
+    PascalSecond,
+    SquareMetre,
+    Unit,
+    format_quantity,
+    require,
+)
+
+MEAN_EXPLORED_AREA: SquareMetre = 28.18e-4
+LARGEST_EXPLORED_AREA: SquareMetre = 128.37e-4
+PAPER_HALF_WAVELENGTHS = (7.5e-3, 10e-3, 12.5e-3, 15e-3)
+
+
+@dataclass(frozen=True)
+class Requirements:
+    """What a display of the paper's kind must do. The defaults are the paper's.
+
+    `smallest_area` is the mean area explored in Smith's experiment, 28.18 cm²; the largest,
+    128.37 cm², bounds from above. The unfavourable case of the frequency criterion is a film of
+    `frequency_amplitude` and `roughness`.
+    """
+
+    smallest_area: SquareMetre = MEAN_EXPLORED_AREA
+    largest_area: SquareMetre = LARGEST_EXPLORED_AREA
+    squeeze_number: Dimensionless = 10.0
+    frequency_amplitude: Metre = 3e-6
+    relative_friction: Dimensionless = 0.7
+    ceramic_length: Metre = 11e-3
+    ceramic_gap: Metre = 1e-3
+    width: Metre = 49e-3
+
+    def __post_init__(self) -> None:
+        for name, unit in (
+            ("smallest_area", "m2"),
+            ("largest_area", "m2"),
+            ("squeeze_number", "1"),
+            ("frequency_amplitude", "m"),
+            ("ceramic_length", "m"),
+            ("ceramic_gap", "m"),
+            ("width", "m"),
+        ):
+            require(name, getattr(self, name), Unit(unit), above=0)
+        require("relative_friction", self.relative_friction, at_least=0, at_most=1)
+        if self.smallest_area > self.largest_area:
+            raise InputError("smallest_area is larger than largest_area; exchange them")
+
+
+@dataclass(frozen=True, eq=False)
+class Design:
+    """What the procedure yields, with the paper's contradictions in words.
+
+    `half_wavelengths` and `amplitudes` are the points of its Fig 11; an amplitude is NaN where no
+    amplitude up to 50 µm reaches the wanted friction.
+    """
+
+    lowest_frequency: Hertz
+    longest_half_wavelength_euler: Metre
+    longest_half_wavelength_timoshenko: Metre
+    half_wavelengths: MetreArray
+    amplitudes: MetreArray
+    ceramics: int
+    length: Metre
+    width: Metre
+    area: SquareMetre
+    nodal_lines: int
+    half_wavelength: Metre
+    resonance_frequency: Hertz
+    required_amplitude: Metre
+    contradictions: tuple[str, ...]
+
+
+def friction_criterion(
+    gap: PaperGap,
+    half_wavelengths: MetreArray | tuple[float, ...],
+    relative_friction: Dimensionless,
+    normal_force: Newton,
+    ambient_pressure: Pascal,
+) -> MetreArray:
+    """The amplitude (m, zero-to-peak) that reaches a relative friction at each half wavelength (m).
+
+    The paper's Fig 11; NaN where it is out of reach (see `contact.paper.vibration_amplitude_for`).
+    """
+    amplitudes = []
+    for half in half_wavelengths:
+        shorter = PaperGap(
+            roughness=gap.roughness,
+            vibration_amplitude=0.0,
+            ridge_amplitude=gap.ridge_amplitude,
+            ridge_period=gap.ridge_period,
+            wavelength=2 * float(half),
+            contact_length=gap.contact_length,
+        )
+        try:
+            amplitudes.append(
+                vibration_amplitude_for(relative_friction, shorter, normal_force, ambient_pressure)
+            )
+        except UnreachableError:
+            amplitudes.append(math.nan)
+    return np.array(amplitudes)
+
+
+def design_plate(
+    section: Laminate,
+    gap: PaperGap,
+    viscosity: PascalSecond,
+    ambient_pressure: Pascal,
+    normal_force: Newton,
+    requirements: Requirements | None = None,
+) -> Design:
+    """The plate that the paper's procedure leads to, for one laminate and one finger.
+
+    The number of ceramics is the smallest that covers the mean explored area; the mode has one
+    antinode a ceramic and one beyond each end. Valid where the paper's model is: for comparison,
+    not for design. Raises `InputError` for requirements that contradict each other.
+    """
+    wants = requirements or Requirements()
+    unfavourable = gap.with_amplitude(wants.frequency_amplitude)
+    lowest = float(
+        frequency_for_squeeze_number(
+            wants.squeeze_number,
+            gap.contact_length,
+            unfavourable.reference_thickness,
+            viscosity,
+            ambient_pressure,
+        )
+    )
+    euler = float(
+        euler_bernoulli_half_wavelength(lowest, section.bending_stiffness, section.mass_per_area)
+    )
+    timoshenko = _timoshenko_half_wavelength(lowest, section)
+    halves = np.array(PAPER_HALF_WAVELENGTHS)
+    amplitudes = friction_criterion(
+        gap, halves, wants.relative_friction, normal_force, ambient_pressure
+    )
+    pitch = wants.ceramic_length + wants.ceramic_gap
+    ceramics = math.ceil((wants.smallest_area / wants.width + wants.ceramic_gap) / pitch)
+    # An odd number puts an antinode at the centre, where the paper's plate has one.
+    ceramics += 1 - ceramics % 2
+    length = ceramics * pitch - wants.ceramic_gap
+    area = length * wants.width
+    if area > wants.largest_area:
+        raise InputError(
+            f"{ceramics} ceramics of {format_quantity(wants.ceramic_length, Unit('m'))} make a "
+            f"plate of {area * 1e4:.4g} cm2, above the largest explored area of "
+            f"{wants.largest_area * 1e4:.4g} cm2; use fewer, shorter or narrower ones"
+        )
+    lines = ceramics + 1
+    mode = free_beam_mode(section, length, lines)
+    required = float(
+        friction_criterion(
+            gap,
+            (mode.half_wavelength,),
+            wants.relative_friction,
+            normal_force,
+            ambient_pressure,
+        )[0]
+    )
+    simple = length / lines
+    order = np.argsort(halves)
+    falling = bool(np.all(np.diff(amplitudes[order]) < 0))
+    contradictions = (
+        f"a free plate of {length * 1e3:.4g} mm with {lines} nodal lines has λ/2 = "
+        f"{mode.half_wavelength * 1e3:.4g} mm, not {length * 1e3:.4g}/{lines} = "
+        f"{simple * 1e3:.4g} mm",
+        f"the friction criterion needs {_list(amplitudes)} µm at λ/2 = {_list(halves, 1e3)} mm; "
+        + (
+            "it falls with the half wavelength, and the paper lists it rising"
+            if falling
+            else "it does not fall with the half wavelength"
+        ),
+        f"the frequency criterion allows λ/2 up to {euler * 1e3:.4g} mm (Euler–Bernoulli) or "
+        f"{timoshenko * 1e3:.4g} mm (Timoshenko), not the paper's 16.1 mm",
+        "σ ≥ 10 does not make the asymptote hold: there a smooth film reaches less than half of "
+        "the asymptotic over-pressure",
+    )
+    return Design(
+        lowest_frequency=lowest,
+        longest_half_wavelength_euler=euler,
+        longest_half_wavelength_timoshenko=timoshenko,
+        half_wavelengths=halves,
+        amplitudes=amplitudes,
+        ceramics=ceramics,
+        length=length,
+        width=wants.width,
+        area=area,
+        nodal_lines=lines,
+        half_wavelength=mode.half_wavelength,
+        resonance_frequency=mode.frequency,
+        required_amplitude=required,
+        contradictions=contradictions,
+    )
+
+
+def _list(values: MetreArray, scale: float = 1e6) -> str:
+    return "/".join(f"{value * scale:.3g}" for value in values)
+
+
+def _timoshenko_half_wavelength(frequency: Hertz, section: Laminate) -> Metre:
+    from scipy.optimize import brentq
+
+    thickness = sum(layer.thickness for layer in section.layers)
+    return float(
+        brentq(
+            lambda half: float(timoshenko_frequency(half, section)) - frequency,
+            thickness,
+            1e4 * thickness,
+            xtol=1e-12,
+        )
+    )

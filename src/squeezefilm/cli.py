@@ -1,0 +1,207 @@
+"""The verbs of the command line. Each gathers its arguments, calls one function and shows the
+result; physics, plots and pydantic are imported only by the verb that needs them."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from squeezefilm import __version__
+from squeezefilm.errors import InputError, SqueezefilmError
+
+if TYPE_CHECKING:
+    from squeezefilm.quantities import Unit
+
+app = typer.Typer(
+    name="squeezefilm",
+    help="Design, predict and use tactile displays that change friction by ultrasonic vibration.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,
+)
+
+Target = Annotated[
+    str, typer.Argument(metavar="PRESET|FILE", help="A preset's name or a TOML file.")
+]
+AsJson = Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")]
+Strict = Annotated[
+    bool, typer.Option("--strict", help="Refuse contradicting data and models out of range.")
+]
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(__version__)
+        raise typer.Exit
+
+
+@app.callback()
+def _root(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Show the version.")
+    ] = False,
+) -> None:
+    pass
+
+
+def _quantity(text: str | None, option: str, unit: Unit) -> float | None:
+    """The value of an option that is a quantity text, with the option named in the error."""
+    if text is None:
+        return None
+    from squeezefilm.quantities import parse_quantity
+
+    try:
+        return parse_quantity(text, unit)
+    except InputError as error:
+        raise InputError(f"{option}: {error}") from error
+
+
+def _print_json(value: Any) -> None:
+    import json
+
+    typer.echo(json.dumps(value, indent=2, ensure_ascii=False))
+
+
+@app.command()
+def presets(as_json: AsJson = False) -> None:
+    """List the displays that come with the package."""
+    from squeezefilm.report.terminal import preset_list, show
+
+    listing = preset_list()
+    if as_json:
+        _print_json(listing)
+    else:
+        show.presets(listing)
+
+
+@app.command()
+def show(target: Target, as_json: AsJson = False) -> None:
+    """Show every value of a display, with its source and what is assumed."""
+    from squeezefilm.report import terminal
+
+    values = terminal.display_values(target)
+    if as_json:
+        _print_json(values)
+    else:
+        terminal.show_values(values)
+
+
+@app.command()
+def new(
+    file: Annotated[Path, typer.Argument(help="The TOML file to write.")],
+    source: Annotated[str, typer.Option("--from", help="The preset to start from.")],
+    force: Annotated[bool, typer.Option("--force", help="Replace the file if it exists.")] = False,
+) -> None:
+    """Write a commented TOML file of your own, starting from a preset."""
+    from squeezefilm.display import new_display_file
+
+    new_display_file(file, source, replace=force)
+    typer.echo(f"wrote {file}; edit it, then: squeezefilm analyze {file}")
+
+
+@app.command()
+def analyze(
+    target: Target,
+    out: Annotated[
+        Path | None, typer.Option(help="Write result.json and report.html to this folder.")
+    ] = None,
+    as_json: AsJson = False,
+    voltage: Annotated[str | None, typer.Option(help='Voltage amplitude, like "15 V".')] = None,
+    frequency: Annotated[
+        str | None, typer.Option(help='Drive frequency, like "34 kHz"; the resonance if not given.')
+    ] = None,
+    amplitude: Annotated[
+        str | None,
+        typer.Option(help='Vibration amplitude, like "2 um", in place of voltage and plate.'),
+    ] = None,
+    force: Annotated[str | None, typer.Option(help='Normal force, like "0.5 N".')] = None,
+    surface: Annotated[str | None, typer.Option(help="Which of its surfaces.")] = None,
+    strict: Strict = False,
+) -> None:
+    """From the display's description to resonance, amplitude, friction and textures."""
+    from squeezefilm.analysis.analyze import analyze as run
+    from squeezefilm.display import load_display
+    from squeezefilm.quantities import Unit
+    from squeezefilm.report import terminal
+
+    display = load_display(target)
+    with terminal.progress(enabled=sys.stderr.isatty() or not as_json) as step:
+        result = run(
+            display,
+            voltage=_quantity(voltage, "--voltage", Unit("V")),
+            frequency=_quantity(frequency, "--frequency", Unit("Hz")),
+            vibration_amplitude=_quantity(amplitude, "--amplitude", Unit("m")),
+            normal_force=_quantity(force, "--force", Unit("N")),
+            surface=surface,
+            strict=strict,
+            progress=step,
+        )
+        written = None
+        if out is not None:
+            from squeezefilm.report.page import write_report
+
+            written = write_report(result, out, progress=step)
+    if as_json:
+        _print_json(result.summary())
+        return
+    terminal.show_analysis(result)
+    if written is not None:
+        typer.echo(f"report: {written}")
+    else:
+        typer.echo("add --out DIR to write result.json and a report with figures")
+
+
+@app.command()
+def reproduce(
+    out: Annotated[Path | None, typer.Option(help="Write figures 4, 5, 10, 11 and a page.")] = None,
+    as_json: AsJson = False,
+    write_docs: Annotated[
+        bool, typer.Option("--write-docs", help="In a checkout: rewrite docs/validation.md.")
+    ] = False,
+) -> None:
+    """Recompute every published claim: what the paper printed, what its formula gives, a verdict.
+
+    Exit code 1 if a verdict differs from the one on record.
+    """
+    from squeezefilm.analysis.claims import reproduce as run
+    from squeezefilm.report import terminal
+    from squeezefilm.report.validation import write_reproduction, write_validation_docs
+
+    with terminal.progress(enabled=sys.stderr.isatty() or not as_json) as step:
+        result = run(progress=step)
+        if out is not None:
+            written = write_reproduction(result, out, progress=step)
+    if write_docs:
+        typer.echo(f"wrote {write_validation_docs(result)}", err=True)
+    if as_json:
+        _print_json(result.summary())
+    else:
+        terminal.show_claims(result)
+        if out is not None:
+            typer.echo(f"report: {written}")
+    if result.changed:
+        for claim in result.changed:
+            typer.echo(
+                f"the verdict on '{claim.claim.id}' changed: {claim.claim.verdict} is on record, "
+                f"{claim.verdict} was found",
+                err=True,
+            )
+        raise typer.Exit(1)
+
+
+def main() -> None:
+    """Run the command line: a person's mistake is one message and exit code 2, no traceback."""
+    try:
+        app()
+    except SqueezefilmError as error:
+        typer.echo(f"error: {error}", err=True)
+        sys.exit(2)
+    except KeyboardInterrupt:
+        typer.echo("interrupted; nothing half-written was left", err=True)
+        sys.exit(130)
+    except BrokenPipeError:
+        sys.exit(0)

@@ -1,0 +1,174 @@
+"""The paper's friction model: the film carries part of the finger, the surface the rest.
+
+Biet et al., equations 13 and 14. Model "paper2008" is the corrected form, "paper2008-printed" the
+equations as they stand. Both take σ → ∞, which the paper's σ ≈ 20 is far from: ask
+`film.validity.film_validity`.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from squeezefilm.errors import InputError, UnreachableError
+from squeezefilm.film.gap import PaperGap
+from squeezefilm.film.limits import PAPER_MODELS, PaperModel, contact_mean_pressure
+from squeezefilm.quantities import (
+    Dimensionless,
+    DimensionlessLike,
+    Metre,
+    MetreLike,
+    Newton,
+    NewtonLike,
+    Pascal,
+    PascalLike,
+    Unit,
+    closed_form,
+    format_quantity,
+    require,
+)
+
+__all__ = [
+    "PAPER_MODELS",
+    "PaperModel",
+    "finger_pressure",
+    "mean_pressure",
+    "relative_friction",
+    "relative_friction_from_pressure",
+    "relative_friction_from_pressure_printed",
+    "vibration_amplitude_for",
+    "zero_friction_amplitude",
+]
+
+
+@closed_form(positive="normal_force contact_length")
+def finger_pressure(normal_force: NewtonLike, contact_length: MetreLike) -> PascalLike:
+    """The mean pressure of the finger P_f = F/l0² in Pa, paper eq 13; broadcasts."""
+    return normal_force / contact_length**2
+
+
+@closed_form(positive="mean_pressure normal_force contact_length ambient_pressure")
+def relative_friction_from_pressure(
+    mean_pressure: DimensionlessLike,
+    normal_force: NewtonLike,
+    contact_length: MetreLike,
+    ambient_pressure: PascalLike,
+) -> DimensionlessLike:
+    """µ′/µ = max(0, 1 − (⟨P̄⟩ − 1) p0 l0²/F) (dimensionless), paper eq 14 corrected; broadcasts.
+
+    `mean_pressure` is ⟨P̄⟩ over ambient, so the finger's pressure must be taken over ambient too;
+    the paper prints it in Pa. Zero where the film carries the finger entirely. Holds as long as
+    the friction coefficient of what stays in contact does not depend on its load.
+    """
+    over_pressure = (mean_pressure - 1) * ambient_pressure * contact_length**2
+    return np.maximum(0.0, 1 - over_pressure / normal_force)
+
+
+@closed_form(positive="mean_pressure finger_pressure")
+def relative_friction_from_pressure_printed(
+    mean_pressure: DimensionlessLike, finger_pressure: PascalLike
+) -> DimensionlessLike:
+    """Paper eq 14 as printed, 1 − (P∞ − 1)/P_f with P∞ over ambient and P_f in Pa (eq 13).
+
+    Not dimensionless, and practically 1 in SI units: `tests/dimensions` asserts that it fails.
+    Kept to show the misprint; use `relative_friction_from_pressure`.
+    """
+    return 1 - (mean_pressure - 1) / finger_pressure
+
+
+def mean_pressure(gap: PaperGap, model: PaperModel = "paper2008") -> DimensionlessLike:
+    """⟨P̄⟩ over contact and period, over ambient (dimensionless): the paper's P_moy.
+
+    Scalar, or one value for each amplitude; see `film.limits.contact_mean_pressure`. The printed
+    model gives less than 1 on the paper's own stator (0.9959 at 2 µm), against its Fig 4.
+    """
+    return contact_mean_pressure(gap, model)
+
+
+def _unclipped(gap: PaperGap, force: Any, ambient: float, model: PaperModel) -> Any:
+    """1 − (⟨P̄⟩ − 1)/P_f, below zero where the finger would float away."""
+    over_pressure = contact_mean_pressure(gap, model) - 1
+    pressure = force / gap.contact_length**2
+    return 1 - over_pressure / (pressure if model == "paper2008-printed" else pressure / ambient)
+
+
+def relative_friction(
+    gap: PaperGap,
+    normal_force: NewtonLike,
+    ambient_pressure: Pascal,
+    model: PaperModel = "paper2008",
+) -> DimensionlessLike:
+    """The relative friction µ′/µ (dimensionless) of the paper's model at the amplitude(s) of `gap`.
+
+    Scalar, or one value for each amplitude; `normal_force` in N broadcasts against them. The
+    contact is l0 × l0, and the pressure that of σ → ∞. "paper2008-printed" takes eqs 1, 2, 12, 13
+    and 14 as they stand, P∞ being the normalised pressure that the text calls it: it gives
+    practically 1 at every amplitude.
+
+    Raises `InputError` for values that are not finite or positive, or an unknown model.
+    """
+    require("normal_force", normal_force, Unit("N"), above=0)
+    require("ambient_pressure", ambient_pressure, Unit("Pa"), above=0)
+    value = np.maximum(0.0, _unclipped(gap, normal_force, ambient_pressure, model))
+    return value if np.ndim(value) else float(value)
+
+
+def vibration_amplitude_for(
+    relative_friction: Dimensionless,
+    gap: PaperGap,
+    normal_force: Newton,
+    ambient_pressure: Pascal,
+    model: PaperModel = "paper2008",
+    *,
+    highest: Metre = 50e-6,
+) -> Metre:
+    """The least vibration amplitude (m, zero-to-peak) that brings µ′/µ down to a wanted value.
+
+    `relative_friction` in [0, 1]; the amplitude in `gap` is disregarded. Searched up to `highest`
+    (m). Raises `InputError` for values out of bounds and `UnreachableError` where no amplitude up
+    to `highest` brings the friction that low.
+    """
+    from scipy.optimize import brentq
+
+    require("relative_friction", relative_friction, at_least=0, at_most=1)
+    require("normal_force", normal_force, Unit("N"), above=0)
+    require("ambient_pressure", ambient_pressure, Unit("Pa"), above=0)
+    require("highest", highest, Unit("m"), above=0)
+    if model not in PAPER_MODELS:
+        raise InputError(f"model = '{model}' is unknown; allowed are {', '.join(PAPER_MODELS)}")
+
+    def excess(amplitude: Any) -> Any:
+        friction = _unclipped(gap.with_amplitude(amplitude), normal_force, ambient_pressure, model)
+        return friction - relative_friction
+
+    amplitudes = np.concatenate([[0.0], np.geomspace(highest * 1e-5, highest, 120)])
+    values = excess(amplitudes)
+    below = np.flatnonzero(values <= 0)
+    if below.size == 0:
+        best = int(np.argmin(values))
+        closest = format_quantity(float(amplitudes[best]), Unit("m"))
+        raise UnreachableError(
+            f"relative_friction = {relative_friction:.4g} is not reached by any vibration "
+            f"amplitude up to {format_quantity(highest, Unit('m'))}: the model '{model}' gives "
+            f"{values[best] + relative_friction:.4g} at {closest}"
+            " at the least; press less, take a smoother surface or ask for less"
+        )
+    index = int(below[0])
+    if index == 0:
+        return 0.0
+    low, high = float(amplitudes[index - 1]), float(amplitudes[index])
+    return float(brentq(excess, low, high, xtol=1e-16, rtol=1e-12))
+
+
+def zero_friction_amplitude(
+    gap: PaperGap,
+    normal_force: Newton,
+    ambient_pressure: Pascal,
+    model: PaperModel = "paper2008",
+) -> Metre:
+    """The vibration amplitude (m) at which the model's film carries the finger and µ′/µ is zero.
+
+    Raises as `vibration_amplitude_for`, of which it is the case 0.
+    """
+    return vibration_amplitude_for(0.0, gap, normal_force, ambient_pressure, model)

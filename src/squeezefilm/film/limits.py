@@ -1,0 +1,345 @@
+"""The film at large squeeze number: Salbu's limit, the edge layer, and the paper's pressure.
+
+As σ → ∞ the gas is trapped: Ψ = P H^(…) no longer changes in time, except in an edge layer of
+thickness ~σ^-1/2 through which the film breathes. P is pressure over ambient, X = x/l0 in
+[-1/2, 1/2], T = ωt; ε, δ, k1, k2 as in `film.gap`.
+
+Sources: Salbu 1964, 10.1115/1.3653080; Biet et al., equations 5 to 12.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+import numpy as np
+
+from squeezefilm.errors import ConvergenceError, InputError, OutOfRangeError
+from squeezefilm.film.gap import PaperGap
+from squeezefilm.quantities import (
+    Dimensionless,
+    DimensionlessArray,
+    DimensionlessLike,
+    FloatArray,
+    closed_form,
+    require,
+    require_valid,
+)
+
+PaperModel = Literal["paper2008", "paper2008-printed"]
+PAPER_MODELS: tuple[PaperModel, ...] = ("paper2008", "paper2008-printed")
+
+
+@closed_form(nonnegative="amplitude_ratio")
+def asymptotic_load(amplitude_ratio: DimensionlessLike) -> DimensionlessLike:
+    """The mean load W over p0 A of a uniform isothermal film as σ → ∞ (dimensionless); broadcasts.
+
+    W = √((1 + 1.5 ε²)/(1 − ε²)), any planform, ε = amplitude over mean gap below 1. Source: Salbu
+    1964, 10.1115/1.3653080. An upper bound: see `film.validity.asymptotic_fraction`.
+    """
+    require("amplitude_ratio", amplitude_ratio, below=1)
+    return np.sqrt((1 + 1.5 * amplitude_ratio**2) / (1 - amplitude_ratio**2))
+
+
+@closed_form(nonnegative="amplitude_ratio", positive="polytropic_index")
+def asymptotic_load_polytropic(
+    amplitude_ratio: DimensionlessLike, polytropic_index: Dimensionless
+) -> DimensionlessLike:
+    """The mean load W over p0 A of a uniform polytropic film as σ → ∞ (dimensionless); broadcasts.
+
+    Ψ = [⟨H³⟩/⟨H^(2−n)⟩]^(1/(n+1)) and W = Ψⁿ ⟨H⁻ⁿ⟩ with H = 1 + ε cos T; the means are
+    ⟨Hᵖ⟩ = ₂F₁(−p/2, (1−p)/2; 1; ε²). ε below 1, n from 1 (isothermal, Salbu) to 5/3.
+    """
+    from scipy.special import hyp2f1
+
+    require("amplitude_ratio", amplitude_ratio, below=1)
+    require("polytropic_index", polytropic_index, at_least=1, at_most=5 / 3)
+    n = polytropic_index
+
+    def mean_power(p: float) -> Any:
+        return hyp2f1(-p / 2, (1 - p) / 2, 1, np.square(amplitude_ratio))
+
+    psi = ((1 + 1.5 * np.square(amplitude_ratio)) / mean_power(2 - n)) ** (1 / (n + 1))
+    value: DimensionlessLike = psi**n * mean_power(-n)
+    return value
+
+
+@closed_form(nonnegative="amplitude_ratio", positive="edge_to_area")
+def edge_layer_coefficient(
+    amplitude_ratio: DimensionlessLike,
+    edge_to_area: Dimensionless = 2.0,
+    *,
+    strict: bool = True,
+) -> DimensionlessLike:
+    """C(ε) of W = W∞ − C/√σ to second order in ε: (5√2/8) ε² × edge length · ℓ / area.
+
+    From W = 1 + (5/4) ε² fk and fk → 1 − (edge·ℓ/area)/√(2σ). `edge_to_area` is 2 for a strip
+    (ℓ its width) and a disc (its radius), 4 for a square (its side). Isothermal, no slip. Exact as
+    ε → 0; 6 % low at ε = 0.5. Beyond ε = 0.3 raises `OutOfRangeError`, or warns if not `strict`.
+    """
+    require_valid(
+        "amplitude_ratio", amplitude_ratio, 0, 0.3,
+        "the second-order edge layer coefficient holds within 3 %", strict=strict,
+    )  # fmt: skip
+    value: DimensionlessLike = 5 * np.sqrt(2) / 8 * amplitude_ratio**2 * edge_to_area
+    return value
+
+
+@closed_form(nonnegative="amplitude_ratio", positive="squeeze_number edge_to_area")
+def edge_layer_load(
+    amplitude_ratio: DimensionlessLike,
+    squeeze_number: DimensionlessLike,
+    edge_to_area: Dimensionless = 2.0,
+    *,
+    strict: bool = True,
+) -> DimensionlessLike:
+    """The mean load W over p0 A at large finite σ (dimensionless), W∞ − C(ε)/√σ; broadcasts.
+
+    C from `edge_layer_coefficient`, whose ε ≤ 0.3 applies. Valid for σ ≥ 50 (edge layers thinner
+    than a fifth of the width, over-pressure within 1 % on a strip; a disc or rectangle leaves
+    O(1/σ) besides). Outside, raises `OutOfRangeError`, or warns if not `strict`.
+    """
+    require_valid(
+        "squeeze_number", squeeze_number, 50, np.inf,
+        "the edge layers are thin and do not meet", strict=strict,
+    )  # fmt: skip
+    coefficient = edge_layer_coefficient(amplitude_ratio, edge_to_area, strict=strict)
+    return asymptotic_load(amplitude_ratio) - coefficient / np.sqrt(squeeze_number)
+
+
+@closed_form(nonnegative="amplitude_ratio ridge_ratio", positive="wave_number ridge_number")
+def paper_pressure(
+    X: DimensionlessLike,
+    T: DimensionlessLike,
+    amplitude_ratio: DimensionlessLike,
+    ridge_ratio: DimensionlessLike,
+    wave_number: Dimensionless,
+    ridge_number: Dimensionless,
+) -> DimensionlessLike:
+    """The pressure P(X, T) over ambient as σ → ∞, paper eq 11 corrected; broadcasts.
+
+    P = (a/a_B) √(a_B² + 1.5 b_B²) / (a + b cos T), a = 1 + δ cos k2X, b = ε cos k1X, B at
+    X = ½. Symmetric contact, static roughness; needs ε + δ < 1 (the gap stays open) and raises
+    `OutOfRangeError` where it would not be. Valid for σ → ∞ only.
+    """
+    _require_open(amplitude_ratio, ridge_ratio)
+    a = 1 + ridge_ratio * np.cos(ridge_number * X)
+    b = amplitude_ratio * np.cos(wave_number * X)
+    a_edge = 1 + ridge_ratio * np.cos(ridge_number / 2)
+    b_edge = amplitude_ratio * np.cos(wave_number / 2)
+    value: DimensionlessLike = (
+        a / a_edge * np.sqrt(a_edge**2 + 1.5 * b_edge**2) / (a + b * np.cos(T))
+    )
+    return value
+
+
+@closed_form(nonnegative="amplitude_ratio ridge_ratio", positive="wave_number ridge_number")
+def paper_mean_pressure(
+    X: DimensionlessLike,
+    amplitude_ratio: DimensionlessLike,
+    ridge_ratio: DimensionlessLike,
+    wave_number: Dimensionless,
+    ridge_number: Dimensionless,
+) -> DimensionlessLike:
+    """The mean over a period of `paper_pressure`, P̄(X) over ambient, paper eq 12 corrected.
+
+    P̄ = (a/a_B) √(a_B² + 1.5 b_B²) / √(a² − b²); letters, range and errors as `paper_pressure`.
+    """
+    _require_open(amplitude_ratio, ridge_ratio)
+    a = 1 + ridge_ratio * np.cos(ridge_number * X)
+    b = amplitude_ratio * np.cos(wave_number * X)
+    a_edge = 1 + ridge_ratio * np.cos(ridge_number / 2)
+    b_edge = amplitude_ratio * np.cos(wave_number / 2)
+    value: DimensionlessLike = (
+        a / a_edge * np.sqrt(a_edge**2 + 1.5 * b_edge**2) / np.sqrt(a**2 - b**2)
+    )
+    return value
+
+
+@closed_form(nonnegative="amplitude_ratio ridge_ratio", positive="wave_number ridge_number")
+def paper_pressure_printed(
+    X: DimensionlessLike,
+    T: DimensionlessLike,
+    amplitude_ratio: DimensionlessLike,
+    ridge_ratio: DimensionlessLike,
+    wave_number: Dimensionless,
+    ridge_number: Dimensionless,
+) -> DimensionlessLike:
+    """Paper eq 11 as printed, over ambient: the film vibrates by ε cos(k1/2) everywhere.
+
+    Printed: cos(k1/2) where cos(k1 X) belongs. Kept to reproduce the paper; use `paper_pressure`.
+    Raises `OutOfRangeError` where the printed gap closes.
+    """
+    a = 1 + ridge_ratio * np.cos(ridge_number * X)
+    a_edge = 1 + ridge_ratio * np.cos(ridge_number / 2)
+    b_edge = amplitude_ratio * np.cos(wave_number / 2)
+    gap = a + b_edge * np.cos(T)
+    _require_positive("the printed gap a + ε cos(k1/2) cos T", gap)
+    value: DimensionlessLike = a * np.sqrt(a_edge**2 + 1.5 * b_edge**2) / (a_edge * gap)
+    return value
+
+
+@closed_form(nonnegative="amplitude_ratio ridge_ratio", positive="wave_number ridge_number")
+def paper_mean_pressure_printed(
+    X: DimensionlessLike,
+    amplitude_ratio: DimensionlessLike,
+    ridge_ratio: DimensionlessLike,
+    wave_number: Dimensionless,
+    ridge_number: Dimensionless,
+) -> DimensionlessLike:
+    """Paper eq 12 as printed, over ambient: √(a² − ε² cos(k1/2)) in the denominator.
+
+    Printed: cos(k1/2) where cos²(k1 X) belongs. Kept to reproduce the paper; use
+    `paper_mean_pressure`. Raises `OutOfRangeError` where the printed root is of a number ≤ 0.
+    """
+    a = 1 + ridge_ratio * np.cos(ridge_number * X)
+    a_edge = 1 + ridge_ratio * np.cos(ridge_number / 2)
+    b_edge = amplitude_ratio * np.cos(wave_number / 2)
+    radicand = a**2 - amplitude_ratio**2 * np.cos(wave_number / 2)
+    _require_positive("the printed a² − ε² cos(k1/2)", radicand)
+    value: DimensionlessLike = (
+        a * np.sqrt(a_edge**2 + 1.5 * b_edge**2) / (a_edge * np.sqrt(radicand))
+    )
+    return value
+
+
+def _require_open(amplitude_ratio: Any, ridge_ratio: Any) -> None:
+    _require_positive("the least gap 1 − ε − δ", 1 - amplitude_ratio - ridge_ratio)
+
+
+def _require_positive(what: str, value: Any) -> None:
+    least = float(np.min(np.asarray(getattr(value, "magnitude", value), dtype=float)))
+    if not least > 0:
+        raise OutOfRangeError(
+            f"{what} = {least:.4g} must be above 0; take a smaller amplitude or a larger roughness"
+        )
+
+
+def _column(value: DimensionlessLike) -> Any:
+    """A scalar as it is, an array of amplitudes as a column, so that positions run along rows."""
+    return np.asarray(value, dtype=float)[..., np.newaxis]
+
+
+def _eccentric(theta: Any, e: Any) -> Any:
+    """Kepler's eccentric anomaly of θ, continuous in θ: 1 + e cos θ = (1 − e²)/(1 − e cos E)."""
+    beta = e / (1 + np.sqrt(1 - e**2))
+    return theta - 2 * np.arctan(beta * np.sin(theta) / (1 + beta * np.cos(theta)))
+
+
+def _true(E: Any, e: Any) -> Any:
+    beta = e / (1 + np.sqrt(1 - e**2))
+    return E + 2 * np.arctan(beta * np.sin(E) / (1 - beta * np.cos(E)))
+
+
+def _inverse_cube_integral(theta: Any, delta: Any) -> Any:
+    """∫ dθ / (1 + δ cos θ)³ from 0, in closed form by way of the eccentric anomaly, times a
+    constant that cancels in ratios, (1 − δ²)^(5/2)."""
+    E = _eccentric(theta, delta)
+    return E - 2 * delta * np.sin(E) + delta**2 * (E / 2 + np.sin(2 * E) / 4)
+
+
+def mean_pressure_profile(
+    X: DimensionlessArray, gap: PaperGap, model: PaperModel = "paper2008"
+) -> DimensionlessArray:
+    """The mean over a period of the pressure over ambient, P̄(X), as σ → ∞ (dimensionless).
+
+    `X` = x/l0 in [-1/2, 1/2], of any shape for a single amplitude; for an array of A amplitudes X
+    is 1-D or a scalar, and the result has the shape (A, len(X)).
+
+    "paper2008" also holds for a contact off the centre, whose edges differ:
+    P̄ = Ψ/√(a² − b²), Ψ² = a² {v_L + (v_R − v_L) ∫_{-1/2}^X a⁻³ / ∫_{-1/2}^{1/2} a⁻³} and
+    v = 1 + 1.5 (b/a)² at each edge (from paper eq 5). With equal edges it is
+    `paper_mean_pressure`. "paper2008-printed" is the printed eq 12 with the printed ε of eq 2.
+    Raises `InputError` for an X outside the contact, an unknown model, or an off-centre contact of
+    the printed model; `OutOfRangeError` where the printed root fails.
+    """
+    require("X", X, at_least=-0.5, at_most=0.5)
+    X = np.asarray(X, dtype=float)
+    array = np.ndim(gap.vibration_amplitude) == 1
+    if array:
+        X = np.atleast_1d(X)
+        if X.ndim > 1:
+            raise InputError("X must be a number or one-dimensional for an array of amplitudes")
+    lift = _column if array else np.asarray
+    k1, k2, delta = gap.wave_number, gap.ridge_number, lift(gap.ridge_ratio)
+    if model == "paper2008-printed":
+        if not gap.symmetric:
+            raise InputError(
+                "the printed equation 12 knows a centred contact only; set wave_offset and "
+                "ridge_offset to 0 or use the model 'paper2008'"
+            )
+        ratio = lift(gap.amplitude_ratio_printed)
+        return np.asarray(paper_mean_pressure_printed(X, ratio, delta, k1, k2))
+    if model != "paper2008":
+        raise InputError(f"model = '{model}' is unknown; allowed are {', '.join(PAPER_MODELS)}")
+    epsilon = lift(gap.amplitude_ratio)
+    if gap.symmetric:
+        return np.asarray(paper_mean_pressure(X, epsilon, delta, k1, k2))
+    theta = gap.ridge_phase(X)
+    a, b = 1 + delta * np.cos(theta), epsilon * np.cos(gap.wave_phase(X))
+    ends = np.array([-0.5, 0.5])
+    theta_l, theta_r = gap.ridge_phase(ends)
+    wave_l, wave_r = np.cos(gap.wave_phase(ends))
+    v_l = 1 + 1.5 * (epsilon * wave_l / (1 + delta * np.cos(theta_l))) ** 2
+    v_r = 1 + 1.5 * (epsilon * wave_r / (1 + delta * np.cos(theta_r))) ** 2
+    start = _inverse_cube_integral(theta_l, delta)
+    whole = _inverse_cube_integral(theta_r, delta) - start
+    share = (_inverse_cube_integral(theta, delta) - start) / whole
+    return np.asarray(a * np.sqrt(v_l + (v_r - v_l) * share) / np.sqrt(a**2 - b**2))
+
+
+def _panels(gap: PaperGap) -> tuple[FloatArray, float]:
+    """Panel edges in the eccentric anomaly, and its eccentricity, that resolve the ridge crests.
+
+    Over a crest the pressure has complex singularities at a distance √(2(1−δ−ε)/δ) in phase; an
+    eccentricity (1−q)/(1+q) with q = (1−δ−ε)/2δ spreads them. Edges lie at crests, grooves,
+    antinodes and nodes.
+    """
+    delta = float(np.max(gap.ridge_ratio))
+    open_gap = gap.roughness / float(np.max(gap.reference_thickness))
+    q = open_gap / (2 * delta) if delta > 0 else 1.0
+    e = (1 - q) / (1 + q) if q < 1 else 0.0
+    low, high = (float(_eccentric(gap.ridge_phase(np.array(x)), e)) for x in (-0.5, 0.5))
+    ridges = np.pi * np.arange(np.ceil(low / np.pi), np.floor(high / np.pi) + 1)
+    first, last = gap.wave_phase(np.array([-0.5, 0.5]))
+    waves = np.pi / 2 * np.arange(np.ceil(2 * first / np.pi), np.floor(2 * last / np.pi) + 1)
+    positions = waves / gap.wave_number + gap.wave_offset / gap.contact_length
+    inner = np.concatenate([ridges, _eccentric(gap.ridge_phase(positions), e)])
+    inner = inner[(inner > low) & (inner < high)]
+    return np.unique(np.concatenate([[low], inner, [high]])), e
+
+
+def contact_mean_pressure(
+    gap: PaperGap, model: PaperModel = "paper2008", *, tolerance: float = 1e-10
+) -> DimensionlessLike:
+    """The mean ⟨P̄⟩ over the contact of `mean_pressure_profile`; scalar, or (A,) as the amplitudes.
+
+    Composite Gauss–Legendre quadrature between ridge crests, grooves, antinodes and nodes, with
+    points gathered at the crests, doubled until the over-pressure ⟨P̄⟩ − 1 changes by less than
+    `tolerance` of itself (or 1e-13). Raises `ConvergenceError` where 256 points a panel are not
+    enough, and whatever `mean_pressure_profile` raises.
+    """
+    edges, e = _panels(gap)
+    middle, half = (edges[1:] + edges[:-1]) / 2, np.diff(edges) / 2
+    previous: Any = None
+    change = np.inf
+    for count in (8, 16, 32, 64, 128, 256):
+        node, weight = np.polynomial.legendre.leggauss(count)
+        E = (middle[:, np.newaxis] + half[:, np.newaxis] * node).ravel()
+        theta = _true(E, e)
+        dX = np.sqrt(1 - e**2) / (1 - e * np.cos(E)) / gap.ridge_number
+        X = theta / gap.ridge_number + gap.ridge_offset / gap.contact_length
+        weights = (half[:, np.newaxis] * weight).ravel() * dX
+        mean = 1 + (mean_pressure_profile(np.clip(X, -0.5, 0.5), gap, model) - 1) @ weights
+        if previous is not None:
+            allowed = tolerance * np.abs(mean - 1) + 1e-13
+            change = float(np.max(np.abs(mean - previous) / allowed, initial=0.0))
+            if change <= 1:
+                return mean if np.ndim(mean) else float(mean)
+        previous = mean
+    raise ConvergenceError(
+        f"the mean pressure over the contact did not settle within {tolerance:.1g} at 256 points "
+        "a panel; take a larger roughness or a larger tolerance",
+        partial=previous,
+        residual=change * tolerance,
+        iterations=6,
+    )
