@@ -1,0 +1,297 @@
+"""What is computed for each published claim, one short function each, from the presets."""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+import itertools
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from squeezefilm.analysis.procedure import PAPER_HALF_WAVELENGTHS, friction_criterion
+from squeezefilm.contact.paper import (
+    relative_friction,
+    vibration_amplitude_for,
+    zero_friction_amplitude,
+)
+from squeezefilm.display import Display, load_display
+from squeezefilm.film.gap import (
+    PaperGap,
+    frequency_for_squeeze_number,
+    squeeze_number,
+    squeeze_number_printed,
+)
+from squeezefilm.film.limits import contact_mean_pressure, mean_pressure_profile
+from squeezefilm.film.validity import asymptotic_fraction
+from squeezefilm.plate.beam import euler_bernoulli_half_wavelength, timoshenko_frequency
+from squeezefilm.plate.laminate import Laminate, plate_laminate
+from squeezefilm.plate.layout import AnnularStator, RectangularPlate
+from squeezefilm.plate.response import beam_response
+from squeezefilm.prediction import paper_gap
+from squeezefilm.quantities import Metre
+
+PRINTED_HALF_WAVELENGTH: Metre = 10.37e-3
+PRINTED_WIDTH: Metre = 50e-3  # section 3.1.1 chooses b = 50 mm, section 3.1.2 ends at 49 mm
+
+
+@dataclass(frozen=True)
+class ClaimValue:
+    """What was found for a claim, in SI: the corrected value; what the printed formula gives; the
+    value under another reading of the print; a note on models and inputs."""
+
+    value: tuple[float, ...]
+    printed_formula: tuple[float, ...] | None = None
+    alternative: tuple[float, ...] | None = None
+    note: str = ""
+
+
+CLAIM_VALUES: dict[str, Callable[[], ClaimValue]] = {}
+
+
+def _for(claim: str) -> Callable[[Callable[[], ClaimValue]], Callable[[], ClaimValue]]:
+    def register(function: Callable[[], ClaimValue]) -> Callable[[], ClaimValue]:
+        CLAIM_VALUES[claim] = function
+        return function
+
+    return register
+
+
+@functools.cache
+def _stator() -> Display:
+    return load_display("biet2008-stator")
+
+
+@functools.cache
+def _plate_display() -> Display:
+    return load_display("biet2008-plate")
+
+
+def _plate() -> RectangularPlate:
+    actuator = _plate_display().actuator
+    assert isinstance(actuator, RectangularPlate)
+    return actuator
+
+
+def _gap(amplitude: Metre, roughness: Metre = 0.6e-6, half_wavelength: Metre = 9.35e-3) -> PaperGap:
+    display = _stator()
+    surface = dataclasses.replace(display.surface(), roughness=roughness)
+    return paper_gap(display, surface, half_wavelength, amplitude)
+
+
+def _sigma(frequency: float, gap: PaperGap) -> tuple[float, float]:
+    gas = _stator().gas
+    arguments = (
+        frequency,
+        gap.contact_length,
+        gap.reference_thickness,
+        gas.viscosity,
+        gas.ambient_pressure,
+    )
+    return float(squeeze_number(*arguments)), float(squeeze_number_printed(*arguments))
+
+
+def _force_and_ambient() -> tuple[float, float]:
+    return _stator().finger.normal_force, _stator().gas.ambient_pressure
+
+
+@_for("squeeze-number-stator")
+def _() -> ClaimValue:
+    value, printed = _sigma(40.5e3, _gap(2e-6))
+    return ClaimValue((value,), (printed,), note="the printed formula's value is in 1/m")
+
+
+@_for("squeeze-number-plate")
+def _() -> ClaimValue:
+    value, printed = _sigma(30.5e3, _gap(1.15e-6))
+    other, _ = _sigma(30.5e3, _gap(2.3e-6))
+    return ClaimValue(
+        (value,), (printed,), (other,), "alternative: 2.3 µm taken as the amplitude itself"
+    )
+
+
+@_for("frequency-criterion")
+def _() -> ClaimValue:
+    gas = _stator().gas
+
+    def frequency(roughness: float) -> float:
+        gap = _gap(3e-6, roughness)
+        return float(
+            frequency_for_squeeze_number(
+                10.0,
+                gap.contact_length,
+                gap.reference_thickness,
+                gas.viscosity,
+                gas.ambient_pressure,
+            )
+        )
+
+    return ClaimValue(
+        (frequency(1.6e-6),), alternative=(frequency(0.6e-6),), note="alternative: 0.6 µm"
+    )
+
+
+@_for("asymptote-at-10")
+def _() -> ClaimValue:
+    return ClaimValue((float(asymptotic_fraction(10.0)),), note="smooth strip, small amplitude")
+
+
+@_for("asymptote-at-20")
+def _() -> ClaimValue:
+    sigma, _ = _sigma(40.5e3, _gap(2e-6))
+    return ClaimValue((float(asymptotic_fraction(sigma)),), note="smooth strip, small amplitude")
+
+
+@_for("mean-pressure-above-one")
+def _() -> ClaimValue:
+    gap = _gap(2e-6)
+    return ClaimValue(
+        (float(contact_mean_pressure(gap)),),
+        (float(contact_mean_pressure(gap, "paper2008-printed")),),
+    )
+
+
+@_for("ridge-peaks")
+def _() -> ClaimValue:
+    gap = _gap(2e-6)
+    X = np.linspace(0, 0.03, 30001)
+    profile = mean_pressure_profile(X, gap)
+    top = int(np.argmax(profile))
+    return ClaimValue((float(X[top]) * gap.contact_length,), note=f"peak {profile[top]:.3f} p0")
+
+
+@_for("levitation-amplitude")
+def _() -> ClaimValue:
+    force, ambient = _force_and_ambient()
+    rough, smooth = (zero_friction_amplitude(_gap(0.0, r), force, ambient) for r in (6e-7, 2e-7))
+    return ClaimValue((rough,), alternative=(smooth,), note="alternative: roughness 0.2 µm")
+
+
+@_for("two-micrometres-are-felt")
+def _() -> ClaimValue:
+    force, ambient = _force_and_ambient()
+    rough, smooth = (float(relative_friction(_gap(2e-6, r), force, ambient)) for r in (6e-7, 2e-7))
+    printed = float(relative_friction(_gap(2e-6), force, ambient, "paper2008-printed"))
+    return ClaimValue((rough,), (printed,), (smooth,), "alternative: roughness 0.2 µm")
+
+
+@_for("friction-criterion")
+def _() -> ClaimValue:
+    force, ambient = _force_and_ambient()
+    found = friction_criterion(_gap(0.0), PAPER_HALF_WAVELENGTHS, 0.7, force, ambient)
+    values = tuple(float(value) for value in found)
+    return ClaimValue(values, alternative=values[::-1], note="alternative: the list reversed")
+
+
+def _section() -> Laminate:
+    return plate_laminate(_plate(), "paper")
+
+
+@_for("half-wavelength-limit")
+def _() -> ClaimValue:
+    from scipy.optimize import brentq
+
+    section = _section()
+    G, M = section.bending_stiffness, section.mass_per_area
+    euler = float(euler_bernoulli_half_wavelength(20.6e3, G, M))
+    # As printed: ω taken for f_n, and the width in G_b alone.
+    printed = np.pi * (G * PRINTED_WIDTH / M) ** 0.25 / np.sqrt(20.6e3)
+    timoshenko = brentq(lambda half: float(timoshenko_frequency(half, section)) - 20.6e3, 5e-3, 0.1)
+    return ClaimValue(
+        (euler,), (float(printed),), (float(timoshenko),), "alternative: Timoshenko beam"
+    )
+
+
+@_for("half-wavelength-of-mode")
+def _() -> ClaimValue:
+    beam = beam_response(_plate(), "euler_bernoulli", "paper")
+    return ClaimValue((beam.mode.half_wavelength,), (_plate().length / 8,))
+
+
+@_for("prototype-is-enough")
+def _() -> ClaimValue:
+    force, ambient = _force_and_ambient()
+    gap = _gap(1.15e-6, half_wavelength=PRINTED_HALF_WAVELENGTH)
+    needed = vibration_amplitude_for(0.7, gap, force, ambient)
+    return ClaimValue(
+        (float(relative_friction(gap, force, ambient)),), note=f"0.7 needs {needed * 1e6:.3g} µm"
+    )
+
+
+@_for("plate-area")
+def _() -> ClaimValue:
+    return ClaimValue((_plate().area,))
+
+
+@_for("plate-length")
+def _() -> ClaimValue:
+    patches = _plate().patches
+    gaps = sum(
+        right.x - left.x - left.length for left, right in itertools.pairwise(patches)
+    )
+    return ClaimValue((sum(patch.length for patch in patches) + gaps,))
+
+
+@_for("workspace")
+def _() -> ClaimValue:
+    return ClaimValue((_plate().area,))
+
+
+@_for("stator-wavelength")
+def _() -> ClaimValue:
+    actuator = _stator().actuator
+    assert isinstance(actuator, AnnularStator)
+    return ClaimValue((actuator.wavelengths_around,))
+
+
+@_for("effective-coupling")
+def _() -> ClaimValue:
+    return ClaimValue((_plate().ceramic.stress_coefficient_from_d31,))
+
+
+def _beam_note() -> str:
+    found = [
+        f"{theory.replace('_', '–')} {section.replace('_', ' ')} "
+        f"{beam_response(_plate(), theory, section).mode.frequency / 1e3:.2f} kHz"
+        for theory in ("euler_bernoulli", "timoshenko")
+        for section in ("paper", "plane_stress", "plane_strain")
+    ]
+    return "; ".join(found)
+
+
+@_for("modal-frequency")
+def _() -> ClaimValue:
+    return ClaimValue((beam_response(_plate()).mode.frequency,), note=_beam_note())
+
+
+def _amplitudes() -> tuple[float, float, float]:
+    """At 15 V: the largest inner lobe and the ends with d31, the inner lobe with printed e31."""
+    plate = _plate()
+    beam = beam_response(plate)
+    volts = _plate_display().drive.voltage
+    inner = volts * beam.amplitude_per_volt
+    ends = inner * float(abs(beam.mode.deflection[0]))
+    ceramic = dataclasses.replace(plate.ceramic, data_set="printed_e31")
+    weak = volts * beam_response(dataclasses.replace(plate, ceramic=ceramic)).amplitude_per_volt
+    return inner, ends, weak
+
+
+@_for("harmonic-amplitude")
+def _() -> ClaimValue:
+    inner, ends, weak = _amplitudes()
+    return ClaimValue(
+        (inner,), alternative=(ends,),
+        note=f"alternative: at the ends; {weak * 1e6:.2f} µm with the printed e31",
+    )  # fmt: skip
+
+
+@_for("measured-frequency")
+def _() -> ClaimValue:
+    return ClaimValue((beam_response(_plate()).mode.frequency,), note="perfect bond, beam model")
+
+
+@_for("measured-amplitude")
+def _() -> ClaimValue:
+    inner, _, weak = _amplitudes()
+    return ClaimValue((inner,), alternative=(weak,), note="alternative: the printed e31")
