@@ -1,0 +1,113 @@
+"""The house's own rules: layers, docstrings, licences, and what is never committed."""
+
+import importlib
+import importlib.metadata
+import inspect
+import pkgutil
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import squeezefilm
+from squeezefilm.quantities import CLOSED_FORMS
+
+ROOT = Path(__file__).parents[2]
+
+
+def _modules() -> list[str]:
+    found = pkgutil.walk_packages(squeezefilm.__path__, "squeezefilm.")
+    return sorted(module.name for module in found)
+
+
+def test_layers_hold() -> None:
+    program = Path(sys.executable).parent / "lint-imports"
+    done = subprocess.run([program], cwd=ROOT, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert " 0 broken" in done.stdout
+
+
+@pytest.mark.parametrize("name", _modules())
+def test_everything_public_has_a_docstring(name: str) -> None:
+    module = importlib.import_module(name)
+    missing = [] if module.__doc__ else [name]
+    for key, item in vars(module).items():
+        if key.startswith("_") or getattr(item, "__module__", None) != name:
+            continue
+        if inspect.isclass(item) or inspect.isfunction(item):
+            if not inspect.getdoc(item):
+                missing.append(f"{name}.{key}")
+            if inspect.isclass(item):
+                missing += [
+                    f"{name}.{key}.{method}"
+                    for method, body in vars(item).items()
+                    if not method.startswith("_")
+                    and (inspect.isfunction(body) or isinstance(body, property))
+                    and not inspect.getdoc(body)
+                ]
+    assert missing == []
+
+
+def test_every_closed_form_documents_its_source_or_its_equation() -> None:
+    for module in _modules():
+        importlib.import_module(module)
+    words = re.compile(r"eq|10\.\d{4}|source|Source|=|→|/")
+    assert [key for key, f in CLOSED_FORMS.items() if not words.search(f.__doc__ or "")] == []
+
+
+ALLOWED = re.compile(
+    r"BSD|MIT|Apache|PSF|Python Software|MPL|Mozilla|ISC|HPND|Zlib|0BSD|CC0|Unlicense|"
+    r"LLVM-exception|CNRI|Public Domain|matplotlib",
+    re.IGNORECASE,
+)
+REFUSED = re.compile(r"\b[AL]?GPL|GNU (Lesser |Affero )?General Public", re.IGNORECASE)
+
+
+def _licence(distribution: importlib.metadata.Distribution) -> str:
+    meta = distribution.metadata
+    classifiers = [c for c in meta.get_all("Classifier") or [] if c.startswith("License ::")]
+    # Some packages put the whole text of several bundled licences here; its head says which.
+    stated = (meta.get("License-Expression") or meta.get("License") or "")[:200]
+    return " ".join([stated, *classifiers])
+
+
+def _runtime_closure() -> set[str]:
+    todo, seen = ["squeezefilm"], set()
+    while todo:
+        name = todo.pop()
+        key = re.sub(r"[-_.]+", "-", name).lower()
+        if key in seen:
+            continue
+        seen.add(key)
+        try:
+            requires = importlib.metadata.requires(name) or []
+        except importlib.metadata.PackageNotFoundError:
+            continue  # a requirement of another platform
+        todo += [
+            re.split(r"[\s<>=!~;\[(]", r, maxsplit=1)[0] for r in requires if "extra ==" not in r
+        ]
+    return seen - {"squeezefilm"}
+
+
+def test_every_runtime_dependency_has_a_permissive_licence() -> None:
+    closure = _runtime_closure()
+    assert {"numpy", "scipy", "numba", "pydantic", "typer", "rich", "matplotlib"} <= closure
+    bad = {}
+    for name in closure:
+        try:
+            licence = _licence(importlib.metadata.distribution(name))
+        except importlib.metadata.PackageNotFoundError:
+            continue
+        if REFUSED.search(licence) or not ALLOWED.search(licence):
+            bad[name] = licence
+    assert bad == {}
+
+
+def test_constraints_pin_and_hold_no_address() -> None:
+    lines = (ROOT / "constraints.txt").read_text(encoding="utf-8").splitlines()
+    pins = [line for line in lines if line and not line.startswith("#")]
+    assert all(re.fullmatch(r"[A-Za-z0-9._-]+==[A-Za-z0-9.+!-]+", pin) for pin in pins)
+    names = {re.sub(r"[-_.]+", "-", pin.split("==")[0]).lower() for pin in pins}
+    assert _runtime_closure() - names <= {"tzdata", "colorama", "exceptiongroup"}

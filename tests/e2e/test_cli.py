@@ -1,0 +1,195 @@
+"""The command line as a person uses it: through the installed program, in a process of its own."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from squeezefilm import presets
+
+PROGRAM = [sys.executable, "-c", "from squeezefilm.cli import main; main()"]
+
+
+def run(*arguments: str | Path, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
+    environment = {**os.environ, "NO_COLOR": "1", "COLUMNS": "100"}
+    return subprocess.run(
+        [*PROGRAM, *map(str, arguments)],
+        capture_output=True,
+        text=True,
+        cwd=cwd,
+        env=environment,
+        timeout=300,
+        check=False,
+    )
+
+
+def test_help_names_the_verbs() -> None:
+    done = run("--help")
+    assert done.returncode == 0
+    for verb in ("analyze", "reproduce", "presets", "show", "new"):
+        assert verb in done.stdout
+
+
+def test_help_and_package_load_neither_plots_nor_pydantic_nor_numpy() -> None:
+    code = (
+        "import sys, squeezefilm, squeezefilm.cli as cli\n"
+        "try: cli.app(['--help'])\n"
+        "except SystemExit: pass\n"
+        "heavy = {'matplotlib', 'pydantic', 'numpy', 'scipy', 'numba'} & set(sys.modules)\n"
+        "print('loaded:', sorted(heavy), file=sys.stderr)\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stderr.strip() == "loaded: []"
+
+
+def test_analyze_prints_one_object_with_units_in_its_keys() -> None:
+    done = run("analyze", "biet2008-stator", "--json")
+    assert done.returncode == 0
+    result = json.loads(done.stdout)
+    for key in (
+        "resonance_frequency_Hz",
+        "half_wavelength_m",
+        "vibration_amplitude_m",
+        "squeeze_number",
+        "relative_friction",
+        "friction_reduction",
+        "model",
+        "quality_factor",
+        "envelope_time_constant_s",
+        "finest_period_m",
+        "warnings",
+    ):
+        assert key in result
+    assert result["squeeze_number"] == pytest.approx(20.418, abs=5e-4)
+    assert result["relative_friction"] == pytest.approx(0.702, abs=5e-4)
+    assert result["model"] == "paper2008"
+    assert any("σ → ∞" in warning for warning in result["warnings"])
+    assert result["friction_reduction"] == pytest.approx(
+        result["friction_coefficient"] * (1 - result["relative_friction"])
+    )
+
+
+def test_analyze_writes_a_report_and_a_result(tmp_path: Path) -> None:
+    done = run("analyze", "biet2008-plate", "--out", tmp_path / "out")
+    assert done.returncode == 0, done.stderr
+    assert str(tmp_path / "out" / "report.html") in done.stdout.replace("\n", "")
+    result = json.loads((tmp_path / "out" / "result.json").read_text())
+    assert result["mode"] == "(8,0)"
+    assert sorted(p.name for p in (tmp_path / "out").iterdir()) == ["report.html", "result.json"]
+
+
+def test_working_point_options_change_the_result() -> None:
+    half = json.loads(run("analyze", "biet2008-plate", "--json", "--voltage", "7.5 V").stdout)
+    full = json.loads(run("analyze", "biet2008-plate", "--json").stdout)
+    assert half["vibration_amplitude_m"] == pytest.approx(full["vibration_amplitude_m"] / 2)
+    bare = json.loads(
+        run(
+            "analyze", "biet2008-stator", "--json", "--surface", "bare", "--amplitude", "2 um"
+        ).stdout
+    )
+    assert bare["relative_friction"] == pytest.approx(0.532, abs=5e-4)
+    assert bare["voltage_V"] is None
+
+
+def test_new_show_and_analyze_a_file_of_ones_own(tmp_path: Path) -> None:
+    file = tmp_path / "mine.toml"
+    assert run("new", file, "--from", "biet2008-plate").returncode == 0
+    text = file.read_text()
+    assert 'name = "mine"' in text
+    assert text.count("#") > 5
+    again = run("new", file, "--from", "biet2008-plate")
+    assert again.returncode == 2
+    assert "exists" in again.stderr
+    assert file.read_text() == text
+    shown = json.loads(run("show", file, "--json").stdout)
+    by_path = {item["path"]: item for item in shown}
+    assert by_path["actuator.length"]["value"] == "83 mm"
+    assert by_path["actuator.substrate.density"]["evidence"] == "assumed"
+    file.write_text(text.replace('"83 mm"', '"166 mm"'))
+    assert json.loads(run("analyze", file, "--json").stdout)["resonance_frequency_Hz"] < 12e3
+
+
+def test_presets_are_listed() -> None:
+    done = run("presets")
+    assert done.returncode == 0
+    for name in presets.names():
+        assert name in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        (("analyze", "biet2008-plat"), "Did you mean 'biet2008-plate'"),
+        (("analyze", "none.toml"), "does not exist"),
+        (("analyze", "."), "is a directory"),
+        (("analyze", "biet2008-plate", "--voltage", "15"), "--voltage: '15' has no unit"),
+        (("analyze", "biet2008-plate", "--voltage", "15 um"), "wrong dimension"),
+        (("analyze", "biet2008-plate", "--force", "nan N"), "finite"),
+        (("analyze", "biet2008-plate", "--force", "0 N"), "above 0 N"),
+        (("analyze", "biet2008-plate", "--surface", "bar"), "Did you mean 'bare'"),
+        (
+            ("analyze", "biet2008-plate", "--voltage", "1 V", "--amplitude", "2 um"),
+            "give one of them",
+        ),
+        (("analyze", "biet2008-plate", "--strict"), "contradict"),
+        (("analyze", "biet2008-stator", "--strict"), "σ → ∞"),
+        (("new", "x.toml", "--from", "biet"), "there is no preset 'biet'"),
+        (("show", "nothing"), "neither a file nor a preset"),
+    ],
+)
+def test_mistakes_are_one_message_and_exit_code_two(
+    arguments: tuple[str, ...], says: str, tmp_path: Path
+) -> None:
+    done = run(*arguments, cwd=tmp_path)
+    assert done.returncode == 2
+    assert "Traceback" not in done.stderr
+    assert done.stderr.startswith("error: ")
+    assert says in done.stderr
+    assert done.stdout == ""
+    assert list(tmp_path.iterdir()) == []
+
+
+TEXT = presets.path("biet2008-plate").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("content", "says"),
+    [
+        ("", "is empty"),
+        (TEXT.replace('"83 mm"', "83"), "line 9: actuator.length"),
+        (TEXT.replace('"2 mm"', '"-2 mm"'), "above 0 m"),
+        (TEXT.replace('"2 mm"', '"nan mm"'), "finite"),
+        (TEXT.replace('value = "12 mm"', 'value = "5 mm"'), "overlap"),
+        (TEXT.replace('value = "72 mm"', 'value = "80 mm"'), "overhangs"),
+        (TEXT.replace("viscosity", "viscocity"), "Did you mean 'viscosity'"),
+    ],
+)
+def test_bad_files_leave_no_output(content: str, says: str, tmp_path: Path) -> None:
+    file = tmp_path / "bad.toml"
+    file.write_text(content, encoding="utf-8")
+    done = run("analyze", file, "--out", tmp_path / "out")
+    assert done.returncode == 2
+    assert "Traceback" not in done.stderr
+    assert says in done.stderr
+    assert "bad.toml" in done.stderr
+    assert not (tmp_path / "out").exists()
+
+
+def test_an_output_folder_that_is_a_file_is_refused_and_kept(tmp_path: Path) -> None:
+    taken = tmp_path / "out"
+    taken.write_text("mine")
+    done = run("analyze", "biet2008-stator", "--out", taken)
+    assert done.returncode == 2
+    assert "Traceback" not in done.stderr
+    assert taken.read_text() == "mine"
+
+
+def test_reproduce_gives_every_claim_a_verdict() -> None:
+    done = run("reproduce", "--json")
+    assert done.returncode == 0, done.stderr
+    claims = json.loads(done.stdout)["claims"]
+    assert len(claims) >= 20
+    assert all(claim["verdict"] == claim["verdict_on_record"] for claim in claims)

@@ -1,0 +1,80 @@
+"""Published claims: the numbers that must come out, and that a changed verdict is noticed."""
+
+import dataclasses
+
+import pytest
+
+from squeezefilm.analysis.claim_values import CLAIM_VALUES, ClaimValue
+from squeezefilm.analysis.claims import Claim, ClaimResult, judge, read_claims, reproduce
+from squeezefilm.errors import ConfigError
+
+
+@pytest.fixture(scope="module")
+def found() -> dict[str, ClaimResult]:
+    return {item.claim.id: item for item in reproduce().results}
+
+
+def test_every_verdict_is_the_one_on_record(found: dict[str, ClaimResult]) -> None:
+    assert {key: item.verdict for key, item in found.items()} == {
+        key: item.claim.verdict for key, item in found.items()
+    }
+
+
+def test_every_claim_is_computed_and_every_computation_is_a_claim() -> None:
+    assert {claim.id for claim in read_claims().claims} == set(CLAIM_VALUES)
+
+
+@pytest.mark.parametrize(
+    ("claim", "values", "digits"),
+    [
+        ("squeeze-number-stator", [20.418], 5e-4),
+        ("squeeze-number-plate", [15.886], 5e-4),
+        ("two-micrometres-are-felt", [0.702], 5e-4),
+        ("levitation-amplitude", [7.63e-6], 5e-9),
+        ("friction-criterion", [2.33e-6, 1.89e-6, 1.54e-6, 1.35e-6], 5e-9),
+        ("mean-pressure-above-one", [1.0149], 5e-5),
+        ("prototype-is-enough", [0.82], 5e-3),
+        ("half-wavelength-limit", [14.94e-3], 5e-6),
+    ],
+)
+def test_recomputed_values_of_the_specification(
+    found: dict[str, ClaimResult], claim: str, values: list[float], digits: float
+) -> None:
+    assert found[claim].value == pytest.approx(values, abs=digits)
+
+
+def test_other_readings(found: dict[str, ClaimResult]) -> None:
+    assert found["frequency-criterion"].value == pytest.approx([21.37e3], abs=5)
+    assert found["frequency-criterion"].alternative == pytest.approx([20597], abs=0.5)
+    assert found["levitation-amplitude"].alternative == pytest.approx([5.46e-6], abs=5e-9)
+    assert found["two-micrometres-are-felt"].alternative == pytest.approx([0.532], abs=5e-4)
+
+
+def _claim(**changes: object) -> Claim:
+    claim = Claim("x", "here", "one", (1.0,), "1", "reproduces", "so", tolerance=0.01)
+    return dataclasses.replace(claim, **changes)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("claim", "value", "verdict"),
+    [
+        (_claim(), ClaimValue((1.009,)), "reproduces"),
+        (_claim(), ClaimValue((1.02,)), "does not reproduce"),
+        (_claim(), ClaimValue((2.0,), alternative=(1.0,)), "misprint"),
+        (_claim(), ClaimValue((2.0,), printed_formula=(1.0,)), "does not reproduce"),
+        (_claim(), ClaimValue((float("nan"),)), "does not reproduce"),
+        (_claim(relation="above"), ClaimValue((1.0,)), "does not hold"),
+        (_claim(relation="at_least"), ClaimValue((1.0,)), "holds"),
+        (_claim(relation="at_most"), ClaimValue((1.1,)), "does not hold"),
+    ],
+)
+def test_verdicts_are_computed(claim: Claim, value: ClaimValue, verdict: str) -> None:
+    assert judge(claim, value).verdict == verdict
+
+
+def test_a_changed_verdict_is_reported() -> None:
+    claim = next(c for c in read_claims().claims if c.id == "plate-area")
+    tampered = reproduce((dataclasses.replace(claim, printed=(41e-4,)),))
+    assert [item.claim.id for item in tampered.changed] == ["plate-area"]
+    with pytest.raises(ConfigError, match="Did you mean 'plate-area'"):
+        reproduce((dataclasses.replace(claim, id="plate-areas"),))
