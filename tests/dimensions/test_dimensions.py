@@ -18,8 +18,18 @@ import pint
 import pytest
 
 import squeezefilm
-from squeezefilm.quantities import CLOSED_FORMS, Unit, closed_form, unit_of
-from squeezefilm.quantities import Dimensionless, Hertz, Metre, Newton, NewtonPerMetre, Pascal
+from squeezefilm.quantities import (
+    CLOSED_FORMS,
+    Dimensionless,
+    Hertz,
+    Metre,
+    Newton,
+    NewtonPerMetre,
+    Pascal,
+    Unit,
+    closed_form,
+    unit_of,
+)
 
 pint_units: Any = pint.UnitRegistry()
 
@@ -78,7 +88,7 @@ MINIMUM = {
 }
 
 
-class DimensionMismatch(AssertionError):
+class DimensionMismatchError(AssertionError):
     """A closed form whose result has not the dimension that it promises."""
 
 
@@ -112,7 +122,7 @@ def example(name: str, parameter: inspect.Parameter, hint: Any) -> Any:
 
 
 def check(name: str, form: Callable[..., Any]) -> None:
-    """Call `form` with pint quantities; raise `DimensionMismatch` if its dimension is wrong."""
+    """Call `form` with pint quantities; refuse a result of another dimension than promised."""
     hints = typing.get_type_hints(form, include_extras=True)
     arguments = {
         parameter.name: example(name, parameter, hints.get(parameter.name))
@@ -127,11 +137,13 @@ def check(name: str, form: Callable[..., Any]) -> None:
     try:
         result = form(**arguments)
     except pint.DimensionalityError as error:
-        raise DimensionMismatch(f"{name} adds or compares unlike quantities: {error}") from error
+        raise DimensionMismatchError(
+            f"{name} adds or compares unlike quantities: {error}"
+        ) from error
     for value, unit in zip(result if len(units) > 1 else [result], units, strict=True):
         dimension = pint_units.Quantity(value).dimensionality
         if dimension != pint_unit(unit).dimensionality:
-            raise DimensionMismatch(
+            raise DimensionMismatchError(
                 f"{name} promises {unit.symbol} and returns {dimension or 'a plain number'}"
             )
 
@@ -149,13 +161,13 @@ def test_closed_form_has_the_dimension_it_promises(name: str) -> None:
 
 @pytest.mark.parametrize("name", sorted(MISPRINTS))
 def test_misprint_is_caught(name: str) -> None:
-    with pytest.raises(DimensionMismatch):
+    with pytest.raises(DimensionMismatchError):
         check(name, SHIPPED[name])
 
 
 def test_printed_equation_4_is_caught_for_its_missing_length() -> None:
     name = "squeezefilm.film.gap.squeeze_number_printed"
-    with pytest.raises(DimensionMismatch, match=r"promises 1 and returns 1 / \[length\]"):
+    with pytest.raises(DimensionMismatchError, match=r"promises 1 and returns 1 / \[length\]"):
         check(name, SHIPPED[name])
     check("squeezefilm.film.gap.squeeze_number", SHIPPED["squeezefilm.film.gap.squeeze_number"])
 
@@ -182,7 +194,7 @@ def test_the_test_itself_catches_wrong_formulas() -> None:
     forms = [key for key in CLOSED_FORMS if key.startswith(__name__)]
     try:
         for bad in (wrong_power, unlike_sum):
-            with pytest.raises(DimensionMismatch):
+            with pytest.raises(DimensionMismatchError):
                 check("bad", bad)
         check("right", right)
         with pytest.raises(AssertionError, match="neither a unit"):

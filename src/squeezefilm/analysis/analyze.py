@@ -19,6 +19,7 @@ from squeezefilm.plate.response import beam_response
 from squeezefilm.prediction import (
     FrictionModel,
     Prediction,
+    friction_law,
     paper_gap,
     predict,
     relative_friction_curve,
@@ -369,20 +370,14 @@ def _textures(
     high = prediction.vibration_amplitude
     if high == 0 or prediction.relative_friction == 1:
         return None, None
-    # The friction law is smooth in the amplitude: a table serves the many samples of a trace.
-    grid = np.linspace(0.0, high, 257)
-    law = relative_friction_curve(
+    friction = friction_law(
         display,
-        grid,
+        high,
         prediction.mode.half_wavelength,
         surface=prediction.surface,
         normal_force=prediction.normal_force,
         model=prediction.model,
     )
-
-    def friction(amplitude: MetreArray) -> DimensionlessArray:
-        return np.asarray(np.interp(amplitude, grid, law))
-
     trace = friction_trace(
         Square(spatial_period=2e-3, low=0.0, high=high), Stroke(speed=0.1), tau, friction
     )

@@ -227,9 +227,7 @@ def _() -> ClaimValue:
 @_for("plate-length")
 def _() -> ClaimValue:
     patches = _plate().patches
-    gaps = sum(
-        right.x - left.x - left.length for left, right in itertools.pairwise(patches)
-    )
+    gaps = sum(right.x - left.x - left.length for left, right in itertools.pairwise(patches))
     return ClaimValue((sum(patch.length for patch in patches) + gaps,))
 
 

@@ -1,7 +1,7 @@
 """The film at large squeeze number: Salbu's limit, the edge layer, and the paper's pressure.
 
-As σ → ∞ the gas is trapped: Ψ = P H^(…) no longer changes in time, except in an edge layer of
-thickness ~σ^-1/2 through which the film breathes. P is pressure over ambient, X = x/l0 in
+As σ → ∞ the gas is trapped: Ψ = P H (isothermal) no longer changes in time, except in an edge
+layer of thickness ~σ^-1/2 through which the film breathes. P is pressure over ambient, X = x/l0 in
 [-1/2, 1/2], T = ωt; ε, δ, k1, k2 as in `film.gap`.
 
 Sources: Salbu 1964, 10.1115/1.3653080; Biet et al., equations 5 to 12.

@@ -1,0 +1,54 @@
+"""Every example runs, is at most 60 lines, and gives the number it is there to show."""
+
+import importlib.util
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import pytest
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+
+
+def _load(name: str) -> ModuleType:
+    spec = importlib.util.spec_from_file_location(name, EXAMPLES / f"{name}.py")
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def _friction_of_the_stator(result: Any) -> None:
+    assert result["relative_friction"] == pytest.approx(0.702, abs=5e-4)
+    assert result["zero_friction_amplitude"] == pytest.approx(7.63e-6, abs=5e-9)
+
+
+def _thinner_plate(result: Any) -> None:
+    frequencies = [frequency for _, frequency, _ in result]
+    assert frequencies[0] == pytest.approx(34.66e3, rel=1e-3)
+    assert frequencies == sorted(frequencies, reverse=True)
+
+
+def _grating_under_a_finger(result: Any) -> None:
+    # tanh(period / 4 v τ) with τ = 0.551 ms
+    assert result[0.1] == pytest.approx(0.9482, abs=2e-3)
+    assert result[0.2] == pytest.approx(0.7197, abs=2e-3)
+
+
+CHECKS = {
+    "friction_of_the_stator": _friction_of_the_stator,
+    "thinner_plate": _thinner_plate,
+    "grating_under_a_finger": _grating_under_a_finger,
+}
+
+
+def test_every_example_is_checked() -> None:
+    assert {path.stem for path in EXAMPLES.glob("*.py")} == set(CHECKS)
+
+
+@pytest.mark.parametrize("name", sorted(CHECKS))
+def test_example(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert len((EXAMPLES / f"{name}.py").read_text().splitlines()) <= 60
+    CHECKS[name](_load(name).main())
+    assert capsys.readouterr().out
