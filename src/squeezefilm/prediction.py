@@ -122,6 +122,13 @@ def friction_law(
     law = relative_friction_curve(
         display, grid, half_wavelength, surface=surface, normal_force=normal_force, model=model
     )
+    if law[-1] == 0:
+        # The law has a kink where the finger lifts off; a point of its own keeps it sharp.
+        gap = paper_gap(display, surface or display.surface(), half_wavelength, 0.0)
+        force = display.finger.normal_force if normal_force is None else normal_force
+        kink = paper.zero_friction_amplitude(gap, force, display.gas.ambient_pressure, model)
+        at = int(np.searchsorted(grid, kink))
+        grid, law = np.insert(grid, at, kink), np.insert(law, at, 0.0)
 
     def friction(amplitude: MetreArray) -> DimensionlessArray:
         values = np.asarray(amplitude, dtype=float)
