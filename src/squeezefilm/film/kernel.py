@@ -26,7 +26,7 @@ from squeezefilm.quantities import FloatArray
 _FAST = {"reassoc", "contract", "arcp", "nsz"}
 
 
-@njit(nogil=True, cache=True, fastmath=_FAST)  # type: ignore[untyped-decorator]
+@njit(nogil=True, cache=True, fastmath=_FAST, error_model="numpy")  # type: ignore[untyped-decorator]
 def _invert(S: FloatArray, start: int, nt: int, ntp: int, mask: FloatArray) -> None:
     """Invert the nt × nt block at `start` in place, without pivoting.
 
@@ -60,7 +60,7 @@ def _invert(S: FloatArray, start: int, nt: int, ntp: int, mask: FloatArray) -> N
                         store(S, at + v, fma(factor, row, mul(load(S, at + v), keep)))
 
 
-@njit(nogil=True, cache=True, fastmath=_FAST)  # type: ignore[untyped-decorator]
+@njit(nogil=True, cache=True, fastmath=_FAST, error_model="numpy")  # type: ignore[untyped-decorator]
 def _apply(S: FloatArray, start: int, nt: int, ntp: int, y: FloatArray, at: int, out: FloatArray,
            to: int, accumulate: bool) -> None:  # fmt: skip
     """out[to:] (+)= Sᵀ y[at:] for the block at `start`, which holds the transposed inverse."""
@@ -71,7 +71,7 @@ def _apply(S: FloatArray, start: int, nt: int, ntp: int, y: FloatArray, at: int,
         store(out, to + v, result)
 
 
-@njit(nogil=True, cache=True, fastmath=_FAST)  # type: ignore[untyped-decorator]
+@njit(nogil=True, cache=True, fastmath=_FAST, error_model="numpy")  # type: ignore[untyped-decorator]
 def _coefficients(
     m: int, ntp: int, hs: int, fs: int, g: FloatArray, H: FloatArray, Hf3: FloatArray,
     Hf: FloatArray, n: float, kn: float, law: int, p: FloatArray,
@@ -145,7 +145,7 @@ def _coefficients(
             cr[right] = c * (factor * R_b + bend) * q_b
 
 
-@njit(nogil=True, cache=True, fastmath=_FAST)  # type: ignore[untyped-decorator]
+@njit(nogil=True, cache=True, fastmath=_FAST, error_model="numpy")  # type: ignore[untyped-decorator]
 def newton(
     m: int, nt: int, ntp: int, hs: int, fs: int, g: FloatArray, vol: FloatArray,
     H: FloatArray, Hf3: FloatArray, Hf: FloatArray, n: float, kn: float, law: int,
@@ -225,34 +225,31 @@ def newton(
                 store(r, at + v, carried)
             _apply(S, i * block, nt, ntp, r, at, z, at, True)
         largest = 0.0
+        deepest = 0.0
         for i in range(m):
             for t in range(nt):
                 at = i * ntp + t
-                step = q[at] * z[at]
-                z[at] = step
-                relative = abs(step) / (1.0 + p[at])
-                if not relative <= largest:
-                    largest = relative
+                step = z[at] / (H[i * hs + t] * R[at])
+                deepest = max(deepest, -step)
+                if not abs(step) <= largest:
+                    largest = abs(step)
         if not largest < 1e300:
             return math.nan, iteration, math.inf
-        # A full step must leave every pressure positive; 0.7 keeps a margin for the logarithm.
-        scale = 1.0
-        if largest > 0.7:
-            deepest = 0.0
-            for i in range(m):
-                for t in range(nt):
-                    at = i * ntp + t
-                    deepest = max(deepest, -z[at] / (1.0 + p[at]))
-            if deepest > 0.7:
-                scale = 0.7 / deepest
+        # A full step must leave gas everywhere; 0.8 keeps a margin for the logarithm.
+        scale = 0.8 / deepest if deepest > 0.8 else 1.0
         over = 0.0
         for i in range(m):
             part = broadcast(0.0)
             for v in range(0, ntp, 8):
                 at = i * ntp + v
-                new = fma(broadcast(scale), load(z, at), load(p, at))
-                store(p, at, new)
-                part = fma(load(weight, i * ws + v), new, part)
+                rise = mul(broadcast(scale), div(load(z, at), load(H, i * hs + v)))
+                if n == 1.0:
+                    store(p, at, add(rise, load(p, at)))
+                else:
+                    store(R, at, add(rise, load(R, at)))
+                    for t in range(at, at + 8):
+                        p[t] = math.exp(n * math.log(R[t])) - 1.0
+                part = fma(load(weight, i * ws + v), load(p, at), part)
             over += share[i] * total(part)
         # What remains after a Newton step is about its square; after a chord step, the
         # geometric tail of the steps so far.
@@ -273,7 +270,7 @@ def newton(
     return over, iteration, remaining
 
 
-@njit(nogil=True, cache=True, fastmath=_FAST)  # type: ignore[untyped-decorator]
+@njit(nogil=True, cache=True, fastmath=_FAST, error_model="numpy")  # type: ignore[untyped-decorator]
 def prolong(coarse: FloatArray, m: int, ntp: int, closed: bool, fine: FloatArray) -> None:
     """Carry m rows of p to the grid with twice the cells, by cubics.
 
