@@ -40,7 +40,9 @@ def first_guess(
         + a * (0.0328 - 0.0199 * d + a * (-0.0144 + 0.0014 * a))
         + q * (1.6309 + 0.1814 * d - 0.4562 * q + a * (-0.2191 + 0.0251 * q + 0.007 * a))
     )  # fmt: skip
-    chosen_cells = np.searchsorted(CELLS, np.maximum(0.87 * cells, least_cells))
+    # Four cells are too few to judge the edge layer by.
+    least = np.where(sigma > 30.0, max(8, least_cells), least_cells)
+    chosen_cells = np.searchsorted(CELLS, np.maximum(0.87 * cells, least))
     chosen_times = np.searchsorted(TIMES, np.maximum(0.99 * times, least_times))
     return (
         np.minimum(chosen_cells, len(CELLS) - 1),
