@@ -200,7 +200,10 @@ def _solve(
         slip=slip,
         shape=shape,
         tolerance=tolerance,
-        model=f"isothermal-to-polytropic Reynolds film, {shape}, slip {slip}",
+        model=(
+            f"periodic compressible Reynolds film, {shape}, "
+            + (f"slip {slip} at local Kn" if law else "no slip")
+        ),
         status=(
             f"all {len(sigma)} films within {tolerance:g} of their over-pressure"
             if missed == 0

@@ -202,7 +202,7 @@ def solve_profile(
         least_cells=8, least_times=2 * profile.orders + 1,
     )  # fmt: skip
     waves = profile.features / (2.0 if closed else 1.0)
-    cells = max(int(CELLS[c[0]]), 4 * round(2.25 * waves * (0.01 / tolerance) ** 0.25))
+    cells = max(int(CELLS[c[0]]), 4 * round(3.0 * waves * (0.01 / tolerance) ** 0.25))
     if not closed:
         cells = 2 * cells
     grading = float(u.edge_grading(sigma / (1.0 + profile.features) ** 2, profile.depth))

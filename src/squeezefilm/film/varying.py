@@ -24,6 +24,7 @@ from squeezefilm.film.uniform import (
     RESIDUAL,
     SPACE,
     TIME,
+    rounding,
     space_error,
 )
 from squeezefilm.quantities import FloatArray
@@ -184,4 +185,4 @@ def solve_varying(
     local = sigma / (n * (1.0 + 6.0 * kn))
     out[SPACE] = space_error(L1, L2, L3, local, cells if closed else cells // 2)
     out[TIME] = 2.0 * abs(check - L1)
-    out[ERROR] = out[SPACE] + out[TIME] + left * abs(out[OVER]) + 4e-17 * (1.0 + sigma)
+    out[ERROR] = out[SPACE] + out[TIME] + left * abs(out[OVER]) + rounding(sigma, n, out[OVER])
