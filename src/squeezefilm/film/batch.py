@@ -248,7 +248,8 @@ def solve_all(
     out = np.full((total, u.COLUMNS), np.nan)
     spent = np.zeros(total)
     met = np.zeros(total, dtype=bool)
-    cells, times = first_guess(sigma, eps, kn, tolerance, least_cells, least_times)
+    wide_sigma = sigma if form == u.STRIP else 2.25 * sigma
+    cells, times = first_guess(wide_sigma, eps, kn, tolerance, least_cells, least_times)
     pending: IntArray = np.arange(total)
     pool = ThreadPoolExecutor(workers) if workers > 1 and total > 64 else None
     try:

@@ -138,7 +138,7 @@ def _solve_uniform(
     row, cells, times = out[0], int(CELLS[c[0]]), int(TIMES[t[0]])
     over, error = float(row[u.OVER]), float(row[u.ERROR])
     ntp = tables(times)[0]
-    a = u.edge_grading(float(squeeze_number), eps)
+    a = u.edge_grading(float(squeeze_number) * (1.0 if shape == "strip" else 2.25), eps)
     profile = flexural_profile(excursion_ratio if excursion_ratio else 1e-6)
     levels = []
     start = 0
@@ -219,7 +219,7 @@ def solve_profile(
         ntp = tables(times)[0]
         keep = np.empty((cells + 1 + cells // 2 + 1) * ntp)
         solve_varying(
-            sigma, n, kn, law, closed, cells, slope, even, odd, tolerance,
+            sigma, profile.depth, n, kn, law, closed, cells, slope, even, odd, tolerance,
             times, *tables(times), load_times(times, profile.depth),
             check, *tables(check), load_times(check, profile.depth),
             _MOST_NEWTON, out, keep,

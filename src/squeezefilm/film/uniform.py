@@ -129,17 +129,24 @@ def gap(nt: int, ntp: int, eps: float, H: FloatArray, H3: FloatArray) -> None:
 
 
 @njit(nogil=True, cache=True, error_model="numpy")  # type: ignore[untyped-decorator]
-def space_error(coarse: float, middle: float, fine: float, sigma: float, cells: int) -> float:
+def space_error(
+    coarse: float, middle: float, fine: float, sigma: float, eps: float, cells: int, shape: int
+) -> float:
     """The error that extrapolating `middle` and `fine` leaves, from three nested grids.
 
     Asymptotically it is a fifteenth of what the extrapolated value changed by; 1.5 is a margin.
     Where the grid does not yet resolve the edge layer (σ/N² is the square of cell over layer)
     that difference can vanish by accident, and the error is a part of the last change that grows
-    with √σ/N; the factors were measured over the whole range of σ, ε, n and Kn.
+    with √σ/N, and with ε as the layer sharpens; the factors were measured over the whole range
+    of σ, ε, n and Kn.
     """
     change = abs(4.0 * (fine - middle) - (middle - coarse)) / 3.0
     layer = sigma / (cells * cells)
-    floor = 0.07 * math.sqrt(layer) * (1.0 + 0.03 * layer)
+    if shape == STRIP:
+        floor = 0.07 * math.sqrt(layer) * (1.0 + 0.05 * layer)
+    else:
+        floor = 0.05 * math.sqrt(layer) * (1.0 + 0.32 * layer)
+    floor *= 1.0 + 4.0 * eps**6
     if cells == 4:
         floor *= 2.0
     elif cells > 12:
@@ -184,7 +191,9 @@ def solve_rows(
     checked = max(coarsest, 2)
     for case in range(start, stop):
         sig, e, poly, rare = sigma[case], eps[case], n[case], kn[case]
-        a = edge_grading(sig, e)
+        # A disc of radius R films like a strip about 1.5 R wide.
+        wide_sigma = sig if shape == STRIP else 2.25 * sig
+        a = edge_grading(wide_sigma, e)
         aim = 0.03 * tolerance
         gap(nt2, ntp2, e, H, H3)
         load_weights(nt2, ntp2, e, poly, H, w, c, s)
@@ -236,8 +245,8 @@ def solve_rows(
         out[case, COARSE], out[case, MIDDLE], out[case, FINE] = L1, L2, L3
         out[case, CHECK] = check
         out[case, OVER] = best
-        local = sig / (poly * (1.0 + 6.0 * rare))
-        out[case, SPACE] = space_error(L1, L2, L3, local, cells)
+        local = wide_sigma / (poly * (1.0 + 6.0 * rare))
+        out[case, SPACE] = space_error(L1, L2, L3, local, e, cells, shape)
         out[case, TIME] = 2.0 * abs(check - (L1 if checked == coarsest else L2))
         out[case, ERROR] = (
             out[case, SPACE] + out[case, TIME] + left * abs(best) + rounding(sig, poly, best)

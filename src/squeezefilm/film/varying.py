@@ -23,6 +23,7 @@ from squeezefilm.film.uniform import (
     OVER,
     RESIDUAL,
     SPACE,
+    STRIP,
     TIME,
     rounding,
     space_error,
@@ -95,7 +96,7 @@ def _weights(
 
 @njit(nogil=True, cache=True, error_model="numpy")  # type: ignore[untyped-decorator]
 def solve_varying(
-    sigma: float, n: float, kn: float, law: int, closed: bool, cells: int,
+    sigma: float, depth: float, n: float, kn: float, law: int, closed: bool, cells: int,
     slope: FloatArray,
     even: FloatArray, odd: FloatArray, tolerance: float,
     nt: int, ntp: int, DT: FloatArray, mask: FloatArray, fine: int,
@@ -106,7 +107,7 @@ def solve_varying(
 
     `even` and `odd` hold the gap's Fourier coefficients at the 2·cells + 1 nodes and faces of
     the finest grid. `closed`: half the domain, from a plane of symmetry at X = 0 to the edge;
-    otherwise all of it. `slope` is dX/dξ there, for ξ from 0 (closed) or −1 to 1. `fine` and `fine2` are the numbers of times of the load integral.
+    otherwise all of it. `depth` is the deepest relative excursion. `slope` is dX/dξ there, for ξ from 0 (closed) or −1 to 1. `fine` and `fine2` are the numbers of times of the load integral.
     """
     wide = max(ntp, ntp2)
     rows = cells + 1
@@ -183,6 +184,8 @@ def solve_varying(
     out[OVER] = L3 + (L3 - L2) / 3.0 if over == over else math.nan
     out[COARSE], out[MIDDLE], out[FINE], out[CHECK] = L1, L2, L3, check
     local = sigma / (n * (1.0 + 6.0 * kn))
-    out[SPACE] = space_error(L1, L2, L3, local, cells if closed else cells // 2)
+    out[SPACE] = space_error(
+        L1, L2, L3, local, depth, cells if closed else cells // 2, STRIP
+    )
     out[TIME] = 2.0 * abs(check - L1)
     out[ERROR] = out[SPACE] + out[TIME] + left * abs(out[OVER]) + rounding(sigma, n, out[OVER])
