@@ -8,9 +8,10 @@ import pytest
 from squeezefilm.film.balance import levitation_limit, mean_gap_for_load
 from squeezefilm.film.batch import solve_discs, solve_strips
 from squeezefilm.film.edge import edge_layer
-from squeezefilm.film.kernel import newton, time_tables
+from squeezefilm.film.kernel import newton
 from squeezefilm.film.periodic import solve_disc, solve_profile, solve_strip
 from squeezefilm.film.profile import flexural_profile
+from squeezefilm.film.resolution import tables
 
 STRIP_LOADS = {
     (0.1, 1.0): 1.000108, (0.1, 10.0): 1.005188, (0.1, 100.0): 1.010778,
@@ -41,7 +42,7 @@ def disc_force(sigma):
 def test_tabulated_strip_loads(case, load):
     eps, sigma = case
     assert solve_strip(sigma, eps, tolerance=1e-7).mean_load == pytest.approx(load, abs=ROUNDED)
-    for tolerance in (1e-1, 5e-3, 1e-4):
+    for tolerance in (2e-2, 5e-3, 1e-4):
         loose = solve_strips(sigma, eps, tolerance=tolerance)
         assert abs(loose.mean_load - load) <= loose.over_pressure_error + ROUNDED
         assert loose.over_pressure_error <= tolerance * loose.over_pressure
@@ -170,7 +171,7 @@ def load_on_one_grid(cells, nt, sigma=30.0, eps=0.6):
     """The over-pressure on one grid, without extrapolation."""
     from squeezefilm.film import uniform as u
 
-    ntp, DT, mask = time_tables(nt)
+    ntp, DT, mask = tables(nt)
     H, H3, w, c, s = (np.empty(ntp) for _ in range(5))
     g, vol, share = np.zeros(cells + 1), np.zeros(cells + 1), np.zeros(cells + 1)
     u.gap(nt, ntp, eps, H, H3)

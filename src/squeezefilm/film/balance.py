@@ -25,6 +25,7 @@ MAX_EXCURSION = 0.95
 """The deepest excursion the balance uses; the least gap is then 5 % of the mean gap."""
 
 _MIN_EXCURSION = 1e-3
+_STEPS = 30
 
 
 @dataclass(frozen=True)
@@ -88,9 +89,7 @@ class _Film:
     slip: str
     shape: str
 
-    def solve(
-        self, excursion: FloatArray, tolerance: float, strict: bool = True
-    ) -> FilmBatch:
+    def solve(self, excursion: FloatArray, tolerance: float, strict: bool = True) -> FilmBatch:
         solve = solve_strips if self.shape == "strip" else solve_discs
         return solve(
             self.scale * excursion**2,
@@ -177,11 +176,11 @@ def mean_gap_for_load(
     points = np.log(grid[[k, k + 1]])
     values = np.log(rough[[k, k + 1]])
     aim = math.log(wanted)
-    at = float(points[0] + (aim - values[0]) * np.diff(points)[0] / np.diff(values)[0])
+    guess = float(points[0] + (aim - values[0]) * np.diff(points)[0] / np.diff(values)[0])
     step = 0.02
-    for iteration in range(30):
-        at = min(max(at, low), high)
-        near = np.minimum(np.exp([at - 0.5 * step, at, at + 0.5 * step]), MAX_EXCURSION)
+    for _ in range(_STEPS):
+        guess = min(max(guess, low), high)
+        near = np.minimum(np.exp([guess - 0.5 * step, guess, guess + 0.5 * step]), MAX_EXCURSION)
         batch = film.solve(near, 0.3 * tolerance)
         solves += 3
         logs = np.log(batch.over_pressure)
@@ -190,19 +189,19 @@ def mean_gap_for_load(
         if abs(miss) <= 0.3 * tolerance:
             break
         if miss > 0.0:
-            low = max(low, at)
+            low = max(low, guess)
         else:
-            high = min(high, at)
-        ahead = at + miss / slope
-        at = ahead if low <= ahead <= high else 0.5 * (low + high)
-        step = min(step, max(abs(ahead - at), 2e-3))
+            high = min(high, guess)
+        ahead = guess + miss / slope
+        guess = ahead if low <= ahead <= high else 0.5 * (low + high)
+        step = min(step, max(abs(ahead - guess), 2e-3))
     else:
         raise ConvergenceError(
             f"the load balance missed {format_quantity(load, Unit('Pa'))} by a factor "
-            f"{math.exp(miss):.6g} after {iteration + 1} steps; ask a larger tolerance",
+            f"{math.exp(miss):.6g} after {_STEPS} steps; ask a larger tolerance",
             partial=batch,
             residual=abs(miss),
-            iterations=iteration + 1,
+            iterations=_STEPS,
         )
     eps = float(near[1])
     gap = amplitude / eps

@@ -83,7 +83,8 @@ def compiled() -> Any:
 def announce(dispatcher: Any, what: str) -> None:
     """Log at INFO that a numba function will be compiled, if no cache of it exists."""
     cache = Path(dispatcher.stats.cache_path or "")
-    name = f"{Path(dispatcher.py_func.__code__.co_filename).stem}.{dispatcher.__name__}-*.nbi"
+    function = dispatcher.py_func
+    name = f"{Path(function.__code__.co_filename).stem}.{function.__name__}-*.nbi"
     if not any(cache.glob(name)):
         _log.info("compiling the %s solver for this processor: some 20 s, once", what)
 
@@ -143,7 +144,7 @@ def check_film(
     require("squeeze_number", squeeze_number, above=0.0)
     require("excursion_ratio", excursion_ratio, above=-1.0, below=1.0)
     require("polytropic_exponent", polytropic_exponent, at_least=1.0, at_most=5.0 / 3.0)
-    require("tolerance", tolerance, at_least=1e-9, at_most=0.1)
+    require("tolerance", tolerance, at_least=1e-9, at_most=0.05)
 
 
 def _solve(
@@ -207,7 +208,7 @@ def _solve(
         status=(
             f"all {len(sigma)} films within {tolerance:g} of their over-pressure"
             if missed == 0
-            else f"{missed} of {len(sigma)} films did not reach {tolerance:g} of their over-pressure"
+            else f"{missed} of {len(sigma)} films not within {tolerance:g} of their over-pressure"
         ),
     )
     if missed and strict:
@@ -266,9 +267,7 @@ def solve_all(
                 )  # fmt: skip
                 data = (sigma[group], eps[group], n[group], kn[group], law, form)
                 portion = min(_CHUNK, -(-len(group) // workers))
-                spans = [
-                    (a, min(a + portion, len(group))) for a in range(0, len(group), portion)
-                ]
+                spans = [(a, min(a + portion, len(group))) for a in range(0, len(group), portion)]
 
                 def part(
                     span: tuple[int, int],

@@ -15,18 +15,18 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
 from numba import njit
 
 from squeezefilm.film.lanes import add, broadcast, div, fma, load, mul, store, sub, total
-from squeezefilm.film.slip import NO_SLIP, slip_factor
+from squeezefilm.film.slip import NO_SLIP
+from squeezefilm.film.slip_kernel import slip_factor
 from squeezefilm.quantities import FloatArray
 
 # `reassoc` and `contract` only: NaN must stay visible, so `nnan` and `ninf` stay off.
 _FAST = {"reassoc", "contract", "arcp", "nsz"}
 
 
-@njit(nogil=True, cache=True, fastmath=_FAST, error_model="numpy")  # type: ignore[untyped-decorator]
+@njit(nogil=True, cache=True, fastmath=_FAST, error_model="numpy")
 def _invert(S: FloatArray, start: int, nt: int, ntp: int, mask: FloatArray) -> None:
     """Invert the nt × nt block at `start` in place, without pivoting.
 
@@ -60,7 +60,7 @@ def _invert(S: FloatArray, start: int, nt: int, ntp: int, mask: FloatArray) -> N
                         store(S, at + v, fma(factor, row, mul(load(S, at + v), keep)))
 
 
-@njit(nogil=True, cache=True, fastmath=_FAST, error_model="numpy")  # type: ignore[untyped-decorator]
+@njit(nogil=True, cache=True, fastmath=_FAST, error_model="numpy")
 def _apply(S: FloatArray, start: int, nt: int, ntp: int, y: FloatArray, at: int, out: FloatArray,
            to: int, accumulate: bool) -> None:  # fmt: skip
     """out[to:] (+)= Sᵀ y[at:] for the block at `start`, which holds the transposed inverse."""
@@ -71,7 +71,7 @@ def _apply(S: FloatArray, start: int, nt: int, ntp: int, y: FloatArray, at: int,
         store(out, to + v, result)
 
 
-@njit(nogil=True, cache=True, fastmath=_FAST, error_model="numpy")  # type: ignore[untyped-decorator]
+@njit(nogil=True, cache=True, fastmath=_FAST, error_model="numpy")
 def _coefficients(
     m: int, ntp: int, hs: int, fs: int, g: FloatArray, H: FloatArray, Hf3: FloatArray,
     Hf: FloatArray, n: float, kn: float, law: int, p: FloatArray,
@@ -145,7 +145,7 @@ def _coefficients(
             cr[right] = c * (factor * R_b + bend) * q_b
 
 
-@njit(nogil=True, cache=True, fastmath=_FAST, error_model="numpy")  # type: ignore[untyped-decorator]
+@njit(nogil=True, cache=True, fastmath=_FAST, error_model="numpy")
 def newton(
     m: int, nt: int, ntp: int, hs: int, fs: int, g: FloatArray, vol: FloatArray,
     H: FloatArray, Hf3: FloatArray, Hf: FloatArray, n: float, kn: float, law: int,
@@ -270,7 +270,7 @@ def newton(
     return over, iteration, remaining
 
 
-@njit(nogil=True, cache=True, fastmath=_FAST, error_model="numpy")  # type: ignore[untyped-decorator]
+@njit(nogil=True, cache=True, fastmath=_FAST, error_model="numpy")
 def prolong(coarse: FloatArray, m: int, ntp: int, closed: bool, fine: FloatArray) -> None:
     """Carry m rows of p to the grid with twice the cells, by cubics.
 
@@ -312,21 +312,3 @@ def prolong(coarse: FloatArray, m: int, ntp: int, closed: bool, fine: FloatArray
                     after = coarse[(i + 1) * ntp + t] if i + 1 < m else 0.0
                     middle = (9.0 * (a + b) - before - after) / 16.0
                 fine[2 * i * ntp + t] = middle
-
-
-def time_tables(nt: int) -> tuple[int, FloatArray, FloatArray]:
-    """Padded row length, transposed Fourier differentiation matrix and pivot mask, flattened.
-
-    `nt` is odd: an even number leaves the highest harmonic without a derivative.
-    """
-    ntp = 8 * ((nt + 7) // 8)
-    D = np.zeros((nt, ntp))
-    for i in range(nt):
-        for j in range(nt):
-            if i != j:
-                D[i, j] = 0.5 * (-1.0) ** (i - j) / math.sin(math.pi * (i - j) / nt)
-    DT = np.zeros((nt, ntp))
-    DT[:, :nt] = D[:, :nt].T
-    mask = np.ones((nt, ntp))
-    mask[:, :nt] -= np.eye(nt)
-    return ntp, DT.ravel(), mask.ravel()

@@ -130,11 +130,14 @@ def _solve_uniform(
     # stiffness and damping.
     eps = max(abs(float(excursion_ratio)), 1e-6)
     keep = np.empty(3 * int(CELLS[-1]) // 2 * 200)
-    args = [np.array([float(v)]) for v in (squeeze_number, eps, polytropic_exponent,
-                                           knudsen_number)]  # fmt: skip
-    out, c, t, met = solve_all(
-        shape, *args, law, tolerance, 1, least_cells=16, least_times=11, keep=keep
+    sigma, excursion, n, kn = (
+        np.array([float(value)])
+        for value in (squeeze_number, eps, polytropic_exponent, knudsen_number)
     )
+    out, c, t, met = solve_all(
+        shape, sigma, excursion, n, kn, law, tolerance, 1,
+        least_cells=16, least_times=11, keep=keep,
+    )  # fmt: skip
     row, cells, times = out[0], int(CELLS[c[0]]), int(TIMES[t[0]])
     over, error = float(row[u.OVER]), float(row[u.ERROR])
     ntp = tables(times)[0]
@@ -293,9 +296,11 @@ def _solution(
 
     fine, rough = resampled(p, 1), resampled(coarse, 2)
     force = share @ fine
-    force += (force - share_coarse[: len(rough)] @ rough) / 3.0 if shape == "profile" else (
-        force - share_coarse @ rough
-    ) / 3.0
+    force += (
+        (force - share_coarse[: len(rough)] @ rough) / 3.0
+        if shape == "profile"
+        else (force - share_coarse @ rough) / 3.0
+    )
     spectrum = np.fft.rfft(force) / count
     spectrum[1:] *= 2.0
     correction = (fine[::2] - rough) / 3.0

@@ -209,7 +209,9 @@ def profile_from_samples(
         )
     steps = np.diff(t)
     if np.ptp(steps) > 1e-6 * abs(steps).max() or steps[0] <= 0.0:
-        raise InputError(f"T has steps from {steps.min():.4g} to {steps.max():.4g}: space it evenly")
+        raise InputError(
+            f"T has steps from {steps.min():.4g} to {steps.max():.4g}: space it evenly"
+        )
     period = 2.0 * np.pi
     if abs(t[-1] - t[0] - period) < 1e-6:
         _check_periodic(h[:, :1], h[:, -1:], x, t[:1], description)

@@ -6,12 +6,12 @@ the error estimate of the solve itself, and refined until that meets the toleran
 
 from __future__ import annotations
 
+import math
 from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
-from squeezefilm.film.kernel import time_tables
 from squeezefilm.quantities import FloatArray
 
 IntArray = NDArray[np.int64]
@@ -21,7 +21,24 @@ TIMES = np.array([5, 7, 9, 11, 13, 15, 19, 23, 27, 31, 39, 47, 63, 79, 95, 127, 
 CHECKS = np.array([7, 9, 13, 15, 19, 19, 23, 31, 31, 39, 47, 63, 79, 95, 127, 159, 191])
 """Numbers of times, and the larger ones that check each of them on the coarsest grid."""
 
-tables = lru_cache(maxsize=64)(time_tables)
+
+@lru_cache(maxsize=64)
+def tables(nt: int) -> tuple[int, FloatArray, FloatArray]:
+    """Padded row length, transposed Fourier differentiation matrix and pivot mask, flattened.
+
+    `nt` is odd: an even number leaves the highest harmonic without a derivative.
+    """
+    ntp = 8 * ((nt + 7) // 8)
+    D = np.zeros((nt, ntp))
+    for i in range(nt):
+        for j in range(nt):
+            if i != j:
+                D[i, j] = 0.5 * (-1.0) ** (i - j) / math.sin(math.pi * (i - j) / nt)
+    DT = np.zeros((nt, ntp))
+    DT[:, :nt] = D[:, :nt].T
+    mask = np.ones((nt, ntp))
+    mask[:, :nt] -= np.eye(nt)
+    return ntp, DT.ravel(), mask.ravel()
 
 
 def first_guess(

@@ -24,7 +24,7 @@ OVER, ERROR, STIFFNESS, DAMPING, ITERATIONS, RESIDUAL, SPACE, TIME, COARSE, MIDD
 COLUMNS = 12
 
 
-@njit(nogil=True, cache=True, error_model="numpy")  # type: ignore[untyped-decorator]
+@njit(nogil=True, cache=True, error_model="numpy")
 def edge_grading(sigma: float, eps: float) -> float:
     """The grading a of the grid map x = ξ (1 + a (1 − ξ²)); a = 1/2 would be quadratic at the edge.
 
@@ -35,7 +35,7 @@ def edge_grading(sigma: float, eps: float) -> float:
     return 0.44 * local / (local + 10.0)
 
 
-@njit(nogil=True, cache=True, error_model="numpy")  # type: ignore[untyped-decorator]
+@njit(nogil=True, cache=True, error_model="numpy")
 def load_weights(
     nt: int, ntp: int, eps: float, n: float, H: FloatArray, w: FloatArray, c: FloatArray,
     s: FloatArray,
@@ -89,7 +89,7 @@ def load_weights(
         s[t] = odd / nt * power
 
 
-@njit(nogil=True, cache=True, error_model="numpy")  # type: ignore[untyped-decorator]
+@njit(nogil=True, cache=True, error_model="numpy")
 def grid(
     m: int, shape: int, sigma: float, a: float, g: FloatArray, vol: FloatArray, share: FloatArray
 ) -> None:
@@ -120,7 +120,7 @@ def grid(
         share[i] = 2.0 * volume
 
 
-@njit(nogil=True, cache=True, error_model="numpy")  # type: ignore[untyped-decorator]
+@njit(nogil=True, cache=True, error_model="numpy")
 def gap(nt: int, ntp: int, eps: float, H: FloatArray, H3: FloatArray) -> None:
     """H = 1 + ε cos T at the nt times, and its cube; 1 in the padding."""
     for t in range(ntp):
@@ -128,7 +128,7 @@ def gap(nt: int, ntp: int, eps: float, H: FloatArray, H3: FloatArray) -> None:
         H3[t] = H[t] * H[t] * H[t]
 
 
-@njit(nogil=True, cache=True, error_model="numpy")  # type: ignore[untyped-decorator]
+@njit(nogil=True, cache=True, error_model="numpy")
 def space_error(
     coarse: float, middle: float, fine: float, sigma: float, eps: float, cells: int, shape: int
 ) -> float:
@@ -143,10 +143,10 @@ def space_error(
     change = abs(4.0 * (fine - middle) - (middle - coarse)) / 3.0
     layer = sigma / (cells * cells)
     if shape == STRIP:
-        floor = 0.07 * math.sqrt(layer) * (1.0 + 0.05 * layer)
+        floor = 0.08 * math.sqrt(layer) * (1.0 + 0.05 * layer)
     else:
-        floor = 0.05 * math.sqrt(layer) * (1.0 + 0.32 * layer)
-    floor *= 1.0 + 4.0 * eps**6
+        floor = 0.06 * math.sqrt(layer) * (1.0 + 0.32 * layer)
+    floor *= 1.0 + 5.0 * eps**6
     if cells == 4:
         floor *= 2.0
     elif cells > 12:
@@ -154,7 +154,7 @@ def space_error(
     return max(change / 10.0, min(floor, 1.5) * abs(fine - middle))
 
 
-@njit(nogil=True, cache=True, error_model="numpy")  # type: ignore[untyped-decorator]
+@njit(nogil=True, cache=True, error_model="numpy")
 def rounding(sigma: float, n: float, over: float) -> float:
     """What double precision leaves of error in the over-pressure, from the scatter of solves.
 
@@ -163,7 +163,7 @@ def rounding(sigma: float, n: float, over: float) -> float:
     return 4e-18 * sigma + 1e-13 * abs(over) + (0.0 if n == 1.0 else 4e-17)
 
 
-@njit(nogil=True, cache=True, error_model="numpy")  # type: ignore[untyped-decorator]
+@njit(nogil=True, cache=True, error_model="numpy")
 def solve_rows(
     start: int, stop: int, sigma: FloatArray, eps: FloatArray, n: FloatArray, kn: FloatArray,
     law: int, shape: int, cells: int, tolerance: float,
@@ -229,19 +229,19 @@ def solve_rows(
                 real += share[i] * even
                 imag += share[i] * odd
             level[stage, 0], level[stage, 1], level[stage, 2] = over, real, imag
-            if not over == over:
+            if math.isnan(over):
                 break
             if keep.size > 0 and stage > 0:
-                before_it = 0 if stage == 1 else cells // 2 * ntp
-                keep[before_it : before_it + m * ntp] = p[: m * ntp]
+                offset = 0 if stage == 1 else cells // 2 * ntp
+                keep[offset : offset + m * ntp] = p[: m * ntp]
         out[case, ITERATIONS] = its
         out[case, RESIDUAL] = left
-        if not (over == over and check == check):
+        if math.isnan(over) or math.isnan(check):
             out[case, OVER] = math.nan
             out[case, ERROR] = math.nan
             continue
         L1, L2, L3 = level[0, 0], level[1, 0], level[2, 0]
-        before, best = L2 + (L2 - L1) / 3.0, L3 + (L3 - L2) / 3.0
+        best = L3 + (L3 - L2) / 3.0
         out[case, COARSE], out[case, MIDDLE], out[case, FINE] = L1, L2, L3
         out[case, CHECK] = check
         out[case, OVER] = best

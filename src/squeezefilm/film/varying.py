@@ -31,7 +31,7 @@ from squeezefilm.film.uniform import (
 from squeezefilm.quantities import FloatArray
 
 
-@njit(nogil=True, cache=True, error_model="numpy")  # type: ignore[untyped-decorator]
+@njit(nogil=True, cache=True, error_model="numpy")
 def _gaps(even: FloatArray, odd: FloatArray, nt: int, ntp: int, out: FloatArray) -> None:
     """H at all points (rows) and nt times from cosine and sine coefficients; padding 1."""
     orders, points = even.shape
@@ -49,7 +49,7 @@ def _gaps(even: FloatArray, odd: FloatArray, nt: int, ntp: int, out: FloatArray)
                 out[j * ntp + t] += even[k, j] * c + odd[k, j] * s
 
 
-@njit(nogil=True, cache=True, error_model="numpy")  # type: ignore[untyped-decorator]
+@njit(nogil=True, cache=True, error_model="numpy")
 def _weights(
     even: FloatArray, odd: FloatArray, n: float, nt: int, ntp: int, fine: int, H: FloatArray,
     out: FloatArray,
@@ -94,7 +94,7 @@ def _weights(
                 out[i * ntp + t] = 0.0
 
 
-@njit(nogil=True, cache=True, error_model="numpy")  # type: ignore[untyped-decorator]
+@njit(nogil=True, cache=True, error_model="numpy")
 def solve_varying(
     sigma: float, depth: float, n: float, kn: float, law: int, closed: bool, cells: int,
     slope: FloatArray,
@@ -106,8 +106,9 @@ def solve_varying(
     """Fill one result row and `keep` (p on the two finer grids, one after the other).
 
     `even` and `odd` hold the gap's Fourier coefficients at the 2·cells + 1 nodes and faces of
-    the finest grid. `closed`: half the domain, from a plane of symmetry at X = 0 to the edge;
-    otherwise all of it. `depth` is the deepest relative excursion. `slope` is dX/dξ there, for ξ from 0 (closed) or −1 to 1. `fine` and `fine2` are the numbers of times of the load integral.
+    the finest grid, `slope` dX/dξ there, for ξ from 0 (closed) or −1 to 1. `closed`: half the
+    domain, from a plane of symmetry at X = 0 to the edge; otherwise all of it. `depth` is the
+    deepest relative excursion, `fine` and `fine2` the numbers of times of the load integral.
     """
     wide = max(ntp, ntp2)
     rows = cells + 1
@@ -174,18 +175,16 @@ def solve_varying(
                 if stage > 0:
                     at = 0 if stage == 1 else (cells // 2 + 1) * row
                     keep[at : at + unknowns * row] = p[: unknowns * row]
-            if not over == over:
+            if math.isnan(over):
                 break
             if stage < 2:
                 m *= 2
     out[ITERATIONS] = its
     out[RESIDUAL] = left
     L1, L2, L3 = level[0], level[1], level[2]
-    out[OVER] = L3 + (L3 - L2) / 3.0 if over == over else math.nan
+    out[OVER] = math.nan if math.isnan(over) else L3 + (L3 - L2) / 3.0
     out[COARSE], out[MIDDLE], out[FINE], out[CHECK] = L1, L2, L3, check
     local = sigma / (n * (1.0 + 6.0 * kn))
-    out[SPACE] = space_error(
-        L1, L2, L3, local, depth, cells if closed else cells // 2, STRIP
-    )
+    out[SPACE] = space_error(L1, L2, L3, local, depth, cells if closed else cells // 2, STRIP)
     out[TIME] = 2.0 * abs(check - L1)
     out[ERROR] = out[SPACE] + out[TIME] + left * abs(out[OVER]) + rounding(sigma, n, out[OVER])
