@@ -1,0 +1,275 @@
+"""Load balance: the gap at which a vibrating film carries a load, and the most it can carry."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from squeezefilm.errors import ConvergenceError, InputError, UnreachableError
+from squeezefilm.film.batch import FilmBatch, solve_discs, solve_strips
+from squeezefilm.quantities import (
+    Dimensionless,
+    FloatArray,
+    Hertz,
+    Metre,
+    Pascal,
+    PascalSecond,
+    Unit,
+    format_quantity,
+    require,
+)
+
+MAX_EXCURSION = 0.95
+"""The deepest excursion the balance uses; the least gap is then 5 % of the mean gap."""
+
+_MIN_EXCURSION = 1e-3
+_STEPS = 30
+
+
+@dataclass(frozen=True)
+class LoadBalance:
+    """The mean gap at which a film carries a load, and the film there.
+
+    `mean_load_pressure` is the mean over-pressure of the film over area and period, in Pa, with
+    its estimated error; `static_stiffness` is −d(load)/d(mean gap), in Pa/m.
+    """
+
+    mean_gap: Metre
+    mean_gap_error: Metre
+    least_gap: Metre
+    mean_load_pressure: Pascal
+    mean_load_pressure_error: Pascal
+    static_stiffness: float
+    squeeze_number: Dimensionless
+    excursion_ratio: Dimensionless
+    knudsen_number: Dimensionless
+    load: Pascal
+    amplitude: Metre
+    frequency: Hertz
+    length: Metre
+    viscosity: PascalSecond
+    ambient_pressure: Pascal
+    shape: str
+    model: str
+    iterations: int
+    status: str
+
+
+@dataclass(frozen=True)
+class LevitationLimit:
+    """The load a film carries when its gap nearly closes: at `excursion_ratio` of the mean gap.
+
+    As ε → 1 the load of the smooth film grows without bound, like 1/√(1 − ε) (Salbu's limit), so
+    there is no largest load of the equation; what ends levitation is contact of the asperities.
+    `load` is carried at the excursion given, with its estimated error; `load_infinite_sigma` is
+    Salbu's value there, an upper bound.
+    """
+
+    load: Pascal
+    load_error: Pascal
+    load_infinite_sigma: Pascal
+    mean_gap: Metre
+    least_gap: Metre
+    squeeze_number: Dimensionless
+    excursion_ratio: Dimensionless
+    model: str
+
+
+@dataclass(frozen=True)
+class _Film:
+    """A film of fixed size and motion, as a function of its mean gap through ε = a/h0."""
+
+    amplitude: float
+    scale: float
+    ambient_pressure: float
+    polytropic_exponent: float
+    mean_free_path: float
+    slip: str
+    shape: str
+
+    def solve(self, excursion: FloatArray, tolerance: float, strict: bool = True) -> FilmBatch:
+        solve = solve_strips if self.shape == "strip" else solve_discs
+        return solve(
+            self.scale * excursion**2,
+            excursion,
+            polytropic_exponent=self.polytropic_exponent,
+            knudsen_number=self.mean_free_path * excursion / self.amplitude,
+            slip=self.slip,
+            tolerance=tolerance,
+            workers=1,
+            strict=strict,
+        )
+
+
+def _film(
+    amplitude: float, frequency: float, length: float, viscosity: float, ambient_pressure: float,
+    polytropic_exponent: float, mean_free_path: float, slip: str, shape: str,
+) -> _Film:  # fmt: skip
+    require("amplitude", amplitude, Unit("m"), above=0.0)
+    require("frequency", frequency, Unit("Hz"), above=0.0)
+    require("length", length, Unit("m"), above=0.0)
+    require("viscosity", viscosity, Unit("Pa*s"), above=0.0)
+    require("ambient_pressure", ambient_pressure, Unit("Pa"), above=0.0)
+    require("mean_free_path", mean_free_path, Unit("m"), at_least=0.0)
+    if shape not in ("strip", "disc"):
+        raise InputError(f"shape = '{shape}' cannot be used: it must be 'strip' or 'disc'")
+    scale = 12.0 * viscosity * 2.0 * math.pi * frequency * length**2
+    return _Film(
+        amplitude, scale / (ambient_pressure * amplitude**2), ambient_pressure,
+        polytropic_exponent, mean_free_path, slip, shape,
+    )  # fmt: skip
+
+
+def mean_gap_for_load(
+    load: Pascal,
+    amplitude: Metre,
+    frequency: Hertz,
+    length: Metre,
+    *,
+    viscosity: PascalSecond = 1.81e-5,
+    ambient_pressure: Pascal = 101325.0,
+    polytropic_exponent: Dimensionless = 1.0,
+    mean_free_path: Metre = 0.0,
+    slip: str = "first",
+    shape: str = "strip",
+    tolerance: float = 1e-3,
+) -> LoadBalance:
+    """The mean gap h0 at which a film vibrated with an amplitude carries a mean pressure load.
+
+    Solves p0 (W(σ, ε) − 1) = load for h0, with ε = amplitude/h0 and σ = 12 η ω l²/(p0 h0²); the
+    over-pressure falls steadily with h0. `length` is the full width of a strip or the radius of a
+    disc, `amplitude` zero to peak, `mean_free_path` that of the gas at ambient pressure (0: no
+    slip). `tolerance` is relative, on the load. Searched for 0.001 ≤ ε ≤ 0.95.
+
+    Raises `InputError` for values that no film has and `UnreachableError` for a load above what
+    the film carries at ε = 0.95 (see `levitation_limit`) or below that at ε = 0.001.
+    """
+    require("load", load, Unit("Pa"), above=0.0)
+    require("tolerance", tolerance, at_least=1e-6, at_most=0.1)
+    film = _film(
+        amplitude, frequency, length, viscosity, ambient_pressure, polytropic_exponent,
+        mean_free_path, slip, shape,
+    )  # fmt: skip
+    wanted = load / ambient_pressure
+    grid = np.geomspace(_MIN_EXCURSION, MAX_EXCURSION, 24)
+    # At the faint end of the grid the over-pressure can drown in round-off: leave that out.
+    first = film.solve(grid, 0.02, strict=False)
+    usable = first.over_pressure_error <= 0.05 * first.over_pressure
+    solves = len(grid)
+    grid, rough = grid[usable], first.over_pressure[usable]
+    ends = rough[[0, -1]].copy()
+    ends[1] = film.solve(grid[-1:], 0.5 * tolerance).over_pressure[0]
+    if not ends[0] <= wanted <= ends[1]:
+        which, at = ("more", 1) if wanted > ends[1] else ("less", 0)
+        gap = amplitude / grid[[0, -1]][at]
+        raise UnreachableError(
+            f"load = {format_quantity(load, Unit('Pa'))} is {which} than the film carries at "
+            f"excursion_ratio {grid[[0, -1]][at]:g} (mean gap {format_quantity(gap, Unit('m'))}): "
+            f"{format_quantity(ends[at] * ambient_pressure, Unit('Pa'))}. Change the amplitude, "
+            f"the frequency or the length"
+        )
+    # Secant in logarithms inside a bracket: the over-pressure is nearly a power of ε there.
+    k = int(np.clip(np.searchsorted(rough, wanted) - 1, 0, len(grid) - 2))
+    low, high = math.log(grid[max(k - 1, 0)]), math.log(grid[min(k + 2, len(grid) - 1)])
+    points = np.log(grid[[k, k + 1]])
+    values = np.log(rough[[k, k + 1]])
+    aim = math.log(wanted)
+    guess = float(points[0] + (aim - values[0]) * np.diff(points)[0] / np.diff(values)[0])
+    step = 0.02
+    for _ in range(_STEPS):
+        guess = min(max(guess, low), high)
+        near = np.minimum(np.exp([guess - 0.5 * step, guess, guess + 0.5 * step]), MAX_EXCURSION)
+        batch = film.solve(near, 0.3 * tolerance)
+        solves += 3
+        logs = np.log(batch.over_pressure)
+        slope = float((logs[2] - logs[0]) / np.log(near[2] / near[0]))
+        miss = aim - float(logs[1])
+        if abs(miss) <= 0.3 * tolerance:
+            break
+        if miss > 0.0:
+            low = max(low, guess)
+        else:
+            high = min(high, guess)
+        ahead = guess + miss / slope
+        guess = ahead if low <= ahead <= high else 0.5 * (low + high)
+        step = min(step, max(abs(ahead - guess), 2e-3))
+    else:
+        raise ConvergenceError(
+            f"the load balance missed {format_quantity(load, Unit('Pa'))} by a factor "
+            f"{math.exp(miss):.6g} after {_STEPS} steps; ask a larger tolerance",
+            partial=batch,
+            residual=abs(miss),
+            iterations=_STEPS,
+        )
+    eps = float(near[1])
+    gap = amplitude / eps
+    pressure = float(batch.over_pressure[1]) * ambient_pressure
+    error = float(batch.over_pressure_error[1]) * ambient_pressure
+    return LoadBalance(
+        mean_gap=gap,
+        mean_gap_error=gap * (abs(miss) + error / pressure) / slope,
+        least_gap=gap - amplitude,
+        mean_load_pressure=pressure,
+        mean_load_pressure_error=error,
+        static_stiffness=pressure * slope / gap,
+        squeeze_number=film.scale * eps**2,
+        excursion_ratio=eps,
+        knudsen_number=mean_free_path / gap,
+        load=load,
+        amplitude=amplitude,
+        frequency=frequency,
+        length=length,
+        viscosity=viscosity,
+        ambient_pressure=ambient_pressure,
+        shape=shape,
+        model=batch.model,
+        iterations=solves,
+        status=(
+            f"balanced: {format_quantity(pressure, Unit('Pa'))} at a mean gap of "
+            f"{format_quantity(gap, Unit('m'))} after {solves} film solves"
+        ),
+    )
+
+
+def levitation_limit(
+    amplitude: Metre,
+    frequency: Hertz,
+    length: Metre,
+    *,
+    viscosity: PascalSecond = 1.81e-5,
+    ambient_pressure: Pascal = 101325.0,
+    polytropic_exponent: Dimensionless = 1.0,
+    mean_free_path: Metre = 0.0,
+    slip: str = "first",
+    shape: str = "strip",
+    excursion_ratio: Dimensionless = MAX_EXCURSION,
+    tolerance: float = 5e-3,
+) -> LevitationLimit:
+    """The highest load a film carries before its gap closes to (1 − ε) of its mean.
+
+    The arguments are those of `mean_gap_for_load`. `excursion_ratio` (0.1 to 0.95) says how far
+    the gap may close; choose it from the roughness h_r, which must stay below the least gap:
+    ε = 1/(1 + h_r/amplitude). Raises `InputError` for values that no film has.
+    """
+    require("excursion_ratio", excursion_ratio, at_least=0.1, at_most=MAX_EXCURSION)
+    film = _film(
+        amplitude, frequency, length, viscosity, ambient_pressure, polytropic_exponent,
+        mean_free_path, slip, shape,
+    )  # fmt: skip
+    batch = film.solve(np.array([excursion_ratio]), tolerance)
+    n = polytropic_exponent
+    H = 1.0 + excursion_ratio * np.cos(2.0 * np.pi * np.arange(512) / 512)
+    psi = (np.mean(H**3) / np.mean(H ** (2.0 - n))) ** (1.0 / (n + 1.0))
+    bound = float(psi**n * np.mean(H ** (-n))) - 1.0
+    return LevitationLimit(
+        load=float(batch.over_pressure[0]) * ambient_pressure,
+        load_error=float(batch.over_pressure_error[0]) * ambient_pressure,
+        load_infinite_sigma=bound * ambient_pressure,
+        mean_gap=amplitude / excursion_ratio,
+        least_gap=amplitude / excursion_ratio - amplitude,
+        squeeze_number=film.scale * excursion_ratio**2,
+        excursion_ratio=excursion_ratio,
+        model=batch.model,
+    )

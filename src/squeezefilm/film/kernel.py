@@ -1,0 +1,314 @@
+"""One Newton solve of the periodic film on one grid, compiled: the inner loop of everything here.
+
+Unknowns are the pressure deviations p = P − 1 at m nodes × nt times; a row of nt times is padded
+to a multiple of eight lanes. The equation at node i, with M = P^{1/n} H the gas stored there,
+
+    F[i+1] − F[i] − vol[i] · D M[i] = 0,   F[f] = g[f] Hf[f]³ φ[f] (Φ[f] − Φ[f−1]),
+    Φ = n/(n+1) (P^{(n+1)/n} − 1),
+
+is linearised in M: then its diagonal blocks are diag + vol·D with D the constant Fourier
+differentiation matrix, its off-diagonal blocks are diagonal in time, and one block elimination
+needs one small dense inverse a node and no other product of matrices.
+"""
+
+from __future__ import annotations
+
+import math
+
+from numba import njit
+
+from squeezefilm.film.lanes import add, broadcast, div, fma, load, mul, store, sub, total
+from squeezefilm.film.slip import NO_SLIP
+from squeezefilm.film.slip_kernel import slip_factor
+from squeezefilm.quantities import FloatArray
+
+# `reassoc` and `contract` only: NaN must stay visible, so `nnan` and `ninf` stay off.
+_FAST = {"reassoc", "contract", "arcp", "nsz"}
+
+
+@njit(nogil=True, cache=True, fastmath=_FAST, error_model="numpy")
+def _invert(S: FloatArray, start: int, nt: int, ntp: int, mask: FloatArray) -> None:
+    """Invert the nt × nt block at `start` in place, without pivoting.
+
+    The blocks are a positive diagonal plus an antisymmetric matrix (up to diagonal scaling), for
+    which elimination without pivoting is stable. `mask` is one minus the unit matrix: it clears
+    the pivot column inside the vector operation, where a scalar store would stall the next load.
+    """
+    for k in range(nt):
+        pivot_row = start + k * ntp
+        pivot = broadcast(1.0 / S[pivot_row + k])
+        for v in range(0, ntp, 8):
+            keep = load(mask, k * ntp + v)
+            one = sub(broadcast(1.0), keep)
+            store(S, pivot_row + v, mul(fma(load(S, pivot_row + v), keep, one), pivot))
+        if ntp == 8:
+            keep = load(mask, k * ntp)
+            row = load(S, pivot_row)
+            for i in range(nt):
+                if i != k:
+                    at = start + i * ntp
+                    factor = broadcast(-S[at + k])
+                    store(S, at, fma(factor, row, mul(load(S, at), keep)))
+        else:
+            for i in range(nt):
+                if i != k:
+                    at = start + i * ntp
+                    factor = broadcast(-S[at + k])
+                    for v in range(0, ntp, 8):
+                        keep = load(mask, k * ntp + v)
+                        row = load(S, pivot_row + v)
+                        store(S, at + v, fma(factor, row, mul(load(S, at + v), keep)))
+
+
+@njit(nogil=True, cache=True, fastmath=_FAST, error_model="numpy")
+def _apply(S: FloatArray, start: int, nt: int, ntp: int, y: FloatArray, at: int, out: FloatArray,
+           to: int, accumulate: bool) -> None:  # fmt: skip
+    """out[to:] (+)= Sᵀ y[at:] for the block at `start`, which holds the transposed inverse."""
+    for v in range(0, ntp, 8):
+        result = load(out, to + v) if accumulate else broadcast(0.0)
+        for j in range(nt):
+            result = fma(broadcast(y[at + j]), load(S, start + j * ntp + v), result)
+        store(out, to + v, result)
+
+
+@njit(nogil=True, cache=True, fastmath=_FAST, error_model="numpy")
+def _coefficients(
+    m: int, ntp: int, hs: int, fs: int, g: FloatArray, H: FloatArray, Hf3: FloatArray,
+    Hf: FloatArray, n: float, kn: float, law: int, p: FloatArray,
+    R: FloatArray, q: FloatArray, Phi: FloatArray, cl: FloatArray, cr: FloatArray, F: FloatArray,
+) -> None:  # fmt: skip
+    """Storage R = P^{1/n}, q = dp/dM, potential Φ, face fluxes F and their derivatives in M.
+
+    cl = −∂F/∂M left of the face, cr = ∂F/∂M right of it.
+    """
+    one = broadcast(1.0)
+    if n == 1.0:
+        half = broadcast(0.5)
+        for i in range(m):
+            for v in range(0, ntp, 8):
+                at = i * ntp + v
+                dev = load(p, at)
+                P = add(one, dev)
+                store(R, at, P)
+                store(q, at, div(one, load(H, i * hs + v)))
+                # p + p²/2 keeps its digits where p is small; (P² − 1)/2 would not.
+                store(Phi, at, mul(dev, fma(half, dev, one)))
+    else:
+        inverse, share = 1.0 / n, n / (n + 1.0)
+        for i in range(m):
+            for t in range(ntp):
+                at = i * ntp + t
+                P = 1.0 + p[at]
+                root = math.exp(inverse * math.log(P))
+                R[at] = root
+                q[at] = n * P / (H[i * hs + t] * root)
+                Phi[at] = share * (P * root - 1.0)
+    zero = broadcast(0.0)
+    if law == NO_SLIP:
+        for f in range(m + 1):
+            geometry = broadcast(g[f])
+            for v in range(0, ntp, 8):
+                c = mul(geometry, load(Hf3, f * fs + v))
+                left, right = (f - 1) * ntp + v, f * ntp + v
+                a = load(Phi, left) if f > 0 else zero
+                b = load(Phi, right) if f < m else zero
+                store(F, right, mul(c, sub(b, a)))
+                if f > 0:
+                    store(cl, right, mul(c, mul(load(R, left), load(q, left))))
+                if f < m:
+                    store(cr, right, mul(c, mul(load(R, right), load(q, right))))
+        return
+    for f in range(m + 1):
+        if g[f] == 0.0:
+            for v in range(0, ntp, 8):
+                store(F, f * ntp + v, zero)
+                store(cl, f * ntp + v, zero)
+                store(cr, f * ntp + v, zero)
+            continue
+        for t in range(ntp):
+            left, right = (f - 1) * ntp + t, f * ntp + t
+            Phi_a, R_a, q_a, p_a = 0.0, 1.0, 1.0, 0.0
+            Phi_b, R_b, q_b, p_b = 0.0, 1.0, 1.0, 0.0
+            if f > 0:
+                Phi_a, R_a, q_a, p_a = Phi[left], R[left], q[left], p[left]
+            if f < m:
+                Phi_b, R_b, q_b, p_b = Phi[right], R[right], q[right], p[right]
+            gap = Hf[f * fs + t]
+            mean = 1.0 + 0.5 * (p_a + p_b)
+            local = kn / (mean * gap)
+            factor, slope = slip_factor(law, local)
+            c = g[f] * Hf3[f * fs + t]
+            rise = Phi_b - Phi_a
+            bend = -0.5 * slope * local / mean * rise
+            F[right] = c * factor * rise
+            cl[right] = c * (factor * R_a - bend) * q_a
+            cr[right] = c * (factor * R_b + bend) * q_b
+
+
+@njit(nogil=True, cache=True, fastmath=_FAST, error_model="numpy")
+def newton(
+    m: int, nt: int, ntp: int, hs: int, fs: int, g: FloatArray, vol: FloatArray,
+    H: FloatArray, Hf3: FloatArray, Hf: FloatArray, n: float, kn: float, law: int,
+    DT: FloatArray, mask: FloatArray, share: FloatArray, ws: int, weight: FloatArray,
+    p: FloatArray, work: FloatArray, S: FloatArray,
+    tolerance: float, most: int,
+) -> tuple[float, int, float]:  # fmt: skip
+    """Improve p (m rows of ntp) in place; return the over-pressure, iterations and last residual.
+
+    `hs`, `fs` and `ws` are the strides of H, of the face gaps and of the load weights from one
+    node to the next: 0 where the gap does not depend on position. `share` is the part of the
+    area each node stands for. `tolerance` is relative, on the over-pressure. The residual
+    returned is the estimated relative error that the iteration leaves in the over-pressure;
+    above `tolerance` means not converged.
+    """
+    size = m * ntp
+    R = work[0:size]
+    q = work[size : 2 * size]
+    Phi = work[2 * size : 3 * size]
+    r = work[3 * size : 4 * size]
+    z = work[4 * size : 5 * size]
+    base = 5 * size
+    faces = size + ntp
+    F = work[base : base + faces]
+    cl = work[base + faces : base + 2 * faces]
+    cr = work[base + 2 * faces : base + 3 * faces]
+    ol = work[base + 3 * faces : base + 4 * faces]
+    our = work[base + 4 * faces : base + 5 * faces]
+    block = nt * ntp
+
+    over = 0.0
+    before = 1e300
+    remaining = 1e300
+    fresh = True
+    iteration = 0
+    while iteration < most:
+        iteration += 1
+        _coefficients(m, ntp, hs, fs, g, H, Hf3, Hf, n, kn, law, p, R, q, Phi, cl, cr, F)
+        if fresh:
+            our, cr = cr, our
+            ol, cl = cl, ol
+        for i in range(m):
+            amount = broadcast(-vol[i])
+            for v in range(0, ntp, 8):
+                at = i * ntp + v
+                change = broadcast(0.0)
+                for j in range(nt):
+                    M = broadcast(R[i * ntp + j] * H[i * hs + j])
+                    change = fma(M, load(DT, j * ntp + v), change)
+                flow = sub(load(F, at + ntp), load(F, at))
+                store(r, at, fma(amount, change, flow))
+        for i in range(m):
+            start = i * block
+            at = i * ntp
+            if fresh:
+                for j in range(nt):
+                    row = start + j * ntp
+                    diagonal = broadcast(ol[at + ntp + j] + our[at + j])
+                    for v in range(0, ntp, 8):
+                        unit = sub(broadcast(1.0), load(mask, j * ntp + v))
+                        entry = mul(broadcast(vol[i]), load(DT, j * ntp + v))
+                        entry = fma(diagonal, unit, entry)
+                        if i > 0:
+                            link = mul(broadcast(-our[at + j]), load(ol, at + v))
+                            entry = fma(link, load(S, row - block + v), entry)
+                        store(S, row + v, entry)
+                _invert(S, start, nt, ntp, mask)
+            if i > 0:
+                for v in range(0, ntp, 8):
+                    carried = mul(load(ol, at + v), load(z, at - ntp + v))
+                    store(r, at + v, add(load(r, at + v), carried))
+            _apply(S, start, nt, ntp, r, at, z, at, False)
+        for i in range(m - 2, -1, -1):
+            at = i * ntp
+            for v in range(0, ntp, 8):
+                carried = mul(load(our, at + ntp + v), load(z, at + ntp + v))
+                store(r, at + v, carried)
+            _apply(S, i * block, nt, ntp, r, at, z, at, True)
+        largest = 0.0
+        deepest = 0.0
+        for i in range(m):
+            for t in range(nt):
+                at = i * ntp + t
+                step = z[at] / (H[i * hs + t] * R[at])
+                deepest = max(deepest, -step)
+                if not abs(step) <= largest:
+                    largest = abs(step)
+        if not largest < 1e300:
+            return math.nan, iteration, math.inf
+        # A full step must leave gas everywhere; 0.8 keeps a margin for the logarithm.
+        scale = 0.8 / deepest if deepest > 0.8 else 1.0
+        over = 0.0
+        for i in range(m):
+            part = broadcast(0.0)
+            for v in range(0, ntp, 8):
+                at = i * ntp + v
+                rise = mul(broadcast(scale), div(load(z, at), load(H, i * hs + v)))
+                if n == 1.0:
+                    store(p, at, add(rise, load(p, at)))
+                else:
+                    store(R, at, add(rise, load(R, at)))
+                    for t in range(at, at + 8):
+                        p[t] = math.exp(n * math.log(R[t])) - 1.0
+                part = fma(load(weight, i * ws + v), load(p, at), part)
+            over += share[i] * total(part)
+        # What remains after a Newton step is about its square; after a chord step, the
+        # geometric tail of the steps so far.
+        goal = tolerance * abs(over) / (1.0 + abs(over))
+        if scale < 1.0:
+            left = 1.0
+        elif fresh:
+            left = largest * largest
+        else:
+            rate = largest / before
+            left = largest * rate / (1.0 - rate) if rate < 1.0 else 1.0
+        remaining = left * (1.0 + abs(over)) / max(abs(over), 1e-300)
+        if left <= goal:
+            break
+        # Keep the old inverses while they gain: a chord step costs a fifth of a Newton step.
+        fresh = scale < 1.0 or largest > 0.03 or (largest > 0.1 * before and not fresh)
+        before = largest
+    return over, iteration, remaining
+
+
+@njit(nogil=True, cache=True, fastmath=_FAST, error_model="numpy")
+def prolong(coarse: FloatArray, m: int, ntp: int, closed: bool, fine: FloatArray) -> None:
+    """Carry m rows of p to the grid with twice the cells, by cubics.
+
+    With `closed`, node 0 is a plane of symmetry and the edge follows node m − 1 (2m rows come
+    out); without, both neighbours outside are edges (2m + 1 rows come out).
+    """
+    for t in range(ntp):
+        if closed:
+            for i in range(m):
+                a = coarse[i * ntp + t]
+                b = coarse[(i + 1) * ntp + t] if i + 1 < m else 0.0
+                fine[2 * i * ntp + t] = a
+                before = coarse[abs(i - 1) * ntp + t] if m > 1 or i > 1 else 0.0
+                if i + 1 < m:
+                    after = coarse[(i + 2) * ntp + t] if i + 2 < m else 0.0
+                    middle = (9.0 * (a + b) - before - after) / 16.0
+                elif m == 1:
+                    middle = 0.75 * a
+                else:
+                    second = coarse[abs(i - 2) * ntp + t]
+                    middle = (15.0 * a - 5.0 * before + second) / 16.0
+                fine[(2 * i + 1) * ntp + t] = middle
+        else:
+            for i in range(m + 1):
+                a = coarse[(i - 1) * ntp + t] if i > 0 else 0.0
+                b = coarse[i * ntp + t] if i < m else 0.0
+                if i > 0:
+                    fine[(2 * i - 1) * ntp + t] = a
+                if m < 3:
+                    middle = 0.5 * (a + b)
+                elif i == 0:
+                    middle = (15.0 * b - 5.0 * coarse[ntp + t] + coarse[2 * ntp + t]) / 16.0
+                elif i == m:
+                    before = coarse[(m - 2) * ntp + t]
+                    second = coarse[(m - 3) * ntp + t]
+                    middle = (15.0 * a - 5.0 * before + second) / 16.0
+                else:
+                    before = coarse[(i - 2) * ntp + t] if i > 1 else 0.0
+                    after = coarse[(i + 1) * ntp + t] if i + 1 < m else 0.0
+                    middle = (9.0 * (a + b) - before - after) / 16.0
+                fine[2 * i * ntp + t] = middle

@@ -1,0 +1,199 @@
+"""What the film refuses, and how it says so."""
+
+from __future__ import annotations
+
+import logging
+import subprocess
+import sys
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from squeezefilm.errors import ConvergenceError, GeometryError, InputError, UnreachableError
+from squeezefilm.film import batch
+from squeezefilm.film.balance import mean_gap_for_load
+from squeezefilm.film.batch import solve_strips
+from squeezefilm.film.edge import edge_layer
+from squeezefilm.film.periodic import solve_disc, solve_profile, solve_strip
+from squeezefilm.film.profile import (
+    flexural_profile,
+    profile_from_function,
+    profile_from_samples,
+)
+
+
+@pytest.mark.parametrize("solve", [solve_strip, solve_disc, solve_strips])
+@pytest.mark.parametrize(
+    ("arguments", "offender"),
+    [
+        ({"squeeze_number": 0.0}, "squeeze_number = 0"),
+        ({"squeeze_number": -3.0}, "squeeze_number = -3"),
+        ({"squeeze_number": float("nan")}, "squeeze_number = nan"),
+        ({"excursion_ratio": 1.0}, "excursion_ratio = 1"),
+        ({"excursion_ratio": float("inf")}, "excursion_ratio = inf"),
+        ({"polytropic_exponent": 0.9}, "polytropic_exponent = 0.9"),
+        ({"knudsen_number": -0.1}, "knudsen_number = -0.1"),
+        ({"tolerance": 0.0}, "tolerance = 0"),
+        ({"slip": "diffuse"}, "slip = 'diffuse'"),
+    ],
+)
+def test_bad_input_is_named(solve, arguments, offender):
+    inputs = {"squeeze_number": 10.0, "excursion_ratio": 0.5} | arguments
+    with pytest.raises(InputError) as caught:
+        solve(**inputs)
+    assert offender in str(caught.value)
+
+
+def test_batch_names_the_offending_element_and_shapes():
+    with pytest.raises(InputError, match=r"excursion_ratio = 1\.2"):
+        solve_strips([1.0, 2.0], [0.5, 1.2])
+    with pytest.raises(InputError, match="broadcast"):
+        solve_strips([1.0, 2.0], [0.1, 0.2, 0.3])
+    with pytest.raises(InputError, match="workers = 0"):
+        solve_strips(1.0, 0.5, workers=0)
+
+
+def test_closed_gap_is_a_geometry_error_that_says_where():
+    with pytest.raises(GeometryError, match=r"closes: H = -0\.[0-9]+ at X = "):
+        flexural_profile(0.5, ridge_depth=0.6, ridge_wavenumber=20.0)
+    with pytest.raises(GeometryError, match="closes"):
+        solve_profile(10.0, lambda X, T: 0.5 + X + 0.2 * np.cos(T))
+
+
+def test_profile_that_is_not_periodic_is_refused_with_the_values():
+    with pytest.raises(InputError, match="not periodic in time"):
+        solve_profile(10.0, lambda X, T: 1.0 + 0.01 * T + 0.0 * X)
+    x, t = np.linspace(-0.5, 0.5, 11), np.linspace(0.0, 2.0 * np.pi, 9)
+    with pytest.raises(InputError, match="not periodic"):
+        profile_from_samples(x, t, 1.0 + 0.05 * t + 0.0 * x[:, None])
+
+
+def test_profile_that_is_not_finite_or_not_smooth_is_refused():
+    with pytest.raises(InputError, match="not finite"):
+        profile_from_function(lambda X, T: np.nan + 0.0 * X * T)
+    with pytest.raises(InputError, match="harmonics in time"):
+        profile_from_function(lambda X, T: 1.5 + 0.3 * np.sign(np.cos(T)) + 0.0 * X)
+    with pytest.raises(InputError, match="GapProfile or a function"):
+        solve_profile(10.0, 3.0)
+
+
+@pytest.mark.parametrize(
+    ("x", "t", "message"),
+    [
+        (np.linspace(-0.5, 0.4, 11), np.linspace(0, 2 * np.pi, 9), "X runs from"),
+        (np.linspace(-0.5, 0.5, 11), np.linspace(0, 3.0, 9), "one period"),
+        (np.linspace(-0.5, 0.5, 11), np.linspace(0, 1, 9) ** 2 * 2 * np.pi, "space it evenly"),
+        (np.linspace(-0.5, 0.5, 3), np.linspace(0, 2 * np.pi, 9), "shape"),
+    ],
+)
+def test_samples_that_do_not_fit_are_refused(x, t, message):
+    with pytest.raises(InputError, match=message):
+        profile_from_samples(x, t, np.ones((len(x), len(t))))
+
+
+def test_samples_and_function_of_the_same_gap_agree():
+    def gap(X, T):
+        return 1.0 + 0.1 * X + 0.4 * np.cos(T - 0.3) * np.cos(2.0 * X)
+
+    x, t = np.linspace(-0.5, 0.5, 41), np.linspace(0.0, 2.0 * np.pi, 16, endpoint=False)
+    sampled = profile_from_samples(x, t, gap(x[:, None], t[None, :]))
+    given = profile_from_function(gap)
+    np.testing.assert_allclose(sampled.gap(x, t), given.gap(x, t), atol=1e-12)
+    assert not given.symmetric
+    loads = [solve_profile(30.0, p, tolerance=1e-5).over_pressure for p in (sampled, given)]
+    assert loads[0] == pytest.approx(loads[1], rel=1e-6)
+
+
+def test_what_does_not_converge_raises_with_its_partial_result(monkeypatch):
+    monkeypatch.setattr(batch, "_ROUNDS", 1)
+    monkeypatch.setattr(batch, "_MOST_NEWTON", 2)
+    with pytest.raises(ConvergenceError) as caught:
+        solve_strip(10.0, 0.9, tolerance=1e-6)
+    error = caught.value
+    assert error.residual > 1e-6
+    assert error.iterations > 0
+    assert error.partial.over_pressure == pytest.approx(1.33, abs=0.2)
+    assert "not converged" in error.partial.status
+    with pytest.raises(ConvergenceError) as caught:
+        solve_strips([1.0, 10.0], 0.9, tolerance=1e-6)
+    assert caught.value.partial.mean_load.shape == (2,)
+    kept = solve_strips([1.0, 10.0], 0.9, tolerance=1e-6, strict=False)
+    assert np.all(kept.over_pressure_error > 1e-6 * kept.over_pressure)
+
+
+def test_still_plate_makes_no_pressure():
+    solution = solve_strip(10.0, 0.0)
+    assert solution.over_pressure == 0.0
+    assert np.all(solution.pressure == 1.0)
+    assert solution.stiffness_relative == pytest.approx(0.411794, abs=1e-5)
+    loads = solve_strips(10.0, [0.0, 0.1]).over_pressure
+    assert loads[0] == 0.0
+    assert loads[1] > 0.0
+
+
+def test_shapes_broadcast_and_progress_reaches_the_total():
+    seen = []
+    result = solve_strips(
+        np.geomspace(1.0, 100.0, 5)[:, None], np.linspace(0.1, 0.9, 4),
+        workers=2, progress=lambda done, total: seen.append((done, total)),
+    )  # fmt: skip
+    assert result.mean_load.shape == (5, 4)
+    assert result.times.shape == (5, 4)
+    assert seen[-1] == (20, 20)
+
+
+def test_workers_do_not_change_the_result():
+    sigma = np.geomspace(0.1, 1e3, 200)
+    one = solve_strips(sigma, 0.5, workers=1)
+    two = solve_strips(sigma, 0.5, workers=2)
+    np.testing.assert_array_equal(one.over_pressure, two.over_pressure)
+
+
+def test_load_balance_refuses_what_the_film_cannot_carry():
+    with pytest.raises(UnreachableError, match=r"more than the film carries"):
+        mean_gap_for_load(1e7, 2e-6, 40e3, 10e-3)
+    with pytest.raises(UnreachableError, match=r"less than the film carries"):
+        mean_gap_for_load(1e-9, 2e-6, 40e3, 10e-3)
+    with pytest.raises(InputError, match="amplitude = 0 m"):
+        mean_gap_for_load(100.0, 0.0, 40e3, 10e-3)
+    with pytest.raises(InputError, match="shape = 'square'"):
+        mean_gap_for_load(100.0, 1e-6, 40e3, 10e-3, shape="square")
+
+
+def test_load_balance_of_a_narrow_ridge():
+    # At σ far below 1 the over-pressure is of second order and tiny over most of the search.
+    balance = mean_gap_for_load(1e3, 2e-6, 40e3, 250e-6, polytropic_exponent=1.2)
+    assert balance.mean_load_pressure == pytest.approx(1e3, rel=1e-3)
+
+
+def test_edge_layer_range():
+    with pytest.raises(InputError, match="excursion_ratio = 0"):
+        edge_layer(0.0)
+    with pytest.raises(InputError, match="excursion_ratio"):
+        edge_layer(0.99)
+
+
+def test_the_first_compile_is_announced(tmp_path, caplog):
+    dispatcher = SimpleNamespace(
+        stats=SimpleNamespace(cache_path=str(tmp_path)),
+        py_func=solve_strips,
+        __name__="solve_rows",
+    )
+    with caplog.at_level(logging.INFO, logger="squeezefilm"):
+        batch.announce(dispatcher, "film")
+    assert "compiling the film solver" in caplog.text
+    caplog.clear()
+    (tmp_path / "batch.solve_strips-1.py311.nbi").touch()
+    with caplog.at_level(logging.INFO, logger="squeezefilm"):
+        batch.announce(dispatcher, "film")
+    assert caplog.text == ""
+
+
+def test_importing_the_film_imports_neither_scipy_nor_numba():
+    code = (
+        "import sys, squeezefilm.film.periodic, squeezefilm.film.batch, squeezefilm.film.balance;"
+        "print([m for m in ('scipy', 'numba') if m in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
