@@ -1,0 +1,1 @@
+"""The gas film between a vibrating surface and a finger: compressible Reynolds, solved."""
