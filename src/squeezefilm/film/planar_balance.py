@@ -7,6 +7,7 @@ off on a finer set of times. Factors are kept while they still serve (chord step
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,7 +19,6 @@ from squeezefilm.film.planar_kernel import assemble, row_block, take_off
 from squeezefilm.quantities import ComplexArray, FloatArray
 
 _OVERSAMPLE = 6
-_ROUNDING = 1e-13
 
 
 @dataclass(frozen=True)
@@ -73,7 +73,7 @@ def resampled(values: FloatArray, count: int) -> FloatArray:
 class _Factors:
     """The Jacobian eliminated row by row; keeps the inverse of every pivot block."""
 
-    def __init__(self, rows: int, size: int, faces: list[IntArray]) -> None:
+    def __init__(self, rows: int, size: int, faces: Sequence[IntArray]) -> None:
         self.inverse = np.empty((rows, size, size))
         self.faces = faces
 
@@ -82,12 +82,9 @@ class _Factors:
         grid: PlanarGrid,
         weight: FloatArray,
         D: FloatArray,
-        diagonal: FloatArray,
-        row_up: FloatArray,
-        row_down: FloatArray,
-        column_up: FloatArray,
-        column_down: FloatArray,
+        parts: tuple[FloatArray, ...],
     ) -> None:
+        _, diagonal, row_up, row_down, column_up, column_down = parts
         rows, size = self.inverse.shape[:2]
         self.up, self.down = row_up.reshape(rows - 1, size), row_down.reshape(rows - 1, size)
         block = np.empty((size, size), order="F")
@@ -130,11 +127,11 @@ class Balancer:
         self.D = derivative(count)
         self.weight = film.squeeze_number * grid.area
         row_of = grid.column_from // grid.columns
-        faces = [np.flatnonzero(row_of == i) for i in range(grid.rows)]
+        faces = [np.flatnonzero(row_of == i).astype(np.int64) for i in range(grid.rows)]
         self._factors = _Factors(grid.rows, grid.columns * count, faces)
         self._fresh = False
 
-    def _assemble(self, m: FloatArray, H: tuple[FloatArray, ...]) -> tuple[FloatArray, ...]:
+    def _assemble(self, m: FloatArray) -> tuple[FloatArray, ...]:
         grid, M = self.grid, self.count
         out = (
             np.empty_like(m), np.empty_like(m),
@@ -142,9 +139,11 @@ class Balancer:
             np.empty((grid.column_from.size, M)), np.empty((grid.column_from.size, M)),
         )  # fmt: skip
         assemble(
-            m, *H, grid.columns, grid.row_conductance, grid.column_from, grid.column_to,
-            grid.column_conductance, grid.edge_node, grid.edge_conductance, self.weight, self.D,
-            self.film.polytropic_exponent, self.film.knudsen_number, self.film.slip, *out,
+            m, self.H, self.H_row, self.H_column, self.H_edge, grid.columns,
+            grid.row_conductance, grid.column_from, grid.column_to, grid.column_conductance,
+            grid.edge_node, grid.edge_conductance, self.weight, self.D,
+            self.film.polytropic_exponent, self.film.knudsen_number, self.film.slip,
+            out[0], out[1], out[2], out[3], out[4], out[5],
         )  # fmt: skip
         return out
 
@@ -158,20 +157,21 @@ class Balancer:
     def solve(self, start: FloatArray | None, tolerance: float, limit: int = 30) -> Balance:
         """Newton from `start` (or the better of `starts`) until a step changes no m by more than
         `tolerance` (relative). Not converged is reported, not raised."""
-        H = (self.H, self.H_row, self.H_column, self.H_edge)
         if start is None:
-            tries = [(float(np.abs(self._assemble(m, H)[0]).max()), m) for m in self.starts()]
+            tries = [(float(np.abs(self._assemble(m)[0]).max()), m) for m in self.starts()]
             m = min(tries, key=lambda pair: pair[0])[1]
         else:
             m = start.copy()
         self._fresh = False
         made = factored = 0
+        good = False
         change, last = np.inf, np.inf
-        parts = self._assemble(m, H)
-        for made in range(1, limit + 1):
+        parts = self._assemble(m)
+        while made < limit:
+            made += 1
             if not self._fresh:
                 try:
-                    self._factors.factor(self.grid, self.weight, self.D, *parts[1:])
+                    self._factors.factor(self.grid, self.weight, self.D, parts)
                 except np.linalg.LinAlgError:
                     break
                 factored += 1
@@ -181,23 +181,24 @@ class Balancer:
             if not np.isfinite(change):
                 break
             m = m + step * min(1.0, 0.8 / max(0.8, float(-relative.min())))
-            if change <= max(tolerance, _ROUNDING):
+            # Below 1e-10 a change that falls no more is rounding.
+            if change <= tolerance or (change < 1e-10 and change > 0.5 * last):
+                good = True
                 break
-            parts = self._assemble(m, H)
+            parts = self._assemble(m)
             # Kept factors converge by a constant factor a step; new ones are worth their price
             # only where that factor is poor or the iterate is still far off.
             self._fresh = change < 0.1 and (factored > 0) and change < 0.3 * last
             last = change
-        return self._report(m, change, made, factored, tolerance)
+        return self._report(m, change, made, factored, good)
 
     def _report(
-        self, m: FloatArray, change: float, made: int, factored: int, tolerance: float
+        self, m: FloatArray, change: float, made: int, factored: int, good: bool
     ) -> Balance:
         grid, n = self.grid, self.film.polytropic_exponent
         count = max(_OVERSAMPLE * self.count, 48)
         T = times(count)
         ratio = resampled(m, count) / gap_values(self.film.gap, grid.X, grid.Y, T)
-        good = bool(change <= max(tolerance, _ROUNDING)) and bool(ratio.min() > 0)
         over = np.maximum(ratio, 1e-300) ** n - 1.0
         share = grid.area / grid.area.sum()
         load = share @ over
@@ -211,5 +212,5 @@ class Balancer:
             residual=change,
             iterations=made,
             factorizations=factored,
-            converged=good,
+            converged=good and bool(ratio.min() > 0.0),
         )

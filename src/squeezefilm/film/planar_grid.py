@@ -104,9 +104,21 @@ def _build(
         pieces_from.append(index[0, :half])
         pieces_to.append(index[0, ::-1][:half])
         pieces.append((x, y, dv[:half] / (2 * u_node[0])))
-    edges = [(index[-1], grid(u_face[-1:], v_node), across_rows(u_face[-1:]) / (u_face[-1] - u_node[-1]) * dv)]
+    edges = [
+        (
+            index[-1],
+            grid(u_face[-1:], v_node),
+            across_rows(u_face[-1:]) / (u_face[-1] - u_node[-1]) * dv,
+        )
+    ]
     if first_row_open:
-        edges.append((index[0], grid(u_face[:1], v_node), across_rows(u_face[:1]) / (u_node[0] - u_face[0]) * dv))
+        edges.append(
+            (
+                index[0],
+                grid(u_face[:1], v_node),
+                across_rows(u_face[:1]) / (u_node[0] - u_face[0]) * dv,
+            )
+        )
     if last_column_open:
         edges.append((index[:, -1], grid(u_node, v_face[-1:]), weight / (v_face[-1] - v_node[-1])))
     if first_column_open:

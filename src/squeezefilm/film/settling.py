@@ -197,7 +197,9 @@ def _settle(
         mean = (np.mean(H**3, axis=0) / np.mean(H ** (2 - n), axis=0)) ** (1 / (n + 1))
         still = H[-1]
         part = min(1.0, sigma / 30.0)
-        x = np.stack([still + (mean - still) * part, H[-1 - stages.size] * (1 - part) + mean * part])
+        x = np.stack(
+            [still + (mean - still) * part, H[-1 - stages.size] * (1 - part) + mean * part]
+        )
     else:
         x = np.stack([np.interp(grid.centre, guess[0], row) for row in guess[1]])
     if scheme != "bdf2":
@@ -206,10 +208,11 @@ def _settle(
     field = np.empty((steps, cells))
     keep = np.arange(steps)
     mixer = _Mixer()
-    change, lost, iterations, period, worst = np.inf, 0.0, 0, 0, 0.0
-    for period in range(1, max_periods + 1):
+    change, lost, iterations, periods = np.inf, 0.0, 0, 0
+    while periods < max_periods:
+        periods += 1
         m, before = x[0].copy(), x[-1].copy()
-        lost, worst, made, done = march(
+        lost, _, made, done = march(
             m, before, H, H_face, grid.volume, grid.conductance, dt, float(sigma), SCHEMES[scheme],
             float(n), float(knudsen), code, NEWTON_TOLERANCE, NEWTON_LIMIT, load, field, keep,
         )  # fmt: skip
@@ -229,20 +232,20 @@ def _settle(
         mean_load=W,
         over_pressure=W - 1.0,
         over_pressure_error=float("inf"),
-        time=dt * np.arange(1, steps + 1),
+        time=dt * np.arange(1.0, steps + 1),
         load=load,
         position=grid.centre,
         pressure=field.mean(axis=0),
         residual=change,
         mass_residual=abs(lost) / float(grid.volume @ x[0]),
-        periods=period,
+        periods=periods,
         iterations=iterations,
         cells=cells,
         steps=steps,
         status=(
-            f"settled in {period} periods of {steps} steps on {cells} cells"
+            f"settled in {periods} periods of {steps} steps on {cells} cells"
             if good
-            else f"did not settle in {period} periods (change {change:.2g} a period)"
+            else f"did not settle in {periods} periods (change {change:.2g} a period)"
         ),
         squeeze_number=sigma,
         polytropic_exponent=n,

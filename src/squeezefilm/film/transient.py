@@ -98,8 +98,9 @@ def solve_transient(
     `gap(X, T)` takes arrays of shape (1, cells) and (times, 1). The film starts at
     `initial_pressure`, a number or (cells,). Second order in time and space
     (`bdf2`). `sdirk2` is second order in the gas held, but in the pressure it falls to first
-    order where σ is small; `backward_euler` is first order. A jump of H between two times is followed as
-    fast as a step allows: place `steps` accordingly. `snapshots` pressure fields are kept.
+    order where σ is small; `backward_euler` is first order. A jump of H between two times is
+    followed as fast as a step allows: place `steps` accordingly. `snapshots` pressure fields
+    are kept.
 
     Raises `InputError` for values out of range, `GeometryError` where the gap closes,
     `ConvergenceError` (with the part done) where a step does not converge.
@@ -116,7 +117,7 @@ def solve_transient(
     stage_times(scheme)
     grid = line_grid(shape, cells, squeeze_number)
     dt = (end - start) / steps
-    time = start + dt * np.arange(steps + 1)
+    time: FloatArray = start + dt * np.arange(steps + 1, dtype=np.float64)
     n = float(polytropic_exponent)
 
     H_start = gap_table(gap, grid.centre, time[:1])[0]
@@ -139,7 +140,7 @@ def solve_transient(
         # BDF2 needs one step to start from; the one-step SDIRK2 of the same order makes it.
         how: Scheme = "sdirk2" if scheme == "bdf2" and done == 0 else scheme
         count = 1 if how != scheme else min(chunk, steps - done)
-        at = (time[done : done + count, None] + dt * stage_times(how)).ravel()
+        at: FloatArray = (time[done : done + count, None] + dt * stage_times(how)).ravel()
         held = _gas_balanced(grid.volume, m, before, how)
         lost, change, made, reached = march(
             m, before, gap_table(gap, grid.centre, at), gap_table(gap, grid.face, at),
