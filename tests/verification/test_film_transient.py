@@ -133,6 +133,32 @@ def test_a_step_of_the_gap_decays_at_the_linear_rate():
     assert np.log(late[0] / late[1]) == pytest.approx(0.999**2 * np.pi**2 / 10.0, rel=1e-3)
 
 
+def test_an_amplitude_step_leads_from_one_periodic_state_to_the_other():
+    steps, periods = 128, 12
+
+    def gap(X, T):
+        return 1.0 + np.where(T > 8.001 * np.pi, 0.5, 0.2) * np.cos(T) + 0.0 * X
+
+    film = solve_transient(gap, 20.0, 2 * np.pi * periods, steps=steps * periods, cells=48)
+    loads = film.load[1:].reshape(periods, steps).mean(axis=1)
+    for excursion, mean in ((0.2, loads[3]), (0.5, loads[-1])):
+        settled = settle_to_periodic(
+            uniform_gap(excursion), 20.0, cells=48, steps=steps, tolerance=None
+        )
+        assert mean == pytest.approx(settled.mean_load, abs=1e-5)
+
+
+def test_sealed_grooves_of_the_paper_s_finger():
+    whole = 0.6 + 2.0 + 50.0
+    wave, ridges = 2 * np.pi * 10.0 / 18.7, 2 * np.pi * 10.0 / 0.35
+
+    def gap(X, T):
+        return 1.0 + (2 * np.cos(wave * X) * np.cos(T) + 50 * np.cos(ridges * X)) / whole
+
+    film = settle_to_periodic(gap, 20.418, cells=200, steps=32, tolerance=1e-3)
+    assert film.over_pressure == pytest.approx(7.246e-3, rel=1e-3)
+
+
 @pytest.mark.parametrize(
     ("change", "error", "says"),
     [

@@ -83,7 +83,7 @@ def _areas(
     inside: np.ndarray[tuple[int, ...], np.dtype[np.bool_]],
     quarter: bool,
 ) -> FloatArray:
-    """The ellipse's area shared out: whole cells within, the rest of each strip to its last node."""
+    """The ellipse's area shared out: whole cells within, a strip's rest to its last node."""
     u = np.clip(x[::2], -1.0, 1.0)
     # Area under the upper arc between two lines, from its antiderivative.
     strip = aspect_ratio * np.diff(0.5 * (u * np.sqrt(1.0 - u**2) + np.arcsin(u)))

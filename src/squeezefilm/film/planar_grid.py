@@ -18,7 +18,6 @@ from squeezefilm.film.line_grid import edge_graded, edge_layer
 from squeezefilm.quantities import FloatArray, require
 
 IntArray = np.ndarray[tuple[int, ...], np.dtype[np.int64]]
-Mean = Callable[[FloatArray, FloatArray], FloatArray]
 
 
 @dataclass(frozen=True)
@@ -155,26 +154,6 @@ def graded_line(count: int, half: float, squeeze_number: float, *, mirror: bool)
         return half * edge_graded(2 * count, layer)
     fine = half * edge_graded(count, layer)
     return np.concatenate([-fine[:0:-1], fine])
-
-
-def refined_line(line: FloatArray, mean_gap: Callable[[FloatArray], FloatArray]) -> FloatArray:
-    """As many points as `line`, drawn also to where the mean gap is small.
-
-    The density added goes with 1/√H: over a crest, where H = a + b x², that is the map x ~ sinh s,
-    which resolves the crest and the groove alike. A gap that hardly varies leaves `line` as it is.
-    """
-    fine = np.linspace(line[0], line[-1], 64 * line.size + 1)
-    middle = (fine[1:] + fine[:-1]) / 2
-    H = mean_gap(middle)
-    if H.max() < 1.5 * H.min():
-        return line
-    s = np.linspace(0.0, 1.0, line.size)
-    crowd = np.diff(np.interp(fine, line, s))
-    crest = np.diff(fine) / np.sqrt(H)
-    total = np.concatenate([[0.0], np.cumsum(0.3 * crowd + 0.7 * crest / crest.sum())])
-    placed = np.interp(s * total[-1], total, fine)
-    placed[0], placed[-1] = line[0], line[-1]
-    return np.asarray(placed)
 
 
 def rectangle_grid(x: FloatArray, y: FloatArray, *, quarter: bool = True) -> PlanarGrid:

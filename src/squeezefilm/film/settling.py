@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from squeezefilm.errors import ConvergenceError
-from squeezefilm.film.line_grid import Gap, Shape, gap_table, line_grid
+from squeezefilm.film.line_grid import Gap, Shape, gap_table, line_grid, mean_over
 from squeezefilm.film.mobility import SlipModel, slip_code
 from squeezefilm.film.transient import (
     NEWTON_LIMIT,
@@ -186,7 +186,7 @@ def _settle(
     max_periods: int,
     guess: tuple[FloatArray, FloatArray] | None,
 ) -> tuple[FilmSettled, tuple[FloatArray, FloatArray]]:
-    grid = line_grid(shape, cells, sigma)
+    grid = line_grid(shape, cells, sigma, mean_over(gap, np.pi / 4 * np.arange(8.0)))
     stages = stage_times(scheme)
     dt = 2 * np.pi / steps
     at = ((np.arange(steps)[:, None] + stages) * dt).ravel()

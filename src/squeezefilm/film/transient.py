@@ -14,7 +14,7 @@ from typing import Literal
 import numpy as np
 
 from squeezefilm.errors import ConvergenceError, InputError
-from squeezefilm.film.line_grid import Gap, Shape, gap_table, line_grid
+from squeezefilm.film.line_grid import Gap, Shape, gap_table, line_grid, mean_over
 from squeezefilm.film.mobility import SlipModel, slip_code
 from squeezefilm.film.transient_kernel import BACKWARD_EULER, BDF2, SDIRK2, march
 from squeezefilm.quantities import Dimensionless, DimensionlessArray, FloatArray, require
@@ -115,7 +115,7 @@ def solve_transient(
     require("initial_pressure", initial_pressure, above=0.0)
     code = slip_code(knudsen_number, slip_model)
     stage_times(scheme)
-    grid = line_grid(shape, cells, squeeze_number)
+    grid = line_grid(shape, cells, squeeze_number, mean_over(gap, np.linspace(start, end, 9)))
     dt = (end - start) / steps
     time: FloatArray = start + dt * np.arange(steps + 1, dtype=np.float64)
     n = float(polytropic_exponent)
