@@ -42,9 +42,9 @@ def edge_graded(count: int, layer: float) -> FloatArray:
     return np.asarray(1.0 - np.sinh(beta * (1.0 - s)) / np.sinh(beta))
 
 
-def edge_layer(squeeze_number: float) -> float:
+def edge_layer(squeeze_number: float, least: float = 2e-3) -> float:
     """The distance from an edge, on a half width of 1, within which half the cells should lie."""
-    return float(min(0.5, max(4.0 / np.sqrt(squeeze_number), 2e-3)))
+    return float(min(0.5, max(4.0 / np.sqrt(squeeze_number), least)))
 
 
 def refined_line(line: FloatArray, mean_gap: Profile) -> FloatArray:

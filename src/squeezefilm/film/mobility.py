@@ -5,37 +5,47 @@ The flow factor φ takes the *local* Knudsen number, because the mean free path 
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Any
 
 import numba
-import numpy as np
 
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import did_you_mean
+from squeezefilm.quantities import did_you_mean, require
 
-SlipModel = Literal["first_order", "veijola"]
-SLIP_MODELS: dict[str, int] = {"first_order": 1, "veijola": 2}
+# A stand-in with the names and signatures of `squeezefilm.film.slip`, which has all its laws:
+# once that file is here, import `slip_factor` and `slip_law` from it and delete these.
+NO_SLIP, FIRST, VEIJOLA = 0, 1, 4
+SLIP_LAWS = {"first": FIRST, "veijola": VEIJOLA}
 
 
-def slip_code(knudsen_number: float, model: str) -> int:
-    """The compiled kernels' number for a slip model; 0 where the Knudsen number is zero.
+def slip_law(slip: str, knudsen_number: float) -> int:
+    """The number of a slip law; `NO_SLIP` where the Knudsen number is zero.
 
-    Raises `InputError` for an unknown model.
+    Raises `InputError` for an unknown name or a Knudsen number that is negative or not finite.
     """
-    if model not in SLIP_MODELS:
+    require("knudsen_number", knudsen_number, at_least=0.0)
+    if slip not in SLIP_LAWS:
         raise InputError(
-            f"slip_model = '{model}' is not known; allowed: {', '.join(SLIP_MODELS)}."
-            + did_you_mean(model, SLIP_MODELS)
+            f"slip = '{slip}' is no slip law; use one of {', '.join(SLIP_LAWS)}."
+            + did_you_mean(slip, SLIP_LAWS)
         )
-    return SLIP_MODELS[model] if knudsen_number > 0 else 0
+    return SLIP_LAWS[slip] if knudsen_number > 0.0 else NO_SLIP
+
+
+@numba.njit(cache=True, nogil=True)
+def slip_factor(law: int, k: float) -> Any:
+    """φ and dφ/dk at the local Knudsen number k, for a law by its number."""
+    if law == FIRST:
+        return 1.0 + 6.0 * k, 6.0
+    if law == VEIJOLA:
+        power = 9.638 * k**0.159
+        return 1.0 + power * k, 1.159 * power
+    return 1.0, 0.0
 
 
 @numba.njit(cache=True, nogil=True, inline="always")
-def mobility(H: float, P: float, n: float, knudsen: float, model: int) -> Any:
-    """H³ P^{1/n} φ(Kn/(PH)) and its derivative in P, at one point.
-
-    φ is 1 (model 0), 1 + 6 k (1, Burgdorfer 1959) or 1 + 9.638 k^1.159 (2, Veijola 1995).
-    """
+def mobility(H: float, P: float, n: float, knudsen: float, law: int) -> Any:
+    """H³ P^{1/n} φ(Kn/(PH)) and its derivative in P, at one point."""
     base = H * H * H
     if n == 1.0:
         power = P
@@ -43,26 +53,8 @@ def mobility(H: float, P: float, n: float, knudsen: float, model: int) -> Any:
     else:
         power = P ** (1.0 / n)
         slope = power / (n * P)
-    if model == 0:
+    if law == NO_SLIP:
         return base * power, base * slope
     k = knudsen / (P * H)
-    if model == 1:
-        factor = 1.0 + 6.0 * k
-        change = 6.0
-    else:
-        factor = 1.0 + 9.638 * k**1.159
-        change = 9.638 * 1.159 * k**0.159
+    factor, change = slip_factor(law, k)
     return base * power * factor, base * (slope * factor - power * change * k / P)
-
-
-@numba.njit(cache=True, nogil=True)
-def mobility_field(
-    H: np.ndarray[Any, Any], P: np.ndarray[Any, Any], n: float, knudsen: float, model: int
-) -> Any:
-    """`mobility` over two arrays of the same shape; returns value and slope."""
-    value = np.empty_like(P)
-    slope = np.empty_like(P)
-    h, p, v, s = H.ravel(), P.ravel(), value.ravel(), slope.ravel()
-    for i in range(p.size):
-        v[i], s[i] = mobility(h[i], p[i], n, knudsen, model)
-    return value, slope

@@ -11,7 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from squeezefilm.errors import ConvergenceError, InputError
-from squeezefilm.film.mobility import SlipModel, slip_code
+from squeezefilm.film.mobility import slip_law
 from squeezefilm.film.planar_balance import Film
 from squeezefilm.film.planar_gap import GapFunction, PlanarGap, require_periodic
 from squeezefilm.film.planar_ladder import RUNGS, Ladder, PlanarShape, climb_to
@@ -54,7 +54,7 @@ class FilmPlanar:
     squeeze_number: Dimensionless
     polytropic_exponent: Dimensionless
     knudsen_number: Dimensionless
-    slip_model: SlipModel
+    slip: str
     tolerance: Dimensionless
 
 
@@ -68,7 +68,7 @@ def solve_rectangle(
     ridge_wave_number: Dimensionless = 0.0,
     polytropic_exponent: Dimensionless = 1.0,
     knudsen_number: Dimensionless = 0.0,
-    slip_model: SlipModel = "first_order",
+    slip: str = "first",
     tolerance: Dimensionless = 5e-3,
 ) -> FilmPlanar:
     """The periodic film under X ∈ [−½, ½], Y ∈ [−aspect/2, aspect/2], all sides open.
@@ -81,7 +81,7 @@ def solve_rectangle(
     return solve_planar(
         "rectangle", gap, squeeze_number, aspect_ratio=aspect_ratio,
         polytropic_exponent=polytropic_exponent, knudsen_number=knudsen_number,
-        slip_model=slip_model, tolerance=tolerance,
+        slip=slip, tolerance=tolerance,
     )  # fmt: skip
 
 
@@ -95,7 +95,7 @@ def solve_ellipse(
     ridge_wave_number: Dimensionless = 0.0,
     polytropic_exponent: Dimensionless = 1.0,
     knudsen_number: Dimensionless = 0.0,
-    slip_model: SlipModel = "first_order",
+    slip: str = "first",
     tolerance: Dimensionless = 5e-3,
 ) -> FilmPlanar:
     """The periodic film under the ellipse X² + (Y/aspect)² ≤ 1, such as a finger pad.
@@ -107,7 +107,7 @@ def solve_ellipse(
     return solve_planar(
         "ellipse", gap, squeeze_number, aspect_ratio=aspect_ratio,
         polytropic_exponent=polytropic_exponent, knudsen_number=knudsen_number,
-        slip_model=slip_model, tolerance=tolerance,
+        slip=slip, tolerance=tolerance,
     )  # fmt: skip
 
 
@@ -121,7 +121,7 @@ def solve_planar(
     cells: tuple[int, int] | None = None,
     polytropic_exponent: Dimensionless = 1.0,
     knudsen_number: Dimensionless = 0.0,
-    slip_model: SlipModel = "first_order",
+    slip: str = "first",
     tolerance: Dimensionless = 5e-3,
 ) -> FilmPlanar:
     """The periodic film under any gap H(X, Y, T) of period 2π, to `tolerance` of W − 1.
@@ -140,7 +140,7 @@ def solve_planar(
     """
     require("squeeze_number", squeeze_number, above=0.0)
     require("aspect_ratio", aspect_ratio, above=0.0)
-    require("polytropic_exponent", polytropic_exponent, at_least=1.0, at_most=2.0)
+    require("polytropic_exponent", polytropic_exponent, at_least=1.0, at_most=5 / 3)
     require("knudsen_number", knudsen_number, at_least=0.0)
     require("tolerance", tolerance, at_least=1e-5, at_most=0.5)
     if shape not in ("rectangle", "disc", "ellipse"):
@@ -150,7 +150,7 @@ def solve_planar(
     quarter = isinstance(gap, PlanarGap) if symmetric is None else symmetric
     film = Film(
         gap, float(squeeze_number), float(polytropic_exponent), float(knudsen_number),
-        slip_code(knudsen_number, slip_model),
+        slip_law(slip, knudsen_number),
     )  # fmt: skip
     ladder = Ladder(shape, float(aspect_ratio), film, quarter, cells)
     require_periodic(gap, ladder.grid(RUNGS[0]).X, ladder.grid(RUNGS[0]).Y)
@@ -181,7 +181,7 @@ def solve_planar(
         squeeze_number=squeeze_number,
         polytropic_exponent=polytropic_exponent,
         knudsen_number=knudsen_number,
-        slip_model=slip_model,
+        slip=slip,
         tolerance=tolerance,
     )
     if not climb.reached:

@@ -144,12 +144,15 @@ def _build(
     )
 
 
-def graded_line(count: int, half: float, squeeze_number: float, *, mirror: bool) -> FloatArray:
+def graded_line(
+    count: int, half: float, squeeze_number: float, *, mirror: bool, least: float = 2e-3
+) -> FloatArray:
     """2 count + 1 points (faces and nodes in turn) from 0 or −half to half, graded to the edge.
 
-    `squeeze_number` is on the length that `half` is measured in.
+    `squeeze_number` is on the length that `half` is measured in. `least` bounds from below the
+    share of the half width that takes half the cells.
     """
-    layer = edge_layer(squeeze_number * half**2)
+    layer = edge_layer(squeeze_number * half**2, least)
     if not mirror:
         return half * edge_graded(2 * count, layer)
     fine = half * edge_graded(count, layer)
@@ -174,13 +177,13 @@ def _turn(count: int, quarter: bool) -> FloatArray:
 
 
 def disc_grid(
-    squeeze_number: float, counts: tuple[int, int], *, quarter: bool = True
+    squeeze_number: float, counts: tuple[int, int], *, quarter: bool = True, least: float = 2e-3
 ) -> PlanarGrid:
     """The disc R ≤ 1 in polar coordinates; `counts` cells along the radius and around.
 
     The face at the centre has no length, so nothing has to be said there.
     """
-    r = graded_line(counts[0], 1.0, squeeze_number, mirror=False)
+    r = graded_line(counts[0], 1.0, squeeze_number, mirror=False, least=least)
     angle = _turn(counts[1], quarter)
     area = (np.diff(r[::2] ** 2) / 2)[:, None] * np.diff(angle[::2])
     return _build(
@@ -192,7 +195,12 @@ def disc_grid(
 
 
 def ellipse_grid(
-    aspect_ratio: float, squeeze_number: float, counts: tuple[int, int], *, quarter: bool = True
+    aspect_ratio: float,
+    squeeze_number: float,
+    counts: tuple[int, int],
+    *,
+    quarter: bool = True,
+    least: float = 2e-3,
 ) -> PlanarGrid:
     """The ellipse X² + (Y/aspect)² ≤ 1 in confocal elliptic coordinates.
 
@@ -203,9 +211,10 @@ def ellipse_grid(
     tall = aspect_ratio > 1.0
     major, minor = max(1.0, aspect_ratio), min(1.0, aspect_ratio)
     if major / minor - 1.0 < 1e-6:
-        return disc_grid(squeeze_number, counts, quarter=quarter)
+        return disc_grid(squeeze_number, counts, quarter=quarter, least=least)
     focus = np.sqrt(major**2 - minor**2)
-    mu = np.arcsinh(graded_line(counts[0], minor, squeeze_number, mirror=False) / focus)
+    line = graded_line(counts[0], minor, squeeze_number, mirror=False, least=least)
+    mu = np.arcsinh(line / focus)
     nu = _turn(counts[1], quarter)
     u, v = mu[::2], nu[::2]
     area = focus**2 * (

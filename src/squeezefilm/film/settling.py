@@ -12,7 +12,7 @@ import numpy as np
 
 from squeezefilm.errors import ConvergenceError
 from squeezefilm.film.line_grid import Gap, Shape, gap_table, line_grid, mean_over
-from squeezefilm.film.mobility import SlipModel, slip_code
+from squeezefilm.film.mobility import slip_law
 from squeezefilm.film.transient import (
     NEWTON_LIMIT,
     NEWTON_TOLERANCE,
@@ -57,7 +57,7 @@ class FilmSettled:
     squeeze_number: Dimensionless
     polytropic_exponent: Dimensionless
     knudsen_number: Dimensionless
-    slip_model: SlipModel
+    slip: str
     shape: Shape
     scheme: Scheme
 
@@ -97,7 +97,7 @@ def settle_to_periodic(
     steps: int = 32,
     polytropic_exponent: Dimensionless = 1.0,
     knudsen_number: Dimensionless = 0.0,
-    slip_model: SlipModel = "first_order",
+    slip: str = "first",
     scheme: Scheme = "bdf2",
     accelerate: bool = True,
     settled: Dimensionless = 1e-10,
@@ -128,7 +128,7 @@ def settle_to_periodic(
     while True:
         result, guess = _settle(
             gap, squeeze_number, shape, cells, steps, polytropic_exponent, knudsen_number,
-            slip_model, scheme, accelerate, settled, max_periods, guess,
+            slip, scheme, accelerate, settled, max_periods, guess,
         )  # fmt: skip
         if result.residual > settled:
             raise ConvergenceError(
@@ -179,7 +179,7 @@ def _settle(
     steps: int,
     n: float,
     knudsen: float,
-    slip_model: SlipModel,
+    slip: str,
     scheme: Scheme,
     accelerate: bool,
     settled: float,
@@ -191,7 +191,7 @@ def _settle(
     dt = 2 * np.pi / steps
     at = ((np.arange(steps)[:, None] + stages) * dt).ravel()
     H, H_face = gap_table(gap, grid.centre, at), gap_table(gap, grid.face, at)
-    code = slip_code(knudsen, slip_model)
+    code = slip_law(slip, knudsen)
     if guess is None:
         # Gas that cannot follow: m is constant in time, and ⟨H³ P^{1/n} ∂P⟩ = 0 gives its value.
         mean = (np.mean(H**3, axis=0) / np.mean(H ** (2 - n), axis=0)) ** (1 / (n + 1))
@@ -250,7 +250,7 @@ def _settle(
         squeeze_number=sigma,
         polytropic_exponent=n,
         knudsen_number=knudsen,
-        slip_model=slip_model,
+        slip=slip,
         shape=shape,
         scheme=scheme,
     )

@@ -11,7 +11,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from squeezefilm.errors import InputError
-from squeezefilm.film.mobility import SlipModel
 from squeezefilm.film.planar import FilmPlanar, solve_planar
 from squeezefilm.film.planar_gap import GapFunction, PlanarGap
 from squeezefilm.quantities import Dimensionless, FloatArray, require
@@ -58,7 +57,7 @@ def compare_teeth(
     aspect_ratio: Dimensionless = 1.0,
     polytropic_exponent: Dimensionless = 1.0,
     knudsen_number: Dimensionless = 0.0,
-    slip_model: SlipModel = "first_order",
+    slip: str = "first",
     tolerance: Dimensionless = 1e-2,
 ) -> ToothedFilm:
     """The over-pressure under a rectangular finger on a toothed surface, against a smooth one.
@@ -86,7 +85,7 @@ def compare_teeth(
         return solve_planar(
             "rectangle", under, sigma, aspect_ratio=aspect, cells=cells, tolerance=tolerance,
             polytropic_exponent=polytropic_exponent, knudsen_number=knudsen_number,
-            slip_model=slip_model,
+            slip=slip,
         )  # fmt: skip
 
     surface = solved(gap, squeeze_number, aspect_ratio)

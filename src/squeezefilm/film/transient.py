@@ -15,7 +15,7 @@ import numpy as np
 
 from squeezefilm.errors import ConvergenceError, InputError
 from squeezefilm.film.line_grid import Gap, Shape, gap_table, line_grid, mean_over
-from squeezefilm.film.mobility import SlipModel, slip_code
+from squeezefilm.film.mobility import slip_law
 from squeezefilm.film.transient_kernel import BACKWARD_EULER, BDF2, SDIRK2, march
 from squeezefilm.quantities import Dimensionless, DimensionlessArray, FloatArray, require
 
@@ -49,7 +49,7 @@ class FilmTransient:
     squeeze_number: Dimensionless
     polytropic_exponent: Dimensionless
     knudsen_number: Dimensionless
-    slip_model: SlipModel
+    slip: str
     shape: Shape
     scheme: Scheme
 
@@ -64,7 +64,7 @@ def stage_times(scheme: str) -> FloatArray:
 def check_film(shape: str, sigma: float, n: float, knudsen: float) -> None:
     """Refuse a shape that is not known and numbers out of range."""
     require("squeeze_number", sigma, above=0.0)
-    require("polytropic_exponent", n, at_least=1.0, at_most=2.0)
+    require("polytropic_exponent", n, at_least=1.0, at_most=5 / 3)
     require("knudsen_number", knudsen, at_least=0.0)
     if shape not in ("strip", "disc"):
         raise InputError(f"shape = '{shape}' is not known; allowed: strip, disc")
@@ -86,7 +86,7 @@ def solve_transient(
     shape: Shape = "strip",
     polytropic_exponent: Dimensionless = 1.0,
     knudsen_number: Dimensionless = 0.0,
-    slip_model: SlipModel = "first_order",
+    slip: str = "first",
     initial_pressure: DimensionlessArray | float = 1.0,
     snapshots: int = 11,
     scheme: Scheme = "bdf2",
@@ -113,7 +113,7 @@ def solve_transient(
     require("cells", cells, at_least=4)
     require("snapshots", snapshots, at_least=0, at_most=steps + 1)
     require("initial_pressure", initial_pressure, above=0.0)
-    code = slip_code(knudsen_number, slip_model)
+    code = slip_law(slip, knudsen_number)
     stage_times(scheme)
     grid = line_grid(shape, cells, squeeze_number, mean_over(gap, np.linspace(start, end, 9)))
     dt = (end - start) / steps
@@ -175,7 +175,7 @@ def solve_transient(
         squeeze_number=squeeze_number,
         polytropic_exponent=polytropic_exponent,
         knudsen_number=knudsen_number,
-        slip_model=slip_model,
+        slip=slip,
         shape=shape,
         scheme=scheme,
     )
