@@ -1,1 +1,1 @@
-"""The gas film between finger and surface: closed forms and solvers. Knows nothing of the plate."""
+"""The gas film between finger and plate: closed forms, periodic and transient solutions."""

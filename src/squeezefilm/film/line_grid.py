@@ -1,0 +1,128 @@
+"""Finite volumes on a line (strip or disc), and the gap tabulated on them.
+
+The grid is graded to the edge layer, whose thickness goes with σ^-1/2.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from squeezefilm.errors import GeometryError, InputError
+from squeezefilm.quantities import FloatArray, require
+
+Shape = Literal["strip", "disc"]
+Gap = Callable[[FloatArray, FloatArray], FloatArray]
+"""H(X, T): takes arrays X (1, cells) and T (times, 1), returns what broadcasts with both."""
+Profile = Callable[[FloatArray], FloatArray]
+
+
+@dataclass(frozen=True)
+class LineGrid:
+    """Finite volumes on a line: `centre` (N,), `face` and `conductance` (N+1,), `volume` (N,)."""
+
+    centre: FloatArray
+    face: FloatArray
+    volume: FloatArray
+    conductance: FloatArray
+
+
+def edge_graded(count: int, layer: float) -> FloatArray:
+    """`count` + 1 points from 0 to 1, denser towards 1: half of them lie within `layer` of 1.
+
+    The map is smooth, so that second-order differences on it stay second order.
+    """
+    s = np.linspace(0.0, 1.0, count + 1)
+    if layer >= 0.499:
+        return s
+    beta = 2.0 * np.arccosh(0.5 / layer)
+    return np.asarray(1.0 - np.sinh(beta * (1.0 - s)) / np.sinh(beta))
+
+
+def edge_layer(squeeze_number: float, least: float = 2e-3) -> float:
+    """The distance from an edge, on a half width of 1, within which half the cells should lie."""
+    return float(min(0.5, max(4.0 / np.sqrt(squeeze_number), least)))
+
+
+def refined_line(line: FloatArray, mean_gap: Profile) -> FloatArray:
+    """As many points as `line`, drawn also to where the mean gap is small.
+
+    The density added goes with 1/√H: over a crest, where H = a + b x², that is the map x ~ sinh s,
+    which resolves the crest and the groove alike. A gap that hardly varies leaves `line` as it is.
+    """
+    fine = np.linspace(line[0], line[-1], 64 * line.size + 1)
+    middle = (fine[1:] + fine[:-1]) / 2
+    H = mean_gap(middle)
+    if H.max() < 1.5 * H.min():
+        return line
+    s = np.linspace(0.0, 1.0, line.size)
+    crowd = np.diff(np.interp(fine, line, s))
+    crest = np.diff(fine) / np.sqrt(H)
+    total = np.concatenate([[0.0], np.cumsum(0.3 * crowd + 0.7 * crest / crest.sum())])
+    placed = np.interp(s * total[-1], total, fine)
+    placed[0], placed[-1] = line[0], line[-1]
+    return np.asarray(placed)
+
+
+def line_grid(
+    shape: Shape, cells: int, squeeze_number: float, mean_gap: Profile | None = None
+) -> LineGrid:
+    """Cells over the strip X ∈ [−½, ½] or the disc R ∈ [0, 1], graded to the edge layer,
+    and to where `mean_gap` is small."""
+    layer = edge_layer(squeeze_number if shape == "disc" else squeeze_number / 4)
+    if shape == "disc":
+        # Centres are the images of the half-points, so the grid stays smooth up to the edge.
+        fine = edge_graded(2 * cells, layer)
+        fine = fine if mean_gap is None else refined_line(fine, mean_gap)
+        face, centre = fine[::2], fine[1::2]
+        weight, volume = face, np.diff(face**2) / 2
+    else:
+        fine = edge_graded(cells, layer) / 2
+        fine = np.concatenate([-fine[:0:-1], fine])
+        fine = fine if mean_gap is None else refined_line(fine, mean_gap)
+        face, centre = fine[::2], fine[1::2]
+        weight, volume = np.ones_like(face), np.diff(face)
+    distance = np.diff(np.concatenate([face[:1], centre, face[-1:]]))
+    return LineGrid(centre, face, volume, weight / distance)
+
+
+def uniform_gap(excursion_ratio: float) -> Gap:
+    """The gap H = 1 + ε cos T of two flat surfaces."""
+    require("excursion_ratio", excursion_ratio, above=0.0, below=1.0)
+
+    def gap(X: FloatArray, T: FloatArray) -> FloatArray:
+        return 1.0 + excursion_ratio * np.cos(T)
+
+    return gap
+
+
+def gap_table(gap: Gap, X: FloatArray, T: FloatArray) -> FloatArray:
+    shape = (T.size, X.size)
+    try:
+        H = np.broadcast_to(np.asarray(gap(X[None, :], T[:, None]), dtype=float), shape)
+    except ValueError as error:
+        raise InputError(
+            f"the gap must return what broadcasts to {shape} for X (1, {X.size}) and "
+            f"T ({T.size}, 1): {error}"
+        ) from error
+    if not np.all(np.isfinite(H)):
+        row, column = np.argwhere(~np.isfinite(H))[0]
+        raise InputError(
+            f"gap = {H[row, column]} at X = {X[column]:.4g}, T = {T[row]:.4g} cannot be used: "
+            "it must be finite"
+        )
+    if H.min() <= 0.0:
+        row, column = np.unravel_index(int(np.argmin(H)), shape)
+        raise GeometryError(
+            f"the gap closes: H = {H[row, column]:.4g} at X = {X[column]:.4g}, T = {T[row]:.4g}; "
+            "it must stay above 0. Reduce the vibration or raise the mean gap."
+        )
+    return np.ascontiguousarray(H)
+
+
+def mean_over(gap: Gap, T: FloatArray) -> Profile:
+    """The gap's mean over the times `T`, as a function of X."""
+    return lambda X: np.asarray(gap_table(gap, X, T).mean(axis=0))

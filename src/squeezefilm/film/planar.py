@@ -1,0 +1,194 @@
+"""The periodic film in the plane: rectangle, disc, ellipse, with waves, ridges, open grooves.
+
+Solves ∇·(H³ φ P^{1/n} ∇P) = σ ∂(P^{1/n}H)/∂T with P = 1 on the boundary, periodic in T, by
+harmonic balance on boundary-fitted grids. The over-pressure is extrapolated from a ladder of
+grids (second order, Richardson) and corrected for the number of harmonics on the coarsest; both
+give the error estimate. P = p/p0, H = h/H0, lengths over the reference length l0.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from squeezefilm.errors import ConvergenceError, InputError
+from squeezefilm.film.slip import slip_law
+from squeezefilm.film.planar_balance import Film
+from squeezefilm.film.planar_gap import GapFunction, PlanarGap, require_periodic
+from squeezefilm.film.planar_ladder import RUNGS, Ladder, PlanarShape, climb_to
+from squeezefilm.quantities import ComplexArray, Dimensionless, DimensionlessArray, require
+
+
+@dataclass(frozen=True)
+class FilmPlanar:
+    """The periodic state of a film in the plane.
+
+    `mean_load` W = ⟨P⟩ over surface and period, `over_pressure` W − 1 and its estimated absolute
+    error; `stiffness_relative` fk and `damping_relative` fd: the first harmonic of the force is
+    −(fk + i fd) p0 A ε, ε being the largest first harmonic of the gap; `force_harmonics` (8,) the
+    complex amplitudes F_k of W(T) = W + Re Σ F_k e^{ikT}. `mean_pressure` is the period's mean at
+    the nodes `X`, `Y` of the finest grid, with their `area`, all (nodes,) = rows × columns; on a
+    `quarter` they cover X ≥ 0, Y ≥ 0 of a symmetric film. `residual` is the last relative change
+    of the gas in Newton's method.
+    """
+
+    mean_load: Dimensionless
+    over_pressure: Dimensionless
+    over_pressure_error: Dimensionless
+    stiffness_relative: Dimensionless
+    damping_relative: Dimensionless
+    force_harmonics: ComplexArray
+    X: DimensionlessArray
+    Y: DimensionlessArray
+    area: DimensionlessArray
+    mean_pressure: DimensionlessArray
+    rows: int
+    columns: int
+    quarter: bool
+    time_points: int
+    iterations: int
+    residual: Dimensionless
+    status: str
+    shape: PlanarShape
+    aspect_ratio: Dimensionless
+    gap: GapFunction
+    squeeze_number: Dimensionless
+    polytropic_exponent: Dimensionless
+    knudsen_number: Dimensionless
+    slip: str
+    tolerance: Dimensionless
+
+
+def solve_rectangle(
+    squeeze_number: Dimensionless,
+    excursion_ratio: Dimensionless,
+    aspect_ratio: Dimensionless = 1.0,
+    *,
+    wave_number: Dimensionless = 0.0,
+    ridge_height: Dimensionless = 0.0,
+    ridge_wave_number: Dimensionless = 0.0,
+    polytropic_exponent: Dimensionless = 1.0,
+    knudsen_number: Dimensionless = 0.0,
+    slip: str = "first",
+    tolerance: Dimensionless = 5e-3,
+) -> FilmPlanar:
+    """The periodic film under X ∈ [−½, ½], Y ∈ [−aspect/2, aspect/2], all sides open.
+
+    `squeeze_number` σ = 12 η ω l0²/(p0 H0²) is on the side along X (length l0). The gap is
+    H = 1 + ε cos(k1 X) cos T + δ cos(k2 X) (see `PlanarGap`); grooves run along Y and are open at
+    its ends. For the rest see `solve_planar`.
+    """
+    gap = PlanarGap(excursion_ratio, wave_number, ridge_height, ridge_wave_number)
+    return solve_planar(
+        "rectangle", gap, squeeze_number, aspect_ratio=aspect_ratio,
+        polytropic_exponent=polytropic_exponent, knudsen_number=knudsen_number,
+        slip=slip, tolerance=tolerance,
+    )  # fmt: skip
+
+
+def solve_ellipse(
+    squeeze_number: Dimensionless,
+    excursion_ratio: Dimensionless,
+    aspect_ratio: Dimensionless = 1.0,
+    *,
+    wave_number: Dimensionless = 0.0,
+    ridge_height: Dimensionless = 0.0,
+    ridge_wave_number: Dimensionless = 0.0,
+    polytropic_exponent: Dimensionless = 1.0,
+    knudsen_number: Dimensionless = 0.0,
+    slip: str = "first",
+    tolerance: Dimensionless = 5e-3,
+) -> FilmPlanar:
+    """The periodic film under the ellipse X² + (Y/aspect)² ≤ 1, such as a finger pad.
+
+    `squeeze_number` is on the semi-axis along X; `aspect_ratio` is the semi-axis along Y over it.
+    The gap is H = 1 + ε cos(k1 X) cos T + δ cos(k2 X). For the rest see `solve_planar`.
+    """
+    gap = PlanarGap(excursion_ratio, wave_number, ridge_height, ridge_wave_number)
+    return solve_planar(
+        "ellipse", gap, squeeze_number, aspect_ratio=aspect_ratio,
+        polytropic_exponent=polytropic_exponent, knudsen_number=knudsen_number,
+        slip=slip, tolerance=tolerance,
+    )  # fmt: skip
+
+
+def solve_planar(
+    shape: PlanarShape,
+    gap: GapFunction,
+    squeeze_number: Dimensionless,
+    *,
+    aspect_ratio: Dimensionless = 1.0,
+    symmetric: bool | None = None,
+    cells: tuple[int, int] | None = None,
+    polytropic_exponent: Dimensionless = 1.0,
+    knudsen_number: Dimensionless = 0.0,
+    slip: str = "first",
+    tolerance: Dimensionless = 5e-3,
+) -> FilmPlanar:
+    """The periodic film under any gap H(X, Y, T) of period 2π, to `tolerance` of W − 1.
+
+    `shape`: "rectangle" (X ∈ [−½, ½], Y ∈ [−aspect/2, aspect/2]), "disc" (R ≤ 1) or "ellipse"
+    (X² + (Y/aspect)² ≤ 1); `squeeze_number` on the length that is 1 there. `gap(X, Y, T)` takes
+    arrays (places, 1) and (1, times). `symmetric` says that the gap is even in X and in Y, so
+    that a quarter is enough (a `PlanarGap` always is). `cells` are those of the coarsest grid
+    along X and Y (radius and angle), for gaps with features that the solver cannot know of.
+
+    Raises `InputError` for values out of range, `GeometryError` where the gap closes,
+    `ConvergenceError` (with the best state had) where Newton's method does not converge or the
+    tolerance would take more memory than 2 GB. Holds for isothermal (1) to adiabatic (1.4)
+    viscous flow; slip by the local Knudsen number Kn/(PH). The tolerance is on the over-pressure,
+    down to 1e-5 of it. Sources: Gross (1962); Blech, 10.1115/1.3254692 for the linear limit.
+    """
+    require("squeeze_number", squeeze_number, above=0.0)
+    require("aspect_ratio", aspect_ratio, above=0.0)
+    require("polytropic_exponent", polytropic_exponent, at_least=1.0, at_most=5 / 3)
+    require("knudsen_number", knudsen_number, at_least=0.0)
+    require("tolerance", tolerance, at_least=1e-5, at_most=0.5)
+    if shape not in ("rectangle", "disc", "ellipse"):
+        raise InputError(f"shape = '{shape}' is not known; allowed: rectangle, disc, ellipse")
+    if shape == "disc" and aspect_ratio != 1.0:
+        raise InputError(f"a disc has aspect_ratio 1, not {aspect_ratio}; ask for an ellipse")
+    quarter = isinstance(gap, PlanarGap) if symmetric is None else symmetric
+    film = Film(
+        gap, float(squeeze_number), float(polytropic_exponent), float(knudsen_number),
+        slip_law(slip, knudsen_number),
+    )  # fmt: skip
+    ladder = Ladder(shape, float(aspect_ratio), film, quarter, cells)
+    require_periodic(gap, ladder.grid(RUNGS[0]).X, ladder.grid(RUNGS[0]).Y)
+    climb = climb_to(ladder, float(tolerance))
+    best, fine = climb.best, climb.fine
+    first = best.harmonics[0] / ladder.excursion
+    result = FilmPlanar(
+        mean_load=1.0 + best.over_pressure,
+        over_pressure=best.over_pressure,
+        over_pressure_error=best.error,
+        stiffness_relative=-float(first.real),
+        damping_relative=-float(first.imag),
+        force_harmonics=best.harmonics,
+        X=fine.grid.X,
+        Y=fine.grid.Y,
+        area=fine.grid.area,
+        mean_pressure=fine.mean_pressure,
+        rows=fine.grid.rows,
+        columns=fine.grid.columns,
+        quarter=quarter,
+        time_points=fine.gas.shape[1],
+        iterations=climb.iterations,
+        residual=fine.residual,
+        status=climb.status,
+        shape=shape,
+        aspect_ratio=aspect_ratio,
+        gap=gap,
+        squeeze_number=squeeze_number,
+        polytropic_exponent=polytropic_exponent,
+        knudsen_number=knudsen_number,
+        slip=slip,
+        tolerance=tolerance,
+    )
+    if not climb.reached:
+        raise ConvergenceError(
+            f"the film in the plane was {climb.status}",
+            partial=result,
+            residual=fine.residual,
+            iterations=climb.iterations,
+        )
+    return result

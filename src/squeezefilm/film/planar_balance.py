@@ -1,0 +1,216 @@
+"""Harmonic balance on one planar grid: Newton, eliminated row by row.
+
+M = 2K + 1 collocation times carry K harmonics of m = P^{1/n} H, which is nearly constant in time
+where the gas cannot follow, so that few are needed even at large excursion; the pressure is read
+off on a finer set of times. Factors are kept while they still serve (chord steps).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import lapack
+
+from squeezefilm.film.planar_gap import GapFunction, gap_values
+from squeezefilm.film.planar_grid import IntArray, PlanarGrid
+from squeezefilm.film.planar_kernel import assemble, row_block, take_off
+from squeezefilm.quantities import ComplexArray, FloatArray
+
+_OVERSAMPLE = 6
+
+
+@dataclass(frozen=True)
+class Film:
+    """What is solved: gap, squeeze number, polytropic exponent, Knudsen number, slip code."""
+
+    gap: GapFunction
+    squeeze_number: float
+    polytropic_exponent: float
+    knudsen_number: float
+    slip: int
+
+
+@dataclass(frozen=True)
+class Balance:
+    """A periodic state on one grid: `gas` m (nodes, times), mean pressure per node, loads."""
+
+    grid: PlanarGrid
+    gas: FloatArray
+    over_pressure: float
+    mean_pressure: FloatArray
+    harmonics: ComplexArray
+    residual: float
+    iterations: int
+    factorizations: int
+    converged: bool
+
+
+def times(count: int) -> FloatArray:
+    """The collocation times of `count` points over a period."""
+    return 2 * np.pi * np.arange(count) / count
+
+
+def derivative(count: int) -> FloatArray:
+    """The spectral derivative on an odd number of points over a period."""
+    k = np.arange(count)
+    d = k[:, None] - k[None, :]
+    angle = np.pi * d / count
+    sine = np.where(d == 0, 1.0, np.sin(angle))
+    return np.where(d == 0, 0.0, 0.5 * (-1.0) ** d / sine)
+
+
+def resampled(values: FloatArray, count: int) -> FloatArray:
+    """Values (…, odd times) as the same trigonometric polynomial on `count` times (or cut)."""
+    have = values.shape[-1]
+    if have == count:
+        return values
+    spectrum = np.fft.rfft(values, axis=-1)[..., : (min(have, count) + 1) // 2]
+    return np.asarray(np.fft.irfft(spectrum, count, axis=-1) * (count / have))
+
+
+class _Factors:
+    """The Jacobian eliminated row by row; keeps the inverse of every pivot block."""
+
+    def __init__(self, rows: int, size: int, faces: Sequence[IntArray]) -> None:
+        self.inverse = np.empty((rows, size, size))
+        self.faces = faces
+
+    def factor(
+        self,
+        grid: PlanarGrid,
+        weight: FloatArray,
+        D: FloatArray,
+        parts: tuple[FloatArray, ...],
+    ) -> None:
+        _, diagonal, row_up, row_down, column_up, column_down = parts
+        rows, size = self.inverse.shape[:2]
+        self.up, self.down = row_up.reshape(rows - 1, size), row_down.reshape(rows - 1, size)
+        block = np.empty((size, size), order="F")
+        for i in range(rows):
+            row_block(
+                i * grid.columns, grid.columns, diagonal, weight, D, self.faces[i],
+                grid.column_from, grid.column_to, column_up, column_down, block,
+            )  # fmt: skip
+            if i:
+                take_off(block, self.down[i - 1], self.inverse[i - 1], self.up[i - 1])
+            lu, pivots, bad = lapack.dgetrf(block, overwrite_a=1)
+            if bad:
+                raise np.linalg.LinAlgError("a pivot block is singular")
+            inverse, _ = lapack.dgetri(lu, pivots, overwrite_lu=1)
+            self.inverse[i] = inverse
+
+    def solve(self, right: FloatArray) -> FloatArray:
+        rows, size = self.inverse.shape[:2]
+        y = right.reshape(rows, size).copy()
+        for i in range(1, rows):
+            y[i] -= self.down[i - 1] * (self.inverse[i - 1] @ y[i - 1])
+        x = np.empty_like(y)
+        x[-1] = self.inverse[-1] @ y[-1]
+        for i in range(rows - 2, -1, -1):
+            x[i] = self.inverse[i] @ (y[i] - self.up[i] * x[i + 1])
+        return x.reshape(right.shape)
+
+
+class Balancer:
+    """The equations of one film on one grid at M times, and their solution."""
+
+    def __init__(self, film: Film, grid: PlanarGrid, count: int) -> None:
+        self.film, self.grid, self.count = film, grid, count
+        T = times(count)
+        self.T = T
+        self.H = gap_values(film.gap, grid.X, grid.Y, T)
+        self.H_row = gap_values(film.gap, grid.row_X, grid.row_Y, T)
+        self.H_column = gap_values(film.gap, grid.column_X, grid.column_Y, T)
+        self.H_edge = gap_values(film.gap, grid.edge_X, grid.edge_Y, T)
+        self.D = derivative(count)
+        self.weight = film.squeeze_number * grid.area
+        row_of = grid.column_from // grid.columns
+        faces = [np.flatnonzero(row_of == i).astype(np.int64) for i in range(grid.rows)]
+        self._factors = _Factors(grid.rows, grid.columns * count, faces)
+        self._fresh = False
+
+    def _assemble(self, m: FloatArray) -> tuple[FloatArray, ...]:
+        grid, M = self.grid, self.count
+        out = (
+            np.empty_like(m), np.empty_like(m),
+            np.empty((grid.row_conductance.size, M)), np.empty((grid.row_conductance.size, M)),
+            np.empty((grid.column_from.size, M)), np.empty((grid.column_from.size, M)),
+        )  # fmt: skip
+        assemble(
+            m, self.H, self.H_row, self.H_column, self.H_edge, grid.columns,
+            grid.row_conductance, grid.column_from, grid.column_to, grid.column_conductance,
+            grid.edge_node, grid.edge_conductance, self.weight, self.D,
+            self.film.polytropic_exponent, self.film.knudsen_number, self.film.slip,
+            out[0], out[1], out[2], out[3], out[4], out[5],
+        )  # fmt: skip
+        return out
+
+    def starts(self) -> list[FloatArray]:
+        """Two guesses: gas at rest (P = 1), and gas that cannot follow at all (m constant)."""
+        n, H = self.film.polytropic_exponent, self.H
+        fine = gap_values(self.film.gap, self.grid.X, self.grid.Y, times(32))
+        still = (np.mean(fine**3, axis=1) / np.mean(fine ** (2 - n), axis=1)) ** (1 / (n + 1))
+        return [H.copy(), np.ascontiguousarray(np.broadcast_to(still[:, None], H.shape))]
+
+    def solve(self, start: FloatArray | None, tolerance: float, limit: int = 30) -> Balance:
+        """Newton from `start` (or the better of `starts`) until a step changes no m by more than
+        `tolerance` (relative). Not converged is reported, not raised."""
+        if start is None:
+            tries = [(float(np.abs(self._assemble(m)[0]).max()), m) for m in self.starts()]
+            m = min(tries, key=lambda pair: pair[0])[1]
+        else:
+            m = start.copy()
+        self._fresh = False
+        made = factored = 0
+        good = False
+        change, last = np.inf, np.inf
+        parts = self._assemble(m)
+        while made < limit:
+            made += 1
+            if not self._fresh:
+                try:
+                    self._factors.factor(self.grid, self.weight, self.D, parts)
+                except np.linalg.LinAlgError:
+                    break
+                factored += 1
+            step = self._factors.solve(-parts[0])
+            relative = step / m
+            change = float(np.abs(relative).max())
+            if not np.isfinite(change):
+                break
+            m = m + step * min(1.0, 0.8 / max(0.8, float(-relative.min())))
+            # Below 1e-10 a change that falls no more is rounding.
+            if change <= tolerance or (change < 1e-10 and change > 0.5 * last):
+                good = True
+                break
+            parts = self._assemble(m)
+            # Kept factors converge by a constant factor a step; new ones are worth their price
+            # only where that factor is poor or the iterate is still far off.
+            self._fresh = change < 0.1 and (factored > 0) and change < 0.3 * last
+            last = change
+        return self._report(m, change, made, factored, good)
+
+    def _report(
+        self, m: FloatArray, change: float, made: int, factored: int, good: bool
+    ) -> Balance:
+        grid, n = self.grid, self.film.polytropic_exponent
+        count = max(_OVERSAMPLE * self.count, 48)
+        T = times(count)
+        ratio = resampled(m, count) / gap_values(self.film.gap, grid.X, grid.Y, T)
+        over = np.maximum(ratio, 1e-300) ** n - 1.0
+        share = grid.area / grid.area.sum()
+        load = share @ over
+        spectrum = np.fft.rfft(load) * (2.0 / count)
+        return Balance(
+            grid=grid,
+            gas=m,
+            over_pressure=float(load.mean()),
+            mean_pressure=1.0 + over.mean(axis=1),
+            harmonics=np.asarray(spectrum[1:9]),
+            residual=change,
+            iterations=made,
+            factorizations=factored,
+            converged=good and bool(ratio.min() > 0.0),
+        )

@@ -1,0 +1,82 @@
+"""The gap over a surface in the plane: mean, flexural wave, ridges, or any function given."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from squeezefilm.errors import GeometryError, InputError
+from squeezefilm.quantities import Dimensionless, FloatArray, require
+
+GapFunction = Callable[[FloatArray, FloatArray, FloatArray], FloatArray]
+"""H(X, Y, T): takes X and Y (places, 1) and T (1, times), returns what broadcasts with them."""
+
+
+@dataclass(frozen=True)
+class PlanarGap:
+    """H = 1 + ε cos(k1 X) cos T + δ cos(k2 X): a standing wave under static ridges.
+
+    `excursion_ratio` ε (0 < ε < 1), `wave_number` k1 (0: the surface moves as one),
+    `ridge_height` δ and `ridge_wave_number` k2, all in units of H0 and of the reference length.
+    Grooves run along Y and are open where the surface ends. Even in X and in Y.
+    Raises `InputError` for values out of range, `GeometryError` where the gap would close.
+    """
+
+    excursion_ratio: Dimensionless
+    wave_number: Dimensionless = 0.0
+    ridge_height: Dimensionless = 0.0
+    ridge_wave_number: Dimensionless = 0.0
+
+    def __post_init__(self) -> None:
+        require("excursion_ratio", self.excursion_ratio, above=0.0, below=1.0)
+        require("wave_number", self.wave_number, at_least=0.0)
+        require("ridge_height", self.ridge_height, at_least=0.0, below=1.0)
+        require("ridge_wave_number", self.ridge_wave_number, at_least=0.0)
+
+    def __call__(self, X: FloatArray, Y: FloatArray, T: FloatArray) -> FloatArray:
+        """H at places X, Y and times T, broadcast."""
+        wave = np.cos(self.wave_number * X) * np.cos(T)
+        ridges = np.cos(self.ridge_wave_number * X)
+        return np.asarray(1.0 + self.excursion_ratio * wave + self.ridge_height * ridges)
+
+
+def gap_values(gap: GapFunction, X: FloatArray, Y: FloatArray, T: FloatArray) -> FloatArray:
+    """H at every place and time, (places, times), checked: finite and open."""
+    shape = (X.size, T.size)
+    try:
+        given = np.asarray(gap(X[:, None], Y[:, None], T[None, :]), dtype=float)
+        H = np.ascontiguousarray(np.broadcast_to(given, shape))
+    except ValueError as error:
+        raise InputError(
+            f"the gap must return what broadcasts to {shape} for X, Y ({X.size}, 1) and "
+            f"T (1, {T.size}): {error}"
+        ) from error
+    # One pass on the way through; the place is looked for only where something is wrong.
+    if not H.size or (H.min() > 0.0 and H.max() < np.inf):
+        return H
+    finite = np.isfinite(H)
+    worst = int(np.argmin(np.where(finite, H, -np.inf)))
+    i, k = np.unravel_index(worst, shape)
+    place = f"at X = {X[i]:.4g}, Y = {Y[i]:.4g}, T = {T[k]:.4g}"
+    if not finite.all():
+        raise InputError(f"gap = {H[i, k]} {place} cannot be used: it must be finite")
+    raise GeometryError(
+        f"the gap closes: H = {H[i, k]:.4g} {place}; it must stay above 0. "
+        "Reduce the vibration or the ridges, or raise the mean gap."
+    )
+
+
+def require_periodic(gap: GapFunction, X: FloatArray, Y: FloatArray) -> None:
+    """Refuse a gap that is not 2π-periodic in T."""
+    T = np.array([0.0, 1.0, 2.5, 4.5])
+    now, later = gap_values(gap, X, Y, T), gap_values(gap, X, Y, T + 2 * np.pi)
+    off = np.abs(later - now)
+    if off.max() > 1e-9 * now.max():
+        i, k = np.unravel_index(int(np.argmax(off)), off.shape)
+        raise InputError(
+            f"the gap is not periodic: H = {now[i, k]:.6g} at T = {T[k]} but {later[i, k]:.6g} "
+            f"one period 2π later (X = {X[i]:.4g}, Y = {Y[i]:.4g}); a motion without a period "
+            "is followed by solve_transient"
+        )

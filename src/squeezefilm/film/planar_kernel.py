@@ -1,0 +1,138 @@
+"""Compiled residual and Jacobian of the film in the plane at its collocation times.
+
+The unknown m = P^{1/n} H has shape (nodes, times). The time derivative is spectral and couples
+all times of a node; the flow couples neighbours at the same time. Between two rows the Jacobian
+is therefore diagonal, which is what makes the elimination row by row cheap.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numba
+import numpy as np
+
+from squeezefilm.film.mobility import mobility
+
+Array = np.ndarray[Any, Any]
+
+
+@numba.njit(cache=True, nogil=True)
+def assemble(
+    m: Array,
+    H: Array,
+    H_row: Array,
+    H_column: Array,
+    H_edge: Array,
+    columns: int,
+    row_G: Array,
+    column_from: Array,
+    column_to: Array,
+    column_G: Array,
+    edge_node: Array,
+    edge_G: Array,
+    weight: Array,
+    D: Array,
+    n: float,
+    knudsen: float,
+    model: int,
+    residual: Array,
+    diagonal: Array,
+    row_up: Array,
+    row_down: Array,
+    column_up: Array,
+    column_down: Array,
+) -> None:
+    """Residual (inflow − weight · dm/dT) and the flow's part of its Jacobian.
+
+    `weight` = σ · area, `D` (times, times) the derivative. `diagonal` (nodes, times) is
+    ∂residual/∂m of the node itself without `D`; `*_up` (faces, times) is ∂(from)/∂m(to),
+    `*_down` ∂(to)/∂m(from).
+    """
+    N, M = m.shape
+    P = np.empty((N, M))
+    dP = np.empty((N, M))
+    for i in range(N):
+        for k in range(M):
+            ratio = m[i, k] / H[i, k]
+            P[i, k] = ratio if n == 1.0 else ratio**n
+            dP[i, k] = n * P[i, k] / m[i, k]
+            s = 0.0
+            for q in range(M):
+                s += D[k, q] * m[i, q]
+            residual[i, k] = -weight[i] * s
+            diagonal[i, k] = 0.0
+    for f in range(row_G.size + column_from.size):
+        in_row = f >= row_G.size
+        g = f - row_G.size if in_row else f
+        a = column_from[g] if in_row else g
+        b = column_to[g] if in_row else g + columns
+        G = column_G[g] if in_row else row_G[g]
+        for k in range(M):
+            h = H_column[g, k] if in_row else H_row[g, k]
+            value, slope = mobility(h, 0.5 * (P[a, k] + P[b, k]), n, knudsen, model)
+            drop = P[b, k] - P[a, k]
+            flow = G * value * drop
+            by_a = G * (0.5 * slope * drop - value) * dP[a, k]
+            by_b = G * (0.5 * slope * drop + value) * dP[b, k]
+            residual[a, k] += flow
+            residual[b, k] -= flow
+            diagonal[a, k] += by_a
+            diagonal[b, k] -= by_b
+            if in_row:
+                column_up[g, k] = by_b
+                column_down[g, k] = -by_a
+            else:
+                row_up[g, k] = by_b
+                row_down[g, k] = -by_a
+    for g in range(edge_node.size):
+        a = edge_node[g]
+        for k in range(M):
+            value, slope = mobility(H_edge[g, k], 0.5 * (P[a, k] + 1.0), n, knudsen, model)
+            drop = 1.0 - P[a, k]
+            residual[a, k] += edge_G[g] * value * drop
+            diagonal[a, k] += edge_G[g] * (0.5 * slope * drop - value) * dP[a, k]
+
+
+@numba.njit(cache=True, nogil=True)
+def row_block(
+    first: int,
+    columns: int,
+    diagonal: Array,
+    weight: Array,
+    D: Array,
+    faces: Array,
+    column_from: Array,
+    column_to: Array,
+    column_up: Array,
+    column_down: Array,
+    block: Array,
+) -> None:
+    """The dense Jacobian block of one row: `columns` nodes from `first`, all their times.
+
+    `faces` are the faces within this row. `block` (columns·times)² is overwritten.
+    """
+    M = D.shape[0]
+    block[:, :] = 0.0
+    for j in range(columns):
+        i = first + j
+        for k in range(M):
+            for q in range(M):
+                block[j * M + k, j * M + q] = -weight[i] * D[k, q]
+            block[j * M + k, j * M + k] += diagonal[i, k]
+    for g in faces:
+        a = column_from[g] - first
+        b = column_to[g] - first
+        for k in range(M):
+            # += because on a full ring of two columns both faces join the same nodes.
+            block[a * M + k, b * M + k] += column_up[g, k]
+            block[b * M + k, a * M + k] += column_down[g, k]
+
+
+@numba.njit(cache=True, nogil=True)
+def take_off(block: Array, down: Array, inverse: Array, up: Array) -> None:
+    """block −= diag(down) · inverse · diag(up)."""
+    n = block.shape[0]
+    for i in range(n):
+        for j in range(n):
+            block[i, j] -= down[i] * inverse[i, j] * up[j]

@@ -1,0 +1,285 @@
+"""The ladder of planar grids a film is solved on, and what two rungs say about its error.
+
+Space is second order, so two rungs extrapolate to fourth (Richardson), and two extrapolants
+bound the error. Time converges geometrically; four more points on the coarsest rung give the
+correction for the harmonics left out.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+
+from squeezefilm.errors import InputError
+from squeezefilm.film.line_grid import refined_line
+from squeezefilm.film.planar_balance import Balance, Balancer, Film, resampled
+from squeezefilm.film.planar_cut import cut_ellipse_grid
+from squeezefilm.film.planar_gap import PlanarGap, gap_values
+from squeezefilm.film.planar_grid import (
+    PlanarGrid,
+    disc_grid,
+    ellipse_grid,
+    graded_line,
+    rectangle_grid,
+)
+from squeezefilm.quantities import ComplexArray, FloatArray, require
+
+PlanarShape = Literal["rectangle", "disc", "ellipse"]
+RUNGS = (2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64)
+_MOST_HARMONICS = 24
+_MEMORY = 2.0e9
+"""Bytes the eliminated rows may take."""
+
+
+class Ladder:
+    """The grids of one shape, finer and finer, all images of one smooth map."""
+
+    def __init__(
+        self,
+        shape: PlanarShape,
+        aspect: float,
+        film: Film,
+        quarter: bool,
+        cells: tuple[int, int] | None,
+    ) -> None:
+        self.shape, self.aspect, self.film, self.quarter = shape, aspect, film, quarter
+        self._grids: dict[int, PlanarGrid] = {}
+        gap = film.gap
+        self.varied = not (
+            isinstance(gap, PlanarGap) and gap.wave_number == 0.0 and gap.ridge_height == 0.0
+        )
+        waves = 0.0
+        # Ridges across an ellipse: lines that follow them, cut at the boundary.
+        self.cut = False
+        if isinstance(gap, PlanarGap):
+            ridges = gap.ridge_wave_number if gap.ridge_height > 0.0 else 0.0
+            waves = max(2.0 * gap.wave_number, 1.5 * ridges) / (2 * np.pi)
+            self.cut = shape != "rectangle" and ridges > np.pi
+        if cells is not None:
+            require("cells", np.array(cells), at_least=2)
+            # Even, because the full ellipse joins opposite columns.
+            self._base = (cells[0] / 2, 2 * round(cells[1] / 4) or 1)
+        elif shape == "rectangle":
+            # `waves` periods over the whole length, three cells each and rung.
+            along = max(2, int(np.ceil(waves)))
+            self._base = (along, 2) if quarter else (2 * along, 4)
+        elif self.cut:
+            along = max(4, int(np.ceil(2 * waves)))
+            self._base = (along, 4) if quarter else (2 * along, 8)
+        else:
+            out = max(2, int(np.ceil(2 * waves)))
+            around = max(1, int(np.ceil(2 * waves)))
+            self._base = (out, around) if quarter else (out, 4 * around)
+        self.excursion = self._excursion()
+
+    def _excursion(self) -> float:
+        if isinstance(self.film.gap, PlanarGap):
+            return self.film.gap.excursion_ratio
+        grid = self.grid(RUNGS[0])
+        T = 2 * np.pi * np.arange(16) / 16
+        H = gap_values(self.film.gap, grid.X, grid.Y, T)
+        first = float(np.abs(np.fft.rfft(H, axis=1)[:, 1]).max() / 8)
+        if first < 1e-12:
+            raise InputError("the gap has no first harmonic in T, so nothing drives the film")
+        return first
+
+    def relative_excursion(self) -> float:
+        """The largest swing of the gap over its mean at the same place."""
+        grid = self.grid(RUNGS[0])
+        H = gap_values(self.film.gap, grid.X, grid.Y, 2 * np.pi * np.arange(16) / 16)
+        mean = H.mean(axis=1, keepdims=True)
+        return float((np.abs(H - mean) / mean).max())
+
+    def grid(self, rung: int) -> PlanarGrid:
+        if rung not in self._grids:
+            self._grids[rung] = self._make(rung)
+        return self._grids[rung]
+
+    def _make(self, rung: int) -> PlanarGrid:
+        counts = (round(self._base[0] * rung), round(self._base[1] * rung))
+        sigma = self.film.squeeze_number
+        # Under a gap that varies the pressure has shape inside too, and the edge must not take
+        # all the cells.
+        least = 0.15 if self.varied else 2e-3
+        if self.cut:
+            x = graded_line(counts[0], 1.0, sigma, mirror=not self.quarter, least=least)
+            x = refined_line(x, lambda X: self._mean_gap(X, 0.0 * X))
+            low = 0.0 if self.quarter else -self.aspect
+            y = np.linspace(low, self.aspect, 2 * counts[1] + 1)
+            return cut_ellipse_grid(x, y, self.aspect, quarter=self.quarter)
+        if self.shape == "disc":
+            return disc_grid(sigma, counts, quarter=self.quarter, least=least)
+        if self.shape == "ellipse":
+            return ellipse_grid(self.aspect, sigma, counts, quarter=self.quarter, least=least)
+        x = graded_line(counts[0], 0.5, sigma, mirror=not self.quarter, least=least)
+        x = refined_line(x, lambda X: self._mean_gap(X, 0.0 * X))
+        # Along a long side the share is one of the short side.
+        along = least / max(1.0, self.aspect)
+        y = graded_line(counts[1], self.aspect / 2, sigma, mirror=not self.quarter, least=along)
+        y = refined_line(y, lambda Y: self._mean_gap(0.0 * Y, Y))
+        return rectangle_grid(x, y, quarter=self.quarter)
+
+    def _mean_gap(self, X: FloatArray, Y: FloatArray) -> FloatArray:
+        T = 2 * np.pi * np.arange(4) / 4
+        return np.asarray(gap_values(self.film.gap, X, Y, T).mean(axis=1))
+
+
+@dataclass(frozen=True)
+class Extrapolated:
+    over_pressure: float
+    error: float
+    harmonics: ComplexArray
+
+
+@dataclass(frozen=True)
+class Climb:
+    best: Extrapolated
+    fine: Balance
+    iterations: int
+    reached: bool
+    status: str
+
+
+def climb_to(ladder: Ladder, tolerance: float) -> Climb:
+    accuracy = 1e-7
+    iterations = 0
+
+    def solved(rung: int, count: int, start: FloatArray | None) -> Balance:
+        nonlocal iterations
+        state = _solve_or_continue(ladder.film, ladder.grid(rung), count, start, accuracy)
+        iterations += state.iterations
+        return state
+
+    excursion = ladder.relative_excursion()
+    count = 2 * int(np.ceil(1.5 + 2.5 * excursion + 3.0 * excursion**6)) + 1
+    low = solved(RUNGS[0], count, None)
+    if low.converged:
+        # Newton's error must stay well below what the extrapolation looks at.
+        accuracy = float(np.clip(1e-3 * tolerance * abs(low.over_pressure), 1e-13, 1e-7))
+        low = solved(RUNGS[0], count, low.gas)
+    correction = 0.0
+    while True:
+        guess = resampled(low.gas, count + 4) if low.converged else None
+        high = solved(RUNGS[0], count + 4, guess)
+        before, correction = correction, high.over_pressure - low.over_pressure
+        # Harmonics converge geometrically, but with changes of sign: one small step may be chance.
+        doubt = max(abs(correction), 0.3 * abs(before))
+        if high.converged and doubt <= 0.5 * tolerance * abs(high.over_pressure):
+            break
+        if count + 4 > 2 * _MOST_HARMONICS:
+            status = (
+                f"stopped: {count // 2} harmonics in time are too few or Newton's method failed"
+            )
+            best = Extrapolated(high.over_pressure, abs(correction), high.harmonics)
+            return Climb(best, high, iterations, False, status)
+        count, low = count + 4, high
+    shift = high.harmonics - low.harmonics
+
+    states = [low]
+    best = Extrapolated(high.over_pressure, float("inf"), high.harmonics)
+    for place, rung in enumerate(RUNGS[1:], start=1):
+        grid = ladder.grid(rung)
+        if grid.rows * (8.0 * grid.columns * count) * (grid.columns * count) > _MEMORY:
+            return Climb(
+                best, states[-1], iterations, False,
+                f"known to {best.error / abs(best.over_pressure):.2g} of the over-pressure; "
+                f"{tolerance:.2g} would take more memory than allowed",
+            )  # fmt: skip
+        states.append(solved(rung, count, _moved(ladder.film, states[-1], grid)))
+        if not states[-1].converged:
+            status = f"stopped: Newton's method failed on {grid.rows} × {grid.columns} nodes"
+            return Climb(best, states[-1], iterations, False, status)
+        if place < 2:
+            continue
+        space = _irregular if ladder.cut else _richardson
+        value, harmonics, error = space(states)
+        value += correction
+        error += doubt + 1e-13
+        best = Extrapolated(value, error, harmonics + shift)
+        if error <= tolerance * abs(value):
+            status = (
+                f"solved to {error / abs(value):.1g} of the over-pressure on "
+                f"{grid.rows} × {grid.columns} nodes at {count} times"
+            )
+            return Climb(best, states[-1], iterations, True, status)
+    status = f"known to {best.error / abs(best.over_pressure):.2g} of the over-pressure only"
+    return Climb(best, states[-1], iterations, False, status)
+
+
+def _richardson(states: list[Balance]) -> tuple[float, ComplexArray, float]:
+    """Over-pressure and harmonics extrapolated from the last two rungs, and the error in space."""
+
+    def extrapolated(place: int) -> tuple[float, ComplexArray]:
+        gain = (RUNGS[place] / RUNGS[place - 1]) ** 2 - 1.0
+        fine, coarse = states[place], states[place - 1]
+        return (
+            fine.over_pressure + (fine.over_pressure - coarse.over_pressure) / gain,
+            fine.harmonics + (fine.harmonics - coarse.harmonics) / gain,
+        )
+
+    place = len(states) - 1
+    value, harmonics = extrapolated(place)
+    before, _ = extrapolated(place - 1)
+    earlier = extrapolated(place - 2)[0] if place > 2 else before
+    # Extrapolants of fourth order on grids 1.3 to 1.5 times finer differ by 0.5 to 4 times the
+    # error left; the other terms are for those that agree by chance.
+    trend = max(0.8 * abs(value - before), 0.2 * abs(before - earlier))
+    chance = 0.06 if place == 2 else 0.03
+    return value, harmonics, trend + chance * abs(value - states[-1].over_pressure)
+
+
+def _irregular(states: list[Balance]) -> tuple[float, ComplexArray, float]:
+    """The last rung as it is: an error that jumps with the grid cannot be extrapolated."""
+    fine = states[-1]
+    steps = [abs(fine.over_pressure - state.over_pressure) for state in states[-3:-1]]
+    return fine.over_pressure, fine.harmonics, 1.3 * max(steps[1], 0.5 * steps[0])
+
+
+def _moved(film: Film, state: Balance, grid: PlanarGrid) -> FloatArray:
+    """The gas of `state` on another grid of the same map: P^{1/n} = m/H is smooth in space."""
+    count = state.gas.shape[1]
+    T = 2 * np.pi * np.arange(count) / count
+    old = state.grid
+    ratio = state.gas / gap_values(film.gap, old.X, old.Y, T)
+    field = ratio.reshape(old.rows, old.columns, count)
+    field = _stretched(_stretched(field, 0, grid.rows), 1, grid.columns)
+    return field.reshape(-1, count) * gap_values(film.gap, grid.X, grid.Y, T)
+
+
+def _stretched(field: FloatArray, axis: int, size: int) -> FloatArray:
+    have = field.shape[axis]
+    at = np.clip((np.arange(size) + 0.5) * have / size - 0.5, 0.0, have - 1.0)
+    left = np.minimum(at.astype(np.int64), max(have - 2, 0))
+    part = (at - left).reshape([-1 if a == axis else 1 for a in range(field.ndim)])
+    right = np.minimum(left + 1, have - 1)
+    return np.asarray(
+        (1.0 - part) * np.take(field, left, axis) + part * np.take(field, right, axis)
+    )
+
+
+def _solve_or_continue(
+    film: Film, grid: PlanarGrid, count: int, start: FloatArray | None, accuracy: float
+) -> Balance:
+    """Newton's method; where it fails, by way of smaller motions about the same mean gap."""
+    state = Balancer(film, grid, count).solve(start, accuracy)
+    if state.converged:
+        return state
+    gap = film.gap
+    T = 2 * np.pi * np.arange(16) / 16
+    spent, gas = state.iterations, None
+    for part in (0.25, 0.5, 0.7, 0.85, 0.95, 1.0):
+
+        def smaller(X: FloatArray, Y: FloatArray, t: FloatArray, part: float = part) -> FloatArray:
+            mean = np.mean([gap(X, Y, np.full((1, 1), s)) for s in T], axis=0)
+            return np.asarray(mean + part * (gap(X, Y, t) - mean))
+
+        eased = Film(
+            smaller if part < 1.0 else gap, film.squeeze_number, film.polytropic_exponent,
+            film.knudsen_number, film.slip,
+        )  # fmt: skip
+        state = Balancer(eased, grid, count).solve(gas, accuracy if part == 1.0 else 1e-3)
+        spent += state.iterations
+        gas = state.gas if state.converged else None
+    return replace(state, iterations=spent)

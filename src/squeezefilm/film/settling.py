@@ -1,0 +1,257 @@
+"""Marching to the periodic state: the mean load a vibrating film settles to.
+
+The slowest mode of a film of large squeeze number takes some σ/10 periods to settle, so the map
+of one period onto the next is accelerated (Anderson mixing); its fixed point is the same.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from squeezefilm.errors import ConvergenceError
+from squeezefilm.film.line_grid import Gap, Shape, gap_table, line_grid, mean_over
+from squeezefilm.film.slip import slip_law
+from squeezefilm.film.transient import (
+    NEWTON_LIMIT,
+    NEWTON_TOLERANCE,
+    SCHEMES,
+    Scheme,
+    check_film,
+    stage_times,
+)
+from squeezefilm.film.transient_kernel import march
+from squeezefilm.quantities import Dimensionless, DimensionlessArray, FloatArray, require
+
+_MEMORY = 8
+"""Periods the acceleration remembers."""
+
+
+@dataclass(frozen=True)
+class FilmSettled:
+    """The periodic state a march settles into.
+
+    `mean_load` W is the period's mean, `over_pressure` W − 1, `over_pressure_error` its estimated
+    absolute error (infinite where one resolution was asked for). `load` W(T) at `time` (steps,)
+    and the period's mean `pressure` at `position` (cells,) are those of the finest grid;
+    `mean_load` is extrapolated from the two finest. `residual` is the largest relative change of
+    the gas in a cell over the last period, `mass_residual` the gas lost over it, relative to the
+    gas held.
+    """
+
+    mean_load: Dimensionless
+    over_pressure: Dimensionless
+    over_pressure_error: Dimensionless
+    time: DimensionlessArray
+    load: DimensionlessArray
+    position: DimensionlessArray
+    pressure: DimensionlessArray
+    residual: Dimensionless
+    mass_residual: Dimensionless
+    periods: int
+    iterations: int
+    cells: int
+    steps: int
+    status: str
+    squeeze_number: Dimensionless
+    polytropic_exponent: Dimensionless
+    knudsen_number: Dimensionless
+    slip: str
+    shape: Shape
+    scheme: Scheme
+
+
+class _Mixer:
+    """Anderson mixing of a map's iterates: from x and G(x), the next x to try."""
+
+    def __init__(self) -> None:
+        self._x: list[FloatArray] = []
+        self._f: list[FloatArray] = []
+
+    def next(self, x: FloatArray, image: FloatArray) -> FloatArray:
+        self._x.append(x)
+        self._f.append((image - x).ravel())
+        del self._x[: -_MEMORY - 1], self._f[: -_MEMORY - 1]
+        if len(self._x) == 1:
+            return image
+        dX = np.diff(np.array([row.ravel() for row in self._x]), axis=0).T
+        dF = np.diff(np.array(self._f), axis=0).T
+        weights = np.linalg.lstsq(dF, self._f[-1], rcond=1e-12)[0]
+        mixed = image - ((dX + dF) @ weights).reshape(x.shape)
+        # A mixture far off the map's own answer comes from a memory that no longer fits.
+        if np.all((mixed > 0.5 * image) & (mixed < 2.0 * image)):
+            return np.asarray(mixed)
+        self._x.clear()
+        self._f.clear()
+        return image
+
+
+def settle_to_periodic(
+    gap: Gap,
+    squeeze_number: Dimensionless,
+    *,
+    shape: Shape = "strip",
+    tolerance: Dimensionless | None = 1e-3,
+    cells: int = 24,
+    steps: int = 32,
+    polytropic_exponent: Dimensionless = 1.0,
+    knudsen_number: Dimensionless = 0.0,
+    slip: str = "first",
+    scheme: Scheme = "bdf2",
+    accelerate: bool = True,
+    settled: Dimensionless = 1e-10,
+    max_periods: int = 2000,
+    max_cells: int = 1600,
+) -> FilmSettled:
+    """The periodic state of the film under a gap H(X, T) of period 2π, by marching in time.
+
+    `squeeze_number` σ is on the full length of the strip (X from −½ to ½) or the disc's radius.
+    Starts with `cells` and `steps` a period and doubles both until the over-pressure, Richardson
+    extrapolated, is known to `tolerance` (relative to the over-pressure); `tolerance=None` takes
+    the one resolution as it is. A period counts as settled when it changes the gas in no cell by
+    more than `settled` (relative). Second order in time and space (`backward_euler`: first in
+    time, and no extrapolation).
+
+    Raises `InputError`, `GeometryError` (a gap that closes), and `ConvergenceError` with the
+    best state had where the march does not settle or `max_cells` do not reach the tolerance.
+    Holds for isothermal (1) to adiabatic (1.4) viscous flow at any σ and excursion below 1.
+    """
+    check_film(shape, squeeze_number, polytropic_exponent, knudsen_number)
+    require("cells", cells, at_least=4)
+    require("steps", steps, at_least=4)
+    require("max_periods", max_periods, at_least=1)
+    if tolerance is not None:
+        require("tolerance", tolerance, above=0.0)
+    history: list[FilmSettled] = []
+    guess: tuple[FloatArray, FloatArray] | None = None
+    while True:
+        result, guess = _settle(
+            gap, squeeze_number, shape, cells, steps, polytropic_exponent, knudsen_number,
+            slip, scheme, accelerate, settled, max_periods, guess,
+        )  # fmt: skip
+        if result.residual > settled:
+            raise ConvergenceError(
+                f"the film {result.status}; allow more periods (now {max_periods})",
+                partial=result,
+                residual=result.residual,
+                iterations=result.periods,
+            )
+        history.append(result)
+        if tolerance is None:
+            return result
+        if len(history) > 1:
+            best = _extrapolated(history)
+            if best.over_pressure_error <= tolerance * abs(best.over_pressure):
+                return best
+        if 2 * cells > max_cells:
+            best = _extrapolated(history) if len(history) > 1 else result
+            raise ConvergenceError(
+                f"{cells} cells give the over-pressure {best.over_pressure:.4g} to "
+                f"{best.over_pressure_error:.2g}, not to the {tolerance:.2g} of it asked for; "
+                "raise max_cells or tolerance",
+                partial=best,
+                residual=best.over_pressure_error,
+                iterations=best.periods,
+            )
+        cells, steps = 2 * cells, 2 * steps
+
+
+def _extrapolated(history: list[FilmSettled]) -> FilmSettled:
+    coarse, fine = history[-2].mean_load, history[-1].mean_load
+    if history[-1].scheme == "backward_euler":
+        return replace(history[-1], over_pressure_error=2.0 * abs(fine - coarse))
+    W = fine + (fine - coarse) / 3.0
+    # Two grids cannot tell whether the order is reached; three can.
+    error = abs(W - fine)
+    if len(history) > 2:
+        before = coarse + (coarse - history[-3].mean_load) / 3.0
+        error = min(error, max(abs(W - before) / 2, abs(W - fine) / 16))
+    error += 1e-12
+    return replace(history[-1], mean_load=W, over_pressure=W - 1.0, over_pressure_error=error)
+
+
+def _settle(
+    gap: Gap,
+    sigma: float,
+    shape: Shape,
+    cells: int,
+    steps: int,
+    n: float,
+    knudsen: float,
+    slip: str,
+    scheme: Scheme,
+    accelerate: bool,
+    settled: float,
+    max_periods: int,
+    guess: tuple[FloatArray, FloatArray] | None,
+) -> tuple[FilmSettled, tuple[FloatArray, FloatArray]]:
+    grid = line_grid(shape, cells, sigma, mean_over(gap, np.pi / 4 * np.arange(8.0)))
+    stages = stage_times(scheme)
+    dt = 2 * np.pi / steps
+    at = ((np.arange(steps)[:, None] + stages) * dt).ravel()
+    H, H_face = gap_table(gap, grid.centre, at), gap_table(gap, grid.face, at)
+    code = slip_law(slip, knudsen)
+    if guess is None:
+        # Gas that cannot follow: m is constant in time, and ⟨H³ P^{1/n} ∂P⟩ = 0 gives its value.
+        mean = (np.mean(H**3, axis=0) / np.mean(H ** (2 - n), axis=0)) ** (1 / (n + 1))
+        still = H[-1]
+        part = min(1.0, sigma / 30.0)
+        x = np.stack(
+            [still + (mean - still) * part, H[-1 - stages.size] * (1 - part) + mean * part]
+        )
+    else:
+        x = np.stack([np.interp(grid.centre, guess[0], row) for row in guess[1]])
+    if scheme != "bdf2":
+        x = x[:1]
+    load = np.empty(steps)
+    field = np.empty((steps, cells))
+    keep = np.arange(steps)
+    mixer = _Mixer()
+    change, lost, iterations, periods = np.inf, 0.0, 0, 0
+    while periods < max_periods:
+        periods += 1
+        m, before = x[0].copy(), x[-1].copy()
+        lost, _, made, done = march(
+            m, before, H, H_face, grid.volume, grid.conductance, dt, float(sigma), SCHEMES[scheme],
+            float(n), float(knudsen), code, NEWTON_TOLERANCE, NEWTON_LIMIT, load, field, keep,
+        )  # fmt: skip
+        iterations += made
+        if done < steps:
+            change = float("inf")
+            break
+        image = np.stack([m, before])[: x.shape[0]]
+        change = float(np.max(np.abs(image / x - 1.0)))
+        if change <= settled:
+            x = image
+            break
+        x = mixer.next(x, image) if accelerate else image
+    W = float(load.mean())
+    good = change <= settled
+    result = FilmSettled(
+        mean_load=W,
+        over_pressure=W - 1.0,
+        over_pressure_error=float("inf"),
+        time=dt * np.arange(1.0, steps + 1),
+        load=load,
+        position=grid.centre,
+        pressure=field.mean(axis=0),
+        residual=change,
+        mass_residual=abs(lost) / float(grid.volume @ x[0]),
+        periods=periods,
+        iterations=iterations,
+        cells=cells,
+        steps=steps,
+        status=(
+            f"settled in {periods} periods of {steps} steps on {cells} cells"
+            if good
+            else f"did not settle in {periods} periods (change {change:.2g} a period)"
+        ),
+        squeeze_number=sigma,
+        polytropic_exponent=n,
+        knudsen_number=knudsen,
+        slip=slip,
+        shape=shape,
+        scheme=scheme,
+    )
+    return result, (grid.centre, x[:2])

@@ -1,0 +1,358 @@
+"""The film in the plane: series, tables, limits, orders, ridges, and the march as a check."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from squeezefilm.errors import ConvergenceError, GeometryError, InputError
+from squeezefilm.film.line_grid import uniform_gap
+from squeezefilm.film.planar import solve_ellipse, solve_planar, solve_rectangle
+from squeezefilm.film.planar_balance import Balancer, Film, derivative, resampled
+from squeezefilm.film.planar_cut import cut_ellipse_grid
+from squeezefilm.film.planar_gap import PlanarGap
+from squeezefilm.film.planar_grid import disc_grid, ellipse_grid, graded_line, rectangle_grid
+from squeezefilm.film.settling import settle_to_periodic
+from squeezefilm.film.teeth import compare_teeth
+
+
+def blech(squeeze_number: float, aspect: float, terms: int = 4001) -> tuple[float, float]:
+    """fk, fd of the rectangle, Blech (1983), as the double series of its eigenfunctions.
+
+    Modes of p'' = iσ(p + ε): each odd (m, n) holds 64/(π⁴m²n²) of the load and answers with
+    iσ/(iσ + λ), λ = π²(m² + n²/aspect²). The sum over n is taken in closed form.
+    """
+    total = 0.0 + 0.0j
+    for m in range(1, terms, 2):
+        z = np.sqrt(1j * squeeze_number + (np.pi * m) ** 2) * aspect / 2
+        tanh = np.tanh(z) if abs(z) < 300 else 1.0
+        share = 8.0 / (np.pi * m) ** 2
+        total += share * 1j * squeeze_number * (aspect / 2 / z) ** 2 * (1.0 - tanh / z)
+    return float(total.real), float(total.imag)
+
+
+def test_the_series_reaches_its_known_crossover():
+    stiffness, damping = blech(21.63490, 1.0)
+    assert stiffness == pytest.approx(damping, rel=1e-6)
+
+
+@pytest.mark.parametrize("squeeze_number", [0.5, 10.0, 21.6349, 200.0])
+@pytest.mark.parametrize("aspect", [1.0, 2.5])
+def test_small_motion_of_a_rectangle_agrees_with_blech(squeeze_number, aspect):
+    excursion = 2e-3
+    stiffness, damping = blech(squeeze_number, aspect)
+    film = solve_rectangle(squeeze_number, excursion, aspect, tolerance=1e-4)
+    assert film.over_pressure == pytest.approx(1.25 * excursion**2 * stiffness, rel=2e-4)
+    assert film.stiffness_relative == pytest.approx(stiffness, rel=3e-4)
+    assert film.damping_relative == pytest.approx(damping, rel=3e-4)
+
+
+def test_square_crossover():
+    film = solve_rectangle(21.63490, 1e-3, 1.0, tolerance=1e-5)
+    assert film.stiffness_relative == pytest.approx(film.damping_relative, rel=1e-4)
+
+
+@pytest.mark.parametrize("tolerance", [5e-3, 2e-4])
+@pytest.mark.parametrize(
+    ("squeeze_number", "expected"), [(1.0, 1.018267), (10.0, 1.196820), (100.0, 1.306992)]
+)
+def test_the_disc_agrees_with_the_axisymmetric_values(squeeze_number, expected, tolerance):
+    film = solve_planar("disc", PlanarGap(0.5), squeeze_number, tolerance=tolerance)
+    assert abs(film.mean_load - expected) <= film.over_pressure_error + 5e-7
+    assert film.over_pressure_error <= tolerance * film.over_pressure
+
+
+@pytest.mark.parametrize("aspect", [0.999, 1.001])
+def test_an_ellipse_passes_into_the_disc(aspect):
+    film = solve_ellipse(10.0, 0.5, aspect, tolerance=1e-3)
+    assert film.over_pressure == pytest.approx(0.196820, rel=2e-3)
+
+
+def test_a_long_rectangle_passes_into_the_strip():
+    film = solve_rectangle(10.0, 0.5, 100.0, tolerance=1e-4)
+    longer = solve_rectangle(10.0, 0.5, 200.0, tolerance=1e-4)
+    # What the two ends lose goes with 1/aspect.
+    assert 2 * longer.over_pressure - film.over_pressure == pytest.approx(0.160251, rel=3e-4)
+
+
+def test_an_ellipse_turned_by_a_quarter_is_the_same_film():
+    tall = solve_ellipse(10.0, 0.5, 2.0, tolerance=1e-4)
+    wide = solve_ellipse(40.0, 0.5, 0.5, tolerance=1e-4)
+    assert tall.over_pressure == pytest.approx(wide.over_pressure, rel=2e-4)
+
+
+def test_polytropic_gas_and_slip_on_a_disc_agree_with_the_march():
+    for extra in (
+        {"polytropic_exponent": 1.4},
+        {"knudsen_number": 0.05},
+        {"knudsen_number": 0.05, "slip": "veijola", "polytropic_exponent": 1.2},
+    ):
+        film = solve_planar("disc", PlanarGap(0.6), 20.0, tolerance=1e-3, **extra)
+        march = settle_to_periodic(uniform_gap(0.6), 20.0, shape="disc", tolerance=1e-4, **extra)
+        allowed = film.over_pressure_error + march.over_pressure_error
+        assert abs(film.over_pressure - march.over_pressure) <= allowed
+
+
+def test_a_wave_over_a_long_strip_agrees_with_the_march():
+    excursion, wave, squeeze_number = 0.5, 2.5, 30.0
+    march = settle_to_periodic(
+        lambda X, T: 1.0 + excursion * np.cos(wave * X) * np.cos(T), squeeze_number, tolerance=2e-4
+    )
+    ends = [
+        solve_rectangle(squeeze_number, excursion, a, wave_number=wave, tolerance=1e-4)
+        for a in (50.0, 100.0)
+    ]
+    strip = 2 * ends[1].over_pressure - ends[0].over_pressure
+    assert strip == pytest.approx(march.over_pressure, rel=1e-3)
+
+
+def _solved(grid, excursion=0.5, squeeze_number=10.0, count=7):
+    film = Film(PlanarGap(excursion), squeeze_number, 1.0, 0.0, 0)
+    return Balancer(film, grid, count).solve(None, 1e-10)
+
+
+def _grids(shape: str, k: int, quarter: bool = True):
+    if shape == "disc":
+        return disc_grid(10.0, (k, k if quarter else 4 * k), quarter=quarter)
+    if shape == "ellipse":
+        return ellipse_grid(1.6, 10.0, (k, k if quarter else 4 * k), quarter=quarter)
+    n = k if quarter else 2 * k
+    x = graded_line(n, 0.5, 10.0, mirror=not quarter)
+    y = graded_line(n, 0.8, 10.0, mirror=not quarter)
+    return rectangle_grid(x, y, quarter=quarter)
+
+
+@pytest.mark.parametrize("shape", ["rectangle", "disc", "ellipse"])
+def test_the_order_in_space_is_two(shape):
+    loads = [_solved(_grids(shape, k)).over_pressure for k in (6, 12, 24)]
+    order = np.log2((loads[0] - loads[1]) / (loads[1] - loads[2]))
+    assert order == pytest.approx(2.0, abs=0.15)
+
+
+@pytest.mark.parametrize("shape", ["rectangle", "disc", "ellipse"])
+def test_a_quarter_is_the_whole(shape):
+    quarter, whole = _solved(_grids(shape, 6)), _solved(_grids(shape, 6, quarter=False))
+    assert quarter.converged
+    assert whole.over_pressure == pytest.approx(quarter.over_pressure, rel=1e-9)
+    area = {"rectangle": 1.6, "disc": np.pi, "ellipse": 1.6 * np.pi}[shape]
+    assert whole.grid.area.sum() == pytest.approx(area, rel=1e-12)
+    assert 4 * quarter.grid.area.sum() == pytest.approx(area, rel=1e-12)
+
+
+def test_harmonics_converge_geometrically():
+    exact = _solved(_grids("ellipse", 6), count=31).over_pressure
+    errors = [
+        abs(_solved(_grids("ellipse", 6), count=M).over_pressure - exact) for M in (7, 11, 15)
+    ]
+    assert errors[1] < 0.05 * errors[0]
+    assert errors[2] < 0.05 * errors[1]
+
+
+def test_no_gas_is_lost_over_a_period():
+    state = _solved(_grids("ellipse", 8), excursion=0.7, count=15)
+    grid = state.grid
+    T = 2 * np.pi * np.arange(15) / 15
+    P = state.gas / (1.0 + 0.7 * np.cos(T))
+    H = 1.0 + 0.7 * np.cos(T)
+    inside = P[grid.edge_node]
+    flow = grid.edge_conductance[:, None] * H**3 * 0.5 * (inside + 1.0) * (inside - 1.0)
+    assert abs(flow.sum(axis=0).mean()) < 1e-9 * np.abs(flow).sum(axis=0).mean()
+
+
+def test_the_spectral_derivative_and_resampling_are_exact_on_what_they_carry():
+    T = 2 * np.pi * np.arange(9) / 9
+    wave = 0.3 + np.cos(3 * T) - 2 * np.sin(4 * T)
+    assert derivative(9) @ wave == pytest.approx(-3 * np.sin(3 * T) - 8 * np.cos(4 * T), abs=1e-12)
+    fine = 2 * np.pi * np.arange(24) / 24
+    assert resampled(wave, 24) == pytest.approx(0.3 + np.cos(3 * fine) - 2 * np.sin(4 * fine))
+    assert resampled(resampled(wave, 24), 9) == pytest.approx(wave)
+
+
+def test_force_harmonics_follow_the_sign_of_stiffness_and_damping():
+    film = solve_ellipse(10.0, 0.3, 1.3, tolerance=1e-3)
+    first = film.force_harmonics[0]
+    assert first == pytest.approx(
+        -0.3 * (film.stiffness_relative + 1j * film.damping_relative), rel=1e-12
+    )
+    assert film.stiffness_relative > 0
+    assert film.damping_relative > 0
+    assert film.mean_load == 1.0 + film.over_pressure
+    whole = float(film.area @ (film.mean_pressure - 1.0) / film.area.sum())
+    assert whole == pytest.approx(film.over_pressure, rel=0.03)
+
+
+def test_a_given_function_is_the_same_film_as_the_gap_it_spells():
+    gap = PlanarGap(0.5, wave_number=2.0)
+    spelt = solve_planar("ellipse", lambda X, Y, T: gap(X, Y, T), 20.0, tolerance=2e-3)
+    known = solve_planar("ellipse", gap, 20.0, tolerance=2e-3)
+    assert not spelt.quarter
+    assert known.quarter
+    allowed = spelt.over_pressure_error + known.over_pressure_error
+    assert abs(spelt.over_pressure - known.over_pressure) <= allowed
+    assert spelt.stiffness_relative == pytest.approx(known.stiffness_relative, rel=0.03)
+
+
+def test_tilting_the_finger_breaks_the_symmetry_and_costs_load():
+    level = solve_ellipse(10.0, 0.5, 1.3, tolerance=5e-3)
+    tilted = solve_planar(
+        "ellipse",
+        lambda X, Y, T: 1.0 + 0.5 * np.cos(T) + 0.2 * X + 0.1 * Y,
+        10.0,
+        aspect_ratio=1.3,
+        tolerance=5e-3,
+    )
+    far = tilted.mean_pressure[np.argmax(tilted.X)]
+    near = tilted.mean_pressure[np.argmin(tilted.X)]
+    assert far != pytest.approx(near, rel=1e-3)
+    assert tilted.over_pressure != pytest.approx(level.over_pressure, rel=1e-2)
+
+
+# The paper's finger on its stator (PHYSICS, section 1), over l0 = 10 mm.
+_H0 = 0.6e-6 + 2e-6 + 50e-6
+RIDGED = PlanarGap(
+    excursion_ratio=2e-6 / _H0,
+    wave_number=2 * np.pi * 10.0 / 18.7,
+    ridge_height=50e-6 / _H0,
+    ridge_wave_number=2 * np.pi * 10.0 / 0.35,
+)
+
+
+def test_open_grooves_of_the_paper_s_finger_leave_hardly_any_over_pressure():
+    film = solve_planar("rectangle", RIDGED, 20.418, tolerance=1e-2)
+    assert film.over_pressure == pytest.approx(1.651e-4, rel=1e-2)
+    assert abs(film.over_pressure - 1.651e-4) <= film.over_pressure_error
+
+
+def test_grooves_sealed_at_their_ends_are_the_line_s():
+    x = np.linspace(0, 0.5, 1441)
+    grid = rectangle_grid(x, np.linspace(0, 0.5, 3))
+    sealed = np.where(grid.edge_Y == 0.5, 0.0, grid.edge_conductance)
+    film = Film(RIDGED, 20.418, 1.0, 0.0, 0)
+    state = Balancer(film, replace(grid, edge_conductance=sealed), 13).solve(None, 1e-9)
+    assert state.over_pressure == pytest.approx(7.246e-3, rel=5e-3)
+
+
+def test_ridges_across_a_finger_pad():
+    pad = PlanarGap(RIDGED.excursion_ratio, 0.0, RIDGED.ridge_height, 2 * np.pi * 5.0 / 0.35)
+    coarse = solve_planar("ellipse", pad, 20.418 / 4, aspect_ratio=1.4, tolerance=2e-2)
+    fine = solve_planar("ellipse", pad, 20.418 / 4, aspect_ratio=1.4, tolerance=4e-3)
+    assert abs(coarse.over_pressure - fine.over_pressure) <= coarse.over_pressure_error
+    assert fine.over_pressure_error <= 4e-3 * fine.over_pressure
+
+
+@pytest.mark.parametrize("squeeze_number", [1.0, 10.0, 100.0])
+def test_the_cut_ellipse_agrees_with_the_fitted_one(squeeze_number):
+    fitted = solve_planar("disc", PlanarGap(0.5), squeeze_number, tolerance=1e-3)
+    x = graded_line(24, 1.0, squeeze_number, mirror=False)
+    cut = cut_ellipse_grid(x, np.linspace(0.0, 1.0, 49), 1.0)
+    assert 4 * cut.area.sum() == pytest.approx(np.pi, rel=1e-12)
+    state = _solved(cut, squeeze_number=squeeze_number, count=11)
+    assert state.over_pressure == pytest.approx(fitted.over_pressure, rel=6e-3)
+
+
+def test_a_quarter_of_the_cut_ellipse_is_the_whole():
+    x = graded_line(8, 1.0, 10.0, mirror=False)
+    quarter = _solved(cut_ellipse_grid(x, np.linspace(0.0, 1.5, 17), 1.5))
+    x = np.concatenate([-x[:0:-1], x])
+    whole = _solved(cut_ellipse_grid(x, np.linspace(-1.5, 1.5, 33), 1.5, quarter=False))
+    assert whole.over_pressure == pytest.approx(quarter.over_pressure, rel=1e-9)
+
+
+@pytest.mark.parametrize("squeeze_number", [0.01, 1.0, 1e4])
+def test_the_largest_excursion_is_within_reach(squeeze_number):
+    film = solve_ellipse(squeeze_number, 0.95, 1.3, tolerance=2e-2)
+    assert film.over_pressure > 0
+    assert film.over_pressure_error <= 2e-2 * film.over_pressure
+
+
+@pytest.mark.nightly
+def test_the_error_estimate_is_honest():
+    """True error within the estimate in 95 % of random films; seed 20, 60 films, 3 tolerances."""
+    random = np.random.default_rng(20)
+    ratios = []
+    for _ in range(60):
+        film = {
+            "shape": str(random.choice(["rectangle", "ellipse"])),
+            "gap": PlanarGap(random.uniform(0.05, 0.9), random.choice([0.0, 2.0])),
+            "squeeze_number": 10 ** random.uniform(-1.5, 4.0),
+            "aspect_ratio": float(np.exp(random.uniform(-1.0, 1.0))),
+            "polytropic_exponent": random.choice([1.0, 1.4]),
+            "knudsen_number": random.choice([0.0, 0.05]),
+            "slip": str(random.choice(["first", "veijola"])),
+        }
+        exact = solve_planar(**film, tolerance=1.5e-4)
+        for tolerance in (2e-2, 5e-3, 1e-3):
+            asked = solve_planar(**film, tolerance=tolerance)
+            true = abs(asked.over_pressure - exact.over_pressure)
+            ratios.append(true / (asked.over_pressure_error + exact.over_pressure_error))
+    assert np.mean(np.array(ratios) <= 1.0) >= 0.95
+    assert 1.0 / np.median(ratios) <= 6.0
+
+
+@pytest.mark.nightly
+def test_open_grooves_converge_on_grids_of_two_kinds():
+    film = solve_planar("rectangle", RIDGED, 20.418, tolerance=3e-4)
+    equations = Film(RIDGED, 20.418, 1.0, 0.0, 0)
+    uniform = []
+    for k in (256, 512):
+        grid = rectangle_grid(np.linspace(0, 0.5, 2 * k + 1), np.linspace(0, 0.5, k // 16 + 1))
+        uniform.append(Balancer(equations, grid, 13).solve(None, 1e-8).over_pressure)
+    assert uniform[1] + (uniform[1] - uniform[0]) / 3 == pytest.approx(film.over_pressure, rel=1e-2)
+
+
+def test_teeth_matter_where_the_film_is_smooth():
+    smooth = compare_teeth(20.418, PlanarGap(0.04), tooth_width=0.13, tooth_pitch=0.187)
+    # So narrow a tooth lets the gas out: its own squeeze number is 60 times smaller.
+    assert smooth.tooth_squeeze_number == pytest.approx(20.418 * 0.13**2)
+    assert smooth.ratio < 0.01
+    stiff = compare_teeth(1e6, PlanarGap(0.5), tooth_width=0.13, tooth_pitch=0.187)
+    # No gas moves at all: what is left is the area.
+    assert stiff.ratio == pytest.approx(0.13 / 0.187, rel=0.03)
+    with pytest.raises(InputError, match="tooth_width"):
+        compare_teeth(20.0, PlanarGap(0.5), tooth_width=0.2, tooth_pitch=0.1)
+
+
+@pytest.mark.parametrize(
+    ("change", "error", "says"),
+    [
+        ({"squeeze_number": 0.0}, InputError, "squeeze_number = 0"),
+        ({"squeeze_number": float("nan")}, InputError, "nan"),
+        ({"aspect_ratio": -1.0}, InputError, "aspect_ratio = -1"),
+        ({"polytropic_exponent": 3.0}, InputError, "polytropic_exponent = 3"),
+        ({"knudsen_number": float("inf")}, InputError, "inf"),
+        ({"slip": "second"}, InputError, "second"),
+        ({"tolerance": 0.0}, InputError, "tolerance"),
+        ({"shape": "triangle"}, InputError, "triangle"),
+        ({"shape": "disc", "aspect_ratio": 2.0}, InputError, "disc"),
+        ({"gap": lambda X, Y, T: 1.0 + 1.1 * np.cos(T)}, GeometryError, "the gap closes"),
+        ({"gap": lambda X, Y, T: 1.0 + 0.1 * np.cos(T / 2)}, InputError, "not periodic"),
+        ({"gap": lambda X, Y, T: 1.0 + 0.1 * np.cos(2 * T)}, InputError, "first harmonic"),
+        ({"gap": lambda X, Y, T: np.nan * T}, InputError, "finite"),
+        ({"gap": lambda X, Y, T: np.ones(3)}, InputError, "broadcasts"),
+    ],
+)
+def test_what_cannot_be_used_is_refused_with_its_value(change, error, says):
+    asked = {"shape": "rectangle", "gap": PlanarGap(0.5), "squeeze_number": 10.0} | change
+    with pytest.raises(error, match=says):
+        solve_planar(**asked)
+
+
+@pytest.mark.parametrize("excursion", [0.0, 1.0, float("nan")])
+def test_an_excursion_out_of_range_is_refused(excursion):
+    with pytest.raises(InputError, match="excursion_ratio"):
+        solve_rectangle(10.0, excursion)
+
+
+def test_ridges_that_reach_the_surface_are_refused():
+    with pytest.raises(GeometryError, match="the gap closes"):
+        solve_rectangle(10.0, 0.5, ridge_height=0.6, ridge_wave_number=40.0)
+
+
+def test_a_tolerance_out_of_reach_raises_with_the_best_state(monkeypatch):
+    monkeypatch.setattr("squeezefilm.film.planar_ladder._MEMORY", 2e6)
+    with pytest.raises(ConvergenceError, match="memory") as caught:
+        solve_ellipse(10.0, 0.5, 1.5, tolerance=1e-5)
+    assert caught.value.partial.over_pressure == pytest.approx(0.22470, rel=5e-3)
+    assert caught.value.partial.over_pressure_error > 0
