@@ -120,6 +120,13 @@ def analyze(
     ] = None,
     force: Annotated[str | None, typer.Option(help='Normal force, like "0.5 N".')] = None,
     surface: Annotated[str | None, typer.Option(help="Which of its surfaces.")] = None,
+    model: Annotated[
+        str | None,
+        typer.Option(
+            help="Friction model; without one the paper's where it holds, else the solved film. "
+            "paper2008, film-sealed, film-open, film-plateau, film-smooth."
+        ),
+    ] = None,
     strict: Strict = False,
 ) -> None:
     """From the display's description to resonance, amplitude, friction and textures."""
@@ -137,6 +144,7 @@ def analyze(
             vibration_amplitude=_quantity(amplitude, "--amplitude", Unit("m")),
             normal_force=_quantity(force, "--force", Unit("N")),
             surface=surface,
+            model=model,  # type: ignore[arg-type] # checked with a message by FrictionLaw
             strict=strict,
             progress=step,
         )

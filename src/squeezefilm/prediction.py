@@ -1,42 +1,31 @@
 """The chain of one display: volts, frequency and force to the friction a finger meets.
 
-Each link names the model that made its numbers. Today's links are the beam (or the measured
-stator) and the paper's asymptotic film; a solved plate and a solved film take their places behind
-the same two seams, `WorkingMode` and `relative_friction_curve`.
+Each link names the model that made its numbers: the beam (or the measured stator) the amplitude,
+the paper's asymptote or the solved film the friction.
 """
 
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable
 from dataclasses import dataclass
 
-import numpy as np
-
-from squeezefilm.contact import paper
 from squeezefilm.display import Display, Surface
-from squeezefilm.errors import InputError, OutOfRangeError
-from squeezefilm.film.gap import PaperGap, squeeze_number
-from squeezefilm.film.limits import PaperModel
+from squeezefilm.errors import InputError, OutOfRangeWarning
+from squeezefilm.film.gap import squeeze_number
 from squeezefilm.film.validity import FilmValidity, film_validity
+from squeezefilm.friction import SOLVED_DEFAULT, FrictionLaw, FrictionModel, friction_law
 from squeezefilm.plate.beam import BeamTheory
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.working_mode import WorkingMode, working_mode
 from squeezefilm.quantities import (
     Dimensionless,
-    DimensionlessArray,
     Hertz,
     Metre,
-    MetreArray,
-    MetreLike,
     Newton,
     Unit,
     Volt,
     require,
 )
-
-FrictionModel = PaperModel
-"""The names of the models of film and friction that can be asked for."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,8 +34,9 @@ class Prediction:
 
     `amplitude_model` made the vibration amplitude (zero-to-peak, at an antinode), `model` the
     pressure and the friction. `mean_pressure` is the film's, averaged over contact and period,
-    divided by ambient. `friction_reduction` is µ − µ′. `validity` says how far the film's model is
-    from where it holds.
+    divided by ambient, `mean_pressure_error` the solver's estimate of its error (0 for a closed
+    form). `friction_reduction` is µ − µ′. `validity` says how far the paper's asymptote is from
+    where it holds; `law` is the friction as a function of the amplitude.
     """
 
     display: str
@@ -58,90 +48,15 @@ class Prediction:
     amplitude_model: str
     vibration_amplitude: Metre
     model: FrictionModel
+    law: FrictionLaw
     squeeze_number: Dimensionless
     mean_pressure: Dimensionless
+    mean_pressure_error: Dimensionless
     relative_friction: Dimensionless
     friction_coefficient: Dimensionless
     friction_reduction: Dimensionless
     validity: FilmValidity
     warnings: tuple[str, ...]
-
-
-def paper_gap(
-    display: Display, surface: Surface, half_wavelength: Metre, amplitude: MetreLike
-) -> PaperGap:
-    """The paper's gap between this display's surface and finger, antinode and groove centred."""
-    return PaperGap(
-        roughness=surface.roughness,
-        vibration_amplitude=amplitude,
-        ridge_amplitude=display.finger.ridge_amplitude,
-        ridge_period=display.finger.ridge_period,
-        wavelength=2 * half_wavelength,
-        contact_length=display.finger.contact_length,
-    )
-
-
-def relative_friction_curve(
-    display: Display,
-    amplitude: MetreArray,
-    half_wavelength: Metre,
-    *,
-    surface: Surface | None = None,
-    normal_force: Newton | None = None,
-    model: FrictionModel = "paper2008",
-) -> DimensionlessArray:
-    """µ′/µ (dimensionless) at an array of vibration amplitudes (m), same shape.
-
-    Source and range: see `contact.paper.relative_friction`.
-    """
-    gap = paper_gap(display, surface or display.surface(), half_wavelength, amplitude)
-    force = display.finger.normal_force if normal_force is None else normal_force
-    return np.asarray(
-        paper.relative_friction(gap, force, display.gas.ambient_pressure, model=model)
-    )
-
-
-def friction_law(
-    display: Display,
-    highest_amplitude: Metre,
-    half_wavelength: Metre,
-    *,
-    surface: Surface | None = None,
-    normal_force: Newton | None = None,
-    model: FrictionModel = "paper2008",
-    points: int = 257,
-) -> Callable[[MetreArray], DimensionlessArray]:
-    """µ′/µ as a fast function of the vibration amplitude (m): a table, linear between its points.
-
-    For the many samples of a trace. Holds from 0 to `highest_amplitude`, raises `OutOfRangeError`
-    outside. With the default points the table is within 1e-4 of the law for the paper's devices.
-    """
-    require("highest_amplitude", highest_amplitude, Unit("m"), above=0)
-    # Denser at small amplitudes, where the law bends within the roughness.
-    grid = highest_amplitude * np.linspace(0.0, 1.0, points) ** 2
-    law = relative_friction_curve(
-        display, grid, half_wavelength, surface=surface, normal_force=normal_force, model=model
-    )
-    if law[-1] == 0:
-        # The law has a kink where the finger lifts off; a point of its own keeps it sharp.
-        gap = paper_gap(display, surface or display.surface(), half_wavelength, 0.0)
-        force = display.finger.normal_force if normal_force is None else normal_force
-        kink = paper.zero_friction_amplitude(gap, force, display.gas.ambient_pressure, model)
-        at = int(np.searchsorted(grid, kink))
-        grid, law = np.insert(grid, at, kink), np.insert(law, at, 0.0)
-
-    def friction(amplitude: MetreArray) -> DimensionlessArray:
-        values = np.asarray(amplitude, dtype=float)
-        # A hair of slack: an exponential envelope may overshoot its target by rounding.
-        slack = 1e-9 * highest_amplitude
-        if values.size and (values.min() < -slack or values.max() > highest_amplitude + slack):
-            raise OutOfRangeError(
-                f"the friction law was tabulated for amplitudes from 0 to {highest_amplitude:.4g} "
-                f"m and asked at {values.min():.4g} to {values.max():.4g} m; tabulate it higher"
-            )
-        return np.asarray(np.interp(values, grid, law))
-
-    return friction
 
 
 def predict(
@@ -153,15 +68,16 @@ def predict(
     surface: str | None = None,
     vibration_amplitude: Metre | None = None,
     theory: BeamTheory = "timoshenko",
-    model: FrictionModel = "paper2008",
+    model: FrictionModel | None = None,
     strict: bool = False,
 ) -> Prediction:
     """The friction of a display driven with a voltage (V, zero-to-peak) at a frequency (Hz).
 
     The frequency defaults to the resonance, voltage, force and surface to the display's own. A
     `vibration_amplitude` (m, zero-to-peak) given directly takes the place of voltage and plate.
+    Without a `model`, the paper's asymptote is used where it holds and the solved film elsewhere.
 
-    What is doubtful (contradicting data, a film model outside its range) is collected in
+    What is doubtful (contradicting data, an asymptote asked for outside its range) is collected in
     `warnings`; with `strict` it raises instead: `ContradictionError`, `OutOfRangeError`. Raises
     `InputError` for a value that cannot be used, or an amplitude given together with a voltage.
     """
@@ -186,19 +102,52 @@ def predict(
         else:
             require("vibration_amplitude", vibration_amplitude, Unit("m"), at_least=0)
             volts, amplitude, source = None, vibration_amplitude, "given"
-        gap = paper_gap(display, where, mode.half_wavelength, amplitude)
-        gas = display.gas
-        sigma = squeeze_number(
+        law = friction_law(
+            display,
+            mode.half_wavelength,
             drive_frequency,
-            display.finger.contact_length,
-            gap.reference_thickness,
-            gas.viscosity,
-            gas.ambient_pressure,
+            surface=where,
+            normal_force=force,
+            model=model or "paper2008",
         )
-        validity = film_validity(gap, drive_frequency, gas, strict=strict)
-        pressure = float(paper.mean_pressure(gap, model))
-        friction = float(paper.relative_friction(gap, force, gas.ambient_pressure, model))
-    messages = [str(item.message) for item in caught]
+        asked_for_asymptote = model is not None and model.startswith("paper2008")
+        validity = film_validity(
+            law.gap(amplitude), drive_frequency, display.gas, strict=strict and asked_for_asymptote
+        )
+        if model is None and not validity.holds:
+            law = friction_law(
+                display,
+                mode.half_wavelength,
+                drive_frequency,
+                surface=where,
+                normal_force=force,
+                model=SOLVED_DEFAULT,
+            )
+        load = law.load(amplitude)
+        friction = law.at(amplitude)
+    gap, gas = law.gap(amplitude), display.gas
+    sigma = squeeze_number(
+        drive_frequency,
+        gap.contact_length,
+        gap.reference_thickness,
+        gas.viscosity,
+        gas.ambient_pressure,
+    )
+    # Where the film is solved, what fails of the asymptote is no doubt about this number.
+    solved = not law.model.startswith("paper2008")
+    messages = [
+        str(item.message)
+        for item in caught
+        if not (solved and issubclass(item.category, OutOfRangeWarning))
+    ]
+    if solved:
+        inertia = validity.check("inertia")
+        messages += [] if inertia.holds else [inertia.sentence]
+        messages.append(
+            f"the asymptote of the paper does not hold here (σ = {sigma:.4g}); the model "
+            f"'{law.model}' solves the film of the same gap, with slip. What a film carries depends "
+            "on the shape of the ridges more than on anything else: compare the film models"
+        )
     return Prediction(
         display=display.name,
         surface=where,
@@ -208,9 +157,11 @@ def predict(
         mode=mode,
         amplitude_model=source,
         vibration_amplitude=amplitude,
-        model=model,
+        model=law.model,
+        law=law,
         squeeze_number=float(sigma),
-        mean_pressure=pressure,
+        mean_pressure=1 + load.over_pressure,
+        mean_pressure_error=load.error,
         relative_friction=friction,
         friction_coefficient=where.friction_coefficient,
         friction_reduction=where.friction_coefficient * (1 - friction),

@@ -25,11 +25,11 @@ from squeezefilm.film.gap import (
 )
 from squeezefilm.film.limits import contact_mean_pressure, mean_pressure_profile
 from squeezefilm.film.validity import asymptotic_fraction
+from squeezefilm.friction import friction_law
 from squeezefilm.plate.beam import euler_bernoulli_half_wavelength, timoshenko_frequency
 from squeezefilm.plate.laminate import Laminate, plate_laminate
 from squeezefilm.plate.layout import AnnularStator, RectangularPlate
 from squeezefilm.plate.response import beam_response
-from squeezefilm.prediction import paper_gap
 from squeezefilm.quantities import Metre
 
 PRINTED_HALF_WAVELENGTH: Metre = 10.37e-3
@@ -77,7 +77,8 @@ def _plate() -> RectangularPlate:
 def _gap(amplitude: Metre, roughness: Metre = 0.6e-6, half_wavelength: Metre = 9.35e-3) -> PaperGap:
     display = _stator()
     surface = dataclasses.replace(display.surface(), roughness=roughness)
-    return paper_gap(display, surface, half_wavelength, amplitude)
+    law = friction_law(display, half_wavelength, 40.5e3, surface=surface, model="paper2008")
+    return law.gap(amplitude)
 
 
 def _sigma(frequency: float, gap: PaperGap) -> tuple[float, float]:

@@ -12,6 +12,7 @@ import numba
 from squeezefilm.film.slip import NO_SLIP
 from squeezefilm.film.slip_kernel import slip_factor
 
+
 @numba.njit(cache=True, nogil=True, inline="always")
 def mobility(H: float, P: float, n: float, knudsen: float, law: int) -> Any:
     """H³ P^{1/n} φ(Kn/(PH)) and its derivative in P, at one point."""

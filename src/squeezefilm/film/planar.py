@@ -11,10 +11,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from squeezefilm.errors import ConvergenceError, InputError
-from squeezefilm.film.slip import slip_law
 from squeezefilm.film.planar_balance import Film
 from squeezefilm.film.planar_gap import GapFunction, PlanarGap, require_periodic
 from squeezefilm.film.planar_ladder import RUNGS, Ladder, PlanarShape, climb_to
+from squeezefilm.film.slip import slip_law
 from squeezefilm.quantities import ComplexArray, Dimensionless, DimensionlessArray, require
 
 

@@ -124,6 +124,7 @@ class RectangularPlate:
 class AnnularStator:
     """The ring of an ultrasonic motor fed on one channel: a standing wave of known frequency and
     length. Its amplitude is not computed but measured, at `reference_voltage`, and scales with it.
+    The surface may be toothed: `tooth_pitch` along the circumference, slots of `slot_width`.
     """
 
     mean_diameter: Metre
@@ -133,6 +134,8 @@ class AnnularStator:
     quality_factor: Dimensionless
     reference_amplitude: Metre
     reference_voltage: Volt
+    tooth_pitch: Metre | None = None
+    slot_width: Metre | None = None
     type: Literal["annular_stator"] = "annular_stator"
 
     def __post_init__(self) -> None:
@@ -146,6 +149,13 @@ class AnnularStator:
                 f"radial_width = {format_quantity(self.radial_width, _M)} is not smaller than "
                 f"mean_diameter = {format_quantity(self.mean_diameter, _M)}; a ring needs a hole"
             )
+        if (self.tooth_pitch is None) != (self.slot_width is None):
+            raise GeometryError(
+                "tooth_pitch and slot_width belong together; give both, or neither for a plain ring"
+            )
+        if self.tooth_pitch is not None and self.slot_width is not None:
+            require("tooth_pitch", self.tooth_pitch, _M, above=0)
+            require("slot_width", self.slot_width, _M, above=0, below=self.tooth_pitch)
         waves = self.wavelengths_around
         if abs(waves - round(waves)) > 0.05 or round(waves) < 1:
             raise GeometryError(

@@ -1,0 +1,168 @@
+"""The curves of an analysis: response, pressure under the finger, friction, wavelength."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from squeezefilm.analysis.procedure import PAPER_HALF_WAVELENGTHS, friction_criterion
+from squeezefilm.contact.film_load import line_film
+from squeezefilm.display import Display, Surface
+from squeezefilm.errors import UnreachableError
+from squeezefilm.film.limits import mean_pressure_profile
+from squeezefilm.friction import FrictionLaw, FrictionModel, friction_law
+from squeezefilm.prediction import Prediction
+from squeezefilm.quantities import (
+    Dimensionless,
+    DimensionlessArray,
+    FloatArray,
+    HertzArray,
+    Metre,
+    MetreArray,
+    MetrePerVoltArray,
+)
+
+PAPER_CRITERION: Dimensionless = 0.7
+
+
+@dataclass(frozen=True, eq=False)
+class FrequencyResponse:
+    """Amplitude per volt against frequency, at the largest interior lobe of the working mode."""
+
+    frequency: HertzArray
+    amplitude_per_volt: MetrePerVoltArray
+    model: str
+
+
+@dataclass(frozen=True, eq=False)
+class PressureProfile:
+    """The film under the finger at rest over an antinode: the paper's Fig 4.
+
+    `thickness` is the mean gap along the contact, `mean_pressure` the period mean over ambient.
+    """
+
+    position: MetreArray
+    thickness: MetreArray
+    mean_pressure: DimensionlessArray
+    model: str
+
+
+@dataclass(frozen=True, eq=False)
+class FrictionCurve:
+    """Relative friction against vibration amplitude on one surface: one curve of Fig 5.
+
+    `amplitude_for_criterion` reaches µ′/µ = 0.7, `zero_friction_amplitude` zero; None where that is
+    out of reach of any amplitude up to 50 µm.
+    """
+
+    surface: str
+    roughness: Metre
+    amplitude: MetreArray
+    relative_friction: DimensionlessArray
+    amplitude_for_criterion: Metre | None
+    zero_friction_amplitude: Metre | None
+    model: str
+
+
+@dataclass(frozen=True, eq=False)
+class WavelengthCurve:
+    """Relative friction against amplitude at one half wavelength: one curve of Fig 11."""
+
+    half_wavelength: Metre
+    amplitude: MetreArray
+    relative_friction: DimensionlessArray
+    amplitude_for_criterion: Metre
+    model: str
+
+
+def frequency_response(prediction: Prediction) -> FrequencyResponse:
+    """The amplitude per volt around the working resonance, at the largest interior lobe."""
+    mode = prediction.mode
+    span = max(8 / mode.quality_factor, 0.02)
+    # Dense near the peak, where the curve turns within f/Q.
+    near = np.sinh(np.linspace(-4, 4, 601)) / np.sinh(4)
+    frequency: FloatArray = mode.resonance_frequency * (1 + span * near)
+    if mode.beam is None:
+        curve = np.asarray(mode.amplitude_per_volt_at(frequency))
+    else:
+        shape = mode.beam.mode
+        inside = (shape.position >= shape.nodal_positions[0]) & (
+            shape.position <= shape.nodal_positions[-1]
+        )
+        lobe = float(shape.position[inside][np.argmax(np.abs(shape.deflection[inside]))])
+        curve = mode.beam.amplitude_at(frequency, lobe)
+    return FrequencyResponse(frequency, curve, mode.model)
+
+
+def pressure_profiles(prediction: Prediction) -> tuple[PressureProfile, ...]:
+    """The mean pressure along the contact: the paper's asymptote, then the solved film."""
+    law, p = prediction.law, prediction
+    gap = law.gap(p.vibration_amplitude)
+    X = np.linspace(-0.5, 0.5, 4001)
+    ridges = gap.ridge_amplitude * np.cos(gap.ridge_phase(X))
+    thickness = np.asarray(gap.reference_thickness + ridges)
+    position = X * gap.contact_length
+    profiles = [PressureProfile(position, thickness, mean_pressure_profile(X, gap), "paper2008")]
+    if p.vibration_amplitude > 0:
+        film = line_film(gap, p.frequency, law.gas)
+        solved = np.interp(X, film.position, film.mean_pressure)
+        profiles.append(PressureProfile(position, thickness, solved, "film-sealed"))
+    return tuple(profiles)
+
+
+def friction_curve(
+    display: Display, prediction: Prediction, surface: Surface, model: FrictionModel
+) -> FrictionCurve:
+    """Relative friction against amplitude on one surface by one model."""
+    p = prediction
+    law = friction_law(
+        display,
+        p.mode.half_wavelength,
+        p.frequency,
+        surface=surface,
+        normal_force=p.normal_force,
+        model=model,
+    )
+    zero = _reached(law, 0.0)
+    # Room for where the paper's finger floats; a solved one may never float.
+    top = max(10e-6, 1.25 * p.vibration_amplitude, 1.1 * min(zero or 0.0, 15e-6))
+    amplitude = np.linspace(0.0, top, 201 if model.startswith("paper") else 51)
+    return FrictionCurve(
+        surface=surface.name,
+        roughness=surface.roughness,
+        amplitude=amplitude,
+        relative_friction=law.curve(amplitude),
+        amplitude_for_criterion=_reached(law, PAPER_CRITERION),
+        zero_friction_amplitude=zero,
+        model=model,
+    )
+
+
+def _reached(law: FrictionLaw, relative_friction: Dimensionless) -> Metre | None:
+    try:
+        return law.amplitude_for(relative_friction)
+    except UnreachableError:
+        return None
+
+
+def wavelength_curves(display: Display, prediction: Prediction) -> tuple[WavelengthCurve, ...]:
+    """Relative friction against amplitude at the paper's four half wavelengths, by its model."""
+    p = prediction
+    ambient = display.gas.ambient_pressure
+    needed = friction_criterion(
+        p.law.gap(0.0), PAPER_HALF_WAVELENGTHS, PAPER_CRITERION, p.normal_force, ambient
+    )
+    amplitude = np.linspace(0.0, 4e-6, 121)
+    found = []
+    for half, at in zip(PAPER_HALF_WAVELENGTHS, needed, strict=True):
+        law = friction_law(
+            display,
+            half,
+            p.frequency,
+            surface=p.surface,
+            normal_force=p.normal_force,
+            model="paper2008",
+        )
+        found.append(WavelengthCurve(half, amplitude, law.curve(amplitude), float(at), "paper2008"))
+    return tuple(found)

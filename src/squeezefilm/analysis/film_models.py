@@ -1,0 +1,218 @@
+"""What the paper's film promises and what solved films do, side by side at one working point."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from squeezefilm.contact.film_load import DESCRIPTIONS, FILM_MODELS, FilmModel
+from squeezefilm.display import Display
+from squeezefilm.errors import SqueezefilmError
+from squeezefilm.friction import friction_law
+from squeezefilm.plate.layout import AnnularStator
+from squeezefilm.prediction import Prediction
+from squeezefilm.quantities import (
+    Dimensionless,
+    DimensionlessArray,
+    Metre,
+    MetreArray,
+    Pascal,
+)
+
+
+@dataclass(frozen=True)
+class FilmResult:
+    """One reading of the finger: the film's mean over-pressure over ambient with its error, the
+    share of the finger's load that it would carry, and the friction that would be left."""
+
+    model: FilmModel
+    description: str
+    over_pressure: Dimensionless
+    over_pressure_error: Dimensionless
+    load_share: Dimensionless
+    relative_friction: Dimensionless
+    status: str
+
+
+@dataclass(frozen=True, eq=False)
+class FilmCurve:
+    """The share of the load that one film would carry against the vibration amplitude."""
+
+    model: FilmModel
+    amplitude: MetreArray
+    load_share: DimensionlessArray
+
+
+@dataclass(frozen=True)
+class ToothResult:
+    """Whether a toothed surface matters: over-pressure over ambient on a toothed and on a
+    continuous surface, for the paper's ridges and for a plateau."""
+
+    tooth_pitch: Metre
+    slot_width: Metre
+    continuous: Dimensionless
+    toothed: Dimensionless
+    ratio: Dimensionless
+    sentence: str
+
+
+@dataclass(frozen=True)
+class PlateauBalance:
+    """The mean gap at which plateaus of the film at an antinode carry the finger alone."""
+
+    mean_gap: Metre
+    mean_gap_error: Metre
+    least_gap: Metre
+    plateau_pressure: Pascal
+    sentence: str
+
+
+@dataclass(frozen=True, eq=False)
+class FilmComparison:
+    """All readings of the finger at one working point, and their curves over the amplitude."""
+
+    results: tuple[FilmResult, ...]
+    curves: tuple[FilmCurve, ...]
+    teeth: ToothResult | None
+    balance: PlateauBalance | None
+
+    def result(self, model: FilmModel) -> FilmResult:
+        """The result of one model."""
+        return next(item for item in self.results if item.model == model)
+
+
+# A film in the plane takes a tenth of a second, the others a hundredth.
+_POINTS = {
+    "paper2008": 41,
+    "film-sealed": 31,
+    "film-open": 9,
+    "film-plateau": 41,
+    "film-smooth": 31,
+}
+
+
+def compare_film_models(display: Display, prediction: Prediction) -> FilmComparison | None:
+    """The film models at the working point of a prediction; None where nothing vibrates.
+
+    Raises what the film solvers raise, except for the curves, which end where a film cannot be
+    solved.
+    """
+    p = prediction
+    if p.vibration_amplitude == 0:
+        return None
+    pressure = p.normal_force / display.finger.contact_length**2 / display.gas.ambient_pressure
+    results, curves = [], []
+    top = max(4e-6, 1.25 * p.vibration_amplitude)
+    for model in FILM_MODELS:
+        law = friction_law(
+            display,
+            p.mode.half_wavelength,
+            p.frequency,
+            surface=p.surface,
+            normal_force=p.normal_force,
+            model=model,
+        )
+        load = law.load(p.vibration_amplitude)
+        results.append(
+            FilmResult(
+                model=model,
+                description=DESCRIPTIONS[model],
+                over_pressure=load.over_pressure,
+                over_pressure_error=load.error,
+                load_share=load.over_pressure / pressure,
+                relative_friction=law.at(p.vibration_amplitude),
+                status=load.status,
+            )
+        )
+        amplitude = np.linspace(top / 40, top, _POINTS[model])
+        share = np.full(amplitude.size, np.nan)
+        for index, a in enumerate(amplitude):
+            try:
+                share[index] = law.load(float(a)).over_pressure / pressure
+            except SqueezefilmError:
+                break
+        curves.append(FilmCurve(model, amplitude, share))
+    return FilmComparison(
+        tuple(results), tuple(curves), _teeth(display, prediction), _balance(display, prediction)
+    )
+
+
+def _teeth(display: Display, prediction: Prediction) -> ToothResult | None:
+    actuator = display.actuator
+    if not isinstance(actuator, AnnularStator) or actuator.tooth_pitch is None:
+        return None
+    from squeezefilm.film.planar_gap import PlanarGap
+    from squeezefilm.film.teeth import compare_teeth
+
+    assert actuator.slot_width is not None
+    p, gas = prediction, display.gas
+    gap = p.law.gap(p.vibration_amplitude)
+    reference = float(gap.reference_thickness)
+    found = compare_teeth(
+        p.squeeze_number,
+        PlanarGap(
+            float(gap.vibration_amplitude) / reference,
+            gap.wave_number,
+            gap.ridge_amplitude / reference,
+            gap.ridge_number,
+        ),
+        tooth_width=(actuator.tooth_pitch - actuator.slot_width) / gap.contact_length,
+        tooth_pitch=actuator.tooth_pitch / gap.contact_length,
+        knudsen_number=gas.mean_free_path / reference,
+        slip="first",
+    )
+    covered = 1 - actuator.slot_width / actuator.tooth_pitch
+    verdict = (
+        "no more than the surface that is missing, so that the paper's assumption holds"
+        if found.ratio > 0.9 * covered
+        else "more than the surface that is missing, so that the paper's assumption does not hold"
+    )
+    return ToothResult(
+        tooth_pitch=actuator.tooth_pitch,
+        slot_width=actuator.slot_width,
+        continuous=found.continuous,
+        toothed=found.toothed,
+        ratio=found.ratio,
+        sentence=f"Teeth leave {found.ratio:.0%} of the over-pressure of a continuous surface "
+        f"under open ridges, {covered:.0%} of which is left to stand on: they cost {verdict}.",
+    )
+
+
+def _balance(display: Display, prediction: Prediction) -> PlateauBalance | None:
+    from squeezefilm.errors import UnreachableError
+    from squeezefilm.film.balance import mean_gap_for_load
+
+    p, finger, gas = prediction, display.finger, display.gas
+    load = finger.mean_pressure * finger.ridge_period / finger.plateau_width
+    load *= p.normal_force / finger.normal_force
+    try:
+        found = mean_gap_for_load(
+            load,
+            p.vibration_amplitude,
+            p.frequency,
+            finger.plateau_width,
+            viscosity=gas.viscosity,
+            ambient_pressure=gas.ambient_pressure,
+            mean_free_path=gas.mean_free_path,
+        )
+    except UnreachableError:
+        return None
+    clear = found.least_gap - p.surface.roughness
+    sentence = (
+        f"On flattened ridges over an antinode the film carries the finger at a mean gap of "
+        f"{found.mean_gap * 1e6:.3g} µm, at its least {found.least_gap * 1e6:.2g} µm: "
+        + (
+            "above the roughness, so the finger could float there."
+            if clear > 0
+            else f"below the roughness of {p.surface.roughness * 1e6:.2g} µm, so film and contact "
+            "share the load."
+        )
+    )
+    return PlateauBalance(
+        mean_gap=found.mean_gap,
+        mean_gap_error=found.mean_gap_error,
+        least_gap=found.least_gap,
+        plateau_pressure=load,
+        sentence=sentence,
+    )
