@@ -39,7 +39,7 @@ FrictionModel = Literal[
 ]
 FRICTION_MODELS: tuple[FrictionModel, ...] = get_args(FrictionModel)
 SOLVED_DEFAULT: FrictionModel = "film-sealed"
-"""What takes the asymptote's place outside its range: the same equation and the same gap, solved."""
+"""What takes the asymptote's place outside its range: the same equation and gap, solved."""
 
 HIGHEST_AMPLITUDE: Metre = 50e-6
 

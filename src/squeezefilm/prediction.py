@@ -145,8 +145,8 @@ def predict(
         messages += [] if inertia.holds else [inertia.sentence]
         messages.append(
             f"the asymptote of the paper does not hold here (σ = {sigma:.4g}); the model "
-            f"'{law.model}' solves the film of the same gap, with slip. What a film carries depends "
-            "on the shape of the ridges more than on anything else: compare the film models"
+            f"'{law.model}' solves the film of the same gap, with slip. What a film carries "
+            "depends on the shape of the ridges more than on anything else: compare the film models"
         )
     return Prediction(
         display=display.name,

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from squeezefilm.analysis.analyze import PAPER_CRITERION
+from squeezefilm.analysis.curves import PAPER_CRITERION
 from squeezefilm.report.numbers import M, N, shown
 from squeezefilm.report.style import (
     BLUE,
