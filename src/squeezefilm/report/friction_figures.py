@@ -52,6 +52,10 @@ def pressure(analysis: Analysis) -> Figure:
             else f"is short of the {carried:.3f} that would carry the finger"
         )
     )
+    if top < 1.0005:
+        title = (
+            f"The film adds no pressure here; {carried:.3f} times ambient would carry the finger"
+        )
     figure = new_figure(title, f"{profile.model}, the limit of infinite squeeze number", 5.8)
     grid, strip = pairs_of_axes(figure)
     span = 0.5 * _RIDGES_IN_ZOOM * 1e3 * display.finger.ridge_period

@@ -290,7 +290,7 @@ def _provenance(analysis: Analysis) -> str:
                     f"<code>{escape(value.path)}</code>",
                     escape(printable(value.text)),
                     escape(printable(value.source)) or "–",
-                    f'<span class="mark">⚠ {evidence}</span>' if assumed else evidence,
+                    f'<span class="mark">⚠\u00a0{evidence}</span>' if assumed else evidence,
                 ],
             )
         )

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from squeezefilm.plate.layout import AnnularStator, RectangularPlate
+from squeezefilm.plate.working_mode import resonance_factor
 from squeezefilm.report.numbers import HZ, M, V, shown
 from squeezefilm.report.style import (
     BAND,
@@ -229,8 +230,9 @@ def mode_shape(analysis: Analysis) -> Figure:
     figure = new_figure(title, mode.model, 4.4)
     axes = figure.subplots()
     unit = f"deflection at {shown(analysis.prediction.vibration_amplitude, M, 3)} (µm)"
-    if size == 0:
-        size, unit = 1.0, "deflection, relative to the largest inner lobe"
+    # A drive that cancels out leaves rounding errors, no picometre of motion.
+    if size < 1e-6:
+        size, unit = 1.0, "relative deflection"
     y = size * w
     reach = float(np.max(np.abs(y)))
     for node in nodes:
@@ -307,19 +309,19 @@ def frequency_response(analysis: Analysis) -> Figure:
     f, per_volt = 1e-3 * response.frequency, 1e9 * response.amplitude_per_volt
     top = int(np.argmax(per_volt))
     peak = float(per_volt[top])
-    if peak == 0:
-        title = "The drive does not move this mode: its ceramics cancel out"
-    band = half_power(f, per_volt) if peak > 0 else None
-    if peak > 0:
-        wide = (
-            " stands alone"
-            if band is None
-            else f" is {shown(1e3 * (band[1] - band[0]), HZ, 3)} wide"
+    driven = p.mode.amplitude_per_volt > 0.1e-9 * peak
+    band = half_power(f, per_volt) if driven else None
+    at = shown(p.mode.resonance_frequency, HZ)
+    if driven:
+        wide = "" if band is None else f" is {shown(1e3 * (band[1] - band[0]), HZ, 3)} wide"
+        title = f"The resonance at {at}{wide}: the drive must stay on it"
+        share = float(
+            resonance_factor(p.frequency, p.mode.resonance_frequency, p.mode.quality_factor)
         )
-        title = (
-            f"The resonance at {shown(p.mode.resonance_frequency, HZ)}{wide}: the drive must stay "
-            "on it"
-        )
+        if share < 0.99:
+            title += f", but at {shown(p.frequency, HZ)} it gets {100 * share:.0f} % of the motion"
+    else:
+        title = f"The ceramics cancel out: they do not drive the mode at {at}"
     figure = new_figure(title, response.model, 4.3)
     axes = figure.subplots()
     if band is not None:

@@ -140,7 +140,7 @@ def new_figure(title: str, model: str, height: float) -> Figure:
 
 def _unit_stays(text: str) -> str:
     """No line may end between a number and its unit, nor after an equals sign."""
-    text = re.sub(r"(?<=\d) (?=(?:[µnmkM]?(?:m|Hz|s|N|V)|%)(?:\b|/|$))", "\u00a0", text)
+    text = re.sub(r"(?<=\d) (?=%|[µnmkM]?(?:m|Hz|s|N|V)\b)", "\u00a0", text)
     return re.sub(r" = (?=\d)", "\u00a0=\u00a0", text)
 
 

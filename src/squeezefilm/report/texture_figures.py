@@ -79,6 +79,9 @@ def texture(analysis: Analysis) -> Figure:
         )  # fmt: skip
     grid[0][0].set(ylabel="amplitude (µm)", ylim=(0, None))
     grid[1][0].set(ylabel="relative friction µ′/µ")
+    if np.ptp(trace.relative_friction_wanted) < 0.01:
+        # What nobody feels must not look like a swing because the axis stretches it.
+        grid[1][0].set(ylim=(0, 1.05))
     grid[0][0].set_title(f"{_PERIODS_SHOWN:g} periods from the middle of the stroke")
     grid[0][1].set_title("one edge, enlarged")
     handles, labels = grid[0][1].get_legend_handles_labels()

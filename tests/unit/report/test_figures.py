@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import subprocess
 import sys
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -15,7 +16,27 @@ from squeezefilm.report import style
 from squeezefilm.report.figures import FIGURES
 from squeezefilm.report.plate_figures import half_power
 
+PRESETS = ("biet2008-plate", "biet2008-stator")
 KEYS = ("layout", "mode", "response", "pressure", "friction", "wavelength", "texture", "fidelity")
+# The odd displays, each with the figures that its oddness can spoil.
+ODD = {
+    "one-ceramic": ("layout", "mode", "response"),
+    "hostile-names": ("layout", "friction", "wavelength"),
+    "no-voltage": ("mode", "response", "pressure", "friction", "texture", "fidelity"),
+    "floating": ("pressure", "friction", "wavelength", "texture"),
+    "off-resonance": ("response",),
+    "not-driven": ("mode", "response", "friction"),
+    "amplitude-given": ("response", "friction"),
+    "many-nodes": ("layout", "mode"),
+    "square": ("layout",),
+    "smooth-finger": ("pressure",),
+    "five-surfaces": ("friction",),
+    "small-ring": ("layout", "mode"),
+    "printed-model": ("pressure", "friction", "texture"),
+}
+CASES = [(name, key) for name in PRESETS for key in KEYS] + [
+    (name, key) for name, keys in ODD.items() for key in keys
+]
 
 
 def test_the_report_has_its_eight_figures_in_order() -> None:
@@ -46,11 +67,11 @@ def drawn_texts(figure: Any) -> list[tuple[str, Any]]:
         ]
 
 
-@pytest.mark.parametrize("key", KEYS)
+@pytest.mark.parametrize(("name", "key"), CASES)
 def test_texts_are_inside_the_figure_and_apart_and_axes_labelled(
-    key: str, analysis: Analysis
+    name: str, key: str, analysis_of: Callable[[str], Analysis]
 ) -> None:
-    figure = next(one for one in FIGURES if one.key == key).draw(analysis)
+    figure = next(one for one in FIGURES if one.key == key).draw(analysis_of(name))
     texts = drawn_texts(figure)
     width, height = figure.canvas.get_width_height()
     for text, box in texts:
@@ -96,6 +117,14 @@ def test_messages_tell_the_numbers_of_the_analysis(plate_analysis: Analysis) -> 
     assert "short of the 1.050" in titles["pressure"]
     assert "2.33 µm at λ/2 = 7.5 mm, 1.35 µm at 15 mm" in titles["wavelength"]
     assert "0.649 mm" in titles["fidelity"]
+
+
+def test_the_response_says_when_the_drive_is_beside_it_or_in_vain(
+    analysis_of: Callable[[str], Analysis],
+) -> None:
+    draw = FIGURES[2].draw
+    assert "41\u00a0% of the motion" in draw(analysis_of("off-resonance")).get_suptitle()
+    assert "do not drive the mode" in draw(analysis_of("not-driven")).get_suptitle()
 
 
 def test_svg_is_the_same_every_time(plate_analysis: Analysis) -> None:
