@@ -60,6 +60,13 @@ FIGURES: tuple[FigureOfReport, ...] = (
         friction_figures.friction,
     ),
     FigureOfReport(
+        "films",
+        "The paper's film and solved films",
+        "The film's mean over-pressure divided by the finger's pressure: above 1 the film would "
+        "carry the finger alone. The same finger, drawn in five ways.",
+        friction_figures.film_models,
+    ),
+    FigureOfReport(
         "wavelength",
         "Wave length against amplitude",
         "The amplitude that each of the paper's four half wavelengths needs for a relative "

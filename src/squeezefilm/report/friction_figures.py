@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from squeezefilm.analysis.curves import PAPER_CRITERION
-from squeezefilm.report.numbers import M, N, shown
+from squeezefilm.report.numbers import HZ, M, N, shown
 from squeezefilm.report.style import (
     BLUE,
     GREEN,
@@ -19,6 +19,7 @@ from squeezefilm.report.style import (
     SKIN,
     drawn,
     legend_below,
+    message_figure,
     new_figure,
     pairs_of_axes,
     plain,
@@ -31,32 +32,38 @@ if TYPE_CHECKING:
     from squeezefilm.analysis.analyze import Analysis
 
 _RIDGES_IN_ZOOM = 2.6
+_FIVE = (*LINES, (INK, (0, (3, 1, 1, 1, 1, 1))))
+
+
+_NAMES = {
+    "paper2008": "paper's asymptote",
+    "film-sealed": "solved film, grooves sealed",
+    "film-open": "solved film, grooves open at the ends",
+    "film-plateau": "solved film, ridges pressed flat",
+    "film-smooth": "solved film, no ridges",
+}
 
 
 @drawn
 def pressure(analysis: Analysis) -> Figure:
     """Gap and mean pressure along the contact, whole and enlarged: the paper's Fig 4."""
-    profile, p, display = analysis.pressure, analysis.prediction, analysis.display
-    x, gap, height = 1e3 * profile.position, 1e6 * profile.thickness, profile.mean_pressure
-    mean = p.mean_pressure
+    profiles, p, display = analysis.pressure, analysis.prediction, analysis.display
+    profile = profiles[0]
+    x, gap = 1e3 * profile.position, 1e6 * profile.thickness
+    tops = [float(np.max(item.mean_pressure)) for item in profiles]
     carried = 1 + p.normal_force / display.finger.contact_length**2 / display.gas.ambient_pressure
-    top = float(np.max(height))
     where = (
         "over the ridge crests only" if display.finger.ridge_amplitude > 0 else "at the antinode"
     )
-    title = (
-        f"The film's pressure rises {where}, to {top:.3g} times ambient; its mean of {mean:.3f} "
-        + (
-            "carries the finger"
-            if mean >= carried
-            else f"is short of the {carried:.3f} that would carry the finger"
-        )
-    )
-    if top < 1.0005:
+    title = f"The film's pressure rises {where}: to {tops[0]:.3g} times ambient by the paper"
+    if len(tops) > 1:
+        title += f", to {tops[1]:.3g} in the solved film"
+    if max(tops) < 1.0005:
         title = (
             f"The film adds no pressure here; {carried:.3f} times ambient would carry the finger"
         )
-    figure = new_figure(title, f"{profile.model}, the limit of infinite squeeze number", 5.8)
+    names = ", ".join(f"{item.model}" for item in profiles)
+    figure = new_figure(title, f"{names} (grooves sealed at their ends)", 5.8)
     grid, strip = pairs_of_axes(figure)
     span = 0.5 * _RIDGES_IN_ZOOM * 1e3 * display.finger.ridge_period
     span = min(span, float(x[-1]))
@@ -65,14 +72,15 @@ def pressure(analysis: Analysis) -> Figure:
         above.fill_between(x, gap, 1.12 * float(np.max(gap)), color=SKIN, lw=0)
         above.plot(x, gap, color=INK, lw=1.2)
         above.set(ylim=(0, 1.12 * float(np.max(gap))))
-        below.plot(x, height, color=BLUE, lw=1.4, label="mean pressure over a period")
-        below.axhline(
-            mean, color=GREEN, lw=1.6, ls=(0, (5, 1.5, 1, 1.5)),
-            label=f"its mean over the contact, {mean:.3f}",
-        )  # fmt: skip
+        for item, color in zip(profiles, (BLUE, GREEN), strict=False):
+            mean = float(np.trapezoid(item.mean_pressure, x) / (x[-1] - x[0]))
+            below.plot(
+                x, item.mean_pressure, color=color, lw=1.4,
+                label=f"{_NAMES[item.model]}, mean {mean:.4f}",
+            )  # fmt: skip
         below.axhline(
             carried, color=ORANGE, lw=1.6, ls=(0, (6, 1.6)),
-            label=f"finger pressure, 1 + P_f/p₀ = {carried:.3f}",
+            label=f"would carry the finger: {carried:.4f}",
         )  # fmt: skip
         below.set(xlim=(low, high), xlabel="position under the finger (mm)")
     grid[0][0].set(ylabel="mean gap (µm)")
@@ -86,20 +94,22 @@ def pressure(analysis: Analysis) -> Figure:
 
 @drawn
 def friction(analysis: Analysis) -> Figure:
-    """Relative friction against amplitude on each surface: the paper's Fig 5."""
-    p = analysis.prediction
-    here = next(c for c in analysis.friction_curves if c.surface == p.surface.name)
+    """Relative friction against amplitude on each surface: the paper's Fig 5, and solved."""
+    p, curves = analysis.prediction, analysis.friction_curves
+    here = next(c for c in curves if c.surface == p.surface.name and c.model == p.model)
     at = shown(p.vibration_amplitude, M, 3)
     needed = here.amplitude_for_criterion
     title = (
-        f"At {at} the friction on {plain(here.surface, 20)} is {p.relative_friction:.2f} of what "
+        f"At {at} the friction on {plain(here.surface, 20)} is {p.relative_friction:.3g} of what "
         "it is without vibration; 0.7 takes "
         + ("more than 50 µm" if needed is None else shown(needed, M, 3))
     )
-    rows = (len(analysis.friction_curves) + 1) // 2 + 1
-    figure = new_figure(title, f"{here.model}, {shown(p.normal_force, N)}", 4.2 + 0.22 * rows)
+    models = ", ".join(dict.fromkeys(curve.model for curve in curves))
+    figure = new_figure(
+        title, f"{models}; {shown(p.normal_force, N)}", 4.4 + 0.24 * (len(curves) + 2)
+    )
     axes = figure.subplots()
-    for number, curve in enumerate(analysis.friction_curves):
+    for number, curve in enumerate(curves):
         color, dashes = LINES[number % len(LINES)]
         reached = curve.amplitude_for_criterion
         zero = curve.zero_friction_amplitude
@@ -107,17 +117,51 @@ def friction(analysis: Analysis) -> Figure:
         words += "" if zero is None else f", zero at {shown(zero, M, 3)}"
         axes.plot(
             1e6 * curve.amplitude, curve.relative_friction, color=color, ls=dashes,
-            label=f"{plain(curve.surface, 20)}, roughness {shown(curve.roughness, M, 3)}: {words}",
+            label=f"{_NAMES.get(curve.model, curve.model)}, {plain(curve.surface, 20)} "
+            f"({shown(curve.roughness, M, 3)}): {words}",
         )  # fmt: skip
         if reached is not None:
             _drop(axes, reached, color)
-        if zero is not None:
+        if zero is not None and zero <= curve.amplitude[-1]:
             axes.plot([1e6 * zero], [0], "s", color=color, ms=6, clip_on=False, zorder=4)
     _criterion(axes)
     _working_point(axes, analysis)
-    axes.set(xlim=(0, 1e6 * max(float(c.amplitude[-1]) for c in analysis.friction_curves)))
+    axes.set(xlim=(0, 1e6 * max(float(c.amplitude[-1]) for c in curves)))
     axes.set(ylim=(0, 1.06), xlabel="vibration amplitude, zero-to-peak (µm)")
     axes.set(ylabel="relative friction µ′/µ")
+    legend_below(axes, columns=1)
+    return figure
+
+
+@drawn
+def film_models(analysis: Analysis) -> Figure:
+    """The share of the finger's load that each reading of the film carries, against amplitude."""
+    films, p = analysis.film_models, analysis.prediction
+    if films is None:
+        return message_figure("Nothing vibrates", "Without vibration no film carries anything.")
+    shares = [100 * result.load_share for result in films.results]
+    title = (
+        f"At {shown(p.vibration_amplitude, M, 3)} the film carries from {min(shares):.2g} to "
+        f"{max(shares):.3g} % of the finger: how ridges are drawn decides"
+    )
+    figure = new_figure(
+        title, f"all at {shown(p.frequency, HZ, 3)}, with slip but for the asymptote", 5.4
+    )
+    axes = figure.subplots()
+    for number, curve in enumerate(films.curves):
+        color, dashes = _FIVE[number % len(_FIVE)]
+        axes.semilogy(
+            1e6 * curve.amplitude, curve.load_share, color=color, ls=dashes,
+            label=_NAMES[curve.model],
+        )  # fmt: skip
+        axes.plot(
+            [1e6 * p.vibration_amplitude], [films.results[number].load_share], "o", color=color,
+            ms=6, zorder=3,
+        )  # fmt: skip
+    axes.axhline(1, color=MUTED, lw=1.2, ls=(0, (2, 2)), label="carries the whole finger")
+    right = 1e6 * max(float(curve.amplitude[-1]) for curve in films.curves)
+    axes.set(xlim=(0, right), ylim=(1e-4, 30), xlabel="vibration amplitude, zero-to-peak (µm)")
+    axes.set(ylabel="film's pressure over the finger's")
     legend_below(axes)
     return figure
 
