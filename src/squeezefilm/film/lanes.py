@@ -11,8 +11,10 @@ from typing import Any
 
 from llvmlite import ir
 from numba import types
-from numba.core import cgutils
+from numba.core import cgutils as _cgutils
 from numba.extending import intrinsic, models, register_model
+
+cgutils: Any = _cgutils
 
 LANES = 8
 
@@ -24,7 +26,7 @@ class Eight(types.Type):
     """The numba type of eight doubles held in vector registers."""
 
     def __init__(self) -> None:
-        super().__init__(name="Eight")
+        super().__init__(name="Eight")  # type: ignore[no-untyped-call]
 
 
 eight = Eight()

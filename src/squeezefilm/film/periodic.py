@@ -174,6 +174,7 @@ def solve_profile(
     knudsen_number: Dimensionless = 0.0,
     slip: str = "first",
     tolerance: float = 5e-3,
+    field: bool = True,
 ) -> FilmSolution:
     """The film of a strip whose gap H(X, T) varies along it, −1/2 ≤ X ≤ 1/2, open at both edges.
 
@@ -182,7 +183,8 @@ def solve_profile(
     that H is relative to. The other inputs, range and errors are those of `solve_strip`; a gap
     that closes raises `GeometryError`, one that is not periodic `InputError`. Stiffness and
     damping are relative to the largest amplitude of the first harmonic of H (NaN for a gap
-    that does not move).
+    that does not move). Without `field`, the pressure, its mean and the gap are left empty (and
+    stiffness, damping and harmonics beyond the mean NaN): for sweeps that want the load alone.
     """
     if not isinstance(profile, GapProfile):
         if not callable(profile):
@@ -243,9 +245,9 @@ def solve_profile(
         elif t2[0] == t[0]:
             break
         t = t2
-    levels = []
+    levels: list[tuple[FloatArray, FloatArray]] = []
     start = 0
-    for m in (cells // 2, cells):
+    for m in (cells // 2, cells) if field else ():
         unknowns = m if closed else m - 1
         p = keep[start : start + unknowns * ntp].reshape(unknowns, ntp)[:, :times]
         start = (cells // 2 + 1) * ntp
@@ -280,34 +282,13 @@ def _solution(
     tolerance: float, profile: GapProfile,
 ) -> FilmSolution:  # fmt: skip
     """Assemble the result from p on the two finer grids, extrapolated like the load."""
-    count = max(_FIELD_TIMES, 2 * times)
-    T = 2.0 * np.pi * np.arange(count) / count
-    nodes = 2.0 * np.pi * np.arange(times) / times
-    gap_nodes, gap = evaluate(harmonics, nodes), evaluate(harmonics, T)
-    coarse, share_coarse = levels[0]
-    p, share = levels[1]
-    powered = gap**n
-
-    def resampled(values: FloatArray, every: int) -> FloatArray:
-        psi = values * gap_nodes[::every] ** n
-        spectrum = np.zeros((len(psi), count // 2 + 1), dtype=complex)
-        spectrum[:, : times // 2 + 1] = np.fft.rfft(psi, axis=1) * (count / times)
-        return np.asarray(np.fft.irfft(spectrum, count, axis=1)) / powered[::every]
-
-    fine, rough = resampled(p, 1), resampled(coarse, 2)
-    force = share @ fine
-    force += (
-        (force - share_coarse[: len(rough)] @ rough) / 3.0
-        if shape == "profile"
-        else (force - share_coarse @ rough) / 3.0
-    )
-    spectrum = np.fft.rfft(force) / count
-    spectrum[1:] *= 2.0
-    correction = (fine[::2] - rough) / 3.0
-    index = np.arange(len(fine)) / 2.0
-    lower = np.floor(index).astype(int)
-    upper = np.minimum(lower + 1, len(correction) - 1)
-    fine = fine + 0.5 * (correction[lower] + correction[np.where(index > lower, upper, lower)])
+    if levels:
+        T, gap, fine, spectrum = _field(levels, harmonics, times, n)
+    else:
+        x, T, gap, fine = np.empty(0), np.empty(0), np.empty((0, 0)), np.empty((0, 0))
+        spectrum = np.full(_HARMONICS + 1, complex(np.nan, np.nan))
+        mirrored = False
+    count = len(T)
     turn = np.exp(1j * np.arange(_HARMONICS + 1) * shift)
     force_harmonics = np.zeros(_HARMONICS + 1, dtype=complex)
     available = min(_HARMONICS + 1, len(spectrum))
@@ -349,7 +330,7 @@ def _solution(
         time=T,
         gap=gap,
         pressure=1.0 + fine,
-        mean_pressure=1.0 + fine.mean(axis=1),
+        mean_pressure=1.0 + (fine.mean(axis=1) if levels else x),
         iterations=iterations,
         residual=residual,
         cells=cells,
@@ -374,3 +355,34 @@ def _solution(
             iterations=iterations,
         )
     return solution
+
+
+def _field(
+    levels: list[tuple[FloatArray, FloatArray]], harmonics: ComplexArray, times: int, n: float
+) -> tuple[FloatArray, FloatArray, FloatArray, ComplexArray]:
+    """Times, gap, P − 1 on the finest grid, and the harmonics of the area mean of P − 1."""
+    count = max(_FIELD_TIMES, 2 * times)
+    T = 2.0 * np.pi * np.arange(count) / count
+    nodes = 2.0 * np.pi * np.arange(times) / times
+    gap_nodes, gap = evaluate(harmonics, nodes), evaluate(harmonics, T)
+    coarse, share_coarse = levels[0]
+    p, share = levels[1]
+    powered = gap**n
+
+    def resampled(values: FloatArray, every: int) -> FloatArray:
+        psi = values * gap_nodes[::every] ** n
+        spectrum = np.zeros((len(psi), count // 2 + 1), dtype=complex)
+        spectrum[:, : times // 2 + 1] = np.fft.rfft(psi, axis=1) * (count / times)
+        return np.asarray(np.fft.irfft(spectrum, count, axis=1)) / powered[::every]
+
+    fine, rough = resampled(p, 1), resampled(coarse, 2)
+    force = share @ fine
+    force += (force - share_coarse @ rough) / 3.0
+    spectrum = np.fft.rfft(force) / count
+    spectrum[1:] *= 2.0
+    correction = (fine[::2] - rough) / 3.0
+    index = np.arange(len(fine)) / 2.0
+    lower = np.floor(index).astype(int)
+    upper = np.minimum(lower + 1, len(correction) - 1)
+    fine = fine + 0.5 * (correction[lower] + correction[np.where(index > lower, upper, lower)])
+    return T, gap, fine, spectrum
