@@ -26,7 +26,7 @@ class Eight(types.Type):
     """The numba type of eight doubles held in vector registers."""
 
     def __init__(self) -> None:
-        super().__init__(name="Eight")  # type: ignore[no-untyped-call]
+        super().__init__(name="Eight")
 
 
 eight = Eight()
@@ -35,7 +35,7 @@ eight = Eight()
 @register_model(Eight)
 class _EightModel(models.PrimitiveModel):
     def __init__(self, dmm: Any, fe_type: Any) -> None:
-        super().__init__(dmm, fe_type, _VECTOR)
+        super().__init__(dmm, fe_type, _VECTOR)  # type: ignore[no-untyped-call]
 
 
 def _pointer(context: Any, builder: Any, array_type: Any, array: Any, index: Any) -> Any:

@@ -17,7 +17,13 @@ from numpy.typing import ArrayLike
 
 from squeezefilm.errors import ConvergenceError, InputError
 from squeezefilm.film.batch import announce, check_film, compiled, solve_all
-from squeezefilm.film.profile import GapProfile, evaluate, flexural_profile, profile_from_function
+from squeezefilm.film.profile import (
+    GapProfile,
+    evaluate,
+    flexural_profile,
+    profile_from_function,
+    sampled_grid,
+)
 from squeezefilm.film.resolution import CELLS, CHECKS, TIMES, first_guess, refined, tables
 from squeezefilm.film.slip import slip_law
 from squeezefilm.quantities import (
@@ -203,23 +209,22 @@ def solve_profile(
     closed = profile.symmetric
     sigma, n, kn = float(squeeze_number), float(polytropic_exponent), float(knudsen_number)
     c, t = first_guess(
-        np.array([sigma]), np.array([max(profile.depth, 1e-3)]), np.array([kn]), tolerance,
+        np.array([sigma]), np.array([max(profile.mean_depth, 1e-3)]), np.array([kn]), tolerance,
         least_cells=8, least_times=2 * profile.orders + 1,
     )  # fmt: skip
     waves = profile.features / (2.0 if closed else 1.0)
-    cells = max(int(CELLS[c[0]]), 4 * round(3.0 * waves * (0.01 / tolerance) ** 0.25))
+    cells = max(int(CELLS[c[0]]), 4 * round(4.0 * waves * (0.01 / tolerance) ** 0.25))
     if not closed:
         cells = 2 * cells
-    grading = float(u.edge_grading(sigma / (1.0 + profile.features) ** 2, profile.depth))
+    # Rounded, so that a sweep over σ finds its grids again.
+    grading = round(float(u.edge_grading(sigma / (1.0 + profile.features) ** 2, profile.depth)), 2)
     out = np.full(u.COLUMNS, np.nan)
     iterations = 0
     met = False
     for _ in range(_ROUNDS):
         times = int(TIMES[t[0]])
         check = int(CHECKS[t[0]])
-        xi = np.linspace(0.0 if closed else -1.0, 1.0, 2 * cells + 1)
-        x, slope = profile.grid(xi, grading)
-        harmonics = np.asarray(profile.harmonics(x), dtype=complex)
+        x, slope, harmonics = sampled_grid(profile, cells, closed, grading)
         even, odd = np.ascontiguousarray(harmonics.real), np.ascontiguousarray(-harmonics.imag)
         ntp = tables(times)[0]
         keep = np.empty((cells + 1 + cells // 2 + 1) * ntp)
@@ -253,7 +258,7 @@ def solve_profile(
         start = (cells // 2 + 1) * ntp
         edge = np.zeros((1, times))
         p = np.vstack([p, edge]) if closed else np.vstack([edge, p, edge])
-        share = slope[:: 2 * cells // m] * ((2.0 if closed else 1.0) * xi[-1] / m)
+        share = slope[:: 2 * cells // m] * ((2.0 if closed else 1.0) / m)
         share *= 1.0 if closed else 2.0
         share[[0, -1]] *= 0.5
         levels.append((p, share))
