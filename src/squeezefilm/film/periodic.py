@@ -20,7 +20,6 @@ from squeezefilm.film.batch import announce, check_film, compiled, solve_all
 from squeezefilm.film.profile import (
     GapProfile,
     evaluate,
-    flexural_profile,
     profile_from_function,
     sampled_grid,
 )
@@ -50,6 +49,7 @@ class FilmSolution:
     over the period. `force_harmonics[k]` are complex: the area mean of P − 1 is
     Re Σ F_k e^{ikT}. F_1 = −(stiffness_relative + i damping_relative)·excursion, so that the
     film pushes back with stiffness and damping of that many p0·A per unit of H0.
+    `profile` is None where H = 1 + ε cos T.
     `over_pressure_error` estimates the absolute error of `over_pressure` = W − 1.
     """
 
@@ -77,7 +77,7 @@ class FilmSolution:
     knudsen_number: Dimensionless
     slip: str
     tolerance: float
-    profile: GapProfile
+    profile: GapProfile | None
 
 
 def solve_strip(
@@ -148,7 +148,6 @@ def _solve_uniform(
     over, error = float(row[u.OVER]), float(row[u.ERROR])
     ntp = tables(times)[0]
     a = u.edge_grading(float(squeeze_number) * (1.0 if shape == "strip" else 2.25), eps)
-    profile = flexural_profile(excursion_ratio if excursion_ratio else 1e-6)
     levels = []
     start = 0
     for m in (cells // 2, cells):
@@ -168,7 +167,7 @@ def _solve_uniform(
     return _solution(
         levels, harmonics, x, shift, shape == "strip", polytropic_exponent, eps, over, error,
         bool(met[0]), int(row[u.ITERATIONS]), float(row[u.RESIDUAL]), cells, times, shape,
-        squeeze_number, excursion_ratio, knudsen_number, slip, tolerance, profile,
+        squeeze_number, excursion_ratio, knudsen_number, slip, tolerance, None,
     )  # fmt: skip
 
 
@@ -284,7 +283,7 @@ def _solution(
     shift: float, mirrored: bool, n: float, excursion: float, over: float, error: float,
     met: bool, iterations: int, residual: float, cells: int, times: int, shape: str,
     squeeze_number: float, excursion_ratio: float, knudsen_number: float, slip: str,
-    tolerance: float, profile: GapProfile,
+    tolerance: float, profile: GapProfile | None,
 ) -> FilmSolution:  # fmt: skip
     """Assemble the result from p on the two finer grids, extrapolated like the load."""
     if levels:
