@@ -80,6 +80,7 @@ def compiled() -> Any:
     return uniform
 
 
+@lru_cache(maxsize=8)
 def announce(dispatcher: Any, what: str) -> None:
     """Log at INFO that a numba function will be compiled, if no cache of it exists."""
     cache = Path(dispatcher.stats.cache_path or "")

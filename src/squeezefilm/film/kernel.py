@@ -17,7 +17,19 @@ import math
 
 from numba import njit
 
-from squeezefilm.film.lanes import add, broadcast, div, fma, load, mul, store, sub, total
+from squeezefilm.film.lanes import (
+    add,
+    broadcast,
+    div,
+    fma,
+    largest_magnitude,
+    load,
+    mul,
+    peak,
+    store,
+    sub,
+    total,
+)
 from squeezefilm.film.slip import NO_SLIP
 from squeezefilm.film.slip_kernel import slip_factor
 from squeezefilm.quantities import FloatArray
@@ -224,19 +236,23 @@ def newton(
                 carried = mul(load(our, at + ntp + v), load(z, at + ntp + v))
                 store(r, at + v, carried)
             _apply(S, i * block, nt, ntp, r, at, z, at, True)
-        largest = 0.0
-        deepest = 0.0
+        size_of_step = broadcast(0.0)
         for i in range(m):
-            for t in range(nt):
-                at = i * ntp + t
-                step = z[at] / (H[i * hs + t] * R[at])
-                deepest = max(deepest, -step)
-                if not abs(step) <= largest:
-                    largest = abs(step)
-        if not largest < 1e300:
-            return math.nan, iteration, math.inf
+            for v in range(0, ntp, 8):
+                at = i * ntp + v
+                gas = mul(load(H, i * hs + v), load(R, at))
+                size_of_step = largest_magnitude(size_of_step, div(load(z, at), gas))
+        largest = peak(size_of_step)
         # A full step must leave gas everywhere; 0.8 keeps a margin for the logarithm.
-        scale = 0.8 / deepest if deepest > 0.8 else 1.0
+        scale = 1.0
+        if largest > 0.8:
+            deepest = 0.0
+            for i in range(m):
+                for t in range(nt):
+                    at = i * ntp + t
+                    deepest = max(deepest, -z[at] / (H[i * hs + t] * R[at]))
+            if deepest > 0.8:
+                scale = 0.8 / deepest
         over = 0.0
         for i in range(m):
             part = broadcast(0.0)
@@ -251,6 +267,8 @@ def newton(
                         p[t] = math.exp(n * math.log(R[t])) - 1.0
                 part = fma(load(weight, i * ws + v), load(p, at), part)
             over += share[i] * total(part)
+        if not abs(over) < 1e300:
+            return math.nan, iteration, math.inf
         # What remains after a Newton step is about its square; after a chord step, the
         # geometric tail of the steps so far.
         goal = tolerance * abs(over) / (1.0 + abs(over))

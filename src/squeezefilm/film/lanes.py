@@ -11,8 +11,10 @@ from typing import Any
 
 from llvmlite import ir
 from numba import types
-from numba.core import cgutils
+from numba.core import cgutils as _cgutils
 from numba.extending import intrinsic, models, register_model
+
+cgutils: Any = _cgutils
 
 LANES = 8
 
@@ -33,7 +35,7 @@ eight = Eight()
 @register_model(Eight)
 class _EightModel(models.PrimitiveModel):
     def __init__(self, dmm: Any, fe_type: Any) -> None:
-        super().__init__(dmm, fe_type, _VECTOR)
+        super().__init__(dmm, fe_type, _VECTOR)  # type: ignore[no-untyped-call]
 
 
 def _pointer(context: Any, builder: Any, array_type: Any, array: Any, index: Any) -> Any:
@@ -127,6 +129,22 @@ def _total(typingctx: Any, a: Any) -> Any:
     return types.float64(eight), codegen
 
 
+def _peak(typingctx: Any, a: Any) -> Any:
+    """The largest of the eight lanes."""
+
+    def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        vector = args[0]
+        empty = ir.Constant(_VECTOR, ir.Undefined)
+        for half in (4, 2, 1):
+            order = [lane + half if lane < half else lane for lane in range(LANES)]
+            mask = ir.Constant(ir.VectorType(_INT, LANES), order)
+            other = builder.shuffle_vector(vector, empty, mask)
+            vector = builder.select(builder.fcmp_ordered(">", other, vector), other, vector)
+        return builder.extract_element(vector, ir.Constant(_INT, 0))
+
+    return types.float64(eight), codegen
+
+
 def _largest_magnitude(typingctx: Any, a: Any, b: Any) -> Any:
     """max(a, |b|), lane by lane."""
 
@@ -152,3 +170,4 @@ mul: Any = intrinsic(_mul)
 div: Any = intrinsic(_div)
 total: Any = intrinsic(_total)
 largest_magnitude: Any = intrinsic(_largest_magnitude)
+peak: Any = intrinsic(_peak)

@@ -17,7 +17,12 @@ from numpy.typing import ArrayLike
 
 from squeezefilm.errors import ConvergenceError, InputError
 from squeezefilm.film.batch import announce, check_film, compiled, solve_all
-from squeezefilm.film.profile import GapProfile, evaluate, flexural_profile, profile_from_function
+from squeezefilm.film.profile import (
+    GapProfile,
+    evaluate,
+    profile_from_function,
+    sampled_grid,
+)
 from squeezefilm.film.resolution import CELLS, CHECKS, TIMES, first_guess, refined, tables
 from squeezefilm.film.slip import slip_law
 from squeezefilm.quantities import (
@@ -44,6 +49,7 @@ class FilmSolution:
     over the period. `force_harmonics[k]` are complex: the area mean of P − 1 is
     Re Σ F_k e^{ikT}. F_1 = −(stiffness_relative + i damping_relative)·excursion, so that the
     film pushes back with stiffness and damping of that many p0·A per unit of H0.
+    `profile` is None where H = 1 + ε cos T.
     `over_pressure_error` estimates the absolute error of `over_pressure` = W − 1.
     """
 
@@ -71,7 +77,7 @@ class FilmSolution:
     knudsen_number: Dimensionless
     slip: str
     tolerance: float
-    profile: GapProfile
+    profile: GapProfile | None
 
 
 def solve_strip(
@@ -142,7 +148,6 @@ def _solve_uniform(
     over, error = float(row[u.OVER]), float(row[u.ERROR])
     ntp = tables(times)[0]
     a = u.edge_grading(float(squeeze_number) * (1.0 if shape == "strip" else 2.25), eps)
-    profile = flexural_profile(excursion_ratio if excursion_ratio else 1e-6)
     levels = []
     start = 0
     for m in (cells // 2, cells):
@@ -162,7 +167,7 @@ def _solve_uniform(
     return _solution(
         levels, harmonics, x, shift, shape == "strip", polytropic_exponent, eps, over, error,
         bool(met[0]), int(row[u.ITERATIONS]), float(row[u.RESIDUAL]), cells, times, shape,
-        squeeze_number, excursion_ratio, knudsen_number, slip, tolerance, profile,
+        squeeze_number, excursion_ratio, knudsen_number, slip, tolerance, None,
     )  # fmt: skip
 
 
@@ -174,6 +179,7 @@ def solve_profile(
     knudsen_number: Dimensionless = 0.0,
     slip: str = "first",
     tolerance: float = 5e-3,
+    field: bool = True,
 ) -> FilmSolution:
     """The film of a strip whose gap H(X, T) varies along it, −1/2 ≤ X ≤ 1/2, open at both edges.
 
@@ -182,7 +188,8 @@ def solve_profile(
     that H is relative to. The other inputs, range and errors are those of `solve_strip`; a gap
     that closes raises `GeometryError`, one that is not periodic `InputError`. Stiffness and
     damping are relative to the largest amplitude of the first harmonic of H (NaN for a gap
-    that does not move).
+    that does not move). Without `field`, the pressure, its mean and the gap are left empty (and
+    stiffness, damping and harmonics beyond the mean NaN): for sweeps that want the load alone.
     """
     if not isinstance(profile, GapProfile):
         if not callable(profile):
@@ -201,23 +208,22 @@ def solve_profile(
     closed = profile.symmetric
     sigma, n, kn = float(squeeze_number), float(polytropic_exponent), float(knudsen_number)
     c, t = first_guess(
-        np.array([sigma]), np.array([max(profile.depth, 1e-3)]), np.array([kn]), tolerance,
+        np.array([sigma]), np.array([max(profile.mean_depth, 1e-3)]), np.array([kn]), tolerance,
         least_cells=8, least_times=2 * profile.orders + 1,
     )  # fmt: skip
     waves = profile.features / (2.0 if closed else 1.0)
-    cells = max(int(CELLS[c[0]]), 4 * round(3.0 * waves * (0.01 / tolerance) ** 0.25))
+    cells = max(int(CELLS[c[0]]), 4 * round(4.0 * waves * (0.01 / tolerance) ** 0.25))
     if not closed:
         cells = 2 * cells
-    grading = float(u.edge_grading(sigma / (1.0 + profile.features) ** 2, profile.depth))
+    # Rounded, so that a sweep over σ finds its grids again.
+    grading = round(float(u.edge_grading(sigma / (1.0 + profile.features) ** 2, profile.depth)), 2)
     out = np.full(u.COLUMNS, np.nan)
     iterations = 0
     met = False
     for _ in range(_ROUNDS):
         times = int(TIMES[t[0]])
         check = int(CHECKS[t[0]])
-        xi = np.linspace(0.0 if closed else -1.0, 1.0, 2 * cells + 1)
-        x, slope = profile.grid(xi, grading)
-        harmonics = np.asarray(profile.harmonics(x), dtype=complex)
+        x, slope, harmonics = sampled_grid(profile, cells, closed, grading)
         even, odd = np.ascontiguousarray(harmonics.real), np.ascontiguousarray(-harmonics.imag)
         ntp = tables(times)[0]
         keep = np.empty((cells + 1 + cells // 2 + 1) * ntp)
@@ -243,15 +249,15 @@ def solve_profile(
         elif t2[0] == t[0]:
             break
         t = t2
-    levels = []
+    levels: list[tuple[FloatArray, FloatArray]] = []
     start = 0
-    for m in (cells // 2, cells):
+    for m in (cells // 2, cells) if field else ():
         unknowns = m if closed else m - 1
         p = keep[start : start + unknowns * ntp].reshape(unknowns, ntp)[:, :times]
         start = (cells // 2 + 1) * ntp
         edge = np.zeros((1, times))
         p = np.vstack([p, edge]) if closed else np.vstack([edge, p, edge])
-        share = slope[:: 2 * cells // m] * ((2.0 if closed else 1.0) * xi[-1] / m)
+        share = slope[:: 2 * cells // m] * ((2.0 if closed else 1.0) / m)
         share *= 1.0 if closed else 2.0
         share[[0, -1]] *= 0.5
         levels.append((p, share))
@@ -277,37 +283,16 @@ def _solution(
     shift: float, mirrored: bool, n: float, excursion: float, over: float, error: float,
     met: bool, iterations: int, residual: float, cells: int, times: int, shape: str,
     squeeze_number: float, excursion_ratio: float, knudsen_number: float, slip: str,
-    tolerance: float, profile: GapProfile,
+    tolerance: float, profile: GapProfile | None,
 ) -> FilmSolution:  # fmt: skip
     """Assemble the result from p on the two finer grids, extrapolated like the load."""
-    count = max(_FIELD_TIMES, 2 * times)
-    T = 2.0 * np.pi * np.arange(count) / count
-    nodes = 2.0 * np.pi * np.arange(times) / times
-    gap_nodes, gap = evaluate(harmonics, nodes), evaluate(harmonics, T)
-    coarse, share_coarse = levels[0]
-    p, share = levels[1]
-    powered = gap**n
-
-    def resampled(values: FloatArray, every: int) -> FloatArray:
-        psi = values * gap_nodes[::every] ** n
-        spectrum = np.zeros((len(psi), count // 2 + 1), dtype=complex)
-        spectrum[:, : times // 2 + 1] = np.fft.rfft(psi, axis=1) * (count / times)
-        return np.asarray(np.fft.irfft(spectrum, count, axis=1)) / powered[::every]
-
-    fine, rough = resampled(p, 1), resampled(coarse, 2)
-    force = share @ fine
-    force += (
-        (force - share_coarse[: len(rough)] @ rough) / 3.0
-        if shape == "profile"
-        else (force - share_coarse @ rough) / 3.0
-    )
-    spectrum = np.fft.rfft(force) / count
-    spectrum[1:] *= 2.0
-    correction = (fine[::2] - rough) / 3.0
-    index = np.arange(len(fine)) / 2.0
-    lower = np.floor(index).astype(int)
-    upper = np.minimum(lower + 1, len(correction) - 1)
-    fine = fine + 0.5 * (correction[lower] + correction[np.where(index > lower, upper, lower)])
+    if levels:
+        T, gap, fine, spectrum = _field(levels, harmonics, times, n)
+    else:
+        x, T, gap, fine = np.empty(0), np.empty(0), np.empty((0, 0)), np.empty((0, 0))
+        spectrum = np.full(_HARMONICS + 1, complex(np.nan, np.nan))
+        mirrored = False
+    count = len(T)
     turn = np.exp(1j * np.arange(_HARMONICS + 1) * shift)
     force_harmonics = np.zeros(_HARMONICS + 1, dtype=complex)
     available = min(_HARMONICS + 1, len(spectrum))
@@ -349,7 +334,7 @@ def _solution(
         time=T,
         gap=gap,
         pressure=1.0 + fine,
-        mean_pressure=1.0 + fine.mean(axis=1),
+        mean_pressure=1.0 + (fine.mean(axis=1) if levels else x),
         iterations=iterations,
         residual=residual,
         cells=cells,
@@ -374,3 +359,34 @@ def _solution(
             iterations=iterations,
         )
     return solution
+
+
+def _field(
+    levels: list[tuple[FloatArray, FloatArray]], harmonics: ComplexArray, times: int, n: float
+) -> tuple[FloatArray, FloatArray, FloatArray, ComplexArray]:
+    """Times, gap, P − 1 on the finest grid, and the harmonics of the area mean of P − 1."""
+    count = max(_FIELD_TIMES, 2 * times)
+    T = 2.0 * np.pi * np.arange(count) / count
+    nodes = 2.0 * np.pi * np.arange(times) / times
+    gap_nodes, gap = evaluate(harmonics, nodes), evaluate(harmonics, T)
+    coarse, share_coarse = levels[0]
+    p, share = levels[1]
+    powered = gap**n
+
+    def resampled(values: FloatArray, every: int) -> FloatArray:
+        psi = values * gap_nodes[::every] ** n
+        spectrum = np.zeros((len(psi), count // 2 + 1), dtype=complex)
+        spectrum[:, : times // 2 + 1] = np.fft.rfft(psi, axis=1) * (count / times)
+        return np.asarray(np.fft.irfft(spectrum, count, axis=1)) / powered[::every]
+
+    fine, rough = resampled(p, 1), resampled(coarse, 2)
+    force = share @ fine
+    force += (force - share_coarse @ rough) / 3.0
+    spectrum = np.fft.rfft(force) / count
+    spectrum[1:] *= 2.0
+    correction = (fine[::2] - rough) / 3.0
+    index = np.arange(len(fine)) / 2.0
+    lower = np.floor(index).astype(int)
+    upper = np.minimum(lower + 1, len(correction) - 1)
+    fine = fine + 0.5 * (correction[lower] + correction[np.where(index > lower, upper, lower)])
+    return T, gap, fine, spectrum

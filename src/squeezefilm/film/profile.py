@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -18,14 +19,15 @@ _NEGLIGIBLE = 1e-12
 Harmonics = Callable[[FloatArray], ComplexArray]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class GapProfile:
     """A gap H(X, T) = Re Σ h_k(X) e^{ikT} over −1/2 ≤ X ≤ 1/2, relative to the reference gap H0.
 
     `harmonics(X)` returns the h_k, shape (orders, len(X)). Made by `flexural_profile`,
     `profile_from_function` or `profile_from_samples`; making one checks that the gap never
     closes. `excursion` is the largest |h_1|, `depth` the largest relative excursion
-    (max − min)/(max + min) over a period at any X, `features` the number of waves along X.
+    (max − min)/(max + min) over a period at any X, `mean_depth` its mean along X, `features` the
+    number of waves along X.
     """
 
     harmonics: Harmonics
@@ -33,6 +35,7 @@ class GapProfile:
     symmetric: bool = field(init=False)
     excursion: float = field(init=False)
     depth: float = field(init=False)
+    mean_depth: float = field(init=False)
     features: float = field(init=False)
     orders: int = field(init=False)
     _map: tuple[FloatArray, FloatArray, FloatArray] = field(init=False, repr=False)
@@ -65,6 +68,7 @@ class GapProfile:
         put(self, "symmetric", bool(np.abs(h - h[:, ::-1]).max() < 1e-10 * np.abs(h).max()))
         put(self, "excursion", float(np.abs(h[1]).max()) if len(h) > 1 else 0.0)
         put(self, "depth", float(((high - low) / (high + low)).max()))
+        put(self, "mean_depth", float(((high - low) / (high + low)).mean()))
         put(self, "features", 0.5 * waves)
         put(self, "orders", len(h))
         put(self, "_map", self._density(max(1024, int(128 * waves))))
@@ -103,6 +107,21 @@ class GapProfile:
         rise = 6.0 * t * u * (knots[j + 1] - knots[j]) / width
         turn = u * (1.0 - 3.0 * t) / density[j] - t * (2.0 - 3.0 * t) / density[j + 1]
         return x, (rise + turn) * 0.5 * (1.0 + grading - 3.0 * grading * xi * xi)
+
+
+@lru_cache(maxsize=16)
+def sampled_grid(
+    profile: GapProfile, cells: int, closed: bool, grading: float
+) -> tuple[FloatArray, FloatArray, ComplexArray]:
+    """X, dX/dξ and the gap's harmonics at the 2·cells + 1 nodes and faces; kept for sweeps.
+
+    `closed`: from the plane of symmetry to the edge, otherwise from edge to edge.
+    """
+    x, slope = profile.grid(np.linspace(0.0 if closed else -1.0, 1.0, 2 * cells + 1), grading)
+    harmonics = np.asarray(profile.harmonics(x), dtype=complex)
+    for array in (x, slope, harmonics):
+        array.setflags(write=False)
+    return x, slope, harmonics
 
 
 def evaluate(harmonics: ComplexArray, times: ArrayLike) -> FloatArray:

@@ -146,7 +146,7 @@ def space_error(
         floor = 0.08 * math.sqrt(layer) * (1.0 + 0.05 * layer)
     else:
         floor = 0.06 * math.sqrt(layer) * (1.0 + 0.32 * layer)
-    floor *= 1.0 + 5.0 * eps**6
+    floor *= 1.0 + 7.0 * eps**6
     if cells == 4:
         floor *= 2.0
     elif cells > 12:
