@@ -3,6 +3,7 @@ result; physics, plots and pydantic are imported only by the verb that needs the
 
 from __future__ import annotations
 
+import os
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -164,6 +165,57 @@ def analyze(
 
 
 @app.command()
+def film(
+    squeeze_number: Annotated[
+        float | None, typer.Option("--squeeze-number", help="σ on width, radius or X semi-axis.")
+    ] = None,
+    excursion: Annotated[
+        float | None, typer.Option("--excursion", help="ε, amplitude over mean gap, below 1.")
+    ] = None,
+    shape: Annotated[str, typer.Option(help="strip, disc, rectangle or ellipse.")] = "strip",
+    aspect: Annotated[float, typer.Option(help="Length ratio of rectangle or ellipse.")] = 1.0,
+    polytropic: Annotated[float, typer.Option(help="1 isothermal to 1.4 adiabatic.")] = 1.0,
+    knudsen: Annotated[float, typer.Option(help="Mean free path over mean gap.")] = 0.0,
+    slip: Annotated[str, typer.Option(help="first, second, fukui-kaneko or veijola.")] = "first",
+    tolerance: Annotated[float, typer.Option(help="Relative, on the over-pressure.")] = 1e-3,
+    sweep: Annotated[
+        bool, typer.Option("--sweep", help="Draw the map over squeeze number and excursion.")
+    ] = False,
+    out: Annotated[Path | None, typer.Option(help="Folder for the map and its numbers.")] = None,
+    as_json: AsJson = False,
+) -> None:
+    """Solve the periodic gas film of one shape, or map it over squeeze number and excursion."""
+    from squeezefilm.analysis.film_command import FilmRequest, solve_film, sweep_film
+    from squeezefilm.report import terminal
+
+    request = FilmRequest(shape, aspect, polytropic, knudsen, slip, tolerance)
+    with terminal.progress(enabled=sys.stderr.isatty() or not as_json) as step:
+        if sweep:
+            from squeezefilm.report.film_map import write_film_map
+
+            if out is None:
+                raise InputError("--sweep draws a map into a folder; say which with --out DIR")
+            found = sweep_film(request, progress=step)
+            path = write_film_map(found, out)
+        else:
+            if squeeze_number is None or excursion is None:
+                raise InputError(
+                    "film needs --squeeze-number and --excursion, or --sweep --out DIR for a map"
+                )
+            step("solving the film")
+            answer = solve_film(squeeze_number, excursion, request)
+    if sweep:
+        if as_json:
+            _print_json(found.summary())
+        else:
+            typer.echo(f"map: {path}")
+    elif as_json:
+        _print_json(answer.summary())
+    else:
+        terminal.show_film(answer)
+
+
+@app.command()
 def reproduce(
     out: Annotated[Path | None, typer.Option(help="Write figures 4, 5, 10, 11 and a page.")] = None,
     as_json: AsJson = False,
@@ -203,6 +255,9 @@ def reproduce(
 
 def main() -> None:
     """Run the command line: a person's mistake is one message and exit code 2, no traceback."""
+    # Before NumPy loads: its linear algebra on our small blocks is slower with threads, by far.
+    for library in ("OMP", "OPENBLAS", "MKL"):
+        os.environ.setdefault(f"{library}_NUM_THREADS", "1")
     try:
         app()
     except SqueezefilmError as error:

@@ -94,7 +94,13 @@ def film_load(
     if model == "film-open":
         return _open(gap, frequency, gas, slip, tolerance)
     film = line_film(
-        gap, frequency, gas, ridges=model == "film-sealed", slip=slip, tolerance=tolerance
+        gap,
+        frequency,
+        gas,
+        ridges=model == "film-sealed",
+        slip=slip,
+        tolerance=tolerance,
+        field=False,
     )
     return FilmLoad(
         model, film.over_pressure, film.over_pressure_error, film.squeeze_number, film.status
@@ -121,10 +127,12 @@ def line_film(
     ridges: bool = True,
     slip: str = "first",
     tolerance: float = 1e-3,
+    field: bool = True,
 ) -> FilmSolution:
     """The film along the contact of `gap`, with its ridges (grooves sealed) or without them.
 
-    The solution's pressures are over ambient, X = x/l0. Raises what `solve_profile` raises.
+    The solution's pressures are over ambient, X = x/l0; without `field` it has the load only.
+    Raises what `solve_profile` raises.
     """
     from squeezefilm.film.periodic import solve_profile
     from squeezefilm.film.profile import flexural_profile
@@ -145,6 +153,7 @@ def line_film(
         knudsen_number=gas.mean_free_path / reference,
         slip=slip,
         tolerance=tolerance,
+        field=field,
     )
 
 

@@ -183,3 +183,19 @@ def _leaves(
                 yield from _leaves(item, (*here, index))
         elif value is not None:
             yield here, value, unit_of(hints[field.name])
+
+
+def film_rows(analysis: Analysis) -> list[tuple[str, str, str, str]]:
+    """Model, over-pressure with its error, share of the finger carried, relative friction."""
+    if analysis.film_models is None:
+        return []
+    return [
+        (
+            item.model,
+            f"{item.over_pressure:.3g}"
+            + (f" ± {item.over_pressure_error:.1g}" if item.over_pressure_error else ""),
+            f"{100 * item.load_share:.3g} %",
+            f"{item.relative_friction:.3f}",
+        )
+        for item in analysis.film_models.results
+    ]

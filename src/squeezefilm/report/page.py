@@ -13,6 +13,7 @@ from squeezefilm.errors import InputError
 from squeezefilm.quantities import Unit
 from squeezefilm.report.numbers import (
     display_values,
+    film_rows,
     key_numbers,
     models,
     printable,
@@ -249,6 +250,20 @@ def _models(analysis: Analysis) -> str:
         ("Link of the chain", "Model"),
         [("", [escape(what), f"<code>{escape(model)}</code>"]) for what, model in models(analysis)],
     )
+    films = analysis.film_models
+    if films is not None:
+        means: dict[str, str] = {item.model: item.description for item in films.results}
+        used += "\n<br>\n" + _table(
+            "The film under the finger, drawn in five ways",
+            ("Model", "Over-pressure over ambient", "Carries", "µ′/µ", "What it is"),
+            [
+                (
+                    "used" if row[0] == analysis.prediction.model else "",
+                    [f"<code>{escape(row[0])}</code>", *row[1:], escape(means[row[0]])],
+                )
+                for row in film_rows(analysis)
+            ],
+        )
     if not analysis.other_models:
         return used
     p = analysis.prediction

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from squeezefilm.report.numbers import (
     dotted,
+    film_rows,
     key_numbers,
     micro,
     models,
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 
     from squeezefilm.analysis.analyze import Analysis
     from squeezefilm.analysis.claims import Reproduction
+    from squeezefilm.analysis.film_command import FilmAnswer
 
 _KINDS = {"good": "good ", "limit": "limit", "doubt": "doubt"}
 _STYLES = {"good": "green", "limit": "cyan", "doubt": "yellow"}
@@ -144,6 +146,9 @@ def show_analysis(analysis: Analysis) -> None:
                 for other in analysis.other_models
             ],
         )
+    if films := film_rows(analysis):
+        _heading(console, "The film under the finger, drawn in five ways")
+        _table(console, ("model", "over-pressure", "carries", "µ′/µ"), films)
     warned = unsaid_warnings(analysis)
     if warned:
         _heading(console, "Warnings")
@@ -154,6 +159,32 @@ def show_analysis(analysis: Analysis) -> None:
         [(_KINDS[item.kind], item.text, _STYLES[item.kind]) for item in analysis.verdict],
     )
     console.print()
+
+
+def show_film(answer: FilmAnswer) -> None:
+    """Print one solved film."""
+    console = _console()
+    request = answer.request
+    _heading(
+        console,
+        f"{request.shape}, σ = {answer.squeeze_number:.4g}, ε = {answer.excursion_ratio:.4g}",
+    )
+    _table(
+        console,
+        ("", "", ""),
+        [
+            ("Mean load W", f"{answer.mean_load:.8g}", "over ambient pressure × area"),
+            (
+                "Over-pressure W − 1",
+                f"{answer.over_pressure:.6g}",
+                f"± {answer.over_pressure_error:.1g} (estimated)",
+            ),
+            ("Stiffness", f"{answer.stiffness_relative:.6g}", "of p0·A·ε, first harmonic"),
+            ("Damping", f"{answer.damping_relative:.6g}", "of p0·A·ε, first harmonic"),
+        ],
+        fixed=(0,),
+    )
+    console.print(answer.status)
 
 
 def show_claims(result: Reproduction) -> None:

@@ -1,0 +1,60 @@
+"""The map of a film over squeeze number and excursion, as a figure and as numbers."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from squeezefilm.report.style import INK, MUTED, drawn, new_figure, png
+from squeezefilm.results import write_whole
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from squeezefilm.analysis.film_command import FilmMap
+
+
+@drawn
+def film_map(found: FilmMap) -> Figure:
+    """Over-pressure (left) and its share of the asymptote (right) over σ and ε."""
+    request = found.request
+    figure = new_figure(
+        f"The {request.shape}'s over-pressure grows with both; below σ of about 100 it falls short "
+        "of its asymptote",
+        f"{found.model}, tolerance {request.tolerance:.1g} of the over-pressure, "
+        f"n = {request.polytropic_exponent:.3g}, Kn = {request.knudsen_number:.3g}",
+        4.8,
+    )
+    left, right = figure.subplots(1, 2, sharey=True)
+    sigma, excursion = found.squeeze_number, found.excursion_ratio
+    levels = [1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 3e-2, 0.1, 0.3, 1, 3]
+    lines = left.contour(
+        sigma, excursion, found.over_pressure.T, levels=levels, colors=INK, linewidths=1.1
+    )
+    left.clabel(lines, fmt=lambda v: f"{v:g}", fontsize=8.5)
+    # The largest σ of the map stands for the asymptote: a polytropic one has no plain form.
+    share = 100 * found.over_pressure / found.over_pressure[-1]
+    parts = right.contourf(sigma, excursion, share.T, levels=np.arange(0, 101, 10), cmap="cividis")
+    right.contour(
+        sigma, excursion, share.T, levels=[90], colors="white", linewidths=1.6, linestyles="--"
+    )
+    bar = figure.colorbar(parts, ax=right, label="share of the over-pressure at σ = 10⁴ (%)")
+    bar.outline.set_edgecolor(MUTED)
+    left.set_title("over-pressure W − 1 over ambient")
+    right.set_title("dashed: 90 %")
+    for axes in (left, right):
+        axes.set(xscale="log", xlabel="squeeze number σ")
+    left.set(ylabel="excursion ε = amplitude over mean gap")
+    return figure
+
+
+def write_film_map(found: FilmMap, folder: Path) -> Path:
+    """Write film-map.json and film-map.png into `folder`; the picture's path."""
+    data = json.dumps(found.summary(), ensure_ascii=False, allow_nan=False)
+    picture = png(film_map(found))
+    write_whole(folder / "film-map.json", data + "\n")
+    write_whole(folder / "film-map.png", picture)
+    return folder / "film-map.png"
