@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from squeezefilm.report.style import INK, MUTED, drawn, new_figure, png
+from squeezefilm.report.style import INK, MUTED, drawn, new_figure, plain_log, png
 from squeezefilm.results import write_whole
 
 if TYPE_CHECKING:
@@ -39,7 +39,7 @@ def film_map(found: FilmMap) -> Figure:
     share = 100 * found.over_pressure / found.over_pressure[-1]
     parts = right.contourf(sigma, excursion, share.T, levels=np.arange(0, 101, 10), cmap="cividis")
     right.contour(
-        sigma, excursion, share.T, levels=[90], colors="white", linewidths=1.6, linestyles="--"
+        sigma, excursion, share.T, levels=[90], colors=INK, linewidths=1.6, linestyles="--"
     )
     bar = figure.colorbar(parts, ax=right, label="share of the over-pressure at σ = 10⁴ (%)")
     bar.outline.set_edgecolor(MUTED)
@@ -47,6 +47,7 @@ def film_map(found: FilmMap) -> Figure:
     right.set_title("dashed: 90 %")
     for axes in (left, right):
         axes.set(xscale="log", xlabel="squeeze number σ")
+        plain_log(axes.xaxis)
     left.set(ylabel="excursion ε = amplitude over mean gap")
     return figure
 

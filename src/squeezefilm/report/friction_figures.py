@@ -23,6 +23,7 @@ from squeezefilm.report.style import (
     new_figure,
     pairs_of_axes,
     plain,
+    plain_log,
 )
 
 if TYPE_CHECKING:
@@ -162,6 +163,7 @@ def film_models(analysis: Analysis) -> Figure:
     right = 1e6 * max(float(curve.amplitude[-1]) for curve in films.curves)
     axes.set(xlim=(0, right), ylim=(1e-4, 30), xlabel="vibration amplitude, zero-to-peak (µm)")
     axes.set(ylabel="film's pressure over the finger's")
+    plain_log(axes.yaxis)
     legend_below(axes)
     return figure
 

@@ -66,7 +66,9 @@ def printable(text: str) -> str:
 def key_numbers(analysis: Analysis) -> list[KeyNumber]:
     """The results in the order of the chain: drive, vibration, film, friction, texture."""
     p = analysis.prediction
-    here = next(c for c in analysis.friction_curves if c.surface == p.surface.name)
+    here = next(
+        c for c in analysis.friction_curves if c.surface == p.surface.name and c.model == p.model
+    )
     given = p.voltage is None
     # The resonance is defined to many digits only: an off-resonance drive is worth a line.
     off = abs(p.frequency / p.mode.resonance_frequency - 1) > 1e-6

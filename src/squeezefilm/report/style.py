@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.axis import Axis
     from matplotlib.figure import Figure
 
 _A = TypeVar("_A")
@@ -151,6 +152,14 @@ def message_figure(title: str, message: str) -> Figure:
     axes.set_axis_off()
     axes.text(0.0, 0.5, textwrap.fill(message, 100), va="center", transform=axes.transAxes)
     return figure
+
+
+def plain_log(axis: Axis) -> None:
+    """Plain numbers along a logarithmic axis: the style reads no mathematics in texts."""
+    from matplotlib.ticker import FuncFormatter, NullFormatter
+
+    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axis.set_minor_formatter(NullFormatter())
 
 
 def legend_below(axes: Axes, columns: int = 2, gap: float = 0.16) -> None:
