@@ -1,7 +1,7 @@
 """A 0.4 mm grating under a finger at three speeds: how much of it gets through the resonator."""
 
 from squeezefilm.display import load_display
-from squeezefilm.prediction import friction_law, predict
+from squeezefilm.prediction import predict
 from squeezefilm.render.envelope import envelope_time_constant
 from squeezefilm.render.fidelity import swing_kept
 from squeezefilm.render.stroke import Stroke
@@ -14,7 +14,7 @@ def main() -> dict[float, float]:
     p = predict(display)
     tau = float(envelope_time_constant(p.mode.quality_factor, p.mode.resonance_frequency))
     grating = Square(spatial_period=0.4e-3, low=0.0, high=p.vibration_amplitude)
-    friction = friction_law(display, p.vibration_amplitude, p.mode.half_wavelength)
+    friction = p.law.table(p.vibration_amplitude)
     kept = {}
     for speed in (0.05, 0.1, 0.2):
         trace = friction_trace(grating, Stroke(speed=speed, length=0.02), tau, friction)

@@ -64,12 +64,37 @@ def test_analyze_prints_one_object_with_units_in_its_keys() -> None:
     ):
         assert key in result
     assert result["squeeze_number"] == pytest.approx(20.418, abs=5e-4)
-    assert result["relative_friction"] == pytest.approx(0.702, abs=5e-4)
-    assert result["model"] == "paper2008"
-    assert any("σ → ∞" in warning for warning in result["warnings"])
+    assert result["model"] == "film-sealed"
     assert result["friction_reduction"] == pytest.approx(
         result["friction_coefficient"] * (1 - result["relative_friction"])
     )
+    by_model = {item["model"]: item for item in result["film_models"]["results"]}
+    assert by_model["paper2008"]["relative_friction"] == pytest.approx(0.702, abs=5e-4)
+    assert by_model["film-open"]["relative_friction"] > 0.99
+    assert result["film_models"]["teeth"]["ratio"] > 0
+
+
+def test_the_papers_model_is_there_on_request_and_warns() -> None:
+    result = json.loads(run("analyze", "biet2008-stator", "--json", "--model", "paper2008").stdout)
+    assert result["relative_friction"] == pytest.approx(0.702, abs=5e-4)
+    assert result["model"] == "paper2008"
+    assert any("σ → ∞" in warning for warning in result["warnings"])
+
+
+def test_a_film_is_solved_with_its_error() -> None:
+    done = run("film", "--squeeze-number", "10", "--excursion", "0.5", "--json")
+    result = json.loads(done.stdout)
+    assert result["mean_load"] == pytest.approx(1.160251, abs=5e-5)
+    assert abs(result["over_pressure"] - 0.160251) < result["over_pressure_error"] + 1e-6
+    assert {"stiffness_relative", "damping_relative", "status", "model"} <= set(result)
+
+
+def test_a_film_map_is_drawn(tmp_path: Path) -> None:
+    done = run("film", "--sweep", "--tolerance", "0.01", "--out", tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "film-map.png").read_bytes().startswith(b"\x89PNG")
+    numbers = json.loads((tmp_path / "film-map.json").read_text())
+    assert len(numbers["over_pressure"]) == len(numbers["squeeze_number"])
 
 
 def test_analyze_writes_a_report_and_a_result(tmp_path: Path) -> None:
@@ -135,7 +160,14 @@ def test_presets_are_listed() -> None:
             "give one of them",
         ),
         (("analyze", "biet2008-plate", "--strict"), "contradict"),
-        (("analyze", "biet2008-stator", "--strict"), "σ → ∞"),
+        (("analyze", "biet2008-stator", "--strict", "--model", "paper2008"), "σ → ∞"),
+        (("analyze", "biet2008-stator", "--model", "film-opne"), "Did you mean 'film-open'"),
+        (("film", "--squeeze-number", "10", "--excursion", "1"), "below 1"),
+        (("film", "--squeeze-number", "0", "--excursion", "0.5"), "above 0"),
+        (("film", "--squeeze-number", "nan", "--excursion", "0.5"), "nan"),
+        (("film", "--squeeze-number", "10"), "--excursion"),
+        (("film", "--sweep"), "--out DIR"),
+        (("film", "--squeeze-number", "1", "--excursion", "0.5", "--shape", "disk"), "disc"),
         (("new", "x.toml", "--from", "biet"), "there is no preset 'biet'"),
         (("show", "nothing"), "neither a file nor a preset"),
     ],

@@ -9,9 +9,9 @@ from squeezefilm.analysis.analyze import Analysis, analyze
 from squeezefilm.analysis.procedure import Requirements, design_plate, friction_criterion
 from squeezefilm.display import load_display
 from squeezefilm.errors import InputError
+from squeezefilm.friction import friction_law
 from squeezefilm.plate.laminate import plate_laminate
 from squeezefilm.plate.layout import RectangularPlate
-from squeezefilm.prediction import paper_gap
 from squeezefilm.results import to_json
 
 
@@ -28,7 +28,7 @@ def test_the_result_is_strict_json_with_units_in_its_keys(plate: Analysis) -> No
     result = json.loads(text)
     assert result["finest_period_m"]["100 mm/s"] == pytest.approx(0.32e-3, abs=0.01e-3)
     assert result["envelope_time_constant_s"] == pytest.approx(0.55e-3, abs=0.005e-3)
-    full = to_json(plate.pressure)
+    full = to_json(plate.pressure[0])
     assert set(full) == {"position_m", "thickness_m", "mean_pressure", "model"}
 
 
@@ -44,10 +44,28 @@ def test_response_peaks_at_the_resonance_with_the_stated_amplitude(plate: Analys
 
 
 def test_the_pressure_s_mean_is_the_predicted_one(plate: Analysis) -> None:
-    profile = plate.pressure
+    profile = next(item for item in plate.pressure if item.model == plate.prediction.model)
     mean = np.trapezoid(profile.mean_pressure, profile.position) / np.ptp(profile.position)
     # Over-pressure, not pressure, is what must agree.
-    assert mean - 1 == pytest.approx(plate.prediction.mean_pressure - 1, rel=2e-3)
+    assert mean - 1 == pytest.approx(plate.prediction.mean_pressure - 1, rel=5e-3)
+
+
+def test_film_models_stand_side_by_side(plate: Analysis) -> None:
+    films = plate.film_models
+    assert films is not None
+    paper, sealed, opened = (
+        films.result(m).over_pressure for m in ("paper2008", "film-sealed", "film-open")
+    )
+    assert paper > sealed > opened > 0
+    assert films.result("film-plateau").relative_friction == 0
+    used = films.result("film-sealed")
+    assert used.relative_friction == pytest.approx(plate.prediction.relative_friction)
+    for curve, result in zip(films.curves, films.results, strict=True):
+        at = np.interp(plate.prediction.vibration_amplitude, curve.amplitude, curve.load_share)
+        assert at == pytest.approx(result.load_share, rel=0.1)
+    assert films.teeth is None
+    assert films.balance is not None
+    assert films.balance.least_gap > 0
 
 
 def test_curves_pass_through_their_marked_points(plate: Analysis) -> None:
@@ -59,7 +77,8 @@ def test_curves_pass_through_their_marked_points(plate: Analysis) -> None:
             curve.amplitude,
             curve.relative_friction,
         )
-        assert at == pytest.approx([0.7, 0.0], abs=2e-3)
+        # A solved curve has fewer points to interpolate between.
+        assert at == pytest.approx([0.7, 0.0], abs=2e-3 if curve.model == "paper2008" else 1e-2)
 
 
 def test_the_verdict_speaks_of_validation_and_of_assumptions(plate: Analysis) -> None:
@@ -79,7 +98,7 @@ def test_a_display_that_does_not_vibrate_has_no_texture() -> None:
 def test_the_paper_s_procedure_leads_to_the_paper_s_plate() -> None:
     display = load_display("biet2008-plate")
     assert isinstance(display.actuator, RectangularPlate)
-    gap = paper_gap(display, display.surface("adhesive"), 10e-3, 0.0)
+    gap = friction_law(display, 10e-3, 40.5e3, model="paper2008").gap(0.0)
     section = plate_laminate(display.actuator, "paper")
     gas = display.gas
     design = design_plate(section, gap, gas.viscosity, gas.ambient_pressure, 0.5)
@@ -106,7 +125,7 @@ def test_the_paper_s_procedure_leads_to_the_paper_s_plate() -> None:
 
 def test_friction_criterion_is_nan_where_nothing_reaches_it() -> None:
     display = load_display("biet2008-plate")
-    gap = paper_gap(display, display.surface(), 10e-3, 0.0)
+    gap = friction_law(display, 10e-3, 40.5e3, model="paper2008").gap(0.0)
     # A finger pressed with 5 kN is never lifted by 50 µm.
     found = friction_criterion(gap, (10e-3,), 0.1, 5e3, display.gas.ambient_pressure)
     assert np.all(np.isnan(found))

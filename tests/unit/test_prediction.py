@@ -6,8 +6,14 @@ import numpy as np
 import pytest
 
 from squeezefilm.display import Display, load_display
-from squeezefilm.errors import ContradictionError, InputError, OutOfRangeError
-from squeezefilm.prediction import friction_law, predict, relative_friction_curve
+from squeezefilm.errors import (
+    ContradictionError,
+    InputError,
+    OutOfRangeError,
+    UnreachableError,
+)
+from squeezefilm.friction import FrictionLaw, friction_law
+from squeezefilm.prediction import predict
 
 
 @pytest.fixture(scope="module")
@@ -43,8 +49,27 @@ def test_the_models_are_named(plate: Display, stator: Display) -> None:
     assert predict(plate, theory="euler_bernoulli").amplitude_model.startswith("euler_bernoulli")
     assert predict(stator).amplitude_model == "measured_stator"
     assert predict(stator, vibration_amplitude=1e-6).amplitude_model == "given"
-    assert predict(stator).model == "paper2008"
-    assert predict(stator, model="paper2008-printed").model == "paper2008-printed"
+    for model in ("paper2008", "paper2008-printed", "film-open"):
+        assert predict(stator, model=model).model == model  # type: ignore[arg-type]
+
+
+def test_the_solved_film_takes_the_asymptotes_place_where_it_does_not_hold(
+    stator: Display,
+) -> None:
+    p = predict(stator)
+    assert not p.validity.holds
+    assert p.model == "film-sealed"
+    assert p.mean_pressure_error > 0
+    paper = predict(stator, model="paper2008")
+    assert paper.relative_friction == pytest.approx(0.702, abs=5e-4)
+    # The asymptote promises about twice what the same film does (without slip: 7.246e-3).
+    ratio = (paper.mean_pressure - 1) / (p.mean_pressure - 1)
+    assert 2.0 < ratio < 2.2
+
+
+def test_unknown_models_are_refused(stator: Display) -> None:
+    with pytest.raises(InputError, match="Did you mean 'film-sealed'"):
+        predict(stator, model="film-seald")  # type: ignore[arg-type]
 
 
 def test_the_reduction_carries_the_base_friction(stator: Display) -> None:
@@ -64,12 +89,13 @@ def test_contradicting_data_warn_or_are_refused(plate: Display) -> None:
         predict(plate, strict=True)
 
 
-def test_a_model_out_of_range_warns_or_is_refused(stator: Display) -> None:
-    p = predict(stator)
-    assert not p.validity.holds
+def test_an_asymptote_out_of_range_warns_or_is_refused(stator: Display) -> None:
+    p = predict(stator, model="paper2008")
     assert any("σ → ∞" in text for text in p.warnings)
     with pytest.raises(OutOfRangeError, match="strict=False"):
-        predict(stator, strict=True)
+        predict(stator, model="paper2008", strict=True)
+    # Without a model asked for, strictness has nothing to refuse: the film is solved.
+    assert predict(stator, strict=True).model == "film-sealed"
 
 
 @pytest.mark.parametrize(
@@ -91,25 +117,43 @@ def test_impossible_working_points_are_refused(
         predict(plate, **arguments)  # type: ignore[arg-type]
 
 
+def _law(stator: Display, surface: str = "adhesive", **changes: object) -> FrictionLaw:
+    arguments = {"surface": stator.surface(surface), "model": "paper2008", **changes}
+    return friction_law(stator, 9.35e-3, 40.5e3, **arguments)  # type: ignore[arg-type]
+
+
 @pytest.mark.parametrize("surface", ["adhesive", "bare"])
-def test_the_tabulated_law_is_within_its_stated_error(stator: Display, surface: str) -> None:
-    where = stator.surface(surface)
-    law = friction_law(stator, 6e-6, 9.35e-3, surface=where)
-    between = np.linspace(0, 6e-6, 777)
-    exact = relative_friction_curve(stator, between, 9.35e-3, surface=where)
-    assert np.max(np.abs(law(between) - exact)) < 1e-4
+@pytest.mark.parametrize(("model", "error"), [("paper2008", 1e-4), ("film-sealed", 1e-3)])
+def test_the_tabulated_law_is_within_its_stated_error(
+    stator: Display, surface: str, model: str, error: float
+) -> None:
+    law = _law(stator, surface, model=model)
+    table = law.table(6e-6)
+    between = np.linspace(0, 6e-6, 777 if model == "paper2008" else 41)
+    assert np.max(np.abs(table(between) - law.curve(between))) < error
     with pytest.raises(OutOfRangeError, match="tabulate"):
-        law(np.array([6.1e-6]))
+        table(np.array([6.1e-6]))
+
+
+def test_amplitude_for_a_friction_gives_that_friction(stator: Display) -> None:
+    for model in ("paper2008", "film-sealed", "film-smooth"):
+        law = _law(stator, model=model)
+        for wanted in (0.95, 0.7):
+            assert law.at(law.amplitude_for(wanted)) == pytest.approx(wanted, abs=1e-4)
+        assert law.amplitude_for(1.0) == 0.0
+    with pytest.raises(UnreachableError, match="at the least"):
+        _law(stator, model="film-open", normal_force=500.0).amplitude_for(0.5)
+    with pytest.raises(InputError, match="relative_friction"):
+        _law(stator).amplitude_for(1.5)
 
 
 def test_force_and_roughness_act_as_they_must(stator: Display) -> None:
     a = np.linspace(0, 5e-6, 41)
-    light = relative_friction_curve(stator, a, 9.35e-3, normal_force=0.3)
-    heavy = relative_friction_curve(stator, a, 9.35e-3, normal_force=0.7)
+    light = _law(stator, normal_force=0.3).curve(a)
+    heavy = _law(stator, normal_force=0.7).curve(a)
     assert np.all(light[1:] < heavy[1:])
     assert np.all(np.diff(light) <= 0)
-    smooth = relative_friction_curve(stator, a, 9.35e-3, surface=stator.surface("bare"))
-    rough = relative_friction_curve(stator, a, 9.35e-3)
+    smooth, rough = _law(stator, "bare").curve(a), _law(stator).curve(a)
     assert np.all(smooth[1:] < rough[1:])
 
 

@@ -322,7 +322,7 @@ def test_teeth_matter_where_the_film_is_smooth():
         ({"aspect_ratio": -1.0}, InputError, "aspect_ratio = -1"),
         ({"polytropic_exponent": 3.0}, InputError, "polytropic_exponent = 3"),
         ({"knudsen_number": float("inf")}, InputError, "inf"),
-        ({"slip": "second"}, InputError, "second"),
+        ({"slip": "secund"}, InputError, "Did you mean 'second'"),
         ({"tolerance": 0.0}, InputError, "tolerance"),
         ({"shape": "triangle"}, InputError, "triangle"),
         ({"shape": "disc", "aspect_ratio": 2.0}, InputError, "disc"),

@@ -9,7 +9,7 @@ import numpy as np
 from squeezefilm.contact.film_load import DESCRIPTIONS, FILM_MODELS, FilmModel
 from squeezefilm.display import Display
 from squeezefilm.errors import SqueezefilmError
-from squeezefilm.friction import friction_law
+from squeezefilm.friction import FrictionLaw, friction_law
 from squeezefilm.plate.layout import AnnularStator
 from squeezefilm.prediction import Prediction
 from squeezefilm.quantities import (
@@ -95,8 +95,7 @@ _POINTS = {
 def compare_film_models(display: Display, prediction: Prediction) -> FilmComparison | None:
     """The film models at the working point of a prediction; None where nothing vibrates.
 
-    Raises what the film solvers raise, except for the curves, which end where a film cannot be
-    solved.
+    A film that cannot be solved has NaN and the reason as its status; its curve ends there.
     """
     p = prediction
     if p.vibration_amplitude == 0:
@@ -113,18 +112,7 @@ def compare_film_models(display: Display, prediction: Prediction) -> FilmCompari
             normal_force=p.normal_force,
             model=model,
         )
-        load = law.load(p.vibration_amplitude)
-        results.append(
-            FilmResult(
-                model=model,
-                description=DESCRIPTIONS[model],
-                over_pressure=load.over_pressure,
-                over_pressure_error=load.error,
-                load_share=load.over_pressure / pressure,
-                relative_friction=law.at(p.vibration_amplitude),
-                status=load.status,
-            )
-        )
+        results.append(_result(law, model, p.vibration_amplitude, pressure))
         amplitude = np.linspace(top / 40, top, _POINTS[model])
         share = np.full(amplitude.size, np.nan)
         for index, a in enumerate(amplitude):
@@ -135,6 +123,27 @@ def compare_film_models(display: Display, prediction: Prediction) -> FilmCompari
         curves.append(FilmCurve(model, amplitude, share))
     return FilmComparison(
         tuple(results), tuple(curves), _teeth(display, prediction), _balance(display, prediction)
+    )
+
+
+def _result(
+    law: FrictionLaw, model: FilmModel, amplitude: Metre, pressure: Dimensionless
+) -> FilmResult:
+    """One film at one amplitude; NaN with the reason where it cannot be solved, so that the others
+    can still be compared."""
+    try:
+        load, friction = law.load(amplitude), law.at(amplitude)
+    except SqueezefilmError as error:
+        nan = float("nan")
+        return FilmResult(model, DESCRIPTIONS[model], nan, nan, nan, nan, f"not solved: {error}")
+    return FilmResult(
+        model=model,
+        description=DESCRIPTIONS[model],
+        over_pressure=load.over_pressure,
+        over_pressure_error=load.error,
+        load_share=load.over_pressure / pressure,
+        relative_friction=friction,
+        status=load.status,
     )
 
 
@@ -149,19 +158,22 @@ def _teeth(display: Display, prediction: Prediction) -> ToothResult | None:
     p, gas = prediction, display.gas
     gap = p.law.gap(p.vibration_amplitude)
     reference = float(gap.reference_thickness)
-    found = compare_teeth(
-        p.squeeze_number,
-        PlanarGap(
-            float(gap.vibration_amplitude) / reference,
-            gap.wave_number,
-            gap.ridge_amplitude / reference,
-            gap.ridge_number,
-        ),
-        tooth_width=(actuator.tooth_pitch - actuator.slot_width) / gap.contact_length,
-        tooth_pitch=actuator.tooth_pitch / gap.contact_length,
-        knudsen_number=gas.mean_free_path / reference,
-        slip="first",
+    ridged = PlanarGap(
+        float(gap.vibration_amplitude) / reference,
+        gap.wave_number,
+        gap.ridge_amplitude / reference,
+        gap.ridge_number,
     )
+    try:
+        found = compare_teeth(
+            p.squeeze_number,
+            ridged,
+            tooth_width=(actuator.tooth_pitch - actuator.slot_width) / gap.contact_length,
+            tooth_pitch=actuator.tooth_pitch / gap.contact_length,
+            knudsen_number=gas.mean_free_path / reference,
+        )
+    except SqueezefilmError:
+        return None
     matters = "matter little here" if 0.8 <= found.ratio <= 1.25 else "do matter here"
     return ToothResult(
         tooth_pitch=actuator.tooth_pitch,

@@ -42,6 +42,9 @@ DESCRIPTIONS: dict[FilmModel, str] = {
 
 DEFAULT_PLATEAU_WIDTH: Metre = 250e-6
 
+# The over-pressure goes with the square of the relative amplitude: below this it is rounding.
+_STILL: Dimensionless = 1e-7
+
 
 @dataclass(frozen=True)
 class FilmLoad:
@@ -84,7 +87,7 @@ def film_load(
     if np.ndim(gap.vibration_amplitude) != 0:
         raise InputError("film_load takes a single vibration amplitude; call it for each")
     amplitude = float(gap.vibration_amplitude)
-    if amplitude == 0.0:
+    if amplitude < _STILL * float(gap.crest_thickness):
         return FilmLoad(model, 0.0, 0.0, _sigma(gap, frequency, gas), "no vibration, no pressure")
     if model == "paper2008":
         over = float(contact_mean_pressure(gap)) - 1.0

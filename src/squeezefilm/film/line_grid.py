@@ -100,6 +100,7 @@ def uniform_gap(excursion_ratio: float) -> Gap:
 
 
 def gap_table(gap: Gap, X: FloatArray, T: FloatArray) -> FloatArray:
+    """H at every time and place, (times, places), checked: finite and open."""
     shape = (T.size, X.size)
     try:
         H = np.broadcast_to(np.asarray(gap(X[None, :], T[:, None]), dtype=float), shape)

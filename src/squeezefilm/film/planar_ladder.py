@@ -93,6 +93,7 @@ class Ladder:
         return float((np.abs(H - mean) / mean).max())
 
     def grid(self, rung: int) -> PlanarGrid:
+        """The grid of one rung, made once."""
         if rung not in self._grids:
             self._grids[rung] = self._make(rung)
         return self._grids[rung]
@@ -128,6 +129,8 @@ class Ladder:
 
 @dataclass(frozen=True)
 class Extrapolated:
+    """What two or three rungs together say of the over-pressure, and how far that may be off."""
+
     over_pressure: float
     error: float
     harmonics: ComplexArray
@@ -135,6 +138,8 @@ class Extrapolated:
 
 @dataclass(frozen=True)
 class Climb:
+    """The end of a climb over the rungs: the best value and the state on the finest grid."""
+
     best: Extrapolated
     fine: Balance
     iterations: int
@@ -143,6 +148,7 @@ class Climb:
 
 
 def climb_to(ladder: Ladder, tolerance: float) -> Climb:
+    """Climb until the over-pressure is known to `tolerance` of itself, or to the last rung."""
     accuracy = 1e-7
     iterations = 0
 

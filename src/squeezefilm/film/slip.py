@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import DimensionlessLike, FloatLike, require
+from squeezefilm.quantities import DimensionlessLike, FloatLike, did_you_mean, require
 
 NO_SLIP, FIRST, SECOND, FUKUI_KANEKO, VEIJOLA = range(5)
 
@@ -30,7 +30,10 @@ def slip_law(slip: str, knudsen_number: float) -> int:
     """
     require("knudsen_number", knudsen_number, at_least=0.0)
     if slip not in SLIP_LAWS:
-        raise InputError(f"slip = '{slip}' is no slip law; use one of {', '.join(SLIP_LAWS)}")
+        raise InputError(
+            f"slip = '{slip}' is no slip law.{did_you_mean(slip, SLIP_LAWS)} "
+            f"Use one of {', '.join(SLIP_LAWS)}"
+        )
     return SLIP_LAWS[slip] if knudsen_number > 0.0 else NO_SLIP
 
 

@@ -140,7 +140,7 @@ def film_models(analysis: Analysis) -> Figure:
     films, p = analysis.film_models, analysis.prediction
     if films is None:
         return message_figure("Nothing vibrates", "Without vibration no film carries anything.")
-    shares = [100 * result.load_share for result in films.results]
+    shares = [100 * r.load_share for r in films.results if np.isfinite(r.load_share)]
     title = (
         f"At {shown(p.vibration_amplitude, M, 3)} the film carries from {min(shares):.2g} to "
         f"{max(shares):.3g} % of the finger: how ridges are drawn decides"

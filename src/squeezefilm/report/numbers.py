@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 import typing
 import unicodedata
 from collections.abc import Iterator
@@ -192,7 +193,9 @@ def film_rows(analysis: Analysis) -> list[tuple[str, str, str, str]]:
     if analysis.film_models is None:
         return []
     return [
-        (
+        (item.model, "not solved", "–", "–")
+        if not math.isfinite(item.over_pressure)
+        else (
             item.model,
             f"{item.over_pressure:.3g}"
             + (f" ± {item.over_pressure_error:.1g}" if item.over_pressure_error else ""),
