@@ -215,7 +215,7 @@ def _textures(
     prediction: Prediction, tau: Second
 ) -> tuple[FrictionTrace | None, FidelityTable | None]:
     high = prediction.vibration_amplitude
-    if high == 0 or prediction.relative_friction == 1:
+    if prediction.relative_friction == 1:
         return None, None
     friction = prediction.law.table(high)
     trace = friction_trace(

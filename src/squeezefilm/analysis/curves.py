@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from squeezefilm.analysis.procedure import PAPER_HALF_WAVELENGTHS, friction_criterion
-from squeezefilm.contact.film_load import line_film
+from squeezefilm.contact.film_load import is_still, line_film
 from squeezefilm.display import Display, Surface
 from squeezefilm.errors import UnreachableError
 from squeezefilm.film.limits import mean_pressure_profile
@@ -104,7 +104,7 @@ def pressure_profiles(prediction: Prediction) -> tuple[PressureProfile, ...]:
     thickness = np.asarray(gap.reference_thickness + ridges)
     position = X * gap.contact_length
     profiles = [PressureProfile(position, thickness, mean_pressure_profile(X, gap), "paper2008")]
-    if p.vibration_amplitude > 0:
+    if not is_still(gap):
         film = line_film(gap, p.frequency, law.gas)
         solved = np.interp(X, film.position, film.mean_pressure)
         profiles.append(PressureProfile(position, thickness, solved, "film-sealed"))

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from squeezefilm.contact.film_load import DESCRIPTIONS, FILM_MODELS, FilmModel
+from squeezefilm.contact.film_load import DESCRIPTIONS, FILM_MODELS, FilmModel, is_still
 from squeezefilm.display import Display
 from squeezefilm.errors import SqueezefilmError
 from squeezefilm.friction import FrictionLaw, friction_law
@@ -98,7 +98,7 @@ def compare_film_models(display: Display, prediction: Prediction) -> FilmCompari
     A film that cannot be solved has NaN and the reason as its status; its curve ends there.
     """
     p = prediction
-    if p.vibration_amplitude == 0:
+    if is_still(p.law.gap(p.vibration_amplitude)):
         return None
     pressure = p.normal_force / display.finger.contact_length**2 / display.gas.ambient_pressure
     results, curves = [], []

@@ -42,8 +42,9 @@ DESCRIPTIONS: dict[FilmModel, str] = {
 
 DEFAULT_PLATEAU_WIDTH: Metre = 250e-6
 
-# The over-pressure goes with the square of the relative amplitude: below this it is rounding.
-_STILL: Dimensionless = 1e-7
+# The over-pressure goes with the square of the relative amplitude: below this it is at most 1e-8
+# of ambient, a millionth of a finger's pressure, and the solvers would work on rounding.
+STILL: Dimensionless = 1e-4
 
 
 @dataclass(frozen=True)
@@ -87,8 +88,9 @@ def film_load(
     if np.ndim(gap.vibration_amplitude) != 0:
         raise InputError("film_load takes a single vibration amplitude; call it for each")
     amplitude = float(gap.vibration_amplitude)
-    if amplitude < _STILL * float(gap.crest_thickness):
-        return FilmLoad(model, 0.0, 0.0, _sigma(gap, frequency, gas), "no vibration, no pressure")
+    if is_still(gap):
+        bound = 1.25 * (amplitude / float(gap.crest_thickness)) ** 2
+        return FilmLoad(model, 0.0, bound, _sigma(gap, frequency, gas), "too still for a pressure")
     if model == "paper2008":
         over = float(contact_mean_pressure(gap)) - 1.0
         return FilmLoad(model, over, 0.0, _sigma(gap, frequency, gas), "closed form")
@@ -108,6 +110,11 @@ def film_load(
     return FilmLoad(
         model, film.over_pressure, film.over_pressure_error, film.squeeze_number, film.status
     )
+
+
+def is_still(gap: PaperGap) -> bool:
+    """Whether the vibration (m, a single amplitude) is too small for a film to speak of."""
+    return float(gap.vibration_amplitude) < STILL * float(gap.roughness)
 
 
 def _sigma(gap: PaperGap, frequency: Hertz, gas: Gas) -> float:
