@@ -6,6 +6,7 @@ cells of one ceramic carry its number, so that its potential is its own.
 
 from __future__ import annotations
 
+import functools
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -89,7 +90,9 @@ class BoxModel:
     """A solid of boxes: three line meshes, the medium of each cell (−1: empty) and the number of
     the ceramic it belongs to (−1: none), both of shape (x, y, z elements).
 
-    `ends` are the conditions on the four sides x−, x+, y−, y+.
+    `ends` are the conditions on the four sides x−, x+, y−, y+. `trunk` leaves out functions of
+    high order along y and z at once: those with a sum of relative orders (q − 1)/(p − 1) above it
+    (infinite: the full tensor product).
     """
 
     x: LineMesh
@@ -101,6 +104,18 @@ class BoxModel:
     electrodes: tuple[Electrode, ...] = ()
     ends: tuple[EndCondition, EndCondition, EndCondition, EndCondition] = ("free",) * 4
     foundations: tuple[Foundation, ...] = field(default=())
+    trunk: float = np.inf
+
+    @functools.cached_property
+    def kept(self) -> NDArray[np.bool_]:
+        """Which products of y and z functions are used, shape (y, z functions)."""
+
+        def relative(mesh: LineMesh) -> FloatArray:
+            highest = max(mesh.orders)
+            return (mesh.function_orders - 1) / max(highest - 1, 1)
+
+        total = relative(self.y)[:, None] + relative(self.z)[None, :]
+        return np.asarray(total <= self.trunk + 1e-9)
 
     def __post_init__(self) -> None:
         shape = (self.x.elements, self.y.elements, self.z.elements)

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from squeezefilm.plate.box_model import BoxModel, IntArray, Medium
-from squeezefilm.plate.lobatto import LineMesh, line_matrices
+from squeezefilm.plate.lobatto import LineMesh, hierarchic_line_matrices
 from squeezefilm.quantities import FloatArray
 
 # (mechanical, electrical) factors of a medium's constants; None leaves the medium out.
@@ -73,7 +73,7 @@ def _z_arrays(
         if index < 0:
             continue
         at = slice(mesh.first_node[k], mesh.first_node[k + 1] + 1)
-        M, D, S = line_matrices(mesh.edges[k + 1] - mesh.edges[k], mesh.orders[k])
+        M, D, S = hierarchic_line_matrices(mesh.edges[k + 1] - mesh.edges[k], mesh.orders[k])
         H = media[index].gradient_matrix(*weight(media[index]))
         for c in range(3):
             for d in range(3):
@@ -118,7 +118,7 @@ def cross_section(
         length, order = y.edges[j + 1] - y.edges[j], y.orders[j]
         key = (column, round(length, 12), order)
         if key not in kron_cache:
-            M, D, S = line_matrices(length, order)
+            M, D, S = hierarchic_line_matrices(length, order)
             P2 = _kron(M, Z[0, 0])
             P1 = _kron(D.T, Z[0, 1]) + _kron(M, Z[0, 2])
             P0 = _kron(S, Z[1, 1]) + _kron(D, Z[1, 2]) + _kron(D.T, Z[2, 1]) + _kron(M, Z[2, 2])
@@ -134,7 +134,7 @@ def cross_section(
                 Zs = np.zeros((4, nz, 4, nz))
                 for a in range(3):
                     Zs[a, spring.z_plane, a, spring.z_plane] = spring.stiffness[a] * springs
-                P0 = P0 + _kron(line_matrices(length, order)[0], Zs)
+                P0 = P0 + _kron(hierarchic_line_matrices(length, order)[0], Zs)
         codes, keep = _element_codes(model, element, j, present, electrode_of)
         at = np.ix_(keep, keep)
         blocks.append((codes[keep], P2[at], P1[at], P0[at], R[at]))
@@ -173,6 +173,7 @@ def _element_codes(
         if row.size and model.ends[side] != "free":
             exists[row[0]][:, _held(model.ends[side], normal=1)] = False
     flat = codes.reshape(-1)
+    exists &= model.kept[iy][:, :, None]
     keep = np.flatnonzero(exists.reshape(-1))
     present[flat[keep]] = True
     for number in {int(n) for n in owner if n >= 0}:
@@ -208,9 +209,12 @@ def _assemble(
             total[at] += part
     number = electrode_of[all_codes]
     free, electrodes = number < 0, tuple(int(k) for k in np.unique(number[number >= 0]))
-    psi = np.stack([(number == k).astype(float) for k in electrodes], axis=1) if electrodes else (
-        np.zeros((n, 0))
-    )
+    # A potential that is one along y is the sum of the end functions of the elements alone.
+    _, iy, _ = code_parts(model, all_codes)
+    ends = model.y.function_orders[iy] == 1
+    psi = np.zeros((n, len(electrodes)))
+    for column, k in enumerate(electrodes):
+        psi[(number == k) & ends, column] = 1
     at = np.ix_(free, free)
     return CrossSection(
         codes=all_codes[free],

@@ -12,10 +12,12 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.polynomial import legendre
+from numpy.typing import NDArray
 
 from squeezefilm.errors import InputError
 from squeezefilm.quantities import FloatArray, Metre
 
+IntArray = NDArray[np.int64]
 MAX_ORDER = 16
 
 
@@ -67,6 +69,39 @@ def line_matrices(length: Metre, order: int) -> tuple[FloatArray, FloatArray, Fl
     return mass * (length / 2), slope, stiffness * (2 / length)
 
 
+@functools.lru_cache(maxsize=64)
+def hierarchic_values(order: int, points: tuple[float, ...] | None = None) -> FloatArray:
+    """The hierarchic basis (two end functions, then integrated Legendre polynomials of order 2 to
+    `order`, in the places of a Lagrange basis) at the Lobatto nodes or at given points of [−1, 1].
+
+    Shape (points, order + 1): column 0 and `order` are the ends, column k the order k + 1.
+    """
+    x = lobatto_nodes(order) if points is None else np.array(points)
+    out = np.empty((x.size, order + 1))
+    out[:, 0], out[:, order] = (1 - x) / 2, (1 + x) / 2
+    for k in range(2, order + 1):
+        high = legendre.legval(x, np.eye(k + 1)[k])
+        low = legendre.legval(x, np.eye(k + 1)[k - 2])
+        out[:, k - 1] = (high - low) / np.sqrt(2 * (2 * k - 1))
+    out.setflags(write=False)
+    return out
+
+
+@functools.lru_cache(maxsize=64)
+def _hierarchic_reference(order: int) -> tuple[FloatArray, FloatArray, FloatArray]:
+    E = hierarchic_values(order)
+    mass, slope, stiffness = (E.T @ part @ E for part in _reference_matrices(order))
+    return mass, slope, stiffness
+
+
+def hierarchic_line_matrices(
+    length: Metre, order: int
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """`line_matrices` in the hierarchic basis."""
+    mass, slope, stiffness = _hierarchic_reference(order)
+    return mass * (length / 2), slope, stiffness * (2 / length)
+
+
 @dataclass(frozen=True, eq=False)
 class LineMesh:
     """Elements on a line: `edges` (m, ascending) and the polynomial `orders` between them."""
@@ -98,8 +133,23 @@ class LineMesh:
             parts.append(a + (b - a) * (lobatto_nodes(order)[1:] + 1) / 2)
         return np.concatenate(parts)
 
+    @functools.cached_property
+    def function_orders(self) -> IntArray:
+        """The polynomial order of each hierarchic function: 1 at element ends, 2 … inside."""
+        out = np.ones(self.first_node[-1] + 1, dtype=np.int64)
+        for k, order in enumerate(self.orders):
+            out[self.first_node[k] + 1 : self.first_node[k + 1]] = np.arange(2, order + 1)
+        return out
+
+    def hierarchic_interpolation(self, points: FloatArray) -> FloatArray:
+        """The matrix that takes hierarchic coefficients to values at `points`."""
+        return self._evaluation(points, hierarchic=True)
+
     def interpolation(self, points: FloatArray) -> FloatArray:
         """The matrix that takes nodal values to values at `points`; shape (points, nodes)."""
+        return self._evaluation(points, hierarchic=False)
+
+    def _evaluation(self, points: FloatArray, hierarchic: bool) -> FloatArray:
         points = np.atleast_1d(np.asarray(points, dtype=float))
         edges = np.array(self.edges)
         owner = np.clip(np.searchsorted(edges, points, side="right") - 1, 0, self.elements - 1)
@@ -107,7 +157,10 @@ class LineMesh:
         for k in np.unique(owner):
             mine = owner == k
             local = 2 * (points[mine] - edges[k]) / (edges[k + 1] - edges[k]) - 1
-            values, _ = lagrange_basis(lobatto_nodes(self.orders[k]), local)
+            if hierarchic:
+                values = hierarchic_values(self.orders[k], tuple(local))
+            else:
+                values, _ = lagrange_basis(lobatto_nodes(self.orders[k]), local)
             start = self.first_node[k]
             out[np.ix_(mine, np.arange(start, start + self.orders[k] + 1))] = values
         return out

@@ -156,7 +156,8 @@ class Slabs:
         return out
 
     def grid(self, vector: FloatArray) -> FloatArray:
-        """A vector's displacements on the nodes, shape (x, y, z nodes, 3); zero where empty."""
+        """A vector's displacements: values at the x nodes, hierarchic coefficients along y and z;
+        shape (x nodes, y functions, z functions, 3), zero where empty."""
         model = self.model
         shape = (model.x.nodes.size, model.y.nodes.size, model.z.nodes.size, 3)
         out = np.zeros(shape, dtype=vector.dtype)
