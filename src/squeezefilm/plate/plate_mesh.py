@@ -33,7 +33,7 @@ class Resolution:
 
     `edge_layers` are distances of element edges from a ceramic's edge, in units of its thickness;
     `order_x` the order of elements along the slices' axis, `order_z` that across each layer;
-    `order_y` is added to the phase (rad) that the shortest wave covers in an element.
+    `order_y` is added to 0.65 times the phase (rad) that the shortest wave covers in an element.
     """
 
     edge_layers: tuple[float, ...]
@@ -43,9 +43,9 @@ class Resolution:
     trunk: Dimensionless = 1.0
 
 
-COARSE = Resolution((0.9,), 3, 1, 4)
-NORMAL = Resolution((0.3, 1.5), 3, 3, 6)
-FINE = Resolution((0.06, 0.3, 1.5), 4, 5, 9, 1.2)
+COARSE = Resolution((0.9,), 3, 0, 4)
+NORMAL = Resolution((0.3, 1.5), 3, 2, 6)
+FINE = Resolution((0.06, 0.3, 1.5), 4, 4, 9, 1.2)
 
 
 @dataclass(frozen=True, eq=False)
@@ -215,10 +215,10 @@ def _line(
     orders: list[int] = []
     for a, b in zip(edges[:-1], edges[1:], strict=True):
         # No element longer than about one wavelength: higher orders cost more than elements.
-        number = max(1, math.ceil(wave * (b - a) / (4.5 if cut else 7.5)))
+        number = max(1, math.ceil(wave * (b - a) / (4.5 if cut else 11.0)))
         for k in range(number):
             fine.append(a + (b - a) * (k + 1) / number)
-            need = wave * (b - a) / number + extra
+            need = 0.65 * wave * (b - a) / number + extra
             orders.append(int(min(max(order, round(need)), MAX_ORDER)))
     return LineMesh(tuple(fine), tuple(orders))
 
@@ -301,8 +301,10 @@ def plate_model(
     along, across = (1, 0) if swapped else (0, 1)
     thickness = min(plate.ceramic_thickness, plate.thickness)
     x = _line(*breaks[along], half[along], thickness, resolution.edge_layers, resolution.order_x,
-              wave, 1, cut=True)  # fmt: skip
-    y = _line(*breaks[across], half[across], thickness, resolution.edge_layers[-1:],
+              wave, resolution.order_y, cut=True)  # fmt: skip
+    # A ceramic that ends with the plate's own edge ends there without a corner.
+    inner = [v for v in breaks[across][1] if v > 0 and v != breaks[across][0][-1]]
+    y = _line(breaks[across][0], inner, half[across], thickness, resolution.edge_layers[-1:],
               resolution.order_x, wave, resolution.order_y, cut=False)  # fmt: skip
     z, layers = _through_thickness(plate, resolution)
     shape = (x.elements, y.elements, z.elements)
