@@ -55,7 +55,8 @@ class PlateModel:
     `parity` is the class along x and y (None where that half is not used); `copies` how many
     times the model makes the plate; `swapped` whether the model's x is the plate's y;
     `electrode_of[i]` the model's electrode for patch i and `sign_of[i]` the sign of its potential
-    relative to it; `top` the z function of the plate's upper face.
+    relative to it; `share_of[i]` is how many times the model's part of that ceramic makes a whole
+    one (0 where antisymmetry makes its charge vanish and allows it no potential).
     """
 
     model: BoxModel
@@ -64,7 +65,7 @@ class PlateModel:
     swapped: bool
     electrode_of: tuple[int, ...]
     sign_of: tuple[float, ...]
-    top: int
+    share_of: tuple[float, ...]
 
 
 def wave_number(plate: RectangularPlate, frequency: float) -> float:
@@ -379,8 +380,20 @@ def plate_model(
         swapped,
         tuple(number_of[electrode_of[i]] for i in range(len(plate.patches))),
         sign_of,
-        top,
+        tuple(_share(plate, patch, parity) for patch in plate.patches),
     )
+
+
+def _share(
+    plate: RectangularPlate, patch: CeramicPatch, parity: tuple[Parity | None, Parity | None]
+) -> float:
+    share = 1.0
+    for axis in (0, 1):
+        middle = (plate.length, plate.width)[axis] / 2
+        start, extent = ((patch.x, patch.length), (patch.y, patch.width))[axis]
+        if parity[axis] is not None and start < middle - _SNAP and start + extent > middle + _SNAP:
+            share *= 2.0 if parity[axis] == "S" else 0.0
+    return share
 
 
 def _names(axis: int) -> tuple[str, str]:

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from squeezefilm.plate.block_ldl import PartialLDL, partial_ldl
-from squeezefilm.plate.cross_section import CrossSection, code_parts
+from squeezefilm.plate.cross_section import CrossSection
 from squeezefilm.plate.lobatto import line_matrices
 from squeezefilm.plate.slabs import Slabs, relabelled
 
@@ -65,6 +65,8 @@ class SlabFactor:
         self._sections = sections or slabs.sections
         self._dynamic: dict[int, Matrix] = {}
         self._bubbles: dict[Any, PartialLDL] = {}
+        # Reflection along x turns u and nothing else.
+        self._mirror_signs = np.where(slabs.components == 0, -1.0, 1.0)
         cells: dict[Any, _Cell] = {}
         self._places: list[_Place] = []
         for elements in _cut(slabs):
@@ -167,8 +169,8 @@ class SlabFactor:
         return _Cell(bubbles, tuple(joints), front, negative)
 
     def _signs(self, node: int) -> Matrix:
-        component = code_parts(self._slabs.model, self._slabs.codes[node])[0]
-        return np.where(component == 0, -1.0, 1.0)
+        offsets = self._slabs.offsets
+        return self._mirror_signs[offsets[node] : offsets[node + 1]]
 
     def _chain(self) -> None:
         """Eliminate the end slices of all cells from left to right."""

@@ -70,7 +70,7 @@ class Slabs:
         # at the ends of the plate are like any other.
         self.held = np.zeros(self.unknowns, dtype=bool)
         for n, condition in ((0, self.model.ends[0]), (count - 1, self.model.ends[1])):
-            component = code_parts(self.model, self.codes[n])[0]
+            component = self.parts[n][0]
             at = slice(self.offsets[n], self.offsets[n + 1])
             self.held[at] |= np.isin(component, _held(condition))
 
@@ -83,7 +83,23 @@ class Slabs:
     @functools.cached_property
     def components(self) -> IntArray:
         """The component (0–2 displacement, 3 potential) of every unknown."""
-        return np.concatenate([code_parts(self.model, codes)[0] for codes in self.codes])
+        return np.concatenate([part for part, _, _ in self.parts])
+
+    @functools.cached_property
+    def parts(self) -> list[tuple[IntArray, IntArray, IntArray]]:
+        """Component, y function and z function of every slice's unknowns."""
+        known: dict[int, tuple[IntArray, IntArray, IntArray]] = {}
+        return [
+            known.setdefault(id(codes), code_parts(self.model, codes)) for codes in self.codes
+        ]
+
+    @functools.cached_property
+    def _element_places(self) -> list[list[IntArray]]:
+        x = self.model.x
+        return [
+            [self.offsets[x.first_node[e] + a] + self.places(e, a) for a in range(x.orders[e] + 1)]
+            for e in range(x.elements)
+        ]
 
     @functools.cached_property
     def electrode_columns(self) -> tuple[FloatArray, FloatArray]:
@@ -131,16 +147,15 @@ class Slabs:
     def _apply(self, U: FloatArray, sections: list[CrossSection], mass: bool) -> FloatArray:
         U = np.where(self.held[:, None], 0, U)
         out = np.zeros_like(U)
-        first = self.model.x.first_node
         for e, section in enumerate(sections):
             M, D, S = self._lines(e)
             n, nodes, vectors = section.codes.size, M.shape[0], U.shape[1]
-            places = [self.offsets[first[e] + a] + self.places(e, a) for a in range(nodes)]
+            places = self._element_places[e]
             local = np.stack([U[at] for at in places], axis=1)
             flat = local.reshape(n, nodes * vectors)
 
             def along(line: FloatArray, values: FloatArray) -> FloatArray:
-                return np.einsum("ab,nbv->nav", line, values, optimize=False)
+                return np.matmul(line, values)
 
             shape = local.shape
             if mass:
@@ -161,8 +176,7 @@ class Slabs:
         model = self.model
         shape = (model.x.nodes.size, model.y.nodes.size, model.z.nodes.size, 3)
         out = np.zeros(shape, dtype=vector.dtype)
-        for n, codes in enumerate(self.codes):
-            component, iy, iz = code_parts(model, codes)
+        for n, (component, iy, iz) in enumerate(self.parts):
             moving = component < 3
             part = vector[self.offsets[n] : self.offsets[n + 1]][moving]
             out[n, iy[moving], iz[moving], component[moving]] = part

@@ -65,9 +65,8 @@ class _Found:
     values: FloatArray
     vectors: FloatArray
     labels: list[Label | None]
-    open_values: FloatArray
-    shares: FloatArray
-    losses: FloatArray
+    factor: SlabFactor
+    shift: float
 
 
 def solve_modes(
@@ -129,7 +128,7 @@ def _solve(
     found = []
     for number, parity in enumerate(classes):
         tell(f"coarse mesh, symmetry {_name(parity)}", 0.3 * number / len(classes))
-        found.append(_coarse(plate, parity, centre, highest, band, 12 if mode else count))
+        found.append(_coarse(plate, parity, centre, highest, band, 8 if mode else count))
     chosen = _choose(found, near, band, mode, count)
     levels = [(COARSE, NORMAL), (NORMAL, FINE)]
     pieces: list[_Piece] = []
@@ -194,6 +193,8 @@ def _ties(solved: SolvedModel, groups: list[list[tuple[int, float]]]) -> FloatAr
     for group in groups:
         column = np.zeros(electrodes)
         for patch, sign in group:
+            if solved.built.share_of[patch] == 0:
+                continue
             column[solved.built.electrode_of[patch]] += sign * solved.built.sign_of[patch]
         column = np.sign(np.round(column, 9))
         if np.any(column) and not any(
@@ -247,16 +248,12 @@ def _coarse(
         start = np.random.default_rng(1).standard_normal((slabs.unknowns, 4))
         start[(slabs.components == 3) | slabs.held] = 0
         solve = _solver(slabs, solved, factor)
-        pairs = modes_near(slabs, solve, shift, wanted, start, tolerance=1e-7)
+        pairs = modes_near(slabs, solve, shift, wanted, start, tolerance=1e-6)
         values, vectors = pairs.values, pairs.vectors
     _, _, surface = _surface(solved, vectors)
     x, y = np.linspace(0, plate.length, _POINTS[0]), np.linspace(0, plate.width, _POINTS[1])
     labels = [label_of(one, x, y) for one in surface]
-    shares, losses = _shares(slabs, vectors)
-    return _Found(
-        parity, solved, values, vectors, labels,
-        _open_values(solved, slabs, factor, shift, values, vectors), shares, losses,
-    )  # fmt: skip
+    return _Found(parity, solved, values, vectors, labels, factor, shift)
 
 
 def _shares(slabs: Slabs, vectors: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -277,15 +274,9 @@ def _shares(slabs: Slabs, vectors: FloatArray) -> tuple[FloatArray, FloatArray]:
     return total / np.sum(total, axis=1, keepdims=True), np.array(losses)
 
 
-def _open_values(
-    solved: SolvedModel,
-    slabs: Slabs,
-    factor: SlabFactor,
-    shift: float,
-    values: FloatArray,
-    vectors: FloatArray,
-) -> FloatArray:
+def _open_values(one: _Found, values: FloatArray, vectors: FloatArray) -> FloatArray:
     """ω² of the same modes with the drive's terminals open."""
+    solved, slabs, factor, shift = one.solved, one.solved.slabs, one.factor, one.shift
     signs = drive_signs(solved.plate)
     port = _ties(solved, [[(i, s) for i, s in enumerate(signs) if s]])
     opened = _ties(
@@ -418,11 +409,14 @@ def _collected(
         x, y, surface = _surface(piece.solved, vectors)
         G, _ = piece.solved.slabs.electrode_columns
         built = piece.solved.built
-        per_electrode = -(G.T @ vectors).T * _whole(built.copies, piece, plate)
-        own = np.array(built.sign_of)
+        per_electrode = -(G.T @ vectors).T
+        own = np.array(built.sign_of) * np.array(built.share_of)
         forces = per_electrode[:, list(built.electrode_of)] * own[None, :]
-        shares = piece.found.shares[piece.index]
-        opened = piece.found.open_values[piece.index] / piece.found.values[piece.index]
+        # Ratios need few digits: they are taken from the coarse mesh.
+        rough, some = piece.found, piece.found.vectors[:, piece.index]
+        shares, losses = _shares(rough.solved.slabs, some)
+        known = rough.values[piece.index]
+        opened = _open_values(rough, known, some) / known
         for i in range(frequency.size):
             top = surface[i]
             turn = 1.0
@@ -436,7 +430,7 @@ def _collected(
                     frequency[i], error[i], np.sqrt(piece.values[i]) / (2 * np.pi),
                     label_of(top, x, y), piece.found.parity, turn * top[:, :, 2],
                     turn * forces[i], abs(driven), frequency[i] * np.sqrt(opened[i]),
-                    shares[i], 1 / max(float(shares[i] @ piece.found.losses), 1e-30),
+                    shares[i], 1 / max(float(shares[i] @ losses), 1e-30),
                     (piece.solved, turn * vectors[:, i]),
                 )
             )  # fmt: skip
@@ -484,22 +478,3 @@ def _collected(
         unknowns=max(piece.solved.slabs.unknowns for piece in pieces),
         _fields=columns[11],
     )
-
-
-def _whole(copies: int, piece: _Piece, plate: RectangularPlate) -> FloatArray:
-    """How much of each model electrode's patch lies in the modelled part: forces are per patch."""
-    built = piece.solved.built
-    out = np.ones(len(built.model.electrodes))
-    for i, patch in enumerate(plate.patches):
-        if built.sign_of[i] != 1.0 and built.electrode_of.count(built.electrode_of[i]) == 1:
-            continue
-        factor = 1.0
-        for axis in (0, 1):
-            if built.parity[axis] is None:
-                continue
-            span = (plate.length, plate.width)[axis]
-            start, extent = ((patch.x, patch.length), (patch.y, patch.width))[axis]
-            if start < span / 2 - 1e-9 < span / 2 + 1e-9 < start + extent:
-                factor *= 2
-        out[built.electrode_of[i]] = factor
-    return out[None, :]
