@@ -27,6 +27,11 @@ _VOIGT = {
 }  # fmt: skip
 
 
+# Unknown potentials are counted in this unit (V), so that dielectric and elastic entries of the
+# matrices are alike in size; without it elimination loses most digits.
+POTENTIAL_UNIT = 3e9
+
+
 @dataclass(frozen=True, eq=False)
 class Medium:
     """What a cell is filled with: `stiffness` c at constant field (6 × 6, Pa), `stress_matrix` e
@@ -48,7 +53,7 @@ class Medium:
     def gradient_matrix(self, mechanical: float = 1.0, electrical: float = 1.0) -> FloatArray:
         """The symmetric 4·3 × 4·3 matrix between gradients of (u, v, w, φ) and their fluxes.
 
-        Index (component, direction), shape (4, 3, 4, 3). The quadratic form of it is the elastic
+        Potentials count in `POTENTIAL_UNIT`. Index (component, direction), shape (4, 3, 4, 3). The quadratic form of it is the elastic
         energy minus the electric one, twice. `mechanical` scales c, `electrical` e and ε.
         """
         out = np.zeros((4, 3, 4, 3))
@@ -57,9 +62,11 @@ class Medium:
                 out[a, c, b, d] = mechanical * self.stiffness[row, column]
             if self.stress_matrix is not None:
                 for d in range(3):
-                    out[a, c, 3, d] = out[3, d, a, c] = electrical * self.stress_matrix[d, row]
+                    out[a, c, 3, d] = out[3, d, a, c] = (
+                        electrical * POTENTIAL_UNIT * self.stress_matrix[d, row]
+                    )
         if self.permittivity is not None:
-            out[3, :, 3, :] = -electrical * self.permittivity
+            out[3, :, 3, :] = -electrical * POTENTIAL_UNIT**2 * self.permittivity
         return out
 
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from squeezefilm.plate.box_model import BoxModel, IntArray, Medium
+from squeezefilm.plate.box_model import POTENTIAL_UNIT, BoxModel, IntArray, Medium
 from squeezefilm.plate.lobatto import LineMesh, hierarchic_line_matrices
 from squeezefilm.quantities import FloatArray
 
@@ -214,7 +214,7 @@ def _assemble(
     ends = model.y.function_orders[iy] == 1
     psi = np.zeros((n, len(electrodes)))
     for column, k in enumerate(electrodes):
-        psi[(number == k) & ends, column] = 1
+        psi[(number == k) & ends, column] = 1 / POTENTIAL_UNIT
     at = np.ix_(free, free)
     return CrossSection(
         codes=all_codes[free],
