@@ -36,12 +36,42 @@ class SolvedModel:
     def field(self, vectors: FloatArray, x: FloatArray, y: FloatArray, z: float) -> FloatArray:
         """Displacements at the grid of `x` and `y` (plate coordinates, m) at height `z` (m, the
         plate's lower face at 0): shape (vectors, x, y, 3)."""
+        Ex, Ey, Ez, signs = self._evaluation(x, y, z)
+        out = np.empty((vectors.shape[1], len(x), len(y), 3), dtype=vectors.dtype)
+        for column in range(vectors.shape[1]):
+            grid = np.tensordot(self.slabs.grid(vectors[:, column]), Ez, axes=(2, 0))
+            values = np.einsum("ai,bj,ijc->abc", Ex, Ey, grid, optimize=True)
+            if self.built.swapped:
+                values = values.transpose(1, 0, 2)[:, :, [1, 0, 2]]
+            out[column] = values
+        return out * signs
+
+    def force(self, x: FloatArray, y: FloatArray, z: float, w: FloatArray) -> FloatArray:
+        """The load vector of forces `w` (N, along z, shape (x, y)) at the grid of points: the
+        adjoint of `field`, projected on the class of symmetry; shape (unknowns,)."""
+        Ex, Ey, Ez, signs = self._evaluation(x, y, z)
+        weighted = np.asarray(w, dtype=float) * signs[:, :, 2]
+        if self.built.swapped:
+            weighted = weighted.T
+        plane = Ex.T @ weighted @ Ey
+        parts = []
+        for n, (component, iy, iz) in enumerate(self.slabs.parts):
+            parts.append(np.where(component == 2, plane[n, iy] * Ez[iz], 0.0))
+        out = np.concatenate(parts) / self.built.copies
+        out[self.slabs.held] = 0
+        return out
+
+    def _evaluation(
+        self, x: FloatArray, y: FloatArray, z: float
+    ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
         built, model = self.built, self.built.model
         spans = (self.plate.length, self.plate.width)
         folded, signs = [], []
         for axis, points in enumerate((np.asarray(x, dtype=float), np.asarray(y, dtype=float))):
             parity = built.parity[axis]
-            beyond = (points > spans[axis] / 2) if parity is not None else np.zeros(points.size, bool)
+            beyond = np.zeros(points.size, dtype=bool)
+            if parity is not None:
+                beyond = points > spans[axis] / 2
             folded.append(np.where(beyond, spans[axis] - points, points))
             normal, other = (-1.0, 1.0) if parity == "S" else (1.0, -1.0)
             sign = np.ones((points.size, 3))
@@ -49,17 +79,12 @@ class SolvedModel:
             sign[beyond, axis] = normal
             signs.append(sign)
         along, across = (folded[1], folded[0]) if built.swapped else (folded[0], folded[1])
-        Ex = model.x.interpolation(along)
-        Ey = model.y.hierarchic_interpolation(across)
-        Ez = model.z.hierarchic_interpolation(np.array([z]))[0]
-        out = np.empty((vectors.shape[1], len(x), len(y), 3), dtype=vectors.dtype)
-        for column in range(vectors.shape[1]):
-            grid = np.tensordot(self.slabs.grid(vectors[:, column]), Ez, axes=(2, 0))
-            values = np.einsum("ai,bj,ijc->abc", Ex, Ey, grid, optimize=True)
-            if built.swapped:
-                values = values.transpose(1, 0, 2)[:, :, [1, 0, 2]]
-            out[column] = values
-        return out * signs[0][None, :, None, :] * signs[1][None, None, :, :]
+        return (
+            model.x.interpolation(along),
+            model.y.hierarchic_interpolation(across),
+            model.z.hierarchic_interpolation(np.array([z]))[0],
+            signs[0][:, None, :] * signs[1][None, :, :],
+        )
 
 
 @dataclass(frozen=True, eq=False)
