@@ -8,7 +8,7 @@ import pytest
 
 from squeezefilm.display import load_display
 from squeezefilm.errors import ContradictionError, GeometryError, InputError, OutOfRangeError
-from squeezefilm.materials import ElasticMaterial, PiezoConstants, Piezoceramic
+from squeezefilm.materials import ElasticMaterial, Piezoceramic, PiezoConstants
 from squeezefilm.plate.layout import (
     CeramicPatch,
     FoamSupport,
@@ -16,13 +16,14 @@ from squeezefilm.plate.layout import (
     RectangularPlate,
     rim_supports,
 )
-from squeezefilm.plate.plate_mesh import COARSE, all_classes, drive_classes, plate_model
+from squeezefilm.plate.plate_mesh import COARSE, plate_model
 from squeezefilm.plate.plate_modes import SolvedModel, tracked
 from squeezefilm.plate.plate_response import (
     SurfaceLoad,
     direct_admittance,
     harmonic_response,
 )
+from squeezefilm.plate.plate_symmetry import all_classes, drive_classes
 from squeezefilm.plate.reduced_plate import harmonic_solution, reduced_class, surface_values
 from squeezefilm.plate.slab_factor import SlabFactor
 from squeezefilm.plate.slabs import Slabs
@@ -107,7 +108,9 @@ def test_all_neighbours_are_found_with_their_modal_forces(data_set: str) -> None
     assert modes.count == len(wanted)
     assert modes.frequencies == pytest.approx(list(wanted), rel=8e-4)
     assert modes.drive_forces == pytest.approx(list(wanted.values()), rel=2e-2, abs=1e-6)
-    assert modes.drive_forces[modes.index((8, 0))] == pytest.approx(wanted[sorted(wanted)[6]], rel=1e-2)
+    assert modes.drive_forces[modes.index((8, 0))] == pytest.approx(
+        wanted[sorted(wanted)[6]], rel=1e-2
+    )
     assert np.all(modes.open_frequencies >= modes.frequencies)
 
 
@@ -205,7 +208,7 @@ def test_classes_of_symmetry_together_are_the_whole_plate() -> None:
     parts = sorted(f for parity in all_classes(plate) for f in found(parity, 8))
     assert len(whole) == len(parts) >= 4
     # The y element of a half is finer than that of the whole: the same modes, not the same mesh.
-    assert parts == pytest.approx(whole, rel=3e-3)
+    assert parts == pytest.approx(whole, rel=8e-3)
 
 
 def test_static_field_of_the_model_and_its_force_are_adjoint() -> None:
@@ -248,10 +251,10 @@ def test_loss_in_the_ceramic_alone_raises_the_quality_factor() -> None:
 
 def test_foam_along_the_rim_damps_and_stiffens_a_glass_plate() -> None:
     plate = RectangularPlate(
-        60e-3, 40e-3, 0.9e-3, 6, 100, GLASS, CERAMIC,
-        tuple(CeramicPatch(x, 3e-3, 5e-3, 34e-3, 0.5e-3) for x in (3e-3, 52e-3)),
+        60e-3, 30e-3, 0.9e-3, 6, 100, GLASS, CERAMIC,
+        tuple(CeramicPatch(x, 2e-3, 5e-3, 26e-3, 0.5e-3) for x in (3e-3, 52e-3)),
     )  # fmt: skip
-    rim = rim_supports(60e-3, 40e-3, 2e-3, 1e-3, 2e6, 3.0)
+    rim = rim_supports(60e-3, 30e-3, 2e-3, 1e-3, 2e6, 3.0)
     free = solve_modes(plate, near=25e3, count=2, driven_only=True)
     held = solve_modes(dataclasses.replace(plate, supports=rim), near=25e3, count=2,
                        driven_only=True)  # fmt: skip

@@ -25,7 +25,7 @@ def _controls() -> tuple[tuple[Callable[[], int], Callable[[int], None]], ...]:
     """(get, set) of every OpenBLAS that comes with NumPy and SciPy; empty for another BLAS."""
     found = []
     for package in (np, scipy):
-        root = Path(package.__file__).parent
+        root = Path(str(package.__file__)).parent
         folders = (root.parent / f"{root.name}.libs", root / ".dylibs")
         for library in (p for folder in folders if folder.is_dir() for p in folder.iterdir()):
             if "openblas" not in library.name:

@@ -53,8 +53,9 @@ class Medium:
     def gradient_matrix(self, mechanical: float = 1.0, electrical: float = 1.0) -> FloatArray:
         """The symmetric 4·3 × 4·3 matrix between gradients of (u, v, w, φ) and their fluxes.
 
-        Potentials count in `POTENTIAL_UNIT`. Index (component, direction), shape (4, 3, 4, 3). The quadratic form of it is the elastic
-        energy minus the electric one, twice. `mechanical` scales c, `electrical` e and ε.
+        Potentials count in `POTENTIAL_UNIT`. Index (component, direction), shape (4, 3, 4, 3). The
+        quadratic form of it is the elastic energy minus the electric one, twice. `mechanical`
+        scales c, `electrical` e and ε.
         """
         out = np.zeros((4, 3, 4, 3))
         for (a, c), row in _VOIGT.items():

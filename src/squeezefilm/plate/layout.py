@@ -60,8 +60,8 @@ class CeramicPatch:
             require("shunt_resistance", self.shunt_resistance, Unit("ohm"), above=0)
         if (self.electrode == "shunted") != (self.shunt_resistance is not None):
             raise InputError(
-                f"electrode = '{self.electrode}' and shunt_resistance do not go together; a shunted "
-                "electrode needs one, the others have none",
+                f"electrode = '{self.electrode}' and shunt_resistance do not go together; a "
+                "shunted electrode needs one, the others have none",
                 quantity="shunt_resistance",
             )
 

@@ -26,8 +26,9 @@ def lobatto_nodes(order: int) -> FloatArray:
     """The order + 1 Gauss–Lobatto–Legendre nodes on [−1, 1]: the ends and the roots of P′."""
     if not 1 <= order <= MAX_ORDER:
         raise InputError(f"order = {order}: elements of order 1 to {MAX_ORDER} are provided")
-    inside = legendre.legroots(legendre.legder(np.eye(order + 1)[order])) if order > 1 else []
-    nodes = np.concatenate([[-1.0], np.sort(np.real(inside)), [1.0]])
+    roots = legendre.legroots(legendre.legder(np.eye(order + 1)[order])) if order > 1 else 0.0
+    inside = np.sort(np.real(np.atleast_1d(roots)))[: order - 1]
+    nodes: FloatArray = np.concatenate([[-1.0], inside, [1.0]])
     # Exact mirror symmetry lets mirrored cells of a plate share one factorisation.
     nodes = 0.5 * (nodes - nodes[::-1])
     nodes.setflags(write=False)

@@ -7,23 +7,33 @@ thickness and along y one element of high order does, its mixed high orders left
 
 from __future__ import annotations
 
-import dataclasses
+import itertools
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 
 from squeezefilm.errors import GeometryError, OutOfRangeError
 from squeezefilm.materials import isotropic_stiffness
-from squeezefilm.plate.box_model import BoxModel, Electrode, EndCondition, Foundation, Medium
+from squeezefilm.plate.box_model import (
+    BoxModel,
+    Electrode,
+    EndCondition,
+    Foundation,
+    IntArray,
+    Medium,
+)
 from squeezefilm.plate.layout import CeramicPatch, FoamSupport, RectangularPlate
-from squeezefilm.plate.lobatto import MAX_ORDER, LineMesh, graded_edges
-from squeezefilm.quantities import Dimensionless, FloatArray, Metre, Unit, format_quantity
+from squeezefilm.plate.lobatto import MAX_ORDER, LineMesh
+from squeezefilm.plate.plate_symmetry import (
+    SNAP,
+    Parity,
+    mirror_map,
+    symmetric_axes,
+)
+from squeezefilm.quantities import Dimensionless, Metre, Unit, format_quantity
 
-Parity = Literal["S", "A"]
-_SNAP = 1e-9  # m; edges nearer than this are one
 _THINNEST = 2000.0  # in-plane element length over layer thickness that still solves to 1e-6
 
 
@@ -32,8 +42,9 @@ class Resolution:
     """How fine a plate is meshed.
 
     `edge_layers` are distances of element edges from a ceramic's edge, in units of the thinner of
-    plate and ceramic (`edge_layers_y` those across the slices); `order_x` the order of elements along the slices' axis, `order_z` that across each layer;
-    `order_y` is added to 0.65 times the phase (rad) that the shortest wave covers in an element.
+    plate and ceramic (`edge_layers_y` those across the slices); `order_x` the least order of
+    elements in the plane, `order_z` that across each layer; `order_y` is added to 0.65 times the
+    phase (rad) that the shortest wave covers in an element.
     """
 
     edge_layers: tuple[float, ...]
@@ -45,10 +56,10 @@ class Resolution:
 
 
 COARSE = Resolution((0.9,), (0.9,), 3, 1, 4)
-NORMAL = Resolution((0.3, 1.5), (0.4,), 3, 2, 6)
-FINE = Resolution((0.12, 0.5, 1.7), (0.2, 1.0), 3, 3, 7)
+NORMAL = Resolution((0.3, 1.5), (0.3, 1.5), 3, 2, 6)
+FINE = Resolution((0.12, 0.5, 1.7), (0.12, 0.5, 1.7), 3, 3, 7)
 # For checks: an error near a third of NORMAL's, at fifteen times its cost.
-REFERENCE = Resolution((0.08, 0.4, 1.5), (0.1, 0.6), 3, 4, 8)
+REFERENCE = Resolution((0.08, 0.4, 1.5), (0.1, 0.5, 1.7), 3, 3.5, 8)
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,87 +97,10 @@ def wave_number(plate: RectangularPlate, frequency: float) -> float:
     return math.sqrt(k2)
 
 
-def symmetric_axes(plate: RectangularPlate) -> tuple[bool, bool]:
-    """Whether geometry and supports are their own mirror image along x and along y."""
-    return tuple(_mirror_map(plate, axis) is not None for axis in (0, 1))  # type: ignore[return-value]
-
-
-def _mirror_map(plate: RectangularPlate, axis: int) -> list[int] | None:
-    """The patch that each patch becomes under reflection, or None if it becomes none."""
-    edges = ("left", "right") if axis == 0 else ("front", "back")
-    if (edges[0] in plate.clamped_edges) != (edges[1] in plate.clamped_edges):
-        return None
-    span = (plate.length, plate.width)[axis]
-
-    def place(part: CeramicPatch | FoamSupport, mirrored: bool) -> tuple[int, ...]:
-        start, extent = [part.x, part.y], [part.length, part.width]
-        if mirrored:
-            start[axis] = span - start[axis] - extent[axis]
-        return tuple(round(v / _SNAP / 4) for v in (*start, *extent))
-
-    def alike(a: tuple[int, ...], b: tuple[int, ...]) -> bool:
-        return all(abs(p - q) <= 1 for p, q in zip(a, b, strict=True))
-
-    out = []
-    for patch in plate.patches:
-        want = place(patch, True)
-        found = [
-            i
-            for i, other in enumerate(plate.patches)
-            if alike(place(other, False), want)
-            and (other.face, other.electrode, other.shunt_resistance)
-            == (patch.face, patch.electrode, patch.shunt_resistance)
-        ]
-        if not found:
-            return None
-        out.append(found[0])
-    springs = [
-        (place(s, False), dataclasses.replace(s, x=0.0, y=0.0)) for s in plate.supports
-    ]
-    for s in plate.supports:
-        want, kind = place(s, True), dataclasses.replace(s, x=0.0, y=0.0)
-        if not any(alike(at, want) and other == kind for at, other in springs):
-            return None
-    return out
-
-
-def drive_signs(plate: RectangularPlate) -> FloatArray:
-    """The sign of each patch's potential under the drive; 0 where it is not driven."""
-    return np.array(
-        [p.polarity * p.poling if p.electrode == "driven" else 0.0 for p in plate.patches]
-    )
-
-
-def drive_classes(plate: RectangularPlate) -> list[tuple[Parity | None, Parity | None]]:
-    """The classes of symmetry that the drive excites."""
-    signs = drive_signs(plate)
-    per_axis: list[list[Parity | None]] = []
-    for axis in (0, 1):
-        mirror = _mirror_map(plate, axis)
-        if mirror is None:
-            per_axis.append([None])
-            continue
-        image = signs[mirror]
-        some: list[Parity | None] = []
-        if np.any(signs + image != 0):
-            some.append("S")
-        if np.any(signs - image != 0):
-            some.append("A")
-        per_axis.append(some or ["S"])
-    return [(a, b) for a in per_axis[0] for b in per_axis[1]]
-
-
-def all_classes(plate: RectangularPlate) -> list[tuple[Parity | None, Parity | None]]:
-    """Every class of symmetry that the plate has: four, two or one."""
-    axes = symmetric_axes(plate)
-    options: list[list[Parity | None]] = [["S", "A"] if axis else [None] for axis in axes]
-    return [(a, b) for a in options[0] for b in options[1]]
-
-
 def _merged(values: Iterable[float]) -> list[float]:
     out: list[float] = []
     for value in sorted(values):
-        if not out or value > out[-1] + _SNAP:
+        if not out or value > out[-1] + SNAP:
             out.append(value)
     return out
 
@@ -174,15 +108,17 @@ def _merged(values: Iterable[float]) -> list[float]:
 def _breaks(plate: RectangularPlate, axis: int, half: bool) -> tuple[list[float], list[float]]:
     """All element edges that the layout asks for along an axis, and those of ceramics."""
     span = (plate.length, plate.width)[axis]
-    ceramics, springs = [], []
-    for part in (*plate.patches, *plate.supports):
+    ceramics: list[float] = []
+    springs: list[float] = []
+    parts: tuple[CeramicPatch | FoamSupport, ...] = (*plate.patches, *plate.supports)
+    for part in parts:
         start, extent = ((part.x, part.length), (part.y, part.width))[axis]
         (ceramics if isinstance(part, CeramicPatch) else springs).extend([start, start + extent])
     stop = span / 2 if half else span
-    inside = [v for v in ceramics + springs if _SNAP < v < stop - _SNAP]
+    inside = [v for v in ceramics + springs if SNAP < v < stop - SNAP]
     every = _merged([0.0, *inside, stop])
     # An edge that coincides with the plate's own is snapped to it.
-    sharp = [v for v in every if any(abs(v - c) < 2 * _SNAP for c in ceramics)]
+    sharp = [v for v in every if any(abs(v - c) < 2 * SNAP for c in ceramics)]
     return every, sharp
 
 
@@ -201,7 +137,7 @@ def _line(
     """A graded mesh; `cut` puts an element edge at the middle of each interval."""
     edges: list[float] = [every[0]]
     distances = [c * thickness for c in layers]
-    for a, b in zip(every[:-1], every[1:], strict=True):
+    for a, b in itertools.pairwise(every):
         last_half = half and b == every[-1]
         near = distances if a in sharp else []
         far = distances if b in sharp and not last_half else []
@@ -217,7 +153,7 @@ def _line(
         edges += pieces[1:]
     fine: list[float] = [edges[0]]
     orders: list[int] = []
-    for a, b in zip(edges[:-1], edges[1:], strict=True):
+    for a, b in itertools.pairwise(edges):
         # No element longer than about one wavelength: higher orders cost more than elements.
         number = max(1, math.ceil(wave * (b - a) / (4.5 if cut else 11.0)))
         for k in range(number):
@@ -316,7 +252,7 @@ def plate_model(
     centre_x = (np.array(x.edges[1:]) + np.array(x.edges[:-1])) / 2
     centre_y = (np.array(y.edges[1:]) + np.array(y.edges[:-1])) / 2
 
-    def cells(part: CeramicPatch | FoamSupport) -> tuple[FloatArray, FloatArray]:
+    def cells(part: CeramicPatch | FoamSupport) -> tuple[IntArray, IntArray]:
         spans = [(part.x, part.x + part.length), (part.y, part.y + part.width)]
         (x0, x1), (y0, y1) = spans[along], spans[across]
         return (
@@ -331,7 +267,7 @@ def plate_model(
     # Ceramics are numbered across first, then along: the same order in every slice.
     order = sorted(
         range(len(plate.patches)),
-        key=lambda i: ((plate.patches[i].y, plate.patches[i].x)[:: 1 if not swapped else -1]),
+        key=lambda i: (plate.patches[i].y, plate.patches[i].x)[:: 1 if not swapped else -1],
     )
     for i in order:
         patch = plate.patches[i]
@@ -340,15 +276,14 @@ def plate_model(
             continue
         number_of[i] = len(electrodes)
         k = layers[patch.face]
-        block = np.ix_(rows, columns, [k])
+        block = np.ix_(rows, columns, np.array([k]))
         medium[block] = 1 if patch.face == "bottom" else 2
         ceramic[block] = number_of[i]
         if plate.glue is not None:
-            medium[np.ix_(rows, columns, [layers[f"glue_{patch.face}"]])] = 3
+            glued = np.array([layers[f"glue_{patch.face}"]])
+            medium[np.ix_(rows, columns, glued)] = 3
         low, high = z.first_node[k], z.first_node[k + 1]
-        electrodes.append(
-            Electrode(low, high) if patch.face == "bottom" else Electrode(high, low)
-        )
+        electrodes.append(Electrode(low, high) if patch.face == "bottom" else Electrode(high, low))
     top = z.first_node[layers["plate"] + 1]
     foundations = []
     for support in plate.supports:
@@ -394,7 +329,7 @@ def _share(
     for axis in (0, 1):
         middle = (plate.length, plate.width)[axis] / 2
         start, extent = ((patch.x, patch.length), (patch.y, patch.width))[axis]
-        if parity[axis] is not None and start < middle - _SNAP and start + extent > middle + _SNAP:
+        if parity[axis] is not None and start < middle - SNAP and start + extent > middle + SNAP:
             share *= 2.0 if parity[axis] == "S" else 0.0
     return share
 
@@ -412,12 +347,12 @@ def _electrode_map(
     for axis in (0, 1):
         if parity[axis] is None:
             continue
-        mirror = _mirror_map(plate, axis)
+        mirror = mirror_map(plate, axis)
         assert mirror is not None
         middle = ((plate.length, plate.width)[axis]) / 2
         for i, patch in enumerate(plate.patches):
             start = (patch.x, patch.y)[axis]
-            if start >= middle - _SNAP:
+            if start >= middle - SNAP:
                 image = mirror[i]
                 if parity[axis] == "A":
                     signs[i] = -signs[i]
@@ -430,7 +365,8 @@ def _through_thickness(
 ) -> tuple[LineMesh, dict[str, int]]:
     faces = {patch.face for patch in plate.patches}
     layers: dict[str, int] = {}
-    edges, orders = [], []
+    edges: list[float] = []
+    orders: list[int] = []
     glue = 0.0 if plate.glue is None else plate.glue.thickness
     position = -(glue + plate.ceramic_thickness) if "bottom" in faces else 0.0
     edges.append(position)

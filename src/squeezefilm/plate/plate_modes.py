@@ -9,7 +9,8 @@ import numpy as np
 
 from squeezefilm.errors import InputError
 from squeezefilm.plate.layout import RectangularPlate
-from squeezefilm.plate.plate_mesh import Parity, PlateModel
+from squeezefilm.plate.plate_mesh import PlateModel
+from squeezefilm.plate.plate_symmetry import Parity
 from squeezefilm.plate.slabs import Slabs
 from squeezefilm.quantities import (
     DimensionlessArray,

@@ -1,4 +1,4 @@
-"""Harmonic response of a solved plate: amplitude per volt, admittance, power, equivalent circuit."""
+"""Harmonic response of a plate: amplitude per volt, admittance, power, equivalent circuit."""
 
 from __future__ import annotations
 
@@ -10,15 +10,11 @@ import numpy as np
 
 from squeezefilm.errors import GeometryError, InputError
 from squeezefilm.plate.blas_threads import one_blas_thread
+from squeezefilm.plate.box_model import IntArray
 from squeezefilm.plate.layout import RectangularPlate
-from squeezefilm.plate.plate_mesh import (
-    NORMAL,
-    Resolution,
-    all_classes,
-    drive_classes,
-    drive_signs,
-)
+from squeezefilm.plate.plate_mesh import NORMAL, Resolution
 from squeezefilm.plate.plate_modes import MODEL
+from squeezefilm.plate.plate_symmetry import all_classes, drive_classes, drive_signs
 from squeezefilm.plate.reduced_plate import (
     ReducedClass,
     harmonic_solution,
@@ -26,7 +22,6 @@ from squeezefilm.plate.reduced_plate import (
     surface_values,
 )
 from squeezefilm.quantities import (
-    Ampere,
     ComplexArray,
     Dimensionless,
     Farad,
@@ -37,7 +32,6 @@ from squeezefilm.quantities import (
     KilogramPerSquareMetre,
     Metre,
     MetreArray,
-    MetrePerVolt,
     Ohm,
     PascalPerMetre,
     PascalSecondPerMetre,
@@ -130,7 +124,9 @@ class HarmonicResponse:
         """|w| per volt (m/V) at a point, for every frequency."""
         return np.abs(self.displacement(np.array([x]), np.array([y]))[:, 0, 0])
 
-    def line(self, at: int, points: int = 201, y: Metre | None = None) -> tuple[MetreArray, ComplexArray]:
+    def line(
+        self, at: int, points: int = 201, y: Metre | None = None
+    ) -> tuple[MetreArray, ComplexArray]:
         """w per volt (m/V) along the plate's length at frequency number `at`; by default on the
         centreline."""
         x = np.linspace(0, self.plate.length, points)
@@ -244,7 +240,7 @@ class HarmonicResponse:
         )
 
 
-def _run(after: FloatArray, peak: int) -> int:
+def _run(after: IntArray, peak: int) -> int:
     count = 0
     while count < after.size and after[count] == peak + 1 + count:
         count += 1
@@ -328,11 +324,13 @@ def _truncation(
     """How much the admittance changes when each space loses its last quarter."""
     some = omega[:: max(1, omega.size // 12)]
     pick = np.arange(0, omega.size, max(1, omega.size // 12))
-    shorter, kept, start = [], [], 0
+    shorter: list[ReducedClass] = []
+    indices: list[int] = []
+    start = 0
     for one in parts:
         size = one.basis.shape[1]
         n = max(1, (3 * size) // 4)
-        kept += list(range(start, start + n))
+        indices += range(start, start + n)
         start += size
         shorter.append(
             ReducedClass(
@@ -340,6 +338,7 @@ def _truncation(
                 one.loss[:n, :n], one.coupling[:n], one.capacitance, one.drive, one.circuit,
             )
         )  # fmt: skip
+    kept = np.array(indices)
     less = None if added is None else added[np.ix_(pick, kept, kept)]
     _, _, charge = harmonic_solution(shorter, some, less, None, 1.0)
     change = np.abs(1j * some * charge - admittance[pick])
@@ -358,7 +357,8 @@ def direct_admittance(
     from squeezefilm.plate.slab_factor import SlabFactor
     from squeezefilm.plate.slabs import Slabs
 
-    omega, charge, solutions = 2 * np.pi * frequency, 0j, []
+    omega, charge = 2 * np.pi * frequency, 0j
+    solutions: list[ComplexArray] = []
     with one_blas_thread():
         for parity in drive_classes(plate):
             built = plate_model(plate, frequency, resolution, parity)
@@ -378,17 +378,6 @@ def direct_admittance(
             G, C = slabs.electrode_columns
             drive = class_drive(plate, solved)
             x = factor.solve(-(G @ drive)[:, None].astype(complex))
-            charge -= built.copies * (drive @ (G.T @ x[:, 0] + C @ drive))
+            charge -= complex(built.copies * (drive @ (G.T @ x[:, 0] + C @ drive)))
             solutions.append(x[:, 0])
     return 1j * omega * charge, solutions
-
-
-__all__ = [
-    "Ampere",
-    "EquivalentCircuit",
-    "HarmonicResponse",
-    "MetrePerVolt",
-    "SurfaceLoad",
-    "direct_admittance",
-    "harmonic_response",
-]

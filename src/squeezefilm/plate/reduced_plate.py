@@ -13,14 +13,9 @@ import numpy as np
 
 from squeezefilm.plate.box_model import Medium
 from squeezefilm.plate.layout import RectangularPlate
-from squeezefilm.plate.plate_mesh import (
-    NORMAL,
-    Parity,
-    Resolution,
-    drive_signs,
-    plate_model,
-)
+from squeezefilm.plate.plate_mesh import NORMAL, Resolution, plate_model
 from squeezefilm.plate.plate_modes import SolvedModel
+from squeezefilm.plate.plate_symmetry import Parity, drive_signs
 from squeezefilm.plate.slab_factor import SlabFactor
 from squeezefilm.plate.slabs import Slabs
 from squeezefilm.quantities import ComplexArray, FloatArray, Hertz
@@ -121,9 +116,7 @@ def _symmetric(matrix: FloatArray) -> FloatArray:
     return (matrix + matrix.T) / 2
 
 
-def _krylov_space(
-    slabs: Slabs, factor: SlabFactor, columns: FloatArray, steps: int
-) -> FloatArray:
+def _krylov_space(slabs: Slabs, factor: SlabFactor, columns: FloatArray, steps: int) -> FloatArray:
     """(K − σM)⁻¹ applied to the columns, and `steps` times (K − σM)⁻¹M to that, with unit mass."""
     X = factor.solve(columns / np.maximum(np.linalg.norm(columns, axis=0), 1e-300))
     Q = np.zeros((slabs.unknowns, 0))
@@ -147,9 +140,7 @@ def _krylov_space(
     return Q
 
 
-def surface_values(
-    parts: list[ReducedClass], x: FloatArray, y: FloatArray, z: float
-) -> FloatArray:
+def surface_values(parts: list[ReducedClass], x: FloatArray, y: FloatArray, z: float) -> FloatArray:
     """w of every coordinate of all classes on a grid, shape (coordinates, x, y)."""
     return np.concatenate([one.solved.field(one.basis, x, y, z)[..., 2] for one in parts])
 

@@ -8,6 +8,7 @@ most of the work is done once. The remaining chain of end slices is eliminated f
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -221,8 +222,7 @@ class SlabFactor:
         offsets = self._slabs.offsets
         right = np.where(self._slabs.held[:, None], 0, right)
         slices = [
-            np.array(right[a:b], dtype=self._dtype(right))
-            for a, b in zip(offsets[:-1], offsets[1:], strict=True)
+            np.array(right[a:b], dtype=self._dtype(right)) for a, b in itertools.pairwise(offsets)
         ]
         vectors = right.shape[1]
         groups: dict[int, list[_Place]] = {}

@@ -17,7 +17,6 @@ from squeezefilm.plate.cross_section import (
     Weight,
     code_parts,
     cross_section,
-    full_weight,
 )
 from squeezefilm.plate.lobatto import line_matrices
 from squeezefilm.quantities import FloatArray
@@ -61,7 +60,7 @@ class Slabs:
             for a in range(x.orders[e] + 1):
                 parts[x.first_node[e] + a].append(section.codes)
         self.codes: list[IntArray] = []
-        for n, some in enumerate(parts):
+        for some in parts:
             self.codes.append(functools.reduce(np.union1d, some) if len(some) > 1 else some[0])
         self.sizes = [codes.size for codes in self.codes]
         self.offsets = [int(k) for k in np.concatenate([[0], np.cumsum(self.sizes)])]
@@ -89,9 +88,7 @@ class Slabs:
     def parts(self) -> list[tuple[IntArray, IntArray, IntArray]]:
         """Component, y function and z function of every slice's unknowns."""
         known: dict[int, tuple[IntArray, IntArray, IntArray]] = {}
-        return [
-            known.setdefault(id(codes), code_parts(self.model, codes)) for codes in self.codes
-        ]
+        return [known.setdefault(id(codes), code_parts(self.model, codes)) for codes in self.codes]
 
     @functools.cached_property
     def _element_places(self) -> list[list[IntArray]]:
@@ -111,7 +108,7 @@ class Slabs:
             if not section.electrodes:
                 continue
             M, D, _ = self._lines(e)
-            columns = list(section.electrodes)
+            columns = np.array(section.electrodes, dtype=np.int64)
             for a in range(M.shape[0]):
                 start = self.offsets[self.model.x.first_node[e] + a]
                 part = M[a].sum() * section.g0 + D[a].sum() * section.g1
@@ -155,7 +152,7 @@ class Slabs:
             flat = local.reshape(n, nodes * vectors)
 
             def along(line: FloatArray, values: FloatArray) -> FloatArray:
-                return np.matmul(line, values)
+                return np.asarray(np.matmul(line, values))
 
             shape = local.shape
             if mass:
