@@ -56,10 +56,10 @@ class Resolution:
 
 
 COARSE = Resolution((0.9,), (0.9,), 3, 1, 4)
-NORMAL = Resolution((0.3, 1.5), (0.3, 1.5), 3, 2, 6)
-FINE = Resolution((0.12, 0.5, 1.7), (0.12, 0.5, 1.7), 3, 3, 7)
+NORMAL = Resolution((0.3, 1.5), (0.3, 1.5), 3, 3, 6)
+FINE = Resolution((0.12, 0.5, 1.7), (0.12, 0.5, 1.7), 3, 4, 7)
 # For checks: an error near a third of NORMAL's, at fifteen times its cost.
-REFERENCE = Resolution((0.08, 0.4, 1.5), (0.1, 0.5, 1.7), 3, 3.5, 8)
+REFERENCE = Resolution((0.08, 0.4, 1.5), (0.1, 0.5, 1.7), 3, 4.5, 8)
 
 
 @dataclass(frozen=True, eq=False)

@@ -41,9 +41,11 @@ from squeezefilm.quantities import Dimensionless, FloatArray, Hertz, Unit, requi
 Progress = Callable[[str, float], None]
 
 # Share of the difference between two meshes that is still missing on the finer one, and the
-# uncertainty of that share: calibrated in tests/verification/test_plate_error.py.
-EXTRAPOLATION = 0.5
-UNCERTAINTY = 0.35
+# uncertainty of that share, for the first and the second refinement (a smaller step): calibrated in
+# tests/verification/test_plate_error.py. The floor is what a difference near zero may hide.
+EXTRAPOLATION = (0.25, 1.0)
+UNCERTAINTY = (0.25, 0.6)
+_FLOOR = 1e-4
 _POINTS = (97, 65)
 
 
@@ -344,6 +346,7 @@ class _Piece:
     coarse_values: FloatArray
     values: FloatArray
     vectors: FloatArray
+    level: int
 
 
 def _refined(
@@ -375,8 +378,8 @@ def _refined(
         pairs = modes_near(
             slabs, solve, shift, wanted, start, tolerance=min(1e-6, 1e-3 * tolerance)
         )
-        piece = _Piece(one, index, finer, values, pairs.values, pairs.vectors)
-        _, error = _extrapolated(piece.coarse_values, piece.values)
+        piece = _Piece(one, index, finer, values, pairs.values, pairs.vectors, level)
+        _, error = _extrapolated(piece.coarse_values, piece.values, piece.level)
         worst = np.max(error / (np.sqrt(piece.values) / (2 * np.pi)))
         if worst <= tolerance or level == len(levels) - 1:
             return piece
@@ -384,10 +387,13 @@ def _refined(
     raise AssertionError("no level was solved")
 
 
-def _extrapolated(coarse: FloatArray, fine: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _extrapolated(
+    coarse: FloatArray, fine: FloatArray, level: int
+) -> tuple[FloatArray, FloatArray]:
     """Frequencies extrapolated from two meshes, and their estimated errors (Hz)."""
     a, b = np.sqrt(coarse) / (2 * np.pi), np.sqrt(fine) / (2 * np.pi)
-    return b - EXTRAPOLATION * (a - b), UNCERTAINTY * np.abs(a - b) + 1e-6 * b
+    share, doubt = EXTRAPOLATION[level], UNCERTAINTY[level]
+    return b - share * (a - b), doubt * np.abs(a - b) + _FLOOR * b
 
 
 def _collected(
@@ -400,7 +406,7 @@ def _collected(
     x = y = np.zeros(0)
     signs = drive_signs(plate)
     for piece in pieces:
-        frequency, error = _extrapolated(piece.coarse_values, piece.values)
+        frequency, error = _extrapolated(piece.coarse_values, piece.values, piece.level)
         scale = 1 / np.sqrt(piece.solved.built.copies)
         vectors = piece.vectors * scale
         x, y, surface = _surface(piece.solved, vectors)
