@@ -1,6 +1,6 @@
 """The oracle: the same piezoelectric boxes by scikit-fem's quadratic hexahedra, assembled whole.
 
-Runs on any `BoxModel` with order-2 elements, free sides and shorted electrodes. scikit-fem is a
+Runs on any `BoxModel` of order-2 elements with free or symmetric sides and shorted electrodes.
 test extra; nothing of the package is used but the model's description.
 """
 
@@ -77,9 +77,27 @@ def assembled(model: BoxModel) -> tuple[Any, Any]:
     scale = 3e9
     A = sp.bmat([[K, scale * B[free].T], [scale * B[free], -(scale**2) * E[free][:, free]]])
     mass = sp.bmat([[M, None], [None, sp.csr_matrix((free.size, free.size))]])
-    used = np.unique(np.concatenate([whole.element_dofs[:, medium >= 0].ravel(),
-                                     nu + np.arange(free.size)]))  # fmt: skip
+    used = np.concatenate(
+        [np.unique(whole.element_dofs[:, medium >= 0]), nu + np.arange(free.size)]
+    )
+    used = np.setdiff1d(used, _held(model, mesh, whole))
     return A.tocsr()[used][:, used].tocsc(), mass.tocsr()[used][:, used].tocsc()
+
+
+def _held(model: BoxModel, mesh: Any, whole: Any) -> Any:
+    """The displacements normal to sides held symmetric."""
+    held = [np.zeros(0, dtype=int)]
+    for side, condition in enumerate(model.ends):
+        if condition == "free":
+            continue
+        assert condition == "symmetric", "the oracle knows free and symmetric sides"
+        axis = side // 2
+        edge = (model.x, model.y)[axis].edges[0 if side % 2 == 0 else -1]
+        facets = mesh.facets_satisfying(
+            lambda x, axis=axis, edge=edge: np.abs(x[axis] - edge) < 1e-9
+        )
+        held.append(whole.get_dofs(facets).all(f"u^{axis + 1}"))
+    return np.concatenate(held)
 
 
 def skfem_frequencies(model: BoxModel, guess: float, count: int) -> np.ndarray:

@@ -9,7 +9,7 @@ from squeezefilm.plate.lobatto import LineMesh
 from squeezefilm.plate.slab_factor import SlabFactor
 from squeezefilm.plate.slabs import Slabs
 
-from .test_solid_elements import STEEL, pzt_5a
+from .test_solid_elements import STEEL, monomorph_on_a_uniform_mesh, pzt_5a
 
 pytest.importorskip("skfem", reason="scikit-fem is a test extra; install squeezefilm[test]")
 
@@ -43,3 +43,11 @@ def test_identical_meshes_give_identical_frequencies() -> None:
     )  # fmt: skip
     found = np.sqrt(pairs.values) / (2 * np.pi)
     assert found == pytest.approx(wanted, rel=1e-8)
+
+
+@pytest.mark.nightly
+def test_the_paper_s_plate_on_a_quadratic_mesh() -> None:
+    from .skfem_plate import skfem_frequencies
+
+    found = skfem_frequencies(monomorph_on_a_uniform_mesh(2, 8), 34650.0, 2)
+    assert np.min(np.abs(found - 34640.12)) < 0.05
