@@ -119,8 +119,10 @@ def test_open_circuit_raises_the_working_mode_by_its_coupling() -> None:
     short = solve_modes(plate, mode=(8, 0))
     every = tuple(dataclasses.replace(p, electrode="open") for p in plate.patches)
     opened = solve_modes(dataclasses.replace(plate, patches=every), mode=(8, 0))
-    # PLATES.md: +4.1 % with every ceramic open; tied together they raise it less.
-    assert opened.frequencies[0] / short.frequencies[0] - 1 == pytest.approx(0.041, abs=0.006)
+    # The equivalent circuit's own C1/C0 of 0.0729 gives +3.6 %. PLATES.md has +4.1 % and does not
+    # say how the electrodes were left; without any electrode it is +4.5 %.
+    rise = opened.frequencies[0] / short.frequencies[0] - 1
+    assert rise == pytest.approx(0.0355, abs=0.002)
     assert short.open_frequencies[0] <= opened.frequencies[0] * 1.001
     k2 = 1 - (short.frequencies[0] / short.open_frequencies[0]) ** 2
     assert short.couplings[0] == pytest.approx(np.sqrt(k2), rel=1e-9)
@@ -255,9 +257,9 @@ def test_foam_along_the_rim_damps_and_stiffens_a_glass_plate() -> None:
         tuple(CeramicPatch(x, 2e-3, 5e-3, 26e-3, 0.5e-3) for x in (3e-3, 52e-3)),
     )  # fmt: skip
     rim = rim_supports(60e-3, 30e-3, 2e-3, 1e-3, 2e6, 3.0)
-    free = solve_modes(plate, near=25e3, count=2, driven_only=True)
-    held = solve_modes(dataclasses.replace(plate, supports=rim), near=25e3, count=2,
-                       driven_only=True)  # fmt: skip
+    options = {"near": 25e3, "count": 2, "driven_only": True, "tolerance": 0.02}
+    free = solve_modes(plate, **options)  # type: ignore[arg-type]
+    held = solve_modes(dataclasses.replace(plate, supports=rim), **options)  # type: ignore[arg-type]
     assert "supports" in held.materials
     assert np.all(held.quality_factors < free.quality_factors)
     matches = tracked(free, held)
