@@ -3,15 +3,19 @@ beyond conversions between the ways in which the same constant is given."""
 
 from __future__ import annotations
 
+import dataclasses
 import warnings
 from dataclasses import dataclass
 from typing import Literal
+
+import numpy as np
 
 from squeezefilm.errors import ContradictionError, ContradictionWarning
 from squeezefilm.quantities import (
     CoulombPerSquareMetre,
     Dimensionless,
     FaradPerMetre,
+    FloatArray,
     KilogramPerCubicMetre,
     Metre,
     MetrePerVolt,
@@ -29,14 +33,20 @@ VACUUM_PERMITTIVITY: FaradPerMetre = 8.8541878128e-12
 
 @dataclass(frozen=True)
 class ElasticMaterial:
-    """An isotropic, linear elastic substrate."""
+    """An isotropic, linear elastic substrate.
+
+    `quality_factor` is the material's own; where it is None the assembly's is taken for it.
+    """
 
     name: str
     young_modulus: Pascal
     poisson_ratio: Dimensionless
     density: KilogramPerCubicMetre
+    quality_factor: Dimensionless | None = None
 
     def __post_init__(self) -> None:
+        if self.quality_factor is not None:
+            require("quality_factor", self.quality_factor, above=0.5)
         require("young_modulus", self.young_modulus, Unit("Pa"), above=0)
         require("poisson_ratio", self.poisson_ratio, above=-1, below=0.5)
         require("density", self.density, Unit("kg/m3"), above=0)
@@ -52,6 +62,122 @@ class ElasticMaterial:
         return self.young_modulus / (1 - self.poisson_ratio**2)
 
 
+def isotropic_stiffness(young_modulus: Pascal, poisson_ratio: Dimensionless) -> FloatArray:
+    """The 6 × 6 stiffness (Pa) of an isotropic solid; Voigt order xx, yy, zz, yz, xz, xy."""
+    s = np.zeros((6, 6))
+    s[:3, :3] = -poisson_ratio / young_modulus
+    s[[0, 1, 2], [0, 1, 2]] = 1 / young_modulus
+    s[[3, 4, 5], [3, 4, 5]] = 2 * (1 + poisson_ratio) / young_modulus
+    return np.asarray(np.linalg.inv(s))
+
+
+@dataclass(frozen=True)
+class PiezoConstants:
+    """The full set of constants of a ceramic poled along z (class 6mm).
+
+    Compliances s at constant field, charge coefficients d, and relative permittivities at constant
+    strain (clamped) and, where given, at constant stress (free) and the stress coefficients e:
+    data given twice must agree within 3 %, or a `ContradictionError` names both.
+    """
+
+    compliance_11: SquareMetrePerNewton
+    compliance_12: SquareMetrePerNewton
+    compliance_13: SquareMetrePerNewton
+    compliance_33: SquareMetrePerNewton
+    compliance_44: SquareMetrePerNewton
+    compliance_66: SquareMetrePerNewton
+    charge_coefficient_31: MetrePerVolt
+    charge_coefficient_33: MetrePerVolt
+    charge_coefficient_15: MetrePerVolt
+    clamped_permittivity_11: Dimensionless
+    clamped_permittivity_33: Dimensionless
+    free_permittivity_11: Dimensionless | None = None
+    free_permittivity_33: Dimensionless | None = None
+    stress_coefficient_31: CoulombPerSquareMetre | None = None
+    stress_coefficient_33: CoulombPerSquareMetre | None = None
+    stress_coefficient_15: CoulombPerSquareMetre | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("compliance_11", "compliance_33", "compliance_44", "compliance_66"):
+            require(name, getattr(self, name), Unit("m2/N"), above=0)
+        for name in ("compliance_12", "compliance_13"):
+            require(name, getattr(self, name), Unit("m2/N"))
+        for name in ("clamped_permittivity_11", "clamped_permittivity_33"):
+            require(name, getattr(self, name), at_least=1)
+        if np.linalg.eigvalsh(self.compliance_matrix)[0] <= 0:
+            raise ContradictionError(
+                "the compliances of the ceramic contradict each other: the elastic energy of some "
+                "strain would be negative; check s12 and s13 against s11 and s33",
+                quantity="compliance_12",
+            )
+        free = self.free_permittivity_matrix / VACUUM_PERMITTIVITY
+        e = self.stress_matrix
+        for name, given, derived, unit in (
+            ("free_permittivity_11", self.free_permittivity_11, free[0, 0], ""),
+            ("free_permittivity_33", self.free_permittivity_33, free[2, 2], ""),
+            ("stress_coefficient_31", self.stress_coefficient_31, e[2, 0], " C/m2"),
+            ("stress_coefficient_33", self.stress_coefficient_33, e[2, 2], " C/m2"),
+            ("stress_coefficient_15", self.stress_coefficient_15, e[0, 4], " C/m2"),
+        ):
+            if given is not None and abs(given - derived) > 0.03 * abs(derived):
+                raise ContradictionError(
+                    f"{name} = {given:.4g}{unit} contradicts the ceramic's other constants, which "
+                    f"give {derived:.4g}{unit} (more than 3 % apart); leave one of them out",
+                    quantity=name,
+                )
+
+    @property
+    def compliance_matrix(self) -> FloatArray:
+        """s at constant field, 6 × 6 (m²/N)."""
+        s = np.zeros((6, 6))
+        s[0, 0] = s[1, 1] = self.compliance_11
+        s[0, 1] = s[1, 0] = self.compliance_12
+        s[0, 2] = s[2, 0] = s[1, 2] = s[2, 1] = self.compliance_13
+        s[2, 2] = self.compliance_33
+        s[3, 3] = s[4, 4] = self.compliance_44
+        s[5, 5] = self.compliance_66
+        return s
+
+    @property
+    def stiffness_matrix(self) -> FloatArray:
+        """c at constant field, 6 × 6 (Pa)."""
+        return np.asarray(np.linalg.inv(self.compliance_matrix))
+
+    @property
+    def charge_matrix(self) -> FloatArray:
+        """d, 3 × 6 (m/V)."""
+        d = np.zeros((3, 6))
+        d[2, 0] = d[2, 1] = self.charge_coefficient_31
+        d[2, 2] = self.charge_coefficient_33
+        d[0, 4] = d[1, 3] = self.charge_coefficient_15
+        return d
+
+    @property
+    def stress_matrix(self) -> FloatArray:
+        """e = d c, 3 × 6 (C/m²)."""
+        return self.charge_matrix @ self.stiffness_matrix
+
+    @property
+    def permittivity_matrix(self) -> FloatArray:
+        """ε at constant strain, 3 × 3 (F/m)."""
+        one, three = self.clamped_permittivity_11, self.clamped_permittivity_33
+        return VACUUM_PERMITTIVITY * np.diag([one, one, three])
+
+    @property
+    def free_permittivity_matrix(self) -> FloatArray:
+        """ε at constant stress = ε at constant strain + e dᵀ, 3 × 3 (F/m)."""
+        return self.permittivity_matrix + self.stress_matrix @ self.charge_matrix.T
+
+
+# PZT-5H, the soft ceramic whose ratios fill in what a data sheet leaves out. Compliances in m²/N,
+# charge coefficients in m/V, free relative permittivities. Source: Morgan Electro Ceramics.
+_PZT_5H = {
+    "s11": 16.5e-12, "s12": -4.78e-12, "s13": -8.45e-12, "s33": 20.7e-12, "s44": 43.5e-12,
+    "s66": 42.6e-12, "d31": -274e-12, "d33": 593e-12, "d15": 741e-12, "eps11": 3130.0,
+    "eps33": 3400.0,
+}  # fmt: skip
+
+
 @dataclass(frozen=True)
 class Piezoceramic:
     """A thin ceramic plate poled through its thickness, working in its plane (the 31 effect).
@@ -59,7 +185,8 @@ class Piezoceramic:
     The in-plane stiffness c11_p = s11/(s11² − s12²) is the one of a plate under plane stress. The
     coupling can be given twice, by the charge coefficient d31 and by the effective stress
     coefficient e31_p; `data_set` says which is believed. If both are given and differ by more than
-    10 %, `check_consistency` names both.
+    10 %, `check_consistency` names both. `constants` are the full three-dimensional ones; where
+    they are None, `full_constants` makes them.
     """
 
     name: str
@@ -72,6 +199,7 @@ class Piezoceramic:
     quality_factor: Dimensionless
     stress_coefficient: CoulombPerSquareMetre | None = None
     data_set: PiezoDataSet = "from_d31"
+    constants: PiezoConstants | None = None
 
     def __post_init__(self) -> None:
         require("in_plane_stiffness", self.in_plane_stiffness, Unit("Pa"), above=0)
@@ -105,6 +233,49 @@ class Piezoceramic:
         if self.data_set == "printed_e31" and self.stress_coefficient is not None:
             return self.stress_coefficient
         return self.stress_coefficient_from_d31
+
+    @property
+    def full_constants(self) -> PiezoConstants:
+        """All constants: those given, or PZT-5H's scaled to what is known of this ceramic.
+
+        Compliances keep PZT-5H's ratios and are scaled to c11_p (s12 follows the in-plane Poisson
+        ratio); charge coefficients keep their ratios and are scaled to d31 (from_d31), or to the
+        d31 = e31_p (s11 + s12) of the printed stress coefficient (printed_e31). Clamped
+        permittivities are the ones that PZT-5H's free permittivities and own charge coefficients
+        leave with these compliances; `shear_modulus` and `relative_permittivity` serve the beam
+        only. An assumption for any ceramic but a soft lead zirconate titanate.
+        """
+        if self.constants is not None:
+            return self.constants
+        p = _PZT_5H
+        scale = self.compliance_11 / p["s11"]
+        s12 = -self.in_plane_poisson_ratio * self.compliance_11
+        d31 = self.charge_coefficient
+        if self.data_set == "printed_e31" and self.stress_coefficient is not None:
+            d31 = self.stress_coefficient * (self.compliance_11 + s12)
+        bare = PiezoConstants(
+            compliance_11=self.compliance_11,
+            compliance_12=s12,
+            compliance_13=scale * p["s13"],
+            compliance_33=scale * p["s33"],
+            compliance_44=scale * p["s44"],
+            compliance_66=scale * p["s66"],
+            charge_coefficient_31=p["d31"],
+            charge_coefficient_33=p["d33"],
+            charge_coefficient_15=p["d15"],
+            clamped_permittivity_11=1.0,
+            clamped_permittivity_33=1.0,
+        )
+        gain = (bare.stress_matrix @ bare.charge_matrix.T) / VACUUM_PERMITTIVITY
+        ratio = d31 / p["d31"]
+        return dataclasses.replace(
+            bare,
+            charge_coefficient_31=d31,
+            charge_coefficient_33=ratio * p["d33"],
+            charge_coefficient_15=ratio * p["d15"],
+            clamped_permittivity_11=p["eps11"] - gain[0, 0],
+            clamped_permittivity_33=p["eps33"] - gain[2, 2],
+        )
 
     @property
     def contradiction(self) -> str | None:

@@ -153,6 +153,8 @@ _EXAMPLES = {
     "m2/N": "m2/N",
     "F/m": "F/m, nF/m",
     "rad": "rad, deg",
+    "ohm": "ohm, kohm, Mohm",
+    "Pa/m": "Pa/m, MPa/m, N/m3",
 }
 
 
@@ -278,6 +280,13 @@ KilogramPerMetre = Annotated[float, Unit("kg/m")]
 KilogramPerSquareMetre = Annotated[float, Unit("kg/m2")]
 Volt = Annotated[float, Unit("V")]
 Ampere = Annotated[float, Unit("A")]
+Watt = Annotated[float, Unit("W")]
+Joule = Annotated[float, Unit("J")]
+Ohm = Annotated[float, Unit("ohm")]
+Coulomb = Annotated[float, Unit("C")]
+Henry = Annotated[float, Unit("V*s/A")]
+PascalPerMetre = Annotated[float, Unit("Pa/m")]
+PascalSecondPerMetre = Annotated[float, Unit("Pa*s/m")]
 Farad = Annotated[float, Unit("F")]
 FaradPerMetre = Annotated[float, Unit("F/m")]
 MetrePerVolt = Annotated[float, Unit("m/V")]

@@ -6,12 +6,15 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
-from squeezefilm.errors import GeometryError
+from squeezefilm.errors import GeometryError, InputError
 from squeezefilm.materials import ElasticMaterial, Piezoceramic
 from squeezefilm.quantities import (
     Dimensionless,
     Hertz,
+    KilogramPerCubicMetre,
     Metre,
+    Ohm,
+    Pascal,
     SquareMetre,
     Unit,
     Volt,
@@ -22,12 +25,19 @@ from squeezefilm.quantities import (
 _M = Unit("m")
 
 
+Face = Literal["bottom", "top"]
+Electrode = Literal["driven", "shorted", "open", "shunted"]
+Edge = Literal["left", "right", "front", "back"]
+
+
 @dataclass(frozen=True)
 class CeramicPatch:
-    """One rectangular ceramic on the lower face.
+    """One rectangular ceramic on a face of the plate.
 
-    `x` and `y` are the distances of its near edges from the plate's corner; `polarity` is the sign
-    with which it follows the drive.
+    `x` and `y` are the distances of its near edges from the plate's corner. The bonded side is
+    grounded; `electrode` says what happens to the outer side: driven (with `polarity` as sign),
+    shorted to ground, open, or shunted to ground by `shunt_resistance`. `poling` is +1 where the
+    ceramic is poled away from the plate; like polarity it turns the sign of the response.
     """
 
     x: Metre
@@ -36,20 +46,107 @@ class CeramicPatch:
     width: Metre
     thickness: Metre
     polarity: Literal[1, -1] = 1
+    face: Face = "bottom"
+    electrode: Electrode = "driven"
+    poling: Literal[1, -1] = 1
+    shunt_resistance: Ohm | None = None
 
     def __post_init__(self) -> None:
         require("x", self.x, _M, at_least=0)
         require("y", self.y, _M, at_least=0)
         for name in ("length", "width", "thickness"):
             require(name, getattr(self, name), _M, above=0)
+        if self.shunt_resistance is not None:
+            require("shunt_resistance", self.shunt_resistance, Unit("ohm"), above=0)
+        if (self.electrode == "shunted") != (self.shunt_resistance is not None):
+            raise InputError(
+                f"electrode = '{self.electrode}' and shunt_resistance do not go together; a "
+                "shunted electrode needs one, the others have none",
+                quantity="shunt_resistance",
+            )
+
+
+@dataclass(frozen=True)
+class GlueLayer:
+    """The glue between every ceramic and the plate, as an isotropic layer."""
+
+    thickness: Metre
+    young_modulus: Pascal
+    poisson_ratio: Dimensionless = 0.38
+    density: KilogramPerCubicMetre = 1150.0
+    quality_factor: Dimensionless = 20.0
+
+    def __post_init__(self) -> None:
+        require("thickness", self.thickness, _M, above=0)
+        require("young_modulus", self.young_modulus, Unit("Pa"), above=0)
+        require("poisson_ratio", self.poisson_ratio, above=-1, below=0.5)
+        require("density", self.density, Unit("kg/m3"), above=0)
+        require("quality_factor", self.quality_factor, above=0.5)
+
+
+@dataclass(frozen=True)
+class FoamSupport:
+    """A strip of foam or gasket under (or over) the plate, as springs spread over a rectangle.
+
+    `x`, `y`, `length` and `width` say where; the foam of `thickness` h and `young_modulus` E holds
+    the face with E/h per area across it and `shear_modulus`/h along it (E/3 where it is None). Its
+    mass is neglected: valid for foam thin against the wave in it. A narrow strip along a line is
+    the support at a nodal line. Foam under a ceramic is not provided.
+    """
+
+    x: Metre
+    y: Metre
+    length: Metre
+    width: Metre
+    thickness: Metre
+    young_modulus: Pascal
+    quality_factor: Dimensionless = 3.0
+    shear_modulus: Pascal | None = None
+    face: Face = "bottom"
+
+    def __post_init__(self) -> None:
+        require("x", self.x, _M, at_least=0)
+        require("y", self.y, _M, at_least=0)
+        for name in ("length", "width", "thickness"):
+            require(name, getattr(self, name), _M, above=0)
+        require("young_modulus", self.young_modulus, Unit("Pa"), above=0)
+        require("quality_factor", self.quality_factor, above=0.5)
+        if self.shear_modulus is not None:
+            require("shear_modulus", self.shear_modulus, Unit("Pa"), at_least=0)
+
+    @property
+    def stiffness_per_area(self) -> tuple[float, float, float]:
+        """Along x, y and z (Pa/m)."""
+        shear = self.young_modulus / 3 if self.shear_modulus is None else self.shear_modulus
+        along = shear / self.thickness
+        return along, along, self.young_modulus / self.thickness
+
+
+def rim_supports(
+    length: Metre, width: Metre, strip: Metre, thickness: Metre, young_modulus: Pascal,
+    quality_factor: Dimensionless = 3.0, face: Face = "bottom",
+) -> tuple[FoamSupport, ...]:  # fmt: skip
+    """Four strips of foam of breadth `strip` around the rim of a plate of `length` × `width`."""
+
+    def one(x: float, y: float, a: float, b: float) -> FoamSupport:
+        return FoamSupport(x, y, a, b, thickness, young_modulus, quality_factor, None, face)
+
+    return (
+        one(0, 0, length, strip),
+        one(0, width - strip, length, strip),
+        one(0, strip, strip, width - 2 * strip),
+        one(length - strip, strip, strip, width - 2 * strip),
+    )
 
 
 @dataclass(frozen=True)
 class RectangularPlate:
-    """A rectangular plate with ceramics bonded to its lower face, free on all edges.
+    """A rectangular plate with ceramics bonded to its faces.
 
     `nodal_lines` picks the working mode: that many nodal lines across the length, none along it.
-    `quality_factor` is that of the whole assembly.
+    `quality_factor` is that of the whole assembly; it holds for every material unless the
+    substrate has its own, and then ceramic and glue have theirs too. Edges are free but for
+    `supports` and `clamped_edges` (left and right: x = 0 and x = length; front and back: y).
 
     Raises `GeometryError` for ceramics that overlap each other or overhang the plate.
     """
@@ -63,6 +160,9 @@ class RectangularPlate:
     ceramic: Piezoceramic
     patches: tuple[CeramicPatch, ...]
     type: Literal["rectangular_plate"] = "rectangular_plate"
+    glue: GlueLayer | None = None
+    supports: tuple[FoamSupport, ...] = ()
+    clamped_edges: tuple[Edge, ...] = ()
 
     def __post_init__(self) -> None:
         for name in ("length", "width", "thickness"):
@@ -80,14 +180,18 @@ class RectangularPlate:
 
     def _check_overhang(self) -> None:
         # A nanometre of slack, so that 7 × 11 mm + 6 × 1 mm is not longer than 83 mm in floats.
-        for number, patch in enumerate(self.patches, 1):
+        parts: list[tuple[str, CeramicPatch | FoamSupport]] = [
+            *((f"ceramic {n}", patch) for n, patch in enumerate(self.patches, 1)),
+            *((f"support {n}", support) for n, support in enumerate(self.supports, 1)),
+        ]
+        for name, part in parts:
             for axis, start, extent, limit in (
-                ("length", patch.x, patch.length, self.length),
-                ("width", patch.y, patch.width, self.width),
+                ("length", part.x, part.length, self.length),
+                ("width", part.y, part.width, self.width),
             ):
                 if start + extent > limit + 1e-9:
                     raise GeometryError(
-                        f"ceramic {number} overhangs the plate: it ends at "
+                        f"{name} overhangs the plate: it ends at "
                         f"{format_quantity(start + extent, _M)} along its {axis}, the plate at "
                         f"{format_quantity(limit, _M)}; move it or make it shorter"
                     )
@@ -95,13 +199,15 @@ class RectangularPlate:
     def _check_overlap(self) -> None:
         for i, a in enumerate(self.patches):
             for j, b in enumerate(self.patches[:i]):
-                overlap_x = min(a.x + a.length, b.x + b.length) - max(a.x, b.x)
-                overlap_y = min(a.y + a.width, b.y + b.width) - max(a.y, b.y)
-                if overlap_x > 1e-9 and overlap_y > 1e-9:
+                if a.face == b.face and (overlap := _overlap(a, b)):
                     raise GeometryError(
-                        f"ceramics {j + 1} and {i + 1} overlap by "
-                        f"{format_quantity(overlap_x, _M)} × {format_quantity(overlap_y, _M)}; "
-                        "move one of them"
+                        f"ceramics {j + 1} and {i + 1} overlap by {overlap}; move one of them"
+                    )
+            for k, support in enumerate(self.supports, 1):
+                if a.face == support.face and (overlap := _overlap(a, support)):
+                    raise GeometryError(
+                        f"ceramic {i + 1} and support {k} overlap by {overlap}; foam under a "
+                        "ceramic is not provided, move one of them"
                     )
 
     @property
@@ -116,8 +222,16 @@ class RectangularPlate:
 
     @property
     def coverage(self) -> Dimensionless:
-        """The fraction of the lower face that carries ceramic."""
+        """The area of all ceramics over that of one face."""
         return sum(patch.length * patch.width for patch in self.patches) / self.area
+
+
+def _overlap(a: CeramicPatch | FoamSupport, b: CeramicPatch | FoamSupport) -> str | None:
+    x = min(a.x + a.length, b.x + b.length) - max(a.x, b.x)
+    y = min(a.y + a.width, b.y + b.width) - max(a.y, b.y)
+    if x > 1e-9 and y > 1e-9:
+        return f"{format_quantity(x, _M)} × {format_quantity(y, _M)}"
+    return None
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,102 @@
+"""Part of a dense symmetric matrix eliminated onto the rest, by blocks and mostly in `gemm`.
+
+LAPACK's triangular solves run at a third of the speed of matrix products on current cores; here
+only diagonal blocks are inverted, and everything else is a product of tall matrices.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import lapack
+
+from squeezefilm.errors import ConvergenceError
+
+Matrix = NDArray[Any]
+_BLOCK = 96
+_SCHUR_BLOCK = 256
+
+
+@dataclass(frozen=True, eq=False)
+class PartialLDL:
+    """A = W D Wᵀ for the first `pivots` rows of a symmetric matrix, and what is left of the rest.
+
+    `W` (rows × pivots, unit block diagonal left out), `inverse` the inverted diagonal blocks,
+    `schur` the remaining matrix, `negative` the number of negative pivots if counted.
+    """
+
+    pivots: int
+    W: Matrix
+    inverse: tuple[Matrix, ...]
+    schur: Matrix
+    negative: int
+
+    def forward(self, inside: Matrix) -> tuple[Matrix, Matrix]:
+        """The reduced right side of the pivots, and what to subtract from that of the rest."""
+        m, W = self.pivots, self.W
+        y = np.array(inside)
+        for k in range(_BLOCK, m, _BLOCK):
+            y[k : k + _BLOCK] -= W[k : min(k + _BLOCK, m), :k] @ y[:k]
+        return y, W[m:] @ y
+
+    def backward(self, reduced: Matrix, outside: Matrix) -> Matrix:
+        """The solution at the pivots, given `forward`'s reduced side and the rest's solution."""
+        m, W = self.pivots, self.W
+        x = np.concatenate(
+            [inv @ reduced[i * _BLOCK : (i + 1) * _BLOCK] for i, inv in enumerate(self.inverse)]
+        )
+        if outside.size:
+            x -= W[m:].T @ outside
+        for k in range((m - 1) // _BLOCK * _BLOCK, 0, -_BLOCK):
+            x[:k] -= W[k : min(k + _BLOCK, m), :k].T @ x[k : k + _BLOCK]
+        return x
+
+
+def partial_ldl(A: Matrix, pivots: int, *, count: bool = False) -> PartialLDL:
+    """Eliminate the first `pivots` rows and columns of a symmetric matrix (real or complex).
+
+    Not pivoted between blocks: right for matrices whose leading blocks are regular, as those of
+    stiffness with a shift and of potentials (quasi-definite) are but for accidents. Raises
+    `ConvergenceError` for a singular block.
+    """
+    n = A.shape[0]
+    raw = np.empty((n, pivots), dtype=A.dtype)
+    W = np.empty((n, pivots), dtype=A.dtype)
+    inverse, negative = [], 0
+    for k in range(0, pivots, _BLOCK):
+        e = min(k + _BLOCK, pivots)
+        panel = A[k:, k:e]
+        if k:
+            panel = panel - raw[k:, :k] @ W[k:e, :k].T
+        block = (panel[: e - k] + panel[: e - k].T) / 2
+        try:
+            inverted = np.linalg.inv(block)
+        except np.linalg.LinAlgError as error:
+            raise ConvergenceError(
+                "the shifted stiffness matrix is singular: the shift hits a mode exactly; ask for "
+                "a frequency a little beside it"
+            ) from error
+        if count:
+            negative += negative_eigenvalues(block)
+        inverse.append(inverted)
+        raw[k:, k:e] = panel
+        np.matmul(panel, inverted, out=W[k:, k:e])
+    r = n - pivots
+    schur = np.empty((r, r), dtype=A.dtype)
+    for j in range(0, r, _SCHUR_BLOCK):
+        e = min(j + _SCHUR_BLOCK, r)
+        rows = slice(pivots + j, n)
+        part = A[rows, pivots + j : pivots + e] - raw[rows] @ W[pivots + j : pivots + e].T
+        schur[j:, j:e] = part
+        schur[j:e, j:] = part.T
+    return PartialLDL(pivots, W, tuple(inverse), schur, negative)
+
+
+def negative_eigenvalues(block: Matrix) -> int:
+    """How many eigenvalues of a real symmetric matrix are negative (Sylvester, Bunch–Kaufman)."""
+    factor, pivots, _ = lapack.dsytrf(block, lower=1, lwork=64 * block.shape[0])
+    # Each 2 × 2 pivot has one negative and one positive eigenvalue by construction.
+    return int(np.sum((pivots > 0) & (np.diag(factor) < 0)) + np.sum(pivots < 0) // 2)

@@ -1,0 +1,155 @@
+"""Modes near a shift, by block Krylov iteration with the factorised inverse."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import eigh
+
+from squeezefilm.errors import ConvergenceError
+from squeezefilm.plate.box_model import IntArray
+from squeezefilm.plate.lobatto import LineMesh
+from squeezefilm.plate.slab_factor import SlabFactor
+from squeezefilm.plate.slabs import Slabs
+from squeezefilm.quantities import FloatArray
+
+Solve = Callable[[FloatArray], FloatArray]
+
+
+@dataclass(frozen=True, eq=False)
+class Pairs:
+    """Eigenvalues ω² (ascending) and vectors with unit modal mass of the model; `steps` taken."""
+
+    values: FloatArray
+    vectors: FloatArray
+    steps: int
+
+
+def with_open_electrodes(slabs: Slabs, solve: Solve, columns: FloatArray) -> Solve:
+    """The inverse where combinations of electrodes carry no charge instead of no voltage.
+
+    `columns` (electrodes × combinations) says which electrodes are tied with which sign. Bordered
+    by a few rows, so the factorisation with all electrodes shorted serves.
+    """
+    G, C = slabs.electrode_columns
+    G, C = G @ columns, columns.T @ C @ columns
+    AG = solve(G)
+    S = G.T @ AG - C
+
+    def bordered(right: FloatArray) -> FloatArray:
+        x = solve(right)
+        return x - AG @ np.linalg.solve(S, G.T @ x)
+
+    return bordered
+
+
+def modes_near(
+    slabs: Slabs,
+    solve: Solve,
+    shift: float,
+    wanted: Callable[[FloatArray], IntArray],
+    start: FloatArray,
+    *,
+    tolerance: float,
+    most_steps: int = 40,
+) -> Pairs:
+    """The modes that `wanted` picks, from the eigenvalues found so far to their indices.
+
+    Converged when their values change by less than `tolerance` (relative) in a step; the error
+    left is of the order of that change times the ratio of convergence. Raises `ConvergenceError`
+    where that does not happen.
+    """
+    Q: FloatArray = np.zeros((slabs.unknowns, 0))
+    MQ = Q
+    H = np.zeros((0, 0))
+    X = solve(slabs.mass_times(start))
+    before: FloatArray | None = None
+    for step in range(1, most_steps + 1):
+        for _ in range(2):
+            X = X - Q @ (MQ.T @ X)
+        MX = slabs.mass_times(X)
+        gram = X.T @ MX
+        size, turn = np.linalg.eigh((gram + gram.T) / 2)
+        good = size > 1e-13 * max(size[-1], 1e-300)
+        if not good.any():
+            break
+        scale = turn[:, good] / np.sqrt(size[good])
+        X, MX = X @ scale, MX @ scale
+        # A second pass: the first divides by small numbers where the block is near a mode.
+        again = MX.T @ X
+        lower = np.linalg.inv(np.linalg.cholesky((again + again.T) / 2)).T
+        X, MX = X @ lower, MX @ lower
+        Q, MQ = np.concatenate([Q, X], axis=1), np.concatenate([MQ, MX], axis=1)
+        X = solve(MX)
+        new = MQ.T @ X
+        old = H.shape[0]
+        grown = np.empty((Q.shape[1], Q.shape[1]))
+        grown[:old, :old] = H
+        grown[:, old:] = new
+        grown[old:, :] = new.T
+        H = (grown + grown.T) / 2
+        inverse, turn = eigh(H)
+        keep = np.abs(inverse) > 1e-30
+        values = shift + 1 / inverse[keep]
+        order = np.argsort(values)
+        values, coefficients = values[order], turn[:, keep][:, order]
+        index = wanted(values)
+        now = values[index]
+        if (
+            before is not None
+            and before.size == now.size
+            and np.all(np.abs(now - before) <= tolerance * np.maximum(np.abs(now), abs(shift)))
+            and now.size
+        ):
+            return Pairs(now, Q @ coefficients[:, index], step)
+        before = now
+    if before is not None and before.size == 0:
+        return Pairs(before, np.zeros((slabs.unknowns, 0)), most_steps)
+    raise ConvergenceError(
+        f"the modes did not converge in {most_steps} steps; ask for a narrower band or fewer modes",
+        iterations=most_steps,
+    )
+
+
+def prolonged(coarse: Slabs, fine: Slabs, vectors: FloatArray) -> FloatArray:
+    """Displacements of a coarse solution as vectors of a finer model with the same elements along
+    y and z (of any order) and any elements along x."""
+    out = np.zeros((fine.unknowns, vectors.shape[1]))
+    x = coarse.model.x.interpolation(fine.model.x.nodes)
+    to_y = _embedding(coarse.model.y, fine.model.y)
+    to_z = _embedding(coarse.model.z, fine.model.z)
+    base = 4 * fine.model.y.nodes.size * fine.model.z.nodes.size
+    for column in range(vectors.shape[1]):
+        grid = coarse.grid(vectors[:, column])
+        shape = (x.shape[0], fine.model.y.nodes.size, fine.model.z.nodes.size, 4)
+        full = np.zeros(shape)
+        full[:, to_y[0][:, None], to_z[0][None, :], :3] = np.tensordot(x, grid, 1)[
+            :, to_y[1][:, None], to_z[1][None, :], :
+        ]
+        flat = full.reshape(shape[0], -1)
+        for n, codes in enumerate(fine.codes):
+            moving = codes < base
+            at = fine.offsets[n] + np.flatnonzero(moving)
+            out[at, column] = flat[n, codes[moving]]
+    out[fine.held] = 0
+    return out
+
+
+def _embedding(coarse: LineMesh, fine: LineMesh) -> tuple[IntArray, IntArray]:
+    """Which fine hierarchic functions are also coarse ones (their indices there)."""
+    to, source = [], []
+    for k in range(coarse.elements):
+        a, b = coarse.first_node[k], fine.first_node[k]
+        common = min(coarse.orders[k], fine.orders[k])
+        source += [a, *range(a + 1, a + common)]
+        to += [b, *range(b + 1, b + common)]
+    source.append(coarse.first_node[-1])
+    to.append(fine.first_node[-1])
+    return np.array(to), np.array(source)
+
+
+def modes_below(slabs: Slabs, shift: float) -> int:
+    """How many modes lie below a shift, electrodes shorted (Sylvester's law of inertia)."""
+    return SlabFactor(slabs, shift, count=True).modes_below

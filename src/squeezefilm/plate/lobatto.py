@@ -1,0 +1,182 @@
+"""High-order line elements: Gauss–Lobatto–Legendre nodes, their matrices, and graded meshes.
+
+A box meshed by a tensor product of these needs only one-dimensional integrals; every matrix of the
+three-dimensional plate is a sum of Kronecker products of the three below.
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.polynomial import legendre
+from numpy.typing import NDArray
+
+from squeezefilm.errors import InputError
+from squeezefilm.quantities import FloatArray, Metre
+
+IntArray = NDArray[np.int64]
+MAX_ORDER = 16
+
+
+@functools.lru_cache(maxsize=64)
+def lobatto_nodes(order: int) -> FloatArray:
+    """The order + 1 Gauss–Lobatto–Legendre nodes on [−1, 1]: the ends and the roots of P′."""
+    if not 1 <= order <= MAX_ORDER:
+        raise InputError(f"order = {order}: elements of order 1 to {MAX_ORDER} are provided")
+    roots = legendre.legroots(legendre.legder(np.eye(order + 1)[order])) if order > 1 else 0.0
+    inside = np.sort(np.real(np.atleast_1d(roots)))[: order - 1]
+    nodes: FloatArray = np.concatenate([[-1.0], inside, [1.0]])
+    # Exact mirror symmetry lets mirrored cells of a plate share one factorisation.
+    nodes = 0.5 * (nodes - nodes[::-1])
+    nodes.setflags(write=False)
+    return nodes
+
+
+def lagrange_basis(nodes: FloatArray, points: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Values and derivatives of the Lagrange polynomials of `nodes` at `points`.
+
+    Both have the shape (points, nodes).
+    """
+    count = nodes.size
+    # Through Legendre polynomials: well conditioned up to MAX_ORDER.
+    vandermonde = legendre.legvander(nodes, count - 1)
+    coefficients = np.linalg.inv(vandermonde)
+    values = legendre.legvander(points, count - 1) @ coefficients
+    slopes = np.stack(
+        [legendre.legval(points, legendre.legder(np.eye(count)[k])) for k in range(count)], axis=1
+    )
+    return values, slopes @ coefficients
+
+
+@functools.lru_cache(maxsize=64)
+def _reference_matrices(order: int) -> tuple[FloatArray, FloatArray, FloatArray]:
+    nodes = lobatto_nodes(order)
+    points, weights = legendre.leggauss(order + 1)
+    values, slopes = lagrange_basis(nodes, points)
+    mass = values.T @ (weights[:, None] * values)
+    slope = slopes.T @ (weights[:, None] * values)
+    stiffness = slopes.T @ (weights[:, None] * slopes)
+    for array in (mass, slope, stiffness):
+        array.setflags(write=False)
+    return mass, slope, stiffness
+
+
+def line_matrices(length: Metre, order: int) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """∫N Nᵀ, ∫N′ Nᵀ and ∫N′ N′ᵀ of one element, integrated exactly; shape (order + 1)² each."""
+    mass, slope, stiffness = _reference_matrices(order)
+    return mass * (length / 2), slope, stiffness * (2 / length)
+
+
+@functools.lru_cache(maxsize=64)
+def hierarchic_values(order: int, points: tuple[float, ...] | None = None) -> FloatArray:
+    """The hierarchic basis (two end functions, then integrated Legendre polynomials of order 2 to
+    `order`, in the places of a Lagrange basis) at the Lobatto nodes or at given points of [−1, 1].
+
+    Shape (points, order + 1): column 0 and `order` are the ends, column k the order k + 1.
+    """
+    x = lobatto_nodes(order) if points is None else np.array(points)
+    out = np.empty((x.size, order + 1))
+    out[:, 0], out[:, order] = (1 - x) / 2, (1 + x) / 2
+    for k in range(2, order + 1):
+        high = legendre.legval(x, np.eye(k + 1)[k])
+        low = legendre.legval(x, np.eye(k + 1)[k - 2])
+        out[:, k - 1] = (high - low) / np.sqrt(2 * (2 * k - 1))
+    out.setflags(write=False)
+    return out
+
+
+@functools.lru_cache(maxsize=64)
+def _hierarchic_reference(order: int) -> tuple[FloatArray, FloatArray, FloatArray]:
+    E = hierarchic_values(order)
+    mass, slope, stiffness = (E.T @ part @ E for part in _reference_matrices(order))
+    return mass, slope, stiffness
+
+
+def hierarchic_line_matrices(
+    length: Metre, order: int
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """`line_matrices` in the hierarchic basis."""
+    mass, slope, stiffness = _hierarchic_reference(order)
+    return mass * (length / 2), slope, stiffness * (2 / length)
+
+
+@dataclass(frozen=True, eq=False)
+class LineMesh:
+    """Elements on a line: `edges` (m, ascending) and the polynomial `orders` between them."""
+
+    edges: tuple[float, ...]
+    orders: tuple[int, ...]
+
+    def __post_init__(self) -> None:
+        if len(self.edges) != len(self.orders) + 1:
+            raise InputError("a line mesh needs one edge more than it has elements")
+        if any(b <= a for a, b in zip(self.edges, self.edges[1:], strict=False)):
+            raise InputError("the edges of a line mesh must ascend")
+
+    @property
+    def elements(self) -> int:
+        """How many elements there are."""
+        return len(self.orders)
+
+    @functools.cached_property
+    def first_node(self) -> tuple[int, ...]:
+        """The index of each element's first node, and the last node's index at the end."""
+        return tuple(int(k) for k in np.concatenate([[0], np.cumsum(self.orders)]))
+
+    @functools.cached_property
+    def nodes(self) -> FloatArray:
+        """All nodes in ascending order (m)."""
+        parts = [np.array([self.edges[0]])]
+        for a, b, order in zip(self.edges[:-1], self.edges[1:], self.orders, strict=True):
+            parts.append(a + (b - a) * (lobatto_nodes(order)[1:] + 1) / 2)
+        return np.concatenate(parts)
+
+    @functools.cached_property
+    def function_orders(self) -> IntArray:
+        """The polynomial order of each hierarchic function: 1 at element ends, 2 … inside."""
+        out = np.ones(self.first_node[-1] + 1, dtype=np.int64)
+        for k, order in enumerate(self.orders):
+            out[self.first_node[k] + 1 : self.first_node[k + 1]] = np.arange(2, order + 1)
+        return out
+
+    def hierarchic_interpolation(self, points: FloatArray) -> FloatArray:
+        """The matrix that takes hierarchic coefficients to values at `points`."""
+        return self._evaluation(points, hierarchic=True)
+
+    def interpolation(self, points: FloatArray) -> FloatArray:
+        """The matrix that takes nodal values to values at `points`; shape (points, nodes)."""
+        return self._evaluation(points, hierarchic=False)
+
+    def _evaluation(self, points: FloatArray, hierarchic: bool) -> FloatArray:
+        points = np.atleast_1d(np.asarray(points, dtype=float))
+        edges = np.array(self.edges)
+        owner = np.clip(np.searchsorted(edges, points, side="right") - 1, 0, self.elements - 1)
+        out = np.zeros((points.size, self.nodes.size))
+        for k in np.unique(owner):
+            mine = owner == k
+            local = 2 * (points[mine] - edges[k]) / (edges[k + 1] - edges[k]) - 1
+            if hierarchic:
+                values = hierarchic_values(self.orders[k], tuple(local))
+            else:
+                values, _ = lagrange_basis(lobatto_nodes(self.orders[k]), local)
+            start = self.first_node[k]
+            out[np.ix_(mine, np.arange(start, start + self.orders[k] + 1))] = values
+        return out
+
+
+def graded_edges(
+    start: Metre, stop: Metre, *, at_start: Sequence[float] = (), at_stop: Sequence[float] = ()
+) -> list[float]:
+    """The inner and outer edges of elements between two points, thin layers at either end.
+
+    `at_start` and `at_stop` are the distances (m) of layer edges from that end; those beyond a
+    limit of 45 % of the interval are left out. Singular stresses at the end of a bonded layer ask
+    for layers that shrink geometrically towards it.
+    """
+    span = stop - start
+    left = sorted(d for d in at_start if d < 0.45 * span)
+    right = sorted((d for d in at_stop if d < 0.45 * span), reverse=True)
+    return [start, *(start + d for d in left), *(stop - d for d in right), stop]

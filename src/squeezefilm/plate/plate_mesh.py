@@ -1,0 +1,388 @@
+"""From a described plate to a box model: cells, media, electrodes, symmetry, graded elements.
+
+The `Resolution` says how fine. Its numbers come from measured convergence of the paper's plate:
+every strip edge is a singular line, and there layers that shrink towards it pay; across the
+thickness and along y one element of high order does, its mixed high orders left out (`trunk`).
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from squeezefilm.errors import GeometryError, OutOfRangeError
+from squeezefilm.materials import isotropic_stiffness
+from squeezefilm.plate.box_model import (
+    BoxModel,
+    Electrode,
+    EndCondition,
+    Foundation,
+    IntArray,
+    Medium,
+)
+from squeezefilm.plate.layout import CeramicPatch, FoamSupport, RectangularPlate
+from squeezefilm.plate.lobatto import MAX_ORDER, LineMesh
+from squeezefilm.plate.plate_symmetry import (
+    SNAP,
+    Parity,
+    mirror_map,
+    symmetric_axes,
+)
+from squeezefilm.quantities import Dimensionless, Metre, Unit, format_quantity
+
+_THINNEST = 2000.0  # in-plane element length over layer thickness that still solves to 1e-6
+
+
+@dataclass(frozen=True)
+class Resolution:
+    """How fine a plate is meshed.
+
+    `edge_layers` are distances of element edges from a ceramic's edge, in units of the thinner of
+    plate and ceramic (`edge_layers_y` those across the slices); `order_x` the least order of
+    elements in the plane, `order_z` that across each layer; `order_y` is added to 0.65 times the
+    phase (rad) that the shortest wave covers in an element.
+    """
+
+    edge_layers: tuple[float, ...]
+    edge_layers_y: tuple[float, ...]
+    order_x: int
+    order_y: float
+    order_z: int
+    trunk: Dimensionless = 1.0
+
+
+COARSE = Resolution((0.9,), (0.9,), 3, 1, 4)
+NORMAL = Resolution((0.3, 1.5), (0.3, 1.5), 3, 3, 6)
+FINE = Resolution((0.12, 0.5, 1.7), (0.12, 0.5, 1.7), 3, 4, 7)
+# For checks: an error near a third of NORMAL's, at fifteen times its cost.
+REFERENCE = Resolution((0.08, 0.4, 1.5), (0.1, 0.5, 1.7), 3, 4.5, 8)
+
+
+@dataclass(frozen=True, eq=False)
+class PlateModel:
+    """A plate, or the half or quarter of it that one class of symmetry needs, as a box model.
+
+    `parity` is the class along x and y (None where that half is not used); `copies` how many
+    times the model makes the plate; `swapped` whether the model's x is the plate's y;
+    `electrode_of[i]` the model's electrode for patch i and `sign_of[i]` the sign of its potential
+    relative to it; `share_of[i]` is how many times the model's part of that ceramic makes a whole
+    one (0 where antisymmetry makes its charge vanish and allows it no potential).
+    """
+
+    model: BoxModel
+    parity: tuple[Parity | None, Parity | None]
+    copies: int
+    swapped: bool
+    electrode_of: tuple[int, ...]
+    sign_of: tuple[float, ...]
+    share_of: tuple[float, ...]
+
+
+def wave_number(plate: RectangularPlate, frequency: float) -> float:
+    """The largest flexural wave number (rad/m) to resolve at a frequency: that of the bare plate,
+    with a first-order correction for shear."""
+    E = plate.substrate.plane_strain_modulus
+    h, rho = plate.thickness, plate.substrate.density
+    omega = 2 * math.pi * frequency
+    bending = E * h**3 / 12
+    k2 = omega * math.sqrt(rho * h / bending)
+    shear = plate.substrate.shear_modulus * h * 5 / 6
+    k2 = 0.5 * omega**2 * rho * h / shear + math.sqrt(
+        (0.5 * omega**2 * rho * h / shear) ** 2 + k2**2
+    )
+    return math.sqrt(k2)
+
+
+def _merged(values: Iterable[float]) -> list[float]:
+    out: list[float] = []
+    for value in sorted(values):
+        if not out or value > out[-1] + SNAP:
+            out.append(value)
+    return out
+
+
+def _breaks(plate: RectangularPlate, axis: int, half: bool) -> tuple[list[float], list[float]]:
+    """All element edges that the layout asks for along an axis, and those of ceramics."""
+    span = (plate.length, plate.width)[axis]
+    ceramics: list[float] = []
+    springs: list[float] = []
+    parts: tuple[CeramicPatch | FoamSupport, ...] = (*plate.patches, *plate.supports)
+    for part in parts:
+        start, extent = ((part.x, part.length), (part.y, part.width))[axis]
+        (ceramics if isinstance(part, CeramicPatch) else springs).extend([start, start + extent])
+    stop = span / 2 if half else span
+    inside = [v for v in ceramics + springs if SNAP < v < stop - SNAP]
+    every = _merged([0.0, *inside, stop])
+    # An edge that coincides with the plate's own is snapped to it.
+    sharp = [v for v in every if any(abs(v - c) < 2 * SNAP for c in ceramics)]
+    return every, sharp
+
+
+def _line(
+    every: list[float],
+    sharp: list[float],
+    half: bool,
+    thickness: float,
+    layers: tuple[float, ...],
+    order: int,
+    wave: float,
+    extra: float,
+    *,
+    cut: bool,
+) -> LineMesh:
+    """A graded mesh; `cut` puts an element edge at the middle of each interval."""
+    edges: list[float] = [every[0]]
+    distances = [c * thickness for c in layers]
+    for a, b in itertools.pairwise(every):
+        last_half = half and b == every[-1]
+        near = distances if a in sharp else []
+        far = distances if b in sharp and not last_half else []
+        span = b - a if last_half else (b - a) / 2
+        # The last layer inside a short interval (a gap) still resolves its edge.
+        limit = max(0.3 * span, 1e-12)
+        near = [d for d in near if d < 0.75 * span] or ([limit] if near else [])
+        far = [d for d in far if d < 0.75 * span] or ([limit] if far else [])
+        pieces = [a, *(a + d for d in near), *(b - d for d in reversed(far)), b]
+        middle = (a + b) / 2
+        if cut and not last_half and (near or far):
+            pieces = sorted({*pieces, middle})
+        edges += pieces[1:]
+    fine: list[float] = [edges[0]]
+    orders: list[int] = []
+    for a, b in itertools.pairwise(edges):
+        # No element longer than about one wavelength: higher orders cost more than elements.
+        number = max(1, math.ceil(wave * (b - a) / (4.5 if cut else 11.0)))
+        for k in range(number):
+            fine.append(a + (b - a) * (k + 1) / number)
+            need = 0.65 * wave * (b - a) / number + extra
+            orders.append(int(min(max(order, round(need)), MAX_ORDER)))
+    return LineMesh(tuple(fine), tuple(orders))
+
+
+def _losses(plate: RectangularPlate) -> tuple[float, float, float]:
+    if plate.substrate.quality_factor is None:
+        whole = 1 / plate.quality_factor
+        return whole, whole, whole if plate.glue is None else 1 / plate.glue.quality_factor
+    glue = 0.0 if plate.glue is None else 1 / plate.glue.quality_factor
+    return 1 / plate.substrate.quality_factor, 1 / plate.ceramic.quality_factor, glue
+
+
+def _media(plate: RectangularPlate) -> tuple[Medium, ...]:
+    constants = plate.ceramic.full_constants
+    substrate, ceramic, glue = _losses(plate)
+    density = plate.ceramic.density
+
+    def piezo(name: str, sign: float) -> Medium:
+        return Medium(
+            name, constants.stiffness_matrix, density, ceramic,
+            sign * constants.stress_matrix, constants.permittivity_matrix,
+        )  # fmt: skip
+
+    media = [
+        Medium(
+            "substrate",
+            isotropic_stiffness(plate.substrate.young_modulus, plate.substrate.poisson_ratio),
+            plate.substrate.density,
+            substrate,
+        ),
+        # Poled away from the plate: towards −z below it, where all e change their sign.
+        piezo("ceramic_bottom", -1.0),
+        piezo("ceramic_top", 1.0),
+    ]
+    if plate.glue is not None:
+        media.append(
+            Medium(
+                "glue",
+                isotropic_stiffness(plate.glue.young_modulus, plate.glue.poisson_ratio),
+                plate.glue.density,
+                glue,
+            )
+        )
+    return tuple(media)
+
+
+def plate_model(
+    plate: RectangularPlate,
+    frequency: float,
+    resolution: Resolution = NORMAL,
+    parity: tuple[Parity | None, Parity | None] = (None, None),
+) -> PlateModel:
+    """The box model of a plate for modes up to about `frequency`, in one class of symmetry.
+
+    Raises `GeometryError` for a class that the plate does not have, `OutOfRangeError` for a plate
+    so thin against its length that elements lose their digits.
+    """
+    for axis in (0, 1):
+        if parity[axis] is not None and not symmetric_axes(plate)[axis]:
+            raise GeometryError(
+                f"the plate is not symmetric along {'xy'[axis]}; parity None is allowed there"
+            )
+    thinnest = min(
+        plate.thickness,
+        plate.ceramic_thickness,
+        math.inf if plate.glue is None else plate.glue.thickness,
+    )
+    if max(plate.length, plate.width) > _THINNEST * thinnest * 10:
+        raise OutOfRangeError(
+            f"a layer of {format_quantity(thinnest, Unit('m'))} on a plate of "
+            f"{format_quantity(max(plate.length, plate.width), Unit('m'))} has an aspect ratio "
+            f"above {10 * _THINNEST:.0f}, where three-dimensional elements lose their digits; use "
+            "a plate theory"
+        )
+    wave = wave_number(plate, frequency)
+    half = tuple(p is not None for p in parity)
+    breaks = [_breaks(plate, axis, half[axis]) for axis in (0, 1)]
+    # Slices stand across the axis with more edges: they are smaller then.
+    swapped = (len(breaks[1][0]), plate.width) > (len(breaks[0][0]), plate.length)
+    along, across = (1, 0) if swapped else (0, 1)
+    thickness = min(plate.ceramic_thickness, plate.thickness)
+    x = _line(*breaks[along], half[along], thickness, resolution.edge_layers, resolution.order_x,
+              wave, resolution.order_y, cut=True)  # fmt: skip
+    # A ceramic that ends with the plate's own edge ends there without a corner.
+    inner = [v for v in breaks[across][1] if v > 0 and v != breaks[across][0][-1]]
+    y = _line(breaks[across][0], inner, half[across], thickness, resolution.edge_layers_y,
+              resolution.order_x, wave, resolution.order_y, cut=False)  # fmt: skip
+    z, layers = _through_thickness(plate, resolution)
+    shape = (x.elements, y.elements, z.elements)
+    medium, ceramic = np.full(shape, -1), np.full(shape, -1)
+    centre_x = (np.array(x.edges[1:]) + np.array(x.edges[:-1])) / 2
+    centre_y = (np.array(y.edges[1:]) + np.array(y.edges[:-1])) / 2
+
+    def cells(part: CeramicPatch | FoamSupport) -> tuple[IntArray, IntArray]:
+        spans = [(part.x, part.x + part.length), (part.y, part.y + part.width)]
+        (x0, x1), (y0, y1) = spans[along], spans[across]
+        return (
+            np.flatnonzero((centre_x > x0) & (centre_x < x1)),
+            np.flatnonzero((centre_y > y0) & (centre_y < y1)),
+        )
+
+    medium[:, :, layers["plate"]] = 0
+    electrode_of, sign_of = _electrode_map(plate, parity)
+    electrodes: list[Electrode] = []
+    number_of: dict[int, int] = {}
+    # Ceramics are numbered across first, then along: the same order in every slice.
+    order = sorted(
+        range(len(plate.patches)),
+        key=lambda i: (plate.patches[i].y, plate.patches[i].x)[:: 1 if not swapped else -1],
+    )
+    for i in order:
+        patch = plate.patches[i]
+        rows, columns = cells(patch)
+        if electrode_of[i] != i or rows.size == 0 or columns.size == 0:
+            continue
+        number_of[i] = len(electrodes)
+        k = layers[patch.face]
+        block = np.ix_(rows, columns, np.array([k]))
+        medium[block] = 1 if patch.face == "bottom" else 2
+        ceramic[block] = number_of[i]
+        if plate.glue is not None:
+            glued = np.array([layers[f"glue_{patch.face}"]])
+            medium[np.ix_(rows, columns, glued)] = 3
+        low, high = z.first_node[k], z.first_node[k + 1]
+        electrodes.append(Electrode(low, high) if patch.face == "bottom" else Electrode(high, low))
+    top = z.first_node[layers["plate"] + 1]
+    foundations = []
+    for support in plate.supports:
+        rows, columns = cells(support)
+        if rows.size and columns.size:
+            kx, ky, kz = support.stiffness_per_area
+            foundations.append(
+                Foundation(
+                    (int(rows[0]), int(rows[-1]) + 1),
+                    (int(columns[0]), int(columns[-1]) + 1),
+                    top if support.face == "top" else z.first_node[layers["plate"]],
+                    (ky, kx, kz) if swapped else (kx, ky, kz),
+                    1 / support.quality_factor,
+                )
+            )
+    ends: list[EndCondition] = []
+    for axis, names in ((along, _names(along)), (across, _names(across))):
+        ends.append("clamped" if names[0] in plate.clamped_edges else "free")
+        own = parity[axis]
+        if own is None:
+            ends.append("clamped" if names[1] in plate.clamped_edges else "free")
+        else:
+            ends.append("symmetric" if own == "S" else "antisymmetric")
+    model = BoxModel(
+        x, y, z, _media(plate), medium, ceramic, tuple(electrodes),
+        (ends[0], ends[1], ends[2], ends[3]), tuple(foundations), resolution.trunk,
+    )  # fmt: skip
+    return PlateModel(
+        model,
+        parity,
+        2 ** sum(half),
+        swapped,
+        tuple(number_of[electrode_of[i]] for i in range(len(plate.patches))),
+        sign_of,
+        tuple(_share(plate, patch, parity) for patch in plate.patches),
+    )
+
+
+def _share(
+    plate: RectangularPlate, patch: CeramicPatch, parity: tuple[Parity | None, Parity | None]
+) -> float:
+    share = 1.0
+    for axis in (0, 1):
+        middle = (plate.length, plate.width)[axis] / 2
+        start, extent = ((patch.x, patch.length), (patch.y, patch.width))[axis]
+        if parity[axis] is not None and start < middle - SNAP and start + extent > middle + SNAP:
+            share *= 2.0 if parity[axis] == "S" else 0.0
+    return share
+
+
+def _names(axis: int) -> tuple[str, str]:
+    return ("left", "right") if axis == 0 else ("front", "back")
+
+
+def _electrode_map(
+    plate: RectangularPlate, parity: tuple[Parity | None, Parity | None]
+) -> tuple[list[int], tuple[float, ...]]:
+    """The patch in the modelled part that stands for each patch, and its relative sign."""
+    stands = list(range(len(plate.patches)))
+    signs = [1.0] * len(plate.patches)
+    for axis in (0, 1):
+        if parity[axis] is None:
+            continue
+        mirror = mirror_map(plate, axis)
+        assert mirror is not None
+        middle = ((plate.length, plate.width)[axis]) / 2
+        for i, patch in enumerate(plate.patches):
+            start = (patch.x, patch.y)[axis]
+            if start >= middle - SNAP:
+                image = mirror[i]
+                if parity[axis] == "A":
+                    signs[i] = -signs[i]
+                stands = [image if s == i else s for s in stands]
+    return stands, tuple(signs)
+
+
+def _through_thickness(
+    plate: RectangularPlate, resolution: Resolution
+) -> tuple[LineMesh, dict[str, int]]:
+    faces = {patch.face for patch in plate.patches}
+    layers: dict[str, int] = {}
+    edges: list[float] = []
+    orders: list[int] = []
+    glue = 0.0 if plate.glue is None else plate.glue.thickness
+    position = -(glue + plate.ceramic_thickness) if "bottom" in faces else 0.0
+    edges.append(position)
+
+    def add(name: str, thickness: Metre, order: int) -> None:
+        layers[name] = len(orders)
+        edges.append(edges[-1] + thickness)
+        orders.append(order)
+
+    if "bottom" in faces:
+        add("bottom", plate.ceramic_thickness, resolution.order_z)
+        if glue:
+            add("glue_bottom", glue, min(resolution.order_z, 4))
+    add("plate", plate.thickness, resolution.order_z)
+    if "top" in faces:
+        if glue:
+            add("glue_top", glue, min(resolution.order_z, 4))
+        add("top", plate.ceramic_thickness, resolution.order_z)
+    return LineMesh(tuple(edges), tuple(orders)), layers

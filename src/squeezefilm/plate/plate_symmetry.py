@@ -1,0 +1,89 @@
+"""Mirror symmetry of a plate and of its drive: the classes S and A along each axis."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import Literal
+
+import numpy as np
+
+from squeezefilm.plate.layout import CeramicPatch, FoamSupport, RectangularPlate
+from squeezefilm.quantities import FloatArray
+
+Parity = Literal["S", "A"]
+SNAP = 1e-9  # m; edges nearer than this are one
+
+
+def symmetric_axes(plate: RectangularPlate) -> tuple[bool, bool]:
+    """Whether geometry and supports are their own mirror image along x and along y."""
+    return tuple(mirror_map(plate, axis) is not None for axis in (0, 1))  # type: ignore[return-value]
+
+
+def mirror_map(plate: RectangularPlate, axis: int) -> list[int] | None:
+    """The patch that each patch becomes under reflection, or None if it becomes none."""
+    edges = ("left", "right") if axis == 0 else ("front", "back")
+    if (edges[0] in plate.clamped_edges) != (edges[1] in plate.clamped_edges):
+        return None
+    span = (plate.length, plate.width)[axis]
+
+    def place(part: CeramicPatch | FoamSupport, mirrored: bool) -> tuple[int, ...]:
+        start, extent = [part.x, part.y], [part.length, part.width]
+        if mirrored:
+            start[axis] = span - start[axis] - extent[axis]
+        return tuple(round(v / SNAP / 4) for v in (*start, *extent))
+
+    def alike(a: tuple[int, ...], b: tuple[int, ...]) -> bool:
+        return all(abs(p - q) <= 1 for p, q in zip(a, b, strict=True))
+
+    out = []
+    for patch in plate.patches:
+        want = place(patch, True)
+        found = [
+            i
+            for i, other in enumerate(plate.patches)
+            if alike(place(other, False), want)
+            and (other.face, other.electrode, other.shunt_resistance)
+            == (patch.face, patch.electrode, patch.shunt_resistance)
+        ]
+        if not found:
+            return None
+        out.append(found[0])
+    springs = [(place(s, False), dataclasses.replace(s, x=0.0, y=0.0)) for s in plate.supports]
+    for s in plate.supports:
+        want, kind = place(s, True), dataclasses.replace(s, x=0.0, y=0.0)
+        if not any(alike(at, want) and other == kind for at, other in springs):
+            return None
+    return out
+
+
+def drive_signs(plate: RectangularPlate) -> FloatArray:
+    """The sign of each patch's potential under the drive; 0 where it is not driven."""
+    return np.array(
+        [p.polarity * p.poling if p.electrode == "driven" else 0.0 for p in plate.patches]
+    )
+
+
+def drive_classes(plate: RectangularPlate) -> list[tuple[Parity | None, Parity | None]]:
+    """The classes of symmetry that the drive excites."""
+    signs = drive_signs(plate)
+    per_axis: list[list[Parity | None]] = []
+    for axis in (0, 1):
+        mirror = mirror_map(plate, axis)
+        if mirror is None:
+            per_axis.append([None])
+            continue
+        image = signs[mirror]
+        some: list[Parity | None] = []
+        if np.any(signs + image != 0):
+            some.append("S")
+        if np.any(signs - image != 0):
+            some.append("A")
+        per_axis.append(some or ["S"])
+    return [(a, b) for a in per_axis[0] for b in per_axis[1]]
+
+
+def all_classes(plate: RectangularPlate) -> list[tuple[Parity | None, Parity | None]]:
+    """Every class of symmetry that the plate has: four, two or one."""
+    axes = symmetric_axes(plate)
+    options: list[list[Parity | None]] = [["S", "A"] if axis else [None] for axis in axes]
+    return [(a, b) for a in options[0] for b in options[1]]

@@ -1,0 +1,49 @@
+"""Random but buildable plates, for the honesty of the error estimate."""
+
+import dataclasses
+
+import numpy as np
+
+from squeezefilm.materials import ElasticMaterial, Piezoceramic
+from squeezefilm.plate.layout import CeramicPatch, GlueLayer, RectangularPlate
+
+SUBSTRATES = (
+    ElasticMaterial("copper-beryllium", 123e9, 0.30, 8250),
+    ElasticMaterial("glass", 72e9, 0.22, 2480),
+    ElasticMaterial("aluminium", 70e9, 0.33, 2700),
+    ElasticMaterial("steel", 200e9, 0.29, 7850),
+)
+CERAMIC = Piezoceramic("P1-91", 67.9e9, 0.2897, 23e9, 7700, -247e-12, 1900, 60)
+
+
+def random_plate(seed: int) -> RectangularPlate:
+    """Two to seven ceramics of random width, thickness and gap, on one or both faces."""
+    rng = np.random.default_rng(seed)
+    strips, faces = int(rng.integers(2, 8)), ("bottom", "top")[: int(rng.integers(1, 3))]
+    gap, strip = rng.uniform(0.5e-3, 4e-3), rng.uniform(6e-3, 14e-3)
+    margin = rng.choice([0.0, rng.uniform(1e-3, 6e-3)])
+    length = 2 * margin + strips * strip + (strips - 1) * gap
+    width = rng.uniform(0.35, 0.8) * max(length, 0.03)
+    rim = rng.choice([0.0, rng.uniform(1e-3, 0.2 * width)])
+    patches = tuple(
+        CeramicPatch(
+            margin + k * (strip + gap), rim, strip, width - 2 * rim,
+            1e-3, 1 if k % 2 == 0 else -1, face,  # type: ignore[arg-type]
+        )
+        for face in faces
+        for k in range(strips)
+    )  # fmt: skip
+    thickness = rng.uniform(0.3e-3, 1.2e-3)
+    patches = tuple(dataclasses.replace(p, thickness=thickness) for p in patches)
+    glue = GlueLayer(rng.uniform(20e-6, 60e-6), 3e9) if rng.random() < 0.3 else None
+    return RectangularPlate(
+        length=length,
+        width=width,
+        thickness=rng.uniform(0.7e-3, 2.5e-3),
+        nodal_lines=int(np.clip(round(length / rng.uniform(9e-3, 14e-3)), 3, 9)),
+        quality_factor=60,
+        substrate=SUBSTRATES[int(rng.integers(len(SUBSTRATES)))],
+        ceramic=CERAMIC,
+        patches=patches,
+        glue=glue,
+    )
