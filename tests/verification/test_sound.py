@@ -115,7 +115,7 @@ def test_rectangle_and_ring_agree_on_a_disc_mode() -> None:
 
 
 def test_the_papers_plate_is_loud() -> None:
-    """83 × 49 mm, 2 µm, 33 kHz in (8,0): 127 dB at 0.5 m in a lobe near 30°, as the project's notes say."""
+    """83 × 49 mm, 2 µm, 33 kHz in (8,0): 127 dB at 0.5 m in a lobe near 30°."""
     x, y = np.linspace(0, 83e-3, 85), np.linspace(0, 49e-3, 51)
     k = 7.5 * math.pi / 83e-3
     u = k * (x - x[0])

@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy import sparse
 from scipy.sparse.linalg import LinearOperator, eigsh, splu
 
 from squeezefilm.errors import ConvergenceError, InputError
@@ -145,16 +146,18 @@ def bending_mode(
     degree: int = DEFAULT_DEGREE,
     quality_factor: Dimensionless | None = None,
 ) -> AnnularMode:
-    """The mode B(`circles`, `diameters`): the lowest elastic one of that label.
+    """The mode B(`circles`, `diameters`): the lowest of that label that moves the surface.
 
-    Arguments as in `annular_modes`. Raises `InputError` if it is not among the lowest modes.
+    A thin web has modes of its own in which the surface hardly moves; they are passed over (modal
+    mass above the body's mass, or in-plane motion). Arguments as in `annular_modes`.
+    Raises `InputError` if there is none among the lowest modes.
     """
     label = f"B({circles},{diameters})"
     modes = annular_modes(
-        section, diameters, count=4 + 2 * circles, degree=degree, quality_factor=quality_factor
+        section, diameters, count=6 + 2 * circles, degree=degree, quality_factor=quality_factor
     )
     for mode in modes:
-        if mode.label == label:
+        if mode.label == label and mode.modal_mass <= section.mass:
             return mode
     raise InputError(
         f"no mode {label} among the lowest {len(modes)} with {diameters} nodal diameters "
@@ -218,7 +221,8 @@ def annular_admittance(
             loss = 0.0 if mode.is_rigid else 1 / mode.quality_factor
             charge += weight * force2 / (square * (1 + 1j * loss) - omega**2)
         charge += weight * static
-    return 1j * omega * charge
+    admittance: ComplexArray = 1j * omega * charge
+    return admittance
 
 
 def _shift(system: HarmonicSystem, near: Hertz) -> float:
@@ -229,11 +233,11 @@ def _shift(system: HarmonicSystem, near: Hertz) -> float:
 
 def _factor(system: HarmonicSystem, shift: float) -> LinearOperator:
     n = system.displacements
-    whole = system.matrix.copy()
-    mass = system.mass.copy()
-    mass.resize(whole.shape)
-    factors = splu((whole - shift * mass).tocsc(), diag_pivot_thresh=0.0)
-    padded = np.zeros(whole.shape[0])
+    size = system.matrix.shape[0]
+    mass = system.mass.tocoo()
+    padded_mass = sparse.coo_matrix((mass.data, (mass.row, mass.col)), shape=(size, size))
+    factors = splu((system.matrix - shift * padded_mass).tocsc(), diag_pivot_thresh=0.0)
+    padded = np.zeros(size)
 
     def solve(b: FloatArray) -> FloatArray:
         padded[:n] = np.ravel(b)
@@ -243,9 +247,7 @@ def _factor(system: HarmonicSystem, shift: float) -> LinearOperator:
     return LinearOperator((n, n), matvec=solve, dtype=float)
 
 
-def _eigenpairs(
-    system: HarmonicSystem, near: Hertz, count: int
-) -> tuple[FloatArray, FloatArray]:
+def _eigenpairs(system: HarmonicSystem, near: Hertz, count: int) -> tuple[FloatArray, FloatArray]:
     """The ω² nearest to a frequency, rising, and their vectors of unit modal mass."""
     n = system.displacements
     if count >= n:

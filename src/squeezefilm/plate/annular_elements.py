@@ -205,7 +205,7 @@ def _unknowns(
     r: FloatArray,
     z: FloatArray,
 ) -> tuple[np.ndarray, FloatArray, int, int, np.ndarray]:
-    """Number the fields at each node; hold what single-valuedness on the axis or electrodes hold."""
+    """Number the fields at each node; hold those that the axis or an electrode holds."""
     used = np.zeros((r.size, z.size), dtype=bool)
     electric = np.zeros_like(used)
     held = np.zeros_like(used)

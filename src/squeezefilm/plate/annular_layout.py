@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -18,6 +19,7 @@ from squeezefilm.plate.annular_materials import (
 )
 from squeezefilm.quantities import (
     Dimensionless,
+    Kilogram,
     Metre,
     Radian,
     Unit,
@@ -114,6 +116,14 @@ class AnnularSection:
         return self.surface_height - min(layer.bottom for layer in self.layers)
 
     @property
+    def mass(self) -> Kilogram:
+        """The mass of the whole body."""
+        return math.pi * sum(
+            a.solid.density * a.thickness * (a.outer_radius**2 - a.inner_radius**2)
+            for a in self.layers
+        )
+
+    @property
     def surface_height(self) -> Metre:
         """The z of the surface that is touched: the highest one."""
         return max(layer.top for layer in self.layers)
@@ -149,7 +159,7 @@ class SectorDrive:
             if polarity not in (1, -1):
                 raise InputError("polarity must be 1 or -1", quantity="polarity")
         ordered = sorted(self.sectors)
-        for (_, end, _), (start, _, _) in zip(ordered[:-1], ordered[1:], strict=True):
+        for (_, end, _), (start, _, _) in itertools.pairwise(ordered):
             if end > start + 1e-9:
                 raise GeometryError("sectors overlap; let each end where the next starts")
         if ordered[-1][1] - ordered[0][0] > 2 * math.pi + 1e-9:

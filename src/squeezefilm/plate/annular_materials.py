@@ -149,8 +149,11 @@ def soft_teeth(solid: RingSolid, fill: Dimensionless) -> RingSolid:
     Each tooth is solid in r and z with its flanks free (plane stress in θ), stands upright and
     shears over its height (Grz and Gθz times `fill`), but hands no hoop stress (Eθ = 0) and no
     in-plane shear (Grθ = 0) on to its neighbours. Valid well below the teeth's own bending
-    resonance. Radial stiffness cannot be dropped as well: a tooth is one piece from the inner to
-    the outer edge, and without it the layer has waves of any shortness at any frequency.
+    resonance. Teeth modelled one by one (72 of 80 % fill, 1.5–2.5 mm on a ring of 2–2.9 mm) lie 7
+    to 13 % of the way from this bound to `stiff_teeth`.
+
+    Radial stiffness cannot be dropped as well: a tooth is one piece from the inner to the outer
+    edge, and without it the layer has waves of any shortness at any frequency.
     """
     require("fill", fill, above=0, at_most=1)
     compliance = np.linalg.inv(solid.stiffness)

@@ -6,6 +6,7 @@ The plate and ring solvers are tensor products of these.
 from __future__ import annotations
 
 import functools
+import itertools
 from collections.abc import Sequence
 
 import numpy as np
@@ -76,7 +77,7 @@ def graded_edges(
     long as they stay above `shortest`.
     """
     edges = [breaks[0]]
-    for left, right in zip(breaks[:-1], breaks[1:], strict=True):
+    for left, right in itertools.pairwise(breaks):
         span = right - left
         cuts = np.linspace(0.0, span, max(1, int(np.ceil(span / longest - 1e-9))) + 1)
         first = last = cuts[1]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 
 import numpy as np
@@ -54,7 +55,7 @@ def make_axis(edges: FloatArray, degree: int, longest: Metre, halved: bool) -> A
     """Cut the cells so that none is longer than `longest`; short ones get a lower degree."""
     end = (edges[0] + edges[-1]) / 2 if halved else edges[-1]
     cuts, cells = [edges[0]], []
-    for k, (left, right) in enumerate(zip(edges[:-1], edges[1:], strict=True)):
+    for k, (left, right) in enumerate(itertools.pairwise(edges)):
         right = min(right, end)
         if right - left <= 1e-9:
             break
@@ -81,7 +82,8 @@ def shear_system(
     images = (2 if parity[0] else 1) * (2 if parity[1] else 1)
     made: dict[tuple[object, ...], tuple[FloatArray, FloatArray, FloatArray]] = {}
     force = np.zeros(count + 1)
-    parts: list[list[FloatArray]] = [[], [], [], []]
+    places: list[tuple[np.ndarray, np.ndarray]] = []
+    parts: list[tuple[FloatArray, FloatArray]] = []
     for i, (ci, px) in enumerate(zip(x.cell, x.degrees, strict=True)):
         for j, (cj, py) in enumerate(zip(y.cell, y.degrees, strict=True)):
             section = layout.sections[layout.section[ci, cj]]
@@ -96,11 +98,10 @@ def shear_system(
             keep = rows >= 0
             rows = rows[keep]
             inside = np.ix_(keep, keep)
-            parts[0].append(np.repeat(rows, rows.size))
-            parts[1].append(np.tile(rows, rows.size))
-            parts[2].append(images * stiff[inside].ravel())
-            parts[3].append(images * mass[inside].ravel())
-    row, column, stiffness, inertia = (np.concatenate(part) for part in parts)
+            places.append((np.repeat(rows, rows.size), np.tile(rows, rows.size)))
+            parts.append((images * stiff[inside].ravel(), images * mass[inside].ravel()))
+    row, column = (np.concatenate([place[k] for place in places]) for k in (0, 1))
+    stiffness, inertia = (np.concatenate([part[k] for part in parts]) for k in (0, 1))
     shape = (count, count)
     return ShearSystem(
         parity,

@@ -117,7 +117,11 @@ class RadiatingSurface:
 
 
 def rectangular_surface(
-    x: MetreArray, y: MetreArray, velocity: ComplexArray, frequency: Hertz, sound_speed: float = 343.2
+    x: MetreArray,
+    y: MetreArray,
+    velocity: ComplexArray,
+    frequency: Hertz,
+    sound_speed: float = 343.2,
 ) -> RadiatingSurface:
     """A plate's surface from its velocity (len(x), len(y)) on a rising grid (trapezoidal rule).
 

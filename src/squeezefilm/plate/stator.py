@@ -78,7 +78,7 @@ class StatorFit:
     follows from the given wavelength. `frequency_bounds` are the frequencies that this thickness
     would have with the teeth soft (no hoop stiffness) and stiff (fill × E): how far the tooth
     layer is uncertain; `thickness_bounds` the thicknesses that each bound would have been fitted
-    to.
+    to (the thinnest allowed where the stiff bound is too high even so).
     """
 
     section: AnnularSection
@@ -147,7 +147,8 @@ def fit_stator(
     require("wavelength", wavelength, _M, above=0)
     require("waves", waves, at_least=2)
     require("thinnest", thinnest, _M, above=0)
-    require("thickest", thickest, _M, above=thinnest)
+    start = max(thinnest, a.web_thickness)  # a ring is no thinner than its web
+    require("thickest", thickest, _M, above=start)
     mean_diameter = waves * wavelength / math.pi
 
     def mode(thickness: float, model: ToothModel) -> AnnularMode:
@@ -155,10 +156,10 @@ def fit_stator(
         return bending_mode(section, waves, degree=degree, quality_factor=a.quality_factor)
 
     def fit(model: ToothModel) -> float:
-        ends = [mode(t, model).frequency - frequency for t in (thinnest, thickest)]
+        ends = [mode(t, model).frequency - frequency for t in (start, thickest)]
         if ends[0] * ends[1] > 0:
             raise UnreachableError(
-                f"no ring thickness from {format_quantity(thinnest, _M)} to "
+                f"no ring thickness from {format_quantity(start, _M)} to "
                 f"{format_quantity(thickest, _M)} puts B(0,{waves}) with {model} teeth on "
                 f"{format_quantity(frequency, _HZ)}: it lies between "
                 f"{format_quantity(ends[0] + frequency, _HZ)} and "
@@ -166,7 +167,7 @@ def fit_stator(
                 quantity="frequency",
             )
         return float(
-            brentq(lambda t: mode(t, model).frequency - frequency, thinnest, thickest, xtol=1e-9)
+            brentq(lambda t: mode(t, model).frequency - frequency, start, thickest, xtol=1e-9)
         )
 
     has_teeth = a.tooth_height > 0
@@ -177,7 +178,7 @@ def fit_stator(
     except UnreachableError:
         if a.tooth_model == "stiff":
             raise
-        stiff = thinnest
+        stiff = start
     thickness = soft if a.tooth_model == "soft" else stiff
     section = stator_section(mean_diameter, thickness, a, a.tooth_model)
     found = mode(thickness, a.tooth_model)
