@@ -277,7 +277,7 @@ def sound_field(
     # A lobe is about a wavelength over the extent wide: look at it at least four times.
     lobe = sound_speed / surface.frequency / (2 * surface.extent)
     steps = max(36, math.ceil(2 * math.pi / lobe))
-    polar = np.linspace(0, math.pi / 2, steps + 1)
+    polar = np.linspace(0, math.pi / 2, max(36, steps // 2) + 1)
     azimuth = 2 * math.pi * np.arange(steps) / steps
 
     def at(distance: float, theta: FloatArray, phi: FloatArray) -> FloatArray:
