@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy import sparse
@@ -133,8 +133,7 @@ def annular_modes(
         error = 0.0
         if not mode.is_rigid:
             error = growth * abs(math.sqrt(max(nearest, 0.0)) / (2 * math.pi) - mode.frequency)
-        object.__setattr__(mode, "frequency_error", error)
-        modes.append(mode)
+        modes.append(replace(mode, frequency_error=error))
     return tuple(modes)
 
 
