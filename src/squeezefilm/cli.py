@@ -69,13 +69,13 @@ def _print_json(value: Any) -> None:
 @app.command()
 def presets(as_json: AsJson = False) -> None:
     """List the displays that come with the package."""
-    from squeezefilm.report.terminal import preset_list, show
+    from squeezefilm.report.terminal import preset_list, show_presets
 
     listing = preset_list()
     if as_json:
         _print_json(listing)
     else:
-        show.presets(listing)
+        show_presets(listing)
 
 
 @app.command()

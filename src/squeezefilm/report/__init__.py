@@ -1,0 +1,1 @@
+"""Figures, the HTML report and what the terminal shows of a result; nothing computes physics."""

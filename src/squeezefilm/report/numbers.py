@@ -1,0 +1,185 @@
+"""The numbers of an analysis in words and units: what the page and the terminal both show."""
+
+from __future__ import annotations
+
+import dataclasses
+import typing
+import unicodedata
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from squeezefilm.quantities import Unit, format_quantity, unit_of
+
+if typing.TYPE_CHECKING:
+    from squeezefilm.analysis.analyze import Analysis
+    from squeezefilm.display import Display
+
+M, HZ, S, N, V, ONE = Unit("m"), Unit("Hz"), Unit("s"), Unit("N"), Unit("V"), Unit("1")
+
+
+@dataclass(frozen=True)
+class KeyNumber:
+    """One line of the table of results: what it is, its value with unit, a remark or nothing."""
+
+    label: str
+    text: str
+    remark: str = ""
+
+
+@dataclass(frozen=True)
+class Value:
+    """One value of a display's description: its path, its text, where it is from."""
+
+    path: str
+    text: str
+    source: str
+    evidence: str
+
+
+def shown(value: float, unit: Unit, digits: int = 4) -> str:
+    """A quantity as a person reads it, e.g. ``"2 µm"``."""
+    text = micro(format_quantity(value, unit, digits))
+    number, _, symbol = text.partition(" ")
+    # 0.6 µm and 0.5 N are what the field says, not 600 nm and 500 mN.
+    larger = {"n": "µ", "µ": "m"} | ({"m": ""} if unit.symbol in ("N", "V") else {})
+    base = unit.symbol
+    known = base in ("m", "s", "N", "V") and symbol != base and symbol[:1] in larger
+    if known and abs(float(number)) >= 100:
+        return f"{float(number) / 1000:.{digits}g} {larger[symbol[0]]}{base}"
+    return text
+
+
+def micro(text: str) -> str:
+    """The text of a quantity with the micro sign in place of the u that is typed for it."""
+    head, separator, unit = text.rpartition(" ")
+    return f"{head}{separator}µ{unit[1:]}" if separator and unit[:1] == "u" else text
+
+
+def printable(text: str) -> str:
+    """A user's text in one line without control characters (a terminal would obey them)."""
+    return " ".join(
+        "".join(" " if unicodedata.category(c) in ("Cc", "Cf", "Cs") else c for c in text).split()
+    )
+
+
+def key_numbers(analysis: Analysis) -> list[KeyNumber]:
+    """The results in the order of the chain: drive, vibration, film, friction, texture."""
+    p = analysis.prediction
+    here = next(c for c in analysis.friction_curves if c.surface == p.surface.name)
+    given = p.voltage is None
+    # The resonance is defined to many digits only: an off-resonance drive is worth a line.
+    off = abs(p.frequency / p.mode.resonance_frequency - 1) > 1e-6
+    drive = "none" if p.voltage is None else shown(p.voltage, V)
+    per_volt = shown(p.mode.amplitude_per_volt, Unit("m/V"))
+    rows = [
+        KeyNumber(label, text, remark)
+        for label, text, remark in (
+            ("Resonance frequency", shown(p.mode.resonance_frequency, HZ), p.mode.label),
+            ("Quality factor", f"{p.mode.quality_factor:.4g}", ""),
+            ("Half wavelength", shown(p.mode.half_wavelength, M), ""),
+            ("Drive voltage", drive, "amplitude given instead" if given else "zero-to-peak"),
+            ("Drive frequency", shown(p.frequency, HZ), "off resonance" if off else "at resonance"),
+            ("Amplitude per volt", per_volt, "at resonance"),
+            ("Vibration amplitude", shown(p.vibration_amplitude, M), "zero-to-peak, at antinodes"),
+            ("Surface", printable(p.surface.name), f"roughness {shown(p.surface.roughness, M)}"),
+            ("Normal force", shown(p.normal_force, N), ""),
+            ("Squeeze number", f"{p.squeeze_number:.4g}", ""),
+            ("Mean pressure", f"{p.mean_pressure:.4f}", "over ambient, contact and period"),
+            ("Relative friction µ′/µ", f"{p.relative_friction:.3f}", "1 without vibration"),
+            (
+                "Friction reduction µ − µ′",
+                f"{p.friction_reduction:.3f}",
+                f"of µ = {p.friction_coefficient:.3g}",
+            ),
+            (
+                "Amplitude for µ′/µ = 0.7",
+                _reached(here.amplitude_for_criterion),
+                "the paper asks for it",
+            ),
+            (
+                "Amplitude for no friction",
+                _reached(here.zero_friction_amplitude),
+                "the finger floats",
+            ),
+            ("Envelope time constant", shown(analysis.envelope_time_constant, S), ""),
+            (
+                "Envelope bandwidth",
+                shown(analysis.envelope_bandwidth, HZ),
+                "of a texture's changes",
+            ),
+        )
+    ]
+    rows += [
+        KeyNumber(f"Finest grating at {speed}", shown(period, M, 3), "keeps 90 % of its swing")
+        for speed, period in analysis.finest_period().items()
+    ]
+    return rows
+
+
+def _reached(amplitude: float | None) -> str:
+    return "out of reach" if amplitude is None else shown(amplitude, M, 3)
+
+
+def models(analysis: Analysis) -> list[tuple[str, str]]:
+    """Which model made what, as pairs."""
+    p = analysis.prediction
+    rows = [
+        ("Resonance and mode shape", p.mode.model),
+        ("Vibration amplitude", p.amplitude_model),
+        ("Pressure and friction", p.model),
+    ]
+    if analysis.texture is not None:
+        rows.append(("Envelope and textures", analysis.texture.model))
+    return rows
+
+
+def unsaid_warnings(analysis: Analysis) -> list[str]:
+    """The warnings that the verdict does not already say word for word."""
+    said = {finding.text for finding in analysis.verdict}
+    return [text for text in analysis.prediction.warnings if text not in said]
+
+
+def display_values(display: Display) -> list[Value]:
+    """Every value of a display with its unit, its source and the evidence behind it.
+
+    Members of lists are counted from 1, as the messages of `config.load` count them.
+    """
+    rows = []
+    for path, value, unit in _leaves(display, ()):
+        origin = display.provenance.get(".".join(str(part) for part in path))
+        if isinstance(value, float | int) and not isinstance(value, bool):
+            text = shown(value, unit, 6) if unit is not None else f"{value}"
+        else:
+            text = str(value)
+        rows.append(
+            Value(
+                dotted(path),
+                text,
+                "" if origin is None else origin.source,
+                "" if origin is None else origin.evidence,
+            )
+        )
+    return rows
+
+
+def dotted(path: tuple[str | int, ...]) -> str:
+    """A path as people read it: list members counted from 1."""
+    return ".".join(str(part + 1) if isinstance(part, int) else part for part in path)
+
+
+def _leaves(
+    node: Any, path: tuple[str | int, ...]
+) -> Iterator[tuple[tuple[str | int, ...], Any, Unit | None]]:
+    hints = typing.get_type_hints(type(node), include_extras=True)
+    for field in dataclasses.fields(node):
+        if field.metadata.get("loader"):
+            continue
+        value, here = getattr(node, field.name), (*path, field.name)
+        if dataclasses.is_dataclass(value):
+            yield from _leaves(value, here)
+        elif isinstance(value, tuple):
+            for index, item in enumerate(value):
+                yield from _leaves(item, (*here, index))
+        elif value is not None:
+            yield here, value, unit_of(hints[field.name])

@@ -1,0 +1,240 @@
+"""How figures look: one palette with a light and a dark value, one size, no global state.
+
+A figure is drawn in the light colours. Each colour is a role with its own hex value, so that the
+page can put a CSS variable in its place and the same SVG follows a dark screen.
+"""
+
+from __future__ import annotations
+
+import functools
+import io
+import re
+import textwrap
+import unicodedata
+from collections.abc import Callable
+from contextlib import AbstractContextManager
+from typing import TYPE_CHECKING, Any, TypeVar
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_A = TypeVar("_A")
+
+WIDTH = 9.6
+"""Width of every figure in inches; on a page 1040 px wide, 10.5 pt then show as 15 px."""
+
+# role: (light, dark). Hues after Okabe and Ito, darkened or lightened until a line has 3:1 and a
+# text 4.5:1 on its background. No two light values may be equal: the page tells roles by them.
+PALETTE: dict[str, tuple[str, str]] = {
+    "ink": ("#1b2733", "#e8eef4"),
+    "muted": ("#526170", "#a9b7c4"),
+    "grid": ("#dbe1e7", "#313d49"),
+    "paper": ("#fffffe", "#151c23"),
+    "blue": ("#00639b", "#5cb8ec"),
+    "orange": ("#b84700", "#ff9450"),
+    "green": ("#007558", "#3ccf9f"),
+    "purple": ("#96397a", "#e8a0cf"),
+    "metal": ("#e2c9a6", "#7a6141"),
+    "plus": ("#bfdcee", "#1d4c6c"),
+    "minus": ("#f7cfb8", "#6b3a1e"),
+    "skin": ("#f3dcd2", "#4d3a33"),
+    "band": ("#e6eef4", "#22303c"),
+}
+INK, MUTED, GRID, PAPER = (PALETTE[name][0] for name in ("ink", "muted", "grid", "paper"))
+BLUE, ORANGE, GREEN, PURPLE = (PALETTE[name][0] for name in ("blue", "orange", "green", "purple"))
+METAL, PLUS, MINUS, SKIN, BAND = (
+    PALETTE[name][0] for name in ("metal", "plus", "minus", "skin", "band")
+)
+# Curves differ in colour and in dashes, so that a grey print or a colour-blind eye tells them.
+LINES: tuple[tuple[str, str | tuple[int, tuple[float, ...]]], ...] = (
+    (BLUE, "-"),
+    (ORANGE, (0, (6, 1.6))),
+    (GREEN, (0, (5, 1.5, 1, 1.5))),
+    (PURPLE, (0, (1.4, 1.2))),
+)
+
+_RC: dict[str, Any] = {
+    "font.family": "DejaVu Sans",  # comes with matplotlib: the same on every machine
+    "font.size": 10.5,
+    "axes.titlesize": 10.5,
+    "axes.titlelocation": "left",
+    "axes.titlecolor": MUTED,
+    "axes.labelsize": 10.5,
+    "axes.labelcolor": INK,
+    "axes.edgecolor": MUTED,
+    "axes.facecolor": "none",
+    "axes.linewidth": 0.8,
+    "axes.grid": True,
+    "axes.axisbelow": True,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "grid.color": GRID,
+    "grid.linewidth": 0.8,
+    "figure.facecolor": "none",
+    "figure.titlesize": 12.5,
+    "figure.titleweight": "bold",
+    "savefig.facecolor": "none",
+    "legend.fontsize": 9.5,
+    "legend.framealpha": 1.0,
+    "legend.facecolor": PAPER,
+    "legend.edgecolor": GRID,
+    "legend.labelcolor": INK,
+    "lines.linewidth": 1.9,
+    "text.color": INK,
+    # Names are user's text: a dollar in them is a dollar.
+    "text.parse_math": False,
+    "text.usetex": False,
+    "xtick.color": MUTED,
+    "ytick.color": MUTED,
+    "xtick.labelcolor": INK,
+    "ytick.labelcolor": INK,
+    "xtick.labelsize": 9.5,
+    "ytick.labelsize": 9.5,
+    "axes.unicode_minus": True,
+    "axes.formatter.useoffset": False,
+    # Outlines instead of a font's name: no machine can set the text wider than it was measured.
+    "svg.fonttype": "path",
+    "svg.hashsalt": "squeezefilm",
+    "path.simplify": True,
+    "path.simplify_threshold": 0.05,
+}
+
+
+def rc() -> AbstractContextManager[None]:
+    """The style as a context: it holds while a figure is drawn or saved, and is then undone."""
+    import matplotlib
+
+    parameters: Any = {**matplotlib.rcParamsDefault, **_RC}
+    return matplotlib.rc_context(parameters)
+
+
+def drawn(draw: Callable[[_A], Figure]) -> Callable[[_A], Figure]:
+    """A function that draws a figure, wrapped so that it draws in this style."""
+
+    @functools.wraps(draw)
+    def styled(subject: _A) -> Figure:
+        with rc():
+            return draw(subject)
+
+    return styled
+
+
+def new_figure(title: str, model: str, height: float) -> Figure:
+    """An empty figure with the message as its title and the model as its small print."""
+    from matplotlib.figure import Figure
+    from matplotlib.layout_engine import ConstrainedLayoutEngine
+
+    padding = ConstrainedLayoutEngine(w_pad=0.08, h_pad=0.08, wspace=0.03, hspace=0.05)
+    figure = Figure(figsize=(WIDTH, height), layout=padding)
+    figure.suptitle(textwrap.fill(_unit_stays(title), 90), x=0.012, ha="left")
+    figure.supxlabel(
+        textwrap.fill(f"Model: {model}", 125),
+        x=0.012,
+        ha="left",
+        fontsize=8.5,
+        color=MUTED,
+    )
+    return figure
+
+
+def _unit_stays(text: str) -> str:
+    """No line may end between a number and its unit, nor after an equals sign."""
+    text = re.sub(r"(?<=\d) (?=%|[µnmkM]?(?:m|Hz|s|N|V)\b)", "\u00a0", text)
+    return re.sub(r" = (?=\d)", "\u00a0=\u00a0", text)
+
+
+def message_figure(title: str, message: str) -> Figure:
+    """A figure that says why there is nothing to draw."""
+    figure = new_figure(title, "none", 1.9)
+    axes = figure.subplots()
+    axes.set_axis_off()
+    axes.text(0.0, 0.5, textwrap.fill(message, 100), va="center", transform=axes.transAxes)
+    return figure
+
+
+def legend_below(axes: Axes, columns: int = 2, gap: float = 0.16) -> None:
+    """A legend under the axes, where it can hide no curve; `gap` in heights of the axes."""
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -gap), ncols=columns, frameon=False)
+
+
+def pairs_of_axes(figure: Figure) -> tuple[Any, Axes]:
+    """Two rows of axes, a wide and a narrow one in each, and an empty strip for their legend.
+
+    The strip is an axes of its own, since the layout gives a figure's legend the same place as
+    the small print.
+    """
+    grid = figure.add_gridspec(3, 2, width_ratios=[2.2, 1], height_ratios=[1, 1, 0.09])
+    rows: list[list[Axes]] = []
+    for row in range(2):
+        line: list[Axes] = []
+        for column in range(2):
+            line.append(
+                figure.add_subplot(
+                    grid[row, column],
+                    sharex=rows[0][column] if rows else None,
+                    sharey=line[0] if line else None,
+                )
+            )
+        rows.append(line)
+    for axes in rows[0]:
+        axes.tick_params(labelbottom=False)
+    for line in rows:
+        line[1].tick_params(labelleft=False)
+    strip = figure.add_subplot(grid[2, :])
+    strip.set_axis_off()
+    return rows, strip
+
+
+@functools.cache
+def _known_characters() -> frozenset[int]:
+    from matplotlib.font_manager import findfont, get_font
+
+    # Titles are bold, and the bold face has fewer glyphs.
+    fonts = (findfont("DejaVu Sans"), findfont("DejaVu Sans:bold"))
+    known = [frozenset(get_font(font).get_charmap()) for font in fonts]
+    return known[0] & known[1]
+
+
+def plain(text: str, most: int = 28) -> str:
+    """A user's text as a figure can show it: one line, at most so long, no unknown glyphs."""
+    one_line = " ".join(
+        "".join(" " if unicodedata.category(c)[0] == "C" else c for c in text).split()
+    )
+    known = _known_characters()
+    shown = "".join(c if ord(c) in known else "□" for c in one_line)
+    return shown if len(shown) <= most else shown[: most - 1].rstrip() + "…"
+
+
+def svg(figure: Figure, prefix: str, label: str) -> str:
+    """A figure as an SVG element to put into a page: no prolog, no references, its own ids.
+
+    `prefix` starts every id, so that two figures on a page cannot be mixed up; `label` is read out
+    in the figure's place. Colours of the palette become CSS variables ``--ink`` and so on.
+    """
+    from xml.sax.saxutils import quoteattr
+
+    stream = io.StringIO()
+    with rc():
+        figure.savefig(stream, format="svg", metadata={"Date": None})
+    text = stream.getvalue()
+    text = text[text.index("<svg") :]
+    text = re.sub(r"<metadata>.*?</metadata>", "", text, flags=re.DOTALL)
+    text = re.sub(r"<!--.*?-->\s*", "", text, flags=re.DOTALL)
+    text = re.sub(r'\bid="([^"]*)"', lambda m: f'id="{prefix}-{m[1]}"', text)
+    text = re.sub(r'(?:xlink:)?href="#([^"]*)"', lambda m: f'href="#{prefix}-{m[1]}"', text)
+    text = re.sub(r"url\(#([^)]*)\)", lambda m: f"url(#{prefix}-{m[1]})", text)
+    for role, (light, _) in PALETTE.items():
+        text = text.replace(light, f"var(--{role})")
+    box = re.search(r'viewBox="([^"]*)"', text)
+    assert box is not None, "matplotlib's SVG has a viewBox"
+    body = text[text.index(">") + 1 :]
+    return f'<svg viewBox="{box[1]}" role="img" aria-label={quoteattr(label)}>{body}'
+
+
+def png(figure: Figure, dots_per_inch: float = 130) -> bytes:
+    """A figure as a PNG on white, for documents and for looking at."""
+    stream = io.BytesIO()
+    with rc():
+        figure.savefig(stream, format="png", dpi=dots_per_inch, facecolor="white")
+    return stream.getvalue()
