@@ -1,0 +1,165 @@
+"""The laminate of a plate with ceramics, cell by cell, for first-order shear theory.
+
+Lengths z are taken from the substrate's mid-plane, positive towards the free (touched) face.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from squeezefilm.materials import VACUUM_PERMITTIVITY, ElasticMaterial, Piezoceramic
+from squeezefilm.plate.laminate import SHEAR_CORRECTION
+from squeezefilm.plate.layout import RectangularPlate
+from squeezefilm.quantities import (
+    CoulombPerSquareMetre,
+    FloatArray,
+    Metre,
+    NewtonPerMetre,
+    Unit,
+    require,
+)
+
+_SAME = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class ShearSection:
+    """One laminate per unit area: N = A ε + B κ, M = B ε + D κ, Q = S γ.
+
+    `membrane` A in N/m, `coupling` B in N, `bending` D in N·m, all (3, 3) in the order xx, yy, xy;
+    `shear` S in N/m; `inertia` the density's moments ∫ρ(1, z, z²)dz; one volt makes the membrane
+    force `stress_coefficient` (N/m per V = C/m²) in all directions at the height `piezo_arm`.
+    """
+
+    membrane: FloatArray
+    coupling: FloatArray
+    bending: FloatArray
+    shear: NewtonPerMetre
+    inertia: FloatArray
+    stress_coefficient: CoulombPerSquareMetre = 0.0
+    piezo_arm: Metre = 0.0
+
+    @property
+    def stiffness(self) -> FloatArray:
+        """All of it, (8, 8): three membrane strains, three curvatures, two shears."""
+        law = np.zeros((8, 8))
+        law[:3, :3], law[3:6, 3:6] = self.membrane, self.bending
+        law[:3, 3:6] = law[3:6, :3] = self.coupling
+        law[6, 6] = law[7, 7] = self.shear
+        return law
+
+
+@dataclass(frozen=True, eq=False)
+class ShearLayout:
+    """A rectangular plate cut into cells by `x_edges` and `y_edges` (m), each of one section.
+
+    `section` (cells along x, along y) indexes `sections`; `polarity` is +1, −1 or 0 per cell.
+    """
+
+    x_edges: FloatArray
+    y_edges: FloatArray
+    sections: tuple[ShearSection, ...]
+    section: np.ndarray
+    polarity: FloatArray
+
+    def mirrored(self, axis: int) -> bool:
+        """Whether the laminate (not its polarity) is its own mirror image along x (0) or y (1)."""
+        edges = (self.x_edges, self.y_edges)[axis]
+        middle = edges[0] + edges[-1]
+        same_edges = np.allclose(edges, middle - edges[::-1], rtol=0, atol=_SAME)
+        return bool(same_edges and np.array_equal(self.section, np.flip(self.section, axis)))
+
+
+def isotropic_section(material: ElasticMaterial, thickness: Metre) -> ShearSection:
+    """A bare plate of one material (plane stress, Reissner's shear factor 5/6)."""
+    require("thickness", thickness, Unit("m"), above=0)
+    reduced = _plane_stress(material.plane_strain_modulus, material.poisson_ratio)
+    return ShearSection(
+        membrane=reduced * thickness,
+        coupling=np.zeros((3, 3)),
+        bending=reduced * thickness**3 / 12,
+        shear=SHEAR_CORRECTION * material.shear_modulus * thickness,
+        inertia=material.density * np.array([thickness, 0.0, thickness**3 / 12]),
+    )
+
+
+def monomorph_section(
+    substrate: ElasticMaterial,
+    thickness: Metre,
+    ceramic: Piezoceramic,
+    ceramic_thickness: Metre,
+    *,
+    induced_potential: bool = True,
+) -> ShearSection:
+    """A substrate with a shorted ceramic perfectly bonded to its lower face.
+
+    The ceramic is in plane stress; its coupling is that of the data set believed. Where
+    `induced_potential`, bending raises a parabolic potential between the shorted faces, which
+    stiffens the ceramic's own bending by e31_p²/ε33_p (the field is linear in z, its mean zero).
+    Valid for layers thin against the wavelength; source: classical lamination with Mindlin's shear
+    (1951, 10.1115/1.4010217), shear factor 5/6 for the sum of the layers.
+    """
+    require("ceramic_thickness", ceramic_thickness, Unit("m"), above=0)
+    bare = isotropic_section(substrate, thickness)
+    reduced = _plane_stress(ceramic.in_plane_stiffness, ceramic.in_plane_poisson_ratio)
+    h = ceramic_thickness
+    arm = -(thickness + h) / 2
+    bending = reduced * (h * arm**2 + h**3 / 12)
+    e = ceramic.effective_stress_coefficient
+    if induced_potential:
+        permittivity = ceramic.relative_permittivity * VACUUM_PERMITTIVITY
+        bending[:2, :2] += e**2 / permittivity * h**3 / 12
+    moments = np.array([h, h * arm, h * arm**2 + h**3 / 12])
+    return ShearSection(
+        membrane=bare.membrane + reduced * h,
+        coupling=reduced * h * arm,
+        bending=bare.bending + bending,
+        shear=bare.shear + SHEAR_CORRECTION * ceramic.shear_modulus * h,
+        inertia=bare.inertia + ceramic.density * moments,
+        stress_coefficient=e,
+        piezo_arm=arm,
+    )
+
+
+def shear_layout(plate: RectangularPlate, *, induced_potential: bool = True) -> ShearLayout:
+    """The cells of a plate with ceramics: bare where there is none, laminate where there is."""
+    xs = [0.0, plate.length, *(e for p in plate.patches for e in (p.x, p.x + p.length))]
+    ys = [0.0, plate.width, *(e for p in plate.patches for e in (p.y, p.y + p.width))]
+    x_edges, y_edges = _merged(xs, plate.length), _merged(ys, plate.width)
+    xm, ym = (x_edges[1:] + x_edges[:-1]) / 2, (y_edges[1:] + y_edges[:-1]) / 2
+    polarity = np.zeros((xm.size, ym.size))
+    for p in plate.patches:
+        across = (xm > p.x) & (xm < p.x + p.length)
+        polarity[np.ix_(across, (ym > p.y) & (ym < p.y + p.width))] = p.polarity
+    sections = (
+        isotropic_section(plate.substrate, plate.thickness),
+        monomorph_section(
+            plate.substrate,
+            plate.thickness,
+            plate.ceramic,
+            plate.ceramic_thickness,
+            induced_potential=induced_potential,
+        ),
+    )
+    return ShearLayout(x_edges, y_edges, sections, (polarity != 0).astype(int), polarity)
+
+
+def uniform_shear_layout(length: Metre, width: Metre, section: ShearSection) -> ShearLayout:
+    """A plate of one section, without drive."""
+    require("length", length, Unit("m"), above=0)
+    require("width", width, Unit("m"), above=0)
+    one = np.zeros((1, 1))
+    return ShearLayout(
+        np.array([0.0, length]), np.array([0.0, width]), (section,), one.astype(int), one
+    )
+
+
+def _plane_stress(modulus: float, poisson: float) -> FloatArray:
+    return modulus * np.array([[1, poisson, 0], [poisson, 1, 0], [0, 0, (1 - poisson) / 2]])
+
+
+def _merged(values: list[float], end: float) -> FloatArray:
+    ordered = sorted(min(max(v, 0.0), end) for v in values)
+    return np.array([v for k, v in enumerate(ordered) if k == 0 or v - ordered[k - 1] > _SAME])

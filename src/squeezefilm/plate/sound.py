@@ -1,0 +1,365 @@
+"""The airborne ultrasound that a vibrating surface makes, and the guidance it is compared with.
+
+The surface lies in a rigid baffle and radiates into the half space above it (Rayleigh's integral,
+Theory of Sound §278; Kinsler et al., Fundamentals of Acoustics, 4th ed., §7.4). A bare plate
+radiates from both faces, which partly cancel around its edges: near the plane of the plate the
+baffled level is too high; in the strong lobes, for plates longer than a wave, it is a fair
+estimate.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from squeezefilm.errors import InputError
+from squeezefilm.quantities import (
+    ComplexArray,
+    Dimensionless,
+    FloatArray,
+    Hertz,
+    KilogramPerCubicMetre,
+    Metre,
+    MetreArray,
+    MetrePerSecond,
+    Radian,
+    Unit,
+    format_quantity,
+    require,
+)
+
+REFERENCE_PRESSURE = 20e-6
+"""0 dB of sound pressure level in air, r.m.s., in Pa (ISO 1683)."""
+
+DISTANCES: tuple[Metre, ...] = (0.3, 0.5, 1.0)
+"""Where levels are given unless asked otherwise: a bent head, a seated user, a bystander."""
+
+_COARSEST = 4
+"""Points per wavelength in air below which a surface is refused."""
+
+
+@dataclass(frozen=True)
+class ExposureGuidance:
+    """A recommended limit of sound pressure level, with how well we know it.
+
+    It holds in one-third-octave bands between `low` and `high`. `evidence` says what was seen:
+    a limit marked "to be checked" was not read in its own text.
+    """
+
+    level_dB: float
+    low: Hertz
+    high: Hertz
+    audience: Literal["public", "occupational"]
+    source: str
+    evidence: str
+
+
+GUIDANCE = (
+    ExposureGuidance(
+        70.0,
+        17.8e3,
+        22.4e3,
+        "public",
+        "IRPA/INIRC 1984, Interim guidelines on limits of human exposure to airborne ultrasound, "
+        "Health Physics 46(4), 969-974; still the guideline in 2024: 10.1097/HP.0000000000001800",
+        "to be checked: the number is from memory, the guideline's text was not read",
+    ),
+    ExposureGuidance(
+        100.0,
+        22.4e3,
+        112e3,
+        "public",
+        "IRPA/INIRC 1984, Interim guidelines on limits of human exposure to airborne ultrasound, "
+        "Health Physics 46(4), 969-974; still the guideline in 2024: 10.1097/HP.0000000000001800",
+        "to be checked: the number is from memory, the guideline's text was not read",
+    ),
+    ExposureGuidance(
+        110.0,
+        22.4e3,
+        56e3,
+        "occupational",
+        "Howard, Hansen and Zander 2004, A review of current ultrasound exposure limits: the "
+        "consensus of the limits reviewed, 25 to 50 kHz bands, below 4 hours",
+        "to be checked: read as a quotation of the review, not in the limits themselves",
+    ),
+)
+"""Published guidance, one entry per band and audience; the reviews call its basis thin."""
+
+
+def exposure_guidance(
+    frequency: Hertz, audience: Literal["public", "occupational"] = "public"
+) -> ExposureGuidance | None:
+    """The guidance for a tone, or None where there is none."""
+    require("frequency", frequency, Unit("Hz"), above=0)
+    for entry in GUIDANCE:
+        if entry.audience == audience and entry.low <= frequency < entry.high:
+            return entry
+    return None
+
+
+@dataclass(frozen=True, eq=False)
+class RadiatingSurface:
+    """A flat surface cut into points: positions (n, 2) in m, areas (n,) in m², normal velocity
+    (n,) in m/s, zero-to-peak and complex, all at one frequency."""
+
+    frequency: Hertz
+    position: MetreArray
+    area: FloatArray
+    velocity: ComplexArray
+
+    @property
+    def extent(self) -> Metre:
+        """The largest distance of a point from the middle."""
+        return float(np.hypot(*self.position.T).max())
+
+
+def rectangular_surface(
+    x: MetreArray,
+    y: MetreArray,
+    velocity: ComplexArray,
+    frequency: Hertz,
+    sound_speed: float = 343.2,
+) -> RadiatingSurface:
+    """A plate's surface from its velocity (len(x), len(y)) on a rising grid (trapezoidal rule).
+
+    For a displacement w of zero-to-peak amplitude the velocity is 2πi f w. Positions are taken
+    from the middle of the grid. Raises `InputError` for a wrong shape or a grid coarser than a
+    quarter of the wave in air.
+    """
+    x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
+    values = np.asarray(velocity, dtype=complex)
+    require("frequency", frequency, Unit("Hz"), above=0)
+    if values.shape != (x.size, y.size):
+        raise InputError(
+            f"velocity has the shape {values.shape}; for this grid it must be {(x.size, y.size)}",
+            quantity="velocity",
+        )
+    for name, line in (("x", x), ("y", y)):
+        if line.size < 2 or np.any(np.diff(line) <= 0):
+            raise InputError(f"{name} must be two or more rising positions", quantity=name)
+        _require_fine(name, float(np.diff(line).max()), frequency, sound_speed)
+    grid = np.stack(
+        np.meshgrid(x - (x[0] + x[-1]) / 2, y - (y[0] + y[-1]) / 2, indexing="ij"), axis=-1
+    )
+    area = np.outer(_trapezoid(x), _trapezoid(y))
+    return RadiatingSurface(frequency, grid.reshape(-1, 2), area.ravel(), values.ravel())
+
+
+def ring_surface(
+    radius: MetreArray,
+    velocity: ComplexArray,
+    harmonic: int,
+    frequency: Hertz,
+    sound_speed: float = 343.2,
+) -> RadiatingSurface:
+    """A ring's or disc's surface moving with `velocity` (r) × cos(`harmonic` × θ).
+
+    `radius` rises from the inner (0 for a disc) to the outer edge. Trapezoidal rule, second order
+    in r, spectral in θ. Raises `InputError` for wrong shapes or a grid coarser than a quarter of
+    the wave in air.
+    """
+    radius = np.asarray(radius, dtype=float)
+    values = np.asarray(velocity, dtype=complex)
+    require("frequency", frequency, Unit("Hz"), above=0)
+    require("harmonic", harmonic, at_least=0)
+    require("radius", radius, Unit("m"), at_least=0)
+    if radius.size < 2 or np.any(np.diff(radius) <= 0) or values.shape != radius.shape:
+        raise InputError(
+            "radius must be two or more rising radii, with one velocity each", quantity="radius"
+        )
+    _require_fine("radius", float(np.diff(radius).max()), frequency, sound_speed)
+    waves = 2 * math.pi * radius[-1] * frequency / sound_speed
+    around = max(32, 8 * math.ceil(waves), 8 * harmonic)
+    angle = 2 * math.pi * np.arange(around) / around
+    position = radius[:, None, None] * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+    # ∫ f r dr exactly for f linear between radii, so that a piston has its true area.
+    step = np.diff(radius)
+    weight = np.zeros_like(radius)
+    weight[:-1] += step * (2 * radius[:-1] + radius[1:]) / 6
+    weight[1:] += step * (radius[:-1] + 2 * radius[1:]) / 6
+    area = np.repeat(weight[:, None], around, axis=1) * (2 * math.pi / around)
+    moving = values[:, None] * np.cos(harmonic * angle)
+    return RadiatingSurface(frequency, position.reshape(-1, 2), area.ravel(), moving.ravel())
+
+
+def sound_pressure(
+    surface: RadiatingSurface,
+    points: MetreArray,
+    *,
+    density: KilogramPerCubicMetre = 1.204,
+    sound_speed: MetrePerSecond = 343.2,
+) -> ComplexArray:
+    """Complex sound pressure (Pa, zero-to-peak) at `points` (..., 3) above the surface (z > 0).
+
+    p = iωρ/2π ∫ v exp(−ikR)/R dS, lossless. Raises `InputError` for a point not above the plane.
+    """
+    require("density", density, Unit("kg/m3"), above=0)
+    require("sound_speed", sound_speed, Unit("m/s"), above=0)
+    points = np.asarray(points, dtype=float)
+    require("height of the point", points[..., 2], Unit("m"), at_least=0)
+    flat = points.reshape(-1, 3)
+    omega = 2 * math.pi * surface.frequency
+    strength = surface.velocity * surface.area
+    pressure = np.empty(len(flat), dtype=complex)
+    rows = max(1, 2_000_000 // strength.size)  # 32 MB of complex numbers at a time
+    for start in range(0, len(flat), rows):
+        part = flat[start : start + rows]
+        across = ((part[:, None, :2] - surface.position[None]) ** 2).sum(axis=-1)
+        distance = np.sqrt(across + part[:, None, 2] ** 2)
+        require("distance", distance, Unit("m"), above=0)
+        kernel = np.exp(-1j * (omega / sound_speed) * distance) / distance
+        pressure[start : start + rows] = kernel @ strength
+    return (1j * omega * density / (2 * math.pi) * pressure).reshape(points.shape[:-1])
+
+
+def pressure_level(pressure: ComplexArray) -> FloatArray:
+    """Sound pressure level (dB re 20 µPa) of zero-to-peak pressures (Pa)."""
+    level: FloatArray = 20 * np.log10(np.maximum(np.abs(pressure), 1e-30) / math.sqrt(2) / 20e-6)
+    return level
+
+
+@dataclass(frozen=True, eq=False)
+class SoundField:
+    """Levels around a surface at some distances from its middle.
+
+    `sound_pressure_level_dB` is the maximum over directions at each of `distances`; it is reached
+    at the angle `polar` from the normal and `azimuth` from the x-axis (one each per distance).
+    `levels_dB` (distances, polar angles, azimuths) holds all, over `polar_angles` and `azimuths`.
+    `radiated_power` in W goes into the upper half space; `directivity_dB` is the strongest
+    direction against the same power sent evenly all round (a small baffled source has 3 dB).
+    `guidance` is what the levels are compared with, if there is any for the frequency.
+    """
+
+    frequency: Hertz
+    distances: tuple[Metre, ...]
+    sound_pressure_level_dB: tuple[float, ...]
+    polar: tuple[Radian, ...]
+    azimuth: tuple[Radian, ...]
+    polar_angles: FloatArray
+    azimuths: FloatArray
+    levels_dB: FloatArray
+    radiated_power: float
+    directivity_dB: float
+    guidance: ExposureGuidance | None
+    model: str = "baffled_rayleigh"
+
+    @property
+    def above_guidance_dB(self) -> tuple[float, ...] | None:
+        """By how much each maximum exceeds the guidance; None where there is no guidance."""
+        if self.guidance is None:
+            return None
+        return tuple(level - self.guidance.level_dB for level in self.sound_pressure_level_dB)
+
+
+def sound_field(
+    surface: RadiatingSurface,
+    distances: tuple[Metre, ...] = DISTANCES,
+    *,
+    absorption_dB_per_m: Dimensionless = 0.0,
+    density: KilogramPerCubicMetre = 1.204,
+    sound_speed: MetrePerSecond = 343.2,
+    audience: Literal["public", "occupational"] = "public",
+) -> SoundField:
+    """Sound pressure levels at distances from the surface's middle, over all directions.
+
+    A grid of at least 2.5° × 10° is searched, finer for surfaces of many waves, and the best
+    direction refined to a few hundredths of a degree.
+    `absorption_dB_per_m` of the air (ISO 9613-1; about 1 dB/m at 33 kHz) is left out by default,
+    which errs on the loud side. Raises `InputError` for a distance within the surface's extent.
+    """
+    require("absorption_dB_per_m", absorption_dB_per_m, at_least=0)
+    if not distances:
+        raise InputError("distances is empty; name at least one", quantity="distances")
+    require("distances", distances, Unit("m"), above=surface.extent)
+    # A lobe is about a wavelength over the extent wide: look at it at least four times.
+    lobe = sound_speed / surface.frequency / (2 * surface.extent)
+    steps = max(36, math.ceil(2 * math.pi / lobe))
+    polar = np.linspace(0, math.pi / 2, max(36, steps // 2) + 1)
+    azimuth = 2 * math.pi * np.arange(steps) / steps
+
+    def at(distance: float, theta: FloatArray, phi: FloatArray) -> FloatArray:
+        up = np.cos(theta) * distance
+        out = np.sin(theta) * distance
+        points = np.stack([out * np.cos(phi), out * np.sin(phi), np.maximum(up, 0)], axis=-1)
+        pressure = sound_pressure(surface, points, density=density, sound_speed=sound_speed)
+        return pressure_level(pressure) - absorption_dB_per_m * distance
+
+    theta, phi = np.meshgrid(polar, azimuth, indexing="ij")
+    levels = np.stack([at(distance, theta, phi) for distance in distances])
+    best: list[tuple[float, float, float]] = []
+    for distance, level in zip(distances, levels, strict=True):
+        i, j = np.unravel_index(int(np.argmax(level)), level.shape)
+        found = (float(level[i, j]), float(polar[i]), float(azimuth[j]))
+        wide = (float(polar[1]), float(azimuth[1]))
+        for _ in range(3):
+            near_t = np.clip(found[1] + wide[0] * np.linspace(-1, 1, 9), 0, math.pi / 2)
+            near_p = found[2] + wide[1] * np.linspace(-1, 1, 9)
+            t, p = np.meshgrid(near_t, near_p, indexing="ij")
+            fine = at(distance, t, p)
+            i, j = np.unravel_index(int(np.argmax(fine)), fine.shape)
+            found = max(found, (float(fine[i, j]), float(t[i, j]), float(p[i, j])))
+            wide = (wide[0] / 4, wide[1] / 4)
+        best.append(found)
+    strongest = (best[-1][1], best[-1][2])
+    power, directivity = _power(surface, strongest, density, sound_speed)
+    return SoundField(
+        frequency=surface.frequency,
+        distances=tuple(distances),
+        sound_pressure_level_dB=tuple(b[0] for b in best),
+        polar=tuple(b[1] for b in best),
+        azimuth=tuple(b[2] % (2 * math.pi) for b in best),
+        polar_angles=polar,
+        azimuths=azimuth,
+        levels_dB=levels,
+        radiated_power=power,
+        directivity_dB=directivity,
+        guidance=exposure_guidance(surface.frequency, audience),
+    )
+
+
+def _power(
+    surface: RadiatingSurface, strongest: tuple[float, float], density: float, sound_speed: float
+) -> tuple[float, float]:
+    """Power (W) and directivity (dB) from the far field: Gauss points in cos θ, even in φ."""
+    k = 2 * math.pi * surface.frequency / sound_speed
+    count = 16 + math.ceil(k * surface.extent)
+    cosine, weight = np.polynomial.legendre.leggauss(count)
+    cosine, weight = (cosine + 1) / 2, weight / 2
+    phi = 2 * math.pi * np.arange(2 * count) / (2 * count)
+
+    def intensity(theta: FloatArray, phi: FloatArray) -> FloatArray:
+        towards = np.sin(theta)[..., None] * np.stack([np.cos(phi), np.sin(phi)], axis=-1)
+        phase = np.exp(1j * k * (towards @ surface.position.T))
+        far = density * surface.frequency * np.abs(phase @ (surface.velocity * surface.area))
+        result: FloatArray = far**2 / (2 * density * sound_speed)
+        return result
+
+    around = np.stack([intensity(np.full(phi.size, t), phi) for t in np.arccos(cosine)])
+    power = float((weight @ around).sum() * (2 * math.pi / (2 * count)))
+    if power == 0:
+        return 0.0, 0.0
+    # The strongest direction was found nearby; the normal is its limit for symmetric sources.
+    peak = intensity(np.array([strongest[0], 0.0]), np.array([strongest[1], 0.0]))
+    return power, 10 * math.log10(4 * math.pi * max(peak.max(), around.max()) / power)
+
+
+def _trapezoid(line: FloatArray) -> FloatArray:
+    weight = np.zeros_like(line)
+    weight[:-1] += np.diff(line) / 2
+    weight[1:] += np.diff(line) / 2
+    return weight
+
+
+def _require_fine(name: str, step: float, frequency: float, sound_speed: float) -> None:
+    require("sound_speed", sound_speed, Unit("m/s"), above=0)
+    longest = sound_speed / frequency / _COARSEST
+    if step > longest:
+        raise InputError(
+            f"{name} has steps of {format_quantity(step, Unit('m'))}; at "
+            f"{format_quantity(frequency, Unit('Hz'))} they must be at most "
+            f"{format_quantity(longest, Unit('m'))} (a quarter of the wave in air)",
+            quantity=name,
+        )

@@ -1,0 +1,160 @@
+"""Airborne sound against closed forms of baffled sources: piston, simple source, plane waves."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy import special
+
+from squeezefilm.errors import InputError
+from squeezefilm.plate.sound import (
+    GUIDANCE,
+    exposure_guidance,
+    pressure_level,
+    rectangular_surface,
+    ring_surface,
+    sound_field,
+    sound_pressure,
+)
+
+RHO, C = 1.204, 343.2
+F = 33e3
+K = 2 * math.pi * F / C
+
+
+def piston(radius: float, points: int = 200, velocity: complex = 0.4) -> object:
+    r = np.linspace(0, radius, points)
+    return ring_surface(r, np.full(points, velocity), 0, F)
+
+
+def test_piston_on_its_axis() -> None:
+    """|p| = 2 ρ c v |sin(k (√(R² + a²) − R)/2)| (Kinsler, eq 7.4.5), near field and far."""
+    a, v = 20e-3, 0.4
+    height = np.array([3e-3, 10e-3, 33e-3, 0.1, 0.3, 1.0])
+    points = np.stack([0 * height, 0 * height, height], axis=-1)
+    exact = 2 * RHO * C * v * np.abs(np.sin(K / 2 * (np.hypot(height, a) - height)))
+    got = np.abs(sound_pressure(piston(a), points))
+    assert got == pytest.approx(exact, rel=1e-3, abs=1e-3 * RHO * C * v)
+
+
+def test_error_of_the_radial_rule_is_of_second_order() -> None:
+    a, height = 20e-3, 0.05
+    exact = 2 * RHO * C * 0.4 * abs(math.sin(K / 2 * (math.hypot(height, a) - height)))
+    errors = [
+        abs(abs(sound_pressure(piston(a, n), np.array([0, 0, height]))) / exact - 1)
+        for n in (17, 33, 65)
+    ]
+    assert math.log2(errors[0] / errors[1]) == pytest.approx(2, abs=0.2)
+    assert math.log2(errors[1] / errors[2]) == pytest.approx(2, abs=0.2)
+
+
+def test_piston_in_the_far_field() -> None:
+    """p = ρ f v π a²/R × 2 J1(ka sin θ)/(ka sin θ) (Kinsler, eq 7.4.17)."""
+    a, v, distance = 15e-3, 0.4, 300.0
+    theta = np.radians([1e-3, 10, 17, 30, 50, 80])
+    points = distance * np.stack([np.sin(theta), 0 * theta, np.cos(theta)], axis=-1)
+    x = K * a * np.sin(theta)
+    exact = RHO * F * v * math.pi * a**2 / distance * 2 * special.j1(x) / x
+    got = np.abs(sound_pressure(piston(a), points))
+    assert got == pytest.approx(np.abs(exact), rel=2e-3)
+
+
+def test_power_and_directivity_of_a_piston() -> None:
+    """W = ½ρc π a² v² (1 − J1(2ka)/(ka)) (Kinsler, eq 7.5.11)."""
+    a, v = 12e-3, 0.4
+    field = sound_field(piston(a), (0.5,))
+    ka = K * a
+    power = 0.5 * RHO * C * math.pi * a**2 * v**2 * (1 - special.j1(2 * ka) / ka)
+    assert field.radiated_power == pytest.approx(power, rel=1e-3)
+    assert field.polar[0] == pytest.approx(0, abs=2e-3)
+    exact = ka**2 / (1 - special.j1(2 * ka) / ka)
+    # D = 4π I R²/W = 4π (ρ f v πa²)²/(2ρc) / W = (ka)²/(1 − J1(2ka)/ka), all against the sphere.
+    assert field.directivity_dB == pytest.approx(10 * math.log10(exact), abs=0.01)
+
+
+def test_simple_source() -> None:
+    """Much smaller than a wave: p = ρ f Q/R for a baffled volume velocity Q, any direction."""
+    small = ring_surface(np.linspace(0, 0.2e-3, 9), np.full(9, 0.5), 0, F)
+    field = sound_field(small)
+    volume = 0.5 * math.pi * 0.2e-3**2
+    exact = [20 * math.log10(RHO * F * volume / r / math.sqrt(2) / 20e-6) for r in field.distances]
+    assert field.sound_pressure_level_dB == pytest.approx(exact, abs=0.01)
+    assert np.ptp(field.levels_dB, axis=(1, 2)).max() < 0.05
+    assert field.directivity_dB == pytest.approx(10 * math.log10(2), abs=0.02)
+    # Phase: i ρ f Q exp(−ikR)/R.
+    p = sound_pressure(small, np.array([0, 0, 0.5]))
+    assert p == pytest.approx(1j * RHO * F * volume / 0.5 * np.exp(-1j * K * 0.5), rel=1e-3)
+
+
+def test_a_supersonic_wave_on_a_plate_radiates_at_its_coincidence_angle() -> None:
+    """A standing wave cos k_B x beams to sin θ = k_B/k; a subsonic one hardly radiates."""
+    x, y = np.linspace(-0.11, 0.11, 101), np.linspace(-0.03, 0.03, 25)
+    wave = 22e-3
+    moving = np.cos(2 * math.pi * x / wave)[:, None] * np.ones(y.size)
+    field = sound_field(rectangular_surface(x, y, moving, F), (30.0,))
+    assert math.sin(field.polar[0]) == pytest.approx(2 * math.pi / wave / K, abs=0.02)
+    assert math.sin(field.azimuth[0]) == pytest.approx(0, abs=1e-2)
+    slow = np.cos(2 * math.pi * x / 8e-3)[:, None] * np.ones(y.size)
+    quiet = sound_field(rectangular_surface(x, y, slow, F), (30.0,))
+    assert quiet.sound_pressure_level_dB[0] < field.sound_pressure_level_dB[0] - 15
+
+
+def test_rectangle_and_ring_agree_on_a_disc_mode() -> None:
+    """The same velocity field, v = cos 2θ (r/a)², on both grids."""
+    a = 25e-3
+    line = np.linspace(-a, a, 301)
+    X, Y = np.meshgrid(line, line, indexing="ij")
+    inside = np.hypot(X, Y) <= a
+    square = rectangular_surface(line, line, np.where(inside, (X**2 - Y**2) / a**2, 0), F)
+    r = np.linspace(0, a, 80)
+    ring = ring_surface(r, (r / a) ** 2, 2, F)
+    points = np.array([[0.1, 0.0, 0.3], [0.2, 0.05, 0.2], [0.0, 0.3, 0.4]])
+    assert np.abs(sound_pressure(square, points)) == pytest.approx(
+        np.abs(sound_pressure(ring, points)), rel=2e-2
+    )
+
+
+def test_the_papers_plate_is_loud() -> None:
+    """83 × 49 mm, 2 µm, 33 kHz in (8,0): 127 dB at 0.5 m in a lobe near 30°."""
+    x, y = np.linspace(0, 83e-3, 85), np.linspace(0, 49e-3, 51)
+    k = 7.5 * math.pi / 83e-3
+    u = k * (x - x[0])
+    kl = 7.5 * math.pi  # free–free beam: the root of cosh kl cos kl = 1 to nine digits
+    ratio = (math.cosh(kl) - math.cos(kl)) / (math.sinh(kl) - math.sin(kl))
+    shape = np.cosh(u) + np.cos(u) - ratio * (np.sinh(u) + np.sin(u))
+    shape /= abs(shape[np.abs(x - 41.5e-3) < 5e-3]).max()  # 2 µm at the middle antinode
+    velocity = 2j * math.pi * F * 2e-6 * shape[:, None] * np.ones(y.size)
+    field = sound_field(rectangular_surface(x, y, velocity, F))
+    at_half_metre = field.sound_pressure_level_dB[1]
+    assert at_half_metre == pytest.approx(126.9, abs=0.3)
+    assert math.degrees(field.polar[1]) == pytest.approx(29, abs=1)
+    assert field.guidance is not None
+    assert field.above_guidance_dB is not None
+    assert field.above_guidance_dB[1] == pytest.approx(at_half_metre - 100)
+    damped = sound_field(rectangular_surface(x, y, velocity, F), (0.5,), absorption_dB_per_m=1.0)
+    assert damped.sound_pressure_level_dB[0] == pytest.approx(at_half_metre - 0.5)
+
+
+def test_level_of_a_known_pressure() -> None:
+    assert pressure_level(np.array([math.sqrt(2) + 0j])) == pytest.approx(93.9794, abs=1e-4)
+
+
+def test_guidance_is_labelled() -> None:
+    guidance = exposure_guidance(33e3)
+    assert guidance is not None
+    assert guidance.level_dB == 100
+    assert all("to be checked" in entry.evidence for entry in GUIDANCE)
+    assert exposure_guidance(1e6) is None
+    assert exposure_guidance(20e3).level_dB == 70  # type: ignore[union-attr]
+
+
+def test_bad_surfaces_are_refused() -> None:
+    x = np.linspace(0, 0.08, 9)
+    with pytest.raises(InputError, match="quarter of the wave"):
+        rectangular_surface(x, x, np.ones((9, 9)), F)
+    with pytest.raises(InputError, match="shape"):
+        rectangular_surface(x / 10, x / 10, np.ones((9, 8)), F)
+    with pytest.raises(InputError, match="distances"):
+        sound_field(piston(0.02), (0.01,))
+    with pytest.raises(InputError, match="height"):
+        sound_pressure(piston(0.02), np.array([0.0, 0.0, -0.1]))
