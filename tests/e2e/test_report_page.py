@@ -15,7 +15,8 @@ if TYPE_CHECKING:
 pytestmark = pytest.mark.chromium
 
 FIGURES = (
-    "layout", "mode", "response", "pressure", "friction", "wavelength", "texture", "fidelity",
+    "layout", "mode", "response", "pressure", "friction", "films", "wavelength", "texture",
+    "fidelity",
 )  # fmt: skip
 
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from squeezefilm.film.linear import relative_damping, relative_stiffness
 from squeezefilm.film.line_grid import uniform_gap
+from squeezefilm.film.linear import relative_damping, relative_stiffness
 from squeezefilm.film.periodic import solve_disc, solve_profile, solve_strip
 from squeezefilm.film.planar import solve_ellipse, solve_rectangle
 from squeezefilm.film.profile import flexural_profile

@@ -16,7 +16,8 @@ from squeezefilm.report import page
 from squeezefilm.report.page import report_page, write_report
 
 FIGURE_KEYS = (
-    "layout", "mode", "response", "pressure", "friction", "wavelength", "texture", "fidelity",
+    "layout", "mode", "response", "pressure", "friction", "films", "wavelength", "texture",
+    "fidelity",
 )  # fmt: skip
 VOID = {"meta", "br", "link", "img", "hr", "input"}
 
@@ -62,7 +63,7 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Analysis]:
     analysis = analyze(load_display("biet2008-plate"))
     steps: list[str] = []
     path = write_report(analysis, tmp_path_factory.mktemp("out") / "new", steps.append)
-    assert len(steps) == 9
+    assert len(steps) == 10
     return path, analysis
 
 
@@ -71,7 +72,7 @@ def test_page_is_well_formed_with_all_figures(written: tuple[Path, Analysis]) ->
     figures = [attrs["id"] for tag, attrs in reader.elements if tag == "figure"]
     assert figures == [f"figure-{key}" for key in FIGURE_KEYS]
     drawings = [attrs for tag, attrs in reader.elements if tag == "svg"]
-    assert len(drawings) == 8
+    assert len(drawings) == 9
     for attrs in drawings:
         assert attrs["role"] == "img"
         assert len(attrs["aria-label"] or "") > 60
@@ -128,7 +129,8 @@ def test_json_is_strict_and_carries_curves_and_description(
     assert data["resonance_frequency_Hz"] == analysis.prediction.mode.resonance_frequency
     curves = data["curves"]
     assert set(curves) == {
-        "response", "pressure", "friction", "wavelength", "texture", "fidelity",
+        "response", "pressure", "friction", "films", "wavelength", "texture",
+    "fidelity",
     }  # fmt: skip
     assert len(curves["response"]["frequency_Hz"]) == 601
     trace = curves["texture"]
