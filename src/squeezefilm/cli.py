@@ -216,6 +216,37 @@ def film(
 
 
 @app.command()
+def plate(
+    target: Target,
+    band: Annotated[str | None, typer.Option(help='Modes in a band, like "25 kHz:45 kHz".')] = None,
+    mode: Annotated[str | None, typer.Option(help="Working mode by nodal lines, like 8,0.")] = None,
+    out: Annotated[Path | None, typer.Option(help="Folder for plate.json and figures.")] = None,
+    as_json: AsJson = False,
+) -> None:
+    """Solve a plate in three dimensions: modes, amplitude per volt, admittance."""
+    from squeezefilm.analysis.plate_command import analyze_plate, parse_band, parse_mode
+    from squeezefilm.display import load_display
+    from squeezefilm.report import terminal
+
+    display = load_display(target)
+    wanted = None if mode is None else parse_mode(mode)
+    limits = None if band is None else parse_band(band)
+    with terminal.progress(enabled=sys.stderr.isatty() or not as_json) as step:
+        result = analyze_plate(display, mode=wanted, band=limits, progress=step)
+        written = None
+        if out is not None:
+            from squeezefilm.report.solved_plate import write_plate
+
+            written = write_plate(result, out)
+    if as_json:
+        _print_json(result.summary())
+        return
+    terminal.show_plate(result)
+    if written is not None:
+        typer.echo(f"figures: {written}")
+
+
+@app.command()
 def reproduce(
     out: Annotated[Path | None, typer.Option(help="Write figures 4, 5, 10, 11 and a page.")] = None,
     as_json: AsJson = False,

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from squeezefilm.analysis.analyze import Analysis
     from squeezefilm.analysis.claims import Reproduction
     from squeezefilm.analysis.film_command import FilmAnswer
+    from squeezefilm.analysis.plate_command import PlateAnalysis
 
 _KINDS = {"good": "good ", "limit": "limit", "doubt": "doubt"}
 _STYLES = {"good": "green", "limit": "cyan", "doubt": "yellow"}
@@ -185,6 +186,61 @@ def show_film(answer: FilmAnswer) -> None:
         fixed=(0,),
     )
     console.print(answer.status)
+
+
+def show_plate(result: PlateAnalysis) -> None:
+    """Print a solved plate: the working mode, then every mode of the band."""
+    from squeezefilm.quantities import Unit
+
+    hertz, per_volt = Unit("Hz"), Unit("m/V")
+    console, mode = _console(), result.working
+    _heading(console, f"{result.display.title} [{result.display.name}]")
+    rows = [
+        (
+            f"Mode {mode.label}",
+            shown(mode.frequency, hertz, 5),
+            f"± {shown(mode.frequency_error, hertz, 2)} (estimated)",
+        ),
+        ("Amplitude per volt", shown(result.amplitude_per_volt, per_volt), "largest, upper face"),
+        ("", shown(result.centreline_per_volt, per_volt), "centreline, between outer nodes"),
+        ("Quality factor", f"{mode.quality_factor:.4g}", "from the losses of its materials"),
+        ("Effective coupling", f"{mode.coupling:.3g}", ""),
+        (
+            "As a Timoshenko beam",
+            shown(result.beam_frequency, hertz, 5),
+            f"{result.beam_frequency / mode.frequency - 1:+.1%}",
+        ),
+    ]
+    volts = result.display.drive.voltage
+    at = result.response.resonance
+    rows.append(
+        (
+            f"At {shown(volts, Unit('V'))}",
+            shown(float(result.response.current(volts)[at]), Unit("A"), 3),
+            f"{result.response.apparent_power(volts)[at]:.3g} VA, "
+            f"{result.response.input_power(volts)[at]:.3g} W",
+        )
+    )
+    _table(console, ("", "", ""), rows, fixed=(0,))
+    _heading(console, "Modes in the band")
+    _table(
+        console,
+        ("mode", "frequency", "±", "Q", "per volt", "coupling"),
+        [
+            (
+                row.label,
+                shown(row.frequency, hertz, 5),
+                shown(row.frequency_error, hertz, 2),
+                f"{row.quality_factor:.3g}",
+                "not driven"
+                if row.amplitude_per_volt < 1e-4 * result.amplitude_per_volt
+                else shown(row.amplitude_per_volt, per_volt, 3),
+                f"{row.coupling:.2g}",
+            )
+            for row in result.rows
+        ],
+    )
+    console.print(f"{result.modes.model}; {result.modes.status}")
 
 
 def show_claims(result: Reproduction) -> None:

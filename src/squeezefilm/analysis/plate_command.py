@@ -1,0 +1,192 @@
+"""What `squeezefilm plate` computes: the modes of a plate in a band, and its harmonic response."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from squeezefilm.display import Display
+from squeezefilm.errors import InputError
+from squeezefilm.plate.layout import RectangularPlate
+from squeezefilm.plate.plate_modes import PlateModes
+from squeezefilm.plate.plate_response import EquivalentCircuit, HarmonicResponse, harmonic_response
+from squeezefilm.plate.response import beam_response
+from squeezefilm.plate.solve_modes import solve_modes
+from squeezefilm.quantities import (
+    Dimensionless,
+    Hertz,
+    Metre,
+    MetrePerVolt,
+    Unit,
+    did_you_mean,
+    format_quantity,
+)
+from squeezefilm.results import stamp, to_json
+
+Progress = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class ModeRow:
+    """One mode of the table: label by nodal lines across length and width, extrapolated frequency
+    with its estimated error, Q, amplitude per volt at the largest point of the face if it stood
+    alone, effective coupling, modal force (N/V for unit modal mass)."""
+
+    label: str
+    frequency: Hertz
+    frequency_error: Hertz
+    quality_factor: Dimensionless
+    amplitude_per_volt: MetrePerVolt
+    coupling: Dimensionless
+    modal_force: float
+    half_wavelength: Metre | None
+
+
+@dataclass(frozen=True, eq=False)
+class PlateAnalysis:
+    """The solved plate: table of modes, the working mode, its response and equivalent circuit."""
+
+    display: Display
+    plate: RectangularPlate
+    modes: PlateModes
+    rows: tuple[ModeRow, ...]
+    working: ModeRow
+    response: HarmonicResponse
+    amplitude_per_volt: MetrePerVolt
+    centreline_per_volt: MetrePerVolt
+    circuit: EquivalentCircuit | None
+    beam_frequency: Hertz
+    beam_amplitude_per_volt: MetrePerVolt
+
+    def summary(self) -> dict[str, Any]:
+        """What ``--json`` prints; keys carry units."""
+        volts = self.display.drive.voltage
+        at = self.response.resonance
+        return {
+            "display": self.display.name,
+            "mode": self.working.label,
+            "frequency_Hz": self.working.frequency,
+            "frequency_error_Hz": self.working.frequency_error,
+            "amplitude_m_per_V": self.amplitude_per_volt,
+            "centreline_amplitude_m_per_V": self.centreline_per_volt,
+            "half_wavelength_m": self.working.half_wavelength,
+            "quality_factor": self.working.quality_factor,
+            "coupling": self.working.coupling,
+            "modes": to_json(self.rows),
+            "voltage_V": volts,
+            "current_A": float(self.response.current(volts)[at]),
+            "apparent_power_VA": float(self.response.apparent_power(volts)[at]),
+            "input_power_W": float(self.response.input_power(volts)[at]),
+            "equivalent_circuit": to_json(self.circuit),
+            "beam": {
+                "model": "timoshenko_beam_plane_strain",
+                "frequency_Hz": self.beam_frequency,
+                "amplitude_m_per_V": self.beam_amplitude_per_volt,
+            },
+            "model": self.modes.model,
+            "status": self.modes.status,
+            "provenance": stamp(self.display),
+        }
+
+
+def parse_mode(text: str) -> tuple[int, int]:
+    """The label of a mode from text such as ``"8,0"``. Raises `InputError` for anything else."""
+    parts = text.strip("() ").split(",")
+    if len(parts) == 2 and all(part.strip().isdigit() for part in parts):
+        return int(parts[0]), int(parts[1])
+    raise InputError(f"--mode '{text}' is no mode; write nodal lines across length, width: 8,0")
+
+
+def analyze_plate(
+    display: Display,
+    *,
+    mode: tuple[int, int] | None = None,
+    band: tuple[Hertz, Hertz] | None = None,
+    points: int = 200,
+    progress: Progress | None = None,
+) -> PlateAnalysis:
+    """The modes of a display's plate in a band, and the response around the working mode.
+
+    `mode` defaults to the display's own, (nodal lines, 0); `band` to ±8 % around it. Raises
+    `InputError` for a display without a rectangular plate and what `solve_modes` raises: a band
+    with no mode, a mode that is not found.
+    """
+    plate = display.actuator
+    if not isinstance(plate, RectangularPlate):
+        raise InputError(
+            f"display '{display.name}' has a {plate.type}; squeezefilm plate solves rectangular "
+            f"plates.{did_you_mean('rectangular_plate', [plate.type])}"
+        )
+    tell = progress or (lambda _: None)
+    label = mode or (plate.nodal_lines, 0)
+    tell(f"mode ({label[0]},{label[1]})")
+    alone = solve_modes(plate, mode=label)
+    frequency = float(alone.frequencies[alone.index(label)])
+    tell("all modes in the band")
+    modes = solve_modes(plate, band=band or (0.92 * frequency, 1.08 * frequency))
+    rows = tuple(_row(modes, index) for index in range(modes.count))
+    working = _row(alone, alone.index(label))
+    tell(f"response at {points} frequencies")
+    span = max(4 / working.quality_factor, 0.01)
+    # Dense near the peak, where the curve turns within f/Q.
+    near = np.sinh(np.linspace(-3, 3, points)) / np.sinh(3)
+    response = harmonic_response(plate, frequency * (1 + span * near))
+    peak = response.resonance
+    _, line = response.line(peak)
+    nodes = alone.nodal_positions(alone.index(label))
+    x = np.linspace(0, plate.length, line.size)
+    inside = (x > nodes[0]) & (x < nodes[-1]) if nodes.size > 1 else np.ones(x.size, bool)
+    try:
+        circuit = response.equivalent_circuit()
+    except InputError:
+        circuit = None
+    beam = beam_response(plate)
+    return PlateAnalysis(
+        display=display,
+        plate=plate,
+        modes=modes,
+        rows=rows,
+        working=working,
+        response=response,
+        amplitude_per_volt=float(response.maximum[peak]),
+        centreline_per_volt=float(np.max(np.abs(line)[inside])),
+        circuit=circuit,
+        beam_frequency=beam.mode.frequency,
+        beam_amplitude_per_volt=beam.amplitude_per_volt,
+    )
+
+
+def _row(modes: PlateModes, index: int) -> ModeRow:
+    label, frequency = modes.labels[index], float(modes.frequencies[index])
+    quality, force = float(modes.quality_factors[index]), float(modes.drive_forces[index])
+    largest = float(np.max(np.abs(modes.shapes[index])))
+    half = modes.half_wavelength(index)
+    return ModeRow(
+        label="in plane" if label is None else f"({label[0]},{label[1]})",
+        frequency=frequency,
+        frequency_error=float(modes.errors[index]),
+        quality_factor=quality,
+        amplitude_per_volt=quality * abs(force) * largest / (2 * np.pi * frequency) ** 2,
+        coupling=float(modes.couplings[index]),
+        modal_force=force,
+        half_wavelength=half if np.isfinite(half) else None,
+    )
+
+
+def parse_band(text: str) -> tuple[Hertz, Hertz]:
+    """A band from text such as ``"25 kHz:45 kHz"``. Raises `InputError` for anything else."""
+    from squeezefilm.quantities import parse_quantity
+
+    parts = text.split(":")
+    if len(parts) != 2:
+        raise InputError(f"--band '{text}' is no band; write two frequencies: 25 kHz:45 kHz")
+    low, high = (parse_quantity(part.strip(), Unit("Hz")) for part in parts)
+    if low >= high:
+        raise InputError(
+            f"--band runs from {format_quantity(low, Unit('Hz'))} down to "
+            f"{format_quantity(high, Unit('Hz'))}; write the lower frequency first"
+        )
+    return low, high
