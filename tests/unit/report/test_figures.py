@@ -95,7 +95,7 @@ def axis_is_labelled(label: str, axis: Any) -> None:
     if not any(tick.get_visible() and tick.get_text() for tick in axis.get_ticklabels()):
         return
     assert label, "an axis with numbers has no label"
-    dimensionless = ("relative", "over ambient")
+    dimensionless = ("relative", "over ambient", "over the finger's")
     units = ("mm", "µm", "kHz", "nm/V", "mm/s")
     assert any(f"({unit})" in label for unit in units) or any(
         word in label for word in dimensionless

@@ -112,7 +112,7 @@ def test_page_says_the_numbers_the_doubts_and_the_origin(written: tuple[Path, An
     for kind in ("✓ Good", "△ Limit", "? Doubt"):
         assert kind in words
     assert "⚠ assumed" in words
-    assert words.count("⚠ assumed") == 12
+    assert words.count("⚠ assumed") == 13
     assert analysis.summary()["provenance"]["config_sha256"] in words
     assert "UTC" in words
     assert "contradict each other" in words
