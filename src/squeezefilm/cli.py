@@ -284,11 +284,23 @@ def reproduce(
         raise typer.Exit(1)
 
 
+def _show_announcements() -> None:
+    """What the library has to say while it works (that it compiles, once), on standard error."""
+    import logging
+
+    handler = logging.StreamHandler()
+    handler.setFormatter(logging.Formatter("  %(message)s"))
+    logger = logging.getLogger("squeezefilm")
+    logger.addHandler(handler)
+    logger.setLevel(logging.INFO)
+
+
 def main() -> None:
     """Run the command line: a person's mistake is one message and exit code 2, no traceback."""
     # Before NumPy loads: its linear algebra on our small blocks is slower with threads, by far.
     for library in ("OMP", "OPENBLAS", "MKL"):
         os.environ.setdefault(f"{library}_NUM_THREADS", "1")
+    _show_announcements()
     try:
         app()
     except SqueezefilmError as error:

@@ -7,18 +7,17 @@ tolerance come back in the next round with more cells or more times.
 
 from __future__ import annotations
 
-import logging
 import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import lru_cache
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from squeezefilm.errors import ConvergenceError, InputError
+from squeezefilm.film.compiled import announce
 from squeezefilm.film.resolution import (
     CELLS,
     CHECKS,
@@ -30,8 +29,6 @@ from squeezefilm.film.resolution import (
 )
 from squeezefilm.film.slip import slip_law
 from squeezefilm.quantities import DimensionlessArray, DimensionlessLike, FloatArray, require
-
-_log = logging.getLogger(__name__)
 
 Progress = Callable[[int, int], None]
 
@@ -76,18 +73,8 @@ def compiled() -> Any:
     """The compiled solver; says on the log when this processor has to compile it first."""
     from squeezefilm.film import uniform
 
-    announce(uniform.solve_rows, "film")
+    announce(uniform.solve_rows, "film solver", 20)
     return uniform
-
-
-@lru_cache(maxsize=8)
-def announce(dispatcher: Any, what: str) -> None:
-    """Log at INFO that a numba function will be compiled, if no cache of it exists."""
-    cache = Path(dispatcher.stats.cache_path or "")
-    function = dispatcher.py_func
-    name = f"{Path(function.__code__.co_filename).stem}.{function.__name__}-*.nbi"
-    if not any(cache.glob(name)):
-        _log.info("compiling the %s solver for this processor: some 20 s, once", what)
 
 
 def solve_strips(

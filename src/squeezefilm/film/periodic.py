@@ -16,7 +16,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from squeezefilm.errors import ConvergenceError, InputError
-from squeezefilm.film.batch import announce, check_film, compiled, solve_all
+from squeezefilm.film.batch import check_film, compiled, solve_all
+from squeezefilm.film.compiled import announce
 from squeezefilm.film.profile import (
     GapProfile,
     evaluate,
@@ -204,7 +205,7 @@ def solve_profile(
     from squeezefilm.film import uniform as u
     from squeezefilm.film.varying import solve_varying
 
-    announce(solve_varying, "film profile")
+    announce(solve_varying, "solver of film profiles", 20)
     closed = profile.symmetric
     sigma, n, kn = float(squeeze_number), float(polytropic_exponent), float(knudsen_number)
     c, t = first_guess(

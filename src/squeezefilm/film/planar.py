@@ -11,8 +11,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from squeezefilm.errors import ConvergenceError, InputError
+from squeezefilm.film.compiled import announce
 from squeezefilm.film.planar_balance import Film
 from squeezefilm.film.planar_gap import GapFunction, PlanarGap, require_periodic
+from squeezefilm.film.planar_kernel import row_block
 from squeezefilm.film.planar_ladder import RUNGS, Ladder, PlanarShape, climb_to
 from squeezefilm.film.slip import slip_law
 from squeezefilm.quantities import ComplexArray, Dimensionless, DimensionlessArray, require
@@ -147,6 +149,7 @@ def solve_planar(
         raise InputError(f"shape = '{shape}' is not known; allowed: rectangle, disc, ellipse")
     if shape == "disc" and aspect_ratio != 1.0:
         raise InputError(f"a disc has aspect_ratio 1, not {aspect_ratio}; ask for an ellipse")
+    announce(row_block, "film solver in the plane", 3)
     quarter = isinstance(gap, PlanarGap) if symmetric is None else symmetric
     film = Film(
         gap, float(squeeze_number), float(polytropic_exponent), float(knudsen_number),

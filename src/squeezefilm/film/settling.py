@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from squeezefilm.errors import ConvergenceError
+from squeezefilm.film.compiled import announce
 from squeezefilm.film.line_grid import Gap, Shape, gap_table, line_grid, mean_over
 from squeezefilm.film.slip import slip_law
 from squeezefilm.film.transient import (
@@ -118,6 +119,7 @@ def settle_to_periodic(
     Holds for isothermal (1) to adiabatic (1.4) viscous flow at any σ and excursion below 1.
     """
     check_film(shape, squeeze_number, polytropic_exponent, knudsen_number)
+    announce(march, "film solver in time", 4)
     require("cells", cells, at_least=4)
     require("steps", steps, at_least=4)
     require("max_periods", max_periods, at_least=1)

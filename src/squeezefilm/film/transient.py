@@ -14,6 +14,7 @@ from typing import Literal
 import numpy as np
 
 from squeezefilm.errors import ConvergenceError, InputError
+from squeezefilm.film.compiled import announce
 from squeezefilm.film.line_grid import Gap, Shape, gap_table, line_grid, mean_over
 from squeezefilm.film.slip import slip_law
 from squeezefilm.film.transient_kernel import BACKWARD_EULER, BDF2, SDIRK2, march
@@ -108,6 +109,7 @@ def solve_transient(
     Source: Gross, Gas Film Lubrication (1962); SDIRK2: Alexander, 10.1137/0714068.
     """
     check_film(shape, squeeze_number, polytropic_exponent, knudsen_number)
+    announce(march, "film solver in time", 4)
     require("end", end, above=start)
     require("steps", steps, at_least=1)
     require("cells", cells, at_least=4)

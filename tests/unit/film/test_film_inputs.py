@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.errors import ConvergenceError, GeometryError, InputError, UnreachableError
-from squeezefilm.film import batch
+from squeezefilm.film import batch, compiled
 from squeezefilm.film.balance import mean_gap_for_load
 from squeezefilm.film.batch import solve_strips
 from squeezefilm.film.edge import edge_layer
@@ -181,12 +181,12 @@ def test_the_first_compile_is_announced(tmp_path, caplog):
         __name__="solve_rows",
     )
     with caplog.at_level(logging.INFO, logger="squeezefilm"):
-        batch.announce.__wrapped__(dispatcher, "film")
+        compiled.announce.__wrapped__(dispatcher, "film solver", 20)
     assert "compiling the film solver" in caplog.text
     caplog.clear()
     (tmp_path / "batch.solve_strips-1.py311.nbi").touch()
     with caplog.at_level(logging.INFO, logger="squeezefilm"):
-        batch.announce.__wrapped__(dispatcher, "film")
+        compiled.announce.__wrapped__(dispatcher, "film solver", 20)
     assert caplog.text == ""
 
 
