@@ -14,7 +14,9 @@ from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.plate_modes import PlateModes
 from squeezefilm.plate.plate_response import EquivalentCircuit, HarmonicResponse, harmonic_response
 from squeezefilm.plate.response import beam_response
+from squeezefilm.plate.shear_plate import shear_mode
 from squeezefilm.plate.solve_modes import solve_modes
+from squeezefilm.plate.sound import SoundField, rectangular_surface, sound_field
 from squeezefilm.quantities import (
     Dimensionless,
     Hertz,
@@ -60,6 +62,8 @@ class PlateAnalysis:
     circuit: EquivalentCircuit | None
     beam_frequency: Hertz
     beam_amplitude_per_volt: MetrePerVolt
+    shear_frequency: Hertz | None
+    sound: SoundField
 
     def summary(self) -> dict[str, Any]:
         """What ``--json`` prints; keys carry units."""
@@ -86,6 +90,20 @@ class PlateAnalysis:
                 "frequency_Hz": self.beam_frequency,
                 "amplitude_m_per_V": self.beam_amplitude_per_volt,
             },
+            "shear_plate": None
+            if self.shear_frequency is None
+            else {
+                "model": "shear_plate",
+                "frequency_Hz": self.shear_frequency,
+                "error_against_solid": self.shear_frequency / self.working.frequency - 1,
+            },
+            "sound_pressure_level_dB": {
+                f"{distance:g} m": level
+                for distance, level in zip(
+                    self.sound.distances, self.sound.sound_pressure_level_dB, strict=True
+                )
+            },
+            "sound_guidance": to_json(self.sound.guidance),
             "model": self.modes.model,
             "status": self.modes.status,
             "provenance": stamp(self.display),
@@ -143,6 +161,10 @@ def analyze_plate(
         circuit = response.equivalent_circuit()
     except InputError:
         circuit = None
+    tell("airborne sound")
+    x, y = np.linspace(0, plate.length, 84), np.linspace(0, plate.width, 50)
+    w = display.drive.voltage * response.displacement(x, y)[peak]
+    sound = sound_field(rectangular_surface(x, y, 2j * np.pi * frequency * w, frequency))
     beam = beam_response(plate)
     return PlateAnalysis(
         display=display,
@@ -156,7 +178,17 @@ def analyze_plate(
         circuit=circuit,
         beam_frequency=beam.mode.frequency,
         beam_amplitude_per_volt=beam.amplitude_per_volt,
+        shear_frequency=_shear_frequency(plate, label, frequency),
+        sound=sound,
     )
+
+
+def _shear_frequency(plate: RectangularPlate, label: tuple[int, int], near: Hertz) -> Hertz | None:
+    """The same mode by the screening model; None where it has no such mode nearby."""
+    try:
+        return shear_mode(plate, label, near).frequency
+    except InputError:
+        return None
 
 
 def _row(modes: PlateModes, index: int) -> ModeRow:

@@ -211,6 +211,14 @@ def show_plate(result: PlateAnalysis) -> None:
             f"{result.beam_frequency / mode.frequency - 1:+.1%}",
         ),
     ]
+    if result.shear_frequency is not None:
+        rows.append(
+            (
+                "As a shear plate",
+                shown(result.shear_frequency, hertz, 5),
+                f"{result.shear_frequency / mode.frequency - 1:+.1%}",
+            )
+        )
     volts = result.display.drive.voltage
     at = result.response.resonance
     rows.append(
@@ -221,7 +229,21 @@ def show_plate(result: PlateAnalysis) -> None:
             f"{result.response.input_power(volts)[at]:.3g} W",
         )
     )
+    guidance = result.sound.guidance
+    limit = "no guidance" if guidance is None else f"guidance {guidance.level_dB:.0f} dB"
+    rows += [
+        (
+            f"Sound at {distance:g} m",
+            f"{level:.0f} dB",
+            f"loudest direction; {limit}" if number == 0 else "",
+        )
+        for number, (distance, level) in enumerate(
+            zip(result.sound.distances, result.sound.sound_pressure_level_dB, strict=True)
+        )
+    ]
     _table(console, ("", "", ""), rows, fixed=(0,))
+    if guidance is not None:
+        console.print(f"Guidance ({guidance.evidence}): {guidance.source}")
     _heading(console, "Modes in the band")
     _table(
         console,
