@@ -187,6 +187,7 @@ def film(
     """Solve the periodic gas film of one shape, or map it over squeeze number and excursion."""
     from squeezefilm.analysis.film_command import FilmRequest, solve_film, sweep_film
     from squeezefilm.report import terminal
+    from squeezefilm.report.terminal_solvers import show_film
 
     request = FilmRequest(shape, aspect, polytropic, knudsen, slip, tolerance)
     with terminal.progress(enabled=sys.stderr.isatty() or not as_json) as step:
@@ -212,7 +213,7 @@ def film(
     elif as_json:
         _print_json(answer.summary())
     else:
-        terminal.show_film(answer)
+        show_film(answer)
 
 
 @app.command()
@@ -227,6 +228,7 @@ def plate(
     from squeezefilm.analysis.plate_command import analyze_plate, parse_band, parse_mode
     from squeezefilm.display import load_display
     from squeezefilm.report import terminal
+    from squeezefilm.report.terminal_solvers import show_plate
 
     display = load_display(target)
     wanted = None if mode is None else parse_mode(mode)
@@ -241,7 +243,7 @@ def plate(
     if as_json:
         _print_json(result.summary())
         return
-    terminal.show_plate(result)
+    show_plate(result)
     if written is not None:
         typer.echo(f"figures: {written}")
 

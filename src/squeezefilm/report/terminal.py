@@ -24,8 +24,6 @@ if TYPE_CHECKING:
 
     from squeezefilm.analysis.analyze import Analysis
     from squeezefilm.analysis.claims import Reproduction
-    from squeezefilm.analysis.film_command import FilmAnswer
-    from squeezefilm.analysis.plate_command import PlateAnalysis
 
 _KINDS = {"good": "good ", "limit": "limit", "doubt": "doubt"}
 _STYLES = {"good": "green", "limit": "cyan", "doubt": "yellow"}
@@ -61,7 +59,8 @@ def progress(enabled: bool) -> Iterator[Callable[[str], None]]:
         yield lambda text: status.update(Text(f"{printable(text)} …"))
 
 
-def _console() -> Console:
+def plain_console() -> Console:
+    """A console on standard output, without colour where that is no terminal."""
     from rich.console import Console
 
     # A terminal of another encoding shows a question mark for σ; it must not end the run.
@@ -71,7 +70,7 @@ def _console() -> Console:
     return Console(highlight=False, markup=False, emoji=False)
 
 
-def _table(
+def table(
     console: Console,
     head: Sequence[str],
     rows: Iterable[Sequence[str]],
@@ -99,7 +98,8 @@ def _kept(line: str) -> str:
     return " " * (len(line) - len(line.lstrip(" "))) + printable(line)
 
 
-def _heading(console: Console, text: str) -> None:
+def heading(console: Console, text: str) -> None:
+    """Print a heading."""
     from rich.text import Text
 
     console.print()
@@ -121,21 +121,21 @@ def _bullets(console: Console, items: Iterable[tuple[str, str, str]]) -> None:
 
 def show_analysis(analysis: Analysis) -> None:
     """Print an analysis: verdict last, where the eye rests, after numbers, models and warnings."""
-    console = _console()
-    _heading(console, f"{analysis.display.title} [{analysis.display.name}]")
-    _table(
+    console = plain_console()
+    heading(console, f"{analysis.display.title} [{analysis.display.name}]")
+    table(
         console,
         ("", "", ""),
         [(row.label, row.text, row.remark) for row in key_numbers(analysis)],
         fixed=(0,),
     )
-    _heading(console, "Models")
-    _table(console, ("", ""), models(analysis), fixed=(0,))
+    heading(console, "Models")
+    table(console, ("", ""), models(analysis), fixed=(0,))
     if analysis.other_models:
         from squeezefilm.quantities import Unit
 
-        _heading(console, "The same plate by other beam theories")
-        _table(
+        heading(console, "The same plate by other beam theories")
+        table(
             console,
             ("model", "resonance", "amplitude"),
             [
@@ -148,13 +148,13 @@ def show_analysis(analysis: Analysis) -> None:
             ],
         )
     if films := film_rows(analysis):
-        _heading(console, "The film under the finger, drawn in five ways")
-        _table(console, ("model", "over-pressure", "carries", "µ′/µ"), films)
+        heading(console, "The film under the finger, drawn in five ways")
+        table(console, ("model", "over-pressure", "carries", "µ′/µ"), films)
     warned = unsaid_warnings(analysis)
     if warned:
-        _heading(console, "Warnings")
+        heading(console, "Warnings")
         _bullets(console, [("!", text, "yellow") for text in warned])
-    _heading(console, "Verdict")
+    heading(console, "Verdict")
     _bullets(
         console,
         [(_KINDS[item.kind], item.text, _STYLES[item.kind]) for item in analysis.verdict],
@@ -162,113 +162,10 @@ def show_analysis(analysis: Analysis) -> None:
     console.print()
 
 
-def show_film(answer: FilmAnswer) -> None:
-    """Print one solved film."""
-    console = _console()
-    request = answer.request
-    _heading(
-        console,
-        f"{request.shape}, σ = {answer.squeeze_number:.4g}, ε = {answer.excursion_ratio:.4g}",
-    )
-    _table(
-        console,
-        ("", "", ""),
-        [
-            ("Mean load W", f"{answer.mean_load:.8g}", "over ambient pressure × area"),
-            (
-                "Over-pressure W − 1",
-                f"{answer.over_pressure:.6g}",
-                f"± {answer.over_pressure_error:.1g} (estimated)",
-            ),
-            ("Stiffness", f"{answer.stiffness_relative:.6g}", "of p0·A·ε, first harmonic"),
-            ("Damping", f"{answer.damping_relative:.6g}", "of p0·A·ε, first harmonic"),
-        ],
-        fixed=(0,),
-    )
-    console.print(answer.status)
-
-
-def show_plate(result: PlateAnalysis) -> None:
-    """Print a solved plate: the working mode, then every mode of the band."""
-    from squeezefilm.quantities import Unit
-
-    hertz, per_volt = Unit("Hz"), Unit("m/V")
-    console, mode = _console(), result.working
-    _heading(console, f"{result.display.title} [{result.display.name}]")
-    rows = [
-        (
-            f"Mode {mode.label}",
-            shown(mode.frequency, hertz, 5),
-            f"± {shown(mode.frequency_error, hertz, 2)} (estimated)",
-        ),
-        ("Amplitude per volt", shown(result.amplitude_per_volt, per_volt), "largest, upper face"),
-        ("", shown(result.centreline_per_volt, per_volt), "centreline, between outer nodes"),
-        ("Quality factor", f"{mode.quality_factor:.4g}", "from the losses of its materials"),
-        ("Effective coupling", f"{mode.coupling:.3g}", ""),
-        (
-            "As a Timoshenko beam",
-            shown(result.beam_frequency, hertz, 5),
-            f"{result.beam_frequency / mode.frequency - 1:+.1%}",
-        ),
-    ]
-    if result.shear_frequency is not None:
-        rows.append(
-            (
-                "As a shear plate",
-                shown(result.shear_frequency, hertz, 5),
-                f"{result.shear_frequency / mode.frequency - 1:+.1%}",
-            )
-        )
-    volts = result.display.drive.voltage
-    at = result.response.resonance
-    rows.append(
-        (
-            f"At {shown(volts, Unit('V'))}",
-            shown(float(result.response.current(volts)[at]), Unit("A"), 3),
-            f"{result.response.apparent_power(volts)[at]:.3g} VA, "
-            f"{result.response.input_power(volts)[at]:.3g} W",
-        )
-    )
-    guidance = result.sound.guidance
-    limit = "no guidance" if guidance is None else f"guidance {guidance.level_dB:.0f} dB"
-    rows += [
-        (
-            f"Sound at {distance:g} m",
-            f"{level:.0f} dB",
-            f"loudest direction; {limit}" if number == 0 else "",
-        )
-        for number, (distance, level) in enumerate(
-            zip(result.sound.distances, result.sound.sound_pressure_level_dB, strict=True)
-        )
-    ]
-    _table(console, ("", "", ""), rows, fixed=(0,))
-    if guidance is not None:
-        console.print(f"Guidance ({guidance.evidence}): {guidance.source}")
-    _heading(console, "Modes in the band")
-    _table(
-        console,
-        ("mode", "frequency", "±", "Q", "per volt", "coupling"),
-        [
-            (
-                row.label,
-                shown(row.frequency, hertz, 5),
-                shown(row.frequency_error, hertz, 2),
-                f"{row.quality_factor:.3g}",
-                "not driven"
-                if row.amplitude_per_volt < 1e-4 * result.amplitude_per_volt
-                else shown(row.amplitude_per_volt, per_volt, 3),
-                f"{row.coupling:.2g}",
-            )
-            for row in result.rows
-        ],
-    )
-    console.print(f"{result.modes.model}; {result.modes.status}")
-
-
 def show_claims(result: Reproduction) -> None:
     """Print every published claim: printed, recomputed, verdict; then where and why, claim by
     claim; then the errata."""
-    console = _console()
+    console = plain_console()
     rows = []
     for item in result.results:
         claim, formula = item.claim, item.printed_formula_value
@@ -282,16 +179,16 @@ def show_claims(result: Reproduction) -> None:
                 item.verdict,
             )
         )
-    _table(
+    table(
         console,
         ("claim", "printed", "as printed", "recomputed", "verdict"),
         rows,
         fixed=(0,),
         styles=lambda row: _VERDICT_STYLES.get(row[4], ""),
     )
-    _heading(console, "Where and why")
+    heading(console, "Where and why")
     for item in result.results:
-        _heading(console, f"{item.claim.id}: {item.verdict}")
+        heading(console, f"{item.claim.id}: {item.verdict}")
         _bullets(
             console,
             [
@@ -301,7 +198,7 @@ def show_claims(result: Reproduction) -> None:
             ],
         )
     if result.errata:
-        _heading(console, "Errata of the paper")
+        heading(console, "Errata of the paper")
         _bullets(
             console,
             [
@@ -313,7 +210,7 @@ def show_claims(result: Reproduction) -> None:
     for item in result.results:
         counts[item.verdict] = counts.get(item.verdict, 0) + 1
     total = ", ".join(f"{count} {verdict}" for verdict, count in counts.items())
-    _heading(console, f"{len(result.results)} claims: {total}")
+    heading(console, f"{len(result.results)} claims: {total}")
 
 
 def _values(values: Iterable[float], unit: str, sign: str = "") -> str:
@@ -345,8 +242,8 @@ def preset_list() -> list[dict[str, Any]]:
 
 def show_presets(listing: Sequence[dict[str, Any]]) -> None:
     """Print the list of presets."""
-    console = _console()
-    _table(
+    console = plain_console()
+    table(
         console,
         ("preset", "what it is", "assumed"),
         [
@@ -408,14 +305,14 @@ _KEYS = {"value", "source", "evidence"}
 def show_values(values: Sequence[dict[str, Any]]) -> None:
     """Print the values of a display by table of its file, with their sources; a star marks what is
     assumed."""
-    console = _console()
+    console = plain_console()
     groups: dict[str, list[dict[str, Any]]] = {}
     for item in values:
         groups.setdefault(str(item["path"]).rpartition(".")[0], []).append(item)
     for group, items in groups.items():
         if group:
-            _heading(console, group)
-        _table(
+            heading(console, group)
+        table(
             console,
             ("", "", ""),
             [
