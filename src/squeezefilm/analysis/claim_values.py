@@ -10,7 +10,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from squeezefilm.analysis.procedure import PAPER_HALF_WAVELENGTHS, friction_criterion
+from squeezefilm.analysis.procedure import (
+    PAPER_HALF_WAVELENGTHS,
+    Design,
+    design_plate,
+    friction_criterion,
+)
 from squeezefilm.contact.paper import (
     relative_friction,
     vibration_amplitude_for,
@@ -247,6 +252,13 @@ def _() -> ClaimValue:
 @_for("effective-coupling")
 def _() -> ClaimValue:
     return ClaimValue((_plate().ceramic.stress_coefficient_from_d31,))
+
+
+def paper_design() -> Design:
+    """Where the paper's procedure (section 3.1) leads with its own laminate and finger."""
+    gas = _stator().gas
+    force, _ = _force_and_ambient()
+    return design_plate(_section(), _gap(0.0), gas.viscosity, gas.ambient_pressure, force)
 
 
 def _beam_note() -> str:

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from squeezefilm import presets
-from squeezefilm.analysis.claim_values import CLAIM_VALUES, ClaimValue
+from squeezefilm.analysis.claim_values import CLAIM_VALUES, ClaimValue, paper_design
+from squeezefilm.analysis.procedure import Design
 from squeezefilm.config import load
 from squeezefilm.errors import ConfigError
 from squeezefilm.quantities import did_you_mean
@@ -75,10 +76,11 @@ class ClaimResult:
 
 @dataclass(frozen=True)
 class Reproduction:
-    """All claims recomputed, and the errata."""
+    """All claims recomputed, the errata, and where the paper's design procedure leads."""
 
     results: tuple[ClaimResult, ...]
     errata: tuple[Erratum, ...]
+    design: Design
 
     @property
     def changed(self) -> tuple[ClaimResult, ...]:
@@ -107,6 +109,7 @@ class Reproduction:
                 for item in self.results
             ],
             "errata": to_json(self.errata),
+            "design_procedure": to_json(self.design),
             "changed": [item.claim.id for item in self.changed],
             "provenance": stamp([item.claim for item in self.results]),
         }
@@ -135,7 +138,9 @@ def reproduce(
                 file=presets.claims_path(),
             )
         results.append(judge(claim, CLAIM_VALUES[claim.id]()))
-    return Reproduction(tuple(results), file.errata)
+    if progress is not None:
+        progress("the paper's design procedure")
+    return Reproduction(tuple(results), file.errata, paper_design())
 
 
 def judge(claim: Claim, found: ClaimValue) -> ClaimResult:

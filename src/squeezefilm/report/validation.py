@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from squeezefilm.analysis.claims import ClaimResult, Reproduction
+from squeezefilm.analysis.procedure import Design
 from squeezefilm.errors import InputError
 from squeezefilm.quantities import Unit, format_quantity
 from squeezefilm.report.page_style import STYLE
@@ -63,6 +64,8 @@ def validation_markdown(result: Reproduction) -> str:
     lines += ["", "## Why", ""]
     for item in result.results:
         lines.append(f"* **{item.claim.statement}** ({item.verdict}): {item.why}." + _extra(item))
+    lines += ["", "## The paper's design procedure", ""]
+    lines += [f"* {sentence}" for sentence in design_sentences(result.design)]
     lines += ["", "## Errata of the paper", "", "| equation | printed | corrected | why |"]
     lines.append("|---|---|---|---|")
     lines += [
@@ -70,6 +73,23 @@ def validation_markdown(result: Reproduction) -> str:
         for one in result.errata
     ]
     return "\n".join([*lines, ""])
+
+
+def design_sentences(design: Design) -> list[str]:
+    """What the procedure of section 3.1 yields step by step, then its contradictions."""
+    kilohertz, area = design.lowest_frequency / 1e3, design.area * 1e4
+    size = f"{design.length * 1e3:.3g} × {design.width * 1e3:.3g} mm"
+    return [
+        f"The frequency criterion σ ≥ 10 asks for at least {kilohertz:.1f} kHz.",
+        f"The mean explored area of 28.18 cm² takes {design.ceramics} ceramics of 11 mm on a plate "
+        f"of {size} ({area:.3g} cm²); the paper takes seven, 83 × 49 mm, without saying why.",
+        f"Such a plate works with {design.nodal_lines} nodal lines at "
+        f"{design.resonance_frequency / 1e3:.1f} kHz (Timoshenko beam), λ/2 = "
+        f"{design.half_wavelength * 1e3:.3g} mm, and needs "
+        f"{design.required_amplitude * 1e6:.3g} µm for a relative friction of 0.7 by the paper's "
+        "model.",
+        *(f"Contradiction: {sentence}." for sentence in design.contradictions),
+    ]
 
 
 def _cell(text: str) -> str:
@@ -150,6 +170,7 @@ def _page(result: Reproduction, figures: list[str]) -> str:
         + "</tr>"
         for one in result.errata
     )
+    design = "".join(f"<li>{html.escape(one)}</li>" for one in design_sentences(result.design))
     return f"""<!doctype html>
 <html lang="en"><head><meta charset="utf-8">
 <meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'">
@@ -164,6 +185,7 @@ film effect devices</em>. Friction against amplitude is not validated against me
 <th>printed formula</th><th>recomputed</th><th>verdict</th><th>why</th></tr></thead>
 <tbody>{rows}</tbody></table></div></section>
 {"".join(figures)}
+<section><h2>The paper's design procedure</h2><ul>{design}</ul></section>
 <section><h2>Errata</h2>
 <div class="scroll" tabindex="0"><table><thead><tr><th>equation</th><th>printed</th>
 <th>corrected</th>
