@@ -40,11 +40,12 @@ def slip_law(slip: str, knudsen_number: float) -> int:
 def flow_factor(local_knudsen_number: DimensionlessLike, slip: str = "first") -> FloatLike:
     """The factor φ by which slip raises the flow of a film at a local Knudsen number λ/h.
 
-    - ``"first"``: 1 + 6 Kn, Burgdorfer 1959 (10.1115/1.4008018); good below Kn ≈ 0.1.
-    - ``"second"``: 1 + 6 Kn + 6 Kn², Hsia & Domoto 1983 (10.1115/1.3254526).
+    - ``"first"``: 1 + 6 Kn, Burgdorfer 1959 (J. Basic Eng. 81, 94); good below Kn ≈ 0.1.
+    - ``"second"``: 1 + 6 Kn + 6 Kn², Hsia & Domoto 1983 (J. Lubr. Technol. 105, 120).
     - ``"fukui-kaneko"``: the fitted Poiseuille flow rates of the linearised Boltzmann equation,
       full accommodation, Fukui & Kaneko 1990 (10.1115/1.2920234), for 0.01 ≤ √π/(2 Kn); their
       three ranges are blended over ±20 % of the joints at 0.15 and 5.
+      The coefficients were not compared with the printed paper; they give its Knudsen minimum.
     - ``"veijola"``: 1 + 9.638 Kn^1.159, a fit for 0 ≤ Kn ≤ 880, Veijola et al. 1995
       (10.1016/0924-4247(95)00995-7).
 

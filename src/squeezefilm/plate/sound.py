@@ -65,7 +65,7 @@ GUIDANCE = (
         "public",
         "IRPA/INIRC 1984, Interim guidelines on limits of human exposure to airborne ultrasound, "
         "Health Physics 46(4), 969-974; still the guideline in 2024: 10.1097/HP.0000000000001800",
-        "to be checked: the number is from memory, the guideline's text was not read",
+        "to be checked: quoted second-hand, the guideline's own text was not read",
     ),
     ExposureGuidance(
         100.0,
@@ -74,7 +74,7 @@ GUIDANCE = (
         "public",
         "IRPA/INIRC 1984, Interim guidelines on limits of human exposure to airborne ultrasound, "
         "Health Physics 46(4), 969-974; still the guideline in 2024: 10.1097/HP.0000000000001800",
-        "to be checked: the number is from memory, the guideline's text was not read",
+        "to be checked: quoted second-hand, the guideline's own text was not read",
     ),
     ExposureGuidance(
         110.0,
