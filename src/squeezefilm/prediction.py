@@ -10,12 +10,13 @@ import warnings
 from dataclasses import dataclass
 
 from squeezefilm.display import Display, Surface
-from squeezefilm.errors import InputError, OutOfRangeWarning
+from squeezefilm.errors import InputError, OutOfRangeError, OutOfRangeWarning
 from squeezefilm.film.gap import squeeze_number
 from squeezefilm.film.validity import FilmValidity, film_validity
 from squeezefilm.friction import SOLVED_DEFAULT, FrictionLaw, FrictionModel, friction_law
 from squeezefilm.plate.beam import BeamTheory
 from squeezefilm.plate.layout import RectangularPlate
+from squeezefilm.plate.response import beam_doubt
 from squeezefilm.plate.working_mode import WorkingMode, working_mode
 from squeezefilm.quantities import (
     Dimensionless,
@@ -135,6 +136,11 @@ def predict(
     )
     # Where the film is solved, what fails of the asymptote is no doubt about this number.
     solved = not law.model.startswith("paper2008")
+    doubt = None
+    if isinstance(display.actuator, RectangularPlate) and vibration_amplitude is None:
+        doubt = beam_doubt(display.actuator)
+    if doubt is not None and strict:
+        raise OutOfRangeError(f"{doubt}; leave strictness out to compute it all the same")
     messages = [
         str(item.message)
         for item in caught
@@ -148,6 +154,8 @@ def predict(
             f"'{law.model}' solves the film of the same gap, with slip. What a film carries "
             "depends on the shape of the ridges more than on anything else: compare the film models"
         )
+    if doubt is not None:
+        messages.append(doubt)
     return Prediction(
         display=display.name,
         surface=where,

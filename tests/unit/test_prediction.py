@@ -89,6 +89,22 @@ def test_contradicting_data_warn_or_are_refused(plate: Display) -> None:
         predict(plate, strict=True)
 
 
+def test_a_beam_of_a_plate_with_few_ceramics_warns_or_is_refused(plate: Display) -> None:
+    ceramic = dataclasses.replace(plate.actuator.ceramic, stress_coefficient=None)  # type: ignore[union-attr]
+    few = dataclasses.replace(
+        plate,
+        actuator=dataclasses.replace(
+            plate.actuator,
+            ceramic=ceramic,
+            patches=plate.actuator.patches[:3],  # type: ignore[union-attr]
+        ),
+    )
+    assert any("cover 40% of it" in text for text in predict(few).warnings)
+    with pytest.raises(OutOfRangeError, match="squeezefilm plate"):
+        predict(few, strict=True)
+    assert not any("the beam takes" in text for text in predict(plate).warnings)
+
+
 def test_an_asymptote_out_of_range_warns_or_is_refused(stator: Display) -> None:
     p = predict(stator, model="paper2008")
     assert any("σ → ∞" in text for text in p.warnings)

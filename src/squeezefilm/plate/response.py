@@ -150,6 +150,24 @@ def beam_response(
     return BeamResponse(plate, section, theory, cross_section, working, tuple(modes), tuple(forces))
 
 
+LEAST_COVERAGE: Dimensionless = 0.8
+
+
+def beam_doubt(plate: RectangularPlate) -> str | None:
+    """Why the beam should not be believed for a plate, in a sentence; None where it may be.
+
+    The section is taken to carry ceramic everywhere. With less than four fifths of it covered the
+    stiffness and mass are wrong by more than the beam's own error.
+    """
+    if plate.coverage >= LEAST_COVERAGE:
+        return None
+    return (
+        f"the beam takes the ceramics to cover the whole plate, and they cover "
+        f"{plate.coverage:.0%} of it: its frequency and amplitude are rough here; "
+        "squeezefilm plate solves the plate as it is"
+    )
+
+
 def patch_capacitance(plate: RectangularPlate) -> Farad:
     """The capacitance of all ceramics in parallel (F): ε A / h_p, fringes neglected."""
     permittivity = plate.ceramic.relative_permittivity * VACUUM_PERMITTIVITY
