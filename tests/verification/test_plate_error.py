@@ -53,7 +53,7 @@ def _guess(plate: object) -> float:
 
 
 # Seeds whose refined meshes solve in seconds; the others take up to a minute each.
-# Seeds 0, 4, 6, 8, 10, 14, 16 and 18 are left out because their refined solutions cost minutes; most
+# Seeds 0, 4, 6, 8, 10, 14, 16, 18 are left out because their refined solutions cost minutes; most
 # are plates with ceramics on both faces, and some were the worst while the estimate was calibrated.
 # Most of those listed were looked at then too: this says less than a sample drawn afterwards would.
 QUICK = (1, 3, 12)
