@@ -123,9 +123,9 @@ def _of_films(p: Prediction, films: FilmComparison) -> list[Finding]:
         found.append(
             Finding(
                 "doubt",
-                f"The paper's asymptote promises {paper.over_pressure / sealed.over_pressure:.2g} "
+                f"The paper's asymptote promises {paper.over_pressure / sealed.over_pressure:.3g} "
                 f"times the over-pressure of the solved film with sealed grooves (squeeze number "
-                f"{p.squeeze_number:.3g}), and {paper.over_pressure / open_.over_pressure:.2g} "
+                f"{p.squeeze_number:.3g}), and {paper.over_pressure / open_.over_pressure:.3g} "
                 f"times that with grooves open at the edge of the contact.",
             )
         )

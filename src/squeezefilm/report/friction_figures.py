@@ -194,7 +194,11 @@ def wavelength(analysis: Analysis) -> Figure:
             _drop(axes, curve.amplitude_for_criterion, color)
     _criterion(axes)
     if 1e6 * p.vibration_amplitude <= right:
-        _working_point(axes, analysis, f" at λ/2 = {shown(p.mode.half_wavelength, M, 3)}")
+        # On the paper's curves stands what the paper's model says of this display.
+        films = analysis.film_models
+        friction = None if films is None else films.result("paper2008").relative_friction
+        more = f" at λ/2 = {shown(p.mode.half_wavelength, M, 3)}"
+        _working_point(axes, analysis, more, friction)
     axes.set(xlim=(0, right), ylim=(0, 1.06), xlabel="vibration amplitude, zero-to-peak (µm)")
     axes.set(ylabel="relative friction µ′/µ")
     legend_below(axes)
@@ -214,11 +218,14 @@ def _drop(axes: Axes, amplitude: float, color: str) -> None:
     axes.plot([1e6 * amplitude], [PAPER_CRITERION], "o", color=color, ms=5, zorder=3)
 
 
-def _working_point(axes: Axes, analysis: Analysis, more: str = "") -> None:
+def _working_point(
+    axes: Axes, analysis: Analysis, more: str = "", friction: float | None = None
+) -> None:
+    """Mark this display, at its own friction or at that of the model the curves are of."""
     p = analysis.prediction
+    height = p.relative_friction if friction is None else friction
     axes.plot(
-        [1e6 * p.vibration_amplitude], [p.relative_friction], "D", color=INK, ms=9, mec=PAPER,
+        [1e6 * p.vibration_amplitude], [height], "D", color=INK, ms=9, mec=PAPER,
         mew=1.4, zorder=5, clip_on=False,
-        label=f"this display: {p.relative_friction:.2f} at "
-        f"{shown(p.vibration_amplitude, M, 3)}{more}",
+        label=f"this display: {height:.2f} at {shown(p.vibration_amplitude, M, 3)}{more}",
     )  # fmt: skip
