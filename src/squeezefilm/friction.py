@@ -23,6 +23,7 @@ from squeezefilm.materials import Gas
 from squeezefilm.quantities import (
     Dimensionless,
     DimensionlessArray,
+    DimensionlessLike,
     Hertz,
     Metre,
     MetreArray,
@@ -108,18 +109,31 @@ class FrictionLaw:
         """µ′/µ (dimensionless, 0 to 1) at an array of amplitudes (m), same shape (1-D)."""
         ambient = self.gas.ambient_pressure
         if not is_solved(self.model):
-            closed: PaperModel = (
-                "paper2008-printed" if self.model == "paper2008-printed" else "paper2008"
-            )
             return np.asarray(
-                paper.relative_friction(self.gap(amplitude), self.normal_force, ambient, closed)
+                paper.relative_friction(
+                    self.gap(amplitude), self.normal_force, ambient, self._closed_form
+                )
             )
         pressures = np.array([1 + self.load(float(a)).over_pressure for a in np.ravel(amplitude)])
-        return np.asarray(
-            paper.relative_friction_from_pressure(
-                pressures, self.normal_force, self.finger.contact_length, ambient
-            )
+        return np.asarray(self._shared(pressures))
+
+    def under(self, load: FilmLoad, amplitude: Metre) -> Dimensionless:
+        """µ′/µ (dimensionless) with a film already solved at an amplitude (m), as `load` has it."""
+        if not is_solved(self.model):
+            return self.at(amplitude)
+        return float(self._shared(1 + load.over_pressure))
+
+    def _shared(self, mean_pressure: DimensionlessLike) -> DimensionlessLike:
+        return paper.relative_friction_from_pressure(
+            mean_pressure,
+            self.normal_force,
+            self.finger.contact_length,
+            self.gas.ambient_pressure,
         )
+
+    @property
+    def _closed_form(self) -> PaperModel:
+        return "paper2008-printed" if self.model == "paper2008-printed" else "paper2008"
 
     def amplitude_for(self, relative_friction: Dimensionless) -> Metre:
         """The least amplitude (m, zero-to-peak) that brings µ′/µ down to a wanted value.
@@ -129,15 +143,12 @@ class FrictionLaw:
         """
         require("relative_friction", relative_friction, at_least=0, at_most=1)
         if not is_solved(self.model):
-            closed: PaperModel = (
-                "paper2008-printed" if self.model == "paper2008-printed" else "paper2008"
-            )
             return paper.vibration_amplitude_for(
                 relative_friction,
                 self.gap(0.0),
                 self.normal_force,
                 self.gas.ambient_pressure,
-                closed,
+                self._closed_form,
             )
         return self._search(relative_friction)
 

@@ -6,6 +6,7 @@ the paper's asymptote or the solved film the friction.
 
 from __future__ import annotations
 
+import dataclasses
 import warnings
 from dataclasses import dataclass
 
@@ -116,16 +117,9 @@ def predict(
             law.gap(amplitude), drive_frequency, display.gas, strict=strict and asked_for_asymptote
         )
         if model is None and not validity.holds:
-            law = friction_law(
-                display,
-                mode.half_wavelength,
-                drive_frequency,
-                surface=where,
-                normal_force=force,
-                model=SOLVED_DEFAULT,
-            )
+            law = dataclasses.replace(law, model=SOLVED_DEFAULT)
         load = law.load(amplitude)
-        friction = law.at(amplitude)
+        friction = law.under(load, amplitude)
     gap, gas = law.gap(amplitude), display.gas
     sigma = squeeze_number(
         drive_frequency,

@@ -132,7 +132,8 @@ def _result(
     """One film at one amplitude; NaN with the reason where it cannot be solved, so that the others
     can still be compared."""
     try:
-        load, friction = law.load(amplitude), law.at(amplitude)
+        load = law.load(amplitude)
+        friction = law.under(load, amplitude)
     except SqueezefilmError as error:
         nan = float("nan")
         return FilmResult(model, DESCRIPTIONS[model], nan, nan, nan, nan, f"not solved: {error}")

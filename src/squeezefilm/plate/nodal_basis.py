@@ -12,6 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.polynomial import legendre
 
+from squeezefilm.plate.lobatto import lagrange_basis
 from squeezefilm.quantities import FloatArray, require
 
 CORNER_GRADING = 0.15
@@ -39,14 +40,7 @@ def lagrange(degree: int, at: tuple[float, ...]) -> tuple[FloatArray, FloatArray
 
     Two arrays of shape (len(at), degree + 1); derivatives are with respect to −1…1.
     """
-    vandermonde = legendre.legvander(lobatto_points(degree), degree)
-    inverse = np.linalg.inv(vandermonde)
-    x = np.asarray(at)
-    derivatives = np.stack(
-        [legendre.legval(x, legendre.legder(np.eye(degree + 1)[k])) for k in range(degree + 1)],
-        axis=-1,
-    )
-    return legendre.legvander(x, degree) @ inverse, derivatives @ inverse
+    return lagrange_basis(lobatto_points(degree), np.asarray(at))
 
 
 @functools.lru_cache(maxsize=64)
