@@ -128,6 +128,13 @@ def analyze(
             "paper2008, film-sealed, film-open, film-plateau, film-smooth."
         ),
     ] = None,
+    theory: Annotated[
+        str | None,
+        typer.Option(
+            help="How a plate is computed: solid (three-dimensional piezoelectric elements, the "
+            "default), timoshenko or euler_bernoulli (beams)."
+        ),
+    ] = None,
     strict: Strict = False,
 ) -> None:
     """From the display's description to resonance, amplitude, friction and textures."""
@@ -145,6 +152,7 @@ def analyze(
             vibration_amplitude=_quantity(amplitude, "--amplitude", Unit("m")),
             normal_force=_quantity(force, "--force", Unit("N")),
             surface=surface,
+            theory=theory,  # type: ignore[arg-type] # checked with a message by working_mode
             model=model,  # type: ignore[arg-type] # checked with a message by FrictionLaw
             strict=strict,
             progress=step,

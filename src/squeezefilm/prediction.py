@@ -1,7 +1,7 @@
 """The chain of one display: volts, frequency and force to the friction a finger meets.
 
-Each link names the model that made its numbers: the beam (or the measured stator) the amplitude,
-the paper's asymptote or the solved film the friction.
+Each link names the model that made its numbers: the solved plate, a beam or the measured stator the
+amplitude, the paper's asymptote or the solved film the friction.
 """
 
 from __future__ import annotations
@@ -10,19 +10,26 @@ import dataclasses
 import warnings
 from dataclasses import dataclass
 
+import numpy as np
+
 from squeezefilm.display import Display, Surface
-from squeezefilm.errors import InputError, OutOfRangeError, OutOfRangeWarning
+from squeezefilm.errors import (
+    InputError,
+    OutOfRangeError,
+    OutOfRangeWarning,
+    SqueezefilmWarning,
+)
 from squeezefilm.film.gap import squeeze_number
 from squeezefilm.film.validity import FilmValidity, film_validity
 from squeezefilm.friction import SOLVED_DEFAULT, FrictionLaw, FrictionModel, friction_law
-from squeezefilm.plate.beam import BeamTheory
-from squeezefilm.plate.layout import RectangularPlate
+from squeezefilm.plate.layout import Actuator, RectangularPlate
 from squeezefilm.plate.response import beam_doubt
-from squeezefilm.plate.working_mode import WorkingMode, working_mode
+from squeezefilm.plate.working_mode import PlateTheory, WorkingMode, working_mode
 from squeezefilm.quantities import (
     Dimensionless,
     Hertz,
     Metre,
+    MetrePerVolt,
     Newton,
     Unit,
     Volt,
@@ -69,7 +76,7 @@ def predict(
     normal_force: Newton | None = None,
     surface: str | None = None,
     vibration_amplitude: Metre | None = None,
-    theory: BeamTheory = "timoshenko",
+    theory: PlateTheory | None = None,
     model: FrictionModel | None = None,
     strict: bool = False,
 ) -> Prediction:
@@ -77,6 +84,8 @@ def predict(
 
     The frequency defaults to the resonance, voltage, force and surface to the display's own. A
     `vibration_amplitude` (m, zero-to-peak) given directly takes the place of voltage and plate.
+    `theory` says how a plate is computed; without one it is solved in three dimensions, and taken
+    as a beam, with a warning, where its working mode cannot be found so.
     Without a `model`, the paper's asymptote is used where it holds and the solved film elsewhere.
 
     What is doubtful (contradicting data, an asymptote asked for outside its range) is collected in
@@ -92,14 +101,17 @@ def predict(
         warnings.simplefilter("always")
         if isinstance(display.actuator, RectangularPlate):
             display.actuator.ceramic.check_consistency(strict=strict)
-        mode = working_mode(display.actuator, theory)
+        mode = _mode(display.actuator, theory, strict)
         drive_frequency = mode.resonance_frequency if frequency is None else frequency
         require("frequency", drive_frequency, Unit("Hz"), above=0)
         volts: Volt | None
         if vibration_amplitude is None:
             volts = display.drive.voltage if voltage is None else voltage
             require("voltage", volts, Unit("V"), at_least=0)
-            amplitude = float(volts * mode.amplitude_per_volt_at(drive_frequency))
+            per_volt: MetrePerVolt = mode.amplitude_per_volt
+            if drive_frequency != mode.resonance_frequency:
+                per_volt = float(mode.response(np.array([drive_frequency]))[0])
+            amplitude = float(volts * per_volt)
             source = mode.model
         else:
             require("vibration_amplitude", vibration_amplitude, Unit("m"), at_least=0)
@@ -131,8 +143,9 @@ def predict(
     # Where the film is solved, what fails of the asymptote is no doubt about this number.
     solved = not law.model.startswith("paper2008")
     doubt = None
-    if isinstance(display.actuator, RectangularPlate) and vibration_amplitude is None:
-        doubt = beam_doubt(display.actuator)
+    plate = display.actuator
+    if isinstance(plate, RectangularPlate) and mode.solid is None and vibration_amplitude is None:
+        doubt = beam_doubt(plate)
     if doubt is not None and strict:
         raise OutOfRangeError(f"{doubt}; leave strictness out to compute it all the same")
     messages = [
@@ -170,3 +183,19 @@ def predict(
         validity=validity,
         warnings=tuple(dict.fromkeys(messages)),
     )
+
+
+def _mode(actuator: Actuator, theory: PlateTheory | None, strict: bool) -> WorkingMode:
+    if theory is not None or strict or not isinstance(actuator, RectangularPlate):
+        return working_mode(actuator, theory or "solid")
+    try:
+        return working_mode(actuator, "solid")
+    except InputError as error:
+        mode = working_mode(actuator, "timoshenko")
+        warnings.warn(
+            f"the solved plate does not give the working mode ({error}); a beam's, whose numbers "
+            "these are, need not exist in such a plate",
+            SqueezefilmWarning,
+            stacklevel=2,
+        )
+        return mode

@@ -38,14 +38,18 @@ def test_amplitude_is_linear_in_the_voltage_and_falls_off_resonance(plate: Displ
     assert half.vibration_amplitude == pytest.approx(full.vibration_amplitude / 2)
     assert half.relative_friction > full.relative_friction
     off = predict(plate, frequency=1.01 * full.mode.resonance_frequency)
-    # 1/√(Q²(1−1.01²)²+1) with Q = 60
-    assert off.vibration_amplitude / full.vibration_amplitude == pytest.approx(
-        1 / np.sqrt((60 * (1.01**2 - 1)) ** 2 + 1), rel=1e-9
-    )
+    # 1/√(Q²(1−1.01²)²+1) with Q = 60 for this mode alone; its neighbours add a few percent
+    alone = 1 / np.sqrt((60 * (1.01**2 - 1)) ** 2 + 1)
+    assert off.vibration_amplitude / full.vibration_amplitude == pytest.approx(alone, rel=0.06)
+    # ... in the beam far less, whose neighbours are further.
+    beam = predict(plate, theory="timoshenko").frequency
+    full, off = (predict(plate, theory="timoshenko", frequency=f * beam) for f in (1, 1.01))
+    assert off.vibration_amplitude / full.vibration_amplitude == pytest.approx(alone, rel=0.02)
 
 
 def test_the_models_are_named(plate: Display, stator: Display) -> None:
-    assert predict(plate).amplitude_model == "timoshenko_beam_plane_strain"
+    assert predict(plate).amplitude_model == "piezoelectric_solid_3d"
+    assert predict(plate, theory="timoshenko").amplitude_model == "timoshenko_beam_plane_strain"
     assert predict(plate, theory="euler_bernoulli").amplitude_model.startswith("euler_bernoulli")
     assert predict(stator).amplitude_model == "measured_stator"
     assert predict(stator, vibration_amplitude=1e-6).amplitude_model == "given"
@@ -99,10 +103,13 @@ def test_a_beam_of_a_plate_with_few_ceramics_warns_or_is_refused(plate: Display)
             patches=plate.actuator.patches[:3],  # type: ignore[union-attr]
         ),
     )
-    assert any("cover 40% of it" in text for text in predict(few).warnings)
+    assert any("cover 40% of it" in text for text in predict(few, theory="timoshenko").warnings)
     with pytest.raises(OutOfRangeError, match="squeezefilm plate"):
-        predict(few, strict=True)
-    assert not any("the beam takes" in text for text in predict(plate).warnings)
+        predict(few, theory="timoshenko", strict=True)
+    beam = predict(plate, theory="timoshenko")
+    assert not any("the beam takes" in text for text in beam.warnings)
+    # The solved plate is as it is described.
+    assert not any("the beam takes" in text for text in predict(few).warnings)
 
 
 def test_an_asymptote_out_of_range_warns_or_is_refused(stator: Display) -> None:

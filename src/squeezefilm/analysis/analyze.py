@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import itertools
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -19,10 +21,15 @@ from squeezefilm.analysis.curves import (
 from squeezefilm.analysis.film_models import FilmComparison, compare_film_models
 from squeezefilm.analysis.verdict import Finding, verdict
 from squeezefilm.display import Display
+from squeezefilm.errors import InputError, OutOfRangeError
 from squeezefilm.friction import FrictionModel
 from squeezefilm.plate.beam import BeamTheory
+from squeezefilm.plate.laminate import CrossSection
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.response import beam_response
+from squeezefilm.plate.shear_plate import shear_mode
+from squeezefilm.plate.solid_mode import solid_mode
+from squeezefilm.plate.working_mode import PlateTheory
 from squeezefilm.prediction import Prediction, predict
 from squeezefilm.quantities import Hertz, Metre, Newton, Second, Volt
 from squeezefilm.render.envelope import envelope_bandwidth, envelope_time_constant
@@ -38,12 +45,13 @@ Progress = Callable[[str], None]
 
 @dataclass(frozen=True)
 class OtherModel:
-    """The same plate by another beam theory, to show how far theories differ."""
+    """The same plate by another theory, to show how far they differ; no amplitude where the theory
+    is used for the frequency only."""
 
     model: str
     resonance_frequency: Hertz
-    half_wavelength: Metre
-    vibration_amplitude: Metre
+    half_wavelength: Metre | None
+    vibration_amplitude: Metre | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,6 +92,7 @@ class Analysis:
             "frequency_Hz": p.frequency,
             "normal_force_N": p.normal_force,
             "resonance_frequency_Hz": p.mode.resonance_frequency,
+            "resonance_frequency_error_Hz": p.mode.frequency_error,
             "half_wavelength_m": p.mode.half_wavelength,
             "amplitude_per_volt_m_per_V": p.mode.amplitude_per_volt,
             "vibration_amplitude_m": p.vibration_amplitude,
@@ -131,7 +140,7 @@ def analyze(
     vibration_amplitude: Metre | None = None,
     normal_force: Newton | None = None,
     surface: str | None = None,
-    theory: BeamTheory = "timoshenko",
+    theory: PlateTheory | None = None,
     model: FrictionModel | None = None,
     strict: bool = False,
     progress: Progress | None = None,
@@ -196,18 +205,33 @@ def _other_models(display: Display, prediction: Prediction) -> tuple[OtherModel,
     if not isinstance(display.actuator, RectangularPlate) or prediction.voltage is None:
         return ()
     found = []
-    for theory in ("euler_bernoulli", "timoshenko"):
-        for section in ("plane_strain", "plane_stress", "paper"):
-            beam = beam_response(display.actuator, theory, section)
-            if beam.model != prediction.mode.model:
-                found.append(
-                    OtherModel(
-                        beam.model,
-                        beam.mode.frequency,
-                        beam.mode.half_wavelength,
-                        prediction.voltage * beam.amplitude_per_volt,
-                    )
+    plate, volts = display.actuator, prediction.voltage
+    mode = prediction.mode
+    if mode.solid is None:
+        with contextlib.suppress(InputError):
+            solid = solid_mode(plate)
+            amplitude = volts * solid.amplitude_per_volt
+            found.append(OtherModel(solid.model, solid.frequency, solid.half_wavelength, amplitude))
+    # A theory that has no such mode near has nothing to set beside.
+    with contextlib.suppress(InputError):
+        shear = shear_mode(plate, (plate.nodal_lines, 0), mode.resonance_frequency)
+        found.append(OtherModel("shear_plate", shear.frequency, None, None))
+    theories: tuple[BeamTheory, ...] = ("timoshenko", "euler_bernoulli")
+    sections: tuple[CrossSection, ...] = ("plane_strain", "plane_stress", "paper")
+    for theory, section in itertools.product(theories, sections):
+        try:
+            beam = beam_response(plate, theory, section)
+        except OutOfRangeError:
+            continue
+        if beam.model != mode.model:
+            found.append(
+                OtherModel(
+                    beam.model,
+                    beam.mode.frequency,
+                    beam.mode.half_wavelength,
+                    volts * beam.amplitude_per_volt,
                 )
+            )
     return tuple(found)
 
 

@@ -12,11 +12,11 @@ from squeezefilm.display import Display, Surface
 from squeezefilm.errors import UnreachableError
 from squeezefilm.film.limits import mean_pressure_profile
 from squeezefilm.friction import FrictionLaw, FrictionModel, friction_law
+from squeezefilm.plate.solid_mode import response_frequencies
 from squeezefilm.prediction import Prediction
 from squeezefilm.quantities import (
     Dimensionless,
     DimensionlessArray,
-    FloatArray,
     HertzArray,
     Metre,
     MetreArray,
@@ -79,20 +79,12 @@ class WavelengthCurve:
 def frequency_response(prediction: Prediction) -> FrequencyResponse:
     """The amplitude per volt around the working resonance, at the largest interior lobe."""
     mode = prediction.mode
-    span = max(8 / mode.quality_factor, 0.02)
-    # Dense near the peak, where the curve turns within f/Q.
-    near = np.sinh(np.linspace(-4, 4, 601)) / np.sinh(4)
-    frequency: FloatArray = mode.resonance_frequency * (1 + span * near)
-    if mode.beam is None:
-        curve = np.asarray(mode.amplitude_per_volt_at(frequency))
-    else:
-        shape = mode.beam.mode
-        inside = (shape.position >= shape.nodal_positions[0]) & (
-            shape.position <= shape.nodal_positions[-1]
-        )
-        lobe = float(shape.position[inside][np.argmax(np.abs(shape.deflection[inside]))])
-        curve = mode.beam.amplitude_at(frequency, lobe)
-    return FrequencyResponse(frequency, curve, mode.model)
+    if mode.solid is not None:
+        found = mode.solid.response
+        line = found.amplitude_at(mode.solid.lobe, found.plate.width / 2)
+        return FrequencyResponse(found.frequencies, line, mode.model)
+    frequency = response_frequencies(mode.resonance_frequency, mode.quality_factor, 601)
+    return FrequencyResponse(frequency, mode.response(frequency), mode.model)
 
 
 def pressure_profiles(prediction: Prediction) -> tuple[PressureProfile, ...]:

@@ -157,8 +157,13 @@ class PlateModes:
         return zero_crossings(self.x, profile)
 
     def half_wavelength(self, mode: int) -> Metre:
-        """The mean distance of nodal lines along the length (m); NaN with fewer than two."""
+        """The mean distance of nodal lines along the length (m); NaN with fewer than two.
+
+        Of six or more, the outermost at each end is left out: the free edge's near field moves it.
+        """
         nodes = self.nodal_positions(mode)
+        if nodes.size >= 6:
+            nodes = nodes[1:-1]
         return float(np.mean(np.diff(nodes))) if nodes.size > 1 else float("nan")
 
     @functools.cached_property

@@ -1,28 +1,35 @@
 """The one mode a display works in, whatever the actuator: frequency, wavelength, Q, µm per volt.
 
-This is the seam between the vibrating body and everything above it. A beam makes it for a plate,
-measured values make it for a stator; a solved plate can take the beam's place.
+This is the seam between the vibrating body and everything above it. A solved plate, the shear plate
+or a beam makes it for a plate, measured values make it for a stator.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal, get_args
 
 import numpy as np
 
-from squeezefilm.plate.beam import BeamTheory
+from squeezefilm.errors import InputError, OutOfRangeError
 from squeezefilm.plate.laminate import CrossSection
-from squeezefilm.plate.layout import Actuator, AnnularStator
+from squeezefilm.plate.layout import Actuator, AnnularStator, RectangularPlate
 from squeezefilm.plate.response import BeamResponse, beam_response
+from squeezefilm.plate.solid_mode import SolidMode, solid_mode
 from squeezefilm.quantities import (
     Dimensionless,
     DimensionlessLike,
+    FloatArray,
     Hertz,
+    HertzArray,
     HertzLike,
     Metre,
+    MetreArray,
     MetrePerVolt,
+    MetrePerVoltArray,
     MetrePerVoltLike,
     closed_form,
+    did_you_mean,
 )
 
 
@@ -40,11 +47,25 @@ def resonance_factor(
     return factor
 
 
+PlateTheory = Literal["solid", "timoshenko", "euler_bernoulli"]
+PLATE_THEORIES: tuple[PlateTheory, ...] = get_args(PlateTheory)
+
+
+@dataclass(frozen=True, eq=False)
+class ModeLine:
+    """The mode along the plate's length: deflection, 1 at the largest interior lobe."""
+
+    position: MetreArray
+    deflection: FloatArray
+    nodal_positions: MetreArray
+
+
 @dataclass(frozen=True, eq=False)
 class WorkingMode:
     """The mode a display works in; amplitudes are zero-to-peak at the largest interior lobe.
 
-    `model` names what made the numbers; `beam` is the beam behind it, if one is.
+    `model` names what made the numbers, `frequency_error` is the solver's estimate where one
+    solved it. `beam` is the plate as a beam: what made the numbers, or stands beside them.
     """
 
     label: str
@@ -53,24 +74,44 @@ class WorkingMode:
     quality_factor: Dimensionless
     amplitude_per_volt: MetrePerVolt
     model: str
+    frequency_error: Hertz | None = None
+    line: ModeLine | None = None
+    solid: SolidMode | None = None
     beam: BeamResponse | None = None
 
     def amplitude_per_volt_at(self, frequency: HertzLike) -> MetrePerVoltLike:
-        """Zero-to-peak amplitude per volt (m/V) at a frequency near resonance."""
+        """Zero-to-peak amplitude per volt (m/V) at a frequency near resonance.
+
+        Of this mode alone, with structural damping; see `response` for what its neighbours add.
+        """
         return self.amplitude_per_volt * resonance_factor(
             frequency, self.resonance_frequency, self.quality_factor
         )
 
+    def response(self, frequency: HertzArray) -> MetrePerVoltArray:
+        """Zero-to-peak amplitude per volt (m/V) at frequencies (Hz), with the neighbouring modes
+        where the model has them."""
+        wanted = np.asarray(frequency, dtype=float)
+        if self.solid is not None:
+            return self.solid.amplitude_per_volt_at(wanted)
+        if self.beam is not None and self.line is not None:
+            nodes, x = self.line.nodal_positions, self.line.position
+            inside = (x >= nodes[0]) & (x <= nodes[-1])
+            lobe = x[inside][np.argmax(np.abs(self.line.deflection[inside]))]
+            return self.beam.amplitude_at(wanted, float(lobe))
+        return np.asarray(self.amplitude_per_volt_at(wanted))
+
 
 def working_mode(
     actuator: Actuator,
-    theory: BeamTheory = "timoshenko",
+    theory: PlateTheory = "solid",
     cross_section: CrossSection = "plane_strain",
 ) -> WorkingMode:
     """The working mode of an actuator.
 
-    A plate is computed as a beam (see `beam_response` for its range and error); a stator is taken
-    as measured, linear in the voltage.
+    A plate is solved in three dimensions (see `solid_mode`), or taken as a beam of `cross_section`
+    (see `beam_response` for its range and error); a stator is taken as measured, linear in the
+    voltage. Raises `InputError` for another theory, and what the plate's solver raises.
     """
     if isinstance(actuator, AnnularStator):
         return WorkingMode(
@@ -81,13 +122,43 @@ def working_mode(
             amplitude_per_volt=actuator.reference_amplitude / actuator.reference_voltage,
             model="measured_stator",
         )
+    if theory not in PLATE_THEORIES:
+        raise InputError(
+            f"theory = '{theory}' is not known.{did_you_mean(theory, PLATE_THEORIES)} "
+            f"Allowed: {', '.join(PLATE_THEORIES)}",
+            quantity="theory",
+        )
+    if theory == "solid":
+        solid = solid_mode(actuator)
+        return WorkingMode(
+            label=f"({actuator.nodal_lines},0)",
+            resonance_frequency=solid.frequency,
+            half_wavelength=solid.half_wavelength,
+            quality_factor=solid.quality_factor,
+            amplitude_per_volt=solid.amplitude_per_volt,
+            model=solid.model,
+            frequency_error=solid.frequency_error,
+            line=ModeLine(solid.position, solid.deflection, solid.nodal_positions),
+            solid=solid,
+            beam=_beam_beside(actuator),
+        )
     beam = beam_response(actuator, theory, cross_section)
+    shape = beam.mode
     return WorkingMode(
         label=f"({actuator.nodal_lines},0)",
-        resonance_frequency=beam.mode.frequency,
-        half_wavelength=beam.mode.half_wavelength,
+        resonance_frequency=shape.frequency,
+        half_wavelength=shape.half_wavelength,
         quality_factor=actuator.quality_factor,
         amplitude_per_volt=beam.amplitude_per_volt,
         model=beam.model,
+        line=ModeLine(shape.position, shape.deflection, shape.nodal_positions),
         beam=beam,
     )
+
+
+def _beam_beside(plate: RectangularPlate) -> BeamResponse | None:
+    """The plate as a beam, for comparison; None where the beam has no such mode."""
+    try:
+        return beam_response(plate)
+    except OutOfRangeError:
+        return None

@@ -15,6 +15,7 @@ from squeezefilm.quantities import Unit, format_quantity, unit_of
 if typing.TYPE_CHECKING:
     from squeezefilm.analysis.analyze import Analysis
     from squeezefilm.display import Display
+    from squeezefilm.plate.working_mode import WorkingMode
 
 M, HZ, S, N, V, ONE = Unit("m"), Unit("Hz"), Unit("s"), Unit("N"), Unit("V"), Unit("1")
 
@@ -78,7 +79,7 @@ def key_numbers(analysis: Analysis) -> list[KeyNumber]:
     rows = [
         KeyNumber(label, text, remark)
         for label, text, remark in (
-            ("Resonance frequency", shown(p.mode.resonance_frequency, HZ), p.mode.label),
+            ("Resonance frequency", shown(p.mode.resonance_frequency, HZ), _mode(p.mode)),
             ("Quality factor", f"{p.mode.quality_factor:.4g}", ""),
             ("Half wavelength", shown(p.mode.half_wavelength, M), ""),
             ("Drive voltage", drive, "amplitude given instead" if given else "zero-to-peak"),
@@ -118,6 +119,13 @@ def key_numbers(analysis: Analysis) -> list[KeyNumber]:
         for speed, period in analysis.finest_period().items()
     ]
     return rows
+
+
+def _mode(mode: WorkingMode) -> str:
+    """The mode's label, with the solver's error where one solved it."""
+    if mode.frequency_error is None:
+        return mode.label
+    return f"{mode.label}, solved to ± {shown(mode.frequency_error, HZ, 2)}"
 
 
 def _reached(amplitude: float | None) -> str:

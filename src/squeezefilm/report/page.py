@@ -268,8 +268,14 @@ def _models(analysis: Analysis) -> str:
     if not analysis.other_models:
         return used
     p = analysis.prediction
-    made = [(p.mode.model + " (used)", p.mode.resonance_frequency, p.mode.half_wavelength,
-             p.vibration_amplitude)]  # fmt: skip
+    made: list[tuple[str, float, float | None, float | None]] = [
+        (
+            p.mode.model + " (used)",
+            p.mode.resonance_frequency,
+            p.mode.half_wavelength,
+            p.vibration_amplitude,
+        )
+    ]
     made += [
         (other.model, other.resonance_frequency, other.half_wavelength, other.vibration_amplitude)
         for other in analysis.other_models
@@ -280,14 +286,14 @@ def _models(analysis: Analysis) -> str:
             [
                 f"<code>{escape(model)}</code>",
                 shown(frequency, Unit("Hz")),
-                shown(half, Unit("m")),
-                shown(amplitude, Unit("m"), 3),
+                "–" if half is None else shown(half, Unit("m")),
+                "–" if amplitude is None else shown(amplitude, Unit("m"), 3),
             ],
         )
         for model, frequency, half, amplitude in made
     ]
     others = _table(
-        "The same plate by other beam theories, each driven at its own resonance",
+        "The same plate by other theories, each driven at its own resonance",
         ("Model", "Resonance", "Half wavelength", "Amplitude"),
         rows,
     )

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from squeezefilm.plate.laminate import plate_laminate
 from squeezefilm.plate.layout import AnnularStator, RectangularPlate
-from squeezefilm.plate.working_mode import resonance_factor
 from squeezefilm.report.numbers import HZ, M, V, shown
 from squeezefilm.report.style import (
     BAND,
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from squeezefilm.analysis.analyze import Analysis
-    from squeezefilm.plate.response import BeamResponse
+    from squeezefilm.plate.laminate import Laminate
     from squeezefilm.quantities import FloatArray
 
 _SIGN = {1: "+", -1: "−"}
@@ -46,16 +46,14 @@ def layout(analysis: Analysis) -> Figure:
     actuator = analysis.display.actuator
     if isinstance(actuator, AnnularStator):
         return _ring(actuator, analysis)
-    beam = analysis.prediction.mode.beam
-    assert beam is not None, "a plate's working mode is made by a beam"
-    return _plate(actuator, beam)
+    return _plate(actuator, plate_laminate(actuator))
 
 
-def _plate(plate: RectangularPlate, beam: BeamResponse) -> Figure:
+def _plate(plate: RectangularPlate, section: Laminate) -> Figure:
     from matplotlib.patches import Rectangle
 
     count = len(plate.patches)
-    neutral = beam.section.neutral_axis
+    neutral = section.neutral_axis
     noun = "ceramic covers" if count == 1 else "ceramics cover"
     title = (
         f"{count} {noun} {100 * plate.coverage:.0f} % of the lower face; the plate bends about an "
@@ -63,7 +61,9 @@ def _plate(plate: RectangularPlate, beam: BeamResponse) -> Figure:
     )
     plan_height = float(np.clip(6.9 * plate.width / plate.length, 1.0, 5.2))
     figure = new_figure(
-        title, f"{beam.model}, thicknesses and positions as described", plan_height + 2.6
+        title,
+        "neutral axis of a section with ceramic; thicknesses and positions as described",
+        plan_height + 2.6,
     )
     grid = figure.add_gridspec(2, 2, width_ratios=[4.6, 1.2], height_ratios=[plan_height, 0.55])
     plan, side = figure.add_subplot(grid[0, 0]), figure.add_subplot(grid[1, 0])
@@ -205,14 +205,13 @@ def mode_shape(analysis: Analysis) -> Figure:
     """The working mode at the working amplitude, with its nodal lines."""
     mode = analysis.prediction.mode
     size = 1e6 * analysis.prediction.vibration_amplitude
-    if mode.beam is not None:
-        shape = mode.beam.mode
-        x, w = 1e3 * shape.position, shape.deflection
-        nodes = 1e3 * shape.nodal_positions
+    if mode.line is not None:
+        x, w = 1e3 * mode.line.position, mode.line.deflection
+        nodes = 1e3 * mode.line.nodal_positions
         ends = float(np.max(np.abs([w[0], w[-1]])))
         title = (
-            f"{shape.nodal_lines} nodal lines across the plate, λ/2 = "
-            f"{shown(shape.half_wavelength, M)}; its free ends move {ends:.2f} times as far as "
+            f"{len(nodes)} nodal lines across the plate, λ/2 = "
+            f"{shown(mode.half_wavelength, M)}; its free ends move {ends:.2f} times as far as "
             "the lobes between"
         )
         along = "x along the plate (mm)"
@@ -242,8 +241,8 @@ def mode_shape(analysis: Analysis) -> Figure:
     axes.plot(x, -y, color=BLUE, lw=1.1, ls=(0, (4, 2)), label="half a period later")
     axes.axhline(0, color=INK, lw=0.8)
     bottom = -1.2 * reach
-    if mode.beam is not None:
-        bottom = _drive_strip(axes, mode.beam.plate, reach)
+    if isinstance(analysis.display.actuator, RectangularPlate):
+        bottom = _drive_strip(axes, analysis.display.actuator, reach)
     if len(nodes) >= 4:
         _half_wave_arrow(axes, nodes, 1.14 * reach, mode.half_wavelength)
     margin = 0.01 * float(x[-1])
@@ -267,7 +266,7 @@ def mode_shape(analysis: Analysis) -> Figure:
 
 def _mean_radius(analysis: Analysis) -> float:
     actuator = analysis.display.actuator
-    assert isinstance(actuator, AnnularStator), "only a stator works without a beam"
+    assert isinstance(actuator, AnnularStator), "only a stator has no line along a plate"
     return actuator.mean_diameter / 2
 
 
@@ -309,15 +308,17 @@ def frequency_response(analysis: Analysis) -> Figure:
     f, per_volt = 1e-3 * response.frequency, 1e9 * response.amplitude_per_volt
     top = int(np.argmax(per_volt))
     peak = float(per_volt[top])
-    driven = p.mode.amplitude_per_volt > 0.1e-9 * peak
+    solid = p.mode.solid
+    own = p.mode.amplitude_per_volt if solid is None else solid.modal_amplitude_per_volt
+    driven = own > 0.1e-9 * peak
     band = half_power(f, per_volt) if driven else None
     at = shown(p.mode.resonance_frequency, HZ)
     if driven:
         wide = "" if band is None else f" is {shown(1e3 * (band[1] - band[0]), HZ, 3)} wide"
         title = f"The resonance at {at}{wide}: the drive must stay on it"
-        share = float(
-            resonance_factor(p.frequency, p.mode.resonance_frequency, p.mode.quality_factor)
-        )
+        share = 1.0
+        if p.voltage:
+            share = p.vibration_amplitude / (p.voltage * p.mode.amplitude_per_volt)
         if share < 0.99:
             title += f", but at {shown(p.frequency, HZ)} it gets {100 * share:.0f} % of the motion"
     else:

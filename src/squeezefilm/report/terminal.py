@@ -134,7 +134,7 @@ def show_analysis(analysis: Analysis) -> None:
     if analysis.other_models:
         from squeezefilm.quantities import Unit
 
-        heading(console, "The same plate by other beam theories")
+        heading(console, "The same plate by other theories")
         table(
             console,
             ("model", "resonance", "amplitude"),
@@ -142,7 +142,9 @@ def show_analysis(analysis: Analysis) -> None:
                 (
                     other.model,
                     shown(other.resonance_frequency, Unit("Hz")),
-                    shown(other.vibration_amplitude, Unit("m"), 3),
+                    "–"
+                    if other.vibration_amplitude is None
+                    else shown(other.vibration_amplitude, Unit("m"), 3),
                 )
                 for other in analysis.other_models
             ],
