@@ -48,8 +48,8 @@ class SolidMode:
     `modes` holds it at `index`; `response` surrounds the resonance. `position` and `deflection` are
     the mode along the centreline of the upper face, 1 at its largest interior lobe, which is at
     `lobe`; `nodal_positions` its nodal lines along the length; `amplitude_per_volt` is the largest
-    answer of that lobe within the mode's bandwidth, `modal_amplitude_per_volt` what this mode has in
-    it, Q F φ / ω²: much less where the drive moves its neighbours only.
+    answer of that lobe within the mode's bandwidth, `modal_amplitude_per_volt` what this mode has
+    in it, Q F φ / ω²: much less where the drive moves its neighbours only.
     """
 
     modes: PlateModes
