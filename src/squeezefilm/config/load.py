@@ -6,17 +6,18 @@ import dataclasses
 import tomllib
 import types
 import typing
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, TypeVar, Union
 
 from pydantic import BaseModel, ValidationError
 
 from squeezefilm.config.lines import locate
-from squeezefilm.config.provenance import split_provenance
+from squeezefilm.config.provenance import Spread, distribution_of, split_provenance
 from squeezefilm.config.schema import model_of, reads_from_file
+from squeezefilm.distributions import Distribution
 from squeezefilm.errors import ConfigError, InputError
-from squeezefilm.quantities import did_you_mean
+from squeezefilm.quantities import did_you_mean, unit_of
 
 T = TypeVar("T")
 _LIMIT = 4_000_000  # bytes; a description of a display is a few kilobytes
@@ -55,7 +56,7 @@ def load_text(cls: type[T], text: str, *, file: str | Path | None = None) -> T:
         keys = ", ".join(field.name for field in dataclasses.fields(cls) if reads_from_file(field))  # type: ignore[arg-type]
         raise ConfigError(f"is empty; a {cls.__name__.lower()} needs the keys {keys}", file=file)
     try:
-        plain, sources = split_provenance(raw)
+        plain, sources, spreads = split_provenance(raw)
     except ConfigError as error:
         place = locate(text, (error.key or "").split("."))
         raise ConfigError(error.message, file=file, line=place, key=error.key) from error
@@ -63,10 +64,34 @@ def load_text(cls: type[T], text: str, *, file: str | Path | None = None) -> T:
         model = model_of(cls).model_validate(plain)
     except ValidationError as error:
         raise _all_errors(cls, error, text, file) from error
-    extra: dict[str, Any] = {}
+    built = _build(cls, model, (), text, file)
     if any(field.name == "provenance" for field in dataclasses.fields(cls)):  # type: ignore[arg-type]
-        extra["provenance"] = types.MappingProxyType(sources)
-    return typing.cast(T, _build(cls, model, (), text, file, extra))
+        for key, spread in spreads.items():
+            found = _distribution(built, key, spread, text, file)
+            sources[key] = dataclasses.replace(sources[key], distribution=found)
+        built = dataclasses.replace(built, provenance=types.MappingProxyType(sources))
+    return typing.cast(T, built)
+
+
+def _distribution(
+    built: Any, key: str, spread: Spread, text: str, file: str | Path | None
+) -> Distribution:
+    """The distribution of the value at a dotted path of what was built."""
+    owner, parts = built, key.split(".")
+    for part in parts[:-1]:
+        owner = owner[int(part)] if isinstance(owner, tuple) else getattr(owner, part)
+    try:
+        unit = unit_of(typing.get_type_hints(type(owner), include_extras=True)[parts[-1]])
+        if unit is None:
+            raise InputError("this is no quantity and has no uncertainty; leave it out")
+        return distribution_of(getattr(owner, parts[-1]), unit, spread)
+    except InputError as error:
+        place = locate(text, parts)
+        raise ConfigError(str(error), file=file, line=place, key=_dotted_key(parts)) from error
+
+
+def _dotted_key(parts: Sequence[str]) -> str:
+    return _dotted([int(part) if part.isdigit() else part for part in parts])
 
 
 def _build(
@@ -75,10 +100,9 @@ def _build(
     path: tuple[str | int, ...],
     text: str,
     file: str | Path | None,
-    extra: Mapping[str, Any],
 ) -> Any:
     hints = typing.get_type_hints(cls, include_extras=True)
-    values: dict[str, Any] = dict(extra)
+    values: dict[str, Any] = {}
     for name in type(model).model_fields:
         here = (*path, name)
         values[name] = _built_value(hints[name], getattr(model, name), here, text, file)
@@ -98,7 +122,7 @@ def _built_value(
     hint: Any, value: Any, path: tuple[str | int, ...], text: str, file: str | Path | None
 ) -> Any:
     if isinstance(value, BaseModel):
-        return _build(_dataclass_of(hint, value), value, path, text, file, {})
+        return _build(_dataclass_of(hint, value), value, path, text, file)
     if isinstance(value, list):
         item_hint = typing.get_args(hint)[0]
         return tuple(

@@ -1,7 +1,9 @@
 """Where a value comes from: text beside the value in the TOML file, kept beside it in memory.
 
 A value in TOML is either plain, ``thickness = "2 mm"``, or a table that says where it comes from:
-``thickness = { value = "2 mm", source = "paper, section 3.1", evidence = "published" }``.
+``thickness = { value = "2 mm", source = "paper, section 3.1", evidence = "published" }``. How sure it
+is may stand beside it: ``uncertainty = "0.05 mm"`` or ``"5 %"`` (a standard deviation), or
+``range = ["1.9 mm", "2.1 mm"]`` (anywhere between).
 """
 
 from __future__ import annotations
@@ -10,31 +12,44 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from squeezefilm.errors import ConfigError
+from squeezefilm.distributions import Distribution, Normal, Uniform
+from squeezefilm.errors import ConfigError, InputError
+from squeezefilm.quantities import Unit, format_quantity, parse_quantity
 
 EVIDENCE = ("measured", "published", "derived", "assumed")
-_KEYS = {"value", "source", "evidence"}
+_SPREADS = ("uncertainty", "range")
+_KEYS = {"value", "source", "evidence", *_SPREADS}
 
 
 @dataclass(frozen=True)
 class Provenance:
     """The source of one value and the kind of evidence behind it: measured, published, derived
-    from published values, or assumed."""
+    from published values, or assumed; and how it is distributed, where the file says so."""
 
     source: str
     evidence: str = "published"
+    distribution: Distribution | None = None
 
 
-def split_provenance(tree: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Provenance]]:
-    """Separate values from their sources: the tree with plain values, and the sources by path
-    (``"actuator.thickness"``). Raises `ConfigError` for a malformed source."""
+Spread = str | tuple[str, str]
+"""An uncertainty as it is written, before the unit of its value is known."""
+
+
+def split_provenance(
+    tree: Mapping[str, Any],
+) -> tuple[dict[str, Any], dict[str, Provenance], dict[str, Spread]]:
+    """Separate values from their sources: the tree with plain values, the sources and the spreads
+    by path (``"actuator.thickness"``). Raises `ConfigError` for a malformed source or spread."""
     found: dict[str, Provenance] = {}
+    spreads: dict[str, Spread] = {}
 
     def walk(node: Any, path: str) -> Any:
         if isinstance(node, Mapping):
             if "value" in node and set(node) <= _KEYS:
-                if "source" in node or "evidence" in node:
+                if set(node) > {"value"}:
                     found[path] = _provenance(node, path)
+                if (spread := _spread(node, path)) is not None:
+                    spreads[path] = spread
                 return node["value"]
             return {key: walk(item, f"{path}.{key}" if path else key) for key, item in node.items()}
         if isinstance(node, list):
@@ -42,7 +57,53 @@ def split_provenance(tree: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str,
         return node
 
     plain = walk(tree, "")
-    return plain, found
+    return plain, found, spreads
+
+
+def _spread(node: Mapping[str, Any], path: str) -> Spread | None:
+    given = [key for key in _SPREADS if key in node]
+    if not given:
+        return None
+    if len(given) == 2:
+        raise ConfigError("uncertainty and range are both given; give one of them", key=path)
+    spread = node[given[0]]
+    if given == ["uncertainty"]:
+        if not isinstance(spread, str):
+            raise ConfigError(
+                f'uncertainty = {spread!r} is no text; write "5 %" or a quantity in the unit of '
+                "the value",
+                key=path,
+            )
+        return spread
+    whole = isinstance(spread, list) and len(spread) == 2
+    if not whole or not all(isinstance(item, str) for item in spread):
+        raise ConfigError(
+            f'range = {spread!r} is none; write two texts, like ["1.9 mm", "2.1 mm"]', key=path
+        )
+    return spread[0], spread[1]
+
+
+def distribution_of(value: float, unit: Unit, spread: Spread) -> Distribution:
+    """What a spread means for a value in a unit. Raises `InputError` for one that cannot be."""
+    if isinstance(spread, tuple):
+        low, high = (parse_quantity(text, unit) for text in spread)
+        found: Distribution = Uniform(low, high)
+        if not low <= value <= high:
+            raise InputError(
+                f"range = [{spread[0]}, {spread[1]}] leaves out the value "
+                f"{format_quantity(value, unit)} itself; make it wider"
+            )
+    elif spread.strip().endswith("%"):
+        share = parse_quantity(spread.strip().removesuffix("%").strip(), Unit("1")) / 100
+        found = Normal(value, share * abs(value))
+    else:
+        found = Normal(value, parse_quantity(spread, unit))
+    if value > 0 and found.support[0] <= 0:
+        raise InputError(
+            f"uncertainty = {spread!r} lets {format_quantity(value, unit)} become negative within "
+            "three standard deviations; give a range instead"
+        )
+    return found
 
 
 def _provenance(node: Mapping[str, Any], path: str) -> Provenance:

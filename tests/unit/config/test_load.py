@@ -8,6 +8,7 @@ from squeezefilm import presets
 from squeezefilm.config import load, load_text
 from squeezefilm.config.lines import locate
 from squeezefilm.display import Display, load_display
+from squeezefilm.distributions import Normal, Uniform
 from squeezefilm.errors import ConfigError
 from squeezefilm.results import config_hash
 
@@ -140,3 +141,43 @@ def test_hash_depends_on_values_and_not_on_their_writing() -> None:
     plate = load_display("biet2008-plate")
     assert config_hash(same) == config_hash(plate)
     assert config_hash(other) != config_hash(plate)
+
+
+def test_an_uncertainty_beside_a_value_becomes_a_distribution() -> None:
+    thickness = 'thickness = { value = "2 mm"'
+    assert TEXT.count(thickness) == 1
+    for written, expected in (
+        ('uncertainty = "0.05 mm"', Normal(2e-3, 0.05e-3)),
+        ('uncertainty = "5 %"', Normal(2e-3, 0.1e-3)),
+        ('range = ["1.9 mm", "2.2 mm"]', Uniform(1.9e-3, 2.2e-3)),
+    ):
+        text = TEXT.replace(thickness, f"{thickness}, {written}")
+        display = load_text(Display, text)
+        found = display.provenance["actuator.thickness"].distribution
+        assert type(found) is type(expected)
+        assert found is not None
+        assert found.support == pytest.approx(expected.support)
+        assert display.provenance["actuator.length"].distribution is None
+        assert display.actuator.thickness == 2e-3
+
+
+@pytest.mark.parametrize(
+    ("written", "says"),
+    [
+        ("uncertainty = 5", "no text"),
+        ('uncertainty = "5 kg"', "wrong dimension"),
+        ('uncertainty = "50 %"', "give a range"),
+        ('uncertainty = "0 mm"', "above 0"),
+        ('range = ["1 mm"]', "write two texts"),
+        ('range = ["2.1 mm", "2.3 mm"]', "leaves out the value 2 mm"),
+        ('range = ["2.1 mm", "1.9 mm"]', "lower value first"),
+        ('range = ["1 mm", "3 mm"], uncertainty = "1 %"', "give one of them"),
+    ],
+)
+def test_a_bad_uncertainty_is_refused_with_line_and_key(written: str, says: str) -> None:
+    thickness = 'thickness = { value = "2 mm"'
+    with pytest.raises(ConfigError, match=says) as caught:
+        load_text(Display, TEXT.replace(thickness, f"{thickness}, {written}"))
+    assert caught.value.key == "actuator.thickness"
+    line = next(n for n, text in enumerate(TEXT.splitlines(), 1) if text.startswith(thickness))
+    assert caught.value.line == line

@@ -1,0 +1,70 @@
+"""How sure a value is: the distributions that a description may give beside a value."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from squeezefilm.errors import InputError
+from squeezefilm.quantities import DimensionlessArray, FloatArray, require
+
+_WIDEST = 3.0  # standard deviations kept of a normal distribution
+
+
+@dataclass(frozen=True)
+class Normal:
+    """A normal distribution cut at three standard deviations, in the unit of its quantity.
+
+    Raises `InputError` for a standard deviation that is not above 0.
+    """
+
+    mean: float
+    standard_deviation: float
+
+    def __post_init__(self) -> None:
+        require("mean", self.mean)
+        require("uncertainty", self.standard_deviation, above=0)
+
+    def quantile(self, p: DimensionlessArray) -> FloatArray:
+        """The values (in the quantity's unit, the shape of `p`) not exceeded with probability p."""
+        from scipy.special import ndtr, ndtri
+
+        tail = ndtr(-_WIDEST)
+        spread = ndtri(tail + np.asarray(p, dtype=float) * (1 - 2 * tail))
+        return np.asarray(self.mean + self.standard_deviation * spread)
+
+    @property
+    def support(self) -> tuple[float, float]:
+        """The least and the largest value."""
+        reach = _WIDEST * self.standard_deviation
+        return self.mean - reach, self.mean + reach
+
+
+@dataclass(frozen=True)
+class Uniform:
+    """Anywhere between two values alike. Raises `InputError` unless low < high."""
+
+    low: float
+    high: float
+
+    def __post_init__(self) -> None:
+        require("low", self.low)
+        require("high", self.high)
+        if not self.low < self.high:
+            raise InputError(
+                f"range = [{self.low:.6g}, {self.high:.6g}] is none; write the lower value first",
+                quantity="range",
+            )
+
+    def quantile(self, p: DimensionlessArray) -> FloatArray:
+        """The values (in the quantity's unit, the shape of `p`) not exceeded with probability p."""
+        return self.low + (self.high - self.low) * np.asarray(p, dtype=float)
+
+    @property
+    def support(self) -> tuple[float, float]:
+        """The least and the largest value."""
+        return self.low, self.high
+
+
+Distribution = Normal | Uniform
