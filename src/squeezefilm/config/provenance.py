@@ -1,8 +1,8 @@
 """Where a value comes from: text beside the value in the TOML file, kept beside it in memory.
 
 A value in TOML is either plain, ``thickness = "2 mm"``, or a table that says where it comes from:
-``thickness = { value = "2 mm", source = "paper, section 3.1", evidence = "published" }``. How sure it
-is may stand beside it: ``uncertainty = "0.05 mm"`` or ``"5 %"`` (a standard deviation), or
+``thickness = { value = "2 mm", source = "paper, section 3.1", evidence = "published" }``. How sure
+it is may stand beside it: ``uncertainty = "0.05 mm"`` or ``"5 %"`` (a standard deviation), or
 ``range = ["1.9 mm", "2.1 mm"]`` (anywhere between).
 """
 
