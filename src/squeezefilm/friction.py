@@ -1,20 +1,22 @@
 """The friction of one display at one working point, as a law of the vibration amplitude.
 
-The seam between what the film (and later the contact) computes and everything that needs friction:
-predictions, curves, textures. Each law names its model.
+The seam between what film and contact compute and everything that needs friction: predictions,
+curves, textures. Each law names its model.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Literal, get_args
+from typing import Literal, cast, get_args
 
 import numpy as np
 
 from squeezefilm.contact import paper
 from squeezefilm.contact.film_load import FilmLoad, FilmModel, film_load
 from squeezefilm.contact.finger import Finger
+from squeezefilm.contact.gas_table import film_table
+from squeezefilm.contact.pad import Limit, PadFriction, pad_friction, ridge_points
 from squeezefilm.display import Display, Surface
 from squeezefilm.errors import InputError, OutOfRangeError, UnreachableError
 from squeezefilm.film.gap import PaperGap
@@ -36,7 +38,14 @@ from squeezefilm.quantities import (
 )
 
 FrictionModel = Literal[
-    "paper2008", "paper2008-printed", "film-sealed", "film-open", "film-plateau", "film-smooth"
+    "paper2008",
+    "paper2008-printed",
+    "film-sealed",
+    "film-open",
+    "film-plateau",
+    "film-smooth",
+    "partial-levitation",
+    "partial-levitation-one-gap",
 ]
 FRICTION_MODELS: tuple[FrictionModel, ...] = get_args(FrictionModel)
 SOLVED_DEFAULT: FrictionModel = "film-sealed"
@@ -47,15 +56,41 @@ HIGHEST_AMPLITUDE: Metre = 50e-6
 
 def is_solved(model: FrictionModel) -> bool:
     """Whether a model solves the film (and is slower by a factor of a hundred)."""
-    return model.startswith("film-")
+    return model.startswith("film-") or shares_load(model)
+
+
+def shares_load(model: FrictionModel) -> bool:
+    """Whether a model lets film and asperities share the load by a balance at each ridge."""
+    return model.startswith("partial-levitation")
+
+
+@dataclass(frozen=True, eq=False)
+class FrictionLimits:
+    """µ′/µ (dimensionless) at amplitudes (m) in the two limits of the skin, and their spread.
+
+    `own`: each ridge at its own balance (a skin compliant at rest, the default); `one_gap`: all
+    ridges tied to one mean gap.
+    """
+
+    amplitude: MetreArray
+    own: DimensionlessArray
+    one_gap: DimensionlessArray
+
+    @property
+    def spread(self) -> DimensionlessArray:
+        """Their difference (dimensionless), which belongs in the uncertainty of µ′/µ."""
+        return np.abs(self.own - self.one_gap)
 
 
 @dataclass(frozen=True)
 class FrictionLaw:
     """µ′/µ as a function of the vibration amplitude, at one frequency and force, by one model.
 
-    All models share the load the same way: what the film does not carry is in contact, at an
-    unchanged friction coefficient (paper eq 14, corrected). They differ in the film.
+    All models take what the film does not carry to be in contact, at an unchanged friction
+    coefficient (paper eq 14, corrected). "paper2008" and the "film-" models hold the gap and differ
+    in the film; the "partial-levitation" models find the gap at which film and asperities carry
+    the finger together, over each ridge ("partial-levitation") or over all of them at once
+    ("partial-levitation-one-gap").
     """
 
     surface: Surface
@@ -92,13 +127,61 @@ class FrictionLaw:
         if self.model == "paper2008-printed":
             over = float(contact_mean_pressure(self.gap(amplitude), "paper2008-printed")) - 1
             return FilmLoad("paper2008", over, 0.0, float("nan"), "closed form, as printed")
-        solved: FilmModel = self.model
+        if shares_load(self.model):
+            return self._shared_load(amplitude)
+        solved = cast(FilmModel, self.model)
         return film_load(
             self.gap(amplitude),
             self.frequency,
             self.gas,
             solved,
             plateau_width=self.finger.plateau_width,
+        )
+
+    def sharing(self, amplitude: MetreLike, limit: Limit | None = None) -> PadFriction:
+        """How film and asperities share the load at amplitudes (m), in the model's limit or in
+        the one named. Raises `InputError` for a model that does not share the load."""
+        if limit is None:
+            if not shares_load(self.model):
+                raise InputError(
+                    f"the model '{self.model}' holds the gap and shares no load; ask a "
+                    "partial-levitation model, or name a limit"
+                )
+            limit = "one-gap" if self.model == "partial-levitation-one-gap" else "own"
+        finger = self.finger
+        side = float(np.sqrt(finger.contact_area(self.normal_force)))
+        return pad_friction(
+            film_table(self.frequency, finger.plateau_width, self.gas),
+            finger.asperity_law(self.surface.roughness),
+            amplitude,
+            self.half_wavelength,
+            ridge_points(finger, side),
+            finger.plateau_pressure(self.normal_force),
+            limit=limit,
+        )
+
+    def limits(self, amplitude: MetreLike) -> FrictionLimits:
+        """µ′/µ in both limits of partial levitation at amplitudes (m), whatever the model."""
+        a = np.atleast_1d(np.asarray(amplitude, dtype=float))
+        own, tied = (
+            self.sharing(a, "own").relative_friction,
+            self.sharing(a, "one-gap").relative_friction,
+        )
+        return FrictionLimits(a, own, tied)
+
+    def _shared_load(self, amplitude: Metre) -> FilmLoad:
+        shared = self.sharing(amplitude)
+        # Over the whole contact, grooves included, as the other models have it.
+        share = self.finger.plateau_width / self.finger.ridge_period
+        over = share * float(shared.film_pressure[0]) / self.gas.ambient_pressure
+        table = film_table(self.frequency, self.finger.plateau_width, self.gas)
+        return FilmLoad(
+            self.model,
+            over,
+            over * table.relative_error,
+            float(table.length / shared.mean_gap[0]) ** 2,
+            f"{shared.ridge_points} points of ridges balanced, residual {shared.residual:.1e}; "
+            f"film within {table.relative_error:.1e}",
         )
 
     def at(self, amplitude: Metre) -> Dimensionless:
@@ -114,6 +197,8 @@ class FrictionLaw:
                     self.gap(amplitude), self.normal_force, ambient, self._closed_form
                 )
             )
+        if shares_load(self.model):
+            return self.sharing(np.ravel(amplitude)).relative_friction
         pressures = np.array([1 + self.load(float(a)).over_pressure for a in np.ravel(amplitude)])
         return np.asarray(self._shared(pressures))
 
@@ -121,6 +206,11 @@ class FrictionLaw:
         """µ′/µ (dimensionless) with a film already solved at an amplitude (m), as `load` has it."""
         if not is_solved(self.model):
             return self.at(amplitude)
+        if shares_load(self.model):
+            # The contact grows with the force here, so the paper's fixed area will not do.
+            carried = load.over_pressure * self.gas.ambient_pressure
+            carried *= self.finger.contact_area(self.normal_force)
+            return float(np.clip(1 - carried / self.normal_force, 0.0, 1.0))
         return float(self._shared(1 + load.over_pressure))
 
     def _shared(self, mean_pressure: DimensionlessLike) -> DimensionlessLike:
@@ -160,11 +250,17 @@ class FrictionLaw:
         pressure = self.normal_force / self.finger.contact_length**2 / self.gas.ambient_pressure
 
         def excess(amplitude: float) -> float:
+            if shares_load(self.model):
+                return self.at(amplitude) - wanted
             return 1 - self.load(amplitude).over_pressure / pressure - wanted
 
         low, least = 0.0, 1.0
         for high in np.geomspace(2e-8, HIGHEST_AMPLITUDE, 24):
-            left = excess(float(high))
+            try:
+                left = excess(float(high))
+            except OutOfRangeError:
+                # So strong a vibration closes the gap at some ridge: it is no way to get there.
+                break
             if left <= 0:
                 return float(brentq(excess, max(low, 1e-9), high, xtol=1e-11, rtol=1e-6))
             low, least = float(high), min(least, left + wanted)

@@ -318,3 +318,15 @@ class Gas:
         require("ambient_pressure", self.ambient_pressure, Unit("Pa"), above=0)
         require("density", self.density, Unit("kg/m3"), above=0)
         require("mean_free_path", self.mean_free_path, Unit("m"), above=0)
+
+    def at_pressure(self, ambient_pressure: Pascal) -> Gas:
+        """The same gas at the same temperature under another ambient pressure (Pa).
+
+        Density goes with the pressure, the mean free path with its inverse; the viscosity stays
+        (kinetic theory, down to where the gas is no continuum between the walls of its vessel).
+        """
+        require("ambient_pressure", ambient_pressure, Unit("Pa"), above=0)
+        ratio = ambient_pressure / self.ambient_pressure
+        return Gas(
+            self.viscosity, ambient_pressure, self.density * ratio, self.mean_free_path / ratio
+        )

@@ -44,6 +44,8 @@ SMALL = 0.1
 # What a formula needs that 0.1 is outside of.
 VALUES: dict[tuple[str, str], float] = {
     ("squeezefilm.film.limits.edge_layer_load", "squeeze_number"): 100.0,
+    # The gap must not close.
+    ("squeezefilm.contact.wedge.wedge_pressure", "amplitude"): 0.05,
 }
 DEFAULT_VALUES: dict[str, float] = {
     # Indices and ratios that start at 1.
@@ -83,6 +85,10 @@ MINIMUM = {
         "film.validity.crest_squeeze_number",
         "contact.paper.finger_pressure",
         "contact.paper.relative_friction_from_pressure",
+        "contact.asperities.exponential_pressure",
+        "contact.tapping.tapping_number",
+        "contact.wedge.wedge_pressure",
+        "contact.wedge.sliding_ratio",
         "plate.beam.euler_bernoulli_frequency",
     )
 }

@@ -51,11 +51,11 @@ STILL: Dimensionless = 1e-4
 class FilmLoad:
     """The mean over-pressure of a film over contact and period, divided by ambient.
 
-    `error` is the solver's estimate of its absolute error (0 for the closed form), `model` says
-    which reading of the finger it is.
+    `error` is the solver's estimate of its absolute error (0 for the closed form), `model` names
+    the reading of the finger, a `FilmModel` or one that shares the load with asperities.
     """
 
-    model: FilmModel
+    model: str
     over_pressure: Dimensionless
     error: Dimensionless
     squeeze_number: Dimensionless

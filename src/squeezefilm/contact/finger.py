@@ -2,10 +2,41 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from typing import Literal, get_args
 
+import numpy as np
+
+from squeezefilm.contact.asperities import AsperityLaw
+from squeezefilm.contact.skin import Skin, TactileSkin
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import Metre, Newton, Pascal, Unit, format_quantity, require
+from squeezefilm.quantities import (
+    Dimensionless,
+    FloatLike,
+    Metre,
+    Newton,
+    Pascal,
+    Radian,
+    SquareMetre,
+    Unit,
+    did_you_mean,
+    format_quantity,
+    require,
+)
+
+Moisture = Literal["dry", "normal", "moist"]
+MOISTURES: tuple[Moisture, ...] = get_args(Moisture)
+
+STIFFNESS_OF_MOISTURE: dict[Moisture, float] = {"dry": 2.0, "normal": 1.0, "moist": 0.4}
+"""How much stiffer than normal the outermost skin is, which scales what asperities carry at a gap.
+Assumed: water softens the stratum corneum; the factors are illustrative, not measured."""
+
+FRICTION_OF_MOISTURE: dict[Moisture, float] = {"dry": 0.6, "normal": 1.0, "moist": 1.8}
+"""How much the friction without vibration differs from normal. Assumed, illustrative."""
+
+# Frozen, so that every finger may share them.
+_ASPERITIES, _SKIN, _TACTILE_SKIN = AsperityLaw(), Skin(), TactileSkin()
 
 
 @dataclass(frozen=True)
@@ -16,6 +47,15 @@ class Finger:
     eq 13); ridges of `ridge_amplitude` h_e (half their height) and `ridge_period` L;
     `normal_force` F. Pressed on a surface the ridges flatten: `plateau_width` is that of the flat
     part of each (illustrative; 150 to 350 µm are reported).
+
+    The area grows with the load like F^`contact_area_exponent` (0: fixed; soft pads have some 0.2
+    to 0.5) and is contact_length² at `contact_area_force` (None: at `normal_force`). `ridge_angle`
+    is between the ridges' normal and the wave: 0 where ridges run along the nodal lines.
+
+    `asperities` is the law of the contact with a surface as rough as `asperity_roughness`; on
+    another surface its heights scale with √(skin_roughness² + roughness²). `skin` is the tissue at
+    ultrasonic frequency, `tactile_skin` the pad as a hand moves it. All of these defaults are
+    assumed and illustrative: they control the friction predicted, so give your own where you can.
     """
 
     contact_length: Metre
@@ -23,13 +63,33 @@ class Finger:
     ridge_period: Metre
     normal_force: Newton
     plateau_width: Metre = 250e-6
+    contact_area_exponent: Dimensionless = 0.0
+    contact_area_force: Newton | None = None
+    ridge_angle: Radian = 0.0
+    asperities: AsperityLaw = _ASPERITIES
+    asperity_roughness: Metre = 0.6e-6
+    skin_roughness: Metre = 0.6e-6
+    skin: Skin = _SKIN
+    tactile_skin: TactileSkin = _TACTILE_SKIN
+    moisture: Moisture = "normal"
 
     def __post_init__(self) -> None:
-        for name in ("contact_length", "ridge_period"):
+        for name in ("contact_length", "ridge_period", "asperity_roughness"):
             require(name, getattr(self, name), Unit("m"), above=0)
         require("ridge_amplitude", self.ridge_amplitude, Unit("m"), at_least=0)
         require("normal_force", self.normal_force, Unit("N"), above=0)
         require("plateau_width", self.plateau_width, Unit("m"), above=0)
+        require("contact_area_exponent", self.contact_area_exponent, at_least=0, at_most=1)
+        if self.contact_area_force is not None:
+            require("contact_area_force", self.contact_area_force, Unit("N"), above=0)
+        require("ridge_angle", self.ridge_angle, Unit("rad"), at_least=-math.pi, at_most=math.pi)
+        require("skin_roughness", self.skin_roughness, Unit("m"), at_least=0)
+        if self.moisture not in MOISTURES:
+            raise InputError(
+                f"moisture = '{self.moisture}' is not known."
+                f"{did_you_mean(self.moisture, MOISTURES)} Allowed: {', '.join(MOISTURES)}",
+                quantity="moisture",
+            )
         if self.plateau_width > self.ridge_period:
             raise InputError(
                 f"plateau_width = {format_quantity(self.plateau_width, Unit('m'))} is wider than "
@@ -42,3 +102,43 @@ class Finger:
     def mean_pressure(self) -> Pascal:
         """P_f = F / l0² (paper eq 13)."""
         return self.normal_force / self.contact_length**2
+
+    @property
+    def ridge_height(self) -> Metre:
+        """From groove to crest, 2 h_e."""
+        return 2 * self.ridge_amplitude
+
+    def contact_area(self, normal_force: Newton | None = None) -> SquareMetre:
+        """A = l0² (F/F_ref)^exponent under a force (N; None: the finger's own)."""
+        force = self.normal_force if normal_force is None else normal_force
+        require("normal_force", force, Unit("N"), above=0)
+        reference = self.contact_area_force or self.normal_force
+        return self.contact_length**2 * float((force / reference) ** self.contact_area_exponent)
+
+    def plateau_pressure(self, normal_force: Newton | None = None) -> Pascal:
+        """p_plateau = F L/(A w): what a flattened ridge carries in the mean."""
+        force = self.normal_force if normal_force is None else normal_force
+        return force / self.contact_area(force) * self.ridge_period / self.plateau_width
+
+    def asperity_law(self, surface_roughness: Metre) -> AsperityLaw:
+        """What the asperities of this skin carry on a surface of a roughness (m).
+
+        Heights add as independent ones do; the moisture scales the pressure.
+        """
+        require("surface_roughness", surface_roughness, Unit("m"), at_least=0)
+        here: FloatLike = np.hypot(self.skin_roughness, surface_roughness)
+        there = float(np.hypot(self.skin_roughness, self.asperity_roughness))
+        if not here > 0:
+            raise InputError("a perfectly smooth skin on a perfectly smooth surface has no law")
+        law = self.asperities.scaled(float(here) / there)
+        return AsperityLaw(
+            law.reference_pressure * STIFFNESS_OF_MOISTURE[self.moisture],
+            law.reference_gap,
+            law.decay_length,
+            law.heights,
+        )
+
+    @property
+    def friction_factor(self) -> Dimensionless:
+        """The unexcited friction over that of normally moist skin (assumed)."""
+        return FRICTION_OF_MOISTURE[self.moisture]

@@ -1,0 +1,199 @@
+"""The over-pressure of a plateau's film as a table of solved films, fast enough for load balances.
+
+A plateau of width w between ambient grooves is a strip film under H = 1 + ε cos T. With the length
+ℓ = w √(12 η ω/p0) its squeeze number is (ℓ/u)² and its Knudsen number (Λ/ℓ)(ℓ/u), Λ the mean free
+path: at given frequency, width and gas it depends on the mean gap u and on ε = a/u alone. The
+table holds ln((W − 1)/ε²), ln of stiffness and of damping over ln(u/ℓ) and −ln(1 − ε²), as
+Chebyshev interpolants in panels that are solved when first needed. Nothing is fitted: every node
+is a solved film, and each panel is checked against films solved between its nodes.
+"""
+
+from __future__ import annotations
+
+import threading
+from functools import lru_cache
+
+import numpy as np
+
+from squeezefilm.errors import ConvergenceError
+from squeezefilm.film.batch import solve_strips
+from squeezefilm.film.resolution import IntArray
+from squeezefilm.film.slip import slip_law
+from squeezefilm.materials import Gas
+from squeezefilm.quantities import (
+    Dimensionless,
+    FloatArray,
+    Hertz,
+    Metre,
+    MetreLike,
+    PascalLike,
+    Unit,
+    require,
+)
+
+DEEPEST_EXCURSION: Dimensionless = 0.985
+"""The deepest excursion a/u the table holds; the gap then closes to 1.5 % of its mean."""
+
+_SHALLOWEST = 3e-3
+_EXCURSIONS = (_SHALLOWEST, 0.8, 0.95, DEEPEST_EXCURSION)
+_FIRST_COLUMN, _COLUMNS = -6, 10
+_START = (9, 8)
+_MOST = (33, 30)
+
+
+class FilmTable:
+    """The film of a plateau at one frequency, width and gas, over mean gap and amplitude.
+
+    `tolerance` is relative on the over-pressure. `error` is the largest deviation found between
+    the table and films solved between its nodes, doubled, plus the solver's own estimate; None
+    before the first panel is solved. `solved` counts the films behind it.
+    """
+
+    def __init__(
+        self, frequency: Hertz, width: Metre, gas: Gas, slip: str = "first", tolerance: float = 5e-4
+    ) -> None:
+        require("frequency", frequency, Unit("Hz"), above=0)
+        require("width", width, Unit("m"), above=0)
+        require("tolerance", tolerance, at_least=1e-6, at_most=1e-2)
+        slip_law(slip, 1.0)
+        self.frequency, self.width, self.gas = frequency, width, gas
+        self.slip, self.tolerance = slip, tolerance
+        self.length: Metre = width * float(
+            np.sqrt(24 * np.pi * gas.viscosity * frequency / gas.ambient_pressure)
+        )
+        self.error: Dimensionless | None = None
+        self.solved = 0
+        self._nodes = _START
+        self._scale = np.array([self.length, gas.ambient_pressure, float(_FIRST_COLUMN)])
+        self._edges = -np.log1p(-(np.array(_EXCURSIONS) ** 2))
+        self._lock = threading.Lock()
+        self._empty()
+
+    def _empty(self) -> None:
+        rows = len(_EXCURSIONS) - 1
+        self._built = np.zeros((_COLUMNS, rows), dtype=np.int64)
+        self._panels = np.zeros((_COLUMNS, rows, 3, *self._nodes))
+        self.error = None
+
+    @property
+    def compiled(self) -> tuple[FloatArray, FloatArray, IntArray, FloatArray]:
+        """Scales, edges of the rows, which panels are solved, and their coefficients."""
+        return self._scale, self._edges, self._built, self._panels
+
+    @property
+    def relative_error(self) -> Dimensionless:
+        """The bound on the relative error of the over-pressure; 0 where no film was needed."""
+        return 0.0 if self.error is None else self.error
+
+    def over_pressure(self, mean_gap: MetreLike, amplitude: MetreLike) -> PascalLike:
+        """⟨p_gas⟩ − p0 (Pa), mean over plateau and period; broadcasts.
+
+        Raises `InputError` for an amplitude above 0.985 of the gap or a gap off the table.
+        """
+        from squeezefilm.contact.sharing_kernel import film_value
+
+        u, a = np.broadcast_arrays(np.asarray(mean_gap, float), np.asarray(amplitude, float))
+        require("mean_gap", u, Unit("m"), above=0)
+        require("amplitude", a, Unit("m"), at_least=0)
+        require("amplitude / mean_gap", a / u, at_most=DEEPEST_EXCURSION)
+        lowest, highest = np.exp([_FIRST_COLUMN, _FIRST_COLUMN + _COLUMNS]) * self.length
+        require("mean_gap", u, Unit("m"), at_least=float(lowest), below=float(highest))
+        out = np.empty(u.size)
+        for k, (gap, swing) in enumerate(zip(u.ravel().tolist(), a.ravel().tolist(), strict=True)):
+            value, lack = film_value(0, gap, swing, *self.compiled)
+            while lack >= 0:
+                self.build(lack)
+                value, lack = film_value(0, gap, swing, *self.compiled)
+            out[k] = value
+        return out.reshape(u.shape)[()]
+
+    def build(self, panel: int) -> None:
+        """Solve the films of one panel (by its number), with more nodes until its check holds.
+
+        Raises `ConvergenceError` where the largest number of nodes does not reach the tolerance.
+        """
+        with self._lock:
+            wanted = [panel]
+            while True:
+                missing = [p for p in wanted if not self._built.flat[p]]
+                if not missing:
+                    return
+                worst = max(self._solve(p) for p in missing)
+                if worst <= self.tolerance:
+                    return
+                if self._nodes >= _MOST:
+                    raise ConvergenceError(
+                        f"the film table of a plateau of {self.width * 1e6:.4g} µm at "
+                        f"{self.frequency:.5g} Hz misses its tolerance {self.tolerance:g}: "
+                        f"{worst:.3g} between nodes. Ask a larger tolerance",
+                        residual=worst,
+                    )
+                # All panels have the same nodes, so that they meet without a step.
+                wanted = sorted({panel, *map(int, np.flatnonzero(self._built))})
+                nx, nt = self._nodes
+                self._nodes = (min(nx + 4, _MOST[0]), min(nt + 4, _MOST[1]))
+                self._empty()
+
+    def _solve(self, panel: int) -> float:
+        column, row = divmod(panel, self._built.shape[1])
+        nx, nt = self._nodes
+        xi, eta = (np.cos(np.pi * np.arange(n) / (n - 1)) for n in (nx, nt))
+        # Points between nodes where the table is checked: a lattice that meets every line.
+        i = np.arange(nx - 1)
+        j = (3 * i) % (nt - 1)
+        xi_check = np.cos(np.pi * (i + 0.5) / (nx - 1))
+        eta_check = np.cos(np.pi * (j + 0.5) / (nt - 1))
+        XI, ETA = np.meshgrid(xi, eta, indexing="ij")
+        x = np.concatenate([XI.ravel(), xi_check])
+        y = np.concatenate([ETA.ravel(), eta_check])
+        low, high = self._edges[row], self._edges[row + 1]
+        gap = np.exp(_FIRST_COLUMN + column + 0.5 * (x + 1.0))
+        excursion = np.sqrt(-np.expm1(-(low + 0.5 * (y + 1.0) * (high - low))))
+        films = solve_strips(
+            gap**-2.0,
+            excursion,
+            knudsen_number=self.gas.mean_free_path / (self.length * gap),
+            slip=self.slip,
+            tolerance=self.tolerance / 4,
+            workers=1,
+        )
+        self.solved += len(gap)
+        values = (
+            np.log(films.over_pressure / excursion**2),
+            np.log(films.stiffness_relative),
+            np.log(films.damping_relative),
+        )
+        for k, value in enumerate(values):
+            self._panels[column, row, k] = _coefficients(value[: nx * nt].reshape(nx, nt))
+        self._built[column, row] = 1
+        from numpy.polynomial import chebyshev
+
+        found = chebyshev.chebval2d(xi_check, eta_check, self._panels[column, row, 0])
+        deviation = float(np.max(np.abs(np.expm1(found - values[0][nx * nt :]))))
+        films_error = float(np.max(films.over_pressure_error / films.over_pressure))
+        error = 2.0 * deviation + films_error
+        self.error = max(self.relative_error, error)
+        return error
+
+
+def _coefficients(values: FloatArray) -> FloatArray:
+    """Chebyshev coefficients from values at the Lobatto nodes of both directions."""
+    from scipy.fft import dct
+
+    result = values
+    for axis in (0, 1):
+        n = values.shape[axis] - 1
+        result = np.asarray(dct(result, type=1, axis=axis)) / n
+        ends = [slice(None), slice(None)]
+        for end in (0, n):
+            ends[axis] = slice(end, end + 1)
+            result[tuple(ends)] *= 0.5
+    return np.ascontiguousarray(result)
+
+
+@lru_cache(maxsize=256)
+def film_table(
+    frequency: Hertz, width: Metre, gas: Gas, slip: str = "first", tolerance: float = 5e-4
+) -> FilmTable:
+    """The table of a plateau's film (kept, so that each is solved once). See `FilmTable`."""
+    return FilmTable(frequency, width, gas, slip, tolerance)

@@ -1,0 +1,239 @@
+"""The pad over the standing wave: every ridge where it stands, in two limits of the skin.
+
+The skin is soft in the mean and nearly inertial at ultrasonic frequency. If it is soft enough for
+each ridge to sink until it is carried, every plateau has a balance of its own ("own", the
+default); if the pad were stiff, all plateaus would hang on one mean gap ("one-gap"). A real pad
+lies between, and the two are reported together.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from squeezefilm.contact.asperities import AsperityLaw
+from squeezefilm.contact.finger import Finger
+from squeezefilm.contact.gas_table import FilmTable
+from squeezefilm.contact.sharing import share_load, share_load_tied
+from squeezefilm.contact.skin import Skin
+from squeezefilm.errors import InputError
+from squeezefilm.quantities import (
+    Dimensionless,
+    DimensionlessArray,
+    FloatArray,
+    Metre,
+    MetreArray,
+    MetreLike,
+    Newton,
+    Pascal,
+    PascalArray,
+    Radian,
+    Unit,
+    format_quantity,
+    require,
+)
+
+Limit = Literal["own", "one-gap"]
+
+
+@dataclass(frozen=True, eq=False)
+class PadPosture:
+    """How the pad lies on the wave.
+
+    `position` is the pad's centre from an antinode (m, along the wave). `pressure_tilt` τ makes
+    the pressure p(1 + τ x/(l0/2)) across the pad, −1 < τ < 1 (limit "own"); `gap_tilt` is the
+    angle (rad) by which the pad as a whole leans against the surface (limit "one-gap").
+    """
+
+    position: Metre = 0.0
+    pressure_tilt: Dimensionless = 0.0
+    gap_tilt: Radian = 0.0
+
+    def __post_init__(self) -> None:
+        require("position", self.position, Unit("m"))
+        require("pressure_tilt", self.pressure_tilt, above=-1, below=1)
+        require("gap_tilt", self.gap_tilt, Unit("rad"), at_least=-0.01, at_most=0.01)
+
+
+@dataclass(frozen=True, eq=False)
+class PadFriction:
+    """The pad's friction at an array of amplitudes (one-dimensional), in one limit.
+
+    `mean_gap` is the mean over the plateaus (m). `film_pressure` and `asperity_pressure` are means
+    over all plateaus and the period (Pa); their shares of the plateau's pressure sum to 1 within `residual`, the largest imbalance.
+    `relative_friction_error` bounds what the film table's error does to µ′/µ.
+    """
+
+    amplitude: MetreArray
+    mean_gap: MetreArray
+    film_pressure: PascalArray
+    asperity_pressure: PascalArray
+    relative_friction_error: DimensionlessArray
+    residual: Dimensionless
+    ridge_points: int
+    limit: Limit
+    model: str
+
+    @property
+    def relative_friction(self) -> DimensionlessArray:
+        """µ′/µ: the asperities' share of the load (dimensionless)."""
+        return self.asperity_pressure / (self.asperity_pressure + self.film_pressure)
+
+    @property
+    def film_share(self) -> DimensionlessArray:
+        """The film's share of the load (dimensionless), 1 − µ′/µ."""
+        return self.film_pressure / (self.asperity_pressure + self.film_pressure)
+
+
+def ridge_points(finger: Finger, contact_length: Metre | None = None) -> FloatArray:
+    """Where along the wave (m from the pad's centre) the ridges are sampled, each point alike.
+
+    Ridges stand at (i + ½) L along their normal; with ridge_angle 0 each has one x. At an angle
+    each ridge in the square contact is sampled along its length, a quarter of a period apart or
+    finer. Raises `InputError` where the contact holds no ridge.
+    """
+    side = finger.contact_length if contact_length is None else contact_length
+    require("contact_length", side, Unit("m"), above=0)
+    half, period, angle = side / 2, finger.ridge_period, finger.ridge_angle
+    reach = half * (abs(np.cos(angle)) + abs(np.sin(angle)))
+    count = int(np.floor(reach / period + 0.5))
+    across = (np.arange(-count, count) + 0.5) * period
+    if abs(np.sin(angle)) < 1e-9:
+        points = across[np.abs(across) <= half]
+    else:
+        along = (np.arange(64) + 0.5) / 64 * 2 * reach - reach
+        x = across[:, None] * np.cos(angle) - along * np.sin(angle)
+        y = across[:, None] * np.sin(angle) + along * np.cos(angle)
+        points = x[(np.abs(x) <= half) & (np.abs(y) <= half)]
+    if points.size == 0:
+        raise InputError(
+            f"a contact of {format_quantity(side, Unit('m'))} holds no ridge of period "
+            f"{format_quantity(period, Unit('m'))}; make the contact longer"
+        )
+    return np.asarray(points, dtype=float)
+
+
+def pad_friction(
+    table: FilmTable,
+    asperities: AsperityLaw,
+    amplitude: MetreLike,
+    half_wavelength: Metre,
+    points: MetreArray,
+    plateau_pressure: Pascal,
+    *,
+    limit: Limit = "own",
+    posture: PadPosture | None = None,
+    skin: Skin | None = None,
+) -> PadFriction:
+    """The friction of plateaus at `points` (m from the pad's centre) over a standing wave.
+
+    `amplitude` (m, at an antinode) may be an array; the plate's amplitude at x is
+    a |cos(πx/half_wavelength)|. Raises as `share_load` does.
+    """
+    require("half_wavelength", half_wavelength, Unit("m"), above=0)
+    if limit not in ("own", "one-gap"):
+        raise InputError(f"limit = '{limit}' is not known; allowed: own, one-gap")
+    posture = posture or PadPosture()
+    a = np.atleast_1d(np.asarray(amplitude, dtype=float))
+    wave = np.abs(np.cos(np.pi * (points + posture.position) / half_wavelength))
+    if limit == "one-gap":
+        offset = np.tan(posture.gap_tilt) * points
+        tied = [
+            share_load_tied(
+                table, asperities, one * wave, plateau_pressure, offset=offset, skin=skin
+            )
+            for one in a
+        ]
+        return PadFriction(
+            amplitude=a,
+            mean_gap=np.array([item.mean_gap for item in tied]),
+            film_pressure=np.array([item.gas_pressure for item in tied]),
+            asperity_pressure=np.array([item.asperity_pressure for item in tied]),
+            relative_friction_error=np.array([item.relative_friction_error for item in tied]),
+            residual=max(abs(item.residual) for item in tied),
+            ridge_points=points.size,
+            limit=limit,
+            model=tied[0].model,
+        )
+    reach = float(np.max(np.abs(points)))
+    lean = 1 + posture.pressure_tilt * points / reach if reach > 0 else np.ones_like(points)
+    # Ridges on the two sides of an antinode do the same: each kind is balanced once.
+    kinds, counts = np.unique(np.round([wave, lean], 9), axis=1, return_counts=True)
+    shared = share_load(
+        table, asperities, np.outer(a, kinds[0]), plateau_pressure * kinds[1], skin=skin
+    )
+    weight = counts / points.size
+    error = (shared.relative_friction_error * kinds[1]) @ weight
+    return PadFriction(
+        amplitude=a,
+        mean_gap=shared.mean_gap @ weight,
+        film_pressure=shared.gas_pressure @ weight,
+        asperity_pressure=shared.asperity_pressure @ weight,
+        relative_friction_error=error,
+        residual=float(np.max(np.abs(shared.residual))),
+        ridge_points=points.size,
+        limit=limit,
+        model=shared.model,
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class FrictionRipple:
+    """What a pad feels of the standing wave itself as it moves along it at constant amplitude.
+
+    `relative_friction` at `position` (m from an antinode, half a wavelength), its mean, and
+    `ripple`, from least to most over the mean (dimensionless).
+    """
+
+    position: MetreArray
+    relative_friction: DimensionlessArray
+    contact_length: Metre
+    half_wavelength: Metre
+
+    @property
+    def mean(self) -> Dimensionless:
+        """The mean of µ′/µ over half a wavelength."""
+        return float(np.mean(self.relative_friction))
+
+    @property
+    def ripple(self) -> Dimensionless:
+        """(max − min)/mean of µ′/µ; its period in space is half the wavelength."""
+        return float(np.ptp(self.relative_friction)) / self.mean
+
+
+def friction_ripple(
+    table: FilmTable,
+    asperities: AsperityLaw,
+    amplitude: Metre,
+    half_wavelength: Metre,
+    finger: Finger,
+    *,
+    normal_force: Newton | None = None,
+    limit: Limit = "own",
+    positions: int = 24,
+) -> FrictionRipple:
+    """The friction as the pad crosses the wave's nodes, over half a wavelength.
+
+    Raises as `pad_friction` does, and `InputError` for fewer than 4 positions.
+    """
+    if positions < 4:
+        raise InputError(f"positions = {positions} cannot be used: at least 4 show a ripple")
+    side = float(np.sqrt(finger.contact_area(normal_force)))
+    points = ridge_points(finger, side)
+    where = np.arange(positions) / positions * half_wavelength
+    values = [
+        pad_friction(
+            table,
+            asperities,
+            amplitude,
+            half_wavelength,
+            points,
+            finger.plateau_pressure(normal_force),
+            limit=limit,
+            posture=PadPosture(position=float(x)),
+        ).relative_friction[0]
+        for x in where
+    ]
+    return FrictionRipple(where, np.array(values), side, half_wavelength)

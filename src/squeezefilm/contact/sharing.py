@@ -1,0 +1,236 @@
+"""Partial levitation: gas film and asperities share the load of a ridge's plateau.
+
+Over a plateau h(T) = u − a cos T, u its mean gap. In the mean over a period
+
+    ⟨p_gas⟩ − p0 + ⟨p_a(h(T))⟩ = p_plateau,        µ′/µ = ⟨p_a⟩ / p_plateau
+
+with the film solved (`gas_table`) and p_a the asperities' law, which does not know the load.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from squeezefilm.contact.asperities import AsperityLaw
+from squeezefilm.contact.gas_table import DEEPEST_EXCURSION, FilmTable
+from squeezefilm.contact.skin import Skin
+from squeezefilm.errors import ConvergenceError, OutOfRangeError
+from squeezefilm.film.compiled import announce
+from squeezefilm.quantities import (
+    DimensionlessArray,
+    FloatArray,
+    Metre,
+    MetreArray,
+    MetreLike,
+    Pascal,
+    PascalArray,
+    PascalLike,
+    Unit,
+    format_quantity,
+    require,
+)
+
+
+@dataclass(frozen=True, eq=False)
+class LoadSharing:
+    """Balances of plateaus, arrays of one shape.
+
+    Pressures are means over plateau and period, the gas's over ambient. `gap_amplitude` differs
+    from `amplitude` (the plate's) by what the skin moves, `skin_amplitude`. `residual` is the
+    imbalance over the plateau's pressure, `relative_friction_error` what the film table's error
+    bound leaves of doubt in µ′/µ.
+    """
+
+    amplitude: MetreArray
+    plateau_pressure: PascalArray
+    mean_gap: MetreArray
+    gas_pressure: PascalArray
+    asperity_pressure: PascalArray
+    gap_amplitude: MetreArray
+    skin_amplitude: MetreArray
+    residual: DimensionlessArray
+    film_error: float
+    steps: FloatArray
+    asperities: AsperityLaw
+    model: str
+
+    @property
+    def relative_friction(self) -> DimensionlessArray:
+        """µ′/µ: the asperities' share of the load (dimensionless)."""
+        return self.asperity_pressure / (self.asperity_pressure + self.gas_pressure)
+
+    @property
+    def relative_friction_error(self) -> DimensionlessArray:
+        """The bound on the error of µ′/µ: that of the film times the gas's share."""
+        return self.film_error * (1 - self.relative_friction) + np.abs(self.residual)
+
+
+def share_load(
+    table: FilmTable,
+    asperities: AsperityLaw,
+    amplitude: MetreLike,
+    plateau_pressure: PascalLike,
+    *,
+    skin: Skin | None = None,
+) -> LoadSharing:
+    """Each plateau at its own balance; amplitude (m, of the plate there) and pressure broadcast.
+
+    Without a `skin` the finger is rigid at the ultrasonic frequency. Raises `InputError` for
+    values that cannot be used, `OutOfRangeError` where the asperities are pressed through (the gap
+    would close beyond 98.5 % of its mean, or below nothing), `ConvergenceError` where no balance
+    is found.
+    """
+    from squeezefilm.contact import sharing_kernel as kernel
+
+    announce(kernel.balance_rows, "load balance", 20)
+    require("amplitude", amplitude, Unit("m"), at_least=0, at_most=1e-4)
+    require("plateau_pressure", plateau_pressure, Unit("Pa"), above=0)
+    form = np.broadcast_shapes(np.shape(amplitude), np.shape(plateau_pressure))
+    a = np.array(np.broadcast_to(amplitude, form), dtype=float).ravel()
+    p = np.array(np.broadcast_to(plateau_pressure, form), dtype=float).ravel()
+    rows = np.zeros((a.size, kernel.COLUMNS))
+    solve: Any = kernel.balance_rows
+    law, impedance = asperities.compiled(), _impedance(skin, table)
+    while True:
+        lacking = solve(a, p, impedance, *law, *table.compiled, rows)
+        if lacking < 0:
+            break
+        table.build(lacking)
+    _refuse(rows, a, p)
+    columns = {
+        name: rows[:, column].reshape(form)
+        for name, column in (
+            ("mean_gap", kernel.GAP),
+            ("gas_pressure", kernel.GAS),
+            ("asperity_pressure", kernel.ASPERITIES),
+            ("gap_amplitude", kernel.SWING),
+            ("skin_amplitude", kernel.SKIN),
+            ("residual", kernel.RESIDUAL),
+            ("steps", kernel.STEPS),
+        )
+    }
+    return LoadSharing(
+        amplitude=a.reshape(form),
+        plateau_pressure=p.reshape(form),
+        film_error=table.relative_error,
+        asperities=asperities,
+        model=_model(table, asperities, skin, "each plateau at its own balance"),
+        **columns,
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class TiedSharing:
+    """The balance of ridges that share one mean gap: one value for each, and those of the whole.
+
+    `gas_pressure` and `asperity_pressure` are means over all plateaus and the period (Pa).
+    """
+
+    amplitude: MetreArray
+    plateau_pressure: Pascal
+    mean_gap: Metre
+    gas_pressure: Pascal
+    asperity_pressure: Pascal
+    residual: float
+    film_error: float
+    model: str
+
+    @property
+    def relative_friction(self) -> float:
+        """µ′/µ: the asperities' share of the load (dimensionless)."""
+        return self.asperity_pressure / (self.asperity_pressure + self.gas_pressure)
+
+    @property
+    def relative_friction_error(self) -> float:
+        """The bound on the error of µ′/µ: that of the film times the gas's share."""
+        return self.film_error * (1 - self.relative_friction) + abs(self.residual)
+
+
+def share_load_tied(
+    table: FilmTable,
+    asperities: AsperityLaw,
+    amplitude: MetreArray,
+    plateau_pressure: Pascal,
+    *,
+    offset: MetreArray | None = None,
+    skin: Skin | None = None,
+) -> TiedSharing:
+    """Plateaus tied to one mean gap u (ridge i at u + offset[i]) that carry a mean pressure (Pa).
+
+    `amplitude` (m) is one-dimensional, one value for each ridge. Raises as `share_load` does.
+    """
+    from squeezefilm.contact import sharing_kernel as kernel
+
+    announce(kernel.balance, "load balance", 20)
+    require("amplitude", amplitude, Unit("m"), at_least=0, at_most=1e-4)
+    require("plateau_pressure", plateau_pressure, Unit("Pa"), above=0)
+    a = np.ascontiguousarray(np.ravel(amplitude), dtype=float)
+    shift = np.zeros_like(a) if offset is None else np.ascontiguousarray(offset, dtype=float)
+    require("offset", shift, Unit("m"), at_least=-1e-4, at_most=1e-4)
+    row = np.zeros(kernel.COLUMNS)
+    solve: Any = kernel.balance
+    law, impedance = asperities.compiled(), _impedance(skin, table)
+    while True:
+        solve(a, shift, plateau_pressure, impedance, *law, *table.compiled, row)
+        if int(row[kernel.STATUS]) != kernel.NEEDS_PANEL:
+            break
+        table.build(int(row[kernel.PANEL]))
+    _refuse(row[None, :], a.max(keepdims=True), np.array([plateau_pressure]))
+    return TiedSharing(
+        amplitude=a,
+        plateau_pressure=plateau_pressure,
+        mean_gap=float(row[kernel.GAP]),
+        gas_pressure=float(row[kernel.GAS]),
+        asperity_pressure=float(row[kernel.ASPERITIES]),
+        residual=float(row[kernel.RESIDUAL]),
+        film_error=table.relative_error,
+        model=_model(table, asperities, skin, "all plateaus at one mean gap"),
+    )
+
+
+def _impedance(skin: Skin | None, table: FilmTable) -> FloatArray:
+    if skin is None:
+        return np.zeros(3)
+    D = skin.dynamic_stiffness(table.frequency)
+    return np.array([D.real, D.imag, 1.0])
+
+
+def _model(table: FilmTable, asperities: AsperityLaw, skin: Skin | None, tie: str) -> str:
+    yields = "rigid" if skin is None else "yielding"
+    return (
+        f"partial levitation, {tie}: strip films of {table.width * 1e6:.4g} µm with slip "
+        f"'{table.slip}', asperities of {asperities.heights} heights, {yields} skin"
+    )
+
+
+def _refuse(rows: FloatArray, amplitude: FloatArray, pressure: FloatArray) -> None:
+    from squeezefilm.contact import sharing_kernel as kernel
+
+    bad = np.flatnonzero(rows[:, kernel.STATUS] != kernel.BALANCED)
+    if bad.size == 0:
+        return
+    at = int(bad[0])
+    status = int(rows[at, kernel.STATUS])
+    asked = (
+        f"a plateau under {format_quantity(pressure[at], Unit('Pa'))} at an amplitude of "
+        f"{format_quantity(amplitude[at], Unit('m'))}"
+    )
+    if status == kernel.PRESSED_THROUGH:
+        raise OutOfRangeError(
+            f"{asked} is pressed through its asperities: gas and asperities do not carry it at a "
+            f"gap closed to {DEEPEST_EXCURSION:.1%} of its mean. Press less, vibrate less, or take "
+            "asperities that carry more"
+        )
+    if status == kernel.OUT_OF_TABLE:
+        raise OutOfRangeError(
+            f"{asked} leads to a gap for which the film is not tabulated; its squeeze number is "
+            "out of 3e-4 to 1.6e5. Check frequency, plateau width and ambient pressure"
+        )
+    raise ConvergenceError(
+        f"{asked} was not balanced; the residual is {rows[at, kernel.RESIDUAL]:.3g} of the load",
+        residual=float(rows[at, kernel.RESIDUAL]),
+        iterations=int(rows[at, kernel.STEPS]),
+    )

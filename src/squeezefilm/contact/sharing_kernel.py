@@ -1,0 +1,328 @@
+"""The compiled load balance of a plateau: gas from the table of solved films, asperities by law.
+
+All functions run without the interpreter. A balance that needs a part of the table that is not
+solved yet says which, and is asked again once it is.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+
+from squeezefilm.film.resolution import IntArray
+from squeezefilm.quantities import FloatArray
+
+BALANCED, NEEDS_PANEL, PRESSED_THROUGH, OUT_OF_TABLE, UNSETTLED = range(5)
+"""What became of a balance."""
+
+# Columns of a balance's row.
+GAP, GAS, ASPERITIES, SWING, SKIN, RESIDUAL, STEPS, STATUS, PANEL = range(9)
+COLUMNS = 9
+
+_MOST_STEPS = 80
+_SETTLED = 1e-10
+_HALF_PERIOD = 32
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def bessel(order: int, z: float) -> float:
+    """exp(−z) I_order(z) for order 0 or 1 and z ≥ 0: series below 18, asymptotics above."""
+    if z < 18.0:
+        quarter = 0.25 * z * z
+        term = 1.0 if order == 0 else 0.5 * z
+        total = term
+        for k in range(1, 80):
+            term *= quarter / (k * (k + order))
+            total += term
+            if term < 1e-17 * total:
+                break
+        return total * math.exp(-z)
+    four = 4.0 * order * order
+    term, total = 1.0, 1.0
+    for k in range(1, 30):
+        odd = 2.0 * k - 1.0
+        term *= -(four - odd * odd) / (8.0 * z * k)
+        total += term
+        if abs(term) < 1e-16:
+            break
+    return float(total / math.sqrt(2.0 * math.pi * z))
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def _gaussian(h: float, law: FloatArray, table: FloatArray) -> float:
+    t = h / law[2]
+    x = (2.0 * t - law[3] - law[4]) / (law[4] - law[3])
+    if x > 1.0:
+        return 0.0
+    # Crushed flat: the balance will not be found there, but its search may pass.
+    x = max(x, -1.0)
+    b1, b2 = 0.0, 0.0
+    for k in range(len(table) - 1, 0, -1):
+        b1, b2 = table[k] + 2.0 * x * b1 - b2, b1
+    return float(law[0] * math.exp(table[0] + x * b1 - b2 - law[5]))
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def asperity_mean(
+    kind: int, law: FloatArray, table: FloatArray, u: float, a: float
+) -> tuple[float, float]:
+    """⟨p_a(u − a cos T)⟩ and its first harmonic 2⟨p_a cos T⟩, in Pa."""
+    if kind == 0:
+        least = law[0] * math.exp(min(-(u - a - law[1]) / law[2], 700.0))
+        z = a / law[2]
+        return least * bessel(0, z), 2.0 * least * bessel(1, z)
+    mean = 0.5 * (_gaussian(u - a, law, table) + _gaussian(u + a, law, table))
+    first = 0.5 * (_gaussian(u - a, law, table) - _gaussian(u + a, law, table))
+    for k in range(1, _HALF_PERIOD):
+        c = math.cos(math.pi * k / _HALF_PERIOD)
+        p = _gaussian(u - a * c, law, table)
+        mean += p
+        first += p * c
+    return mean / _HALF_PERIOD, 2.0 * first / _HALF_PERIOD
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def _panel_value(c: FloatArray, xi: float, eta: float) -> float:
+    """A two-dimensional Chebyshev sum by Clenshaw's recurrence, along η for each row, then ξ."""
+    b1, b2 = 0.0, 0.0
+    for i in range(c.shape[0] - 1, -1, -1):
+        d1, d2 = 0.0, 0.0
+        for j in range(c.shape[1] - 1, 0, -1):
+            d1, d2 = c[i, j] + 2.0 * eta * d1 - d2, d1
+        row = c[i, 0] + eta * d1 - d2
+        if i > 0:
+            b1, b2 = row + 2.0 * xi * b1 - b2, b1
+        else:
+            return float(row + xi * b1 - b2)
+    return math.nan
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def film_value(
+    which: int, u: float, a: float, scale: FloatArray, edges: FloatArray, built: IntArray,
+    panels: FloatArray,
+) -> tuple[float, int]:  # fmt: skip
+    """A tabulated film quantity at mean gap u and amplitude a, and the panel that lacks (or −1).
+
+    0: the over-pressure in Pa; 1, 2: stiffness and damping in Pa/m of gap amplitude. −2 for a
+    point outside the table.
+    """
+    if a <= 0.0 and which == 0:
+        return 0.0, -1
+    eps = a / u
+    t = -math.log1p(-eps * eps)
+    x = math.log(u / scale[0]) - scale[2]
+    column = math.floor(x)
+    if column < 0 or column >= built.shape[0] or not t <= edges[-1]:
+        return math.nan, -2
+    row = 0
+    while t > edges[row + 1]:
+        row += 1
+    if built[column, row] == 0:
+        return math.nan, column * built.shape[1] + row
+    xi = 2.0 * (x - column) - 1.0
+    eta = 2.0 * (t - edges[row]) / (edges[row + 1] - edges[row]) - 1.0
+    value = math.exp(_panel_value(panels[column, row, which], xi, eta))
+    if which == 0:
+        return scale[1] * eps * eps * value, -1
+    return scale[1] * value / u, -1
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def _swing(
+    a: float, u: float, impedance: FloatArray, kind: int, law: FloatArray, table: FloatArray,
+    scale: FloatArray, edges: FloatArray, built: IntArray, panels: FloatArray,
+) -> tuple[float, float, int]:  # fmt: skip
+    """Amplitudes of gap and skin (m) where the skin yields to the alternating pressure.
+
+    b = a/(1 + Z/D): D the skin's dynamic stiffness, Z = [film + 2⟨p_a cos T⟩/b] that of the gap.
+    """
+    if a <= 0.0:
+        return 0.0, 0.0, -1
+    D = complex(impedance[0], impedance[1])
+    deepest = u * math.sqrt(-math.expm1(-edges[-1])) * (1.0 - 1e-9)
+    low, f_low, high, f_high = 0.0, -a, math.nan, math.nan
+    # A light skin resonates on the film, and the gap may have several swings: the least is taken,
+    # which is the one met as the plate's amplitude rises.
+    b, moved, side = min(0.6 * a, 0.3 * deepest), 0.0, 0
+    for _ in range(_MOST_STEPS):
+        k, lack = film_value(1, u, b, scale, edges, built, panels)
+        if lack != -1:
+            return b, moved, lack
+        d, lack = film_value(2, u, b, scale, edges, built, panels)
+        if lack != -1:
+            return b, moved, lack
+        Z = complex(k + asperity_mean(kind, law, table, u, b)[1] / b, d)
+        moved = b * abs(Z / D)
+        miss = b * abs(1.0 + Z / D) - a
+        if abs(miss) <= 1e-13 * a:
+            return b, moved, -1
+        if miss < 0.0:
+            if b >= deepest:
+                # No swing of an open gap: the search for u moves on to wider ones.
+                return b, moved, -1
+            low, f_low = b, miss
+            if side == -1 and not math.isnan(high):
+                f_high *= 0.5
+            side = -1
+        else:
+            high, f_high = b, miss
+            if side == 1:
+                f_low *= 0.5
+            side = 1
+        if math.isnan(high):
+            b = min(1.15 * b, deepest)
+            continue
+        if high - low < 1e-14 * high:
+            return b, moved, -1
+        b = (low * f_high - high * f_low) / (f_high - f_low)
+        if not low < b < high:
+            b = 0.5 * (low + high)
+    return b, moved, -3
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def _carried(
+    u: float, amplitudes: FloatArray, offsets: FloatArray, impedance: FloatArray, kind: int,
+    law: FloatArray, table: FloatArray, scale: FloatArray, edges: FloatArray, built: IntArray,
+    panels: FloatArray,
+) -> tuple[float, float, float, float, int]:  # fmt: skip
+    """Mean gas and asperity pressure (Pa) of ridges at gaps u + offsets; swing and skin amplitude
+    of the last; the panel lacking."""
+    gas, asperities, b, moved = 0.0, 0.0, 0.0, 0.0
+    for i in range(len(amplitudes)):
+        gap, b = u + offsets[i], amplitudes[i]
+        if impedance[2] > 0.0:
+            b, moved, lack = _swing(
+                b, gap, impedance, kind, law, table, scale, edges, built, panels
+            )
+            if lack != -1:
+                return 0.0, 0.0, b, moved, lack
+        over, lack = film_value(0, gap, b, scale, edges, built, panels)
+        if lack != -1:
+            return 0.0, 0.0, b, moved, lack
+        gas += over
+        asperities += asperity_mean(kind, law, table, gap, b)[0]
+    count = len(amplitudes)
+    return gas / count, asperities / count, b, moved, -1
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def balance(
+    amplitudes: FloatArray, offsets: FloatArray, pressure: float, impedance: FloatArray,
+    kind: int, law: FloatArray, table: FloatArray, scale: FloatArray, edges: FloatArray,
+    built: IntArray, panels: FloatArray, out: FloatArray,
+) -> None:  # fmt: skip
+    """The mean gap u at which ridges tied together carry a mean pressure (Pa), into `out`.
+
+    Ridge i has the gap u + offsets[i] and the amplitude amplitudes[i]. What is carried falls
+    steadily with u; ln of it is nearly linear, hence a false position (Illinois) in logarithms.
+    """
+    out[:] = 0.0
+    out[PANEL] = -1.0
+    deepest = math.sqrt(-math.expm1(-edges[-1]))
+    low = 1e-9
+    for i in range(len(amplitudes)):
+        # A yielding skin can swing further than the plate.
+        low = max(low, amplitudes[i] / deepest * (1.0 + 1e-9) - offsets[i])
+    # Where exponential asperities alone would carry the load; with the gas it is further out.
+    step = law[2]
+    swing = amplitudes.max()
+    alone = law[1] + swing - step * math.log(pressure / (law[0] * bessel(0, swing / step)))
+    guess = max(low + 0.5 * step, alone)
+    u, at, spent = guess, math.nan, 0
+    gas, asperities, b, moved, lack = _carried(
+        u, amplitudes, offsets, impedance, kind, law, table, scale, edges, built, panels
+    )
+    if lack == -1:
+        at = math.log((gas + asperities) / pressure)
+    left, right, f_left, f_right = math.nan, math.nan, math.nan, math.nan
+    if at >= 0.0:
+        left, f_left = u, at
+    else:
+        right, f_right = u, at
+    while lack == -1 and spent < _MOST_STEPS and (math.isnan(left) or math.isnan(right)):
+        spent += 1
+        if math.isnan(right):
+            u = left + step
+        else:
+            if right <= low * (1.0 + 1e-9):
+                out[STATUS] = PRESSED_THROUGH
+                return
+            # Toward the deepest excursion, never past it.
+            u = max(right - step, 0.5 * (low + right)) if right - step <= low else right - step
+            if u - low < 1e-6 * low:
+                u = low
+        gas, asperities, b, moved, lack = _carried(
+            u, amplitudes, offsets, impedance, kind, law, table, scale, edges, built, panels
+        )
+        if lack != -1:
+            break
+        at = math.log((gas + asperities) / pressure)
+        if at >= 0.0:
+            left, f_left = u, at
+        else:
+            right, f_right = u, at
+        step *= 1.6
+    side = 0
+    while lack == -1 and spent < _MOST_STEPS and abs(at) > _SETTLED:
+        spent += 1
+        u = (left * f_right - right * f_left) / (f_right - f_left)
+        if not left < u < right or right - left < 1e-15 * u:
+            u = 0.5 * (left + right)
+        gas, asperities, b, moved, lack = _carried(
+            u, amplitudes, offsets, impedance, kind, law, table, scale, edges, built, panels
+        )
+        if lack != -1:
+            break
+        at = math.log((gas + asperities) / pressure)
+        if at >= 0.0:
+            left, f_left = u, at
+            if side == 1:
+                f_right *= 0.5
+            side = 1
+        else:
+            right, f_right = u, at
+            if side == -1:
+                f_left *= 0.5
+            side = -1
+    out[STEPS] = spent + 1
+    if lack >= 0:
+        out[STATUS], out[PANEL] = NEEDS_PANEL, lack
+        return
+    if lack == -2:
+        out[STATUS] = OUT_OF_TABLE
+        return
+    out[GAP], out[GAS], out[ASPERITIES], out[SWING], out[SKIN] = u, gas, asperities, b, moved
+    out[RESIDUAL] = (gas + asperities) / pressure - 1.0
+    # Where panels of the table meet, it may step by rounding: that much is allowed.
+    settled = lack == -1 and abs(out[RESIDUAL]) < 1e-8
+    if impedance[2] > 0.0 and b >= (u + offsets[-1]) * deepest * (1.0 - 1e-6):
+        settled = False
+    out[STATUS] = BALANCED if settled else UNSETTLED
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def balance_rows(
+    amplitude: FloatArray, pressure: FloatArray, impedance: FloatArray, kind: int,
+    law: FloatArray, table: FloatArray, scale: FloatArray, edges: FloatArray, built: IntArray,
+    panels: FloatArray, out: FloatArray,
+) -> int:  # fmt: skip
+    """Each plateau at its own balance; returns the first panel lacking, or −1.
+
+    Rows that are balanced already (their status says so and they have taken steps) are kept.
+    """
+    lacking = -1
+    none = np.zeros(1)
+    for i in range(len(amplitude)):
+        if out[i, STEPS] > 0.0 and out[i, STATUS] != NEEDS_PANEL:
+            continue
+        balance(
+            amplitude[i : i + 1], none, pressure[i], impedance, kind, law, table, scale, edges,
+            built, panels, out[i],
+        )  # fmt: skip
+        if out[i, STATUS] == NEEDS_PANEL and lacking < 0:
+            lacking = int(out[i, PANEL])
+    return lacking

@@ -1,0 +1,73 @@
+"""The skin at ultrasonic frequency: nearly inertial, moved a little by the film's pressure.
+
+A patch of skin over a ridge is a mass per area m on a stiffness k and a damping c per area. The
+alternating pressure of film and asperities moves it by y = p/(k − m ω² + iωc), so that the gap
+swings by b = a − y instead of a; in the mean the skin is soft and only carries the load.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from squeezefilm.quantities import (
+    Hertz,
+    Kilogram,
+    KilogramPerSquareMetre,
+    NewtonPerMetre,
+    NewtonSecondPerMetre,
+    Pascal,
+    PascalPerMetre,
+    PascalSecondPerMetre,
+    Unit,
+    require,
+)
+
+
+@dataclass(frozen=True)
+class Skin:
+    """Mass, stiffness and damping of the skin per area, at ultrasonic frequency.
+
+    The defaults are assumed: 3 mm of tissue of 1100 kg/m³ moving along, and no stiffness or
+    damping, which at 40 kHz are taken to be below its inertia (0.2 MPa/µm).
+    """
+
+    mass_per_area: KilogramPerSquareMetre = 3.3
+    stiffness_per_area: PascalPerMetre = 0.0
+    damping_per_area: PascalSecondPerMetre = 0.0
+
+    def __post_init__(self) -> None:
+        require("mass_per_area", self.mass_per_area, Unit("kg/m2"), above=0)
+        require("stiffness_per_area", self.stiffness_per_area, Unit("Pa/m"), at_least=0)
+        require("damping_per_area", self.damping_per_area, Unit("Pa*s/m"), at_least=0)
+
+    def dynamic_stiffness(self, frequency: Hertz) -> complex:
+        """k − m ω² + iωc in Pa/m, ω = 2π frequency."""
+        require("frequency", frequency, Unit("Hz"), above=0)
+        omega = 2 * np.pi * frequency
+        return complex(
+            self.stiffness_per_area - self.mass_per_area * omega**2,
+            self.damping_per_area * omega,
+        )
+
+    def displacement(self, pressure: Pascal, frequency: Hertz) -> float:
+        """How far (m, amplitude) an alternating pressure (Pa, amplitude) moves the skin."""
+        return float(pressure / abs(self.dynamic_stiffness(frequency)))
+
+
+@dataclass(frozen=True)
+class TactileSkin:
+    """The pad as a hand moves it (below 1 kHz), tangentially: stiffness, damping and mass.
+
+    The defaults are from memory and unverified: about 1 N/mm, 1 N·s/m and 0.1 to 0.2 g.
+    """
+
+    tangential_stiffness: NewtonPerMetre = 1e3
+    tangential_damping: NewtonSecondPerMetre = 1.0
+    tangential_mass: Kilogram = 0.15e-3
+
+    def __post_init__(self) -> None:
+        require("tangential_stiffness", self.tangential_stiffness, Unit("N/m"), above=0)
+        require("tangential_damping", self.tangential_damping, Unit("N*s/m"), at_least=0)
+        require("tangential_mass", self.tangential_mass, Unit("kg"), above=0)

@@ -1,0 +1,156 @@
+"""The competing mechanism: intermittent contact without gas, and a skin that shears between taps.
+
+A skin that cannot follow the vibration is tapped by the plate once a period. While in contact it
+is dragged along and shears like a spring until it slips; whenever contact is lost the shear is
+released. Friction falls where the taps are too short for the shear to build up to slip.
+
+Vezzoli et al. 2017, Part 1 (10.1109/TOH.2017.2671432), of which the abstract was read, study this
+with finite elements and a spring and Coulomb slider, and find a reduction that depends on
+amplitude, frequency, friction coefficient and the inverse of the finger's speed through one
+dimensionless group, and not on the normal force or the moduli once contact is well intermittent.
+The model here is our own derivation of such a spring and slider, not theirs.
+
+Assumptions: no gas; the skin's mean position does not move within a period (inertial); contact
+pressure is that of a linear spring of normal stiffness k_n per area in proportion to the overlap;
+tangential stiffness k_t = `stiffness_ratio` k_n (Mindlin, incompressible skin: 2/3); Coulomb
+friction with one coefficient; shear starts from zero at each tap.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from squeezefilm.quantities import (
+    Dimensionless,
+    DimensionlessLike,
+    Hertz,
+    HertzLike,
+    Metre,
+    MetreLike,
+    MetrePerSecond,
+    MetrePerSecondLike,
+    Pascal,
+    PascalPerMetre,
+    Unit,
+    closed_form,
+    require,
+)
+
+MINDLIN_RATIO: Dimensionless = 2 / 3
+"""Tangential over normal contact stiffness 2(1 − ν)/(2 − ν) of an incompressible body."""
+
+_PHASES = 4096
+
+
+@closed_form(positive="friction_coefficient amplitude frequency speed")
+def tapping_number(
+    friction_coefficient: DimensionlessLike,
+    amplitude: MetreLike,
+    frequency: HertzLike,
+    speed: MetrePerSecondLike,
+) -> DimensionlessLike:
+    """ψ = µ a ω/U (dimensionless): how the plate's speed compares with the finger's; broadcasts.
+
+    Where it is large, the shear of a tap stays below slip: friction falls with amplitude, frequency
+    and friction coefficient and rises with the finger's speed U.
+    """
+    return friction_coefficient * amplitude * (2 * np.pi * frequency) / speed
+
+
+@dataclass(frozen=True)
+class Tapping:
+    """Friction under intermittent contact at one working point.
+
+    `contact_fraction` is the part of the period in contact, `penetration` how deep the plate
+    presses into the skin at most (m), `shear_release` the part of the friction lost to shear that
+    does not reach slip. `intermittent` is False where the skin never leaves the plate.
+    """
+
+    relative_friction: Dimensionless
+    contact_fraction: Dimensionless
+    penetration: Metre
+    tapping_number: Dimensionless
+    intermittent: bool
+    amplitude: Metre
+    frequency: Hertz
+    speed: MetrePerSecond
+    pressure: Pascal
+    model: str = "intermittent contact, spring and Coulomb slider, no gas"
+
+    @property
+    def shear_release(self) -> Dimensionless:
+        """1 − µ′/µ (dimensionless)."""
+        return 1 - self.relative_friction
+
+
+def contact_angle(amplitude: Metre, rest_penetration: Metre) -> float:
+    """Half the phase (rad) in contact, θ0, at which taps of a linear skin carry the load.
+
+    a (sin θ0 − θ0 cos θ0)/π = `rest_penetration` = p/k_n: the mean of a (cos T − cos θ0) over the
+    taps. π where the skin never leaves the plate (amplitude ≤ rest_penetration).
+    """
+    from scipy.optimize import brentq
+
+    require("amplitude", amplitude, Unit("m"), at_least=0)
+    require("rest_penetration", rest_penetration, Unit("m"), above=0)
+    if amplitude <= rest_penetration:
+        return float(np.pi)
+    wanted = np.pi * rest_penetration / amplitude
+    return float(brentq(lambda t: np.sin(t) - t * np.cos(t) - wanted, 0.0, np.pi, xtol=1e-14))
+
+
+def tapping_friction(
+    amplitude: Metre,
+    frequency: Hertz,
+    speed: MetrePerSecond,
+    pressure: Pascal,
+    *,
+    friction_coefficient: Dimensionless = 0.9,
+    normal_stiffness: PascalPerMetre = 8.3e9,
+    stiffness_ratio: Dimensionless = MINDLIN_RATIO,
+) -> Tapping:
+    """Friction of a patch of skin under a mean `pressure` (Pa), tapped at `amplitude` (m).
+
+    `normal_stiffness` is that of the asperities and the outermost skin per area, at the load: for
+    exponential asperities p/λ_r, 5 kPa over 0.6 µm (assumed). Within a tap the shear stress q
+    follows the finger, dq/dt = k_t U, capped by µ p_c(t). Raises `InputError` for values that
+    cannot be used.
+    """
+    require("amplitude", amplitude, Unit("m"), at_least=0)
+    require("frequency", frequency, Unit("Hz"), above=0)
+    require("speed", speed, Unit("m/s"), above=0)
+    require("pressure", pressure, Unit("Pa"), above=0)
+    require("friction_coefficient", friction_coefficient, above=0)
+    require("normal_stiffness", normal_stiffness, Unit("Pa/m"), above=0)
+    require("stiffness_ratio", stiffness_ratio, above=0)
+    rest = pressure / normal_stiffness
+    half = contact_angle(amplitude, rest)
+    intermittent = half < np.pi
+    number = (
+        float(tapping_number(friction_coefficient, amplitude, frequency, speed))
+        if amplitude > 0
+        else 0.0
+    )
+    friction = 1.0
+    if intermittent:
+        # In units of the overlap: limit µ (cos θ − cos θ0), shear rate s per radian of phase.
+        theta, step = np.linspace(-half, half, _PHASES + 1, retstep=True)
+        limit = friction_coefficient * (np.cos(theta) - np.cos(half))
+        slope = stiffness_ratio * speed / (2 * np.pi * frequency * amplitude)
+        # q(θ) = min over θ' ≤ θ of limit(θ') + slope (θ − θ'): a spring behind a Coulomb slider.
+        shear = np.minimum.accumulate(limit - slope * theta) + slope * theta
+        mean = float(np.sum(shear) * step) / (2 * np.pi)
+        friction = mean * amplitude / (friction_coefficient * rest)
+    return Tapping(
+        relative_friction=min(friction, 1.0),
+        contact_fraction=half / np.pi,
+        penetration=amplitude * (1 - np.cos(half)) if intermittent else rest + amplitude,
+        tapping_number=number,
+        intermittent=intermittent,
+        amplitude=amplitude,
+        frequency=frequency,
+        speed=speed,
+        pressure=pressure,
+    )
