@@ -1,15 +1,15 @@
 """The fingerpad as a mass between bone and surface: what its skin passes on of a changing friction.
 
 The skin under the contact (mass m) hangs on the bone by a spring k and a damper c. While it slides
-it obeys m ẍ + c (ẋ − v_bone) + k (x − x_bone) = −F with F the friction force; everything here is the
-closed solution of that line, and what the solver in `sliding` is verified against.
+it obeys m ẍ + c (ẋ − v_bone) + k (x − x_bone) = −F with F the friction force. What is here is in
+closed form, and is what the solver in `sliding` is verified against.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, Any, cast
 
 import numpy as np
 
@@ -80,6 +80,18 @@ class FingerpadDynamics:
         """Damping over critical damping (1); 1.3 with the defaults: the skin does not ring."""
         return float(skin_damping_ratio(self.stiffness, self.damping, self.mass))
 
+    @property
+    def settling_time_constant(self) -> Second:
+        """Slower time constant of the sliding skin (s); infinite without damping."""
+        if self.damping == 0:
+            return math.inf
+        decay = self.damping / (2 * self.mass)
+        split = decay**2 - self.stiffness / self.mass
+        if split <= 0:
+            return 1 / decay
+        # 1/(decay − √split), without subtracting like numbers.
+        return (decay + math.sqrt(split)) * self.mass / self.stiffness
+
 
 @closed_form(positive="stiffness mass")
 def skin_resonance_frequency(stiffness: NewtonPerMetreLike, mass: KilogramLike) -> HertzLike:
@@ -118,8 +130,8 @@ def skin_displacement_per_friction(
     above 0, or a negative damping or frequency.
     """
     omega = 2 * math.pi * frequency
-    response: MetrePerNewtonComplexLike = -1 / (stiffness - mass * omega**2 + 1j * damping * omega)
-    return response
+    response: Any = -1 / (stiffness - mass * omega**2 + 1j * damping * omega)
+    return cast(MetrePerNewtonComplexLike, response)
 
 
 @closed_form(positive="stiffness mass", nonnegative="damping frequency")
@@ -137,8 +149,8 @@ def friction_transmitted(
     """
     omega = 2 * math.pi * frequency
     path = stiffness + 1j * damping * omega
-    transmitted: DimensionlessComplexLike = path / (path - mass * omega**2)
-    return transmitted
+    transmitted: Any = path / (path - mass * omega**2)
+    return cast(DimensionlessComplexLike, transmitted)
 
 
 @closed_form(positive="static_force stiffness mass speed", nonnegative="kinetic_force")

@@ -120,7 +120,9 @@ class Sliding:
         whether the law was followed (`friction_law_error`) or the inputs sampled finely enough.
         """
         gained = self.stored_energy - self.stored_energy[0]
-        return float(np.max(np.abs(self.bone_work - gained - self.friction_loss - self.damping_loss)))
+        return float(
+            np.max(np.abs(self.bone_work - gained - self.friction_loss - self.damping_loss))
+        )
 
 
 def slide(
@@ -174,7 +176,7 @@ def slide(
             quantity="bone_position",
         )
     n = bone.size
-    time = np.arange(n) * time_step
+    time: SecondArray = np.arange(n, dtype=float) * time_step
     limit = _over_time("friction_coefficient", friction_coefficient, n)
     limit = np.asarray(law.kinetic_force(limit, _over_time("normal_force", normal_force, n)))
     if occlusion is not None:
@@ -260,9 +262,7 @@ def _over_time(name: str, values: NewtonLike | DimensionlessLike, n: int) -> Flo
     return np.broadcast_to(array, (n,))
 
 
-def _substeps(
-    time_step: Second, pad: FingerpadDynamics, law: DryFriction, strongest: float
-) -> int:
+def _substeps(time_step: Second, pad: FingerpadDynamics, law: DryFriction, strongest: float) -> int:
     """Parts of a step short enough for the skin, and for friction that falls with speed."""
     fastest = max(math.sqrt(pad.stiffness / pad.mass), pad.damping / pad.mass)
     count = math.ceil(time_step * fastest / _SUBSTEP)

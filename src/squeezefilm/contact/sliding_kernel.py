@@ -14,58 +14,15 @@ from typing import Any
 import numba
 import numpy as np
 
+from squeezefilm.contact.skin_motion import HALVINGS, end_of_slip, first_rise, slide_along
+
 Array = np.ndarray[Any, Any]
 
 # Slip starts and ends that one sample interval may hold before the march gives up.
 MOST_EVENTS = 200
-_ROOT_STEPS = 80
-# Slips shorter than this power of ½ of a substep are not looked for.
-_HALVINGS = 20
 # Three Gauss points: the powers of a step are integrated to its sixth order.
 _NODES = (0.5 - math.sqrt(0.15), 0.5, 0.5 + math.sqrt(0.15))
 _WEIGHTS = (5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0)
-
-
-@numba.njit(cache=True, nogil=True)
-def free_motion(y: float, w: float, s: float, decay: float, omega2: float) -> Any:
-    """(y, ẏ) after a time s of ÿ + 2·decay·ẏ + omega2·y = 0 from (y, w)."""
-    split = decay * decay - omega2
-    if abs(split) * s * s < 1e-4:
-        # Near critical damping sinh(r s)/r loses its digits; its series does not.
-        z = split * s * s
-        fade = math.exp(-decay * s)
-        even = fade * (1.0 + z / 2.0 * (1.0 + z / 12.0 * (1.0 + z / 30.0)))
-        odd = fade * s * (1.0 + z / 6.0 * (1.0 + z / 20.0 * (1.0 + z / 42.0)))
-    elif split > 0.0:
-        r = math.sqrt(split)
-        slow = math.exp(-omega2 / (decay + r) * s)
-        fast = math.exp(-(decay + r) * s)
-        even = 0.5 * (slow + fast)
-        odd = 0.5 * (slow - fast) / r
-    else:
-        r = math.sqrt(-split)
-        fade = math.exp(-decay * s)
-        even = fade * math.cos(r * s)
-        odd = fade * math.sin(r * s) / r
-    return y * (even + decay * odd) + w * odd, w * (even - decay * odd) - omega2 * y * odd
-
-
-@numba.njit(cache=True, nogil=True)
-def first_rise(a: float, b: float, c: float, span: float) -> float:
-    """The first s in [0, span] from which a + b s + c s² is positive, or −1."""
-    if a > 0.0:
-        return 0.0
-    if c == 0.0:
-        if b <= 0.0:
-            return -1.0
-        s = -a / b
-    else:
-        under = b * b - 4.0 * a * c
-        if under <= 0.0:
-            return -1.0
-        # The root at which the parabola rises, without subtracting like numbers.
-        s = -2.0 * a / (b + math.sqrt(under)) if b > 0.0 else (math.sqrt(under) - b) / (2.0 * c)
-    return s if 0.0 <= s <= span else -1.0
 
 
 @numba.njit(cache=True, nogil=True)
@@ -74,88 +31,9 @@ def at_place(place: float, start: float, spacing: float, profile: Array) -> floa
     if profile.size == 1:
         return float(profile[0])
     along = (place - start) / spacing
-    i = min(max(int(math.floor(along)), 0), profile.size - 2)
+    i = min(max(int(along), 0), profile.size - 2)
     part = min(max(along - i, 0.0), 1.0)
     return float(profile[i] + part * (profile[i + 1] - profile[i]))
-
-
-@numba.njit(cache=True, nogil=True)
-def slide_along(
-    s: float, x: float, v: float, pull: Array, force: float, slope: float,
-    mass: float, damping: float, stiffness: float,
-) -> Any:  # fmt: skip
-    """Position, speed and acceleration a time s into sliding against a friction force + slope·s.
-
-    `pull` (3,) are the coefficients of k x_bone + c v_bone in time. The particular solution is the
-    parabola A + B s + C s².
-    """
-    C = pull[2] / stiffness
-    B = (pull[1] - slope - 2.0 * damping * C) / stiffness
-    A = (pull[0] - force - damping * B - 2.0 * mass * C) / stiffness
-    decay = damping / (2.0 * mass)
-    omega2 = stiffness / mass
-    y, w = free_motion(x - A, v - B, s, decay, omega2)
-    return A + s * (B + s * C) + y, B + 2.0 * C * s + w, 2.0 * C - 2.0 * decay * w - omega2 * y
-
-
-@numba.njit(cache=True, nogil=True)
-def end_of_slip(
-    span: float, x: float, v: float, sign: float, pull: Array, force: float, slope: float,
-    mass: float, damping: float, stiffness: float,
-) -> float:  # fmt: skip
-    """When in (0, span] the skin comes to rest, or −1 while it slides on; 0 if it never started."""
-    _, v_end, a_end = slide_along(span, x, v, pull, force, slope, mass, damping, stiffness)
-    high = span
-    low = 0.0
-    if sign * v_end > 0.0:
-        _, _, a = slide_along(0.0, x, v, pull, force, slope, mass, damping, stiffness)
-        # A slip that has just begun speeds up, whatever rounding says of its first acceleration.
-        if v == 0.0 or not (sign * a < 0.0 and sign * a_end > 0.0):
-            return -1.0
-        # The speed has a minimum inside: it may touch zero and rise again.
-        for _ in range(_ROOT_STEPS):
-            middle = 0.5 * (low + high)
-            if middle <= low or middle >= high:
-                break
-            _, v_m, a_m = slide_along(middle, x, v, pull, force, slope, mass, damping, stiffness)
-            if sign * v_m <= 0.0:
-                high = middle
-                break
-            if sign * a_m < 0.0:
-                low = middle
-            else:
-                high = middle
-        _, v_m, _ = slide_along(high, x, v, pull, force, slope, mass, damping, stiffness)
-        if sign * v_m > 0.0:
-            return -1.0
-        low = 0.0
-    elif v == 0.0:
-        # It began and ended within: look ever earlier for an instant at which it moved.
-        low = 0.5 * span
-        for _ in range(_HALVINGS):
-            _, v_m, _ = slide_along(low, x, v, pull, force, slope, mass, damping, stiffness)
-            if sign * v_m > 0.0:
-                break
-            high = low
-            low *= 0.5
-        if sign * v_m <= 0.0:
-            return 0.0
-    root = 0.5 * (low + high)
-    for _ in range(_ROOT_STEPS):
-        # Newton, and a halving wherever it would leave the bracket.
-        _, v_r, a_r = slide_along(root, x, v, pull, force, slope, mass, damping, stiffness)
-        if sign * v_r > 0.0:
-            low = root
-        else:
-            high = root
-        new = root - v_r / a_r if a_r != 0.0 else -1.0
-        if not low < new < high:
-            new = 0.5 * (low + high)
-        moved = abs(new - root)
-        root = new
-        if moved <= 1e-15 * span:
-            break
-    return root
 
 
 @numba.njit(cache=True, nogil=True)
@@ -253,9 +131,7 @@ def slide_march(
                 if bent:
                     for _ in range(3):
                         x1, v1, _ = slide_along(span, x, v, pull, sign * F0, sign * dF, mass, c, k)
-                        F1 = (L + dL * span) * at_place(
-                            x1, profile_start, profile_spacing, profile
-                        )
+                        F1 = (L + dL * span) * at_place(x1, profile_start, profile_spacing, profile)
                         if drops:
                             v1 = max(sign * v1, 0.0)
                             F1 *= 1.0 + (static_ratio - 1.0) * math.exp(-v1 / stribeck_speed)
@@ -263,7 +139,7 @@ def slide_march(
                 part = end_of_slip(span, x, v, sign, pull, sign * F0, sign * dF, mass, c, k)
                 if part == 0.0:
                     # A slip too short to be found: the skin stays, for longer each time.
-                    part = min(span * 0.5**_HALVINGS * 4.0**tries, span)
+                    part = min(span * 0.5**HALVINGS * 4.0**tries, span)
                     tries += 1
                     for q in range(3):
                         t = _NODES[q] * part
@@ -281,9 +157,7 @@ def slide_march(
                     # The friction's line must end where the slip does, not where the substep does.
                     for _ in range(4):
                         x1, _, _ = slide_along(part, x, v, pull, sign * F0, sign * dF, mass, c, k)
-                        F1 = (L + dL * part) * at_place(
-                            x1, profile_start, profile_spacing, profile
-                        )
+                        F1 = (L + dL * part) * at_place(x1, profile_start, profile_spacing, profile)
                         if drops:
                             F1 *= static_ratio
                         steeper = (F1 - F0) / part
@@ -306,9 +180,7 @@ def slide_march(
                     done[1] += _WEIGHTS[q] * part * F_t * abs(v_t)
                     done[2] += _WEIGHTS[q] * part * c * (vb_t - v_t) ** 2
                     if bent and q == 1:
-                        top = (L + dL * t) * at_place(
-                            x_t, profile_start, profile_spacing, profile
-                        )
+                        top = (L + dL * t) * at_place(x_t, profile_start, profile_spacing, profile)
                         law = top
                         if drops:
                             law *= 1.0 + (static_ratio - 1.0) * math.exp(-abs(v_t) / stribeck_speed)
