@@ -83,6 +83,14 @@ MINIMUM = {
         "film.validity.crest_squeeze_number",
         "contact.paper.finger_pressure",
         "contact.paper.relative_friction_from_pressure",
+        "contact.fingerpad.skin_resonance_frequency",
+        "contact.fingerpad.skin_damping_ratio",
+        "contact.fingerpad.skin_displacement_per_friction",
+        "contact.fingerpad.friction_transmitted",
+        "contact.fingerpad.stick_duration",
+        "contact.fingerpad.slip_duration",
+        "contact.occlusion.occlusion_factor",
+        "contact.skin_vibration.texture_frequency",
         "plate.beam.euler_bernoulli_frequency",
     )
 }

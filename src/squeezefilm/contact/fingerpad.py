@@ -21,13 +21,14 @@ from squeezefilm.quantities import (
     Hertz,
     HertzLike,
     Kilogram,
-    MetrePerSecond,
-    Newton,
+    MetrePerSecondLike,
+    NewtonLike,
     NewtonPerMetre,
     NewtonPerMetreLike,
     NewtonSecondPerMetre,
     NewtonSecondPerMetreLike,
     Second,
+    SecondLike,
     Unit,
     closed_form,
     require,
@@ -153,24 +154,34 @@ def friction_transmitted(
     return cast(DimensionlessComplexLike, transmitted)
 
 
-@closed_form(positive="static_force stiffness mass speed", nonnegative="kinetic_force")
-def stick_slip_period(
-    static_force: Newton,
-    kinetic_force: Newton,
-    stiffness: NewtonPerMetre,
-    mass: Kilogram,
-    speed: MetrePerSecond,
-) -> tuple[Second, Second]:
-    """Duration of stick and of slip of an *undamped* skin dragged at a constant speed (s, s).
+@closed_form(positive="stiffness speed", nonnegative="friction_drop")
+def stick_duration(
+    friction_drop: NewtonLike, stiffness: NewtonPerMetreLike, speed: MetrePerSecondLike
+) -> SecondLike:
+    """How long an *undamped* skin sticks between two slips at a constant speed (s): 2Δ/(kv).
 
-    With Δ = F_static − F_kinetic and ω = √(k/m): stick 2Δ/(kv), while the spring is stretched from
-    2F_kinetic − F_static to F_static; slip (2/ω)(π − arctan(Δω/(kv))). The classical belt
-    oscillator; friction forces (N), N/m, kg, m/s. Raises `InputError` unless F_static ≥ F_kinetic
-    ≥ 0 and the rest is above 0.
+    The classical belt oscillator: the spring is stretched from F_kinetic − Δ to F_static, where Δ
+    = F_static − F_kinetic is `friction_drop` (N). Arguments (N, N/m, m/s) broadcast. Raises
+    `InputError` for a negative drop, or a stiffness or speed not above 0.
     """
-    excess = static_force - kinetic_force
+    return 2 * friction_drop / (stiffness * speed)
+
+
+@closed_form(positive="stiffness mass speed", nonnegative="friction_drop")
+def slip_duration(
+    friction_drop: NewtonLike,
+    stiffness: NewtonPerMetreLike,
+    mass: KilogramLike,
+    speed: MetrePerSecondLike,
+) -> SecondLike:
+    """How long an *undamped* skin slips between two sticks (s): (2/ω)(π − arctan(Δω/(kv))).
+
+    With ω = √(k/m) and Δ = F_static − F_kinetic, `friction_drop` (N): half a period for a great
+    drop or a slow finger, a whole one for none. With `stick_duration` the period of the belt
+    oscillator. Arguments (N, N/m, kg, m/s) broadcast. Raises `InputError` for a negative drop, or
+    anything else not above 0.
+    """
     omega = np.sqrt(stiffness / mass)
-    stick = 2 * excess / (stiffness * speed)
-    require("static_force − kinetic_force", excess, Unit("N"), at_least=0.0)
-    slip = 2 / omega * (math.pi - np.arctan(excess * omega / (stiffness * speed)))
-    return stick, slip
+    angle = math.pi - np.arctan(friction_drop * omega / (stiffness * speed))
+    duration: SecondLike = 2 / omega * angle
+    return duration

@@ -86,7 +86,7 @@ def end_of_slip(
     high = span
     low = 0.0
     if sign * v_end > 0.0:
-        _, _, a = slide_along(0.0, x, v, pull, force, slope, mass, damping, stiffness)
+        a = (pull[0] - stiffness * x - damping * v - force) / mass
         # A slip that has just begun speeds up, whatever rounding says of its first acceleration.
         if v == 0.0 or not (sign * a < 0.0 and sign * a_end > 0.0):
             return -1.0

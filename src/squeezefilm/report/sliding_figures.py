@@ -33,7 +33,7 @@ _FLOOR = 3e-5
 
 @drawn
 def tangential_force(force: StrokeForce) -> Figure:
-    """The tangential force of a stroke over a grating, with sticking shaded, and the skin's spectrum.
+    """The tangential force of a stroke over a grating, with sticking shaded, and skin spectrum.
 
     Raises:
         InputError: a texture without a spatial period, or a stroke too short for a spectrum.
@@ -44,9 +44,9 @@ def tangential_force(force: StrokeForce) -> Figure:
     settled = motion.time >= force.settled
     swing = float(np.ptp(motion.bone_force[settled & (motion.time <= stroke.pass_duration)]))
     figure = new_figure(
-        f"At {1e3 * stroke.speed:g} mm/s the grating modulates the tangential force by "
-        f"{shown(swing, N, 2)} at {frequency} and shakes the skin by "
-        f"{shown(float(vibration.displacement_amplitude[0]), M, 2)}",
+        f"At {1e3 * stroke.speed:g} mm/s the tangential force swings by {shown(swing, N, 2)}, and "
+        f"the grating shakes the skin by "
+        f"{shown(float(vibration.displacement_amplitude[0]), M, 2)} at {frequency}",
         f"{motion.model}; pad {motion.fingerpad.stiffness:g} N/m, {motion.fingerpad.damping:g} "
         f"N·s/m, {1e3 * motion.fingerpad.mass:g} g (unverified defaults unless given); "
         f"µ = {force.friction_coefficient:g}, normal force {shown(force.normal_force, N, 3)}; "
@@ -102,6 +102,6 @@ def _draw_spectrum(axes: Axes, vibration: SkinVibration) -> None:
     plain_log(axes.xaxis)
     plain_log(axes.yaxis)
     axes.set_title(
-        "skin relative to the bone; dotted: the grating's frequency, its harmonics, their amplitudes",
+        "skin relative to the bone; dotted: the grating's frequency, harmonics, their amplitudes",
         pad=34,
     )
