@@ -89,6 +89,14 @@ MINIMUM = {
         "contact.tapping.tapping_number",
         "contact.wedge.wedge_pressure",
         "contact.wedge.sliding_ratio",
+        "contact.fingerpad.skin_resonance_frequency",
+        "contact.fingerpad.skin_damping_ratio",
+        "contact.fingerpad.skin_displacement_per_friction",
+        "contact.fingerpad.friction_transmitted",
+        "contact.fingerpad.stick_duration",
+        "contact.fingerpad.slip_duration",
+        "contact.occlusion.occlusion_factor",
+        "contact.skin_vibration.texture_frequency",
         "plate.beam.euler_bernoulli_frequency",
     )
 }

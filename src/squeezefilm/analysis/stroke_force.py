@@ -1,0 +1,108 @@
+"""The tangential force that a stroke over a rendered texture gives: trace and skin joined."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from squeezefilm.contact.dry_friction import DryFriction
+from squeezefilm.contact.fingerpad import FingerpadDynamics
+from squeezefilm.contact.occlusion import Occlusion
+from squeezefilm.contact.skin_vibration import SkinVibration, skin_vibration, texture_frequency
+from squeezefilm.contact.sliding import Sliding, slide
+from squeezefilm.errors import InputError
+from squeezefilm.quantities import Dimensionless, Newton, NewtonLike, Second, Unit, require
+from squeezefilm.render.texture import Sine, Square
+from squeezefilm.render.trace import FrictionTrace
+
+# Of the skin's slower time constant: what is left of a start by then is 1 %.
+_SETTLING = 5.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class StrokeForce:
+    """A finger's tangential force along a stroke over a rendered texture.
+
+    Attributes:
+        trace: texture, stroke and relative friction rendered.
+        friction_coefficient: µ of the surface at rest (1), kinetic.
+        normal_force: mean over the stroke (N).
+        motion: force, skin motion, sticking, energies; its samples are those of the trace.
+    """
+
+    trace: FrictionTrace
+    friction_coefficient: Dimensionless
+    normal_force: Newton
+    motion: Sliding
+
+    @property
+    def settled(self) -> Second:
+        """When the skin has forgotten the start of the stroke (s).
+
+        The pad has been stretched until it slides, and five of its slower time constants have
+        passed; the end of the first pass if that comes earlier.
+        """
+        free = np.flatnonzero(~self.motion.sticking)
+        first = float(self.motion.time[free[0]]) if free.size else 0.0
+        settling = _SETTLING * self.motion.fingerpad.settling_time_constant
+        return min(first + settling, self.trace.stroke.pass_duration)
+
+    def vibration(self, harmonics: int = 5) -> SkinVibration:
+        """Spectra of the skin in the settled part of the first pass, with the texture's lines.
+
+        Raises:
+            InputError: a texture without a spatial period, or a pass with fewer than two periods
+                after the start has settled; make it longer.
+        """
+        texture, stroke = self.trace.texture, self.trace.stroke
+        if not isinstance(texture, Square | Sine):
+            raise InputError(
+                f"a {type(texture).__name__} has no spatial period to look for; call "
+                "skin_vibration on `motion` with a frequency of your choice"
+            )
+        return skin_vibration(
+            self.motion,
+            float(texture_frequency(stroke.speed, texture.spatial_period)),
+            harmonics,
+            start=self.settled,
+            end=min(stroke.pass_duration, float(self.motion.time[-1])),
+        )
+
+
+def stroke_force(
+    trace: FrictionTrace,
+    friction_coefficient: Dimensionless,
+    normal_force: NewtonLike,
+    fingerpad: FingerpadDynamics | None = None,
+    law: DryFriction | None = None,
+    occlusion: Occlusion | None = None,
+) -> StrokeForce:
+    """The tangential force under a finger whose bone makes the stroke of a friction trace.
+
+    The display follows the bone (that is what a finger sensor sees), so the friction coefficient
+    over time is `friction_coefficient` times the relative friction rendered. The finger starts at
+    rest with a relaxed pad.
+
+    Args:
+        trace: position and relative friction over time.
+        friction_coefficient: kinetic, of the unexcited surface (1); at least 0.
+        normal_force: (N), a scalar or one value per sample of the trace; at least 0.
+        fingerpad, law, occlusion: see `slide`.
+
+    Raises:
+        InputError: a value outside its range, or a normal force of another shape.
+        ConvergenceError: see `slide`.
+    """
+    require("friction_coefficient", friction_coefficient, at_least=0.0)
+    require("normal_force", normal_force, Unit("N"), at_least=0.0)
+    motion = slide(
+        trace.position,
+        1 / trace.sample_rate,
+        friction_coefficient * trace.relative_friction_rendered,
+        normal_force,
+        fingerpad,
+        law,
+        occlusion=occlusion,
+    )
+    return StrokeForce(trace, friction_coefficient, float(np.mean(normal_force)), motion)

@@ -1,0 +1,147 @@
+"""The law of dry friction: how the friction force follows load, speed and place."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from squeezefilm.errors import InputError
+from squeezefilm.quantities import (
+    Dimensionless,
+    DimensionlessArray,
+    DimensionlessLike,
+    FloatArray,
+    Metre,
+    MetreArray,
+    MetrePerSecond,
+    MetrePerSecondLike,
+    Newton,
+    NewtonLike,
+    Unit,
+    format_quantity,
+    require,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class DryFriction:
+    """Coulomb's law, set-valued at rest, with three options that each default to off.
+
+    At rest the friction force is whatever holds the skin, up to `static_ratio` times the kinetic
+    force; while the skin moves at a speed w it opposes it with
+
+        µ F_ref (F/F_ref)^load_exponent · (1 + (static_ratio − 1) exp(−w/stribeck_speed)).
+
+    With a `stribeck_speed` of 0 the drop from static to kinetic friction happens at once. How much
+    static friction of skin exceeds kinetic friction and over which speeds it drops was not read in
+    a source: both are yours to give. The coefficient of fingers was found independent of the load,
+    except that it falls with load after more than 10 s on smooth impermeable surfaces (Dzidek et
+    al. 2017, 10.1098/rsif.2016.0935, abstract), so an exponent below 1 belongs to those.
+
+    Args:
+        static_ratio: static over kinetic friction (1); at least 1.
+        stribeck_speed: over which static falls to kinetic friction (m/s); at least 0.
+        load_exponent: of the friction force in the normal force (1); above 0, at most 1.
+        reference_force: normal force at which the coefficient is given (N); above 0. Without
+            meaning at an exponent of 1.
+
+    Raises:
+        InputError: a value outside its range.
+    """
+
+    static_ratio: Dimensionless = 1.0
+    stribeck_speed: MetrePerSecond = 0.0
+    load_exponent: Dimensionless = 1.0
+    reference_force: Newton = 1.0
+
+    def __post_init__(self) -> None:
+        require("static_ratio", self.static_ratio, at_least=1.0)
+        require("stribeck_speed", self.stribeck_speed, Unit("m/s"), at_least=0.0)
+        require("load_exponent", self.load_exponent, above=0.0, at_most=1.0)
+        require("reference_force", self.reference_force, Unit("N"), above=0.0)
+
+    def kinetic_force(
+        self, friction_coefficient: DimensionlessLike, normal_force: NewtonLike
+    ) -> NewtonLike:
+        """Friction force of fast sliding (N) under a normal force (N); both broadcast.
+
+        Raises:
+            InputError: a negative or infinite coefficient or force.
+        """
+        require("friction_coefficient", friction_coefficient, at_least=0.0)
+        require("normal_force", normal_force, Unit("N"), at_least=0.0)
+        relative = np.asarray(normal_force, dtype=float) / self.reference_force
+        force: NewtonLike = (
+            friction_coefficient * self.reference_force * relative**self.load_exponent
+        )
+        return force
+
+    def over_kinetic(self, speed: MetrePerSecondLike) -> DimensionlessLike:
+        """Friction at a speed over that of fast sliding (1); at rest, the limit of what holds."""
+        require("speed", speed, Unit("m/s"))
+        w = np.abs(np.asarray(speed, dtype=float))
+        if self.stribeck_speed == 0:
+            return np.where(w == 0, self.static_ratio, 1.0)
+        return np.asarray(1 + (self.static_ratio - 1) * np.exp(-w / self.stribeck_speed))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FrictionProfile:
+    """Friction that belongs to places of the surface: a factor by skin position, linear between.
+
+    For a surface that is itself rough in places; what a display renders follows the sensed finger
+    and belongs into the coefficient over time.
+
+    Args:
+        start: place of the first value (m).
+        spacing: between values (m); above 0.
+        relative_friction: factor of the friction coefficient (1), shape (n,), n ≥ 2, at least 0.
+
+    Raises:
+        InputError: a value outside its range or fewer than two values.
+    """
+
+    start: Metre
+    spacing: Metre
+    relative_friction: DimensionlessArray
+
+    def __post_init__(self) -> None:
+        require("start", self.start, Unit("m"))
+        require("spacing", self.spacing, Unit("m"), above=0.0)
+        require("relative_friction", self.relative_friction, at_least=0.0)
+        if np.ndim(self.relative_friction) != 1 or np.size(self.relative_friction) < 2:
+            raise InputError(
+                f"relative_friction of shape {np.shape(self.relative_friction)} cannot be used: "
+                "give one value per place, at least two",
+                quantity="relative_friction",
+            )
+
+    @property
+    def end(self) -> Metre:
+        """Place of the last value (m)."""
+        return self.start + self.spacing * (np.size(self.relative_friction) - 1)
+
+
+def sampled_profile(
+    relative_friction: Callable[[MetreArray], FloatArray], start: Metre, end: Metre, points: int
+) -> FrictionProfile:
+    """A `FrictionProfile` from a function of place (m) → factor (1), at evenly spaced points.
+
+    Raises:
+        InputError: an end not beyond the start, fewer than two points, or values that a
+            `FrictionProfile` refuses.
+    """
+    require("start", start, Unit("m"))
+    require("end", end, Unit("m"), above=start)
+    if points < 2:
+        raise InputError(f"points = {points} cannot be used: it must be at least 2")
+    places = np.linspace(start, end, points)
+    values = np.asarray(relative_friction(places), dtype=float)
+    if values.shape != places.shape:
+        raise InputError(
+            f"relative_friction returned values of shape {values.shape} where {places.shape} was "
+            f"given from {format_quantity(start, Unit('m'))} on; it must return one per place"
+        )
+    return FrictionProfile(start, (end - start) / (points - 1), values)

@@ -1,0 +1,187 @@
+"""The fingerpad as a mass between bone and surface: what its skin passes on of a changing friction.
+
+The skin under the contact (mass m) hangs on the bone by a spring k and a damper c. While it slides
+it obeys m ẍ + c (ẋ − v_bone) + k (x − x_bone) = −F with F the friction force. What is here is in
+closed form, and is what the solver in `sliding` is verified against.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Annotated, Any, cast
+
+import numpy as np
+
+from squeezefilm.quantities import (
+    ComplexArray,
+    Dimensionless,
+    DimensionlessComplexLike,
+    DimensionlessLike,
+    Hertz,
+    HertzLike,
+    Kilogram,
+    MetrePerSecondLike,
+    NewtonLike,
+    NewtonPerMetre,
+    NewtonPerMetreLike,
+    NewtonSecondPerMetre,
+    NewtonSecondPerMetreLike,
+    Second,
+    SecondLike,
+    Unit,
+    closed_form,
+    require,
+)
+
+KilogramLike = Annotated[float | np.ndarray, Unit("kg")]
+MetrePerNewtonComplexLike = Annotated[complex | ComplexArray, Unit("m/N")]
+
+EVIDENCE = {
+    "stiffness": "unverified default, from memory: about 1 N/mm",
+    "damping": "unverified default, from memory: about 1 N·s/m",
+    "mass": "unverified default, from memory: 0.1 to 0.2 g",
+}
+"""Where the defaults of `FingerpadDynamics` come from: none was read in a source or measured."""
+
+
+@dataclass(frozen=True, slots=True)
+class FingerpadDynamics:
+    """The lumped tangential dynamics of a fingerpad.
+
+    One mass, linear: holds for stretches small against the contact (below 1 mm) and below the
+    frequencies at which the contact deforms within itself. The whole contact sticks or slides at
+    once; real ones slide from the edge inwards. **The defaults are unverified** (see `EVIDENCE`).
+
+    Args:
+        stiffness: of the pad between bone and surface (N/m); above 0.
+        damping: (N·s/m); at least 0.
+        mass: of the skin that moves with the contact (kg); above 0.
+
+    Raises:
+        InputError: a value outside its range.
+    """
+
+    stiffness: NewtonPerMetre = 1000.0
+    damping: NewtonSecondPerMetre = 1.0
+    mass: Kilogram = 1.5e-4
+
+    def __post_init__(self) -> None:
+        require("stiffness", self.stiffness, Unit("N/m"), above=0.0)
+        require("damping", self.damping, Unit("N*s/m"), at_least=0.0)
+        require("mass", self.mass, Unit("kg"), above=0.0)
+
+    @property
+    def resonance_frequency(self) -> Hertz:
+        """Undamped resonance frequency of the sliding skin (Hz)."""
+        return float(skin_resonance_frequency(self.stiffness, self.mass))
+
+    @property
+    def damping_ratio(self) -> Dimensionless:
+        """Damping over critical damping (1); 1.3 with the defaults: the skin does not ring."""
+        return float(skin_damping_ratio(self.stiffness, self.damping, self.mass))
+
+    @property
+    def settling_time_constant(self) -> Second:
+        """Slower time constant of the sliding skin (s); infinite without damping."""
+        if self.damping == 0:
+            return math.inf
+        decay = self.damping / (2 * self.mass)
+        split = decay**2 - self.stiffness / self.mass
+        if split <= 0:
+            return 1 / decay
+        # 1/(decay − √split), without subtracting like numbers.
+        return (decay + math.sqrt(split)) * self.mass / self.stiffness
+
+
+@closed_form(positive="stiffness mass")
+def skin_resonance_frequency(stiffness: NewtonPerMetreLike, mass: KilogramLike) -> HertzLike:
+    """Undamped resonance frequency of the skin on its spring (Hz): √(k/m)/2π.
+
+    `stiffness` (N/m) and `mass` (kg) broadcast. Raises `InputError` unless both are above 0.
+    """
+    frequency: HertzLike = np.sqrt(stiffness / mass) / (2 * math.pi)
+    return frequency
+
+
+@closed_form(positive="stiffness mass", nonnegative="damping")
+def skin_damping_ratio(
+    stiffness: NewtonPerMetreLike, damping: NewtonSecondPerMetreLike, mass: KilogramLike
+) -> DimensionlessLike:
+    """Damping of the skin over critical damping (1): c/(2√(k m)); below 1 it rings.
+
+    `stiffness` (N/m), `damping` (N·s/m) and `mass` (kg) broadcast. Raises `InputError` for a
+    stiffness or mass not above 0 or a negative damping.
+    """
+    ratio: DimensionlessLike = damping / (2 * np.sqrt(stiffness * mass))
+    return ratio
+
+
+@closed_form(positive="stiffness mass", nonnegative="damping frequency")
+def skin_displacement_per_friction(
+    frequency: HertzLike,
+    stiffness: NewtonPerMetreLike,
+    damping: NewtonSecondPerMetreLike,
+    mass: KilogramLike,
+) -> MetrePerNewtonComplexLike:
+    """Complex skin displacement per friction force modulated at a frequency (m/N), sliding.
+
+    −1/(k − mω² + icω), ω = 2πf: more friction drags the skin back. Arguments (Hz, N/m, N·s/m, kg)
+    broadcast. Holds while the skin never stops. Raises `InputError` for a stiffness or mass not
+    above 0, or a negative damping or frequency.
+    """
+    omega = 2 * math.pi * frequency
+    response: Any = -1 / (stiffness - mass * omega**2 + 1j * damping * omega)
+    return cast(MetrePerNewtonComplexLike, response)
+
+
+@closed_form(positive="stiffness mass", nonnegative="damping frequency")
+def friction_transmitted(
+    frequency: HertzLike,
+    stiffness: NewtonPerMetreLike,
+    damping: NewtonSecondPerMetreLike,
+    mass: KilogramLike,
+) -> DimensionlessComplexLike:
+    """Complex force at the bone per friction force modulated at a frequency (1), sliding.
+
+    (k + icω)/(k − mω² + icω), ω = 2πf: 1 for slow changes, beyond the resonance the mass keeps
+    them. Arguments (Hz, N/m, N·s/m, kg) broadcast. Holds while the skin never stops. Raises
+    `InputError` for a stiffness or mass not above 0, or a negative damping or frequency.
+    """
+    omega = 2 * math.pi * frequency
+    path = stiffness + 1j * damping * omega
+    transmitted: Any = path / (path - mass * omega**2)
+    return cast(DimensionlessComplexLike, transmitted)
+
+
+@closed_form(positive="stiffness speed", nonnegative="friction_drop")
+def stick_duration(
+    friction_drop: NewtonLike, stiffness: NewtonPerMetreLike, speed: MetrePerSecondLike
+) -> SecondLike:
+    """How long an *undamped* skin sticks between two slips at a constant speed (s): 2Δ/(kv).
+
+    The classical belt oscillator: the spring is stretched from F_kinetic − Δ to F_static, where Δ
+    = F_static − F_kinetic is `friction_drop` (N). Arguments (N, N/m, m/s) broadcast. Raises
+    `InputError` for a negative drop, or a stiffness or speed not above 0.
+    """
+    return 2 * friction_drop / (stiffness * speed)
+
+
+@closed_form(positive="stiffness mass speed", nonnegative="friction_drop")
+def slip_duration(
+    friction_drop: NewtonLike,
+    stiffness: NewtonPerMetreLike,
+    mass: KilogramLike,
+    speed: MetrePerSecondLike,
+) -> SecondLike:
+    """How long an *undamped* skin slips between two sticks (s): (2/ω)(π − arctan(Δω/(kv))).
+
+    With ω = √(k/m) and Δ = F_static − F_kinetic, `friction_drop` (N): half a period for a great
+    drop or a slow finger, a whole one for none. With `stick_duration` the period of the belt
+    oscillator. Arguments (N, N/m, kg, m/s) broadcast. Raises `InputError` for a negative drop, or
+    anything else not above 0.
+    """
+    omega = np.sqrt(stiffness / mass)
+    angle = math.pi - np.arctan(friction_drop * omega / (stiffness * speed))
+    duration: SecondLike = 2 / omega * angle
+    return duration

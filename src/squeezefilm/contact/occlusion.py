@@ -1,0 +1,69 @@
+"""Slow drift of dry friction: sweat that cannot leave softens the skin, and the contact grows."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from squeezefilm.quantities import (
+    Dimensionless,
+    DimensionlessLike,
+    Second,
+    SecondLike,
+    Unit,
+    closed_form,
+    require,
+)
+
+EVIDENCE = {
+    "time_constant": "first-order kinetics of the junction area on glass, saturated 'typically "
+    "within 20 s' (Dzidek et al. 2017, 10.1073/pnas.1706233114, abstract): 95 % at 20 s",
+    "rise": "unverified default: the drift of friction itself was not read in any source",
+}
+"""Where the defaults of `Occlusion` come from."""
+
+
+@dataclass(frozen=True, slots=True)
+class Occlusion:
+    """Friction that grows with the time a finger has been on a smooth, impermeable surface.
+
+    A saturating exponential, 1 + rise · (1 − exp(−t/time_constant)), that multiplies the friction
+    coefficient. The exponential and its time are those of the *junction area*; that friction
+    follows the area is an assumption, and moving contacts, which leave their moisture behind, may
+    drift less. **`rise` is an unverified default** (see `EVIDENCE`).
+
+    Args:
+        rise: relative growth after a long time (1); above −1.
+        time_constant: (s); above 0.
+        contact_time: how long the finger has already touched when the motion starts (s).
+
+    Raises:
+        InputError: a value outside its range.
+    """
+
+    rise: Dimensionless = 0.5
+    time_constant: Second = 20.0 / 3.0
+    contact_time: Second = 0.0
+
+    def __post_init__(self) -> None:
+        require("rise", self.rise, above=-1.0)
+        require("time_constant", self.time_constant, Unit("s"), above=0.0)
+        require("contact_time", self.contact_time, Unit("s"), at_least=0.0)
+
+    def factor(self, time: SecondLike) -> DimensionlessLike:
+        """What the friction coefficient is multiplied by, `time` after the motion starts (1)."""
+        return occlusion_factor(self.contact_time + time, self.rise, self.time_constant)
+
+
+@closed_form(positive="time_constant", nonnegative="contact_time")
+def occlusion_factor(
+    contact_time: SecondLike, rise: DimensionlessLike, time_constant: SecondLike
+) -> DimensionlessLike:
+    """Friction over that of a fresh contact (1): 1 + rise (1 − exp(−t/τ)).
+
+    Arguments (s, 1, s) broadcast. Raises `InputError` for a negative contact time or a time
+    constant not above 0.
+    """
+    factor: DimensionlessLike = 1 - rise * np.expm1(-contact_time / time_constant)
+    return factor

@@ -1,0 +1,287 @@
+"""The tangential force of a finger that slides, sticks and slips on a surface.
+
+The bone moves as the hand wants; the skin of the contact (mass m) hangs on it by a spring k and a
+damper c, and touches a surface at rest:
+
+    m ẍ = k (x_bone − x) + c (v_bone − ẋ) − F,    |F| ≤ F_static where ẋ = 0,
+                                                F = F_kinetic(t, x, |ẋ|) sign ẋ elsewhere.
+
+The law is set-valued, as it is written: nothing is smoothed. Between samples the bone's motion is a
+parabola and the friction limit a line; the skin's motion then has a closed form, which is stepped,
+and slips begin and end at instants solved for inside the steps. Exact where that is the input;
+second order in `time_step` for smooth inputs and for friction that depends on speed or place.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Annotated
+
+import numpy as np
+from numpy.typing import NDArray
+
+from squeezefilm.contact.dry_friction import DryFriction, FrictionProfile
+from squeezefilm.contact.fingerpad import FingerpadDynamics
+from squeezefilm.contact.occlusion import Occlusion
+from squeezefilm.contact.sliding_kernel import MOST_EVENTS, slide_march
+from squeezefilm.errors import ConvergenceError, InputError, OutOfRangeError
+from squeezefilm.quantities import (
+    Dimensionless,
+    DimensionlessLike,
+    FloatArray,
+    Joule,
+    Metre,
+    MetreArray,
+    MetrePerSecond,
+    MetrePerSecondArray,
+    NewtonLike,
+    Second,
+    SecondArray,
+    Unit,
+    format_quantity,
+    require,
+)
+
+NewtonArray = Annotated[FloatArray, Unit("N")]
+JouleArray = Annotated[FloatArray, Unit("J")]
+MetrePerSquareSecondArray = Annotated[FloatArray, Unit("m/s2")]
+
+# Of the shortest time of the skin; far below it, a substep holds at most one slip.
+_SUBSTEP = 0.25
+# Of the time in which friction that falls with speed lets a slip grow by a factor e.
+_STRIBECK_SUBSTEP = 0.1
+_MOST_SUBSTEPS = 1000
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Sliding:
+    """A finger's skin dragged over a surface; arrays of shape (samples,).
+
+    Forces are positive when they drag the surface, or hold back the bone, along +x.
+
+    Attributes:
+        fingerpad, law, time_step: the inputs (time step in s).
+        model: what was solved.
+        time: since the motion began (s).
+        bone_position: of the bone along x (m).
+        skin_position: of the skin in the contact (m).
+        skin_speed: its speed over the surface (m/s); exactly 0 where it sticks.
+        friction_force: tangential force of the interface (N).
+        bone_force: tangential force at the bone (N), what a force sensor behind the pad shows; the
+            mass of the skin stands between the two. Where the bone's speed jumps, the value before.
+        friction_limit: kinetic friction force at the skin's place and at high speed (N).
+        sticking: whether the skin sticks.
+        bone_work: work done by the bone since the start (J).
+        friction_loss: work lost to friction since the start (J); never falls.
+        damping_loss: work lost in the pad since the start (J); never falls.
+        stored_energy: kinetic and elastic energy (J).
+        stuck_share: share of the time spent sticking (1).
+        slips: how many times the skin began to slip.
+        friction_law_error: largest relative departure of the friction used from the law at the
+            middle of a step (1); 0 where friction depends on time alone.
+    """
+
+    fingerpad: FingerpadDynamics
+    law: DryFriction
+    time_step: Second
+    time: SecondArray
+    bone_position: MetreArray
+    skin_position: MetreArray
+    skin_speed: MetrePerSecondArray
+    friction_force: NewtonArray
+    bone_force: NewtonArray
+    friction_limit: NewtonArray
+    sticking: NDArray[np.bool_]
+    bone_work: JouleArray
+    friction_loss: JouleArray
+    damping_loss: JouleArray
+    stored_energy: JouleArray
+    stuck_share: Dimensionless
+    slips: int
+    friction_law_error: Dimensionless
+    model: str = "one mass on spring and damper, set-valued Coulomb friction, event-driven"
+
+    @property
+    def stretch(self) -> MetreArray:
+        """Skin position relative to the bone (m): negative when dragged back on a way along +x."""
+        return self.skin_position - self.bone_position
+
+    @property
+    def skin_acceleration(self) -> MetrePerSquareSecondArray:
+        """Acceleration of the skin (m/s²), from the forces on it."""
+        return (self.bone_force - self.friction_force) / self.fingerpad.mass
+
+    @property
+    def energy_residual(self) -> Joule:
+        """Largest failure of the balance work = stored + friction + damping at any time (J).
+
+        Work and losses are integrated on their own, so this judges the march; it does not judge
+        whether the law was followed (`friction_law_error`) or the inputs sampled finely enough.
+        """
+        gained = self.stored_energy - self.stored_energy[0]
+        return float(
+            np.max(np.abs(self.bone_work - gained - self.friction_loss - self.damping_loss))
+        )
+
+
+def slide(
+    bone_position: MetreArray,
+    time_step: Second,
+    friction_coefficient: DimensionlessLike,
+    normal_force: NewtonLike,
+    fingerpad: FingerpadDynamics | None = None,
+    law: DryFriction | None = None,
+    *,
+    occlusion: Occlusion | None = None,
+    profile: FrictionProfile | None = None,
+    initial_stretch: Metre = 0.0,
+    initial_speed: MetrePerSecond = 0.0,
+) -> Sliding:
+    """The tangential force and the skin's motion as the bone moves over a surface.
+
+    Args:
+        bone_position: at times 0, time_step, … (m), shape (n,), n ≥ 2. Motion at constant speed
+            and turns that fall on samples are taken exactly; smooth motion to second order.
+        time_step: between samples (s); above 0.
+        friction_coefficient: kinetic, over time (1): a scalar or shape (n,), at least 0; linear
+            between samples. With a display this is µ times the relative friction rendered.
+        normal_force: over time (N): a scalar or shape (n,), at least 0; the friction limit it
+            gives is linear between samples.
+        fingerpad: stiffness, damping, mass; unverified defaults where not given.
+        law: static friction and its dependence on speed and load; plain Coulomb if not given.
+        occlusion: slow growth of friction with contact time, none if not given.
+        profile: friction that belongs to places of the surface, a factor of the coefficient.
+        initial_stretch: skin position relative to the bone at the start (m); 0 is a relaxed pad.
+        initial_speed: of the skin over the surface at the start (m/s); 0 is a skin at rest, which
+            sticks if friction holds it.
+
+    Raises:
+        InputError: a value outside its range, arrays of other shapes, or a law whose friction
+            falls so steeply with speed that a step would need more than 1000 parts.
+        OutOfRangeError: the skin left the places that `profile` covers.
+        ConvergenceError: slips began and ended more than 200 times within one step; `partial`
+            holds the skin positions up to there.
+    """
+    pad, law = fingerpad or FingerpadDynamics(), law or DryFriction()
+    require("bone_position", bone_position, Unit("m"))
+    require("time_step", time_step, Unit("s"), above=0.0)
+    require("initial_stretch", initial_stretch, Unit("m"))
+    require("initial_speed", initial_speed, Unit("m/s"))
+    bone = np.ascontiguousarray(bone_position, dtype=float)
+    if bone.ndim != 1 or bone.size < 2:
+        raise InputError(
+            f"bone_position of shape {bone.shape} cannot be used: give one place per sample, at "
+            "least two",
+            quantity="bone_position",
+        )
+    n = bone.size
+    time: SecondArray = np.arange(n, dtype=float) * time_step
+    limit = _over_time("friction_coefficient", friction_coefficient, n)
+    limit = np.asarray(law.kinetic_force(limit, _over_time("normal_force", normal_force, n)))
+    if occlusion is not None:
+        limit = limit * occlusion.factor(time)
+    values = np.ones(1) if profile is None else np.array(profile.relative_friction, dtype=float)
+    start, spacing = (0.0, 1.0) if profile is None else (profile.start, profile.spacing)
+    strongest = float(limit.max() * values.max())
+
+    position, speed, friction, bone_force = (np.zeros(n) for _ in range(4))
+    sticking, work, account = np.zeros(n, dtype=bool), np.zeros((3, n)), np.zeros(3)
+    position[0], speed[0] = bone[0] + initial_stretch, initial_speed
+    speed_in, speed_out = interval_speeds(bone, time_step)
+    done = slide_march(
+        bone, speed_in, speed_out, np.ascontiguousarray(limit), float(time_step),
+        _substeps(time_step, pad, law, strongest),
+        pad.mass, pad.damping, pad.stiffness, law.static_ratio, law.stribeck_speed,
+        start, spacing, values,
+        position, speed, friction, bone_force, sticking, work, account,
+    )  # fmt: skip
+    if done < n:
+        raise ConvergenceError(
+            f"the skin started and stopped more than {MOST_EVENTS} times within the time step "
+            f"after t = {format_quantity(float(time[done]), Unit('s'))}; take a shorter time_step",
+            partial=position[: done + 1],
+            iterations=MOST_EVENTS,
+        )
+    if profile is not None:
+        _require_covered(position, profile)
+        places = profile.start + profile.spacing * np.arange(values.size)
+        limit = limit * np.interp(position, places, values)
+    return Sliding(
+        fingerpad=pad,
+        law=law,
+        time_step=time_step,
+        time=time,
+        bone_position=bone,
+        skin_position=position,
+        skin_speed=speed,
+        friction_force=friction,
+        bone_force=bone_force,
+        friction_limit=limit,
+        sticking=sticking,
+        bone_work=work[0],
+        friction_loss=work[1],
+        damping_loss=work[2],
+        stored_energy=0.5 * (pad.mass * speed**2 + pad.stiffness * (position - bone) ** 2),
+        stuck_share=float(account[0] / (time_step * (n - 1))),
+        slips=int(account[1]),
+        friction_law_error=float(account[2]),
+    )
+
+
+def interval_speeds(
+    bone: MetreArray, time_step: Second
+) -> tuple[MetrePerSecondArray, MetrePerSecondArray]:
+    """Speed of the bone at the start and the end of each interval (m/s), shape (n−1,) each.
+
+    The parabola through both samples whose acceleration is the smaller of those to the left and
+    to the right, and 0 where they differ in sign: second order on smooth motion, and a motion in
+    straight pieces that meet at samples keeps its corners.
+    """
+    mean = np.diff(bone) / time_step
+    change = np.diff(mean)
+    if not change.size:
+        return mean, mean.copy()
+    left, right = np.append(change[:1], change), np.append(change, change[-1:])
+    half = 0.5 * np.where(left * right > 0, np.sign(left), 0.0)
+    half *= np.minimum(np.abs(left), np.abs(right))
+    # Differences of places carry rounding; it must not pass for acceleration.
+    noise = 4 * np.finfo(float).eps * float(np.max(np.abs(bone))) / time_step
+    half[np.abs(half) <= noise] = 0.0
+    return mean - half, mean + half
+
+
+def _over_time(name: str, values: NewtonLike | DimensionlessLike, n: int) -> FloatArray:
+    array = np.asarray(values, dtype=float)
+    if array.shape not in ((), (n,)):
+        raise InputError(
+            f"{name} of shape {array.shape} does not fit {n} samples of bone_position; give a "
+            "scalar or one value per sample",
+            quantity=name,
+        )
+    return np.broadcast_to(array, (n,))
+
+
+def _substeps(time_step: Second, pad: FingerpadDynamics, law: DryFriction, strongest: float) -> int:
+    """Parts of a step short enough for the skin, and for friction that falls with speed."""
+    fastest = max(math.sqrt(pad.stiffness / pad.mass), pad.damping / pad.mass)
+    count = math.ceil(time_step * fastest / _SUBSTEP)
+    if law.stribeck_speed > 0 and law.static_ratio > 1:
+        growth = (law.static_ratio - 1) * strongest / (pad.mass * law.stribeck_speed)
+        count = max(count, math.ceil(time_step * growth / _STRIBECK_SUBSTEP))
+    if count > _MOST_SUBSTEPS:
+        raise InputError(
+            f"time_step = {format_quantity(time_step, Unit('s'))} would need {count} parts of a "
+            f"step where {_MOST_SUBSTEPS} are allowed: shorten it, or raise stribeck_speed or mass"
+        )
+    return max(count, 1)
+
+
+def _require_covered(position: MetreArray, profile: FrictionProfile) -> None:
+    low, high = float(position.min()), float(position.max())
+    if low < profile.start or high > profile.end:
+        ends = [format_quantity(x, Unit("m")) for x in (low, high, profile.start, profile.end)]
+        raise OutOfRangeError(
+            f"the skin moved from {ends[0]} to {ends[1]}, and the profile covers {ends[2]} to "
+            f"{ends[3]}; extend it (the skin leads and trails the bone by its stretch)"
+        )

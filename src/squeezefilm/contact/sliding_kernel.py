@@ -1,0 +1,215 @@
+"""One compiled march of a mass on a spring and a damper under set-valued Coulomb friction.
+
+Between two samples the bone's motion is a parabola and the friction limit a line, so the skin's
+equation has a closed solution while it sticks and while it slides. Both are stepped with it, and
+the instants at which one becomes the other are found inside the step: no velocity is regularised,
+and a stuck skin does not move at all.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numba
+import numpy as np
+
+from squeezefilm.contact.skin_motion import HALVINGS, end_of_slip, first_rise, slide_along
+
+Array = np.ndarray[Any, Any]
+
+# Slip starts and ends that one sample interval may hold before the march gives up.
+MOST_EVENTS = 200
+# Three Gauss points: the powers of a step are integrated to its sixth order.
+_NODES = (0.5 - math.sqrt(0.15), 0.5, 0.5 + math.sqrt(0.15))
+_WEIGHTS = (5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0)
+
+
+@numba.njit(cache=True, nogil=True)
+def at_place(place: float, start: float, spacing: float, profile: Array) -> float:
+    """The profile (linear between its points, held beyond its ends) at a place (m)."""
+    if profile.size == 1:
+        return float(profile[0])
+    along = (place - start) / spacing
+    i = min(max(int(along), 0), profile.size - 2)
+    part = min(max(along - i, 0.0), 1.0)
+    return float(profile[i] + part * (profile[i + 1] - profile[i]))
+
+
+@numba.njit(cache=True, nogil=True)
+def slide_march(
+    bone: Array, speed_in: Array, speed_out: Array, limit: Array, time_step: float, substeps: int,
+    mass: float, damping: float, stiffness: float, static_ratio: float, stribeck_speed: float,
+    profile_start: float, profile_spacing: float, profile: Array,
+    position: Array, speed: Array, friction: Array, bone_force: Array, stuck: Array,
+    work: Array, account: Array,
+) -> int:  # fmt: skip
+    """March the skin over all samples; the arrays of the last two lines take the answer.
+
+    `bone` (n,) are the bone's places, `speed_in`, `speed_out` (n−1,) its speeds at the start and
+    the end of each interval, `limit` (n,) the kinetic friction force (N) before the profile.
+    `position[0]`, `speed[0]` hold the start. `work` (3, n) takes the work done by the bone, lost
+    to friction and to damping. `account` takes: time stuck (s), slips begun, and the largest
+    departure of the friction used from the friction law at the middle of a substep (over the
+    limit there). Returns n, or the interval in which slip started and ended too often.
+    """
+    pull = np.empty(3)
+    x = position[0]
+    v = speed[0]
+    k, c = stiffness, damping
+    drops = stribeck_speed > 0.0 and static_ratio > 1.0
+    bent = drops or profile.size > 1
+    h = time_step / substeps
+    here = at_place(x, profile_start, profile_spacing, profile)
+    load = k * (bone[0] - x) + c * (speed_in[0] - v)
+    sign = 0.0
+    if v != 0.0:
+        sign = math.copysign(1.0, v)
+    elif abs(load) > static_ratio * here * limit[0]:
+        sign = math.copysign(1.0, load)
+        account[1] += 1.0
+    bone_force[0] = load
+    stuck[0] = sign == 0.0
+    force_end = 0.0
+    if sign != 0.0:
+        force_end = limit[0] * here
+        if drops:
+            force_end *= 1.0 + (static_ratio - 1.0) * math.exp(-abs(v) / stribeck_speed)
+    friction[0] = load if sign == 0.0 else sign * force_end
+    for i in range(bone.size - 1):
+        v_in = speed_in[i]
+        rate = (speed_out[i] - v_in) / time_step
+        L0 = limit[i]
+        dL = (limit[i + 1] - L0) / time_step
+        done = np.zeros(3)
+        events = 0
+        s = 0.0
+        for j in range(substeps):
+            goal = time_step if j == substeps - 1 else (j + 1) * h
+            tries = 0
+            while s < goal:
+                span = goal - s
+                vb = v_in + rate * s
+                xb = bone[i] + s * (v_in + 0.5 * rate * s)
+                pull[0] = k * xb + c * vb
+                pull[1] = k * vb + c * rate
+                pull[2] = 0.5 * k * rate
+                L = L0 + dL * s
+                here = at_place(x, profile_start, profile_spacing, profile)
+                if sign == 0.0:
+                    hold = static_ratio * here
+                    f = pull[0] - k * x
+                    up = first_rise(f - hold * L, pull[1] - hold * dL, pull[2], span)
+                    down = first_rise(-f - hold * L, -pull[1] - hold * dL, -pull[2], span)
+                    part = span
+                    if up >= 0.0 and (down < 0.0 or up <= down):
+                        part = up
+                        sign = 1.0
+                    elif down >= 0.0:
+                        part = down
+                        sign = -1.0
+                    for q in range(3):
+                        t = _NODES[q] * part
+                        vb_t = vb + rate * t
+                        f_t = f + t * (pull[1] + t * pull[2])
+                        done[0] += _WEIGHTS[q] * part * f_t * vb_t
+                        done[2] += _WEIGHTS[q] * part * c * vb_t * vb_t
+                    account[0] += part
+                    s = goal if sign == 0.0 else s + part
+                    if sign != 0.0:
+                        account[1] += 1.0
+                        events += 1
+                        if events > MOST_EVENTS:
+                            return i
+                    continue
+                # Slip. The friction force is a line over the substep; where it depends on speed
+                # or place, its end is found by prediction and two corrections.
+                F0 = here * L
+                if drops:
+                    F0 *= 1.0 + (static_ratio - 1.0) * math.exp(-abs(v) / stribeck_speed)
+                dF = here * dL
+                if bent:
+                    for _ in range(3):
+                        x1, v1, _ = slide_along(span, x, v, pull, sign * F0, sign * dF, mass, c, k)
+                        F1 = (L + dL * span) * at_place(x1, profile_start, profile_spacing, profile)
+                        if drops:
+                            v1 = max(sign * v1, 0.0)
+                            F1 *= 1.0 + (static_ratio - 1.0) * math.exp(-v1 / stribeck_speed)
+                        dF = (F1 - F0) / span
+                part = end_of_slip(span, x, v, sign, pull, sign * F0, sign * dF, mass, c, k)
+                if part == 0.0:
+                    # A slip too short to be found: the skin stays, for longer each time.
+                    part = min(span * 0.5**HALVINGS * 4.0**tries, span)
+                    tries += 1
+                    for q in range(3):
+                        t = _NODES[q] * part
+                        vb_t = vb + rate * t
+                        f_t = pull[0] - k * x + t * (pull[1] + t * pull[2])
+                        done[0] += _WEIGHTS[q] * part * f_t * vb_t
+                        done[2] += _WEIGHTS[q] * part * c * vb_t * vb_t
+                    account[0] += part
+                    account[1] -= 1.0
+                    sign = 0.0
+                    s = goal if part == span else s + part
+                    continue
+                ends = part > 0.0
+                if bent and ends:
+                    # The friction's line must end where the slip does, not where the substep does.
+                    for _ in range(4):
+                        x1, _, _ = slide_along(part, x, v, pull, sign * F0, sign * dF, mass, c, k)
+                        F1 = (L + dL * part) * at_place(x1, profile_start, profile_spacing, profile)
+                        if drops:
+                            F1 *= static_ratio
+                        steeper = (F1 - F0) / part
+                        sooner = end_of_slip(
+                            span, x, v, sign, pull, sign * F0, sign * steeper, mass, c, k
+                        )
+                        if sooner <= 0.0:
+                            break
+                        dF = steeper
+                        part = sooner
+                if not ends:
+                    part = span
+                for q in range(3):
+                    t = _NODES[q] * part
+                    x_t, v_t, _ = slide_along(t, x, v, pull, sign * F0, sign * dF, mass, c, k)
+                    vb_t = vb + rate * t
+                    xb_t = xb + t * (vb + 0.5 * rate * t)
+                    F_t = F0 + dF * t
+                    done[0] += _WEIGHTS[q] * part * (k * (xb_t - x_t) + c * (vb_t - v_t)) * vb_t
+                    done[1] += _WEIGHTS[q] * part * F_t * abs(v_t)
+                    done[2] += _WEIGHTS[q] * part * c * (vb_t - v_t) ** 2
+                    if bent and q == 1:
+                        top = (L + dL * t) * at_place(x_t, profile_start, profile_spacing, profile)
+                        law = top
+                        if drops:
+                            law *= 1.0 + (static_ratio - 1.0) * math.exp(-abs(v_t) / stribeck_speed)
+                        if law > 0.0:
+                            account[2] = max(account[2], abs(F_t / law - 1.0))
+                x, v, _ = slide_along(part, x, v, pull, sign * F0, sign * dF, mass, c, k)
+                force_end = F0 + dF * part
+                if not ends:
+                    s = goal
+                    continue
+                s = min(s + part, goal)
+                v = 0.0
+                vb = v_in + rate * s
+                f = k * (bone[i] + s * (v_in + 0.5 * rate * s) - x) + c * vb
+                here = at_place(x, profile_start, profile_spacing, profile)
+                hold = static_ratio * here * (L0 + dL * s)
+                sign = 0.0
+                if abs(f) > hold:
+                    sign = math.copysign(1.0, f)
+                    force_end = hold if drops else here * (L0 + dL * s)
+                    account[1] += 1.0
+                events += 1
+                if events > MOST_EVENTS:
+                    return i
+        position[i + 1] = x
+        speed[i + 1] = v
+        stuck[i + 1] = sign == 0.0
+        bone_force[i + 1] = k * (bone[i + 1] - x) + c * (speed_out[i] - v)
+        friction[i + 1] = bone_force[i + 1] if sign == 0.0 else sign * force_end
+        for q in range(3):
+            work[q, i + 1] = work[q, i] + done[q]
+    return int(bone.size)

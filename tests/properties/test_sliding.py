@@ -1,0 +1,90 @@
+"""Laws of dry friction and of energy that hold for every pad, motion, load and friction."""
+
+from __future__ import annotations
+
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from squeezefilm.contact.dry_friction import DryFriction
+from squeezefilm.contact.fingerpad import FingerpadDynamics
+from squeezefilm.contact.sliding import Sliding, slide
+
+SAMPLES = 200
+
+
+@st.composite
+def motions(draw: st.DrawFn) -> tuple[Sliding, Sliding]:
+    """A random motion under random friction, and the same seen in a mirror."""
+    rng = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
+    pad = FingerpadDynamics(
+        stiffness=draw(st.floats(100, 1e4)),
+        damping=draw(st.one_of(st.just(0.0), st.floats(0.01, 10))),
+        mass=draw(st.floats(3e-5, 1e-3)),
+    )
+    law = DryFriction(
+        static_ratio=draw(st.one_of(st.just(1.0), st.floats(1, 2))),
+        stribeck_speed=draw(st.one_of(st.just(0.0), st.floats(0.2, 2))),
+    )
+    dt = 10 ** draw(st.floats(-5.5, -3.7))
+    speed = draw(st.floats(-0.5, 0.5))
+    jitter = draw(st.sampled_from([0.0, 1e-3, 0.1]))
+    bone = np.cumsum(speed + jitter * rng.standard_normal(SAMPLES)) * dt
+    friction = draw(st.sampled_from([0.0, 0.5, 3.0])) * rng.random(SAMPLES)
+    load = draw(st.sampled_from([0.0, 1.0])) + rng.random(SAMPLES)
+    start = draw(st.floats(-0.3, 0.3))
+    stretch = draw(st.floats(-1e-3, 1e-3))
+    both = [
+        slide(
+            side * bone, dt, friction, load, pad, law,
+            initial_speed=side * start, initial_stretch=side * stretch,
+        )
+        for side in (1.0, -1.0)
+    ]  # fmt: skip
+    return both[0], both[1]
+
+
+def energy_scale(motion: Sliding) -> float:
+    return float(
+        motion.stored_energy.max()
+        + np.abs(motion.bone_work).max()
+        + motion.friction_loss[-1]
+        + motion.damping_loss[-1]
+    )
+
+
+@given(motions())
+@settings(max_examples=150, deadline=None)
+def test_energy_balances_and_friction_never_creates_any(both: tuple[Sliding, Sliding]) -> None:
+    motion = both[0]
+    assert motion.energy_residual <= 1e-6 * energy_scale(motion)
+    assert np.all(np.diff(motion.friction_loss) >= 0)
+    assert np.all(np.diff(motion.damping_loss) >= 0)
+
+
+@given(motions())
+@settings(max_examples=150, deadline=None)
+def test_coulombs_law_holds_at_every_sample(both: tuple[Sliding, Sliding]) -> None:
+    motion = both[0]
+    limit = motion.law.static_ratio * motion.friction_limit
+    rounding = 1e-12 * (limit.max() + np.abs(motion.bone_force).max())
+    assert np.all(np.abs(motion.friction_force) <= limit + rounding)
+    assert np.all(motion.skin_speed[motion.sticking] == 0)
+    assert np.all(motion.friction_force[motion.sticking] == motion.bone_force[motion.sticking])
+    free = ~motion.sticking
+    assert np.all(motion.friction_force[free] * motion.skin_speed[free] >= 0)
+    if motion.law.stribeck_speed == 0 or motion.law.static_ratio == 1:
+        moving = free & (motion.skin_speed != 0)
+        moving[0] = False
+        wanted = motion.friction_limit[moving]
+        assert np.all(np.abs(np.abs(motion.friction_force[moving]) - wanted) <= rounding)
+
+
+@given(motions())
+@settings(max_examples=75, deadline=None)
+def test_a_mirrored_motion_gives_mirrored_forces(both: tuple[Sliding, Sliding]) -> None:
+    motion, mirrored = both
+    for name in ("skin_position", "skin_speed", "friction_force", "bone_force"):
+        assert np.array_equal(getattr(motion, name), -getattr(mirrored, name))
+    assert np.array_equal(motion.sticking, mirrored.sticking)
+    assert np.array_equal(motion.friction_loss, mirrored.friction_loss)

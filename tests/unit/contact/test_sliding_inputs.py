@@ -1,0 +1,144 @@
+"""What a sliding finger refuses, and the small parts around it."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from squeezefilm.analysis.stroke_force import StrokeForce, stroke_force
+from squeezefilm.contact.dry_friction import DryFriction, FrictionProfile, sampled_profile
+from squeezefilm.contact.fingerpad import FingerpadDynamics
+from squeezefilm.contact.occlusion import Occlusion
+from squeezefilm.contact.skin_vibration import line_amplitudes, skin_vibration, texture_frequency
+from squeezefilm.contact.sliding import interval_speeds, slide
+from squeezefilm.errors import InputError, OutOfRangeError
+from squeezefilm.render.stroke import Stroke
+from squeezefilm.render.texture import Square
+from squeezefilm.render.trace import friction_trace
+
+DT = 1e-4
+BONE = 0.08 * DT * np.arange(2000)
+
+
+@pytest.mark.parametrize(
+    ("build", "word"),
+    [
+        (lambda: FingerpadDynamics(stiffness=0.0), "stiffness"),
+        (lambda: FingerpadDynamics(damping=-1.0), "damping"),
+        (lambda: FingerpadDynamics(mass=math.nan), "mass"),
+        (lambda: DryFriction(static_ratio=0.9), "static_ratio"),
+        (lambda: DryFriction(load_exponent=1.2), "load_exponent"),
+        (lambda: DryFriction(stribeck_speed=-0.1), "stribeck_speed"),
+        (lambda: Occlusion(rise=-1.0), "rise"),
+        (lambda: Occlusion().factor(-1.0), "contact_time"),
+        (lambda: FrictionProfile(0.0, 1e-3, np.ones(1)), "at least two"),
+        (lambda: FrictionProfile(0.0, 1e-3, -np.ones(3)), "relative_friction"),
+        (lambda: sampled_profile(lambda x: x[:2], 0.0, 1.0, 5), "one per place"),
+        (lambda: sampled_profile(np.ones_like, 0.0, 1.0, 1), "points"),
+        (lambda: slide(BONE[:1], DT, 0.5, 0.5), "at least two"),
+        (lambda: slide(BONE, 0.0, 0.5, 0.5), "time_step"),
+        (lambda: slide(BONE, DT, -0.5, 0.5), "friction_coefficient"),
+        (lambda: slide(BONE, DT, 0.5, -0.5), "normal_force"),
+        (lambda: slide(BONE, DT, np.ones(3), 0.5), "one value per sample"),
+        (lambda: slide(BONE, DT, 0.5, 5.0, law=DryFriction(2.0, 1e-6)), "shorten it"),
+        (lambda: skin_vibration(slide(BONE, DT, 0.5, 0.5), 6000.0), "fundamental"),
+        (lambda: skin_vibration(slide(BONE, DT, 0.5, 0.5), 80.0, start=0.19), "too short"),
+        (lambda: skin_vibration(slide(BONE, DT, 0.5, 0.5), 80.0, 0), "harmonics"),
+        (lambda: skin_vibration(slide(BONE, DT, 0.5, 0.5), 80.0, end=1.0), "end"),
+    ],
+)
+def test_what_cannot_be_is_refused_with_its_name(build: Any, word: str) -> None:
+    with pytest.raises(InputError, match=word):
+        build()
+
+
+def test_a_skin_that_leaves_its_profile_is_told_so() -> None:
+    profile = FrictionProfile(0.0, 1e-3, np.ones(5))
+    with pytest.raises(OutOfRangeError, match="covers 0 m to 4 mm"):
+        slide(BONE, DT, 0.5, 0.5, profile=profile)
+
+
+def test_corners_that_fall_on_samples_stay_corners() -> None:
+    bone = 0.01 * np.abs(np.arange(-5.0, 6.0))
+    first, last = interval_speeds(bone, 1.0)
+    assert np.all(first == last)
+    assert first == pytest.approx([-0.01] * 5 + [0.01] * 5)
+
+
+def test_smooth_motion_has_its_acceleration() -> None:
+    t = np.arange(50) * 0.1
+    first, last = interval_speeds(0.5 * 3.0 * t**2, 0.1)
+    assert first == pytest.approx(3.0 * t[:-1], abs=1e-9)
+    assert last == pytest.approx(3.0 * t[1:], abs=1e-9)
+
+
+def test_default_pad_is_overdamped_and_settles_with_its_slow_root() -> None:
+    pad = FingerpadDynamics()
+    assert pad.resonance_frequency == pytest.approx(410.9, abs=0.1)
+    assert pad.damping_ratio == pytest.approx(1.291, abs=1e-3)
+    slow = -1 / np.roots([pad.mass, pad.damping, pad.stiffness]).max()
+    assert pad.settling_time_constant == pytest.approx(slow)
+    light = FingerpadDynamics(damping=0.1)
+    assert light.settling_time_constant == pytest.approx(2 * light.mass / light.damping)
+    assert FingerpadDynamics(damping=0.0).settling_time_constant == math.inf
+
+
+def test_law_over_speed() -> None:
+    law = DryFriction(1.5, 0.02)
+    assert law.over_kinetic(np.array([0.0, 0.02, -0.02, 10.0])) == pytest.approx(
+        [1.5, 1 + 0.5 / math.e, 1 + 0.5 / math.e, 1.0]
+    )
+    assert DryFriction(1.5).over_kinetic(np.array([0.0, 1e-9])).tolist() == [1.5, 1.0]  # type: ignore[union-attr]
+
+
+def test_lines_are_found_between_bins_and_beside_a_drift() -> None:
+    t = np.arange(5003) * 1e-4
+    signal = 3.0 + 20.0 * t + 2.0 * np.sin(2 * np.pi * 37.3 * t + 0.3)
+    signal += 0.5 * np.cos(2 * np.pi * 3 * 37.3 * t)
+    found = line_amplitudes(signal, 1e-4, 37.3 * np.arange(1.0, 5.0))
+    assert found == pytest.approx([2.0, 0.0, 0.5, 0.0], abs=1e-9)
+
+
+@pytest.fixture(scope="module")
+def force() -> StrokeForce:
+    """A 1 mm square grating, 40 % of friction deep, under a finger at 80 mm/s, there and back."""
+    stroke = Stroke(0.08, 0.03, passes=2)
+    trace = friction_trace(Square(1e-3, 0.0, 2e-6), stroke, 5e-4, lambda a: 1 - a / 5e-6)
+    return stroke_force(trace, 0.6, 0.5)
+
+
+def test_a_trace_and_a_finger_give_a_force(force: StrokeForce) -> None:
+    motion, trace = force.motion, force.trace
+    assert motion.time == pytest.approx(trace.time)
+    limit = 0.6 * 0.5 * trace.relative_friction_rendered
+    assert motion.friction_limit == pytest.approx(limit)
+    there = (motion.time > force.settled) & (motion.time < 0.99 * trace.stroke.pass_duration)
+    assert motion.friction_force[there] == pytest.approx(limit[there])
+    back = motion.time > 1.1 * trace.stroke.pass_duration
+    assert motion.friction_force[back] == pytest.approx(-limit[back])
+
+
+def test_the_spectrum_has_the_power_and_the_lines_of_the_vibration(force: StrokeForce) -> None:
+    vibration = force.vibration(harmonics=7)
+    assert vibration.fundamental == texture_frequency(0.08, 1e-3) == pytest.approx(80.0)
+    inside = (force.motion.time >= vibration.start) & (force.motion.time <= vibration.end)
+    stretch = force.motion.stretch[inside]
+    power = np.trapezoid(vibration.displacement_psd, vibration.frequency)
+    assert power == pytest.approx(np.var(stretch), rel=0.05)
+    lines = 0.5 * np.sum(vibration.displacement_amplitude**2)
+    assert lines == pytest.approx(np.var(stretch), rel=0.02)
+    # A square of duty ½ has no even harmonics, whatever the linear skin makes of the odd ones.
+    assert vibration.displacement_amplitude[1::2].max() < 0.01 * vibration.displacement_amplitude[0]
+    accelerated = vibration.displacement_amplitude * (2 * np.pi * vibration.harmonic_frequency) ** 2
+    assert vibration.acceleration_amplitude[::2] == pytest.approx(accelerated[::2], rel=0.01)
+
+
+def test_a_texture_without_a_period_has_no_lines(force: StrokeForce) -> None:
+    trace = friction_trace(
+        lambda x, y, v, t: np.full(np.shape(x), 1e-6), Stroke(0.08), 1e-3, lambda a: 1 - a / 5e-6
+    )
+    with pytest.raises(InputError, match="no spatial period"):
+        stroke_force(trace, 0.6, 0.5).vibration()
