@@ -20,6 +20,7 @@ from squeezefilm.quantities import (
     FloatArray,
     Hertz,
     HertzLike,
+    Kilogram,
     Metre,
     MetreArray,
     MetrePerVolt,
@@ -50,6 +51,7 @@ class SolidMode:
     `lobe`; `nodal_positions` its nodal lines along the length; `amplitude_per_volt` is the largest
     answer of that lobe within the mode's bandwidth, `modal_amplitude_per_volt` what this mode has
     in it, Q F φ / ω²: much less where the drive moves its neighbours only.
+    `modal_mass` is the mass that has the mode's kinetic energy if it moves as the lobe does.
     """
 
     modes: PlateModes
@@ -61,6 +63,7 @@ class SolidMode:
     lobe: Metre
     amplitude_per_volt: MetrePerVolt
     modal_amplitude_per_volt: MetrePerVolt
+    modal_mass: Kilogram
     model: str = MODEL
 
     @property
@@ -132,6 +135,7 @@ def solid_mode(plate: RectangularPlate, label: tuple[int, int] | None = None) ->
         modal_amplitude_per_volt=float(
             quality * abs(modes.drive_forces[index] * line[at]) / (2 * np.pi * frequency) ** 2
         ),
+        modal_mass=float(1 / line[at] ** 2),
     )
 
 

@@ -1,0 +1,62 @@
+"""What a finger does to the vibration: the dynamic stiffness that the film passes on to the plate.
+
+Plate and skin face each other across gas and asperities. Per area of plateau the interface has a
+complex stiffness K_i (film and asperities side by side), the skin D = k − mω² + iωc behind it, so
+that the plate feels K = K_i D/(K_i + D): its real part detunes the mode, its imaginary part damps
+it.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from squeezefilm.contact.asperities import AsperityLaw
+from squeezefilm.contact.skin import Skin
+from squeezefilm.film.gap import squeeze_number
+from squeezefilm.film.linear import relative_damping, relative_stiffness
+from squeezefilm.materials import Gas
+from squeezefilm.quantities import Hertz, Metre, Unit, require
+
+_PHASES = np.cos(2 * np.pi * np.arange(64) / 64)
+
+
+def interface_stiffness(
+    mean_gap: Metre,
+    amplitude: Metre,
+    plateau_width: Metre,
+    frequency: Hertz,
+    gas: Gas,
+    asperities: AsperityLaw,
+) -> complex:
+    """Film and asperities between plate and a plateau: complex stiffness per area (Pa/m).
+
+    The film is the linear one of a strip at the mean gap, with first-order slip: within some tens
+    of percent up to an amplitude of half the gap, too soft beyond. The asperities' is the first
+    harmonic of their law over the swing, −2⟨p_a cos T⟩/a, exact at any amplitude. Raises
+    `InputError` for a gap, width or frequency not above 0, or a negative amplitude.
+    """
+    require("mean_gap", mean_gap, Unit("m"), above=0)
+    require("amplitude", amplitude, Unit("m"), at_least=0)
+    sigma = squeeze_number(frequency, plateau_width, mean_gap, gas.viscosity, gas.ambient_pressure)
+    knudsen = gas.mean_free_path / mean_gap
+    spring = relative_stiffness(sigma, "strip", knudsen_number=knudsen)
+    damper = relative_damping(sigma, "strip", knudsen_number=knudsen)
+    film = gas.ambient_pressure / mean_gap * complex(float(spring), float(damper))
+    # A swing of a nanometre at the least: the limit of the difference quotient, without 0/0.
+    swing = max(amplitude, 1e-9)
+    pressure = np.asarray(asperities.pressure(mean_gap - swing * _PHASES))
+    return film + 2 * float(np.mean(pressure * _PHASES)) / swing
+
+
+def finger_stiffness(
+    interface: complex, skin: Skin, frequency: Hertz, plateau_share: float
+) -> complex:
+    """What the plate feels of a finger, per area of contact (Pa/m, complex): K_i D/(K_i + D) on the
+    plateaus, which are `plateau_share` (0 to 1) of the contact; grooves are left out.
+
+    Raises `InputError` for a share outside 0 to 1.
+    """
+    require("plateau_share", plateau_share, at_least=0, at_most=1)
+    behind = skin.dynamic_stiffness(frequency)
+    felt: complex = plateau_share * interface * behind / (interface + behind)
+    return felt

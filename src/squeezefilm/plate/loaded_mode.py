@@ -1,0 +1,85 @@
+"""A mode with something on the surface: detuned by its stiffness or mass, damped by its losses."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from squeezefilm.quantities import (
+    Dimensionless,
+    Hertz,
+    Kilogram,
+    Metre,
+    SquareMetre,
+    Unit,
+    require,
+)
+
+
+@dataclass(frozen=True)
+class LoadedMode:
+    """One mode with a load on it: its new resonance and quality factor.
+
+    `load_ratio` δ is the load's modal stiffness over the mode's own, complex.
+    """
+
+    free_frequency: Hertz
+    free_quality_factor: Dimensionless
+    load_ratio: complex
+
+    @property
+    def resonance_frequency(self) -> Hertz:
+        """f0 √(1 + Re δ) (Hz)."""
+        return float(self.free_frequency * np.sqrt(1 + self.load_ratio.real))
+
+    @property
+    def quality_factor(self) -> Dimensionless:
+        """(1 + Re δ)/(1/Q + Im δ)."""
+        loss = 1 / self.free_quality_factor + self.load_ratio.imag
+        return float((1 + self.load_ratio.real) / loss)
+
+    def amplitude_ratio(self, frequency: Hertz) -> Dimensionless:
+        """The amplitude at a frequency (Hz), over that of the free mode at its resonance.
+
+        1/(Q |1 + i/Q + δ − (f/f0)²|): of this mode alone. Raises `InputError` unless f > 0.
+        """
+        require("frequency", frequency, Unit("Hz"), above=0)
+        Q, x = self.free_quality_factor, frequency / self.free_frequency
+        return float(1 / abs(Q * (1 + self.load_ratio - x**2) + 1j))
+
+
+def mean_square_wave(
+    half_wavelength: Metre, contact_length: Metre, position: Metre = 0.0
+) -> Dimensionless:
+    """⟨cos²(πx/half_wavelength)⟩ over a contact centred `position` (m) from an antinode."""
+    require("half_wavelength", half_wavelength, Unit("m"), above=0)
+    require("contact_length", contact_length, Unit("m"), above=0)
+    k = 2 * np.pi / half_wavelength
+    reach = k * contact_length / 2
+    return float((1 + np.cos(k * position) * np.sin(reach) / reach) / 2)
+
+
+def loaded_mode(
+    frequency: Hertz,
+    quality_factor: Dimensionless,
+    modal_mass: Kilogram,
+    stiffness_per_area: complex,
+    area: SquareMetre,
+    mean_square: Dimensionless,
+) -> LoadedMode:
+    """A mode of `frequency` (Hz) and Q that moves `modal_mass` (kg, for unit amplitude at an
+    antinode), with a load of complex `stiffness_per_area` (Pa/m) on `area` (m²), over which the
+    square of the mode's shape has the mean `mean_square`.
+
+    First order in the load: exact for a load much softer than the mode. Raises `InputError` for a
+    frequency, Q, mass or area that is not above 0, or a load with gain (negative loss).
+    """
+    require("frequency", frequency, Unit("Hz"), above=0)
+    require("quality_factor", quality_factor, above=0)
+    require("modal_mass", modal_mass, Unit("kg"), above=0)
+    require("area", area, Unit("m2"), above=0)
+    require("mean_square", mean_square, at_least=0, at_most=1)
+    require("the load's loss", stiffness_per_area.imag, Unit("Pa/m"), at_least=0)
+    own = modal_mass * (2 * np.pi * frequency) ** 2
+    return LoadedMode(frequency, quality_factor, stiffness_per_area * area * mean_square / own)

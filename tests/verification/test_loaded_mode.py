@@ -1,0 +1,105 @@
+"""A finger on the plate: the one-mode law against the whole solved plate with a load on it."""
+
+import numpy as np
+import pytest
+
+from squeezefilm.contact.asperities import AsperityLaw
+from squeezefilm.contact.finger_load import finger_stiffness, interface_stiffness
+from squeezefilm.contact.skin import Skin
+from squeezefilm.display import load_display
+from squeezefilm.errors import InputError
+from squeezefilm.materials import Gas
+from squeezefilm.plate.layout import RectangularPlate
+from squeezefilm.plate.loaded_mode import LoadedMode, loaded_mode, mean_square_wave
+from squeezefilm.plate.plate_response import SurfaceLoad, harmonic_response
+from squeezefilm.plate.solid_mode import solid_mode
+
+AIR = Gas(1.85e-5, 1e5, 1.2, 67e-9)
+
+
+def test_mean_square_is_a_half_over_whole_waves_and_one_at_an_antinode() -> None:
+    assert mean_square_wave(11e-3, 22e-3) == pytest.approx(0.5)
+    assert mean_square_wave(11e-3, 1e-6) == pytest.approx(1)
+    assert mean_square_wave(11e-3, 1e-6, 5.5e-3) == pytest.approx(0, abs=1e-6)
+    x = np.linspace(-5e-3, 5e-3, 20001) + 2e-3
+    mean = np.trapezoid(np.cos(np.pi * x / 11e-3) ** 2, x) / 10e-3
+    assert mean_square_wave(11e-3, 10e-3, 2e-3) == pytest.approx(mean, rel=1e-7)
+
+
+def test_without_a_load_the_mode_is_what_it_was() -> None:
+    mode = loaded_mode(30e3, 60, 0.01, 0j, 1e-4, 0.7)
+    assert (mode.resonance_frequency, mode.quality_factor) == pytest.approx((30e3, 60))
+    assert mode.amplitude_ratio(30e3) == pytest.approx(1)
+    # A lossless spring detunes and does not damp; a damper damps and does not detune.
+    assert LoadedMode(30e3, 60, 0.01 + 0j).resonance_frequency > 30e3
+    assert LoadedMode(30e3, 60, 1j / 60).amplitude_ratio(30e3) == pytest.approx(0.5)
+    with pytest.raises(InputError, match="loss"):
+        loaded_mode(30e3, 60, 0.01, -1j, 1e-4, 0.7)
+
+
+@pytest.mark.parametrize("stiffness", [6e10 + 0j, 2e10j, -3e10 + 1e10j])
+def test_the_plate_with_a_load_on_it_moves_as_the_one_mode_law_says(stiffness: complex) -> None:
+    plate = load_display("biet2008-plate").actuator
+    assert isinstance(plate, RectangularPlate)
+    mode = solid_mode(plate)
+    side = 8e-3
+    omega = 2 * np.pi * mode.frequency
+    load = SurfaceLoad(
+        x=mode.lobe - side / 2,
+        y=plate.width / 2 - side / 2,
+        length=side,
+        width=side,
+        damping=stiffness.imag / omega,
+        stiffness=max(stiffness.real, 0.0),
+        mass=max(-stiffness.real, 0.0) / omega**2,
+    )
+    frequency = mode.frequency * np.linspace(0.99, 1.01, 41)
+    free = harmonic_response(plate, frequency).amplitude_at(mode.lobe, plate.width / 2)
+    loaded = harmonic_response(plate, frequency, loads=[load])
+    solved = loaded.amplitude_at(mode.lobe, plate.width / 2) / free.max()
+    # The mode itself over the load, not a cosine: this is a test of the law, not of the shape.
+    x, y, area = load.points()
+    shape = mode.modes.field(mode.index, x, y, plate.thickness)[:, :, 2]
+    lobe = mode.modes.field(
+        mode.index, np.array([mode.lobe]), np.array([plate.width / 2]), plate.thickness
+    )[0, 0, 2]
+    assert mode.modal_mass == pytest.approx(1 / lobe**2, rel=1e-6)
+    mean_square = float(np.sum((shape / lobe) ** 2 * area)) / side**2
+    assert mean_square == pytest.approx(mean_square_wave(mode.half_wavelength, side), rel=0.05)
+    law = loaded_mode(
+        mode.frequency, mode.quality_factor, mode.modal_mass, stiffness, side**2, mean_square
+    )
+    # The load's doing, as solved and by the law: alike to a sixth (the neighbours respond too).
+    changed = solved - free / free.max()
+    alone = LoadedMode(mode.frequency, mode.quality_factor, 0j)
+    expected = [law.amplitude_ratio(f) - alone.amplitude_ratio(f) for f in frequency]
+    assert np.max(np.abs(changed)) > 0.04
+    assert np.max(np.abs(changed - expected)) < np.max(np.abs(changed)) / 6
+
+
+def test_a_finger_is_mostly_damping_over_a_thin_film_and_its_skin_stands_still() -> None:
+    film = interface_stiffness(4e-6, 1e-6, 250e-6, 35e3, AIR, AsperityLaw())
+    felt = finger_stiffness(film, Skin(), 35e3, 250 / 350)
+    assert felt.imag > 0
+    # An inertial skin, far stiffer than the film, changes it by the ratio of the two.
+    ratio = abs(film / Skin().dynamic_stiffness(35e3))
+    assert ratio < 0.2
+    assert abs(felt / (film * 250 / 350) - 1) < 1.5 * ratio
+    # A massive skin holds still: only the interface is felt. A massless one is not felt at all.
+    still = finger_stiffness(film, Skin(mass_per_area=1e6), 35e3, 1.0)
+    assert still == pytest.approx(film, rel=1e-4)
+    gone = finger_stiffness(film, Skin(mass_per_area=1e-6), 35e3, 1.0)
+    assert abs(gone) < 1e-3 * abs(film)
+
+
+def test_asperities_add_a_spring_that_does_not_depend_on_the_swing_if_small() -> None:
+    law = AsperityLaw()
+    vacuum = Gas(1.85e-5, 1.0, 1.2e-5, 67e-4)
+    small = interface_stiffness(2e-6, 1e-9, 250e-6, 35e3, vacuum, law)
+    # −dp/dh = p/λ of exponential asperities
+    assert small.real == pytest.approx(5e3 / 0.6e-6, rel=1e-3)
+    # First harmonic over a large swing: 2 p I1(a/λ)/a
+    from scipy.special import i1
+
+    large = interface_stiffness(2e-6, 1.2e-6, 250e-6, 35e3, vacuum, law)
+    assert large.real == pytest.approx(2 * 5e3 * i1(2.0) / 1.2e-6, rel=1e-3)
