@@ -16,8 +16,10 @@ HALVINGS = 20
 
 
 @numba.njit(cache=True, nogil=True)
-def free_motion(y: float, w: float, s: float, decay: float, omega2: float) -> Any:
-    """(y, ẏ) after a time s of ÿ + 2·decay·ẏ + omega2·y = 0 from (y, w)."""
+def transition(s: float, damping: float, stiffness: float, mass: float) -> Any:
+    """What takes (y, ẏ) of the free skin to a time s later: y ← a y + b ẏ, ẏ ← c y + d ẏ."""
+    decay = damping / (2.0 * mass)
+    omega2 = stiffness / mass
     split = decay * decay - omega2
     if abs(split) * s * s < 1e-4:
         # Near critical damping sinh(r s)/r loses its digits; its series does not.
@@ -36,7 +38,7 @@ def free_motion(y: float, w: float, s: float, decay: float, omega2: float) -> An
         fade = math.exp(-decay * s)
         even = fade * math.cos(r * s)
         odd = fade * math.sin(r * s) / r
-    return y * (even + decay * odd) + w * odd, w * (even - decay * odd) - omega2 * y * odd
+    return even + decay * odd, odd, -omega2 * odd, even - decay * odd
 
 
 @numba.njit(cache=True, nogil=True)
@@ -58,31 +60,48 @@ def first_rise(a: float, b: float, c: float, span: float) -> float:
 
 
 @numba.njit(cache=True, nogil=True)
-def slide_along(
-    s: float, x: float, v: float, pull: Array, force: float, slope: float,
+def slide_by(
+    passed: Any, s: float, x: float, v: float, pull: Array, force: float, slope: float,
     mass: float, damping: float, stiffness: float,
 ) -> Any:  # fmt: skip
     """Position, speed and acceleration a time s into sliding against a friction force + slope·s.
 
-    `pull` (3,) are the coefficients of k x_bone + c v_bone in time. The particular solution is the
-    parabola A + B s + C s².
+    `passed` is the `transition` of s, which a march at a fixed step knows beforehand. `pull` (3,)
+    are the coefficients of k x_bone + c v_bone in time. The particular solution is the parabola
+    A + B s + C s².
     """
     C = pull[2] / stiffness
     B = (pull[1] - slope - 2.0 * damping * C) / stiffness
     A = (pull[0] - force - damping * B - 2.0 * mass * C) / stiffness
-    decay = damping / (2.0 * mass)
-    omega2 = stiffness / mass
-    y, w = free_motion(x - A, v - B, s, decay, omega2)
-    return A + s * (B + s * C) + y, B + 2.0 * C * s + w, 2.0 * C - 2.0 * decay * w - omega2 * y
+    y = passed[0] * (x - A) + passed[1] * (v - B)
+    w = passed[2] * (x - A) + passed[3] * (v - B)
+    return (
+        A + s * (B + s * C) + y,
+        B + 2.0 * C * s + w,
+        2.0 * C - (damping * w + stiffness * y) / mass,
+    )
+
+
+@numba.njit(cache=True, nogil=True)
+def slide_along(
+    s: float, x: float, v: float, pull: Array, force: float, slope: float,
+    mass: float, damping: float, stiffness: float,
+) -> Any:  # fmt: skip
+    """`slide_by` for any time s."""
+    passed = transition(s, damping, stiffness, mass)
+    return slide_by(passed, s, x, v, pull, force, slope, mass, damping, stiffness)
 
 
 @numba.njit(cache=True, nogil=True)
 def end_of_slip(
-    span: float, x: float, v: float, sign: float, pull: Array, force: float, slope: float,
-    mass: float, damping: float, stiffness: float,
+    passed: Any, span: float, x: float, v: float, sign: float, pull: Array, force: float,
+    slope: float, mass: float, damping: float, stiffness: float,
 ) -> float:  # fmt: skip
-    """When in (0, span] the skin comes to rest, or −1 while it slides on; 0 if it never started."""
-    _, v_end, a_end = slide_along(span, x, v, pull, force, slope, mass, damping, stiffness)
+    """When in (0, span] the skin comes to rest, or −1 while it slides on; 0 if it never started.
+
+    `passed` is the `transition` of span.
+    """
+    _, v_end, a_end = slide_by(passed, span, x, v, pull, force, slope, mass, damping, stiffness)
     high = span
     low = 0.0
     if sign * v_end > 0.0:

@@ -14,7 +14,14 @@ from typing import Any
 import numba
 import numpy as np
 
-from squeezefilm.contact.skin_motion import HALVINGS, end_of_slip, first_rise, slide_along
+from squeezefilm.contact.skin_motion import (
+    HALVINGS,
+    end_of_slip,
+    first_rise,
+    slide_along,
+    slide_by,
+    transition,
+)
 
 Array = np.ndarray[Any, Any]
 
@@ -60,6 +67,11 @@ def slide_march(
     drops = stribeck_speed > 0.0 and static_ratio > 1.0
     bent = drops or profile.size > 1
     h = time_step / substeps
+    # Whole substeps are alike: their exponentials are taken once.
+    whole = transition(h, c, k, mass)
+    first = transition(_NODES[0] * h, c, k, mass)
+    second = transition(_NODES[1] * h, c, k, mass)
+    third = transition(_NODES[2] * h, c, k, mass)
     here = at_place(x, profile_start, profile_spacing, profile)
     load = k * (bone[0] - x) + c * (speed_in[0] - v)
     sign = 0.0
@@ -124,19 +136,23 @@ def slide_march(
                     continue
                 # Slip. The friction force is a line over the substep; where it depends on speed
                 # or place, its end is found by prediction and two corrections.
+                even = abs(span - h) <= 1e-12 * h
+                passed = whole if even else transition(span, c, k, mass)
                 F0 = here * L
                 if drops:
                     F0 *= 1.0 + (static_ratio - 1.0) * math.exp(-abs(v) / stribeck_speed)
                 dF = here * dL
                 if bent:
                     for _ in range(3):
-                        x1, v1, _ = slide_along(span, x, v, pull, sign * F0, sign * dF, mass, c, k)
+                        x1, v1, _ = slide_by(
+                            passed, span, x, v, pull, sign * F0, sign * dF, mass, c, k
+                        )
                         F1 = (L + dL * span) * at_place(x1, profile_start, profile_spacing, profile)
                         if drops:
                             v1 = max(sign * v1, 0.0)
                             F1 *= 1.0 + (static_ratio - 1.0) * math.exp(-v1 / stribeck_speed)
                         dF = (F1 - F0) / span
-                part = end_of_slip(span, x, v, sign, pull, sign * F0, sign * dF, mass, c, k)
+                part = end_of_slip(passed, span, x, v, sign, pull, sign * F0, sign * dF, mass, c, k)
                 if part == 0.0:
                     # A slip too short to be found: the skin stays, for longer each time.
                     part = min(span * 0.5**HALVINGS * 4.0**tries, span)
@@ -162,17 +178,23 @@ def slide_march(
                             F1 *= static_ratio
                         steeper = (F1 - F0) / part
                         sooner = end_of_slip(
-                            span, x, v, sign, pull, sign * F0, sign * steeper, mass, c, k
+                            passed, span, x, v, sign, pull, sign * F0, sign * steeper, mass, c, k
                         )
                         if sooner <= 0.0:
                             break
                         dF = steeper
                         part = sooner
-                if not ends:
+                even = even and not ends
+                if ends:
+                    passed = transition(part, c, k, mass)
+                else:
                     part = span
                 for q in range(3):
                     t = _NODES[q] * part
-                    x_t, v_t, _ = slide_along(t, x, v, pull, sign * F0, sign * dF, mass, c, k)
+                    by = first if q == 0 else second if q == 1 else third
+                    if not even:
+                        by = transition(t, c, k, mass)
+                    x_t, v_t, _ = slide_by(by, t, x, v, pull, sign * F0, sign * dF, mass, c, k)
                     vb_t = vb + rate * t
                     xb_t = xb + t * (vb + 0.5 * rate * t)
                     F_t = F0 + dF * t
@@ -186,7 +208,7 @@ def slide_march(
                             law *= 1.0 + (static_ratio - 1.0) * math.exp(-abs(v_t) / stribeck_speed)
                         if law > 0.0:
                             account[2] = max(account[2], abs(F_t / law - 1.0))
-                x, v, _ = slide_along(part, x, v, pull, sign * F0, sign * dF, mass, c, k)
+                x, v, _ = slide_by(passed, part, x, v, pull, sign * F0, sign * dF, mass, c, k)
                 force_end = F0 + dF * part
                 if not ends:
                     s = goal
