@@ -34,6 +34,9 @@ class Surface:
         require("friction_coefficient", self.friction_coefficient, above=0, at_most=10)
 
 
+HIGHEST_VOLTAGE: Volt = 2000.0
+
+
 @dataclass(frozen=True)
 class Drive:
     """The electrical drive: the voltage's amplitude (zero-to-peak) at resonance."""
@@ -41,7 +44,7 @@ class Drive:
     voltage: Volt
 
     def __post_init__(self) -> None:
-        require("voltage", self.voltage, Unit("V"), at_least=0, at_most=2000)
+        require("voltage", self.voltage, Unit("V"), at_least=0, at_most=HIGHEST_VOLTAGE)
 
 
 @dataclass(frozen=True)

@@ -48,8 +48,8 @@ FrictionModel = Literal[
     "partial-levitation-one-gap",
 ]
 FRICTION_MODELS: tuple[FrictionModel, ...] = get_args(FrictionModel)
-SOLVED_DEFAULT: FrictionModel = "film-sealed"
-"""What takes the asymptote's place outside its range: the same equation and gap, solved."""
+DEFAULT_MODEL: FrictionModel = "partial-levitation"
+"""Film and asperities share the load, each ridge at its own balance (decision 0005)."""
 
 HIGHEST_AMPLITUDE: Metre = 50e-6
 
@@ -312,7 +312,7 @@ def friction_law(
     *,
     surface: Surface | None = None,
     normal_force: Newton | None = None,
-    model: FrictionModel = SOLVED_DEFAULT,
+    model: FrictionModel = DEFAULT_MODEL,
 ) -> FrictionLaw:
     """The friction law of a display; surface and force default to the display's own."""
     return FrictionLaw(

@@ -1,7 +1,8 @@
-"""The chain of one display: volts, frequency and force to the friction a finger meets.
+"""The chain of one display: volts, frequency and finger to the friction and the tangential force.
 
 Each link names the model that made its numbers: the solved plate, a beam or the measured stator the
-amplitude, the paper's asymptote or the solved film the friction.
+amplitude, the finger on it what is left of it, and partial levitation, the paper's asymptote or a
+solved film the friction.
 """
 
 from __future__ import annotations
@@ -12,16 +13,23 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from squeezefilm.display import Display, Surface
+from squeezefilm.display import HIGHEST_VOLTAGE, Display, Surface
 from squeezefilm.errors import (
     InputError,
     OutOfRangeError,
     OutOfRangeWarning,
     SqueezefilmWarning,
+    UnreachableError,
 )
 from squeezefilm.film.gap import squeeze_number
 from squeezefilm.film.validity import FilmValidity, film_validity
-from squeezefilm.friction import SOLVED_DEFAULT, FrictionLaw, FrictionModel, friction_law
+from squeezefilm.friction import (
+    DEFAULT_MODEL,
+    FrictionLaw,
+    FrictionModel,
+    friction_law,
+    shares_load,
+)
 from squeezefilm.plate.layout import Actuator, RectangularPlate
 from squeezefilm.plate.response import beam_doubt
 from squeezefilm.plate.working_mode import PlateTheory, WorkingMode, working_mode
@@ -35,17 +43,21 @@ from squeezefilm.quantities import (
     Volt,
     require,
 )
+from squeezefilm.touch import Touch, kept_at, touch
 
 
 @dataclass(frozen=True, eq=False)
 class Prediction:
     """What a display does at one voltage, frequency and force on one surface.
 
-    `amplitude_model` made the vibration amplitude (zero-to-peak, at an antinode), `model` the
-    pressure and the friction. `mean_pressure` is the film's, averaged over contact and period,
-    divided by ambient, `mean_pressure_error` the solver's estimate of its error (0 for a closed
-    form). `friction_reduction` is µ − µ′. `validity` says how far the paper's asymptote is from
-    where it holds; `law` is the friction as a function of the amplitude.
+    `amplitude_model` made the vibration amplitude (zero-to-peak, at an antinode, with the finger
+    on it), `touch` says what the finger took from it, `model` made pressure and friction.
+    `mean_pressure` is the film's, averaged over contact and period, divided by ambient,
+    `mean_pressure_error` the solver's estimate of its error (0 for a closed form).
+    `relative_friction_limits` are µ′/µ with each ridge at its own balance and with all ridges at
+    one mean gap, None for a model that shares no load. `friction_reduction` is µ − µ′,
+    `tangential_force` µ′ F of a finger that slides steadily. `validity` says how far the paper's
+    asymptote is from where it holds; `law` is the friction as a function of the amplitude.
     """
 
     display: str
@@ -56,14 +68,17 @@ class Prediction:
     mode: WorkingMode
     amplitude_model: str
     vibration_amplitude: Metre
+    touch: Touch
     model: FrictionModel
     law: FrictionLaw
     squeeze_number: Dimensionless
     mean_pressure: Dimensionless
     mean_pressure_error: Dimensionless
     relative_friction: Dimensionless
+    relative_friction_limits: tuple[Dimensionless, Dimensionless] | None
     friction_coefficient: Dimensionless
     friction_reduction: Dimensionless
+    tangential_force: Newton
     validity: FilmValidity
     warnings: tuple[str, ...]
 
@@ -82,11 +97,12 @@ def predict(
 ) -> Prediction:
     """The friction of a display driven with a voltage (V, zero-to-peak) at a frequency (Hz).
 
-    The frequency defaults to the resonance, voltage, force and surface to the display's own. A
-    `vibration_amplitude` (m, zero-to-peak) given directly takes the place of voltage and plate.
+    The frequency defaults to the resonance without a finger, voltage, force and surface to the
+    display's own. A `vibration_amplitude` (m, zero-to-peak, with the finger on it) given directly
+    takes the place of voltage and plate.
     `theory` says how a plate is computed; without one it is solved in three dimensions, and taken
     as a beam, with a warning, where its working mode cannot be found so.
-    Without a `model`, the paper's asymptote is used where it holds and the solved film elsewhere.
+    Without a `model`, film and asperities share the load of each ridge (partial levitation).
 
     What is doubtful (contradicting data, an asymptote asked for outside its range) is collected in
     `warnings`; with `strict` it raises instead: `ContradictionError`, `OutOfRangeError`. Raises
@@ -111,27 +127,30 @@ def predict(
             per_volt: MetrePerVolt = mode.amplitude_per_volt
             if drive_frequency != mode.resonance_frequency:
                 per_volt = float(mode.response(np.array([drive_frequency]))[0])
-            amplitude = float(volts * per_volt)
+            free = float(volts * per_volt)
             source = mode.model
         else:
             require("vibration_amplitude", vibration_amplitude, Unit("m"), at_least=0)
-            volts, amplitude, source = None, vibration_amplitude, "given"
+            volts, free, source = None, vibration_amplitude, "given"
         law = friction_law(
             display,
             mode.half_wavelength,
             drive_frequency,
             surface=where,
             normal_force=force,
-            model=model or "paper2008",
+            model=model or DEFAULT_MODEL,
         )
+        felt = touch(
+            mode if volts is not None else dataclasses.replace(mode, modal_mass=None), law, free
+        )
+        amplitude = felt.amplitude
         asked_for_asymptote = model is not None and model.startswith("paper2008")
         validity = film_validity(
             law.gap(amplitude), drive_frequency, display.gas, strict=strict and asked_for_asymptote
         )
-        if model is None and not validity.holds:
-            law = dataclasses.replace(law, model=SOLVED_DEFAULT)
         load = law.load(amplitude)
         friction = law.under(load, amplitude)
+        limits = _limits(law, amplitude)
     gap, gas = law.gap(amplitude), display.gas
     sigma = squeeze_number(
         drive_frequency,
@@ -153,13 +172,19 @@ def predict(
         for item in caught
         if not (solved and issubclass(item.category, OutOfRangeWarning))
     ]
-    if solved:
+    if law.model.startswith("film-"):
         inertia = validity.check("inertia")
         messages += [] if inertia.holds else [inertia.sentence]
+    if shares_load(law.model):
         messages.append(
-            f"the asymptote of the paper does not hold here (σ = {sigma:.4g}); the model "
-            f"'{law.model}' solves the film of the same gap, with slip. What a film carries "
-            "depends on the shape of the ridges more than on anything else: compare the film models"
+            "how film and asperities share the load rests on the asperities' law, on the width of "
+            "the ridges' plateaus and on how soft the skin is, none of which was measured on a "
+            "display: see the interval of squeezefilm friction"
+        )
+    if volts is not None and mode.modal_mass is None:
+        messages.append(
+            f"what the finger takes from the vibration is left out: the modal mass of a "
+            f"{mode.model.replace('_', ' ')} is not known"
         )
     if doubt is not None:
         messages.append(doubt)
@@ -172,17 +197,70 @@ def predict(
         mode=mode,
         amplitude_model=source,
         vibration_amplitude=amplitude,
+        touch=felt,
         model=law.model,
         law=law,
         squeeze_number=float(sigma),
         mean_pressure=1 + load.over_pressure,
         mean_pressure_error=load.error,
         relative_friction=friction,
+        relative_friction_limits=limits,
         friction_coefficient=where.friction_coefficient,
         friction_reduction=where.friction_coefficient * (1 - friction),
+        tangential_force=where.friction_coefficient * friction * force,
         validity=validity,
         warnings=tuple(dict.fromkeys(messages)),
     )
+
+
+def _limits(law: FrictionLaw, amplitude: Metre) -> tuple[Dimensionless, Dimensionless] | None:
+    if not shares_load(law.model):
+        return None
+    found = law.limits(amplitude)
+    return float(found.own[0]), float(found.one_gap[0])
+
+
+def voltage_for_friction(
+    display: Display,
+    relative_friction: Dimensionless,
+    *,
+    frequency: Hertz | None = None,
+    normal_force: Newton | None = None,
+    surface: str | None = None,
+    theory: PlateTheory | None = None,
+    model: FrictionModel | None = None,
+) -> tuple[Volt, Metre]:
+    """The voltage (V, zero-to-peak) that brings µ′/µ down to a wanted value, and its amplitude (m).
+
+    The inverse of `predict`, the finger's damping and detuning included; linear in the voltage up
+    to there. Raises `UnreachableError` where no amplitude does, or where the voltage would be more
+    than the 2 kV that a `Drive` may have.
+    """
+    mode = _mode(display.actuator, theory, False)
+    drive_frequency = mode.resonance_frequency if frequency is None else frequency
+    require("frequency", drive_frequency, Unit("Hz"), above=0)
+    law = friction_law(
+        display,
+        mode.half_wavelength,
+        drive_frequency,
+        surface=display.surface(surface),
+        normal_force=normal_force,
+        model=model or DEFAULT_MODEL,
+    )
+    amplitude = law.amplitude_for(relative_friction)
+    if amplitude == 0:
+        return 0.0, 0.0
+    per_volt = mode.amplitude_per_volt
+    if drive_frequency != mode.resonance_frequency:
+        per_volt = float(mode.response(np.array([drive_frequency]))[0])
+    volts = amplitude / (per_volt * kept_at(mode, law, amplitude))
+    if volts > HIGHEST_VOLTAGE:
+        raise UnreachableError(
+            f"relative_friction = {relative_friction:.4g} needs {amplitude * 1e6:.3g} µm and so "
+            f"{volts:.4g} V; a drive may have {HIGHEST_VOLTAGE:.4g} V. Drive at the resonance, ask "
+            "for less, or take a plate with more amplitude per volt"
+        )
+    return float(volts), amplitude
 
 
 def _mode(actuator: Actuator, theory: PlateTheory | None, strict: bool) -> WorkingMode:

@@ -73,8 +73,9 @@ def loaded_mode(
     square of the mode's shape has the mean `mean_square`.
 
     First order in the load. On the paper's plate a damper's effect at the finger agrees with the
-    whole solved plate to a sixth, a spring's or mass's to a third: they also mix modes nearby. Raises `InputError` for a
-    frequency, Q, mass or area that is not above 0, or a load with gain (negative loss).
+    whole solved plate to a sixth, a spring's or mass's to a third: they also mix modes nearby.
+    Raises `InputError` for a frequency, Q, mass or area that is not above 0, or a load with gain
+    (negative loss).
     """
     require("frequency", frequency, Unit("Hz"), above=0)
     require("quality_factor", quality_factor, above=0)

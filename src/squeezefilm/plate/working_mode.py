@@ -23,6 +23,7 @@ from squeezefilm.quantities import (
     Hertz,
     HertzArray,
     HertzLike,
+    Kilogram,
     Metre,
     MetreArray,
     MetrePerVolt,
@@ -65,7 +66,9 @@ class WorkingMode:
     """The mode a display works in; amplitudes are zero-to-peak at the largest interior lobe.
 
     `model` names what made the numbers, `frequency_error` is the solver's estimate where one
-    solved it. `beam` is the plate as a beam: what made the numbers, or stands beside them.
+    solved it; `modal_mass` is the mass that has the mode's kinetic energy if it moves as the lobe
+    does, where it is known. `beam` is the plate as a beam: what made the numbers, or stands beside
+    them.
     """
 
     label: str
@@ -75,6 +78,7 @@ class WorkingMode:
     amplitude_per_volt: MetrePerVolt
     model: str
     frequency_error: Hertz | None = None
+    modal_mass: Kilogram | None = None
     line: ModeLine | None = None
     solid: SolidMode | None = None
     beam: BeamResponse | None = None
@@ -138,6 +142,7 @@ def working_mode(
             amplitude_per_volt=solid.amplitude_per_volt,
             model=solid.model,
             frequency_error=solid.frequency_error,
+            modal_mass=solid.modal_mass,
             line=ModeLine(solid.position, solid.deflection, solid.nodal_positions),
             solid=solid,
             beam=_beam_beside(actuator),
@@ -151,9 +156,20 @@ def working_mode(
         quality_factor=actuator.quality_factor,
         amplitude_per_volt=beam.amplitude_per_volt,
         model=beam.model,
+        modal_mass=_beam_mass(beam),
         line=ModeLine(shape.position, shape.deflection, shape.nodal_positions),
         beam=beam,
     )
+
+
+def _beam_mass(beam: BeamResponse) -> Kilogram:
+    """The modal mass for the largest interior lobe of the beam, all across the width."""
+    shape = beam.mode
+    inside = (shape.position >= shape.nodal_positions[0]) & (
+        shape.position <= shape.nodal_positions[-1]
+    )
+    lobe = float(np.max(np.abs(shape.deflection[inside])))
+    return shape.modal_mass_per_width * beam.plate.width / lobe**2
 
 
 def _beam_beside(plate: RectangularPlate) -> BeamResponse | None:

@@ -1,0 +1,107 @@
+"""The finger on the vibrating surface: what it takes from the vibration, and how it is carried."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from squeezefilm.contact.finger_load import finger_stiffness, interface_stiffness
+from squeezefilm.contact.pad import PadFriction
+from squeezefilm.errors import ConvergenceError
+from squeezefilm.friction import FrictionLaw
+from squeezefilm.plate.loaded_mode import LoadedMode, loaded_mode, mean_square_wave
+from squeezefilm.plate.working_mode import WorkingMode
+from squeezefilm.quantities import Dimensionless, Metre
+
+_MOST_STEPS = 40
+_TOLERANCE = 1e-8  # of the amplitude
+_LEAST_AMPLITUDE: Metre = 1e-12
+
+
+@dataclass(frozen=True, eq=False)
+class Touch:
+    """A finger on a mode: the amplitude it is left with, and how the load is shared there.
+
+    `free_amplitude` is the one without the finger at the same voltage and frequency; `mode` how
+    the finger detunes and damps it, None where the modal mass is not known and the finger is taken
+    to change nothing; `sharing` None where the surface stands still.
+    """
+
+    free_amplitude: Metre
+    amplitude: Metre
+    mode: LoadedMode | None
+    sharing: PadFriction | None
+
+    @property
+    def kept(self) -> Dimensionless:
+        """The amplitude with the finger over the one without (1 at rest)."""
+        return self.amplitude / self.free_amplitude if self.free_amplitude > 0 else 1.0
+
+
+def touch(mode: WorkingMode, law: FrictionLaw, free_amplitude: Metre) -> Touch:
+    """The vibration with a finger on it, whose load depends on the amplitude: solved to 1e-8.
+
+    The finger rests at an antinode, film and asperities in the balance of the law (partial
+    levitation, whatever its model). Range: see `loaded_mode` and `interface_stiffness`. Raises
+    `ConvergenceError` if amplitude and finger do not settle, and what the load balance raises.
+    """
+    if free_amplitude < _LEAST_AMPLITUDE:
+        return Touch(free_amplitude, free_amplitude, None, None)
+    if mode.modal_mass is None:
+        return Touch(free_amplitude, free_amplitude, None, _sharing(law, free_amplitude))
+    free = LoadedMode(mode.resonance_frequency, mode.quality_factor, 0j)
+    alone = free.amplitude_ratio(law.frequency)
+    amplitude = free_amplitude
+    for step in range(_MOST_STEPS):
+        sharing = _sharing(law, amplitude)
+        loaded = _loaded(mode, mode.modal_mass, law, amplitude, float(sharing.mean_gap[0]))
+        new = free_amplitude * loaded.amplitude_ratio(law.frequency) / alone
+        if abs(new - amplitude) <= _TOLERANCE * free_amplitude:
+            return Touch(free_amplitude, new, loaded, sharing)
+        # Half way: where the finger takes much, the two chase each other.
+        amplitude = 0.5 * (new + amplitude) if step > 3 else new
+    raise ConvergenceError(
+        f"the amplitude under the finger did not settle (last change "
+        f"{abs(new - amplitude):.3g} m of {free_amplitude:.3g} m); the finger may be heavier than "
+        "the mode, which is outside of what one mode can tell",
+        residual=abs(new - amplitude) / free_amplitude,
+        iterations=_MOST_STEPS,
+    )
+
+
+def kept_at(mode: WorkingMode, law: FrictionLaw, amplitude: Metre) -> Dimensionless:
+    """The amplitude with the finger over the one without, where the former is known (m)."""
+    if mode.modal_mass is None or amplitude < _LEAST_AMPLITUDE:
+        return 1.0
+    gap = float(_sharing(law, amplitude).mean_gap[0])
+    loaded = _loaded(mode, mode.modal_mass, law, amplitude, gap)
+    free = LoadedMode(mode.resonance_frequency, mode.quality_factor, 0j)
+    return loaded.amplitude_ratio(law.frequency) / free.amplitude_ratio(law.frequency)
+
+
+def _sharing(law: FrictionLaw, amplitude: Metre) -> PadFriction:
+    limit = "one-gap" if law.model == "partial-levitation-one-gap" else "own"
+    return law.sharing(amplitude, limit)
+
+
+def _loaded(
+    mode: WorkingMode, modal_mass: float, law: FrictionLaw, amplitude: Metre, mean_gap: Metre
+) -> LoadedMode:
+    finger = law.finger
+    share = finger.plateau_width / finger.ridge_period
+    interface = interface_stiffness(
+        mean_gap,
+        min(amplitude, 0.9 * mean_gap),
+        finger.plateau_width,
+        law.frequency,
+        law.gas,
+        finger.asperity_law(law.surface.roughness),
+    )
+    area = finger.contact_area(law.normal_force)
+    return loaded_mode(
+        mode.resonance_frequency,
+        mode.quality_factor,
+        modal_mass,
+        finger_stiffness(interface, finger.skin, law.frequency, share),
+        area,
+        mean_square_wave(law.half_wavelength, area**0.5),
+    )
