@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from squeezefilm.contact.finger_load import finger_stiffness, interface_stiffness
-from squeezefilm.contact.pad import PadFriction
+from squeezefilm.contact.pad import Limit, PadFriction
 from squeezefilm.errors import ConvergenceError
 from squeezefilm.friction import FrictionLaw
 from squeezefilm.plate.loaded_mode import LoadedMode, loaded_mode, mean_square_wave
@@ -79,7 +79,7 @@ def kept_at(mode: WorkingMode, law: FrictionLaw, amplitude: Metre) -> Dimensionl
 
 
 def _sharing(law: FrictionLaw, amplitude: Metre) -> PadFriction:
-    limit = "one-gap" if law.model == "partial-levitation-one-gap" else "own"
+    limit: Limit = "one-gap" if law.model == "partial-levitation-one-gap" else "own"
     return law.sharing(amplitude, limit)
 
 

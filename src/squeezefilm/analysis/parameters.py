@@ -1,0 +1,125 @@
+"""Which values of a display are uncertain, and the display with other values in their place."""
+
+from __future__ import annotations
+
+import dataclasses
+import typing
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from squeezefilm.display import Display
+from squeezefilm.distributions import Distribution, Uniform
+from squeezefilm.quantities import Unit, unit_of
+
+Origin = Literal["given", "assumed"]
+
+SKIN_COMPLIANCE = "skin_compliance"
+"""Where the pad lies between all ridges at one mean gap (0) and each at its own balance (1)."""
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One uncertain value: its dotted path in the display, nominal value, distribution and origin.
+
+    "given" distributions stand in the description; "assumed" ones are this package's, for values
+    that control the friction and that nobody gave a spread.
+    """
+
+    path: str
+    nominal: float
+    unit: Unit
+    distribution: Distribution
+    origin: Origin
+    source: str
+
+
+# Shares of the nominal value. None was measured on a display: they keep an interval from being
+# narrow for want of anybody's saying how wide it is.
+_ASSUMED: dict[str, tuple[float, float, str]] = {
+    "finger.plateau_width": (0.6, 1.4, "150 to 350 µm are reported; illustrative"),
+    "finger.contact_length": (0.8, 1.2, "fingers differ; illustrative"),
+    "finger.asperities.decay_length": (0.5, 1.5, "illustrative, never measured on a display"),
+    "finger.asperities.reference_gap": (0.75, 1.25, "illustrative, never measured on a display"),
+    "surface.roughness": (0.75, 1.25, "one average roughness for a whole surface; illustrative"),
+    "actuator.quality_factor": (0.7, 1.3, "the losses of a bonded assembly; illustrative"),
+}
+
+
+def uncertain_parameters(
+    display: Display, surface: str | None = None, *, driven: bool
+) -> tuple[Parameter, ...]:
+    """The parameters that make the friction of a display on one of its surfaces uncertain.
+
+    Every value that the description gives a distribution, and the assumed ones of what controls
+    the friction. What belongs to the actuator counts only where it is `driven` by a voltage.
+    """
+    at = [item.name for item in display.surfaces].index(display.surface(surface).name)
+    found: dict[str, Parameter] = {}
+    for path, origin in display.provenance.items():
+        if origin.distribution is None or not _matters(path, at, driven):
+            continue
+        nominal, unit = value_at(display, path)
+        found[path] = Parameter(path, nominal, unit, origin.distribution, "given", origin.source)
+    for name, (low, high, why) in _ASSUMED.items():
+        path = name.replace("surface.", f"surfaces.{at}.")
+        if path in found or not _matters(path, at, driven):
+            continue
+        nominal, unit = value_at(display, path)
+        top = high * nominal
+        if name == "finger.plateau_width":
+            top = min(top, display.finger.ridge_period)
+        found[path] = Parameter(path, nominal, unit, Uniform(low * nominal, top), "assumed", why)
+    found[SKIN_COMPLIANCE] = Parameter(
+        SKIN_COMPLIANCE,
+        1.0,
+        Unit("1"),
+        Uniform(0.0, 1.0),
+        "assumed",
+        "between all ridges at one mean gap (0) and each at its own balance (1)",
+    )
+    return tuple(found.values())
+
+
+def _matters(path: str, surface: int, driven: bool) -> bool:
+    head = path.split(".")
+    if head[0] in ("actuator", "drive"):
+        return driven
+    if head[0] == "surfaces":
+        # The base friction scales µ′ and not µ′/µ.
+        return head[1] == str(surface) and head[2] == "roughness"
+    return head[0] in ("finger", "gas")
+
+
+def value_at(display: Display, path: str) -> tuple[float, Unit]:
+    """The value at a dotted path of a display, such as ``surfaces.0.roughness``, and its unit."""
+    owner: Any = display
+    parts = path.split(".")
+    for part in parts[:-1]:
+        owner = owner[int(part)] if isinstance(owner, tuple) else getattr(owner, part)
+    hints = typing.get_type_hints(type(owner), include_extras=True)
+    return float(getattr(owner, parts[-1])), unit_of(hints[parts[-1]]) or Unit("1")
+
+
+def replaced(display: Display, values: Mapping[str, float]) -> Display:
+    """The display with other values at dotted paths. Raises `InputError` where they cannot be."""
+    tree: dict[str, Any] = {}
+    for path, value in values.items():
+        node = tree
+        *heads, last = path.split(".")
+        for part in heads:
+            node = node.setdefault(part, {})
+        node[last] = value
+    return typing.cast(Display, _with(display, tree))
+
+
+def _with(owner: Any, tree: Mapping[str, Any]) -> Any:
+    if not isinstance(tree, Mapping):
+        return tree
+    if isinstance(owner, tuple):
+        return tuple(
+            _with(item, tree[str(index)]) if str(index) in tree else item
+            for index, item in enumerate(owner)
+        )
+    changes = {name: _with(getattr(owner, name), below) for name, below in tree.items()}
+    return dataclasses.replace(owner, **changes)

@@ -1,0 +1,286 @@
+"""How sure a friction is: quasi-Monte-Carlo over what is uncertain, and which of it matters."""
+
+from __future__ import annotations
+
+import dataclasses
+import warnings
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from squeezefilm.analysis.parameters import (
+    SKIN_COMPLIANCE,
+    Parameter,
+    replaced,
+    uncertain_parameters,
+)
+from squeezefilm.display import Display
+from squeezefilm.errors import InputError, OutOfRangeError, SqueezefilmError
+from squeezefilm.friction import friction_law
+from squeezefilm.plate.layout import AnnularStator, RectangularPlate
+from squeezefilm.plate.response import beam_response
+from squeezefilm.plate.working_mode import working_mode
+from squeezefilm.prediction import Prediction
+from squeezefilm.quantities import (
+    Dimensionless,
+    DimensionlessArray,
+    FloatArray,
+    Metre,
+    MetreArray,
+    format_quantity,
+)
+from squeezefilm.touch import touch
+
+LEVEL: Dimensionless = 0.9
+_MOST_FAILED = 0.05
+
+Progress = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class Influence:
+    """How much of the variance of µ′/µ one parameter explains, alone and with all its company.
+
+    First-order and total Sobol' indices with the half width of their 95 % confidence interval.
+    """
+
+    parameter: Parameter
+    first_order: Dimensionless
+    first_order_error: Dimensionless
+    total: Dimensionless
+    total_error: Dimensionless
+
+
+@dataclass(frozen=True, eq=False)
+class UncertainFriction:
+    """µ′/µ with its interval: `nominal` at the described values, `interval` between the 5 % and
+    95 % quantiles of `samples` (µ′/µ) with their `amplitudes` (m), all parameters varied at once.
+
+    `influences` are ranked, the most important to know better first. `failed` samples had no load
+    balance (asperities pressed through) and are left out, with the whole row of the design.
+    """
+
+    nominal: Dimensionless
+    median: Dimensionless
+    interval: tuple[Dimensionless, Dimensionless]
+    level: Dimensionless
+    samples: DimensionlessArray
+    amplitudes: MetreArray
+    influences: tuple[Influence, ...]
+    failed: int
+    evaluations: int
+    seed: int
+    model: str
+
+    @property
+    def sentence(self) -> str:
+        """The result as one says it: µ′/µ = 0.41 (0.28–0.55)."""
+        low, high = self.interval
+        return f"µ′/µ = {self.nominal:.2f} ({low:.2f}–{high:.2f})"
+
+    def summary(self) -> dict[str, Any]:
+        """The numbers for ``--json``, with units in the keys where there are any."""
+        return {
+            "relative_friction": self.nominal,
+            "relative_friction_median": self.median,
+            "relative_friction_interval": list(self.interval),
+            "interval_level": self.level,
+            "evaluations": self.evaluations,
+            "failed": self.failed,
+            "seed": self.seed,
+            "measure_next": [
+                {
+                    "parameter": item.parameter.path,
+                    "total_order": item.total,
+                    "total_order_error": item.total_error,
+                    "first_order": item.first_order,
+                    "first_order_error": item.first_order_error,
+                    "distribution": item.parameter.origin,
+                    "range": [
+                        format_quantity(value, item.parameter.unit)
+                        for value in item.parameter.distribution.support
+                    ],
+                    "source": item.parameter.source,
+                }
+                for item in self.influences
+            ],
+        }
+
+
+def uncertain_friction(
+    display: Display,
+    prediction: Prediction,
+    *,
+    samples: int = 128,
+    seed: int = 1,
+    progress: Progress | None = None,
+) -> UncertainFriction:
+    """A prediction's friction, by partial levitation, with all that is uncertain varied at once.
+
+    Saltelli's design over Sobol' points: `samples` (a power of two, 8 to 65 536) base points make
+    samples × (parameters + 2) evaluations. The plate's own uncertain dimensions and constants move
+    the amplitude as a beam's would (a solved plate for every sample would take hours), Q and
+    voltage in proportion; the drive is taken to follow the resonance. Source: Saltelli et al. 2010,
+    10.1016/j.cpc.2009.09.018, by SALib. Raises `InputError` for `samples` that are no power of two,
+    `OutOfRangeError` where more than 5 % of the samples have no load balance.
+    """
+    if samples < 8 or samples > 65536 or samples & (samples - 1):
+        raise InputError(
+            f"samples = {samples} cannot be used: take a power of two from 8 to 65536, like 128"
+        )
+    from SALib.analyze import sobol
+    from SALib.sample import sobol as design
+
+    driven = prediction.voltage is not None
+    parameters = uncertain_parameters(display, prediction.surface.name, driven=driven)
+    count = len(parameters)
+    problem = {
+        "num_vars": count,
+        "names": [item.path for item in parameters],
+        "bounds": [[0.0, 1.0]] * count,
+    }
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        unit = design.sample(problem, samples, calc_second_order=False, seed=seed)
+    values = np.column_stack(
+        [item.distribution.quantile(unit[:, k]) for k, item in enumerate(parameters)]
+    )
+    tell = progress or (lambda _: None)
+    friction, amplitude = _evaluate(display, prediction, parameters, values, tell)
+    blocks = friction.reshape(samples, count + 2)
+    whole = np.isfinite(blocks).all(axis=1)
+    failed = int(np.count_nonzero(~np.isfinite(friction)))
+    if failed > _MOST_FAILED * friction.size:
+        raise OutOfRangeError(
+            f"{failed} of {friction.size} samples have no load balance: within its uncertainty "
+            "this finger presses its asperities through. Narrow the ranges, press less, or vibrate "
+            "less"
+        )
+    kept = blocks[whole]
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        indices = sobol.analyze(
+            problem, kept.ravel(), calc_second_order=False, seed=seed, print_to_console=False
+        )
+    independent = np.concatenate([kept[:, 0], kept[:, -1]])
+    amplitudes = amplitude.reshape(samples, count + 2)[whole]
+    tails = (1 - LEVEL) / 2
+    low, middle, high = np.quantile(independent, [tails, 0.5, 1 - tails])
+    influences = [
+        Influence(
+            item,
+            float(indices["S1"][k]),
+            float(indices["S1_conf"][k]),
+            float(indices["ST"][k]),
+            float(indices["ST_conf"][k]),
+        )
+        for k, item in enumerate(parameters)
+    ]
+    return UncertainFriction(
+        nominal=_nominal(prediction),
+        median=float(middle),
+        interval=(float(low), float(high)),
+        level=LEVEL,
+        samples=independent,
+        amplitudes=np.concatenate([amplitudes[:, 0], amplitudes[:, -1]]),
+        influences=tuple(sorted(influences, key=lambda item: -item.total)),
+        failed=failed,
+        evaluations=friction.size,
+        seed=seed,
+        model="partial levitation between its two limits; Sobol' indices by SALib",
+    )
+
+
+def _nominal(prediction: Prediction) -> float:
+    law = dataclasses.replace(prediction.law, model="partial-levitation")
+    return law.at(prediction.vibration_amplitude)
+
+
+def _evaluate(
+    display: Display,
+    prediction: Prediction,
+    parameters: tuple[Parameter, ...],
+    values: FloatArray,
+    tell: Progress,
+) -> tuple[DimensionlessArray, MetreArray]:
+    friction = np.full(len(values), np.nan)
+    amplitude = np.full(len(values), np.nan)
+    compliance = [item.path for item in parameters].index(SKIN_COMPLIANCE)
+    paths = [item.path for item in parameters if item.path != SKIN_COMPLIANCE]
+    scale = _Amplitude(display, prediction)
+    every = max(1, len(values) // 20)
+    for number, row in enumerate(values):
+        if number % every == 0:
+            tell(f"friction of sample {number + 1} of {len(values)}")
+        changes = dict(zip(paths, np.delete(row, compliance).tolist(), strict=True))
+        try:
+            here = replaced(display, changes)
+            friction[number], amplitude[number] = _one(
+                here, prediction, scale(here), float(row[compliance])
+            )
+        except SqueezefilmError:
+            continue
+    return friction, amplitude
+
+
+def _one(
+    display: Display, prediction: Prediction, free_amplitude: Metre, compliance: float
+) -> tuple[float, float]:
+    p = prediction
+    law = friction_law(
+        display,
+        p.mode.half_wavelength,
+        p.frequency,
+        surface=display.surface(p.surface.name),
+        normal_force=p.normal_force,
+        model="partial-levitation",
+    )
+    amplitude = free_amplitude
+    if p.voltage is not None and p.mode.modal_mass is not None:
+        mode = dataclasses.replace(
+            p.mode, quality_factor=_quality_factor(display, p.mode.quality_factor)
+        )
+        amplitude = touch(mode, law, free_amplitude).amplitude
+    limits = law.limits(amplitude)
+    own, tied = float(limits.own[0]), float(limits.one_gap[0])
+    return compliance * own + (1 - compliance) * tied, amplitude
+
+
+def _quality_factor(display: Display, otherwise: float) -> float:
+    return float(getattr(display.actuator, "quality_factor", otherwise))
+
+
+class _Amplitude:
+    """The free amplitude of a display with other values, from that of the prediction."""
+
+    def __init__(self, display: Display, prediction: Prediction) -> None:
+        self.nominal, self.prediction = display, prediction
+        self.free = prediction.touch.free_amplitude
+        self.reference = self._per_volt(display) if prediction.voltage is not None else 1.0
+
+    def __call__(self, display: Display) -> Metre:
+        free = self.free * self._volts(display)
+        here, nominal = display.actuator, self.nominal.actuator
+        if self.prediction.voltage is None or here == nominal:
+            return free
+        if dataclasses.replace(here, quality_factor=nominal.quality_factor) == nominal:
+            # At resonance, in proportion; a stator's amplitude is measured, whatever its Q.
+            measured = isinstance(here, AnnularStator)
+            return free * (1 if measured else here.quality_factor / nominal.quality_factor)
+        return free * self._per_volt(display) / self.reference
+
+    def _volts(self, display: Display) -> float:
+        """An uncertain drive in proportion; a voltage asked for stands as it is."""
+        if self.prediction.voltage is None or self.nominal.drive.voltage == 0:
+            return 1.0
+        return display.drive.voltage / self.nominal.drive.voltage
+
+    @staticmethod
+    def _per_volt(display: Display) -> float:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            if isinstance(display.actuator, RectangularPlate):
+                return beam_response(display.actuator).amplitude_per_volt
+            return working_mode(display.actuator).amplitude_per_volt
