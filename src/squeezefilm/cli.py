@@ -124,7 +124,7 @@ def analyze(
     model: Annotated[
         str | None,
         typer.Option(
-            help="Friction model; without one the paper's where it holds, else the solved film. "
+            help="Friction model: partial-levitation (the default), partial-levitation-one-gap, "
             "paper2008, film-sealed, film-open, film-plateau, film-smooth."
         ),
     ] = None,
@@ -170,6 +170,71 @@ def analyze(
         typer.echo(f"report: {written}")
     else:
         typer.echo("add --out DIR to write result.json and a report with figures")
+
+
+@app.command()
+def friction(
+    target: Target,
+    voltage: Annotated[str | None, typer.Option(help='Voltage amplitude, like "15 V".')] = None,
+    frequency: Annotated[
+        str | None, typer.Option(help='Drive frequency, like "34 kHz"; the resonance if not given.')
+    ] = None,
+    amplitude: Annotated[
+        str | None,
+        typer.Option(help='Amplitude with the finger on it, like "2 um", in place of a voltage.'),
+    ] = None,
+    force: Annotated[str | None, typer.Option(help='Normal force, like "0.5 N".')] = None,
+    surface: Annotated[str | None, typer.Option(help="Which of its surfaces.")] = None,
+    model: Annotated[
+        str | None, typer.Option(help="partial-levitation (default), or another friction model.")
+    ] = None,
+    ambient_pressure: Annotated[
+        str | None, typer.Option(help='Of the air around, like "2 kPa" for a vacuum experiment.')
+    ] = None,
+    wanted: Annotated[
+        float | None, typer.Option(help="A relative friction: which voltage reaches it?")
+    ] = None,
+    samples: Annotated[
+        int, typer.Option(help="Base samples of the uncertainty, a power of two; 0 for none.")
+    ] = 64,
+    seed: Annotated[int, typer.Option(help="Of the samples.")] = 1,
+    out: Annotated[Path | None, typer.Option(help="Folder for friction.json and figures.")] = None,
+    as_json: AsJson = False,
+) -> None:
+    """The friction a finger meets, how the load is shared, and how sure all of it is."""
+    from squeezefilm.analysis.friction_command import analyze_friction
+    from squeezefilm.display import load_display
+    from squeezefilm.quantities import Unit
+    from squeezefilm.report import terminal
+    from squeezefilm.report.terminal_friction import show_friction
+
+    display = load_display(target)
+    with terminal.progress(enabled=sys.stderr.isatty() or not as_json) as step:
+        result = analyze_friction(
+            display,
+            voltage=_quantity(voltage, "--voltage", Unit("V")),
+            frequency=_quantity(frequency, "--frequency", Unit("Hz")),
+            vibration_amplitude=_quantity(amplitude, "--amplitude", Unit("m")),
+            normal_force=_quantity(force, "--force", Unit("N")),
+            surface=surface,
+            model=model,  # type: ignore[arg-type] # checked with a message by FrictionLaw
+            ambient_pressure=_quantity(ambient_pressure, "--ambient-pressure", Unit("Pa")),
+            wanted_friction=wanted,
+            samples=samples,
+            seed=seed,
+            progress=step,
+        )
+        written = None
+        if out is not None:
+            from squeezefilm.report.friction_report import write_friction
+
+            written = write_friction(result, out)
+    if as_json:
+        _print_json(result.summary())
+        return
+    show_friction(result)
+    if written is not None:
+        typer.echo(f"figures: {written}")
 
 
 @app.command()

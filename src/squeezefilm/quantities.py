@@ -299,6 +299,7 @@ MetreArray = Annotated[FloatArray, Unit("m")]
 SecondArray = Annotated[FloatArray, Unit("s")]
 HertzArray = Annotated[FloatArray, Unit("Hz")]
 PascalArray = Annotated[FloatArray, Unit("Pa")]
+NewtonArray = Annotated[FloatArray, Unit("N")]
 MetrePerSecondArray = Annotated[FloatArray, Unit("m/s")]
 MetrePerVoltArray = Annotated[FloatArray, Unit("m/V")]
 

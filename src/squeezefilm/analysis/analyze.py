@@ -19,6 +19,8 @@ from squeezefilm.analysis.curves import (
     wavelength_curves,
 )
 from squeezefilm.analysis.film_models import FilmComparison, compare_film_models
+from squeezefilm.analysis.friction_models import ModelCurve, model_curves
+from squeezefilm.analysis.uncertainty import UncertainFriction, uncertain_friction
 from squeezefilm.analysis.verdict import Finding, verdict
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError, OutOfRangeError
@@ -66,6 +68,8 @@ class Analysis:
     response: FrequencyResponse
     pressure: tuple[PressureProfile, ...]
     friction_curves: tuple[FrictionCurve, ...]
+    model_curves: tuple[ModelCurve, ...]
+    uncertainty: UncertainFriction | None
     wavelength_curves: tuple[WavelengthCurve, ...]
     film_models: FilmComparison | None
     texture: FrictionTrace | None
@@ -101,6 +105,11 @@ class Analysis:
             "mean_pressure": p.mean_pressure,
             "mean_pressure_error": p.mean_pressure_error,
             "relative_friction": p.relative_friction,
+            "relative_friction_interval": None
+            if self.uncertainty is None
+            else list(self.uncertainty.interval),
+            "amplitude_kept_under_finger": p.touch.kept,
+            "tangential_force_N": p.tangential_force,
             "friction_coefficient": p.friction_coefficient,
             "friction_reduction": p.friction_reduction,
             "model": p.model,
@@ -143,11 +152,13 @@ def analyze(
     theory: PlateTheory | None = None,
     model: FrictionModel | None = None,
     strict: bool = False,
+    samples: int = 32,
     progress: Progress | None = None,
 ) -> Analysis:
     """The whole analysis of a display at one working point.
 
-    Arguments and errors are those of `prediction.predict`; `progress` is told each step.
+    Arguments and errors are those of `prediction.predict`; `samples` (0: none) is the base of the
+    uncertainty's design, see `uncertain_friction`; `progress` is told each step.
     """
     tell = progress or (lambda _: None)
     tell("resonance, amplitude and friction")
@@ -177,6 +188,11 @@ def analyze(
         for model_ in models
         for surface_ in display.surfaces
     )
+    tell("friction by every model, and how sure it is")
+    by_model = model_curves(display, prediction)
+    unsure = None
+    if samples and prediction.touch.sharing is not None:
+        unsure = uncertain_friction(display, prediction, samples=samples)
     tell("wavelength against amplitude")
     wavelengths = wavelength_curves(display, prediction)
     tell("the paper's film and solved films")
@@ -193,6 +209,8 @@ def analyze(
         response=response,
         pressure=pressure,
         friction_curves=curves,
+        model_curves=by_model,
+        uncertainty=unsure,
         wavelength_curves=wavelengths,
         film_models=films,
         texture=trace,

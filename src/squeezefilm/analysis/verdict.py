@@ -135,7 +135,8 @@ def _of_films(p: Prediction, films: FilmComparison) -> list[Finding]:
             f"How ridges are drawn decides: sinusoidal ridges with open grooves carry "
             f"{open_.load_share:.1%} of the finger, ridges pressed flat "
             + ("all of it." if plateau.load_share >= 1 else f"{plateau.load_share:.0%} of it.")
-            + " No law of contact joins the two yet.",
+            + " Partial levitation, where film and asperities share the load of a "
+            "flattened ridge, lies between.",
         )
     )
     if films.balance is not None:

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import numpy as np
 
-from squeezefilm.contact.sliding import MetrePerSquareSecondArray, NewtonArray, Sliding
+from squeezefilm.contact.sliding import MetrePerSquareSecondArray, Sliding
 from squeezefilm.errors import InputError
 from squeezefilm.quantities import (
     FloatArray,
@@ -18,6 +18,7 @@ from squeezefilm.quantities import (
     MetreArray,
     MetreLike,
     MetrePerSecondLike,
+    NewtonArray,
     Second,
     Unit,
     closed_form,

@@ -35,6 +35,7 @@ from squeezefilm.quantities import (
     MetreArray,
     MetrePerSecond,
     MetrePerSecondArray,
+    NewtonArray,
     NewtonLike,
     Second,
     SecondArray,
@@ -43,7 +44,6 @@ from squeezefilm.quantities import (
     require,
 )
 
-NewtonArray = Annotated[FloatArray, Unit("N")]
 JouleArray = Annotated[FloatArray, Unit("J")]
 MetrePerSquareSecondArray = Annotated[FloatArray, Unit("m/s2")]
 

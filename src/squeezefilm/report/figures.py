@@ -6,7 +6,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from squeezefilm.report import friction_figures, plate_figures, texture_figures
+from squeezefilm.report import (
+    friction_figures,
+    friction_report,
+    plate_figures,
+    texture_figures,
+)
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -58,6 +63,14 @@ FIGURES: tuple[FigureOfReport, ...] = (
         "Friction divided by that without vibration, on each surface; squares mark where the "
         "model's film carries the whole finger. The paper's Fig 5.",
         friction_figures.friction,
+    ),
+    FigureOfReport(
+        "chain",
+        "Friction by every model, and how sure it is",
+        "The same finger by the paper's model, by solved films and by partial levitation, where "
+        "film and asperities share the load. The bar is the interval of what is uncertain in the "
+        "description and in the finger.",
+        friction_report.chain,
     ),
     FigureOfReport(
         "films",

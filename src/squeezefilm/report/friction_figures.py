@@ -37,6 +37,8 @@ _FIVE = (*LINES, (INK, (0, (3, 1, 1, 1, 1, 1))))
 
 
 _NAMES = {
+    "partial-levitation": "partial levitation",
+    "partial-levitation-one-gap": "partial levitation, one mean gap",
     "paper2008": "paper's asymptote",
     "film-sealed": "solved film, grooves sealed",
     "film-open": "solved film, grooves open at the ends",

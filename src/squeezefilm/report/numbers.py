@@ -16,6 +16,7 @@ if typing.TYPE_CHECKING:
     from squeezefilm.analysis.analyze import Analysis
     from squeezefilm.display import Display
     from squeezefilm.plate.working_mode import WorkingMode
+    from squeezefilm.prediction import Prediction
 
 M, HZ, S, N, V, ONE = Unit("m"), Unit("Hz"), Unit("s"), Unit("N"), Unit("V"), Unit("1")
 
@@ -85,12 +86,12 @@ def key_numbers(analysis: Analysis) -> list[KeyNumber]:
             ("Drive voltage", drive, "amplitude given instead" if given else "zero-to-peak"),
             ("Drive frequency", shown(p.frequency, HZ), "off resonance" if off else "at resonance"),
             ("Amplitude per volt", per_volt, "at resonance"),
-            ("Vibration amplitude", shown(p.vibration_amplitude, M), "zero-to-peak, at antinodes"),
+            ("Vibration amplitude", shown(p.vibration_amplitude, M), _kept(p)),
             ("Surface", printable(p.surface.name), f"roughness {shown(p.surface.roughness, M)}"),
             ("Normal force", shown(p.normal_force, N), ""),
             ("Squeeze number", f"{p.squeeze_number:.4g}", ""),
             ("Mean pressure", f"{p.mean_pressure:.4f}", "over ambient, contact and period"),
-            ("Relative friction µ′/µ", f"{p.relative_friction:.3f}", "1 without vibration"),
+            ("Relative friction µ′/µ", f"{p.relative_friction:.3f}", _sure(analysis)),
             (
                 "Friction reduction µ − µ′",
                 f"{p.friction_reduction:.3f}",
@@ -119,6 +120,21 @@ def key_numbers(analysis: Analysis) -> list[KeyNumber]:
         for speed, period in analysis.finest_period().items()
     ]
     return rows
+
+
+def _kept(p: Prediction) -> str:
+    """What the amplitude is, with what the finger leaves of it where that is known."""
+    if p.touch.mode is None:
+        return "zero-to-peak, at antinodes"
+    return f"zero-to-peak, at antinodes; the finger leaves {100 * p.touch.kept:.3g} %"
+
+
+def _sure(analysis: Analysis) -> str:
+    unsure = analysis.uncertainty
+    if unsure is None:
+        return "1 without vibration"
+    low, high = unsure.interval
+    return f"{low:.2f} to {high:.2f} ({unsure.level:.0%} interval)"
 
 
 def _mode(mode: WorkingMode) -> str:

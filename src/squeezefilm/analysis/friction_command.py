@@ -1,0 +1,223 @@
+"""What `squeezefilm friction` computes: the friction of a display, how sure it is, and its maps."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from squeezefilm.analysis.friction_models import ModelCurve, model_curves
+from squeezefilm.analysis.uncertainty import UncertainFriction, uncertain_friction
+from squeezefilm.contact.gas_table import film_table
+from squeezefilm.contact.pad import FrictionRipple, friction_ripple
+from squeezefilm.display import Display
+from squeezefilm.errors import OutOfRangeError
+from squeezefilm.friction import DEFAULT_MODEL, FrictionModel
+from squeezefilm.prediction import Prediction, predict, voltage_for_friction
+from squeezefilm.quantities import (
+    Dimensionless,
+    DimensionlessArray,
+    Hertz,
+    Metre,
+    MetreArray,
+    Newton,
+    NewtonArray,
+    Pascal,
+    Volt,
+)
+from squeezefilm.results import stamp, to_json
+
+Progress = Callable[[str], None]
+
+
+@dataclass(frozen=True, eq=False)
+class FrictionMap:
+    """µ′/µ over vibration amplitude (columns) and normal force (rows), shape (forces, amplitudes).
+
+    NaN where the asperities are pressed through.
+    """
+
+    amplitude: MetreArray
+    normal_force: NewtonArray
+    relative_friction: DimensionlessArray
+    model: str
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """What a wanted friction takes: amplitude with the finger on it (m) and voltage (V)."""
+
+    relative_friction: Dimensionless
+    vibration_amplitude: Metre
+    voltage: Volt
+
+
+@dataclass(frozen=True, eq=False)
+class FrictionAnalysis:
+    """The friction at a working point: models side by side, uncertainty, map and ripple.
+
+    `ripple` is what the pad feels of the standing wave itself as it moves along it.
+    """
+
+    display: Display
+    prediction: Prediction
+    curves: tuple[ModelCurve, ...]
+    uncertainty: UncertainFriction | None
+    map: FrictionMap
+    ripple: FrictionRipple | None
+    wanted: Wanted | None
+
+    def summary(self) -> dict[str, Any]:
+        """What ``--json`` prints; keys carry units."""
+        p = self.prediction
+        sharing = p.touch.sharing
+        unsure = self.uncertainty
+        return {
+            "display": self.display.name,
+            "surface": p.surface.name,
+            "voltage_V": p.voltage,
+            "frequency_Hz": p.frequency,
+            "normal_force_N": p.normal_force,
+            "ambient_pressure_Pa": self.display.gas.ambient_pressure,
+            "vibration_amplitude_m": p.vibration_amplitude,
+            "free_amplitude_m": p.touch.free_amplitude,
+            "amplitude_kept": p.touch.kept,
+            "amplitude_model": p.amplitude_model,
+            "relative_friction": p.relative_friction,
+            "relative_friction_interval": None if unsure is None else list(unsure.interval),
+            "interval_level": None if unsure is None else unsure.level,
+            "relative_friction_limits": None
+            if p.relative_friction_limits is None
+            else {
+                "each_ridge_at_its_own_balance": p.relative_friction_limits[0],
+                "all_ridges_at_one_mean_gap": p.relative_friction_limits[1],
+            },
+            "friction_reduction": p.friction_reduction,
+            "friction_coefficient": p.friction_coefficient,
+            "tangential_force_N": p.tangential_force,
+            "model": p.model,
+            "load_shares": None
+            if sharing is None
+            else {
+                "film": float(sharing.film_share[0]),
+                "asperities": float(sharing.relative_friction[0]),
+                "mean_gap_m": float(sharing.mean_gap[0]),
+                "residual": sharing.residual,
+                "relative_friction_error": float(sharing.relative_friction_error[0]),
+            },
+            "standing_wave_ripple": None if self.ripple is None else self.ripple.ripple,
+            "wanted": to_json(self.wanted),
+            "models": [
+                {
+                    "model": curve.model,
+                    "relative_friction": curve.at(p.vibration_amplitude),
+                }
+                for curve in self.curves
+            ],
+            "uncertainty": None if unsure is None else unsure.summary(),
+            "warnings": list(p.warnings),
+            "provenance": stamp(self.display),
+        }
+
+
+def analyze_friction(
+    display: Display,
+    *,
+    voltage: Volt | None = None,
+    frequency: Hertz | None = None,
+    vibration_amplitude: Metre | None = None,
+    normal_force: Newton | None = None,
+    surface: str | None = None,
+    model: FrictionModel | None = None,
+    ambient_pressure: Pascal | None = None,
+    wanted_friction: Dimensionless | None = None,
+    samples: int = 64,
+    seed: int = 1,
+    points: int = 40,
+    progress: Progress | None = None,
+) -> FrictionAnalysis:
+    """The friction of a display at a working point, with everything around it.
+
+    Arguments as `prediction.predict`; `ambient_pressure` (Pa) puts display and finger into another
+    atmosphere, `wanted_friction` asks for the voltage that reaches it, `samples` (0: none) is the
+    base of the uncertainty's design, `points` the side of the map. Raises what `predict`,
+    `voltage_for_friction` and `uncertain_friction` raise.
+    """
+    tell = progress or (lambda _: None)
+    if ambient_pressure is not None:
+        display = dataclasses.replace(display, gas=display.gas.at_pressure(ambient_pressure))
+    tell("amplitude and load balance")
+    prediction = predict(
+        display,
+        voltage=voltage,
+        frequency=frequency,
+        normal_force=normal_force,
+        surface=surface,
+        vibration_amplitude=vibration_amplitude,
+        model=model,
+    )
+    wanted = None
+    if wanted_friction is not None:
+        volts, amplitude = voltage_for_friction(
+            display,
+            wanted_friction,
+            frequency=frequency,
+            normal_force=normal_force,
+            surface=surface,
+            model=model,
+        )
+        wanted = Wanted(wanted_friction, amplitude, volts)
+    tell("models side by side")
+    curves = model_curves(display, prediction)
+    tell("map over amplitude and force")
+    found = friction_map(display, prediction, points)
+    unsure = None
+    if samples:
+        unsure = uncertain_friction(
+            display, prediction, samples=samples, seed=seed, progress=progress
+        )
+    tell("ripple of the standing wave")
+    return FrictionAnalysis(display, prediction, curves, unsure, found, _ripple(prediction), wanted)
+
+
+def friction_map(display: Display, prediction: Prediction, points: int = 40) -> FrictionMap:
+    """µ′/µ over amplitudes up to twice the working one (3 µm at the least) and over forces.
+
+    Forces from a tenth of the working one to four times it, spaced evenly in their logarithm.
+    """
+    p = prediction
+    amplitude = np.linspace(0, max(3e-6, 2 * p.vibration_amplitude), points)
+    force = np.geomspace(0.1 * p.normal_force, 4 * p.normal_force, points)
+    law = dataclasses.replace(
+        p.law, model=p.law.model if p.law.model.startswith("partial") else DEFAULT_MODEL
+    )
+    rows = np.full((points, points), np.nan)
+    for number, one in enumerate(force):
+        at = dataclasses.replace(law, normal_force=float(one))
+        try:
+            rows[number] = at.curve(amplitude)
+        except OutOfRangeError:
+            for column, a in enumerate(amplitude):
+                try:
+                    rows[number, column] = at.at(float(a))
+                except OutOfRangeError:
+                    break
+    return FrictionMap(amplitude, force, rows, law.model)
+
+
+def _ripple(prediction: Prediction) -> FrictionRipple | None:
+    p, law = prediction, prediction.law
+    if p.touch.sharing is None:
+        return None
+    finger = law.finger
+    return friction_ripple(
+        film_table(law.frequency, finger.plateau_width, law.gas),
+        finger.asperity_law(law.surface.roughness),
+        p.vibration_amplitude,
+        law.half_wavelength,
+        finger,
+        normal_force=law.normal_force,
+    )
