@@ -64,7 +64,9 @@ def test_analyze_prints_one_object_with_units_in_its_keys() -> None:
     ):
         assert key in result
     assert result["squeeze_number"] == pytest.approx(20.418, abs=5e-4)
-    assert result["model"] == "film-sealed"
+    assert result["model"] == "partial-levitation"
+    low, high = result["relative_friction_interval"]
+    assert low < result["relative_friction"] < high
     assert result["friction_reduction"] == pytest.approx(
         result["friction_coefficient"] * (1 - result["relative_friction"])
     )
@@ -79,6 +81,53 @@ def test_the_papers_model_is_there_on_request_and_warns() -> None:
     assert result["relative_friction"] == pytest.approx(0.702, abs=5e-4)
     assert result["model"] == "paper2008"
     assert any("σ → ∞" in warning for warning in result["warnings"])
+
+
+def test_a_friction_has_its_interval_its_shares_and_what_to_measure_next(tmp_path: Path) -> None:
+    done = run(
+        "friction", "biet2008-stator", "--amplitude", "2 um", "--force", "0.5 N",
+        "--samples", "16", "--wanted", "0.6", "--json", "--out", tmp_path,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    result = json.loads(done.stdout)
+    low, high = result["relative_friction_interval"]
+    assert low < result["relative_friction"] < high
+    shares = result["load_shares"]
+    assert shares["film"] + shares["asperities"] == pytest.approx(1, abs=1e-6)
+    assert shares["asperities"] == pytest.approx(result["relative_friction"], abs=1e-6)
+    assert abs(shares["residual"]) < 1e-6
+    assert result["model"] == "partial-levitation"
+    assert result["friction_reduction"] == pytest.approx(
+        result["friction_coefficient"] * (1 - result["relative_friction"])
+    )
+    assert result["wanted"]["relative_friction"] == 0.6
+    assert result["wanted"]["voltage_V"] < result["wanted"]["vibration_amplitude_m"] / 1e-8
+    ranked = [item["total_order"] for item in result["uncertainty"]["measure_next"]]
+    assert ranked == sorted(ranked, reverse=True)
+    assert {path.name for path in tmp_path.iterdir()} == {
+        "friction.json", "friction-models.png", "friction-map.png", "friction-uncertainty.png",
+        "friction-ripple.png",
+    }  # fmt: skip
+    again = run("friction", "biet2008-stator", "--amplitude", "2 um", "--samples", "16", "--json")
+    repeated = json.loads(again.stdout)["relative_friction_interval"]
+    assert repeated == result["relative_friction_interval"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        (("--samples", "10"), "power of two"),
+        (("--wanted", "1.5"), "at most 1"),
+        (("--wanted", "0.01"), "at the least"),
+        (("--ambient-pressure", "0 Pa"), "above 0"),
+        (("--force", "500 N"), "pressed through"),
+    ],
+)
+def test_frictions_that_cannot_be_are_refused(arguments: tuple[str, str], says: str) -> None:
+    done = run("friction", "biet2008-stator", *arguments)
+    assert done.returncode == 2
+    assert says in " ".join(done.stderr.split())
+    assert "Traceback" not in done.stderr
 
 
 def test_a_film_is_solved_with_its_error() -> None:

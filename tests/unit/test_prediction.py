@@ -13,7 +13,7 @@ from squeezefilm.errors import (
     UnreachableError,
 )
 from squeezefilm.friction import FrictionLaw, friction_law
-from squeezefilm.prediction import predict
+from squeezefilm.prediction import predict, voltage_for_friction
 
 
 @pytest.fixture(scope="module")
@@ -35,7 +35,9 @@ def test_no_vibration_leaves_friction_as_it_is(plate: Display) -> None:
 
 def test_amplitude_is_linear_in_the_voltage_and_falls_off_resonance(plate: Display) -> None:
     full, half = predict(plate), predict(plate, voltage=7.5)
-    assert half.vibration_amplitude == pytest.approx(full.vibration_amplitude / 2)
+    assert half.touch.free_amplitude == pytest.approx(full.touch.free_amplitude / 2)
+    # The finger takes more of a small amplitude, which leaves it a smaller gap.
+    assert half.vibration_amplitude < full.vibration_amplitude / 2
     assert half.relative_friction > full.relative_friction
     off = predict(plate, frequency=1.01 * full.mode.resonance_frequency)
     # 1/√(Q²(1−1.01²)²+1) with Q = 60 for this mode alone; its neighbours add a few percent
@@ -57,18 +59,67 @@ def test_the_models_are_named(plate: Display, stator: Display) -> None:
         assert predict(stator, model=model).model == model  # type: ignore[arg-type]
 
 
-def test_the_solved_film_takes_the_asymptotes_place_where_it_does_not_hold(
-    stator: Display,
-) -> None:
-    p = predict(stator)
+def test_the_asymptote_promises_twice_what_its_own_equation_gives(stator: Display) -> None:
+    p = predict(stator, model="film-sealed")
     assert not p.validity.holds
-    assert p.model == "film-sealed"
     assert p.mean_pressure_error > 0
     paper = predict(stator, model="paper2008")
     assert paper.relative_friction == pytest.approx(0.702, abs=5e-4)
     # The asymptote promises about twice what the same film does (without slip: 7.246e-3).
     ratio = (paper.mean_pressure - 1) / (p.mean_pressure - 1)
     assert 2.0 < ratio < 2.2
+
+
+def test_film_and_asperities_share_the_load_by_default(stator: Display, plate: Display) -> None:
+    for display in (stator, plate):
+        p = predict(display)
+        assert p.model == "partial-levitation"
+        sharing = p.touch.sharing
+        assert sharing is not None
+        shares = float(sharing.film_share[0]), float(sharing.relative_friction[0])
+        assert sum(shares) == pytest.approx(1)
+        assert p.relative_friction == pytest.approx(shares[1], abs=1e-6)
+        assert p.relative_friction_limits is not None
+        own, tied = p.relative_friction_limits
+        assert own == pytest.approx(p.relative_friction)
+        # A stiff pad hangs on its antinodes; a soft one sinks into the nodes.
+        assert tied < own
+        assert p.tangential_force == pytest.approx(
+            p.friction_coefficient * p.relative_friction * p.normal_force
+        )
+
+
+def test_the_finger_takes_some_of_the_vibration_of_a_plate(plate: Display) -> None:
+    p = predict(plate)
+    assert p.touch.mode is not None
+    assert p.vibration_amplitude == p.touch.amplitude
+    assert 0.9 < p.touch.kept < 1
+    # Where the amplitude is given, it is the one under the finger.
+    given = predict(plate, vibration_amplitude=p.vibration_amplitude)
+    assert given.touch.kept == 1
+    assert given.relative_friction == pytest.approx(p.relative_friction, rel=1e-6)
+    # A heavier touch takes more.
+    assert predict(plate, normal_force=2.0).touch.kept < p.touch.kept
+
+
+def test_the_voltage_for_a_friction_gives_that_friction(plate: Display, stator: Display) -> None:
+    for wanted in (0.9, 0.6):
+        for frequency in (None, 33.8e3):
+            volts, amplitude = voltage_for_friction(plate, wanted, frequency=frequency)
+            p = predict(plate, voltage=volts, frequency=frequency)
+            assert p.relative_friction == pytest.approx(wanted, abs=1e-4)
+            assert p.vibration_amplitude == pytest.approx(amplitude, rel=1e-5)
+    assert voltage_for_friction(plate, 1.0) == (0.0, 0.0)
+    with pytest.raises(UnreachableError, match="at the least"):
+        voltage_for_friction(plate, 0.01)
+    with pytest.raises(UnreachableError, match="2000 V"):
+        voltage_for_friction(stator, 0.6, frequency=30e3)
+
+
+def test_a_vacuum_takes_the_reduction_away(stator: Display) -> None:
+    thin = dataclasses.replace(stator, gas=stator.gas.at_pressure(2e3))
+    here, there = predict(stator), predict(thin)
+    assert 1 - there.relative_friction < 0.2 * (1 - here.relative_friction)
 
 
 def test_unknown_models_are_refused(stator: Display) -> None:
@@ -79,7 +130,9 @@ def test_unknown_models_are_refused(stator: Display) -> None:
 def test_the_reduction_carries_the_base_friction(stator: Display) -> None:
     # The adhesive lowers relative friction less than the bare stator, and absolute friction more
     # only through its larger base coefficient.
-    rough, bare = predict(stator, surface="adhesive"), predict(stator, surface="bare")
+    rough, bare = (
+        predict(stator, surface=name, model="film-sealed") for name in ("adhesive", "bare")
+    )
     assert rough.relative_friction > bare.relative_friction
     for p in (rough, bare):
         assert p.friction_reduction == pytest.approx(
@@ -118,7 +171,7 @@ def test_an_asymptote_out_of_range_warns_or_is_refused(stator: Display) -> None:
     with pytest.raises(OutOfRangeError, match="strict=False"):
         predict(stator, model="paper2008", strict=True)
     # Without a model asked for, strictness has nothing to refuse: the film is solved.
-    assert predict(stator, strict=True).model == "film-sealed"
+    assert predict(stator, strict=True).model == "partial-levitation"
 
 
 @pytest.mark.parametrize(
