@@ -190,7 +190,7 @@ def usual_changes(plate: RectangularPlate) -> tuple[Change, ...]:
     both("plate Young's modulus", "Pa", E * 115 / 123, E * 131 / 123, with_young_modulus)
     for share in (0.9, 1.1):
         out.append(
-            Change("ceramic stiffness c11_p", f"{share - 1:+.0%}",
+            Change("ceramic stiffness c11_p", f"{100 * (share - 1):+.0f} %".replace("-", "−"),
                    functools.partial(with_ceramic_stiffness, share=share))
         )  # fmt: skip
     both("plate thickness", "m", 0.975 * t, 1.025 * t, with_thickness)
@@ -230,7 +230,7 @@ _Setter = Callable[..., RectangularPlate]
 def _text(value: float, unit: str) -> str:
     if unit == "1":
         return f"{value:.3g}"
-    return format_quantity(value, Unit(unit), 4).replace(" um", " µm")
+    return format_quantity(value, Unit(unit), 4).replace(" um", " µm").replace("m3", "m³")
 
 
 def _substrate(plate: RectangularPlate, **values: float) -> RectangularPlate:
