@@ -10,17 +10,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from squeezefilm.analysis.procedure import (
-    PAPER_HALF_WAVELENGTHS,
-    Design,
-    design_plate,
-    friction_criterion,
-)
 from squeezefilm.analysis.plate_sensitivity import (
     WorkingPoint,
     with_glue,
     with_loss_in_ceramic_alone,
     working_point,
+)
+from squeezefilm.analysis.procedure import (
+    PAPER_HALF_WAVELENGTHS,
+    Design,
+    design_plate,
+    friction_criterion,
 )
 from squeezefilm.analysis.prototype import MODAL_FREQUENCY, paper_points
 from squeezefilm.contact.paper import (

@@ -10,7 +10,7 @@ import dataclasses
 import functools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -269,13 +269,16 @@ def with_ceramic_stiffness(plate: RectangularPlate, share: Dimensionless) -> Rec
     constants = ceramic.constants
     if constants is not None:
         names = [f"compliance_{pair}" for pair in (11, 12, 13, 33, 44, 66)]
-        softer = {name: getattr(constants, name) / share for name in names}
+        changed: dict[str, Any] = {name: getattr(constants, name) / share for name in names}
         # What was stated of e and free ε belongs to the other stiffness.
-        stated = dict.fromkeys(
-            [f for f in ("free_permittivity_11", "free_permittivity_33", "stress_coefficient_31",
-                         "stress_coefficient_33", "stress_coefficient_15")]
-        )  # fmt: skip
-        constants = dataclasses.replace(constants, **softer, **stated)
+        changed |= {
+            "free_permittivity_11": None,
+            "free_permittivity_33": None,
+            "stress_coefficient_31": None,
+            "stress_coefficient_33": None,
+            "stress_coefficient_15": None,
+        }
+        constants = dataclasses.replace(constants, **changed)
     stiffness = ceramic.in_plane_stiffness * share
     return _ceramic(
         plate, dataclasses.replace(ceramic, in_plane_stiffness=stiffness, constants=constants)
@@ -304,9 +307,7 @@ def with_open_ceramics(plate: RectangularPlate) -> RectangularPlate:
     return dataclasses.replace(plate, patches=patches)
 
 
-def with_glue(
-    plate: RectangularPlate, thickness: Metre, young_modulus: Pascal
-) -> RectangularPlate:
+def with_glue(plate: RectangularPlate, thickness: Metre, young_modulus: Pascal) -> RectangularPlate:
     """The plate with a glue line of this thickness and Young's modulus (losses as `GlueLayer`)."""
     return dataclasses.replace(plate, glue=GlueLayer(thickness, young_modulus))
 

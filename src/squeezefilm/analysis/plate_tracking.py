@@ -264,7 +264,8 @@ def _advance(
     rows = [row for row, n in enumerate(numbers) if n is not None]
     to_last = likeness(before, after)[known]
     to_first = likeness(first, after)[rows]
-    given = _assignment(to_last + to_first)
+    # What a mode was at the beginning is what its label means: it counts twice.
+    given = _assignment(to_last + 2 * to_first)
     best = np.maximum(to_last, to_first)
     matches = {
         row: (k, float(best[i, k]) if k >= 0 else 0.0)

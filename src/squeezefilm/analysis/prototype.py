@@ -52,10 +52,11 @@ AMPLITUDE_ACCURACY: Dimensionless = 0.1
 class Explanation:
     """One set of parameters with which the mode lies at the measured frequency.
 
-    `free` names the parameter that was solved for and `value` says what came out. Ratios are of the neighbouring modes' frequencies
-    to the working mode's (`NEIGHBOURS`); `open_shift` the relative rise of the frequency with the
-    drive's terminals open; the amplitude is at 15 V with the stated quality factor (60 but for the
-    glue's own losses), and `quality_factor_for_measured` the one that would give the measured one.
+    `free` names the parameter that was solved for and `value` says what came out. Ratios are of the
+    neighbouring modes' frequencies (`NEIGHBOURS`) to the working mode's; `open_shift` is the
+    relative rise of the frequency with the drive's terminals open. The amplitude is at 15 V with
+    the stated quality factor (60 but for the glue's own losses), and `quality_factor_for_measured`
+    the one that would give the measured amplitude.
     """
 
     name: str
@@ -150,7 +151,7 @@ _CASES: tuple[tuple[str, str, str, float, float, _Make], ...] = (
 
 
 def prototype_study(progress: Progress | None = None) -> PrototypeStudy:
-    """Solve it all: some eighty plates, a minute or two; solved plates are kept, so that the next call is quick.
+    """Solve it all: some eighty plates, a minute or two; solved plates are kept for the next call.
 
     Raises what `solve_modes` raises.
     """
@@ -182,7 +183,7 @@ def _explained(
         point = working_point(make(plate, float(np.exp(logarithm))), amplitude=False)
         return point.frequency / MEASURED_FREQUENCY - 1
 
-    logarithms = np.log(between)
+    logarithms = float(np.log(between[0])), float(np.log(between[1]))
     if above(logarithms[0]) * above(logarithms[1]) > 0:
         raise SqueezefilmError(
             f"{free} between {between[0]:.3g} and {between[1]:.3g} ({unit}) does not bring "

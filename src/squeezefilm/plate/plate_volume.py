@@ -9,6 +9,7 @@ own on the face between them, since the potential may jump there.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -44,7 +45,8 @@ class PlateVolume:
     def displacement(self, solved: SolvedModel, vector: FloatArray | ComplexArray) -> FloatArray:
         """(u, v, w) of a solution vector at the points, shape (points, 3)."""
         x, y, z = self.axes
-        out = np.stack([solved.field(vector[:, None], x, y, float(h))[0] for h in z], axis=2)
+        columns: Any = vector[:, None]  # real or complex: the interpolation is real
+        out = np.stack([solved.field(columns, x, y, float(h))[0] for h in z], axis=2)
         return np.asarray(out.reshape(-1, 3)[self.place])
 
     def potential(
@@ -209,6 +211,6 @@ def _potential_coefficients(
         first, last = model.x.first_node[rows.min()], model.x.first_node[rows.max() + 1]
         ends = {model.y.first_node[j + k] for j in columns for k in (0, 1)}
         # The electrode's potential is one along y: the functions of the element's ends alone.
-        at = np.ix_(np.arange(first, last + 1), sorted(ends))
+        at = np.ix_(np.arange(first, last + 1), np.array(sorted(ends)))
         out[number, :, :, electrode.driven_plane][at] = electrodes[number]
     return np.asarray(out)

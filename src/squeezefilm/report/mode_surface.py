@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -29,13 +29,13 @@ def driven_shape(result: PlateAnalysis, x: FloatArray, y: FloatArray) -> FloatAr
 @drawn
 def mode_surface(result: PlateAnalysis) -> Figure:
     """The driven shape at resonance as a surface, heights exaggerated by a factor that is said."""
-    from contourpy import contour_generator
+    from contourpy import LineType, contour_generator
 
     plate, volts = result.plate, result.display.drive.voltage
     x, y = np.linspace(0, plate.length, _POINTS[0]), np.linspace(0, plate.width, _POINTS[1])
     w = 1e9 * driven_shape(result, x, y)
     reach = float(np.max(np.abs(w)))
-    lines = contour_generator(x, y, w.T).lines(0.0)
+    lines: Any = contour_generator(x, y, w.T, line_type=LineType.Separate).lines(0.0)
     exaggeration = _DRAWN_HEIGHT * plate.length / (2 * reach * 1e-9 * (volts or 1.0))
     factor = f"{float(f'{exaggeration:.2g}'):,.0f}".replace(",", " ")
     figure = new_figure(
@@ -43,9 +43,10 @@ def mode_surface(result: PlateAnalysis) -> Figure:
         f"{reach:.3g} nm per volt",
         f"{result.modes.model}, all electrodes driven at resonance; heights drawn {factor} times "
         f"those at {volts or 1:g} V, length and width to scale; nodal lines in black",
-        5.2,
+        5.4,
     )
-    axes = figure.add_subplot(projection="3d", computed_zorder=False)
+    # Placed by hand: the layout engine does not know how far a box in space reaches.
+    axes: Any = figure.add_axes((-0.02, 0.08, 0.88, 0.9), projection="3d", computed_zorder=False)
     X, Y = np.meshgrid(1e3 * x, 1e3 * y, indexing="ij")
     surface = axes.plot_surface(
         X, Y, w, cmap="RdBu_r", vmin=-reach, vmax=reach, rcount=x.size, ccount=y.size,
@@ -56,7 +57,7 @@ def mode_surface(result: PlateAnalysis) -> Figure:
         seen = np.array([not hidden(a, b) for a, b in line])
         a, b = 1e3 * np.where(seen, line[:, 0], np.nan), 1e3 * np.where(seen, line[:, 1], np.nan)
         axes.plot(a, b, np.zeros(a.size), color=INK, lw=1.5, zorder=2, clip_on=False)
-    axes.set_box_aspect((plate.length, plate.width, _DRAWN_HEIGHT * plate.length), zoom=1.28)
+    axes.set_box_aspect((plate.length, plate.width, _DRAWN_HEIGHT * plate.length), zoom=1.22)
     axes.view_init(elev=_ELEVATION, azim=_AZIMUTH)
     axes.set(xlim=(0, 1e3 * plate.length), ylim=(0, 1e3 * plate.width), zlim=(-reach, reach))
     axes.set_xlabel("x (mm)", labelpad=10)
@@ -65,7 +66,8 @@ def mode_surface(result: PlateAnalysis) -> Figure:
     axes.locator_params(axis="z", nbins=3)
     for axis in (axes.xaxis, axes.yaxis, axes.zaxis):
         axis.set_pane_color(PAPER)
-    figure.colorbar(surface, ax=axes, label="w per volt (nm/V)", shrink=0.55, pad=0.08)
+    bar = figure.add_axes((0.89, 0.24, 0.016, 0.52))
+    figure.colorbar(surface, cax=bar, label="w per volt (nm/V)")
     return figure
 
 

@@ -71,9 +71,7 @@ def line_scan(result: PlateAnalysis) -> Figure:
         f"Along the centre {centre:.3g} nm per volt between the outer nodes, "
         f"{result.amplitude_per_volt * 1e9:.3g} nm per volt at the largest of the face"
     )
-    figure = new_figure(
-        title, f"{result.modes.model}, all electrodes driven at resonance", 4.2
-    )
+    figure = new_figure(title, f"{result.modes.model}, all electrodes driven at resonance", 4.2)
     axes = figure.subplots()
     axes.plot(1e3 * x, w[:, 1], color=BLUE, label="centreline")
     axes.plot(1e3 * x, w[:, 0], color=ORANGE, ls="--", label="edge")
@@ -113,7 +111,7 @@ def frequency_response(result: PlateAnalysis) -> Figure:
     axes.plot(f, per_volt, color=BLUE, label="solved plate, all modes")
     axes.axvline(
         result.working.frequency / 1e3, color=INK, lw=1, ls=(0, (4, 2)),
-        label=f"mode {result.working.label}, extrapolated: {result.working.frequency / 1e3:.2f} kHz",
+        label=f"mode {result.working.label} extrapolated, {result.working.frequency / 1e3:.2f} kHz",
     )  # fmt: skip
     axes.set(xlabel="frequency (kHz)", ylabel="largest amplitude (nm/V)")
     axes.set(ylim=(0, None), xlim=(f[0], f[-1]))

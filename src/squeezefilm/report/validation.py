@@ -12,8 +12,8 @@ from squeezefilm.analysis.procedure import Design
 from squeezefilm.errors import InputError
 from squeezefilm.quantities import Unit, format_quantity
 from squeezefilm.report.page_style import STYLE
-from squeezefilm.report.prototype_report import prototype_markdown
 from squeezefilm.report.prototype_page import prototype_sections
+from squeezefilm.report.prototype_report import prototype_markdown
 from squeezefilm.results import write_whole
 
 _HEADER = """# Validation
