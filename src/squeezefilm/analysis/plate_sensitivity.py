@@ -90,7 +90,8 @@ class SensitivityTable:
 
 @functools.lru_cache(maxsize=256)
 def _solved(plate: RectangularPlate, label: Label) -> PlateModes:
-    return solve_modes(plate, mode=label)
+    # Without what fields are evaluated on: megabytes each, and not asked for here.
+    return dataclasses.replace(solve_modes(plate, mode=label), _fields=())
 
 
 @functools.lru_cache(maxsize=256)
