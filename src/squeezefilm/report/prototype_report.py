@@ -151,6 +151,8 @@ def sentences(study: PrototypeStudy) -> list[str]:
         f"For a Q of 60 the explanations predict {min(amplitudes):.2f} to {max(amplitudes):.2f} "
         "µm at 15 V; the measured 1.15 µm helps only when Q is measured too, since any of them "
         "gives it with the Q in the last column.",
+        "The heavier plate and the plate softer alike go beyond what copper-beryllium has; they "
+        "stand for mass added and stiffness lost from any cause.",
         "Modes with an odd number of nodal lines, (7,0) and (9,0), do not answer the symmetric "
         "drive: drive one half of the ceramics, or one ceramic, to find them.",
     ]
