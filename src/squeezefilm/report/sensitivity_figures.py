@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from squeezefilm.quantities import FloatArray
 
 # A bar beyond this many times the third largest would hide all others: it is cut, and says so.
-_CUT = 3.0
+_CUT = 2.6
 
 
 @drawn
@@ -57,7 +57,7 @@ def tornado(table: SensitivityTable) -> Figure:
         colors = [BLUE if v < 0 else ORANGE for v in shown]
         axes.barh(at, shown, color=colors, height=0.66)
         axes.axvline(0, color=INK, lw=0.8)
-        axes.set_xlim(-1.75 * limit, 1.75 * limit)
+        axes.set_xlim(-1.6 * limit, 1.6 * limit)
         for y, value, width in zip(at, values, shown, strict=True):
             cut = "" if abs(value) <= limit * 1.0001 else " (cut)"
             text = "no drive" if np.isnan(value) else f"{_signed(value)} %{cut}"
