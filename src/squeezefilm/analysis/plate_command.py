@@ -56,7 +56,7 @@ class PlateAnalysis:
     display: Display
     plate: RectangularPlate
     modes: PlateModes
-    label: Label
+    working_label: Label
     alone: PlateModes
     rows: tuple[ModeRow, ...]
     working: ModeRow
@@ -182,7 +182,7 @@ def analyze_plate(
         display=display,
         plate=plate,
         modes=modes,
-        label=label,
+        working_label=label,
         alone=alone,
         rows=rows,
         working=working,
@@ -195,7 +195,7 @@ def analyze_plate(
         shear_frequency=_shear_frequency(plate, label, frequency),
         sound=sound,
         sensitivities=plate_sensitivity(plate, label=label, progress=tell) if sensitivity else None,
-        tracks=None if track is None else track_modes(plate, track, progress=tell),
+        tracks=None if track is None else track_modes(plate, track, label=label, progress=tell),
     )
 
 

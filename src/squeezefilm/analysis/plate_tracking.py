@@ -136,9 +136,14 @@ def parse_track(parameter: str, start: str | None, stop: str | None, values: int
 
 
 def track_modes(
-    plate: RectangularPlate, request: TrackRequest, *, progress: Progress | None = None
+    plate: RectangularPlate,
+    request: TrackRequest,
+    *,
+    label: Label | None = None,
+    progress: Progress | None = None,
 ) -> ModeTracks:
-    """Follow the modes within 8 % of the working mode's frequency over a parameter's values.
+    """Follow the modes within 8 % of the working mode's frequency (or of the one with `label`)
+    over a parameter's values.
 
     Labels are read at the plate's own value where it lies between the values, else at the first.
     Where a mode is less than 0.6 alike both to itself at the value before and to itself at the
@@ -156,7 +161,7 @@ def track_modes(
     own = get(plate)
     begun = own if request.start <= own <= request.stop else request.start
     tell(f"{request.parameter} = {_shown(begun, unit)}")
-    f0 = _centre(plate, request, begun)
+    f0 = _centre(plate, request, begun, label or (plate.nodal_lines, 0))
     first = _solve(plate, request, begun, ((1 - _REACH) * f0, (1 + _REACH) * f0))
     steps: dict[float, tuple[PlateModes, list[int | None], list[float]]] = {
         begun: (first, list(range(first.count)), [1.0] * first.count)
@@ -185,10 +190,10 @@ def track_modes(
         begun,
         tuple(
             ModeTrack(
-                "in plane" if label is None else f"({label[0]},{label[1]})",
+                "in plane" if own_label is None else f"({own_label[0]},{own_label[1]})",
                 frequency[row], likeness[row], bool(driven[row]),
             )
-            for row, label in enumerate(first.labels)
+            for row, own_label in enumerate(first.labels)
         ),
         float(np.nanmin(likeness)),
     )  # fmt: skip
@@ -229,8 +234,7 @@ def _shown(value: float, unit: Unit) -> str:
     return f"{value:.4g}" if unit.symbol == "1" else format_quantity(value, unit)
 
 
-def _centre(plate: RectangularPlate, request: TrackRequest, value: float) -> float:
-    label: Label = (plate.nodal_lines, 0)
+def _centre(plate: RectangularPlate, request: TrackRequest, value: float, label: Label) -> float:
     changed = PARAMETERS[request.parameter][2](plate, value)
     modes = solve_modes(changed, mode=label)
     return float(modes.frequencies[modes.index(label)])

@@ -60,11 +60,13 @@ def plan_view(result: PlateAnalysis) -> Figure:
 
 @drawn
 def line_scan(result: PlateAnalysis) -> Figure:
-    """The driven shape along the plate, on the centreline and on the edge, as a vibrometer that is
-    moved along would see it."""
+    """The driven shape across its nodal lines, on the middle of the plate and on its edge, as a
+    vibrometer that is moved along would see it."""
     plate = result.plate
-    x = np.linspace(0, plate.length, 333)
-    w = 1e9 * driven_shape(result, x, np.array([0.0, plate.width / 2]))
+    lengthwise = result.working_label[0] >= result.working_label[1]
+    span, other = (plate.length, plate.width)[:: 1 if lengthwise else -1]
+    x, lines = np.linspace(0, span, 333), np.array([0.0, other / 2])
+    w = 1e9 * (driven_shape(result, x, lines) if lengthwise else driven_shape(result, lines, x).T)
     volts = result.display.drive.voltage
     centre = 1e9 * result.centreline_per_volt
     title = (
@@ -81,7 +83,8 @@ def line_scan(result: PlateAnalysis) -> Figure:
         1e3 * nodes, np.zeros(nodes.size), "o", color=INK, ms=4, zorder=3,
         label=f"{nodes.size} nodes of the centreline",
     )  # fmt: skip
-    axes.set(xlabel="x (mm)", ylabel="w per volt (nm/V)", xlim=(0, 1e3 * plate.length))
+    axes.set(xlabel="x (mm)" if lengthwise else "y (mm)", xlim=(0, 1e3 * span))
+    axes.set(ylabel="w per volt (nm/V)")
     if volts:
         micro = 1e-3 * volts
         right = axes.secondary_yaxis(
@@ -179,6 +182,6 @@ def write_plate(result: PlateAnalysis, folder: Path) -> Path:
 def write_mode(result: PlateAnalysis, file: Path) -> Path:
     """Write the working mode and its response at the display's voltage as .vtu; the file."""
     return write_vtu(
-        file, result.alone, result.alone.index(result.label),
+        file, result.alone, result.alone.index(result.working_label),
         response=result.response, voltage=result.display.drive.voltage,
     )  # fmt: skip
