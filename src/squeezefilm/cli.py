@@ -294,11 +294,24 @@ def plate(
     target: Target,
     band: Annotated[str | None, typer.Option(help='Modes in a band, like "25 kHz:45 kHz".')] = None,
     mode: Annotated[str | None, typer.Option(help="Working mode by nodal lines, like 8,0.")] = None,
-    out: Annotated[Path | None, typer.Option(help="Folder for plate.json and figures.")] = None,
+    out: Annotated[Path | None, typer.Option(help="Folder for a page with figures.")] = None,
+    vtu: Annotated[
+        Path | None, typer.Option(help="Write the solved volume for ParaView to this .vtu file.")
+    ] = None,
+    sensitivity: Annotated[
+        bool, typer.Option("--sensitivity", help="What other materials and sizes would change.")
+    ] = False,
+    track: Annotated[
+        str | None, typer.Option(help="Follow the modes over a parameter, like ceramic_thickness.")
+    ] = None,
+    start: Annotated[str | None, typer.Option("--from", help='Its first value: "0.5 mm".')] = None,
+    stop: Annotated[str | None, typer.Option("--to", help='Its last value: "1.5 mm".')] = None,
+    values: Annotated[int, typer.Option(help="How many values of it.")] = 9,
     as_json: AsJson = False,
 ) -> None:
     """Solve a plate in three dimensions: modes, amplitude per volt, admittance."""
     from squeezefilm.analysis.plate_command import analyze_plate, parse_band, parse_mode
+    from squeezefilm.analysis.plate_tracking import parse_track
     from squeezefilm.display import load_display
     from squeezefilm.report import terminal
     from squeezefilm.report.terminal_solvers import show_plate
@@ -306,19 +319,23 @@ def plate(
     display = load_display(target)
     wanted = None if mode is None else parse_mode(mode)
     limits = None if band is None else parse_band(band)
+    over = None if track is None else parse_track(track, start, stop, values)
     with terminal.progress(enabled=sys.stderr.isatty() or not as_json) as step:
-        result = analyze_plate(display, mode=wanted, band=limits, progress=step)
-        written = None
-        if out is not None:
-            from squeezefilm.report.solved_plate import write_plate
+        result = analyze_plate(
+            display, mode=wanted, band=limits, sensitivity=sensitivity, track=over, progress=step
+        )
+        written = []
+        if out is not None or vtu is not None:
+            from squeezefilm.report.solved_plate import write_mode, write_plate
 
-            written = write_plate(result, out)
+            written += [] if out is None else [write_plate(result, out)]
+            written += [] if vtu is None else [write_mode(result, vtu)]
     if as_json:
         _print_json(result.summary())
         return
     show_plate(result)
-    if written is not None:
-        typer.echo(f"figures: {written}")
+    for path in written:
+        typer.echo(f"wrote {path}")
 
 
 @app.command()
@@ -338,7 +355,7 @@ def reproduce(
     from squeezefilm.report.validation import write_reproduction, write_validation_docs
 
     with terminal.progress(enabled=sys.stderr.isatty() or not as_json) as step:
-        result = run(progress=step)
+        result = run(prototype=out is not None or write_docs, progress=step)
         if out is not None:
             written = write_reproduction(result, out, progress=step)
     if write_docs:

@@ -78,3 +78,13 @@ def test_a_changed_verdict_is_reported() -> None:
     assert [item.claim.id for item in tampered.changed] == ["plate-area"]
     with pytest.raises(ConfigError, match="Did you mean 'plate-area'"):
         reproduce((dataclasses.replace(claim, id="plate-areas"),))
+
+
+def test_the_solved_plate_stands_beside_the_papers_numbers(found: dict[str, ClaimResult]) -> None:
+    """Converged references of the specification, for both data sets."""
+    for claim in ("modal-frequency", "harmonic-frequency", "measured-frequency"):
+        assert found[claim].value == pytest.approx([33574], rel=1e-3)
+        assert found[claim].alternative == pytest.approx([33422], rel=1e-3)
+    for claim in ("harmonic-amplitude", "measured-amplitude"):
+        assert found[claim].value == pytest.approx([2.44e-6], rel=0.01)
+        assert found[claim].alternative == pytest.approx([0.55e-6], rel=0.01)

@@ -10,6 +10,7 @@ from typing import Any, Literal
 from squeezefilm import presets
 from squeezefilm.analysis.claim_values import CLAIM_VALUES, ClaimValue, paper_design
 from squeezefilm.analysis.procedure import Design
+from squeezefilm.analysis.prototype import PrototypeStudy, prototype_study
 from squeezefilm.config import load
 from squeezefilm.errors import ConfigError
 from squeezefilm.quantities import did_you_mean
@@ -76,11 +77,13 @@ class ClaimResult:
 
 @dataclass(frozen=True)
 class Reproduction:
-    """All claims recomputed, the errata, and where the paper's design procedure leads."""
+    """All claims recomputed, the errata, where the paper's design procedure leads, and the study of
+    its prototype (None where it was not asked for)."""
 
     results: tuple[ClaimResult, ...]
     errata: tuple[Erratum, ...]
     design: Design
+    prototype: PrototypeStudy | None = None
 
     @property
     def changed(self) -> tuple[ClaimResult, ...]:
@@ -110,6 +113,7 @@ class Reproduction:
             ],
             "errata": to_json(self.errata),
             "design_procedure": to_json(self.design),
+            "prototype": to_json(self.prototype),
             "changed": [item.claim.id for item in self.changed],
             "provenance": stamp([item.claim for item in self.results]),
         }
@@ -121,9 +125,13 @@ def read_claims() -> ClaimFile:
 
 
 def reproduce(
-    claims: tuple[Claim, ...] | None = None, *, progress: Callable[[str], None] | None = None
+    claims: tuple[Claim, ...] | None = None,
+    *,
+    prototype: bool = False,
+    progress: Callable[[str], None] | None = None,
 ) -> Reproduction:
-    """Recompute every claim (those on record, or those given).
+    """Recompute every claim (those on record, or those given); with `prototype` also what could
+    explain the paper's prototype, which takes a minute or two.
 
     Raises `ConfigError` for a claim that nothing computes.
     """
@@ -140,7 +148,8 @@ def reproduce(
         results.append(judge(claim, CLAIM_VALUES[claim.id]()))
     if progress is not None:
         progress("the paper's design procedure")
-    return Reproduction(tuple(results), file.errata, paper_design())
+    study = prototype_study(progress) if prototype else None
+    return Reproduction(tuple(results), file.errata, paper_design(), study)
 
 
 def judge(claim: Claim, found: ClaimValue) -> ClaimResult:

@@ -8,10 +8,12 @@ from typing import Any
 
 import numpy as np
 
+from squeezefilm.analysis.plate_sensitivity import SensitivityTable, plate_sensitivity
+from squeezefilm.analysis.plate_tracking import ModeTracks, TrackRequest, track_modes
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError
 from squeezefilm.plate.layout import RectangularPlate
-from squeezefilm.plate.plate_modes import PlateModes
+from squeezefilm.plate.plate_modes import Label, PlateModes
 from squeezefilm.plate.plate_response import EquivalentCircuit, HarmonicResponse, harmonic_response
 from squeezefilm.plate.response import beam_response
 from squeezefilm.plate.shear_plate import shear_mode
@@ -54,6 +56,8 @@ class PlateAnalysis:
     display: Display
     plate: RectangularPlate
     modes: PlateModes
+    working_label: Label
+    alone: PlateModes
     rows: tuple[ModeRow, ...]
     working: ModeRow
     response: HarmonicResponse
@@ -64,6 +68,8 @@ class PlateAnalysis:
     beam_amplitude_per_volt: MetrePerVolt
     shear_frequency: Hertz | None
     sound: SoundField
+    sensitivities: SensitivityTable | None = None
+    tracks: ModeTracks | None = None
 
     def summary(self) -> dict[str, Any]:
         """What ``--json`` prints; keys carry units."""
@@ -104,6 +110,8 @@ class PlateAnalysis:
                 )
             },
             "sound_guidance": to_json(self.sound.guidance),
+            "sensitivities": to_json(self.sensitivities),
+            "tracks": to_json(self.tracks),
             "model": self.modes.model,
             "status": self.modes.status,
             "provenance": stamp(self.display),
@@ -124,11 +132,15 @@ def analyze_plate(
     mode: tuple[int, int] | None = None,
     band: tuple[Hertz, Hertz] | None = None,
     points: int = 200,
+    sensitivity: bool = False,
+    track: TrackRequest | None = None,
     progress: Progress | None = None,
 ) -> PlateAnalysis:
     """The modes of a display's plate in a band, and the response around the working mode.
 
-    `mode` defaults to the display's own, (nodal lines, 0); `band` to ±8 % around it. Raises
+    `mode` defaults to the display's own, (nodal lines, 0); `band` to ±8 % around it. `sensitivity`
+    adds what other materials and dimensions would change, `track` the modes against a parameter;
+    both take a minute. `alone` in the result is the working mode solved by itself. Raises
     `InputError` for a display without a rectangular plate and what `solve_modes` raises: a band
     with no mode, a mode that is not found.
     """
@@ -170,6 +182,8 @@ def analyze_plate(
         display=display,
         plate=plate,
         modes=modes,
+        working_label=label,
+        alone=alone,
         rows=rows,
         working=working,
         response=response,
@@ -180,6 +194,8 @@ def analyze_plate(
         beam_amplitude_per_volt=beam.amplitude_per_volt,
         shear_frequency=_shear_frequency(plate, label, frequency),
         sound=sound,
+        sensitivities=plate_sensitivity(plate, label=label, progress=tell) if sensitivity else None,
+        tracks=None if track is None else track_modes(plate, track, label=label, progress=tell),
     )
 
 

@@ -113,3 +113,22 @@ def show_plate(result: PlateAnalysis) -> None:
         ],
     )
     console.print(f"{result.modes.model}; {result.modes.status}")
+    if result.sensitivities is not None:
+        heading(console, "Sensitivities of the working mode")
+        table(
+            console,
+            ("what is different", "", "frequency", "per volt"),
+            [
+                (
+                    row.name,
+                    row.change,
+                    f"{row.frequency_shift:+.2%}",
+                    "–" if row.amplitude_shift is None else f"{row.amplitude_shift:+.1%}",
+                )
+                for row in result.sensitivities.rows
+            ],
+        )
+    if result.tracks is not None:
+        from squeezefilm.report.terminal_tracks import show_tracks
+
+        show_tracks(console, result.tracks)

@@ -12,6 +12,8 @@ from squeezefilm.analysis.procedure import Design
 from squeezefilm.errors import InputError
 from squeezefilm.quantities import Unit, format_quantity
 from squeezefilm.report.page_style import STYLE
+from squeezefilm.report.prototype_page import prototype_sections
+from squeezefilm.report.prototype_report import prototype_markdown
 from squeezefilm.results import write_whole
 
 _HEADER = """# Validation
@@ -64,6 +66,8 @@ def validation_markdown(result: Reproduction) -> str:
     lines += ["", "## Why", ""]
     for item in result.results:
         lines.append(f"* **{item.claim.statement}** ({item.verdict}): {item.why}." + _extra(item))
+    if result.prototype is not None:
+        lines += prototype_markdown(result.prototype)
     lines += ["", "## The paper's design procedure", ""]
     lines += [f"* {sentence}" for sentence in design_sentences(result.design)]
     lines += ["", "## Errata of the paper", "", "| equation | printed | corrected | why |"]
@@ -135,6 +139,9 @@ def write_reproduction(
             f"<section><h2>{html.escape(title)}</h2>"
             f'<figure><div class="scroll" tabindex="0">{svg}</div></figure></section>'
         )
+    if result.prototype is not None:
+        tell("the prototype")
+        figures += prototype_sections(result.prototype)
     page = _page(result, figures)
     data = json.dumps(result.summary(), indent=2, ensure_ascii=False, allow_nan=False)
     write_whole(folder / "claims.json", data)

@@ -1,0 +1,323 @@
+"""How far a plate's working mode moves when one thing about the plate is different.
+
+Each `Change` makes another plate; it is solved in three dimensions like the first, and the mode is
+recognised by its shape. Solved plates are kept, so that asking again costs nothing.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+
+from squeezefilm.errors import InputError
+from squeezefilm.materials import Piezoceramic
+from squeezefilm.plate.layout import GlueLayer, RectangularPlate
+from squeezefilm.plate.plate_modes import Label, PlateModes, tracked
+from squeezefilm.plate.plate_response import harmonic_response
+from squeezefilm.plate.plate_symmetry import drive_signs
+from squeezefilm.plate.solve_modes import solve_modes
+from squeezefilm.quantities import (
+    Dimensionless,
+    Hertz,
+    Metre,
+    MetrePerVolt,
+    Pascal,
+    Unit,
+    format_quantity,
+)
+
+Progress = Callable[[str], None]
+Quantity = Literal["frequency", "amplitude"]
+
+# Less alike than this (modal assurance criterion) is another mode under the same label.
+_ALIKE = 0.6
+_POINTS = 61
+LOSSLESS: Dimensionless = 1e5
+"""The quality factor that stands for a substrate without losses of its own."""
+
+
+@dataclass(frozen=True)
+class WorkingPoint:
+    """What the changes move: the working mode's frequency with its estimated error, the largest
+    amplitude per volt on the upper face at resonance (None where nothing drives it), quality
+    factor, and the frequency with the drive's terminals open."""
+
+    label: Label
+    frequency: Hertz
+    frequency_error: Hertz
+    amplitude_per_volt: MetrePerVolt | None
+    quality_factor: Dimensionless
+    open_frequency: Hertz
+
+
+@dataclass(frozen=True)
+class Change:
+    """One thing that is different: its group (`name`), what it is changed to in words, and the
+    plate that it makes of another. `frequency_only` where there is no amplitude to compare."""
+
+    name: str
+    change: str
+    make: Callable[[RectangularPlate], RectangularPlate]
+    frequency_only: bool = False
+
+
+@dataclass(frozen=True)
+class Sensitivity:
+    """What one change does: relative shifts of the frequency and of the amplitude per volt (None
+    where nothing drives the changed plate), and how alike the mode is to the unchanged one."""
+
+    name: str
+    change: str
+    frequency: Hertz
+    frequency_shift: Dimensionless
+    amplitude_per_volt: MetrePerVolt | None
+    amplitude_shift: Dimensionless | None
+    likeness: Dimensionless
+
+
+@dataclass(frozen=True)
+class SensitivityTable:
+    """The unchanged working point, and one row for each change."""
+
+    reference: WorkingPoint
+    rows: tuple[Sensitivity, ...]
+
+
+@functools.lru_cache(maxsize=256)
+def _solved(plate: RectangularPlate, label: Label) -> PlateModes:
+    # Without what fields are evaluated on: megabytes each, and not asked for here.
+    return dataclasses.replace(solve_modes(plate, mode=label), _fields=())
+
+
+@functools.lru_cache(maxsize=256)
+def _amplitude(plate: RectangularPlate, frequency: Hertz, quality: Dimensionless) -> MetrePerVolt:
+    # Dense near the peak, where the curve turns within f/Q; the harmonic mesh is another one, so
+    # the peak need not lie at the middle exactly.
+    near = np.sinh(np.linspace(-3, 3, _POINTS)) / np.sinh(3)
+    response = harmonic_response(plate, frequency * (1 + max(4 / quality, 0.01) * near))
+    return float(np.max(response.maximum))
+
+
+def working_point(
+    plate: RectangularPlate, label: Label | None = None, *, amplitude: bool = True
+) -> WorkingPoint:
+    """A plate's working mode (or the one with this label) as `plate_sensitivity` compares it.
+
+    Raises what `solve_modes` raises. The amplitude is left out where no electrode is driven or
+    `amplitude` is False.
+    """
+    wanted = label or (plate.nodal_lines, 0)
+    modes = _solved(plate, wanted)
+    index = modes.index(wanted)
+    frequency, quality = float(modes.frequencies[index]), float(modes.quality_factors[index])
+    driven = amplitude and bool(np.any(drive_signs(plate)))
+    return WorkingPoint(
+        wanted,
+        frequency,
+        float(modes.errors[index]),
+        _amplitude(plate, frequency, quality) if driven else None,
+        quality,
+        float(modes.open_frequencies[index]),
+    )
+
+
+def plate_sensitivity(
+    plate: RectangularPlate,
+    changes: Sequence[Change] | None = None,
+    *,
+    label: Label | None = None,
+    amplitude: bool = True,
+    progress: Progress | None = None,
+) -> SensitivityTable:
+    """The shift of the working mode's frequency and amplitude per volt under each change.
+
+    `changes` default to `usual_changes`. Frequencies are extrapolated (error estimates of
+    `solve_modes` apply to both plates alike, so that a shift is better than either); amplitudes are
+    of the same mesh. Takes a second or two a change; plates solved before are reused. Raises
+    `InputError` where a changed plate has no mode with this label that moves like the unchanged
+    one: the change is too large to compare.
+    """
+    wanted = label or (plate.nodal_lines, 0)
+    every = usual_changes(plate) if changes is None else tuple(changes)
+    tell = progress or (lambda _: None)
+    tell("the unchanged plate")
+    reference = working_point(plate, wanted, amplitude=amplitude)
+    modes = _solved(plate, wanted)
+    rows = []
+    for number, change in enumerate(every, 1):
+        tell(f"change {number} of {len(every)}: {change.name} {change.change}")
+        other = change.make(plate)
+        likeness = tracked(modes, _solved(other, wanted))[modes.index(wanted)][1]
+        if likeness < _ALIKE:
+            raise InputError(
+                f"with {change.name} {change.change} the mode {wanted} moves in another shape "
+                f"(likeness {likeness:.2f}, at least {_ALIKE:g} is compared); take a smaller change"
+            )
+        there = working_point(other, wanted, amplitude=amplitude and not change.frequency_only)
+        before, after = reference.amplitude_per_volt, there.amplitude_per_volt
+        rows.append(
+            Sensitivity(
+                change.name,
+                change.change,
+                there.frequency,
+                there.frequency / reference.frequency - 1,
+                after,
+                None if before is None or after is None else after / before - 1,
+                likeness,
+            )
+        )
+    return SensitivityTable(reference, tuple(rows))
+
+
+def usual_changes(plate: RectangularPlate) -> tuple[Change, ...]:
+    """What is seldom known well about a plate, by as much as it is seldom known.
+
+    Sizes are relative, so that they fit any plate: on the paper's they are E 115 and 131 GPa,
+    c11_p ∓10 %, plate and ceramic ±0.05 mm, ρ 8360 kg/m³, ν 0.27 and 0.33, glue of 20 and 50 µm.
+    """
+    own = plate.substrate
+    out: list[Change] = []
+
+    def both(name: str, unit: str, low: float, high: float, make: _Setter) -> None:
+        for value in (low, high):
+            out.append(Change(name, _text(value, unit), functools.partial(make, value=value)))
+
+    E, t, tp = own.young_modulus, plate.thickness, plate.ceramic_thickness
+    both("plate Young's modulus", "Pa", E * 115 / 123, E * 131 / 123, with_young_modulus)
+    for share in (0.9, 1.1):
+        out.append(
+            Change("ceramic stiffness c11_p", f"{100 * (share - 1):+.0f} %".replace("-", "−"),
+                   functools.partial(with_ceramic_stiffness, share=share))
+        )  # fmt: skip
+    both("plate thickness", "m", 0.975 * t, 1.025 * t, with_thickness)
+    both("ceramic thickness", "m", 0.95 * tp, 1.05 * tp, with_ceramic_thickness)
+    both("plate density", "kg/m3", own.density * 8140 / 8250, own.density * 8360 / 8250,
+         with_density)  # fmt: skip
+    nu = own.poisson_ratio
+    both("plate Poisson's ratio", "1", nu - 0.03, min(nu + 0.03, 0.49), with_poisson_ratio)
+    out.append(Change("ceramics open", "each on its own", with_open_ceramics, frequency_only=True))
+    if plate.glue is None:
+        for modulus in (3e9, 1e9):
+            for thickness in (0.02 * tp, 0.05 * tp):
+                out.append(
+                    Change(
+                        f"glue of {_text(modulus, 'Pa')}", _text(thickness, "m"),
+                        functools.partial(with_glue, thickness=thickness, young_modulus=modulus),
+                    )
+                )  # fmt: skip
+    Q = plate.quality_factor
+    if own.quality_factor is None:
+        for share in (0.8, 1.2):
+            out.append(
+                Change("quality factor, all materials", f"{Q:.3g} → {share * Q:.3g}",
+                       functools.partial(with_quality_factor, value=share * Q))
+            )  # fmt: skip
+        out.append(Change("losses", "in the ceramic alone", with_loss_in_ceramic_alone))
+    ceramic = plate.ceramic
+    if ceramic.stress_coefficient is not None and ceramic.constants is None:
+        other = "printed_e31" if ceramic.data_set == "from_d31" else "from_d31"
+        out.append(Change("ceramic data set", f"{ceramic.data_set} → {other}", with_other_data_set))
+    return tuple(out)
+
+
+_Setter = Callable[..., RectangularPlate]
+
+
+def _text(value: float, unit: str) -> str:
+    if unit == "1":
+        return f"{value:.3g}"
+    return format_quantity(value, Unit(unit), 4).replace(" um", " µm").replace("m3", "m³")
+
+
+def _substrate(plate: RectangularPlate, **values: float) -> RectangularPlate:
+    return dataclasses.replace(plate, substrate=dataclasses.replace(plate.substrate, **values))  # type: ignore[arg-type]
+
+
+def with_young_modulus(plate: RectangularPlate, value: Pascal) -> RectangularPlate:
+    """The plate with another Young's modulus of its substrate."""
+    return _substrate(plate, young_modulus=value)
+
+
+def with_density(plate: RectangularPlate, value: float) -> RectangularPlate:
+    """The plate with another density (kg/m³) of its substrate."""
+    return _substrate(plate, density=value)
+
+
+def with_poisson_ratio(plate: RectangularPlate, value: Dimensionless) -> RectangularPlate:
+    """The plate with another Poisson's ratio of its substrate."""
+    return _substrate(plate, poisson_ratio=value)
+
+
+def with_thickness(plate: RectangularPlate, value: Metre) -> RectangularPlate:
+    """The plate with another thickness of its substrate."""
+    return dataclasses.replace(plate, thickness=value)
+
+
+def with_ceramic_thickness(plate: RectangularPlate, value: Metre) -> RectangularPlate:
+    """The plate with another thickness of all its ceramics."""
+    patches = tuple(dataclasses.replace(patch, thickness=value) for patch in plate.patches)
+    return dataclasses.replace(plate, patches=patches)
+
+
+def with_ceramic_stiffness(plate: RectangularPlate, share: Dimensionless) -> RectangularPlate:
+    """The plate with all stiffnesses of its ceramic multiplied, d31 (or the printed e31) kept."""
+    ceramic = plate.ceramic
+    constants = ceramic.constants
+    if constants is not None:
+        names = [f"compliance_{pair}" for pair in (11, 12, 13, 33, 44, 66)]
+        changed: dict[str, Any] = {name: getattr(constants, name) / share for name in names}
+        # What was stated of e and free ε belongs to the other stiffness.
+        changed |= {
+            "free_permittivity_11": None,
+            "free_permittivity_33": None,
+            "stress_coefficient_31": None,
+            "stress_coefficient_33": None,
+            "stress_coefficient_15": None,
+        }
+        constants = dataclasses.replace(constants, **changed)
+    stiffness = ceramic.in_plane_stiffness * share
+    return _ceramic(
+        plate, dataclasses.replace(ceramic, in_plane_stiffness=stiffness, constants=constants)
+    )
+
+
+def _ceramic(plate: RectangularPlate, ceramic: Piezoceramic) -> RectangularPlate:
+    return dataclasses.replace(plate, ceramic=ceramic)
+
+
+def with_other_data_set(plate: RectangularPlate) -> RectangularPlate:
+    """The plate with the other of the two data sets of its ceramic believed."""
+    ceramic = plate.ceramic
+    other: Literal["from_d31", "printed_e31"] = (
+        "printed_e31" if ceramic.data_set == "from_d31" else "from_d31"
+    )
+    return _ceramic(plate, dataclasses.replace(ceramic, data_set=other))
+
+
+def with_open_ceramics(plate: RectangularPlate) -> RectangularPlate:
+    """The plate with every ceramic's electrode left open."""
+    patches = tuple(
+        dataclasses.replace(patch, electrode="open", shunt_resistance=None)
+        for patch in plate.patches
+    )
+    return dataclasses.replace(plate, patches=patches)
+
+
+def with_glue(plate: RectangularPlate, thickness: Metre, young_modulus: Pascal) -> RectangularPlate:
+    """The plate with a glue line of this thickness and Young's modulus (losses as `GlueLayer`)."""
+    return dataclasses.replace(plate, glue=GlueLayer(thickness, young_modulus))
+
+
+def with_quality_factor(plate: RectangularPlate, value: Dimensionless) -> RectangularPlate:
+    """The plate with another quality factor of the whole assembly."""
+    return dataclasses.replace(plate, quality_factor=value)
+
+
+def with_loss_in_ceramic_alone(plate: RectangularPlate) -> RectangularPlate:
+    """The plate with no losses but its ceramic's (and its glue's, where it has one)."""
+    return _substrate(plate, quality_factor=LOSSLESS)

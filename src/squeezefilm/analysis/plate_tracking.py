@@ -1,0 +1,291 @@
+"""The frequencies of a plate's modes against one of its parameters, each mode kept its label.
+
+Labels count nodal lines and jump where they should not; here a mode is followed by its motion
+(modal assurance criterion): alike to itself at the value before and to itself where the tracking
+began. Where two modes come near each other and exchange their motions, the line so follows the
+motion, not the order of frequencies.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from squeezefilm.analysis.plate_sensitivity import (
+    with_ceramic_thickness,
+    with_density,
+    with_glue,
+    with_poisson_ratio,
+    with_thickness,
+    with_young_modulus,
+)
+from squeezefilm.errors import InputError
+from squeezefilm.plate.layout import RectangularPlate
+from squeezefilm.plate.plate_modes import Label, PlateModes
+from squeezefilm.plate.solve_modes import solve_modes
+from squeezefilm.quantities import (
+    Dimensionless,
+    FloatArray,
+    HertzArray,
+    Unit,
+    did_you_mean,
+    format_quantity,
+    parse_quantity,
+)
+
+Progress = Callable[[str], None]
+
+_ALIKE = 0.6  # below it the step is halved
+_LOST = 0.4  # below it, at the smallest step, the mode is given up
+_HALVINGS = 2
+_GRID = (49, 33)
+_REACH = 0.08  # of the working mode's frequency: the modes that are followed
+
+
+def _set_glue_thickness(plate: RectangularPlate, value: float) -> RectangularPlate:
+    assert plate.glue is not None
+    return with_glue(plate, value, plate.glue.young_modulus)
+
+
+def _set_glue_modulus(plate: RectangularPlate, value: float) -> RectangularPlate:
+    assert plate.glue is not None
+    return with_glue(plate, plate.glue.thickness, value)
+
+
+_Get = Callable[[RectangularPlate], float]
+_Set = Callable[[RectangularPlate, float], RectangularPlate]
+
+PARAMETERS: dict[str, tuple[Unit, _Get, _Set]] = {
+    "ceramic_thickness": (Unit("m"), lambda p: p.ceramic_thickness, with_ceramic_thickness),
+    "thickness": (Unit("m"), lambda p: p.thickness, with_thickness),
+    "young_modulus": (Unit("Pa"), lambda p: p.substrate.young_modulus, with_young_modulus),
+    "density": (Unit("kg/m3"), lambda p: p.substrate.density, with_density),
+    "poisson_ratio": (Unit("1"), lambda p: p.substrate.poisson_ratio, with_poisson_ratio),
+    "glue_thickness": (
+        Unit("m"), lambda p: 0.0 if p.glue is None else p.glue.thickness, _set_glue_thickness,
+    ),
+    "glue_young_modulus": (
+        Unit("Pa"), lambda p: 0.0 if p.glue is None else p.glue.young_modulus, _set_glue_modulus,
+    ),
+}  # fmt: skip
+"""What `track_modes` can vary: unit, how to read it, how to set it."""
+
+
+@dataclass(frozen=True)
+class TrackRequest:
+    """A parameter of `PARAMETERS`, its first and last value (SI) and the number of values."""
+
+    parameter: str
+    start: float
+    stop: float
+    values: int = 9
+
+    def __post_init__(self) -> None:
+        if self.parameter not in PARAMETERS:
+            raise InputError(
+                f"--track '{self.parameter}' cannot be varied."
+                f"{did_you_mean(self.parameter, PARAMETERS)} Allowed: {', '.join(PARAMETERS)}",
+                quantity="track",
+            )
+        if not self.start < self.stop:
+            raise InputError("--from must be smaller than --to", quantity="track")
+        if self.values < 2:
+            raise InputError("a track needs at least 2 values", quantity="track")
+
+
+@dataclass(frozen=True, eq=False)
+class ModeTrack:
+    """One mode over the values: its label where the tracking began, frequencies (NaN beyond where
+    it was lost), and how alike it was to the value before or to the beginning (the larger)."""
+
+    label: str
+    frequency: HertzArray
+    likeness: FloatArray
+    driven: bool
+
+
+@dataclass(frozen=True, eq=False)
+class ModeTracks:
+    """Modes over the values of a parameter (SI unit `unit`); `own` is the plate's own value, and
+    `begun` the value at which the labels were read."""
+
+    parameter: str
+    unit: str
+    values: FloatArray
+    own: float
+    begun: float
+    tracks: tuple[ModeTrack, ...]
+    least_likeness: Dimensionless
+
+
+def parse_track(parameter: str, start: str | None, stop: str | None, values: int) -> TrackRequest:
+    """A request from texts such as ``"0.5 mm"``. Raises `InputError` for anything else."""
+    unit = PARAMETERS[parameter][0] if parameter in PARAMETERS else Unit("1")
+    if start is None or stop is None:
+        raise InputError('--track needs --from and --to, like --from "0.5 mm" --to "1.5 mm"')
+    if parameter not in PARAMETERS:
+        return TrackRequest(parameter, 0.0, 1.0, values)
+    if unit.symbol == "1":
+        try:
+            return TrackRequest(parameter, float(start), float(stop), values)
+        except ValueError as error:
+            raise InputError(f"--from and --to of {parameter} are plain numbers") from error
+    return TrackRequest(parameter, parse_quantity(start, unit), parse_quantity(stop, unit), values)
+
+
+def track_modes(
+    plate: RectangularPlate,
+    request: TrackRequest,
+    *,
+    label: Label | None = None,
+    progress: Progress | None = None,
+) -> ModeTracks:
+    """Follow the modes within 8 % of the working mode's frequency (or of the one with `label`)
+    over a parameter's values.
+
+    Labels are read at the plate's own value where it lies between the values, else at the first.
+    Where a mode is less than 0.6 alike both to itself at the value before and to itself at the
+    beginning, the step is halved up to twice (the values in between are kept); less than 0.4
+    alike, it is lost from there on. Raises
+    `InputError` for a plate without the glue that is to be varied and what `solve_modes` raises.
+    """
+    unit, get, _ = PARAMETERS[request.parameter]
+    if request.parameter.startswith("glue") and plate.glue is None:
+        raise InputError(
+            f"--track {request.parameter}: the plate has no glue; add [actuator.glue] to its file"
+        )
+    tell = progress or (lambda _: None)
+    values = np.linspace(request.start, request.stop, request.values)
+    own = get(plate)
+    begun = own if request.start <= own <= request.stop else request.start
+    tell(f"{request.parameter} = {_shown(begun, unit)}")
+    f0 = _centre(plate, request, begun, label or (plate.nodal_lines, 0))
+    first = _solve(plate, request, begun, ((1 - _REACH) * f0, (1 + _REACH) * f0))
+    steps: dict[float, tuple[PlateModes, list[int | None], list[float]]] = {
+        begun: (first, list(range(first.count)), [1.0] * first.count)
+    }
+    for side in (values[values > begun + 1e-12 * abs(begun)],
+                 values[values < begun - 1e-12 * abs(begun)][::-1]):  # fmt: skip
+        last = begun
+        for value in side:
+            _advance(plate, request, first, last, float(value), steps, _HALVINGS, tell)
+            last = float(value)
+    every = np.array(sorted(steps))
+    frequency = np.full((first.count, every.size), np.nan)
+    likeness = np.full((first.count, every.size), np.nan)
+    for column, value in enumerate(every):
+        modes, numbers, alike = steps[float(value)]
+        for row, number in enumerate(numbers):
+            if number is not None:
+                frequency[row, column] = modes.frequencies[number]
+                likeness[row, column] = alike[row]
+    driven = np.abs(first.drive_forces) > 1e-6 * np.max(np.abs(first.drive_forces))
+    return ModeTracks(
+        request.parameter,
+        unit.symbol,
+        every,
+        own,
+        begun,
+        tuple(
+            ModeTrack(
+                "in plane" if own_label is None else f"({own_label[0]},{own_label[1]})",
+                frequency[row], likeness[row], bool(driven[row]),
+            )
+            for row, own_label in enumerate(first.labels)
+        ),
+        float(np.nanmin(likeness)),
+    )  # fmt: skip
+
+
+def likeness(before: PlateModes, after: PlateModes) -> FloatArray:
+    """How alike each mode of one plate moves to each of another, shape (before, after): 1 for the
+    same motion of both faces in all three directions, 0 for orthogonal ones.
+
+    Over relative coordinates; unlike `plate_modes.tracked` it tells modes apart that move mostly in
+    the plane.
+    """
+
+    def motions(modes: PlateModes) -> FloatArray:
+        x = np.linspace(0, modes.plate.length, _GRID[0])
+        y = np.linspace(0, modes.plate.width, _GRID[1])
+        faces = (0.0, modes.plate.thickness)
+        rows = [
+            np.concatenate([modes.field(i, x, y, z).ravel() for z in faces])
+            for i in range(modes.count)
+        ]
+        out = np.stack(rows)
+        return np.asarray(out / np.linalg.norm(out, axis=1, keepdims=True))
+
+    return np.asarray((motions(before) @ motions(after).T) ** 2)
+
+
+def _assignment(alike: FloatArray) -> list[int]:
+    """For each row the column that it is given, none given twice; −1 where there are not enough."""
+    from scipy.optimize import linear_sum_assignment
+
+    rows, columns = linear_sum_assignment(-alike)
+    given = dict(zip(rows.tolist(), columns.tolist(), strict=True))
+    return [given.get(row, -1) for row in range(alike.shape[0])]
+
+
+def _shown(value: float, unit: Unit) -> str:
+    return f"{value:.4g}" if unit.symbol == "1" else format_quantity(value, unit)
+
+
+def _centre(plate: RectangularPlate, request: TrackRequest, value: float, label: Label) -> float:
+    changed = PARAMETERS[request.parameter][2](plate, value)
+    modes = solve_modes(changed, mode=label)
+    return float(modes.frequencies[modes.index(label)])
+
+
+def _solve(
+    plate: RectangularPlate, request: TrackRequest, value: float, band: tuple[float, float]
+) -> PlateModes:
+    return solve_modes(PARAMETERS[request.parameter][2](plate, value), band=band)
+
+
+def _advance(
+    plate: RectangularPlate,
+    request: TrackRequest,
+    first: PlateModes,
+    last: float,
+    value: float,
+    steps: dict[float, tuple[PlateModes, list[int | None], list[float]]],
+    halvings: int,
+    tell: Progress,
+) -> None:
+    """Follow the modes from one value to the next, with values in between where needed."""
+    tell(f"{request.parameter} = {_shown(value, PARAMETERS[request.parameter][0])}")
+    before, numbers, _ = steps[last]
+    known = [n for n in numbers if n is not None]
+    if not known:
+        return
+    lowest = float(before.frequencies[min(known)])
+    highest = float(before.frequencies[max(known)])
+    after = _solve(plate, request, value, (0.94 * lowest, 1.06 * highest))
+    rows = [row for row, n in enumerate(numbers) if n is not None]
+    to_last = likeness(before, after)[known]
+    to_first = likeness(first, after)[rows]
+    # What a mode was at the beginning is what its label means: it counts twice.
+    given = _assignment(to_last + 2 * to_first)
+    best = np.maximum(to_last, to_first)
+    matches = {
+        row: (k, float(best[i, k]) if k >= 0 else 0.0)
+        for i, (row, k) in enumerate(zip(rows, given, strict=True))
+    }
+    found: list[int | None] = []
+    alikes: list[float] = []
+    for row in range(len(numbers)):
+        k, share = matches.get(row, (-1, 0.0))
+        found.append(int(k) if share >= _LOST else None)
+        alikes.append(float(share))
+    worst = min(alike for n, alike in zip(numbers, alikes, strict=True) if n is not None)
+    if worst < _ALIKE and halvings:
+        middle = (last + value) / 2
+        _advance(plate, request, first, last, middle, steps, halvings - 1, tell)
+        if middle in steps:
+            _advance(plate, request, first, middle, value, steps, halvings - 1, tell)
+        return
+    steps[value] = (after, found, alikes)

@@ -1,0 +1,230 @@
+"""Why the paper's prototype is lower than its model, and what one frequency cannot tell.
+
+Several explanations are each brought to the measured frequency by one free parameter. What they
+then predict for other measurements says which of these would tell them apart, and by how much.
+"""
+
+from __future__ import annotations
+
+import functools
+import itertools
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from squeezefilm.analysis.plate_sensitivity import (
+    SensitivityTable,
+    WorkingPoint,
+    plate_sensitivity,
+    with_ceramic_stiffness,
+    with_density,
+    with_glue,
+    with_other_data_set,
+    with_thickness,
+    with_young_modulus,
+    working_point,
+)
+from squeezefilm.display import load_display
+from squeezefilm.errors import SqueezefilmError
+from squeezefilm.plate.layout import RectangularPlate
+from squeezefilm.quantities import Dimensionless, Hertz, Metre, Unit, Volt, format_quantity
+
+Progress = Callable[[str], None]
+
+MODAL_FREQUENCY: Hertz = 35.6e3  # section 3.1.3, Fig 13
+HARMONIC_FREQUENCY: Hertz = 34.77e3  # section 3.1.3, Fig 14
+HARMONIC_AMPLITUDE: Metre = 3.2e-6
+MEASURED_FREQUENCY: Hertz = 30.5e3  # section 3.2.1
+MEASURED_AMPLITUDE: Metre = 1.15e-6
+DRIVE_VOLTAGE: Volt = 15.0
+
+NEIGHBOURS = ((6, 0), (7, 0), (9, 0))
+
+# How well each could be measured: a resonance of Q 60 to a tenth of its half-power width, an
+# amplitude with a vibrometer at a known point, a quality factor from that width.
+RATIO_ACCURACY: Dimensionless = 0.002
+OPEN_ACCURACY: Dimensionless = 0.002
+AMPLITUDE_ACCURACY: Dimensionless = 0.1
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """One set of parameters with which the mode lies at the measured frequency.
+
+    `free` names the parameter that was solved for and `value` says what came out. Ratios are of the
+    neighbouring modes' frequencies (`NEIGHBOURS`) to the working mode's; `open_shift` is the
+    relative rise of the frequency with the drive's terminals open. The amplitude is at 15 V with
+    the stated quality factor (60 but for the glue's own losses), and `quality_factor_for_measured`
+    the one that would give the measured amplitude.
+    """
+
+    name: str
+    free: str
+    value: str
+    frequency: Hertz
+    neighbour_ratios: tuple[float, ...]
+    open_shift: Dimensionless
+    amplitude: Metre
+    quality_factor: Dimensionless
+    quality_factor_for_measured: Dimensionless
+
+    @property
+    def amplitude_for_q_60(self) -> Metre:
+        """The amplitude at 15 V if the whole had a quality factor of 60: what an amplitude tells
+        once Q is measured too."""
+        return self.amplitude * 60 / self.quality_factor
+
+
+@dataclass(frozen=True)
+class Separation:
+    """How far two explanations stand apart in each further measurement, in units of what it could
+    resolve; above about 2 it tells them apart."""
+
+    first: str
+    second: str
+    measurements: tuple[str, ...]
+    apart: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class PrototypeStudy:
+    """The solved plate beside the paper's numbers, the sensitivities, and the explanations."""
+
+    from_d31: WorkingPoint
+    printed_e31: WorkingPoint
+    sensitivities: SensitivityTable
+    explanations: tuple[Explanation, ...]
+    separations: tuple[Separation, ...]
+
+
+MEASUREMENTS = (
+    *(f"f({label[0]},{label[1]}) / f(8,0)" for label in NEIGHBOURS),
+    "open-circuit shift",
+    "amplitude at known Q",
+)
+
+
+@functools.cache
+def paper_plate() -> RectangularPlate:
+    """The plate of the preset biet2008-plate."""
+    plate = load_display("biet2008-plate").actuator
+    assert isinstance(plate, RectangularPlate)
+    return plate
+
+
+@functools.cache
+def paper_points() -> tuple[WorkingPoint, WorkingPoint]:
+    """Mode (8,0) of the paper's plate with d31 and with the printed e31."""
+    plate = paper_plate()
+    return working_point(plate), working_point(with_other_data_set(plate))
+
+
+def _softer_and_thinner(plate: RectangularPlate, value: float) -> RectangularPlate:
+    softer = with_ceramic_stiffness(with_young_modulus(plate, 115e9), 0.9)
+    return with_thickness(softer, value)
+
+
+def _softer(plate: RectangularPlate, value: float) -> RectangularPlate:
+    both = with_young_modulus(plate, plate.substrate.young_modulus * value)
+    return with_ceramic_stiffness(both, value)
+
+
+_Make = Callable[[RectangularPlate, float], RectangularPlate]
+
+
+def _glued(thickness: Metre) -> _Make:
+    return lambda plate, value: with_glue(plate, thickness, value)
+
+
+# Name, what is free, its unit, from where to where it is looked for, and how the plate is made.
+_CASES: tuple[tuple[str, str, str, float, float, _Make], ...] = (
+    ("50 µm of glue", "its Young's modulus", "Pa", 0.3e9, 3e9, _glued(50e-6)),
+    ("20 µm of glue", "its Young's modulus", "Pa", 0.1e9, 1e9, _glued(20e-6)),
+    ("E 115 GPa, c11_p −10 %, thinner plate", "plate thickness", "m", 1.6e-3, 2e-3,
+     _softer_and_thinner),
+    ("plate and ceramic softer alike", "share of E and c11_p", "1", 0.7, 1.0, _softer),
+    ("a heavier plate", "its density", "kg/m3", 8250.0, 13500.0, with_density),
+    ("50 µm of glue, printed e31", "its Young's modulus", "Pa", 0.3e9, 3e9,
+     lambda plate, value: with_glue(with_other_data_set(plate), 50e-6, value)),
+)  # fmt: skip
+
+
+def prototype_study(progress: Progress | None = None) -> PrototypeStudy:
+    """Solve it all: some eighty plates, a minute or two; solved plates are kept for the next call.
+
+    Raises what `solve_modes` raises.
+    """
+    tell = progress or (lambda _: None)
+    plate = paper_plate()
+    from_d31, printed = paper_points()
+    table = plate_sensitivity(plate, progress=tell)
+    explanations = []
+    for name, free, unit, low, high, make in _CASES:
+        tell(f"30.5 kHz by {name}")
+        explanations.append(_explained(plate, name, free, unit, (low, high), make))
+    pairs = itertools.combinations(explanations, 2)
+    return PrototypeStudy(
+        from_d31, printed, table, tuple(explanations), tuple(_apart(a, b) for a, b in pairs)
+    )
+
+
+def _explained(
+    plate: RectangularPlate,
+    name: str,
+    free: str,
+    unit: str,
+    between: tuple[float, float],
+    make: _Make,
+) -> Explanation:
+    from scipy.optimize import brentq
+
+    def above(logarithm: float) -> float:
+        point = working_point(make(plate, float(np.exp(logarithm))), amplitude=False)
+        return point.frequency / MEASURED_FREQUENCY - 1
+
+    logarithms = float(np.log(between[0])), float(np.log(between[1]))
+    if above(logarithms[0]) * above(logarithms[1]) > 0:
+        raise SqueezefilmError(
+            f"{free} between {between[0]:.3g} and {between[1]:.3g} ({unit}) does not bring "
+            f"'{name}' to {MEASURED_FREQUENCY:.0f} Hz; widen the range in analysis/prototype.py"
+        )
+    root = float(np.exp(brentq(above, *logarithms, xtol=2e-4, rtol=1e-4)))
+    solved = make(plate, root)
+    point = working_point(solved)
+    assert point.amplitude_per_volt is not None
+    amplitude = DRIVE_VOLTAGE * point.amplitude_per_volt
+    ratios = tuple(
+        working_point(solved, label, amplitude=False).frequency / point.frequency
+        for label in NEIGHBOURS
+    )
+    text = f"{root:.3f}" if unit == "1" else format_quantity(root, Unit(unit), 3)
+    text = f"{root:.0f} {unit}" if unit == "kg/m3" else text
+    return Explanation(
+        name,
+        free,
+        text.replace("m3", "m³"),
+        point.frequency,
+        ratios,
+        point.open_frequency / point.frequency - 1,
+        amplitude,
+        point.quality_factor,
+        point.quality_factor * MEASURED_AMPLITUDE / amplitude,
+    )
+
+
+def _apart(a: Explanation, b: Explanation) -> Separation:
+    ratios = [
+        abs(p / q - 1) / RATIO_ACCURACY
+        for p, q in zip(a.neighbour_ratios, b.neighbour_ratios, strict=True)
+    ]
+    return Separation(
+        a.name,
+        b.name,
+        MEASUREMENTS,
+        (
+            *ratios,
+            abs(a.open_shift - b.open_shift) / OPEN_ACCURACY,
+            abs(float(np.log(a.amplitude_for_q_60 / b.amplitude_for_q_60))) / AMPLITUDE_ACCURACY,
+        ),
+    )
