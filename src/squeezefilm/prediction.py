@@ -14,7 +14,13 @@ from squeezefilm.display import Display, Surface
 from squeezefilm.errors import InputError, OutOfRangeError, OutOfRangeWarning
 from squeezefilm.film.gap import squeeze_number
 from squeezefilm.film.validity import FilmValidity, film_validity
-from squeezefilm.friction import SOLVED_DEFAULT, FrictionLaw, FrictionModel, friction_law
+from squeezefilm.friction import (
+    SOLVED_DEFAULT,
+    FrictionLaw,
+    FrictionModel,
+    friction_law,
+    shares_load,
+)
 from squeezefilm.plate.beam import BeamTheory
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.response import beam_doubt
@@ -143,10 +149,18 @@ def predict(
     if solved:
         inertia = validity.check("inertia")
         messages += [] if inertia.holds else [inertia.sentence]
+    if law.model.startswith("film-"):
         messages.append(
             f"the asymptote of the paper does not hold here (σ = {sigma:.4g}); the model "
             f"'{law.model}' solves the film of the same gap, with slip. What a film carries "
             "depends on the shape of the ridges more than on anything else: compare the film models"
+        )
+    if shares_load(law.model):
+        spread = float(law.limits(amplitude).spread[0])
+        messages.append(
+            f"the model '{law.model}' lets film and asperities share the load of each ridge; its "
+            "asperities are assumed, not measured, and decide the answer. Relative friction "
+            f"differs by {spread:.2f} between a skin that sinks ridge by ridge and a stiff one"
         )
     if doubt is not None:
         messages.append(doubt)

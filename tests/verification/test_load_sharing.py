@@ -409,6 +409,18 @@ def test_a_display_has_the_law(model: str) -> None:
     np.testing.assert_allclose(chosen, curve, rtol=1e-9)
 
 
+def test_the_two_mechanisms_are_compared_at_a_working_point() -> None:
+    law = friction_law(load_display("biet2008-stator"), 9.35e-3, 40.5e3, model="partial-levitation")
+    a = np.array([0.0, 1e-6, 3e-6])
+    slow, fast = law.tapped(a, 0.05), law.tapped(a, 0.2)
+    assert slow[0] == fast[0] == pytest.approx(1)
+    # Tapping depends on the speed, levitation does not know it.
+    assert np.all(slow[1:] < fast[1:])
+    # Ridges near a node stay in contact: more friction is left than at an antinode alone.
+    alone = tapping_friction(3e-6, 40.5e3, 0.2, 7e3, friction_coefficient=0.9).relative_friction
+    assert fast[2] > alone
+
+
 def test_only_models_that_share_the_load_say_how() -> None:
     law = friction_law(load_display("biet2008-stator"), 9.35e-3, 40.5e3, model="paper2008")
     with pytest.raises(InputError, match="shares no load"):
