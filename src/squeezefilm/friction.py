@@ -16,7 +16,7 @@ from squeezefilm.contact import paper
 from squeezefilm.contact.film_load import FilmLoad, FilmModel, film_load
 from squeezefilm.contact.finger import Finger
 from squeezefilm.contact.gas_table import film_table
-from squeezefilm.contact.pad import Limit, PadFriction, pad_friction, ridge_points
+from squeezefilm.contact.pad import Limit, PadFriction, PadPosture, pad_friction, ridge_points
 from squeezefilm.contact.tapping import tapping_friction
 from squeezefilm.display import Display, Surface
 from squeezefilm.errors import InputError, OutOfRangeError, UnreachableError
@@ -140,9 +140,18 @@ class FrictionLaw:
             plateau_width=self.finger.plateau_width,
         )
 
-    def sharing(self, amplitude: MetreLike, limit: Limit | None = None) -> PadFriction:
+    def sharing(
+        self,
+        amplitude: MetreLike,
+        limit: Limit | None = None,
+        *,
+        posture: PadPosture | None = None,
+        yielding: bool = False,
+    ) -> PadFriction:
         """How film and asperities share the load at amplitudes (m), in the model's limit or in
-        the one named. Raises `InputError` for a model that does not share the load."""
+        the one named; how the pad lies (None: centred on an antinode, level); and whether the
+        finger's skin yields at the ultrasonic frequency. Raises `InputError` for a model that does
+        not share the load."""
         if limit is None:
             if not shares_load(self.model):
                 raise InputError(
@@ -160,6 +169,8 @@ class FrictionLaw:
             ridge_points(finger, side),
             finger.plateau_pressure(self.normal_force),
             limit=limit,
+            posture=posture,
+            skin=finger.skin if yielding else None,
         )
 
     def limits(self, amplitude: MetreLike) -> FrictionLimits:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from squeezefilm.contact.asperities import AsperityLaw
@@ -27,6 +27,16 @@ laws = st.builds(
     st.floats(0.2e-6, 0.8e-6),
     st.sampled_from(["exponential", "gaussian"]),
 )
+exponential = st.builds(
+    AsperityLaw, st.floats(1e3, 2e4), st.floats(1e-6, 4e-6), st.floats(0.2e-6, 0.8e-6)
+)
+
+
+def assume_open(law: AsperityLaw, pressure: float) -> None:
+    """Asperities alone carry the load at rest with a gap left: there the law means something."""
+    assume(law.gap_for(pressure) > 0.1e-6)
+
+
 # The first call compiles or loads compiled code.
 calm = settings(deadline=None, max_examples=40)
 
@@ -34,6 +44,7 @@ calm = settings(deadline=None, max_examples=40)
 @calm
 @given(amplitudes, pressures, frequencies, widths, laws)
 def test_gas_and_asperities_carry_the_load(a, pressure, frequency, width, law):
+    assume_open(law, pressure)
     table = film_table(frequency, width, GAS)
     shared = share_load(table, law, a, pressure)
     carried = float(shared.gas_pressure + shared.asperity_pressure)
@@ -54,8 +65,11 @@ def test_gas_and_asperities_carry_the_load(a, pressure, frequency, width, law):
 
 
 @calm
-@given(pressures, frequencies, widths, laws)
+@given(pressures, frequencies, widths, exponential)
 def test_friction_falls_with_amplitude(pressure, frequency, width, law):
+    # Where asperities end abruptly (Gaussian heights), friction below a hundredth may rise again:
+    # the gap has grown, and the film with it has weakened.
+    assume_open(law, pressure)
     table = film_table(frequency, width, GAS)
     curve = share_load(table, law, np.linspace(0.0, 5e-6, 21), pressure).relative_friction
     assert np.all(np.diff(curve) < 1e-9)
@@ -64,16 +78,20 @@ def test_friction_falls_with_amplitude(pressure, frequency, width, law):
 @calm
 @given(amplitudes, pressures, widths, laws)
 def test_friction_falls_with_frequency(a, pressure, width, law):
+    assume_open(law, pressure)
     values = [
         float(share_load(film_table(f, width, GAS), law, a, pressure).relative_friction)
         for f in (20e3, 33e3, 60e3)
     ]
-    assert values[0] > values[1] > values[2]
+    # Equal only where nothing is left to lose: full levitation to rounding.
+    assert values[0] >= values[1] >= values[2]
+    assert values[0] > values[2] or values[0] < 1e-12
 
 
 @calm
 @given(amplitudes, pressures, frequencies, laws)
 def test_friction_rises_with_roughness(a, pressure, frequency, law):
+    assume_open(law.scaled(0.9), pressure)
     table = film_table(frequency, 250e-6, GAS)
     values = [
         float(share_load(table, law.scaled(s), a, pressure).relative_friction)
@@ -86,6 +104,7 @@ def test_friction_rises_with_roughness(a, pressure, frequency, law):
 @calm
 @given(amplitudes, pressures, laws)
 def test_tied_ridges_that_are_alike_are_as_one(a, pressure, law):
+    assume_open(law, pressure)
     table = film_table(33e3, 250e-6, GAS)
     alone = float(share_load(table, law, a, pressure).relative_friction)
     tied = share_load_tied(table, law, np.full(5, a), pressure)

@@ -421,6 +421,17 @@ def test_the_two_mechanisms_are_compared_at_a_working_point() -> None:
     assert fast[2] > alone
 
 
+def test_posture_and_skin_reach_the_law_of_a_display() -> None:
+    law = friction_law(load_display("biet2008-stator"), 9.35e-3, 40.5e3, model="partial-levitation")
+    law = dataclasses.replace(law, finger=dataclasses.replace(law.finger, contact_length=6e-3))
+    straight = law.at(2e-6)
+    # Of a pad shorter than half a wave, less moves over a node.
+    over_node = law.sharing(2e-6, posture=PadPosture(position=9.35e-3 / 2)).relative_friction[0]
+    assert over_node > straight
+    yielding = law.sharing(2e-6, yielding=True).relative_friction[0]
+    assert 0 < straight - yielding < 0.02
+
+
 def test_only_models_that_share_the_load_say_how() -> None:
     law = friction_law(load_display("biet2008-stator"), 9.35e-3, 40.5e3, model="paper2008")
     with pytest.raises(InputError, match="shares no load"):

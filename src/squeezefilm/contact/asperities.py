@@ -170,8 +170,11 @@ class AsperityLaw:
             )
         from scipy.optimize import brentq
 
+        reference = float(gaussian_overlap(self.reference_gap / self.decay_length))
+        wanted = math.log(pressure / self.reference_pressure * reference)
+
         def excess(t: float) -> float:
-            return math.log(float(self.pressure(t * self.decay_length)) / pressure)
+            return math.log(float(gaussian_overlap(t))) - wanted
 
         if not excess(_HIGHEST) < 0 < excess(_LOWEST):
             raise InputError(
