@@ -81,9 +81,9 @@ def test_the_mean_over_the_period_is_not_the_pressure_at_the_mean_gap(table: Fil
 @pytest.mark.parametrize(("ambient", "slip"), [(1e5, "first"), (2e3, "fukui-kaneko")])
 def test_the_table_is_within_its_bound_of_films_solved_elsewhere(ambient: float, slip: str) -> None:
     gas = GAS.at_pressure(ambient)
-    table = FilmTable(40.5e3, 250e-6, gas, slip, tolerance=1e-3)
+    table = FilmTable(40.5e3, 250e-6, gas, slip)
     rng = np.random.default_rng(7)
-    for _ in range(12):
+    for _ in range(40):
         u, eps = rng.uniform(1e-6, 8e-6), rng.uniform(0.02, DEEPEST_EXCURSION - 0.005)
         found = float(table.over_pressure(u, eps * u))
         solved = solve_strip(
