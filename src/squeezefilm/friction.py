@@ -16,7 +16,8 @@ from squeezefilm.contact import paper
 from squeezefilm.contact.film_load import FilmLoad, FilmModel, film_load
 from squeezefilm.contact.finger import Finger
 from squeezefilm.contact.gas_table import film_table
-from squeezefilm.contact.pad import Limit, PadFriction, pad_friction, ridge_points
+from squeezefilm.contact.pad import Limit, PadFriction, PadPosture, pad_friction, ridge_points
+from squeezefilm.contact.tapping import tapping_friction
 from squeezefilm.display import Display, Surface
 from squeezefilm.errors import InputError, OutOfRangeError, UnreachableError
 from squeezefilm.film.gap import PaperGap
@@ -30,6 +31,7 @@ from squeezefilm.quantities import (
     Metre,
     MetreArray,
     MetreLike,
+    MetrePerSecond,
     Newton,
     Unit,
     did_you_mean,
@@ -138,9 +140,18 @@ class FrictionLaw:
             plateau_width=self.finger.plateau_width,
         )
 
-    def sharing(self, amplitude: MetreLike, limit: Limit | None = None) -> PadFriction:
+    def sharing(
+        self,
+        amplitude: MetreLike,
+        limit: Limit | None = None,
+        *,
+        posture: PadPosture | None = None,
+        yielding: bool = False,
+    ) -> PadFriction:
         """How film and asperities share the load at amplitudes (m), in the model's limit or in
-        the one named. Raises `InputError` for a model that does not share the load."""
+        the one named; how the pad lies (None: centred on an antinode, level); and whether the
+        finger's skin yields at the ultrasonic frequency. Raises `InputError` for a model that does
+        not share the load."""
         if limit is None:
             if not shares_load(self.model):
                 raise InputError(
@@ -158,6 +169,8 @@ class FrictionLaw:
             ridge_points(finger, side),
             finger.plateau_pressure(self.normal_force),
             limit=limit,
+            posture=posture,
+            skin=finger.skin if yielding else None,
         )
 
     def limits(self, amplitude: MetreLike) -> FrictionLimits:
@@ -168,6 +181,30 @@ class FrictionLaw:
             self.sharing(a, "one-gap").relative_friction,
         )
         return FrictionLimits(a, own, tied)
+
+    def tapped(self, amplitude: MetreLike, speed: MetrePerSecond) -> DimensionlessArray:
+        """µ′/µ by the competing mechanism, intermittent contact without gas, at amplitudes (m) and
+        a finger speed (m/s), whatever the model: the mean over the ridges. See `contact.tapping`.
+        """
+        finger = self.finger
+        pressure = finger.plateau_pressure(self.normal_force)
+        decay = finger.asperity_law(self.surface.roughness).decay_length
+        points = ridge_points(finger, float(np.sqrt(finger.contact_area(self.normal_force))))
+        wave = np.abs(np.cos(np.pi * points / self.half_wavelength))
+        kinds, counts = np.unique(np.round(wave, 9), return_counts=True)
+
+        def tap(swing: float) -> float:
+            return tapping_friction(
+                swing,
+                self.frequency,
+                speed,
+                pressure,
+                friction_coefficient=self.surface.friction_coefficient * finger.friction_factor,
+                normal_stiffness=pressure / decay,
+            ).relative_friction
+
+        each = np.array([[tap(float(a * k)) for k in kinds] for a in np.atleast_1d(amplitude)])
+        return np.asarray(each @ (counts / points.size))
 
     def _shared_load(self, amplitude: Metre) -> FilmLoad:
         shared = self.sharing(amplitude)

@@ -175,16 +175,19 @@ def predict(
     if law.model.startswith("film-"):
         inertia = validity.check("inertia")
         messages += [] if inertia.holds else [inertia.sentence]
-    if shares_load(law.model):
-        messages.append(
-            "how film and asperities share the load rests on the asperities' law, on the width of "
-            "the ridges' plateaus and on how soft the skin is, none of which was measured on a "
-            "display: see the interval of squeezefilm friction"
-        )
     if volts is not None and mode.modal_mass is None:
         messages.append(
             f"what the finger takes from the vibration is left out: the modal mass of a "
             f"{mode.model.replace('_', ' ')} is not known"
+        )
+    if shares_load(law.model):
+        assert limits is not None
+        spread = abs(limits[0] - limits[1])
+        messages.append(
+            f"the model '{law.model}' lets film and asperities share the load of each ridge; its "
+            "asperities and plateaus are assumed, not measured, and decide the answer: see the "
+            "interval of squeezefilm friction. Relative friction differs by "
+            f"{spread:.2f} between a skin that sinks ridge by ridge and a stiff one"
         )
     if doubt is not None:
         messages.append(doubt)

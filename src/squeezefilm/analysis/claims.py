@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from squeezefilm import presets
+from squeezefilm.analysis import contact_claims
 from squeezefilm.analysis.claim_values import CLAIM_VALUES, ClaimValue, paper_design
 from squeezefilm.analysis.procedure import Design
 from squeezefilm.analysis.prototype import PrototypeStudy, prototype_study
@@ -15,6 +16,9 @@ from squeezefilm.config import load
 from squeezefilm.errors import ConfigError
 from squeezefilm.quantities import did_you_mean
 from squeezefilm.results import stamp, to_json
+
+# Registers what it computes; named so that the import is no accident.
+FROZEN_CONTACT = contact_claims.FROZEN
 
 Verdict = Literal["reproduces", "misprint", "does not reproduce", "holds", "does not hold"]
 Relation = Literal["equals", "above", "at_least", "at_most"]

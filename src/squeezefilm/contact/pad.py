@@ -62,8 +62,8 @@ class PadFriction:
     """The pad's friction at an array of amplitudes (one-dimensional), in one limit.
 
     `mean_gap` is the mean over the plateaus (m). `film_pressure` and `asperity_pressure` are means
-    over all plateaus and the period (Pa); their shares of the plateau's pressure sum to 1
-    within `residual`, the largest imbalance.
+    over all plateaus and the period (Pa); their shares of the plateau's pressure sum to 1 within
+    `residual`, the largest imbalance.
     `relative_friction_error` bounds what the film table's error does to µ′/µ.
     """
 

@@ -41,6 +41,9 @@ from squeezefilm.quantities import (
 MINDLIN_RATIO: Dimensionless = 2 / 3
 """Tangential over normal contact stiffness 2(1 − ν)/(2 − ν) of an incompressible body."""
 
+ASPERITY_DECAY: Metre = 0.6e-6
+"""λ_r of the default asperities, over which their pressure falls by e (assumed)."""
+
 _PHASES = 4096
 
 
@@ -108,13 +111,14 @@ def tapping_friction(
     pressure: Pascal,
     *,
     friction_coefficient: Dimensionless = 0.9,
-    normal_stiffness: PascalPerMetre = 8.3e9,
+    normal_stiffness: PascalPerMetre | None = None,
     stiffness_ratio: Dimensionless = MINDLIN_RATIO,
 ) -> Tapping:
     """Friction of a patch of skin under a mean `pressure` (Pa), tapped at `amplitude` (m).
 
-    `normal_stiffness` is that of the asperities and the outermost skin per area, at the load: for
-    exponential asperities p/λ_r, 5 kPa over 0.6 µm (assumed). Within a tap the shear stress q
+    `normal_stiffness` is that of the asperities per area, at the load (None: that of exponential
+    asperities, p/λ_r with λ_r = 0.6 µm, assumed; the skin is then λ_r deep into the plate at rest,
+    whatever the load). Within a tap the shear stress q
     follows the finger, dq/dt = k_t U, capped by µ p_c(t). Raises `InputError` for values that
     cannot be used.
     """
@@ -123,8 +127,10 @@ def tapping_friction(
     require("speed", speed, Unit("m/s"), above=0)
     require("pressure", pressure, Unit("Pa"), above=0)
     require("friction_coefficient", friction_coefficient, above=0)
-    require("normal_stiffness", normal_stiffness, Unit("Pa/m"), above=0)
     require("stiffness_ratio", stiffness_ratio, above=0)
+    if normal_stiffness is None:
+        normal_stiffness = pressure / ASPERITY_DECAY
+    require("normal_stiffness", normal_stiffness, Unit("Pa/m"), above=0)
     rest = pressure / normal_stiffness
     half = contact_angle(amplitude, rest)
     intermittent = half < np.pi

@@ -18,8 +18,10 @@ from squeezefilm.results import write_whole
 
 _HEADER = """# Validation
 
-Written by `squeezefilm reproduce --write-docs`; do not edit. Source of the claims: Biet, Giraud,
-Lemaire-Semail, *The implementation of tactile feedback using squeeze film effect devices*.
+Written by `squeezefilm reproduce --write-docs`; do not edit. Source of the claims, unless another
+is named: Biet, Giraud, Lemaire-Semail, *The implementation of tactile feedback using squeeze film
+effect devices*. Claims on friction by others were read in abstracts, and are compared at one frozen
+set of assumed parameters (`analysis/contact_claims.py`).
 
 **Friction against amplitude is not validated against measurements**: no measured curve of an
 ultrasonic display could be read anywhere. What follows compares with what the paper printed, and

@@ -1,0 +1,189 @@
+"""Published observations on friction under vibration, against one frozen set of parameters.
+
+No published friction curve could be read, so nothing here is fitted: `FROZEN` is the same for all
+of these claims, and each changes only the quantity that its statement is about. What is compared
+are directions and orders of magnitude, from abstracts.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+
+from squeezefilm.analysis.claim_values import CLAIM_VALUES, ClaimValue
+from squeezefilm.contact.finger import Finger
+from squeezefilm.contact.gas_table import film_table
+from squeezefilm.contact.sharing import share_load
+from squeezefilm.contact.skin import Skin
+from squeezefilm.contact.tapping import tapping_friction
+from squeezefilm.materials import Gas
+from squeezefilm.quantities import Dimensionless, Hertz, Metre, Pascal
+
+
+def _evidence() -> Mapping[str, str]:
+    return MappingProxyType(
+        {
+            "finger.ridge_period": "published: Biet, Giraud and Lemaire-Semail, Table 1",
+            "finger.plateau_width": "assumed: 150 to 350 µm are reported, illustrative",
+            "finger.asperities": "assumed: 5 kPa at 2 µm, decay 0.6 µm, illustrative",
+            "finger.skin_roughness": "assumed",
+            "gas": "published: viscosity and pressure of the paper; assumed: mean free path",
+            "slip": "derived: first order, good to Kn 0.1; beyond it the notes give another law",
+            "frequency": "published: the paper's stator",
+            "amplitude": "published: the paper's stator",
+            "roughness": "published: the paper's adhesive",
+            "plateau_pressure": "assumed: 0.36 N on 1 cm², carried by 5/7 of it",
+        }
+    )
+
+
+@dataclass(frozen=True)
+class FrozenContact:
+    """The parameters that all claims about friction share: a plateau at an antinode, rigid skin."""
+
+    finger: Finger = field(default_factory=lambda: Finger(10e-3, 50e-6, 350e-6, 0.5))
+    gas: Gas = field(default_factory=lambda: Gas(1.85e-5, 1e5, 1.2, 67e-9))
+    frequency: Hertz = 40.5e3
+    amplitude: Metre = 2e-6
+    roughness: Metre = 0.6e-6
+    plateau_pressure: Pascal = 5e3
+    evidence: Mapping[str, str] = field(default_factory=_evidence)
+
+    def relative_friction(
+        self,
+        *,
+        frequency: Hertz | None = None,
+        amplitude: Metre | None = None,
+        roughness: Metre | None = None,
+        ambient_pressure: Pascal | None = None,
+        plateau_pressure: Pascal | None = None,
+        slip: str = "first",
+        skin: Skin | None = None,
+    ) -> Dimensionless:
+        """µ′/µ with what is given changed and all else as it is frozen."""
+        gas = self.gas if ambient_pressure is None else self.gas.at_pressure(ambient_pressure)
+        table = film_table(frequency or self.frequency, self.finger.plateau_width, gas, slip)
+        law = self.finger.asperity_law(self.roughness if roughness is None else roughness)
+        shared = share_load(
+            table,
+            law,
+            self.amplitude if amplitude is None else amplitude,
+            plateau_pressure or self.plateau_pressure,
+            skin=skin,
+        )
+        return float(shared.relative_friction)
+
+
+FROZEN = FrozenContact()
+
+
+def _for(claim: str) -> Callable[[Callable[[], ClaimValue]], Callable[[], ClaimValue]]:
+    def register(function: Callable[[], ClaimValue]) -> Callable[[], ClaimValue]:
+        CLAIM_VALUES[claim] = function
+        return function
+
+    return register
+
+
+@_for("contact-near-vacuum")
+def _() -> ClaimValue:
+    def left(slip: str) -> float:
+        inside = FROZEN.relative_friction(ambient_pressure=2e3, slip=slip)
+        return (1 - inside) / (1 - FROZEN.relative_friction(slip=slip))
+
+    return ClaimValue(
+        (left("first"),),
+        note="the mean free path is 3.4 µm there, where first-order slip is out of its range: the "
+        f"law of Fukui and Kaneko gives {left('fukui-kaneko'):.3f}",
+    )
+
+
+@_for("contact-half-atmosphere")
+def _() -> ClaimValue:
+    change = FROZEN.relative_friction(ambient_pressure=0.5e5) - FROZEN.relative_friction()
+    return ClaimValue(
+        (abs(change),),
+        note=f"signed, {change:+.4f}: at half the pressure the film is half as stiff, and at twice "
+        "the squeeze number it leaks less",
+    )
+
+
+@_for("contact-reach")
+def _() -> ClaimValue:
+    value = 1 - FROZEN.relative_friction(roughness=5e-9, amplitude=3e-6, plateau_pressure=2e3)
+    rough = 1 - FROZEN.relative_friction(amplitude=3e-6)
+    return ClaimValue(
+        (value,),
+        note="glass of 5 nm, 3 µm at 40.5 kHz, 2 kPa on the plateaus (0.14 N on 1 cm²), all of "
+        f"them our choice; on the frozen roughness and load {rough:.3f}",
+    )
+
+
+@_for("contact-frequency")
+def _() -> ClaimValue:
+    low, high = (FROZEN.relative_friction(frequency=f) for f in (30e3, 60e3))
+    return ClaimValue((low - high,), note=f"µ′/µ {low:.3f} at 30 kHz, {high:.3f} at 60 kHz")
+
+
+@_for("contact-amplitude")
+def _() -> ClaimValue:
+    low, high = (FROZEN.relative_friction(amplitude=a) for a in (1e-6, 3e-6))
+    return ClaimValue((low - high,), note=f"µ′/µ {low:.3f} at 1 µm, {high:.3f} at 3 µm")
+
+
+@_for("contact-roughness")
+def _() -> ClaimValue:
+    rough, smooth = (FROZEN.relative_friction(roughness=r) for r in (0.6e-6, 0.2e-6))
+    return ClaimValue((rough - smooth,), note=f"µ′/µ {rough:.3f} at 0.6 µm, {smooth:.3f} at 0.2 µm")
+
+
+@_for("contact-damping")
+def _() -> ClaimValue:
+    def gain(stiffness: float) -> float:
+        free, damped = (
+            FROZEN.relative_friction(
+                skin=Skin(stiffness_per_area=stiffness, damping_per_area=damping)
+            )
+            for damping in (0.0, 1e6)
+        )
+        return free - damped
+
+    # A stiffness of twice the inertia: the skin follows the pressure in phase.
+    hard = 2 * Skin().mass_per_area * (2 * math.pi * FROZEN.frequency) ** 2
+    return ClaimValue(
+        (gain(0.0),),
+        note="a damping of 1 MPa·s/m on the frozen skin, which is inertial; on a skin whose "
+        f"stiffness is twice its inertia the change is {gain(hard):+.4f}, the observed direction",
+    )
+
+
+@_for("contact-tapping-load")
+def _() -> ClaimValue:
+    low, high = (
+        tapping_friction(
+            FROZEN.amplitude, FROZEN.frequency, 0.1, factor * FROZEN.plateau_pressure
+        ).relative_friction
+        for factor in (1, 4)
+    )
+    return ClaimValue(
+        (abs(high / low - 1),),
+        note="the competing mechanism, without gas; exact by construction, since the stiffness of "
+        "exponential asperities grows with the load",
+    )
+
+
+@_for("contact-tapping-speed")
+def _() -> ClaimValue:
+    slow, fast = (
+        tapping_friction(
+            FROZEN.amplitude, FROZEN.frequency, speed, FROZEN.plateau_pressure
+        ).relative_friction
+        for speed in (0.03, 0.3)
+    )
+    return ClaimValue(
+        (fast - slow,),
+        note=f"the competing mechanism, without gas: µ′/µ {slow:.3f} at 30 mm/s, {fast:.3f} at "
+        "300 mm/s; partial levitation does not depend on the speed",
+    )

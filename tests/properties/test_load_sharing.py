@@ -1,0 +1,132 @@
+"""What must hold for every load balance, not only for the tabulated ones."""
+
+from __future__ import annotations
+
+import numpy as np
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from squeezefilm.contact.asperities import AsperityLaw
+from squeezefilm.contact.gas_table import film_table
+from squeezefilm.contact.sharing import share_load, share_load_tied
+from squeezefilm.contact.tapping import tapping_friction
+from squeezefilm.film.periodic import solve_strip
+from squeezefilm.materials import Gas
+
+GAS = Gas(1.85e-5, 1e5, 1.2, 67e-9)
+
+amplitudes = st.floats(0.05e-6, 6e-6)
+pressures = st.floats(500.0, 3e4)
+# Few of them, since each makes a table of its own.
+frequencies = st.sampled_from([20e3, 33e3, 60e3])
+widths = st.sampled_from([150e-6, 250e-6, 350e-6])
+laws = st.builds(
+    AsperityLaw,
+    st.floats(1e3, 2e4),
+    st.floats(1e-6, 4e-6),
+    st.floats(0.2e-6, 0.8e-6),
+    st.sampled_from(["exponential", "gaussian"]),
+)
+exponential = st.builds(
+    AsperityLaw, st.floats(1e3, 2e4), st.floats(1e-6, 4e-6), st.floats(0.2e-6, 0.8e-6)
+)
+
+
+def assume_open(law: AsperityLaw, pressure: float) -> None:
+    """Asperities alone carry the load at rest with a gap left: there the law means something."""
+    assume(law.gap_for(pressure) > 0.1e-6)
+
+
+# The first call compiles or loads compiled code.
+calm = settings(deadline=None, max_examples=40)
+
+
+@calm
+@given(amplitudes, pressures, frequencies, widths, laws)
+def test_gas_and_asperities_carry_the_load(a, pressure, frequency, width, law):
+    assume_open(law, pressure)
+    table = film_table(frequency, width, GAS)
+    shared = share_load(table, law, a, pressure)
+    carried = float(shared.gas_pressure + shared.asperity_pressure)
+    assert abs(carried / pressure - 1) < 1e-8
+    assert float(shared.mean_gap) > a
+    # Zero where Gaussian asperities end below the gap: full levitation.
+    assert 0 <= float(shared.relative_friction) <= 1
+    # Independent of the table and of the compiled code: the same film and asperities, afresh.
+    u = float(shared.mean_gap)
+    film = solve_strip(
+        (table.length / u) ** 2, a / u, knudsen_number=GAS.mean_free_path / u, tolerance=1e-4
+    )
+    gas = GAS.ambient_pressure * film.over_pressure
+    assert abs(gas / float(shared.gas_pressure) - 1) < table.relative_error + 2e-4
+    assert np.isclose(
+        float(law.mean_pressure(u, a)), float(shared.asperity_pressure), rtol=1e-6, atol=1e-9
+    )
+
+
+@calm
+@given(pressures, frequencies, widths, exponential)
+def test_friction_falls_with_amplitude(pressure, frequency, width, law):
+    # Where asperities end abruptly (Gaussian heights), friction below a hundredth may rise again:
+    # the gap has grown, and the film with it has weakened.
+    assume_open(law, pressure)
+    table = film_table(frequency, width, GAS)
+    curve = share_load(table, law, np.linspace(0.0, 5e-6, 21), pressure).relative_friction
+    assert np.all(np.diff(curve) < 1e-9)
+
+
+@calm
+@given(amplitudes, pressures, widths, laws)
+def test_friction_falls_with_frequency(a, pressure, width, law):
+    assume_open(law, pressure)
+    values = [
+        float(share_load(film_table(f, width, GAS), law, a, pressure).relative_friction)
+        for f in (20e3, 33e3, 60e3)
+    ]
+    # Equal only where nothing is left to lose: full levitation to rounding.
+    assert values[0] >= values[1] >= values[2]
+    assert values[0] > values[2] or values[0] < 1e-12
+
+
+@calm
+@given(amplitudes, pressures, frequencies, laws)
+def test_friction_rises_with_roughness(a, pressure, frequency, law):
+    assume_open(law.scaled(0.9), pressure)
+    table = film_table(frequency, 250e-6, GAS)
+    values = [
+        float(share_load(table, law.scaled(s), a, pressure).relative_friction)
+        for s in (0.9, 1.0, 1.1)
+    ]
+    assert values[0] < values[1] + 1e-9
+    assert values[1] < values[2] + 1e-9
+
+
+@calm
+@given(amplitudes, pressures, laws)
+def test_tied_ridges_that_are_alike_are_as_one(a, pressure, law):
+    assume_open(law, pressure)
+    table = film_table(33e3, 250e-6, GAS)
+    alone = float(share_load(table, law, a, pressure).relative_friction)
+    tied = share_load_tied(table, law, np.full(5, a), pressure)
+    assert np.isclose(tied.relative_friction, alone, rtol=1e-7)
+    assert abs(tied.residual) < 1e-8
+
+
+@calm
+@given(
+    st.floats(0.7e-6, 5e-6),
+    st.floats(20e3, 80e3),
+    st.floats(0.01, 1.0),
+    st.floats(0.2, 2.0),
+    pressures,
+)
+def test_tapping_depends_on_one_group_and_not_on_the_load(a, frequency, speed, friction, pressure):
+    one = tapping_friction(a, frequency, speed, pressure, friction_coefficient=friction)
+    other = tapping_friction(
+        a, 2 * frequency, 2 * speed, 3 * pressure, friction_coefficient=friction
+    )
+    assert np.isclose(one.tapping_number, other.tapping_number)
+    assert np.isclose(one.relative_friction, other.relative_friction, rtol=1e-9)
+    assert 0 <= one.relative_friction <= 1
+    faster = tapping_friction(a, frequency, 2 * speed, pressure, friction_coefficient=friction)
+    assert faster.relative_friction >= one.relative_friction - 1e-12

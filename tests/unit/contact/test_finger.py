@@ -1,0 +1,120 @@
+"""The finger: what the loads, surfaces and moistures do to its contact, and that old files load."""
+
+import dataclasses
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from squeezefilm import presets
+from squeezefilm.config import load
+from squeezefilm.contact.asperities import AsperityLaw
+from squeezefilm.contact.finger import Finger
+from squeezefilm.contact.fingers import FINGERS, finger_preset
+from squeezefilm.contact.pad import ridge_points
+from squeezefilm.contact.skin import Skin
+from squeezefilm.display import Display, load_display
+from squeezefilm.errors import ConfigError, InputError
+
+FINGER = Finger(10e-3, 50e-6, 350e-6, 0.5)
+
+
+def test_the_area_is_fixed_unless_an_exponent_is_given() -> None:
+    assert FINGER.contact_area(2.0) == FINGER.contact_area(0.1) == pytest.approx(1e-4)
+    assert FINGER.plateau_pressure() == pytest.approx(7e3)
+    assert FINGER.ridge_height == 100e-6
+    soft = dataclasses.replace(FINGER, contact_area_exponent=0.5, contact_area_force=1.0)
+    assert soft.contact_area(1.0) == pytest.approx(1e-4)
+    assert soft.contact_area(4.0) == pytest.approx(2e-4)
+    assert soft.plateau_pressure(4.0) == pytest.approx(2 * soft.plateau_pressure(1.0))
+
+
+def test_the_asperity_law_is_as_given_on_its_own_roughness_and_scales_elsewhere() -> None:
+    assert FINGER.asperity_law(0.6e-6) == AsperityLaw()
+    smooth = FINGER.asperity_law(0.0)
+    assert smooth.decay_length == pytest.approx(0.6e-6 / math.sqrt(2))
+    assert smooth.reference_gap == pytest.approx(2e-6 / math.sqrt(2))
+    bare = dataclasses.replace(FINGER, skin_roughness=0.0)
+    assert bare.asperity_law(0.3e-6).decay_length == pytest.approx(0.3e-6)
+    with pytest.raises(InputError, match="perfectly smooth"):
+        bare.asperity_law(0.0)
+
+
+def test_moisture_softens_and_grips() -> None:
+    dry, moist = (dataclasses.replace(FINGER, moisture=m) for m in ("dry", "moist"))
+    pressures = [f.asperity_law(0.6e-6).pressure(2e-6) for f in (moist, FINGER, dry)]
+    assert pressures == sorted(pressures)
+    assert dry.friction_factor < FINGER.friction_factor == 1 < moist.friction_factor
+
+
+def test_every_preset_says_what_is_known_of_its_values() -> None:
+    fields = {field.name for field in dataclasses.fields(Finger)}
+    for preset in FINGERS.values():
+        assert set(preset.evidence) <= fields
+        assert all(
+            text.split(":")[0] in {"published", "derived", "assumed"}
+            for text in preset.evidence.values()
+        )
+        default = Finger(10e-3, 50e-6, 350e-6, 0.5)
+        changed = {f for f in fields if getattr(preset.finger, f) != getattr(default, f)}
+        assert changed - {"contact_area_force"} <= set(preset.evidence)
+    with pytest.raises(InputError, match="Did you mean 'moist'"):
+        finger_preset("moistt")
+
+
+def test_ridge_points_stand_half_a_period_from_the_centre() -> None:
+    points = ridge_points(FINGER)
+    assert points.size == 28
+    assert np.min(np.abs(points)) == pytest.approx(175e-6)
+    np.testing.assert_allclose(points, -points[::-1])
+
+
+@pytest.mark.parametrize("angle", [0.3, math.pi / 4, math.pi / 2])
+def test_ridge_points_at_an_angle_cover_the_square_evenly(angle: float) -> None:
+    points = ridge_points(dataclasses.replace(FINGER, ridge_angle=angle))
+    assert np.max(np.abs(points)) <= 5e-3
+    assert np.mean(points) == pytest.approx(0, abs=2e-5)
+    # A uniform square of side 10 mm has the variance 100/12 mm².
+    assert np.var(points) == pytest.approx(1e-4 / 12, rel=0.02)
+
+
+def test_a_contact_without_ridges_is_refused() -> None:
+    with pytest.raises(InputError, match="holds no ridge"):
+        ridge_points(FINGER, 1e-4)
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"contact_area_exponent": 1.5}, "contact_area_exponent"),
+        ({"moisture": "wet"}, "moisture = 'wet'"),
+        ({"ridge_angle": 4.0}, "ridge_angle"),
+        ({"plateau_width": 400e-6}, "plateau_width"),
+        ({"contact_area_force": 0.0}, "contact_area_force"),
+    ],
+)
+def test_what_no_finger_has_is_refused(changes: dict[str, object], words: str) -> None:
+    with pytest.raises(InputError, match=words):
+        dataclasses.replace(FINGER, **changes)  # type: ignore[arg-type]
+    with pytest.raises(InputError, match="mass_per_area"):
+        Skin(mass_per_area=0.0)
+
+
+def test_a_display_file_may_say_more_of_the_finger_and_need_not(tmp_path: Path) -> None:
+    assert load_display("biet2008-stator").finger.asperities == AsperityLaw()
+    text = presets.path("biet2008-stator").read_text(encoding="utf-8")
+    more = (
+        'moisture = "dry"\nridge_angle = "90 deg"\ncontact_area_exponent = 0.4\n'
+        '[finger.asperities]\nreference_gap = "1.5 um"\nheights = "gaussian"\n'
+        '[finger.skin]\nmass_per_area = "2 kg/m2"\n\n[gas]'
+    )
+    file = tmp_path / "mine.toml"
+    file.write_text(text.replace("[gas]", more), encoding="utf-8")
+    finger = load(Display, file).finger
+    assert finger.asperities == AsperityLaw(reference_gap=1.5e-6, heights="gaussian")
+    assert finger.skin == Skin(mass_per_area=2.0)
+    assert finger.ridge_angle == pytest.approx(math.pi / 2)
+    file.write_text(text.replace("[gas]", '[finger.asperities]\nheight = "1 um"\n[gas]'))
+    with pytest.raises(ConfigError, match="Did you mean 'heights'"):
+        load(Display, file)

@@ -1,0 +1,439 @@
+"""Partial levitation against analysis: published checks, limits, balances, energy, other laws."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+from scipy.optimize import brentq
+
+from squeezefilm.contact.asperities import (
+    AsperityLaw,
+    exponential_mean_pressure,
+    gaussian_overlap,
+)
+from squeezefilm.contact.finger import Finger
+from squeezefilm.contact.gas_table import DEEPEST_EXCURSION, FilmTable, film_table
+from squeezefilm.contact.pad import PadPosture, friction_ripple, pad_friction, ridge_points
+from squeezefilm.contact.paper import relative_friction
+from squeezefilm.contact.sharing import share_load, share_load_tied
+from squeezefilm.contact.skin import Skin
+from squeezefilm.contact.tapping import contact_angle, tapping_friction
+from squeezefilm.contact.wedge import sliding_ratio, wedge_pressure
+from squeezefilm.display import load_display
+from squeezefilm.errors import InputError, OutOfRangeError, UnreachableError
+from squeezefilm.film.gap import PaperGap
+from squeezefilm.film.periodic import solve_strip
+from squeezefilm.friction import friction_law
+from squeezefilm.materials import Gas
+
+GAS = Gas(1.85e-5, 1e5, 1.2, 67e-9)
+LAW = AsperityLaw()
+FINGER = Finger(10e-3, 50e-6, 350e-6, 0.5)
+
+
+@pytest.fixture(scope="module")
+def table() -> FilmTable:
+    return film_table(40.5e3, 250e-6, GAS)
+
+
+# --- the numbers of the specification ---------------------------------------------------------
+
+
+def test_a_rigid_finger_at_an_antinode(table: FilmTable) -> None:
+    shared = share_load(table, LAW, np.array([0.5, 1, 1.5, 2, 3]) * 1e-6, 5e3)
+    np.testing.assert_allclose(
+        shared.relative_friction, [0.739, 0.501, 0.381, 0.313, 0.239], rtol=0, atol=5e-4
+    )
+    assert np.all(np.abs(shared.residual) < 1e-8)
+    assert np.all(shared.relative_friction_error < 5e-4)
+
+
+def test_the_two_limits_over_the_standing_wave(table: FilmTable) -> None:
+    points = ridge_points(FINGER)
+    own, tied = (
+        pad_friction(table, LAW, 2e-6, 9.35e-3, points, 5e3, limit=limit).relative_friction[0]
+        for limit in ("own", "one-gap")
+    )
+    assert own == pytest.approx(0.514, abs=5e-4)
+    assert tied == pytest.approx(0.365, abs=5e-4)
+
+
+def test_the_mean_over_the_period_is_not_the_pressure_at_the_mean_gap(table: FilmTable) -> None:
+    # The specification gives .70/.35/.155/.066/.012 for the balance with p_a of the mean gap.
+    found = []
+    for a in np.array([0.5, 1, 1.5, 2, 3]) * 1e-6:
+
+        def excess(u: float, a: float = a) -> float:
+            return float(table.over_pressure(u, a) + LAW.pressure(u)) - 5e3
+
+        u = brentq(excess, a / 0.98, 12e-6)
+        found.append(float(LAW.pressure(u)) / 5e3)
+    np.testing.assert_allclose(found, [0.70, 0.35, 0.155, 0.066, 0.012], rtol=0, atol=6e-3)
+
+
+# --- the film table -----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("ambient", "slip"), [(1e5, "first"), (2e3, "fukui-kaneko")])
+def test_the_table_is_within_its_bound_of_films_solved_elsewhere(ambient: float, slip: str) -> None:
+    gas = GAS.at_pressure(ambient)
+    table = FilmTable(40.5e3, 250e-6, gas, slip)
+    rng = np.random.default_rng(7)
+    for _ in range(40):
+        u, eps = rng.uniform(1e-6, 8e-6), rng.uniform(0.02, DEEPEST_EXCURSION - 0.005)
+        found = float(table.over_pressure(u, eps * u))
+        solved = solve_strip(
+            (table.length / u) ** 2,
+            eps,
+            knudsen_number=gas.mean_free_path / u,
+            slip=slip,
+            tolerance=1e-5,
+        ).over_pressure
+        assert found == pytest.approx(ambient * solved, rel=table.relative_error)
+    assert 0 < table.relative_error <= table.tolerance
+
+
+def test_a_finer_table_changes_the_friction_by_less_than_the_coarse_bound() -> None:
+    coarse, fine = (FilmTable(40.5e3, 250e-6, GAS, tolerance=t) for t in (2e-3, 2e-5))
+    a = np.linspace(0.2e-6, 4e-6, 9)
+    rough, exact = (share_load(t, LAW, a, 5e3) for t in (coarse, fine))
+    assert np.all(
+        np.abs(rough.relative_friction - exact.relative_friction) <= rough.relative_friction_error
+    )
+    assert fine.relative_error < coarse.relative_error
+
+
+# --- limits -------------------------------------------------------------------------------------
+
+
+def test_without_vibration_all_friction_is_left(table: FilmTable) -> None:
+    still = share_load(table, LAW, 0.0, 5e3)
+    assert float(still.relative_friction) == pytest.approx(1.0, abs=1e-9)
+    assert float(still.mean_gap) == pytest.approx(2e-6, rel=1e-9)
+    faint = share_load(table, LAW, np.array([1e-9, 1e-8]), 5e3)
+    # ⟨p_gas⟩ goes with a²: a tenth of the amplitude takes a hundredth.
+    lost = 1 - faint.relative_friction
+    assert lost[1] / lost[0] == pytest.approx(100, rel=0.02)
+
+
+def test_asperities_that_end_abruptly_leave_full_levitation() -> None:
+    # With a short decay nothing but the film is left where it can carry: 1 − µ′/µ → 1.
+    table = film_table(40.5e3, 2e-3, GAS)
+    law = AsperityLaw(5e3, 0.2e-6, 5e-9)
+    assert float(share_load(table, law, 2e-6, 2e3).relative_friction) < 1e-6
+
+
+@pytest.mark.parametrize(("width", "tolerance"), [(1e-3, 0.08), (8e-3, 0.01)])
+def test_the_papers_model_comes_back_under_its_assumptions(width: float, tolerance: float) -> None:
+    # Its assumptions: no gas escapes (σ → ∞: a wide plateau without slip), and the vibrating plate
+    # just clears rigid asperities, h = h_r + a (1 + cos T): a decay length of 1 nm at h_r.
+    gas = dataclasses.replace(GAS, mean_free_path=1e-15)
+    table = film_table(40.5e3, width, gas)
+    rigid = AsperityLaw(5e4, 0.6e-6, 1e-9)
+    a, pressure = np.array([0.1, 0.2, 0.4]) * 1e-6, 5e4
+    ours = share_load(table, rigid, a, pressure).relative_friction
+    gap = PaperGap(
+        roughness=0.6e-6,
+        vibration_amplitude=a,
+        ridge_amplitude=0.0,
+        ridge_period=350e-6,
+        wavelength=1e3,
+        contact_length=1e-2,
+    )
+    papers = np.asarray(relative_friction(gap, pressure * 1e-4, gas.ambient_pressure))
+    np.testing.assert_allclose(1 - ours, 1 - papers, rtol=tolerance)
+
+
+def test_a_vacuum_takes_most_of_the_reduction_away(table: FilmTable) -> None:
+    thin = film_table(40.5e3, 250e-6, GAS.at_pressure(2e3), "fukui-kaneko")
+    inside = 1 - float(share_load(thin, LAW, 2e-6, 5e3).relative_friction)
+    outside = 1 - float(share_load(table, LAW, 2e-6, 5e3).relative_friction)
+    assert inside < 0.25 * outside
+
+
+def test_a_plateau_that_nothing_carries_is_refused() -> None:
+    empty = film_table(40.5e3, 250e-6, GAS.at_pressure(1e3))
+    weak = AsperityLaw(10.0, 0.2e-6, 0.05e-6)
+    with pytest.raises(OutOfRangeError, match="pressed through its asperities"):
+        share_load(empty, weak, 3e-6, 5e4)
+
+
+# --- asperities ---------------------------------------------------------------------------------
+
+
+def test_exponential_heights_make_the_exponential_law() -> None:
+    # The Greenwood–Williamson integral with heights e^{-z}: Γ(5/2) e^{-t}.
+    for t in (0.0, 1.0, 4.0):
+        integral, _ = quad(lambda z, t=t: (z - t) ** 1.5 * math.exp(-z), t, t + 60)
+        assert integral == pytest.approx(math.gamma(2.5) * math.exp(-t), rel=1e-8)
+
+
+def test_the_gaussian_overlap_is_its_integral() -> None:
+    for t in (-2.0, 0.0, 1.5, 5.0):
+        integral, _ = quad(
+            lambda z, t=t: (z - t) ** 1.5 * math.exp(-z * z / 2) / math.sqrt(2 * math.pi), t, t + 30
+        )
+        assert float(gaussian_overlap(t)) == pytest.approx(integral, rel=1e-7)
+
+
+@pytest.mark.parametrize("heights", ["exponential", "gaussian"])
+def test_period_means_agree_with_quadrature_and_with_the_compiled_code(heights: str) -> None:
+    from squeezefilm.contact.sharing_kernel import asperity_mean
+
+    law = AsperityLaw(heights=heights)  # type: ignore[arg-type]
+    for u, a in ((2e-6, 0.1e-6), (3e-6, 1.5e-6), (6e-6, 5e-6), (22e-6, 20e-6)):
+        mean, _ = quad(
+            lambda T, u=u, a=a: float(law.pressure(u - a * math.cos(T))) / math.pi,
+            0, math.pi, epsabs=0, epsrel=1e-11, limit=200,
+        )  # fmt: skip
+        first, _ = quad(
+            lambda T, u=u, a=a: (
+                2 * float(law.pressure(u - a * math.cos(T))) * math.cos(T) / math.pi
+            ),
+            0, math.pi, epsabs=1e-13 * mean, limit=200,
+        )  # fmt: skip
+        assert float(law.mean_pressure(u, a)) == pytest.approx(mean, rel=1e-9)
+        assert asperity_mean(*law.compiled(), u, a) == pytest.approx((mean, first), rel=1e-8)
+
+
+def test_gaussian_heights_share_the_load_like_their_tangent_exponential(table: FilmTable) -> None:
+    # Over a swing much smaller than the heights the law is its tangent: an exponential.
+    gauss = AsperityLaw(5e3, 2e-6, 1.0e-6, "gaussian")
+    step = 1e-11
+    slope = math.log(float(gauss.pressure(2e-6)) / float(gauss.pressure(2e-6 + step))) / step
+    tangent = AsperityLaw(5e3, 2e-6, 1 / slope)
+    for a, bound in ((0.02e-6, 1e-5), (0.2e-6, 2e-3)):
+        one, two = (
+            float(share_load(table, law, a, 5e3).relative_friction) for law in (gauss, tangent)
+        )
+        assert abs(one - two) < bound
+    assert gauss.gap_for(5e3) == pytest.approx(2e-6, rel=1e-9)
+    assert tangent.gap_for(5e3) == pytest.approx(2e-6, rel=1e-9)
+
+
+def test_the_mean_of_the_exponential_law_holds_for_swings_of_many_decay_lengths() -> None:
+    value = float(exponential_mean_pressure(50e-6, 40e-6, 5e3, 2e-6, 0.1e-6))
+    assert value > 0
+    assert math.isfinite(value)
+
+
+# --- energy ---------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("damping", [0.0, 3e5, 3e6])
+@pytest.mark.parametrize("stiffness", [0.0, 4e11])
+def test_no_energy_is_created(table: FilmTable, damping: float, stiffness: float) -> None:
+    # What the plate puts in per period, Im(p̂ ā), is what film and skin take: asperities keep none.
+    from squeezefilm.contact.sharing_kernel import asperity_mean, film_value
+
+    skin = Skin(stiffness_per_area=stiffness, damping_per_area=damping)
+    a = 1.5e-6
+    shared = share_load(table, LAW, a, 5e3, skin=skin)
+    u, swing, moved = (
+        float(getattr(shared, name)) for name in ("mean_gap", "gap_amplitude", "skin_amplitude")
+    )
+    k, d = (film_value(which, u, swing, *table.compiled)[0] for which in (1, 2))
+    assert d > 0
+    Z = complex(k + asperity_mean(*LAW.compiled(), u, swing)[1] / swing, d)
+    D = skin.dynamic_stiffness(table.frequency)
+    b = a / (1 + Z / D)
+    assert abs(b) == pytest.approx(swing, rel=1e-9)
+    assert abs(b * Z / D) == pytest.approx(moved, rel=1e-9)
+    put_in = (Z * b).imag * a
+    taken = d * swing**2 + D.imag * moved**2
+    assert put_in == pytest.approx(taken, rel=1e-9)
+    assert taken > 0
+
+
+def test_the_skin_hardly_moves_at_ultrasonic_frequency(table: FilmTable) -> None:
+    a = np.array([0.5, 1, 1.5, 2, 3]) * 1e-6
+    rigid = share_load(table, LAW, a, 5e3)
+    yielding = share_load(table, LAW, a, 5e3, skin=Skin())
+    assert np.all((yielding.skin_amplitude > 0.05e-6) & (yielding.skin_amplitude < 0.08e-6))
+    change = np.abs(yielding.relative_friction - rigid.relative_friction)
+    assert np.all(change < 0.025)
+    assert np.all(change[1:] < 0.015)
+    heavy = share_load(table, LAW, a, 5e3, skin=Skin(mass_per_area=1e6))
+    np.testing.assert_allclose(heavy.relative_friction, rigid.relative_friction, atol=1e-6)
+
+
+# --- the pad --------------------------------------------------------------------------------
+
+
+def test_a_long_wave_makes_the_limits_one(table: FilmTable) -> None:
+    points = ridge_points(FINGER)
+    alone = float(share_load(table, LAW, 2e-6, 5e3).relative_friction)
+    for limit in ("own", "one-gap"):
+        pad = pad_friction(table, LAW, 2e-6, 10.0, points, 5e3, limit=limit)
+        assert pad.relative_friction[0] == pytest.approx(alone, abs=1e-6)
+        assert pad.film_share[0] == pytest.approx(1 - alone, abs=1e-6)
+
+
+def test_the_pad_is_the_mean_of_its_ridges(table: FilmTable) -> None:
+    points = ridge_points(FINGER)
+    each = share_load(table, LAW, 2e-6 * np.abs(np.cos(np.pi * points / 9.35e-3)), 5e3)
+    pad = pad_friction(table, LAW, 2e-6, 9.35e-3, points, 5e3)
+    assert pad.relative_friction[0] == pytest.approx(float(np.mean(each.relative_friction)))
+    tied = share_load_tied(table, LAW, each.amplitude, 5e3)
+    total = table.over_pressure(tied.mean_gap, each.amplitude) + LAW.mean_pressure(
+        tied.mean_gap, each.amplitude
+    )
+    assert float(np.mean(total)) == pytest.approx(5e3, rel=1e-8)
+
+
+def test_crossing_the_nodes_is_felt_as_a_ripple(table: FilmTable) -> None:
+    ripples = []
+    for side in (6e-3, 8e-3, 10e-3):
+        finger = dataclasses.replace(FINGER, contact_length=side, normal_force=5e3 * side**2 / 1.4)
+        ripple = friction_ripple(table, LAW, 2e-6, 10e-3, finger, positions=12)
+        ripples.append(ripple.ripple)
+        assert ripple.contact_length == side
+        # The pad is symmetric about the antinode.
+        np.testing.assert_allclose(
+            ripple.relative_friction[1:], ripple.relative_friction[:0:-1], rtol=1e-6
+        )
+    assert ripples == sorted(ripples, reverse=True)
+    # A contact of half a wavelength covers every phase alike.
+    assert ripples[-1] < 0.05
+    assert 0.09 < ripples[0] < 0.57
+
+
+def test_tilt_and_orientation(table: FilmTable) -> None:
+    points = ridge_points(FINGER)
+
+    def friction(**posture: float) -> float:
+        limit = "one-gap" if "gap_tilt" in posture else "own"
+        pad = pad_friction(
+            table,
+            LAW,
+            2e-6,
+            9.35e-3,
+            points,
+            5e3,
+            limit=limit,
+            posture=PadPosture(**posture),  # type: ignore[arg-type]
+        )
+        return float(pad.relative_friction[0])
+
+    assert friction(pressure_tilt=0.6) == pytest.approx(friction(pressure_tilt=-0.6), rel=1e-9)
+    assert friction(gap_tilt=1e-4) == pytest.approx(friction(gap_tilt=-1e-4), rel=1e-9)
+    assert friction(gap_tilt=1e-4) != pytest.approx(friction(gap_tilt=0.0), rel=1e-3)
+    # Ridges along the wave sample it finely; across it in 28 places: the same wave.
+    # (28 ridges are 9.8 mm of them.)
+    whole = dataclasses.replace(FINGER, contact_length=9.8e-3, ridge_angle=math.pi / 2)
+    turned = pad_friction(table, LAW, 2e-6, 9.35e-3, ridge_points(whole), 5e3)
+    assert turned.relative_friction[0] == pytest.approx(friction(), abs=5e-3)
+    with pytest.raises(InputError, match="limit = 'both'"):
+        pad_friction(table, LAW, 2e-6, 9.35e-3, points, 5e3, limit="both")  # type: ignore[arg-type]
+
+
+# --- sliding and tapping --------------------------------------------------------------------------
+
+
+def test_the_wedge_pressure_is_that_of_reynolds_equation() -> None:
+    # (h³ p′)′ = 6 η U h′ on a linear wedge, p = 0 at both ends, by quadrature.
+    n, h0, w, eta, U = 0.8, 3e-6, 250e-6, 1.85e-5, 0.1
+    x = np.linspace(0, w, 20001)
+    h = h0 * (1 + n * x / w)
+    scale = 6 * eta * U
+    level = np.trapezoid(h**-2, x) / np.trapezoid(h**-3, x)
+    slope = scale * (h**-2 - level * h**-3)
+    p = np.concatenate([[0], np.cumsum((slope[1:] + slope[:-1]) / 2 * np.diff(x))])
+    mean = abs(np.trapezoid(p, x)) / w
+    # `mean_gap` is that of the narrow edge; without vibration 1/h² is its own mean.
+    assert float(wedge_pressure(U, w, h0, 0.0, n, eta)) == pytest.approx(mean, rel=1e-6)
+
+
+def test_sliding_adds_nothing_that_matters(table: FilmTable) -> None:
+    u = float(share_load(table, LAW, 2e-6, 5e3).mean_gap)
+    # 100 mm/s with a wedge twice as high at one edge as at the other: 0.2 % of the load.
+    assert float(wedge_pressure(0.1, 250e-6, u, 2e-6, 1.0, GAS.viscosity)) < 0.002 * 5e3
+    assert float(sliding_ratio(0.1, 250e-6, 40.5e3)) ** 2 < 1e-5
+
+
+def test_tapping_carries_the_load_and_falls_with_amplitude() -> None:
+    half = contact_angle(2e-6, 0.5e-6)
+    theta = np.linspace(-half, half, 20001)
+    carried = np.trapezoid(2e-6 * (np.cos(theta) - np.cos(half)), theta) / (2 * np.pi)
+    assert carried == pytest.approx(0.5e-6, rel=1e-6)
+    values = [tapping_friction(a * 1e-6, 40.5e3, 0.1, 5e3) for a in (0.3, 1, 2, 3, 5)]
+    assert values[0].relative_friction == 1
+    assert not values[0].intermittent
+    frictions = [item.relative_friction for item in values]
+    assert frictions == sorted(frictions, reverse=True)
+    assert values[-1].shear_release == 1 - frictions[-1]
+
+
+def test_tapping_at_great_speed_slips_all_the_time_and_at_little_never() -> None:
+    fast = tapping_friction(2e-6, 40.5e3, 100.0, 5e3)
+    slow = tapping_friction(2e-6, 40.5e3, 1e-4, 5e3)
+    assert fast.relative_friction == pytest.approx(1, abs=1e-3)
+    # All stick: q = k_t U t grows until the tap ends, mean k_t U t_c²/2 per period.
+    time = slow.contact_fraction / 40.5e3
+    stiffness = 2 / 3 * 5e3 / 0.6e-6
+    mean = stiffness * 1e-4 * time**2 / 2 * 40.5e3
+    assert slow.relative_friction == pytest.approx(mean / (0.9 * 5e3), rel=0.02)
+
+
+# --- the law of a display -------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("model", ["partial-levitation", "partial-levitation-one-gap"])
+def test_a_display_has_the_law(model: str) -> None:
+    law = friction_law(load_display("biet2008-stator"), 9.35e-3, 40.5e3, model=model)  # type: ignore[arg-type]
+    a = np.linspace(0, 5e-6, 11)
+    curve = law.curve(a)
+    assert curve[0] == pytest.approx(1)
+    assert np.all(np.diff(curve) < 0)
+    assert law.at(2e-6) == pytest.approx(curve[4], rel=1e-6)
+    load = law.load(2e-6)
+    assert law.under(load, 2e-6) == pytest.approx(curve[4], rel=1e-6)
+    assert 0 < load.error < 1e-3 * load.over_pressure
+    assert load.model == model
+    wanted = float(curve[4])
+    assert law.amplitude_for(wanted) == pytest.approx(2e-6, rel=1e-4)
+    assert law.amplitude_for(1.0) == 0
+    with pytest.raises(UnreachableError, match="not reached by any vibration amplitude"):
+        law.amplitude_for(0.01)
+    fast = law.table(5e-6)
+    between = np.linspace(0, 5e-6, 37)
+    np.testing.assert_allclose(fast(between), law.curve(between), atol=1e-3)
+    limits = law.limits(a)
+    assert np.all(limits.spread[1:] > 0)
+    assert limits.spread[0] < 1e-9
+    chosen = limits.own if model == "partial-levitation" else limits.one_gap
+    np.testing.assert_allclose(chosen, curve, rtol=1e-9)
+
+
+def test_the_two_mechanisms_are_compared_at_a_working_point() -> None:
+    law = friction_law(load_display("biet2008-stator"), 9.35e-3, 40.5e3, model="partial-levitation")
+    a = np.array([0.0, 1e-6, 3e-6])
+    slow, fast = law.tapped(a, 0.05), law.tapped(a, 0.2)
+    assert slow[0] == fast[0] == pytest.approx(1)
+    # Tapping depends on the speed, levitation does not know it.
+    assert np.all(slow[1:] < fast[1:])
+    # Ridges near a node stay in contact: more friction is left than at an antinode alone.
+    alone = tapping_friction(3e-6, 40.5e3, 0.2, 7e3, friction_coefficient=0.9).relative_friction
+    assert fast[2] > alone
+
+
+def test_posture_and_skin_reach_the_law_of_a_display() -> None:
+    law = friction_law(load_display("biet2008-stator"), 9.35e-3, 40.5e3, model="partial-levitation")
+    law = dataclasses.replace(law, finger=dataclasses.replace(law.finger, contact_length=6e-3))
+    straight = law.at(2e-6)
+    # Of a pad shorter than half a wave, less moves over a node.
+    over_node = law.sharing(2e-6, posture=PadPosture(position=9.35e-3 / 2)).relative_friction[0]
+    assert over_node > straight
+    yielding = law.sharing(2e-6, yielding=True).relative_friction[0]
+    assert 0 < straight - yielding < 0.02
+
+
+def test_only_models_that_share_the_load_say_how() -> None:
+    law = friction_law(load_display("biet2008-stator"), 9.35e-3, 40.5e3, model="paper2008")
+    with pytest.raises(InputError, match="shares no load"):
+        law.sharing(1e-6)
+    assert law.limits(1e-6).own[0] > law.limits(1e-6).one_gap[0]
