@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import Literal
+from dataclasses import dataclass, replace
+from typing import Literal, TypeVar
 
 from squeezefilm.errors import GeometryError, InputError
 from squeezefilm.materials import ElasticMaterial, Piezoceramic
@@ -139,11 +139,15 @@ def rim_supports(
     )
 
 
+_Part = TypeVar("_Part", CeramicPatch, FoamSupport)
+
+
 @dataclass(frozen=True)
 class RectangularPlate:
     """A rectangular plate with ceramics bonded to its faces.
 
-    `nodal_lines` picks the working mode: that many nodal lines across the length, none along it.
+    `nodal_lines` picks the working mode: that many nodal lines across the length, none along it;
+    with `lines_across` = "width" that many across the width, as strips along the long edges drive.
     `quality_factor` is that of the whole assembly; it holds for every material unless the
     substrate has its own, and then ceramic and glue have theirs too. Edges are free but for
     `supports` and `clamped_edges` (left and right: x = 0 and x = length; front and back: y).
@@ -163,6 +167,7 @@ class RectangularPlate:
     glue: GlueLayer | None = None
     supports: tuple[FoamSupport, ...] = ()
     clamped_edges: tuple[Edge, ...] = ()
+    lines_across: Literal["length", "width"] = "length"
 
     def __post_init__(self) -> None:
         for name in ("length", "width", "thickness"):
@@ -211,6 +216,11 @@ class RectangularPlate:
                     )
 
     @property
+    def working_label(self) -> tuple[int, int]:
+        """The working mode by its nodal lines across length and width: (n, 0) or (0, n)."""
+        return (self.nodal_lines, 0) if self.lines_across == "length" else (0, self.nodal_lines)
+
+    @property
     def area(self) -> SquareMetre:
         """The surface a finger can explore."""
         return self.length * self.width
@@ -224,6 +234,27 @@ class RectangularPlate:
     def coverage(self) -> Dimensionless:
         """The area of all ceramics over that of one face."""
         return sum(patch.length * patch.width for patch in self.patches) / self.area
+
+
+def turned(plate: RectangularPlate) -> RectangularPlate:
+    """The same plate with x and y exchanged: its length is the other's width.
+
+    What was computed along the length can so be computed along the width.
+    """
+    other: dict[Edge, Edge] = {"left": "front", "right": "back", "front": "left", "back": "right"}
+
+    def swapped(part: _Part) -> _Part:
+        return replace(part, x=part.y, y=part.x, length=part.width, width=part.length)
+
+    return replace(
+        plate,
+        length=plate.width,
+        width=plate.length,
+        patches=tuple(swapped(patch) for patch in plate.patches),
+        supports=tuple(swapped(support) for support in plate.supports),
+        clamped_edges=tuple(other[edge] for edge in plate.clamped_edges),
+        lines_across="width" if plate.lines_across == "length" else "length",
+    )
 
 
 def _overlap(a: CeramicPatch | FoamSupport, b: CeramicPatch | FoamSupport) -> str | None:
