@@ -220,30 +220,43 @@ def film(
 def plate(
     target: Target,
     band: Annotated[str | None, typer.Option(help='Modes in a band, like "25 kHz:45 kHz".')] = None,
-    mode: Annotated[str | None, typer.Option(help="Working mode by nodal lines, like 8,0.")] = None,
+    mode: Annotated[str | None, typer.Option(help="Working mode by nodal lines, like 8,0; of discs and rings circles, diameters.")] = None,
     out: Annotated[Path | None, typer.Option(help="Folder for plate.json and figures.")] = None,
     as_json: AsJson = False,
 ) -> None:
-    """Solve a plate in three dimensions: modes, amplitude per volt, admittance."""
+    """Solve a plate, disc or stator in three dimensions: modes, amplitude per volt, admittance."""
     from squeezefilm.analysis.plate_command import analyze_plate, parse_band, parse_mode
+    from squeezefilm.analysis.ring_command import RingAnalysis, analyze_ring
     from squeezefilm.display import load_display
     from squeezefilm.report import terminal
+    from squeezefilm.report.terminal_ring import show_ring
     from squeezefilm.report.terminal_solvers import show_plate
 
     display = load_display(target)
     wanted = None if mode is None else parse_mode(mode)
     limits = None if band is None else parse_band(band)
+    rectangle = display.actuator.type == "rectangular_plate"
+    solve = analyze_plate if rectangle else analyze_ring
     with terminal.progress(enabled=sys.stderr.isatty() or not as_json) as step:
-        result = analyze_plate(display, mode=wanted, band=limits, progress=step)
+        result = solve(display, mode=wanted, band=limits, progress=step)
         written = None
         if out is not None:
             from squeezefilm.report.solved_plate import write_plate
+            from squeezefilm.report.solved_ring import write_ring
 
-            written = write_plate(result, out)
+            step("figures")
+            written = (
+                write_ring(result, out)
+                if isinstance(result, RingAnalysis)
+                else write_plate(result, out)
+            )
     if as_json:
         _print_json(result.summary())
         return
-    show_plate(result)
+    if isinstance(result, RingAnalysis):
+        show_ring(result)
+    else:
+        show_plate(result)
     if written is not None:
         typer.echo(f"figures: {written}")
 

@@ -315,4 +315,86 @@ class AnnularStator:
         return math.pi * self.mean_diameter / self.wavelength
 
 
-Actuator = RectangularPlate | AnnularStator
+@dataclass(frozen=True)
+class DiscPlate:
+    """A disc (or an annulus, with an `inner_diameter`) with a ceramic disc or ring bonded below.
+
+    The working mode B(`nodal_circles`, `nodal_diameters`) is solved, nothing of it is measured.
+    Without nodal diameters one electrode covers the whole ceramic; with m of them the ceramic has
+    `sectors` neighbouring sectors of π/m, poled in turn (2m go all round). `quality_factor` is that
+    of the whole assembly; it holds for every material unless the substrate has its own. The disc is
+    free everywhere.
+
+    Raises `GeometryError` for a ceramic that overhangs, `InputError` for sectors that do not fit.
+    """
+
+    diameter: Metre
+    thickness: Metre
+    quality_factor: Dimensionless
+    substrate: ElasticMaterial
+    ceramic: Piezoceramic
+    ceramic_outer_diameter: Metre
+    ceramic_thickness: Metre
+    inner_diameter: Metre = 0.0
+    ceramic_inner_diameter: Metre = 0.0
+    nodal_circles: int = 1
+    nodal_diameters: int = 0
+    sectors: int = 0
+    glue: GlueLayer | None = None
+    type: Literal["disc"] = "disc"
+
+    def __post_init__(self) -> None:
+        for name in ("diameter", "thickness", "ceramic_outer_diameter", "ceramic_thickness"):
+            require(name, getattr(self, name), _M, above=0)
+        require("inner_diameter", self.inner_diameter, _M, at_least=0, below=self.diameter)
+        require(
+            "ceramic_inner_diameter", self.ceramic_inner_diameter, _M,
+            at_least=0, below=self.ceramic_outer_diameter,
+        )  # fmt: skip
+        require("quality_factor", self.quality_factor, above=0.5)
+        require("nodal_circles", self.nodal_circles, at_least=0)
+        require("nodal_diameters", self.nodal_diameters, at_least=0)
+        self._check_ceramic()
+        m = self.nodal_diameters
+        if m == 0 and self.sectors:
+            raise InputError(
+                f"sectors = {self.sectors} drive no mode without nodal diameters; leave them out "
+                "for one electrode all round, or give nodal_diameters",
+                quantity="sectors",
+            )
+        if m > 0 and not 1 <= self.sectors <= 2 * m:
+            raise InputError(
+                f"sectors = {self.sectors} is not allowed with {m} nodal diameters: from 1 to "
+                f"{2 * m} sectors of half a wave fit round the disc",
+                quantity="sectors",
+            )
+        if self.nodal_circles == 0 and m < 2:
+            raise InputError(
+                f"B(0,{m}) is a motion of the rigid disc; give a nodal circle, or two nodal "
+                "diameters",
+                quantity="nodal_circles",
+            )
+
+    def _check_ceramic(self) -> None:
+        if self.ceramic_outer_diameter > self.diameter + 1e-9:
+            raise GeometryError(
+                f"the ceramic of {format_quantity(self.ceramic_outer_diameter, _M)} overhangs the "
+                f"disc of {format_quantity(self.diameter, _M)}; make it smaller",
+                quantity="ceramic_outer_diameter",
+            )
+        if self.ceramic_inner_diameter < self.inner_diameter - 1e-9:
+            raise GeometryError(
+                f"the ceramic begins at a diameter of "
+                f"{format_quantity(self.ceramic_inner_diameter, _M)} and overhangs the hole of "
+                f"{format_quantity(self.inner_diameter, _M)}; give it a larger "
+                "ceramic_inner_diameter",
+                quantity="ceramic_inner_diameter",
+            )
+
+    @property
+    def nodal_lines(self) -> int:
+        """Nodal circles and diameters together."""
+        return self.nodal_circles + self.nodal_diameters
+
+
+Actuator = RectangularPlate | AnnularStator | DiscPlate

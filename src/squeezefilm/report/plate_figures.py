@@ -48,6 +48,7 @@ def layout(analysis: Analysis) -> Figure:
         return _ring(actuator, analysis)
     beam = analysis.prediction.mode.beam
     assert beam is not None, "a plate's working mode is made by a beam"
+    assert isinstance(actuator, RectangularPlate), "a disc's working mode is made by no beam"
     return _plate(actuator, beam)
 
 

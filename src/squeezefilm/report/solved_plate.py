@@ -32,6 +32,8 @@ def shape(result: PlateAnalysis) -> Figure:
     """The driven shape over the upper face with its nodal lines, and the scan along the centre."""
     from matplotlib.ticker import MaxNLocator
 
+    from squeezefilm.analysis.plate_command import scan_axis
+
     plate, response, at = result.plate, result.response, result.response.resonance
     x, y = np.linspace(0, plate.length, 166), np.linspace(0, plate.width, 99)
     w = response.displacement(x, y)[at]
@@ -45,7 +47,8 @@ def shape(result: PlateAnalysis) -> Figure:
         f"{result.modes.model}, all electrodes driven at resonance",
         6.4,
     )
-    above, below = figure.subplots(2, 1, sharex=True, height_ratios=[1.6, 1])
+    axis = scan_axis(result.working_label)
+    above, below = figure.subplots(2, 1, sharex=axis == 0, height_ratios=[1.6, 1])
     reach = float(np.max(np.abs(w)))
     levels = np.linspace(-reach, reach, 21)
     field = above.contourf(1e3 * x, 1e3 * y, w.T, levels=levels, cmap="RdBu_r")
@@ -54,10 +57,17 @@ def shape(result: PlateAnalysis) -> Figure:
     figure.colorbar(field, ax=above, label="per volt (nm/V)", ticks=ticks)
     above.set(ylabel="y (mm)")
     above.set_title("upper face; nodal lines in black")
-    below.plot(1e3 * x, w[:, y.size // 2], color=BLUE, label="centreline")
-    below.plot(1e3 * x, w[:, 0], color=ORANGE, ls="--", label="edge")
+    if axis == 0:
+        below.plot(1e3 * x, w[:, y.size // 2], color=BLUE, label="centreline")
+        below.plot(1e3 * x, w[:, 0], color=ORANGE, ls="--", label="edge")
+        below.set(xlabel="x (mm)", xlim=(0, 1e3 * plate.length))
+    else:
+        below.plot(1e3 * y, w[x.size // 2], color=BLUE, label="across the middle")
+        below.plot(1e3 * y, w[0], color=ORANGE, ls="--", label="edge x = 0")
+        above.set(xlabel="x (mm)")
+        below.set(xlabel="y (mm)", xlim=(0, 1e3 * plate.width))
     below.axhline(0, color=MUTED, lw=0.8)
-    below.set(xlabel="x (mm)", ylabel="per volt (nm/V)", xlim=(0, 1e3 * plate.length))
+    below.set(ylabel="per volt (nm/V)")
     legend_below(below, gap=0.3)
     return figure
 
