@@ -29,15 +29,13 @@ from squeezefilm.results import stamp, to_json
 
 Progress = Callable[[str], None]
 _MOST_HARMONICS = 60
-_SURFACE_POINTS = 61
 
 
 @dataclass(frozen=True, eq=False)
 class RingAnalysis:
     """A solved disc or stator: table of modes, the working mode, its response and circuit.
 
-    Modes are B(nodal circles, nodal diameters), or R and T in the plane. `mean_circumference` holds
-    radius and shape value where the scan around is taken. `described_amplitude_per_volt` is what a
+    Modes are B(nodal circles, nodal diameters), or R and T in the plane. `described_amplitude_per_volt` is what a
     stator's description says was measured, beside what is computed here.
     """
 
@@ -58,6 +56,15 @@ class RingAnalysis:
     def amplitude_per_volt(self) -> MetrePerVolt:
         """At the surface's highest antinode, at resonance."""
         return float(self.response.maximum[self.response.resonance])
+
+    @property
+    def centreline_per_volt(self) -> MetrePerVolt:
+        """At an antinode of the mean circumference; without nodal diameters in the middle lobe."""
+        w = np.abs(self.response.motion[self.response.resonance])
+        if self.mode.harmonic:
+            return float(np.interp(self.scan_radius, self.response.radius, w))
+        first = self.circles[0] if self.circles.size else self.response.radius[-1]
+        return float(np.max(w[self.response.radius <= first]))
 
     @property
     def scan_radius(self) -> Metre:
@@ -84,6 +91,7 @@ class RingAnalysis:
             "frequency_Hz": self.working.frequency,
             "frequency_error_Hz": self.working.frequency_error,
             "amplitude_m_per_V": self.amplitude_per_volt,
+            "centreline_amplitude_m_per_V": self.centreline_per_volt,
             "half_wavelength_m": self.working.half_wavelength,
             "half_wavelength_along": self.half_wavelength_along,
             "nodal_circles_m": to_json(self.circles),
@@ -239,10 +247,6 @@ def modes_in_band(
 
 def _sound(display: Display, mode: AnnularMode, response: RingResponse) -> SoundField:
     """The sound of the touched surface alone, in a baffle, at the display's voltage."""
-    radius = np.linspace(response.radius[0], response.radius[-1], _SURFACE_POINTS)
     motion = display.drive.voltage * response.motion[response.resonance]
-    at = np.interp(radius, response.radius, motion.real) + 1j * np.interp(
-        radius, response.radius, motion.imag
-    )
-    velocity = 2j * np.pi * mode.frequency * at
-    return sound_field(ring_surface(radius, velocity, mode.harmonic, mode.frequency))
+    velocity = 2j * np.pi * mode.frequency * motion
+    return sound_field(ring_surface(response.radius, velocity, mode.harmonic, mode.frequency))

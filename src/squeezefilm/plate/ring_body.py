@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
+from scipy.interpolate import CubicSpline
 
 from squeezefilm.errors import InputError
 from squeezefilm.materials import ElasticMaterial
@@ -20,9 +21,11 @@ from squeezefilm.plate.annular_layout import (
     full_drive,
 )
 from squeezefilm.plate.layout import AnnularStator, DiscPlate
+from squeezefilm.plate.plate_modes import zero_crossings
 from squeezefilm.plate.stator import StatorAssumptions, StatorFit, fit_stator
 from squeezefilm.quantities import (
     Dimensionless,
+    DimensionlessArray,
     Hertz,
     Metre,
     MetreArray,
@@ -124,12 +127,16 @@ def _disc(disc: DiscPlate) -> RingBody:
     return RingBody(section, drive, (disc.nodal_circles, m), quality)
 
 
+def surface_profile(mode: AnnularMode, radius: MetreArray) -> DimensionlessArray:
+    """The mode's u_z on the surface at radii (m), between its nodes by a cubic spline."""
+    values: DimensionlessArray = CubicSpline(mode.surface_radius, mode.surface_shape)(radius)
+    return values
+
+
 def nodal_circles(mode: AnnularMode) -> MetreArray:
     """The radii (m) at which the surface stands still, rising."""
-    r, w = mode.surface_radius, mode.surface_shape
-    at = np.flatnonzero(np.sign(w[1:]) * np.sign(w[:-1]) < 0)
-    radii: MetreArray = r[at] - w[at] * (r[at + 1] - r[at]) / (w[at + 1] - w[at])
-    return radii
+    r = np.linspace(mode.surface_radius[0], mode.surface_radius[-1], 801)
+    return zero_crossings(r, surface_profile(mode, r))
 
 
 def half_wavelength_of(mode: AnnularMode) -> tuple[Metre | None, Direction]:

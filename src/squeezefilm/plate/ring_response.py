@@ -16,7 +16,7 @@ from squeezefilm.plate.annular import (
     clamped_capacitance,
 )
 from squeezefilm.plate.plate_response import EquivalentCircuit
-from squeezefilm.plate.ring_body import RingBody
+from squeezefilm.plate.ring_body import RingBody, surface_profile
 from squeezefilm.quantities import (
     Ampere,
     ComplexArray,
@@ -28,6 +28,8 @@ from squeezefilm.quantities import (
     Watt,
     require,
 )
+
+_RADII = 121
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,20 +92,21 @@ def ring_response(
         body.section, m, near=mode.frequency, count=terms, quality_factor=quality
     )
     omega2 = (2 * np.pi * frequencies) ** 2
-    motion = np.zeros((frequencies.size, mode.surface_radius.size), dtype=complex)
+    radius = np.linspace(mode.surface_radius[0], mode.surface_radius[-1], _RADII)
+    motion = np.zeros((frequencies.size, radius.size), dtype=complex)
     polarity = body.drive.coefficient(m)
     for one in near:
         own = (2 * math.pi * one.frequency) ** 2
         loss = 0.0 if one.is_rigid else 1 / one.quality_factor
         force = one.modal_force_all_round * abs(polarity)
         receptance = force / (one.modal_mass * (own * (1 + 1j * loss) - omega2))
-        motion += receptance[:, None] * one.surface_shape[None, :]
+        motion += receptance[:, None] * surface_profile(one, radius)[None, :]
     admittance = annular_admittance(
         body.section, body.drive, frequencies,
         harmonics=tuple(harmonics), quality_factor=quality, modes=terms,
     )  # fmt: skip
     return RingResponse(
-        frequencies, mode.surface_radius, motion, admittance, tuple(harmonics), len(near)
+        frequencies, radius, motion, admittance, tuple(harmonics), len(near)
     )
 
 

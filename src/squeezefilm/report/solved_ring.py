@@ -42,13 +42,13 @@ def shape(result: RingAnalysis) -> Figure:
 
     mode, at = result.mode, result.response.resonance
     size = 1e9 * result.amplitude_per_volt
-    where = f"{shown(mode.half_wavelength or 0.0, M)} apart along the mean circumference"
+    where = f"nodal lines {shown(mode.half_wavelength or 0.0, M)} apart on the mean circumference"
     if not mode.harmonic:
         radii = ", ".join(shown(float(r), M, 3) for r in result.circles)
-        where = f"circles at a radius of {radii}" if radii else "none"
+        where = f"nodal circle at a radius of {radii}" if radii else "no nodal line"
     figure = new_figure(
         f"Mode {result.working.label} at {result.working.frequency / 1e3:.2f} kHz moves up to "
-        f"{size:.0f} nm per volt; nodal lines {where}",
+        f"{size:.0f} nm per volt; {where}",
         f"{result.model}, channel driven at resonance",
         5.4,
     )
@@ -65,7 +65,7 @@ def shape(result: RingAnalysis) -> Figure:
     left.contour(x, y, w, levels=[0.0], colors=INK, linewidths=0.9)
     figure.colorbar(
         field, ax=left, label="per volt (nm/V)", ticks=MaxNLocator(nbins=6, symmetric=True),
-        location="bottom",
+        location="bottom", shrink=0.75,
     )  # fmt: skip
     left.set_title("touched face; nodal lines in black")
     _sectors(right, result)
@@ -133,46 +133,55 @@ def _sectors(axes: Axes, result: RingAnalysis) -> None:
 
 @drawn
 def scan(result: RingAnalysis) -> Figure:
-    """The driven shape along the mean circumference, and along the radius through an antinode."""
-    m, at = result.mode.harmonic, result.response.resonance
-    radial = 1e9 * _standing(result.response.motion[at])
-    r = result.response.radius
+    """The driven shape around the mean circumference and along a radius; without nodal diameters
+    along a diameter."""
+    m = result.mode.harmonic
+    radial = 1e9 * _standing(result.response.motion[result.response.resonance])
     mean = result.scan_radius
-    here = float(np.interp(mean, r, radial))
-    title = f"Along the radius {result.working.label} moves between {_span(radial)} nm per volt"
     if m:
         title = (
             f"{m} waves stand around the mean circumference of {shown(2 * math.pi * mean, M)}: "
-            f"{abs(here):.0f} nm per volt at their antinodes"
+            f"{1e9 * result.centreline_per_volt:.0f} nm per volt at their antinodes"
         )
-    figure = new_figure(title, f"{result.model}, channel driven at resonance", 5.6)
-    above, below = figure.subplots(2, 1)
-    angle = np.linspace(0, 2 * np.pi, max(361, 40 * m) | 1)
-    around = here * np.cos(m * angle - _turn(result))
-    length = 1e3 * mean * angle
-    above.plot(length, around, color=BLUE)
-    above.axhline(0, color=MUTED, lw=0.8)
-    above.set(xlabel=f"along the circumference at a radius of {shown(mean, M)} (mm)")
-    above.set(ylabel="per volt (nm/V)", xlim=(0, float(length[-1])))
-    for start, end, sign in result.body.drive.sectors:
-        if m:
-            above.axvspan(
-                1e3 * mean * start, 1e3 * mean * end, ymax=0.06, color=_FILL[sign], lw=0.0
-            )
-    below.plot(1e3 * r, radial, color=BLUE, label="at the angle of an antinode")
+        figure = new_figure(title, f"{result.model}, channel driven at resonance", 5.6)
+        above, below = figure.subplots(2, 1)
+        _around(above, result, float(np.interp(mean, result.response.radius, radial)))
+    else:
+        title = (
+            f"Along a diameter {result.working.label} moves {abs(radial[0]):.0f} nm per volt in the "
+            f"middle and {abs(radial[-1]):.0f} at the rim"
+        )
+        figure = new_figure(title, f"{result.model}, channel driven at resonance", 4.2)
+        below = figure.subplots()
+    r = 1e3 * result.response.radius
+    below.plot(r, radial, color=BLUE, label="at the angle of an antinode" if m else None)
+    if not m:
+        below.plot(-r, radial, color=BLUE)
     below.axhline(0, color=MUTED, lw=0.8)
     for number, circle in enumerate(result.circles):
-        below.axvline(
-            1e3 * float(circle), color=ORANGE, lw=1.2, ls=(0, (4, 2)),
-            label="nodal circle" if number == 0 else None,
-        )  # fmt: skip
-    below.set(xlabel="radius (mm)", ylabel="per volt (nm/V)", xlim=(1e3 * r[0], 1e3 * r[-1]))
-    legend_below(below, gap=0.3)
+        for side in (1,) if m else (1, -1):
+            below.axvline(
+                side * 1e3 * float(circle), color=ORANGE, lw=1.2, ls=(0, (4, 2)),
+                label="nodal circle" if number == 0 and side == 1 else None,
+            )  # fmt: skip
+    below.set(xlabel="radius (mm)" if m else "along a diameter (mm)", ylabel="per volt (nm/V)")
+    below.set_xlim(r[0] if m else -r[-1], r[-1])
+    if below.get_legend_handles_labels()[0]:
+        legend_below(below, gap=0.3 if m else 0.2)
     return figure
 
 
-def _span(values: np.ndarray) -> str:
-    return f"{float(np.min(values)):.0f} and {float(np.max(values)):.0f}"
+def _around(axes: Axes, result: RingAnalysis, here: float) -> None:
+    """The scan around the mean circumference, with the sectors of the channel at its foot."""
+    m, mean = result.mode.harmonic, result.scan_radius
+    angle = np.linspace(0, 2 * np.pi, max(361, 40 * m) | 1)
+    length = 1e3 * mean * angle
+    axes.plot(length, here * np.cos(m * angle - _turn(result)), color=BLUE)
+    axes.axhline(0, color=MUTED, lw=0.8)
+    axes.set(xlabel=f"along the circumference at a radius of {shown(mean, M)} (mm)")
+    axes.set(ylabel="per volt (nm/V)", xlim=(0, float(length[-1])))
+    for start, end, sign in result.body.drive.sectors:
+        axes.axvspan(1e3 * mean * start, 1e3 * mean * end, ymax=0.06, color=_FILL[sign], lw=0.0)
 
 
 @drawn

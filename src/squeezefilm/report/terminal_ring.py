@@ -26,7 +26,12 @@ def show_ring(result: RingAnalysis) -> None:
             f"± {shown(mode.frequency_error, _HZ, 2)} (estimated)"
             + ("; fitted, not predicted" if result.body.fit is not None else ""),
         ),
-        ("Amplitude per volt", shown(result.amplitude_per_volt, _PER_VOLT), "at an antinode"),
+        ("Amplitude per volt", shown(result.amplitude_per_volt, _PER_VOLT), "largest, touched face"),
+        (
+            "",
+            shown(result.centreline_per_volt, _PER_VOLT),
+            "antinodes of the mean circumference" if result.mode.harmonic else "inner lobe",
+        ),
     ]
     if result.described_amplitude_per_volt is not None:
         rows.append(
