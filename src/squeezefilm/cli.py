@@ -220,7 +220,12 @@ def film(
 def plate(
     target: Target,
     band: Annotated[str | None, typer.Option(help='Modes in a band, like "25 kHz:45 kHz".')] = None,
-    mode: Annotated[str | None, typer.Option(help="Working mode by nodal lines, like 8,0; of discs and rings circles, diameters.")] = None,
+    mode: Annotated[
+        str | None,
+        typer.Option(
+            help="Working mode by nodal lines, like 8,0; of discs and rings circles, diameters."
+        ),
+    ] = None,
     out: Annotated[Path | None, typer.Option(help="Folder for plate.json and figures.")] = None,
     as_json: AsJson = False,
 ) -> None:

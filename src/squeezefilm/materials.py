@@ -75,9 +75,10 @@ def isotropic_stiffness(young_modulus: Pascal, poisson_ratio: Dimensionless) -> 
 class PiezoConstants:
     """The full set of constants of a ceramic poled along z (class 6mm).
 
-    Compliances s at constant field (s66 = 2(s11 − s12) within 3 %: it is isotropic across z), charge coefficients d, and relative permittivities at constant
-    strain (clamped) and, where given, at constant stress (free) and the stress coefficients e:
-    data given twice must agree within 3 %, or a `ContradictionError` names both.
+    Compliances s at constant field (s66 = 2(s11 − s12) within 3 %: it is isotropic across z),
+    charge coefficients d, and relative permittivities at constant strain (clamped) and, where
+    given, at constant stress (free) and the stress coefficients e: data given twice must agree
+    within 3 %, or a `ContradictionError` names both.
     """
 
     compliance_11: SquareMetrePerNewton

@@ -141,6 +141,11 @@ def analyze_plate(
             f"display '{display.name}' has a {plate.type} and no rectangular plate; analyze_ring "
             "solves discs and stators"
         )
+    if not any(patch.electrode == "driven" for patch in plate.patches):
+        raise InputError(
+            "no electrode is driven; give at least one patch electrode = 'driven'",
+            quantity="patches",
+        )
     tell = progress or (lambda _: None)
     label = mode or plate.working_label
     tell(f"mode ({label[0]},{label[1]})")

@@ -1,4 +1,4 @@
-"""What `squeezefilm plate` computes of a disc or a stator: its modes in a band, and its response."""
+"""What `squeezefilm plate` computes of a disc or a stator: modes in a band, and the response."""
 
 from __future__ import annotations
 
@@ -35,8 +35,9 @@ _MOST_HARMONICS = 60
 class RingAnalysis:
     """A solved disc or stator: table of modes, the working mode, its response and circuit.
 
-    Modes are B(nodal circles, nodal diameters), or R and T in the plane. `described_amplitude_per_volt` is what a
-    stator's description says was measured, beside what is computed here.
+    Modes are B(nodal circles, nodal diameters), or R and T in the plane.
+    `described_amplitude_per_volt` is what a stator's description says was measured, beside what is
+    computed here.
     """
 
     display: Display
@@ -161,7 +162,7 @@ def analyze_ring(
     found = body.mode(label)
     limits = band or (0.92 * found.frequency, 1.08 * found.frequency)
     modes = modes_in_band(body, limits, tell)
-    half, along = half_wavelength_of(found)
+    _, along = half_wavelength_of(found)
     tell(f"response at {points} frequencies")
     span = max(4 / found.quality_factor, 0.01)
     near = np.sinh(np.linspace(-3, 3, points | 1)) / np.sinh(3)

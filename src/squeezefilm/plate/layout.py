@@ -180,6 +180,11 @@ class RectangularPlate:
             raise GeometryError(
                 "patches have different thicknesses; one thickness for all of them is allowed"
             )
+        if len({support.quality_factor for support in self.supports}) > 1:
+            raise GeometryError(
+                "supports have different quality factors; one for all of them is allowed",
+                quantity="supports",
+            )
         self._check_overhang()
         self._check_overlap()
 

@@ -54,9 +54,7 @@ class RingBody:
         circles, diameters = label or self.label
         if self.fit is not None and (circles, diameters) == self.label:
             return self.fit.mode
-        return bending_mode(
-            self.section, diameters, circles, quality_factor=self.quality_factor
-        )
+        return bending_mode(self.section, diameters, circles, quality_factor=self.quality_factor)
 
 
 @functools.lru_cache(maxsize=8)

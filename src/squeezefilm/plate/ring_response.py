@@ -88,9 +88,7 @@ def ring_response(
     frequencies = np.asarray(frequencies, dtype=float)
     require("frequencies", frequencies, Unit("Hz"), above=0)
     m, quality = mode.harmonic, body.quality_factor
-    near = annular_modes(
-        body.section, m, near=mode.frequency, count=terms, quality_factor=quality
-    )
+    near = annular_modes(body.section, m, near=mode.frequency, count=terms, quality_factor=quality)
     omega2 = (2 * np.pi * frequencies) ** 2
     radius = np.linspace(mode.surface_radius[0], mode.surface_radius[-1], _RADII)
     motion = np.zeros((frequencies.size, radius.size), dtype=complex)
@@ -105,9 +103,7 @@ def ring_response(
         body.section, body.drive, frequencies,
         harmonics=tuple(harmonics), quality_factor=quality, modes=terms,
     )  # fmt: skip
-    return RingResponse(
-        frequencies, radius, motion, admittance, tuple(harmonics), len(near)
-    )
+    return RingResponse(frequencies, radius, motion, admittance, tuple(harmonics), len(near))
 
 
 def ring_circuit(body: RingBody, mode: AnnularMode, response: RingResponse) -> EquivalentCircuit:

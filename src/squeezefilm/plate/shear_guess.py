@@ -12,11 +12,14 @@ import numpy as np
 
 from squeezefilm.errors import ConvergenceError, InputError
 from squeezefilm.plate.layout import RectangularPlate
-from squeezefilm.plate.shear_plate import ShearMode, shear_mode
+from squeezefilm.plate.plate_modes import profiles, zero_crossings
+from squeezefilm.plate.shear_plate import ShearMode, shear_modes
+from squeezefilm.plate.shear_section import shear_layout
 from squeezefilm.quantities import Dimensionless, FloatArray, Hertz
 
-# Modes as far from the bare plate's frequency as strips on a part of the face can move them.
-_STEPS = (1.0, 1.08, 0.92, 1.16, 0.85, 1.25)
+# So many modes of one class of symmetry around the bare plate's frequency are looked at: strips on
+# a part of the face move a mode by some ten percent.
+_NEAREST = 16
 
 
 def bare_frequency(plate: RectangularPlate, label: tuple[int, int]) -> Hertz:
@@ -26,7 +29,9 @@ def bare_frequency(plate: RectangularPlate, label: tuple[int, int]) -> Hertz:
     0 for labels that are no bending (fewer than two lines across a side do not bend it).
     """
     spans = (plate.length, plate.width)
-    k2 = sum(((n - 0.5) * math.pi / span) ** 2 for n, span in zip(label, spans, strict=True) if n > 1)
+    k2 = sum(
+        ((n - 0.5) * math.pi / span) ** 2 for n, span in zip(label, spans, strict=True) if n > 1
+    )
     substrate, h = plate.substrate, plate.thickness
     stiffness = substrate.plane_strain_modulus * h**3 / 12
     return k2 / (2 * math.pi) * math.sqrt(stiffness / (substrate.density * h))
@@ -42,14 +47,22 @@ def screened_frequency(plate: RectangularPlate, label: tuple[int, int]) -> Hertz
     bare = bare_frequency(plate, label)
     if bare == 0:
         return None
-    found: list[ShearMode] = []
-    for step in _STEPS:
-        try:
-            found.append(shear_mode(plate, label, step * bare))
-        except (InputError, ConvergenceError):
-            continue
+    layout = shear_layout(plate)
+    signs = (1 if lines % 2 == 0 else -1 for lines in label)
+    parity = tuple(s if layout.mirrored(axis) else 0 for axis, s in enumerate(signs))
+    try:
+        modes = shear_modes(layout, bare, _NEAREST, parities=((parity[0], parity[1]),))
+    except (InputError, ConvergenceError):
+        return None
+    found = [mode for mode in modes if not mode.is_rigid and _lines(mode) == label]
     best = max(found, key=lambda mode: straightness(mode.deflection), default=None)
     return None if best is None else best.frequency
+
+
+def _lines(mode: ShearMode) -> tuple[int, int]:
+    """Nodal lines counted as the solved plate counts them: on the shape's dominant product."""
+    along, across, _ = profiles(mode.deflection)
+    return zero_crossings(mode.x, along).size, zero_crossings(mode.y, across).size
 
 
 def straightness(deflection: FloatArray) -> Dimensionless:

@@ -148,8 +148,8 @@ def scan(result: RingAnalysis) -> Figure:
         _around(above, result, float(np.interp(mean, result.response.radius, radial)))
     else:
         title = (
-            f"Along a diameter {result.working.label} moves {abs(radial[0]):.0f} nm per volt in the "
-            f"middle and {abs(radial[-1]):.0f} at the rim"
+            f"Along a diameter {result.working.label} moves {abs(radial[0]):.0f} nm per volt in "
+            f"the middle and {abs(radial[-1]):.0f} at the rim"
         )
         figure = new_figure(title, f"{result.model}, channel driven at resonance", 4.2)
         below = figure.subplots()

@@ -26,7 +26,11 @@ def show_ring(result: RingAnalysis) -> None:
             f"± {shown(mode.frequency_error, _HZ, 2)} (estimated)"
             + ("; fitted, not predicted" if result.body.fit is not None else ""),
         ),
-        ("Amplitude per volt", shown(result.amplitude_per_volt, _PER_VOLT), "largest, touched face"),
+        (
+            "Amplitude per volt",
+            shown(result.amplitude_per_volt, _PER_VOLT),
+            "largest, touched face",
+        ),
         (
             "",
             shown(result.centreline_per_volt, _PER_VOLT),
