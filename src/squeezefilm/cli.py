@@ -293,7 +293,12 @@ def film(
 def plate(
     target: Target,
     band: Annotated[str | None, typer.Option(help='Modes in a band, like "25 kHz:45 kHz".')] = None,
-    mode: Annotated[str | None, typer.Option(help="Working mode by nodal lines, like 8,0.")] = None,
+    mode: Annotated[
+        str | None,
+        typer.Option(
+            help="Working mode by nodal lines, like 8,0; of discs and rings circles, diameters."
+        ),
+    ] = None,
     out: Annotated[Path | None, typer.Option(help="Folder for a page with figures.")] = None,
     vtu: Annotated[
         Path | None, typer.Option(help="Write the solved volume for ParaView to this .vtu file.")
@@ -309,31 +314,52 @@ def plate(
     values: Annotated[int, typer.Option(help="How many values of it.")] = 9,
     as_json: AsJson = False,
 ) -> None:
-    """Solve a plate in three dimensions: modes, amplitude per volt, admittance."""
+    """Solve a plate, disc or stator in three dimensions: modes, amplitude per volt, admittance."""
     from squeezefilm.analysis.plate_command import analyze_plate, parse_band, parse_mode
     from squeezefilm.analysis.plate_tracking import parse_track
+    from squeezefilm.analysis.ring_command import analyze_ring
     from squeezefilm.display import load_display
     from squeezefilm.report import terminal
+    from squeezefilm.report.terminal_ring import show_ring
     from squeezefilm.report.terminal_solvers import show_plate
 
     display = load_display(target)
     wanted = None if mode is None else parse_mode(mode)
     limits = None if band is None else parse_band(band)
     over = None if track is None else parse_track(track, start, stop, values)
-    with terminal.progress(enabled=sys.stderr.isatty() or not as_json) as step:
-        result = analyze_plate(
-            display, mode=wanted, band=limits, sensitivity=sensitivity, track=over, progress=step
+    rectangle = display.actuator.type == "rectangular_plate"
+    if not rectangle and (vtu is not None or sensitivity or over is not None):
+        raise InputError(
+            f"--vtu, --sensitivity and --track are for rectangular plates; '{display.name}' is a "
+            f"{display.actuator.type.replace('_', ' ')}"
         )
+    with terminal.progress(enabled=sys.stderr.isatty() or not as_json) as step:
         written = []
-        if out is not None or vtu is not None:
-            from squeezefilm.report.solved_plate import write_mode, write_plate
+        if rectangle:
+            result = analyze_plate(
+                display, mode=wanted, band=limits, sensitivity=sensitivity, track=over,
+                progress=step,
+            )  # fmt: skip
+            if out is not None or vtu is not None:
+                from squeezefilm.report.solved_plate import write_mode, write_plate
 
-            written += [] if out is None else [write_plate(result, out)]
-            written += [] if vtu is None else [write_mode(result, vtu)]
+                step("figures")
+                written += [] if out is None else [write_plate(result, out)]
+                written += [] if vtu is None else [write_mode(result, vtu)]
+        else:
+            ring = analyze_ring(display, mode=wanted, band=limits, progress=step)
+            if out is not None:
+                from squeezefilm.report.solved_ring import write_ring
+
+                step("figures")
+                written.append(write_ring(ring, out))
     if as_json:
-        _print_json(result.summary())
+        _print_json((result if rectangle else ring).summary())
         return
-    show_plate(result)
+    if rectangle:
+        show_plate(result)
+    else:
+        show_ring(ring)
     for path in written:
         typer.echo(f"wrote {path}")
 

@@ -75,9 +75,10 @@ def isotropic_stiffness(young_modulus: Pascal, poisson_ratio: Dimensionless) -> 
 class PiezoConstants:
     """The full set of constants of a ceramic poled along z (class 6mm).
 
-    Compliances s at constant field, charge coefficients d, and relative permittivities at constant
-    strain (clamped) and, where given, at constant stress (free) and the stress coefficients e:
-    data given twice must agree within 3 %, or a `ContradictionError` names both.
+    Compliances s at constant field (s66 = 2(s11 − s12) within 3 %: it is isotropic across z),
+    charge coefficients d, and relative permittivities at constant strain (clamped) and, where
+    given, at constant stress (free) and the stress coefficients e: data given twice must agree
+    within 3 %, or a `ContradictionError` names both.
     """
 
     compliance_11: SquareMetrePerNewton
@@ -109,6 +110,13 @@ class PiezoConstants:
                 "the compliances of the ceramic contradict each other: the elastic energy of some "
                 "strain would be negative; check s12 and s13 against s11 and s33",
                 quantity="compliance_12",
+            )
+        across = 2 * (self.compliance_11 - self.compliance_12)
+        if abs(self.compliance_66 - across) > 0.03 * across:
+            raise ContradictionError(
+                f"compliance_66 = {self.compliance_66:.4g} m2/N contradicts 2 (s11 - s12) = "
+                f"{across:.4g} m2/N, which a ceramic poled along z has (more than 3 % apart)",
+                quantity="compliance_66",
             )
         free = self.free_permittivity_matrix / VACUUM_PERMITTIVITY
         e = self.stress_matrix
@@ -216,6 +224,24 @@ class Piezoceramic:
                 "data_set = 'printed_e31' needs a stress_coefficient; give one in C/m2, "
                 "or choose data_set = 'from_d31'"
             )
+        self._check_constants()
+
+    def _check_constants(self) -> None:
+        """The in-plane data and the full set are of one ceramic."""
+        if self.constants is None:
+            return
+        full = self.constants
+        for name, own, derived in (
+            ("in_plane_stiffness", self.in_plane_stiffness,
+             full.compliance_11 / (full.compliance_11**2 - full.compliance_12**2)),
+            ("charge_coefficient", self.charge_coefficient, full.charge_coefficient_31),
+        ):  # fmt: skip
+            if abs(own - derived) > 0.03 * abs(derived):
+                raise ContradictionError(
+                    f"{name} = {own:.4g} contradicts the full constants, which give {derived:.4g} "
+                    "(more than 3 % apart, SI units); both must be of one ceramic",
+                    quantity=name,
+                )
 
     @property
     def compliance_11(self) -> SquareMetrePerNewton:
@@ -259,7 +285,8 @@ class Piezoceramic:
             compliance_13=scale * p["s13"],
             compliance_33=scale * p["s33"],
             compliance_44=scale * p["s44"],
-            compliance_66=scale * p["s66"],
+            # PZT-5H's ratio to isotropy across the poling, which 6mm asks for, is kept.
+            compliance_66=(self.compliance_11 - s12) * p["s66"] / (p["s11"] - p["s12"]),
             charge_coefficient_31=p["d31"],
             charge_coefficient_33=p["d33"],
             charge_coefficient_15=p["d15"],

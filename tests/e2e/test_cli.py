@@ -265,7 +265,6 @@ def test_presets_are_listed() -> None:
         (("film", "--squeeze-number", "nan", "--excursion", "0.5"), "nan"),
         (("film", "--squeeze-number", "10"), "--excursion"),
         (("film", "--sweep"), "--out DIR"),
-        (("plate", "biet2008-stator"), "rectangular"),
         (("plate", "biet2008-plate", "--mode", "eight"), "8,0"),
         (("plate", "biet2008-plate", "--band", "5 kHz:4 kHz"), "lower frequency first"),
         (("plate", "biet2008-plate", "--band", "33.6 kHz:33.7 kHz"), "no mode lies between"),

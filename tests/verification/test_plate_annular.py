@@ -211,9 +211,9 @@ def test_thin_piezoelectric_disc_in_its_radial_mode() -> None:
     nu = 4.78 / 16.5
     root = brentq(lambda x: x * special.j0(x) - (1 - nu) * special.j1(x), 1.5, 2.5)
     expected = root / (2 * math.pi * radius) * math.sqrt(c_p / ceramic.density)
-    modes = annular_modes(section, 0, near=expected, count=1)
-    assert modes[0].frequency == pytest.approx(expected, rel=1e-4)
-    assert modes[0].label == "R(0)"
+    # B(8,0) of so thin a disc lies 20 Hz beside it.
+    radial = [m for m in annular_modes(section, 0, near=expected, count=3) if m.label == "R(0)"]
+    assert [m.frequency for m in radial] == pytest.approx([expected], rel=1e-4)
     low = np.array([expected / 50])
     y = annular_admittance(section, full_drive(), low, harmonics=[0], quality_factor=1e6)
     # A free disc: ε33T = ε33_p + 2 e_p d31, d31 = e_p (s11 + s12) = e_p / (c_p (1 + ν)).

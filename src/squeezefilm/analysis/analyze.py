@@ -232,7 +232,7 @@ def _other_models(display: Display, prediction: Prediction) -> tuple[OtherModel,
             found.append(OtherModel(solid.model, solid.frequency, solid.half_wavelength, amplitude))
     # A theory that has no such mode near has nothing to set beside.
     with contextlib.suppress(InputError):
-        shear = shear_mode(plate, (plate.nodal_lines, 0), mode.resonance_frequency)
+        shear = shear_mode(plate, plate.working_label, mode.resonance_frequency)
         found.append(OtherModel("shear_plate", shear.frequency, None, None))
     theories: tuple[BeamTheory, ...] = ("timoshenko", "euler_bernoulli")
     sections: tuple[CrossSection, ...] = ("plane_strain", "plane_stress", "paper")

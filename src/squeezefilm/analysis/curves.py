@@ -81,7 +81,7 @@ def frequency_response(prediction: Prediction) -> FrequencyResponse:
     mode = prediction.mode
     if mode.solid is not None:
         found = mode.solid.response
-        line = found.amplitude_at(mode.solid.lobe, found.plate.width / 2)
+        line = found.amplitude_at(*mode.solid.lobe)
         return FrequencyResponse(found.frequencies, line, mode.model)
     frequency = response_frequencies(mode.resonance_frequency, mode.quality_factor, 601)
     return FrequencyResponse(frequency, mode.response(frequency), mode.model)

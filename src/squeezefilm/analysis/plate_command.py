@@ -13,19 +13,21 @@ from squeezefilm.analysis.plate_tracking import ModeTracks, TrackRequest, track_
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError
 from squeezefilm.plate.layout import RectangularPlate
-from squeezefilm.plate.plate_modes import Label, PlateModes
+from squeezefilm.plate.plate_modes import Label, PlateModes, profiles, zero_crossings
 from squeezefilm.plate.plate_response import EquivalentCircuit, HarmonicResponse, harmonic_response
 from squeezefilm.plate.response import beam_response
 from squeezefilm.plate.shear_plate import shear_mode
 from squeezefilm.plate.solve_modes import solve_modes
 from squeezefilm.plate.sound import SoundField, rectangular_surface, sound_field
 from squeezefilm.quantities import (
+    ComplexArray,
     Dimensionless,
+    FloatArray,
     Hertz,
     Metre,
+    MetreArray,
     MetrePerVolt,
     Unit,
-    did_you_mean,
     format_quantity,
 )
 from squeezefilm.results import stamp, to_json
@@ -147,11 +149,16 @@ def analyze_plate(
     plate = display.actuator
     if not isinstance(plate, RectangularPlate):
         raise InputError(
-            f"display '{display.name}' has a {plate.type}; squeezefilm plate solves rectangular "
-            f"plates.{did_you_mean('rectangular_plate', [plate.type])}"
+            f"display '{display.name}' has a {plate.type} and no rectangular plate; analyze_ring "
+            "solves discs and stators"
+        )
+    if not any(patch.electrode == "driven" for patch in plate.patches):
+        raise InputError(
+            "no electrode is driven; give at least one patch electrode = 'driven'",
+            quantity="patches",
         )
     tell = progress or (lambda _: None)
-    label = mode or (plate.nodal_lines, 0)
+    label = mode or plate.working_label
     tell(f"mode ({label[0]},{label[1]})")
     alone = solve_modes(plate, mode=label)
     frequency = float(alone.frequencies[alone.index(label)])
@@ -165,9 +172,8 @@ def analyze_plate(
     near = np.sinh(np.linspace(-3, 3, points)) / np.sinh(3)
     response = harmonic_response(plate, frequency * (1 + span * near))
     peak = response.resonance
-    _, line = response.line(peak)
-    nodes = alone.nodal_positions(alone.index(label))
-    x = np.linspace(0, plate.length, line.size)
+    x, line = centre_scan(response, peak, label)
+    nodes = zero_crossings(x, centre_profile(alone.shapes[alone.index(label)], alone, x, label))
     inside = (x > nodes[0]) & (x < nodes[-1]) if nodes.size > 1 else np.ones(x.size, bool)
     try:
         circuit = response.equivalent_circuit()
@@ -197,6 +203,32 @@ def analyze_plate(
         sensitivities=plate_sensitivity(plate, label=label, progress=tell) if sensitivity else None,
         tracks=None if track is None else track_modes(plate, track, label=label, progress=tell),
     )
+
+
+def scan_axis(label: tuple[int, int]) -> int:
+    """The axis that the nodal lines cross: 0 along the length, 1 along the width."""
+    return 0 if label[0] >= label[1] else 1
+
+
+def centre_scan(
+    response: HarmonicResponse, at: int, label: tuple[int, int], points: int = 201
+) -> tuple[MetreArray, ComplexArray]:
+    """Position and w per volt (m/V) at frequency number `at` along the middle of the plate, across
+    the nodal lines of the mode."""
+    plate = response.plate
+    if scan_axis(label) == 0:
+        return response.line(at, points)
+    y = np.linspace(0, plate.width, points)
+    return y, response.displacement(np.array([plate.length / 2]), y)[at, 0, :]
+
+
+def centre_profile(
+    shape: FloatArray, modes: PlateModes, position: MetreArray, label: tuple[int, int]
+) -> FloatArray:
+    """The profile of a mode's shape across its nodal lines, at `position` (m)."""
+    axis = scan_axis(label)
+    own = (modes.x, modes.y)[axis]
+    return np.asarray(np.interp(position, own, profiles(shape)[axis]))
 
 
 def _shear_frequency(plate: RectangularPlate, label: tuple[int, int], near: Hertz) -> Hertz | None:

@@ -183,6 +183,9 @@ def _path_and_owner(
         if isinstance(part, int):
             hint = typing.get_args(hint)[0]
             continue
+        # A table that may be left out: `GlueLayer | None` owns its keys like `GlueLayer`.
+        if len(options) == 1 and not dataclasses.is_dataclass(hint):
+            hint = options[0]
         if dataclasses.is_dataclass(hint):
             owner = typing.cast("type[Any]", hint)
             hints = typing.get_type_hints(owner, include_extras=True)

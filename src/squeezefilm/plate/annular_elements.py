@@ -13,12 +13,14 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import sparse
 
-from squeezefilm.errors import GeometryError
+from squeezefilm.errors import GeometryError, OutOfRangeError
 from squeezefilm.plate.annular_layout import AnnularSection, RingLayer
 from squeezefilm.plate.nodal_basis import gauss_points, graded_edges, lagrange, node_coordinates
-from squeezefilm.quantities import FloatArray
+from squeezefilm.quantities import FloatArray, Unit, format_quantity
 
 _SAME = 5e-10
+# Radius over thickness: a plain disc of 500 still has its lowest frequency to 1e-3.
+_THINNEST_BODY, _THINNEST_LAYER = 500.0, 20000.0
 _RADIAL, _HOOP, _AXIAL, _POTENTIAL = range(4)
 
 
@@ -70,8 +72,20 @@ def ring_mesh(section: AnnularSection, *, graded: bool = True) -> RingMesh:
     """Edges on every layer's edges, graded towards the corners where layers meet the surface.
 
     Elements are no longer than 3 thicknesses or 1/6 of the radial extent, whichever is more.
+    Raises `OutOfRangeError` for layers so thin that elements lose their digits.
     """
     layers = section.layers
+    radius = max(layer.outer_radius for layer in layers)
+    for name, height, most in (
+        ("body", section.thickness, _THINNEST_BODY),
+        ("layer", min(layer.thickness for layer in layers), _THINNEST_LAYER),
+    ):
+        if radius > most * height:
+            raise OutOfRangeError(
+                f"a {name} of {format_quantity(height, Unit('m'))} on a radius of "
+                f"{format_quantity(radius, Unit('m'))} has an aspect ratio above {most:.0f}, where "
+                "three-dimensional elements lose their digits; use a plate theory"
+            )
     r_breaks = _unique([x for a in layers for x in (a.inner_radius, a.outer_radius)])
     z_breaks = _unique([x for a in layers for x in (a.bottom, a.top)])
     longest = max(3 * section.thickness, (r_breaks[-1] - r_breaks[0]) / 6)

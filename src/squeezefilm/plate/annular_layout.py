@@ -261,11 +261,16 @@ def bonded_disc(
     ceramic_outer_diameter: Metre,
     ceramic_thickness: Metre,
     ceramic_inner_diameter: Metre = 0.0,
+    inner_diameter: Metre = 0.0,
+    glue: ElasticMaterial | None = None,
+    glue_thickness: Metre = 0.0,
     loss_factor: Dimensionless | None = None,
 ) -> AnnularSection:
     """The section of a disc display (T-PaD): a glass disc with a ceramic disc or ring below.
 
-    The bond is perfect. Raises `GeometryError` for a ceramic that overhangs the disc.
+    The bond is perfect, or a layer of `glue`. `inner_diameter` makes the disc an annulus. Without
+    `loss_factor` each material has its own, where it has one.
+    Raises `GeometryError` for a ceramic that overhangs the disc.
     """
     if ceramic_outer_diameter > diameter + _SAME:
         raise GeometryError(
@@ -274,11 +279,14 @@ def bonded_disc(
         )
     solid = isotropic_solid(plate, loss_factor)
     piezo = piezoceramic_solid(ceramic, loss_factor)
-    below, radius = ceramic_thickness, ceramic_outer_diameter / 2
-    return AnnularSection(
-        (
-            RingLayer(0.0, diameter / 2, below, below + thickness, solid),
-            RingLayer(ceramic_inner_diameter / 2, radius, 0.0, below, piezo),
-        ),
-        wave_diameter=diameter,
-    )
+    inner, outer = ceramic_inner_diameter / 2, ceramic_outer_diameter / 2
+    base = ceramic_thickness
+    layers = [RingLayer(inner, outer, 0.0, base, piezo)]
+    if glue is not None:
+        require("glue_thickness", glue_thickness, _M, above=0)
+        layers.append(
+            RingLayer(inner, outer, base, base + glue_thickness, isotropic_solid(glue, loss_factor))
+        )
+        base += glue_thickness
+    layers.append(RingLayer(inner_diameter / 2, diameter / 2, base, base + thickness, solid))
+    return AnnularSection(tuple(layers), wave_diameter=diameter)

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from squeezefilm.errors import InputError
-from squeezefilm.materials import VACUUM_PERMITTIVITY, ElasticMaterial, Piezoceramic
+from squeezefilm.materials import ElasticMaterial, Piezoceramic, isotropic_stiffness
 from squeezefilm.quantities import (
     Dimensionless,
     FloatArray,
@@ -18,13 +18,6 @@ from squeezefilm.quantities import (
     Unit,
     require,
 )
-
-# PZT-5H, from which the ratios of a soft ceramic's compliances and couplings are taken.
-# Source: Berlincourt, Krueger and Near, Morgan/Vernitron TP-226; clamped permittivities as in the
-# project's reference problem.
-_PZT5H_COMPLIANCE = {"11": 16.5, "12": -4.78, "13": -8.45, "33": 20.7, "44": 43.5, "66": 42.6}
-_PZT5H_CHARGE = {"31": -274.0, "33": 593.0, "15": 741.0}
-_PZT5H_CLAMPED_PERMITTIVITY = (1666.84, 1381.80)
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,50 +72,35 @@ class RingSolid:
 def isotropic_solid(
     material: ElasticMaterial, loss_factor: Dimensionless | None = None
 ) -> RingSolid:
-    """A metal or a glass as a `RingSolid`. Source: Hooke's law, λ = Eν/((1 + ν)(1 − 2ν))."""
-    lame = (
-        material.young_modulus
-        * material.poisson_ratio
-        / ((1 + material.poisson_ratio) * (1 - 2 * material.poisson_ratio))
+    """A metal or a glass as a `RingSolid`.
+
+    Without `loss_factor` the material's own 1/Q is taken, or None where it has none.
+    """
+    own = None if material.quality_factor is None else 1 / material.quality_factor
+    return RingSolid(
+        material.name,
+        isotropic_stiffness(material.young_modulus, material.poisson_ratio),
+        material.density,
+        loss_factor=own if loss_factor is None else loss_factor,
     )
-    stiffness = np.zeros((6, 6))
-    stiffness[:3, :3] = lame
-    stiffness += material.shear_modulus * np.diag([2.0, 2, 2, 1, 1, 1])
-    return RingSolid(material.name, stiffness, material.density, loss_factor=loss_factor)
 
 
 def piezoceramic_solid(
     ceramic: Piezoceramic, loss_factor: Dimensionless | None = None
 ) -> RingSolid:
-    """A soft ceramic poled along z, in three dimensions, from its in-plane data.
+    """A ceramic poled along z in three dimensions: its `full_constants`, as boxes use them.
 
-    The compliances are those of PZT-5H in the ratio that gives `ceramic.in_plane_stiffness`; the
-    charge coefficients those of PZT-5H in the ratio that gives the effective in-plane e31 of the
-    data set believed; e = d c. The clamped permittivities are 1667 and 1382 ε0 whatever the
-    ceramic says. An assumption, good for soft PZT only.
-    Without `loss_factor` the ceramic's own 1/Q is taken.
+    x becomes r and y becomes θ, so the ceramic has to be isotropic across its poling (6mm), which
+    `PiezoConstants` checks. Without `loss_factor` the ceramic's own 1/Q is taken.
     """
-    s = np.zeros((6, 6))
-    t = _PZT5H_COMPLIANCE
-    s[:2, :2] = [[t["11"], t["12"]], [t["12"], t["11"]]]
-    s[:2, 2] = s[2, :2] = t["13"]
-    s[2, 2] = t["33"]
-    s[3, 3] = s[4, 4] = t["44"]
-    s[5, 5] = 2 * (t["11"] - t["12"])
-    s /= ceramic.in_plane_stiffness * (t["11"] - t["12"] ** 2 / t["11"])
-    stiffness = np.linalg.inv(s)
-    d31 = ceramic.effective_stress_coefficient * (s[0, 0] + s[0, 1])
-    ratio = d31 / _PZT5H_CHARGE["31"]
-    d = np.zeros((3, 6))
-    d[2, :3] = np.array([_PZT5H_CHARGE["31"], _PZT5H_CHARGE["31"], _PZT5H_CHARGE["33"]]) * ratio
-    d[0, 4] = d[1, 3] = _PZT5H_CHARGE["15"] * ratio
-    radial, axial = (VACUUM_PERMITTIVITY * value for value in _PZT5H_CLAMPED_PERMITTIVITY)
+    constants = ceramic.full_constants
+    stiffness = constants.stiffness_matrix
     return RingSolid(
         ceramic.name,
         (stiffness + stiffness.T) / 2,
         ceramic.density,
-        piezoelectric=d @ stiffness,
-        permittivity=np.array([radial, radial, axial]),
+        piezoelectric=constants.stress_matrix,
+        permittivity=np.diag(constants.permittivity_matrix).copy(),
         loss_factor=1 / ceramic.quality_factor if loss_factor is None else loss_factor,
     )
 

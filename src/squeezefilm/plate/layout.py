@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import Literal
+from dataclasses import dataclass, replace
+from typing import Literal, TypeVar
 
 from squeezefilm.errors import GeometryError, InputError
 from squeezefilm.materials import ElasticMaterial, Piezoceramic
@@ -139,11 +139,15 @@ def rim_supports(
     )
 
 
+_Part = TypeVar("_Part", CeramicPatch, FoamSupport)
+
+
 @dataclass(frozen=True)
 class RectangularPlate:
     """A rectangular plate with ceramics bonded to its faces.
 
-    `nodal_lines` picks the working mode: that many nodal lines across the length, none along it.
+    `nodal_lines` picks the working mode: that many nodal lines across the length, none along it;
+    with `lines_across` = "width" that many across the width, as strips along the long edges drive.
     `quality_factor` is that of the whole assembly; it holds for every material unless the
     substrate has its own, and then ceramic and glue have theirs too. Edges are free but for
     `supports` and `clamped_edges` (left and right: x = 0 and x = length; front and back: y).
@@ -163,6 +167,7 @@ class RectangularPlate:
     glue: GlueLayer | None = None
     supports: tuple[FoamSupport, ...] = ()
     clamped_edges: tuple[Edge, ...] = ()
+    lines_across: Literal["length", "width"] = "length"
 
     def __post_init__(self) -> None:
         for name in ("length", "width", "thickness"):
@@ -174,6 +179,11 @@ class RectangularPlate:
         if len({patch.thickness for patch in self.patches}) > 1:
             raise GeometryError(
                 "patches have different thicknesses; one thickness for all of them is allowed"
+            )
+        if len({support.quality_factor for support in self.supports}) > 1:
+            raise GeometryError(
+                "supports have different quality factors; one for all of them is allowed",
+                quantity="supports",
             )
         self._check_overhang()
         self._check_overlap()
@@ -211,6 +221,11 @@ class RectangularPlate:
                     )
 
     @property
+    def working_label(self) -> tuple[int, int]:
+        """The working mode by its nodal lines across length and width: (n, 0) or (0, n)."""
+        return (self.nodal_lines, 0) if self.lines_across == "length" else (0, self.nodal_lines)
+
+    @property
     def area(self) -> SquareMetre:
         """The surface a finger can explore."""
         return self.length * self.width
@@ -224,6 +239,27 @@ class RectangularPlate:
     def coverage(self) -> Dimensionless:
         """The area of all ceramics over that of one face."""
         return sum(patch.length * patch.width for patch in self.patches) / self.area
+
+
+def turned(plate: RectangularPlate) -> RectangularPlate:
+    """The same plate with x and y exchanged: its length is the other's width.
+
+    What was computed along the length can so be computed along the width.
+    """
+    other: dict[Edge, Edge] = {"left": "front", "right": "back", "front": "left", "back": "right"}
+
+    def swapped(part: _Part) -> _Part:
+        return replace(part, x=part.y, y=part.x, length=part.width, width=part.length)
+
+    return replace(
+        plate,
+        length=plate.width,
+        width=plate.length,
+        patches=tuple(swapped(patch) for patch in plate.patches),
+        supports=tuple(swapped(support) for support in plate.supports),
+        clamped_edges=tuple(other[edge] for edge in plate.clamped_edges),
+        lines_across="width" if plate.lines_across == "length" else "length",
+    )
 
 
 def _overlap(a: CeramicPatch | FoamSupport, b: CeramicPatch | FoamSupport) -> str | None:
@@ -284,4 +320,86 @@ class AnnularStator:
         return math.pi * self.mean_diameter / self.wavelength
 
 
-Actuator = RectangularPlate | AnnularStator
+@dataclass(frozen=True)
+class DiscPlate:
+    """A disc (or an annulus, with an `inner_diameter`) with a ceramic disc or ring bonded below.
+
+    The working mode B(`nodal_circles`, `nodal_diameters`) is solved, nothing of it is measured.
+    Without nodal diameters one electrode covers the whole ceramic; with m of them the ceramic has
+    `sectors` neighbouring sectors of π/m, poled in turn (2m go all round). `quality_factor` is that
+    of the whole assembly; it holds for every material unless the substrate has its own. The disc is
+    free everywhere.
+
+    Raises `GeometryError` for a ceramic that overhangs, `InputError` for sectors that do not fit.
+    """
+
+    diameter: Metre
+    thickness: Metre
+    quality_factor: Dimensionless
+    substrate: ElasticMaterial
+    ceramic: Piezoceramic
+    ceramic_outer_diameter: Metre
+    ceramic_thickness: Metre
+    inner_diameter: Metre = 0.0
+    ceramic_inner_diameter: Metre = 0.0
+    nodal_circles: int = 1
+    nodal_diameters: int = 0
+    sectors: int = 0
+    glue: GlueLayer | None = None
+    type: Literal["disc"] = "disc"
+
+    def __post_init__(self) -> None:
+        for name in ("diameter", "thickness", "ceramic_outer_diameter", "ceramic_thickness"):
+            require(name, getattr(self, name), _M, above=0)
+        require("inner_diameter", self.inner_diameter, _M, at_least=0, below=self.diameter)
+        require(
+            "ceramic_inner_diameter", self.ceramic_inner_diameter, _M,
+            at_least=0, below=self.ceramic_outer_diameter,
+        )  # fmt: skip
+        require("quality_factor", self.quality_factor, above=0.5)
+        require("nodal_circles", self.nodal_circles, at_least=0)
+        require("nodal_diameters", self.nodal_diameters, at_least=0)
+        self._check_ceramic()
+        m = self.nodal_diameters
+        if m == 0 and self.sectors:
+            raise InputError(
+                f"sectors = {self.sectors} drive no mode without nodal diameters; leave them out "
+                "for one electrode all round, or give nodal_diameters",
+                quantity="sectors",
+            )
+        if m > 0 and not 1 <= self.sectors <= 2 * m:
+            raise InputError(
+                f"sectors = {self.sectors} is not allowed with {m} nodal diameters: from 1 to "
+                f"{2 * m} sectors of half a wave fit round the disc",
+                quantity="sectors",
+            )
+        if self.nodal_circles == 0 and m < 2:
+            raise InputError(
+                f"B(0,{m}) is a motion of the rigid disc; give a nodal circle, or two nodal "
+                "diameters",
+                quantity="nodal_circles",
+            )
+
+    def _check_ceramic(self) -> None:
+        if self.ceramic_outer_diameter > self.diameter + 1e-9:
+            raise GeometryError(
+                f"the ceramic of {format_quantity(self.ceramic_outer_diameter, _M)} overhangs the "
+                f"disc of {format_quantity(self.diameter, _M)}; make it smaller",
+                quantity="ceramic_outer_diameter",
+            )
+        if self.ceramic_inner_diameter < self.inner_diameter - 1e-9:
+            raise GeometryError(
+                f"the ceramic begins at a diameter of "
+                f"{format_quantity(self.ceramic_inner_diameter, _M)} and overhangs the hole of "
+                f"{format_quantity(self.inner_diameter, _M)}; give it a larger "
+                "ceramic_inner_diameter",
+                quantity="ceramic_inner_diameter",
+            )
+
+    @property
+    def nodal_lines(self) -> int:
+        """Nodal circles and diameters together."""
+        return self.nodal_circles + self.nodal_diameters
+
+
+Actuator = RectangularPlate | AnnularStator | DiscPlate

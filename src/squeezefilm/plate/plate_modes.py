@@ -152,12 +152,15 @@ class PlateModes:
         return values
 
     def nodal_positions(self, mode: int) -> MetreArray:
-        """Where w vanishes along the length, of the shape's dominant part (m)."""
-        profile = profiles(self.shapes[mode])[0]
-        return zero_crossings(self.x, profile)
+        """Where w vanishes along the side that more nodal lines cross, of the shape's dominant
+        part (m): along the length, or along the width of a mode such as (0,7)."""
+        along, across, _ = profiles(self.shapes[mode])
+        lines = zero_crossings(self.x, along), zero_crossings(self.y, across)
+        return lines[0] if lines[0].size >= lines[1].size else lines[1]
 
     def half_wavelength(self, mode: int) -> Metre:
-        """The mean distance of nodal lines along the length (m); NaN with fewer than two.
+        """The mean distance of nodal lines along the side that more of them cross (m); NaN with
+        fewer than two.
 
         Of six or more, the outermost at each end is left out: the free edge's near field moves it.
         """

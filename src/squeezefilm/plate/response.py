@@ -16,7 +16,7 @@ from squeezefilm.plate.laminate import (
     moment_per_volt,
     plate_laminate,
 )
-from squeezefilm.plate.layout import RectangularPlate
+from squeezefilm.plate.layout import DiscPlate, RectangularPlate, turned
 from squeezefilm.quantities import (
     ComplexArray,
     Dimensionless,
@@ -107,7 +107,7 @@ class BeamResponse:
 
 
 def beam_response(
-    plate: RectangularPlate,
+    plate: RectangularPlate | DiscPlate,
     theory: BeamTheory = "timoshenko",
     cross_section: CrossSection = "plane_strain",
 ) -> BeamResponse:
@@ -116,8 +116,15 @@ def beam_response(
     Valid for plates wide against their thickness, covered by ceramics almost everywhere, in modes
     whose nodal lines run across the whole width. Against three-dimensional elasticity the
     Timoshenko frequency of the paper's plate is about 3 % high and Euler–Bernoulli's 12 % high;
-    coupling to modes along the width is not seen. Raises `OutOfRangeError` above the cut-off.
+    coupling to modes along the width is not seen. A plate whose nodal lines cross its width is
+    turned first. Raises `OutOfRangeError` above the cut-off, `InputError` for a disc.
     """
+    if isinstance(plate, DiscPlate):
+        raise InputError(
+            "a disc is no beam; squeezefilm plate solves it as a disc", quantity="type"
+        )
+    if plate.lines_across == "width":
+        plate = turned(plate)
     section = plate_laminate(plate, cross_section)
     working = free_beam_mode(section, plate.length, plate.nodal_lines, theory)
     modes: list[BeamMode] = []

@@ -47,8 +47,9 @@ class SolidMode:
     """One mode of a plate, its response to one volt, and its centreline at resonance.
 
     `modes` holds it at `index`; `response` surrounds the resonance. `position` and `deflection` are
-    the mode along the centreline of the upper face, 1 at its largest interior lobe, which is at
-    `lobe`; `nodal_positions` its nodal lines along the length; `amplitude_per_volt` is the largest
+    the mode along the centreline of the upper face that crosses its nodal lines (along the length,
+    or the width), 1 at its largest interior lobe, which is at `lobe` (x, y);
+    `nodal_positions` the nodal lines along it; `amplitude_per_volt` is the largest
     answer of that lobe within the mode's bandwidth, `modal_amplitude_per_volt` what this mode has
     in it, Q F φ / ω²: much less where the drive moves its neighbours only.
     `modal_mass` is the mass that has the mode's kinetic energy if it moves as the lobe does.
@@ -60,7 +61,7 @@ class SolidMode:
     position: MetreArray
     deflection: FloatArray
     nodal_positions: MetreArray
-    lobe: Metre
+    lobe: tuple[Metre, Metre]
     amplitude_per_volt: MetrePerVolt
     modal_amplitude_per_volt: MetrePerVolt
     modal_mass: Kilogram
@@ -98,7 +99,7 @@ class SolidMode:
         # With the resonance in the band, its mode is in the reduced space and not far outside.
         band = np.union1d(ascending, self.frequency)
         response = harmonic_response(plate, band)
-        amplitude = response.amplitude_at(self.lobe, plate.width / 2)
+        amplitude = response.amplitude_at(*self.lobe)
         return np.asarray(amplitude[np.searchsorted(band, ascending)][back])
 
 
@@ -106,23 +107,30 @@ class SolidMode:
 def solid_mode(plate: RectangularPlate, label: tuple[int, int] | None = None) -> SolidMode:
     """A plate's mode with the nodal lines of `label` by three-dimensional piezoelectric elements.
 
-    Without a label the plate's working mode, (nodal_lines, 0). Raises what `solve_modes` and
+    Without a label the plate's working mode. Raises what `solve_modes` and
     `harmonic_response` raise: `InputError` where there is no such mode or nothing drives the
     plate, `GeometryError` for a plate that the elements cannot carry.
     """
-    wanted = label or (plate.nodal_lines, 0)
+    wanted = label or plate.working_label
     modes = solve_modes(plate, mode=wanted)
     index = modes.index(wanted)
     frequency, quality = float(modes.frequencies[index]), float(modes.quality_factors[index])
     response = harmonic_response(plate, response_frequencies(frequency, quality))
-    x = np.linspace(0, plate.length, _LINE_POINTS)
-    line = modes.field(index, x, np.array([plate.width / 2]), plate.thickness)[:, 0, 2]
+    lengthwise = wanted[0] >= wanted[1]
+    span, across = (plate.length, plate.width)[:: 1 if lengthwise else -1]
+    x, middle = np.linspace(0, span, _LINE_POINTS), np.array([across / 2])
+    if lengthwise:
+        line = modes.field(index, x, middle, plate.thickness)[:, 0, 2]
+    else:
+        line = modes.field(index, middle, x, plate.thickness)[0, :, 2]
     nodes = modes.nodal_positions(index)
     inside = _interior(x, nodes)
     at = int(np.flatnonzero(inside)[np.argmax(np.abs(line[inside]))])
     # At the mode, not at the highest point of the band: a neighbour may move more.
     near = np.abs(response.frequencies / frequency - 1) < 1 / quality
-    amplitude = response.amplitude_at(float(x[at]), plate.width / 2)
+    lobe = float(x[at]), across / 2
+    lobe = lobe if lengthwise else lobe[::-1]
+    amplitude = response.amplitude_at(*lobe)
     return SolidMode(
         modes=modes,
         index=index,
@@ -130,7 +138,7 @@ def solid_mode(plate: RectangularPlate, label: tuple[int, int] | None = None) ->
         position=x,
         deflection=line / line[at],
         nodal_positions=nodes,
-        lobe=float(x[at]),
+        lobe=lobe,
         amplitude_per_volt=float(np.max(np.where(near, amplitude, 0.0))),
         modal_amplitude_per_volt=float(
             quality * abs(modes.drive_forces[index] * line[at]) / (2 * np.pi * frequency) ** 2

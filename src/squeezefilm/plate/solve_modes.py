@@ -11,6 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.optimize import linear_sum_assignment
 
 from squeezefilm.errors import InputError, OutOfRangeError, SqueezefilmError
 from squeezefilm.plate.beam import free_beam_mode
@@ -34,6 +35,8 @@ from squeezefilm.plate.plate_modes import (
     label_of,
 )
 from squeezefilm.plate.plate_symmetry import Parity, all_classes, drive_classes, drive_signs
+from squeezefilm.plate.response import LEAST_COVERAGE
+from squeezefilm.plate.shear_guess import screened_frequency
 from squeezefilm.plate.slab_factor import SlabFactor
 from squeezefilm.plate.slabs import Slabs
 from squeezefilm.quantities import Dimensionless, FloatArray, Hertz, Unit, require
@@ -96,7 +99,7 @@ def solve_modes(
     if band is not None:
         check_band(band)
     if near is None and band is None and mode is None:
-        mode = (plate.nodal_lines, 0)
+        mode = plate.working_label
     tell = progress or (lambda text, fraction: None)
     with one_blas_thread():
         return _solve(plate, near, band, mode, count, tolerance, driven_only, tell)
@@ -155,6 +158,8 @@ def _estimate(plate: RectangularPlate, label: Label) -> float:
             "frequency or in a band",
             quantity="mode",
         )
+    if plate.coverage < LEAST_COVERAGE and (guess := screened_frequency(plate, label)) is not None:
+        return guess
     from squeezefilm.plate.beam import timoshenko_frequency
 
     if label[1] == 0:
@@ -378,6 +383,10 @@ def _refined(
         pairs = modes_near(
             slabs, solve, shift, wanted, start, tolerance=min(1e-6, 1e-3 * tolerance)
         )
+        # Neighbours may change places between two meshes: pair them by shape, not by order, or
+        # each would get the other's energy shares and error.
+        order = _partners(slabs, start, pairs.vectors)
+        index, values, vectors = index[order], values[order], vectors[:, order]
         piece = _Piece(one, index, finer, values, pairs.values, pairs.vectors, level)
         _, error = _extrapolated(piece.coarse_values, piece.values, piece.level)
         worst = np.max(error / (np.sqrt(piece.values) / (2 * np.pi)))
@@ -385,6 +394,15 @@ def _refined(
             return piece
         solved, values, vectors = finer, pairs.values, pairs.vectors
     raise AssertionError("no level was solved")
+
+
+def _partners(slabs: Slabs, coarse: FloatArray, fine: FloatArray) -> IntArray:
+    """For each fine mode the coarse one (prolonged to the fine mesh) that moves most alike."""
+    mass = slabs.mass_times(fine)
+    size = np.sqrt(np.sum(coarse * slabs.mass_times(coarse), axis=0))
+    alike = (coarse.T @ mass / size[:, None]) ** 2
+    rows, columns = linear_sum_assignment(-alike)
+    return np.asarray(rows[np.argsort(columns)], dtype=np.int64)
 
 
 def _extrapolated(

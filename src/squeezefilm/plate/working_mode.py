@@ -135,7 +135,7 @@ def working_mode(
     if theory == "solid":
         solid = solid_mode(actuator)
         return WorkingMode(
-            label=f"({actuator.nodal_lines},0)",
+            label="({},{})".format(*actuator.working_label),
             resonance_frequency=solid.frequency,
             half_wavelength=solid.half_wavelength,
             quality_factor=solid.quality_factor,
@@ -150,7 +150,7 @@ def working_mode(
     beam = beam_response(actuator, theory, cross_section)
     shape = beam.mode
     return WorkingMode(
-        label=f"({actuator.nodal_lines},0)",
+        label="({},{})".format(*actuator.working_label),
         resonance_frequency=shape.frequency,
         half_wavelength=shape.half_wavelength,
         quality_factor=actuator.quality_factor,

@@ -46,6 +46,7 @@ def layout(analysis: Analysis) -> Figure:
     actuator = analysis.display.actuator
     if isinstance(actuator, AnnularStator):
         return _ring(actuator, analysis)
+    assert isinstance(actuator, RectangularPlate), "a disc has a layout of its own"
     return _plate(actuator, plate_laminate(actuator))
 
 

@@ -1,0 +1,253 @@
+"""What `squeezefilm plate` computes of a disc or a stator: modes in a band, and the response."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from squeezefilm.analysis.plate_command import ModeRow
+from squeezefilm.display import Display
+from squeezefilm.errors import InputError
+from squeezefilm.plate.annular import AnnularMode, annular_modes
+from squeezefilm.plate.layout import AnnularStator, DiscPlate
+from squeezefilm.plate.plate_modes import check_band
+from squeezefilm.plate.plate_response import EquivalentCircuit
+from squeezefilm.plate.ring_body import (
+    Direction,
+    RingBody,
+    half_wavelength_of,
+    nodal_circles,
+    ring_body,
+)
+from squeezefilm.plate.ring_response import RingResponse, coupling, ring_circuit, ring_response
+from squeezefilm.plate.sound import SoundField, ring_surface, sound_field
+from squeezefilm.quantities import Hertz, Metre, MetreArray, MetrePerVolt, Unit, format_quantity
+from squeezefilm.results import stamp, to_json
+
+Progress = Callable[[str], None]
+_MOST_HARMONICS = 60
+
+
+@dataclass(frozen=True, eq=False)
+class RingAnalysis:
+    """A solved disc or stator: table of modes, the working mode, its response and circuit.
+
+    Modes are B(nodal circles, nodal diameters), or R and T in the plane.
+    `described_amplitude_per_volt` is what a stator's description says was measured, beside what is
+    computed here.
+    """
+
+    display: Display
+    body: RingBody
+    modes: tuple[AnnularMode, ...]
+    rows: tuple[ModeRow, ...]
+    mode: AnnularMode
+    working: ModeRow
+    half_wavelength_along: Direction
+    circles: MetreArray
+    response: RingResponse
+    circuit: EquivalentCircuit | None
+    sound: SoundField
+    described_amplitude_per_volt: MetrePerVolt | None
+
+    @property
+    def amplitude_per_volt(self) -> MetrePerVolt:
+        """At the surface's highest antinode, at resonance."""
+        return float(self.response.maximum[self.response.resonance])
+
+    @property
+    def centreline_per_volt(self) -> MetrePerVolt:
+        """At an antinode of the mean circumference; without nodal diameters in the middle lobe."""
+        w = np.abs(self.response.motion[self.response.resonance])
+        if self.mode.harmonic:
+            return float(np.interp(self.scan_radius, self.response.radius, w))
+        first = self.circles[0] if self.circles.size else self.response.radius[-1]
+        return float(np.max(w[self.response.radius <= first]))
+
+    @property
+    def scan_radius(self) -> Metre:
+        """Where the scan around is taken: the mean radius of the surface."""
+        return float(np.mean(self.body.section.surface_radii))
+
+    @property
+    def model(self) -> str:
+        """What made the numbers."""
+        return self.mode.model + (", fitted stator" if self.body.fit is not None else "")
+
+    @property
+    def status(self) -> str:
+        """How good the table is, in words."""
+        worst = max(row.frequency_error / row.frequency for row in self.rows)
+        return f"{len(self.rows)} modes in the band, within {worst:.1e} (estimated)"
+
+    def summary(self) -> dict[str, Any]:
+        """What ``--json`` prints; keys carry units, and are a rectangle's where they apply."""
+        volts = self.display.drive.voltage
+        return {
+            "display": self.display.name,
+            "mode": self.working.label,
+            "frequency_Hz": self.working.frequency,
+            "frequency_error_Hz": self.working.frequency_error,
+            "amplitude_m_per_V": self.amplitude_per_volt,
+            "centreline_amplitude_m_per_V": self.centreline_per_volt,
+            "half_wavelength_m": self.working.half_wavelength,
+            "half_wavelength_along": self.half_wavelength_along,
+            "nodal_circles_m": to_json(self.circles),
+            "quality_factor": self.working.quality_factor,
+            "coupling": self.working.coupling,
+            "modes": to_json(self.rows),
+            "voltage_V": volts,
+            "current_A": self.response.current(volts),
+            "apparent_power_VA": self.response.apparent_power(volts),
+            "input_power_W": self.response.input_power(volts),
+            "equivalent_circuit": to_json(self.circuit),
+            "described_amplitude_m_per_V": self.described_amplitude_per_volt,
+            "fit": self._fit(),
+            "sound_pressure_level_dB": {
+                f"{distance:g} m": level
+                for distance, level in zip(
+                    self.sound.distances, self.sound.sound_pressure_level_dB, strict=True
+                )
+            },
+            "sound_guidance": to_json(self.sound.guidance),
+            "model": self.model,
+            "status": self.status,
+            "provenance": stamp(self.display),
+        }
+
+    def _fit(self) -> dict[str, Any] | None:
+        fit = self.body.fit
+        if fit is None:
+            return None
+        return {
+            "ring_thickness_m": fit.ring_thickness,
+            "fitted_to": {
+                "frequency_Hz": fit.mode.frequency,
+                "half_wavelength_m": fit.mode.half_wavelength,
+            },
+            "tooth_model": fit.assumptions.tooth_model,
+            "frequency_with_soft_and_stiff_teeth_Hz": list(fit.frequency_bounds),
+            "thickness_with_stiff_and_soft_teeth_m": list(fit.thickness_bounds),
+            "assumed": to_json(fit.assumptions),
+        }
+
+
+def analyze_ring(
+    display: Display,
+    *,
+    mode: tuple[int, int] | None = None,
+    band: tuple[Hertz, Hertz] | None = None,
+    points: int = 200,
+    progress: Progress | None = None,
+) -> RingAnalysis:
+    """The modes of a disc or stator in a band, and the response around the working mode.
+
+    `mode` is (nodal circles, nodal diameters), by default the display's own; `band` ±8 % around it.
+    Raises `InputError` for an actuator without rings, a band without modes, a mode that is not
+    there; `UnreachableError` for a stator that cannot be fitted.
+    """
+    actuator = display.actuator
+    if not isinstance(actuator, AnnularStator | DiscPlate):
+        raise InputError(f"display '{display.name}' has a {actuator.type}; no disc and no stator")
+    if band is not None:
+        check_band(band)
+    tell = progress or (lambda _: None)
+    tell("section" if isinstance(actuator, DiscPlate) else "fitting the stator's thickness")
+    body = ring_body(actuator)
+    label = mode or body.label
+    tell(f"mode B({label[0]},{label[1]})")
+    found = body.mode(label)
+    limits = band or (0.92 * found.frequency, 1.08 * found.frequency)
+    modes = modes_in_band(body, limits, tell)
+    _, along = half_wavelength_of(found)
+    tell(f"response at {points} frequencies")
+    span = max(4 / found.quality_factor, 0.01)
+    near = np.sinh(np.linspace(-3, 3, points | 1)) / np.sinh(3)
+    sweep = found.frequency * (1 + span * near)
+    beside = {found.harmonic - 1, found.harmonic + 1} if found.harmonic else set()
+    harmonics = sorted({found.harmonic, *beside, *(one.harmonic for one in modes)})
+    response = ring_response(body, found, sweep, harmonics)
+    driven = found.modal_force(body.drive) > 1e-9 * abs(found.modal_force_all_round)
+    tell("airborne sound")
+    return RingAnalysis(
+        display=display,
+        body=body,
+        modes=modes,
+        rows=tuple(mode_row(body, one) for one in modes),
+        mode=found,
+        working=mode_row(body, found),
+        half_wavelength_along=along,
+        circles=nodal_circles(found),
+        response=response,
+        circuit=ring_circuit(body, found, response) if driven else None,
+        sound=_sound(display, found, response),
+        described_amplitude_per_volt=actuator.reference_amplitude / actuator.reference_voltage
+        if isinstance(actuator, AnnularStator)
+        else None,
+    )
+
+
+def mode_row(body: RingBody, mode: AnnularMode) -> ModeRow:
+    """One line of the table of modes; the modal force is that of unit modal mass (N/(V √kg)).
+
+    The amplitude is that of u_z on the surface, which modes in the plane hardly move.
+    """
+    lift = float(np.max(np.abs(mode.surface_shape)))
+    return ModeRow(
+        label=mode.label,
+        frequency=mode.frequency,
+        frequency_error=mode.frequency_error,
+        quality_factor=mode.quality_factor,
+        amplitude_per_volt=lift * mode.amplitude_per_volt(body.drive),
+        coupling=coupling(body, mode),
+        modal_force=mode.modal_force(body.drive) / np.sqrt(mode.modal_mass),
+        half_wavelength=half_wavelength_of(mode)[0],
+    )
+
+
+def modes_in_band(
+    body: RingBody, band: tuple[Hertz, Hertz], progress: Progress | None = None
+) -> tuple[AnnularMode, ...]:
+    """All elastic modes of a body in a band (Hz), rising; each stands for its two orientations.
+
+    Harmonics are tried until the lowest mode of one lies above the band, beyond the working one.
+    Raises `InputError` where there is none.
+    """
+    tell = progress or (lambda _: None)
+    low, high = band
+    found: list[AnnularMode] = []
+    for m in range(_MOST_HARMONICS):
+        tell(f"all modes in the band, {m} nodal diameters")
+        count = 4
+        while True:
+            modes = annular_modes(
+                body.section, m, near=(low + high) / 2, count=count,
+                quality_factor=body.quality_factor,
+            )  # fmt: skip
+            inside = [x for x in modes if low <= x.frequency <= high and not x.is_rigid]
+            # The nearest modes are all there are in the band once one of them lies outside.
+            if len(inside) < len(modes):
+                break
+            count *= 2
+        found += inside
+        if m > body.label[1] and all(x.frequency > high for x in modes):
+            break
+    if not found:
+        hertz = Unit("Hz")
+        raise InputError(
+            f"no mode lies between {format_quantity(low, hertz)} and "
+            f"{format_quantity(high, hertz)}; widen the band, or leave it out for the modes "
+            "around the working mode",
+            quantity="band",
+        )
+    return tuple(sorted(found, key=lambda one: one.frequency))
+
+
+def _sound(display: Display, mode: AnnularMode, response: RingResponse) -> SoundField:
+    """The sound of the touched surface alone, in a baffle, at the display's voltage."""
+    motion = display.drive.voltage * response.motion[response.resonance]
+    velocity = 2j * np.pi * mode.frequency * motion
+    return sound_field(ring_surface(response.radius, velocity, mode.harmonic, mode.frequency))
