@@ -153,7 +153,7 @@ def main() -> None:
         f"\nWhat limits: of a cold curve {(cold - warm) / cold:.0%} is solving {films} films for "
         f"the table, which pays after {break_even:.0f} balances done the plain way;\n"
         f"a warm one is {points.size // 2} × 100 distinct balances at {warm / 1400 * 1e6:.1f} µs, "
-        f"{each / steps * 1e9:.0f} ns a step: two logarithms, a 9 × 8 Chebyshev sum, I0."
+        f"{each / steps * 1e9:.0f} ns a step: two logarithms, an 8 × 8 Chebyshev sum, I0."
     )
 
 

@@ -27,6 +27,7 @@ from squeezefilm.quantities import (
     Dimensionless,
     DimensionlessArray,
     Hertz,
+    Kilogram,
     Metre,
     MetreArray,
     MetrePerVolt,
@@ -157,7 +158,7 @@ class RingWorkingMode:
     """The working mode of a solved ring or disc: what a display's working mode is made of.
 
     `half_wavelength_along` says along what `half_wavelength` is measured; `amplitude_per_volt` is
-    zero-to-peak at the surface's highest antinode.
+    zero-to-peak at the surface's highest antinode, where `modal_mass` would move.
     """
 
     label: str
@@ -167,6 +168,7 @@ class RingWorkingMode:
     half_wavelength_along: Direction
     quality_factor: Dimensionless
     amplitude_per_volt: MetrePerVolt
+    modal_mass: Kilogram
     model: str
 
 
@@ -193,5 +195,6 @@ def ring_working_mode(actuator: AnnularStator | DiscPlate) -> RingWorkingMode:
         half_wavelength_along=along,
         quality_factor=mode.quality_factor,
         amplitude_per_volt=mode.amplitude_per_volt(body.drive),
+        modal_mass=mode.modal_mass,
         model=mode.model if body.fit is None else f"{mode.model}, fitted stator",
     )

@@ -13,8 +13,9 @@ import numpy as np
 
 from squeezefilm.errors import InputError, OutOfRangeError
 from squeezefilm.plate.laminate import CrossSection
-from squeezefilm.plate.layout import Actuator, AnnularStator, RectangularPlate
+from squeezefilm.plate.layout import Actuator, AnnularStator, DiscPlate, RectangularPlate
 from squeezefilm.plate.response import BeamResponse, beam_response
+from squeezefilm.plate.ring_body import ring_working_mode
 from squeezefilm.plate.solid_mode import SolidMode, solid_mode
 from squeezefilm.quantities import (
     Dimensionless,
@@ -114,8 +115,8 @@ def working_mode(
     """The working mode of an actuator.
 
     A plate is solved in three dimensions (see `solid_mode`), or taken as a beam of `cross_section`
-    (see `beam_response` for its range and error); a stator is taken as measured, linear in the
-    voltage. Raises `InputError` for another theory, and what the plate's solver raises.
+    (see `beam_response` for its range and error); a disc is solved by Fourier harmonics; a stator
+    is taken as measured, linear in the voltage, with the modal mass of the ring fitted to it. Raises `InputError` for another theory, and what the plate's solver raises.
     """
     if isinstance(actuator, AnnularStator):
         return WorkingMode(
@@ -125,7 +126,10 @@ def working_mode(
             quality_factor=actuator.quality_factor,
             amplitude_per_volt=actuator.reference_amplitude / actuator.reference_voltage,
             model="measured_stator",
+            modal_mass=_stator_mass(actuator),
         )
+    if isinstance(actuator, DiscPlate):
+        return _disc(actuator)
     if theory not in PLATE_THEORIES:
         raise InputError(
             f"theory = '{theory}' is not known.{did_you_mean(theory, PLATE_THEORIES)} "
@@ -159,6 +163,28 @@ def working_mode(
         modal_mass=_beam_mass(beam),
         line=ModeLine(shape.position, shape.deflection, shape.nodal_positions),
         beam=beam,
+    )
+
+
+def _stator_mass(stator: AnnularStator) -> Kilogram | None:
+    """The modal mass of the ring whose thickness gives the measured frequency; None without one."""
+    try:
+        return ring_working_mode(stator).modal_mass
+    except InputError:
+        return None
+
+
+def _disc(disc: DiscPlate) -> WorkingMode:
+    mode = ring_working_mode(disc)
+    return WorkingMode(
+        label=mode.label,
+        resonance_frequency=mode.frequency,
+        half_wavelength=mode.half_wavelength,
+        quality_factor=mode.quality_factor,
+        amplitude_per_volt=mode.amplitude_per_volt,
+        model=mode.model,
+        frequency_error=mode.frequency_error,
+        modal_mass=mode.modal_mass,
     )
 
 
