@@ -177,8 +177,8 @@ def predict(
         messages += [] if inertia.holds else [inertia.sentence]
     if volts is not None and mode.modal_mass is None:
         messages.append(
-            f"what the finger takes from the vibration is left out: the modal mass of a "
-            f"{mode.model.replace('_', ' ')} is not known"
+            "the amplitude is the measured one; what a finger takes from it is not known and left "
+            "out"
         )
     if shares_load(law.model):
         assert limits is not None

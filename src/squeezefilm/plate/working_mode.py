@@ -116,7 +116,8 @@ def working_mode(
 
     A plate is solved in three dimensions (see `solid_mode`), or taken as a beam of `cross_section`
     (see `beam_response` for its range and error); a disc is solved by Fourier harmonics; a stator
-    is taken as measured, linear in the voltage, with the modal mass of the ring fitted to it. Raises `InputError` for another theory, and what the plate's solver raises.
+    is taken as measured, linear in the voltage. Raises `InputError` for another theory, and what
+    the plate's solver raises.
     """
     if isinstance(actuator, AnnularStator):
         return WorkingMode(
@@ -126,7 +127,6 @@ def working_mode(
             quality_factor=actuator.quality_factor,
             amplitude_per_volt=actuator.reference_amplitude / actuator.reference_voltage,
             model="measured_stator",
-            modal_mass=_stator_mass(actuator),
         )
     if isinstance(actuator, DiscPlate):
         return _disc(actuator)
@@ -164,14 +164,6 @@ def working_mode(
         line=ModeLine(shape.position, shape.deflection, shape.nodal_positions),
         beam=beam,
     )
-
-
-def _stator_mass(stator: AnnularStator) -> Kilogram | None:
-    """The modal mass of the ring whose thickness gives the measured frequency; None without one."""
-    try:
-        return ring_working_mode(stator).modal_mass
-    except InputError:
-        return None
 
 
 def _disc(disc: DiscPlate) -> WorkingMode:
