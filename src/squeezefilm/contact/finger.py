@@ -9,7 +9,8 @@ from typing import Literal, get_args
 import numpy as np
 
 from squeezefilm.contact.asperities import AsperityLaw
-from squeezefilm.contact.skin import Skin, TactileSkin
+from squeezefilm.contact.fingerpad import FingerpadDynamics
+from squeezefilm.contact.skin import Skin
 from squeezefilm.errors import InputError
 from squeezefilm.quantities import (
     Dimensionless,
@@ -36,7 +37,7 @@ FRICTION_OF_MOISTURE: dict[Moisture, float] = {"dry": 0.6, "normal": 1.0, "moist
 """How much the friction without vibration differs from normal. Assumed, illustrative."""
 
 # Frozen, so that every finger may share them.
-_ASPERITIES, _SKIN, _TACTILE_SKIN = AsperityLaw(), Skin(), TactileSkin()
+_ASPERITIES, _SKIN, _FINGERPAD = AsperityLaw(), Skin(), FingerpadDynamics()
 
 
 @dataclass(frozen=True)
@@ -54,7 +55,7 @@ class Finger:
 
     `asperities` is the law of the contact with a surface as rough as `asperity_roughness`; on
     another surface its heights scale with √(skin_roughness² + roughness²). `skin` is the tissue at
-    ultrasonic frequency, `tactile_skin` the pad as a hand moves it. All of these defaults are
+    ultrasonic frequency, `fingerpad` the pad as a hand moves it. All of these defaults are
     assumed and illustrative: they control the friction predicted, so give your own where you can.
     """
 
@@ -70,7 +71,7 @@ class Finger:
     asperity_roughness: Metre = 0.6e-6
     skin_roughness: Metre = 0.6e-6
     skin: Skin = _SKIN
-    tactile_skin: TactileSkin = _TACTILE_SKIN
+    fingerpad: FingerpadDynamics = _FINGERPAD
     moisture: Moisture = "normal"
 
     def __post_init__(self) -> None:

@@ -13,10 +13,7 @@ import numpy as np
 
 from squeezefilm.quantities import (
     Hertz,
-    Kilogram,
     KilogramPerSquareMetre,
-    NewtonPerMetre,
-    NewtonSecondPerMetre,
     Pascal,
     PascalPerMetre,
     PascalSecondPerMetre,
@@ -54,20 +51,3 @@ class Skin:
     def displacement(self, pressure: Pascal, frequency: Hertz) -> float:
         """How far (m, amplitude) an alternating pressure (Pa, amplitude) moves the skin."""
         return float(pressure / abs(self.dynamic_stiffness(frequency)))
-
-
-@dataclass(frozen=True)
-class TactileSkin:
-    """The pad as a hand moves it (below 1 kHz), tangentially: stiffness, damping and mass.
-
-    The defaults are from memory and unverified: about 1 N/mm, 1 N·s/m and 0.1 to 0.2 g.
-    """
-
-    tangential_stiffness: NewtonPerMetre = 1e3
-    tangential_damping: NewtonSecondPerMetre = 1.0
-    tangential_mass: Kilogram = 0.15e-3
-
-    def __post_init__(self) -> None:
-        require("tangential_stiffness", self.tangential_stiffness, Unit("N/m"), above=0)
-        require("tangential_damping", self.tangential_damping, Unit("N*s/m"), at_least=0)
-        require("tangential_mass", self.tangential_mass, Unit("kg"), above=0)
