@@ -22,9 +22,22 @@ from squeezefilm.plate.ring_body import (
     nodal_circles,
     ring_body,
 )
-from squeezefilm.plate.ring_response import RingResponse, coupling, ring_circuit, ring_response
+from squeezefilm.plate.ring_response import (
+    RingResponse,
+    ring_circuit,
+    ring_response,
+    static_capacitance,
+)
 from squeezefilm.plate.sound import SoundField, ring_surface, sound_field
-from squeezefilm.quantities import Hertz, Metre, MetreArray, MetrePerVolt, Unit, format_quantity
+from squeezefilm.quantities import (
+    Farad,
+    Hertz,
+    Metre,
+    MetreArray,
+    MetrePerVolt,
+    Unit,
+    format_quantity,
+)
 from squeezefilm.results import stamp, to_json
 
 Progress = Callable[[str], None]
@@ -171,18 +184,20 @@ def analyze_ring(
     harmonics = sorted({found.harmonic, *beside, *(one.harmonic for one in modes)})
     response = ring_response(body, found, sweep, harmonics)
     driven = found.modal_force(body.drive) > 1e-9 * abs(found.modal_force_all_round)
+    circuit = ring_circuit(body, found, response) if driven else None
+    capacitance = static_capacitance(body, circuit)
     tell("airborne sound")
     return RingAnalysis(
         display=display,
         body=body,
         modes=modes,
-        rows=tuple(mode_row(body, one) for one in modes),
+        rows=tuple(mode_row(body, one, capacitance) for one in modes),
         mode=found,
-        working=mode_row(body, found),
+        working=mode_row(body, found, capacitance),
         half_wavelength_along=along,
         circles=nodal_circles(found),
         response=response,
-        circuit=ring_circuit(body, found, response) if driven else None,
+        circuit=circuit,
         sound=_sound(display, found, response),
         described_amplitude_per_volt=actuator.reference_amplitude / actuator.reference_voltage
         if isinstance(actuator, AnnularStator)
@@ -190,10 +205,11 @@ def analyze_ring(
     )
 
 
-def mode_row(body: RingBody, mode: AnnularMode) -> ModeRow:
+def mode_row(body: RingBody, mode: AnnularMode, capacitance: Farad) -> ModeRow:
     """One line of the table of modes; the modal force is that of unit modal mass (N/(V √kg)).
 
-    The amplitude is that of u_z on the surface, which modes in the plane hardly move.
+    The amplitude is that of u_z on the surface, which modes in the plane hardly move; the coupling
+    is against the `capacitance` beside the mode.
     """
     lift = float(np.max(np.abs(mode.surface_shape)))
     return ModeRow(
@@ -202,7 +218,7 @@ def mode_row(body: RingBody, mode: AnnularMode) -> ModeRow:
         frequency_error=mode.frequency_error,
         quality_factor=mode.quality_factor,
         amplitude_per_volt=lift * mode.amplitude_per_volt(body.drive),
-        coupling=coupling(body, mode),
+        coupling=mode.coupling_coefficient(body.drive, capacitance),
         modal_force=mode.modal_force(body.drive) / np.sqrt(mode.modal_mass),
         half_wavelength=half_wavelength_of(mode)[0],
     )

@@ -20,6 +20,7 @@ from squeezefilm.plate.ring_body import RingBody, surface_profile
 from squeezefilm.quantities import (
     Ampere,
     ComplexArray,
+    Farad,
     FloatArray,
     HertzArray,
     MetreArray,
@@ -134,8 +135,9 @@ def ring_circuit(body: RingBody, mode: AnnularMode, response: RingResponse) -> E
     )
 
 
-def coupling(body: RingBody, mode: AnnularMode) -> float:
-    """The effective coupling of a mode on the channel, against the clamped capacitance."""
-    if mode.is_rigid:
-        return 0.0
-    return mode.coupling_coefficient(body.drive, clamped_capacitance(body.section, body.drive))
+def static_capacitance(body: RingBody, circuit: EquivalentCircuit | None) -> Farad:
+    """The capacitance beside a mode (F): that of the circuit, which other modes add to, or of the
+    held ceramic where no circuit is known."""
+    if circuit is not None:
+        return circuit.static_capacitance
+    return clamped_capacitance(body.section, body.drive)
