@@ -353,7 +353,7 @@ def direct_admittance(
     from squeezefilm.plate.cross_section import CrossSection
     from squeezefilm.plate.plate_mesh import plate_model
     from squeezefilm.plate.plate_modes import SolvedModel
-    from squeezefilm.plate.reduced_plate import _loss_weight, _spring_loss, class_drive
+    from squeezefilm.plate.reduced_plate import class_drive, loss_weight, spring_losses
     from squeezefilm.plate.slab_factor import SlabFactor
     from squeezefilm.plate.slabs import Slabs
 
@@ -364,7 +364,7 @@ def direct_admittance(
             built = plate_model(plate, frequency, resolution, parity)
             slabs = Slabs(built.model)
             solved = SolvedModel(plate, built, slabs)
-            lossy = slabs.weighted_sections(_loss_weight, _spring_loss(built.model.foundations))
+            lossy = slabs.weighted_sections(loss_weight, spring_losses(built.model.foundations))
             made: dict[int, CrossSection] = {}
             sections = []
             for real, loss in zip(slabs.sections, lossy, strict=True):

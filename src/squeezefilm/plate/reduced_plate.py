@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from squeezefilm.plate.box_model import Medium
+from squeezefilm.plate.box_model import Foundation, Medium
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.plate_mesh import NORMAL, Resolution, plate_model
 from squeezefilm.plate.plate_modes import SolvedModel
@@ -52,7 +52,11 @@ def class_drive(plate: RectangularPlate, solved: SolvedModel) -> FloatArray:
     return out / np.maximum(members, 1)
 
 
-def _circuit(plate: RectangularPlate, solved: SolvedModel) -> tuple[tuple[int, float, float], ...]:
+def plate_circuit(
+    plate: RectangularPlate, solved: SolvedModel
+) -> tuple[tuple[int, float, float], ...]:
+    """Open and shunted electrodes of a class: model electrode, resistance (Ω, infinite if open) and
+    how many times the model's part of the ceramic makes a whole one."""
     out: dict[int, tuple[int, float, float]] = {}
     for i, patch in enumerate(plate.patches):
         share = solved.built.share_of[i]
@@ -63,7 +67,8 @@ def _circuit(plate: RectangularPlate, solved: SolvedModel) -> tuple[tuple[int, f
     return tuple(out.values())
 
 
-def _loss_weight(medium: Medium) -> tuple[float, float]:
+def loss_weight(medium: Medium) -> tuple[float, float]:
+    """The weight that makes a matrix of losses: each medium's own times its stiffness."""
     return medium.loss, 0.0
 
 
@@ -86,12 +91,12 @@ def reduced_class(
     shift = (2 * np.pi) ** 2 * 0.5 * (band[0] ** 2 + band[1] ** 2) * 1.0007**2
     factor = SlabFactor(slabs, shift)
     G, C = slabs.electrode_columns
-    drive, circuit = class_drive(plate, solved), _circuit(plate, solved)
+    drive, circuit = class_drive(plate, solved), plate_circuit(plate, solved)
     columns = [G @ drive] if np.any(drive) else []
     columns += [G[:, number] for number, _, _ in circuit]
     columns += [solved.force(x, y, plate.thickness, w) for x, y, w in loads]
     basis = _krylov_space(slabs, factor, np.stack(columns, axis=1), steps)
-    sections = slabs.weighted_sections(_loss_weight, springs=_spring_loss(built.model.foundations))
+    sections = slabs.weighted_sections(loss_weight, springs=spring_losses(built.model.foundations))
     KW, LW = slabs.stiffness_times(basis), slabs.stiffness_times(basis, sections)
     n = float(built.copies)
     return ReducedClass(
@@ -107,9 +112,9 @@ def reduced_class(
     )
 
 
-def _spring_loss(foundations: tuple[object, ...]) -> float:
-    # One factor for all springs of a plate: the softest assumption that keeps one assembly.
-    return float(getattr(foundations[0], "loss", 0.0)) if foundations else 0.0
+def spring_losses(foundations: tuple[Foundation, ...]) -> list[float]:
+    """The loss factor of each spring."""
+    return [one.loss for one in foundations]
 
 
 def _symmetric(matrix: FloatArray) -> FloatArray:
@@ -205,3 +210,35 @@ def harmonic_solution(
         potentials.append(V)
         start += size
     return solution[:, :total], potentials, charge
+
+
+def extrapolated_class(one: ReducedClass, band: tuple[Hertz, Hertz]) -> ReducedClass:
+    """The same class with its stiffness and loss scaled so that the most strongly driven mode near
+    the band stands at its frequency extrapolated from two meshes.
+
+    Other modes move by the same ratio, nearer to theirs than the mesh alone. Unchanged where no
+    driven mode is near, and on meshes that have no coarser one to compare with.
+    """
+    built, slabs = one.solved.built, one.solved.slabs
+    level = next((k for k, res in enumerate(LEVELS) if res == one.resolution), None)
+    coarser = (COARSE, *LEVELS)[level] if level is not None else None
+    values, shapes = eigh(one.stiffness, one.mass)
+    f = np.sqrt(np.maximum(values, 0.0)) / (2 * np.pi)
+    force = np.abs(shapes.T @ (one.coupling @ one.drive))
+    near = np.flatnonzero((f > 0.9 * band[0]) & (f < 1.1 * band[1]) & (force > 1e-3 * force.max()))
+    if coarser is None or level is None or near.size == 0:
+        return one
+    # Response at the band's nearest frequency: force squared over the distance of the squares.
+    distance = np.maximum(0.0, np.maximum(band[0] - f[near], f[near] - band[1])) / f[near]
+    mode = int(near[np.argmax(force[near] ** 2 / (distance + 0.01))])
+    vector = (one.basis @ shapes[:, mode])[:, None]
+    rough = Slabs(plate_model(one.solved.plate, band[1], coarser, built.parity).model)
+    shift = values[mode] * (1 + 2e-3)
+    start = restricted(slabs, rough, vector)
+    pairs = modes_near(
+        rough, SlabFactor(rough, shift).solve, shift,
+        lambda v: np.array([np.argmin(np.abs(v - shift))]), start, tolerance=1e-6,
+    )  # fmt: skip
+    wanted, _ = extrapolated(pairs.values, values[mode : mode + 1], level)
+    ratio = float(wanted[0] / f[mode]) ** 2
+    return dataclasses.replace(one, stiffness=ratio * one.stiffness, loss=ratio * one.loss)
