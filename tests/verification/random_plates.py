@@ -64,8 +64,8 @@ def affordable_plate(seed: int) -> RectangularPlate:
     """Like `random_plate`, of one of three ceramics, drawn again until a refined solution of it
     costs less than a minute.
 
-    Restricted: at most 900 unknowns in a slice of the plate of `REFINED`. That leaves out wide plates at high frequency and plates with
-    a bare rim along the strips' ends; everything else of `random_plate` remains.
+    Restricted: at most 900 unknowns in a slice of the plate of `REFINED`. That leaves out wide
+    plates at high frequency and those with a bare rim along the ends of the strips.
     """
     rng = np.random.default_rng([seed, 2026])
     while True:
@@ -81,7 +81,7 @@ def guess(plate: RectangularPlate) -> float:
     return estimated_frequency(plate, (plate.nodal_lines, 0))
 
 
-# Graded towards strip edges and bonds; on the paper's plate 5e-5 above what still finer ones give.
+# Graded towards strip edges and bonds; on the paper's plate 5e-5 above what finer ones give.
 REFINED = Resolution((0.02, 0.12, 0.5, 1.7), (0.1,), 3, 4, 5.5, 6, (0.05,))
 
 

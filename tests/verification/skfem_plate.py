@@ -1,8 +1,8 @@
 """The oracle: the same piezoelectric boxes by scikit-fem's quadratic hexahedra, assembled whole.
 
 Runs on any `BoxModel` of order-2 elements with free or symmetric sides; electrodes are shorted,
-tied in groups that float, or left out. scikit-fem is a test extra; nothing of the package is used but
-the model's description.
+tied in groups that float, or left out. scikit-fem is a test extra; of the package only the model's
+description is used.
 """
 
 from typing import Any, Literal
@@ -77,12 +77,14 @@ def assembled(model: BoxModel, outer: Outer = "shorted") -> tuple[Any, Any]:
     # Potentials scaled so that elimination keeps its digits.
     scale = 3e9
 
-    def on(planes: list[int]) -> Any:
-        at = np.array([model.z.nodes[k] for k in planes])
-        return np.any(np.abs(height[:, None] - at) < 1e-12, axis=1)
+    def on(plane_of: str) -> Any:
+        found = np.zeros(inside.size, dtype=bool)
+        for number, one in enumerate(model.electrodes):
+            own = np.isin(inside, np.unique(potential.element_dofs[:, ceramic == number]))
+            found |= own & (np.abs(height - model.z.nodes[getattr(one, plane_of)]) < 1e-12)
+        return found
 
-    grounded = on([one.grounded_plane for one in model.electrodes])
-    driven = on([one.driven_plane for one in model.electrodes])
+    grounded, driven = on("grounded_plane"), on("driven_plane")
     free = inside[~grounded if outer == "bare" else ~(grounded | driven)]
     groups = [] if isinstance(outer, str) else outer
     T = sp.lil_matrix((nphi, free.size + len(groups)))

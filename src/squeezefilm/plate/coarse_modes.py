@@ -1,4 +1,4 @@
-"""The first of two meshes: it finds the modes near a frequency or in a band, counts and names them."""
+"""The first of two meshes: it finds the modes near a frequency or in a band and names them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Refined modes of all classes of symmetry gathered, signed, sorted: the result of `solve_modes`."""
+"""Refined modes of all classes of symmetry gathered, signed and sorted: what is returned."""
 
 from __future__ import annotations
 

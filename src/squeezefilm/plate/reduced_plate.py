@@ -31,6 +31,7 @@ class ReducedClass:
     """
 
     solved: SolvedModel
+    resolution: Resolution
     basis: FloatArray
     mass: FloatArray
     stiffness: FloatArray
@@ -50,6 +51,11 @@ def class_drive(plate: RectangularPlate, solved: SolvedModel) -> FloatArray:
         out[electrode] += built.sign_of[i] * signs[i] * (built.share_of[i] != 0)
         members[electrode] += 1
     return out / np.maximum(members, 1)
+
+
+def resolved_frequency(band: tuple[Hertz, Hertz]) -> Hertz:
+    """The frequency that meshes for a band are made for: as `solve_modes` makes its own."""
+    return max(band[1], 1.15 * sum(band) / 2)
 
 
 def plate_circuit(
@@ -85,7 +91,7 @@ def reduced_class(
     `loads` are surface forces (x, y, w as in `SolvedModel.force`) whose responses the space must
     hold too.
     """
-    built = plate_model(plate, band[1], resolution, parity)
+    built = plate_model(plate, resolved_frequency(band), resolution, parity)
     slabs = Slabs(built.model)
     solved = SolvedModel(plate, built, slabs)
     shift = (2 * np.pi) ** 2 * 0.5 * (band[0] ** 2 + band[1] ** 2) * 1.0007**2
@@ -101,6 +107,7 @@ def reduced_class(
     n = float(built.copies)
     return ReducedClass(
         solved,
+        resolution,
         basis,
         n * _symmetric(basis.T @ slabs.mass_times(basis)),
         n * _symmetric(basis.T @ KW),
@@ -210,35 +217,3 @@ def harmonic_solution(
         potentials.append(V)
         start += size
     return solution[:, :total], potentials, charge
-
-
-def extrapolated_class(one: ReducedClass, band: tuple[Hertz, Hertz]) -> ReducedClass:
-    """The same class with its stiffness and loss scaled so that the most strongly driven mode near
-    the band stands at its frequency extrapolated from two meshes.
-
-    Other modes move by the same ratio, nearer to theirs than the mesh alone. Unchanged where no
-    driven mode is near, and on meshes that have no coarser one to compare with.
-    """
-    built, slabs = one.solved.built, one.solved.slabs
-    level = next((k for k, res in enumerate(LEVELS) if res == one.resolution), None)
-    coarser = (COARSE, *LEVELS)[level] if level is not None else None
-    values, shapes = eigh(one.stiffness, one.mass)
-    f = np.sqrt(np.maximum(values, 0.0)) / (2 * np.pi)
-    force = np.abs(shapes.T @ (one.coupling @ one.drive))
-    near = np.flatnonzero((f > 0.9 * band[0]) & (f < 1.1 * band[1]) & (force > 1e-3 * force.max()))
-    if coarser is None or level is None or near.size == 0:
-        return one
-    # Response at the band's nearest frequency: force squared over the distance of the squares.
-    distance = np.maximum(0.0, np.maximum(band[0] - f[near], f[near] - band[1])) / f[near]
-    mode = int(near[np.argmax(force[near] ** 2 / (distance + 0.01))])
-    vector = (one.basis @ shapes[:, mode])[:, None]
-    rough = Slabs(plate_model(one.solved.plate, band[1], coarser, built.parity).model)
-    shift = values[mode] * (1 + 2e-3)
-    start = restricted(slabs, rough, vector)
-    pairs = modes_near(
-        rough, SlabFactor(rough, shift).solve, shift,
-        lambda v: np.array([np.argmin(np.abs(v - shift))]), start, tolerance=1e-6,
-    )  # fmt: skip
-    wanted, _ = extrapolated(pairs.values, values[mode : mode + 1], level)
-    ratio = float(wanted[0] / f[mode]) ** 2
-    return dataclasses.replace(one, stiffness=ratio * one.stiffness, loss=ratio * one.loss)

@@ -49,9 +49,11 @@ def solve_modes(
 
     Electrodes are shorted or driven (the same for free vibration) unless a patch says open or
     shunted: a resistor's stiffening counts in `frequencies`, its loss in `quality_factors`; shapes
-    are those with it short. Interrupted, it leaves nothing behind. Valid for linear, small vibration in
-    vacuum. Raises `InputError` for a band without modes or a label that is not found,
-    `OutOfRangeError` for plates too thin for solid elements.
+    and couplings are those with it short. Valid for linear, small vibration in vacuum. Interrupted,
+    it leaves nothing behind.
+
+    Raises `InputError` for a band without modes or a label that is not found, `OutOfRangeError` for
+    plates too thin for solid elements.
     """
     if sum(option is not None for option in (near, band, mode)) > 1:
         raise InputError("give one of near, band and mode; they choose the modes in different ways")
