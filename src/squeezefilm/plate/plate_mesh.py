@@ -35,8 +35,8 @@ from squeezefilm.plate.plate_symmetry import (
 from squeezefilm.quantities import Dimensionless, Metre, Unit, format_quantity
 
 # Largest side of the plate over its thinnest layer. Measured on the paper's plate: a layer of glue
-# with the plate's own constants moves (8,0) in proportion to its thickness, to 2e-6, down to a ratio
-# of 8e6; digits are lost from 8e7. The limit keeps far from that.
+# with the plate's own constants moves (8,0) in proportion to its thickness, to 2e-6, up to a
+# ratio of 8e6; digits are lost from 8e7. The limit keeps far from that.
 _THINNEST = 2e4
 # Half a wave over the plate's thickness. Measured on free square plates: the lowest mode is within
 # 4e-5 of thin-plate theory at 290, within 1e-4 at 230, and off by 1e-3 at 430 and by 22 % at 1400,
@@ -245,10 +245,11 @@ def plate_model(
         )
     wave = wave_number(plate, frequency)
     if math.pi / wave > _SLENDEREST * plate.thickness:
+        ratio = math.pi / wave / plate.thickness
         raise OutOfRangeError(
-            f"at {frequency:.4g} Hz half a wave on the plate is {math.pi / wave / plate.thickness:.0f} "
-            f"times its thickness; above {_SLENDEREST:.0f} three-dimensional elements lose their "
-            "digits; ask for a higher frequency or use a plate theory"
+            f"at {frequency:.4g} Hz half a wave on the plate is {ratio:.0f} times its thickness; "
+            f"above {_SLENDEREST:.0f} three-dimensional elements lose their digits; ask for a "
+            "higher frequency or use a plate theory"
         )
     half = tuple(p is not None for p in parity)
     breaks = [_breaks(plate, axis, half[axis]) for axis in (0, 1)]

@@ -136,10 +136,13 @@ def _krylov_space(slabs: Slabs, factor: SlabFactor, columns: FloatArray, steps: 
     for _ in range(steps):
         MX = slabs.mass_times(X)
         norm = np.sqrt(np.maximum(np.sum(X * MX, axis=0), 1e-300))
-        X = X / norm
+        X, MX = X / norm, MX / norm
         for _ in range(2):
-            X = X - Q @ (MQ.T @ X)
-        MX = slabs.mass_times(X)
+            part = MQ.T @ X
+            X, MX = X - Q @ part, MX - MQ @ part
+        if np.sum(X * MX) < 1e-6 * X.shape[1]:
+            # Little is left: the product carried along has lost its digits.
+            MX = slabs.mass_times(X)
         size, turn = np.linalg.eigh(_symmetric(X.T @ MX))
         # What is left of a direction that the space already holds is rounding.
         good = size > 1e-20
