@@ -55,6 +55,7 @@ def estimated_frequency(plate: RectangularPlate, label: Label) -> float:
 
 
 def class_fits(parity: tuple[Parity | None, Parity | None], label: Label) -> bool:
+    """Whether a mode with these nodal lines can belong to a class of symmetry."""
     return all(
         p is None or p == ("S" if lines % 2 == 0 else "A")
         for p, lines in zip(parity, label, strict=True)
@@ -69,6 +70,8 @@ def coarse_modes(
     band: tuple[float, float] | None,
     count: int,
 ) -> CoarseModes:
+    """The modes of one class on the coarse mesh: the `count` nearest to `centre` (Hz), or all in a
+    band, their number checked by Sylvester's law where no electrode is open."""
     built = plate_model(plate, highest, COARSE, parity)
     slabs = Slabs(built.model)
     solved = SolvedModel(plate, built, slabs)

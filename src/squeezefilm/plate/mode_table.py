@@ -47,6 +47,10 @@ def collected_modes(
     tolerance: float,
     band: tuple[float, float] | None,
 ) -> PlateModes:
+    """The modes of all classes in ascending order, those outside a band left out.
+
+    Raises `InputError` where none is left.
+    """
     rows = []
     x = y = np.zeros(0)
     signs = drive_signs(plate)
