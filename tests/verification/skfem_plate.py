@@ -1,10 +1,11 @@
 """The oracle: the same piezoelectric boxes by scikit-fem's quadratic hexahedra, assembled whole.
 
-Runs on any `BoxModel` of order-2 elements with free or symmetric sides and shorted electrodes.
-test extra; nothing of the package is used but the model's description.
+Runs on any `BoxModel` of order-2 elements with free or symmetric sides; electrodes are shorted,
+tied in groups that float, or left out. scikit-fem is a test extra; of the package only the model's
+description is used.
 """
 
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import scipy.sparse as sp
@@ -12,8 +13,12 @@ from scipy.sparse.linalg import eigsh
 
 from squeezefilm.plate.box_model import BoxModel
 
+Outer = Literal["shorted", "bare"] | list[list[tuple[int, int]]]
+"""What becomes of the outer faces: all at zero volts, without any metal, or groups of (electrode,
+sign) that each share one potential and carry no charge together."""
 
-def assembled(model: BoxModel) -> tuple[Any, Any]:
+
+def assembled(model: BoxModel, outer: Outer = "shorted") -> tuple[Any, Any]:
     """K and M with the potential condensed by elimination order: (u, φ) sparse, free unknowns."""
     from skfem import Basis, BilinearForm, ElementHex2, ElementVector, MeshHex
     from skfem.helpers import ddot, dot, grad, sym_grad
@@ -69,17 +74,32 @@ def assembled(model: BoxModel) -> tuple[Any, Any]:
         B, E = B + piezo.assemble(some, own), E + dielectric.assemble(own)
     inside = np.unique(potential.element_dofs[:, ceramic >= 0])
     height = potential.doflocs[2, inside]
-    planes = [
-        model.z.nodes[k] for one in model.electrodes for k in (one.driven_plane, one.grounded_plane)
-    ]
-    free = inside[~np.any(np.abs(height[:, None] - np.array(planes)) < 1e-12, axis=1)]
     # Potentials scaled so that elimination keeps its digits.
     scale = 3e9
-    A = sp.bmat([[K, scale * B[free].T], [scale * B[free], -(scale**2) * E[free][:, free]]])
-    mass = sp.bmat([[M, None], [None, sp.csr_matrix((free.size, free.size))]])
-    used = np.concatenate(
-        [np.unique(whole.element_dofs[:, medium >= 0]), nu + np.arange(free.size)]
-    )
+
+    def on(plane_of: str) -> Any:
+        found = np.zeros(inside.size, dtype=bool)
+        for number, one in enumerate(model.electrodes):
+            own = np.isin(inside, np.unique(potential.element_dofs[:, ceramic == number]))
+            found |= own & (np.abs(height - model.z.nodes[getattr(one, plane_of)]) < 1e-12)
+        return found
+
+    grounded, driven = on("grounded_plane"), on("driven_plane")
+    free = inside[~grounded if outer == "bare" else ~(grounded | driven)]
+    groups = [] if isinstance(outer, str) else outer
+    T = sp.lil_matrix((nphi, free.size + len(groups)))
+    T[free, np.arange(free.size)] = scale
+    for column, group in enumerate(groups):
+        for electrode, sign in group:
+            own = np.unique(potential.element_dofs[:, ceramic == electrode])
+            plane = model.z.nodes[model.electrodes[electrode].driven_plane]
+            own = own[np.abs(potential.doflocs[2, own] - plane) < 1e-12]
+            T[own, free.size + column] = scale * sign
+    T = T.tocsr()
+    count = T.shape[1]
+    A = sp.bmat([[K, (T.T @ B).T], [T.T @ B, -(T.T @ E @ T)]])
+    mass = sp.bmat([[M, None], [None, sp.csr_matrix((count, count))]])
+    used = np.concatenate([np.unique(whole.element_dofs[:, medium >= 0]), nu + np.arange(count)])
     used = np.setdiff1d(used, _held(model, mesh, whole))
     return A.tocsr()[used][:, used].tocsc(), mass.tocsr()[used][:, used].tocsc()
 
@@ -100,9 +120,11 @@ def _held(model: BoxModel, mesh: Any, whole: Any) -> Any:
     return np.concatenate(held)
 
 
-def skfem_frequencies(model: BoxModel, guess: float, count: int) -> np.ndarray:
+def skfem_frequencies(
+    model: BoxModel, guess: float, count: int, outer: Outer = "shorted"
+) -> np.ndarray:
     """The `count` frequencies (Hz) nearest to a guess."""
-    A, mass = assembled(model)
+    A, mass = assembled(model, outer)
     shift = (2 * np.pi * guess) ** 2
     values = eigsh(A, k=count, M=mass, sigma=shift, return_eigenvectors=False, tol=1e-13)
     return np.sort(np.sqrt(values)) / (2 * np.pi)

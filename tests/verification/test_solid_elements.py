@@ -210,8 +210,16 @@ def test_pvdf_bimorph_cantilever_bends_as_published() -> None:
         assert found == pytest.approx(micrometre, rel=1.5e-2)
 
 
-def monomorph_on_a_uniform_mesh(strip: int, across: int) -> BoxModel:
-    """The reference quadratic mesh of 7 strips: elements per strip, along y; one in z each."""
+PRINTED_E31 = (-1.3881, 4.8710, 3.5703)
+FROM_D31 = (-6.1274, 21.5017, 15.7602)
+
+
+def monomorph_on_a_uniform_mesh(
+    strip: int, across: int, stress: tuple[float, float, float] = PRINTED_E31
+) -> BoxModel:
+    """The reference quadratic mesh of 7 strips: elements per strip, along y; one in z each.
+
+    `stress` is e31, e33 and e15 (C/m²)."""
     edges = [0.0]
     inside = []
     for k in range(7):
@@ -235,7 +243,8 @@ def monomorph_on_a_uniform_mesh(strip: int, across: int) -> BoxModel:
     s[:2, 2] = s[2, :2] = c["s13"]
     s[2, 2], s[3, 3], s[4, 4], s[5, 5] = c["s33"], c["s44"], c["s44"], 41.5073
     e = np.zeros((3, 6))
-    e[2, :3], e[1, 3], e[0, 4] = [-1.3881, -1.3881, 4.8710], 3.5703, 3.5703
+    e31, e33, e15 = stress
+    e[2, :3], e[1, 3], e[0, 4] = [e31, e31, e33], e15, e15
     media = (
         Medium("CuBe", isotropic_stiffness(123e9, 0.3), 8250.0),
         Medium("PZT", np.linalg.inv(s * 1e-12), 7700.0, 0, -e,

@@ -8,7 +8,7 @@ elements along x.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,6 +19,8 @@ from squeezefilm.quantities import FloatArray
 
 # (mechanical, electrical) factors of a medium's constants; None leaves the medium out.
 Weight = Callable[[Medium], tuple[float, float]]
+# A factor on all foundations' stiffness, or one for each of them.
+Springs = float | Sequence[float]
 
 
 def full_weight(medium: Medium) -> tuple[float, float]:
@@ -92,7 +94,7 @@ def _kron(Y: FloatArray, Z: FloatArray) -> FloatArray:
 
 
 def cross_section(
-    model: BoxModel, element: int, weight: Weight = full_weight, *, springs: float = 1.0
+    model: BoxModel, element: int, weight: Weight = full_weight, *, springs: Springs = 1.0
 ) -> CrossSection:
     """The slice matrices of x element number `element`, with the side conditions of y− and y+.
 
@@ -126,14 +128,15 @@ def cross_section(
             R = _kron(M, mass[None, :, None, :] * three[:, None, :, None])
             kron_cache[key] = (P2, P1, P0, R)
         P2, P1, P0, R = kron_cache[key]
-        for spring in model.foundations:
+        for number, spring in enumerate(model.foundations):
             if (
                 spring.x_elements[0] <= element < spring.x_elements[1]
                 and spring.y_elements[0] <= j < spring.y_elements[1]
             ):
                 Zs = np.zeros((4, nz, 4, nz))
+                scale = springs if isinstance(springs, float) else springs[number]
                 for a in range(3):
-                    Zs[a, spring.z_plane, a, spring.z_plane] = spring.stiffness[a] * springs
+                    Zs[a, spring.z_plane, a, spring.z_plane] = spring.stiffness[a] * scale
                 P0 = P0 + _kron(hierarchic_line_matrices(length, order)[0], Zs)
         codes, keep = _element_codes(model, element, j, present, electrode_of)
         at = np.ix_(keep, keep)

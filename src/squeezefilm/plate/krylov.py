@@ -113,41 +113,28 @@ def modes_near(
     )
 
 
-def prolonged(coarse: Slabs, fine: Slabs, vectors: FloatArray) -> FloatArray:
-    """Displacements of a coarse solution as vectors of a finer model with the same elements along
-    y and z (of any order) and any elements along x."""
-    out = np.zeros((fine.unknowns, vectors.shape[1]))
-    x = coarse.model.x.interpolation(fine.model.x.nodes)
-    to_y = _embedding(coarse.model.y, fine.model.y)
-    to_z = _embedding(coarse.model.z, fine.model.z)
-    base = 4 * fine.model.y.nodes.size * fine.model.z.nodes.size
+def prolonged(source: Slabs, target: Slabs, vectors: FloatArray) -> FloatArray:
+    """Displacements of a solution as vectors of another discretisation of the same solid, finer or
+    coarser, by interpolation; potentials are left at zero."""
+    out = np.zeros((target.unknowns, vectors.shape[1]))
+    x = source.model.x.interpolation(target.model.x.nodes)
+    y = _transfer(source.model.y, target.model.y)
+    z = _transfer(source.model.z, target.model.z)
     for column in range(vectors.shape[1]):
-        grid = coarse.grid(vectors[:, column])
-        shape = (x.shape[0], fine.model.y.nodes.size, fine.model.z.nodes.size, 4)
-        full = np.zeros(shape)
-        full[:, to_y[0][:, None], to_z[0][None, :], :3] = np.tensordot(x, grid, 1)[
-            :, to_y[1][:, None], to_z[1][None, :], :
-        ]
-        flat = full.reshape(shape[0], -1)
-        for n, codes in enumerate(fine.codes):
-            moving = codes < base
-            at = fine.offsets[n] + np.flatnonzero(moving)
-            out[at, column] = flat[n, codes[moving]]
-    out[fine.held] = 0
+        grid = np.tensordot(x, source.grid(vectors[:, column]), 1)
+        grid = np.einsum("abcd,eb,fc->aefd", grid, y, z, optimize=True)
+        for n, (component, iy, iz) in enumerate(target.parts):
+            moving = np.flatnonzero(component < 3)
+            at = target.offsets[n] + moving
+            out[at, column] = grid[n, iy[moving], iz[moving], component[moving]]
+    out[target.held] = 0
     return out
 
 
-def _embedding(coarse: LineMesh, fine: LineMesh) -> tuple[IntArray, IntArray]:
-    """Which fine hierarchic functions are also coarse ones (their indices there)."""
-    to, source = [], []
-    for k in range(coarse.elements):
-        a, b = coarse.first_node[k], fine.first_node[k]
-        common = min(coarse.orders[k], fine.orders[k])
-        source += [a, *range(a + 1, a + common)]
-        to += [b, *range(b + 1, b + common)]
-    source.append(coarse.first_node[-1])
-    to.append(fine.first_node[-1])
-    return np.array(to), np.array(source)
+def _transfer(source: LineMesh, target: LineMesh) -> FloatArray:
+    """Hierarchic coefficients on one line mesh from those on another."""
+    values = source.hierarchic_interpolation(target.nodes)
+    return np.asarray(np.linalg.solve(target.hierarchic_interpolation(target.nodes), values))
 
 
 def modes_below(slabs: Slabs, shift: float) -> int:

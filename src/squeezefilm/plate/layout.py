@@ -176,15 +176,6 @@ class RectangularPlate:
         require("quality_factor", self.quality_factor, above=0.5)
         if not self.patches:
             raise GeometryError("patches is empty; a plate needs at least one ceramic to drive it")
-        if len({patch.thickness for patch in self.patches}) > 1:
-            raise GeometryError(
-                "patches have different thicknesses; one thickness for all of them is allowed"
-            )
-        if len({support.quality_factor for support in self.supports}) > 1:
-            raise GeometryError(
-                "supports have different quality factors; one for all of them is allowed",
-                quantity="supports",
-            )
         self._check_overhang()
         self._check_overlap()
 
@@ -232,8 +223,12 @@ class RectangularPlate:
 
     @property
     def ceramic_thickness(self) -> Metre:
-        """The thickness that all ceramics share."""
-        return self.patches[0].thickness
+        """The ceramics' thickness, their mean by area where they differ: for laminates and
+        drawings; the solid model takes each patch's own."""
+        area = sum(patch.length * patch.width for patch in self.patches)
+        volume = sum(patch.length * patch.width * patch.thickness for patch in self.patches)
+        same = len({patch.thickness for patch in self.patches}) == 1
+        return self.patches[0].thickness if same else volume / area
 
     @property
     def coverage(self) -> Dimensionless:

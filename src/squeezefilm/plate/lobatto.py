@@ -7,7 +7,6 @@ three-dimensional plate is a sum of Kronecker products of the three below.
 from __future__ import annotations
 
 import functools
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -165,18 +164,3 @@ class LineMesh:
             start = self.first_node[k]
             out[np.ix_(mine, np.arange(start, start + self.orders[k] + 1))] = values
         return out
-
-
-def graded_edges(
-    start: Metre, stop: Metre, *, at_start: Sequence[float] = (), at_stop: Sequence[float] = ()
-) -> list[float]:
-    """The inner and outer edges of elements between two points, thin layers at either end.
-
-    `at_start` and `at_stop` are the distances (m) of layer edges from that end; those beyond a
-    limit of 45 % of the interval are left out. Singular stresses at the end of a bonded layer ask
-    for layers that shrink geometrically towards it.
-    """
-    span = stop - start
-    left = sorted(d for d in at_start if d < 0.45 * span)
-    right = sorted((d for d in at_stop if d < 0.45 * span), reverse=True)
-    return [start, *(start + d for d in left), *(stop - d for d in right), stop]

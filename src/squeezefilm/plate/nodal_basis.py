@@ -1,4 +1,4 @@
-"""Gauss–Lobatto elements in one direction: nodes, Lagrange polynomials, graded element edges.
+"""Nodal elements in one direction on the nodes of `lobatto`: Lagrange values, graded edges.
 
 The plate and ring solvers are tensor products of these.
 """
@@ -12,26 +12,12 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.polynomial import legendre
 
-from squeezefilm.plate.lobatto import lagrange_basis
-from squeezefilm.quantities import FloatArray, require
+from squeezefilm.plate.lobatto import lagrange_basis, lobatto_nodes
+from squeezefilm.quantities import FloatArray
 
 CORNER_GRADING = 0.15
 """The ratio in which elements shrink towards a singular corner; near the optimum of hp methods
 (Babuška and Guo 1986: (√2 − 1)²)."""
-
-
-@functools.lru_cache(maxsize=64)
-def lobatto_points(degree: int) -> FloatArray:
-    """The `degree` + 1 Gauss–Lobatto points on −1…1: the ends and the zeros of P'_degree.
-
-    Source: Abramowitz and Stegun, eq 25.4.32. Raises `InputError` for a degree below 1.
-    """
-    require("degree", degree, at_least=1)
-    coefficients = np.zeros(degree + 1)
-    coefficients[-1] = 1.0
-    inner = legendre.legroots(legendre.legder(coefficients))
-    points: FloatArray = np.concatenate([[-1.0], np.sort(inner.real), [1.0]])
-    return points
 
 
 @functools.lru_cache(maxsize=64)
@@ -40,7 +26,7 @@ def lagrange(degree: int, at: tuple[float, ...]) -> tuple[FloatArray, FloatArray
 
     Two arrays of shape (len(at), degree + 1); derivatives are with respect to −1…1.
     """
-    return lagrange_basis(lobatto_points(degree), np.asarray(at))
+    return lagrange_basis(lobatto_nodes(degree), np.asarray(at))
 
 
 @functools.lru_cache(maxsize=64)
@@ -52,7 +38,7 @@ def gauss_points(count: int) -> tuple[FloatArray, FloatArray]:
 
 def node_coordinates(edges: FloatArray, degree: int) -> FloatArray:
     """The nodes of a row of elements, shape ((len(edges) − 1) × degree + 1,), shared at edges."""
-    reference = (lobatto_points(degree) + 1) / 2
+    reference = (lobatto_nodes(degree) + 1) / 2
     inner = edges[:-1, None] + np.diff(edges)[:, None] * reference[None, :-1]
     return np.append(inner.ravel(), edges[-1])
 

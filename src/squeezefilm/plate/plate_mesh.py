@@ -24,7 +24,7 @@ from squeezefilm.plate.box_model import (
     IntArray,
     Medium,
 )
-from squeezefilm.plate.layout import CeramicPatch, FoamSupport, RectangularPlate
+from squeezefilm.plate.layout import CeramicPatch, Face, FoamSupport, RectangularPlate
 from squeezefilm.plate.lobatto import MAX_ORDER, LineMesh
 from squeezefilm.plate.plate_symmetry import (
     SNAP,
@@ -34,7 +34,14 @@ from squeezefilm.plate.plate_symmetry import (
 )
 from squeezefilm.quantities import Dimensionless, Metre, Unit, format_quantity
 
-_THINNEST = 2000.0  # in-plane element length over layer thickness that still solves to 1e-6
+# Largest side of the plate over its thinnest layer. Measured on the paper's plate: a layer of glue
+# with the plate's own constants moves (8,0) in proportion to its thickness, to 2e-6, up to a
+# ratio of 8e6; digits are lost from 8e7. The limit keeps far from that.
+_THINNEST = 2e4
+# Half a wave over the plate's thickness. Measured on free square plates: the lowest mode is within
+# 4e-5 of thin-plate theory at 290, within 1e-4 at 230, and off by 1e-3 at 430 and by 22 % at 1400,
+# where bending is lost in the rounding of membrane stiffness.
+_SLENDEREST = 250.0
 
 
 @dataclass(frozen=True)
@@ -42,24 +49,27 @@ class Resolution:
     """How fine a plate is meshed.
 
     `edge_layers` are distances of element edges from a ceramic's edge, in units of the thinner of
-    plate and ceramic (`edge_layers_y` those across the slices); `order_x` the least order of
-    elements in the plane, `order_z` that across each layer; `order_y` is added to 0.65 times the
+    plate and ceramic (`edge_layers_y` those across the slices), `bond_layers` those from a bond
+    across the thickness, in units of the layer's own. `order_x` is the least order of elements in
+    the plane, `order_z` that across each layer; `extra_x` and `extra_y` are added to 0.65 times the
     phase (rad) that the shortest wave covers in an element.
     """
 
     edge_layers: tuple[float, ...]
     edge_layers_y: tuple[float, ...]
     order_x: int
-    order_y: float
+    extra_x: float
+    extra_y: float
     order_z: int
+    bond_layers: tuple[float, ...] = ()
     trunk: Dimensionless = 1.0
 
 
-COARSE = Resolution((0.9,), (0.9,), 3, 1, 4)
-NORMAL = Resolution((0.3, 1.5), (0.3, 1.5), 3, 3, 6)
-FINE = Resolution((0.12, 0.5, 1.7), (0.12, 0.5, 1.7), 3, 4, 7)
-# For checks: an error near a third of NORMAL's, at fifteen times its cost.
-REFERENCE = Resolution((0.08, 0.4, 1.5), (0.1, 0.5, 1.7), 3, 4.5, 8)
+# From each to the next every kind of error (smooth, at strip edges, at the bond) falls by a factor
+# of three or more: only then does the difference of two say what the finer one still lacks.
+COARSE = Resolution((0.9,), (0.9,), 3, 1, 2, 3, trunk=1.3)
+NORMAL = Resolution((0.2, 1.2), (0.3,), 3, 3, 4, 6)
+FINE = Resolution((0.06, 0.4, 1.5), (0.15,), 3, 3, 5.5, 5, (0.1,))
 
 
 @dataclass(frozen=True, eq=False)
@@ -223,30 +233,37 @@ def plate_model(
             )
     thinnest = min(
         plate.thickness,
-        plate.ceramic_thickness,
+        *(patch.thickness for patch in plate.patches),
         math.inf if plate.glue is None else plate.glue.thickness,
     )
-    if max(plate.length, plate.width) > _THINNEST * thinnest * 10:
+    if max(plate.length, plate.width) > _THINNEST * thinnest:
         raise OutOfRangeError(
             f"a layer of {format_quantity(thinnest, Unit('m'))} on a plate of "
             f"{format_quantity(max(plate.length, plate.width), Unit('m'))} has an aspect ratio "
-            f"above {10 * _THINNEST:.0f}, where three-dimensional elements lose their digits; use "
+            f"above {_THINNEST:.0f}, where three-dimensional elements lose their digits; use "
             "a plate theory"
         )
     wave = wave_number(plate, frequency)
+    if math.pi / wave > _SLENDEREST * plate.thickness:
+        ratio = math.pi / wave / plate.thickness
+        raise OutOfRangeError(
+            f"at {frequency:.4g} Hz half a wave on the plate is {ratio:.0f} times its thickness; "
+            f"above {_SLENDEREST:.0f} three-dimensional elements lose their digits; ask for a "
+            "higher frequency or use a plate theory"
+        )
     half = tuple(p is not None for p in parity)
     breaks = [_breaks(plate, axis, half[axis]) for axis in (0, 1)]
     # Slices stand across the axis with more edges: they are smaller then.
     swapped = (len(breaks[1][0]), plate.width) > (len(breaks[0][0]), plate.length)
     along, across = (1, 0) if swapped else (0, 1)
-    thickness = min(plate.ceramic_thickness, plate.thickness)
+    thickness = min(plate.thickness, *(patch.thickness for patch in plate.patches))
     x = _line(*breaks[along], half[along], thickness, resolution.edge_layers, resolution.order_x,
-              wave, resolution.order_y, cut=True)  # fmt: skip
+              wave, resolution.extra_x, cut=True)  # fmt: skip
     # A ceramic that ends with the plate's own edge ends there without a corner.
     inner = [v for v in breaks[across][1] if v > 0 and v != breaks[across][0][-1]]
     y = _line(breaks[across][0], inner, half[across], thickness, resolution.edge_layers_y,
-              resolution.order_x, wave, resolution.order_y, cut=False)  # fmt: skip
-    z, layers = _through_thickness(plate, resolution)
+              resolution.order_x, wave, resolution.extra_y, cut=False)  # fmt: skip
+    z, layers, ceramics = _through_thickness(plate, resolution)
     shape = (x.elements, y.elements, z.elements)
     medium, ceramic = np.full(shape, -1), np.full(shape, -1)
     centre_x = (np.array(x.edges[1:]) + np.array(x.edges[:-1])) / 2
@@ -260,7 +277,7 @@ def plate_model(
             np.flatnonzero((centre_y > y0) & (centre_y < y1)),
         )
 
-    medium[:, :, layers["plate"]] = 0
+    medium[:, :, slice(*layers["plate"])] = 0
     electrode_of, sign_of = _electrode_map(plate, parity)
     electrodes: list[Electrode] = []
     number_of: dict[int, int] = {}
@@ -275,16 +292,16 @@ def plate_model(
         if electrode_of[i] != i or rows.size == 0 or columns.size == 0:
             continue
         number_of[i] = len(electrodes)
-        k = layers[patch.face]
-        block = np.ix_(rows, columns, np.array([k]))
+        first, last = ceramics[patch.face, _snapped(patch.thickness)]
+        block = np.ix_(rows, columns, np.arange(first, last))
         medium[block] = 1 if patch.face == "bottom" else 2
         ceramic[block] = number_of[i]
         if plate.glue is not None:
-            glued = np.array([layers[f"glue_{patch.face}"]])
+            glued = np.arange(*layers[f"glue_{patch.face}"])
             medium[np.ix_(rows, columns, glued)] = 3
-        low, high = z.first_node[k], z.first_node[k + 1]
+        low, high = z.first_node[first], z.first_node[last]
         electrodes.append(Electrode(low, high) if patch.face == "bottom" else Electrode(high, low))
-    top = z.first_node[layers["plate"] + 1]
+    bottom, top = (z.first_node[k] for k in layers["plate"])
     foundations = []
     for support in plate.supports:
         rows, columns = cells(support)
@@ -294,7 +311,7 @@ def plate_model(
                 Foundation(
                     (int(rows[0]), int(rows[-1]) + 1),
                     (int(columns[0]), int(columns[-1]) + 1),
-                    top if support.face == "top" else z.first_node[layers["plate"]],
+                    top if support.face == "top" else bottom,
                     (ky, kx, kz) if swapped else (kx, ky, kz),
                     1 / support.quality_factor,
                 )
@@ -360,29 +377,63 @@ def _electrode_map(
     return stands, tuple(signs)
 
 
+def _thicknesses(plate: RectangularPlate, face: Face) -> list[Metre]:
+    """The different thicknesses of the ceramics on a face, ascending."""
+    return _merged(patch.thickness for patch in plate.patches if patch.face == face)
+
+
 def _through_thickness(
     plate: RectangularPlate, resolution: Resolution
-) -> tuple[LineMesh, dict[str, int]]:
-    faces = {patch.face for patch in plate.patches}
-    layers: dict[str, int] = {}
-    edges: list[float] = []
-    orders: list[int] = []
+) -> tuple[LineMesh, dict[str, tuple[int, int]], dict[tuple[Face, int], tuple[int, int]]]:
+    """The mesh along z (0 at the plate's lower face), the range of elements of plate and glue by
+    name, and that of each patch's ceramic by its face and thickness (in units of `SNAP`)."""
     glue = 0.0 if plate.glue is None else plate.glue.thickness
-    position = -(glue + plate.ceramic_thickness) if "bottom" in faces else 0.0
-    edges.append(position)
+    edges, orders = [0.0], []
+    layers: dict[str, tuple[int, int]] = {}
+    ceramics: dict[tuple[Face, int], tuple[int, int]] = {}
 
-    def add(name: str, thickness: Metre, order: int) -> None:
-        layers[name] = len(orders)
-        edges.append(edges[-1] + thickness)
-        orders.append(order)
+    def add(thickness: Metre, order: int, *, from_below: bool, from_above: bool) -> None:
+        """One layer, its elements shrinking towards the bond below or above it."""
+        near = [c * thickness for c in resolution.bond_layers]
+        inner = [d for d in near if from_below] + [thickness - d for d in near if from_above]
+        bottom = edges[-1]
+        for part in [*sorted(inner), thickness]:
+            edges.append(bottom + part)
+            orders.append(order)
 
-    if "bottom" in faces:
-        add("bottom", plate.ceramic_thickness, resolution.order_z)
-        if glue:
-            add("glue_bottom", glue, min(resolution.order_z, 4))
-    add("plate", plate.thickness, resolution.order_z)
-    if "top" in faces:
-        if glue:
-            add("glue_top", glue, min(resolution.order_z, 4))
-        add("top", plate.ceramic_thickness, resolution.order_z)
-    return LineMesh(tuple(edges), tuple(orders)), layers
+    below = _thicknesses(plate, "bottom")
+    above = _thicknesses(plate, "top")
+    # Without its start: z = 0 is the plate's lower face, found when all below is known.
+    for outer, own in itertools.pairwise([*reversed(below), 0.0]):
+        add(outer - own, resolution.order_z, from_below=False, from_above=own == 0.0)
+    under = len(orders)
+    if below and glue:
+        add(glue, min(resolution.order_z, 4), from_below=False, from_above=False)
+        layers["glue_bottom"] = (under, len(orders))
+    start = len(orders)
+    add(plate.thickness, resolution.order_z, from_below=bool(below), from_above=bool(above))
+    layers["plate"] = (start, len(orders))
+    over = len(orders)
+    if above and glue:
+        add(glue, min(resolution.order_z, 4), from_below=False, from_above=False)
+        layers["glue_top"] = (over, len(orders))
+        over = len(orders)
+    for own, outer in itertools.pairwise([0.0, *above]):
+        add(outer - own, resolution.order_z, from_below=own == 0.0, from_above=False)
+    shift = edges[start]
+    mesh = LineMesh(tuple(v - shift for v in edges), tuple(orders))
+    for thickness in below:
+        at = _nearest(mesh, mesh.edges[under] - thickness)
+        ceramics["bottom", _snapped(thickness)] = (at, under)
+    for thickness in above:
+        at = _nearest(mesh, mesh.edges[over] + thickness)
+        ceramics["top", _snapped(thickness)] = (over, at)
+    return mesh, layers, ceramics
+
+
+def _nearest(mesh: LineMesh, position: Metre) -> int:
+    return int(np.argmin(np.abs(np.array(mesh.edges) - position)))
+
+
+def _snapped(length: Metre) -> int:
+    return round(length / SNAP)

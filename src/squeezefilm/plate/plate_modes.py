@@ -189,6 +189,18 @@ def zero_crossings(position: FloatArray, profile: FloatArray) -> FloatArray:
     return np.asarray(x[at] - w[at] * (x[at + 1] - x[at]) / (w[at + 1] - w[at]))
 
 
+_POINTS = (97, 65)
+
+
+def surface_shapes(
+    solved: SolvedModel, vectors: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """A grid x, y over the whole plate and the displacements there on its upper face."""
+    plate = solved.plate
+    x, y = np.linspace(0, plate.length, _POINTS[0]), np.linspace(0, plate.width, _POINTS[1])
+    return x, y, solved.field(vectors, x, y, plate.thickness)
+
+
 def label_of(surface: FloatArray, x: FloatArray, y: FloatArray) -> Label | None:
     """Nodal lines across the length and the width from displacements (x, y, 3) on the upper face;
     None where the motion is mostly in the plane."""

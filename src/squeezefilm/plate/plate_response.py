@@ -11,6 +11,7 @@ import numpy as np
 from squeezefilm.errors import GeometryError, InputError
 from squeezefilm.plate.blas_threads import one_blas_thread
 from squeezefilm.plate.box_model import IntArray
+from squeezefilm.plate.extrapolated_plate import extrapolated_class
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.plate_mesh import NORMAL, Resolution
 from squeezefilm.plate.plate_modes import MODEL
@@ -254,14 +255,19 @@ def harmonic_response(
     loads: Sequence[SurfaceLoad] = (),
     steps: int | None = None,
     resolution: Resolution = NORMAL,
+    extrapolate: bool = True,
     progress: Callable[[str, float], None] | None = None,
 ) -> HarmonicResponse:
     """The response to one volt on the drive over a band of frequencies (Hz, ascending).
 
     Reduced by a Krylov space about the band's centre, which holds the modes near it and the
-    quasi-static answer of all others; `steps` is its length (chosen by the band if None), and the
-    truncation error is reported. Losses are structural (constant 1/Q of each material). Resonances
-    lie where the mesh has them, some 0.05 % above the extrapolated `solve_modes`.
+    quasi-static answer of all others; `steps` is its length (chosen by the band if None), and
+    the truncation error is reported. Losses are structural (constant 1/Q of each material).
+
+    The stiffness is scaled, by a few 1e-4, so that the most strongly driven mode in or near the
+    band stands at its frequency extrapolated from two meshes, where `solve_modes` has it (the
+    largest amplitude lies a little beside it, by damping and other modes). Without `extrapolate`,
+    or on a mesh other than NORMAL and FINE, resonances lie where the mesh has them.
 
     Raises `InputError` for frequencies that are not ascending and positive or a plate without a
     driven electrode, `GeometryError` for a load beside the plate.
@@ -286,7 +292,8 @@ def harmonic_response(
         for number, parity in enumerate(classes):
             if progress is not None:
                 progress(f"reducing class {number + 1} of {len(classes)}", number / len(classes))
-            parts.append(reduced_class(plate, parity, band, steps, pressures, resolution))
+            part = reduced_class(plate, parity, band, steps, pressures, resolution)
+            parts.append(extrapolated_class(part, band) if extrapolate else part)
         omega = 2 * np.pi * f
         added = _load_stiffness(plate, parts, loads, omega) if loads else None
         q, potentials, charge = harmonic_solution(parts, omega, added, None, 1.0)
@@ -334,7 +341,8 @@ def _truncation(
         start += size
         shorter.append(
             ReducedClass(
-                one.solved, one.basis[:, :n], one.mass[:n, :n], one.stiffness[:n, :n],
+                one.solved, one.resolution, one.basis[:, :n], one.mass[:n, :n],
+                one.stiffness[:n, :n],
                 one.loss[:n, :n], one.coupling[:n], one.capacitance, one.drive, one.circuit,
             )
         )  # fmt: skip
@@ -353,7 +361,12 @@ def direct_admittance(
     from squeezefilm.plate.cross_section import CrossSection
     from squeezefilm.plate.plate_mesh import plate_model
     from squeezefilm.plate.plate_modes import SolvedModel
-    from squeezefilm.plate.reduced_plate import _loss_weight, _spring_loss, class_drive
+    from squeezefilm.plate.reduced_plate import (
+        class_drive,
+        loss_weight,
+        resolved_frequency,
+        spring_losses,
+    )
     from squeezefilm.plate.slab_factor import SlabFactor
     from squeezefilm.plate.slabs import Slabs
 
@@ -361,10 +374,12 @@ def direct_admittance(
     solutions: list[ComplexArray] = []
     with one_blas_thread():
         for parity in drive_classes(plate):
-            built = plate_model(plate, frequency, resolution, parity)
+            built = plate_model(
+                plate, resolved_frequency((frequency, frequency)), resolution, parity
+            )
             slabs = Slabs(built.model)
             solved = SolvedModel(plate, built, slabs)
-            lossy = slabs.weighted_sections(_loss_weight, _spring_loss(built.model.foundations))
+            lossy = slabs.weighted_sections(loss_weight, spring_losses(built.model.foundations))
             made: dict[int, CrossSection] = {}
             sections = []
             for real, loss in zip(slabs.sections, lossy, strict=True):

@@ -27,7 +27,7 @@ def mirror_map(plate: RectangularPlate, axis: int) -> list[int] | None:
     span = (plate.length, plate.width)[axis]
 
     def place(part: CeramicPatch | FoamSupport, mirrored: bool) -> tuple[int, ...]:
-        start, extent = [part.x, part.y], [part.length, part.width]
+        start, extent = [part.x, part.y], [part.length, part.width, part.thickness]
         if mirrored:
             start[axis] = span - start[axis] - extent[axis]
         return tuple(round(v / SNAP / 4) for v in (*start, *extent))

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from squeezefilm.plate.box_model import Medium
+from squeezefilm.plate.box_model import Foundation, Medium
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.plate_mesh import NORMAL, Resolution, plate_model
 from squeezefilm.plate.plate_modes import SolvedModel
@@ -31,6 +31,7 @@ class ReducedClass:
     """
 
     solved: SolvedModel
+    resolution: Resolution
     basis: FloatArray
     mass: FloatArray
     stiffness: FloatArray
@@ -52,7 +53,16 @@ def class_drive(plate: RectangularPlate, solved: SolvedModel) -> FloatArray:
     return out / np.maximum(members, 1)
 
 
-def _circuit(plate: RectangularPlate, solved: SolvedModel) -> tuple[tuple[int, float, float], ...]:
+def resolved_frequency(band: tuple[Hertz, Hertz]) -> Hertz:
+    """The frequency that meshes for a band are made for: as `solve_modes` makes its own."""
+    return max(band[1], 1.15 * sum(band) / 2)
+
+
+def plate_circuit(
+    plate: RectangularPlate, solved: SolvedModel
+) -> tuple[tuple[int, float, float], ...]:
+    """Open and shunted electrodes of a class: model electrode, resistance (Ω, infinite if open) and
+    how many times the model's part of the ceramic makes a whole one."""
     out: dict[int, tuple[int, float, float]] = {}
     for i, patch in enumerate(plate.patches):
         share = solved.built.share_of[i]
@@ -63,7 +73,8 @@ def _circuit(plate: RectangularPlate, solved: SolvedModel) -> tuple[tuple[int, f
     return tuple(out.values())
 
 
-def _loss_weight(medium: Medium) -> tuple[float, float]:
+def loss_weight(medium: Medium) -> tuple[float, float]:
+    """The weight that makes a matrix of losses: each medium's own times its stiffness."""
     return medium.loss, 0.0
 
 
@@ -80,22 +91,23 @@ def reduced_class(
     `loads` are surface forces (x, y, w as in `SolvedModel.force`) whose responses the space must
     hold too.
     """
-    built = plate_model(plate, band[1], resolution, parity)
+    built = plate_model(plate, resolved_frequency(band), resolution, parity)
     slabs = Slabs(built.model)
     solved = SolvedModel(plate, built, slabs)
     shift = (2 * np.pi) ** 2 * 0.5 * (band[0] ** 2 + band[1] ** 2) * 1.0007**2
     factor = SlabFactor(slabs, shift)
     G, C = slabs.electrode_columns
-    drive, circuit = class_drive(plate, solved), _circuit(plate, solved)
+    drive, circuit = class_drive(plate, solved), plate_circuit(plate, solved)
     columns = [G @ drive] if np.any(drive) else []
     columns += [G[:, number] for number, _, _ in circuit]
     columns += [solved.force(x, y, plate.thickness, w) for x, y, w in loads]
     basis = _krylov_space(slabs, factor, np.stack(columns, axis=1), steps)
-    sections = slabs.weighted_sections(_loss_weight, springs=_spring_loss(built.model.foundations))
+    sections = slabs.weighted_sections(loss_weight, springs=spring_losses(built.model.foundations))
     KW, LW = slabs.stiffness_times(basis), slabs.stiffness_times(basis, sections)
     n = float(built.copies)
     return ReducedClass(
         solved,
+        resolution,
         basis,
         n * _symmetric(basis.T @ slabs.mass_times(basis)),
         n * _symmetric(basis.T @ KW),
@@ -107,9 +119,9 @@ def reduced_class(
     )
 
 
-def _spring_loss(foundations: tuple[object, ...]) -> float:
-    # One factor for all springs of a plate: the softest assumption that keeps one assembly.
-    return float(getattr(foundations[0], "loss", 0.0)) if foundations else 0.0
+def spring_losses(foundations: tuple[Foundation, ...]) -> list[float]:
+    """The loss factor of each spring."""
+    return [one.loss for one in foundations]
 
 
 def _symmetric(matrix: FloatArray) -> FloatArray:
@@ -124,10 +136,13 @@ def _krylov_space(slabs: Slabs, factor: SlabFactor, columns: FloatArray, steps: 
     for _ in range(steps):
         MX = slabs.mass_times(X)
         norm = np.sqrt(np.maximum(np.sum(X * MX, axis=0), 1e-300))
-        X = X / norm
+        X, MX = X / norm, MX / norm
         for _ in range(2):
-            X = X - Q @ (MQ.T @ X)
-        MX = slabs.mass_times(X)
+            part = MQ.T @ X
+            X, MX = X - Q @ part, MX - MQ @ part
+        if np.sum(X * MX) < 1e-6 * X.shape[1]:
+            # Little is left: the product carried along has lost its digits.
+            MX = slabs.mass_times(X)
         size, turn = np.linalg.eigh(_symmetric(X.T @ MX))
         # What is left of a direction that the space already holds is rounding.
         good = size > 1e-20

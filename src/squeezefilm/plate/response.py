@@ -178,8 +178,7 @@ def beam_doubt(plate: RectangularPlate) -> str | None:
 def patch_capacitance(plate: RectangularPlate) -> Farad:
     """The capacitance of all ceramics in parallel (F): ε A / h_p, fringes neglected."""
     permittivity = plate.ceramic.relative_permittivity * VACUUM_PERMITTIVITY
-    area = plate.coverage * plate.area
-    return permittivity * area / plate.ceramic_thickness
+    return permittivity * sum(p.length * p.width / p.thickness for p in plate.patches)
 
 
 def half_power_band(response: BeamResponse) -> tuple[Hertz, Hertz]:

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import sparse
 
-from squeezefilm.plate.nodal_basis import gauss_points, lagrange, lobatto_points
+from squeezefilm.plate.lobatto import lobatto_nodes
+from squeezefilm.plate.nodal_basis import gauss_points, lagrange
 from squeezefilm.plate.shear_section import ShearLayout, ShearSection
 from squeezefilm.quantities import FloatArray, Metre
 
@@ -67,7 +68,7 @@ def make_axis(edges: FloatArray, degree: int, longest: Metre, halved: bool) -> A
     nodes, first = [cuts[0]], []
     for left, size, p in zip(cuts[:-1], sizes, degrees, strict=True):
         first.append(len(nodes) - 1)
-        nodes += [left + size * (t + 1) / 2 for t in lobatto_points(p)[1:]]
+        nodes += [left + size * (t + 1) / 2 for t in lobatto_nodes(p)[1:]]
     return Axis(np.array(cuts), degrees, np.array(nodes), tuple(first), tuple(cells))
 
 

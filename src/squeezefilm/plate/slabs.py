@@ -14,6 +14,7 @@ import numpy as np
 from squeezefilm.plate.box_model import BoxModel, EndCondition, IntArray
 from squeezefilm.plate.cross_section import (
     CrossSection,
+    Springs,
     Weight,
     code_parts,
     cross_section,
@@ -131,7 +132,7 @@ class Slabs:
         """K U, or with other slice matrices (see `weighted_sections`)."""
         return self._apply(U, sections or self.sections, mass=False)
 
-    def weighted_sections(self, weight: Weight, springs: float) -> list[CrossSection]:
+    def weighted_sections(self, weight: Weight, springs: Springs) -> list[CrossSection]:
         """Slice matrices with scaled constants: for energy shares and losses."""
         made: dict[int, CrossSection] = {}
         out = []
