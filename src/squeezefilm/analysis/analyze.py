@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import dataclasses
 import itertools
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -192,7 +193,11 @@ def analyze(
     by_model = model_curves(display, prediction)
     unsure = None
     if samples and prediction.touch.sharing is not None:
-        unsure = uncertain_friction(display, prediction, samples=samples)
+        try:
+            unsure = uncertain_friction(display, prediction, samples=samples)
+        except OutOfRangeError as error:
+            warned = (*prediction.warnings, f"the friction has no interval: {error}")
+            prediction = dataclasses.replace(prediction, warnings=warned)
     tell("wavelength against amplitude")
     wavelengths = wavelength_curves(display, prediction)
     tell("the paper's film and solved films")

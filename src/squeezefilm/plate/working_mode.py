@@ -15,7 +15,12 @@ from squeezefilm.errors import InputError, OutOfRangeError
 from squeezefilm.plate.laminate import CrossSection
 from squeezefilm.plate.layout import Actuator, AnnularStator, DiscPlate, RectangularPlate
 from squeezefilm.plate.response import BeamResponse, beam_response
-from squeezefilm.plate.ring_body import ring_working_mode
+from squeezefilm.plate.ring_body import (
+    nodal_circles,
+    ring_body,
+    ring_working_mode,
+    surface_profile,
+)
 from squeezefilm.plate.solid_mode import SolidMode, solid_mode
 from squeezefilm.quantities import (
     Dimensionless,
@@ -177,7 +182,22 @@ def _disc(disc: DiscPlate) -> WorkingMode:
         model=mode.model,
         frequency_error=mode.frequency_error,
         modal_mass=mode.modal_mass,
+        line=_diameter(disc),
     )
+
+
+def _diameter(disc: DiscPlate) -> ModeLine:
+    """The mode along a diameter, 1 at the surface's highest antinode."""
+    mode = ring_body(disc).mode()
+    radius = np.linspace(mode.surface_radius[0], mode.surface_radius[-1], 401)
+    shape = surface_profile(mode, radius)
+    # u_z = W(r) cos mθ: on the other side of the middle the sign of cos mπ.
+    other = shape if mode.harmonic % 2 == 0 else -shape
+    whole = radius[0] == 0
+    position = np.concatenate([-radius[::-1], radius[1:] if whole else radius])
+    deflection = np.concatenate([other[::-1], shape[1:] if whole else shape])
+    circles = nodal_circles(mode)
+    return ModeLine(position, deflection, np.concatenate([-circles[::-1], circles]))
 
 
 def _beam_mass(beam: BeamResponse) -> Kilogram:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from squeezefilm.plate.laminate import plate_laminate
-from squeezefilm.plate.layout import AnnularStator, RectangularPlate
+from squeezefilm.plate.layout import AnnularStator, DiscPlate, RectangularPlate
 from squeezefilm.report.numbers import HZ, M, V, shown
 from squeezefilm.report.style import (
     BAND,
@@ -46,7 +46,8 @@ def layout(analysis: Analysis) -> Figure:
     actuator = analysis.display.actuator
     if isinstance(actuator, AnnularStator):
         return _ring(actuator, analysis)
-    assert isinstance(actuator, RectangularPlate), "a disc has a layout of its own"
+    if isinstance(actuator, DiscPlate):
+        return _disc(actuator, analysis)
     return _plate(actuator, plate_laminate(actuator))
 
 
@@ -100,6 +101,56 @@ def _plate(plate: RectangularPlate, section: Laminate) -> Figure:
         axes.grid(visible=False)
     side.spines["left"].set_visible(False)
     _section(detail, plate, neutral)
+    return figure
+
+
+def _disc(disc: DiscPlate, analysis: Analysis) -> Figure:
+    from matplotlib.patches import Circle, Rectangle
+
+    radius, thick = 500 * disc.diameter, 1e3 * disc.thickness
+    outer, inner = 500 * disc.ceramic_outer_diameter, 500 * disc.ceramic_inner_diameter
+    ceramic, hole = 1e3 * disc.ceramic_thickness, 500 * disc.inner_diameter
+    contact = 1e3 * analysis.display.finger.contact_length
+    share = (outer**2 - inner**2) / (radius**2 - hole**2)
+    figure = new_figure(
+        f"A ceramic below covers {100 * share:.0f} % of the disc; a finger pad {contact:.3g} mm "
+        f"wide touches {contact / (2 * radius):.0%} of its diameter",
+        "thicknesses and diameters as described",
+        5.6,
+    )
+    plan, side = figure.subplots(2, 1, height_ratios=[5, 1], sharex=True)
+    plan.set_title("seen from above, the ceramic through the disc")
+    plan.add_patch(Circle((0, 0), radius, facecolor=METAL, edgecolor=INK, lw=1))
+    plan.add_patch(Circle((0, 0), outer, facecolor=PLUS, edgecolor=INK, lw=0.8))
+    for size, fill in ((inner, METAL), (hole, PAPER)):
+        if size > 0:
+            plan.add_patch(Circle((0, 0), size, facecolor=fill, edgecolor=INK, lw=0.8))
+    plan.add_patch(
+        Rectangle(
+            (-contact / 2, -contact / 2), contact, contact,
+            facecolor="none", edgecolor=ORANGE, lw=2.2, zorder=3,
+            label=f"finger contact, {contact:.3g} mm × {contact:.3g} mm",
+        )
+    )  # fmt: skip
+    side.set_title("section, to scale")
+    side.add_patch(Rectangle((-radius, -thick), 2 * radius, thick, facecolor=METAL, edgecolor=INK))
+    parts = ((-outer, -inner), (inner, outer)) if inner > 0 else ((-outer, outer),)
+    for left, right in parts:
+        side.add_patch(
+            Rectangle(
+                (left, -thick - ceramic), right - left, ceramic, facecolor=PLUS, edgecolor=INK
+            )
+        )
+    reach = 1.06 * max(radius, contact / 2)
+    deep = thick + ceramic
+    plan.set(xlim=(-reach, reach), ylim=(-reach, reach), aspect="equal", ylabel="y (mm)")
+    side.set(xlim=(-reach, reach), ylim=(-1.6 * deep, 0.6 * deep), aspect="equal")
+    side.set(xlabel="x (mm)")
+    side.set_yticks([])
+    side.spines["left"].set_visible(False)
+    for axes in (plan, side):
+        axes.grid(visible=False)
+    legend_below(plan, gap=0.02)
     return figure
 
 
@@ -211,11 +262,11 @@ def mode_shape(analysis: Analysis) -> Figure:
         nodes = 1e3 * mode.line.nodal_positions
         ends = float(np.max(np.abs([w[0], w[-1]])))
         title = (
-            f"{len(nodes)} nodal lines across the plate, λ/2 = "
-            f"{shown(mode.half_wavelength, M)}; its free ends move {ends:.2f} times as far as "
+            f"{mode.label}: {len(nodes)} nodal lines, λ/2 = "
+            f"{shown(mode.half_wavelength, M)}; the free ends move {ends:.2f} times as far as "
             "the lobes between"
         )
-        along = "x along the plate (mm)"
+        along = "position across the nodal lines (mm)"
     else:
         waves = round(2 * math.pi * _mean_radius(analysis) / (2 * mode.half_wavelength))
         seen = min(3, waves)
@@ -242,12 +293,13 @@ def mode_shape(analysis: Analysis) -> Figure:
     axes.plot(x, -y, color=BLUE, lw=1.1, ls=(0, (4, 2)), label="half a period later")
     axes.axhline(0, color=INK, lw=0.8)
     bottom = -1.2 * reach
-    if isinstance(analysis.display.actuator, RectangularPlate):
-        bottom = _drive_strip(axes, analysis.display.actuator, reach)
+    plate = analysis.display.actuator
+    if isinstance(plate, RectangularPlate) and plate.lines_across == "length":
+        bottom = _drive_strip(axes, plate, reach)
     if len(nodes) >= 4:
         _half_wave_arrow(axes, nodes, 1.14 * reach, mode.half_wavelength)
     margin = 0.01 * float(x[-1])
-    axes.set(xlim=(-margin, float(x[-1]) + margin), ylim=(bottom, 1.45 * reach))
+    axes.set(xlim=(float(x[0]) - margin, float(x[-1]) + margin), ylim=(bottom, 1.45 * reach))
     axes.set(xlabel=along, ylabel=unit)
     axes.grid(visible=False)
     # The strip of ceramics has no deflection to read.

@@ -15,7 +15,7 @@ from squeezefilm.plate.layout import AnnularStator, RectangularPlate
 
 HOSTILE = '<script>alert("x")</script> $\\frac{1}{0}$ [bold]漢字 \x1b[31m\u202e & more'
 
-PRESETS = ("biet2008-plate", "biet2008-stator")
+PRESETS = ("biet2008-plate", "biet2008-stator", "winfield2007-tpad")
 
 
 def plate(display: Display, **changes: object) -> Display:

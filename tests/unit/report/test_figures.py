@@ -16,16 +16,25 @@ from squeezefilm.report import style
 from squeezefilm.report.figures import FIGURES
 from squeezefilm.report.plate_figures import half_power
 
-PRESETS = ("biet2008-plate", "biet2008-stator")
+PRESETS = ("biet2008-plate", "biet2008-stator", "winfield2007-tpad")
 KEYS = (
-    "layout", "mode", "response", "pressure", "friction", "films", "wavelength", "texture",
+    "layout", "mode", "response", "pressure", "friction", "chain", "films", "wavelength", "texture",
     "fidelity",
 )  # fmt: skip
 # The odd displays, each with the figures that its oddness can spoil.
 ODD = {
     "one-ceramic": ("layout", "mode", "response", "films"),
     "hostile-names": ("layout", "friction", "wavelength"),
-    "no-voltage": ("mode", "response", "pressure", "friction", "films", "texture", "fidelity"),
+    "no-voltage": (
+        "mode",
+        "response",
+        "pressure",
+        "friction",
+        "chain",
+        "films",
+        "texture",
+        "fidelity",
+    ),
     "floating": ("pressure", "friction", "wavelength", "texture"),
     "off-resonance": ("response",),
     "not-driven": ("mode", "response", "friction"),
@@ -117,7 +126,7 @@ def test_messages_tell_the_numbers_of_the_analysis(plate_analysis: Analysis) -> 
     assert "7 ceramics cover 93 %" in titles["layout"]
     assert "8 nodal lines" in titles["mode"]
     assert "33.58 kHz is 557 Hz wide" in titles["response"]
-    assert "to 1.49 times ambient by the paper, to 1.01 in the solved film" in titles["pressure"]
+    assert "to 1.48 times ambient by the paper, to 1.01 in the solved film" in titles["pressure"]
     assert "how ridges are drawn decides" in titles["films"]
     assert "2.33 µm at λ/2 = 7.5 mm, 1.35 µm at 15 mm" in titles["wavelength"]
     assert "0.67 mm" in titles["fidelity"]

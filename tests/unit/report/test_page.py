@@ -18,7 +18,7 @@ from squeezefilm.report.numbers import shown
 from squeezefilm.report.page import report_page, write_report
 
 FIGURE_KEYS = (
-    "layout", "mode", "response", "pressure", "friction", "films", "wavelength", "texture",
+    "layout", "mode", "response", "pressure", "friction", "chain", "films", "wavelength", "texture",
     "fidelity",
 )  # fmt: skip
 VOID = {"meta", "br", "link", "img", "hr", "input"}
@@ -65,7 +65,7 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Analysis]:
     analysis = analyze(load_display("biet2008-plate"))
     steps: list[str] = []
     path = write_report(analysis, tmp_path_factory.mktemp("out") / "new", steps.append)
-    assert len(steps) == 10
+    assert len(steps) == len(FIGURE_KEYS) + 1
     return path, analysis
 
 
@@ -139,7 +139,7 @@ def test_json_is_strict_and_carries_curves_and_description(
     assert data["resonance_frequency_Hz"] == analysis.prediction.mode.resonance_frequency
     curves = data["curves"]
     assert set(curves) == {
-        "response", "pressure", "friction", "films", "wavelength", "texture",
+        "response", "pressure", "friction", "chain", "films", "wavelength", "texture",
     "fidelity",
     }  # fmt: skip
     assert len(curves["response"]["frequency_Hz"]) == 200
