@@ -188,6 +188,12 @@ def friction(
     model: Annotated[
         str | None, typer.Option(help="partial-levitation (default), or another friction model.")
     ] = None,
+    position: Annotated[
+        str, typer.Option(help="The pad's centre from an antinode, along the wave.")
+    ] = "0 mm",
+    speed: Annotated[
+        str, typer.Option(help="Of the finger, for the competing mechanism: intermittent contact.")
+    ] = "80 mm/s",
     ambient_pressure: Annotated[
         str | None, typer.Option(help='Of the air around, like "2 kPa" for a vacuum experiment.')
     ] = None,
@@ -218,6 +224,8 @@ def friction(
             normal_force=_quantity(force, "--force", Unit("N")),
             surface=surface,
             model=model,  # type: ignore[arg-type] # checked with a message by FrictionLaw
+            position=_quantity(position, "--position", Unit("m")) or 0.0,
+            speed=_quantity(speed, "--speed", Unit("m/s")) or 0.0,
             ambient_pressure=_quantity(ambient_pressure, "--ambient-pressure", Unit("Pa")),
             wanted_friction=wanted,
             samples=samples,

@@ -92,7 +92,7 @@ class FrictionLaw:
     coefficient (paper eq 14, corrected). "paper2008" and the "film-" models hold the gap and differ
     in the film; the "partial-levitation" models find the gap at which film and asperities carry
     the finger together, over each ridge ("partial-levitation") or over all of them at once
-    ("partial-levitation-one-gap").
+    ("partial-levitation-one-gap"). `position` is the pad's centre from an antinode, along the wave.
     """
 
     surface: Surface
@@ -102,6 +102,7 @@ class FrictionLaw:
     frequency: Hertz
     normal_force: Newton
     model: FrictionModel
+    position: Metre = 0.0
 
     def __post_init__(self) -> None:
         require("half_wavelength", self.half_wavelength, Unit("m"), above=0)
@@ -111,6 +112,14 @@ class FrictionLaw:
             raise InputError(
                 f"model = '{self.model}' is not known.{did_you_mean(self.model, FRICTION_MODELS)} "
                 f"Allowed: {', '.join(FRICTION_MODELS)}"
+            )
+        require("position", self.position, Unit("m"))
+        if self.position and not shares_load(self.model):
+            raise InputError(
+                f"position = {format_quantity(self.position, Unit('m'))} from the antinode: the "
+                f"model '{self.model}' knows the finger over an antinode only; ask a "
+                "partial-levitation model",
+                quantity="position",
             )
 
     def gap(self, amplitude: MetreLike) -> PaperGap:
@@ -149,7 +158,7 @@ class FrictionLaw:
         yielding: bool = False,
     ) -> PadFriction:
         """How film and asperities share the load at amplitudes (m), in the model's limit or in
-        the one named; how the pad lies (None: centred on an antinode, level); and whether the
+        the one named; how the pad lies (None: at `position`, level); and whether the
         finger's skin yields at the ultrasonic frequency. Raises `InputError` for a model that does
         not share the load."""
         if limit is None:
@@ -169,7 +178,7 @@ class FrictionLaw:
             ridge_points(finger, side),
             finger.plateau_pressure(self.normal_force),
             limit=limit,
-            posture=posture,
+            posture=posture or PadPosture(position=self.position),
             skin=finger.skin if yielding else None,
         )
 
@@ -190,7 +199,7 @@ class FrictionLaw:
         pressure = finger.plateau_pressure(self.normal_force)
         decay = finger.asperity_law(self.surface.roughness).decay_length
         points = ridge_points(finger, float(np.sqrt(finger.contact_area(self.normal_force))))
-        wave = np.abs(np.cos(np.pi * points / self.half_wavelength))
+        wave = np.abs(np.cos(np.pi * (points + self.position) / self.half_wavelength))
         kinds, counts = np.unique(np.round(wave, 9), return_counts=True)
 
         def tap(swing: float) -> float:
@@ -350,8 +359,10 @@ def friction_law(
     surface: Surface | None = None,
     normal_force: Newton | None = None,
     model: FrictionModel = DEFAULT_MODEL,
+    position: Metre = 0.0,
 ) -> FrictionLaw:
-    """The friction law of a display; surface and force default to the display's own."""
+    """The friction law of a display; surface and force default to the display's own, the pad to an
+    antinode."""
     return FrictionLaw(
         surface=surface or display.surface(),
         finger=display.finger,
@@ -360,4 +371,5 @@ def friction_law(
         frequency=frequency,
         normal_force=display.finger.normal_force if normal_force is None else normal_force,
         model=model,
+        position=position,
     )

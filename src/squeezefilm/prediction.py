@@ -91,6 +91,7 @@ def predict(
     normal_force: Newton | None = None,
     surface: str | None = None,
     vibration_amplitude: Metre | None = None,
+    position: Metre = 0.0,
     theory: PlateTheory | None = None,
     model: FrictionModel | None = None,
     strict: bool = False,
@@ -99,7 +100,8 @@ def predict(
 
     The frequency defaults to the resonance without a finger, voltage, force and surface to the
     display's own. A `vibration_amplitude` (m, zero-to-peak, with the finger on it) given directly
-    takes the place of voltage and plate.
+    takes the place of voltage and plate. `position` is the pad's centre from an antinode, along the
+    wave.
     `theory` says how a plate is computed; without one it is solved in three dimensions, and taken
     as a beam, with a warning, where its working mode cannot be found so.
     Without a `model`, film and asperities share the load of each ridge (partial levitation).
@@ -139,6 +141,7 @@ def predict(
             surface=where,
             normal_force=force,
             model=model or DEFAULT_MODEL,
+            position=position,
         )
         felt = touch(
             mode if volts is not None else dataclasses.replace(mode, modal_mass=None), law, free
@@ -152,6 +155,7 @@ def predict(
         friction = law.under(load, amplitude)
         limits = _limits(law, amplitude)
     gap, gas = law.gap(amplitude), display.gas
+    base = where.friction_coefficient * display.finger.friction_factor
     sigma = squeeze_number(
         drive_frequency,
         gap.contact_length,
@@ -208,9 +212,9 @@ def predict(
         mean_pressure_error=load.error,
         relative_friction=friction,
         relative_friction_limits=limits,
-        friction_coefficient=where.friction_coefficient,
-        friction_reduction=where.friction_coefficient * (1 - friction),
-        tangential_force=where.friction_coefficient * friction * force,
+        friction_coefficient=base,
+        friction_reduction=base * (1 - friction),
+        tangential_force=base * friction * force,
         validity=validity,
         warnings=tuple(dict.fromkeys(messages)),
     )

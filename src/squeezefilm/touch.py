@@ -40,7 +40,7 @@ class Touch:
 def touch(mode: WorkingMode, law: FrictionLaw, free_amplitude: Metre) -> Touch:
     """The vibration with a finger on it, whose load depends on the amplitude: solved to 1e-8.
 
-    The finger rests at an antinode, film and asperities in the balance of the law (partial
+    The finger rests where the law has it, film and asperities in the balance of the law (partial
     levitation, whatever its model). Range: see `loaded_mode` and `interface_stiffness`. Raises
     `ConvergenceError` if amplitude and finger do not settle, and what the load balance raises.
     """
@@ -103,5 +103,5 @@ def _loaded(
         modal_mass,
         finger_stiffness(interface, finger.skin, law.frequency, share),
         area,
-        mean_square_wave(law.half_wavelength, area**0.5),
+        mean_square_wave(law.half_wavelength, area**0.5, law.position),
     )

@@ -116,6 +116,21 @@ def test_the_voltage_for_a_friction_gives_that_friction(plate: Display, stator: 
         voltage_for_friction(stator, 0.6, frequency=30e3)
 
 
+def test_a_finger_over_a_node_meets_more_friction(plate: Display) -> None:
+    quarter = predict(plate).mode.half_wavelength / 2
+    over_antinode, over_node = (predict(plate, position=x) for x in (0.0, quarter))
+    assert over_node.relative_friction > over_antinode.relative_friction
+    # ... and takes less of the vibration.
+    assert over_node.touch.kept > over_antinode.touch.kept
+    with pytest.raises(InputError, match="over an antinode only"):
+        predict(plate, position=quarter, model="paper2008")
+
+
+def test_moisture_changes_the_friction_without_vibration(plate: Display) -> None:
+    moist = dataclasses.replace(plate, finger=dataclasses.replace(plate.finger, moisture="moist"))
+    assert predict(moist).friction_coefficient > predict(plate).friction_coefficient
+
+
 def test_a_vacuum_takes_the_reduction_away(stator: Display) -> None:
     thin = dataclasses.replace(stator, gas=stator.gas.at_pressure(2e3))
     here, there = predict(stator), predict(thin)

@@ -23,6 +23,7 @@ from squeezefilm.quantities import (
     Hertz,
     Metre,
     MetreArray,
+    MetrePerSecond,
     Newton,
     NewtonArray,
     Pascal,
@@ -31,6 +32,9 @@ from squeezefilm.quantities import (
 from squeezefilm.results import stamp, to_json
 
 Progress = Callable[[str], None]
+
+EXPLORING_SPEED: MetrePerSecond = 0.08
+"""Between 77 and 86 mm/s: Smith, Gosselin and Houde 2002, 10.1007/s00221-002-1240-4."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,6 +59,15 @@ class Wanted:
     voltage: Volt
 
 
+@dataclass(frozen=True)
+class Tapping:
+    """What the competing mechanism alone would leave: intermittent contact without gas, for a
+    finger speed (m/s). It needs sliding, and fades with speed; partial levitation does not."""
+
+    speed: MetrePerSecond
+    relative_friction: Dimensionless
+
+
 @dataclass(frozen=True, eq=False)
 class FrictionAnalysis:
     """The friction at a working point: models side by side, uncertainty, map and ripple.
@@ -69,6 +82,7 @@ class FrictionAnalysis:
     map: FrictionMap
     ripple: FrictionRipple | None
     wanted: Wanted | None
+    tapping: Tapping
 
     def summary(self) -> dict[str, Any]:
         """What ``--json`` prints; keys carry units."""
@@ -110,6 +124,7 @@ class FrictionAnalysis:
             },
             "standing_wave_ripple": None if self.ripple is None else self.ripple.ripple,
             "wanted": to_json(self.wanted),
+            "intermittent_contact": to_json(self.tapping),
             "models": [
                 {
                     "model": curve.model,
@@ -132,6 +147,8 @@ def analyze_friction(
     normal_force: Newton | None = None,
     surface: str | None = None,
     model: FrictionModel | None = None,
+    position: Metre = 0.0,
+    speed: MetrePerSecond = EXPLORING_SPEED,
     ambient_pressure: Pascal | None = None,
     wanted_friction: Dimensionless | None = None,
     samples: int = 64,
@@ -142,9 +159,10 @@ def analyze_friction(
     """The friction of a display at a working point, with everything around it.
 
     Arguments as `prediction.predict`; `ambient_pressure` (Pa) puts display and finger into another
-    atmosphere, `wanted_friction` asks for the voltage that reaches it, `samples` (0: none) is the
-    base of the uncertainty's design, `points` the side of the map. Raises what `predict`,
-    `voltage_for_friction` and `uncertain_friction` raise.
+    atmosphere, `speed` (m/s) is the finger's for the competing mechanism, `wanted_friction` asks
+    for the voltage that reaches it, `samples` (0: none) is the base of the uncertainty's design,
+    `points` the side of the map. Raises what `predict`, `voltage_for_friction` and
+    `uncertain_friction` raise.
     """
     tell = progress or (lambda _: None)
     if ambient_pressure is not None:
@@ -158,6 +176,7 @@ def analyze_friction(
         surface=surface,
         vibration_amplitude=vibration_amplitude,
         model=model,
+        position=position,
     )
     wanted = None
     if wanted_friction is not None:
@@ -180,7 +199,11 @@ def analyze_friction(
             display, prediction, samples=samples, seed=seed, progress=progress
         )
     tell("ripple of the standing wave")
-    return FrictionAnalysis(display, prediction, curves, unsure, found, _ripple(prediction), wanted)
+    tapped = float(prediction.law.tapped(prediction.vibration_amplitude, speed)[0])
+    return FrictionAnalysis(
+        display, prediction, curves, unsure, found, _ripple(prediction), wanted,
+        Tapping(speed, tapped),
+    )  # fmt: skip
 
 
 def friction_map(display: Display, prediction: Prediction, points: int = 40) -> FrictionMap:

@@ -8,7 +8,7 @@ import numpy as np
 
 from squeezefilm.display import Display
 from squeezefilm.errors import SqueezefilmError
-from squeezefilm.friction import FrictionModel, friction_law
+from squeezefilm.friction import FrictionModel, friction_law, shares_load
 from squeezefilm.prediction import Prediction
 from squeezefilm.quantities import Dimensionless, DimensionlessArray, Metre, MetreArray
 
@@ -51,6 +51,7 @@ def model_curves(display: Display, prediction: Prediction) -> tuple[ModelCurve, 
             surface=p.surface,
             normal_force=p.normal_force,
             model=model,
+            position=p.law.position if shares_load(model) else 0.0,
         )
         # Denser at small amplitudes, where a smooth film lifts the finger off.
         amplitude = np.union1d(top * np.linspace(0, 1, points) ** 1.5, p.vibration_amplitude)

@@ -236,6 +236,7 @@ def _one(
         surface=display.surface(p.surface.name),
         normal_force=p.normal_force,
         model="partial-levitation",
+        position=p.law.position,
     )
     amplitude = free_amplitude
     if p.voltage is not None and p.mode.modal_mass is not None:

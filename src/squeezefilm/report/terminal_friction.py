@@ -95,14 +95,18 @@ def show_friction(result: FrictionAnalysis) -> None:
         )
     table(console, ("", "", ""), rows, fixed=(0,))
     heading(console, "The same finger by other models")
-    table(
-        console,
-        ("model", "µ′/µ"),
-        [
-            (curve.model, "–" if (at := curve.at(p.vibration_amplitude)) is None else f"{at:.3f}")
-            for curve in result.curves
-        ],
+    others: list[tuple[str, str]] = [
+        (curve.model, "–" if (at := curve.at(p.vibration_amplitude)) is None else f"{at:.3f}")
+        for curve in result.curves
+    ]
+    tapping = result.tapping
+    others.append(
+        (
+            f"intermittent contact at {shown(tapping.speed, Unit('m/s'))}, no gas",
+            f"{tapping.relative_friction:.3f}",
+        )
     )
+    table(console, ("model", "µ′/µ"), others)
     if unsure is not None:
         _ranking(result, unsure)
     for text in p.warnings:
