@@ -16,10 +16,11 @@ from squeezefilm.plate.layout import (
     rim_supports,
     turned,
 )
+from squeezefilm.plate.mode_table import energy_shares_of
 from squeezefilm.plate.plate_modes import PlateModes
 from squeezefilm.plate.plate_response import harmonic_response
 from squeezefilm.plate.shear_guess import bare_frequency, screened_frequency, straightness
-from squeezefilm.plate.solve_modes import _shares, solve_modes
+from squeezefilm.plate.solve_modes import solve_modes
 
 GLASS = ElasticMaterial("glass", 72e9, 0.22, 2480, quality_factor=1000)
 CERAMIC = Piezoceramic("PZT", 67.9e9, 0.2897, 23e9, 7700, -180e-12, 1900, 75)
@@ -137,5 +138,5 @@ def test_modes_that_change_places_between_meshes_keep_their_energies() -> None:
     modes = solve_modes(plate, band=(31.5e3, 34.5e3), driven_only=True)
     assert modes.count == 5
     for number, (solved, vector) in enumerate(modes._fields):
-        fine, _ = _shares(solved.slabs, vector[:, None])
+        fine, _ = energy_shares_of(solved.slabs, vector[:, None])
         assert modes.energy_shares[number] == pytest.approx(fine[0], rel=0.15, abs=5e-3)

@@ -133,9 +133,10 @@ def chosen_modes(
         out = []
         for one in found:
             hits = [i for i, label in enumerate(one.labels) if label == mode]
-            # Of several with these nodal lines: the one nearest to the guess.
+            # Of several with these nodal lines those nearest to the guess: a finer mesh, which
+            # mixes neighbours otherwise, shows which of them has the lines.
             hits.sort(key=lambda i: abs(np.sqrt(one.values[i]) / (2 * np.pi) - (near or 0.0)))
-            out.append(np.array(hits[:1], dtype=np.int64))
+            out.append(np.sort(np.array(hits[:3], dtype=np.int64)))
         if not any(o.size for o in out):
             seen = ", ".join(str(label) for one in found for label in one.labels if label)
             raise InputError(

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import eigh
+from scipy.optimize import linear_sum_assignment
 
 from squeezefilm.errors import ConvergenceError
 from squeezefilm.plate.box_model import IntArray
@@ -49,13 +50,14 @@ def modes_near(
     slabs: Slabs,
     solve: Solve,
     shift: float,
-    wanted: Callable[[FloatArray], IntArray],
+    wanted: Callable[[FloatArray], IntArray] | None,
     start: FloatArray,
     *,
     tolerance: float,
     most_steps: int = 40,
 ) -> Pairs:
-    """The modes that `wanted` picks, from the eigenvalues found so far to their indices.
+    """The modes that `wanted` picks, from the eigenvalues found so far to their indices; without it
+    those that move most like the columns of `start`, one for each and in their order.
 
     Converged when their values change by less than `tolerance` (relative) in a step; the error
     left is of the order of that change times the ratio of convergence. Raises `ConvergenceError`
@@ -95,7 +97,12 @@ def modes_near(
         values = shift + 1 / inverse[keep]
         order = np.argsort(values)
         values, coefficients = values[order], turn[:, keep][:, order]
-        index = wanted(values)
+        if wanted is not None:
+            index = wanted(values)
+        elif values.size < start.shape[1]:
+            continue
+        else:
+            index = linear_sum_assignment(-((start.T @ MQ @ coefficients) ** 2))[1]
         now = values[index]
         if (
             before is not None

@@ -73,7 +73,7 @@ def loaded_mode(
     square of the mode's shape has the mean `mean_square`.
 
     First order in the load. On the paper's plate a damper's effect at the finger agrees with the
-    whole solved plate to a sixth, a spring's or mass's to a third: they also mix modes nearby.
+    whole solved plate to a sixth, a spring's or mass's to two fifths: they also mix modes nearby.
     Raises `InputError` for a frequency, Q, mass or area that is not above 0, or a load with gain
     (negative loss).
     """

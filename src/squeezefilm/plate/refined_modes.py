@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+import dataclasses
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment
 
 from squeezefilm.plate.box_model import IntArray
 from squeezefilm.plate.coarse_modes import CoarseModes
@@ -13,7 +13,7 @@ from squeezefilm.plate.electrode_circuits import inverse_with_open
 from squeezefilm.plate.krylov import modes_near, prolonged
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.plate_mesh import FINE, NORMAL, plate_model
-from squeezefilm.plate.plate_modes import SolvedModel
+from squeezefilm.plate.plate_modes import Label, SolvedModel, label_of, surface_shapes
 from squeezefilm.plate.slab_factor import SlabFactor
 from squeezefilm.plate.slabs import Slabs
 from squeezefilm.quantities import FloatArray
@@ -63,20 +63,9 @@ def refined_modes(
         factor = SlabFactor(slabs, shift)
         solve = inverse_with_open(slabs, finer, factor)
 
-        def wanted(found: FloatArray, size: int = values.size, at: FloatArray = values) -> IntArray:
-            picked: list[int] = []
-            for value in at:
-                order = np.argsort(np.abs(found - value * (1 - 2e-3)))
-                picked.append(next((int(i) for i in order if int(i) not in picked), -1))
-            return np.array([i for i in picked if i >= 0][:size])
-
-        pairs = modes_near(
-            slabs, solve, shift, wanted, start, tolerance=min(1e-6, 1e-3 * tolerance)
-        )
-        # Neighbours may change places between two meshes: pair them by shape, not by order, or
-        # each would get the other's energy shares and error.
-        order = _partners(slabs, start, pairs.vectors)
-        index, values, vectors = index[order], values[order], vectors[:, order]
+        # By shape, not by value or order: a coarse value may be nearer to another mode, and
+        # neighbours may change places between two meshes.
+        pairs = modes_near(slabs, solve, shift, None, start, tolerance=min(1e-6, 1e-3 * tolerance))
         piece = RefinedModes(one, index, finer, values, pairs.values, pairs.vectors, level, factor)
         _, error = extrapolated(piece.coarse_values, piece.values, piece.level)
         worst = np.max(error / (np.sqrt(piece.values) / (2 * np.pi)))
@@ -86,13 +75,17 @@ def refined_modes(
     raise AssertionError("no level was solved")
 
 
-def _partners(slabs: Slabs, coarse: FloatArray, fine: FloatArray) -> IntArray:
-    """For each fine mode the coarse one (prolonged to the fine mesh) that moves most alike."""
-    mass = slabs.mass_times(fine)
-    size = np.sqrt(np.sum(coarse * slabs.mass_times(coarse), axis=0))
-    alike = (coarse.T @ mass / size[:, None]) ** 2
-    rows, columns = linear_sum_assignment(-alike)
-    return np.asarray(rows[np.argsort(columns)], dtype=np.int64)
+def with_label(piece: RefinedModes, label: Label) -> RefinedModes:
+    """Of refined modes those that have these nodal lines."""
+    x, y, surface = surface_shapes(piece.solved, piece.vectors)
+    keep = np.array([label_of(one, x, y) == label for one in surface])
+    return dataclasses.replace(
+        piece,
+        index=piece.index[keep],
+        coarse_values=piece.coarse_values[keep],
+        values=piece.values[keep],
+        vectors=piece.vectors[:, keep],
+    )
 
 
 def extrapolated(coarse: FloatArray, fine: FloatArray, level: int) -> tuple[FloatArray, FloatArray]:

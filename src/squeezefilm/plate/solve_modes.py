@@ -21,10 +21,13 @@ from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.mode_table import collected_modes
 from squeezefilm.plate.plate_modes import Label, PlateModes, check_band
 from squeezefilm.plate.plate_symmetry import Parity, all_classes, drive_classes
-from squeezefilm.plate.refined_modes import RefinedModes, refined_modes
+from squeezefilm.plate.refined_modes import RefinedModes, refined_modes, with_label
 from squeezefilm.quantities import Dimensionless, Hertz, Unit, require
 
 Progress = Callable[[str, float], None]
+
+# So many modes of a class are looked at around the guess of a mode that is asked for by its lines.
+_WIDTHS = (8, 24)
 
 
 def solve_modes(
@@ -86,16 +89,30 @@ def _solved(
         classes = [c for c in all_classes(plate) if class_fits(c, mode)]
     centre = near if near is not None else sum(band or (0.0, 0.0)) / 2
     highest = band[1] if band is not None else 1.15 * centre
-    found = []
-    for number, parity in enumerate(classes):
-        tell(f"coarse mesh, symmetry {_name(parity)}", 0.3 * number / len(classes))
-        found.append(coarse_modes(plate, parity, centre, highest, band, 8 if mode else count))
-    chosen = chosen_modes(found, near, band, mode, count)
-    pieces: list[RefinedModes] = []
-    for number, (one, index) in enumerate(zip(found, chosen, strict=True)):
-        if index.size:
-            tell(f"fine mesh, symmetry {_name(one.parity)}", 0.3 + 0.7 * number / len(found))
-            pieces.append(refined_modes(plate, one, index, highest, tolerance))
+    # What a coarse mesh takes for the mode may be another on a finer one: then look further.
+    for nearest in _WIDTHS if mode is not None else (count,):
+        found = []
+        for number, parity in enumerate(classes):
+            tell(f"coarse mesh, symmetry {_name(parity)}", 0.3 * number / len(classes))
+            found.append(coarse_modes(plate, parity, centre, highest, band, nearest))
+        last = nearest == _WIDTHS[-1]
+        try:
+            chosen = chosen_modes(found, near, band, mode, count)
+        except InputError:
+            if last or mode is None:
+                raise
+            continue
+        pieces: list[RefinedModes] = []
+        for number, (one, index) in enumerate(zip(found, chosen, strict=True)):
+            if index.size:
+                tell(f"fine mesh, symmetry {_name(one.parity)}", 0.3 + 0.7 * number / len(found))
+                pieces.append(refined_modes(plate, one, index, highest, tolerance))
+        if mode is None:
+            break
+        labelled = [piece for piece in (with_label(p, mode) for p in pieces) if piece.index.size]
+        if labelled:
+            pieces = labelled
+            break
     return collected_modes(plate, pieces, tolerance, band)
 
 

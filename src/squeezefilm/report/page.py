@@ -69,6 +69,7 @@ def result_data(analysis: Analysis, summary: dict[str, Any]) -> dict[str, Any]:
             "response": to_json(analysis.response),
             "pressure": to_json(analysis.pressure),
             "friction": to_json(analysis.friction_curves),
+            "chain": to_json(analysis.model_curves),
             "films": None if analysis.film_models is None else to_json(analysis.film_models.curves),
             "wavelength": to_json(analysis.wavelength_curves),
             "texture": None if analysis.texture is None else _trace(analysis.texture),
