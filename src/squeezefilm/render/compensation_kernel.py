@@ -167,3 +167,12 @@ def previewed_march(
         for j in range(ahead):
             window[j] = wanted[min(k + 1 + j, wanted.size - 1)]
         command[k], code[k] = previewed_step(state, parameters, window, work)
+
+
+@numba.njit(cache=True, nogil=True)
+def previewed_windows(
+    state: Array, parameters: Array, windows: Array, work: Array, command: Array, code: Array
+) -> None:
+    """`previewed_step` over a block where each step has its own view ahead: a row of `windows`."""
+    for k in range(windows.shape[0]):
+        command[k], code[k] = previewed_step(state, parameters, windows[k], work)
