@@ -56,6 +56,7 @@ def compensated_grating(grating: CompensatedGrating) -> Figure:
     bottom.text(0.02 * x[-1], 1.06, "limit of the voltage", color=MUTED, fontsize=9, va="bottom")
     top.set(ylabel="amplitude / limit", ylim=(0, 1.02))
     bottom.set(xlabel="finger's way (mm)", ylabel="command / limit", ylim=(-1.15, 1.4))
+    bottom.set_yticks([-1, 0, 1])
     for axes in (top, bottom):
         axes.set_xlim(0, float(x[-1]))
     top.tick_params(labelbottom=False)
@@ -110,11 +111,9 @@ def sensor_contrast(contrast: SensorContrast) -> Figure:
     """Contrast rendered in its place against the period, one line per sensor."""
     half = [_finest(contrast.spatial_periods, row) for row in contrast.contrast_kept]
     names = ["position known" if one is None else one.name for one in contrast.sensors]
-    worst, best = half[0], half[-1]
     figure = new_figure(
-        f"A {names[0]} puts half of the contrast in its place from "
-        f"{'no period here' if worst is None else shown(worst, M, 2)} up; with the "
-        f"{names[-1] if best is None else names[-1] + ' from ' + shown(best, M, 2)}",
+        f"Half of the contrast is rendered in its place {half[0]} with a {names[0]}, "
+        f"{half[-1]} with the {names[-1]}",
         f"{contrast.reports[0][0].model.split(';')[0]}; sensors are assumed, not measured; "
         f"{_hand(contrast)}",
         4.9,
@@ -155,13 +154,14 @@ def _hand(contrast: SensorContrast) -> str:
     return plain(repr(hand), 80)
 
 
-def _finest(periods: FloatArray, row: FloatArray) -> float | None:
-    """Period from which on at least half of the contrast is kept; None if it never is."""
+def _finest(periods: FloatArray, row: FloatArray) -> str:
+    """From which period on at least half of the contrast is kept, in words."""
     lacking = np.flatnonzero(row < 0.5)
     if lacking.size == 0:
-        return float(periods[0])
+        return "at every period shown"
     k = int(lacking[-1])
     if k == periods.size - 1:
-        return None
+        return "at no period shown"
     share = (0.5 - row[k]) / (row[k + 1] - row[k])
-    return float(np.exp(np.log(periods[k]) + share * np.log(periods[k + 1] / periods[k])))
+    finest = periods[k] * (periods[k + 1] / periods[k]) ** share
+    return f"from {shown(float(finest), M, 2)} up"
