@@ -118,9 +118,15 @@ def test_nothing_known_and_bad_times_give_finite_numbers_with_a_code() -> None:
     x, v, _, _, code = kernel.motion_at(state, parameters, math.nan)
     assert (v, code) == (0.0, kernel.BAD_TIME)
     assert math.isfinite(x)
-    past = kernel.motion_at(state, parameters, 0.2)
-    assert past[4] == kernel.PAST
-    assert past[0] == state[kernel.X]
+    x, v, dx, _, code = kernel.motion_at(state, parameters, 0.2)
+    assert (x, v, dx, code) == (state[kernel.X], 0.0, math.inf, kernel.PAST)
+
+
+def test_a_time_just_before_the_last_sample_is_carried_back_along_the_way() -> None:
+    state = fed(samples=400)
+    x, v, _, _, code = kernel.motion_at(state, ESTIMATOR.parameters(), 3.98)
+    assert code == kernel.FRESH
+    assert (x, v) == pytest.approx((0.398, 0.1), abs=1e-9)
 
 
 def test_the_interpreted_step_is_the_compiled_one() -> None:
