@@ -3,7 +3,7 @@
 from squeezefilm.analysis.compensated_textures import driven_envelope
 from squeezefilm.display import load_display
 from squeezefilm.prediction import predict
-from squeezefilm.render.compensation import fastest_compensated_speed
+from squeezefilm.render.compensated_swing import fastest_compensated_speed
 from squeezefilm.render.fidelity_report import FidelityReport, fidelity_report
 from squeezefilm.render.rendered_stroke import rendered_stroke
 from squeezefilm.render.sensor import LVDT_10_KHZ

@@ -11,14 +11,16 @@ from scipy.optimize import minimize
 
 from squeezefilm.render import compensation_kernel as kernel
 from squeezefilm.render.carrier import carrier_trace, hold_gain, resonator_response
+from squeezefilm.render.compensated_swing import (
+    fastest_compensated_speed,
+    least_cycle,
+    square_swing_compensated,
+)
 from squeezefilm.render.compensation import (
     DrivenEnvelope,
     compensated_drive,
-    fastest_compensated_speed,
-    least_cycle,
     preview_work,
     slew_time,
-    square_swing_compensated,
 )
 from squeezefilm.render.envelope import envelope_response, envelope_time_constant, finest_period
 from squeezefilm.render.envelope import square_swing_kept as bare_swing

@@ -22,13 +22,8 @@ from squeezefilm.quantities import (
     Volt,
     require,
 )
-from squeezefilm.render.compensation import (
-    CompensatedDrive,
-    DrivenEnvelope,
-    compensated_drive,
-    fastest_compensated_speed,
-    least_cycle,
-)
+from squeezefilm.render.compensated_swing import fastest_compensated_speed, least_cycle
+from squeezefilm.render.compensation import CompensatedDrive, DrivenEnvelope, compensated_drive
 from squeezefilm.render.fidelity_report import FidelityReport, fidelity_report
 from squeezefilm.render.minimum_jerk import MinimumJerkStroke, Trajectory
 from squeezefilm.render.rendered_stroke import rendered_stroke
