@@ -7,16 +7,18 @@ import numpy as np
 import pytest
 from numba.core.runtime import _nrt_python, rtsys
 
-from squeezefilm.errors import InputError
+from squeezefilm.errors import InputError, UnreachableError
 from squeezefilm.render import interpreter, layout, opcodes
 from squeezefilm.render.inverse import FrictionInverse
 from squeezefilm.render.levels import Amplitude, FrictionReduction, RelativeFriction
 from squeezefilm.render.pattern_image import Image
 from squeezefilm.render.pattern_noise import Noise
-from squeezefilm.render.pattern_shapes import Constant, Ramp
+from squeezefilm.render.pattern_shapes import Bump, Constant, Ramp
 from squeezefilm.render.program import Program, checked, lower
-from squeezefilm.render.renderer import Renderer, evaluate, render
+from squeezefilm.render.renderer import Played, Renderer, evaluate, render
+from squeezefilm.render.stroke import Stroke
 from squeezefilm.render.texture import Square
+from squeezefilm.render.trace import friction_trace
 
 INVERSE = FrictionInverse.from_function(lambda a: 1 - 0.5 * a / 4e-6, 4e-6)
 GRATING = Square(2e-3, 1e-6, 2e-6)
@@ -122,6 +124,23 @@ def test_nothing_is_given_out_before_the_first_good_sample() -> None:
     renderer = Renderer(PROGRAM)
     assert [renderer.tick(math.nan, 0.0, 0.0, 0.0) for _ in range(5)] == [0.0] * 5
     assert renderer.tick(0.5e-3, 0.0, 0.1, -5.0) == 2e-6
+
+
+def test_a_texture_of_friction_is_traced_as_it_is_played() -> None:
+    wanted = RelativeFriction(Bump(0.02, 3e-3), 0.6, 1.0)
+    played = Played(lower(wanted, inverse=INVERSE))
+    stroke = Stroke(0.1, 0.04, passes=2)
+    trace = friction_trace(played, stroke, 1e-5, lambda a: 1 - 0.5 * a / 4e-6)
+    back = trace.time > stroke.pass_duration
+    there, again = trace.relative_friction_wanted[~back], trace.relative_friction_wanted[back]
+    # The way up comes first both there and back.
+    assert there[: there.size // 2].min() >= 0.8 - 1e-9
+    assert again[: again.size // 2].min() >= 0.8 - 1e-9
+    assert there[there.size // 2 + 5 :].max() <= 0.8 + 1e-9
+    with pytest.raises(InputError, match="commands no amplitude"):
+        friction_trace(wanted, stroke, 1e-5, np.ones_like)
+    with pytest.raises(UnreachableError, match="at 2 of 2 samples"):
+        Played(lower(RelativeFriction.constant(0.1), inverse=INVERSE))(np.zeros(2), 0, 0, 0)
 
 
 def test_a_value_without_a_number_is_a_fault() -> None:
