@@ -14,6 +14,7 @@ import pytest
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 
+from squeezefilm.render import opcodes
 from squeezefilm.render.composition import Composable
 from squeezefilm.render.inverse import FrictionInverse
 from squeezefilm.render.levels import Amplitude, RelativeFriction
@@ -95,6 +96,56 @@ def as_json(value: float) -> float | str:
     return "NaN" if math.isnan(value) else ("Infinity" if value > 0 else "-Infinity")
 
 
+def run_page(node: str, cases: list[dict]) -> list[dict]:
+    """What the page's renderer answers to programs and samples."""
+    done = subprocess.run(
+        [node, str(RUNNER), str(MODULE)],
+        input=json.dumps(cases),
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    found: list[dict] = json.loads(done.stdout)
+    return found
+
+
+def golden() -> list[dict]:
+    """Programs of version 1 with samples and what they give, for every interpreter there will be.
+
+    Made once. A change that makes them fail changes what stored programs mean: raise the version.
+    """
+    stored = json.loads(Path(__file__).with_name("golden_programs.json").read_text("utf-8"))
+    assert stored["version"] == opcodes.VERSION
+    cases: list[dict] = stored["cases"]
+    return cases
+
+
+def test_golden_programs_use_every_opcode() -> None:
+    used = set()
+    for case in golden():
+        code, place = case["program"], 24
+        while place < code[4]:
+            used.add(int(code[place]))
+            place += 1 + opcodes.SHAPES[int(code[place])][0]
+    assert used == set(range(len(opcodes.SHAPES)))
+
+
+def test_golden_programs_mean_what_they_meant() -> None:
+    for case in golden():
+        where = np.array([[float(one) for one in sample] for sample in case["samples"]]).T
+        found = render(Program(np.array(case["program"])), *where)
+        assert found.amplitude == pytest.approx(np.array(case["amplitude"]), rel=1e-9, abs=1e-18)
+        assert found.flags.tolist() == case["flags"]
+
+
+def test_golden_programs_mean_the_same_on_a_page(node: str) -> None:
+    cases = golden()
+    for case, answer in zip(cases, run_page(node, cases), strict=True):
+        assert answer["amplitude"] == pytest.approx(case["amplitude"], rel=1e-6, abs=1e-15)
+        assert answer["flags"] == case["flags"]
+
+
 def test_the_page_says_what_the_compiled_interpreter_says(node: str) -> None:
     cases: list[tuple[Composable, Program, np.ndarray]] = []
 
@@ -129,16 +180,8 @@ def test_the_page_says_what_the_compiled_interpreter_says(node: str) -> None:
         }
         for _, program, where in cases
     ]
-    done = subprocess.run(
-        [node, str(RUNNER), str(MODULE)],
-        input=json.dumps(asked),
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert done.returncode == 0, done.stderr
     seen_flags = 0
-    for (texture, program, where), answer in zip(cases, json.loads(done.stdout), strict=True):
+    for (texture, program, where), answer in zip(cases, run_page(node, asked), strict=True):
         wanted = render(program, *where)
         found = np.array([float(one) for one in answer["amplitude"]])
         assert found == pytest.approx(wanted.amplitude, rel=1e-6, abs=1e-15), texture
