@@ -6,14 +6,16 @@ import math
 import numpy as np
 import pytest
 from numba.core.runtime import _nrt_python, rtsys
+from scipy.interpolate import RegularGridInterpolator
 
 from squeezefilm.errors import InputError, UnreachableError
 from squeezefilm.render import interpreter, layout, opcodes
+from squeezefilm.render.coordinate import FromPoint
 from squeezefilm.render.inverse import FrictionInverse
 from squeezefilm.render.levels import Amplitude, FrictionReduction, RelativeFriction
 from squeezefilm.render.pattern_image import Image
 from squeezefilm.render.pattern_noise import Noise
-from squeezefilm.render.pattern_shapes import Bump, Constant, Ramp
+from squeezefilm.render.pattern_shapes import Bump, Constant, Ramp, SquareWave
 from squeezefilm.render.program import Program, checked, lower
 from squeezefilm.render.renderer import Played, Renderer, evaluate, render
 from squeezefilm.render.stroke import Stroke
@@ -40,6 +42,27 @@ def test_a_grating_is_played_as_it_is_wanted() -> None:
     assert found.counters.ticks == 1001
     assert found.counters.faults == found.counters.unreachable == 0
     assert not np.any(found.flags)
+
+
+def test_a_finger_may_go_anywhere_in_the_plane() -> None:
+    angle = np.linspace(0.0, 4 * math.pi, 2001)
+    radius = np.linspace(5e-3, 20e-3, angle.size)
+    x, y = 0.03 + radius * np.cos(angle), 0.02 + radius * np.sin(angle)
+    t = np.arange(angle.size) * 1e-3
+    rings = Amplitude(SquareWave(4e-3, along=FromPoint(0.03, 0.02)), 0.0, 2e-6)
+    found = render(lower(rings, largest_amplitude=2e-6), x, y, 0.1, t).amplitude
+    # A spiral crosses the rings as a straight stroke of its radius would.
+    clear = np.abs(np.mod(radius / 2e-3 + 0.5, 1.0) - 0.5) > 1e-6
+    straight = np.where(np.mod(radius, 4e-3) < 2e-3, 2e-6, 0.0)
+    assert np.array_equal(found[clear], straight[clear])
+    grid = np.random.default_rng(2).random((8, 9))
+    map_of = Image.from_array(grid, 5e-3, left=0.01, bottom=0.0)
+    played = render(lower(Amplitude(map_of, 0.0, 2e-6), largest_amplitude=2e-6), x, y, 0.1, t)
+    across, up = 0.01 + 5e-3 * (np.arange(9) + 0.5), 5e-3 * (np.arange(8) + 0.5)
+    oracle = RegularGridInterpolator((up, across), grid[::-1])
+    # Beyond the outermost centres an image holds.
+    where = np.stack([np.clip(y, up[0], up[-1]), np.clip(x, across[0], across[-1])], axis=-1)
+    assert played.amplitude == pytest.approx(2e-6 * oracle(where), abs=1e-18)
 
 
 def test_friction_becomes_the_amplitude_that_makes_it() -> None:
