@@ -9,6 +9,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+from squeezefilm.analysis.compensated_textures import (
+    CompensatedGrating,
+    TextureSurvival,
+    compensated_grating,
+    driven_envelope,
+    texture_survival,
+)
 from squeezefilm.analysis.curves import (
     FrequencyResponse,
     FrictionCurve,
@@ -75,6 +82,8 @@ class Analysis:
     film_models: FilmComparison | None
     texture: FrictionTrace | None
     fidelity: FidelityTable | None
+    compensated: CompensatedGrating | None
+    survival: TextureSurvival | None
     verdict: tuple[Finding, ...]
 
     def finest_period(self) -> dict[str, float]:
@@ -118,6 +127,12 @@ class Analysis:
             "envelope_time_constant_s": self.envelope_time_constant,
             "envelope_bandwidth_Hz": self.envelope_bandwidth,
             "finest_period_m": self.finest_period(),
+            "compensation_speed_gain": None
+            if self.survival is None
+            else {
+                law.name: gain
+                for law, gain in zip(self.survival.laws, self.survival.gain.tolist(), strict=True)
+            },
             "friction_criterion": [
                 {
                     "surface": curve.surface,
@@ -204,6 +219,7 @@ def analyze(
     films = compare_film_models(display, prediction)
     tell("textures")
     trace, table = _textures(prediction, tau)
+    compensated, survival = _compensation(display, prediction)
     tell("verdict")
     return Analysis(
         display=display,
@@ -220,8 +236,19 @@ def analyze(
         film_models=films,
         texture=trace,
         fidelity=table,
+        compensated=compensated,
+        survival=survival,
         verdict=verdict(display, prediction, curves, table, films),
     )
+
+
+def _compensation(
+    display: Display, prediction: Prediction
+) -> tuple[CompensatedGrating | None, TextureSurvival | None]:
+    if not prediction.voltage or prediction.vibration_amplitude == 0:
+        return None, None
+    envelope = driven_envelope(prediction)
+    return compensated_grating(envelope), texture_survival(display.name, envelope)
 
 
 def _other_models(display: Display, prediction: Prediction) -> tuple[OtherModel, ...]:

@@ -10,11 +10,22 @@ import numpy as np
 from squeezefilm.render.fidelity import PAPER_PERIODS
 from squeezefilm.render.minimum_jerk import MinimumJerkStroke
 from squeezefilm.report.numbers import M, S, shown
-from squeezefilm.report.style import INK, LINES, METAL, MUTED, drawn, new_figure, plain, plain_log
+from squeezefilm.report.style import (
+    INK,
+    LINES,
+    METAL,
+    MUTED,
+    drawn,
+    message_figure,
+    new_figure,
+    plain,
+    plain_log,
+)
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from squeezefilm.analysis.analyze import Analysis
     from squeezefilm.analysis.compensated_textures import (
         CompensatedGrating,
         SensorContrast,
@@ -64,6 +75,22 @@ def compensated_grating(grating: CompensatedGrating) -> Figure:
         handles, labels, loc="upper center", bbox_to_anchor=(0.5, -0.22), ncols=2, frameon=False
     )
     return figure
+
+
+@drawn
+def compensation(analysis: Analysis) -> Figure:
+    """`compensated_grating` of an analysis."""
+    if analysis.compensated is None:
+        return message_figure("Nothing to compensate", "No voltage makes an amplitude here.")
+    return compensated_grating(analysis.compensated)
+
+
+@drawn
+def survival(analysis: Analysis) -> Figure:
+    """`texture_survival` of an analysis."""
+    if analysis.survival is None:
+        return message_figure("Nothing to compensate", "No voltage makes an amplitude here.")
+    return texture_survival([analysis.survival])
 
 
 @drawn

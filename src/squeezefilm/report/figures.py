@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from squeezefilm.report import (
+    fidelity_figures,
     friction_figures,
     friction_report,
     plate_figures,
@@ -99,5 +100,19 @@ FIGURES: tuple[FigureOfReport, ...] = (
         "The share of its swing that a grating keeps: of the amplitude in large print, of the "
         "friction in small print.",
         texture_figures.fidelity,
+    ),
+    FigureOfReport(
+        "compensation",
+        "Getting a fine grating through the resonator",
+        "A grating of 0.4 mm at twice the finger speed that it survives uncompensated, up to 0.8 "
+        "of the full amplitude: above the amplitude, below the command that makes it, within the "
+        "voltage. Phase inversion asks for an amplifier that can turn its sign.",
+        fidelity_figures.compensation,
+    ),
+    FigureOfReport(
+        "survival",
+        "Which period survives at which speed, compensated or not",
+        "The finest square grating that keeps 90 % of a swing to 0.8 of the full amplitude.",
+        fidelity_figures.survival,
     ),
 )

@@ -19,7 +19,7 @@ from squeezefilm.report.plate_figures import half_power
 PRESETS = ("biet2008-plate", "biet2008-stator", "winfield2007-tpad")
 KEYS = (
     "layout", "mode", "response", "pressure", "friction", "chain", "films", "wavelength", "texture",
-    "fidelity",
+    "fidelity", "compensation", "survival",
 )  # fmt: skip
 # The odd displays, each with the figures that its oddness can spoil.
 ODD = {

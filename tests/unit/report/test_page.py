@@ -19,7 +19,7 @@ from squeezefilm.report.page import report_page, write_report
 
 FIGURE_KEYS = (
     "layout", "mode", "response", "pressure", "friction", "chain", "films", "wavelength", "texture",
-    "fidelity",
+    "fidelity", "compensation", "survival",
 )  # fmt: skip
 VOID = {"meta", "br", "link", "img", "hr", "input"}
 
