@@ -98,7 +98,18 @@ def draw_models(
 @drawn
 def models(result: FrictionAnalysis) -> Figure:
     """The paper's model, the smooth film, the ridge film and partial levitation on one plot."""
-    p, unsure = result.prediction, result.uncertainty
+    return _models(result.curves, result.prediction, result.uncertainty)
+
+
+@drawn
+def chain(analysis: Analysis) -> Figure:
+    """The same plot for a whole analysis."""
+    return _models(analysis.model_curves, analysis.prediction, analysis.uncertainty)
+
+
+def _models(
+    curves: tuple[ModelCurve, ...], p: Prediction, unsure: UncertainFriction | None
+) -> Figure:
     said = f"µ′/µ = {p.relative_friction:.2f}" if unsure is None else unsure.sentence
     figure = new_figure(
         f"At {shown(p.vibration_amplitude, M, 3)} on {plain(p.surface.name, 20)} {said}: the model "
@@ -107,24 +118,7 @@ def models(result: FrictionAnalysis) -> Figure:
         5.4,
     )
     axes = figure.subplots()
-    draw_models(axes, result.curves, p, unsure)
-    legend_below(axes, columns=2)
-    return figure
-
-
-@drawn
-def chain(analysis: Analysis) -> Figure:
-    """The same plot for a whole analysis."""
-    p, unsure = analysis.prediction, analysis.uncertainty
-    said = f"µ′/µ = {p.relative_friction:.2f}" if unsure is None else unsure.sentence
-    figure = new_figure(
-        f"{said} at {shown(p.vibration_amplitude, M, 3)}: the model decides, and no measured curve "
-        "has settled it",
-        f"as in the legend; {shown(p.normal_force, N)}",
-        5.4,
-    )
-    axes = figure.subplots()
-    draw_models(axes, analysis.model_curves, p, unsure)
+    draw_models(axes, curves, p, unsure)
     legend_below(axes, columns=2)
     return figure
 

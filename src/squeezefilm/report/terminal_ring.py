@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from squeezefilm.quantities import Unit
 from squeezefilm.report.numbers import shown
 from squeezefilm.report.terminal import heading, plain_console, table
+from squeezefilm.report.terminal_modes import show_guidance, show_modes, sound_rows
 
 if TYPE_CHECKING:
     from squeezefilm.analysis.ring_command import RingAnalysis
@@ -81,42 +82,13 @@ def show_ring(result: RingAnalysis) -> None:
                 f"C1 {shown(c.motional_capacitance, Unit('F'), 3)}",
             )
         )
-    guidance = result.sound.guidance
-    limit = "no guidance" if guidance is None else f"guidance {guidance.level_dB:.0f} dB"
-    rows += [
-        (
-            f"Sound at {distance:g} m",
-            f"{level:.0f} dB",
-            f"loudest direction, touched face only; {limit}" if number == 0 else "",
-        )
-        for number, (distance, level) in enumerate(
-            zip(result.sound.distances, result.sound.sound_pressure_level_dB, strict=True)
-        )
-    ]
+    rows += sound_rows(result.sound, "loudest direction, touched face only")
     table(console, ("", "", ""), rows, fixed=(0,))
-    if guidance is not None:
-        console.print(f"Guidance ({guidance.evidence}): {guidance.source}")
+    show_guidance(console, result.sound)
     if result.body.fit is not None:
         for sentence in fit_sentences(result.body.fit):
             console.print(sentence)
-    heading(console, "Modes in the band")
-    table(
-        console,
-        ("mode", "frequency", "±", "Q", "per volt", "coupling"),
-        [
-            (
-                row.label,
-                shown(row.frequency, _HZ, 5),
-                shown(row.frequency_error, _HZ, 2),
-                f"{row.quality_factor:.3g}",
-                "not driven"
-                if row.amplitude_per_volt < 1e-4 * result.amplitude_per_volt
-                else shown(row.amplitude_per_volt, _PER_VOLT, 3),
-                f"{row.coupling:.2g}",
-            )
-            for row in result.rows
-        ],
-    )
+    show_modes(console, result.rows, result.amplitude_per_volt)
     console.print("B(circles, diameters) bends; R and T move in the plane, radially and around.")
     console.print(f"{result.model}; {result.status}")
 

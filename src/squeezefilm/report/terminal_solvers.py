@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from squeezefilm.report.numbers import shown
 from squeezefilm.report.terminal import heading, plain_console, table
+from squeezefilm.report.terminal_modes import show_guidance, show_modes, sound_rows
 
 if TYPE_CHECKING:
     from squeezefilm.analysis.film_command import FilmAnswer
@@ -79,39 +80,10 @@ def show_plate(result: PlateAnalysis) -> None:
             f"{result.response.input_power(volts)[at]:.3g} W",
         )
     )
-    guidance = result.sound.guidance
-    limit = "no guidance" if guidance is None else f"guidance {guidance.level_dB:.0f} dB"
-    rows += [
-        (
-            f"Sound at {distance:g} m",
-            f"{level:.0f} dB",
-            f"loudest direction; {limit}" if number == 0 else "",
-        )
-        for number, (distance, level) in enumerate(
-            zip(result.sound.distances, result.sound.sound_pressure_level_dB, strict=True)
-        )
-    ]
+    rows += sound_rows(result.sound, "loudest direction")
     table(console, ("", "", ""), rows, fixed=(0,))
-    if guidance is not None:
-        console.print(f"Guidance ({guidance.evidence}): {guidance.source}")
-    heading(console, "Modes in the band")
-    table(
-        console,
-        ("mode", "frequency", "±", "Q", "per volt", "coupling"),
-        [
-            (
-                row.label,
-                shown(row.frequency, hertz, 5),
-                shown(row.frequency_error, hertz, 2),
-                f"{row.quality_factor:.3g}",
-                "not driven"
-                if row.amplitude_per_volt < 1e-4 * result.amplitude_per_volt
-                else shown(row.amplitude_per_volt, per_volt, 3),
-                f"{row.coupling:.2g}",
-            )
-            for row in result.rows
-        ],
-    )
+    show_guidance(console, result.sound)
+    show_modes(console, result.rows, result.amplitude_per_volt)
     console.print(f"{result.modes.model}; {result.modes.status}")
     if result.sensitivities is not None:
         heading(console, "Sensitivities of the working mode")
