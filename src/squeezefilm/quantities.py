@@ -346,7 +346,7 @@ def require(
             good = good & holds(array, bound)
             wanted.append(f"{word} {format_quantity(bound, unit)}")
     if not np.all(good):
-        offender = float(np.atleast_1d(array)[np.flatnonzero(~np.atleast_1d(good))[0]])
+        offender = float(array.ravel()[np.flatnonzero(~good)[0]])
         allowed = " and ".join(["finite", *wanted])
         raise InputError(
             f"{name} = {format_quantity(offender, unit)} cannot be used: it must be {allowed}",

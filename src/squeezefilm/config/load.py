@@ -14,13 +14,15 @@ from pydantic import BaseModel, ValidationError
 
 from squeezefilm.config.lines import locate
 from squeezefilm.config.provenance import Spread, distribution_of, split_provenance
-from squeezefilm.config.schema import model_of, reads_from_file
+from squeezefilm.config.schema import family, model_of, reads_from_file
 from squeezefilm.distributions import Distribution
 from squeezefilm.errors import ConfigError, InputError
 from squeezefilm.quantities import did_you_mean, unit_of
 
 T = TypeVar("T")
-_LIMIT = 4_000_000  # bytes; a description of a display is a few kilobytes
+LONGEST_FILE = 4_000_000
+"""Bytes a file may have; a description of a display has a few thousand."""
+_DEEPEST = 100  # far past any description, far below where building it would exhaust the stack
 
 
 def load(cls: type[T], path: str | Path) -> T:
@@ -36,8 +38,8 @@ def load(cls: type[T], path: str | Path) -> T:
     if not path.exists():
         raise ConfigError("does not exist; give the path of a TOML file", file=path)
     try:
-        if path.stat().st_size > _LIMIT:
-            raise ConfigError(f"is larger than {_LIMIT} bytes, no configuration", file=path)
+        if path.stat().st_size > LONGEST_FILE:
+            raise ConfigError(f"is larger than {LONGEST_FILE} bytes, no configuration", file=path)
         text = path.read_text(encoding="utf-8")
     except UnicodeDecodeError as error:
         raise ConfigError("is not UTF-8 text; give a TOML file", file=path) from error
@@ -52,6 +54,10 @@ def load_text(cls: type[T], text: str, *, file: str | Path | None = None) -> T:
         raw = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise ConfigError(f"is not valid TOML: {error}", file=file) from error
+    except RecursionError as error:
+        raise ConfigError("is nested too deeply to be read; nest less", file=file) from error
+    if (depth := _depth(raw)) > _DEEPEST:
+        raise ConfigError(f"is nested {depth} deep; at most {_DEEPEST} are read", file=file)
     if not raw:
         keys = ", ".join(field.name for field in dataclasses.fields(cls) if reads_from_file(field))  # type: ignore[arg-type]
         raise ConfigError(f"is empty; a {cls.__name__.lower()} needs the keys {keys}", file=file)
@@ -71,6 +77,17 @@ def load_text(cls: type[T], text: str, *, file: str | Path | None = None) -> T:
             sources[key] = dataclasses.replace(sources[key], distribution=found)
         built = dataclasses.replace(built, provenance=types.MappingProxyType(sources))
     return typing.cast(T, built)
+
+
+def _depth(tree: Any) -> int:
+    """How deep tables and lists are nested, with no recursion that a file could exhaust."""
+    deepest, todo = 0, [(tree, 1)]
+    while todo:
+        node, depth = todo.pop()
+        deepest = max(deepest, depth)
+        inner = node.values() if isinstance(node, dict) else node
+        todo += [(one, depth + 1) for one in inner if isinstance(one, dict | list)]
+    return deepest
 
 
 def _distribution(
@@ -133,11 +150,16 @@ def _built_value(
 
 
 def _dataclass_of(hint: Any, model: BaseModel) -> type[Any]:
-    candidates = [hint]
-    if typing.get_origin(hint) in (Union, types.UnionType):
-        candidates = [part for part in typing.get_args(hint) if dataclasses.is_dataclass(part)]
+    candidates = _options(hint) or [hint]
     found: type[Any] = next(cls for cls in candidates if model_of(cls) is type(model))
     return found
+
+
+def _options(hint: Any) -> list[Any]:
+    """The dataclasses that a union or a family allows; none for any other hint."""
+    if typing.get_origin(hint) in (Union, types.UnionType):
+        return [part for part in typing.get_args(hint) if dataclasses.is_dataclass(part)]
+    return list(family(hint))
 
 
 def _dotted(path: Sequence[str | int]) -> str:
@@ -174,9 +196,8 @@ def _path_and_owner(
     path: list[str | int] = []
     owner, hint = cls, typing.cast(Any, cls)
     for part in location:
-        options = [p for p in typing.get_args(hint) if dataclasses.is_dataclass(p)]
-        tagged = [p for p in options if _tag(p) == part]
-        if typing.get_origin(hint) in (Union, types.UnionType) and tagged:
+        tagged = [option for option in _options(hint) if _tag(option) == part]
+        if tagged:
             hint = tagged[0]
             continue
         path.append(part)
@@ -204,7 +225,9 @@ def _message(item: Any, path: Sequence[str | int], owner: type[Any]) -> str:
         hint = did_you_mean(str(path[-1]), known)
         return f"unknown key '{path[-1]}'.{hint} Allowed here: {', '.join(known)}"
     if kind == "missing":
-        return f"the key '{path[-1]}' is missing; a {owner.__name__} needs {', '.join(known)}"
+        article = "an" if owner.__name__[0] in "AEIO" else "a"
+        needs = f"{article} {owner.__name__} needs {', '.join(known)}"
+        return f"the key '{path[-1]}' is missing; {needs}"
     if kind == "union_tag_invalid":
         tag = str(item["ctx"]["tag"])
         allowed = [part.strip(" '") for part in str(item["ctx"]["expected_tags"]).split(",")]
@@ -212,7 +235,7 @@ def _message(item: Any, path: Sequence[str | int], owner: type[Any]) -> str:
             allowed
         )
     if kind == "union_tag_not_found":
-        return "the key 'type' is missing; it says which kind of actuator this is"
+        return "the key 'type' is missing; it says which kind of thing this is"
     if kind in ("model_type", "model_attributes_type"):
         return f"{item['input']!r} is no table; write it as [table] with keys"
     if kind == "literal_error":

@@ -1,15 +1,16 @@
-"""Textures: patterns of vibration amplitude that a finger moves over, as values.
+"""The seam `Texture`, and the two gratings most asked for: square and sine, in amplitude.
 
-A texture is anything called with position, speed and time that returns the vibration amplitude
+A texture is anything called with position, velocity and time that returns the vibration amplitude
 wanted there. It commands an amplitude in metres, never a bare 0..1, so what a value means cannot
-depend on the display it is played on.
+depend on the display it is played on. `composition` says how textures compose, `levels` makes
+them of any pattern and in other quantities, `program` lowers them for the renderer.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import Protocol
+from dataclasses import dataclass, field
+from typing import Literal, Protocol
 
 import numpy as np
 
@@ -27,21 +28,24 @@ from squeezefilm.quantities import (
     format_quantity,
     require,
 )
+from squeezefilm.render.composition import Composable, Quantity
+from squeezefilm.render.levels import LARGEST_AMPLITUDE
+from squeezefilm.render.opcodes import ALONG, BETWEEN, SINE, SQUARE, Assembler
 
 _METRE = Unit("m")
-# No vibrating plate reaches a millimetre and no display is ten metres long: what lies beyond is
-# a slip of unit (2 for 2 um, 400 for 400 um) and worth a message.
+# No display is ten metres long: what lies beyond is a slip of unit (400 for 400 um) and worth a
+# message.
 _LONGEST_PERIOD: Metre = 10.0
-_LARGEST_AMPLITUDE: Metre = 1e-3
 
 
 class Texture(Protocol):
     """The seam between what is to be felt and what renders it.
 
-    Called with the finger's position `x`, `y` (m), its speed `v` along its path (m/s, not
-    negative) and the time `t` since the stroke began (s), it returns the vibration amplitude
-    wanted there (m, zero-to-peak). The four broadcast against each other; the result has the
-    broadcast shape.
+    Called with the finger's position `x`, `y` (m), its velocity `v` along its path (m/s; |v| is
+    its speed, and v is negative on the way back, which only a `Bump` asks for) and the time `t`
+    since the stroke began (s), it returns the vibration amplitude wanted there (m, zero-to-peak).
+    The four broadcast against each other; the result has the broadcast shape. A `Composable`
+    whose quantity is not the amplitude needs a renderer to become one.
     """
 
     def __call__(
@@ -52,7 +56,7 @@ class Texture(Protocol):
 
 
 @dataclass(frozen=True, slots=True)
-class Square:
+class Square(Composable):
     """A square grating along x: amplitude `high` over `duty` of each period, `low` over the rest.
 
     The amplitude is `high` where ``(x/spatial_period + phase/2π) mod 1 < duty``; a vibrating
@@ -79,6 +83,7 @@ class Square:
     high: Metre
     duty: Dimensionless = 0.5
     phase: Radian = 0.0
+    type: Literal["square"] = field(default="square", repr=False)
 
     def __post_init__(self) -> None:
         _require_grating(self.spatial_period, self.low, self.high, self.phase)
@@ -101,20 +106,23 @@ class Square:
         period = groove + ridge
         return cls(period, low, high, duty=groove / period, phase=phase)
 
-    def __call__(
-        self, x: MetreLike, y: MetreLike, v: MetrePerSecondLike, t: SecondLike, /
-    ) -> MetreArray:
-        """The vibration amplitude wanted at `x` (m, zero-to-peak), in the broadcast shape.
+    @property
+    def quantity(self) -> Quantity:
+        """The amplitude."""
+        return "amplitude"
 
-        Raises:
-            InputError: a position that is not finite, or shapes that do not broadcast.
-        """
-        cycles = _cycles(self.spatial_period, self.phase, x, y, v, t)
-        return np.where(np.mod(cycles, 1.0) < self.duty, self.high, self.low)
+    def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
+        cycles = x / self.spatial_period + self.phase / (2 * math.pi)
+        return np.where(cycles - np.floor(cycles) < self.duty, self.high, self.low)
+
+    def _lower(self, assembler: Assembler) -> None:
+        assembler.emit(ALONG, 1.0, 0.0, 0.0)
+        assembler.emit(SQUARE, self.spatial_period, self.phase / (2 * math.pi), self.duty)
+        assembler.emit(BETWEEN, self.low, self.high)
 
 
 @dataclass(frozen=True, slots=True)
-class Sine:
+class Sine(Composable):
     """A sine grating along x: amplitude between `low` and `high`, once per spatial period.
 
     ``(low + high)/2 + (high - low)/2 · sin(2πx/spatial_period + phase)``
@@ -133,28 +141,32 @@ class Sine:
     low: Metre
     high: Metre
     phase: Radian = 0.0
+    type: Literal["sine"] = field(default="sine", repr=False)
 
     def __post_init__(self) -> None:
         _require_grating(self.spatial_period, self.low, self.high, self.phase)
 
-    def __call__(
-        self, x: MetreLike, y: MetreLike, v: MetrePerSecondLike, t: SecondLike, /
-    ) -> MetreArray:
-        """The vibration amplitude wanted at `x` (m, zero-to-peak), in the broadcast shape.
+    @property
+    def quantity(self) -> Quantity:
+        """The amplitude."""
+        return "amplitude"
 
-        Raises:
-            InputError: a position that is not finite, or shapes that do not broadcast.
-        """
-        cycles = _cycles(self.spatial_period, self.phase, x, y, v, t)
+    def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
+        cycles = x / self.spatial_period + self.phase / (2 * math.pi)
         high_share = 0.5 + 0.5 * np.sin(2 * math.pi * cycles)
         # Weighted so, rounding cannot carry the value past either end (a negative amplitude).
         return np.asarray((1.0 - high_share) * self.low + high_share * self.high)
+
+    def _lower(self, assembler: Assembler) -> None:
+        assembler.emit(ALONG, 1.0, 0.0, 0.0)
+        assembler.emit(SINE, self.spatial_period, self.phase / (2 * math.pi))
+        assembler.emit(BETWEEN, self.low, self.high)
 
 
 def _require_grating(spatial_period: Metre, low: Metre, high: Metre, phase: Radian) -> None:
     require("spatial_period", spatial_period, _METRE, above=0.0, at_most=_LONGEST_PERIOD)
     require("low", low, _METRE, at_least=0.0)
-    require("high", high, _METRE, above=0.0, at_most=_LARGEST_AMPLITUDE)
+    require("high", high, _METRE, above=0.0, at_most=LARGEST_AMPLITUDE)
     require("phase", phase, Unit("rad"))
     if not low < high:
         raise InputError(
@@ -162,25 +174,3 @@ def _require_grating(spatial_period: Metre, low: Metre, high: Metre, phase: Radi
             "make no texture: low must be below high; to exchange grooves and ridges, "
             "change duty and phase"
         )
-
-
-def _cycles(
-    spatial_period: Metre,
-    phase: Radian,
-    x: MetreLike,
-    y: MetreLike,
-    v: MetrePerSecondLike,
-    t: SecondLike,
-) -> FloatArray:
-    """Periods passed since the origin, in the shape the four arguments broadcast to."""
-    # A NaN would compare false and silently become `low`.
-    require("position x", x, _METRE)
-    try:
-        shape = np.broadcast_shapes(*(np.shape(argument) for argument in (x, y, v, t)))
-    except ValueError as error:
-        shapes = ", ".join(str(np.shape(argument)) for argument in (x, y, v, t))
-        raise InputError(
-            f"x, y, v, t of shapes {shapes} do not broadcast; give equal shapes or scalars"
-        ) from error
-    cycles = np.asarray(x, dtype=float) / spatial_period + phase / (2 * math.pi)
-    return np.broadcast_to(cycles, shape)

@@ -1,0 +1,128 @@
+"""A frozen dataclass to TOML text with units, such that `load_text` reads the same value back."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import math
+import typing
+from decimal import Decimal
+from typing import Any
+
+from squeezefilm.config.load import LONGEST_FILE
+from squeezefilm.config.schema import reads_from_file
+from squeezefilm.errors import InputError
+from squeezefilm.quantities import Unit, format_quantity, parse_quantity, unit_of
+
+_Path = tuple[str, ...]
+
+
+def text_of(value: Any) -> str:
+    """The TOML text of a frozen dataclass: `load_text(type(value), text_of(value)) == value`.
+
+    Quantities are written with a readable unit and every digit they have ("0.4 mm"); keys at
+    their default are left out, but for a union's `type`. Sources of values (`provenance`) are not
+    written.
+
+    Raises:
+        InputError: a value that has no place in a file: no dataclass, a number that is not finite,
+            or more text than a file may have.
+    """
+    lines: list[str] = []
+    _table(value, (), lines)
+    text = "\n".join(lines).strip("\n") + "\n"
+    try:
+        size = len(text.encode("utf-8"))
+    except UnicodeEncodeError as error:
+        raise InputError(f"half a character cannot be written: {error}") from error
+    if size > LONGEST_FILE:
+        raise InputError(
+            f"the text would have {size} bytes; a file may have {LONGEST_FILE}; "
+            "give an image fewer pixels"
+        )
+    return text
+
+
+def _table(value: Any, path: _Path, lines: list[str]) -> None:
+    """The keys of a dataclass, then its tables, each below its own header."""
+    if not dataclasses.is_dataclass(value) or isinstance(value, type):
+        raise InputError(f"{value!r} is no dataclass and cannot be written")
+    hints = typing.get_type_hints(type(value), include_extras=True)
+    tables: list[tuple[str, Any]] = []
+    for field in sorted(dataclasses.fields(value), key=lambda one: one.name != "type"):
+        item = getattr(value, field.name)
+        if not reads_from_file(field) or (field.name != "type" and _is_default(field, item)):
+            continue
+        if _holds_tables(item) and not _fits_a_line(item):
+            tables.append((field.name, item))
+        else:
+            lines.append(f"{field.name} = {_inline(item, hints[field.name])}")
+    for name, item in tables:
+        here = (*path, name)
+        if isinstance(item, tuple):
+            for one in item:
+                lines.extend(["", f"[[{'.'.join(here)}]]"])
+                _table(one, here, lines)
+        else:
+            lines.extend(["", f"[{'.'.join(here)}]"])
+            _table(item, here, lines)
+
+
+def _is_default(field: dataclasses.Field[Any], item: Any) -> bool:
+    # 0.0 equals -0.0, which must not be lost.
+    same = type(item) is type(field.default) and repr(item) == repr(field.default)
+    return item is None or (same and item == field.default)
+
+
+def _holds_tables(item: Any) -> bool:
+    if isinstance(item, tuple):
+        return any(_holds_tables(one) for one in item)
+    return dataclasses.is_dataclass(item)
+
+
+def _fits_a_line(item: Any) -> bool:
+    """A table of plain values, like a coordinate, stands on the line of its key."""
+    if isinstance(item, tuple):
+        return False
+    values = [getattr(item, field.name) for field in dataclasses.fields(item)]
+    return len(values) <= 3 and not any(
+        isinstance(one, tuple) or _holds_tables(one) for one in values
+    )
+
+
+def _inline(item: Any, hint: Any) -> str:
+    if isinstance(item, tuple):
+        inner = typing.get_args(hint)[0]
+        return "[" + ", ".join(_inline(one, inner) for one in item) + "]"
+    if dataclasses.is_dataclass(item):
+        hints = typing.get_type_hints(type(item), include_extras=True)
+        pairs = [
+            f"{field.name} = {_inline(getattr(item, field.name), hints[field.name])}"
+            for field in sorted(dataclasses.fields(item), key=lambda one: one.name != "type")
+            if reads_from_file(field)
+            and (field.name == "type" or not _is_default(field, getattr(item, field.name)))
+        ]
+        return "{ " + ", ".join(pairs) + " }"
+    if isinstance(item, bool):
+        return "true" if item else "false"
+    if isinstance(item, str):
+        return json.dumps(item, ensure_ascii=False).replace("\x7f", "\\u007f")
+    if isinstance(item, int | float) and (unit := unit_of(hint)) is not None:
+        return _quantity(float(item), unit)
+    if isinstance(item, int):
+        return str(item)
+    raise InputError(f"{item!r} has no unit or no place in a TOML file and cannot be written")
+
+
+def _quantity(value: float, unit: Unit) -> str:
+    if not math.isfinite(value):
+        raise InputError(f"{value!r} is not finite and cannot be written")
+    if unit.symbol == "1":
+        return repr(value)
+    # The shortest digits that mean this float mean it in any decimal multiple of its unit too;
+    # but a unit that is not scaled is rounded from the float itself, which may round elsewhere.
+    digits = len(Decimal(repr(value)).as_tuple().digits)
+    text = format_quantity(value, unit, digits=digits)
+    if parse_quantity(text, unit) != value:
+        text = f"{value!r} {unit.symbol}"
+    return f'"{text}"'

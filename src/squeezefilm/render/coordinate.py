@@ -1,0 +1,156 @@
+"""Along what a one-dimensional pattern runs: x, y, any direction, or the distance from a point."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+
+from squeezefilm.errors import InputError
+from squeezefilm.quantities import (
+    FloatArray,
+    Metre,
+    MetreArray,
+    MetreLike,
+    MetrePerSecondLike,
+    Radian,
+    SecondLike,
+    Unit,
+    require,
+)
+from squeezefilm.render.opcodes import ALONG, RADIUS, Assembler
+
+METRE = Unit("m")
+FARTHEST: Metre = 10.0
+"""No display is ten metres long (m): a place beyond is a slip of unit."""
+
+
+class Coordinate:
+    """A length (m) read off the finger's place; the base of the family `AlongX`, `AlongY`,
+    `AlongDirection` and `FromPoint`."""
+
+    __slots__ = ()
+
+    def at(self, x: MetreArray, y: MetreArray) -> MetreArray:
+        """The coordinate (m) at places `x`, `y` (m), in their shape."""
+        raise NotImplementedError
+
+    def _lower(self, assembler: Assembler) -> None:
+        raise NotImplementedError
+
+
+@dataclass(frozen=True, slots=True)
+class AlongX(Coordinate):
+    """The coordinate x."""
+
+    type: Literal["x"] = field(default="x", repr=False)
+
+    def at(self, x: MetreArray, y: MetreArray) -> MetreArray:
+        """`x` (m)."""
+        return x
+
+    def _lower(self, assembler: Assembler) -> None:
+        assembler.emit(ALONG, 1.0, 0.0, 0.0)
+
+
+X_AXIS = AlongX()
+"""The coordinate that patterns run along unless they are told another."""
+
+
+@dataclass(frozen=True, slots=True)
+class AlongY(Coordinate):
+    """The coordinate y."""
+
+    type: Literal["y"] = field(default="y", repr=False)
+
+    def at(self, x: MetreArray, y: MetreArray) -> MetreArray:
+        """`y` (m)."""
+        return y
+
+    def _lower(self, assembler: Assembler) -> None:
+        assembler.emit(ALONG, 0.0, 1.0, 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class AlongDirection(Coordinate):
+    """x cos(angle) + y sin(angle): the way along a line at `angle` (rad) from x towards y.
+
+    Raises `InputError` for an angle that is not finite.
+    """
+
+    angle: Radian
+    type: Literal["direction"] = field(default="direction", repr=False)
+
+    def __post_init__(self) -> None:
+        require("angle", self.angle, Unit("rad"))
+
+    def at(self, x: MetreArray, y: MetreArray) -> MetreArray:
+        """The way along the line (m)."""
+        return np.asarray(math.cos(self.angle) * x + math.sin(self.angle) * y)
+
+    def _lower(self, assembler: Assembler) -> None:
+        assembler.emit(ALONG, math.cos(self.angle), math.sin(self.angle), 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class FromPoint(Coordinate):
+    """The distance from the point (`x`, `y`), for rings and discs; never negative.
+
+    Raises `InputError` for a point that is not within ±10 m.
+    """
+
+    x: Metre = 0.0
+    y: Metre = 0.0
+    type: Literal["radius"] = field(default="radius", repr=False)
+
+    def __post_init__(self) -> None:
+        require_place("x", self.x)
+        require_place("y", self.y)
+
+    def at(self, x: MetreArray, y: MetreArray) -> MetreArray:
+        """The distance (m)."""
+        # Not hypot: a plain root is the same operation in every interpreter of a program.
+        return np.sqrt((x - self.x) ** 2 + (y - self.y) ** 2)
+
+    def _lower(self, assembler: Assembler) -> None:
+        assembler.emit(RADIUS, self.x, self.y)
+
+
+def require_place(name: str, value: Metre) -> None:
+    """Refuse a place (m) that is not finite or farther than 10 m from the origin."""
+    require(name, value, METRE, at_least=-FARTHEST, at_most=FARTHEST)
+
+
+def require_coordinate(value: object) -> None:
+    """Refuse what is no `Coordinate`."""
+    if not isinstance(value, Coordinate):
+        raise InputError(
+            f"along = {value!r} is no coordinate; give AlongX(), AlongY(), AlongDirection(angle) "
+            "or FromPoint(x, y)",
+            quantity="along",
+        )
+
+
+def finger_arguments(
+    x: MetreLike, y: MetreLike, v: MetrePerSecondLike, t: SecondLike
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Place, velocity and time of a finger as arrays of one shape.
+
+    Raises `InputError` for one that is not finite, or for shapes that do not broadcast.
+    """
+    # A NaN would compare false and silently become the low side of an edge.
+    require("position x", x, METRE)
+    require("position y", y, METRE)
+    require("velocity v", v, Unit("m/s"))
+    require("time t", t, Unit("s"))
+    arrays = [np.asarray(one, dtype=float) for one in (x, y, v, t)]
+    try:
+        a, b, c, d = np.broadcast_arrays(*arrays)
+    except ValueError as error:
+        shapes = ", ".join(str(one.shape) for one in arrays)
+        raise InputError(
+            f"x, y, v, t of shapes {shapes} do not broadcast; give equal shapes or scalars"
+        ) from error
+    return a, b, c, d

@@ -1,0 +1,165 @@
+"""From a wanted friction to the amplitude that makes it: the display's friction curve, inverted."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from squeezefilm.errors import InputError
+from squeezefilm.quantities import (
+    Dimensionless,
+    DimensionlessArray,
+    DimensionlessLike,
+    Metre,
+    MetreArray,
+    Unit,
+    format_quantity,
+    require,
+)
+
+_METRE = Unit("m")
+_MOST_KNOTS = 65_536
+# Friction at rest is 1 by its definition; a curve may miss that by what a solver leaves.
+_AT_REST = 1e-4
+# Two knots closer than this in friction cannot be told apart by the inverse.
+_FLAT = 1e-12
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FrictionInverse:
+    """Knots of a falling friction curve, read backwards with straight lines between them.
+
+    Build it with `from_function` or `from_arrays`.
+
+    Attributes:
+        amplitude: rising from 0 (m, zero-to-peak), shape (n,).
+        relative_friction: strictly falling from 1 (1), shape (n,).
+        max_error: how far the friction at an amplitude found here may be from the one wanted (1).
+        error_source: "measured" between the knots on the curve itself, or "estimated" from what
+            leaving out every other knot would change.
+    """
+
+    amplitude: MetreArray
+    relative_friction: DimensionlessArray
+    max_error: Dimensionless
+    error_source: Literal["measured", "estimated"]
+
+    @classmethod
+    def from_function(
+        cls,
+        relative_friction: Callable[[MetreArray], DimensionlessArray],
+        largest_amplitude: Metre,
+        *,
+        knots: int = 257,
+        rise_allowed: Dimensionless = 1e-9,
+    ) -> FrictionInverse:
+        """The inverse of a friction law up to an amplitude.
+
+        Args:
+            relative_friction: vibration amplitudes (m, zero-to-peak; shape (n,)) → relative
+                friction (1; the same shape). Called once, with some 4 × `knots` amplitudes.
+            largest_amplitude: the largest that may be asked for (m); above 0, at most 1 mm.
+            knots: amplitudes in the table, evenly spaced; from 3 to 65 536.
+            rise_allowed: by how much friction may rise from a knot to the next (1) and be taken
+                for rounding; the rise is flattened and enters `max_error`.
+
+        Raises:
+            InputError: a value outside its range, or a friction that is not finite, is not 1 at
+                rest or rises with amplitude.
+        """
+        require("largest_amplitude", largest_amplitude, _METRE, above=0.0, at_most=1e-3)
+        if not isinstance(knots, int) or not 3 <= knots <= _MOST_KNOTS:
+            raise InputError(f"knots = {knots!r} cannot be used: it must be 3 to {_MOST_KNOTS}")
+        require("rise_allowed", rise_allowed, at_least=0.0, at_most=0.1)
+        fine = np.linspace(0.0, largest_amplitude, 4 * (knots - 1) + 1)
+        found = np.asarray(relative_friction(fine), dtype=float)
+        if found.shape != fine.shape:
+            raise InputError(
+                f"relative_friction returned values of shape {found.shape} where {fine.shape} was "
+                "given; it must return one value per amplitude"
+            )
+        amplitude, friction = _knots(fine[::4], found[::4], rise_allowed)
+        back = np.interp(fine, amplitude, friction)
+        error = float(np.max(np.abs(back - found)))
+        return cls(amplitude, friction, error, "measured")
+
+    @classmethod
+    def from_arrays(
+        cls,
+        amplitude: MetreArray,
+        relative_friction: DimensionlessArray,
+        *,
+        rise_allowed: Dimensionless = 1e-9,
+    ) -> FrictionInverse:
+        """The inverse of a curve given by its points: amplitudes from 0 rising (m), friction (1).
+
+        Raises `InputError` as `from_function` does, and for fewer than 3 points.
+        """
+        places, values = np.asarray(amplitude, float), np.asarray(relative_friction, float)
+        if places.ndim != 1 or places.shape != values.shape or not 3 <= places.size <= _MOST_KNOTS:
+            raise InputError(
+                f"amplitude and relative_friction of shapes {places.shape} and {values.shape} are "
+                f"no curve; give two lists of one length, 3 to {_MOST_KNOTS}"
+            )
+        require("amplitude", places, _METRE, at_least=0.0, at_most=1e-3)
+        if places[0] != 0.0 or np.any(np.diff(places) <= 0.0):
+            raise InputError("amplitude must begin with 0 and rise from each value to the next")
+        require("rise_allowed", rise_allowed, at_least=0.0, at_most=0.1)
+        knots, friction = _knots(places, values, rise_allowed)
+        # Lines over twice the spacing miss a smooth curve by four times as much.
+        coarse = np.interp(places, places[::2], values[::2])
+        bend = float(np.max(np.abs(coarse - values))) / 4.0
+        flattened = float(np.max(np.abs(np.interp(places, knots, friction) - values)))
+        return cls(knots, friction, max(bend, flattened), "estimated")
+
+    @property
+    def largest_amplitude(self) -> Metre:
+        """The amplitude of the least friction (m, zero-to-peak)."""
+        return float(self.amplitude[-1])
+
+    @property
+    def least_friction(self) -> Dimensionless:
+        """The least relative friction that can be reached (1)."""
+        return float(self.relative_friction[-1])
+
+    def amplitude_for(self, relative_friction: DimensionlessLike) -> MetreArray:
+        """The amplitude (m, zero-to-peak) that makes a relative friction (1), in its shape.
+
+        Raises:
+            InputError: a friction above 1 or below `least_friction`.
+        """
+        require("relative_friction", relative_friction, at_least=self.least_friction, at_most=1.0)
+        found = np.interp(
+            np.asarray(relative_friction, dtype=float),
+            self.relative_friction[::-1],
+            self.amplitude[::-1],
+        )
+        return np.asarray(found)
+
+
+def _knots(
+    amplitude: MetreArray, friction: DimensionlessArray, rise_allowed: float
+) -> tuple[MetreArray, DimensionlessArray]:
+    require("relative_friction", friction, at_least=0.0)
+    if abs(friction[0] - 1.0) > _AT_REST:
+        raise InputError(
+            f"the relative friction at rest is {friction[0]:.6g}; it must be 1: divide the curve "
+            "by its value at amplitude 0"
+        )
+    falling = np.minimum.accumulate(np.append(1.0, friction[1:]))
+    rise = np.diff(friction)
+    if np.any(rise > rise_allowed):
+        place = int(np.argmax(rise > rise_allowed))
+        raise InputError(
+            f"friction rises by {rise[place]:.3g} from {format_quantity(amplitude[place], _METRE)} "
+            f"to {format_quantity(amplitude[place + 1], _METRE)}, so an amplitude for it is not "
+            "unique; end the curve there, or allow the rise if it is noise (rise_allowed)"
+        )
+    # Of a flat stretch the least amplitude is kept; what that costs is in the error stated.
+    keep = np.append(True, np.diff(falling) < -_FLAT)
+    if np.count_nonzero(keep) < 2:
+        raise InputError("friction does not fall with amplitude, so nothing can be rendered by it")
+    return amplitude[keep], falling[keep]

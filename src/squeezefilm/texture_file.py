@@ -1,0 +1,78 @@
+"""Textures in files: TOML with units to a texture value and back, without loss.
+
+A file names one texture::
+
+    title = "Fine grating with a bump"
+
+    [texture]
+    type = "relative_friction"
+    low = 0.5
+    high = 0.9
+    pattern = { type = "square_wave", spatial_period = "2 mm" }
+
+Every class of the texture algebra is a table with its `type`: the class's name in small letters
+with underscores (`SquareWave` is "square_wave"; the coordinates are "x", "y", "direction",
+"radius"), and its fields as keys. A quantity without a unit, an image without a scale (`pixel`),
+a misspelt key or type is refused with file, line and key.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+# Read for their classes: what a file may name is what is below Composable, Pattern, Coordinate.
+from squeezefilm.config.load import load, load_text
+from squeezefilm.config.write import text_of
+from squeezefilm.errors import InputError
+from squeezefilm.render import levels, pattern_gates, pattern_image, pattern_noise, texture
+from squeezefilm.render.composition import Composable, require_texture
+
+MODULES = (levels, pattern_gates, pattern_image, pattern_noise, texture)
+"""The modules whose classes a file may name, beside those these import."""
+
+
+@dataclass(frozen=True, slots=True)
+class TextureFile:
+    """One texture and what it is called. Raises `InputError` for what is no texture."""
+
+    texture: Composable
+    title: str = ""
+
+    def __post_init__(self) -> None:
+        require_texture("texture", self.texture)
+
+
+def load_texture(path: str | Path) -> TextureFile:
+    """The texture in a TOML file. Raises `ConfigError` with file, line and key."""
+    return load(TextureFile, path)
+
+
+def texture_from_text(text: str, *, file: str | Path | None = None) -> TextureFile:
+    """The texture in TOML text; `file` is what messages name. Raises `ConfigError`."""
+    return load_text(TextureFile, text, file=file)
+
+
+def texture_text(texture: TextureFile | Composable) -> str:
+    """TOML text that `texture_from_text` reads back as an equal value.
+
+    Raises `InputError` for a texture whose text is longer than a file may be.
+    """
+    given = TextureFile(texture) if isinstance(texture, Composable) else texture
+    return text_of(given)
+
+
+def save_texture(texture: TextureFile | Composable, path: str | Path) -> None:
+    """Write a texture to a TOML file.
+
+    Raises:
+        InputError: a file that exists already or cannot be written, or a text that is too long.
+    """
+    text = texture_text(texture)
+    try:
+        with Path(path).open("x", encoding="utf-8") as file:
+            file.write(text)
+    except FileExistsError as error:
+        raise InputError(f"{path} exists already; give another name or remove it") from error
+    except OSError as error:
+        raise InputError(f"{path} cannot be written: {error.strerror}") from error
