@@ -1,0 +1,90 @@
+"""A hand going to and fro: passes of least jerk, which speed up, slow down and turn softly.
+
+Reaching movements of a hand follow x = L (10 s³ − 15 s⁴ + 6 s⁵), s = t/T, closely (T. Flash and
+N. Hogan 1985, 10.1523/JNEUROSCI.05-07-01688.1985). As a trajectory it is what an estimator that
+believes in white jerk has to live with.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from squeezefilm.errors import InputError
+from squeezefilm.quantities import (
+    Metre,
+    MetreArray,
+    MetrePerSecond,
+    Second,
+    SecondLike,
+    Unit,
+    require,
+)
+
+
+class Trajectory(Protocol):
+    """A finger's motion along x: how long it lasts and where it is. `Stroke` is one."""
+
+    @property
+    def duration(self) -> Second:
+        """Time the motion takes (s)."""
+        ...
+
+    def position(self, t: SecondLike, /) -> MetreArray:
+        """Position at time t (m), 0 ≤ t ≤ duration, in the shape of `t`."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class MinimumJerkStroke:
+    """A finger's motion along x: `passes` passes of `length`, each of least jerk, to and fro.
+
+    Args:
+        length: of one pass (m); above 0, at most 10 m.
+        pass_duration: time one pass takes (s); above 0.
+        passes: 1 is there, 2 there and back, and so on.
+        start: x where the first pass begins (m); it goes towards +x.
+
+    Raises:
+        InputError: a value outside its range.
+    """
+
+    length: Metre = 0.04
+    pass_duration: Second = 0.4
+    passes: int = 2
+    start: Metre = 0.0
+
+    def __post_init__(self) -> None:
+        require("length", self.length, Unit("m"), above=0.0, at_most=10.0)
+        require("pass_duration", self.pass_duration, Unit("s"), above=0.0)
+        require("start", self.start, Unit("m"))
+        if not isinstance(self.passes, int) or isinstance(self.passes, bool) or self.passes < 1:
+            raise InputError(
+                f"passes = {self.passes!r} cannot be used: it must be a whole number, at least 1 "
+                "(2 is there and back)"
+            )
+
+    @property
+    def duration(self) -> Second:
+        """Time the whole motion takes (s)."""
+        return self.passes * self.pass_duration
+
+    @property
+    def top_speed(self) -> MetrePerSecond:
+        """Speed in the middle of each pass (m/s): 15/8 of the mean."""
+        return 1.875 * self.length / self.pass_duration
+
+    def position(self, t: SecondLike) -> MetreArray:
+        """Position x of the finger at time `t` since the motion began (m), in the shape of `t`.
+
+        Raises:
+            InputError: a time before the motion or after its end.
+        """
+        require("t", t, Unit("s"), at_least=0.0, at_most=self.duration * (1 + 1e-12))
+        passed = np.asarray(t, dtype=float) / self.pass_duration
+        done = np.minimum(np.floor(passed), self.passes - 1)
+        s = np.clip(passed - done, 0.0, 1.0)
+        along = self.length * s**3 * (10 + s * (6 * s - 15))
+        return np.asarray(self.start + np.where(done % 2 == 0, along, self.length - along))
