@@ -196,7 +196,8 @@ def _path_and_owner(
     path: list[str | int] = []
     owner, hint = cls, typing.cast(Any, cls)
     for part in location:
-        tagged = [option for option in _options(hint) if _tag(option) == part]
+        options = _options(hint)
+        tagged = [option for option in options if _tag(option) == part]
         if tagged:
             hint = tagged[0]
             continue
