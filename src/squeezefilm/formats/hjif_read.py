@@ -169,7 +169,7 @@ def texture_of_hjif(document: Any) -> HjifImport:
     if not curves or smooth:
         step = min(step, _COARSE)
         lost.append(f"waves and cubics were sampled every {step * 1e6:.4g} µm")
-    if (end - start) / step + 1 > MOST_PIXELS or not 1e-6 <= step:
+    if (end - start) / step + 1 > MOST_PIXELS or step < 1e-6:
         step = max(1e-6, (end - start) / (MOST_PIXELS - 1))
         lost.append(f"keyframes lie closer than an image can hold; sampled every {step:.3g} m")
     count = max(2, round((end - start) / step) + 1)
