@@ -208,7 +208,7 @@ def ripple(result: RenderAnalysis) -> Figure:
     done = " The renderer drives harder there." if result.wave == "compensated" else ""
     figure = new_figure(
         f"Near the nodes, every {shown(half, M, 3)}, the pad meets "
-        f"{100 * float(np.min(result.factor)):.0f} % of the amplitude.{done}",
+        f"{100 * float(np.min(result.factor)):.3g} % of the amplitude.{done}",
         f"standing wave {result.wave}; x = 0 is an antinode",
         4.6,
     )

@@ -75,7 +75,7 @@ def render_rows(result: RenderAnalysis) -> list[tuple[str, str, str]]:
         rows.append(
             (
                 "Standing wave",
-                f"{100 * float(np.min(result.factor)):.0f} %",
+                f"{100 * float(np.min(result.factor)):.3g} %",
                 f"of the amplitude met at the nodes, {result.wave}; period "
                 f"{shown(p.mode.half_wavelength, M, 3)}",
             )
@@ -105,5 +105,5 @@ def show_lost(export: HjifExport) -> None:
 
 def show_textures(listing: list[dict[str, str]]) -> None:
     """Print the textures that come with the package."""
-    table(plain_console(), ("texture", "title", "quantity"),
-          [(one["name"], one["title"], one["quantity"]) for one in listing], fixed=(0,))  # fmt: skip
+    rows = [(one["name"], one["title"], one["quantity"]) for one in listing]
+    table(plain_console(), ("texture", "title", "quantity"), rows, fixed=(0,))
