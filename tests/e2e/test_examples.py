@@ -48,11 +48,23 @@ def _finger_drags_its_skin(result: Any) -> None:
     assert result["energy_residual_J"] < 1e-12
 
 
+def _texture_on_a_display(result: Any) -> None:
+    assert 0.3 < result["least_friction"] < 0.8
+    # The masks ask for no more than there is, and the lowest friction for all there is.
+    assert result["largest_amplitude_m"] == pytest.approx(result["available_amplitude_m"])
+    assert result["unreachable"] == 0
+    assert result["lost"] == 15
+    assert result["inverse_error"] < 1e-3
+    # Grooves ask for all the amplitude there is, and off the antinodes for more.
+    assert 0 < result["saturated"] < 400
+
+
 CHECKS = {
     "friction_of_the_stator": _friction_of_the_stator,
     "thinner_plate": _thinner_plate,
     "finger_drags_its_skin": _finger_drags_its_skin,
     "grating_under_a_finger": _grating_under_a_finger,
+    "texture_on_a_display": _texture_on_a_display,
 }
 
 

@@ -48,6 +48,7 @@ def test_the_wheel_has_data_licence_and_types(unpacked: Path) -> None:
         "squeezefilm/presets/biet2008-plate.toml",
         "squeezefilm/presets/biet2008-stator.toml",
         "squeezefilm/py.typed",
+        "squeezefilm/render/static/renderer.js",
     } <= files
     assert any(name.endswith("licenses/LICENSE") for name in files)
     assert not any(name.startswith(("tests", "docs")) for name in files)

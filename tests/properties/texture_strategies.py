@@ -50,7 +50,8 @@ coordinates: st.SearchStrategy[Coordinate] = st.one_of(
 def bands(draw: st.DrawFn) -> Band:
     start, width = draw(places), draw(widths)
     end = start + width
-    return Band(start, end, draw(st.floats(0.0, 1.0)) * 0.99 * (end - start), draw(coordinates))
+    fade = draw(st.just(0.0) | st.floats(1e-3, 0.99)) * (end - start)
+    return Band(start, end, fade, draw(coordinates))
 
 
 @st.composite
@@ -134,7 +135,7 @@ def _sequences(draw: st.DrawFn, inner: st.SearchStrategy[Composable]) -> Sequenc
     steps = draw(st.lists(widths, min_size=len(parts) - 1, max_size=len(parts) - 1))
     edges = tuple((draw(places) + np.cumsum(steps)).tolist())
     least = float(np.min(np.diff(edges))) if len(edges) > 1 else 0.01
-    fade = draw(st.just(0.0) | st.floats(0.0, least))
+    fade = draw(st.just(0.0) | st.floats(1e-9, least))
     return Sequence(tuple(parts), edges, fade, draw(coordinates))
 
 

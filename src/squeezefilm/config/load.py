@@ -22,7 +22,8 @@ from squeezefilm.quantities import did_you_mean, unit_of
 T = TypeVar("T")
 LONGEST_FILE = 4_000_000
 """Bytes a file may have; a description of a display has a few thousand."""
-_DEEPEST = 100  # far past any description, far below where building it would exhaust the stack
+DEEPEST = 100
+"""Tables and lists within each other: far past any description, and safe to build."""
 
 
 def load(cls: type[T], path: str | Path) -> T:
@@ -56,8 +57,8 @@ def load_text(cls: type[T], text: str, *, file: str | Path | None = None) -> T:
         raise ConfigError(f"is not valid TOML: {error}", file=file) from error
     except RecursionError as error:
         raise ConfigError("is nested too deeply to be read; nest less", file=file) from error
-    if (depth := _depth(raw)) > _DEEPEST:
-        raise ConfigError(f"is nested {depth} deep; at most {_DEEPEST} are read", file=file)
+    if (depth := _depth(raw)) > DEEPEST:
+        raise ConfigError(f"is nested {depth} deep; at most {DEEPEST} are read", file=file)
     if not raw:
         keys = ", ".join(field.name for field in dataclasses.fields(cls) if reads_from_file(field))  # type: ignore[arg-type]
         raise ConfigError(f"is empty; a {cls.__name__.lower()} needs the keys {keys}", file=file)

@@ -9,7 +9,7 @@ import typing
 from decimal import Decimal
 from typing import Any
 
-from squeezefilm.config.load import LONGEST_FILE
+from squeezefilm.config.load import DEEPEST, LONGEST_FILE
 from squeezefilm.config.schema import reads_from_file
 from squeezefilm.errors import InputError
 from squeezefilm.quantities import Unit, format_quantity, parse_quantity, unit_of
@@ -47,6 +47,9 @@ def _table(value: Any, path: _Path, lines: list[str]) -> None:
     """The keys of a dataclass, then its tables, each below its own header."""
     if not dataclasses.is_dataclass(value) or isinstance(value, type):
         raise InputError(f"{value!r} is no dataclass and cannot be written")
+    # A name may stand for a list and the table in it; a line holds up to four more.
+    if 2 * len(path) + 4 > DEEPEST:
+        raise InputError(f"it is nested {len(path)} tables deep, too deep to be read; nest less")
     hints = typing.get_type_hints(type(value), include_extras=True)
     tables: list[tuple[str, Any]] = []
     for field in sorted(dataclasses.fields(value), key=lambda one: one.name != "type"):

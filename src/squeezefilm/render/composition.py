@@ -42,11 +42,11 @@ from squeezefilm.quantities import (
     require,
 )
 from squeezefilm.render.coordinate import (
-    METRE,
     X_AXIS,
     Coordinate,
     finger_arguments,
     require_coordinate,
+    require_fade,
     require_place,
 )
 from squeezefilm.render.opcodes import ADD, CROSS, FADE, MULTIPLY, WEIGH, Assembler
@@ -134,10 +134,14 @@ class Composable:
     def then(
         self, other: Composable, at: Metre, *, fade: Metre = 0.0, along: Coordinate | None = None
     ) -> Sequence:
-        """This texture before the coordinate `at` (m), `other` from there; chains."""
-        chains = isinstance(self, Sequence) and self.fade == fade
-        coordinate = along or (self.along if isinstance(self, Sequence) else X_AXIS)
-        if isinstance(self, Sequence) and chains and self.along == coordinate:
+        """This texture before the coordinate `at` (m; x unless `along` is given), then `other`."""
+        coordinate = along or X_AXIS
+        # An edge before the last one cuts what is there off: that needs a sequence around it.
+        if (
+            isinstance(self, Sequence)
+            and (self.fade, self.along) == (fade, coordinate)
+            and (not self.edges or at > self.edges[-1] + fade)
+        ):
             return Sequence((*self.textures, other), (*self.edges, at), fade, coordinate)
         return Sequence((self, other), (at,), fade, coordinate)
 
@@ -295,8 +299,8 @@ class Sequence(Composable):
     Args:
         textures: of one quantity, one more than there are edges.
         edges: rising coordinates (m) where the next begins, within ±10 m.
-        fade: width over which one passes linearly into the next (m), centred on the edge; at
-            least 0, at most the least distance between two edges.
+        fade: width over which one passes linearly into the next (m), centred on the edge; 0, or
+            from 1 nm to the least distance between two edges.
         along: the coordinate.
 
     Raises:
@@ -326,7 +330,7 @@ class Sequence(Composable):
                 "the edges of a sequence must rise from each to the next", quantity="edges"
             )
         widest = float(np.min(steps)) if steps.size else 1.0
-        require("fade", self.fade, METRE, at_least=0.0, at_most=widest)
+        require_fade(self.fade, widest)
 
     @property
     def quantity(self) -> Quantity:

@@ -26,6 +26,9 @@ METRE = Unit("m")
 FARTHEST: Metre = 10.0
 """No display is ten metres long (m): a place beyond is a slip of unit."""
 
+FINEST: Metre = 1e-9
+"""No texture is finer than a nanometre (m): a width below is a slip of unit."""
+
 
 class Coordinate:
     """A length (m) read off the finger's place; the base of the family `AlongX`, `AlongY`,
@@ -121,6 +124,12 @@ class FromPoint(Coordinate):
 def require_place(name: str, value: Metre) -> None:
     """Refuse a place (m) that is not finite or farther than 10 m from the origin."""
     require(name, value, METRE, at_least=-FARTHEST, at_most=FARTHEST)
+
+
+def require_fade(value: Metre, at_most: Metre) -> None:
+    """Refuse a fade (m) that is neither 0 nor between a nanometre and `at_most`."""
+    if value != 0.0:
+        require("fade", value, METRE, at_least=FINEST, at_most=at_most)
 
 
 def require_coordinate(value: object) -> None:

@@ -398,6 +398,16 @@ def value_march(
 
 
 @numba.njit(cache=True, nogil=True, error_model="numpy")
+def amplitude_march(
+    program: Array, state: Array, x: Array, y: Array, v: Array, t: Array, out: Array
+) -> None:
+    """The amplitude of every value by itself; what cannot be reached is counted in `state`."""
+    for i in range(x.size):
+        wanted = interpret(program, state, at.STATE, x[i], y[i], v[i], t[i])
+        out[i] = _amplitude(program, state, wanted, x[i], y[i])[0]
+
+
+@numba.njit(cache=True, nogil=True, error_model="numpy")
 def tick_march(
     program: Array, state: Array, x: Array, y: Array, v: Array, t: Array, out: Array, flags: Array
 ) -> None:

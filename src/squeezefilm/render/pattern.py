@@ -216,7 +216,8 @@ class SpeedScaled(Pattern):
     from the origin it is: this is a function of the present speed, with no memory.
 
     Raises:
-        InputError: unless 0 < slowest ≤ fastest ≤ 10 m/s and reference_speed is above 0.
+        InputError: unless 1 µm/s ≤ slowest ≤ fastest ≤ 10 m/s, and for a reference speed
+            outside 1 µm/s to 10 m/s.
     """
 
     pattern: Pattern
@@ -228,7 +229,7 @@ class SpeedScaled(Pattern):
     def __post_init__(self) -> None:
         require_pattern("pattern", self.pattern)
         unit = Unit("m/s")
-        require("reference_speed", self.reference_speed, unit, above=0.0, at_most=10.0)
+        require("reference_speed", self.reference_speed, unit, at_least=1e-6, at_most=10.0)
         require("slowest", self.slowest, unit, at_least=1e-6, at_most=10.0)
         require("fastest", self.fastest, unit, at_least=self.slowest, at_most=10.0)
 

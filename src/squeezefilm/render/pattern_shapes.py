@@ -12,11 +12,13 @@ from squeezefilm.errors import InputError
 from squeezefilm.quantities import Dimensionless, FloatArray, Metre, Radian, Unit, require
 from squeezefilm.render.coordinate import (
     FARTHEST,
+    FINEST,
     METRE,
     X_AXIS,
     Coordinate,
     FromPoint,
     require_coordinate,
+    require_fade,
     require_place,
 )
 from squeezefilm.render.opcodes import (
@@ -61,7 +63,7 @@ class SquareWave(Pattern):
     1 where ``(s/spatial_period + phase/2π) mod 1 < duty``, s being the coordinate `along`.
 
     Args:
-        spatial_period: one whole period (m); above 0, at most 10 m.
+        spatial_period: one whole period (m); from 1 nm to 10 m.
         duty: share of the period at 1; above 0, below 1.
         phase: shifts the pattern back by phase/2π of a period (rad).
         along: the coordinate it runs along.
@@ -119,7 +121,7 @@ class Pulse(Pattern):
 
     Args:
         centre: its place (m), within ±10 m.
-        width: full width at half height (m); above 0, at most 10 m.
+        width: full width at half height (m); from 1 nm to 10 m.
         shape: "gaussian", or "raised_cosine", which is 0 from `width` on.
         along: the coordinate it lies on; from a point it is a ring.
 
@@ -135,7 +137,7 @@ class Pulse(Pattern):
 
     def __post_init__(self) -> None:
         require_place("centre", self.centre)
-        require("width", self.width, METRE, above=0.0, at_most=FARTHEST)
+        require("width", self.width, METRE, at_least=FINEST, at_most=FARTHEST)
         require_coordinate(self.along)
         if self.shape not in ("gaussian", "raised_cosine"):
             raise InputError(
@@ -213,7 +215,7 @@ class Band(Pattern):
 
     Args:
         start, end: its ends (m), within ±10 m, `start` below `end`.
-        fade: width of each edge (m), centred on it; at least 0, at most the band's width.
+        fade: width of each edge (m), centred on it; 0, or from 1 nm to the band's width.
         along: the coordinate it lies on; from a point it is a ring.
 
     Raises:
@@ -230,7 +232,7 @@ class Band(Pattern):
         require_place("start", self.start)
         require_place("end", self.end)
         require("end", self.end, METRE, above=self.start)
-        require("fade", self.fade, METRE, at_least=0.0, at_most=self.end - self.start)
+        require_fade(self.fade, self.end - self.start)
         require_coordinate(self.along)
 
     @classmethod
@@ -269,7 +271,7 @@ class Bump(Pattern):
 
     Args:
         centre: of the Gaussian (m), within ±10 m.
-        width: its standard deviation (m), at which the slope is steepest; above 0, at most 10 m.
+        width: its standard deviation (m), at which the slope is steepest; from 1 nm to 10 m.
         kind: "bump" or "hole".
         along: the coordinate it lies on.
 
@@ -285,7 +287,7 @@ class Bump(Pattern):
 
     def __post_init__(self) -> None:
         require_place("centre", self.centre)
-        require("width", self.width, METRE, above=0.0, at_most=FARTHEST)
+        require("width", self.width, METRE, at_least=FINEST, at_most=FARTHEST)
         require_coordinate(self.along)
         if self.kind not in ("bump", "hole"):
             raise InputError(
@@ -308,6 +310,6 @@ class Bump(Pattern):
 
 
 def _require_wave(spatial_period: Metre, phase: Radian, along: Coordinate) -> None:
-    require("spatial_period", spatial_period, METRE, above=0.0, at_most=FARTHEST)
+    require("spatial_period", spatial_period, METRE, at_least=FINEST, at_most=FARTHEST)
     require("phase", phase, Unit("rad"))
     require_coordinate(along)

@@ -224,6 +224,7 @@ def _check_header(program: FloatArray, inverse: int, wave: int) -> None:
         raise _broken("reduces a friction coefficient that is not above 0")
     require("largest amplitude", program[at.H_LARGEST], METRE, above=0.0, at_most=1e-3)
     require("farthest place", program[at.H_FARTHEST], METRE, above=0.0, at_most=FARTHEST)
+    require("stack", program[at.H_STACK], at_least=1.0, at_most=float(op.DEEPEST_STACK))
     require("fade ticks", program[at.H_FADE], at_least=1.0)
     amplitude, friction = program[inverse : inverse + count], program[inverse + count : wave]
     if count and (np.any(np.diff(amplitude) <= 0.0) or np.any(np.diff(friction) >= 0.0)):
@@ -282,7 +283,7 @@ def _check_code(program: FloatArray, tables: int, inverse: int) -> None:
         if stack - popped < floor:
             raise _broken("takes more from the stack than is there")
         stack += pushed - popped
-        if stack > min(program[at.H_STACK], op.DEEPEST_STACK):
+        if stack > program[at.H_STACK]:
             raise _broken("needs a larger stack than it says")
         if code == op.ENTER_SCALE:
             scales.append(stack)

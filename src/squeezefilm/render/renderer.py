@@ -8,7 +8,7 @@ from typing import Annotated, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from squeezefilm.errors import InputError
+from squeezefilm.errors import InputError, UnreachableError
 from squeezefilm.quantities import (
     FloatArray,
     Metre,
@@ -22,7 +22,7 @@ from squeezefilm.quantities import (
 )
 from squeezefilm.render import layout as at
 from squeezefilm.render.coordinate import finger_arguments
-from squeezefilm.render.interpreter import tick, tick_march, value_march
+from squeezefilm.render.interpreter import amplitude_march, tick, tick_march, value_march
 from squeezefilm.render.program import Program
 
 
@@ -146,6 +146,40 @@ def evaluate(
     out = np.empty(a.size)
     value_march(program.array, np.empty(program.stack), a, b, c, d, out)
     return out.reshape(arrays[0].shape)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Played:
+    """A program as the seam `Texture`: place, velocity and time to amplitude, with no memory.
+
+    For a texture of friction that goes where an amplitude is wanted, such as `friction_trace`.
+    """
+
+    program: Program
+
+    def __call__(
+        self, x: MetreLike, y: MetreLike, v: MetrePerSecondLike, t: SecondLike, /
+    ) -> MetreArray:
+        """The vibration amplitude wanted (m, zero-to-peak), in the broadcast shape.
+
+        Raises:
+            InputError: an argument that is not finite, or shapes that do not broadcast.
+            UnreachableError: a friction or an amplitude that the display cannot reach. (A renderer
+                that ticks counts it instead.)
+        """
+        arrays = finger_arguments(x, y, v, t)
+        a, b, c, d = (np.ascontiguousarray(one).ravel() for one in arrays)
+        out, state = np.empty(a.size), new_state(self.program)
+        amplitude_march(self.program.array, state, a, b, c, d, out)
+        met = counters_of(state)
+        if met.unreachable:
+            raise UnreachableError(
+                f"at {met.unreachable} of {a.size} samples the texture wants what the display "
+                f"cannot reach: {met.too_sticky} times more friction than at rest, "
+                f"{met.too_slippery} times less than the least, {met.negative} amplitudes below 0, "
+                f"{met.saturated} above the largest; change its ends or its sums"
+            )
+        return out.reshape(arrays[0].shape)
 
 
 def _series(*arguments: Any) -> list[FloatArray]:

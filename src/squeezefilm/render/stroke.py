@@ -9,10 +9,12 @@ import numpy as np
 
 from squeezefilm.errors import InputError
 from squeezefilm.quantities import (
+    FloatArray,
     Hertz,
     Metre,
     MetreArray,
     MetrePerSecond,
+    MetrePerSecondArray,
     Second,
     SecondArray,
     SecondLike,
@@ -79,12 +81,26 @@ class Stroke:
         Raises:
             InputError: a time before the stroke or after its end.
         """
+        path, done = self._path(t)
+        along = np.clip(path - done * self.length, 0.0, self.length)
+        return np.asarray(self.start + np.where(done % 2 == 0, along, self.length - along))
+
+    def velocity(self, t: SecondLike) -> MetrePerSecondArray:
+        """Velocity along x at time `t` (m/s), in the shape of `t`: ±`speed`, negative on the way
+        back; at a turn that of the pass that begins, at the end that of the last.
+
+        Raises:
+            InputError: a time before the stroke or after its end.
+        """
+        _, done = self._path(t)
+        return np.asarray(np.where(done % 2 == 0, self.speed, -self.speed))
+
+    def _path(self, t: SecondLike) -> tuple[MetreArray, FloatArray]:
+        """The way gone (m) and the whole passes done by the time `t`."""
         latest = self.duration * (1 + _ROUNDING)
         require("t", t, Unit("s"), at_least=0.0, at_most=latest)
         path = np.minimum(np.asarray(t, dtype=float), self.duration) * self.speed
-        done = np.minimum(np.floor(path / self.length), self.passes - 1)
-        along = np.clip(path - done * self.length, 0.0, self.length)
-        return np.asarray(self.start + np.where(done % 2 == 0, along, self.length - along))
+        return np.asarray(path), np.minimum(np.floor(path / self.length), self.passes - 1)
 
     def sampled(self, rate: Hertz) -> tuple[SecondArray, MetreArray]:
         """Times 0, 1/rate, 2/rate … within the stroke (s), and the positions at them (m).

@@ -29,13 +29,11 @@ from squeezefilm.quantities import (
     require,
 )
 from squeezefilm.render.composition import Composable, Quantity
+from squeezefilm.render.coordinate import FARTHEST, FINEST
 from squeezefilm.render.levels import LARGEST_AMPLITUDE
 from squeezefilm.render.opcodes import ALONG, BETWEEN, SINE, SQUARE, Assembler
 
 _METRE = Unit("m")
-# No display is ten metres long: what lies beyond is a slip of unit (400 for 400 um) and worth a
-# message.
-_LONGEST_PERIOD: Metre = 10.0
 
 
 class Texture(Protocol):
@@ -68,7 +66,7 @@ class Square(Composable):
     grating with `from_groove_and_ridge`, which leaves no doubt.
 
     Args:
-        spatial_period: groove plus ridge (m); above 0, at most 10 m.
+        spatial_period: groove plus ridge (m); from 1 nm to 10 m.
         low: vibration amplitude of the ridge (m, zero-to-peak); at least 0.
         high: vibration amplitude of the groove (m, zero-to-peak); above `low`, at most 1 mm.
         duty: share of the period at `high` (1); above 0, below 1.
@@ -128,7 +126,7 @@ class Sine(Composable):
     ``(low + high)/2 + (high - low)/2 · sin(2πx/spatial_period + phase)``
 
     Args:
-        spatial_period: one whole period (m); above 0, at most 10 m.
+        spatial_period: one whole period (m); from 1 nm to 10 m.
         low: least vibration amplitude (m, zero-to-peak); at least 0.
         high: greatest vibration amplitude (m, zero-to-peak); above `low`, at most 1 mm.
         phase: shifts the pattern towards -x by phase/2π of a period (rad).
@@ -164,7 +162,7 @@ class Sine(Composable):
 
 
 def _require_grating(spatial_period: Metre, low: Metre, high: Metre, phase: Radian) -> None:
-    require("spatial_period", spatial_period, _METRE, above=0.0, at_most=_LONGEST_PERIOD)
+    require("spatial_period", spatial_period, _METRE, at_least=FINEST, at_most=FARTHEST)
     require("low", low, _METRE, at_least=0.0)
     require("high", high, _METRE, above=0.0, at_most=LARGEST_AMPLITUDE)
     require("phase", phase, Unit("rad"))

@@ -20,6 +20,7 @@ from squeezefilm.quantities import (
     format_quantity,
     require,
 )
+from squeezefilm.render.composition import Composable
 from squeezefilm.render.envelope import envelope_response
 from squeezefilm.render.stroke import Stroke
 from squeezefilm.render.texture import Sine, Square, Texture
@@ -88,7 +89,7 @@ def friction_trace(
     transient (some 20 ms, PHYSICS §5).
 
     Args:
-        texture: vibration amplitude wanted, by position, speed and time.
+        texture: vibration amplitude wanted, by position, velocity and time.
         stroke: the finger's motion.
         time_constant: of the resonator's envelope (s), see `envelope_time_constant`.
         relative_friction: vibration amplitudes (m, zero-to-peak; shape (n,)) → relative friction
@@ -104,11 +105,17 @@ def friction_trace(
             negative or have another shape than what they were given.
     """
     require("time_constant", time_constant, Unit("s"), above=0.0)
+    if isinstance(texture, Composable) and texture.quantity != "amplitude":
+        raise InputError(
+            f"a texture of {texture.quantity} commands no amplitude; pass "
+            "Played(lower(texture, inverse=…)), the amplitude that a display plays it with"
+        )
     rate = _rate(texture, stroke, time_constant, sample_rate)
     time, position = stroke.sampled(rate)
-    command = _values("texture", texture(position, 0.0, stroke.speed, time), time, Unit("m"))
+    wanted = texture(position, 0.0, stroke.velocity(time), time)
+    command = _values("texture", wanted, time, Unit("m"))
     middle = time[:-1] + 0.5 / rate
-    held = texture(stroke.position(middle), 0.0, stroke.speed, middle)
+    held = texture(stroke.position(middle), 0.0, stroke.velocity(middle), middle)
     # The last sample's command is held over a step that nobody sees.
     steps = np.append(_values("texture", held, middle, Unit("m")), command[-1])
     amplitude = envelope_response(steps, 1 / rate, time_constant, initial=float(command[0]))
