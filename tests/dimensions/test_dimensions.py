@@ -46,6 +46,9 @@ VALUES: dict[tuple[str, str], float] = {
     ("squeezefilm.film.limits.edge_layer_load", "squeeze_number"): 100.0,
     # The gap must not close.
     ("squeezefilm.contact.wedge.wedge_pressure", "amplitude"): 0.05,
+    # The amplitude must lie between where it starts and what it is drawn to.
+    ("squeezefilm.render.compensation.slew_time", "start"): 0.05,
+    ("squeezefilm.render.compensation.slew_time", "limit"): 0.2,
 }
 DEFAULT_VALUES: dict[str, float] = {
     # Indices and ratios that start at 1.
@@ -98,6 +101,8 @@ MINIMUM = {
         "contact.occlusion.occlusion_factor",
         "contact.skin_vibration.texture_frequency",
         "plate.beam.euler_bernoulli_frequency",
+        "render.carrier.hold_gain",
+        "render.compensation.slew_time",
     )
 }
 

@@ -10,11 +10,8 @@ from hypothesis import strategies as st
 
 from squeezefilm.quantities import FloatArray
 from squeezefilm.render import motion_kernel as kernel
-from squeezefilm.render.compensation import (
-    DrivenEnvelope,
-    compensated_drive,
-    square_swing_compensated,
-)
+from squeezefilm.render.compensated_swing import square_swing_compensated
+from squeezefilm.render.compensation import DrivenEnvelope, compensated_drive
 from squeezefilm.render.motion import MotionEstimator, MotionModel
 
 wishes = st.lists(st.floats(0.0, 2e-6), min_size=1, max_size=60).map(np.array)

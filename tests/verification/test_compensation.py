@@ -11,14 +11,16 @@ from scipy.optimize import minimize
 
 from squeezefilm.render import compensation_kernel as kernel
 from squeezefilm.render.carrier import carrier_trace, hold_gain, resonator_response
+from squeezefilm.render.compensated_swing import (
+    fastest_compensated_speed,
+    least_cycle,
+    square_swing_compensated,
+)
 from squeezefilm.render.compensation import (
     DrivenEnvelope,
     compensated_drive,
-    fastest_compensated_speed,
-    least_cycle,
     preview_work,
     slew_time,
-    square_swing_compensated,
 )
 from squeezefilm.render.envelope import envelope_response, envelope_time_constant, finest_period
 from squeezefilm.render.envelope import square_swing_kept as bare_swing
@@ -242,3 +244,29 @@ def test_the_doubled_speed_holds_at_the_carrier_and_within_the_voltage() -> None
     assert np.ptp(trace.amplitude[late]) > 0.9 * 0.8 * LIMIT
     bare = carrier_trace(wanted, 4, FREQUENCY, Q)
     assert np.ptp(bare.amplitude[late]) < 0.65 * 0.8 * LIMIT
+
+
+def kept_with(quality: float, detuning: float) -> float:
+    """Swing kept at the doubled speed by a command made for Q and resonance, of another device."""
+    speed = 2 * fastest_compensated_speed(PERIOD, plate(True), 0.0, 0.8 * LIMIT, "none")
+    step, period = 4 / 192e3, PERIOD / speed
+    t = np.arange(math.floor(30 * period / step)) * step
+    wanted = np.where((t / period) % 1 < 0.5, 0.8 * LIMIT, 0.0)
+    drive = compensated_drive(wanted, step, plate(True))
+    # The force per volt is the device's own: what it holds at resonance grows with its Q.
+    trace = carrier_trace(
+        drive.command * quality / Q, 4, FREQUENCY * (1 + detuning), quality,
+        resonance_frequency=FREQUENCY,
+    )  # fmt: skip
+    return float(np.ptp(trace.amplitude[trace.time > 12 * period]) / (0.8 * LIMIT))
+
+
+def test_how_well_the_resonator_must_be_known_for_the_doubled_speed() -> None:
+    """It bears Q 5 % low or detuning of a quarter of a half bandwidth, not 20 % or half of one."""
+    half_bandwidth = 1 / (2 * Q)
+    assert kept_with(0.95 * Q, 0.0) > 0.9
+    assert kept_with(Q, 0.25 * half_bandwidth) > 0.9
+    assert kept_with(0.8 * Q, 0.0) < 0.87
+    assert kept_with(Q, 0.5 * half_bandwidth) < 0.9
+    # A drive that knows too little Q still swings enough, but leaves some of it where rest belongs.
+    assert kept_with(1.2 * Q, 0.0) > 1.0

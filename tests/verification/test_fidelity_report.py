@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from squeezefilm.quantities import FloatArray
-from squeezefilm.render.compensation import DrivenEnvelope, square_swing_compensated
+from squeezefilm.render.compensated_swing import square_swing_compensated
+from squeezefilm.render.compensation import DrivenEnvelope
 from squeezefilm.render.envelope import sine_swing_kept
 from squeezefilm.render.fidelity_report import fidelity_report
 from squeezefilm.render.minimum_jerk import MinimumJerkStroke

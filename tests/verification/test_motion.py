@@ -210,3 +210,35 @@ def test_unstamped_samples_cost_what_their_jitter_says() -> None:
         for e in (deaf, aware)
     ]
     assert rms[1] < 0.5 * rms[0]
+
+
+@pytest.mark.parametrize("rate", RATES)
+def test_a_density_ten_times_wrong_costs_less_than_twice_the_error(rate: float) -> None:
+    """On hands that are not the model's: slow, as assumed for the default, and long and fast."""
+    for hand in (MinimumJerkStroke(0.04, 0.8, 5), MinimumJerkStroke(passes=10),
+                 MinimumJerkStroke(0.08, 0.4, 10)):  # fmt: skip
+        sensor = SensorModel("tested", rate, LATENCY, noise=5e-5)
+        stream = sensor_stream(sensor, hand.position, hand.duration, seed=8)
+        render = np.arange(0.2, hand.duration, 1e-3)
+        errors = {
+            name: math.sqrt(
+                np.mean(
+                    (
+                        estimate_motion(
+                            MotionEstimator.for_sensor(sensor, model), stream, render
+                        ).position
+                        - hand.position(render)
+                    )
+                    ** 2
+                )
+            )
+            for name, model in {
+                "default": MotionModel(),
+                "tenth": MotionModel(jerk_density=4.0),
+                "tenfold": MotionModel(jerk_density=400.0),
+                "white acceleration": MotionModel.white_acceleration(),
+            }.items()
+        }
+        assert errors["default"] < 2.0 * min(errors.values())
+        if hand.pass_duration == 0.4:
+            assert errors["default"] < 0.75 * errors["white acceleration"]

@@ -7,6 +7,7 @@ with the finger on it → friction by the display's law → tangential force →
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Literal, get_args
@@ -32,7 +33,9 @@ from squeezefilm.prediction import Prediction, predict
 from squeezefilm.quantities import (
     Dimensionless,
     DimensionlessArray,
+    FloatArray,
     Hertz,
+    Metre,
     Newton,
     Second,
     Volt,
@@ -57,6 +60,9 @@ Progress = Callable[[str], None]
 Wave = Literal["ignored", "felt", "compensated"]
 WAVES: tuple[Wave, ...] = get_args(Wave)
 """Whether the standing wave's nodes are left out, felt, or felt and made up for."""
+
+_MOST_LINES = 6
+_FAINT = 0.01
 
 CONTROL_RATE: Hertz = 19.2e3
 """Of the loop (Hz): commands to which a converter of 192 kHz gives ten samples each."""
@@ -259,7 +265,7 @@ def analyze_render(
     )
     judged, because = None, None
     try:
-        judged = fidelity_report(stroke)
+        judged = fidelity_report(stroke, _strongest(stroke, played.spatial_period))
     except InputError as error:
         because = str(error)
     return RenderAnalysis(
@@ -298,6 +304,31 @@ def _played(
 
 def _is_amplitude(texture: TextureFile) -> bool:
     return texture.texture.quantity == "amplitude"
+
+
+def _strongest(stroke: RenderedStroke, period: Metre | None) -> FloatArray | None:
+    """Spatial frequencies (1/m) at which a texture without a period has its contrast.
+
+    The strongest lines of the first pass's spectrum, at most six; elsewhere a share of next to
+    nothing would be measured. None where `fidelity_report` knows better.
+    """
+    turns = np.flatnonzero(np.diff(np.sign(np.diff(stroke.position))) != 0)
+    end = int(turns[0]) + 2 if turns.size else stroke.position.size
+    way, wanted = stroke.position[:end], stroke.relative_friction_wanted[:end]
+    length = abs(float(way[-1] - way[0]))
+    if period is not None or length == 0.0 or way.size < 64:
+        return None
+    rising = 1 if way[-1] > way[0] else -1
+    even = np.linspace(way.min(), way.max(), 8192)
+    values = np.interp(even, way[::rising], wanted[::rising])
+    power = np.abs(np.fft.rfft((values - values.mean()) * np.hanning(even.size))) ** 2
+    # A pass whose start is left out must still show four periods.
+    least = math.ceil(5 / (1 - 0.2))
+    lines = np.arange(least, power.size - 1)
+    peaks = lines[(power[lines] >= power[lines - 1]) & (power[lines] > power[lines + 1])]
+    strong = peaks[power[peaks] > _FAINT * power[least:].max(initial=0.0)]
+    best = np.sort(strong[np.argsort(power[strong])[::-1][:_MOST_LINES]])
+    return np.asarray(best / length, dtype=float) if best.size else None
 
 
 def _resonance(p: Prediction) -> tuple[Dimensionless, Hertz]:

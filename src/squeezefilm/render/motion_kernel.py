@@ -126,23 +126,23 @@ def motion_step(state: Array, parameters: Array, stamp: float, position: float) 
 def motion_at(state: Array, parameters: Array, t: float) -> tuple[float, float, float, float, int]:
     """Position (m), speed (m/s), their standard deviations, and what they rest on, at time t (s).
 
-    Past the stall limit the finger is taken to rest where it was at the limit. A time before the
-    last sample gives the estimate at that sample. Always finite positions and speeds; a renderer
-    must silence the drive where the code is not FRESH.
+    Past the stall limit the finger is taken to rest where it was at the limit. A little before the
+    last sample (clocks never agree quite) it is carried back at its speed; by more than the stall
+    limit it is another clock's time, and the finger rests at the last sample. Always finite
+    positions and speeds; a renderer must silence the drive where the code is not FRESH.
     """
     if state[ALIVE] == 0.0:
         return 0.0, 0.0, math.inf, math.inf, EMPTY
     if not math.isfinite(t):
         return state[X], 0.0, math.inf, math.inf, BAD_TIME
     h = t - state[STAMP]
-    code = FRESH
-    if h < 0.0:
-        h, code = 0.0, PAST
     limit = parameters[STALL_LIMIT]
     if h > limit:
         return _ahead(state, parameters, limit)[0], 0.0, math.inf, math.inf, STALLED
-    x, v, _, xx, _, _, vv, _, _ = _ahead(state, parameters, h)
-    return x, v, math.sqrt(max(xx, 0.0)), math.sqrt(max(vv, 0.0)), code
+    if h < -limit:
+        return state[X], 0.0, math.inf, math.inf, PAST
+    x, v, _, xx, _, _, vv, _, _ = _ahead(state, parameters, max(h, 0.0))
+    return x + v * min(h, 0.0), v, math.sqrt(max(xx, 0.0)), math.sqrt(max(vv, 0.0)), FRESH
 
 
 @numba.njit(cache=True, nogil=True)

@@ -146,7 +146,9 @@ def contrast(result: RenderAnalysis) -> Figure:
     axes.set(xlabel="spatial period (mm)", ylabel="kept (%)")
     axes.set(ylim=(0, 1.1 * max(100.0, 100 * float(np.max(swing[good], initial=0.0)))))
     plain_log(axes.xaxis)
-    legend_below(axes)
+    if period.size:
+        axes.set_xlim(0.5e3 * float(period.min()), 2e3 * float(period.max()))
+    legend_below(axes, gap=0.24)
     return figure
 
 

@@ -11,15 +11,17 @@ import pytest
 from squeezefilm.errors import InputError
 from squeezefilm.render import compensation_kernel as kernel
 from squeezefilm.render.carrier import carrier_block, carrier_trace, samples_per_command
+from squeezefilm.render.compensated_swing import (
+    fastest_compensated_speed,
+    least_cycle,
+    square_swing_compensated,
+)
 from squeezefilm.render.compensation import (
     DrivenEnvelope,
     compensated_drive,
-    fastest_compensated_speed,
-    least_cycle,
     preview_samples,
     preview_work,
     slew_time,
-    square_swing_compensated,
 )
 from squeezefilm.results import to_json
 

@@ -6,12 +6,16 @@ import dataclasses
 import json
 import math
 
+import numba
 import numpy as np
 import pytest
 
 from squeezefilm.errors import InputError
 from squeezefilm.quantities import FloatArray
+from squeezefilm.render import compensation_kernel
 from squeezefilm.render import motion_kernel as kernel
+from squeezefilm.render.carrier import carrier_block
+from squeezefilm.render.compensation import DrivenEnvelope, preview_work
 from squeezefilm.render.minimum_jerk import MinimumJerkStroke
 from squeezefilm.render.motion import (
     MotionCounts,
@@ -118,9 +122,15 @@ def test_nothing_known_and_bad_times_give_finite_numbers_with_a_code() -> None:
     x, v, _, _, code = kernel.motion_at(state, parameters, math.nan)
     assert (v, code) == (0.0, kernel.BAD_TIME)
     assert math.isfinite(x)
-    past = kernel.motion_at(state, parameters, 0.2)
-    assert past[4] == kernel.PAST
-    assert past[0] == state[kernel.X]
+    x, v, dx, _, code = kernel.motion_at(state, parameters, 0.2)
+    assert (x, v, dx, code) == (state[kernel.X], 0.0, math.inf, kernel.PAST)
+
+
+def test_a_time_just_before_the_last_sample_is_carried_back_along_the_way() -> None:
+    state = fed(samples=400)
+    x, v, _, _, code = kernel.motion_at(state, ESTIMATOR.parameters(), 3.98)
+    assert code == kernel.FRESH
+    assert (x, v) == pytest.approx((0.398, 0.1), abs=1e-9)
 
 
 def test_the_interpreted_step_is_the_compiled_one() -> None:
@@ -205,3 +215,45 @@ def test_a_minimum_jerk_pass_has_its_length_speed_and_jerk() -> None:
     jerk = np.diff(hand.position(one), 3) / (one[1] - one[0]) ** 3
     # 720 L²/T⁶, on which the default of the motion model rests.
     assert np.mean(jerk**2) == pytest.approx(720 * 0.04**2 / 0.4**6, rel=0.01)
+
+
+def allocations(count: int) -> int:
+    """Allocations that numba's own runtime counts over `count` steps of every kind."""
+    from numba.core.runtime import _nrt_python, rtsys
+
+    stamps = np.arange(count) * 1e-3
+    out, code = np.empty((4, count)), np.empty(count, dtype=np.int64)
+    envelope = DrivenEnvelope(1e-3, 2e-3, 1e-6, braking=True)
+    wanted = np.abs(np.sin(stamps * 700)) * 1e-6
+    windows, work = np.tile(wanted[:20], (count, 1)), preview_work(20)
+    states = ESTIMATOR.new_state(), envelope.new_state()
+    settings = ESTIMATOR.parameters(), envelope.parameters(1e-4)
+    seen = 0.1 * stamps
+    _nrt_python.memsys_enable_stats()
+    try:
+        before = rtsys.get_allocation_stats().alloc
+        kernel.motion_march(states[0], settings[0], stamps, stamps, seen, stamps, 1e-3, *out, code)
+        compensation_kernel.compensated_march(states[1], settings[1], wanted, out[0], code)
+        compensation_kernel.previewed_windows(states[1], settings[1], windows, work, out[0], code)
+        carrier_block(0.0, 1.0, wanted[: count // 4], 4, 1.0, out[1])
+        handed_over = int(rtsys.get_allocation_stats().alloc - before)
+        allocating(count)
+        assert rtsys.get_allocation_stats().alloc >= before + handed_over + count
+    finally:
+        _nrt_python.memsys_disable_stats()
+    return handed_over
+
+
+def test_no_compiled_step_allocates() -> None:
+    """Each array handed over from Python costs one, whatever the number of steps."""
+    allocations(100)
+    assert allocations(2000) == allocations(100) < 40
+
+
+@numba.njit  # type: ignore[untyped-decorator]
+def allocating(count: int) -> float:
+    """An array per step, allocated inside compiled code: what the test must be able to see."""
+    total = 0.0
+    for k in range(count):
+        total += np.full(k + 1, 1.0)[k]
+    return total

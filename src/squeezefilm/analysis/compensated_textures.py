@@ -1,0 +1,303 @@
+"""What compensation and a sensor do to the textures of a display: gratings, speeds, contrast."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from squeezefilm.errors import InputError
+from squeezefilm.prediction import Prediction
+from squeezefilm.quantities import (
+    Dimensionless,
+    DimensionlessArray,
+    Metre,
+    MetreArray,
+    MetrePerSecond,
+    MetrePerSecondArray,
+    Second,
+    SecondArray,
+    Unit,
+    Volt,
+    require,
+)
+from squeezefilm.render.compensated_swing import fastest_compensated_speed, least_cycle
+from squeezefilm.render.compensation import CompensatedDrive, DrivenEnvelope, compensated_drive
+from squeezefilm.render.fidelity_report import FidelityReport, fidelity_report
+from squeezefilm.render.minimum_jerk import MinimumJerkStroke, Trajectory
+from squeezefilm.render.rendered_stroke import rendered_stroke
+from squeezefilm.render.sensor import SENSORS, SensorModel
+from squeezefilm.render.texture import Sine
+from squeezefilm.render.trace import RelativeFriction
+
+_STEPS_PER_PERIOD = 1000
+_PERIODS = 8
+
+
+@dataclass(frozen=True, slots=True)
+class DriveLaw:
+    """A way to drive a resonator: with or without the inverse filter and phase inversion."""
+
+    name: str
+    compensated: bool
+    braking: bool
+
+
+DRIVE_LAWS: tuple[DriveLaw, ...] = (
+    DriveLaw("no compensation", False, False),
+    DriveLaw("compensated, no phase inversion", True, False),
+    DriveLaw("compensated, phase inversion", True, True),
+)
+"""The drives that are compared everywhere here."""
+
+
+def driven_envelope(
+    prediction: Prediction,
+    voltage_limit: Volt | None = None,
+    braking: bool = False,
+    with_finger: bool = False,
+) -> DrivenEnvelope:
+    """The envelope of a display at its resonance, driven with up to `voltage_limit` (V).
+
+    Without a limit the voltage of the prediction is the limit. `with_finger` takes resonance, Q
+    and amplitude of the mode with the finger on it, at its own resonance; without, or where the
+    finger's part is not known (no modal mass), those of the free mode.
+
+    Raises:
+        InputError: no voltage given and the prediction was made from an amplitude, a voltage not
+            above 0, or a mode that the drive does not reach.
+    """
+    volts = prediction.voltage if voltage_limit is None else voltage_limit
+    if volts is None:
+        raise InputError(
+            "the prediction was made from an amplitude, not a voltage: give voltage_limit"
+        )
+    mode, loaded = prediction.mode, prediction.touch.mode if with_finger else None
+    if loaded is None:
+        return DrivenEnvelope.of_resonator(
+            mode.quality_factor, mode.resonance_frequency, mode.amplitude_per_volt, volts, braking
+        )
+    return DrivenEnvelope.of_resonator(
+        loaded.quality_factor,
+        loaded.resonance_frequency,
+        mode.amplitude_per_volt * loaded.amplitude_ratio(loaded.resonance_frequency),
+        volts,
+        braking,
+    )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TextureSurvival:
+    """Which square gratings keep their swing at which finger speeds, by drive.
+
+    Attributes:
+        name: of the display.
+        time_constant: of its envelope (s).
+        level: upper amplitude of the swing from 0, over what the full voltage holds (1).
+        kept: share of the swing to keep (1).
+        laws: the drives, shape (d,).
+        speeds: of the finger (m/s), shape (v,).
+        finest_period: that survives (m), shape (d, v).
+        gain: of speed over the first drive at any period (1), shape (d,).
+        bound: most that any law of command could gain, preview included (1), shape (d,).
+        model: of the resonator.
+    """
+
+    name: str
+    time_constant: Second
+    level: Dimensionless
+    kept: Dimensionless
+    laws: tuple[DriveLaw, ...]
+    speeds: MetrePerSecondArray
+    finest_period: MetreArray
+    gain: DimensionlessArray
+    bound: DimensionlessArray
+    model: str = "first-order envelope at resonance, duty ½, closed forms"
+
+
+def texture_survival(
+    name: str,
+    envelope: DrivenEnvelope,
+    level: Dimensionless = 0.8,
+    kept: Dimensionless = 0.9,
+    speeds: Sequence[MetrePerSecond] | None = None,
+) -> TextureSurvival:
+    """Finest surviving period against speed for each of `DRIVE_LAWS`; see `TextureSurvival`.
+
+    `envelope.braking` is not looked at: each law says whether it inverts. Without `speeds`,
+    10 to 400 mm/s.
+
+    Raises:
+        InputError: a level not above 0 or above 1, a share not between 0 and 1, or a speed not
+            above 0.
+    """
+    require("level", level, above=0.0, at_most=1.0)
+    row = np.geomspace(0.01, 0.4, 41) if speeds is None else np.array(speeds, dtype=float)
+    require("speeds", row, Unit("m/s"), above=0.0)
+    high = level * envelope.amplitude_limit
+    per_metre, bound = [], []
+    for law in DRIVE_LAWS:
+        driven = _with_braking(envelope, law.braking)
+        compensation = "inverse" if law.compensated else "none"
+        per_metre.append(
+            fastest_compensated_speed(1.0, driven, 0.0, high, compensation, kept)  # type: ignore[arg-type]
+        )
+        bound.append(1 / least_cycle(driven, kept * high) / per_metre[0])
+    fastest = np.array(per_metre)
+    return TextureSurvival(
+        name=name,
+        time_constant=max(envelope.rise_time_constant, envelope.fall_time_constant),
+        level=level,
+        kept=kept,
+        laws=DRIVE_LAWS,
+        speeds=row,
+        finest_period=row / fastest[:, None],
+        gain=fastest / fastest[0],
+        bound=np.array(bound),
+    )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CompensatedGrating:
+    """One square grating at one speed by each drive, settled.
+
+    Attributes:
+        envelope: its limits (braking as each law says).
+        spatial_period: of the grating (m).
+        speed: of the finger (m/s).
+        level: upper amplitude over the limit (1).
+        laws: the drives, shape (d,).
+        time: of each sample (s), shape (n,).
+        drives: wanted, command and amplitude by each law.
+        swing_kept: in the last two periods, by each law (1), shape (d,).
+    """
+
+    envelope: DrivenEnvelope
+    spatial_period: Metre
+    speed: MetrePerSecond
+    level: Dimensionless
+    laws: tuple[DriveLaw, ...]
+    time: SecondArray
+    drives: tuple[CompensatedDrive, ...]
+    swing_kept: DimensionlessArray
+
+
+def compensated_grating(
+    envelope: DrivenEnvelope,
+    spatial_period: Metre = 0.4e-3,
+    speed: MetrePerSecond | None = None,
+    level: Dimensionless = 0.8,
+) -> CompensatedGrating:
+    """A square grating from 0 to `level` of full amplitude under each of `DRIVE_LAWS`, simulated.
+
+    Without a `speed`, twice the one at which it keeps 90 % without compensation.
+
+    Raises:
+        InputError: a period or speed not above 0, or a level not above 0 or above 1.
+    """
+    require("level", level, above=0.0, at_most=1.0)
+    require("spatial_period", spatial_period, Unit("m"), above=0.0)
+    high = level * envelope.amplitude_limit
+    bare = fastest_compensated_speed(spatial_period, envelope, 0.0, high, "none")
+    at = 2 * bare if speed is None else speed
+    require("speed", at, Unit("m/s"), above=0.0)
+    step = spatial_period / at / _STEPS_PER_PERIOD
+    # Enough periods to settle from rest, whatever the ratio of period to time constant.
+    settling = 20 * max(envelope.rise_time_constant, envelope.fall_time_constant)
+    periods = _PERIODS + int(np.ceil(settling / (_STEPS_PER_PERIOD * step)))
+    phase = np.arange(periods * _STEPS_PER_PERIOD) % _STEPS_PER_PERIOD
+    wanted = np.where(phase < _STEPS_PER_PERIOD // 2, high, 0.0)
+    drives = tuple(
+        compensated_drive(
+            wanted,
+            step,
+            _with_braking(envelope, law.braking),
+            "inverse" if law.compensated else "none",
+            initial=0.0,
+        )
+        for law in DRIVE_LAWS
+    )
+    last = slice(-2 * _STEPS_PER_PERIOD, None)
+    return CompensatedGrating(
+        envelope=envelope,
+        spatial_period=spatial_period,
+        speed=at,
+        level=level,
+        laws=DRIVE_LAWS,
+        time=np.arange(wanted.size, dtype=np.float64) * step,
+        drives=drives,
+        swing_kept=np.array([np.ptp(drive.amplitude[last]) / high for drive in drives]),
+    )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SensorContrast:
+    """What a hand that turns meets of gratings, by sensor.
+
+    Attributes:
+        trajectory: the hand.
+        sensors: what saw it, shape (s,); None is a position that is known.
+        spatial_periods: of the sine gratings (m), shape (p,).
+        reports: one per sensor and period.
+        contrast_kept: rendered in its place (1), shape (s, p).
+    """
+
+    trajectory: Trajectory
+    sensors: tuple[SensorModel | None, ...]
+    spatial_periods: MetreArray
+    reports: tuple[tuple[FidelityReport, ...], ...]
+    contrast_kept: DimensionlessArray
+
+
+def sensor_contrast(
+    envelope: DrivenEnvelope,
+    relative_friction: RelativeFriction,
+    level: Dimensionless = 0.8,
+    spatial_periods: Sequence[Metre] | None = None,
+    sensors: Sequence[SensorModel | None] = (*SENSORS.values(), None),
+    trajectory: Trajectory | None = None,
+    seed: int = 0,
+) -> SensorContrast:
+    """Contrast kept in place of sine gratings, inverse filter, for each sensor.
+
+    Without a trajectory: twenty minimum-jerk passes of 40 mm in 0.4 s. `relative_friction` maps
+    amplitudes (m) to relative friction (1).
+
+    Raises:
+        InputError: see `rendered_stroke` and `fidelity_report`.
+    """
+    require("level", level, above=0.0, at_most=1.0)
+    hand = MinimumJerkStroke(passes=20) if trajectory is None else trajectory
+    periods = (
+        np.geomspace(0.25e-3, 8e-3, 16) if spatial_periods is None else np.array(spatial_periods)
+    )
+    reports = tuple(
+        tuple(
+            fidelity_report(
+                rendered_stroke(
+                    Sine(float(period), 0.0, level * envelope.amplitude_limit),
+                    hand,
+                    envelope,
+                    relative_friction,
+                    compensation="inverse",
+                    sensor=sensor,
+                    seed=seed,
+                ),
+                [1 / float(period)],
+            )
+            for period in periods
+        )
+        for sensor in sensors
+    )
+    contrast = np.array([[float(one.contrast_kept[0]) for one in row] for row in reports])
+    return SensorContrast(hand, tuple(sensors), periods, reports, contrast)
+
+
+def _with_braking(envelope: DrivenEnvelope, braking: bool) -> DrivenEnvelope:
+    return DrivenEnvelope(
+        envelope.rise_time_constant,
+        envelope.fall_time_constant,
+        envelope.amplitude_limit,
+        braking,
+    )

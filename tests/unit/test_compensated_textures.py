@@ -1,0 +1,108 @@
+"""Gains and bounds of speed by drive, on both displays; what a sensor leaves of a contrast."""
+
+from __future__ import annotations
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+from squeezefilm.analysis.compensated_textures import (
+    compensated_grating,
+    driven_envelope,
+    sensor_contrast,
+    texture_survival,
+)
+from squeezefilm.display import load_display
+from squeezefilm.errors import InputError
+from squeezefilm.prediction import Prediction, predict
+from squeezefilm.render.compensation import DrivenEnvelope
+from squeezefilm.render.minimum_jerk import MinimumJerkStroke
+from squeezefilm.render.sensor import LVDT_10_KHZ, TOUCH_PANEL_60_HZ
+from squeezefilm.results import to_json
+
+# τ of the paper's plate as solved, and of its stator with the Q assumed for it.
+PLATE = DrivenEnvelope(0.5687e-3, 0.5687e-3, 1.72e-6)
+STATOR = DrivenEnvelope(1.572e-3, 1.572e-3, 2e-6)
+
+
+@pytest.fixture(scope="module")
+def plate() -> Prediction:
+    """The paper's plate at 15 V."""
+    return predict(load_display("biet2008-plate"))
+
+
+def test_the_paper_plate_doubles_the_speed_of_its_finest_grating(plate: Prediction) -> None:
+    envelope = driven_envelope(plate, braking=True)
+    assert envelope.rise_time_constant == pytest.approx(0.569e-3, abs=1e-6)
+    assert envelope.amplitude_limit == pytest.approx(plate.touch.free_amplitude, rel=1e-6)
+    grating = compensated_grating(envelope)
+    bare, own, inverted = grating.swing_kept
+    # At twice the speed at which nine tenths were left without compensation.
+    assert grating.speed == pytest.approx(0.239, abs=1e-3)
+    assert inverted > 0.9
+    assert own < 0.8
+    assert bare == pytest.approx(math.tanh(math.atanh(0.9) / 2), abs=1e-3)
+    for drive in grating.drives:
+        volts = drive.voltage(plate.mode.amplitude_per_volt)
+        assert np.max(np.abs(volts)) <= 15.0 * (1 + 1e-12)
+    assert np.min(grating.drives[1].command) == 0.0
+
+
+@pytest.mark.parametrize("envelope", [PLATE, STATOR], ids=["plate", "stator"])
+def test_gains_do_not_depend_on_the_device_and_stay_under_their_bounds(
+    envelope: DrivenEnvelope,
+) -> None:
+    table = texture_survival("tested", envelope, speeds=[0.05, 0.1])
+    assert table.gain == pytest.approx(
+        [1.0, math.log(19) / math.log(10), math.log(19) / math.log(1 / 0.28)], rel=1e-9
+    )
+    assert np.all(table.gain <= table.bound)
+    assert table.bound[1] < 2.0  # what cannot be done without inverting the phase
+    assert table.finest_period[:, 1] == pytest.approx(2 * table.finest_period[:, 0])
+    full = texture_survival("tested", envelope, level=1.0)
+    assert full.gain == pytest.approx([1.0, 1.0, math.log(19) / math.log(10)], rel=1e-9)
+    assert full.bound == pytest.approx([1.0, 1.0, 2.0], rel=1e-9)
+    data = json.loads(json.dumps(to_json(full), allow_nan=False))
+    assert data["laws"][2] == {
+        "name": "compensated, phase inversion", "compensated": True, "braking": True,
+    }  # fmt: skip
+
+
+def test_a_good_sensor_keeps_the_contrast_and_a_slow_one_does_not() -> None:
+    found = sensor_contrast(
+        PLATE, lambda a: 1 - a / 4e-6, spatial_periods=[1e-3, 8e-3],
+        sensors=[TOUCH_PANEL_60_HZ, LVDT_10_KHZ, None], trajectory=MinimumJerkStroke(passes=12),
+    )  # fmt: skip
+    assert found.contrast_kept.shape == (3, 2)
+    slow, fast, known = found.contrast_kept
+    assert fast == pytest.approx(known, abs=0.01)
+    assert slow[0] < 0.2
+    assert slow[0] < slow[1] < 0.97
+    json.dumps(to_json(found.reports), allow_nan=False)
+
+
+def test_without_a_voltage_a_limit_must_be_given(plate: Prediction) -> None:
+    given = predict(load_display("biet2008-plate"), vibration_amplitude=1e-6)
+    with pytest.raises(InputError, match="voltage_limit"):
+        driven_envelope(given)
+    wide = driven_envelope(given, 30.0)
+    assert wide.amplitude_limit == pytest.approx(2 * driven_envelope(plate).amplitude_limit)
+
+
+def test_a_finger_shortens_the_envelope_and_takes_amplitude(plate: Prediction) -> None:
+    free, held = (driven_envelope(plate, with_finger=finger) for finger in (False, True))
+    assert plate.touch.mode is not None
+    expected = plate.touch.mode.quality_factor / (math.pi * plate.touch.mode.resonance_frequency)
+    assert held.rise_time_constant == pytest.approx(expected, rel=1e-12)
+    assert held.rise_time_constant < free.rise_time_constant
+    assert plate.vibration_amplitude <= held.amplitude_limit < free.amplitude_limit
+
+
+@pytest.mark.parametrize("level", [0.0, 1.1, math.nan])
+def test_levels_outside_the_limits_are_refused(level: float) -> None:
+    with pytest.raises(InputError, match="level"):
+        texture_survival("tested", PLATE, level)
+    with pytest.raises(InputError, match="level"):
+        compensated_grating(PLATE, level=level)
