@@ -69,7 +69,15 @@ def _twice_the_finger_speed(result: Any) -> None:
     assert contrasts[1] > 1.5 * contrasts[0]
 
 
+def _map_under_a_finger(result: Any) -> None:
+    assert 0 < result["inverse"] < 0.7 * result["none"] < 0.1
+    # Keyframes may miss by their tolerance, 1e-4; on one line of a plane something is lost.
+    assert result["largest_error_through_hjif"] < 1.01e-4
+    assert result["things_lost"] == 2
+
+
 CHECKS = {
+    "map_under_a_finger": _map_under_a_finger,
     "friction_of_the_stator": _friction_of_the_stator,
     "thinner_plate": _thinner_plate,
     "finger_drags_its_skin": _finger_drags_its_skin,

@@ -63,6 +63,8 @@ WAVES: tuple[Wave, ...] = get_args(Wave)
 
 _MOST_LINES = 6
 _FAINT = 0.01
+# How much more amplitude a pad may seem to meet off an antinode than on it.
+_BETTER = 1.5
 
 CONTROL_RATE: Hertz = 19.2e3
 """Of the loop (Hz): commands to which a converter of 192 kHz gives ten samples each."""
@@ -77,8 +79,9 @@ class RenderAnalysis:
         played: the texture as the loop asked it.
         stroke: sensor, commands and envelope; its friction is the one felt, the wave included.
         finger: time and place of the finger.
-        wave, factor: what was done about the standing wave, and the share of the amplitude that
-            the pad meets at each step (1).
+        wave, factor: what was done about the standing wave, and the amplitude that the pad meets
+            at each step over that centred on an antinode (1); a contact longer than half the wave
+            may meet more off the antinodes.
         asked: relative friction the texture asks for, whether it can be reached or not (1).
         counters: what the renderer met along the true motion.
         force: tangential force and skin motion along the way.
@@ -145,6 +148,7 @@ class RenderAnalysis:
             "braking": stroke.envelope.braking,
             "wave": self.wave,
             "wave_least_factor": float(np.min(self.factor)),
+            "wave_greatest_factor": float(np.max(self.factor)),
             "asked_friction_mean": float(np.mean(self.asked)),
             "asked_friction_rms_swing": float(np.std(self.asked)),
             "rendered_friction_mean": float(np.mean(stroke.relative_friction_rendered)),
@@ -233,7 +237,14 @@ def analyze_render(
         )
     friction = p.law.table(largest)
     inverse = FrictionInverse.from_function(friction, largest)
-    factors = None if what == "ignored" else _factors(display, p, inverse)
+    factors = None if what == "ignored" else _factors(display, p)
+    centred, felt = 1.0, friction
+    if factors is not None:
+        # Factors are over the best place, the display's law is that of an antinode.
+        centred = float(factors.factor(0.0))
+        felt = p.law.table(largest / centred)
+    if what == "compensated":
+        inverse = FrictionInverse.from_function(lambda a: felt(a / centred), largest)
     played = _played(
         texture, motion, finger, p, inverse, factors if what == "compensated" else None
     )
@@ -246,12 +257,15 @@ def analyze_render(
     )  # fmt: skip
     values = texture.texture(finger.x, finger.y, finger.speed, finger.time)
     amplitude = played.amplitude(values)
-    asked = friction(amplitude) if _is_amplitude(texture) else played.friction(values)
-    factor = np.ones(finger.time.size) if factors is None else factors.factor(finger.x, finger.y)
+    reached = felt(amplitude / centred) if what == "compensated" else friction(amplitude)
+    asked = reached if _is_amplitude(texture) else played.friction(values)
+    factor = np.ones(finger.time.size)
+    if factors is not None:
+        factor = factors.factor(finger.x, finger.y) / centred
     stroke = dataclasses.replace(
         stroke,
-        relative_friction_wanted=friction(amplitude),
-        relative_friction_rendered=friction(stroke.amplitude * factor),
+        relative_friction_wanted=reached,
+        relative_friction_rendered=felt(stroke.amplitude * factor),
         model=stroke.model + ("" if factors is None else f"; standing wave {what}"),
     )
     counters = render(played.program, finger.x, finger.y, finger.speed, finger.time).counters
@@ -338,8 +352,8 @@ def _resonance(p: Prediction) -> tuple[Dimensionless, Hertz]:
     return p.touch.mode.quality_factor, p.touch.mode.resonance_frequency
 
 
-def _factors(display: Display, p: Prediction, inverse: FrictionInverse) -> WaveCompensation:
-    """The share of the amplitude that the pad meets along the wave."""
+def _factors(display: Display, p: Prediction) -> WaveCompensation:
+    """The amplitude that the pad meets along the wave, over that at the best place."""
     plate = display.actuator
     if isinstance(plate, DiscPlate):
         raise InputError(
@@ -358,7 +372,9 @@ def _factors(display: Display, p: Prediction, inverse: FrictionInverse) -> WaveC
         law.finger,
         normal_force=law.normal_force,
     )
-    # Over a node some ridges may be met better than centred on an antinode: no amplitude says so.
+    # Off the antinode friction may be less than the display makes centred on it.
+    wide = _BETTER * p.vibration_amplitude
+    inverse = FrictionInverse.from_function(law.table(wide), wide)
     reached = np.clip(found.relative_friction, inverse.least_friction, 1.0)
     return WaveCompensation.from_ripple(found.position, reached, inverse, half, along=along)
 

@@ -49,9 +49,10 @@ LONGEST: Metre = 1.0
 _MOST_KEYFRAMES = 65_535
 # Drift of a wave over its extent that may be lost by a frequency of whole 1/m: of a period.
 _DRIFT = 1e-3
-_ELSEWHERE_Y = (-0.01, 0.01)
-_ELSEWHERE_V = (-0.08, 0.02, 0.16)
-_ELSEWHERE_T = (0.1, 1.0)
+# Where else a texture is asked, to see whether it changes there: no multiples of likely periods.
+_ELSEWHERE_Y = (-0.011_37, 0.002_71, 0.017_93)
+_ELSEWHERE_V = (-0.08, 0.021_3, 0.167)
+_ELSEWHERE_T = (0.113_7, 0.971_3)
 
 ToFriction = Callable[[FloatArray], DimensionlessArray]
 """Values of a texture, in its quantity → relative friction (1)."""

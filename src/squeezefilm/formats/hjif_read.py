@@ -178,6 +178,11 @@ def texture_of_hjif(document: Any) -> HjifImport:
     low, high = float(values.min()), float(values.max())
     if low < 0.0:
         raise InputError(f"the file's friction goes down to {low:.4g}; a friction is at least 0")
+    if high > 1.0:
+        raise InputError(
+            f"the file's friction goes up to {high:.4g}; relative friction is 1 at rest, and no "
+            "vibration makes more: scale the file's gain down"
+        )
     spread = high - low
     shares = np.clip((values - low) / spread, 0.0, 1.0) if spread > 0 else np.zeros(count)
     image = Image.from_array(shares[None, :], step, left=start - 0.5 * step, bottom=-0.5 * step)
@@ -331,7 +336,7 @@ def _as_wave(line: _Line) -> RelativeFriction | None:
     if not (same and steady and frequency > 0 and signal in ("Sine", "Square")):
         return None
     mean, swing = line.scale * float(means[0]), line.scale * float(swings[0])
-    if not 0.0 <= mean - swing <= mean + swing:
+    if not 0.0 <= mean - swing <= mean + swing <= 1.0:
         return None
     start = wave["position"] * line.unit
     phase = float(wave["phase"]) - 2 * math.pi * math.fmod(start * frequency, 1.0)

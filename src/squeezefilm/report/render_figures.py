@@ -207,10 +207,11 @@ def ripple(result: RenderAnalysis) -> Figure:
     """What the standing wave leaves of the amplitude along the way."""
     stroke, finger = result.stroke, result.finger
     half = result.prediction.mode.half_wavelength
-    done = " The renderer drives harder there." if result.wave == "compensated" else ""
+    done = " The renderer makes up for it." if result.wave == "compensated" else ""
     figure = new_figure(
-        f"Near the nodes, every {shown(half, M, 3)}, the pad meets "
-        f"{100 * float(np.min(result.factor)):.3g} % of the amplitude.{done}",
+        f"Along the wave, every {shown(half, M, 3)}, the pad meets "
+        f"{100 * float(np.min(result.factor)):.3g} to {100 * float(np.max(result.factor)):.3g} % "
+        f"of an antinode's amplitude.{done}",
         f"standing wave {result.wave}; x = 0 is an antinode",
         4.6,
     )

@@ -75,8 +75,9 @@ def render_rows(result: RenderAnalysis) -> list[tuple[str, str, str]]:
         rows.append(
             (
                 "Standing wave",
-                f"{100 * float(np.min(result.factor)):.3g} %",
-                f"of the amplitude met at the nodes, {result.wave}; period "
+                f"{100 * float(np.min(result.factor)):.3g}–"
+                f"{100 * float(np.max(result.factor)):.3g} %",
+                f"of the amplitude on an antinode is met, {result.wave}; period "
                 f"{shown(p.mode.half_wavelength, M, 3)}",
             )
         )
