@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from squeezefilm import presets
+from squeezefilm.analysis.played_texture import single_period
 from squeezefilm.errors import InputError
 from squeezefilm.report.style import BLUE, INK, MUTED, PAPER, drawn, new_figure, png
 from squeezefilm.texture_file import TextureFile, preset_texture
@@ -23,8 +24,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _SPEED = 0.06
-_WIDE, _HIGH = 0.05, 0.03
-_LINE = 0.015
+_WIDE = 0.05
+_HIGH = 0.6
+_PERIODS = 12
 _LABELS = {
     "relative_friction": ("relative friction µ′/µ", 1.0),
     "friction_reduction": ("friction taken away µ − µ′", 1.0),
@@ -34,27 +36,32 @@ _LABELS = {
 
 @drawn
 def picture(texture: TextureFile) -> Figure:
-    """A texture from above, 50 mm × 30 mm, and along the line y = 15 mm at 60 mm/s."""
+    """A texture from above, 50 mm or twelve periods wide, and along its middle line at 60 mm/s."""
+    period = single_period(texture.texture)
+    wide = _WIDE if period is None else min(_WIDE, _PERIODS * period)
+    high = _HIGH * wide
     label, scale = _LABELS[texture.texture.quantity]
     figure = new_figure(
         texture.title, f"none; {label} as asked for at {1e3 * _SPEED:g} mm/s, towards +x", 3.6
     )
     left, right = figure.subplots(1, 2, width_ratios=[1.0, 1.2])
-    x, y = np.linspace(0, _WIDE, 501), np.linspace(0, _HIGH, 151)
+    x, y = np.linspace(0, wide, 501), np.linspace(0, high, 301)
     values = scale * texture.texture(x[None, :], y[:, None], _SPEED, 0.0)
     seen = left.imshow(
-        values, extent=(0, 1e3 * _WIDE, 0, 1e3 * _HIGH), origin="lower", cmap="cividis",
+        values, extent=(0, 1e3 * wide, 0, 1e3 * high), origin="lower", cmap="cividis",
         aspect="equal", interpolation="nearest",
     )  # fmt: skip
     bar = figure.colorbar(seen, ax=left, orientation="horizontal", label=label)
     bar.outline.set_edgecolor(MUTED)
-    left.axhline(1e3 * _LINE, color=PAPER, lw=2.6)
-    left.axhline(1e3 * _LINE, color=INK, lw=1.1, ls=(0, (4, 2)))
+    left.axhline(500 * high, color=PAPER, lw=2.6)
+    left.axhline(500 * high, color=INK, lw=1.1, ls=(0, (4, 2)))
     left.grid(visible=False)
     left.set(xlabel="x (mm)", ylabel="y (mm)")
-    fine = np.linspace(0, _WIDE, 4001)
-    right.plot(1e3 * fine, scale * texture.texture(fine, _LINE, _SPEED, 0.0), color=BLUE, lw=1.4)
-    right.set(xlabel="x (mm), along the dashed line", ylabel=label, xlim=(0, 1e3 * _WIDE))
+    fine = np.linspace(0, wide, 4001)
+    right.plot(
+        1e3 * fine, scale * texture.texture(fine, 0.5 * high, _SPEED, 0.0), color=BLUE, lw=1.4
+    )
+    right.set(xlabel="x (mm), along the dashed line", ylabel=label, xlim=(0, 1e3 * wide))
     return figure
 
 
