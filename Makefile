@@ -5,7 +5,7 @@ BIN := $(VENV)/bin
 OUT ?= out/demo
 WORKERS ?= auto
 
-.PHONY: help demo test check lint types layers docs bench nightly wheel clean
+.PHONY: help demo test check lint types layers gallery docs bench nightly wheel clean
 
 help:  ## show this list
 	@grep -E '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 12
@@ -42,6 +42,9 @@ types: $(VENV)/test.stamp  ## mypy, strict
 
 layers: $(VENV)/test.stamp  ## who may import whom
 	@$(BIN)/lint-imports
+
+gallery: $(VENV)/run.stamp  ## draw the preset textures for the documentation
+	@$(BIN)/python -m squeezefilm.report.texture_gallery
 
 docs: $(VENV)/test.stamp  ## build the documentation, strictly
 	@NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --quiet

@@ -13,7 +13,8 @@ A file names one texture::
 Every class of the texture algebra is a table with its `type`: the class's name in small letters
 with underscores (`SquareWave` is "square_wave"; the coordinates are "x", "y", "direction",
 "radius"), and its fields as keys. A quantity without a unit, an image without a scale (`pixel`),
-a misspelt key or type is refused with file, line and key.
+a misspelt key or type is refused with file, line and key. A picture in a file of its own is an
+"image_file" (`formats.image_file`), read when the texture is.
 """
 
 from __future__ import annotations
@@ -24,11 +25,12 @@ from pathlib import Path
 # Read for their classes: what a file may name is what is below Composable, Pattern, Coordinate.
 from squeezefilm.config.load import load, load_text
 from squeezefilm.config.write import text_of
-from squeezefilm.errors import InputError
+from squeezefilm.errors import ConfigError, InputError
+from squeezefilm.formats import image_file
 from squeezefilm.render import levels, pattern_gates, pattern_image, pattern_noise, texture
 from squeezefilm.render.composition import Composable, require_texture
 
-MODULES = (levels, pattern_gates, pattern_image, pattern_noise, texture)
+MODULES = (image_file, levels, pattern_gates, pattern_image, pattern_noise, texture)
 """The modules whose classes a file may name, beside those these import."""
 
 
@@ -44,13 +46,35 @@ class TextureFile:
 
 
 def load_texture(path: str | Path) -> TextureFile:
-    """The texture in a TOML file. Raises `ConfigError` with file, line and key."""
-    return load(TextureFile, path)
+    """The texture in a TOML file, its pictures read. Raises `ConfigError` with file, line, key."""
+    return _with_images(load(TextureFile, path), Path(path))
+
+
+def preset_texture(name_or_path: str | Path) -> TextureFile:
+    """The texture of a preset's name or of a TOML file. Raises `ConfigError` if it can't be."""
+    from squeezefilm import presets
+
+    return load_texture(presets.resolve_texture(name_or_path))
+
+
+def _with_images(found: TextureFile, path: Path | None) -> TextureFile:
+    try:
+        whole = image_file.with_images(found, None if path is None else path.parent)
+    except ConfigError:
+        raise
+    except InputError as error:
+        raise ConfigError(str(error), file=path, key=error.quantity or "file") from error
+    assert isinstance(whole, TextureFile)
+    return whole
 
 
 def texture_from_text(text: str, *, file: str | Path | None = None) -> TextureFile:
-    """The texture in TOML text; `file` is what messages name. Raises `ConfigError`."""
-    return load_text(TextureFile, text, file=file)
+    """The texture in TOML text; `file` is what messages name and beside which pictures lie.
+
+    Raises `ConfigError`, also for a picture where there is no `file`.
+    """
+    found = load_text(TextureFile, text, file=file)
+    return _with_images(found, None if file is None else Path(file))
 
 
 def texture_text(texture: TextureFile | Composable) -> str:

@@ -38,6 +38,6 @@ def test_the_types_a_file_may_name_are_all_of_the_algebra() -> None:
     }  # fmt: skip
     assert tags(Pattern) == {
         "constant", "square_wave", "sine_wave", "pulse", "ramp", "band", "bump", "noise",
-        "noise_field", "image", "speed_gate", "attack", "decay", "periodic",
+        "noise_field", "image", "image_file", "speed_gate", "attack", "decay", "periodic",
         "complement", "least", "greatest", "times", "speed_scaled",
     }  # fmt: skip

@@ -1,4 +1,7 @@
-"""Displays named for their paper, each value with its source. Files only: rooms above read them."""
+"""Displays named for their paper, each value with its source, and textures to begin with.
+
+Files only: rooms above read them.
+"""
 
 from __future__ import annotations
 
@@ -33,18 +36,32 @@ def claims_path() -> Path:
     return _FOLDER / "claims.toml"
 
 
+def texture_names() -> tuple[str, ...]:
+    """The names of all preset textures, sorted."""
+    return tuple(sorted(path.stem for path in (_FOLDER / "textures").glob("*.toml")))
+
+
+def resolve_texture(name_or_path: str | Path) -> Path:
+    """The file of a preset texture's name or of a path to a TOML file. As `resolve` does."""
+    return _resolved(name_or_path, "texture", texture_names(), _FOLDER / "textures")
+
+
 def resolve(name_or_path: str | Path) -> Path:
     """The file of a preset's name or of a path to a TOML file.
 
     A text without a separator and without ``.toml`` is a preset's name unless such a file exists.
     """
-    candidate = Path(name_or_path)
-    looks_like_name = candidate.name == str(name_or_path) and candidate.suffix != ".toml"
-    if looks_like_name and str(name_or_path) in names():
-        return path(str(name_or_path))
+    return _resolved(name_or_path, "preset", names(), _FOLDER)
+
+
+def _resolved(name_or_path: str | Path, kind: str, known: tuple[str, ...], folder: Path) -> Path:
+    text, candidate = str(name_or_path), Path(name_or_path)
+    looks_like_name = candidate.name == text and candidate.suffix != ".toml"
+    if looks_like_name and text in known:
+        return folder / f"{text}.toml"
     if looks_like_name and not candidate.exists():
         raise ConfigError(
-            f"'{name_or_path}' is neither a file nor a preset."
-            f"{did_you_mean(str(name_or_path), names())} Presets: {', '.join(names())}"
+            f"'{text}' is neither a file nor a {kind}.{did_you_mean(text, known)} "
+            f"{kind.capitalize()}s: {', '.join(known)}"
         )
     return candidate

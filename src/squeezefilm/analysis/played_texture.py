@@ -1,0 +1,223 @@
+"""A texture on a display along a finger's way: what `rendered_stroke` asks at each step.
+
+A loop knows one coordinate of the finger, the texture wants the plane: `PlayedTexture` turns the
+one into the other and the texture's value, in whatever quantity, into the amplitude that makes it.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from squeezefilm.errors import InputError
+from squeezefilm.plate.layout import Actuator, AnnularStator, DiscPlate, RectangularPlate
+from squeezefilm.quantities import (
+    Dimensionless,
+    DimensionlessArray,
+    FloatArray,
+    Metre,
+    MetreArray,
+    MetreLike,
+    MetrePerSecondArray,
+    MetrePerSecondLike,
+    SecondArray,
+    SecondLike,
+    Unit,
+    format_quantity,
+)
+from squeezefilm.render.composition import Composable
+from squeezefilm.render.finger_path import FingerPath, OverPath
+from squeezefilm.render.inverse import FrictionInverse
+from squeezefilm.render.minimum_jerk import MinimumJerkStroke, Trajectory
+from squeezefilm.render.pattern import SpeedScaled
+from squeezefilm.render.pattern_image import Image
+from squeezefilm.render.program import Program
+from squeezefilm.render.renderer import evaluate
+from squeezefilm.render.stroke import Stroke
+from squeezefilm.render.wave import WaveCompensation
+
+_METRE = Unit("m")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FingerMotion:
+    """A motion sampled at control steps: times (s), places (m) and the signed speed (m/s).
+
+    `way` is the one coordinate a loop works with: x on a line, the length of the path in the plane.
+    The speed is negative where x falls (where x stands still: where y falls).
+    """
+
+    trajectory: Trajectory
+    time: SecondArray
+    way: MetreArray
+    x: MetreArray
+    y: MetreArray
+    speed: MetrePerSecondArray
+    path: FingerPath | None
+
+    @classmethod
+    def of(cls, motion: Stroke | MinimumJerkStroke | FingerPath, rate: float) -> FingerMotion:
+        """The motion at times 0, 1/rate, … (rate in Hz). Raises `InputError` for too few steps."""
+        steps = int(np.floor(motion.duration * rate * (1 + 1e-12)))
+        if steps < 2:
+            raise InputError(
+                f"the motion of {motion.duration:.4g} s is over before the loop has made three "
+                f"steps at {rate:.6g} Hz; make it longer"
+            )
+        time = np.minimum(np.arange(steps + 1) / rate, motion.duration)
+        path = None
+        trajectory: Trajectory = motion
+        if isinstance(motion, FingerPath):
+            x, y = motion.place(time)
+            if not motion.along_x:
+                path, trajectory = motion, OverPath(motion)
+        else:
+            x, y = motion.position(time), np.zeros(time.size)
+        way = trajectory.position(time)
+        forward, sideways = np.gradient(x), np.gradient(y)
+        sign = np.where(forward != 0.0, np.sign(forward), np.sign(sideways))
+        speed = np.hypot(forward, sideways) * rate * sign
+        return cls(trajectory, time, way, x, y, speed, path)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PlayedTexture:
+    """The amplitude (m) a texture wants where the finger's way is `way`; see the module.
+
+    The velocity's sign is that of the true motion at the time asked: a loop's speed has none.
+    Friction that cannot be reached is brought to the nearest that can.
+    """
+
+    name: str
+    program: Program
+    inverse: FrictionInverse
+    motion: FingerMotion
+    friction_coefficient: Dimensionless
+    compensation: WaveCompensation | None = None
+    spatial_period: Metre | None = None
+
+    def __repr__(self) -> str:
+        return self.name
+
+    def __call__(
+        self, way: MetreLike, _: MetreLike, speed: MetrePerSecondLike, time: SecondLike, /
+    ) -> MetreArray:
+        """The amplitude wanted (m), in the shape of `way`."""
+        x, y = self.place(way)
+        t = np.maximum(np.broadcast_to(np.asarray(time, dtype=float), x.shape), 0.0)
+        last = self.motion.time.size - 1
+        step = np.clip(np.searchsorted(self.motion.time, t), 0, last)
+        v = np.abs(speed) * np.where(self.motion.speed[step] < 0.0, -1.0, 1.0)
+        amplitude = self.amplitude(evaluate(self.program, x, y, v, t))
+        if self.compensation is not None:
+            amplitude = amplitude / self.compensation.factor(x, y)
+        return np.minimum(amplitude, self.program.largest_amplitude)
+
+    def place(self, way: MetreLike) -> tuple[MetreArray, MetreArray]:
+        """x and y (m) where the loop's coordinate is `way`."""
+        if self.motion.path is None:
+            return np.asarray(way, dtype=float), np.zeros(np.shape(way))
+        return self.motion.path.place_after(way)
+
+    def friction(self, values: FloatArray) -> DimensionlessArray:
+        """Relative friction asked for by values of the texture in a frictional quantity (1)."""
+        if self.program.quantity == "friction_reduction":
+            return np.asarray(1.0 - values / self.friction_coefficient)
+        return values
+
+    def amplitude(self, values: FloatArray) -> MetreArray:
+        """The amplitude (m) that makes values of the texture, as near as the display can."""
+        if self.program.quantity == "amplitude":
+            return np.clip(values, 0.0, self.program.largest_amplitude)
+        wanted = np.clip(self.friction(values), self.inverse.least_friction, 1.0)
+        return self.inverse.amplitude_for(wanted)
+
+
+def single_period(texture: Composable, motion: Stroke | None = None) -> Metre | None:
+    """The spatial period of a grating along x (m); None for any other texture.
+
+    One that stretches with the speed has a period where the speed is steady, under a `Stroke`.
+    """
+    scaled = getattr(texture, "pattern", None)
+    if isinstance(scaled, SpeedScaled):
+        period = getattr(scaled.pattern, "spatial_period", None)
+        if motion is None or period is None:
+            return None
+        speed = min(max(motion.speed, scaled.slowest), scaled.fastest)
+        return float(period) * speed / scaled.reference_speed
+    for holder in (texture, getattr(texture, "pattern", None)):
+        along = getattr(holder, "along", None)
+        period = getattr(holder, "spatial_period", None)
+        if period is not None and (along is None or getattr(along, "type", "") == "x"):
+            return float(period)
+    return None
+
+
+def require_on_image(texture: Composable, motion: FingerMotion) -> None:
+    """Refuse a motion that leaves an image which does not say what lies outside of it."""
+    for image in _images(texture):
+        if image.outside != "hold":
+            continue
+        rows, columns = image._grid.shape
+        right, top = image.left + columns * image.pixel, image.bottom + rows * image.pixel
+        slack = 1e-9
+        beyond = (
+            (motion.x < image.left - slack)
+            | (motion.x > right + slack)
+            | (motion.y < image.bottom - slack)
+            | (motion.y > top + slack)
+        )
+        if np.any(beyond):
+            k = int(np.flatnonzero(beyond)[0])
+            raise InputError(
+                f"the stroke leaves the image: at {motion.time[k]:.4g} s the finger is at x = "
+                f"{format_quantity(float(motion.x[k]), _METRE)}, y = "
+                f"{format_quantity(float(motion.y[k]), _METRE)}, and the image ends at x = "
+                f"{format_quantity(image.left, _METRE)} to {format_quantity(right, _METRE)}, y = "
+                f"{format_quantity(image.bottom, _METRE)} to {format_quantity(top, _METRE)}; "
+                'shorten the stroke, move the image (left, bottom), or say outside = "zero" or '
+                '"repeat"'
+            )
+
+
+def _images(value: Any) -> Iterator[Image]:
+    if isinstance(value, Image):
+        yield value
+    elif isinstance(value, tuple):
+        for one in value:
+            yield from _images(one)
+    elif dataclasses.is_dataclass(value) and not isinstance(value, type):
+        for one in dataclasses.fields(value):
+            if not one.name.startswith("_"):
+                yield from _images(getattr(value, one.name))
+
+
+def require_on_display(actuator: Actuator, motion: FingerMotion) -> None:
+    """Refuse a motion that needs more surface than the display has, or a plane on a ring.
+
+    A stator's coordinate runs along its circumference, as often round as one likes.
+    """
+    width, height = float(np.ptp(motion.x)), float(np.ptp(motion.y))
+    if isinstance(actuator, AnnularStator):
+        if np.any(motion.y != 0.0):
+            raise InputError(
+                "a stator renders along its circumference, the coordinate x; leave y_m out of the "
+                "stroke, or take a plate for a motion in the plane"
+            )
+        return
+    if isinstance(actuator, DiscPlate):
+        room: tuple[Metre, Metre] = (actuator.diameter, actuator.diameter)
+    elif isinstance(actuator, RectangularPlate):
+        room = (actuator.length, actuator.width)
+    else:
+        return
+    for name, used, there in (("x", width, room[0]), ("y", height, room[1])):
+        if used > there * (1 + 1e-9):
+            raise InputError(
+                f"the stroke covers {format_quantity(used, _METRE)} along {name}, and the surface "
+                f"has {format_quantity(there, _METRE)}; shorten the stroke"
+            )

@@ -1,0 +1,406 @@
+"""What `squeezefilm render` computes: a texture on a display under a finger, link by link.
+
+texture → program → renderer along the motion (as a sensor has it, if there is one) → resonator
+with the finger on it → friction by the display's law → tangential force → fidelity.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Literal, get_args
+
+import numpy as np
+
+from squeezefilm.analysis.played_texture import (
+    FingerMotion,
+    PlayedTexture,
+    require_on_display,
+    require_on_image,
+    single_period,
+)
+from squeezefilm.contact.gas_table import film_table
+from squeezefilm.contact.pad import friction_ripple
+from squeezefilm.contact.sliding import Sliding, slide
+from squeezefilm.display import Display
+from squeezefilm.errors import InputError
+from squeezefilm.formats.trajectories import Motion
+from squeezefilm.friction import FrictionModel, shares_load
+from squeezefilm.plate.layout import DiscPlate, RectangularPlate
+from squeezefilm.prediction import Prediction, predict
+from squeezefilm.quantities import (
+    Dimensionless,
+    DimensionlessArray,
+    FloatArray,
+    Hertz,
+    Metre,
+    Newton,
+    Second,
+    Volt,
+    did_you_mean,
+)
+from squeezefilm.render.compensation import COMPENSATIONS, Compensation, DrivenEnvelope
+from squeezefilm.render.coordinate import AlongX, AlongY
+from squeezefilm.render.envelope import envelope_time_constant
+from squeezefilm.render.fidelity_report import FidelityReport, fidelity_report
+from squeezefilm.render.inverse import FrictionInverse
+from squeezefilm.render.program import lower
+from squeezefilm.render.rendered_stroke import RenderedStroke, rendered_stroke
+from squeezefilm.render.renderer import Counters, render
+from squeezefilm.render.sensor import SENSORS, SensorModel
+from squeezefilm.render.stroke import Stroke
+from squeezefilm.render.wave import WaveCompensation
+from squeezefilm.results import stamp, to_json
+from squeezefilm.texture_file import TextureFile
+
+Progress = Callable[[str], None]
+
+Wave = Literal["ignored", "felt", "compensated"]
+WAVES: tuple[Wave, ...] = get_args(Wave)
+"""Whether the standing wave's nodes are left out, felt, or felt and made up for."""
+
+_MOST_LINES = 6
+_FAINT = 0.01
+# How much more amplitude a pad may seem to meet off an antinode than on it.
+_BETTER = 1.5
+
+CONTROL_RATE: Hertz = 19.2e3
+"""Of the loop (Hz): commands to which a converter of 192 kHz gives ten samples each."""
+
+
+@dataclass(frozen=True, eq=False)
+class RenderAnalysis:
+    """A texture rendered on a display under a finger; arrays of shape (steps,).
+
+    Attributes:
+        display, texture, motion, prediction: the inputs, and the display at its voltage limit.
+        played: the texture as the loop asked it.
+        stroke: sensor, commands and envelope; its friction is the one felt, the wave included.
+        finger: time and place of the finger.
+        wave, factor: what was done about the standing wave, and the amplitude that the pad meets
+            at each step over that centred on an antinode (1); a contact longer than half the wave
+            may meet more off the antinodes.
+        asked: relative friction the texture asks for, whether it can be reached or not (1).
+        counters: what the renderer met along the true motion.
+        force: tangential force and skin motion along the way.
+        fidelity: None where it cannot be judged, for the reason in `unjudged`.
+    """
+
+    display: Display
+    texture: TextureFile
+    motion: Motion
+    prediction: Prediction
+    played: PlayedTexture
+    stroke: RenderedStroke
+    finger: FingerMotion
+    wave: Wave
+    factor: DimensionlessArray
+    asked: DimensionlessArray
+    counters: Counters
+    force: Sliding
+    fidelity: FidelityReport | None
+    unjudged: str | None
+    seed: int
+
+    @property
+    def rms_error(self) -> Dimensionless:
+        """RMS over the stroke of the relative friction rendered minus the one asked for (1)."""
+        miss = self.stroke.relative_friction_rendered - self.asked
+        return float(np.sqrt(np.mean(miss**2)))
+
+    @property
+    def time_constant(self) -> Second:
+        """Of the resonator's envelope with the finger on it (s)."""
+        return self.stroke.envelope.rise_time_constant
+
+    def provenance(self) -> dict[str, Any]:
+        """Version, hash of display, texture and motion, seed and time."""
+        return stamp((self.display, self.texture, self.motion_values()), self.seed)
+
+    def motion_values(self) -> Any:
+        """The motion as JSON can have it."""
+        return to_json(self.motion)
+
+    def summary(self) -> dict[str, Any]:
+        """What ``--json`` prints and fidelity.json holds; keys carry units."""
+        p, stroke, force = self.prediction, self.stroke, self.force
+        judged = self.fidelity
+        return {
+            "display": self.display.name,
+            "texture": self.texture.title or self.texture.texture.quantity,
+            "quantity": self.texture.texture.quantity,
+            "surface": p.surface.name,
+            "voltage_V": p.voltage,
+            "normal_force_N": p.normal_force,
+            "largest_amplitude_m": stroke.envelope.amplitude_limit,
+            "least_relative_friction": self.played.inverse.least_friction,
+            "resonance_frequency_Hz": _resonance(p)[1],
+            "quality_factor": _resonance(p)[0],
+            "envelope_time_constant_s": self.time_constant,
+            "control_rate_Hz": stroke.control_rate,
+            "duration_s": float(stroke.time[-1]),
+            "way_m": float(np.sum(np.abs(np.diff(self.finger.way)))),
+            "mean_speed_m_per_s": float(np.mean(np.abs(self.finger.speed))),
+            "sensor": None if stroke.sensor is None else stroke.sensor.name,
+            "compensation": stroke.compensation,
+            "braking": stroke.envelope.braking,
+            "wave": self.wave,
+            "wave_least_factor": float(np.min(self.factor)),
+            "wave_greatest_factor": float(np.max(self.factor)),
+            "asked_friction_mean": float(np.mean(self.asked)),
+            "asked_friction_rms_swing": float(np.std(self.asked)),
+            "rendered_friction_mean": float(np.mean(stroke.relative_friction_rendered)),
+            "rendered_friction_rms_swing": float(np.std(stroke.relative_friction_rendered)),
+            "friction_rms_error": self.rms_error,
+            "contrast_kept": None if judged is None else to_json(judged.contrast_kept),
+            "spatial_frequency_per_m": None
+            if judged is None
+            else to_json(judged.spatial_frequency),
+            "lag_m": None if judged is None else to_json(judged.lag),
+            "lag_s": None if judged is None else to_json(judged.lag_time),
+            "saturated_share": stroke.saturated_top + stroke.saturated_bottom,
+            "unreachable_samples": self.counters.unreachable,
+            "unreachable": {
+                "stickier_than_at_rest": self.counters.too_sticky,
+                "slipperier_than_the_display": self.counters.too_slippery,
+                "amplitude_below_0": self.counters.negative,
+                "amplitude_above_the_largest": self.counters.saturated,
+            },
+            "samples": self.counters.ticks,
+            "tangential_force_mean_N": float(np.mean(np.abs(force.friction_force))),
+            "tangential_force_largest_N": float(np.max(np.abs(force.friction_force))),
+            "stuck_share": force.stuck_share,
+            "not_judged_because": self.unjudged,
+            "fidelity": to_json(judged),
+            "model": {"friction": p.model, "vibration": p.amplitude_model, "loop": stroke.model},
+            "warnings": list(p.warnings),
+            "provenance": self.provenance(),
+        }
+
+
+def analyze_render(
+    display: Display,
+    texture: TextureFile,
+    motion: Motion,
+    *,
+    voltage: Volt | None = None,
+    normal_force: Newton | None = None,
+    surface: str | None = None,
+    model: FrictionModel | None = None,
+    sensor: str | SensorModel | None = None,
+    compensation: str = "none",
+    braking: bool = False,
+    wave: str = "ignored",
+    control_rate: Hertz = CONTROL_RATE,
+    seed: int = 0,
+    progress: Progress | None = None,
+) -> RenderAnalysis:
+    """Render a texture on a display under a finger.
+
+    Args:
+        display: what renders; its voltage (or `voltage`, V) is the largest the drive gives, and
+            what it makes under the finger the largest amplitude.
+        texture: what is to be felt; x = 0 is an antinode where the wave counts.
+        motion: of the finger, along x or (not on a stator) in the plane.
+        normal_force, surface, model: as `predict`.
+        sensor: what the loop sees the finger with, by name; without one it knows the place.
+        compensation: "none", "inverse" or "preview".
+        braking: whether the drive may invert the carrier's phase.
+        wave: "ignored": the pad meets the amplitude of the antinodes everywhere; "felt": less of
+            it near the nodes; "compensated": and the renderer drives harder there.
+        control_rate: of the loop (Hz).
+        seed: of the sensor's noise.
+        progress: is told each step.
+
+    Raises:
+        InputError: a name that is not known, a motion that leaves an image or the surface, a
+            display that does not vibrate at its voltage, or what the links of the chain refuse.
+    """
+    tell = progress or (lambda _: None)
+    way: Compensation = _one_of("compensation", compensation, COMPENSATIONS)
+    what: Wave = _one_of("wave", wave, WAVES)
+    eyes = sensor if sensor is None or isinstance(sensor, SensorModel) else sensor_named(sensor)
+    finger = FingerMotion.of(motion, control_rate)
+    require_on_display(display.actuator, finger)
+    require_on_image(texture.texture, finger)
+    tell("the display at its largest amplitude")
+    p = predict(
+        display, voltage=voltage, normal_force=normal_force, surface=surface, model=model
+    )  # fmt: skip
+    largest = p.vibration_amplitude
+    if largest <= 0.0 or p.relative_friction >= 1.0:
+        raise InputError(
+            f"display '{display.name}' changes no friction at {p.voltage or 0.0:g} V, so it "
+            "renders no texture; give it a voltage"
+        )
+    friction = p.law.table(largest)
+    inverse = FrictionInverse.from_function(friction, largest)
+    factors = None if what == "ignored" else _factors(display, p)
+    centred, felt = 1.0, friction
+    if factors is not None:
+        # Factors are over the best place, the display's law is that of an antinode.
+        centred = float(factors.factor(0.0))
+        felt = p.law.table(largest / centred)
+    if what == "compensated":
+        inverse = FrictionInverse.from_function(lambda a: felt(a / centred), largest)
+    played = _played(
+        texture, motion, finger, p, inverse, factors if what == "compensated" else None
+    )
+    quality, resonance = _resonance(p)
+    tau = float(envelope_time_constant(quality, resonance))
+    tell("the loop along the stroke")
+    stroke = rendered_stroke(
+        played, finger.trajectory, DrivenEnvelope(tau, tau, largest, braking), friction,
+        compensation=way, sensor=eyes, control_rate=control_rate, seed=seed,
+    )  # fmt: skip
+    values = texture.texture(finger.x, finger.y, finger.speed, finger.time)
+    amplitude = played.amplitude(values)
+    reached = felt(amplitude / centred) if what == "compensated" else friction(amplitude)
+    asked = reached if _is_amplitude(texture) else played.friction(values)
+    factor = np.ones(finger.time.size)
+    if factors is not None:
+        factor = factors.factor(finger.x, finger.y) / centred
+    stroke = dataclasses.replace(
+        stroke,
+        relative_friction_wanted=reached,
+        relative_friction_rendered=felt(stroke.amplitude * factor),
+        model=stroke.model + ("" if factors is None else f"; standing wave {what}"),
+    )
+    counters = render(played.program, finger.x, finger.y, finger.speed, finger.time).counters
+    tell("tangential force")
+    force = slide(
+        finger.way,
+        1 / control_rate,
+        p.friction_coefficient * stroke.relative_friction_rendered,
+        p.normal_force,
+        display.finger.fingerpad,
+    )
+    judged, because = None, None
+    try:
+        judged = fidelity_report(stroke, _strongest(stroke, played.spatial_period))
+    except InputError as error:
+        because = str(error)
+    return RenderAnalysis(
+        display=display, texture=texture, motion=motion, prediction=p, played=played,
+        stroke=stroke, finger=finger, wave=what, factor=factor, asked=asked, counters=counters,
+        force=force, fidelity=judged, unjudged=because, seed=seed,
+    )  # fmt: skip
+
+
+def _played(
+    texture: TextureFile,
+    motion: Motion,
+    finger: FingerMotion,
+    p: Prediction,
+    inverse: FrictionInverse,
+    compensation: WaveCompensation | None,
+) -> PlayedTexture:
+    quantity = texture.texture.quantity
+    program = lower(
+        texture.texture,
+        largest_amplitude=p.vibration_amplitude,
+        inverse=None if quantity == "amplitude" else inverse,
+        friction_coefficient=p.friction_coefficient if quantity == "friction_reduction" else None,
+        compensation=compensation,
+    )
+    steady = motion if isinstance(motion, Stroke) else None
+    period = single_period(texture.texture, steady) if finger.path is None else None
+    # Contrast at a period's harmonics needs four of them in a pass, the start left out.
+    if period is not None and float(np.ptp(finger.x)) < 5 * period:
+        period = None
+    name = texture.title or f"a texture of {quantity}"
+    return PlayedTexture(
+        name, program, inverse, finger, p.friction_coefficient, compensation, period
+    )
+
+
+def _is_amplitude(texture: TextureFile) -> bool:
+    return texture.texture.quantity == "amplitude"
+
+
+def _strongest(stroke: RenderedStroke, period: Metre | None) -> FloatArray | None:
+    """Spatial frequencies (1/m) at which a texture without a period has its contrast.
+
+    The strongest lines of the first pass's spectrum, at most six; elsewhere a share of next to
+    nothing would be measured. None where `fidelity_report` knows better.
+    """
+    turns = np.flatnonzero(np.diff(np.sign(np.diff(stroke.position))) != 0)
+    end = int(turns[0]) + 2 if turns.size else stroke.position.size
+    way, wanted = stroke.position[:end], stroke.relative_friction_wanted[:end]
+    length = abs(float(way[-1] - way[0]))
+    if period is not None or length == 0.0 or way.size < 64:
+        return None
+    rising = 1 if way[-1] > way[0] else -1
+    even = np.linspace(way.min(), way.max(), 8192)
+    values = np.interp(even, way[::rising], wanted[::rising])
+    power = np.abs(np.fft.rfft((values - values.mean()) * np.hanning(even.size))) ** 2
+    # A pass whose start is left out must still show four periods.
+    least = math.ceil(5 / (1 - 0.2))
+    lines = np.arange(least, power.size - 1)
+    peaks = lines[(power[lines] >= power[lines - 1]) & (power[lines] > power[lines + 1])]
+    strong = peaks[power[peaks] > _FAINT * power[least:].max(initial=0.0)]
+    best = np.sort(strong[np.argsort(power[strong])[::-1][:_MOST_LINES]])
+    return np.asarray(best / length, dtype=float) if best.size else None
+
+
+def _resonance(p: Prediction) -> tuple[Dimensionless, Hertz]:
+    """Quality factor and resonance (Hz) with the finger on the mode, where that is known."""
+    if p.touch.mode is None:
+        return p.mode.quality_factor, p.mode.resonance_frequency
+    return p.touch.mode.quality_factor, p.touch.mode.resonance_frequency
+
+
+def _factors(display: Display, p: Prediction) -> WaveCompensation:
+    """The amplitude that the pad meets along the wave, over that at the best place."""
+    plate = display.actuator
+    if isinstance(plate, DiscPlate):
+        raise InputError(
+            "the wave of a disc is no standing wave along a line; leave --wave out for a disc"
+        )
+    across = isinstance(plate, RectangularPlate) and plate.lines_across == "width"
+    along = AlongY() if across else AlongX()
+    half, law = p.mode.half_wavelength, p.law
+    if not shares_load(p.model):
+        return WaveCompensation.over_contact(half, law.finger.contact_length, along=along)
+    found = friction_ripple(
+        film_table(law.frequency, law.finger.plateau_width, law.gas),
+        law.finger.asperity_law(law.surface.roughness),
+        p.vibration_amplitude,
+        half,
+        law.finger,
+        normal_force=law.normal_force,
+    )
+    # Off the antinode friction may be less than the display makes centred on it.
+    wide = _BETTER * p.vibration_amplitude
+    inverse = FrictionInverse.from_function(law.table(wide), wide)
+    reached = np.clip(found.relative_friction, inverse.least_friction, 1.0)
+    return WaveCompensation.from_ripple(found.position, reached, inverse, half, along=along)
+
+
+def sensor_named(name: str) -> SensorModel:
+    """The sensor of a name such as "touch-panel-60-hz" or "LVDT 10 kHz".
+
+    Raises `InputError` for a name that is not known.
+    """
+    known = {_slug(one): sensor for one, sensor in SENSORS.items()}
+    if _slug(name) not in known:
+        raise InputError(
+            f"the sensor '{name}' is not known.{did_you_mean(_slug(name), known)} Sensors: "
+            f"{', '.join(known)}"
+        )
+    return known[_slug(name)]
+
+
+def _slug(name: str) -> str:
+    return "-".join(name.lower().replace("_", " ").replace("-", " ").split())
+
+
+def _one_of(name: str, value: str, allowed: tuple[Any, ...]) -> Any:
+    if value not in allowed:
+        raise InputError(
+            f"{name} = '{value}' is not known.{did_you_mean(value, allowed)} Allowed: "
+            f"{', '.join(allowed)}"
+        )
+    return value

@@ -1,0 +1,1 @@
+"""Files that other programs read and write: sound, tables, pictures, trajectories, MPEG haptics."""

@@ -1,0 +1,96 @@
+"""Pictures as maps: greyscale PNG of 8 or 16 bits to values from 0 (black) to 1 (white) and back.
+
+Size and kind are read from the file's header and checked before anything is decoded: a small file
+may unpack to gigabytes. A picture has no scale of its own; whoever uses one gives the side of a
+pixel. (What a PNG says of pixels per metre is set by cameras and screens, and not believed.)
+"""
+
+from __future__ import annotations
+
+import io
+import struct
+import warnings
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+
+from squeezefilm.errors import InputError
+from squeezefilm.quantities import DimensionlessArray, require
+from squeezefilm.render.pattern_image import MOST_PIXELS
+
+_SIGNATURE = b"\x89PNG\r\n\x1a\n"
+_MOST_BYTES = 16_000_000
+_KINDS = {0: "greyscale", 2: "colour", 3: "colour from a palette", 4: "greyscale with alpha",
+          6: "colour with alpha"}  # fmt: skip
+
+
+def read_picture(path: str | Path) -> DimensionlessArray:
+    """The values of a PNG, 0 (black) to 1 (white), shape (rows, columns), the top row first.
+
+    Raises:
+        InputError: a file that cannot be read, is no greyscale PNG of 8 or 16 bits, is damaged,
+            or has more pixels than an `Image` may have (1 048 576).
+    """
+    try:
+        size = Path(path).stat().st_size
+        if size > _MOST_BYTES:
+            raise InputError(
+                f"{path} has {size} bytes; a picture may have {_MOST_BYTES}: make it smaller"
+            )
+        data = Path(path).read_bytes()
+    except OSError as error:
+        raise InputError(f"{path} cannot be read: {error.strerror}") from error
+    return picture_from(data, str(path))
+
+
+def picture_from(data: bytes, name: str = "the picture") -> DimensionlessArray:
+    """The values in the bytes of a PNG; `name` is what messages call it. See `read_picture`."""
+    if data[:8] != _SIGNATURE or data[12:16] != b"IHDR" or len(data) < 33:
+        raise InputError(f"{name} is no PNG; save it as a greyscale PNG of 8 or 16 bits")
+    columns, rows, bits, kind = struct.unpack(">IIBB", data[16:26])
+    if kind != 0 or bits not in (8, 16):
+        raise InputError(
+            f"{name} is {_KINDS.get(kind, f'of kind {kind}')} of {bits} bits; save it as greyscale "
+            "of 8 or 16 bits, without transparency"
+        )
+    if rows * columns > MOST_PIXELS or rows * columns == 0:
+        raise InputError(
+            f"{name} has {columns} × {rows} pixels; an image may have from 1 to {MOST_PIXELS} "
+            "together: make its pixels larger"
+        )
+    from PIL import Image as Pillow
+
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            with Pillow.open(io.BytesIO(data), formats=("PNG",)) as picture:
+                found = np.array(picture, dtype=float)
+    except (OSError, SyntaxError, ValueError, MemoryError, Warning, struct.error) as error:
+        raise InputError(f"{name} is damaged and cannot be read: {error}") from error
+    if found.shape != (rows, columns):
+        raise InputError(f"{name} is damaged: its header does not belong to its pixels")
+    return np.asarray(found / (2**bits - 1))
+
+
+def picture_bytes(values: DimensionlessArray, bits: Literal[8, 16] = 8) -> bytes:
+    """The greyscale PNG of values from 0 to 1, shape (rows, columns), the top row first.
+
+    A value is rounded to the nearest of 2^bits steps. Raises `InputError` for values outside 0 to
+    1, another shape, too many pixels or other bits.
+    """
+    from PIL import Image as Pillow
+
+    array = np.asarray(values, dtype=float)
+    if array.ndim != 2 or not 1 <= array.size <= MOST_PIXELS:
+        raise InputError(
+            f"values of shape {array.shape} are no picture; give rows and columns, at most "
+            f"{MOST_PIXELS} pixels together"
+        )
+    if bits not in (8, 16):
+        raise InputError(f"bits = {bits!r} cannot be used: it must be 8 or 16")
+    require("values", array, at_least=0.0, at_most=1.0)
+    grey = np.rint(array * (2**bits - 1)).astype(np.uint8 if bits == 8 else np.uint16)
+    stream = io.BytesIO()
+    Pillow.fromarray(grey).save(stream, format="PNG")
+    return stream.getvalue()

@@ -1,0 +1,147 @@
+"""A finger's free motion over the plane: places at times, straight lines between them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from squeezefilm.errors import InputError
+from squeezefilm.quantities import (
+    FloatArray,
+    Metre,
+    MetreArray,
+    MetreLike,
+    Second,
+    SecondArray,
+    SecondLike,
+    Unit,
+    require,
+)
+
+_FARTHEST: Metre = 10.0
+_ROUNDING = 1e-12
+_MOST_SAMPLES = 20_000_000
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FingerPath:
+    """A finger's recorded or drawn motion; between two samples it goes straight at constant speed.
+
+    Its first time becomes 0. As a `Trajectory` it is what `rendered_stroke` needs of a motion
+    along x; `OverPath` is the same motion along its own path.
+
+    Args:
+        time: rising (s), shape (n,), n ≥ 2.
+        x, y: places (m), shape (n,), within ±10 m.
+
+    Raises:
+        InputError: arrays of other shapes, values that are not finite or too far, times that do
+            not rise, or a finger that does not move at all.
+    """
+
+    time: SecondArray
+    x: MetreArray
+    y: MetreArray
+    _way: FloatArray = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        shapes = {np.shape(self.time), np.shape(self.x), np.shape(self.y)}
+        if len(shapes) > 1 or len(self.time.shape) != 1 or not 2 <= self.time.size < _MOST_SAMPLES:
+            raise InputError(
+                f"time, x and y of shapes {sorted(shapes)} are no motion; give three lists of one "
+                "length, at least 2"
+            )
+        require("time", self.time, Unit("s"))
+        require("x", self.x, Unit("m"), at_least=-_FARTHEST, at_most=_FARTHEST)
+        require("y", self.y, Unit("m"), at_least=-_FARTHEST, at_most=_FARTHEST)
+        if np.any(np.diff(self.time) <= 0.0):
+            raise InputError("the times of a motion must rise from each sample to the next")
+        steps = np.hypot(np.diff(self.x), np.diff(self.y))
+        way = np.concatenate([[0.0], np.cumsum(steps)])
+        if way[-1] == 0.0:
+            raise InputError("the finger does not move at all, so it meets no texture")
+        object.__setattr__(self, "time", np.array(self.time, dtype=float) - float(self.time[0]))
+        object.__setattr__(self, "_way", way)
+
+    @property
+    def duration(self) -> Second:
+        """Time the whole motion takes (s)."""
+        return float(self.time[-1])
+
+    @property
+    def length(self) -> Metre:
+        """Length of the whole path (m)."""
+        return float(self._way[-1])
+
+    @property
+    def along_x(self) -> bool:
+        """Whether the motion keeps to the line y = 0."""
+        return not np.any(self.y)
+
+    def position(self, t: SecondLike) -> MetreArray:
+        """x at time `t` since the motion began (m), in the shape of `t`.
+
+        Raises:
+            InputError: a time before the motion or after its end.
+        """
+        return self.place(t)[0]
+
+    def place(self, t: SecondLike) -> tuple[MetreArray, MetreArray]:
+        """x and y at time `t` since the motion began (m). Raises as `position` does."""
+        times = self._within(t)
+        return (
+            np.asarray(np.interp(times, self.time, self.x)),
+            np.asarray(np.interp(times, self.time, self.y)),
+        )
+
+    def travelled(self, t: SecondLike) -> MetreArray:
+        """Length of the path up to time `t` (m); never falls. Raises as `position` does."""
+        return np.asarray(np.interp(self._within(t), self.time, self._way))
+
+    def place_after(self, way: MetreLike) -> tuple[MetreArray, MetreArray]:
+        """x and y once `way` of the path is done (m); straight on before its start and past its
+        end, as one who has only heard of the motion so far would have it."""
+        s = np.asarray(way, dtype=float)
+        found = []
+        for places in (self.x, self.y):
+            inside = np.interp(s, self._way, places)
+            moving = np.flatnonzero(np.diff(self._way) > 0.0)
+            for k, beyond in (
+                (moving[0], np.minimum(s, 0.0)),
+                (moving[-1], np.maximum(s - self.length, 0.0)),
+            ):
+                slope = (places[k + 1] - places[k]) / (self._way[k + 1] - self._way[k])
+                inside = inside + slope * beyond
+            found.append(np.asarray(inside))
+        return found[0], found[1]
+
+    def _within(self, t: SecondLike) -> FloatArray:
+        require("t", t, Unit("s"), at_least=0.0, at_most=self.duration * (1 + _ROUNDING))
+        return np.asarray(t, dtype=float)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class OverPath:
+    """A motion in the plane as a `Trajectory` along its own path: its position is the way done.
+
+    So a loop that knows one coordinate (sensor, estimator, compensation) renders a free motion;
+    the sensor's errors then lie along the path.
+    """
+
+    path: FingerPath
+
+    @property
+    def duration(self) -> Second:
+        """Time the whole motion takes (s)."""
+        return self.path.duration
+
+    def position(self, t: SecondLike) -> MetreArray:
+        """The way done at time `t` (m). Raises `InputError` for a time outside the motion."""
+        return self.path.travelled(t)
+
+    def __repr__(self) -> str:
+        return (
+            f"FingerPath of {self.path.time.size} samples, {self.path.length:.4g} m in "
+            f"{self.path.duration:.4g} s"
+        )

@@ -1,0 +1,82 @@
+"""Tables in CSV and Parquet: every float comes back, metadata too; what is broken has its line."""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from squeezefilm.errors import ConfigError, InputError
+from squeezefilm.formats.traces import (
+    Table,
+    csv_text,
+    parquet_bytes,
+    table_from_csv,
+    table_from_parquet,
+)
+
+META = {"config_sha256": "ab", "squeezefilm_version": "1", "seed": 4, "created_utc": "2026"}
+
+
+def same(a: Table, b: Table) -> bool:
+    return a.metadata == b.metadata and list(a.columns) == list(b.columns) and all(
+        np.array_equal(a.column(name), b.column(name), equal_nan=True) for name in a.columns
+    )  # fmt: skip
+
+
+@settings(deadline=None)
+@given(st.lists(st.floats(allow_infinity=False), min_size=1, max_size=30))
+def test_every_float_comes_back(values: list[float]) -> None:
+    import tempfile
+
+    column = np.array(values)
+    table = Table({"time_s": np.arange(column.size) / 3, "position_m": column}, META)
+    with tempfile.TemporaryDirectory() as folder:
+        (Path(folder) / "t.csv").write_text(csv_text(table), encoding="utf-8")
+        (Path(folder) / "t.parquet").write_bytes(parquet_bytes(table))
+        assert same(table_from_csv(Path(folder) / "t.csv"), table)
+        assert same(table_from_parquet(Path(folder) / "t.parquet"), table)
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("", "has no header"),
+        ("# {}\n", "has no header"),
+        ("time_s,x_m\n0,1\n1,two\n", r"line 3: x_m: 'two' is no number"),
+        ("time_s,x_m\n0,1\n1\n", r"line 3: has 1 cells where the header has 2"),
+        ("time_s,x_m\n0,1\n\n2,3\n", r"line 3: has 0 cells"),
+        ("time_s,time_s\n0,1\n", r"line 1: names a column twice"),
+        ("# {}\ntime_s,x m\n0,1\n", r"line 2: 'x m' is no name"),
+        ("time_s\ninf\n", "infinity"),
+    ],
+)
+def test_what_is_broken_is_located(text: str, says: str, tmp_path: Path) -> None:
+    (tmp_path / "t.csv").write_text(text)
+    with pytest.raises(ConfigError, match=says):
+        table_from_csv(tmp_path / "t.csv")
+
+
+def test_another_comment_is_kept_as_text(tmp_path: Path) -> None:
+    (tmp_path / "t.csv").write_text("# from the lab\nx_m\n1\n")
+    assert table_from_csv(tmp_path / "t.csv").metadata == {"comment": "from the lab"}
+
+
+def test_files_that_are_none_are_refused(tmp_path: Path) -> None:
+    (tmp_path / "t.csv").write_bytes(b"x_m\n\xff\n")
+    with pytest.raises(ConfigError, match="UTF-8"):
+        table_from_csv(tmp_path / "t.csv")
+    with pytest.raises(InputError, match="no table of numbers in Parquet"):
+        table_from_parquet(tmp_path / "t.csv")
+    with pytest.raises(ConfigError, match="cannot be read"):
+        table_from_csv(tmp_path / "none.csv")
+    with pytest.raises(InputError, match="one length"):
+        Table({"a": np.zeros(2), "b": np.zeros(3)})
+
+
+def test_without_pyarrow_the_message_says_what_to_do(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "pyarrow", None)
+    with pytest.raises(InputError, match=r"install squeezefilm\[parquet\], or write CSV"):
+        parquet_bytes(Table({"x_m": np.zeros(1)}))
