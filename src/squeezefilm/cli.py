@@ -128,6 +128,9 @@ def analyze(
             "paper2008, film-sealed, film-open, film-plateau, film-smooth."
         ),
     ] = None,
+    samples: Annotated[
+        int, typer.Option(help="Base samples of the friction's interval, a power of two; 0: none.")
+    ] = 32,
     theory: Annotated[
         str | None,
         typer.Option(
@@ -152,6 +155,7 @@ def analyze(
             vibration_amplitude=_quantity(amplitude, "--amplitude", Unit("m")),
             normal_force=_quantity(force, "--force", Unit("N")),
             surface=surface,
+            samples=samples,
             theory=theory,  # type: ignore[arg-type] # checked with a message by working_mode
             model=model,  # type: ignore[arg-type] # checked with a message by FrictionLaw
             strict=strict,

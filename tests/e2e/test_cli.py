@@ -77,7 +77,9 @@ def test_analyze_prints_one_object_with_units_in_its_keys() -> None:
 
 
 def test_the_papers_model_is_there_on_request_and_warns() -> None:
-    result = json.loads(run("analyze", "biet2008-stator", "--json", "--model", "paper2008").stdout)
+    result = json.loads(
+        run("analyze", "biet2008-stator", "--json", "--samples", "0", "--model", "paper2008").stdout
+    )
     assert result["relative_friction"] == pytest.approx(0.702, abs=5e-4)
     assert result["model"] == "paper2008"
     assert any("σ → ∞" in warning for warning in result["warnings"])
@@ -208,13 +210,15 @@ def test_analyze_writes_a_report_and_a_result(tmp_path: Path) -> None:
 
 
 def test_working_point_options_change_the_result() -> None:
-    half = json.loads(run("analyze", "biet2008-plate", "--json", "--voltage", "7.5 V").stdout)
-    full = json.loads(run("analyze", "biet2008-plate", "--json").stdout)
+    half = json.loads(
+        run("analyze", "biet2008-plate", "--json", "--samples", "0", "--voltage", "7.5 V").stdout
+    )
+    full = json.loads(run("analyze", "biet2008-plate", "--json", "--samples", "0").stdout)
     # Linear without the finger, which takes a little more of a small amplitude.
     free = [r["vibration_amplitude_m"] / r["amplitude_kept_under_finger"] for r in (half, full)]
     assert free[0] == pytest.approx(free[1] / 2)
     assert half["vibration_amplitude_m"] < full["vibration_amplitude_m"] / 2
-    options = ("--surface", "bare", "--amplitude", "2 um", "--model", "paper2008")
+    options = ("--samples", "0", "--surface", "bare", "--amplitude", "2 um", "--model", "paper2008")
     bare = json.loads(run("analyze", "biet2008-stator", "--json", *options).stdout)
     assert bare["relative_friction"] == pytest.approx(0.532, abs=5e-4)
     assert bare["voltage_V"] is None
@@ -235,7 +239,12 @@ def test_new_show_and_analyze_a_file_of_ones_own(tmp_path: Path) -> None:
     assert by_path["actuator.length"]["text"] == "83 mm"
     assert by_path["actuator.substrate.density"]["evidence"] == "assumed"
     file.write_text(text.replace('"83 mm"', '"166 mm"'))
-    assert json.loads(run("analyze", file, "--json").stdout)["resonance_frequency_Hz"] < 12e3
+    assert (
+        json.loads(run("analyze", file, "--json", "--samples", "0").stdout)[
+            "resonance_frequency_Hz"
+        ]
+        < 12e3
+    )
 
 
 def test_presets_are_listed() -> None:
@@ -306,7 +315,7 @@ TEXT = presets.path("biet2008-plate").read_text(encoding="utf-8")
 def test_bad_files_leave_no_output(content: str, says: str, tmp_path: Path) -> None:
     file = tmp_path / "bad.toml"
     file.write_text(content, encoding="utf-8")
-    done = run("analyze", file, "--out", tmp_path / "out")
+    done = run("analyze", file, "--samples", "0", "--out", tmp_path / "out")
     assert done.returncode == 2
     assert "Traceback" not in done.stderr
     assert says in done.stderr
@@ -317,7 +326,7 @@ def test_bad_files_leave_no_output(content: str, says: str, tmp_path: Path) -> N
 def test_an_output_folder_that_is_a_file_is_refused_and_kept(tmp_path: Path) -> None:
     taken = tmp_path / "out"
     taken.write_text("mine")
-    done = run("analyze", "biet2008-stator", "--out", taken)
+    done = run("analyze", "biet2008-stator", "--samples", "0", "--out", taken)
     assert done.returncode == 2
     assert "Traceback" not in done.stderr
     assert taken.read_text() == "mine"

@@ -65,8 +65,8 @@ def compensated_grating(grating: CompensatedGrating) -> Figure:
     for level in (1, -1):
         bottom.axhline(level, color=INK, lw=0.8, ls=(0, (1.4, 1.2)))
     bottom.text(0.02 * x[-1], 1.06, "limit of the voltage", color=MUTED, fontsize=9, va="bottom")
-    top.set(ylabel="amplitude / limit", ylim=(0, 1.02))
-    bottom.set(xlabel="finger's way (mm)", ylabel="command / limit", ylim=(-1.15, 1.4))
+    top.set(ylabel="amplitude, relative to the limit", ylim=(0, 1.02))
+    bottom.set(xlabel="finger's way (mm)", ylabel="command, relative", ylim=(-1.15, 1.4))
     bottom.set_yticks([-1, 0, 1])
     for axes in (top, bottom):
         axes.set_xlim(0, float(x[-1]))

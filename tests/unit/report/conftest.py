@@ -9,13 +9,18 @@ from pathlib import Path
 
 import pytest
 
-from squeezefilm.analysis.analyze import Analysis, analyze
+from squeezefilm.analysis.analyze import Analysis
+from squeezefilm.analysis.analyze import analyze as whole_analysis
 from squeezefilm.display import Display, load_display
 from squeezefilm.plate.layout import AnnularStator, RectangularPlate
 
 HOSTILE = '<script>alert("x")</script> $\\frac{1}{0}$ [bold]漢字 \x1b[31m\u202e & more'
 
 PRESETS = ("biet2008-plate", "biet2008-stator", "winfield2007-tpad")
+
+
+# The fewest samples that have an interval: what is tested is how it is shown.
+analyze = functools.partial(whole_analysis, samples=8)
 
 
 def plate(display: Display, **changes: object) -> Display:
