@@ -137,6 +137,8 @@ def test_the_limits_hold_over_many_adversarial_commands() -> None:
 @pytest.mark.parametrize("seed", range(4))
 def test_the_limits_hold_over_long_sessions_that_see_everything(seed: int) -> None:
     watch, host = Watch(), Adversary(random.Random(seed))
+    for number, message in enumerate((m.Hello(1), m.Arm(3))):  # before it has limits
+        watch.send(message.frame(number).encoded())
     for _ in range(8_000):
         watch.send(host.step(watch.machine))
         watch.wait(host.pause())
