@@ -11,10 +11,11 @@ from pathlib import Path
 
 import pytest
 
+from squeezefilm.device import messages as m
 from squeezefilm.device.cobs import cobs_encode
 from squeezefilm.device.machine import DeviceLimits, Machine, State
 
-from .adversary import Adversary
+from .adversary import LIMITS, Adversary
 from .test_frames import VECTORS, script
 
 SOURCES = Path(__file__).parents[2] / "firmware"
@@ -141,3 +142,23 @@ def test_c_and_python_do_the_same_on_noise(firmware: ctypes.CDLL) -> None:
 def test_c_and_python_do_the_same_on_many_adversarial_streams(firmware: ctypes.CDLL) -> None:
     for seed in range(100, 200):
         compare(firmware, seed, 3_000)
+
+
+def test_c_and_python_read_a_tile_and_jump_in_sequence_alike(firmware: ctypes.CDLL) -> None:
+    twin, compiled = Machine(seed=1), Compiled(firmware, 1, DeviceLimits())
+    levels = (0.0, 60.0, 59.5, 0.1, 33.3)
+    sequence = now = 0
+    opening = [m.Hello(1), m.limits_message(LIMITS), m.Arm(1), m.Start(30_000_000)]
+    tile = [m.TileBegin(-1000, 333, 5), m.TileData(0, levels)]
+    sweep = [m.Position(x) for x in range(-1100, 500, 7)]
+    reached = set()
+    for message in (*opening, *tile, *sweep):
+        for ahead in (1, 0x8000, 0) if isinstance(message, m.Position) else (0x7FFF,):
+            frame = message.frame(sequence + ahead).encoded()
+            assert compiled.receive(frame, now) == twin.receive(frame, now)
+            sequence += ahead if ahead < 0x8000 else 0
+        now += 1000
+        assert compiled.tick(now) == twin.tick(now)
+        assert compiled.snapshot() == snapshot(twin)
+        reached.add(twin.level)
+    assert len(reached) > 40
