@@ -150,7 +150,8 @@ def test_c_and_python_read_a_tile_and_jump_in_sequence_alike(firmware: ctypes.CD
     sequence = now = 0
     opening = [m.Hello(1), m.limits_message(LIMITS), m.Arm(1), m.Start(30_000_000)]
     tile = [m.TileBegin(-1000, 333, 5), m.TileData(0, levels)]
-    sweep = [m.Position(x) for x in range(-1100, 500, 7)]
+    knots = range(-1333, 1000, 333)  # the amplitudes themselves, and past either end
+    sweep = [m.Position(x) for x in (*knots, *range(-1100, 500, 7))]
     reached = set()
     for message in (*opening, *tile, *sweep):
         for ahead in (1, 0x8000, 0) if isinstance(message, m.Position) else (0x7FFF,):
