@@ -1,0 +1,81 @@
+/* The reference firmware's state machine and framing: C99, no allocation, no libm, no clock.
+ *
+ * The twin of src/squeezefilm/device/machine.py; docs/protocol.md states the rules. Everything is
+ * integer (us, uV, mHz, um) but the volts on the wire: IEEE binary32, turned into uV by one exact
+ * multiplication in binary64. Do not compile it with -ffast-math. Not reentrant: call it from one
+ * context, or mask interrupts around it.
+ *
+ * A board gives two hooks and three calls: sf_receive for every byte from the host, sf_tick at
+ * least every 1 ms from a hardware timer, sf_trip from the amplifier's fault line. The carrier
+ * hook must set the output; nothing else may. A board also needs its own hardware watchdog: no
+ * program can vouch for itself when it hangs.
+ */
+#ifndef SQUEEZEFILM_FW_H
+#define SQUEEZEFILM_FW_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#define SF_VERSION 1
+#define SF_LONGEST_FRAME 252
+#define SF_MOST_LEVELS 56
+#define SF_LONGEST_TILE 512
+
+enum { SF_OFF, SF_ARMED, SF_PLAYING, SF_FAULT };
+enum { SF_NONE, SF_WATCHDOG, SF_HEAT, SF_DUTY, SF_LATE_TICK, SF_TRIPPED };
+enum {
+    SF_ACCEPTED, SF_BAD_VERSION, SF_BAD_TYPE, SF_BAD_LENGTH, SF_BAD_SEQUENCE, SF_BAD_STATE,
+    SF_BAD_VALUE, SF_BAD_TOKEN, SF_NO_LIMITS, SF_BAD_TILE
+};
+
+/* uV, V/s (= uV/us), uV, V2*ms, mHz, mHz, permille, ms. */
+typedef struct {
+    uint32_t voltage, slew, continuous_voltage, heat;
+    uint32_t lowest_frequency, highest_frequency, duty, duty_window;
+} sf_limits;
+
+/* Called at every tick: the enable line, the amplitude (uV, zero-to-peak), the carrier (mHz). */
+typedef void (*sf_carrier)(void *board, int enabled, uint32_t level, uint32_t frequency);
+/* Called with the bytes of an answer. */
+typedef void (*sf_send)(void *board, const uint8_t *bytes, size_t count);
+
+typedef struct {
+    void *board;
+    sf_carrier carrier;
+    sf_send send;
+    sf_limits own;      /* the firmware's own limits, which no message passes */
+    sf_limits limits;   /* the session's; meaningless until has_limits */
+    int has_limits;
+    int state, fault;
+    uint32_t level, frequency;
+    int64_t heat, used;
+    uint32_t now, heard, token, session;
+    uint32_t accepted, refused, damaged;
+    int opened;
+    uint16_t last, sent;
+    uint32_t envelope[SF_MOST_LEVELS];
+    uint32_t envelope_count, period, began;
+    int at_given;
+    int32_t at;
+    uint32_t tile[SF_LONGEST_TILE];
+    uint32_t tile_pitch, tile_size, tile_filled;
+    int32_t tile_origin;
+    uint8_t stuffed[SF_LONGEST_FRAME + 2];
+    size_t stuffed_count;
+} sf_machine;
+
+/* Boots off. `seed` is where tokens start: take a random number, or a counter of boots. */
+void sf_boot(sf_machine *m, const sf_limits *own, uint32_t seed, sf_carrier carrier, sf_send send,
+             void *board);
+void sf_receive(sf_machine *m, uint8_t byte, uint32_t now);
+/* Returns the output, uV. */
+uint32_t sf_tick(sf_machine *m, uint32_t now);
+void sf_trip(sf_machine *m);
+
+uint32_t sf_crc32(const uint8_t *bytes, size_t count);
+/* Return the count written; sf_cobs_decode returns -1 for bytes that are no block. The room
+ * needed is count + count/254 + 1 and count. */
+size_t sf_cobs_encode(const uint8_t *bytes, size_t count, uint8_t *out);
+int sf_cobs_decode(const uint8_t *bytes, size_t count, uint8_t *out);
+
+#endif

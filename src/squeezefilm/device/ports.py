@@ -1,0 +1,51 @@
+"""The seams between a session and hardware, each one method wide.
+
+A real device, its twin, a replay and a test's fake differ only below these. Nothing here raises
+inside a real-time block: a fault zeroes the drive, and is raised on the caller's side.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+from squeezefilm.quantities import FloatArray, Metre, Second
+
+
+@dataclass(frozen=True, slots=True)
+class FingerSample:
+    """Where the finger was (m, in the plate's axes), when (s, device clock), if it touched."""
+
+    time: Second
+    x: Metre
+    y: Metre
+    touching: bool
+
+
+class Sensor(Protocol):
+    """A finger's position sensor."""
+
+    def read(self) -> FingerSample | None:
+        """The newest sample, or None if none came since the last call. Does not wait."""
+        ...
+
+
+class Pickup(Protocol):
+    """Vibration feedback: motional current, a sensing patch, or a vibrometer."""
+
+    def read(self, block: FloatArray) -> int:
+        """Fill `block`, shape (n,), with the newest readings; returns how many were there."""
+        ...
+
+
+class Drive(Protocol):
+    """What turns drive amplitudes into voltage on the plate."""
+
+    @property
+    def stops_by_itself(self) -> bool:
+        """Whether the output goes to zero on its own within 60 ms when the host falls silent."""
+        ...
+
+    def write(self, block: FloatArray) -> int:
+        """Play the amplitudes (V, zero-to-peak) in `block`, shape (n,); returns how many fitted."""
+        ...

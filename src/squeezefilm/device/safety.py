@@ -1,0 +1,106 @@
+"""What a display may be driven with, and which drives may play above touch-safe voltage.
+
+The limits are refused, never clipped. They are set on the device, and the device holds them: the
+host's copy only tells a mistake earlier.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from squeezefilm.device.ports import Drive
+from squeezefilm.errors import InputError
+from squeezefilm.quantities import (
+    Dimensionless,
+    Hertz,
+    Second,
+    SquareVoltSecond,
+    Unit,
+    Volt,
+    VoltPerSecond,
+    require,
+)
+
+TOUCH_VOLTAGE: Volt = 42.0
+"""Peak voltage above which a display must name the insulation on the side that is touched."""
+HIGHEST_VOLTAGE: Volt = 2000.0
+WATCHDOG: Second = 50e-3
+"""Silence after which a device stops by itself."""
+STOP_RAMP: Second = 10e-3
+"""Longest time in which a device's output goes to zero; `slew` must be fast enough for it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """What a device never exceeds. All voltages are zero-to-peak amplitudes of the carrier.
+
+    `slew` bounds the amplitude's rate. Heat is I²t-like: a piezo's current is in proportion to
+    the voltage at one frequency, so the device sums V² − continuous_voltage² over time (never
+    below zero) and stops above `heat`. Time on is at most duty·(T + duty_window) in any time T.
+    `insulation` names the insulation on the touched side, required above 42 V.
+
+    Raises:
+        InputError: a limit outside what the wire carries, or limits that contradict each other.
+    """
+
+    voltage: Volt
+    slew: VoltPerSecond
+    continuous_voltage: Volt
+    heat: SquareVoltSecond
+    lowest_frequency: Hertz
+    highest_frequency: Hertz
+    duty: Dimensionless = 1.0
+    duty_window: Second = 10.0
+    insulation: str = ""
+
+    def __post_init__(self) -> None:
+        volt = Unit("V")
+        require("voltage", self.voltage, volt, at_least=1e-3, at_most=HIGHEST_VOLTAGE)
+        require("slew", self.slew, Unit("V/s"), at_least=1, at_most=1e9)
+        require("continuous_voltage", self.continuous_voltage, volt, at_least=0)
+        require("heat", self.heat, Unit("V2*s"), at_least=0, at_most=4e6)
+        require("lowest_frequency", self.lowest_frequency, Unit("Hz"), at_least=1, at_most=1e6)
+        require("highest_frequency", self.highest_frequency, Unit("Hz"), at_most=1e6)
+        require("duty", self.duty, at_least=1e-3, at_most=1)
+        require("duty_window", self.duty_window, Unit("s"), at_least=1e-3, at_most=3600)
+        if self.continuous_voltage > self.voltage:
+            raise InputError(
+                f"continuous_voltage is {self.continuous_voltage:g} V, above voltage, "
+                f"{self.voltage:g} V; lower it",
+                quantity="continuous_voltage",
+            )
+        if self.highest_frequency < self.lowest_frequency:
+            raise InputError(
+                f"highest_frequency is {self.highest_frequency:g} Hz, below lowest_frequency, "
+                f"{self.lowest_frequency:g} Hz; exchange them",
+                quantity="highest_frequency",
+            )
+        if int(self.slew) * STOP_RAMP < self.voltage:
+            raise InputError(
+                f"slew is {self.slew:g} V/s; to stop from {self.voltage:g} V within 10 ms it must "
+                f"be at least {self.voltage / STOP_RAMP:g} V/s; raise it or lower voltage",
+                quantity="slew",
+            )
+        if self.voltage > TOUCH_VOLTAGE and not self.insulation.strip():
+            raise InputError(
+                f"voltage is {self.voltage:g} V; above {TOUCH_VOLTAGE:g} V peak the display must "
+                'name its touch-side insulation, e.g. insulation = "0.5 mm glass, 4 kV tested"',
+                quantity="insulation",
+            )
+
+
+def require_safe_drive(drive: Drive, limits: Limits) -> None:
+    """Refuse a drive that does not stop by itself where that could hurt.
+
+    A sound card plays on when its program hangs: it may be used up to 42 V peak only.
+
+    Raises:
+        InputError: such a drive above 42 V peak.
+    """
+    if limits.voltage > TOUCH_VOLTAGE and not drive.stops_by_itself:
+        raise InputError(
+            f"this drive does not stop by itself when the program hangs, and voltage is "
+            f"{limits.voltage:g} V; such a drive may have at most {TOUCH_VOLTAGE:g} V peak; lower "
+            "it, or use a device with a watchdog",
+            quantity="voltage",
+        )
