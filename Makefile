@@ -26,10 +26,10 @@ demo: $(VENV)/run.stamp  ## analyse the paper's plate and write a report
 	@$(BIN)/squeezefilm analyze biet2008-plate --out $(OUT)
 
 test: $(VENV)/test.stamp  ## run every test (slow ones: make nightly)
-	@$(BIN)/python -m pytest -n $(WORKERS) -m "not nightly"
+	@$(BIN)/python -m pytest -n $(WORKERS) --dist loadgroup -m "not nightly"
 
 nightly: $(VENV)/test.stamp  ## run every test, the slow ones too
-	@$(BIN)/python -m pytest -n $(WORKERS)
+	@$(BIN)/python -m pytest -n $(WORKERS) --dist loadgroup
 
 check: lint types layers docs  ## everything that is read and not run
 
