@@ -33,6 +33,21 @@ Strict = Annotated[
     bool, typer.Option("--strict", help="Refuse contradicting data and models out of range.")
 ]
 
+# A working point is asked for in the same words by every verb.
+Voltage = Annotated[str | None, typer.Option(help='Voltage amplitude, like "15 V".')]
+Frequency = Annotated[
+    str | None, typer.Option(help='Drive frequency, like "34 kHz"; the resonance if not given.')
+]
+Force = Annotated[str | None, typer.Option(help='Normal force, like "0.5 N".')]
+OnSurface = Annotated[str | None, typer.Option("--surface", help="Which of its surfaces.")]
+Model = Annotated[
+    str | None,
+    typer.Option(
+        help="Friction model: partial-levitation (the default), partial-levitation-one-gap, "
+        "paper2008, film-sealed, film-open, film-plateau, film-smooth."
+    ),
+]
+
 
 def _version(wanted: bool) -> None:
     if wanted:
@@ -111,23 +126,15 @@ def analyze(
         Path | None, typer.Option(help="Write result.json and report.html to this folder.")
     ] = None,
     as_json: AsJson = False,
-    voltage: Annotated[str | None, typer.Option(help='Voltage amplitude, like "15 V".')] = None,
-    frequency: Annotated[
-        str | None, typer.Option(help='Drive frequency, like "34 kHz"; the resonance if not given.')
-    ] = None,
+    voltage: Voltage = None,
+    frequency: Frequency = None,
     amplitude: Annotated[
         str | None,
         typer.Option(help='Vibration amplitude, like "2 um", in place of voltage and plate.'),
     ] = None,
-    force: Annotated[str | None, typer.Option(help='Normal force, like "0.5 N".')] = None,
-    surface: Annotated[str | None, typer.Option(help="Which of its surfaces.")] = None,
-    model: Annotated[
-        str | None,
-        typer.Option(
-            help="Friction model: partial-levitation (the default), partial-levitation-one-gap, "
-            "paper2008, film-sealed, film-open, film-plateau, film-smooth."
-        ),
-    ] = None,
+    force: Force = None,
+    surface: OnSurface = None,
+    model: Model = None,
     samples: Annotated[
         int, typer.Option(help="Base samples of the friction's interval, a power of two; 0: none.")
     ] = 32,
@@ -179,19 +186,15 @@ def analyze(
 @app.command()
 def friction(
     target: Target,
-    voltage: Annotated[str | None, typer.Option(help='Voltage amplitude, like "15 V".')] = None,
-    frequency: Annotated[
-        str | None, typer.Option(help='Drive frequency, like "34 kHz"; the resonance if not given.')
-    ] = None,
+    voltage: Voltage = None,
+    frequency: Frequency = None,
     amplitude: Annotated[
         str | None,
         typer.Option(help='Amplitude with the finger on it, like "2 um", in place of a voltage.'),
     ] = None,
-    force: Annotated[str | None, typer.Option(help='Normal force, like "0.5 N".')] = None,
-    surface: Annotated[str | None, typer.Option(help="Which of its surfaces.")] = None,
-    model: Annotated[
-        str | None, typer.Option(help="partial-levitation (default), or another friction model.")
-    ] = None,
+    force: Force = None,
+    surface: OnSurface = None,
+    model: Model = None,
     position: Annotated[
         str, typer.Option(help="The pad's centre from an antinode, along the wave.")
     ] = "0 mm",
@@ -404,11 +407,9 @@ def render(
     voltage: Annotated[
         str | None, typer.Option(help='Largest voltage amplitude, like "15 V".')
     ] = None,
-    force: Annotated[str | None, typer.Option(help='Normal force, like "0.5 N".')] = None,
-    surface: Annotated[str | None, typer.Option(help="Which of its surfaces.")] = None,
-    model: Annotated[
-        str | None, typer.Option(help="partial-levitation (default), or another friction model.")
-    ] = None,
+    force: Force = None,
+    surface: OnSurface = None,
+    model: Model = None,
     table: Annotated[str, typer.Option(help="The trace as csv or parquet.")] = "csv",
     drive: Annotated[
         bool, typer.Option("--drive", help="Write the carrier as drive.wav, 192 kHz.")

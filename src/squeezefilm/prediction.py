@@ -126,10 +126,7 @@ def predict(
         if vibration_amplitude is None:
             volts = display.drive.voltage if voltage is None else voltage
             require("voltage", volts, Unit("V"), at_least=0)
-            per_volt: MetrePerVolt = mode.amplitude_per_volt
-            if drive_frequency != mode.resonance_frequency:
-                per_volt = float(mode.response(np.array([drive_frequency]))[0])
-            free = float(volts * per_volt)
+            free = float(volts * _per_volt(mode, drive_frequency))
             source = mode.model
         else:
             require("vibration_amplitude", vibration_amplitude, Unit("m"), at_least=0)
@@ -257,10 +254,7 @@ def voltage_for_friction(
     amplitude = law.amplitude_for(relative_friction)
     if amplitude == 0:
         return 0.0, 0.0
-    per_volt = mode.amplitude_per_volt
-    if drive_frequency != mode.resonance_frequency:
-        per_volt = float(mode.response(np.array([drive_frequency]))[0])
-    volts = amplitude / (per_volt * kept_at(mode, law, amplitude))
+    volts = amplitude / (_per_volt(mode, drive_frequency) * kept_at(mode, law, amplitude))
     if volts > HIGHEST_VOLTAGE:
         raise UnreachableError(
             f"relative_friction = {relative_friction:.4g} needs {amplitude * 1e6:.3g} µm and so "
@@ -268,6 +262,13 @@ def voltage_for_friction(
             "for less, or take a plate with more amplitude per volt"
         )
     return float(volts), amplitude
+
+
+def _per_volt(mode: WorkingMode, frequency: Hertz) -> MetrePerVolt:
+    """The amplitude per volt (m/V) without a finger; off resonance with the mode's neighbours."""
+    if frequency == mode.resonance_frequency:
+        return mode.amplitude_per_volt
+    return float(mode.response(np.array([frequency]))[0])
 
 
 def _mode(actuator: Actuator, theory: PlateTheory | None, strict: bool) -> WorkingMode:

@@ -104,11 +104,8 @@ class WorkingMode:
         wanted = np.asarray(frequency, dtype=float)
         if self.solid is not None:
             return self.solid.amplitude_per_volt_at(wanted)
-        if self.beam is not None and self.line is not None:
-            nodes, x = self.line.nodal_positions, self.line.position
-            inside = (x >= nodes[0]) & (x <= nodes[-1])
-            lobe = x[inside][np.argmax(np.abs(self.line.deflection[inside]))]
-            return self.beam.amplitude_at(wanted, float(lobe))
+        if self.beam is not None:
+            return self.beam.amplitude_at(wanted, _beam_lobe(self.beam)[0])
         return np.asarray(self.amplitude_per_volt_at(wanted))
 
 
@@ -202,12 +199,17 @@ def _diameter(disc: DiscPlate) -> ModeLine:
 
 def _beam_mass(beam: BeamResponse) -> Kilogram:
     """The modal mass for the largest interior lobe of the beam, all across the width."""
+    return beam.mode.modal_mass_per_width * beam.plate.width / _beam_lobe(beam)[1] ** 2
+
+
+def _beam_lobe(beam: BeamResponse) -> tuple[Metre, float]:
+    """Where the largest lobe between the outermost nodal lines is, and how far it goes."""
     shape = beam.mode
-    inside = (shape.position >= shape.nodal_positions[0]) & (
-        shape.position <= shape.nodal_positions[-1]
-    )
-    lobe = float(np.max(np.abs(shape.deflection[inside])))
-    return shape.modal_mass_per_width * beam.plate.width / lobe**2
+    x, nodes = shape.position, shape.nodal_positions
+    inside = (x >= nodes[0]) & (x <= nodes[-1])
+    size = np.abs(shape.deflection[inside])
+    at = int(np.argmax(size))
+    return float(x[inside][at]), float(size[at])
 
 
 def _beam_beside(plate: RectangularPlate) -> BeamResponse | None:
