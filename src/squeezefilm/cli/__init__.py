@@ -1,0 +1,46 @@
+"""The verbs of the command line. Each gathers its arguments, calls one function and shows the
+result; physics, plots and pydantic are imported only by the verb that needs them."""
+
+from __future__ import annotations
+
+import os
+import sys
+
+import typer
+
+# In the order in which `--help` lists them.
+from squeezefilm.cli import describe  # noqa: F401 # isort: skip
+from squeezefilm.cli import physics  # noqa: F401 # isort: skip
+from squeezefilm.cli import textures  # noqa: F401 # isort: skip
+from squeezefilm.cli import claims  # noqa: F401 # isort: skip
+from squeezefilm.cli.app import app
+from squeezefilm.errors import SqueezefilmError
+
+
+def _show_announcements() -> None:
+    """What the library has to say while it works (that it compiles, once), on standard error."""
+    import logging
+
+    handler = logging.StreamHandler()
+    handler.setFormatter(logging.Formatter("  %(message)s"))
+    logger = logging.getLogger("squeezefilm")
+    logger.addHandler(handler)
+    logger.setLevel(logging.INFO)
+
+
+def main() -> None:
+    """Run the command line: a person's mistake is one message and exit code 2, no traceback."""
+    # Before NumPy loads: its linear algebra on our small blocks is slower with threads, by far.
+    for library in ("OMP", "OPENBLAS", "MKL"):
+        os.environ.setdefault(f"{library}_NUM_THREADS", "1")
+    _show_announcements()
+    try:
+        app()
+    except SqueezefilmError as error:
+        typer.echo(f"error: {error}", err=True)
+        sys.exit(2)
+    except KeyboardInterrupt:
+        typer.echo("interrupted; nothing half-written was left", err=True)
+        sys.exit(130)
+    except BrokenPipeError:
+        sys.exit(0)

@@ -1,0 +1,80 @@
+"""The program of the command line, and the options that several verbs ask for in the same words."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from squeezefilm import __version__
+from squeezefilm.errors import InputError
+
+if TYPE_CHECKING:
+    from squeezefilm.quantities import Unit
+
+app = typer.Typer(
+    name="squeezefilm",
+    help="Design, predict and use tactile displays that change friction by ultrasonic vibration.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,
+)
+
+Target = Annotated[
+    str, typer.Argument(metavar="PRESET|FILE", help="A preset's name or a TOML file.")
+]
+AsJson = Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")]
+Strict = Annotated[
+    bool, typer.Option("--strict", help="Refuse contradicting data and models out of range.")
+]
+
+# A working point is asked for in the same words by every verb.
+Voltage = Annotated[str | None, typer.Option(help='Voltage amplitude, like "15 V".')]
+Frequency = Annotated[
+    str | None, typer.Option(help='Drive frequency, like "34 kHz"; the resonance if not given.')
+]
+Force = Annotated[str | None, typer.Option(help='Normal force, like "0.5 N".')]
+OnSurface = Annotated[str | None, typer.Option("--surface", help="Which of its surfaces.")]
+Model = Annotated[
+    str | None,
+    typer.Option(
+        help="Friction model: partial-levitation (the default), partial-levitation-one-gap, "
+        "paper2008, film-sealed, film-open, film-plateau, film-smooth."
+    ),
+]
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(__version__)
+        raise typer.Exit
+
+
+@app.callback()
+def _root(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Show the version.")
+    ] = False,
+) -> None:
+    pass
+
+
+def quantity(text: str | None, option: str, unit: Unit) -> float | None:
+    """The value of an option that is a quantity text, with the option named in the error."""
+    if text is None:
+        return None
+
+    from squeezefilm.quantities import parse_quantity
+
+    try:
+        return parse_quantity(text, unit)
+    except InputError as error:
+        raise InputError(f"{option}: {error}") from error
+
+
+def print_json(value: Any) -> None:
+    """Print one JSON object."""
+    import json
+
+    typer.echo(json.dumps(value, indent=2, ensure_ascii=False))

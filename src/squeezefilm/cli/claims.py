@@ -1,0 +1,49 @@
+"""The verb that recomputes published claims."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from squeezefilm.cli.app import AsJson, app, print_json
+
+
+@app.command()
+def reproduce(
+    out: Annotated[Path | None, typer.Option(help="Write figures 4, 5, 10, 11 and a page.")] = None,
+    as_json: AsJson = False,
+    write_docs: Annotated[
+        bool, typer.Option("--write-docs", help="In a checkout: rewrite docs/validation.md.")
+    ] = False,
+) -> None:
+    """Recompute every published claim: what the paper printed, what its formula gives, a verdict.
+
+    Exit code 1 if a verdict differs from the one on record.
+    """
+    from squeezefilm.analysis.claims import reproduce as run
+    from squeezefilm.report import terminal
+    from squeezefilm.report.validation import write_reproduction, write_validation_docs
+
+    with terminal.progress(enabled=sys.stderr.isatty() or not as_json) as step:
+        result = run(prototype=out is not None or write_docs, progress=step)
+        if out is not None:
+            written = write_reproduction(result, out, progress=step)
+    if write_docs:
+        typer.echo(f"wrote {write_validation_docs(result)}", err=True)
+    if as_json:
+        print_json(result.summary())
+    else:
+        terminal.show_claims(result)
+        if out is not None:
+            typer.echo(f"report: {written}")
+    if result.changed:
+        for claim in result.changed:
+            typer.echo(
+                f"the verdict on '{claim.claim.id}' changed: {claim.claim.verdict} is on record, "
+                f"{claim.verdict} was found",
+                err=True,
+            )
+        raise typer.Exit(1)

@@ -1,0 +1,124 @@
+"""Verbs about a display: what there is, what it says, and what follows from it."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from squeezefilm.cli.app import (
+    AsJson,
+    Force,
+    Frequency,
+    Model,
+    OnSurface,
+    Strict,
+    Target,
+    Voltage,
+    app,
+    print_json,
+    quantity,
+)
+
+
+@app.command()
+def presets(as_json: AsJson = False) -> None:
+    """List the displays that come with the package."""
+    from squeezefilm.report.terminal import preset_list, show_presets
+
+    listing = preset_list()
+    if as_json:
+        print_json(listing)
+    else:
+        show_presets(listing)
+
+
+@app.command()
+def show(target: Target, as_json: AsJson = False) -> None:
+    """Show every value of a display, with its source and what is assumed."""
+    from squeezefilm.report import terminal
+
+    values = terminal.display_values(target)
+    if as_json:
+        print_json(values)
+    else:
+        terminal.show_values(values)
+
+
+@app.command()
+def new(
+    file: Annotated[Path, typer.Argument(help="The TOML file to write.")],
+    source: Annotated[str, typer.Option("--from", help="The preset to start from.")],
+    force: Annotated[bool, typer.Option("--force", help="Replace the file if it exists.")] = False,
+) -> None:
+    """Write a commented TOML file of your own, starting from a preset."""
+    from squeezefilm.display import new_display_file
+
+    new_display_file(file, source, replace=force)
+    typer.echo(f"wrote {file}; edit it, then: squeezefilm analyze {file}")
+
+
+@app.command()
+def analyze(
+    target: Target,
+    out: Annotated[
+        Path | None, typer.Option(help="Write result.json and report.html to this folder.")
+    ] = None,
+    as_json: AsJson = False,
+    voltage: Voltage = None,
+    frequency: Frequency = None,
+    amplitude: Annotated[
+        str | None,
+        typer.Option(help='Vibration amplitude, like "2 um", in place of voltage and plate.'),
+    ] = None,
+    force: Force = None,
+    surface: OnSurface = None,
+    model: Model = None,
+    samples: Annotated[
+        int, typer.Option(help="Base samples of the friction's interval, a power of two; 0: none.")
+    ] = 32,
+    theory: Annotated[
+        str | None,
+        typer.Option(
+            help="How a plate is computed: solid (three-dimensional piezoelectric elements, the "
+            "default), timoshenko or euler_bernoulli (beams)."
+        ),
+    ] = None,
+    strict: Strict = False,
+) -> None:
+    """From the display's description to resonance, amplitude, friction and textures."""
+    from squeezefilm.analysis.analyze import analyze as run
+    from squeezefilm.display import load_display
+    from squeezefilm.quantities import Unit
+    from squeezefilm.report import terminal
+
+    display = load_display(target)
+    with terminal.progress(enabled=sys.stderr.isatty() or not as_json) as step:
+        result = run(
+            display,
+            voltage=quantity(voltage, "--voltage", Unit("V")),
+            frequency=quantity(frequency, "--frequency", Unit("Hz")),
+            vibration_amplitude=quantity(amplitude, "--amplitude", Unit("m")),
+            normal_force=quantity(force, "--force", Unit("N")),
+            surface=surface,
+            samples=samples,
+            theory=theory,  # type: ignore[arg-type] # checked with a message by working_mode
+            model=model,  # type: ignore[arg-type] # checked with a message by FrictionLaw
+            strict=strict,
+            progress=step,
+        )
+        written = None
+        if out is not None:
+            from squeezefilm.report.page import write_report
+
+            written = write_report(result, out, progress=step)
+    if as_json:
+        print_json(result.summary())
+        return
+    terminal.show_analysis(result)
+    if written is not None:
+        typer.echo(f"report: {written}")
+    else:
+        typer.echo("add --out DIR to write result.json and a report with figures")

@@ -1,0 +1,219 @@
+"""Verbs of the single rooms: friction, film, plate."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from squeezefilm.cli.app import (
+    AsJson,
+    Force,
+    Frequency,
+    Model,
+    OnSurface,
+    Target,
+    Voltage,
+    app,
+    print_json,
+    quantity,
+)
+from squeezefilm.errors import InputError
+
+
+@app.command()
+def friction(
+    target: Target,
+    voltage: Voltage = None,
+    frequency: Frequency = None,
+    amplitude: Annotated[
+        str | None,
+        typer.Option(help='Amplitude with the finger on it, like "2 um", in place of a voltage.'),
+    ] = None,
+    force: Force = None,
+    surface: OnSurface = None,
+    model: Model = None,
+    position: Annotated[
+        str, typer.Option(help="The pad's centre from an antinode, along the wave.")
+    ] = "0 mm",
+    speed: Annotated[
+        str, typer.Option(help="Of the finger, for the competing mechanism: intermittent contact.")
+    ] = "80 mm/s",
+    ambient_pressure: Annotated[
+        str | None, typer.Option(help='Of the air around, like "2 kPa" for a vacuum experiment.')
+    ] = None,
+    wanted: Annotated[
+        float | None, typer.Option(help="A relative friction: which voltage reaches it?")
+    ] = None,
+    samples: Annotated[
+        int, typer.Option(help="Base samples of the uncertainty, a power of two; 0 for none.")
+    ] = 64,
+    seed: Annotated[int, typer.Option(help="Of the samples.")] = 1,
+    out: Annotated[Path | None, typer.Option(help="Folder for friction.json and figures.")] = None,
+    as_json: AsJson = False,
+) -> None:
+    """The friction a finger meets, how the load is shared, and how sure all of it is."""
+    from squeezefilm.analysis.friction_command import analyze_friction
+    from squeezefilm.display import load_display
+    from squeezefilm.quantities import Unit
+    from squeezefilm.report import terminal
+    from squeezefilm.report.terminal_friction import show_friction
+
+    display = load_display(target)
+    with terminal.progress(enabled=sys.stderr.isatty() or not as_json) as step:
+        result = analyze_friction(
+            display,
+            voltage=quantity(voltage, "--voltage", Unit("V")),
+            frequency=quantity(frequency, "--frequency", Unit("Hz")),
+            vibration_amplitude=quantity(amplitude, "--amplitude", Unit("m")),
+            normal_force=quantity(force, "--force", Unit("N")),
+            surface=surface,
+            model=model,  # type: ignore[arg-type] # checked with a message by FrictionLaw
+            position=quantity(position, "--position", Unit("m")) or 0.0,
+            speed=quantity(speed, "--speed", Unit("m/s")) or 0.0,
+            ambient_pressure=quantity(ambient_pressure, "--ambient-pressure", Unit("Pa")),
+            wanted_friction=wanted,
+            samples=samples,
+            seed=seed,
+            progress=step,
+        )
+        written = None
+        if out is not None:
+            from squeezefilm.report.friction_report import write_friction
+
+            written = write_friction(result, out)
+    if as_json:
+        print_json(result.summary())
+        return
+    show_friction(result)
+    if written is not None:
+        typer.echo(f"figures: {written}")
+
+
+@app.command()
+def film(
+    squeeze_number: Annotated[
+        float | None, typer.Option("--squeeze-number", help="σ on width, radius or X semi-axis.")
+    ] = None,
+    excursion: Annotated[
+        float | None, typer.Option("--excursion", help="ε, amplitude over mean gap, below 1.")
+    ] = None,
+    shape: Annotated[str, typer.Option(help="strip, disc, rectangle or ellipse.")] = "strip",
+    aspect: Annotated[float, typer.Option(help="Length ratio of rectangle or ellipse.")] = 1.0,
+    polytropic: Annotated[float, typer.Option(help="1 isothermal to 1.4 adiabatic.")] = 1.0,
+    knudsen: Annotated[float, typer.Option(help="Mean free path over mean gap.")] = 0.0,
+    slip: Annotated[str, typer.Option(help="first, second, fukui-kaneko or veijola.")] = "first",
+    tolerance: Annotated[float, typer.Option(help="Relative, on the over-pressure.")] = 1e-3,
+    sweep: Annotated[
+        bool, typer.Option("--sweep", help="Draw the map over squeeze number and excursion.")
+    ] = False,
+    out: Annotated[Path | None, typer.Option(help="Folder for the map and its numbers.")] = None,
+    as_json: AsJson = False,
+) -> None:
+    """Solve the periodic gas film of one shape, or map it over squeeze number and excursion."""
+    from squeezefilm.analysis.film_command import FilmRequest, solve_film, sweep_film
+    from squeezefilm.report import terminal
+    from squeezefilm.report.terminal_solvers import show_film
+
+    request = FilmRequest(shape, aspect, polytropic, knudsen, slip, tolerance)
+    with terminal.progress(enabled=sys.stderr.isatty() or not as_json) as step:
+        if sweep:
+            from squeezefilm.report.film_map import write_film_map
+
+            if out is None:
+                raise InputError("--sweep draws a map into a folder; say which with --out DIR")
+            found = sweep_film(request, progress=step)
+            path = write_film_map(found, out)
+        else:
+            if squeeze_number is None or excursion is None:
+                raise InputError(
+                    "film needs --squeeze-number and --excursion, or --sweep --out DIR for a map"
+                )
+            step("solving the film")
+            answer = solve_film(squeeze_number, excursion, request)
+    if sweep:
+        if as_json:
+            print_json(found.summary())
+        else:
+            typer.echo(f"map: {path}")
+    elif as_json:
+        print_json(answer.summary())
+    else:
+        show_film(answer)
+
+
+@app.command()
+def plate(
+    target: Target,
+    band: Annotated[str | None, typer.Option(help='Modes in a band, like "25 kHz:45 kHz".')] = None,
+    mode: Annotated[
+        str | None,
+        typer.Option(
+            help="Working mode by nodal lines, like 8,0; of discs and rings circles, diameters."
+        ),
+    ] = None,
+    out: Annotated[Path | None, typer.Option(help="Folder for a page with figures.")] = None,
+    vtu: Annotated[
+        Path | None, typer.Option(help="Write the solved volume for ParaView to this .vtu file.")
+    ] = None,
+    sensitivity: Annotated[
+        bool, typer.Option("--sensitivity", help="What other materials and sizes would change.")
+    ] = False,
+    track: Annotated[
+        str | None, typer.Option(help="Follow the modes over a parameter, like ceramic_thickness.")
+    ] = None,
+    start: Annotated[str | None, typer.Option("--from", help='Its first value: "0.5 mm".')] = None,
+    stop: Annotated[str | None, typer.Option("--to", help='Its last value: "1.5 mm".')] = None,
+    values: Annotated[int, typer.Option(help="How many values of it.")] = 9,
+    as_json: AsJson = False,
+) -> None:
+    """Solve a plate, disc or stator in three dimensions: modes, amplitude per volt, admittance."""
+    from squeezefilm.analysis.plate_command import analyze_plate, parse_band, parse_mode
+    from squeezefilm.analysis.plate_tracking import parse_track
+    from squeezefilm.analysis.ring_command import analyze_ring
+    from squeezefilm.display import load_display
+    from squeezefilm.report import terminal
+    from squeezefilm.report.terminal_ring import show_ring
+    from squeezefilm.report.terminal_solvers import show_plate
+
+    display = load_display(target)
+    wanted = None if mode is None else parse_mode(mode)
+    limits = None if band is None else parse_band(band)
+    over = None if track is None else parse_track(track, start, stop, values)
+    rectangle = display.actuator.type == "rectangular_plate"
+    if not rectangle and (vtu is not None or sensitivity or over is not None):
+        raise InputError(
+            f"--vtu, --sensitivity and --track are for rectangular plates; '{display.name}' is a "
+            f"{display.actuator.type.replace('_', ' ')}"
+        )
+    with terminal.progress(enabled=sys.stderr.isatty() or not as_json) as step:
+        written = []
+        if rectangle:
+            result = analyze_plate(
+                display, mode=wanted, band=limits, sensitivity=sensitivity, track=over,
+                progress=step,
+            )  # fmt: skip
+            if out is not None or vtu is not None:
+                from squeezefilm.report.solved_plate import write_mode, write_plate
+
+                step("figures")
+                written += [] if out is None else [write_plate(result, out)]
+                written += [] if vtu is None else [write_mode(result, vtu)]
+        else:
+            ring = analyze_ring(display, mode=wanted, band=limits, progress=step)
+            if out is not None:
+                from squeezefilm.report.solved_ring import write_ring
+
+                step("figures")
+                written.append(write_ring(ring, out))
+    if as_json:
+        print_json((result if rectangle else ring).summary())
+        return
+    if rectangle:
+        show_plate(result)
+    else:
+        show_ring(ring)
+    for path in written:
+        typer.echo(f"wrote {path}")

@@ -1,0 +1,114 @@
+"""Verbs about textures."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from squeezefilm.cli.app import AsJson, Force, Model, OnSurface, app, print_json, quantity
+from squeezefilm.errors import InputError
+
+
+@app.command()
+def render(
+    texture: Annotated[
+        str, typer.Argument(metavar="TEXTURE|FILE", help="A preset texture or a TOML file.")
+    ],
+    display: Annotated[str, typer.Option(help="A display: a preset's name or a TOML file.")],
+    stroke: Annotated[
+        str, typer.Option(help='Finger motion: STROKE.csv, or "60 mm/s over 4 cm, 2 passes".')
+    ] = "60 mm/s over 4 cm, 2 passes",
+    out: Annotated[
+        Path | None, typer.Option(help="Folder for trace, envelope, numbers, figures, a page.")
+    ] = None,
+    as_json: AsJson = False,
+    sensor: Annotated[
+        str | None, typer.Option(help="How the loop sees the finger, like touch-panel-120-hz.")
+    ] = None,
+    compensate: Annotated[
+        str, typer.Option(help="Of the resonator's slowness: none, inverse or preview.")
+    ] = "none",
+    braking: Annotated[
+        bool, typer.Option("--braking", help="The drive may invert the carrier's phase.")
+    ] = False,
+    wave: Annotated[
+        str, typer.Option(help="The standing wave's nodes: ignored, felt or compensated.")
+    ] = "ignored",
+    voltage: Annotated[
+        str | None, typer.Option(help='Largest voltage amplitude, like "15 V".')
+    ] = None,
+    force: Force = None,
+    surface: OnSurface = None,
+    model: Model = None,
+    table: Annotated[str, typer.Option(help="The trace as csv or parquet.")] = "csv",
+    drive: Annotated[
+        bool, typer.Option("--drive", help="Write the carrier as drive.wav, 192 kHz.")
+    ] = False,
+    hjif: Annotated[
+        bool, typer.Option("--hjif", help="Write the texture as MPEG haptics, texture.hjif.")
+    ] = False,
+    seed: Annotated[int, typer.Option(help="Of the sensor's noise.")] = 0,
+) -> None:
+    """A texture on a display under a moving finger: what is asked for and what is rendered."""
+    from squeezefilm.analysis.render_command import analyze_render
+    from squeezefilm.display import load_display
+    from squeezefilm.formats.trajectories import motion_from
+    from squeezefilm.quantities import Unit
+    from squeezefilm.report import terminal
+    from squeezefilm.report.terminal_render import show_lost, show_render
+    from squeezefilm.texture_file import preset_texture
+
+    if out is None and (drive or hjif or table != "csv"):
+        raise InputError("--drive, --hjif and --table write files; say where with --out DIR")
+    what, motion, where = preset_texture(texture), motion_from(stroke), load_display(display)
+    with terminal.progress(enabled=sys.stderr.isatty() or not as_json) as step:
+        result = analyze_render(
+            where,
+            what,
+            motion,
+            voltage=quantity(voltage, "--voltage", Unit("V")),
+            normal_force=quantity(force, "--force", Unit("N")),
+            surface=surface,
+            model=model,  # type: ignore[arg-type] # checked with a message by FrictionLaw
+            sensor=sensor,
+            compensation=compensate,
+            braking=braking,
+            wave=wave,
+            seed=seed,
+            progress=step,
+        )
+        written = None
+        if out is not None:
+            from squeezefilm.report.render_report import hjif_export, write_render
+
+            written = write_render(
+                result, out, table=table, drive=drive, hjif=hjif, progress=step
+            )  # fmt: skip
+    if as_json:
+        print_json(result.summary())
+        return
+    show_render(result)
+    if hjif:
+        show_lost(hjif_export(result))
+    if written is not None:
+        typer.echo(f"page: {written}")
+
+
+@app.command()
+def textures(as_json: AsJson = False) -> None:
+    """List the textures that come with the package, for `render`."""
+    from squeezefilm.presets import texture_names
+    from squeezefilm.report.terminal_render import show_textures
+    from squeezefilm.texture_file import preset_texture
+
+    listing = []
+    for name in texture_names():
+        one = preset_texture(name)
+        listing.append({"name": name, "title": one.title, "quantity": one.texture.quantity})
+    if as_json:
+        print_json(listing)
+    else:
+        show_textures(listing)

@@ -1,0 +1,1 @@
+"""The browser lab: a server for one computer, and static pages without a build step."""

@@ -1,0 +1,1 @@
+"""Psychophysics: designs, adaptive methods, simulated observers, running, statistics, exchange."""
