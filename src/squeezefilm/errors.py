@@ -92,6 +92,10 @@ class ConvergenceError(SqueezefilmError):
         self.iterations = iterations
 
 
+class LoopError(SqueezefilmError):
+    """A real-time loop that could not start, or that died; says which and what to do."""
+
+
 class SqueezefilmWarning(UserWarning):
     """Anything squeezefilm warns of."""
 
