@@ -96,6 +96,10 @@ class RecordError(SqueezefilmError):
     """A record that cannot be written: a full disk, a file that exists, a folder that refuses."""
 
 
+class LoopError(SqueezefilmError):
+    """A real-time loop that could not start, or that died; says which and what to do."""
+
+
 class SqueezefilmWarning(UserWarning):
     """Anything squeezefilm warns of."""
 
