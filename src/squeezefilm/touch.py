@@ -4,13 +4,21 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from squeezefilm.contact.finger_load import finger_stiffness, interface_stiffness
 from squeezefilm.contact.pad import Limit, PadFriction
 from squeezefilm.errors import ConvergenceError
 from squeezefilm.friction import FrictionLaw
 from squeezefilm.plate.loaded_mode import LoadedMode, loaded_mode, mean_square_wave
 from squeezefilm.plate.working_mode import WorkingMode
-from squeezefilm.quantities import Dimensionless, Metre
+from squeezefilm.quantities import (
+    ComplexArray,
+    Dimensionless,
+    Metre,
+    MetreArray,
+    MetreLike,
+)
 
 _MOST_STEPS = 40
 _TOLERANCE = 1e-8  # of the amplitude
@@ -78,7 +86,19 @@ def kept_at(mode: WorkingMode, law: FrictionLaw, amplitude: Metre) -> Dimensionl
     return loaded.amplitude_ratio(law.frequency) / free.amplitude_ratio(law.frequency)
 
 
-def _sharing(law: FrictionLaw, amplitude: Metre) -> PadFriction:
+def load_ratios(mode: WorkingMode, law: FrictionLaw, amplitude: MetreArray) -> ComplexArray:
+    """The finger's modal stiffness over the mode's own, δ (complex), at amplitudes with the finger
+    on (m), shape (n,). Zero where the modal mass is not known: the finger is left out."""
+    found: ComplexArray = np.zeros(np.shape(amplitude), dtype=complex)
+    if mode.modal_mass is None:
+        return found
+    gaps = _sharing(law, amplitude).mean_gap
+    for i, (one, gap) in enumerate(zip(amplitude, gaps, strict=True)):
+        found[i] = _loaded(mode, mode.modal_mass, law, float(one), float(gap)).load_ratio
+    return found
+
+
+def _sharing(law: FrictionLaw, amplitude: MetreLike) -> PadFriction:
     limit: Limit = "one-gap" if law.model == "partial-levitation-one-gap" else "own"
     return law.sharing(amplitude, limit)
 
