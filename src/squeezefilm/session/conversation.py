@@ -9,11 +9,14 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 from squeezefilm.device import messages as m
 from squeezefilm.device.frames import Deframer, Frame
-from squeezefilm.device.streams import ByteStream
 from squeezefilm.quantities import Second
+
+if TYPE_CHECKING:
+    from squeezefilm.device.streams import ByteStream
 
 _STEP: Second = 0.2e-3
 

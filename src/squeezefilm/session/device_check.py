@@ -250,23 +250,20 @@ def watchdog_checks(talk: Conversation, frequency: Hertz) -> list[CheckResult]:
     level = 0.5 * TEST_VOLTAGE
     talk.ask(m.Envelope(1000, (level,)))
     talk.listen_for(2 * _KEEP_ALIVE, _KEEP_ALIVE)
-    before = len(talk.heard)
-    last = talk.send(m.KeepAlive())
-    talk.answer(last)
-    talk.listen_for(2.5 * ZERO_WITHIN)
-    # The frame was taken after the last reading that stands before its answer in the stream.
-    taken: int | None = None
-    answered = False
+    accepted = talk.ask(m.KeepAlive())
+    readings = [
+        one.message
+        for one in talk.listen_for(2.5 * ZERO_WITHIN)
+        if isinstance(one.message, m.Reading)
+    ]
     played, zero = False, math.inf
-    for one in talk.heard[max(0, before - 5) :]:
-        found = one.message
-        if isinstance(found, m.Status) and found.answered_sequence == last:
-            answered = True
-        elif isinstance(found, m.Reading):
-            if not answered:
-                taken, played = found.time, found.level > 0
-            elif taken is not None and found.level == 0 and math.isinf(zero):
-                zero = ((found.time - taken) & CLOCK) * 1e-6
+    if accepted is not None:
+        played = accepted.level > 0
+        for reading in readings:
+            since = (reading.time - accepted.time) & CLOCK
+            if reading.level == 0 and since <= CLOCK // 2:
+                zero = since * 1e-6
+                break
     allowed = ZERO_WITHIN + REPORT_PERIOD
     silent = _result(
         "watchdog",
