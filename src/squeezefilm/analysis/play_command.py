@@ -154,7 +154,7 @@ def play_texture(
             tell("playing; Ctrl-C stops safely")
             outcome = run_play(
                 setup.plan, stream, folder / TRACE_NAME, metadata, duration=duration,
-                sensor=_replay(sensor), show=show, bench_only=bench_only,
+                sensor=None, show=show,
             )  # fmt: skip
         tell("the record")
         judged = judge_session(setup, read_trace(outcome.trace), truth)

@@ -156,17 +156,18 @@ def lateness(session: PlayedSession) -> Figure:
         3.8,
     )
     left, right = figure.subplots(1, 2)
-    ends = class_ends()
-    used = np.flatnonzero(found.counts)
-    first, last = max(0, int(used[0]) - 1), min(ends.size - 2, int(used[-1]) + 1)
-    edges = 1e6 * ends[first : last + 1]
-    left.stairs(found.counts[first + 1 : last + 1], edges, fill=True, color=BLUE)
+    # The first class, whatever is below 100 ns, is drawn as wide as the next.
+    ends = 1e6 * class_ends()[:-1]
+    edges = np.concatenate([[ends[0] ** 2 / ends[1]], ends])
+    left.stairs(found.counts[:-1], edges, fill=True, color=BLUE)
+    used = np.flatnonzero(found.counts[:-1])
+    left.set_xlim(edges[max(int(used[0]) - 2, 0)], max(2e6 / found.rate, 1.5 * edges[used[-1] + 1]))
     left.axvline(1e6 / found.rate, color=MUTED, lw=1.2, ls=(0, (2, 2)), label="a period")
     left.set(xscale="log", yscale="log", xlabel="lateness (µs)", ylabel="ticks")
     left.set_ylim(0.7, None)
     plain_log(left.xaxis)
     plain_log(left.yaxis)
-    left.legend(loc="upper right", frameon=False)
+    left.legend(loc="upper left", frameon=False)
     lag = session.trace.rows[:, column.LAG]
     lag = 1e3 * lag[np.isfinite(lag)]
     if lag.size:

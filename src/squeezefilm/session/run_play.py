@@ -56,9 +56,8 @@ def run_play(
     metadata: Mapping[str, Any],
     *,
     duration: Second,
-    sensor: Sensor | None = None,
+    sensor: Callable[[Callable[[], Second]], Sensor] | None = None,
     show: Callable[[PlayView], None] | None = None,
-    replace: bool = False,
 ) -> PlayOutcome:
     """Play for a time, or until Ctrl-C, and record it.
 
@@ -68,22 +67,22 @@ def run_play(
         trace: the record to write, which must not exist.
         metadata: of the record.
         duration: for which to play (s).
-        sensor: where the finger is, if not by the device's sensor; its times are the loop's.
+        sensor: makes the sensor from the loop's clock, where it is not the device's own.
         show: is told what there is to see, ten times a second.
-        replace: whether to write over a record that exists.
 
     Raises:
         DeviceError, LoopError, RecordError: what fails before anything was played.
     """
     with (
-        TraceWriter(trace, COLUMNS, metadata, replace=replace) as writer,
+        TraceWriter(trace, COLUMNS, metadata) as writer,
         contextlib.closing(open_stream(drive)) as stream,
         _interruptible() as interrupted,
     ):
         loop = LoopProcess(plan.loop)
         loop.start()
         link = Link(stream, lambda: loop.time)
-        player = Player(plan, loop, DeviceHost(link), writer, lambda: loop.time, sensor)
+        eyes = None if sensor is None else sensor(lambda: loop.time)
+        player = Player(plan, loop, DeviceHost(link), writer, lambda: loop.time, eyes)
         try:
             ending, message = _played(player, loop, duration, interrupted, show)
             player.end(ending, time.sleep, message)
