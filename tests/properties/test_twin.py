@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from squeezefilm.device import messages as m
+from squeezefilm.device.frames import Deframer
 from squeezefilm.device.machine import State
 from squeezefilm.device.safety import Limits
 from squeezefilm.display import load_display
@@ -57,7 +58,12 @@ def session(seed: int) -> list[tuple[int, bytes]]:
     dice, script, now = random.Random(seed), [], 0
     messages = [m.Hello(1), m.limits_message(LIMITS), m.Arm(SETTINGS.seed)]
     messages.append(m.Start(round(point().mode.resonance_frequency * 1000)))
+    messages.append(m.Report(dice.choice((0, 200, 1_000, 3_333))))
+    messages += [m.TileBegin(0, 2_000, 4), m.TileData(0, (3.0, 20.0, 0.0, 9.0))]
     for _ in range(12):
+        if dice.random() < 0.2:
+            messages.append(m.Follow())
+            continue
         levels = tuple(dice.uniform(0, 20) for _ in range(dice.randint(1, 20)))
         messages.append(m.Envelope(dice.choice((130, 500, 2000)), levels))
     messages.append(m.Stop())
@@ -179,6 +185,46 @@ def test_the_pickup_reads_the_amplitude_within_its_noise(kind: str) -> None:
         )
         assert np.std(read) == pytest.approx(noise * metre, rel=0.3, abs=half_a_count)
     assert Plant(point(), TwinSettings(pickup=PickupModel(kind="none"))).pickup_level() == 0
+
+
+def test_it_reads_its_own_finger_and_plays_the_tile_under_it() -> None:
+    device = twin(TwinSettings(truth_period=100e-6, pickup=PickupModel(noise=0.0)))
+    host = Host(device)
+    host.send(m.Hello(1), m.Report(500), m.AskInfo())
+    device.advance(20_000)
+    host.send(m.limits_message(LIMITS), m.Arm(device.machine.token))
+    host.send(m.Start(round(point().mode.resonance_frequency * 1000)))
+    size = 61  # a grating of 4 mm over the whole stroke
+    host.send(m.TileBegin(0, 1_000, size))
+    levels = tuple(20.0 if x // 2 % 2 else 0.0 for x in range(size))
+    host.send(m.TileData(0, levels[:40]), m.TileData(40, levels[40:]), m.Follow())
+    said = bytearray()
+    while device.now < 700_000:
+        said += device.advance(device.now + 20_000)
+        host.send(m.KeepAlive())
+    assert device.machine.refused == 0
+    frames = [frame for frame in Deframer().take(bytes(said)) if frame is not None]
+    read = [m.Reading.read(f.payload) for f in frames if f.type == m.Reading.TYPE]
+    readings = [r for r in read if r is not None]
+    times = np.array([r.time for r in readings])
+    assert np.all(np.diff(times) == 500)
+    truth = device.truth
+    row = np.searchsorted(truth.column("time_s"), times * 1e-6 - 1e-9)
+    # The reading is a touch panel's: a latency behind a finger at 150 mm/s, and 30 µm of noise.
+    lag = np.abs(np.array([r.x for r in readings]) * 1e-6 - truth.column("x_m")[row])
+    assert lag.max() < 0.16 * 20e-3 + 5 * 30e-6
+    amplitude = np.array([r.pickup for r in readings]) * 1e-6 * device.plant.pickup_calibration
+    np.testing.assert_allclose(amplitude, truth.column("amplitude_m")[row], atol=2e-9, rtol=1e-3)
+    level = np.array([r.level for r in readings])
+    settled = (np.diff(level, prepend=-1) == 0) & (np.diff(level, append=-1) == 0)
+    assert settled.sum() > 300
+    for reading, still in zip(readings, settled, strict=True):
+        if still and reading.touching and reading.state == State.PLAYING:
+            assert device.machine.tile.level(reading.x) == reading.level
+        if still and not reading.touching:
+            assert reading.level == 0
+    assert level.max() == 20_000_000
+    assert device.machine.late_ticks == 0
 
 
 def test_time_only_rises() -> None:
