@@ -58,15 +58,20 @@ def touch(mode: WorkingMode, law: FrictionLaw, free_amplitude: Metre) -> Touch:
         return Touch(free_amplitude, free_amplitude, None, _sharing(law, free_amplitude))
     free = LoadedMode(mode.resonance_frequency, mode.quality_factor, 0j)
     alone = free.amplitude_ratio(law.frequency)
-    amplitude = free_amplitude
-    for step in range(_MOST_STEPS):
+    amplitude, slope, before = free_amplitude, 0.0, None
+    for _ in range(_MOST_STEPS):
         sharing = _sharing(law, amplitude)
         loaded = _loaded(mode, mode.modal_mass, law, amplitude, float(sharing.mean_gap[0]))
         new = free_amplitude * loaded.amplitude_ratio(law.frequency) / alone
         if abs(new - amplitude) <= _TOLERANCE * free_amplitude:
             return Touch(free_amplitude, new, loaded, sharing)
-        # Half way: where the finger takes much, the two chase each other.
-        amplitude = 0.5 * (new + amplitude) if step > 3 else new
+        # Where the finger takes much the two chase each other for long: the secant cuts that short.
+        if before is not None:
+            slope = (new - before[1]) / (amplitude - before[0])
+        before = amplitude, new
+        # A slope near 1 is held back: the next place is at most three times the last change away.
+        further = amplitude + (new - amplitude) / (1 - min(max(slope, -1.0), 2 / 3))
+        amplitude = further if further > 0 else new
     raise ConvergenceError(
         f"the amplitude under the finger did not settle (last change "
         f"{abs(new - amplitude):.3g} m of {free_amplitude:.3g} m); the finger may be heavier than "

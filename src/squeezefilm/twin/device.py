@@ -12,6 +12,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from squeezefilm.device.machine import CLOCK, DeviceLimits, Machine, State
+from squeezefilm.device.playing import Finger, until
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError
 from squeezefilm.twin.hand import Hand
@@ -53,9 +54,12 @@ class TwinDevice:
         self.display = display
         point = point or working_point(display, self.settings)
         self._plant = Plant(point, self.settings, hand, truth_file)
-        self.machine = Machine(self.settings.seed, own or DeviceLimits())
-        self.ticks = 0
         self._tick = self.settings.tick_us
+        pickup = None if self.settings.pickup.kind == "none" else self._picked_up
+        self.machine = Machine(
+            self.settings.seed, own or DeviceLimits(), self._sensed, pickup, self._tick
+        )
+        self.ticks = 0
         self._now = 0
         self._outgoing = bytearray()
         self._held = (0, 0, 0)
@@ -97,7 +101,7 @@ class TwinDevice:
         """
         self._go_to(now_us)
         self._follow()
-        out = bytes(self._outgoing)
+        out = bytes(self._outgoing + self.machine.outgoing())
         self._outgoing.clear()
         return out
 
@@ -119,15 +123,29 @@ class TwinDevice:
             self._hold(at)
             self.machine.tick(at & CLOCK)
             self.ticks += 1
+            if self.machine.reading_due is not None:
+                # The machine itself keeps few readings; a host may ask for hours at once.
+                self._outgoing += self.machine.outgoing()
 
     def _next_tick(self, last: int) -> int:
         """When the machine must be ticked next: at the next tick, or, where it gives no output and
         a later one finds the same state, as late as that is so."""
-        soon = (self._held[0] // self._tick + 1) * self._tick
+        now = self._held[0]
+        soon = (now // self._tick + 1) * self._tick
         if soon > last or self.machine.level > 0 or self.machine.state is State.PLAYING:
             return soon
         stride = _QUIET_STRIDE if self.machine.state is State.ARMED else _LONGEST_STRIDE
-        return max(soon, min(last, self._held[0] + stride) // self._tick * self._tick)
+        late = min(last, now + stride) // self._tick
+        due = self.machine.reading_due
+        if due is not None:
+            late = min(late, -(-(now + until(due, now & CLOCK)) // self._tick))
+        return max(soon, late * self._tick)
+
+    def _sensed(self) -> Finger:
+        return self.plant.sensed()
+
+    def _picked_up(self) -> int:
+        return self.plant.pickup_level()
 
     def _hold(self, until: int) -> None:
         """Hold the machine's output until then; the plate follows when it must."""

@@ -51,6 +51,7 @@ class PtyServer:
         os.close(slave)
         os.set_blocking(self._master, False)
         self._running = True
+        self._connected = False
         self.longest_behind = 0
 
     def stop(self) -> None:
@@ -69,12 +70,13 @@ class PtyServer:
             self._say(self._device.advance(now))
             if now < wall:
                 continue
-            events = poll.poll(_PAUSE)
-            heard = self._hear() if events and events[0][1] & select.POLLIN else b""
+            flags = dict(poll.poll(_PAUSE)).get(self._master, 0)
+            self._connected = not flags & select.POLLHUP
+            heard = self._hear() if flags & select.POLLIN else b""
             if heard:
                 self._device.receive(heard, max(now, (time.monotonic_ns() - began) // 1000))
                 self._say(self._device.advance(self._device.now))
-            elif events and events[0][1] & select.POLLHUP:
+            elif not self._connected:
                 time.sleep(_UNCONNECTED_PAUSE * 1e-3)
 
     def close(self) -> None:
@@ -90,7 +92,7 @@ class PtyServer:
             return b""
 
     def _say(self, data: bytes) -> None:
-        if not data:
+        if not data or not self._connected:
             return
         # What a full wire or an absent host does not take is lost, as on a real one.
         with contextlib.suppress(OSError):
@@ -157,7 +159,7 @@ def _linked(link: Path | None, port: str) -> Iterator[None]:
     try:
         yield
     finally:
-        if link.is_symlink() and os.readlink(link) == port:  # noqa: PTH115
+        if link.is_symlink() and str(link.readlink()) == port:
             link.unlink()
 
 
