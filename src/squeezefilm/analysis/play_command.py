@@ -1,4 +1,4 @@
-"""What `squeezefilm play` and `device check` do: a device or its twin, a session on it, a judgement.
+"""What `squeezefilm play` and `device check` do: a device or its twin, a session, a judgement.
 
 texture → loop process → link → the device's state machine → plate → friction → record → fidelity.
 """
@@ -20,10 +20,11 @@ from squeezefilm.analysis.played_session import PlayedSession, judge_session
 from squeezefilm.analysis.played_texture import FingerMotion, require_on_display
 from squeezefilm.analysis.render_command import sensor_named
 from squeezefilm.config.write import text_of
+from squeezefilm.device.replay import ReplaySensor
 from squeezefilm.device.streams import open_stream
 from squeezefilm.display import load_display
 from squeezefilm.errors import InputError
-from squeezefilm.formats.trajectories import motion_from
+from squeezefilm.formats.trajectories import motion_from, read_trajectory
 from squeezefilm.prediction import predict
 from squeezefilm.quantities import Hertz, MetrePerVolt, Second, Unit, Volt, require
 from squeezefilm.render.compensation import DrivenEnvelope
@@ -51,13 +52,14 @@ DURATION: Second = 4.0
 LOOP_SECONDS: Second = 3.0
 """For which `device check` runs this computer's loop."""
 _MARGIN = 2e-3
+_REPLAY_PERIOD: Second = 1e-3
 
 Progress = Callable[[str], None]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PlayResult:
-    """A session: how it ended, its record judged, and the folder that keeps it (None: thrown away)."""
+    """A session: how it ended, its record judged, and the folder that keeps it (None: none)."""
 
     outcome: PlayOutcome
     session: PlayedSession
@@ -154,7 +156,7 @@ def play_texture(
             tell("playing; Ctrl-C stops safely")
             outcome = run_play(
                 setup.plan, stream, folder / TRACE_NAME, metadata, duration=duration,
-                sensor=None, show=show,
+                sensor=_replay(sensor), show=show, bench_only=bench_only,
             )  # fmt: skip
         tell("the record")
         judged = judge_session(setup, read_trace(outcome.trace), truth)
@@ -252,8 +254,14 @@ def _eyes(sensor: str) -> SensorModel:
     return sensor_named(sensor)
 
 
-def _replay(sensor: str) -> Path | None:
-    return Path(sensor.removeprefix("replay:")) if sensor.startswith("replay:") else None
+def _replay(sensor: str) -> Callable[[Callable[[], Second]], ReplaySensor] | None:
+    """Makes the sensor that plays a recorded motion by the loop's clock, at 1 kHz."""
+    if not sensor.startswith("replay:"):
+        return None
+    path = read_trajectory(sensor.removeprefix("replay:"))
+    time = np.arange(0.0, path.duration, _REPLAY_PERIOD)
+    x, y = path.place(time)
+    return lambda clock: ReplaySensor(time, x, y, clock=clock)
 
 
 @contextlib.contextmanager

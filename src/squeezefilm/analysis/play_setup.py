@@ -1,4 +1,4 @@
-"""What `squeezefilm play` works out before it plays: texture, display and drive as a loop's plan."""
+"""What `squeezefilm play` works out first: texture, display and drive as a loop's plan."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the terminal shows of a device and of a session that plays on it, while it does and after."""
+"""What the terminal shows of a device, and of a session on it, while it plays and after."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from squeezefilm.report.numbers import HZ, M, S, V, printable, shown
 from squeezefilm.report.terminal import heading, plain_console, table
 
 if TYPE_CHECKING:
-    from rich.table import Table
+    from rich.console import Group
 
     from squeezefilm.analysis.play_command import PlayResult
     from squeezefilm.analysis.played_session import Judged, PlayedSession
@@ -103,22 +103,22 @@ def view_line(view: PlayView) -> str:
     return ", ".join(parts)
 
 
-def view_table(view: PlayView) -> Table:
-    """A moment of a session as a table with bars."""
+def view_table(view: PlayView) -> Group:
+    """A moment of a session as a table with bars, and what the last tick said below it."""
+    from rich.console import Group
     from rich.table import Table
     from rich.text import Text
 
     grid = Table.grid(padding=(0, 2))
-    grid.add_column(justify="right")
-    grid.add_column(no_wrap=True)
-    grid.add_column(no_wrap=True)
+    for width in (13, 12, _BAR):
+        grid.add_column(no_wrap=True, min_width=width)
     state = view.state.name.lower()
     style = {"playing": "green", "fault": "bold red"}.get(state, "yellow")
     known = "not known" if math.isnan(view.x) else f"{1e3 * view.x:.2f} mm"
     speed = "" if math.isnan(view.speed) else f"{1e3 * view.speed:.0f} mm/s"
     wanted = "" if math.isnan(view.wanted) else f"{1e6 * view.wanted:.2f} µm wanted"
     fault = view.fault.name.lower() if view.fault else "none"
-    lines = [
+    lines: list[tuple[str, str | Text, str]] = [
         ("time", f"{view.time:.1f} s", f"{view.rows} rows recorded"),
         ("state", Text(state, style=style), f"fault: {fault}"),
         ("position", known, speed),
@@ -127,11 +127,11 @@ def view_table(view: PlayView) -> Table:
         ("output", f"{_number(view.level, 1.0)} V", ""),
         ("lag", f"{_number(view.lag, 1e3, 3)} mm", "predicted across"),
         ("lateness", f"{_number(view.lateness, 1e6, 1)} µs", ""),
-        ("", "; ".join(view.flags) or "–", ""),
     ]
     for name, value, remark in lines:
         grid.add_row(Text(name, style="dim"), value, remark)
-    return grid
+    said = Text("; ".join(view.flags), no_wrap=True, overflow="ellipsis")
+    return Group(grid, said)
 
 
 def bar(share: float) -> str:
@@ -270,8 +270,8 @@ def _link_rows(session: PlayedSession) -> list[tuple[str, str, str]]:
                 f"{link.get('lost', 0)} lost",
                 f"of {link.get('sent', 0)} frames; {link.get('damaged', 0)} damaged, "
                 f"{link.get('refused', 0)} refused; round trip "
-                f"{_micro(link.get('round_trip_p50_s'))} median, "
-                f"{_micro(link.get('round_trip_p99_s'))} at 99 %",
+                f"{_micro(link.get('mean_round_trip_s'))} on average, "
+                f"{_micro(link.get('longest_round_trip_s'))} at most",
             )
         )
     if end:

@@ -14,7 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from squeezefilm.device import messages as m
-from squeezefilm.device.machine import CLOCK, Fault, Reason, State
+from squeezefilm.device.playing import CLOCK
+from squeezefilm.device.states import Fault, Reason, State
 from squeezefilm.device.safety import Limits
 from squeezefilm.errors import DeviceError
 from squeezefilm.quantities import Dimensionless, Hertz, Second, Volt
@@ -151,8 +152,14 @@ def reading_checks(talk: Conversation, duration: Second = 0.5) -> list[CheckResu
     steps = np.diff(stamps) & CLOCK
     backwards = int(np.count_nonzero((steps == 0) | (steps > CLOCK // 2)))
     drift = math.nan
-    if len(came) > 10 and not backwards:
-        drift = float(np.sum(steps)) * 1e-6 / (came[-1][0] - came[0][0]) - 1
+    if len(came) > 30 and not backwards:
+        since = np.concatenate([[0], np.cumsum(steps)]) * 1e-6
+        heard = np.array([time for time, _ in came])
+        # What came soonest of each third: a message can only be late.
+        third = len(came) // 3
+        delay = heard - since
+        first, last = int(np.argmin(delay[:third])), int(np.argmin(delay[-third:])) - third
+        drift = float((since[last] - since[first]) / (heard[last] - heard[first])) - 1
     seen = bool(came) and bool(came[-1][1].flags & m.SENSOR_PRESENT)
     return [
         _result(

@@ -134,6 +134,8 @@ class LoopProcess:
                 stdout=subprocess.DEVNULL,
                 stderr=self._said,
                 pass_fds=(descriptor,),
+                # Ctrl-C is for the host, which stops the device first and then this.
+                start_new_session=True,
             )
         finally:
             os.close(descriptor)

@@ -1,6 +1,6 @@
-"""Playing a texture: sensor → loop → link → device, and everything that happened into the record.
+"""Playing a texture: sensor → loop → link → device, and all that happened into the record.
 
-`Player` is one pass of bookkeeping after the other; it neither waits nor reads a clock of its own.
+`Player` is one pass of bookkeeping after the other; it neither waits nor has a clock of its own.
 On hardware its clock is the loop's, on a simulated bench (`virtual_play`) a variable: the same code.
 
 The loop's commands carry the time at which they are meant to act. The player turns that into the
@@ -19,7 +19,7 @@ from typing import Any, Literal, Protocol
 import numpy as np
 
 from squeezefilm.device.host import DeviceHost
-from squeezefilm.device.machine import CLOCK, Fault, State
+from squeezefilm.device.states import Fault, State
 from squeezefilm.device.messages import MOST_LEVELS, PICKUP_PRESENT, SENSOR_PRESENT, Reading
 from squeezefilm.device.ports import Sensor
 from squeezefilm.device.safety import Limits
@@ -35,7 +35,6 @@ from squeezefilm.quantities import (
     require,
 )
 from squeezefilm.session import rows as column
-from squeezefilm.session.device_clock import DeviceClock
 from squeezefilm.session.plan import LoopPlan
 from squeezefilm.session.record import TraceWriter
 from squeezefilm.session.rows import flag_meanings
@@ -180,16 +179,15 @@ class Player:
     ) -> None:
         self.plan, self.loop, self.host, self.writer = plan, loop, host, writer
         self.clock, self.sensor = clock, sensor
-        self.device_clock = DeviceClock()
         self.state, self.fault = State.OFF, Fault.NONE
         self.readings = self.late_commands = self.repeated = self.device_late_ticks = 0
         self.ending: Ending | None = None
         self._last: Reading | None = None
         self._fed = self._heard = -math.inf
         self._faded = math.nan
+        self._sending = False
         self._row: FloatArray = np.full(len(column.COLUMNS), math.nan)
         self._row[[column.TICK, column.FLAGS]] = 0.0
-        self._pending: FloatArray = np.empty((0, 4))
 
     def begin(self) -> None:
         """Give the device its limits and the texture's tile, arm it and start the carrier.
@@ -264,7 +262,8 @@ class Player:
             "message": message,
             "device_at_zero": stopped,
             "faded_at_s": self._faded,
-            "device_clock_offset_s": self.device_clock.offset,
+            "device_clock_offset_s": self.host.clock.offset,
+            "device_clock_error_s": self.host.clock.error,
             "readings": self.readings,
             "repeated_readings": self.repeated,
             "late_commands": self.late_commands,
@@ -298,9 +297,10 @@ class Player:
 
     def _hear(self, now: Second) -> list[tuple[float, ...]]:
         """Readings since the last call as samples for the loop."""
-        samples = []
+        samples: list[tuple[float, ...]] = []
         for reading in self.host.poll():
-            stamp = self.device_clock.heard(reading.time, now)
+            clock = self.host.clock
+            stamp = clock.unwrapped(reading.time) + clock.offset
             self._heard = now
             self.readings += 1
             self.device_late_ticks = reading.late_ticks
@@ -340,7 +340,7 @@ class Player:
         )
 
     def _sensed(self, sensor: Sensor) -> list[tuple[float, ...]]:
-        samples = []
+        samples: list[tuple[float, ...]] = []
         level = math.nan if self._last is None else self._last.level * _MICROSECOND
         while (one := sensor.read()) is not None and len(samples) < 1000:
             samples.append((one.time, one.x, one.y, float(one.touching), level, math.nan))
@@ -360,14 +360,16 @@ class Player:
 
     def _send(self, now: Second) -> None:
         commands = self.loop.take_commands()
-        if self.plan.mode == "stream" and self.state is State.PLAYING and self.readings:
+        if self.plan.mode == "stream" and self.state is State.PLAYING and self.host.clock.known:
             late = commands[:, column.COMMAND_TIME] < now
-            self.late_commands += int(np.count_nonzero(late))
-            fresh = commands[~late] if late.size else commands
-            period = self.plan.loop.period
+            # Those from before the device played are not late; nobody wanted them.
+            self.late_commands += int(np.count_nonzero(late)) if self._sending else 0
+            fresh = commands[~late]
+            self._sending = self._sending or len(fresh) > 0
+            period, clock = self.plan.loop.period, self.host.clock
             for part in _blocks(fresh):
-                start = self.device_clock.device_time(float(part[0, column.COMMAND_TIME]))
-                self.host.play(np.abs(part[:, column.COMMAND_VOLTAGE]), period, start & CLOCK)
+                start = clock.stamp(clock.device_time(float(part[0, column.COMMAND_TIME])))
+                self.host.play(np.abs(part[:, column.COMMAND_VOLTAGE]), period, start)
         self.host.pump(now)
 
     def _write(self) -> None:
@@ -385,5 +387,7 @@ def _blocks(commands: FloatArray) -> list[FloatArray]:
     ticks = commands[:, column.COMMAND_TICK]
     runs = np.split(commands, np.flatnonzero(np.diff(ticks) != 1) + 1)
     return [
-        run[first : first + MOST_LEVELS] for run in runs for first in range(0, len(run), MOST_LEVELS)
+        run[first : first + MOST_LEVELS]
+        for run in runs
+        for first in range(0, len(run), MOST_LEVELS)
     ]

@@ -7,6 +7,7 @@ breaks on the way is told in the outcome, and the record kept.
 from __future__ import annotations
 
 import contextlib
+import os
 import signal
 import threading
 import time
@@ -18,13 +19,15 @@ from typing import Any
 
 from squeezefilm.device.host import DeviceHost
 from squeezefilm.device.link import Link
-from squeezefilm.device.machine import Fault
+from squeezefilm.device.states import Fault
 from squeezefilm.device.ports import Sensor
+from squeezefilm.device.safety import require_safe_drive
+from squeezefilm.device.serial_ports import SerialDrive
 from squeezefilm.device.streams import open_stream
 from squeezefilm.errors import DeviceError, LoopError
 from squeezefilm.quantities import Second
 from squeezefilm.results import to_json
-from squeezefilm.session.loop import LoopProcess
+from squeezefilm.session.loop import PRIORITY, LoopProcess
 from squeezefilm.session.play import FADE, Ending, Player, PlayPlan, PlayView
 from squeezefilm.session.record import TraceWriter
 from squeezefilm.session.rows import COLUMNS
@@ -58,6 +61,7 @@ def run_play(
     duration: Second,
     sensor: Callable[[Callable[[], Second]], Sensor] | None = None,
     show: Callable[[PlayView], None] | None = None,
+    bench_only: bool = False,
 ) -> PlayOutcome:
     """Play for a time, or until Ctrl-C, and record it.
 
@@ -69,8 +73,10 @@ def run_play(
         duration: for which to play (s).
         sensor: makes the sensor from the loop's clock, where it is not the device's own.
         show: is told what there is to see, ten times a second.
+        bench_only: whether a drive that does not stop by itself may be used.
 
     Raises:
+        InputError: a drive that is not safe, see `require_safe_drive`.
         DeviceError, LoopError, RecordError: what fails before anything was played.
     """
     with (
@@ -79,13 +85,17 @@ def run_play(
         _interruptible() as interrupted,
     ):
         loop = LoopProcess(plan.loop)
-        loop.start()
         link = Link(stream, lambda: loop.time)
+        host = DeviceHost(link)
+        drives = SerialDrive(host, plan.loop.period)
+        require_safe_drive(drives, plan.limits, bench_only=bench_only)
         eyes = None if sensor is None else sensor(lambda: loop.time)
-        player = Player(plan, loop, DeviceHost(link), writer, lambda: loop.time, eyes)
+        player = Player(plan, loop, host, writer, lambda: loop.time, eyes)
+        loop.start()
         try:
-            ending, message = _played(player, loop, duration, interrupted, show)
-            player.end(ending, time.sleep, message)
+            with _preferred():
+                ending, message = _played(player, loop, duration, interrupted, show)
+                player.end(ending, time.sleep, message)
         finally:
             report = loop.stop()
         player.drain()
@@ -142,6 +152,28 @@ _FAULTS: dict[Fault, str] = {
     Fault.LATE_TICK: "the device's own loop was late and could not vouch for its output",
     Fault.TRIPPED: "the amplifier tripped, or its enable line was opened",
 }
+
+
+@contextlib.contextmanager
+def _preferred() -> Iterator[None]:
+    """Before ordinary work, where the system grants it, and after the loop.
+
+    The player works a quarter of the time and sleeps in every millisecond; held up for 50 ms it
+    would cost the session. The loop has said already where priority is not granted.
+    """
+    scheduler = getattr(os, "sched_setscheduler", None)
+    if scheduler is None or os.sched_getscheduler(0) != os.SCHED_OTHER:
+        yield
+        return
+    granted = False
+    with contextlib.suppress(OSError):
+        scheduler(0, os.SCHED_FIFO, os.sched_param(PRIORITY // 5))
+        granted = True
+    try:
+        yield
+    finally:
+        if granted:
+            scheduler(0, os.SCHED_OTHER, os.sched_param(0))
 
 
 @contextlib.contextmanager
