@@ -94,7 +94,7 @@ def compiled_loop(
     """
     control, period = memory.control, arrays.settings[at.DT]
     epoch = load_acquire(control, shared.EPOCH)
-    begun, looked = clock.thread_cpu_ns(timespec), np.int64(0)
+    begun, looked = clock.thread_cpu_ns(timespec), 0
     while load_acquire(control, shared.STOP) == 0:
         due = due_ns(control[shared.NEXT], period)
         now = clock.monotonic_ns(timespec) - epoch

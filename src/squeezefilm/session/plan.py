@@ -63,7 +63,12 @@ class DriveTable:
             values = np.array(getattr(self, name), dtype=float)
             object.__setattr__(self, name, values)
             require(name, values, unit, at_least=0.0)
-            if values.ndim != 1 or values.size < 2 or values[0] != 0 or np.any(np.diff(values) <= 0):
+            if (
+                values.ndim != 1
+                or values.size < 2
+                or values[0] != 0
+                or np.any(np.diff(values) <= 0)
+            ):
                 raise InputError(
                     f"{name} of the drive's table must begin with 0 and rise from each of at least "
                     "two knots to the next",

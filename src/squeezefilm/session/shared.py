@@ -21,7 +21,8 @@ _LINE = 8
 STOP, MUTE, HOST_BEAT, EPOCH = (place * _LINE for place in range(4))
 # Written by the loop: how far it is, what it did, and what it was given.
 (
-    PHASE, BEAT, NEXT, MADE, LOST, LONGEST, SPUN, CPU, RUN, FAULT, REFUSED, REALTIME, LOCKED, PACING,
+    PHASE, BEAT, NEXT, MADE, LOST, LONGEST, SPUN, CPU, RUN, FAULT, REFUSED, REALTIME, LOCKED,
+    PACING,
 ) = (place * _LINE for place in range(4, 18))  # fmt: skip
 CONTROL_SIZE = 32 * _LINE
 

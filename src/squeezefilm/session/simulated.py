@@ -51,7 +51,7 @@ def _march(
 ) -> int:  # fmt: skip
     """Wake for tick after tick, each time `delays` (s) late, until `ticks` were due."""
     control, period = memory.control, arrays.settings[at.DT]
-    now, heard, made, wakes = np.int64(0), 0, 0, 0
+    now, heard, made, wakes = 0, 0, 0, 0
     while control[shared.NEXT] < ticks:
         number = control[shared.NEXT]
         due = due_ns(number, period)

@@ -30,7 +30,7 @@ Array = np.ndarray[Any, Any]
 def interpolated(places: Array, values: Array, place: float) -> float:
     """The value at a place, linear between knots that rise; held beyond the ends, NaN without."""
     last = places.size - 1
-    if last < 1 or not place == place:  # noqa: PLR0124 - not-a-number
+    if last < 1 or math.isnan(place):
         return math.nan
     if place >= places[last]:
         return float(values[last])
@@ -84,9 +84,7 @@ def _pass_lost_ticks(arrays: Any, lost: int) -> None:
         return
     held, amplitude = arrays.memory[at.COMMAND], state[place]
     rises = held > amplitude
-    keep = envelope[
-        compensation_kernel.KEEP_RISE if rises else compensation_kernel.KEEP_FALL
-    ]
+    keep = envelope[compensation_kernel.KEEP_RISE if rises else compensation_kernel.KEEP_FALL]
     state[place] = held + (amplitude - held) * keep**lost
 
 
