@@ -185,7 +185,9 @@ def test_random_delays_never_lose_or_double_a_tick() -> None:
         assert ticks[-1] == 19_999
         assert run.lateness.made == ticks.size
         assert run.lateness.made + run.lateness.lost == 20_000
-        assert np.all((run.rows[:, column.LATENESS] >= 0) & (run.rows[:, column.LATENESS] < 1 / rate))
+        assert np.all(
+            (run.rows[:, column.LATENESS] >= 0) & (run.rows[:, column.LATENESS] < 1 / rate)
+        )
 
 
 def test_lost_ticks_leave_the_compensator_where_the_resonator_is() -> None:

@@ -109,12 +109,10 @@ def compiled_loop(
             control[shared.SPUN] += now - woken
         silence(arrays, control, now, timeout)
         make_due_tick(arrays, memory, now)
-        control[shared.RUN] = now
         if now - looked > _PARENT_LOOKED_AT_NS:
             looked = now
             control[shared.CPU] = clock.thread_cpu_ns(timespec) - begun
             if parent != 0 and clock.parent_id() != parent:
-                control[shared.FAULT] = shared.FAULT_PARENT_GONE
                 break
     control[shared.CPU] = clock.thread_cpu_ns(timespec) - begun
 
@@ -138,12 +136,10 @@ def portable_loop(arrays: Any, memory: Any, timeout: int, parent: int) -> None:
             now = time.monotonic_ns() - epoch
         silence(arrays, control, now, timeout)
         make_due_tick(arrays, memory, now)
-        control[shared.RUN] = now
         if now - looked > _PARENT_LOOKED_AT_NS:
             looked = now
             control[shared.CPU] = time.thread_time_ns() - begun
             if parent != 0 and os.getppid() != parent:
-                control[shared.FAULT] = shared.FAULT_PARENT_GONE
                 break
     control[shared.CPU] = time.thread_time_ns() - begun
 

@@ -106,7 +106,9 @@ def tile_of(program: Program, origin: Metre, pitch: Metre, size: int) -> Texture
                 "which the device counts in; round it",
                 quantity=name,
             )
-    places: FloatArray = round(origin / _MICROMETRE) + round(pitch / _MICROMETRE) * np.arange(float(size))
+    places: FloatArray = round(origin / _MICROMETRE) + round(pitch / _MICROMETRE) * np.arange(
+        float(size)
+    )
     amplitude = _amplitudes(program, places)
     between: FloatArray = np.linspace(places[0], places[-1], (size - 1) * _FINER + 1)
     wanted = _amplitudes(program, between)
