@@ -24,7 +24,9 @@ from squeezefilm.render.sensor import LVDT_10_KHZ
 from squeezefilm.render.texture import Square
 from squeezefilm.session import rows as column
 from squeezefilm.session.loop import LoopProcess
+from squeezefilm.session.pacing import MARGIN
 from squeezefilm.session.plan import DriveTable, LoopPlan
+from squeezefilm.session.ring import ring_waiting
 
 # Far beyond what any of it takes; a limit for a test that hangs.
 PATIENCE = 60.0
@@ -79,7 +81,7 @@ def test_a_loop_runs_in_its_own_process_and_reports() -> None:
     assert np.any(rows[:, column.VOLTAGE] > 0)
     assert not report.real_time_priority
     assert report.refused_commands == report.dropped_rows == report.dropped_samples == 0
-    assert 0 <= report.spin_share <= 0.5
+    assert 0 <= report.spin_share <= MARGIN * RATE * 1.01
     assert loop.stop() is report
     loop.check()
 
@@ -97,18 +99,28 @@ def test_muted_and_unheard_it_plays_nothing() -> None:
     with LoopProcess(PLAN, priority=None) as loop:
         _ticked(loop, 50)
         loop.mute()
-        time.sleep(0.02)
-        rows = _ticked(loop, 50)[-10:]
-        assert np.all(rows[:, column.VOLTAGE] == 0)
-        assert np.all(rows[:, column.FLAGS].astype(int) & column.MUTED)
+        seen: list[FloatArray] = []
+
+        def muted() -> bool:
+            seen.append(_ticked(loop, 1))
+            return int(seen[-1][-1, column.FLAGS]) & column.MUTED > 0
+
+        _until(muted, "a muted tick")
+        rows = np.concatenate([*seen, _ticked(loop, 20)])
+        flagged = rows[:, column.FLAGS].astype(int) & column.MUTED > 0
+        # From the first muted tick on, all are.
+        assert np.all(flagged[np.argmax(flagged) :])
+        assert np.all(rows[flagged, column.VOLTAGE] == 0)
         loop.mute(False)
         # For longer than the timeout nothing is said; rows of that time wait.
         time.sleep(PLAN.host_timeout + 0.2)
-        silent = loop.take_rows()[:, column.FLAGS].astype(int) & column.HOST_SILENT > 0
+        rows = loop.take_rows()
+        silent = rows[:, column.FLAGS].astype(int) & column.HOST_SILENT > 0
         assert np.any(silent)
-        assert not silent[0]
+        assert np.all(rows[silent, column.VOLTAGE] == 0)
         # Commands from before are too old to be played.
-        assert np.all(loop.take_commands()[:, column.COMMAND_TIME] > loop.time - 2 * 1.0)
+        oldest = loop.time - PLAN.host_timeout
+        assert np.all(loop.take_commands()[:, column.COMMAND_TIME] >= oldest)
         assert loop.report().stale_commands > 0
 
 
@@ -117,6 +129,7 @@ def test_a_stopped_loop_loses_ticks_and_goes_on_without_a_burst() -> None:
         before = _ticked(loop, 100)
         worker = loop._running()[0].pid
         os.kill(worker, signal.SIGSTOP)
+        os.waitpid(worker, os.WUNTRACED)
         time.sleep(1.0)
         assert loop.silence > 0.9
         os.kill(worker, signal.SIGCONT)
@@ -138,8 +151,8 @@ def test_a_killed_loop_is_noticed_and_what_it_wrote_is_kept() -> None:
     loop = LoopProcess(PLAN, priority=None)
     loop.start()
     _ticked(loop, 50)
-    time.sleep(0.05)
-    process = loop._running()[0]
+    process, memory = loop._running()
+    _until(lambda: ring_waiting(memory.row_counters) >= 10, "rows that nobody took")
     process.kill()
     process.wait()
     with pytest.raises(LoopError, match=r"killed by signal 9; the device stops by its own"):

@@ -106,7 +106,7 @@ def compiled_loop(
             woken = now
             while now < due:
                 now = clock.monotonic_ns(timespec) - epoch
-            control[shared.SPUN] += now - woken
+            control[shared.SPUN] += due - woken
         silence(arrays, control, now, timeout)
         make_due_tick(arrays, memory, now)
         if now - looked > _PARENT_LOOKED_AT_NS:
