@@ -231,16 +231,15 @@ def main() -> None:
             for busy, beside in ((0, "alone"), (1, "beside a busy thread")):
                 found = elsewhere("loop", *numbers, busy, priority or 0, 0, interpreted=interpreted)
                 row(f"{name}, {beside}", rate, found, made)
-    fastest = kept[RATES[-1]]
     top = RATES[-1]
+    share = kept[top]["processor_share"]
     print(
-        "\nratio: ticks made, against the compiled loop alone. What limits the compiled loop is not "
-        f"the tick,\n{1e6 * compiled:.1f} us of {1e6 / top:.0f} us at {top / 1e3:g} kHz, but the "
-        "wake-up: it sleeps until 50 us before a tick and spins through the rest\n"
-        f"({100 * kept[top]['processor_share']:.0f} % of a core at {top / 1e3:g} kHz). Ticks are lost "
-        "where the kernel, busy for somebody else, or the host of\na virtual machine lets it wait "
-        "for longer. What limits Python is its one lock, which a busy thread keeps\nfor 5 ms at a "
-        "time."
+        "\nratio: ticks made, against the compiled loop alone. What limits the compiled loop is "
+        f"not the tick,\n{1e6 * compiled:.1f} us of {1e6 / top:.0f} us at {top / 1e3:g} kHz, but "
+        "the wake-up: it sleeps until 50 us before a tick and spins\nthrough the rest "
+        f"({100 * share:.0f} % of a core at {top / 1e3:g} kHz). Ticks are lost where the kernel, "
+        "busy for somebody else,\nor the host of a virtual machine lets it wait for longer. What "
+        "limits Python is its one lock, which a busy\nthread keeps for 5 ms at a time."
     )
 
 

@@ -5,6 +5,10 @@ And the account of late and lost ticks on a simulated clock, exactly.
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
+from pathlib import Path
 from typing import Literal
 
 import numpy as np
@@ -127,6 +131,27 @@ def test_a_loop_moved_step_by_step_is_the_same_loop_to_the_bit() -> None:
         loop.make_tick()
     np.testing.assert_array_equal(loop.take_rows(), at_once.rows)
     np.testing.assert_array_equal(loop.take_commands(), at_once.commands)
+
+
+INTERPRETED = """
+import sys
+import numpy as np
+sys.path.insert(0, sys.argv[1])
+from test_loop import LVDT_10_KHZ, TEXTURES, _both
+np.save(sys.argv[2], _both(TEXTURES["square"], LVDT_10_KHZ, "inverse", rate=1e3)[1].rows)
+"""
+
+
+def test_the_loop_interpreted_is_the_loop_compiled(tmp_path: Path) -> None:
+    # Also what a person sees who steps through it in a debugger.
+    there = tmp_path / "rows.npy"
+    subprocess.run(
+        [sys.executable, "-c", INTERPRETED, str(Path(__file__).parent), str(there)],
+        env={**os.environ, "NUMBA_DISABLE_JIT": "1"},
+        check=True,
+    )
+    _, run = _both(TEXTURES["square"], LVDT_10_KHZ, "inverse", rate=1e3)
+    np.testing.assert_allclose(np.load(there), run.rows, rtol=1e-12, atol=1e-15)
 
 
 # --- late and lost ticks ---

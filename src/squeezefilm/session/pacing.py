@@ -9,6 +9,7 @@ So no burst follows a stop, however long it was.
 
 from __future__ import annotations
 
+import os
 import time
 from typing import Any
 
@@ -67,7 +68,6 @@ def make_due_tick(arrays: Any, memory: Any, now: int) -> int:
     flags = make_tick(arrays, memory, number, late / _SECOND_NS, lost)
     if flags & column.REFUSED_COMMAND:
         control[shared.REFUSED] += 1
-    control[shared.MADE] += 1
     control[shared.BEAT] = now
     store_release(control, shared.NEXT, number + 1)
     return 1
@@ -123,8 +123,6 @@ def portable_loop(arrays: Any, memory: Any, timeout: int, parent: int) -> None:
     It does not spin. Its lateness is that of `time.sleep`, and of whatever else Python does in
     this process; the ticks themselves are the same.
     """
-    import os
-
     control, period = memory.control, arrays.settings[at.DT]
     epoch = int(control[shared.EPOCH])
     begun, looked = time.thread_time_ns(), 0

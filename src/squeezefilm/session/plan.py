@@ -145,6 +145,8 @@ class LoopPlan:
         output_delay: from when a tick is due to when its command acts at the plate (s), as for a
             device that queues; below 1 s. The loop predicts across it.
         host_timeout: time without a word from the host after which the loop plays nothing (s).
+            After lost ticks, up to this long the plate is taken to have followed the last command;
+            past it, to have come to rest.
 
     Raises:
         InputError: a value outside its range, an unknown compensation, or a drive that does not

@@ -20,8 +20,8 @@ _LINE = 8
 # Written by the host.
 STOP, MUTE, HOST_BEAT, EPOCH = (place * _LINE for place in range(4))
 # Written by the loop: how far it is, what it did, and what it was given.
-(PHASE, BEAT, NEXT, MADE, LOST, LONGEST, SPUN, CPU, REFUSED, REALTIME, LOCKED, PACING) = (
-    place * _LINE for place in range(4, 16)
+(PHASE, BEAT, NEXT, LOST, LONGEST, SPUN, CPU, REFUSED, REALTIME, LOCKED, PACING) = (
+    place * _LINE for place in range(4, 15)
 )
 CONTROL_SIZE = 16 * _LINE
 
