@@ -236,9 +236,9 @@ def main() -> None:
     print(
         "\nratio: ticks made, against the compiled loop alone. What limits the compiled loop is "
         f"not the tick,\n{1e6 * compiled:.1f} us of {1e6 / top:.0f} us at {top / 1e3:g} kHz, but "
-        "the wake-up: it sleeps until 50 us before a tick and spins\nthrough the rest "
-        f"({100 * share:.0f} % of a core at {top / 1e3:g} kHz). Ticks are lost where the kernel, "
-        "busy for somebody else,\nor the host of a virtual machine lets it wait for longer. What "
+        "the wake-up: with priority it sleeps until 50 us before a\ntick and spins through the "
+        f"rest ({100 * share:.0f} % of a core at {top / 1e3:g} kHz). Ticks are lost where the "
+        "kernel,\nbusy for somebody else, or the host of a virtual machine lets it wait for longer. What "
         "limits Python is its one lock, which a busy\nthread keeps for 5 ms at a time."
     )
 

@@ -142,10 +142,10 @@ class LoopProcess:
         try:
             self._give_orders()
             self._wait_until_ready()
+            self._warn(self._memory.control)
         except BaseException:
             self.stop()
             raise
-        self._warn(self._memory.control)
         self._epoch = time.monotonic_ns() + _HEAD_START_NS
         self._beat()
         store_release(self._memory.control, shared.EPOCH, self._epoch)
@@ -293,7 +293,9 @@ class LoopProcess:
 
     def _running(self) -> tuple[subprocess.Popen[bytes], shared.Shared]:
         if self._process is None or self._memory is None:
-            raise LoopError("this loop was not started; call start() first, or use it in a with")
+            raise LoopError(
+                "this loop was not started; call start() first, or use it in a with statement"
+            )
         return self._process, self._memory
 
     def _touch(self) -> shared.Shared:

@@ -2,9 +2,13 @@
 
 Tick k is due k/rate after the loop began. The loop sleeps until a margin before that and spins
 through the rest, so that a sleep which ends late by less than the margin costs nothing; the margin
-is at most `MOST_SPIN` of a period, so at least half of every period is slept. A loop that comes
-after the next tick was due makes one tick, the latest that is due; the others are counted as lost.
-So no burst follows a stop, however long it was.
+is at most `MOST_SPIN` of a period, so at least half of every period is slept. Without real-time
+priority it does not spin: the kernel counts spinning as work, and on a busy machine lets the loop
+wait the longer for it (measured at 5 kHz beside five other programs on two processors: 95 % of
+ticks made without spinning, 83 % with).
+
+A loop that comes after the next tick was due makes one tick, the latest that is due; the others are
+counted as lost. So no burst follows a stop, however long it was.
 """
 
 from __future__ import annotations
@@ -142,6 +146,6 @@ def portable_loop(arrays: Any, memory: Any, timeout: int, parent: int) -> None:
     control[shared.CPU] = time.thread_time_ns() - begun
 
 
-def margin_ns(period: Second) -> int:
-    """How long before a deadline a loop of this period wakes (ns)."""
-    return int(min(MARGIN, MOST_SPIN * period) * _SECOND_NS)
+def margin_ns(period: Second, real_time: bool) -> int:
+    """How long before a deadline a loop of this period (s) wakes (ns); 0 without priority."""
+    return int(min(MARGIN, MOST_SPIN * period) * _SECOND_NS) if real_time else 0

@@ -83,10 +83,13 @@ def test_when_samples_stop_the_drive_does(plan_of: PlanOf) -> None:
     assert np.all(rows[:, column.FLAGS] == column.NO_FRESH_SAMPLE)
 
 
-def test_a_lifted_finger_is_forgotten_at_once(plan_of: PlanOf) -> None:
+@pytest.mark.parametrize(
+    "lifted", [{"touching": 0.0}, {"touching": math.nan}, {"touching": 0.0, "x": math.nan}]
+)
+def test_a_lifted_finger_is_forgotten_at_once(plan_of: PlanOf, lifted: dict[str, float]) -> None:
     loop = SimulatedLoop(plan_of())
     _led(loop, 20)
-    loop.feed(_sample(loop.time, touching=0.0))
+    loop.feed(_sample(loop.time, **lifted))
     loop.make_tick()
     rows = loop.take_rows()
     assert rows[-1, column.VOLTAGE] == 0.0
