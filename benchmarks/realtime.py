@@ -238,8 +238,8 @@ def main() -> None:
         f"not the tick,\n{1e6 * compiled:.1f} us of {1e6 / top:.0f} us at {top / 1e3:g} kHz, but "
         "the wake-up: with priority it sleeps until 50 us before a\ntick and spins through the "
         f"rest ({100 * share:.0f} % of a core at {top / 1e3:g} kHz). Ticks are lost where the "
-        "kernel,\nbusy for somebody else, or the host of a virtual machine lets it wait for longer. What "
-        "limits Python is its one lock, which a busy\nthread keeps for 5 ms at a time."
+        "kernel,\nbusy for somebody else, or the host of a virtual machine lets it wait for "
+        "longer. What\nlimits Python is its one lock, which a busy thread keeps for 5 ms at a time."
     )
 
 
