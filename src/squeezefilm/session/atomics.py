@@ -20,16 +20,17 @@ from numba.extending import intrinsic
 Array = np.ndarray[Any, Any]
 
 _INT64_BYTES = 8
+_item_pointer: Any = cgutils.get_item_pointer
 
 
 def _place(context: Any, builder: Any, kind: Any, array: Any, index: Any, index_type: Any) -> Any:
     """The address of one item of an array of 64-bit whole numbers."""
     view = context.make_array(kind)(context, builder, array)
     whole = context.cast(builder, index, index_type, types.intp)
-    return cgutils.get_item_pointer(context, builder, kind, view, [whole])
+    return _item_pointer(context, builder, kind, view, [whole])
 
 
-@intrinsic  # type: ignore[untyped-decorator]
+@intrinsic
 def _load_acquire(typing_context: Any, array: Any, index: Any) -> Any:
     def codegen(context: Any, builder: Any, signature: Any, values: Any) -> Any:
         kind, index_type = signature.args
@@ -39,7 +40,7 @@ def _load_acquire(typing_context: Any, array: Any, index: Any) -> Any:
     return types.int64(array, index), codegen
 
 
-@intrinsic  # type: ignore[untyped-decorator]
+@intrinsic
 def _store_release(typing_context: Any, array: Any, index: Any, value: Any) -> Any:
     def codegen(context: Any, builder: Any, signature: Any, values: Any) -> Any:
         kind, index_type, _ = signature.args
@@ -50,7 +51,7 @@ def _store_release(typing_context: Any, array: Any, index: Any, value: Any) -> A
     return types.void(array, index, types.int64), codegen
 
 
-if numba.config.DISABLE_JIT:
+if numba.config.DISABLE_JIT:  # type: ignore[attr-defined]
 
     def load_acquire(array: Array, index: int) -> int:
         """`array[index]`, interpreted."""
@@ -65,7 +66,7 @@ else:
     @numba.njit(cache=True, nogil=True)
     def load_acquire(array: Array, index: int) -> int:
         """`array[index]` of an int64 array; no later access is done before it."""
-        return _load_acquire(array, index)  # type: ignore[no-any-return, call-arg]
+        return _load_acquire(array, index)  # type: ignore[call-arg]
 
     @numba.njit(cache=True, nogil=True)
     def store_release(array: Array, index: int, value: int) -> None:

@@ -32,16 +32,16 @@ def _has_symbols(*names: str) -> bool:
 COMPILED_CLOCK: bool = (
     sys.platform == "linux"
     and sys.maxsize > 2**32
-    and not numba.config.DISABLE_JIT
+    and not numba.config.DISABLE_JIT  # type: ignore[attr-defined]
     and _has_symbols("clock_gettime", "clock_nanosleep", "getppid")
 )
 """Whether compiled code can read the clock and sleep here."""
 
-_clock_gettime = types.ExternalFunction("clock_gettime", types.intc(types.intc, types.uintp))
-_clock_nanosleep = types.ExternalFunction(
+_clock_gettime: Any = types.ExternalFunction("clock_gettime", types.intc(types.intc, types.uintp))
+_clock_nanosleep: Any = types.ExternalFunction(
     "clock_nanosleep", types.intc(types.intc, types.intc, types.uintp, types.uintp)
 )
-_getppid = types.ExternalFunction("getppid", types.intc())
+_getppid: Any = types.ExternalFunction("getppid", types.intc())
 
 
 def new_timespec() -> Array:
@@ -65,7 +65,7 @@ def thread_cpu_ns(timespec: Array) -> int:
 
 @numba.njit(cache=True, nogil=True)
 def sleep_until_ns(timespec: Array, when: int) -> None:
-    """Sleep until CLOCK_MONOTONIC is `when` (ns); a signal ends it early. Needs `COMPILED_CLOCK`."""
+    """Sleep until CLOCK_MONOTONIC is `when` (ns); a signal ends it. Needs `COMPILED_CLOCK`."""
     timespec[0] = when // _SECOND_NS
     timespec[1] = when % _SECOND_NS
     _clock_nanosleep(_MONOTONIC, _ABSOLUTE, timespec.ctypes.data, 0)

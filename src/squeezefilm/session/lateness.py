@@ -1,4 +1,4 @@
-"""How late the loop's ticks were: a histogram with logarithmic classes, and ticks that were lost."""
+"""How late the loop's ticks were, in a histogram of logarithmic classes, and how many were lost."""
 
 from __future__ import annotations
 

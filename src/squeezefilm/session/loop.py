@@ -18,7 +18,7 @@ import time
 import warnings
 from dataclasses import dataclass
 from types import TracebackType
-from typing import Self
+from typing import IO, Self
 
 import numpy as np
 
@@ -102,7 +102,8 @@ class LoopProcess:
         self._orders = Orders(plan, priority, os.getpid(), compiled_clock)
         self._process: subprocess.Popen[bytes] | None = None
         self._memory: shared.Shared | None = None
-        self._said = tempfile.TemporaryFile()  # noqa: SIM115 - closed when the loop is stopped
+        self._said: IO[bytes] | None = None
+        self._last_words = ""
         self._epoch = 0
         self._stale = 0
         self._report: LoopReport | None = None
@@ -128,6 +129,7 @@ class LoopProcess:
         descriptor = _anonymous_file(shared.shared_size())
         try:
             self._memory = shared.shared_views(mmap.mmap(descriptor, shared.shared_size()))
+            self._said = tempfile.TemporaryFile()  # noqa: SIM115 - `stop` closes it
             self._process = subprocess.Popen(
                 [sys.executable, "-m", "squeezefilm.session.worker", str(descriptor)],
                 stdin=subprocess.PIPE,
@@ -139,26 +141,37 @@ class LoopProcess:
             )
         finally:
             os.close(descriptor)
-        assert self._process.stdin is not None
         try:
-            with self._process.stdin as pipe:
+            self._give_orders()
+            self._wait_until_ready()
+            self._warn(self._memory.control)
+        except BaseException:
+            self.stop()
+            raise
+        self._epoch = time.monotonic_ns() + _HEAD_START_NS
+        self._beat()
+        store_release(self._memory.control, shared.EPOCH, self._epoch)
+
+    def _give_orders(self) -> None:
+        process, _ = self._running()
+        assert process.stdin is not None
+        try:
+            with process.stdin as pipe:
                 pickle.dump(self._orders, pipe)
         except BrokenPipeError:
             raise self._death() from None
-        control, deadline = self._memory.control, time.monotonic() + _START_LIMIT
+
+    def _wait_until_ready(self) -> None:
+        control = self._running()[1].control
+        deadline = time.monotonic() + _START_LIMIT
         while load_acquire(control, shared.PHASE) != shared.PHASE_READY:
             self.check()
             if time.monotonic() > deadline:
-                self.stop()
                 raise LoopError(
                     f"the loop's process was not ready after {_START_LIMIT:g} s; the machine may "
                     "be overloaded: try again"
                 )
             time.sleep(1e-3)
-        self._warn(control)
-        self._epoch = time.monotonic_ns() + _HEAD_START_NS
-        self._beat()
-        store_release(control, shared.EPOCH, self._epoch)
 
     def stop(self) -> LoopReport:
         """End the loop and say what it did; commands and rows can still be taken.
@@ -177,7 +190,7 @@ class LoopProcess:
                 process.kill()
                 process.wait()
             self._report = self.report()
-            self._said.close()
+            self._hear_last_words()
         return self._report
 
     def __enter__(self) -> Self:
@@ -265,7 +278,7 @@ class LoopProcess:
         """
         _, memory = self._running()
         control = memory.control
-        run = max(int(control[shared.RUN]), 1)
+        run = max(int(control[shared.BEAT]), 1)
         return LoopReport(
             lateness=lateness_in(self.plan, memory),
             real_time_priority=bool(control[shared.REALTIME]),
@@ -282,7 +295,9 @@ class LoopProcess:
 
     def _running(self) -> tuple[subprocess.Popen[bytes], shared.Shared]:
         if self._process is None or self._memory is None:
-            raise LoopError("this loop was not started; call start() first, or use it in a with")
+            raise LoopError(
+                "this loop was not started; call start() first, or use it in a with statement"
+            )
         return self._process, self._memory
 
     def _touch(self) -> shared.Shared:
@@ -299,13 +314,20 @@ class LoopProcess:
         """The error that says how the loop's process died."""
         process, _ = self._running()
         code = process.wait()
-        self._said.seek(0)
-        last = self._said.read()[-2000:].decode(errors="replace").strip()
+        self._hear_last_words()
         how = f"was killed by signal {-code}" if code < 0 else f"ended with exit code {code}"
         return LoopError(
             f"the loop's process {how}; the device stops by its own watchdog. What it wrote is "
-            f"kept; start a new loop.{' It said: ' + last if last else ''}"
+            f"kept; start a new loop.{self._last_words}"
         )
+
+    def _hear_last_words(self) -> None:
+        if self._said is not None:
+            self._said.seek(0)
+            last = self._said.read()[-2000:].decode(errors="replace").strip()
+            self._last_words = f" It said: {last}" if last else ""
+            self._said.close()
+            self._said = None
 
     def _warn(self, control: np.ndarray[tuple[int], np.dtype[np.int64]]) -> None:
         if self._orders.priority is not None and not control[shared.REALTIME]:

@@ -2,13 +2,18 @@
 
 Tick k is due k/rate after the loop began. The loop sleeps until a margin before that and spins
 through the rest, so that a sleep which ends late by less than the margin costs nothing; the margin
-is at most `MOST_SPIN` of a period, so at least half of every period is slept. A loop that comes
-after the next tick was due makes one tick, the latest that is due; the others are counted as lost.
-So no burst follows a stop, however long it was.
+is at most `MOST_SPIN` of a period, so at least half of every period is slept. Without real-time
+priority it does not spin: the kernel counts spinning as work, and on a busy machine lets the loop
+wait the longer for it (measured at 5 kHz beside five other programs on two processors: 95 % of
+ticks made without spinning, 83 % with).
+
+A loop that comes after the next tick was due makes one tick, the latest that is due; the others are
+counted as lost. So no burst follows a stop, however long it was.
 """
 
 from __future__ import annotations
 
+import os
 import time
 from typing import Any
 
@@ -67,7 +72,6 @@ def make_due_tick(arrays: Any, memory: Any, now: int) -> int:
     flags = make_tick(arrays, memory, number, late / _SECOND_NS, lost)
     if flags & column.REFUSED_COMMAND:
         control[shared.REFUSED] += 1
-    control[shared.MADE] += 1
     control[shared.BEAT] = now
     store_release(control, shared.NEXT, number + 1)
     return 1
@@ -94,7 +98,7 @@ def compiled_loop(
     """
     control, period = memory.control, arrays.settings[at.DT]
     epoch = load_acquire(control, shared.EPOCH)
-    begun, looked = clock.thread_cpu_ns(timespec), np.int64(0)
+    begun, looked = clock.thread_cpu_ns(timespec), 0
     while load_acquire(control, shared.STOP) == 0:
         due = due_ns(control[shared.NEXT], period)
         now = clock.monotonic_ns(timespec) - epoch
@@ -106,15 +110,13 @@ def compiled_loop(
             woken = now
             while now < due:
                 now = clock.monotonic_ns(timespec) - epoch
-            control[shared.SPUN] += now - woken
+            control[shared.SPUN] += due - woken
         silence(arrays, control, now, timeout)
         make_due_tick(arrays, memory, now)
-        control[shared.RUN] = now
         if now - looked > _PARENT_LOOKED_AT_NS:
             looked = now
             control[shared.CPU] = clock.thread_cpu_ns(timespec) - begun
             if parent != 0 and clock.parent_id() != parent:
-                control[shared.FAULT] = shared.FAULT_PARENT_GONE
                 break
     control[shared.CPU] = clock.thread_cpu_ns(timespec) - begun
 
@@ -125,8 +127,6 @@ def portable_loop(arrays: Any, memory: Any, timeout: int, parent: int) -> None:
     It does not spin. Its lateness is that of `time.sleep`, and of whatever else Python does in
     this process; the ticks themselves are the same.
     """
-    import os
-
     control, period = memory.control, arrays.settings[at.DT]
     epoch = int(control[shared.EPOCH])
     begun, looked = time.thread_time_ns(), 0
@@ -138,16 +138,14 @@ def portable_loop(arrays: Any, memory: Any, timeout: int, parent: int) -> None:
             now = time.monotonic_ns() - epoch
         silence(arrays, control, now, timeout)
         make_due_tick(arrays, memory, now)
-        control[shared.RUN] = now
         if now - looked > _PARENT_LOOKED_AT_NS:
             looked = now
             control[shared.CPU] = time.thread_time_ns() - begun
             if parent != 0 and os.getppid() != parent:
-                control[shared.FAULT] = shared.FAULT_PARENT_GONE
                 break
     control[shared.CPU] = time.thread_time_ns() - begun
 
 
-def margin_ns(period: Second) -> int:
-    """How long before a deadline a loop of this period wakes (ns)."""
-    return int(min(MARGIN, MOST_SPIN * period) * _SECOND_NS)
+def margin_ns(period: Second, real_time: bool) -> int:
+    """How long before a deadline a loop of this period (s) wakes (ns); 0 without priority."""
+    return int(min(MARGIN, MOST_SPIN * period) * _SECOND_NS) if real_time else 0

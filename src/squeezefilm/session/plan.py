@@ -63,7 +63,12 @@ class DriveTable:
             values = np.array(getattr(self, name), dtype=float)
             object.__setattr__(self, name, values)
             require(name, values, unit, at_least=0.0)
-            if values.ndim != 1 or values.size < 2 or values[0] != 0 or np.any(np.diff(values) <= 0):
+            if (
+                values.ndim != 1
+                or values.size < 2
+                or values[0] != 0
+                or np.any(np.diff(values) <= 0)
+            ):
                 raise InputError(
                     f"{name} of the drive's table must begin with 0 and rise from each of at least "
                     "two knots to the next",
@@ -140,6 +145,8 @@ class LoopPlan:
         output_delay: from when a tick is due to when its command acts at the plate (s), as for a
             device that queues; below 1 s. The loop predicts across it.
         host_timeout: time without a word from the host after which the loop plays nothing (s).
+            After lost ticks, up to this long the plate is taken to have followed the last command;
+            past it, to have come to rest.
 
     Raises:
         InputError: a value outside its range, an unknown compensation, or a drive that does not

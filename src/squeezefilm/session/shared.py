@@ -20,13 +20,12 @@ _LINE = 8
 # Written by the host.
 STOP, MUTE, HOST_BEAT, EPOCH = (place * _LINE for place in range(4))
 # Written by the loop: how far it is, what it did, and what it was given.
-(
-    PHASE, BEAT, NEXT, MADE, LOST, LONGEST, SPUN, CPU, RUN, FAULT, REFUSED, REALTIME, LOCKED, PACING,
-) = (place * _LINE for place in range(4, 18))  # fmt: skip
-CONTROL_SIZE = 32 * _LINE
+(PHASE, BEAT, NEXT, LOST, LONGEST, SPUN, CPU, REFUSED, REALTIME, LOCKED, PACING) = (
+    place * _LINE for place in range(4, 15)
+)
+CONTROL_SIZE = 16 * _LINE
 
 PHASE_NEW, PHASE_READY, PHASE_GO, PHASE_ENDED = range(4)
-FAULT_NONE, FAULT_PARENT_GONE = range(2)
 PACING_COMPILED, PACING_PORTABLE = 1, 2
 
 SAMPLES, COMMANDS, ROWS = 8192, 4096, 32768

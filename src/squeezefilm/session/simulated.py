@@ -24,7 +24,7 @@ from squeezefilm.session import shared
 from squeezefilm.session.lateness import Lateness
 from squeezefilm.session.pacing import due_ns, make_due_tick
 from squeezefilm.session.plan import LoopPlan, tick_arrays
-from squeezefilm.session.ring import ring_put, ring_put_all, ring_take
+from squeezefilm.session.ring import ring_put, ring_put_all, ring_take, ring_waiting
 from squeezefilm.session.rows import COLUMNS, COMMAND_COLUMNS, MUTED, SAMPLE_COLUMNS
 from squeezefilm.session.shared import private_views
 
@@ -51,7 +51,7 @@ def _march(
 ) -> int:  # fmt: skip
     """Wake for tick after tick, each time `delays` (s) late, until `ticks` were due."""
     control, period = memory.control, arrays.settings[at.DT]
-    now, heard, made, wakes = np.int64(0), 0, 0, 0
+    now, heard, made, wakes = 0, 0, 0, 0
     while control[shared.NEXT] < ticks:
         number = control[shared.NEXT]
         due = due_ns(number, period)
@@ -211,9 +211,8 @@ def sample_block(samples: FloatArray) -> FloatArray:
 
 def taken(counters: Array, rows: Array) -> FloatArray:
     """All rows that wait in a ring."""
-    out = np.empty(rows.shape)
-    count = ring_take(counters, rows, out)
-    return out[:count].copy()
+    out = np.empty((ring_waiting(counters), rows.shape[1]))
+    return out[: ring_take(counters, rows, out)]
 
 
 def lateness_in(plan: LoopPlan, memory: shared.Shared) -> Lateness:

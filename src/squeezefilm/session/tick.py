@@ -30,7 +30,7 @@ Array = np.ndarray[Any, Any]
 def interpolated(places: Array, values: Array, place: float) -> float:
     """The value at a place, linear between knots that rise; held beyond the ends, NaN without."""
     last = places.size - 1
-    if last < 1 or not place == place:  # noqa: PLR0124 - not-a-number
+    if last < 1 or math.isnan(place):
         return math.nan
     if place >= places[last]:
         return float(values[last])
@@ -56,15 +56,16 @@ def _listen(arrays: Any, sample: Array) -> int:
         memory[at.REPORTED_AMPLITUDE] = amplitude
     stamp = sample[column.SAMPLE_TIME]
     x, y = sample[column.SAMPLE_X], sample[column.SAMPLE_Y]
-    if not math.isfinite(x + y):
-        # Half a place is none: both axes count it.
-        x, y = math.nan, math.nan
-    elif sample[column.SAMPLE_TOUCHING] == 0.0:
+    # Before all else, and not a number counts as lifted: a sensor need not say where nothing is.
+    if not sample[column.SAMPLE_TOUCHING] > 0.0:
         # What a finger did before it lifted says nothing of how it comes back.
         memory[at.TOUCHING] = 0.0
         arrays.motion_x[motion_kernel.ALIVE] = 0.0
         arrays.motion_y[motion_kernel.ALIVE] = 0.0
         return 0
+    if not math.isfinite(x + y):
+        # Half a place is none: both axes count it.
+        x, y = math.nan, math.nan
     code = motion_step(arrays.motion_x, arrays.motion_parameters, stamp, x)
     other = motion_step(arrays.motion_y, arrays.motion_parameters, stamp, y)
     if code <= motion_kernel.STEP_STARTED and other <= motion_kernel.STEP_STARTED:
@@ -84,9 +85,7 @@ def _pass_lost_ticks(arrays: Any, lost: int) -> None:
         return
     held, amplitude = arrays.memory[at.COMMAND], state[place]
     rises = held > amplitude
-    keep = envelope[
-        compensation_kernel.KEEP_RISE if rises else compensation_kernel.KEEP_FALL
-    ]
+    keep = envelope[compensation_kernel.KEEP_RISE if rises else compensation_kernel.KEEP_FALL]
     state[place] = held + (amplitude - held) * keep**lost
 
 

@@ -1,4 +1,4 @@
-"""A texture as a tile: amplitudes over position that a device looks up by itself, without a loop."""
+"""A texture as a tile: amplitudes over x that a device looks up by itself, without a loop."""
 
 from __future__ import annotations
 
@@ -106,23 +106,27 @@ def tile_of(program: Program, origin: Metre, pitch: Metre, size: int) -> Texture
                 "which the device counts in; round it",
                 quantity=name,
             )
-    places = round(origin / _MICROMETRE) + round(pitch / _MICROMETRE) * np.arange(size)
-    amplitude = _amplitudes(program, places * _MICROMETRE)
-    between = np.linspace(places[0], places[-1], (size - 1) * _FINER + 1)
-    wanted = _amplitudes(program, between * _MICROMETRE)
+    places: FloatArray = round(origin / _MICROMETRE) + round(pitch / _MICROMETRE) * np.arange(
+        float(size)
+    )
+    amplitude = _amplitudes(program, places)
+    between: FloatArray = np.linspace(places[0], places[-1], (size - 1) * _FINER + 1)
+    wanted = _amplitudes(program, between)
     missed = np.abs(np.interp(between, places, amplitude) - wanted)
     return TextureTile(
         program, origin, pitch, amplitude, float(np.max(missed)), float(np.mean(missed))
     )
 
 
-def _amplitudes(program: Program, x: FloatArray) -> FloatArray:
-    """The texture's amplitudes along x (m), each by itself."""
+def _amplitudes(program: Program, places: FloatArray) -> FloatArray:
+    """The texture's amplitudes at places along x (µm), each by itself."""
+    # Divided, not multiplied by 1e-6: so a whole number of µm is the same float as in a texture.
+    x = places / 1e6
     found = render(program, x, 0.0, 0.0, np.arange(x.size, dtype=float))
-    if found.counters.unreachable or found.counters.faults:
+    met = found.counters
+    if met.unreachable or met.faults:
         raise UnreachableError(
-            f"at {found.counters.unreachable + found.counters.faults} of {x.size} places on the "
-            "tile the texture wants what the display cannot reach; change its ends or the tile's "
-            "place"
+            f"at {met.unreachable + met.faults} of {x.size} places on the tile the texture wants "
+            "what the display cannot reach; change its ends or the tile's place"
         )
     return found.amplitude

@@ -75,14 +75,14 @@ def run_loop(orders: Orders, memory: shared.Shared) -> None:
     Returns when the host said stop, or when the parent is gone.
     """
     plan, control = orders.plan, memory.control
-    timespec, margin = clock.new_timespec(), margin_ns(plan.period)
+    timespec = clock.new_timespec()
     timeout = round(plan.host_timeout * 1e9)
     compiled = orders.compiled_clock and clock.COMPILED_CLOCK
     # Compile, or load what was compiled, on memory and states of its own.
     rehearsal = shared.private_views()
     if compiled:
         rehearsal.control[shared.STOP] = 1
-        compiled_loop(tick_arrays(plan), rehearsal, timespec, margin, timeout, 0)
+        compiled_loop(tick_arrays(plan), rehearsal, timespec, 0, timeout, 0)
     else:
         silence(tick_arrays(plan), rehearsal.control, 0, timeout)
         make_due_tick(tick_arrays(plan), rehearsal, 0)
@@ -91,14 +91,15 @@ def run_loop(orders: Orders, memory: shared.Shared) -> None:
     gc.freeze()
     control[shared.PACING] = shared.PACING_COMPILED if compiled else shared.PACING_PORTABLE
     control[shared.LOCKED] = int(memory_locked())
-    if orders.priority is not None:
-        control[shared.REALTIME] = int(real_time_granted(orders.priority))
+    real_time = orders.priority is not None and real_time_granted(orders.priority)
+    control[shared.REALTIME] = int(real_time)
     store_release(control, shared.PHASE, shared.PHASE_READY)
     while load_acquire(control, shared.EPOCH) == 0:
         if load_acquire(control, shared.STOP) != 0 or _orphaned(orders):
             return
         time.sleep(0.5e-3)
     if compiled:
+        margin = margin_ns(plan.period, real_time)
         compiled_loop(arrays, memory, timespec, margin, timeout, orders.parent)
     else:
         portable_loop(arrays, memory, timeout, orders.parent)
