@@ -80,8 +80,8 @@ def run_play(
         DeviceError, LoopError, RecordError: what fails before anything was played.
     """
     with (
-        TraceWriter(trace, COLUMNS, metadata) as writer,
         contextlib.closing(open_stream(drive)) as stream,
+        TraceWriter(trace, COLUMNS, metadata) as writer,
         _interruptible() as interrupted,
     ):
         loop = LoopProcess(plan.loop)
@@ -112,7 +112,13 @@ def _played(
     show: Callable[[PlayView], None] | None,
 ) -> tuple[Ending, str]:
     """Step until something ends it; returns what, and what to say."""
-    player.begin()
+    try:
+        player.begin()
+    except DeviceError:
+        # It may have been armed already; should this not reach it, its watchdog is left.
+        with contextlib.suppress(DeviceError):
+            player.host.stop()
+        raise
     began = loop.time
     shown = 0.0
     try:
