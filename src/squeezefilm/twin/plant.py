@@ -68,9 +68,13 @@ class Plant:
         self._s[k.RESONANCE] = k.resonance(0, 0.0, self._c)
         sensor = settings.sensor
         waiting = math.ceil((sensor.latency + 10 * sensor.jitter) * sensor.rate) + 16
-        self._ring, self._one = np.zeros((waiting, 5)), np.ones(1)
+        self._ring = np.zeros((waiting, 5))
         self._buffer = np.empty((_BUFFER, len(k.COLUMNS)))
-        self._forces = np.ascontiguousarray(point.forces, dtype=float)
+        self._rest = (
+            self._s, self._n, self._c, np.ascontiguousarray(point.forces, dtype=float),
+            point.relative_friction, point.load, self._places, self._plan, self._ring, np.ones(1),
+            self._buffer,
+        )  # fmt: skip
         announce(k.advance, "twin's plant", 20)
 
     @property
@@ -85,16 +89,8 @@ class Plant:
         """
         if until < self.now:
             raise InputError(f"the plant is at {self.now} us and was asked to go to {until} us")
-        while True:
-            reached = k.advance(
-                until, level, carrier, self._s, self._n, self._c, self._forces,
-                self.point.relative_friction, self.point.load, self._places, self._plan,
-                self._ring, self._one, self._buffer,
-            )  # fmt: skip
-            if self._n[k.ROWS] == _BUFFER:
-                self.drain()
-            if reached >= until:
-                return
+        while k.advance(until, level, carrier, *self._rest) < until:
+            self.drain()
 
     def drain(self) -> None:
         """Hand the rows of truth made so far to `truth`."""

@@ -16,12 +16,12 @@ from squeezefilm.plate.response import patch_capacitance
 from squeezefilm.plate.working_mode import WorkingMode, working_mode
 from squeezefilm.quantities import (
     ComplexArray,
-    Coulomb,
     DimensionlessArray,
     Farad,
     FloatArray,
     Metre,
     NewtonArray,
+    NewtonPerVolt,
     Unit,
     format_quantity,
 )
@@ -62,7 +62,7 @@ class WorkingPoint:
     relative_friction: DimensionlessArray
     load: ComplexArray
     capacitance: Farad
-    force_factor: Coulomb
+    force_factor: NewtonPerVolt
     evidence: tuple[str, ...]
 
     @property
