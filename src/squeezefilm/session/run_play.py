@@ -17,12 +17,14 @@ from pathlib import Path
 from types import FrameType
 from typing import Any
 
+import numpy as np
+
 from squeezefilm.device.host import DeviceHost
 from squeezefilm.device.link import Link
-from squeezefilm.device.states import Fault
 from squeezefilm.device.ports import Sensor
 from squeezefilm.device.safety import require_safe_drive
 from squeezefilm.device.serial_ports import SerialDrive
+from squeezefilm.device.states import Fault
 from squeezefilm.device.streams import open_stream
 from squeezefilm.errors import DeviceError, LoopError
 from squeezefilm.quantities import Second
@@ -30,7 +32,8 @@ from squeezefilm.results import to_json
 from squeezefilm.session.loop import PRIORITY, LoopProcess
 from squeezefilm.session.play import FADE, Ending, Player, PlayPlan, PlayView
 from squeezefilm.session.record import TraceWriter
-from squeezefilm.session.rows import COLUMNS
+from squeezefilm.session.rows import COLUMNS, SAMPLE_COLUMNS
+from squeezefilm.session.simulated import SimulatedLoop
 
 PAUSE: Second = 1e-3
 """Between two looks of the player at its device."""
@@ -91,6 +94,7 @@ def run_play(
         require_safe_drive(drives, plan.limits, bench_only=bench_only)
         eyes = None if sensor is None else sensor(lambda: loop.time)
         player = Player(plan, loop, host, writer, lambda: loop.time, eyes)
+        _compile(plan)
         loop.start()
         try:
             with _preferred():
@@ -102,6 +106,15 @@ def run_play(
         writer.event("loop", {**to_json(report), "lateness": report.lateness.to_json()})
         writer.event("link", to_json(link.statistics))
         return PlayOutcome(ending, message, trace, writer.acknowledged)
+
+
+def _compile(plan: PlayPlan) -> None:
+    """Compile what the player calls, which would hold it up for longer than a watchdog waits."""
+    spare = SimulatedLoop(plan.loop)
+    spare.feed(np.zeros((1, len(SAMPLE_COLUMNS))))
+    spare.advance(2 * plan.loop.period)
+    spare.take_commands()
+    spare.take_rows()
 
 
 def _played(
@@ -199,5 +212,3 @@ def _interruptible() -> Iterator[Callable[[], bool]]:
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
-
-
