@@ -92,6 +92,10 @@ class ConvergenceError(SqueezefilmError):
         self.iterations = iterations
 
 
+class DeviceError(SqueezefilmError):
+    """A device that refused, went silent or vanished; says which command, why and what to do."""
+
+
 class SqueezefilmWarning(UserWarning):
     """Anything squeezefilm warns of."""
 
