@@ -177,6 +177,6 @@ def test_a_session_that_broke_at_once_is_told_and_shown(display: Display, tmp_pa
     outcome = PlayOutcome(Ending.LINK, "it was <unplugged>", tmp_path / "trace.sqft", 0)
     page = write_play(PlayResult(outcome, session, tmp_path), tmp_path)
     assert "it was &lt;unplugged&gt;" in page.read_text()
-    assert '"ended_because": "the link to the device broke"' in (
-        tmp_path / "summary.json"
-    ).read_text()
+    assert (
+        '"ended_because": "the link to the device broke"' in (tmp_path / "summary.json").read_text()
+    )
