@@ -41,7 +41,7 @@ def test_a_reader_who_is_late_gets_the_newest() -> None:
         seen += [] if sample is None else [sample.x]
         now[0] += 7e-3
     assert seen == sorted(set(seen))
-    assert seen[-1] == 999e-6
+    assert seen[-1] == pytest.approx(999e-6)
     assert len(seen) == pytest.approx(1000 / 7, abs=2)
 
 
