@@ -178,6 +178,4 @@ def _standard_quantile(code: int, share: float) -> float:
         return float((np.log(-np.log1p(-share)) - np.log(np.log(2))) / reach)
     if code == kernel.REVERSED_GUMBEL:
         return float(-(np.log(-np.log(share)) - np.log(np.log(2))) / reach)
-    return float(
-        np.log(np.tan(np.pi / 2 * share)) / (2 * np.log(np.tan(np.pi / 2 * (1 - tail))))
-    )
+    return float(np.log(np.tan(np.pi / 2 * share)) / (2 * np.log(np.tan(np.pi / 2 * (1 - tail)))))

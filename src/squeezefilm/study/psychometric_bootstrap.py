@@ -1,10 +1,12 @@
 """Intervals and goodness of fit of a psychometric function by parametric bootstrap.
 
 The usual percentiles of refitted parameters cover too seldom: the estimates of width and lapse
-rate are skewed and biased, and where the lapse rate is at its bound they pile up there. What is
-simulated here is therefore the deviance instead: how far ln density falls when one parameter is
-held at its true value. An interval holds the values whose profile deviance is no larger than the
-level's quantile of the simulated ones. It does not depend on how a parameter is written.
+rate are skewed and biased, and a lapse rate at its bound makes the simulated people better than
+the real one. Simulating the deviance at the fit instead has the same second fault. What is done
+here is to invert a test (the grid bootstrap of Hansen 1999, 10.1162/003465399558463): a value of a
+parameter belongs to the interval if the deviance of holding it there is no larger than the
+level's quantile of the deviances simulated with that very value as the truth, the other
+parameters fitted under it. The interval does not depend on how a parameter is written.
 """
 
 from __future__ import annotations
@@ -13,13 +15,17 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.special import chdtri
 
 from squeezefilm.quantities import Dimensionless, DimensionlessArray, FloatArray, require
 from squeezefilm.study import psychometric_kernel as kernel
 from squeezefilm.study.psychometric_kernel import BoolArray
 
-# How near to the end of an interval, as a share of the prior's range.
+# How near to the end of an interval, as shares of the prior's range: for a given quantile of the
+# deviance, and from one simulated quantile to the next.
 _NEAR = 1e-4
+_CLOSE = 5e-4
+_MOST_ROUNDS = 6
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -62,23 +68,22 @@ class PenalisedLikelihood:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Bootstrap:
-    """A parametric bootstrap of a fit.
+    """Answers simulated at a fit, and refitted.
 
     Attributes:
         best: θ of the fit, from which answers were simulated, shape (4,).
         estimates: θ of the refits, shape (replicates, 4).
-        drops: twice the fall of ln density with one parameter held at `best`,
-            shape (replicates, 4).
         deviances: of the refits from the saturated model, shape (replicates,).
+        shares: the random numbers, uniform in 0 to 1, shape (replicates, places).
     """
 
     best: FloatArray
     estimates: FloatArray
-    drops: FloatArray
     deviances: DimensionlessArray
+    shares: DimensionlessArray
 
     def percentiles(self, parameter: int, level: Dimensionless) -> tuple[float, float]:
-        """The plain percentile interval of θ; it covers less than its level in small samples."""
+        """The plain percentile interval of θ, to compare with; it covers less than its level."""
         tail = 0.5 * (1.0 - level)
         low, high = np.quantile(self.estimates[:, parameter], [tail, 1.0 - tail])
         return float(low), float(high)
@@ -101,14 +106,10 @@ def simulate_bootstrap(
         InputError: fewer than 39 replicates, which cannot tell a 95 % interval.
     """
     require("replicates", replicates, at_least=39)
-    random = np.random.default_rng(seed)
-    truth = kernel.probabilities(likelihood.code, best, likelihood.x)
-    answers = random.binomial(
-        likelihood.n.astype(np.int64), truth, size=(replicates, truth.size)
-    ).astype(float)
-    estimates, drops = np.empty((replicates, 4)), np.empty((replicates, 4))
-    deviances = np.empty(replicates)
-    kernel.bootstrap(
+    shares = np.random.default_rng(seed).random((replicates, likelihood.x.size))
+    answers = _answers(likelihood, best, shares)
+    estimates, deviances = np.empty((replicates, 4)), np.empty(replicates)
+    kernel.refit(
         likelihood.code,
         best,
         likelihood.free,
@@ -119,28 +120,70 @@ def simulate_bootstrap(
         likelihood.n,
         answers,
         estimates,
-        drops,
         deviances,
     )
-    return Bootstrap(best, estimates, drops, deviances)
+    return Bootstrap(best, estimates, deviances, shares)
 
 
-def calibrated_interval(
+def inverted_interval(
     likelihood: PenalisedLikelihood, bootstrap: Bootstrap, parameter: int, level: Dimensionless
 ) -> tuple[float, float]:
-    """The values of one θ whose profile deviance is within the bootstrap's quantile of it.
+    """The values of one θ that the test with simulated deviances does not refuse.
 
-    An end that the data do not bound lies at the prior's bound.
+    An end that the data do not bound lies at the bound of the prior.
     """
-    drops = np.sort(bootstrap.drops[:, parameter])
-    rank = math.ceil(level * (drops.size + 1)) - 1
-    allowed = float(drops[min(rank, drops.size - 1)])
     _, top = likelihood.maximum(bootstrap.best)
     ends = [
-        _end(likelihood, bootstrap.best, top, parameter, allowed, float(bound))
+        _inverted_end(likelihood, bootstrap, top, parameter, level, float(bound))
         for bound in (likelihood.low[parameter], likelihood.high[parameter])
     ]
     return ends[0], ends[1]
+
+
+def _answers(
+    likelihood: PenalisedLikelihood, theta: FloatArray, shares: DimensionlessArray
+) -> FloatArray:
+    answers = np.empty_like(shares)
+    p = kernel.probabilities(likelihood.code, theta, likelihood.x)
+    kernel.binomial_quantiles(p, likelihood.n, shares, answers)
+    return answers
+
+
+def _inverted_end(
+    likelihood: PenalisedLikelihood,
+    bootstrap: Bootstrap,
+    top: float,
+    parameter: int,
+    level: float,
+    bound: float,
+) -> float:
+    """Alternate the end that a quantile allows and the quantile simulated at that end."""
+    reach = float(likelihood.high[parameter] - likelihood.low[parameter])
+    allowed = float(chdtri(1, 1 - level))
+    end = float("nan")
+    for _ in range(_MOST_ROUNDS):
+        before = end
+        held = _end(likelihood, bootstrap.best, top, parameter, allowed, bound)
+        end = float(held[parameter])
+        if abs(end - before) <= _CLOSE * reach:
+            break
+        drops = np.empty(bootstrap.shares.shape[0])
+        kernel.profile_drops(
+            likelihood.code,
+            held,
+            parameter,
+            likelihood.free,
+            likelihood.low,
+            likelihood.high,
+            likelihood.beta,
+            likelihood.x,
+            likelihood.n,
+            _answers(likelihood, held, bootstrap.shares),
+            drops,
+        )
+        rank = math.ceil(level * (drops.size + 1)) - 1
+        allowed = float(np.sort(drops)[min(rank, drops.size - 1)])
+    return end
 
 
 def _end(
@@ -150,34 +193,32 @@ def _end(
     parameter: int,
     allowed: float,
     bound: float,
-) -> float:
+) -> FloatArray:
+    """θ at the end of what a profile deviance allows, towards a bound or at it."""
     free = likelihood.free.copy()
     free[parameter] = False
-    centre = float(best[parameter])
     reach = float(likelihood.high[parameter] - likelihood.low[parameter])
-    inside, start = centre, best
-    step = math.copysign(reach / 32, bound - centre)
-    outside = centre
+    inside = best
+    step = math.copysign(reach / 32, bound - float(best[parameter]))
     # March outwards, each fit starting from the one before, to the first value not allowed.
     while True:
-        outside = inside + step
+        outside = float(inside[parameter]) + step
         if (outside - bound) * step >= 0:
             outside = bound
-        theta = start.copy()
+        theta = inside.copy()
         theta[parameter] = outside
         theta, value = likelihood.maximum(theta, free)
         if 2.0 * (top - value) > allowed:
             break
-        inside, start = outside, theta
+        inside = theta
         if outside == bound:
-            return bound
-    while abs(outside - inside) > _NEAR * reach:
-        middle = 0.5 * (inside + outside)
-        theta = start.copy()
-        theta[parameter] = middle
-        theta, value = likelihood.maximum(theta, free)
+            return inside
+    while abs(outside - inside[parameter]) > _NEAR * reach:
+        middle = inside.copy()
+        middle[parameter] = 0.5 * (float(inside[parameter]) + outside)
+        theta, value = likelihood.maximum(middle, free)
         if 2.0 * (top - value) > allowed:
-            outside = middle
+            outside = float(middle[parameter])
         else:
-            inside, start = middle, theta
-    return 0.5 * (inside + outside)
+            inside = theta
+    return inside

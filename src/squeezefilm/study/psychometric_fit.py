@@ -15,12 +15,13 @@ from squeezefilm.study.psychometric import Axis, PsychometricFunction, Shape, on
 from squeezefilm.study.psychometric_bootstrap import (
     Bootstrap,
     PenalisedLikelihood,
-    calibrated_interval,
+    inverted_interval,
     simulate_bootstrap,
 )
 from squeezefilm.study.psychometric_posterior import (
     PARAMETERS,
     PsychometricPosterior,
+    coarse_maximum,
     grid_posterior,
 )
 from squeezefilm.study.psychometric_prior import PsychometricPrior
@@ -131,9 +132,9 @@ def fit_psychometric(
         # A known rate has no prior; without a bound γ + λ could reach 1.
         beta[2:] = 1.0
         high[kernel.LAPSE] = min(high[kernel.LAPSE], 0.99 - guess_rate)
-    posterior, start = grid_posterior(code, axis, prior, guess_rate, x, k, n)
     likelihood = PenalisedLikelihood(code, free, low, high, beta, x, k, n)
-    best, _ = likelihood.maximum(start)
+    best, _ = likelihood.maximum(coarse_maximum(code, axis, prior, guess_rate, x, k, n))
+    posterior = grid_posterior(code, axis, prior, guess_rate, x, k, n, best)
     fitted = tuple(name for name, is_free in zip(PARAMETERS, free, strict=True) if is_free)
     likeliest = kernel.log_density(code, best, np.ones(4), x, k, n)
     deviance = max(2.0 * (kernel.saturated(k, n) - likeliest), 0.0)
@@ -142,7 +143,7 @@ def fit_psychometric(
         bootstrap = simulate_bootstrap(likelihood, best, replicates, seed)
         p = bootstrap.goodness_of_fit(deviance)
         confidence = {
-            name: _in_own_unit(at, calibrated_interval(likelihood, bootstrap, at, level), axis)
+            name: _in_own_unit(at, inverted_interval(likelihood, bootstrap, at, level), axis)
             for at, name in enumerate(PARAMETERS)
             if free[at]
         }
@@ -221,8 +222,6 @@ def _by_place(
     if not np.any(n > 0):
         raise InputError("trials = 0 everywhere; there must be at least one answer")
     places, where = np.unique(given[n > 0], return_inverse=True)
-    return (
-        places,
-        np.bincount(where, k[n > 0], places.size),
-        np.bincount(where, n[n > 0], places.size),
-    )
+    counts = (np.bincount(where, one[n > 0], places.size) for one in (k, n))
+    summed_k, summed_n = (np.asarray(one, dtype=float) for one in counts)
+    return places, summed_k, summed_n

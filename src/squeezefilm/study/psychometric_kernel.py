@@ -38,7 +38,7 @@ _SETTLED = 1e-10
 
 @njit(nogil=True, cache=True, error_model="numpy")
 def sigmoid(shape: int, z: float) -> tuple[float, float, float]:
-    """S, 1 − S and dS/dz of a shape at z = (x − m)/width: S(0) = ½, S from 5 to 95 % over Δz = 1."""
+    """S, 1 − S and dS/dz of a shape at z = (x − m)/width; S(0) = ½, from 5 to 95 % over Δz = 1."""
     if shape == 0:
         t = _K_LOGISTIC * z
         e = math.exp(-abs(t))
@@ -235,9 +235,37 @@ def saturated(k: FloatArray, n: FloatArray) -> float:
     return total
 
 
+@njit(nogil=True, cache=True, error_model="numpy")
+def binomial_quantiles(p: FloatArray, n: FloatArray, shares: FloatArray, out: FloatArray) -> None:
+    """Counts of n trials not exceeded with a probability `shares` (rows, places), into `out`.
+
+    The same shares give counts that rise with p, so that what is simulated at two values of a
+    parameter differs by the parameter and not by chance.
+    """
+    for i in range(p.size):
+        heights = np.empty(int(n[i]) + 1)
+        size = heights.size - 1
+        total = 0.0
+        for k in range(size + 1):
+            if p[i] <= 0.0 or p[i] >= 1.0:
+                term = 1.0 if (k == 0) == (p[i] <= 0.0) and (k == 0 or k == size) else 0.0
+            else:
+                term = math.exp(
+                    math.lgamma(size + 1.0)
+                    - math.lgamma(k + 1.0)
+                    - math.lgamma(size - k + 1.0)
+                    + k * math.log(p[i])
+                    + (size - k) * math.log(1.0 - p[i])
+                )
+            total += term
+            heights[k] = total
+        for row in range(out.shape[0]):
+            at = np.searchsorted(heights, shares[row, i] * total)
+            out[row, i] = min(at, size)
+
 
 @njit(nogil=True, cache=True, error_model="numpy")
-def bootstrap(
+def refit(
     shape: int,
     best: FloatArray,
     free: BoolArray,
@@ -248,39 +276,48 @@ def bootstrap(
     n: FloatArray,
     answers: FloatArray,
     estimates: FloatArray,
-    drops: FloatArray,
     deviances: FloatArray,
 ) -> None:
-    """Refit every row of simulated `answers` (replicates, places).
+    """Fit every row of simulated `answers` (replicates, places), starting from `best`.
 
-    Fills `estimates` (replicates, 4); `drops` (replicates, 4), twice the fall of ln density when
-    one parameter is held at its true value, `best` (0 for parameters not free); and `deviances`
-    (replicates,) against the saturated model.
+    Fills `estimates` (replicates, 4) and `deviances` from the saturated model (replicates,).
     """
-    theta, some = np.empty(4), free.copy()
     flat = np.ones(4)
     for row in range(answers.shape[0]):
         k = answers[row]
-        theta[:] = best
-        top = maximise(shape, theta, free, low, high, beta, x, k, n)
-        for a in range(4):
-            drops[row, a] = 0.0
-            if free[a]:
-                some[a] = False
-                held = best.copy()
-                bottom = maximise(shape, held, some, low, high, beta, x, k, n)
-                if bottom > top:
-                    # The constrained fit found a better hill; climb it without the constraint.
-                    top = maximise(shape, held, free, low, high, beta, x, k, n)
-                    theta[:] = held
-                drops[row, a] = bottom
-                some[a] = True
-        for a in range(4):
-            if free[a]:
-                drops[row, a] = max(2.0 * (top - drops[row, a]), 0.0)
+        theta = best.copy()
+        maximise(shape, theta, free, low, high, beta, x, k, n)
         estimates[row] = theta
-        fit = log_density(shape, theta, flat, x, k, n)
-        deviances[row] = 2.0 * (saturated(k, n) - fit)
+        deviances[row] = 2.0 * (saturated(k, n) - log_density(shape, theta, flat, x, k, n))
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def profile_drops(
+    shape: int,
+    held: FloatArray,
+    parameter: int,
+    free: BoolArray,
+    low: FloatArray,
+    high: FloatArray,
+    beta: FloatArray,
+    x: FloatArray,
+    n: FloatArray,
+    answers: FloatArray,
+    drops: FloatArray,
+) -> None:
+    """Twice the fall of ln density when one parameter is held at its true value, θ = `held`.
+
+    For every row of `answers` (replicates, places), simulated at `held`; fills `drops`.
+    """
+    some = free.copy()
+    some[parameter] = False
+    for row in range(answers.shape[0]):
+        k = answers[row]
+        under = held.copy()
+        bottom = maximise(shape, under, some, low, high, beta, x, k, n)
+        # From the constrained maximum the free one can only climb.
+        top = maximise(shape, under, free, low, high, beta, x, k, n)
+        drops[row] = 2.0 * (top - bottom)
 
 
 @njit(nogil=True, cache=True, error_model="numpy")

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy.special import betainc, betaincinv
+from scipy.special import betainc, betaincinv, betaln
 
 from squeezefilm.errors import InputError
 from squeezefilm.quantities import Dimensionless, DimensionlessArray, FloatArray, require
@@ -90,6 +90,15 @@ class PsychometricPrior:
             return np.asarray(low[parameter] + share * (high[parameter] - low[parameter]))
         a, b = self.lapse_rate if parameter == 2 else self.guess_rate
         return np.asarray(betaincinv(a, b, share * betainc(a, b, LARGEST_RATE)))
+
+    def density(self, parameter: int, theta: FloatArray, axis: Axis) -> FloatArray:
+        """Prior probability per unit of θ of a parameter (0 to 3), the shape of `theta`."""
+        if parameter < 2:
+            low, high = self.bounds(axis)
+            return np.full(theta.shape, 1.0 / (high[parameter] - low[parameter]))
+        a, b = self.lapse_rate if parameter == 2 else self.guess_rate
+        scale = np.exp(betaln(a, b)) * betainc(a, b, LARGEST_RATE)
+        return np.asarray(theta ** (a - 1.0) * (1.0 - theta) ** (b - 1.0) / scale)
 
     def state(self) -> dict[str, Any]:
         """The prior as JSON holds it; `PsychometricPrior.from_state` reads it."""
