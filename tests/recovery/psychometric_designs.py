@@ -52,13 +52,13 @@ def bayesian(trials: int) -> Experiment:
 
 
 def staircases(trials: int) -> Experiment:
-    """Half of the trials three down, one up (79 %), half one down, one up (50 %, so at chance)."""
+    """Half of the trials two down, one up (71 %), half one down and nine times that up (90 %)."""
     rules = [
         StaircaseRule(
-            8.0, 1.0, 0.25, down_after=n, up_ratio=ratio, lowest=0.0, highest=10.0,
+            8.0, 0.6, 0.2, down_after=n, up_ratio=ratio, lowest=0.0, highest=10.0,
             reversals=10_000, most_trials=trials // 2,
         )
-        for n, ratio in ((3, 1.0), (1, 1.0))
+        for n, ratio in ((2, 1.0), (1, 9.0))
     ]  # fmt: skip
 
     def answers(truth: PsychometricFunction, random: np.random.Generator) -> Answers:
