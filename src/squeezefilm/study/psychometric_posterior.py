@@ -24,7 +24,7 @@ _COARSE = (40, 24, 8, 6)
 _FINE = (48, 40, 20, 1)
 _FINE_WITH_GUESS = (40, 32, 14, 14)
 # Grids narrow until none of their sides shrinks by more than this.
-_SETTLED = 0.6
+_SETTLED = 0.8
 _MOST_PASSES = 8
 # Marginal probability outside of the fine grid, on each side.
 _OUTSIDE = 1e-6
@@ -93,7 +93,9 @@ class PsychometricPosterior:
     def mean(self, parameter: str) -> float:
         """The posterior mean, in the parameter's unit."""
         edges = self.edges[_index(parameter)]
-        return float(np.sum(self.marginal(parameter) * 0.5 * (edges[1:] + edges[:-1])))
+        cells = np.arange(edges.size - 1)
+        middles = PchipInterpolator(np.arange(edges.size), edges)(cells + 0.5)
+        return float(np.sum(self.marginal(parameter) * middles))
 
     def draws(self, count: int, seed: int) -> FloatArray:
         """Samples of (threshold, width, lapse rate, guess rate), shape (count, 4).
