@@ -21,7 +21,7 @@ from squeezefilm.study.psychometric_bootstrap import (
 from squeezefilm.study.psychometric_posterior import (
     PARAMETERS,
     PsychometricPosterior,
-    coarse_maximum,
+    coarse_maxima,
     grid_posterior,
 )
 from squeezefilm.study.psychometric_prior import PsychometricPrior
@@ -133,7 +133,8 @@ def fit_psychometric(
         beta[2:] = 1.0
         high[kernel.LAPSE] = min(high[kernel.LAPSE], 0.99 - guess_rate)
     likelihood = PenalisedLikelihood(code, free, low, high, beta, x, k, n)
-    best, _ = likelihood.maximum(coarse_maximum(code, axis, prior, guess_rate, x, k, n))
+    starts = coarse_maxima(code, axis, prior, guess_rate, x, k, n)
+    best, _ = max((likelihood.maximum(start) for start in starts), key=lambda found: found[1])
     posterior = grid_posterior(code, axis, prior, guess_rate, x, k, n, best)
     fitted = tuple(name for name, is_free in zip(PARAMETERS, free, strict=True) if is_free)
     likeliest = kernel.log_density(code, best, np.ones(4), x, k, n)

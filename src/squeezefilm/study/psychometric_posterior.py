@@ -124,7 +124,7 @@ def _index(parameter: str) -> int:
     return PARAMETERS.index(parameter)
 
 
-def coarse_maximum(
+def coarse_maxima(
     code: int,
     axis: Axis,
     prior: PsychometricPrior,
@@ -133,12 +133,20 @@ def coarse_maximum(
     k: FloatArray,
     n: FloatArray,
 ) -> FloatArray:
-    """θ of the likeliest cell of a coarse grid over the whole prior, to start a search from."""
+    """θ of the likeliest cells of a coarse grid over the whole prior, to start searches from.
+
+    One for each sixth of the widths, shape (6, 4): few answers can have a narrow and a wide
+    function as local maxima.
+    """
     low, high = _span(prior, guess_rate, axis)
     cells = _one_guess(_COARSE, guess_rate)
     nodes, weights, _ = _weigh(code, axis, prior, guess_rate, x, k, n, low, high, cells)
-    best = np.unravel_index(int(np.argmax(weights)), weights.shape)
-    return np.array([node[cell] for node, cell in zip(nodes, best, strict=True)])
+    starts = []
+    for first in range(0, cells[1], cells[1] // 6):
+        band = weights[:, first : first + cells[1] // 6]
+        i, j, a, b = np.unravel_index(int(np.argmax(band)), band.shape)
+        starts.append([nodes[0][i], nodes[1][first + j], nodes[2][a], nodes[3][b]])
+    return np.array(starts)
 
 
 def grid_posterior(
