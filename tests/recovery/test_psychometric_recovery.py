@@ -68,3 +68,19 @@ def test_posteriors_of_2000_adaptive_runs_are_calibrated() -> None:
     print(shares)
     for name, share in shares.items():
         assert 0.935 <= share <= 0.965, name
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize("name", sorted(RECOVERIES))
+def test_intervals_of_2000_runs_cover_as_often_as_they_say(name: str) -> None:
+    found = coverage(RECOVERIES[name], 2000, replicates=199)
+    for (kind, parameter), one in found.items():
+        print(f"{name}: {kind}, {parameter}: {one.share:.4f}, median length {one.length:.4g}")
+    for kind in ("posterior", "bootstrap"):
+        for parameter in ("threshold", "width"):
+            share = found[kind, parameter].share
+            low, high = BANDS.get((name, kind, parameter), (0.935, 0.965))
+            assert low <= share <= high, (kind, parameter)
+        # A lapse rate of 2 or 3 % lies at the edge of what it can be: no interval may be too
+        # short, but some are longer than they need be.
+        assert found[kind, "lapse_rate"].share >= 0.935, kind

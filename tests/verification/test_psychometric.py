@@ -101,6 +101,28 @@ def test_the_fit_is_the_maximum_that_scipy_finds(shape: Shape, guess_rate: float
     assert loss(ours) <= least + 1e-6
 
 
+def test_no_start_leads_higher_than_the_fit() -> None:
+    # Few answers can have several local maxima; threshold and width of the starts cover the prior.
+    truth = PsychometricFunction("weibull", 3.0, 1.0, 0.25, 0.02, "log")
+    levels = np.geomspace(1.0, 8.0, 8)
+    random = np.random.default_rng(0)
+    for _ in range(40):
+        counts, trials = random.binomial(30, truth(levels)).astype(float), np.full(8, 30.0)
+        fit = fit_psychometric(
+            levels, counts, trials, shape="weibull", axis="log", guess_rate=0.25, replicates=0
+        )
+        f, x = fit.function, np.log(levels)
+        low, high = fit.prior.bounds("log")
+        low[3] = high[3] = 0.25
+        free, beta = np.array([True, True, True, False]), np.array([1.0, 10.0, 1.0, 1.0])
+        data = PenalisedLikelihood(kernel.GUMBEL, free, low, high, beta, x, counts, trials)
+        ours = np.array([math.log(f.threshold), math.log(f.width), f.lapse_rate, 0.25])
+        top = kernel.log_density(kernel.GUMBEL, ours, beta, x, counts, trials)
+        for m in np.linspace(low[0], high[0], 7):
+            for w in np.linspace(low[1], high[1], 6):
+                assert data.maximum(np.array([m, w, 0.02, 0.25]))[1] <= top + 1e-3
+
+
 def test_the_fit_recovers_expected_counts_exactly() -> None:
     # Data equal to their expectation: the likelihood is largest at the truth.
     truth = PsychometricFunction("logistic", 4.5, 4.0, 0.25, 0.0)

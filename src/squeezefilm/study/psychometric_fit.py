@@ -106,8 +106,8 @@ def fit_psychometric(
             one answer a row (true, false).
         trials: how many answers there were (rows,).
         shape, axis: of the function.
-        guess_rate: where it is known, at least 0 and below 0.5 with lapses up to 0.5 (1/m for
-            one of m alternatives); None to fit it, as for a yes/no task.
+        guess_rate: where it is known, at least 0 and at most 0.5 (1/m for one of m
+            alternatives); None to fit it, as for a yes/no task.
         prior: without one, `PsychometricPrior.for_stimuli`.
         level: of the intervals, between 0 and 1.
         replicates: of the bootstrap; 0 for none.
