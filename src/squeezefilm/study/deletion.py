@@ -53,10 +53,10 @@ def delete_participant(store: StudyStore, pseudonym: str) -> Deletion:
     for path in backups:
         with StudyStore.open(path) as backup:
             identifiers |= _identifiers(backup, pseudonym)
-            _delete_rows(backup, pseudonym)
+            remove_rows(backup, pseudonym)
             backup.compact()
     traces = _traces(store, pseudonym)
-    enrolled, answers = _delete_rows(store, pseudonym)
+    enrolled, answers = remove_rows(store, pseudonym)
     store.compact()
     # Those of programs that were killed could be anybody's.
     for path in store.unreferenced_traces():
@@ -91,7 +91,9 @@ def _traces(store: StudyStore, pseudonym: str) -> list[str]:
     return [name for row in found for name in json.loads(row["traces"])]
 
 
-def _delete_rows(store: StudyStore, pseudonym: str) -> tuple[bool, int]:
+def remove_rows(store: StudyStore, pseudonym: str) -> tuple[bool, int]:
+    """Delete a participant's rows, and nothing else. Whether they were enrolled, and how many
+    answers went. Raises `RecordError` with nothing deleted."""
     sessions = "SELECT uuid FROM session WHERE participant = ?"
     trials = "SELECT uuid FROM trial WHERE participant = ?"
     with store.transaction() as write:

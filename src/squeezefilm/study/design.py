@@ -114,7 +114,8 @@ class StudyDesign:
         blocks: per display.
         repetitions: of every condition, per block.
         catch: trials to see whether people attend, spread at random over the blocks.
-        adaptive: series in place of fixed repetitions; the stimuli then need only the reference.
+        adaptive: series in place of fixed repetitions; stimuli beside the reference are then for
+            practice and familiarisation only.
         break_between_blocks: rest (s) before every block but the first.
         trial_duration: expected time of one trial (s), for planning.
         note: anything a reader must know, such as what of it is assumed.
@@ -296,6 +297,12 @@ class StudyDesign:
             raise InputError(
                 f"adaptive series need task = 'two-interval', not '{self.task}'",
                 quantity="adaptive",
+            )
+        if pair and self.practice and len(self.stimuli) < 2:
+            raise InputError(
+                "practice needs a stimulus to compare with the reference; add one (adaptive "
+                "series use it for practice only), or practice = 0",
+                quantity="practice",
             )
         for series in self.adaptive:
             self._require_series(series)
