@@ -13,7 +13,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from squeezefilm.errors import RecordError
-from squeezefilm.study.exports import erase_file, export_again, exported_folders
+from squeezefilm.study.exports import (
+    erase_file,
+    export_again,
+    exported_folders,
+    own_files,
+)
 from squeezefilm.study.store import StudyStore
 
 _PIECE = 1 << 20
@@ -39,10 +44,14 @@ def delete_participant(store: StudyStore, pseudonym: str) -> Deletion:
     they are merged again.
 
     Raises:
+        InputError: an export's folder has files of other origin in it (nothing was deleted).
         RecordError: another program has the file open (nothing was deleted), or something is left,
             with the file it is in.
     """
-    # First, while nothing is deleted yet: fails if somebody else reads the file.
+    # First, while nothing is deleted yet: these fail if an export can't be made anew, or if
+    # somebody else reads the file.
+    for _, folder in exported_folders(store):
+        own_files(folder)
     store.compact()
     identifiers = {pseudonym} | _identifiers(store, pseudonym)
     backups = []

@@ -81,7 +81,8 @@ def williams_square(size: int) -> tuple[tuple[int, ...], ...]:
         (place + 1) // 2 if place % 2 else (size - place // 2) % size for place in range(size)
     ]
     rows = [tuple((one + shift) % size for one in zigzag) for shift in range(size)]
-    return tuple(rows if size % 2 == 0 else rows + [row[::-1] for row in rows])
+    # One condition has no neighbours: its mirror image is itself.
+    return tuple(rows if size % 2 == 0 or size == 1 else rows + [row[::-1] for row in rows])
 
 
 def orders(

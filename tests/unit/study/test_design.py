@@ -12,6 +12,7 @@ from squeezefilm import config, presets
 from squeezefilm.errors import ConfigError, InputError
 from squeezefilm.study.design import AdaptiveCondition, CatchTrial, StudyDesign, load_design
 from squeezefilm.study.stimuli import Grating, Stimulus
+from squeezefilm.study.store import StudyStore
 from squeezefilm.study.trials import trials
 
 TWO_INTERVAL = """
@@ -158,3 +159,13 @@ def test_practice_and_series_that_cannot_be_are_refused() -> None:
         dataclasses.replace(alone, adaptive=deep)
     with pytest.raises(InputError, match="cannot go up to highest = 5"):
         dataclasses.replace(alone, adaptive=deep, judged="friction_depth", catch=())
+
+
+@pytest.mark.parametrize("name", presets.study_names())
+def test_every_preset_is_kept_whole_in_a_studys_file(name: str, tmp_path: Path) -> None:
+    design = load_design(name)
+    assert design.name == name
+    with StudyStore.create(tmp_path / "a.sqlite", design, 7) as store:
+        assert store.design == design
+        assert store.design.sha256 == design.sha256 == store.study["design_sha256"]
+        assert len(trials(design, 0, 7)) > 0
