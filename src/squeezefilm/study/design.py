@@ -62,7 +62,7 @@ class AdaptiveCondition:
     Args:
         name: of the series.
         method: "staircase" or "bayesian".
-        varied: what of the design's reference is changed.
+        varied: what of the design's reference is changed; what the design's `judged` asks about.
         start: first difference from the reference, in parts of the reference's value (1).
         lowest, highest: differences allowed, likewise (1).
         step: of a staircase, in parts of the reference's value; halved at the first reversals (1).
@@ -297,11 +297,36 @@ class StudyDesign:
                 f"adaptive series need task = 'two-interval', not '{self.task}'",
                 quantity="adaptive",
             )
+        for series in self.adaptive:
+            self._require_series(series)
         if self.modulus and (self.task != "magnitude-estimation" or not self.reference):
             raise InputError(
                 "a modulus needs magnitude-estimation and a reference that it is given to",
                 quantity="modulus",
             )
+
+    def comparison(self, series: AdaptiveCondition, intensity: float) -> Stimulus:
+        """What an adaptive series presents beside the reference at an intensity: more of what is
+        varied, by that part of the reference's value. Raises `InputError` if there can't be so
+        much of it."""
+        here = self.stimulus(self.reference)
+        value = here.amount(series.varied) * (1.0 + intensity)
+        return here.varied(f"{here.name} +{100 * intensity:.3g} %", series.varied, value)
+
+    def _require_series(self, series: AdaptiveCondition) -> None:
+        if series.varied != self.judged:
+            raise InputError(
+                f"series '{series.name}' varies {series.varied} while {self.judged} is judged; "
+                "make them the same, or no answer is right",
+                quantity="adaptive",
+            )
+        try:
+            self.comparison(series, series.highest)
+        except InputError as error:
+            raise InputError(
+                f"series '{series.name}' cannot go up to highest = {series.highest:g}: {error}",
+                quantity="adaptive",
+            ) from error
 
     def _require_answers(self) -> None:
         names = self.answers
