@@ -114,11 +114,11 @@ def proportion_correct(analysis: IdentificationAnalysis) -> Figure:
         color=PLUS, edgecolor=MUTED,
     )  # fmt: skip
     right.set(xlabel="participants")
-    for k, item in enumerate(analysis.intervals):
+    for k, interval in enumerate(analysis.intervals):
         x = (0.6 + 0.11 * k) * right.get_xlim()[1]
-        right.plot([x, x], [100 * item.low, 100 * item.high], color=ORANGE, lw=2, zorder=4)
+        right.plot([x, x], [100 * interval.low, 100 * interval.high], color=ORANGE, lw=2, zorder=4)
         right.text(
-            x, 100 * item.low - 2, item.method, rotation=90, ha="center", va="top", fontsize=8.5,
+            x, 100 * interval.low - 2, interval.method, rotation=90, ha="center", va="top", fontsize=8.5,
             bbox={"facecolor": PAPER, "edgecolor": "none", "alpha": 0.8, "pad": 0.5},
         )  # fmt: skip
     for axes in (left, right):
@@ -221,7 +221,7 @@ def sensitivity(analysis: IdentificationAnalysis) -> Figure:
     top.spines["left"].set_visible(False)
     top.legend(loc="upper right", frameon=False)
     steps = np.arange(fit.d_prime.size)
-    for k in steps:
+    for k in range(steps.size):
         below.plot([k, k], [fit.low[k], fit.high[k]], color=MUTED, lw=1.4)
     below.plot(steps, fit.d_prime, "o", color=BLUE, ms=7, mec=PAPER)
     below.axhline(0, color=MUTED, lw=0.9)
