@@ -220,7 +220,8 @@ def _confusion(analysis: IdentificationAnalysis) -> str:
     ]
     return _table(
         f"Per cent of each column; in brackets trials, and the {100 * posterior.level:g} % "
-        f"interval of the Dirichlet posterior (prior {posterior.prior:g}, trials taken as independent)",
+        f"interval of the Dirichlet posterior (prior {posterior.prior:g}, trials taken as "
+        "independent)",
         ("Answered \\ simulated", *matrix.stimuli),
         rows,
     )
