@@ -118,8 +118,8 @@ def proportion_correct(analysis: IdentificationAnalysis) -> Figure:
         x = (0.6 + 0.11 * k) * right.get_xlim()[1]
         right.plot([x, x], [100 * interval.low, 100 * interval.high], color=ORANGE, lw=2, zorder=4)
         right.text(
-            x, 100 * interval.low - 2, interval.method, rotation=90, ha="center", va="top", fontsize=8.5,
-            bbox={"facecolor": PAPER, "edgecolor": "none", "alpha": 0.8, "pad": 0.5},
+            x, 100 * interval.low - 2, interval.method, rotation=90, ha="center", va="top",
+            fontsize=8.5, bbox={"facecolor": PAPER, "edgecolor": "none", "alpha": 0.8, "pad": 0.5},
         )  # fmt: skip
     for axes in (left, right):
         axes.axhline(chance, color=MUTED, lw=1, ls=(0, (1.4, 1.2)))

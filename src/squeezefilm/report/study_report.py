@@ -140,7 +140,8 @@ def _section(heading: str, body: str) -> str:
 
 def _table(caption: str, head: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
     """A table of plain texts; the first cell of a row heads it."""
-    columns = "".join(f'<th scope="col">{escape(cell)}</th>' for cell in head)
+    caption = printable(caption)
+    columns = "".join(f'<th scope="col">{escape(printable(cell))}</th>' for cell in head)
     lines = []
     for row in rows:
         first, *others = (escape(printable(cell)) for cell in row)

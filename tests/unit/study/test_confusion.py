@@ -1,4 +1,4 @@
-"""Confusion matrices, proportions and tests of chance: counted right, refused where they must be."""
+"""Confusion matrices, proportions and chance: counted right, refused where they must be."""
 
 from __future__ import annotations
 
@@ -98,9 +98,7 @@ def test_intervals_against_published_values() -> None:
 def test_intervals_hold_the_share_and_mirror(trials: int, share: float, level: float) -> None:
     successes = round(share * trials)
     for interval in (wilson_interval, jeffreys_interval, clopper_pearson_interval):
-        found, mirrored = (
-            interval(k, trials, level) for k in (successes, trials - successes)
-        )
+        found, mirrored = (interval(k, trials, level) for k in (successes, trials - successes))
         assert 0 <= found.low <= successes / trials + 1e-12
         assert successes / trials - 1e-12 <= found.high <= 1
         assert mirrored.low == pytest.approx(1 - found.high, abs=1e-9)
