@@ -1,0 +1,134 @@
+"""What every finger class gets of every surface of a study: the slow part, computed once.
+
+Noise and decisions (`simulated`) need only these tables, so ten thousand people cost seconds.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from squeezefilm.display import Display, load_display
+from squeezefilm.errors import InputError
+from squeezefilm.study.causes import Causes, causes
+from squeezefilm.study.design import StudyDesign
+from squeezefilm.study.observer import FingerClass, Observer
+from squeezefilm.study.percepts import Apparatus, grating_percept, percept
+from squeezefilm.study.senses import Candidates
+from squeezefilm.study.stimuli import Grating, Stimulus
+
+Progress = Callable[[str], None]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ChainTables:
+    """Percepts of a match-to-sample study before any noise.
+
+    Attributes:
+        design, observer: the inputs.
+        fingers: the finger classes.
+        apparatus: how each display was run, by the design's displays.
+        virtual: candidates of shape (displays, fingers, stimuli, candidates).
+        real: candidates of shape (fingers, alternatives, candidates).
+        causes: of each display and stimulus, one per finger.
+    """
+
+    design: StudyDesign
+    observer: Observer
+    fingers: tuple[FingerClass, ...]
+    apparatus: tuple[Apparatus, ...]
+    virtual: Candidates
+    real: Candidates
+    causes: tuple[tuple[tuple[Causes, ...], ...], ...]
+
+    def explain(self, display: int = 0) -> dict[str, Causes]:
+        """The reasons by stimulus on one of the displays: medians over fingers."""
+        return {
+            one.name: _median(found)
+            for one, found in zip(self.design.stimuli, self.causes[display], strict=True)
+        }
+
+
+def chain_tables(
+    design: StudyDesign,
+    observer: Observer,
+    apparatus: Apparatus | tuple[Apparatus, ...] | None = None,
+    displays: tuple[Display, ...] | None = None,
+    progress: Progress | None = None,
+) -> ChainTables:
+    """The chain for every display, finger class and surface; cached within the process.
+
+    Args:
+        design: a match-to-sample study.
+        observer: whose senses and fingers.
+        apparatus: how displays are run: one for all, or one for each.
+        displays: in place of those the design names, in its order.
+        progress: is told each step.
+
+    Raises:
+        InputError: another task, or as many displays or apparatus as the design has not.
+    """
+    tell = progress or (lambda _: None)
+    if design.task != "match-to-sample":
+        raise InputError(
+            f"task = '{design.task}' has no simulated participants yet; simulate a match-to-sample "
+            "design",
+            quantity="task",
+        )
+    plates = tuple(load_display(one) for one in design.displays) if displays is None else displays
+    runs = apparatus if isinstance(apparatus, tuple) else (apparatus or Apparatus(),) * len(plates)
+    if len(plates) != len(design.displays) or len(runs) != len(plates):
+        raise InputError(
+            f"the design has {len(design.displays)} displays; {len(plates)} displays and "
+            f"{len(runs)} apparatus were given"
+        )
+    fingers = observer.fingers()
+    real = [[_real(one, observer, finger) for one in design.alternatives] for finger in fingers]
+    virtual, why = [], []
+    for plate, run in zip(plates, runs, strict=True):
+        by_finger = []
+        for number, finger in enumerate(fingers):
+            tell(f"{plate.name}: finger {number + 1} of {len(fingers)}")
+            by_finger.append([_virtual(plate, s, observer, finger, run) for s in design.stimuli])
+        virtual.append([[found for found, _ in row] for row in by_finger])
+        why.append(
+            tuple(
+                tuple(row[s][1] for row in by_finger) for s in range(len(design.stimuli))
+            )
+        )  # fmt: skip
+    return ChainTables(
+        design, observer, fingers, tuple(runs), _stacked(virtual), _stacked(real), tuple(why)
+    )
+
+
+@functools.lru_cache(maxsize=4096)
+def _virtual(
+    display: Display, stimulus: Stimulus, observer: Observer, finger: FingerClass, run: Apparatus
+) -> tuple[Candidates, Causes]:
+    found, played = percept(display, stimulus, observer, finger, run)
+    return found.candidates, causes(stimulus, found, played, observer, finger)
+
+
+@functools.lru_cache(maxsize=4096)
+def _real(grating: Grating, observer: Observer, finger: FingerClass) -> Candidates:
+    return grating_percept(grating, observer, finger).candidates
+
+
+def _stacked(tree: list[list[list[Candidates]]] | list[list[Candidates]]) -> Candidates:
+    def gather(one: object, name: str) -> object:
+        return [gather(i, name) for i in one] if isinstance(one, list) else getattr(one, name)
+
+    return Candidates(np.array(gather(tree, "period")), np.array(gather(tree, "d_prime")))
+
+
+def _median(found: tuple[Causes, ...]) -> Causes:
+    return Causes(
+        **{
+            field.name: float(np.median([getattr(one, field.name) for one in found]))
+            for field in dataclasses.fields(Causes)
+        }
+    )
