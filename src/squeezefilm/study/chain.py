@@ -9,15 +9,17 @@ import dataclasses
 import functools
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from squeezefilm.display import Display, load_display
 from squeezefilm.errors import InputError
+from squeezefilm.quantities import DimensionlessArray, FloatArray
 from squeezefilm.study.causes import Causes, causes
 from squeezefilm.study.design import StudyDesign
 from squeezefilm.study.observer import FingerClass, Observer
-from squeezefilm.study.percepts import Apparatus, grating_percept, percept
+from squeezefilm.study.percepts import Apparatus, Percept, grating_percept, percept
 from squeezefilm.study.senses import Candidates
 from squeezefilm.study.stimuli import Grating, Stimulus
 
@@ -34,6 +36,8 @@ class ChainTables:
         apparatus: how each display was run, by the design's displays.
         virtual: candidates of shape (displays, fingers, stimuli, candidates).
         real: candidates of shape (fingers, alternatives, candidates).
+        virtual_rhythm: evidence (d′) by period, shape (displays, fingers, stimuli, periods).
+        real_rhythm: likewise, shape (fingers, alternatives, periods).
         causes: of each display and stimulus, one per finger.
     """
 
@@ -43,6 +47,8 @@ class ChainTables:
     apparatus: tuple[Apparatus, ...]
     virtual: Candidates
     real: Candidates
+    virtual_rhythm: DimensionlessArray
+    real_rhythm: DimensionlessArray
     causes: tuple[tuple[tuple[Causes, ...], ...], ...]
 
     def explain(self, display: int = 0) -> dict[str, Causes]:
@@ -95,34 +101,47 @@ def chain_tables(
             tell(f"{plate.name}: finger {number + 1} of {len(fingers)}")
             by_finger.append([_virtual(plate, s, observer, finger, run) for s in design.stimuli])
         virtual.append([[found for found, _ in row] for row in by_finger])
-        why.append(
-            tuple(
-                tuple(row[s][1] for row in by_finger) for s in range(len(design.stimuli))
-            )
-        )  # fmt: skip
+        why.append(tuple(tuple(row[s][1] for row in by_finger) for s in range(len(design.stimuli))))
     return ChainTables(
-        design, observer, fingers, tuple(runs), _stacked(virtual), _stacked(real), tuple(why)
+        design=design,
+        observer=observer,
+        fingers=fingers,
+        apparatus=tuple(runs),
+        virtual=_competing(virtual),
+        real=_competing(real),
+        virtual_rhythm=_gathered(virtual, lambda one: one.evidence.rhythm),
+        real_rhythm=_gathered(real, lambda one: one.evidence.rhythm),
+        causes=tuple(why),
     )
 
 
 @functools.lru_cache(maxsize=4096)
 def _virtual(
     display: Display, stimulus: Stimulus, observer: Observer, finger: FingerClass, run: Apparatus
-) -> tuple[Candidates, Causes]:
+) -> tuple[Percept, Causes]:
     found, played = percept(display, stimulus, observer, finger, run)
-    return found.candidates, causes(stimulus, found, played, observer, finger)
+    return found, causes(stimulus, found, played, observer, finger)
 
 
 @functools.lru_cache(maxsize=4096)
-def _real(grating: Grating, observer: Observer, finger: FingerClass) -> Candidates:
-    return grating_percept(grating, observer, finger).candidates
+def _real(grating: Grating, observer: Observer, finger: FingerClass) -> Percept:
+    return grating_percept(grating, observer, finger)
 
 
-def _stacked(tree: list[list[list[Candidates]]] | list[list[Candidates]]) -> Candidates:
-    def gather(one: object, name: str) -> object:
-        return [gather(i, name) for i in one] if isinstance(one, list) else getattr(one, name)
+def _competing(tree: Any) -> Candidates:
+    return Candidates(
+        _gathered(tree, lambda one: one.candidates.period),
+        _gathered(tree, lambda one: one.candidates.d_prime),
+    )
 
-    return Candidates(np.array(gather(tree, "period")), np.array(gather(tree, "d_prime")))
+
+def _gathered(tree: Any, part: Callable[[Percept], FloatArray]) -> FloatArray:
+    """One array of every percept in nested lists, which become its first axes."""
+
+    def gather(one: Any) -> Any:
+        return [gather(i) for i in one] if isinstance(one, list) else part(one)
+
+    return np.array(gather(tree), dtype=float)
 
 
 def _median(found: tuple[Causes, ...]) -> Causes:
