@@ -143,8 +143,9 @@ class Link:
         sequence = (self._sequence + 1) & 0xFFFF
         data = message.frame(sequence).encoded()
         self._sequence = sequence
-        self.stream.write(data)
+        # Before writing: the device cannot have it earlier.
         self._sent_at = self.clock()
+        self.stream.write(data)
         self._asked[sequence] = (self._sent_at, type(message).__name__)
         self._statistics.sent += 1
         return sequence
@@ -217,8 +218,11 @@ class Link:
 
     def _hear(self) -> list[m.Status]:
         """Take what has arrived; returns the statuses among it."""
+        data = self.stream.read()
+        # Read first, then the clock: else what comes between would seem to come too early, and
+        # the bounds on the device's clock would contradict each other.
         now, statuses = self.clock(), []
-        for frame in self._deframer.take(self.stream.read()):
+        for frame in self._deframer.take(data):
             if frame is None or self._doubled(frame):
                 continue
             kind = m.ANSWERS.get(frame.type)
