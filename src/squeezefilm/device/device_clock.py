@@ -16,6 +16,8 @@ from squeezefilm.quantities import Dimensionless, Second
 
 WORST_DRIFT: Dimensionless = 200e-6
 """Relative rate between the clocks that is allowed for; a quartz has below 100e-6."""
+# The device counts whole µs: bounds may cross by that much and contradict nothing.
+_RESOLUTION: Second = 2e-6
 
 
 @dataclass(slots=True)
@@ -62,6 +64,8 @@ class DeviceClock:
         self.heard(device, heard)
         time = self._unwrapped * 1e-6
         self.lowest = max(self.lowest, sent - time)
+        if self.highest < self.lowest <= self.highest + _RESOLUTION:
+            self.lowest = self.highest
         if self.lowest > self.highest:
             # The clocks drift faster than allowed, or one was set: believe the newest alone.
             self.lowest, self.highest = sent - time, heard - time
@@ -75,8 +79,9 @@ class DeviceClock:
                 self.lowest, self.highest = self.lowest - drift, self.highest + drift
             self._widened = heard
         self.highest = min(self.highest, heard - time)
-        if self.lowest > self.highest:
+        if self.lowest > self.highest + _RESOLUTION:
             self.lowest = -math.inf
+        self.lowest = min(self.lowest, self.highest)
 
     def device_time(self, host: Second) -> Second:
         """The device's unwrapped time (s) at a time of the host (s)."""
