@@ -135,9 +135,10 @@ def unguarded(text: str) -> str:
 
 
 def csv_text(rows: Sequence[dict[str, Cell]], columns: Sequence[Column] = COLUMNS) -> str:
-    """CSV as RFC 4180 has it (comma, CR LF, one header line): numbers read back as the same float, nothing is "".
+    """CSV as RFC 4180 has it: comma, CR LF, one header line.
 
-    Text is guarded against formulas; a truth is true or false.
+    Numbers read back as the same float, nothing is an empty cell, a truth is true or false, and
+    text is guarded against formulas.
     """
     stream = io.StringIO()
     # With a bare LF, Python before 3.13 leaves a CR within a cell unquoted.
