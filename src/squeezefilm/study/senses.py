@@ -41,8 +41,9 @@ COARSEST_PERIOD: Metre = 20e-3
 SPACING: Metre = 25e-6
 """Of the samples along the way."""
 
-# Lines are looked for down to the harmonics of the finest period. A step is a quarter of the width
-# that a stroke of 4 cm gives the finest line.
+# Lines are looked for down to the harmonics of the finest period, where a step is a third of the
+# half-width that a stroke of 4 cm gives a line. By falling between two steps a line seems fainter
+# by at most 2 % at 0.4 mm, 5 % at 0.25 mm and (a harmonic only) 32 % at 0.1 mm.
 _FINEST_LINE: Metre = 0.1e-3
 _LOG_STEP = 0.004
 # A pass begins with the pad being stretched: this much of it is not looked at.
