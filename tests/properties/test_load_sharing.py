@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from hypothesis import assume, given, settings
+from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
 from squeezefilm.contact.asperities import AsperityLaw
@@ -42,6 +42,7 @@ calm = settings(deadline=None, max_examples=40)
 
 
 @calm
+@example(2.842846438862323e-07, 500.0, 20e3, 150e-6, AsperityLaw(1e3, 3.93e-6, 2e-7, "gaussian"))
 @given(amplitudes, pressures, frequencies, widths, laws)
 def test_gas_and_asperities_carry_the_load(a, pressure, frequency, width, law):
     assume_open(law, pressure)

@@ -74,8 +74,9 @@ def asperity_mean(
         return least * bessel(0, z), 2.0 * least * bessel(1, z)
     mean = 0.5 * (_gaussian(u - a, law, table) + _gaussian(u + a, law, table))
     first = 0.5 * (_gaussian(u - a, law, table) - _gaussian(u + a, law, table))
-    # The trapezoidal rule over the period; the deeper the swing, the narrower the peak.
-    ratio = a / law[2]
+    # The trapezoidal rule over the period; the deeper the swing over the length in which pressure
+    # falls by e, which is shorter out in the tail of the heights, the narrower the peak.
+    ratio = a / law[2] * max(1.0, (u - a) / law[2])
     half = 16 if ratio < 3.0 else 32 if ratio < 10.0 else 64
     for k in range(1, half):
         c = math.cos(math.pi * k / half)
