@@ -341,3 +341,31 @@ def test_statistics_are_plain_numbers() -> None:
     fields = dataclasses.asdict(link.statistics)
     assert fields["shortest_round_trip"] <= fields["mean_round_trip"]
     assert fields["mean_round_trip"] <= fields["longest_round_trip"] < 2e-3
+
+
+class SlowWire(Wire):
+    """A wire whose calls take time, as those of a busy computer do."""
+
+    def read(self) -> bytes:
+        self.wait(2e-3)
+        return super().read()
+
+    def write(self, data: bytes) -> None:
+        self.wait(1e-3)
+        super().write(data)
+
+
+def test_a_slow_computer_does_not_mistake_the_devices_clock() -> None:
+    machine = Machine(9, sensor=lambda: (0, 0, True))
+    wire = SlowWire(machine, jitter=1_000)
+    link = Link(wire, wire.clock, wire.wait)
+    host = DeviceHost(link)
+    host.open(LIMITS)
+    host.report(1e-3)
+    for _ in range(200):
+        run(wire, host, 5e-3)
+        clock = link.device_clock
+        stamp = clock.stamp(clock.device_time(wire.clock()))
+        error = (stamp - wire.device_time + 2**31) % 2**32 - 2**31
+        assert abs(error) * 1e-6 <= clock.error + 2e-6
+        assert clock.error < 5e-3
