@@ -185,11 +185,16 @@ class Player:
         self.readings = self.late_commands = self.repeated = self.device_late_ticks = 0
         self.ending: Ending | None = None
         self._last: Reading | None = None
-        self._fed = self._heard = self._commanded = -math.inf
+        self._fed = self._heard = self._commanded = self._stepped = -math.inf
         self._faded = math.nan
         self._sending = False
         self._row: FloatArray = np.full(len(column.COLUMNS), math.nan)
         self._row[[column.TICK, column.FLAGS]] = 0.0
+
+    @property
+    def faulted(self) -> bool:
+        """Whether the device has faulted."""
+        return self.ending is Ending.FAULT
 
     def begin(self) -> None:
         """Give the device its limits and the texture's tile, arm it and start the carrier.
@@ -366,9 +371,11 @@ class Player:
 
     def _send(self, now: Second) -> None:
         commands = self.loop.take_commands()
-        # Not while this player was held up itself: then commands are waiting for it.
-        self._commanded = now if len(commands) else self._commanded
         longest = max(LOOP_LIMIT, 3 * self.plan.loop.period)
+        # Where this player was held up itself, the loop's silence is not the loop's.
+        if len(commands) or now - self._stepped > 0.5 * longest:
+            self._commanded = now
+        self._stepped = now
         if self.plan.mode == "stream" and now - self._commanded > longest:
             raise LoopError(
                 f"the loop has made no command for {1e3 * (now - self._commanded):.0f} ms; the "

@@ -155,7 +155,8 @@ class TraceWriter:
         Raises:
             InputError: rows of another shape, or a writer that is closed.
             RecordError: what cannot be written (a full disk), or what a thread could not force
-                onto the disk before. No row of a block that failed is acknowledged, the file ends with the last whole block, and writing may go on.
+                onto the disk before. No row of a block that failed is acknowledged, the file ends
+                with the last whole block, and writing may go on.
         """
         table = np.ascontiguousarray(rows, dtype="<f8")
         if table.ndim != 2 or table.shape[1] != len(self.columns):

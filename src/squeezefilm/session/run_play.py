@@ -144,7 +144,7 @@ def _played(
                 shown = now
                 show(player.view())
             time.sleep(PAUSE)
-        if player.ending is Ending.FAULT:
+        if player.faulted:
             return Ending.FAULT, fault_sentence(player.fault)
         player.fade()
         faded = loop.time
@@ -155,7 +155,7 @@ def _played(
         return Ending.LINK, str(error)
     except LoopError as error:
         return Ending.LOOP, str(error)
-    if player.ending is Ending.FAULT:
+    if player.faulted:
         return Ending.FAULT, fault_sentence(player.fault)
     return (Ending.INTERRUPTED if interrupted() else Ending.DURATION), ""
 

@@ -122,7 +122,7 @@ def virtual_play(
             while player.ending is None and clock() < faded + FADE:
                 stream.wait(step)
                 player.step()
-            if player.ending is Ending.FAULT:
+            if player.faulted:
                 ending, message = Ending.FAULT, fault_sentence(player.fault)
         except DeviceError as error:
             ending, message = Ending.LINK, str(error)
