@@ -180,3 +180,17 @@ def test_a_session_that_broke_at_once_is_told_and_shown(display: Display, tmp_pa
     assert (
         '"ended_because": "the link to the device broke"' in (tmp_path / "summary.json").read_text()
     )
+
+
+def test_a_loop_that_hangs_stops_the_device(
+    display: Display, point: WorkingPoint, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    advance = bench.SimulatedLoop.advance
+    monkeypatch.setattr(
+        bench.SimulatedLoop, "advance", lambda self, until: advance(self, min(until, 0.5))
+    )
+    outcome, session = played(prepared(display), point, tmp_path)
+    assert outcome.ending is Ending.LOOP
+    assert "no command" in outcome.message
+    assert session.end()["device_at_zero"]
+    assert all(event["fault"] == "none" for event in session.device_events)

@@ -49,6 +49,10 @@ def main(said: Path, levels: Path) -> None:
         own.seed, own.own, sensor=own.sensor, pickup=own.pickup, tick_period=own.tick_period
     )
     device.machine.faults = []
+    # Compiled before its clock starts; a device does not pause for that.
+    spare = TwinDevice(device.display, settings, hand=hand_from(), point=device.plant.point)
+    spare.advance(200_000)
+    spare.close()
     server = PtyServer(device)
     for number in (signal.SIGTERM, signal.SIGINT):
         signal.signal(number, lambda *_: server.stop())

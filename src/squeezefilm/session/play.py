@@ -23,7 +23,7 @@ from squeezefilm.device.messages import MOST_LEVELS, PICKUP_PRESENT, SENSOR_PRES
 from squeezefilm.device.ports import Sensor
 from squeezefilm.device.safety import Limits
 from squeezefilm.device.states import Fault, State
-from squeezefilm.errors import DeviceError, InputError
+from squeezefilm.errors import DeviceError, InputError, LoopError
 from squeezefilm.quantities import (
     FloatArray,
     Hertz,
@@ -44,12 +44,14 @@ PlayMode = Literal["stream", "tile"]
 REPORT_PERIOD: Second = 1e-3
 RESTING_SAMPLE: Second = 20e-3
 """A sensor slower than the reports repeats its last place; such repeats are fed this seldom."""
+LOOP_LIMIT: Second = 25e-3
+"""Silence of the loop after which the device is stopped: its last command would hold for ever."""
 DEAF_LIMIT: Second = 0.25
 """Silence of the device after which it is taken to be gone."""
 FADE: Second = 30e-3
 """From muting the loop to stopping the device: the last commands ramp to zero in it."""
 _STOP_LIMIT: Second = 0.5
-_MICROSECOND = 1e-6
+_MICRO = 1e-6
 
 
 class Loop(Protocol):
@@ -183,11 +185,16 @@ class Player:
         self.readings = self.late_commands = self.repeated = self.device_late_ticks = 0
         self.ending: Ending | None = None
         self._last: Reading | None = None
-        self._fed = self._heard = -math.inf
+        self._fed = self._heard = self._commanded = self._stepped = -math.inf
         self._faded = math.nan
         self._sending = False
         self._row: FloatArray = np.full(len(column.COLUMNS), math.nan)
         self._row[[column.TICK, column.FLAGS]] = 0.0
+
+    @property
+    def faulted(self) -> bool:
+        """Whether the device has faulted."""
+        return self.ending is Ending.FAULT
 
     def begin(self) -> None:
         """Give the device its limits and the texture's tile, arm it and start the carrier.
@@ -205,7 +212,7 @@ class Player:
         host.start(plan.frequency)
         if plan.mode == "tile":
             host.follow()
-        self._heard = self.clock()
+        self._heard = self._commanded = self.clock()
         self._note("begin", {"mode": plan.mode, "frequency_Hz": plan.frequency})
 
     def step(self) -> None:
@@ -215,7 +222,7 @@ class Player:
 
         Raises:
             DeviceError: a link that broke, or a device silent for too long.
-            LoopError: a loop that died.
+            LoopError: a loop that died, or made no command for too long.
             RecordError: a record that cannot be written.
         """
         now = self.clock()
@@ -322,28 +329,32 @@ class Player:
         return (last.x, last.y, last.touching) == (reading.x, reading.y, reading.touching)
 
     def _sample(self, reading: Reading, stamp: Second) -> tuple[float, ...]:
-        per_volt = self.plan.amplitude_per_pickup
-        amplitude = math.nan
-        if per_volt is not None and reading.flags & PICKUP_PRESENT:
-            amplitude = per_volt * reading.pickup * _MICROSECOND
         if not reading.flags & SENSOR_PRESENT:
             raise DeviceError(
                 "the device has no finger sensor; give one with --sensor replay:FILE, or connect it"
             )
         return (
             stamp - self.plan.sensor_latency,
-            reading.x * _MICROSECOND,
-            reading.y * _MICROSECOND,
+            reading.x * _MICRO,
+            reading.y * _MICRO,
             float(reading.touching),
-            reading.level * _MICROSECOND,
-            amplitude,
+            *self._reported(reading),
         )
+
+    def _reported(self, reading: Reading | None) -> tuple[Volt, Metre]:
+        """The device's output level and the amplitude by its pickup, NaN where not known."""
+        if reading is None:
+            return math.nan, math.nan
+        amplitude, per_volt = math.nan, self.plan.amplitude_per_pickup
+        if per_volt is not None and reading.flags & PICKUP_PRESENT:
+            amplitude = per_volt * reading.pickup * _MICRO
+        return reading.level * _MICRO, amplitude
 
     def _sensed(self, sensor: Sensor) -> list[tuple[float, ...]]:
         samples: list[tuple[float, ...]] = []
-        level = math.nan if self._last is None else self._last.level * _MICROSECOND
+        reported = self._reported(self._last)
         while (one := sensor.read()) is not None and len(samples) < 1000:
-            samples.append((one.time, one.x, one.y, float(one.touching), level, math.nan))
+            samples.append((one.time, one.x, one.y, float(one.touching), *reported))
         return samples
 
     def _changed(self, reading: Reading, stamp: Second) -> None:
@@ -360,6 +371,16 @@ class Player:
 
     def _send(self, now: Second) -> None:
         commands = self.loop.take_commands()
+        longest = max(LOOP_LIMIT, 3 * self.plan.loop.period)
+        # Where this player was held up itself, the loop's silence is not the loop's.
+        if len(commands) or now - self._stepped > 0.5 * longest:
+            self._commanded = now
+        self._stepped = now
+        if self.plan.mode == "stream" and now - self._commanded > longest:
+            raise LoopError(
+                f"the loop has made no command for {1e3 * (now - self._commanded):.0f} ms; the "
+                "device is stopped. This machine may be overloaded: try again, or a lower rate"
+            )
         if self.plan.mode == "stream" and self.state is State.PLAYING and self.host.clock.known:
             late = commands[:, column.COMMAND_TIME] < now
             # Those from before the device played are not late; nobody wanted them.

@@ -10,8 +10,10 @@ from __future__ import annotations
 
 import contextlib
 import json
+import math
 import mmap
 import os
+import threading
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -85,7 +87,8 @@ class TraceWriter:
         path: the file, which must not exist (a record is never written over).
         columns: names of the columns, with their units.
         metadata: where the record is from, as `results.stamp` gives it; anything with a JSON form.
-        sync_period: how often rows are forced onto the disk (s); 0 after every block.
+        sync_period: how often rows are forced onto the disk (s), by a thread, since a disk may
+            take longer than a real-time caller can wait; 0: before `append` returns.
         replace: write over a file that exists.
 
     Raises:
@@ -109,6 +112,9 @@ class TraceWriter:
         self.columns = tuple(columns)
         self._sync_period = sync_period
         self._blocks = self._rows = self._synced = self._size = 0
+        self._last_sync = -math.inf
+        self._syncing: threading.Thread | None = None
+        self._sync_error: OSError | None = None
         self._metadata = _json_bytes({**metadata, "columns": list(columns)})
         mode = os.O_WRONLY | os.O_CREAT | os.O_APPEND | getattr(os, "O_BINARY", 0)
         mode |= os.O_TRUNC if replace else os.O_EXCL
@@ -148,8 +154,9 @@ class TraceWriter:
 
         Raises:
             InputError: rows of another shape, or a writer that is closed.
-            RecordError: what cannot be written (a full disk). No row of a block that failed is
-                acknowledged, the file ends with the last whole block, and writing may go on.
+            RecordError: what cannot be written (a full disk), or what a thread could not force
+                onto the disk before. No row of a block that failed is acknowledged, the file ends
+                with the last whole block, and writing may go on.
         """
         table = np.ascontiguousarray(rows, dtype="<f8")
         if table.ndim != 2 or table.shape[1] != len(self.columns):
@@ -163,8 +170,10 @@ class TraceWriter:
             head = file.ROW_HEAD.pack(table.shape[1])
             self._block(file.BlockKind.ROWS, head + part.tobytes())
             self._rows += len(part)
-        if time.monotonic() - self._last_sync >= self._sync_period:
+        if self._sync_period == 0.0:
             self.sync()
+        elif time.monotonic() - self._last_sync >= self._sync_period:
+            self._begin_sync()
         return self._rows
 
     def event(self, kind: str, fields: Mapping[str, Any] | None = None) -> None:
@@ -176,11 +185,11 @@ class TraceWriter:
     def sync(self) -> None:
         """Force what is written onto the disk. Raises `RecordError` where that fails."""
         self._require_open()
-        try:
-            os.fsync(self._file)
-        except OSError as error:
-            raise self._failed(error) from error
-        self._synced, self._last_sync = self._rows, time.monotonic()
+        if self._syncing is not None:
+            self._syncing.join()
+        self._last_sync = time.monotonic()
+        self._sync(self._rows)
+        self._raise_if_not_synced()
 
     def close(self) -> None:
         """Write the closing block and force all onto the disk; closing twice is no mistake.
@@ -197,6 +206,8 @@ class TraceWriter:
             self.sync()
         finally:
             self._closed = True
+            if self._syncing is not None:
+                self._syncing.join()
             os.close(self._file)
 
     def __enter__(self) -> Self:
@@ -214,6 +225,27 @@ class TraceWriter:
             # What went wrong first is what the caller must see.
             with contextlib.suppress(RecordError):
                 self.close()
+
+    def _begin_sync(self) -> None:
+        self._raise_if_not_synced()
+        if self._syncing is not None and self._syncing.is_alive():
+            return
+        self._last_sync = time.monotonic()
+        self._syncing = threading.Thread(target=self._sync, args=(self._rows,), daemon=True)
+        self._syncing.start()
+
+    def _sync(self, rows: int) -> None:
+        try:
+            os.fsync(self._file)
+        except OSError as error:
+            self._sync_error = error
+        else:
+            self._synced = rows
+
+    def _raise_if_not_synced(self) -> None:
+        if self._sync_error is not None:
+            error, self._sync_error = self._sync_error, None
+            raise self._failed(error) from error
 
     def _require_open(self) -> None:
         if self._closed:

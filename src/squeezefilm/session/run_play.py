@@ -98,7 +98,13 @@ def run_play(
         loop.start()
         try:
             with _preferred():
-                ending, message = _played(player, loop, duration, interrupted, show)
+                try:
+                    ending, message = _played(player, loop, duration, interrupted, show)
+                except BaseException:
+                    # A full disk, say; should the device not hear it, its watchdog is left.
+                    with contextlib.suppress(DeviceError):
+                        host.stop()
+                    raise
                 player.end(ending, time.sleep, message)
         finally:
             report = loop.stop()
@@ -125,13 +131,7 @@ def _played(
     show: Callable[[PlayView], None] | None,
 ) -> tuple[Ending, str]:
     """Step until something ends it; returns what, and what to say."""
-    try:
-        player.begin()
-    except DeviceError:
-        # It may have been armed already; should this not reach it, its watchdog is left.
-        with contextlib.suppress(DeviceError):
-            player.host.stop()
-        raise
+    player.begin()
     began = loop.time
     shown = 0.0
     try:
@@ -144,7 +144,7 @@ def _played(
                 shown = now
                 show(player.view())
             time.sleep(PAUSE)
-        if player.ending is Ending.FAULT:
+        if player.faulted:
             return Ending.FAULT, fault_sentence(player.fault)
         player.fade()
         faded = loop.time
@@ -155,6 +155,8 @@ def _played(
         return Ending.LINK, str(error)
     except LoopError as error:
         return Ending.LOOP, str(error)
+    if player.faulted:
+        return Ending.FAULT, fault_sentence(player.fault)
     return (Ending.INTERRUPTED if interrupted() else Ending.DURATION), ""
 
 

@@ -14,7 +14,7 @@ from typing import Any
 
 from squeezefilm.device.host import DeviceHost
 from squeezefilm.device.link import Link
-from squeezefilm.errors import DeviceError
+from squeezefilm.errors import DeviceError, LoopError
 from squeezefilm.quantities import Second, Unit, require
 from squeezefilm.results import to_json
 from squeezefilm.session.play import FADE, Ending, Player, PlayPlan
@@ -117,15 +117,17 @@ def virtual_play(
             while player.ending is None and clock() - began < duration:
                 stream.wait(step)
                 player.step()
-            if player.ending is Ending.FAULT:
-                ending, message = Ending.FAULT, fault_sentence(player.fault)
             player.fade()
             faded = clock()
             while player.ending is None and clock() < faded + FADE:
                 stream.wait(step)
                 player.step()
+            if player.faulted:
+                ending, message = Ending.FAULT, fault_sentence(player.fault)
         except DeviceError as error:
             ending, message = Ending.LINK, str(error)
+        except LoopError as error:
+            ending, message = Ending.LOOP, str(error)
         player.end(ending, stream.wait, message)
         writer.event("loop", {"lateness": loop.lateness.to_json()})
         writer.event("link", to_json(link.statistics))

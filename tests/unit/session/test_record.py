@@ -126,3 +126,39 @@ def test_the_verb_says_what_was_lost(tmp_path: Path) -> None:
     )
     assert done.exit_code == 0, done.output
     assert "was not closed" in done.output
+
+
+def test_rows_come_onto_the_disk_by_themselves(tmp_path: Path) -> None:
+    import time
+
+    writer = TraceWriter(tmp_path / "one.sqft", COLUMNS, {}, sync_period=1e-6)
+    writer.append(np.zeros((5, 2)))
+    end = time.monotonic() + 60.0
+    while writer.synced < 5 and time.monotonic() < end:
+        time.sleep(1e-3)
+    assert writer.synced == 5
+    writer.close()
+    with TraceWriter(tmp_path / "two.sqft", COLUMNS, {}, sync_period=0.0) as writer:
+        writer.append(np.zeros((5, 2)))
+        assert writer.synced == 5
+
+
+def test_what_the_disk_refuses_later_is_told_at_the_next_call(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from squeezefilm.errors import RecordError
+    from squeezefilm.session import record
+
+    writer = TraceWriter(tmp_path / "one.sqft", COLUMNS, {}, sync_period=1e6)
+
+    def refuse(_: int) -> None:
+        raise OSError(5, "Input/output error")
+
+    monkeypatch.setattr(record.os, "fsync", refuse)
+    writer.append(np.zeros((5, 2)))
+    with pytest.raises(RecordError, match="Input/output error"):
+        writer.sync()
+    assert (writer.acknowledged, writer.synced) == (5, 0)
+    monkeypatch.undo()
+    writer.close()
+    assert read_trace(tmp_path / "one.sqft").damage.whole
