@@ -8,6 +8,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from squeezefilm.errors import InputError
+from squeezefilm.lab.design_area import add_design
 from squeezefilm.lab.guard import Places
 from squeezefilm.lab.keys import Keys
 from squeezefilm.lab.server import PORT, Lab, listening_socket, server_of
@@ -37,6 +38,7 @@ def serve(
     hosts = frozenset({f"127.0.0.1:{found}", f"localhost:{found}"})
     keys = Keys(folder / f".lab-{found}.keys")
     lab = Lab(folder, keys, Places(hosts, cookie=f"squeezefilm-{found}"))
+    add_design(lab)
     link = f"http://127.0.0.1:{found}/?token={keys.new_link()}"
     server = server_of(lab)
     say(f"squeezefilm lab: {link}")
