@@ -38,7 +38,7 @@ def design(
         InputError: a text that is no display, or a working point it does not have.
     """
     display = display_of(text)
-    p = _predicted(text, quality, voltage, surface, force)
+    p = predicted(text, quality, voltage, surface, force)
     mode = p.mode
     span = max(2.0 * p.vibration_amplitude, _LEAST_SPAN)
     amplitude = np.linspace(0.0, span, _POINTS)
@@ -93,7 +93,7 @@ def band(
 ) -> dict[str, Any]:
     """The friction curve's band on the same amplitudes as `design` draws it."""
     display = display_of(text)
-    p = _predicted(text, quality, voltage, surface, force)
+    p = predicted(text, quality, voltage, surface, force)
     amplitude = np.linspace(0.0, max(2.0 * p.vibration_amplitude, _LEAST_SPAN), _POINTS)
     found = friction_band(display, p, amplitude[::3], samples=samples)
     return {
@@ -105,9 +105,17 @@ def band(
     }
 
 
-def _predicted(
-    text: str, quality: str, voltage: str | None, surface: str | None, force: str | None
+def predicted(
+    text: str,
+    quality: str,
+    voltage: str | None = None,
+    surface: str | None = None,
+    force: str | None = None,
 ) -> Prediction:
+    """The prediction of a display's text at a working point, by the theory of a quality.
+
+    Raises `InputError` as `design` does.
+    """
     if quality not in QUALITIES:
         raise InputError(f"quality = {quality!r} is not known; allowed: {', '.join(QUALITIES)}")
     display = display_of(text)

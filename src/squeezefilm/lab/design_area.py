@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from typing import TYPE_CHECKING, Literal
 
 from pydantic import Field
@@ -10,13 +9,12 @@ from pydantic import Field
 from squeezefilm import presets
 from squeezefilm.errors import InputError
 from squeezefilm.lab import description, design
+from squeezefilm.lab.files import existing, fresh
 from squeezefilm.lab.wire import LONGEST_TEXT, Answer, Request
 from squeezefilm.results import write_whole
 
 if TYPE_CHECKING:
     from squeezefilm.lab.server import Lab
-
-_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,63}")
 
 
 class OpenDisplay(Request):
@@ -70,7 +68,7 @@ def add_design(lab: Lab) -> None:
         if asked.preset is not None:
             text = description.preset_text(asked.preset)
         elif asked.file is not None:
-            text = _saved(lab, asked.file)
+            text = existing(lab.folder, asked.file, ".toml").read_text(encoding="utf-8")
         else:
             text = str(asked.text)
         return _display(text)
@@ -91,15 +89,8 @@ def add_design(lab: Lab) -> None:
         return {"type": "design", "text": text, **found}
 
     async def save(asked: SaveDisplay) -> Answer:
-        if not _NAME.fullmatch(asked.name):
-            raise InputError(
-                f"'{asked.name}' is no name for a file: letters, digits, '.', '-' and '_', not "
-                "beginning with a dot or a dash"
-            )
         description.display_of(asked.text)
-        file = lab.folder / f"{asked.name}.toml"
-        if file.exists() and not asked.replace:
-            raise InputError(f"{file.name} exists; choose another name, or allow replacing it")
+        file = fresh(lab.folder, asked.name, ".toml", replace=asked.replace)
         write_whole(file, asked.text)
         return {"type": "saved", "file": file.name}
 
@@ -121,12 +112,3 @@ def _display(text: str) -> Answer:
         "form": description.form(text),
         "outline": design.outline(text),
     }
-
-
-def _saved(lab: Lab, name: str) -> str:
-    if not _NAME.fullmatch(name):
-        raise InputError(f"'{name[:80]}' is no name of a file in the lab's folder")
-    file = lab.folder / f"{name}.toml"
-    if file.is_symlink() or not file.is_file():
-        raise InputError(f"there is no file {file.name} in the lab's folder")
-    return file.read_text(encoding="utf-8")

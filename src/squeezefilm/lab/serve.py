@@ -9,6 +9,7 @@ from pathlib import Path
 
 from squeezefilm.errors import InputError
 from squeezefilm.lab.design_area import add_design
+from squeezefilm.lab.feel_area import add_feel
 from squeezefilm.lab.guard import Places
 from squeezefilm.lab.keys import Keys
 from squeezefilm.lab.server import PORT, Lab, listening_socket, server_of
@@ -39,6 +40,7 @@ def serve(
     keys = Keys(folder / f".lab-{found}.keys")
     lab = Lab(folder, keys, Places(hosts, cookie=f"squeezefilm-{found}"))
     add_design(lab)
+    add_feel(lab)
     link = f"http://127.0.0.1:{found}/?token={keys.new_link()}"
     server = server_of(lab)
     say(f"squeezefilm lab: {link}")

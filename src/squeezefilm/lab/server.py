@@ -18,6 +18,7 @@ from starlette.responses import FileResponse, PlainTextResponse, Response
 from starlette.routing import Route, WebSocketRoute
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
+from squeezefilm import render
 from squeezefilm.errors import InputError
 from squeezefilm.lab.connections import TimedProtocol
 from squeezefilm.lab.guard import Guard, Places
@@ -26,6 +27,7 @@ from squeezefilm.lab.wire import LARGEST_MESSAGE, Dispatcher, as_text
 from squeezefilm.lab.worker import SupersededError, Workers
 
 STATIC = Path(__file__).parent / "static"
+RENDERER = Path(render.__file__).parent / "static" / "renderer.js"
 PORT = 8631
 _KINDS = {
     ".html": "text/html; charset=utf-8",
@@ -79,6 +81,9 @@ def application(lab: Lab) -> Guard:
     async def static(request: Request) -> Response:
         return static_file(STATIC, request.path_params["path"])
 
+    async def port_of_the_renderer(_: Request) -> Response:
+        return _file(RENDERER)
+
     async def another(request: Request) -> Response:
         token = lab.keys.new_link("experimenter")
         return PlainTextResponse(f"/?token={token}")
@@ -92,6 +97,7 @@ def application(lab: Lab) -> Guard:
         routes=[
             Route("/", page),
             Route("/participant", page),
+            Route("/static/renderer.js", port_of_the_renderer),
             Route("/static/{path:path}", static),
             Route("/another-station", another, methods=["POST"]),
             WebSocketRoute("/ws", lambda socket: converse(lab, lab.experimenter, socket)),
