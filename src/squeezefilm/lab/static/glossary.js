@@ -11,6 +11,8 @@ export const GLOSSARY = {
   quality_factor: { name: "quality factor", symbol: "Q", text: "Resonant gain of the whole assembly; energy stored over energy lost in a radian.", source: "linear resonator" },
   tangential_force: { name: "tangential force", symbol: "µ′ F", text: "What the finger works against while it slides steadily.", source: "Coulomb" },
   amplitude_per_volt: { name: "amplitude per volt", text: "Zero-to-peak amplitude at the largest interior antinode for one volt zero-to-peak.", source: "harmonic response" },
+  lag: { name: "lag", text: "How far the rendered vibration trails the finger: the resonator's time constant times the speed.", source: "first-order envelope" },
+  event_delay: { name: "event → friction", text: "From the pointer event's time stamp to the friction computed from it, in this page, median over the last events." },
   voltage: { name: "voltage", symbol: "V", text: "Zero-to-peak, at the resonance. Above 42 V peak the touched side needs named insulation.", source: "" },
   thickness: { name: "thickness", text: "Of the body, or of the ceramic in its patch. Frequency rises with it, amplitude per volt falls.", source: "" },
   length: { name: "length", text: "Along the wave.", source: "" },

@@ -8,7 +8,7 @@ const PREFIXES = [
 export function quantity(value, unit, digits = 3) {
   if (value === null || value === undefined || !Number.isFinite(value)) return "–";
   if (unit === "" || unit === "1") return plain(value, digits);
-  if (value === 0) return `0 ${unit}`;
+  if (Math.abs(value) < 1e-13) return `0 ${unit}`;
   const size = Math.abs(value);
   const [scale, prefix] = PREFIXES.find(([one]) => size >= one * 0.9995) ?? PREFIXES.at(-1);
   return `${plain(value / scale, digits)} ${prefix}${unit}`;
