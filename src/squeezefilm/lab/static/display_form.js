@@ -1,5 +1,6 @@
 // A display's values as a form: a text with its unit, a slider beside it, its source on hover.
 
+import { GLOSSARY } from "./glossary.js";
 import { element, split } from "./numbers.js";
 
 const SPAN = 3;
@@ -47,7 +48,8 @@ function title(section, rows) {
 function field(row, write, slide) {
   const id = `f-${row.path.replaceAll(".", "-")}`;
   const assumed = row.evidence === "assumed";
-  const label = element("label", { for: id, "data-tip": row.name, "data-source": row.source, tabindex: "-1" },
+  const tip = row.name in GLOSSARY || row.source ? row.name : null;
+  const label = element("label", { for: id, "data-tip": tip, "data-source": row.source || null },
     row.name.replaceAll("_", " "), assumed ? element("span", { class: "mark", title: `assumed: ${row.source}`, text: " *" }) : null);
   const source = row.source ? element("small", { class: "source", text: `${row.evidence}: ${row.source}` }) : null;
   if (row.name === "type") return null;

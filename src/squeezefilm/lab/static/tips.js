@@ -6,8 +6,10 @@ export function watchTips(box) {
   let shown = null;
 
   function show(target) {
-    const entry = GLOSSARY[target.dataset.tip];
-    if (!entry) return;
+    const found = GLOSSARY[target.dataset.tip];
+    const entry = found ?? { name: target.dataset.tip.replaceAll("_", " "), text: "" };
+    const source = target.dataset.source || entry.source;
+    if (!found && !source) return;
     shown = target;
     box.replaceChildren();
     const head = document.createElement("strong");
@@ -15,10 +17,10 @@ export function watchTips(box) {
     const body = document.createElement("div");
     body.textContent = entry.text;
     box.append(head, body);
-    if (entry.source) {
-      const source = document.createElement("div");
-      source.textContent = `Source: ${entry.source}`;
-      box.append(source);
+    if (source) {
+      const from = document.createElement("div");
+      from.textContent = `Source: ${source}`;
+      box.append(from);
     }
     box.hidden = false;
     target.setAttribute("aria-describedby", "tip");
