@@ -94,7 +94,11 @@ def add_design(lab: Lab) -> None:
         write_whole(file, asked.text)
         return {"type": "saved", "file": file.name}
 
+    async def ping(_: Request) -> Answer:
+        return {"type": "pong"}
+
     add = lab.experimenter.add
+    add("ping", Request, ping)
     add("displays", Request, listing)
     add("open display", OpenDisplay, open_display)
     add("edit display", EditDisplay, edit)
