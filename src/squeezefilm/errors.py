@@ -92,6 +92,10 @@ class ConvergenceError(SqueezefilmError):
         self.iterations = iterations
 
 
+class RecordError(SqueezefilmError):
+    """A record that cannot be written: a full disk, a file that exists, a folder that refuses."""
+
+
 class SqueezefilmWarning(UserWarning):
     """Anything squeezefilm warns of."""
 

@@ -1,4 +1,5 @@
-"""Displays named for their paper, each value with its source, and textures to begin with.
+"""Displays named for their paper, each value with its source; textures and studies to
+begin with.
 
 Files only: rooms above read them.
 """
@@ -46,6 +47,16 @@ def resolve_texture(name_or_path: str | Path) -> Path:
     return _resolved(name_or_path, "texture", texture_names(), _FOLDER / "textures")
 
 
+def study_names() -> tuple[str, ...]:
+    """The names of all preset studies, sorted."""
+    return tuple(sorted(path.stem for path in (_FOLDER / "studies").glob("*.toml")))
+
+
+def resolve_study(name_or_path: str | Path) -> Path:
+    """The file of a preset study's name or of a path to a TOML file. As `resolve` does."""
+    return _resolved(name_or_path, "study", study_names(), _FOLDER / "studies")
+
+
 def resolve(name_or_path: str | Path) -> Path:
     """The file of a preset's name or of a path to a TOML file.
 
@@ -60,8 +71,9 @@ def _resolved(name_or_path: str | Path, kind: str, known: tuple[str, ...], folde
     if looks_like_name and text in known:
         return folder / f"{text}.toml"
     if looks_like_name and not candidate.exists():
+        kinds = "Studies" if kind == "study" else f"{kind.capitalize()}s"
         raise ConfigError(
             f"'{text}' is neither a file nor a {kind}.{did_you_mean(text, known)} "
-            f"{kind.capitalize()}s: {', '.join(known)}"
+            f"{kinds}: {', '.join(known)}"
         )
     return candidate

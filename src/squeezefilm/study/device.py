@@ -1,0 +1,152 @@
+"""What a study asks of a device: who it is, whether it is in order, to play, and to stop."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Protocol
+
+from squeezefilm.quantities import (
+    Dimensionless,
+    Hertz,
+    Metre,
+    MetrePerSecond,
+    Newton,
+    Unit,
+    format_quantity,
+    require,
+)
+from squeezefilm.study.stimuli import Stimulus
+
+
+@dataclass(frozen=True)
+class DeviceIdentity:
+    """Which device presented a trial, so that its rows can be told apart.
+
+    `device_sha256` is the hash of the display's description (`results.config_hash`),
+    `calibration_sha256` that of the calibration in use; both are empty where there is none.
+    """
+
+    name: str
+    device_sha256: str = ""
+    calibration_sha256: str = ""
+
+
+@dataclass(frozen=True)
+class DeviceVerification:
+    """A measurement of the device against what it should be, before or after a session.
+
+    The tolerances are relative. A device that nothing can be measured of has `measurable = False`
+    and says why in `remark`: that is recorded, and counts neither as passed nor as failed.
+
+    Raises:
+        InputError: a measured or expected value that is not above 0, or a tolerance outside 0…1.
+    """
+
+    amplitude: Metre = math.nan
+    expected_amplitude: Metre = math.nan
+    resonance_frequency: Hertz = math.nan
+    expected_resonance_frequency: Hertz = math.nan
+    amplitude_tolerance: Dimensionless = 0.1
+    resonance_tolerance: Dimensionless = 0.01
+    measurable: bool = True
+    remark: str = ""
+
+    def __post_init__(self) -> None:
+        require("amplitude_tolerance", self.amplitude_tolerance, above=0.0, below=1.0)
+        require("resonance_tolerance", self.resonance_tolerance, above=0.0, below=1.0)
+        if self.measurable:
+            metre, hertz = Unit("m"), Unit("Hz")
+            require("expected_amplitude", self.expected_amplitude, metre, above=0.0)
+            require(
+                "expected_resonance_frequency", self.expected_resonance_frequency, hertz, above=0.0
+            )
+
+    @property
+    def problems(self) -> tuple[str, ...]:
+        """What is off, in sentences; none if all is within tolerance. What could not be read (NaN)
+        is off."""
+        if not self.measurable:
+            return ()
+        found = []
+        for name, measured, expected, tolerance, unit in (
+            (
+                "amplitude",
+                self.amplitude,
+                self.expected_amplitude,
+                self.amplitude_tolerance,
+                Unit("m"),
+            ),
+            (
+                "resonance",
+                self.resonance_frequency,
+                self.expected_resonance_frequency,
+                self.resonance_tolerance,
+                Unit("Hz"),
+            ),
+        ):
+            # Written so that NaN is off.
+            if not abs(measured - expected) <= tolerance * expected:
+                found.append(
+                    f"{name} is {format_quantity(measured, unit)}; it must be within "
+                    f"{100 * tolerance:g} % of {format_quantity(expected, unit)}"
+                )
+        return tuple(found)
+
+    @property
+    def passed(self) -> bool:
+        """Whether nothing measured is off."""
+        return not self.problems
+
+
+@dataclass(frozen=True)
+class Exploration:
+    """How the finger explored one trial; NaN where the device does not know.
+
+    `trace` is a table's CSV text (`formats.traces.csv_text`) of the finger's path, empty if there
+    is none; its metadata must not name the participant.
+    """
+
+    path_length: Metre = math.nan
+    mean_speed: MetrePerSecond = math.nan
+    mean_normal_force: Newton = math.nan
+    trace: str = ""
+
+
+class StudyDevice(Protocol):
+    """The seam between a study and what presents its surfaces: a device, its twin, or nothing."""
+
+    def identity(self) -> DeviceIdentity:
+        """Who it is."""
+        ...
+
+    def verify_device(self) -> DeviceVerification:
+        """Measure amplitude and resonance against what they should be. May take seconds."""
+        ...
+
+    def present(self, stimulus: Stimulus, seed: int) -> None:
+        """Begin to play a surface; returns at once. Raises `SqueezefilmError` if it cannot."""
+        ...
+
+    def stop(self) -> Exploration:
+        """Silence the device; returns how the finger explored since `present`."""
+        ...
+
+
+class NoDevice:
+    """No device: surfaces are presented by hand, or not at all, and nothing can be verified."""
+
+    def identity(self) -> DeviceIdentity:
+        """The name "none" and no hashes."""
+        return DeviceIdentity("none")
+
+    def verify_device(self) -> DeviceVerification:
+        """Nothing to measure, and says so."""
+        return DeviceVerification(measurable=False, remark="no device: nothing was verified")
+
+    def present(self, stimulus: Stimulus, seed: int) -> None:
+        """Nothing."""
+
+    def stop(self) -> Exploration:
+        """Nothing is known of the finger."""
+        return Exploration()

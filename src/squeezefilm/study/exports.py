@@ -1,0 +1,130 @@
+"""Exports of a study, and the list of where they are, so that a deletion reaches them.
+
+The list lies beside the study (``study.exports/exports.json``), never in it: places on one
+machine's disk are nobody else's business.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Callable
+from pathlib import Path
+from typing import Literal
+
+from squeezefilm.errors import InputError
+from squeezefilm.results import write_whole
+from squeezefilm.study import bids, psych_ds
+from squeezefilm.study.session_table import SESSION_COLUMNS, session_table
+from squeezefilm.study.store import StudyStore
+from squeezefilm.study.trial_table import csv_text, trial_table
+
+Format = Literal["csv", "psych-ds", "bids"]
+FORMATS: tuple[Format, ...] = ("csv", "psych-ds", "bids")
+_LIST = "exports.json"
+_MARK = ".squeezefilm-export.json"
+
+
+def export_study(store: StudyStore, format: Format, folder: str | Path | None = None) -> Path:
+    """Write all answers into a folder, and remember it. Returns the folder.
+
+    Args:
+        store: the study.
+        format: "csv" (trials and sessions), "psych-ds" or "bids".
+        folder: new, empty, or an earlier export, whose files are replaced; by default the
+            format's own beside the study.
+
+    Raises:
+        InputError: an unknown format, a folder with other files in it, or one that cannot be
+            written to.
+    """
+    if format not in FORMATS:
+        raise InputError(f"format '{format}' is not known; allowed: {', '.join(FORMATS)}")
+    target = Path(folder) if folder is not None else store.exports / format
+    _remove_export(target)
+    files = _FILES[format](store)
+    # The mark comes first: a half-written export is known for one, and can be replaced.
+    write_whole(target / _MARK, json.dumps({"format": format, "files": sorted(files)}, indent=2))
+    for name, text in files.items():
+        write_whole(target / name, text)
+    _remember(store, format, target)
+    return target
+
+
+def exported_folders(store: StudyStore) -> list[tuple[Format, Path]]:
+    """Format and folder of every export that is still there."""
+    listed = store.exports / _LIST
+    if not listed.is_file():
+        return []
+    try:
+        found = [(one["format"], Path(one["folder"])) for one in json.loads(listed.read_text())]
+    except (ValueError, KeyError, TypeError) as error:
+        raise InputError(
+            f"{listed} cannot be read ({error!r}); remove it and export again, and delete old "
+            "exports by hand"
+        ) from error
+    return [(format, folder) for format, folder in found if (folder / _MARK).is_file()]
+
+
+def export_again(store: StudyStore) -> int:
+    """Make every export anew, its old files erased. Returns how many there are."""
+    folders = exported_folders(store)
+    for format, folder in folders:
+        export_study(store, format, folder)
+    return len(folders)
+
+
+def erase_file(path: Path) -> None:
+    """Overwrite a file with zeros, as far as the disk lets us, and remove it."""
+    size = path.stat().st_size
+    with path.open("r+b") as file:
+        file.write(b"\x00" * size)
+        file.flush()
+        os.fsync(file.fileno())
+    path.unlink()
+
+
+def _remove_export(folder: Path) -> None:
+    """Erase an earlier export; an empty folder is welcome. Raises `InputError` for any other."""
+    if folder.exists() and not folder.is_dir():
+        raise InputError(f"{folder} is a file; give a folder")
+    if not folder.is_dir():
+        return
+    mark = folder / _MARK
+    present = {path for path in folder.rglob("*") if not path.is_dir()}
+    ours: set[Path] = set()
+    if mark.is_file():
+        ours = {folder / name for name in json.loads(mark.read_text())["files"]} | {mark}
+        # A file that was being written when a program was killed.
+        ours |= {p for p in present if any(p.name.startswith(f".{one.name}.") for one in ours)}
+    if others := sorted(str(path.relative_to(folder)) for path in present - ours):
+        raise InputError(
+            f"{folder} has files of its own ({', '.join(others[:3])}); give a new or empty folder"
+        )
+    # The mark goes last, so that an interrupted removal can be repeated.
+    for path in sorted(present, key=lambda one: one == mark):
+        erase_file(path)
+    for path in sorted((p for p in folder.rglob("*") if p.is_dir()), reverse=True):
+        path.rmdir()
+
+
+def _remember(store: StudyStore, format: Format, folder: Path) -> None:
+    known = {str(path): one for one, path in exported_folders(store)}
+    known[str(folder.resolve())] = format
+    listing = [{"format": one, "folder": path} for path, one in sorted(known.items())]
+    write_whole(store.exports / _LIST, json.dumps(listing, indent=2))
+
+
+def _csv_files(store: StudyStore) -> dict[str, str]:
+    name = store.design.name
+    return {
+        f"{name}_trials.csv": csv_text(trial_table(store)),
+        f"{name}_sessions.csv": csv_text(session_table(store), SESSION_COLUMNS),
+    }
+
+
+_FILES: dict[Format, Callable[[StudyStore], dict[str, str]]] = {
+    "csv": _csv_files,
+    "psych-ds": psych_ds.dataset,
+    "bids": bids.dataset,
+}

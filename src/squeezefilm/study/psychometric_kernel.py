@@ -1,0 +1,353 @@
+"""The compiled parts of psychometric functions: shapes, likelihood, maximum, bootstrap, grid.
+
+A row of parameters θ is threshold m, ln width, lapse rate and guess rate, on the axis on which
+the shape is defined (the stimulus or its natural logarithm). A row `beta` holds the two
+exponents of the Beta prior of the lapse rate, then those of the guess rate. Priors of the
+threshold and of ln width are flat between their bounds.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from squeezefilm.quantities import FloatArray
+
+IntArray = NDArray[np.int64]
+BoolArray = NDArray[np.bool_]
+
+LOGISTIC, GAUSSIAN, GUMBEL, REVERSED_GUMBEL, HYPERBOLIC_SECANT = range(5)
+THRESHOLD, LOG_WIDTH, LAPSE, GUESS = range(4)
+
+# The share of the rise left out on either side of the width.
+_TAIL = 0.05
+_K_LOGISTIC = 2 * math.log(1 / _TAIL - 1)
+_K_GAUSSIAN = 2 * 1.6448536269514722
+_K_GUMBEL = math.log(-math.log(_TAIL)) - math.log(-math.log(1 - _TAIL))
+_K_SECANT = 4 / math.pi * math.log(math.tan(math.pi / 2 * (1 - _TAIL)))
+_LN_LN_2 = math.log(math.log(2.0))
+# Probabilities nearer to 0 or 1 than this are not told apart; they occur only where the data
+# are impossible under the parameters anyway.
+_LEAST = 1e-12
+_MOST_STEPS = 200
+_SETTLED = 1e-10
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def sigmoid(shape: int, z: float) -> tuple[float, float, float]:
+    """S, 1 − S and dS/dz of a shape at z = (x − m)/width; S(0) = ½, from 5 to 95 % over Δz = 1."""
+    if shape == 0:
+        t = _K_LOGISTIC * z
+        e = math.exp(-abs(t))
+        small, large = e / (1.0 + e), 1.0 / (1.0 + e)
+        slope = _K_LOGISTIC * small * large
+        return (large, small, slope) if t > 0 else (small, large, slope)
+    if shape == 1:
+        t = _K_GAUSSIAN * z
+        slope = _K_GAUSSIAN * math.exp(-0.5 * t * t) / math.sqrt(2 * math.pi)
+        half = math.sqrt(0.5)
+        return 0.5 * math.erfc(-half * t), 0.5 * math.erfc(half * t), slope
+    if shape == 2:
+        t = min(_K_GUMBEL * z + _LN_LN_2, 700.0)
+        e = math.exp(t)
+        return -math.expm1(-e), math.exp(-e), _K_GUMBEL * math.exp(t - e)
+    if shape == 3:
+        t = min(-_K_GUMBEL * z + _LN_LN_2, 700.0)
+        e = math.exp(t)
+        return math.exp(-e), -math.expm1(-e), _K_GUMBEL * math.exp(t - e)
+    t = 0.5 * math.pi * _K_SECANT * min(max(z, -200.0), 200.0)
+    up, down = math.atan(math.exp(t)), math.atan(math.exp(-t))
+    slope = 0.5 * _K_SECANT / math.cosh(t)
+    return 2 / math.pi * up, 2 / math.pi * down, slope
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def probabilities(shape: int, theta: FloatArray, x: FloatArray) -> FloatArray:
+    """ψ = γ + (1 − γ − λ) S at the places x, shape of x."""
+    out = np.empty(x.size)
+    width = math.exp(theta[1])
+    for i in range(x.size):
+        s, _, _ = sigmoid(shape, (x[i] - theta[0]) / width)
+        out[i] = theta[3] + (1.0 - theta[3] - theta[2]) * s
+    return out
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def log_density(
+    shape: int, theta: FloatArray, beta: FloatArray, x: FloatArray, k: FloatArray, n: FloatArray
+) -> float:
+    """ln likelihood (without binomial coefficients) plus ln prior (not normalised)."""
+    width = math.exp(theta[1])
+    total = 0.0
+    for i in range(x.size):
+        s, r, _ = sigmoid(shape, (x[i] - theta[0]) / width)
+        rise = 1.0 - theta[3] - theta[2]
+        if k[i] > 0:
+            total += k[i] * math.log(max(theta[3] + rise * s, _LEAST))
+        if n[i] > k[i]:
+            total += (n[i] - k[i]) * math.log(max(theta[2] + rise * r, _LEAST))
+    for j in range(2):
+        a, b, p = beta[2 * j], beta[2 * j + 1], theta[2 + j]
+        if a != 1.0:
+            total += (a - 1.0) * math.log(max(p, _LEAST))
+        if b != 1.0:
+            total += (b - 1.0) * math.log(max(1.0 - p, _LEAST))
+    return total
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def _derivatives(
+    shape: int,
+    theta: FloatArray,
+    beta: FloatArray,
+    x: FloatArray,
+    k: FloatArray,
+    n: FloatArray,
+    gradient: FloatArray,
+    information: FloatArray,
+) -> None:
+    width = math.exp(theta[1])
+    gradient[:] = 0.0
+    information[:] = 0.0
+    d = np.empty(4)
+    for i in range(x.size):
+        z = (x[i] - theta[0]) / width
+        s, r, slope = sigmoid(shape, z)
+        rise = 1.0 - theta[3] - theta[2]
+        p = max(theta[3] + rise * s, _LEAST)
+        q = max(theta[2] + rise * r, _LEAST)
+        d[0] = -rise * slope / width
+        d[1] = -rise * slope * z
+        d[2] = -s
+        d[3] = r
+        pull = k[i] / p - (n[i] - k[i]) / q
+        weight = n[i] / (p * q)
+        for a in range(4):
+            gradient[a] += pull * d[a]
+            for b in range(a + 1):
+                information[a, b] += weight * d[a] * d[b]
+    for j in range(2):
+        a1, b1, p = beta[2 * j] - 1.0, beta[2 * j + 1] - 1.0, theta[2 + j]
+        near, far = max(p, 1e-6), max(1.0 - p, 1e-6)
+        gradient[2 + j] += a1 / near - b1 / far
+        information[2 + j, 2 + j] += a1 / near**2 + b1 / far**2
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def _solve(matrix: FloatArray, right: FloatArray, size: int) -> bool:
+    """Cholesky in place on the lower triangle; False where the matrix is not positive."""
+    for i in range(size):
+        for j in range(i + 1):
+            total = matrix[i, j]
+            for m in range(j):
+                total -= matrix[i, m] * matrix[j, m]
+            if i == j:
+                if not total > 0.0:
+                    return False
+                matrix[i, i] = math.sqrt(total)
+            else:
+                matrix[i, j] = total / matrix[j, j]
+    for i in range(size):
+        for m in range(i):
+            right[i] -= matrix[i, m] * right[m]
+        right[i] /= matrix[i, i]
+    for i in range(size - 1, -1, -1):
+        for m in range(i + 1, size):
+            right[i] -= matrix[m, i] * right[m]
+        right[i] /= matrix[i, i]
+    return True
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def maximise(
+    shape: int,
+    theta: FloatArray,
+    free: BoolArray,
+    low: FloatArray,
+    high: FloatArray,
+    beta: FloatArray,
+    x: FloatArray,
+    k: FloatArray,
+    n: FloatArray,
+) -> float:
+    """Raise ln density over the free parameters within their bounds; θ is changed in place.
+
+    Fisher scoring, damped after Levenberg and Marquardt, with an active set of bounds. Returns
+    the largest ln density. A local maximum near the start.
+    """
+    gradient, information = np.empty(4), np.empty((4, 4))
+    matrix, step = np.empty((4, 4)), np.empty(4)
+    chosen, trial = np.empty(4, dtype=np.int64), np.empty(4)
+    value = log_density(shape, theta, beta, x, k, n)
+    damping, fresh = 1e-3, False
+    for _ in range(_MOST_STEPS):
+        if not fresh:
+            _derivatives(shape, theta, beta, x, k, n, gradient, information)
+            fresh = True
+        size = 0
+        for a in range(4):
+            held = (theta[a] <= low[a] and gradient[a] < 0) or (
+                theta[a] >= high[a] and gradient[a] > 0
+            )
+            if free[a] and not held:
+                chosen[size] = a
+                size += 1
+        if size == 0:
+            break
+        for i in range(size):
+            step[i] = gradient[chosen[i]]
+            for j in range(i + 1):
+                # chosen rises, so the lower triangle is the one that was filled.
+                matrix[i, j] = information[chosen[i], chosen[j]]
+            matrix[i, i] += damping * matrix[i, i] + 1e-9
+        solved = _solve(matrix, step, size)
+        trial[:] = theta
+        if solved:
+            for i in range(size):
+                a = chosen[i]
+                trial[a] = min(max(theta[a] + step[i], low[a]), high[a])
+        better = log_density(shape, trial, beta, x, k, n) if solved else -math.inf
+        if better >= value:
+            gain = better - value
+            theta[:] = trial
+            value = better
+            fresh = False
+            if gain < _SETTLED and damping < 1e-1:
+                break
+            damping = max(0.2 * damping, 1e-9)
+        else:
+            damping *= 6.0
+            if damping > 1e10:
+                break
+    return value
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def saturated(k: FloatArray, n: FloatArray) -> float:
+    """ln likelihood of the model that has a probability of its own for every place."""
+    total = 0.0
+    for i in range(k.size):
+        if 0 < k[i] < n[i]:
+            total += k[i] * math.log(k[i] / n[i]) + (n[i] - k[i]) * math.log(1 - k[i] / n[i])
+    return total
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def binomial_quantiles(p: FloatArray, n: FloatArray, shares: FloatArray, out: FloatArray) -> None:
+    """Counts of n trials not exceeded with a probability `shares` (rows, places), into `out`.
+
+    The same shares give counts that rise with p, so that what is simulated at two values of a
+    parameter differs by the parameter and not by chance.
+    """
+    for i in range(p.size):
+        heights = np.empty(int(n[i]) + 1)
+        size = heights.size - 1
+        total = 0.0
+        for k in range(size + 1):
+            if p[i] <= 0.0 or p[i] >= 1.0:
+                term = 1.0 if (k == 0) == (p[i] <= 0.0) and (k == 0 or k == size) else 0.0
+            else:
+                term = math.exp(
+                    math.lgamma(size + 1.0)
+                    - math.lgamma(k + 1.0)
+                    - math.lgamma(size - k + 1.0)
+                    + k * math.log(p[i])
+                    + (size - k) * math.log(1.0 - p[i])
+                )
+            total += term
+            heights[k] = total
+        for row in range(out.shape[0]):
+            at = np.searchsorted(heights, shares[row, i] * total)
+            out[row, i] = min(at, size)
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def refit(
+    shape: int,
+    best: FloatArray,
+    free: BoolArray,
+    low: FloatArray,
+    high: FloatArray,
+    beta: FloatArray,
+    x: FloatArray,
+    n: FloatArray,
+    answers: FloatArray,
+    estimates: FloatArray,
+    deviances: FloatArray,
+) -> None:
+    """Fit every row of simulated `answers` (replicates, places), starting from `best`.
+
+    Fills `estimates` (replicates, 4) and `deviances` from the saturated model (replicates,).
+    """
+    flat = np.ones(4)
+    for row in range(answers.shape[0]):
+        k = answers[row]
+        theta = best.copy()
+        maximise(shape, theta, free, low, high, beta, x, k, n)
+        estimates[row] = theta
+        deviances[row] = 2.0 * (saturated(k, n) - log_density(shape, theta, flat, x, k, n))
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def profile_drops(
+    shape: int,
+    held: FloatArray,
+    parameter: int,
+    free: BoolArray,
+    low: FloatArray,
+    high: FloatArray,
+    beta: FloatArray,
+    x: FloatArray,
+    n: FloatArray,
+    answers: FloatArray,
+    drops: FloatArray,
+) -> None:
+    """Twice the fall of ln density when one parameter is held at its true value, θ = `held`.
+
+    For every row of `answers` (replicates, places), simulated at `held`; fills `drops`.
+    """
+    some = free.copy()
+    some[parameter] = False
+    for row in range(answers.shape[0]):
+        k = answers[row]
+        under = held.copy()
+        bottom = maximise(shape, under, some, low, high, beta, x, k, n)
+        # From the constrained maximum the free one can only climb.
+        top = maximise(shape, under, free, low, high, beta, x, k, n)
+        drops[row] = 2.0 * (top - bottom)
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def grid_log_likelihood(
+    shape: int,
+    thresholds: FloatArray,
+    log_widths: FloatArray,
+    lapses: FloatArray,
+    guesses: FloatArray,
+    x: FloatArray,
+    k: FloatArray,
+    n: FloatArray,
+) -> FloatArray:
+    """ln likelihood at every cell of a grid: (thresholds, widths, lapses, guesses); −inf where
+    lapse and guess rate leave no rise."""
+    out = np.zeros((thresholds.size, log_widths.size, lapses.size, guesses.size))
+    for i in range(thresholds.size):
+        for j in range(log_widths.size):
+            narrow = math.exp(-log_widths[j])
+            for at in range(x.size):
+                s, r, _ = sigmoid(shape, (x[at] - thresholds[i]) * narrow)
+                right, wrong = k[at], n[at] - k[at]
+                for a in range(lapses.size):
+                    for b in range(guesses.size):
+                        rise = 1.0 - lapses[a] - guesses[b]
+                        if rise <= 0.0:
+                            out[i, j, a, b] = -math.inf
+                            continue
+                        if right > 0:
+                            out[i, j, a, b] += right * math.log(max(guesses[b] + rise * s, _LEAST))
+                        if wrong > 0:
+                            out[i, j, a, b] += wrong * math.log(max(lapses[a] + rise * r, _LEAST))
+    return out

@@ -1,0 +1,143 @@
+"""Simulated people of known threshold, width and lapse rate, and how they are tested.
+
+Designs and truths were fixed before any coverage was computed, and none was left out since.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from squeezefilm.quantities import FloatArray
+from squeezefilm.study.bayesian_adaptive import AdaptiveDesign, BayesianAdaptive
+from squeezefilm.study.psychometric import PsychometricFunction
+from squeezefilm.study.psychometric_fit import PsychometricFit, fit_psychometric
+from squeezefilm.study.psychometric_prior import PsychometricPrior
+from squeezefilm.study.staircase import Staircase, StaircaseRule
+
+PARAMETERS = ("threshold", "width", "lapse_rate")
+Answers = tuple[FloatArray, FloatArray]
+Experiment = Callable[[PsychometricFunction, np.random.Generator], Answers]
+
+LINEAR = np.arange(1.0, 9.0)
+LOGARITHMIC = np.geomspace(1.0, 8.0, 8)
+WIDE_PRIOR = PsychometricPrior((1.0, 9.0), (0.5, 12.0))
+
+
+def constant(levels: FloatArray, repetitions: int) -> Experiment:
+    def answers(truth: PsychometricFunction, random: np.random.Generator) -> Answers:
+        intensity = np.repeat(levels, repetitions)
+        return intensity, random.random(intensity.size) < truth(intensity)
+
+    return answers
+
+
+def bayesian(trials: int) -> Experiment:
+    design = AdaptiveDesign(tuple(np.linspace(0.0, 10.0, 41)), WIDE_PRIOR, most_trials=trials)
+
+    def answers(truth: PsychometricFunction, random: np.random.Generator) -> Answers:
+        method = BayesianAdaptive(design)
+        while not method.finished:
+            x = method.next_stimulus()
+            method.update(x, bool(random.random() < truth(x)))
+        done = method.trials
+        return (
+            np.array([one.intensity for one in done]),
+            np.array([one.positive for one in done], dtype=float),
+        )
+
+    return answers
+
+
+def staircases(trials: int) -> Experiment:
+    """Half of the trials two down, one up (71 %), half one down and nine times that up (90 %)."""
+    rules = [
+        StaircaseRule(
+            8.0, 0.6, 0.2, down_after=n, up_ratio=ratio, lowest=0.0, highest=10.0,
+            reversals=10_000, most_trials=trials // 2,
+        )
+        for n, ratio in ((2, 1.0), (1, 9.0))
+    ]  # fmt: skip
+
+    def answers(truth: PsychometricFunction, random: np.random.Generator) -> Answers:
+        done = []
+        for rule in rules:
+            method = Staircase(rule)
+            while not method.finished:
+                x = method.next_stimulus()
+                method.update(x, bool(random.random() < truth(x)))
+            done += method.trials
+        return (
+            np.array([one.intensity for one in done]),
+            np.array([one.correct for one in done], dtype=float),
+        )
+
+    return answers
+
+
+@dataclass(frozen=True)
+class Recovery:
+    """A truth, an experiment on it, and the prior of the fit (None: from the stimuli)."""
+
+    truth: PsychometricFunction
+    experiment: Experiment
+    prior: PsychometricPrior | None = None
+
+    def fit(self, seed: int, replicates: int) -> PsychometricFit:
+        intensity, positive = self.experiment(self.truth, np.random.default_rng(seed))
+        return fit_psychometric(
+            intensity, positive, shape=self.truth.shape, axis=self.truth.axis,
+            guess_rate=self.truth.guess_rate, prior=self.prior, replicates=replicates, seed=seed,
+        )  # fmt: skip
+
+
+RECOVERIES: dict[str, Recovery] = {
+    "two-interval, 320 constant stimuli": Recovery(
+        PsychometricFunction("logistic", 4.5, 3.0, 0.5, 0.03), constant(LINEAR, 40)
+    ),
+    "yes/no, 160 constant stimuli": Recovery(
+        PsychometricFunction("gaussian", 4.5, 4.0, 0.0, 0.02), constant(LINEAR, 20)
+    ),
+    "four alternatives, 240 constant stimuli": Recovery(
+        PsychometricFunction("weibull", 3.0, 1.0, 0.25, 0.02, "log"), constant(LOGARITHMIC, 30)
+    ),
+    "two-interval, 200 stimuli chosen by entropy": Recovery(
+        PsychometricFunction("logistic", 5.0, 3.0, 0.5, 0.03), bayesian(200), WIDE_PRIOR
+    ),
+    "two-interval, 200 stimuli on staircases": Recovery(
+        PsychometricFunction("logistic", 5.0, 3.0, 0.5, 0.03), staircases(200), WIDE_PRIOR
+    ),
+}
+
+
+@dataclass(frozen=True)
+class Coverage:
+    """Share of runs whose interval held the truth, and the median length of the intervals."""
+
+    share: float
+    length: float
+
+
+def coverage(
+    recovery: Recovery, runs: int, replicates: int, first: int = 0
+) -> dict[tuple[str, str], Coverage]:
+    """Coverage by kind of interval and parameter."""
+    rows: dict[tuple[str, str], list[tuple[bool, float]]] = {}
+    for seed in range(first, first + runs):
+        fit = recovery.fit(seed, replicates)
+        for kind, intervals in (
+            ("posterior", fit.posterior_interval),
+            ("bootstrap", fit.bootstrap_interval),
+        ):
+            for name, (low, high) in intervals.items():
+                inside = low <= getattr(recovery.truth, name) <= high
+                rows.setdefault((kind, name), []).append((inside, high - low))
+    return {
+        key: Coverage(
+            float(np.mean([inside for inside, _ in row])),
+            float(np.median([length for _, length in row])),
+        )
+        for key, row in rows.items()
+    }

@@ -1,0 +1,227 @@
+"""Psychometric functions against closed forms, quadrature, SciPy and psignifit."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from scipy.optimize import minimize
+from scipy.special import betaincinv, ndtr
+
+from squeezefilm.study import psychometric_kernel as kernel
+from squeezefilm.study.psychometric import SHAPES, Axis, PsychometricFunction, Shape, on_axis
+from squeezefilm.study.psychometric_fit import fit_psychometric
+from squeezefilm.study.psychometric_posterior import grid_posterior
+from squeezefilm.study.psychometric_prior import PsychometricPrior
+
+LEVELS = np.arange(1.0, 9.0)
+CORRECT = np.array([21.0, 19.0, 24.0, 25.0, 31.0, 36.0, 38.0, 39.0])
+TRIALS = np.full(8, 40.0)
+
+
+def axis_of(shape: Shape) -> Axis:
+    return "log" if shape in ("weibull", "quick") else "linear"
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_threshold_and_width_are_where_the_shape_says(shape: Shape) -> None:
+    axis = axis_of(shape)
+    function = PsychometricFunction(shape, 2.0, 0.7, 0.25, 0.03, axis)
+    assert function(2.0) == pytest.approx(0.25 + 0.72 * 0.5, abs=1e-14)
+    low, high = (float(on_axis(function.quantile(share), axis)) for share in (0.05, 0.95))
+    assert high - low == pytest.approx(0.7, abs=1e-14)
+    for p in (0.26, 0.5, 0.9, 0.969):
+        assert function(function.intensity(p)) == pytest.approx(p, abs=1e-13)
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_the_slope_is_the_derivative(shape: Shape) -> None:
+    function = PsychometricFunction(shape, 2.0, 0.7, 0.25, 0.03, axis_of(shape))
+    h = 1e-5
+    for x in (1.3, 1.9, 2.0, 2.4):
+        centred = (function(x + h) - function(x - h)) / (2 * h)
+        assert function.slope(x) == pytest.approx(centred, rel=1e-6, abs=1e-9)
+
+
+def test_shapes_are_the_fields_own() -> None:
+    x = np.array([0.5, 1.0, 2.0, 3.5])
+    # Weibull's function with its usual parameters, and Quick's: 1 − 2^−(x/m)^β.
+    beta = 3.0
+    width = math.log(math.log(0.05) / math.log(0.95)) / beta
+    quick = PsychometricFunction("quick", 2.0, width, axis="log")
+    assert quick(x) == pytest.approx(1 - 2.0 ** -((x / 2.0) ** beta), abs=1e-14)
+    weibull = PsychometricFunction("weibull", 2.0 * math.log(2) ** (1 / beta), width, axis="log")
+    assert weibull(x) == pytest.approx(1 - np.exp(-((x / 2.0) ** beta)), abs=1e-14)
+    gaussian = PsychometricFunction("gaussian", 1.2, 2 * 1.6448536269514722 * 0.8)
+    assert gaussian(x) == pytest.approx(ndtr((x - 1.2) / 0.8), abs=1e-14)
+    logistic = PsychometricFunction("logistic", 1.2, 2 * math.log(19) * 0.8)
+    assert logistic(x) == pytest.approx(1 / (1 + np.exp(-(x - 1.2) / 0.8)), abs=1e-14)
+    secant = PsychometricFunction("hyperbolic-secant", 0.0, 0.7)
+    assert secant(0.3) + secant(-0.3) == pytest.approx(1.0, abs=1e-14)
+    up, down = (PsychometricFunction(s, 1.0, 0.7) for s in ("gumbel", "reversed-gumbel"))
+    assert up(1.4) == pytest.approx(1 - down(0.6), abs=1e-14)
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+@pytest.mark.parametrize("guess_rate", [0.5, None])
+def test_the_fit_is_the_maximum_that_scipy_finds(shape: Shape, guess_rate: float | None) -> None:
+    axis = axis_of(shape)
+    free = 3 if guess_rate is not None else 4
+    fit = fit_psychometric(
+        LEVELS, CORRECT, TRIALS, shape=shape, axis=axis, guess_rate=guess_rate, replicates=0
+    )
+    x = on_axis(LEVELS, axis)
+    low, high = fit.prior.bounds(axis)
+    high[2] = 0.45
+
+    def loss(row: np.ndarray) -> float:
+        threshold = float(np.exp(row[0])) if axis == "log" else float(row[0])
+        guess = 0.5 if guess_rate is not None else float(row[3])
+        function = PsychometricFunction(
+            shape, threshold, float(np.exp(row[1])), guess, float(row[2]), axis
+        )
+        p = np.clip(function(np.exp(x) if axis == "log" else x), 1e-12, 1 - 1e-12)
+        prior = 9 * math.log1p(-row[2]) + (9 * math.log1p(-guess) if free == 4 else 0.0)
+        return -float(np.sum(CORRECT * np.log(p) + (TRIALS - CORRECT) * np.log(1 - p))) - prior
+
+    function = fit.function
+    ours = np.array(
+        [
+            float(on_axis(function.threshold, axis)),
+            math.log(function.width),
+            function.lapse_rate,
+            function.guess_rate,
+        ]
+    )[:free]
+    starts = [ours + 1e-3, ours, np.array([0.5 * (low[0] + high[0]), 1.0, 0.05, 0.3])[:free]]
+    bounds = list(zip(low, high, strict=True))[:free]
+    least = min(minimize(loss, s, method="L-BFGS-B", bounds=bounds).fun for s in starts)
+    assert loss(ours) <= least + 1e-6
+
+
+def test_the_fit_recovers_expected_counts_exactly() -> None:
+    # Data equal to their expectation: the likelihood is largest at the truth.
+    truth = PsychometricFunction("logistic", 4.5, 4.0, 0.25, 0.0)
+    trials = np.full(8, 10_000_000.0)
+    fit = fit_psychometric(
+        LEVELS, np.round(trials * truth(LEVELS)), trials, guess_rate=0.25, replicates=0
+    )
+    assert fit.function.threshold == pytest.approx(4.5, abs=1e-5)
+    assert fit.function.width == pytest.approx(4.0, abs=1e-4)
+    assert fit.function.lapse_rate == pytest.approx(0.0, abs=1e-5)
+    assert fit.deviance < 1e-5
+
+
+def test_far_above_threshold_the_lapse_rate_has_its_beta_posterior() -> None:
+    # ψ = 1 − λ there, so k of n answers are binomial: the posterior is Beta(1 + n − k, 10 + k).
+    prior = PsychometricPrior((0.0, 1.0), (0.1, 0.2))
+    fit = fit_psychometric([50.0, 60.0], [57, 58], [60, 60], prior=prior, replicates=0)
+    low, high = fit.posterior_interval["lapse_rate"]
+    exact = betaincinv(6, 125, 0.025), betaincinv(6, 125, 0.975)
+    assert (low, high) == pytest.approx(exact, abs=3e-3 * (exact[1] - exact[0]))
+    assert fit.posterior.mean("lapse_rate") == pytest.approx(6 / 131, rel=1e-3)
+    # The answers say nothing of threshold and width: their posteriors are the priors.
+    assert fit.posterior_interval["threshold"] == pytest.approx((0.025, 0.975), abs=1e-3)
+    assert set(fit.bounded_by_prior) == {"threshold", "width"}
+    # The evidence is the Beta-binomial ratio B(6, 125)/B(1, 10).
+    beta = [math.lgamma(a) + math.lgamma(b) - math.lgamma(a + b) for a, b in ((6, 125), (1, 10))]
+    # The prior is cut at ½, where 0.1 % of Beta(1, 10) lies.
+    cut = math.log(1 - 0.5**10)
+    assert fit.posterior.log_evidence == pytest.approx(beta[0] - beta[1] - cut, abs=2e-3)
+
+
+@pytest.mark.parametrize("guess_rate", [0.5, None])
+def test_the_grid_is_fine_enough(guess_rate: float | None) -> None:
+    fit = fit_psychometric(LEVELS, CORRECT, TRIALS, guess_rate=guess_rate, replicates=0)
+    f = fit.function
+    mode = np.array([f.threshold, math.log(f.width), f.lapse_rate, f.guess_rate])
+    coarse = fit.posterior
+    fine = grid_posterior(
+        kernel.LOGISTIC,
+        "linear",
+        fit.prior,
+        guess_rate,
+        LEVELS,
+        CORRECT,
+        TRIALS,
+        mode,
+        cells=(96, 64, 28, 28),
+    )
+    names = ("threshold", "width", "lapse_rate", "guess_rate")
+    for name in names[: 3 if guess_rate is not None else 4]:
+        width = np.diff(fine.interval(name))[0]
+        assert coarse.interval(name) == pytest.approx(fine.interval(name), abs=0.02 * width)
+        assert coarse.mean(name) == pytest.approx(fine.mean(name), abs=0.003 * width)
+    assert coarse.log_evidence == pytest.approx(fine.log_evidence, abs=0.01)
+
+
+def test_draws_have_the_marginals() -> None:
+    posterior = fit_psychometric(LEVELS, CORRECT, TRIALS, replicates=0).posterior
+    draws = posterior.draws(20_000, seed=1)
+    for at, name in enumerate(("threshold", "width", "lapse_rate")):
+        share = np.mean(draws[:, at] <= posterior.quantile(name, 0.3))
+        assert share == pytest.approx(0.3, abs=5 * math.sqrt(0.21 / 20_000))
+
+
+def test_with_many_trials_the_two_kinds_of_interval_agree() -> None:
+    truth = PsychometricFunction("gaussian", 4.5, 4.0, 0.0, 0.05)
+    trials = np.full(8, 4000.0)
+    counts = np.random.default_rng(5).binomial(4000, truth(LEVELS))
+    fit = fit_psychometric(
+        LEVELS, counts, trials, shape="gaussian", guess_rate=0.0, replicates=1999, seed=2
+    )
+    assert fit.bootstrap is not None
+    for name in ("threshold", "width", "lapse_rate"):
+        ours, other = fit.posterior_interval[name], fit.bootstrap_interval[name]
+        assert other == pytest.approx(ours, abs=0.08 * (ours[1] - ours[0]))
+    # 8 places less 3 parameters.
+    assert np.mean(fit.bootstrap.deviances) == pytest.approx(5.0, abs=5 * math.sqrt(10 / 1999))
+
+
+def test_goodness_of_fit_tells_a_wrong_function_from_a_right_one() -> None:
+    trials = np.full(8, 200.0)
+    zigzag = np.array([110.0, 190, 110, 190, 110, 190, 110, 190])
+    assert fit_psychometric(LEVELS, zigzag, trials, replicates=199).deviance_p == 1 / 200
+    # Where the model holds p is uniform.
+    truth = PsychometricFunction("logistic", 4.5, 4.0, 0.5, 0.03)
+    random = np.random.default_rng(3)
+    values = [
+        fit_psychometric(
+            LEVELS, random.binomial(40, truth(LEVELS)), TRIALS, replicates=99, seed=seed
+        ).deviance_p
+        for seed in range(60)
+    ]
+    assert np.mean(values) == pytest.approx(0.5, abs=4 * math.sqrt(1 / 12 / 60))
+
+
+def test_agrees_with_psignifit() -> None:
+    psignifit = pytest.importorskip(
+        "psignifit", reason="psignifit is not installed; it is a test oracle only (GPL)"
+    )
+    fit = fit_psychometric(LEVELS, CORRECT, TRIALS, replicates=0)
+    (low, high), (least, most) = fit.prior.threshold, fit.prior.width
+    other = psignifit.psignifit(
+        np.column_stack([LEVELS, CORRECT, TRIALS]),
+        sigmoid="logistic",
+        experiment_type="2AFC",
+        # No overdispersion; psignifit takes no exact zero.
+        fixed_parameters={"eta": 1e-8},
+        bounds={"threshold": (low, high), "width": (least, most), "lambda": (1e-6, 0.5)},
+        priors={
+            "threshold": np.ones_like,
+            "width": lambda width: 1 / width,
+            "lambda": lambda rate: (1 - rate) ** 9,
+        },
+        grid_steps={"threshold": 120, "width": 120, "lambda": 80, "gamma": 1, "eta": 1},
+        stimulus_range=(1, 8),
+        verbose=False,
+    )
+    for ours, theirs in (("threshold", "threshold"), ("width", "width"), ("lapse_rate", "lambda")):
+        interval = fit.posterior_interval[ours]
+        size = interval[1] - interval[0]
+        mean = other.parameter_estimate_mean[theirs]
+        assert fit.posterior.mean(ours) == pytest.approx(mean, abs=0.01 * size)
+        # psignifit reads its intervals off the nodes of its grid.
+        their = other.confidence_intervals[theirs]["0.95"]
+        assert interval == pytest.approx(their, abs=0.05 * size)
