@@ -18,7 +18,7 @@ from starlette.datastructures import Headers
 from starlette.responses import PlainTextResponse, RedirectResponse, Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from squeezefilm.lab.keys import Keys, Role, Session
+from squeezefilm.lab.keys import Keys, Session
 
 LARGEST_BODY = 8 * 1024 * 1024
 """Bytes of a request; an image for a texture is the largest thing a page sends."""
@@ -172,15 +172,16 @@ class Guard:
         tokens = parse_qs(scope["query_string"].decode("latin-1")).get("token", [])
         if not tokens:
             return None
-        session = self.keys.use_link(tokens[0])
-        if session is None:
+        entered = self.keys.use_link(tokens[0])
+        if entered is None:
             self.refusals.count("link")
             return PlainTextResponse(
                 "This link was used already, or is older than ten minutes. Each link lets one "
                 "browser in, once.",
                 401,
             )
-        response = RedirectResponse(home_of(session.role), 303)
+        session, home = entered
+        response = RedirectResponse(home, 303)
         self.set_cookie(response, session)
         return response
 
@@ -207,11 +208,6 @@ class Guard:
             await send(message)
 
         return forward
-
-
-def home_of(role: Role) -> str:
-    """The page where a role begins."""
-    return "/participant" if role == "participant" else "/"
 
 
 def _open_to(path: str) -> bool:

@@ -39,6 +39,14 @@ class Session:
     until: Second
 
 
+@dataclass(frozen=True, slots=True)
+class _Link:
+    role: Role
+    station: str
+    home: str
+    until: Second
+
+
 @dataclass(slots=True)
 class Keys:
     """All links, sessions and codes of one lab. Not thread-safe: the server's loop owns it.
@@ -48,7 +56,7 @@ class Keys:
 
     file: Path | None = None
     clock: Callable[[], float] = time.time
-    _links: dict[str, tuple[Role, str, float]] = field(default_factory=dict)
+    _links: dict[str, _Link] = field(default_factory=dict)
     _sessions: dict[str, Session] = field(default_factory=dict)
     _code: tuple[str, float] | None = None
     _wrong: int = 0
@@ -67,19 +75,22 @@ class Keys:
         self._sessions = {one.secret: one for one in kept if one.until > self.clock()}
         self._stations = len(self._sessions)
 
-    def new_link(self, role: Role = "experimenter") -> str:
-        """A token that lets one browser in, once, within ten minutes."""
+    def new_link(self, role: Role = "experimenter", home: str | None = None) -> str:
+        """A token that lets one browser in, once, within ten minutes; it begins at `home`."""
         token = secrets.token_urlsafe(32)
         self._stations += 1
-        self._links[token] = (role, f"station {self._stations}", self.clock() + LINK_LIFE)
+        station = f"station {self._stations}"
+        home = home or ("/participant" if role == "participant" else "/")
+        self._links[token] = _Link(role, station, home, self.clock() + LINK_LIFE)
         return token
 
-    def use_link(self, token: str) -> Session | None:
-        """The session that a link opens; None for one that is unknown, used or too old."""
+    def use_link(self, token: str) -> tuple[Session, str] | None:
+        """The session that a link opens, and where it begins; None for one that is unknown, used
+        or too old."""
         found = self._links.pop(token, None)
-        if found is None or found[2] < self.clock():
+        if found is None or found.until < self.clock():
             return None
-        return self._open(found[0], found[1])
+        return self._open(found.role, found.station), found.home
 
     def new_code(self) -> str:
         """Six digits that pair one tablet as a participant station, once, within two minutes."""

@@ -13,6 +13,7 @@ from squeezefilm.lab.feel_area import add_feel
 from squeezefilm.lab.guard import Places
 from squeezefilm.lab.keys import Keys
 from squeezefilm.lab.server import PORT, Lab, listening_socket, server_of
+from squeezefilm.lab.study_area import add_study
 
 
 def serve(
@@ -41,6 +42,7 @@ def serve(
     lab = Lab(folder, keys, Places(hosts, cookie=f"squeezefilm-{found}"))
     add_design(lab)
     add_feel(lab)
+    add_study(lab)
     link = f"http://127.0.0.1:{found}/?token={keys.new_link()}"
     server = server_of(lab)
     say(f"squeezefilm lab: {link}")

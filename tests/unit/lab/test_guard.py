@@ -203,7 +203,7 @@ def test_a_pairing_code_works_once_and_cannot_be_guessed():
 def test_sessions_outlive_a_crash_and_no_clean_end(tmp_path):
     file = tmp_path / "keys"
     keys = Keys(file)
-    session = keys.use_link(keys.new_link())
+    session, _ = keys.use_link(keys.new_link())
     assert file.stat().st_mode & 0o777 == 0o600
     again = Keys(file)
     assert again.session(session.secret) == session
