@@ -275,8 +275,8 @@ def _models(
         sensitivity = ordered_sensitivity(counts, level, resamples, seed)
         if sensitivity.corrected:
             notes.append(
-                "d′: some stimuli were never confused, or an answer never given; one trial per stimulus was added, spread "
-                "over the answers, and d′ is too low"
+                "d′: some stimuli were never confused, or an answer never given; one trial per "
+                "stimulus was added, spread over the answers, and d′ is too low"
             )
     except InputError as error:
         notes.append(f"d′: {error}")
