@@ -16,7 +16,7 @@ from scipy import stats
 from scipy.special import ndtr
 
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import Dimensionless, DimensionlessArray, FloatArray
+from squeezefilm.quantities import Dimensionless, DimensionlessArray, FloatArray, require
 from squeezefilm.study.confusion import whole_counts
 from squeezefilm.study.participant_bootstrap import recentred_interval, resampled_counts
 
@@ -82,9 +82,10 @@ def ordered_sensitivity(
         resamples, seed: of the participant bootstrap.
 
     Raises:
-        InputError: fewer than two stimuli or answers, a stimulus without a trial, or one and
-            the same answer to everything.
+        InputError: fewer than two stimuli or answers, a stimulus without a trial, one and the
+            same answer to everything, or a level not between 0 and 1.
     """
+    require("level", level, above=0.0, below=1.0)
     whole = whole_counts(counts)
     whole = whole[None] if whole.ndim == 2 else whole
     pooled = whole.sum(axis=0)
