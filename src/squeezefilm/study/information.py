@@ -108,7 +108,7 @@ class InformationTransfer:
     Attributes:
         estimates: one per estimator; the pooled matrix of all participants.
         recommended: key of the one to quote.
-        greatest: entropy of the stimuli presented; log2 of their number where all came equally often.
+        greatest: entropy of the stimuli presented; log2 of their number if equally frequent.
         trials, participants, resamples: what it was made of.
     """
 
