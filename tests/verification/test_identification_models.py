@@ -1,0 +1,302 @@
+"""d′ of ordered stimuli, the choice model, response times and mixed models recover what made the
+data."""
+
+from __future__ import annotations
+
+import math
+import sys
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy import integrate, stats
+
+from squeezefilm.errors import InputError
+from squeezefilm.study.choice_model import (
+    choice_model,
+    choice_probabilities,
+    exact_choice,
+    perceptual_map,
+)
+from squeezefilm.study.information import even_errors, ordered_observer
+from squeezefilm.study.mixed_models import mixed_model
+from squeezefilm.study.response_times import (
+    ex_gaussian_density,
+    fit_ex_gaussian,
+    response_time_summary,
+)
+from squeezefilm.study.sensitivity import ordered_sensitivity
+
+
+def _draw(probabilities: np.ndarray, trials: int, random: np.random.Generator) -> np.ndarray:
+    return np.stack([random.multinomial(trials, p) for p in probabilities.T], axis=-1)
+
+
+# --- d′ ------------------------------------------------------------------------------------------
+
+
+def test_d_prime_of_two_stimuli_is_the_difference_of_z() -> None:
+    found = ordered_sensitivity(np.array([[80, 30], [20, 70]]))
+    hit, false = stats.norm.ppf(0.8), stats.norm.ppf(0.3)
+    assert found.d_prime == pytest.approx([hit - false], abs=1e-6)
+    assert found.criteria == pytest.approx([hit], abs=1e-6)
+    assert found.degrees_of_freedom == 0
+    assert math.isnan(found.p_value)
+    # Gourevitch & Galanter 1967: variance of d′ from those of two proportions.
+    error = math.sqrt(
+        sum(p * (1 - p) / 100 / stats.norm.pdf(stats.norm.ppf(p)) ** 2 for p in (0.8, 0.3))
+    )
+    assert found.standard_error == pytest.approx([error], rel=1e-5)
+
+
+def test_positions_and_criteria_are_recovered_from_exact_shares() -> None:
+    positions, criteria = np.array([0.0, 0.7, 2.1, 2.6]), np.array([-0.4, 1.5, 2.2])
+    edges = np.concatenate([[-np.inf], criteria, [np.inf]])
+    shares = np.diff(stats.norm.cdf(edges[:, None] - positions), axis=0)
+    found = ordered_sensitivity(np.rint(1e8 * shares).astype(np.int64))
+    assert found.positions == pytest.approx(positions, abs=1e-5)
+    assert found.criteria == pytest.approx(criteria, abs=1e-5)
+    assert found.total == pytest.approx(2.6, abs=1e-5)
+    assert found.probabilities == pytest.approx(shares, abs=1e-6)
+    assert not found.corrected
+
+
+def test_stimuli_that_feel_the_same_have_no_d_prime() -> None:
+    found = ordered_sensitivity(np.tile([[10], [30], [20]], (1, 3)))
+    assert found.d_prime == pytest.approx([0, 0], abs=1e-8)
+    assert found.deviance == pytest.approx(0, abs=1e-8)
+
+
+def test_d_prime_may_be_negative() -> None:
+    assert ordered_sensitivity(np.array([[20, 70], [80, 30]])).d_prime[0] < 0
+
+
+def test_never_confused_stimuli_are_corrected_and_said_to_be() -> None:
+    found = ordered_sensitivity(12 * np.eye(5, dtype=int))
+    assert found.corrected
+    assert np.all(np.isfinite(found.d_prime))
+    assert math.isnan(found.deviance)
+    # The log-linear rule by hand for two stimuli: one trial each, spread over two answers.
+    two = ordered_sensitivity(np.diag([12, 12]))
+    assert two.d_prime == pytest.approx([2 * stats.norm.ppf(12.5 / 13)], abs=1e-6)
+
+
+def test_errors_without_order_do_not_fit_one_axis() -> None:
+    counts = np.rint(400 * even_errors(0.6)).astype(np.int64)
+    assert ordered_sensitivity(counts).p_value < 1e-6
+    fits = _draw(ordered_observer(1.2), 200, np.random.default_rng(5))
+    assert ordered_sensitivity(fits).p_value > 0.01
+
+
+def test_a_stimulus_without_trials_is_refused() -> None:
+    with pytest.raises(InputError, match="every stimulus"):
+        ordered_sensitivity(np.array([[3, 0], [2, 0]]))
+    with pytest.raises(InputError, match="one and the same"):
+        ordered_sensitivity(np.array([[3, 3], [0, 0]]))
+
+
+def test_an_answer_never_given_is_corrected() -> None:
+    # Its criteria fall together: without the correction the information matrix is singular.
+    found = ordered_sensitivity(np.array([[1, 1, 0], [0, 0, 0], [0, 1, 1]]))
+    assert found.corrected
+    assert np.all(np.isfinite(found.standard_error))
+
+
+def _coverage(spacing: float, trials: int, runs: int) -> float:
+    random = np.random.default_rng(5)
+    inside = 0.0
+    for _ in range(runs):
+        found = ordered_sensitivity(_draw(ordered_observer(spacing), trials, random))
+        inside += float(np.mean((found.low <= spacing) & (spacing <= found.high)))
+    return inside / runs
+
+
+def test_intervals_of_d_prime_cover() -> None:
+    # Four d′ a run that are little correlated: a binomial error of 0.6 % at 300 runs.
+    assert 0.92 < _coverage(1.5, 60, 300) < 0.975
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize(("spacing", "trials"), [(1.0, 24), (1.0, 60), (1.5, 24), (1.5, 60),
+                                                 (2.0, 60), (2.0, 120)])  # fmt: skip
+def test_intervals_of_d_prime_cover_nightly(spacing: float, trials: int) -> None:
+    """Of 2000 observers with so many trials a stimulus, 93.5 to 96.5 % of the intervals hold."""
+    assert 0.935 < _coverage(spacing, trials, 2000) < 0.965
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize(("people", "spacing"), [(12, 1.0), (24, 1.5)])
+def test_participant_intervals_of_d_prime_cover(people: int, spacing: float) -> None:
+    """People alike with 25 trials each: 93 to 97 % of the bootstrap intervals hold."""
+    random = np.random.default_rng(6)
+    inside = 0.0
+    for seed in range(400):
+        counts = np.stack(
+            [random.multinomial(5, p, size=people) for p in ordered_observer(spacing).T], axis=-1
+        )
+        found = ordered_sensitivity(counts, resamples=400, seed=seed)
+        assert found.interval_method.startswith("participant")
+        inside += float(np.mean((found.low <= spacing) & (spacing <= found.high))) / 400
+    assert 0.93 < inside < 0.97
+
+
+# --- choice model --------------------------------------------------------------------------------
+
+SIMILARITY = np.array([[1, 0.4, 0.1], [0.4, 1, 0.3], [0.1, 0.3, 1]])
+BIAS = np.array([0.5, 0.2, 0.3])
+
+
+def test_closed_form_and_fit_agree_on_exact_data() -> None:
+    p = choice_probabilities(SIMILARITY, BIAS)
+    similarity, bias = exact_choice(p)
+    assert similarity == pytest.approx(SIMILARITY)
+    assert bias == pytest.approx(BIAS)
+    found = choice_model(np.rint(1e9 * p).astype(np.int64))
+    assert found.similarity == pytest.approx(SIMILARITY, rel=1e-6)
+    assert found.bias == pytest.approx(BIAS, rel=1e-6)
+    assert found.probabilities == pytest.approx(p, rel=1e-6)
+    assert found.distance[0, 1] == pytest.approx(-math.log(0.4), rel=1e-6)
+    assert found.degrees_of_freedom == 1
+
+
+@settings(max_examples=30, deadline=None)
+@given(st.integers(0, 2**32 - 1))
+def test_fit_meets_margins_and_no_other_is_likelier(seed: int) -> None:
+    random = np.random.default_rng(seed)
+    n = random.integers(1, 40, size=(4, 4))
+    found = choice_model(n)
+    fitted = found.probabilities * n.sum(axis=0)
+    assert fitted.sum(axis=1) == pytest.approx(n.sum(axis=1), abs=1e-3)
+    assert fitted + fitted.T == pytest.approx(n + n.T, abs=1e-3)
+    nudge = np.exp(0.05 * random.standard_normal((4, 4)))
+    other = choice_probabilities(found.similarity * np.sqrt(nudge * nudge.T), found.bias)
+    assert (n * np.log(other)).sum() <= found.log_likelihood + 1e-6
+
+
+def test_similarities_are_recovered_within_their_error() -> None:
+    random = np.random.default_rng(9)
+    p = choice_probabilities(SIMILARITY, BIAS)
+    fits = [choice_model(_draw(p, 200, random)) for _ in range(200)]
+    logs = np.log([f.similarity[0, 1] for f in fits])
+    assert logs.mean() == pytest.approx(math.log(0.4), abs=4 * logs.std() / math.sqrt(200))
+    # One degree of freedom: the deviance has mean 1 where the model holds.
+    assert np.mean([f.deviance for f in fits]) == pytest.approx(1.0, abs=0.4)
+
+
+def test_deviance_finds_asymmetry_beyond_bias() -> None:
+    ring = np.array([[70, 5, 25], [25, 70, 5], [5, 25, 70]])
+    assert choice_model(ring).p_value < 1e-6
+
+
+def test_stimuli_never_confused_are_infinitely_far() -> None:
+    n = np.array([[9, 3, 0], [3, 9, 2], [0, 2, 9]])
+    found = choice_model(n)
+    assert found.distance[0, 2] == np.inf
+    with pytest.raises(InputError, match="pseudo_trials=1"):
+        perceptual_map(found.distance)
+    assert np.all(np.isfinite(choice_model(n, 1.0).distance))
+    with pytest.raises(InputError, match="never answered rightly"):
+        choice_model(np.array([[0, 3], [3, 3]]))
+
+
+def test_points_of_a_plane_are_found_again() -> None:
+    points = np.array([[0, 0], [1, 0.5], [2, -0.5], [4, 0.2]])
+    distance = np.linalg.norm(points[:, None] - points[None], axis=-1)
+    found = perceptual_map(distance, 2)
+    again = np.linalg.norm(found.points[:, None] - found.points[None], axis=-1)
+    assert again == pytest.approx(distance)
+    assert found.explained == pytest.approx(1)
+    assert found.negative == pytest.approx(0, abs=1e-12)
+    assert found.points[-1, 0] > found.points[0, 0]
+
+
+# --- response times ------------------------------------------------------------------------------
+
+
+def test_ex_gaussian_density_is_one_and_agrees_with_scipy() -> None:
+    random = np.random.default_rng(1)
+    fit = fit_ex_gaussian(0.5 + 0.05 * random.standard_normal(500) + random.exponential(0.3, 500))
+    total, _ = integrate.quad(lambda t: float(ex_gaussian_density(t, fit)), -1, 8, limit=200)
+    assert total == pytest.approx(1, abs=1e-6)
+    t = np.linspace(0.1, 4, 50)
+    oracle = stats.exponnorm.pdf(t, fit.tail / fit.spread, fit.mean, fit.spread)
+    assert ex_gaussian_density(t, fit) == pytest.approx(oracle, rel=1e-8)
+
+
+def test_ex_gaussian_is_recovered() -> None:
+    random = np.random.default_rng(2)
+    times = 0.6 + 0.1 * random.standard_normal(50_000) + random.exponential(0.4, 50_000)
+    found = fit_ex_gaussian(times[times > 0])
+    assert found.values == 20_000
+    assert (found.mean, found.spread, found.tail) == pytest.approx((0.6, 0.1, 0.4), abs=0.012)
+    by_scipy = stats.exponnorm.logpdf(times, 4, 0.6, 0.1).mean()
+    assert found.log_likelihood == pytest.approx(by_scipy, abs=0.02)
+
+
+def test_units_of_time_do_not_matter() -> None:
+    times = np.random.default_rng(3).gamma(3, 0.2, 400) + 0.1
+    one, other = fit_ex_gaussian(times), fit_ex_gaussian(1000 * times)
+    assert other.tail == pytest.approx(1000 * one.tail, rel=1e-4)
+
+
+def test_summaries_of_times() -> None:
+    times = [1.0, 4.0, 2.0, 8.0, float("nan"), 3.0]
+    found = response_time_summary([0, 0, 1, 1, 1, 0], [0, 0, 0, 0, 0, 1], times, ("a", "b"))
+    a, b = found
+    assert (a.trials, a.participants) == (4, 2)
+    assert a.geometric_mean == pytest.approx(math.sqrt(2 * 4))
+    assert a.median == 3.0
+    assert a.spread == pytest.approx(math.log(2) * math.sqrt(2))
+    half = stats.t.isf(0.025, 1) * math.log(2) / 2
+    assert math.log(a.high / a.geometric_mean) == pytest.approx(half)
+    assert b.participants == 1
+    assert math.isnan(b.low)
+    with pytest.raises(InputError, match="above 0"):
+        response_time_summary([0], [0], [0.0], ("a",))
+
+
+# --- mixed models --------------------------------------------------------------------------------
+
+
+def _people(
+    log_odds: np.ndarray, spread: float, people: int, trials: int
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    random = np.random.default_rng(12)
+    own = spread * random.standard_normal(people)
+    who = np.repeat(np.arange(people), trials * log_odds.size)
+    kind = np.tile(np.repeat(np.arange(log_odds.size), trials), people)
+    p = 1 / (1 + np.exp(-(log_odds[kind] + own[who])))
+    return who, kind, random.random(p.size) < p
+
+
+def test_mixed_models_recover_stimuli_and_spread() -> None:
+    true = np.array([-0.5, 0.5, 1.5])
+    found = mixed_model(*_people(true, 1.0, 80, 12), ("a", "b", "c"))
+    # The people drawn move all three together: their mean has an error of 1/√80.
+    assert found.log_odds == pytest.approx(true, abs=0.35)
+    assert np.diff(found.log_odds) == pytest.approx([1, 1], abs=0.35)
+    assert found.participant_spread == pytest.approx(1.0, abs=0.25)
+    # The mean over people lies nearer one half, by about √(1 + 0.346 spread²).
+    assert found.average_log_odds == pytest.approx(true / math.sqrt(1.346), abs=0.35)
+    assert np.all(np.abs(found.average_log_odds[[0, 2]]) < np.abs(found.log_odds[[0, 2]]))
+    assert found.correlation > 0.05
+
+
+def test_a_stimulus_always_right_is_said_to_be() -> None:
+    who, kind, right = _people(np.array([0.0, 1.0]), 0.5, 10, 6)
+    found = mixed_model(who, kind, right | (kind == 1), ("a", "b"))
+    assert found.separated == ("b",)
+    assert math.isnan(found.average_log_odds[1])
+    assert math.isfinite(found.log_odds[1])
+
+
+def test_without_statsmodels_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "statsmodels", None)
+    with pytest.raises(InputError, match=r"squeezefilm\[models\]"):
+        mixed_model([0, 1], [0, 0], [True, False], ("a",))
+
+
+def test_one_person_has_no_mixed_model() -> None:
+    with pytest.raises(InputError, match="at least 2 people"):
+        mixed_model([0, 0], [0, 0], [True, False], ("a",))
