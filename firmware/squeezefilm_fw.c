@@ -9,12 +9,16 @@
 #define MOST ((int64_t)1 << 62)
 #define RAMP 10000u
 #define TOUCH_LEVEL 42000000
+#define MOST_AHEAD 1000000
+#define SHORTEST_REPORT 200u
+#define LONGEST_REPORT 1000000000u
 #define HEADER 4
 #define OVERHEAD 8
 
 enum {
     HELLO = 0x01, STOP, SET_LIMITS, ARM, START, SET_FREQUENCY, ENVELOPE, TILE_BEGIN, TILE_DATA,
-    POSITION, KEEP_ALIVE, CLEAR_FAULT, STATUS = 0x81
+    POSITION, KEEP_ALIVE, CLEAR_FAULT, REPORT, FOLLOW, ASK_INFO, TIMED_ENVELOPE,
+    STATUS = 0x81, READING, INFO
 };
 
 /* --- bytes ------------------------------------------------------------------------------- */
@@ -107,10 +111,16 @@ static int64_t level_of(const uint8_t *p)
 
 /* --- output ------------------------------------------------------------------------------ */
 
-static void forget_playing(sf_machine *m)
+static void play_nothing(sf_machine *m)
 {
-    m->envelope_count = 0;
-    m->at_given = 0;
+    m->playing = SF_PLAY_NOTHING;
+    m->queue_count = 0;
+}
+
+/* us from now to time, negative if it has passed; within 35 min. */
+static int64_t until(uint32_t time, uint32_t now)
+{
+    return (int64_t)(uint32_t)(time - now + 0x80000000u) - 0x80000000ll;
 }
 
 static void fail(sf_machine *m, int fault)
@@ -118,7 +128,7 @@ static void fail(sf_machine *m, int fault)
     if (m->state != SF_FAULT) {
         m->state = SF_FAULT;
         m->fault = fault;
-        forget_playing(m);
+        play_nothing(m);
     }
 }
 
@@ -143,14 +153,9 @@ static uint32_t tile_level(const sf_machine *m, int32_t x)
     return (uint32_t)(here - (here - there) * rest / m->tile_pitch);
 }
 
-static uint32_t wanted(sf_machine *m)
+static uint32_t of_envelope(sf_machine *m)
 {
-    uint32_t index;
-    if (m->at_given)
-        return tile_level(m, m->at);
-    if (m->envelope_count == 0)
-        return 0;
-    index = (m->now - m->began) / m->period;
+    uint32_t index = (m->now - m->began) / m->period;
     if (index >= m->envelope_count - 1) {
         /* Only the last one is kept, so that the clock may wrap while it holds. */
         m->envelope[0] = m->envelope[m->envelope_count - 1];
@@ -158,6 +163,37 @@ static uint32_t wanted(sf_machine *m)
         return m->envelope[0];
     }
     return m->envelope[index];
+}
+
+static uint32_t of_queue(sf_machine *m)
+{
+    while (m->queue_count && until(m->queue_time[m->queue_first], m->now) <= 0) {
+        m->played = m->queue_time[m->queue_first];
+        m->held = m->queue_level[m->queue_first];
+        m->has_played = 1;
+        m->queue_first = (m->queue_first + 1) % SF_LONGEST_QUEUE;
+        m->queue_count--;
+    }
+    if (m->queue_count == 0 && m->has_played) {
+        uint32_t held = m->now - m->played;
+        if (held >= m->period)
+            m->dry = 1;
+        /* No amplitude that old is taken any more; so the clock may wrap while it holds. */
+        if (held > 2 * MOST_AHEAD)
+            m->has_played = 0;
+    }
+    return m->held;
+}
+
+static uint32_t wanted(sf_machine *m, const sf_finger *finger)
+{
+    switch (m->playing) {
+    case SF_PLAY_ENVELOPE: return of_envelope(m);
+    case SF_PLAY_TIMED: return of_queue(m);
+    case SF_PLAY_PLACE: return tile_level(m, m->place);
+    case SF_PLAY_FINGER: return finger->touching ? tile_level(m, finger->x) : 0;
+    default: return 0;
+    }
 }
 
 /* total + rate * elapsed, held within 0 ... MOST without overflow. */
@@ -178,7 +214,7 @@ static void count_loads(sf_machine *m, uint32_t elapsed)
     m->used = moved(m->used, (m->level > 0 ? 1000 : 0) - (int64_t)m->limits.duty, elapsed);
 }
 
-static void move(sf_machine *m, uint32_t elapsed)
+static void move(sf_machine *m, uint32_t elapsed, const sf_finger *finger)
 {
     int64_t falling = elapsed, target = 0, level = m->level, step;
     count_loads(m, elapsed); /* the output was held since the last tick: count that, then move */
@@ -200,7 +236,7 @@ static void move(sf_machine *m, uint32_t elapsed)
         }
     }
     if (m->state == SF_PLAYING)
-        target = wanted(m);
+        target = wanted(m, finger);
     if (target > level) {
         step = (int64_t)m->limits.slew * (elapsed < LONGEST_RISE ? elapsed : LONGEST_RISE);
         level = target < level + step ? target : level + step;
@@ -211,15 +247,79 @@ static void move(sf_machine *m, uint32_t elapsed)
     m->level = (uint32_t)level;
 }
 
-uint32_t sf_tick(sf_machine *m, uint32_t now)
+/* --- what is sent ------------------------------------------------------------------------ */
+
+/* `frame` holds `payload` bytes after its header, and room for the CRC. */
+static void send(sf_machine *m, uint8_t type, uint8_t *frame, size_t payload)
+{
+    uint8_t out[64 + 2];
+    size_t count = HEADER + payload;
+    frame[0] = SF_VERSION;
+    frame[1] = type;
+    put16(frame + 2, ++m->sent);
+    put32(frame + count, sf_crc32(frame, count));
+    count = sf_cobs_encode(frame, count + 4, out);
+    out[count++] = 0;
+    if (m->board.send)
+        m->board.send(m->board.board, out, count);
+}
+
+static void send_reading(sf_machine *m, const sf_finger *finger)
+{
+    uint8_t frame[HEADER + 28 + 4];
+    uint32_t pickup = m->board.pickup ? m->board.pickup(m->board.board) : 0;
+    put32(frame + 4, m->now);
+    put32(frame + 8, (uint32_t)finger->x);
+    put32(frame + 12, (uint32_t)finger->y);
+    frame[16] = finger->touching ? 1 : 0;
+    frame[17] = (uint8_t)m->state;
+    frame[18] = (uint8_t)m->fault;
+    frame[19] = (uint8_t)((m->board.sensor ? 1 : 0) | (m->board.pickup ? 2 : 0) |
+                          (m->dry ? 4 : 0) | (m->late ? 8 : 0));
+    m->dry = m->late = 0;
+    put32(frame + 20, m->level);
+    put32(frame + 24, pickup);
+    put32(frame + 28, m->late_ticks);
+    send(m, READING, frame, 28);
+}
+
+/* Whether a reading is due. One that was missed is not made up; the phase is kept. */
+static int take_report(sf_machine *m)
+{
+    int64_t late = -until(m->report_due, m->now);
+    if (m->report_period == 0 || late < 0)
+        return 0;
+    m->report_due += ((uint32_t)late / m->report_period + 1) * m->report_period;
+    return 1;
+}
+
+/* --- time -------------------------------------------------------------------------------- */
+
+static void advance(sf_machine *m, uint32_t now)
 {
     uint32_t elapsed = now - m->now;
+    sf_finger finger = {0, 0, 0};
+    int due;
     m->now = now;
+    due = take_report(m);
+    if (m->board.sensor && (due || m->playing == SF_PLAY_FINGER))
+        finger = m->board.sensor(m->board.board);
     if (elapsed != 0 && m->has_limits)
-        move(m, elapsed);
-    if (m->carrier)
-        m->carrier(m->board, m->state == SF_ARMED || m->state == SF_PLAYING || m->level > 0,
-                   m->level, m->frequency);
+        move(m, elapsed, &finger);
+    if (m->board.carrier)
+        m->board.carrier(m->board.board,
+                         m->state == SF_ARMED || m->state == SF_PLAYING || m->level > 0,
+                         m->level, m->frequency);
+    if (due)
+        send_reading(m, &finger);
+}
+
+uint32_t sf_tick(sf_machine *m, uint32_t now)
+{
+    if (m->state == SF_PLAYING && now - m->ticked > m->board.tick_period + m->board.tick_period / 2)
+        m->late_ticks++;
+    m->ticked = now;
+    advance(m, now);
     return m->level;
 }
 
@@ -276,6 +376,8 @@ static int tune(sf_machine *m, uint32_t frequency, int state)
         return SF_BAD_STATE;
     if (frequency < m->limits.lowest_frequency || frequency > m->limits.highest_frequency)
         return SF_BAD_VALUE;
+    if (m->state == SF_ARMED)
+        m->ticked = m->now;
     m->frequency = frequency;
     m->state = SF_PLAYING;
     return SF_ACCEPTED;
@@ -301,10 +403,49 @@ static int play(sf_machine *m, const uint8_t *p)
         return SF_BAD_STATE;
     if (period == 0 || !take_levels(m, p + 3, p[2], m->envelope))
         return SF_BAD_VALUE;
+    play_nothing(m);
+    m->playing = SF_PLAY_ENVELOPE;
     m->envelope_count = p[2];
     m->period = period;
     m->began = m->now;
-    m->at_given = 0;
+    return SF_ACCEPTED;
+}
+
+/* In place of what was queued from `start` on. What is at or before the newest amplitude that was
+ * played is left out: nothing is played twice, or backwards. */
+static int play_timed(sf_machine *m, const uint8_t *p)
+{
+    uint32_t start = get32(p), period = get16(p + 4), count = p[6], kept = 0, skip = 0, time;
+    uint32_t levels[SF_MOST_LEVELS];
+    int timed = m->playing == SF_PLAY_TIMED;
+    int64_t ahead = until(start, m->now);
+    if (m->state != SF_PLAYING)
+        return SF_BAD_STATE;
+    if (!take_levels(m, p + 7, count, levels) || period == 0 || ahead > MOST_AHEAD ||
+        ahead < -MOST_AHEAD)
+        return SF_BAD_VALUE;
+    while (timed && kept < m->queue_count &&
+           until(m->queue_time[(m->queue_first + kept) % SF_LONGEST_QUEUE], start) < 0)
+        kept++;
+    while (timed && m->has_played && skip < count && until(start + skip * period, m->played) <= 0)
+        skip++;
+    if (kept + count - skip > SF_LONGEST_QUEUE)
+        return SF_FULL;
+    if (!timed) {
+        play_nothing(m);
+        m->playing = SF_PLAY_TIMED;
+        m->held = m->level;
+        m->has_played = 0;
+    }
+    m->queue_count = kept;
+    if (skip < count && until(start + skip * period, m->now) < 0)
+        m->late = 1;
+    for (time = start + skip * period; skip < count; skip++, time += period) {
+        uint32_t at = (m->queue_first + m->queue_count++) % SF_LONGEST_QUEUE;
+        m->queue_time[at] = time;
+        m->queue_level[at] = levels[skip];
+    }
+    m->period = period;
     return SF_ACCEPTED;
 }
 
@@ -341,9 +482,31 @@ static int go_to(sf_machine *m, int32_t x)
         return SF_BAD_STATE;
     if (!tile_ready(m))
         return SF_BAD_TILE;
-    forget_playing(m);
-    m->at_given = 1;
-    m->at = x;
+    play_nothing(m);
+    m->playing = SF_PLAY_PLACE;
+    m->place = x;
+    return SF_ACCEPTED;
+}
+
+static int follow(sf_machine *m)
+{
+    if (m->state != SF_PLAYING)
+        return SF_BAD_STATE;
+    if (!tile_ready(m))
+        return SF_BAD_TILE;
+    if (!m->board.sensor)
+        return SF_BAD_VALUE;
+    play_nothing(m);
+    m->playing = SF_PLAY_FINGER;
+    return SF_ACCEPTED;
+}
+
+static int report(sf_machine *m, uint32_t period)
+{
+    if (period != 0 && (period < SHORTEST_REPORT || period > LONGEST_REPORT))
+        return SF_BAD_VALUE;
+    m->report_period = period;
+    m->report_due = m->now + period;
     return SF_ACCEPTED;
 }
 
@@ -360,8 +523,12 @@ static int clear_fault(sf_machine *m, int fault)
 
 static int length_fits(uint8_t type, const uint8_t *p, size_t count)
 {
-    static const uint8_t lengths[] = {0, 4, 0, 31, 4, 4, 4, 0, 10, 0, 4, 0, 1};
-    if (type == ENVELOPE || type == TILE_DATA)
+    static const uint8_t lengths[] = {0, 4, 0, 31, 4, 4, 4, 0, 10, 0, 4, 0, 1, 4, 0, 0, 0};
+    if (type == TIMED_ENVELOPE) {
+        p += 4;
+        count = count < 4 ? 0 : count - 4;
+    }
+    if (type == ENVELOPE || type == TILE_DATA || type == TIMED_ENVELOPE)
         return count >= 3 && p[2] >= 1 && p[2] <= SF_MOST_LEVELS && count == 3u + 4u * p[2];
     return count == lengths[type];
 }
@@ -370,6 +537,8 @@ static int obey(sf_machine *m, uint8_t type, const uint8_t *p)
 {
     switch (type) {
     case KEEP_ALIVE: return SF_ACCEPTED;
+    case ASK_INFO: return SF_ACCEPTED;
+    case REPORT: return report(m, get32(p));
     case CLEAR_FAULT: return clear_fault(m, p[0]);
     case SET_LIMITS: return set_limits(m, p);
     default: break;
@@ -384,6 +553,8 @@ static int obey(sf_machine *m, uint8_t type, const uint8_t *p)
     case TILE_BEGIN: return begin_tile(m, p);
     case TILE_DATA: return fill_tile(m, p);
     case POSITION: return go_to(m, get_signed(p));
+    case FOLLOW: return follow(m);
+    case TIMED_ENVELOPE: return play_timed(m, p);
     default: return SF_BAD_TYPE;
     }
 }
@@ -396,7 +567,7 @@ static int take(sf_machine *m, const uint8_t *frame, size_t payload)
     int fresh = m->opened && ahead >= 1 && ahead < 0x8000;
     if (frame[0] != SF_VERSION)
         return SF_BAD_VERSION;
-    if (type < HELLO || type > CLEAR_FAULT)
+    if (type < HELLO || type > TIMED_ENVELOPE)
         return SF_BAD_TYPE;
     if (!length_fits(type, p, payload))
         return SF_BAD_LENGTH;
@@ -406,6 +577,7 @@ static int take(sf_machine *m, const uint8_t *frame, size_t payload)
         m->opened = 1;
         m->last = sequence;
         m->session = get32(p);
+        m->report_period = 0;
         return SF_ACCEPTED;
     }
     if (fresh)
@@ -413,7 +585,7 @@ static int take(sf_machine *m, const uint8_t *frame, size_t payload)
     if (type == STOP) {
         if (m->state != SF_FAULT) {
             m->state = SF_OFF;
-            forget_playing(m);
+            play_nothing(m);
         }
         return SF_ACCEPTED;
     }
@@ -422,11 +594,7 @@ static int take(sf_machine *m, const uint8_t *frame, size_t payload)
 
 static void answer(sf_machine *m, uint16_t sequence, int reason)
 {
-    uint8_t frame[HEADER + 30 + 4], out[sizeof frame + 2];
-    size_t count;
-    frame[0] = SF_VERSION;
-    frame[1] = STATUS;
-    put16(frame + 2, ++m->sent);
+    uint8_t frame[HEADER + 34 + 4];
     put16(frame + 4, sequence);
     frame[6] = (uint8_t)reason;
     frame[7] = (uint8_t)m->state;
@@ -438,11 +606,28 @@ static void answer(sf_machine *m, uint16_t sequence, int reason)
     put32(frame + 22, m->refused);
     put32(frame + 26, m->damaged);
     put32(frame + 30, m->session);
-    put32(frame + 34, sf_crc32(frame, 34));
-    count = sf_cobs_encode(frame, sizeof frame, out);
-    out[count++] = 0;
-    if (m->send)
-        m->send(m->board, out, count);
+    put32(frame + 34, m->now);
+    send(m, STATUS, frame, 34);
+}
+
+static void send_info(sf_machine *m)
+{
+    uint8_t frame[HEADER + 44 + 4];
+    const sf_limits *own = &m->own;
+    put32(frame + 4, own->voltage);
+    put32(frame + 8, own->slew);
+    put32(frame + 12, own->continuous_voltage);
+    put32(frame + 16, own->heat);
+    put32(frame + 20, own->lowest_frequency);
+    put32(frame + 24, own->highest_frequency);
+    put32(frame + 28, own->duty);
+    put32(frame + 32, own->duty_window);
+    put32(frame + 36, m->board.tick_period);
+    frame[40] = m->board.sensor ? 1 : 0;
+    frame[41] = m->board.pickup ? 1 : 0;
+    put16(frame + 42, SF_LONGEST_TILE);
+    put32(frame + 44, SF_FIRMWARE_VERSION);
+    send(m, INFO, frame, 44);
 }
 
 void sf_receive(sf_machine *m, uint8_t byte, uint32_t now)
@@ -461,10 +646,10 @@ void sf_receive(sf_machine *m, uint8_t byte, uint32_t now)
     if (count < OVERHEAD || count > SF_LONGEST_FRAME ||
         sf_crc32(frame, (size_t)count - 4) != get32(frame + count - 4)) {
         m->damaged++;
-        sf_tick(m, now);
+        advance(m, now);
         return;
     }
-    sf_tick(m, now);
+    advance(m, now);
     reason = take(m, frame, (size_t)count - OVERHEAD);
     if (reason == SF_ACCEPTED) {
         m->accepted++;
@@ -473,17 +658,16 @@ void sf_receive(sf_machine *m, uint8_t byte, uint32_t now)
         m->refused++;
     }
     answer(m, get16(frame + 2), reason);
+    if (reason == SF_ACCEPTED && frame[1] == ASK_INFO)
+        send_info(m);
 }
 
-void sf_boot(sf_machine *m, const sf_limits *own, uint32_t seed, sf_carrier carrier, sf_send send,
-             void *board)
+void sf_boot(sf_machine *m, const sf_limits *own, uint32_t seed, const sf_board *board)
 {
     memset(m, 0, sizeof *m);
     m->own = *own;
     m->token = seed ? seed : 0x9E3779B9u;
     m->period = 1;
     m->tile_pitch = 1;
-    m->carrier = carrier;
-    m->send = send;
-    m->board = board;
+    m->board = *board;
 }

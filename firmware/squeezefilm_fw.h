@@ -5,10 +5,10 @@
  * multiplication in binary64. Do not compile it with -ffast-math. Not reentrant: call it from one
  * context, or mask interrupts around it.
  *
- * A board gives two hooks and three calls: sf_receive for every byte from the host, sf_tick at
- * least every 1 ms from a hardware timer, sf_trip from the amplifier's fault line. The carrier
- * hook must set the output; nothing else may. A board also needs its own hardware watchdog: no
- * program can vouch for itself when it hangs.
+ * A board gives its hooks (sf_board) and three calls: sf_receive for every byte from the host,
+ * sf_tick every tick_period from a hardware timer (at least every 1 ms), sf_trip from the
+ * amplifier's fault line. The carrier hook must set the output; nothing else may. A board also
+ * needs its own hardware watchdog: no program can vouch for itself when it hangs.
  */
 #ifndef SQUEEZEFILM_FW_H
 #define SQUEEZEFILM_FW_H
@@ -20,13 +20,16 @@
 #define SF_LONGEST_FRAME 252
 #define SF_MOST_LEVELS 56
 #define SF_LONGEST_TILE 512
+#define SF_LONGEST_QUEUE 512
+#define SF_FIRMWARE_VERSION 1
 
 enum { SF_OFF, SF_ARMED, SF_PLAYING, SF_FAULT };
 enum { SF_NONE, SF_WATCHDOG, SF_HEAT, SF_DUTY, SF_LATE_TICK, SF_TRIPPED };
 enum {
     SF_ACCEPTED, SF_BAD_VERSION, SF_BAD_TYPE, SF_BAD_LENGTH, SF_BAD_SEQUENCE, SF_BAD_STATE,
-    SF_BAD_VALUE, SF_BAD_TOKEN, SF_NO_LIMITS, SF_BAD_TILE
+    SF_BAD_VALUE, SF_BAD_TOKEN, SF_NO_LIMITS, SF_BAD_TILE, SF_FULL
 };
+enum { SF_PLAY_NOTHING, SF_PLAY_ENVELOPE, SF_PLAY_TIMED, SF_PLAY_PLACE, SF_PLAY_FINGER };
 
 /* uV, V/s (= uV/us), uV, V2*ms, mHz, mHz, permille, ms. */
 typedef struct {
@@ -36,27 +39,50 @@ typedef struct {
 
 /* Called at every tick: the enable line, the amplitude (uV, zero-to-peak), the carrier (mHz). */
 typedef void (*sf_carrier)(void *board, int enabled, uint32_t level, uint32_t frequency);
-/* Called with the bytes of an answer. */
+/* Called with the bytes of one answer or reading. Must not wait: where they do not fit it drops
+ * them, all or none. */
 typedef void (*sf_send)(void *board, const uint8_t *bytes, size_t count);
+typedef struct {
+    int32_t x, y; /* um */
+    int touching; /* 0 or 1 */
+} sf_finger;
+/* The newest converted position. Must not wait; called in a tick that needs it. */
+typedef sf_finger (*sf_sensor)(void *board);
+/* The amplitude at the pickup's input, uV zero-to-peak. Must not wait. */
+typedef uint32_t (*sf_pickup)(void *board);
 
+/* What a board supplies. `sensor` and `pickup` are NULL where there is none; `tick_period` is how
+ * often it calls sf_tick (us). */
 typedef struct {
     void *board;
     sf_carrier carrier;
     sf_send send;
+    sf_sensor sensor;
+    sf_pickup pickup;
+    uint32_t tick_period;
+} sf_board;
+
+typedef struct {
+    sf_board board;
     sf_limits own;      /* the firmware's own limits, which no message passes */
     sf_limits limits;   /* the session's; meaningless until has_limits */
     int has_limits;
     int state, fault;
     uint32_t level, frequency;
     int64_t heat, used;
-    uint32_t now, heard, token, session;
-    uint32_t accepted, refused, damaged;
+    uint32_t now, ticked, heard, token, session;
+    uint32_t accepted, refused, damaged, late_ticks;
     int opened;
     uint16_t last, sent;
+    int playing; /* SF_PLAY_... */
+    int dry, late;
     uint32_t envelope[SF_MOST_LEVELS];
     uint32_t envelope_count, period, began;
-    int at_given;
-    int32_t at;
+    int32_t place;
+    uint32_t queue_time[SF_LONGEST_QUEUE], queue_level[SF_LONGEST_QUEUE];
+    uint32_t queue_first, queue_count, held, played;
+    int has_played;
+    uint32_t report_period, report_due;
     uint32_t tile[SF_LONGEST_TILE];
     uint32_t tile_pitch, tile_size, tile_filled;
     int32_t tile_origin;
@@ -64,9 +90,9 @@ typedef struct {
     size_t stuffed_count;
 } sf_machine;
 
-/* Boots off. `seed` is where tokens start: take a random number, or a counter of boots. */
-void sf_boot(sf_machine *m, const sf_limits *own, uint32_t seed, sf_carrier carrier, sf_send send,
-             void *board);
+/* Boots off. `seed` is where tokens start: take a random number, or a counter of boots. A board that
+ * keeps `heat` and `used` over a reset sets them in the machine afterwards. */
+void sf_boot(sf_machine *m, const sf_limits *own, uint32_t seed, const sf_board *board);
 void sf_receive(sf_machine *m, uint8_t byte, uint32_t now);
 /* Returns the output, uV. */
 uint32_t sf_tick(sf_machine *m, uint32_t now);

@@ -4,13 +4,21 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from squeezefilm.contact.finger_load import finger_stiffness, interface_stiffness
 from squeezefilm.contact.pad import Limit, PadFriction
 from squeezefilm.errors import ConvergenceError
 from squeezefilm.friction import FrictionLaw
 from squeezefilm.plate.loaded_mode import LoadedMode, loaded_mode, mean_square_wave
 from squeezefilm.plate.working_mode import WorkingMode
-from squeezefilm.quantities import Dimensionless, Metre
+from squeezefilm.quantities import (
+    ComplexArray,
+    Dimensionless,
+    Metre,
+    MetreArray,
+    MetreLike,
+)
 
 _MOST_STEPS = 40
 _TOLERANCE = 1e-8  # of the amplitude
@@ -50,15 +58,20 @@ def touch(mode: WorkingMode, law: FrictionLaw, free_amplitude: Metre) -> Touch:
         return Touch(free_amplitude, free_amplitude, None, _sharing(law, free_amplitude))
     free = LoadedMode(mode.resonance_frequency, mode.quality_factor, 0j)
     alone = free.amplitude_ratio(law.frequency)
-    amplitude = free_amplitude
-    for step in range(_MOST_STEPS):
+    amplitude, slope, before = free_amplitude, 0.0, None
+    for _ in range(_MOST_STEPS):
         sharing = _sharing(law, amplitude)
         loaded = _loaded(mode, mode.modal_mass, law, amplitude, float(sharing.mean_gap[0]))
         new = free_amplitude * loaded.amplitude_ratio(law.frequency) / alone
         if abs(new - amplitude) <= _TOLERANCE * free_amplitude:
             return Touch(free_amplitude, new, loaded, sharing)
-        # Half way: where the finger takes much, the two chase each other.
-        amplitude = 0.5 * (new + amplitude) if step > 3 else new
+        # Where the finger takes much the two chase each other for long: the secant cuts that short.
+        if before is not None:
+            slope = (new - before[1]) / (amplitude - before[0])
+        before = amplitude, new
+        # A slope near 1 is held back: the next place is at most three times the last change away.
+        further = amplitude + (new - amplitude) / (1 - min(max(slope, -1.0), 2 / 3))
+        amplitude = further if further > 0 else new
     raise ConvergenceError(
         f"the amplitude under the finger did not settle (last change "
         f"{abs(new - amplitude):.3g} m of {free_amplitude:.3g} m); the finger may be heavier than "
@@ -78,7 +91,19 @@ def kept_at(mode: WorkingMode, law: FrictionLaw, amplitude: Metre) -> Dimensionl
     return loaded.amplitude_ratio(law.frequency) / free.amplitude_ratio(law.frequency)
 
 
-def _sharing(law: FrictionLaw, amplitude: Metre) -> PadFriction:
+def load_ratios(mode: WorkingMode, law: FrictionLaw, amplitude: MetreArray) -> ComplexArray:
+    """The finger's modal stiffness over the mode's own, δ (complex), at amplitudes with the finger
+    on (m), shape (n,). Zero where the modal mass is not known: the finger is left out."""
+    found: ComplexArray = np.zeros(np.shape(amplitude), dtype=complex)
+    if mode.modal_mass is None:
+        return found
+    gaps = _sharing(law, amplitude).mean_gap
+    for i, (one, gap) in enumerate(zip(amplitude, gaps, strict=True)):
+        found[i] = _loaded(mode, mode.modal_mass, law, float(one), float(gap)).load_ratio
+    return found
+
+
+def _sharing(law: FrictionLaw, amplitude: MetreLike) -> PadFriction:
     limit: Limit = "one-gap" if law.model == "partial-levitation-one-gap" else "own"
     return law.sharing(amplitude, limit)
 

@@ -68,9 +68,27 @@ class Adversary:
             return m.Arm(machine.token) if self.random.random() < 0.8 else m.Hello(8)
         if machine.state == 1:
             return m.Start(self.random.choice((20_000_000, 60_000_000, 60_000_001)))
+        dice = self.random.random()
+        if dice < 0.4:
+            return self._timed(machine)
+        if dice < 0.7:
+            return self._next_of_a_tile(machine)
         return m.Envelope(
             self.random.choice((1, 500, 65535)), (0.0, 60.0, 12.5)[: self.random.randint(1, 3)]
         )
+
+    def _next_of_a_tile(self, machine: Machine) -> m.Message:
+        if machine.tile.ready:
+            return self.random.choice((m.Follow(), m.Position(self.random.randrange(-1000, 500))))
+        if machine.tile.size == 0 or machine.tile.levels:
+            return m.TileBegin(-1000, 250, 4)
+        return m.TileData(0, (60.0, 0.0, *[30.0] * 54)[: machine.tile.size])
+
+    def _timed(self, machine: Machine) -> m.TimedEnvelope:
+        ahead = self.random.choice((0, 0, 500, 2_000, -700, -3_000, 20_000, 999_999, 1_000_001))
+        levels = [self.random.uniform(0, 60) for _ in range(self.random.choice((1, 5, 25, 56)))]
+        period = self.random.choice((1, 50, 200, 500, 1_000, 65535))
+        return m.TimedEnvelope((machine._now + ahead) % 2**32, period, tuple(levels))
 
     def _payload(self, kind: type[m.Message], machine: Machine) -> bytes:
         pick = self.random
@@ -81,6 +99,13 @@ class Adversary:
                 levels[pick.randrange(len(levels))] = pick.choice(ODD_VOLTS)
             count = len(levels) if pick.random() < 0.95 else pick.randrange(256)
             return struct.pack(f"<HB{len(levels)}f", number, count, *levels)
+        if kind is m.TimedEnvelope:
+            payload = bytearray(self._timed(machine).payload())
+            if pick.random() < 0.4:
+                payload[pick.randrange(len(payload))] = pick.randrange(256)
+            return bytes(payload)
+        if kind is m.Report:
+            return m.Report(pick.choice((0, 200, 1_000, 7_777, 199, 10**9, 10**9 + 1))).payload()
         if kind is m.SetLimits:
             payload = bytearray(m.limits_message(LIMITS).payload())
             if pick.random() < 0.7:

@@ -13,10 +13,12 @@ import pytest
 
 from squeezefilm.device import messages as m
 from squeezefilm.device.cobs import cobs_encode
-from squeezefilm.device.machine import DeviceLimits, Machine, State
+from squeezefilm.device.frames import Deframer
+from squeezefilm.device.machine import TICK_PERIOD, DeviceLimits, Machine, State
+from squeezefilm.device.playing import Mode
 
 from .adversary import LIMITS, Adversary
-from .test_frames import VECTORS, script
+from .test_frames import FINGER, VECTORS, check_the_session
 
 SOURCES = Path(__file__).parents[2] / "firmware"
 FLAGS = ("-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-O2", "-shared", "-fPIC")
@@ -44,47 +46,94 @@ def firmware(tmp_path_factory: pytest.TempPathFactory) -> ctypes.CDLL:
     assert done.returncode == 0, done.stderr
     loaded = ctypes.CDLL(str(library))
     loaded.host_answers.restype = ctypes.POINTER(ctypes.c_uint8)
-    loaded.host_receive.restype = ctypes.c_size_t
+    loaded.host_outgoing.restype = ctypes.c_size_t
     loaded.host_tick.restype = ctypes.c_uint32
     loaded.sf_crc32.restype = ctypes.c_uint32
     loaded.sf_cobs_encode.restype = ctypes.c_size_t
     return loaded
 
 
-class Compiled:
-    """The firmware with the twin's methods."""
+class Finger:
+    """A sensor and a pickup that both sides read."""
 
-    def __init__(self, library: ctypes.CDLL, seed: int, own: DeviceLimits) -> None:
-        self.library = library
-        library.host_boot((ctypes.c_uint32 * 8)(*astuple(own)), ctypes.c_uint32(seed))
+    def __init__(self) -> None:
+        self.x = self.y = self.pickup = 0
+        self.touching = False
+
+    def sensor(self) -> tuple[int, int, bool]:
+        return self.x, self.y, self.touching
+
+    def read_pickup(self) -> int:
+        return self.pickup
+
+
+class Compiled:
+    """The firmware with the twin's methods; a `finger` gives it a sensor and a pickup."""
+
+    def __init__(
+        self,
+        library: ctypes.CDLL,
+        seed: int,
+        own: DeviceLimits,
+        finger: Finger | None = None,
+        period: int = TICK_PERIOD,
+    ) -> None:
+        self.library, self.finger = library, finger
+        has = ctypes.c_int(finger is not None)
+        limits = (ctypes.c_uint32 * 8)(*astuple(own))
+        library.host_boot(limits, ctypes.c_uint32(seed), has, has, ctypes.c_uint32(period))
+
+    def _feed(self) -> None:
+        if self.finger is not None:
+            x, y, touching = self.finger.sensor()
+            level = ctypes.c_uint32(self.finger.pickup)
+            self.library.host_feed(ctypes.c_int32(x), ctypes.c_int32(y), int(touching), level)
 
     def receive(self, data: bytes, now: int) -> bytes:
-        count = self.library.host_receive(data, ctypes.c_size_t(len(data)), ctypes.c_uint32(now))
+        self._feed()
+        self.library.host_receive(data, ctypes.c_size_t(len(data)), ctypes.c_uint32(now))
+        return self.outgoing()
+
+    def outgoing(self) -> bytes:
+        count = self.library.host_outgoing()
         return ctypes.string_at(self.library.host_answers(), count)
 
     def tick(self, now: int) -> int:
+        self._feed()
         return int(self.library.host_tick(ctypes.c_uint32(now)))
 
     def snapshot(self) -> list[int]:
-        room = (ctypes.c_int64 * 14)()
+        room = (ctypes.c_int64 * 19)()
         self.library.host_snapshot(room)
         return list(room)
 
 
+MODES = list(Mode)
+
+
 def snapshot(twin: Machine) -> list[int]:
+    playing = twin.playing
     return [
         twin.state, twin.fault, twin.level, twin.frequency, twin.loads.heat, twin.loads.used,
-        twin.token, twin.session, twin.accepted, twin.refused, twin.damaged,
+        twin.token, twin.session, twin.accepted, twin.refused, twin.damaged, twin.late_ticks,
+        MODES.index(playing.mode), len(playing._queue), int(playing.dry), int(playing.late),
         int(twin.enabled), twin.level, twin.frequency,
     ]  # fmt: skip
 
 
-def compare(firmware: ctypes.CDLL, seed: int, steps: int) -> Counter[State]:
+def compare(firmware: ctypes.CDLL, seed: int, steps: int) -> Counter[object]:
     own = DeviceLimits(voltage=100_000_000, highest_frequency=100_000_000)
     host, pick = Adversary(random.Random(seed)), random.Random(-seed - 1)
-    twin, compiled = Machine(seed=seed, own=own), Compiled(firmware, seed, own)
-    now, seen = 2**32 - pick.randrange(2_000_000), Counter[State]()
+    finger = Finger() if seed % 4 else None
+    period = pick.choice((50, 100, 500, 1000))
+    twin = Machine(seed, own, finger and finger.sensor, finger and finger.read_pickup, period)
+    compiled = Compiled(firmware, seed, own, finger, period)
+    now, seen = 2**32 - pick.randrange(2_000_000), Counter[object]()
     for step in range(steps):
+        if finger is not None:
+            finger.x = pick.choice((0, -1000, 333, 777, 2**31 - 1, -(2**31), pick.randrange(9999)))
+            finger.y, finger.touching = pick.randrange(-5000, 5000), pick.random() < 0.8
+            finger.pickup = pick.randrange(2**32)
         data = host.step(twin)
         cut = pick.randrange(len(data) + 1)
         for part in (data[:cut], data[cut:]):
@@ -95,18 +144,24 @@ def compare(firmware: ctypes.CDLL, seed: int, steps: int) -> Counter[State]:
         for elapsed in (host.pause(), 500):
             now = (now + elapsed) % 2**32
             assert compiled.tick(now) == twin.tick(now), (seed, step)
+            said = twin.outgoing()
+            assert compiled.outgoing() == said, (seed, step)
+            for frame in Deframer().take(said):
+                assert frame is not None
+                seen[m.ANSWERS[frame.type]] += 1
         assert compiled.snapshot() == snapshot(twin), (seed, step)
         seen[twin.state] += 1
+        seen[twin.playing.mode] += 1
+        seen["dry"] += twin.playing.dry
+        seen["late"] += twin.playing.late
+        seen["late ticks"] += twin.late_ticks
     return seen
 
 
 def test_the_session_of_the_page_in_c(firmware: ctypes.CDLL) -> None:
-    compiled = Compiled(firmware, 1, DeviceLimits())
-    for way, data in script():
-        if way == ">":
-            answer = compiled.receive(data, 1000)
-        else:
-            assert answer == data
+    finger = Finger()
+    finger.x, finger.y, finger.touching, finger.pickup = FINGER
+    check_the_session(Compiled(firmware, 1, DeviceLimits(), finger))
 
 
 def test_framing_in_c(firmware: ctypes.CDLL) -> None:
@@ -123,8 +178,11 @@ def test_framing_in_c(firmware: ctypes.CDLL) -> None:
 
 
 def test_c_and_python_do_the_same_on_adversarial_streams(firmware: ctypes.CDLL) -> None:
-    seen = sum((compare(firmware, seed, 1_500) for seed in range(8)), Counter[State]())
+    seen = sum((compare(firmware, seed, 1_500) for seed in range(8)), Counter[object]())
     assert all(seen[state] > 100 for state in State), seen
+    assert all(seen[mode] > 50 for mode in Mode), seen
+    assert seen[m.Reading] > 500, seen
+    assert min(seen["dry"], seen["late"], seen["late ticks"]) > 100, seen
 
 
 def test_c_and_python_do_the_same_on_noise(firmware: ctypes.CDLL) -> None:

@@ -4,6 +4,7 @@ import random
 import re
 import zlib
 from pathlib import Path
+from typing import Protocol
 
 import numpy as np
 import pytest
@@ -60,35 +61,75 @@ def test_the_crc_is_the_one_the_page_names() -> None:
     assert "0xCBF43926" in PAGE.read_text(encoding="utf-8")
 
 
-def script() -> list[tuple[str, bytes]]:
-    """The page's session: ('>' host or '<' device, bytes)."""
-    found = re.findall(r"^([<>]) ((?:[0-9A-F]{2} ?)+)$", PAGE.read_text("utf-8"), re.MULTILINE)
-    return [(way, bytes.fromhex(text)) for way, text in found]
+FINGER = (12_000, 3_000, True, 250_000)
+"""x and y (µm), touching, and the pickup (µV), as the page has them."""
+
+
+class Device(Protocol):
+    """What plays the page's session: the machine in Python, or the firmware in C."""
+
+    def receive(self, data: bytes, now: int) -> bytes: ...
+
+    def tick(self, now: int) -> int: ...
+
+    def outgoing(self) -> bytes: ...
+
+
+def page_machine() -> Machine:
+    return Machine(1, sensor=lambda: FINGER[:3], pickup=lambda: FINGER[3])
+
+
+def script() -> list[tuple[str, bytes, int]]:
+    """The page's session: ('>' host, '<' device or '@' a tick; bytes; the time in µs)."""
+    steps, now = [], 0
+    for way, text in re.findall(r"^([<>@]) ([0-9A-F ]+)$", PAGE.read_text("utf-8"), re.MULTILINE):
+        now = int(text) if way == "@" else now
+        steps.append((way, b"" if way == "@" else bytes.fromhex(text), now))
+    return steps
+
+
+def check_the_session(device: Device) -> None:
+    said = b""
+    for way, data, now in script():
+        if way == "<":
+            assert said[: len(data)] == data
+            said = said[len(data) :]
+            continue
+        assert said == b""
+        if way == "@":
+            device.tick(now)
+            said = device.outgoing()
+        else:
+            said = device.receive(data, now)
+    assert said == b""
 
 
 def test_the_page_holds_a_whole_session() -> None:
-    types = [frame_from_bytes(data[:-1]).type for way, data in script() if way == ">"]
-    assert types == [0x01, 0x03, 0x04, 0x05, 0x07, 0x0B, 0x02]
+    types = [frame_from_bytes(data[:-1]).type for way, data, _ in script() if way == ">"]
+    assert types == [1, 0x0F, 3, 8, 9, 4, 5, 7, 0x0A, 0x10, 0x0E, 0x0D, 0x0B, 2]
+    answers = {frame_from_bytes(data[:-1]).type for way, data, _ in script() if way == "<"}
+    assert answers == set(m.ANSWERS)
 
 
 def test_the_session_of_the_page_byte_for_byte() -> None:
-    machine = Machine(seed=1)
-    for way, data in script():
-        if way == ">":
-            answer = machine.receive(data, 1000)
-        else:
-            assert answer == data
+    check_the_session(page_machine())
 
 
 def test_the_session_of_the_page_split_at_every_byte() -> None:
-    sent = b"".join(data for way, data in script() if way == ">")
-    whole = Machine(seed=1).receive(sent, 1000)
-    assert whole == b"".join(data for way, data in script() if way == "<")
-    for cut in range(len(sent) + 1):
-        machine = Machine(seed=1)
-        assert machine.receive(sent[:cut], 1000) + machine.receive(sent[cut:], 1000) == whole
-    one_by_one = Machine(seed=1)
-    assert b"".join(one_by_one.receive(bytes([byte]), 1000) for byte in sent) == whole
+    whole = b"".join(data for way, data, _ in script() if way == "<")
+    sent = sum(len(data) for way, data, _ in script() if way == ">")
+    for cuts in (*({cut} for cut in range(sent + 1)), set(range(sent))):
+        machine, said, at = page_machine(), b"", 0
+        for way, data, now in script():
+            if way == "@":
+                machine.tick(now)
+            elif way == ">":
+                pieces = [0, *sorted(cut - at for cut in cuts if at < cut < at + len(data))]
+                for piece, end in zip(pieces, [*pieces[1:], len(data)], strict=True):
+                    said += machine.receive(data[piece:end], now)
+                at += len(data)
+            said += machine.outgoing()
+        assert said == whole
 
 
 def test_a_frame_too_long_is_damaged_and_the_next_is_read() -> None:

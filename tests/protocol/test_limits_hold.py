@@ -19,19 +19,26 @@ class Watch:
     """Watches the output with floats of its own, by what docs/protocol.md promises."""
 
     def __init__(self) -> None:
-        self.machine = Machine(seed=3)
+        self.machine = Machine(3, sensor=self.finger, pickup=lambda: 7)
         self.now = self.heard = 0
         self.level = 0
         self.on = 0.0
         self.seen: Counter[object] = Counter()
         self.answers = Deframer()
 
+    def finger(self) -> tuple[int, int, bool]:
+        """Walks over the tile and past either end; now and then it does not touch."""
+        return self.now // 7 % 3000 - 1500, 0, self.now % 5_000 > 500
+
     def send(self, data: bytes) -> None:
         level = self.machine.level
         for frame in self.answers.take(self.machine.receive(data, self.now)):
             assert frame is not None
-            status = m.Status.read(frame.payload)
+            status = m.ANSWERS[frame.type].read(frame.payload)
             assert status is not None
+            self.seen[type(status)] += 1
+            if not isinstance(status, m.Status):
+                continue
             if status.reason == 0:
                 self.heard = self.now
             self.seen["reason", status.reason] += 1
@@ -41,6 +48,12 @@ class Watch:
         self.now += elapsed
         before, limits = self.level, self.machine.limits
         self.level = self.machine.tick(self.now & 0xFFFFFFFF)
+        for frame in self.answers.take(self.machine.outgoing()):
+            assert frame is not None
+            reading = m.Reading.read(frame.payload)
+            assert reading is not None
+            assert reading.level == self.level
+            self.seen[m.Reading] += 1
         self.seen[self.machine.state] += 1
         self.seen[self.machine.fault] += 1
         if limits is None:
@@ -147,3 +160,4 @@ def test_the_limits_hold_over_long_sessions_that_see_everything(seed: int) -> No
         watch.wait(500)
     assert set(State) | set(Fault) <= set(watch.seen)
     assert {("reason", number) for number in range(10)} <= set(watch.seen)
+    assert {m.Status, m.Reading, m.Info} <= set(watch.seen)

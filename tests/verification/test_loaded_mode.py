@@ -8,11 +8,14 @@ from squeezefilm.contact.finger_load import finger_stiffness, interface_stiffnes
 from squeezefilm.contact.skin import Skin
 from squeezefilm.display import load_display
 from squeezefilm.errors import InputError
+from squeezefilm.friction import friction_law
 from squeezefilm.materials import Gas
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.loaded_mode import LoadedMode, loaded_mode, mean_square_wave
 from squeezefilm.plate.plate_response import SurfaceLoad, harmonic_response
 from squeezefilm.plate.solid_mode import solid_mode
+from squeezefilm.plate.working_mode import working_mode
+from squeezefilm.touch import load_ratios, touch
 
 AIR = Gas(1.85e-5, 1e5, 1.2, 67e-9)
 
@@ -108,3 +111,21 @@ def test_asperities_add_a_spring_that_does_not_depend_on_the_swing_if_small() ->
 
     large = interface_stiffness(2e-6, 1.2e-6, 250e-6, 35e3, vacuum, law)
     assert large.real == pytest.approx(2 * 5e3 * i1(2.0) / 1.2e-6, rel=1e-3)
+
+
+def test_a_finger_that_takes_much_still_settles_on_the_upper_amplitude() -> None:
+    # At 18 V and 1 N three amplitudes fit this plate; from no finger it comes to the upper one.
+    display = load_display("winfield2007-tpad")
+    mode = working_mode(display.actuator)
+    for force, volts in ((0.5, 10.0), (0.5, 15.0), (1.0, 5.0), (1.0, 18.0)):
+        law = friction_law(
+            display, mode.half_wavelength, mode.resonance_frequency, normal_force=force
+        )
+        free = volts * mode.amplitude_per_volt
+        settled = touch(mode, law, free).amplitude
+        above = np.linspace(settled * 1.001, free, 200)
+        load = load_ratios(mode, law, np.array([settled, *above]))
+        alone = np.abs(1 + mode.quality_factor * (load.imag - 1j * load.real))
+        made = free / alone
+        assert made[0] == pytest.approx(settled, rel=1e-6)
+        assert np.all(made[1:] < above)

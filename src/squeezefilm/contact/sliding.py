@@ -191,7 +191,7 @@ def slide(
     speed_in, speed_out = interval_speeds(bone, time_step)
     done = slide_march(
         bone, speed_in, speed_out, np.ascontiguousarray(limit), float(time_step),
-        _substeps(time_step, pad, law, strongest),
+        substeps(time_step, pad, law, strongest),
         pad.mass, pad.damping, pad.stiffness, law.static_ratio, law.stribeck_speed,
         start, spacing, values,
         position, speed, friction, bone_force, sticking, work, account,
@@ -262,8 +262,11 @@ def _over_time(name: str, values: NewtonLike | DimensionlessLike, n: int) -> Flo
     return np.broadcast_to(array, (n,))
 
 
-def _substeps(time_step: Second, pad: FingerpadDynamics, law: DryFriction, strongest: float) -> int:
-    """Parts of a step short enough for the skin, and for friction that falls with speed."""
+def substeps(time_step: Second, pad: FingerpadDynamics, law: DryFriction, strongest: float) -> int:
+    """Parts of a step (s) short enough for the skin, and for friction that falls with speed.
+
+    `strongest` is the largest friction force (N). Raises `InputError` for more than 1000 parts.
+    """
     fastest = max(math.sqrt(pad.stiffness / pad.mass), pad.damping / pad.mass)
     count = math.ceil(time_step * fastest / _SUBSTEP)
     if law.stribeck_speed > 0 and law.static_ratio > 1:

@@ -7,86 +7,40 @@ The twin of `firmware/squeezefilm_fw.c`, rule by rule and number by number: inte
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
-from enum import IntEnum
 
 from squeezefilm.device import messages as m
+from squeezefilm.device.device_limits import DeviceLimits, level_of
 from squeezefilm.device.frames import VERSION, Deframer, Frame
 from squeezefilm.device.loads import Loads
+from squeezefilm.device.playing import CLOCK, Finger, Mode, Playing
+from squeezefilm.device.reports import Reports
+from squeezefilm.device.states import Fault, Reason, State
 from squeezefilm.device.tile import Tile
 
-CLOCK = 0xFFFFFFFF
+__all__ = [
+    "CLOCK",
+    "DeviceLimits",
+    "Fault",
+    "Machine",
+    "Reason",
+    "State",
+    "level_of",
+    "next_token",
+]
+
 SILENCE = 50_000
 """µs without an accepted frame after which an armed device faults."""
 LATE_TICK = 10_000
 """µs between ticks above which an armed device faults: it cannot vouch for its output."""
 LONGEST_RISE = 1_000
 """µs of slew that one tick may rise by, so that a late tick makes no jump."""
-RAMP = 10_000
-TOUCH_LEVEL = 42_000_000
-HIGHEST_LEVEL = 2_000_000_000
-NO_LEVEL = -1
+TICK_PERIOD = 100
+"""µs between the ticks of a device that does not say otherwise."""
+FIRMWARE_VERSION = 1
 _SEED = 0x9E3779B9
-
-
-class State(IntEnum):
-    """What the device is doing."""
-
-    OFF = 0
-    ARMED = 1
-    PLAYING = 2
-    FAULT = 3
-
-
-class Fault(IntEnum):
-    """Why it faulted."""
-
-    NONE = 0
-    WATCHDOG = 1
-    HEAT = 2
-    DUTY = 3
-    LATE_TICK = 4
-    TRIPPED = 5
-
-
-class Reason(IntEnum):
-    """What became of a frame."""
-
-    ACCEPTED = 0
-    VERSION = 1
-    TYPE = 2
-    LENGTH = 3
-    SEQUENCE = 4
-    STATE = 5
-    VALUE = 6
-    TOKEN = 7
-    NO_LIMITS = 8
-    TILE = 9
-
-
-@dataclass(frozen=True, slots=True)
-class DeviceLimits:
-    """Limits as the device holds them: µV, V/s (= µV/µs), µV, V²·ms, mHz, permille, ms.
-
-    The defaults are the most the wire can ask for; a firmware's own are set for its amplifier.
-    """
-
-    voltage: int = HIGHEST_LEVEL
-    slew: int = 1_000_000_000
-    continuous_voltage: int = HIGHEST_LEVEL
-    heat: int = 4_000_000_000
-    lowest_frequency: int = 1_000
-    highest_frequency: int = 1_000_000_000
-    duty: int = 1000
-    duty_window: int = 3_600_000
-
-
-def level_of(volts: float) -> int:
-    """µV of a binary32 in V, to the nearest; `NO_LEVEL` if NaN, negative or above 2000 V."""
-    if not 0 <= volts <= HIGHEST_LEVEL / 1e6:
-        return NO_LEVEL
-    # 24 bits times 10⁶ is exact in binary64, so C and Python cut the same number.
-    return int(volts * 1e6 + 0.5)
+_MOST_UNREAD = 1 << 16
 
 
 def next_token(token: int) -> int:
@@ -101,11 +55,16 @@ class Machine:
     """One device. Give it bytes and the time; it gives answers and its output. Not thread-safe.
 
     `seed` is where its tokens start (a device takes a random number); `own` are the firmware's
-    limits, which no message passes.
+    limits, which no message passes. `sensor` gives the finger's position x and y (µm) and whether
+    it touches, `pickup` the amplitude at the pickup's input (µV); both are called in a tick that
+    needs them. `tick_period` (µs) is how often `tick` is meant to be called.
     """
 
     seed: int = 1
     own: DeviceLimits = field(default_factory=DeviceLimits)
+    sensor: Callable[[], Finger] | None = None
+    pickup: Callable[[], int] | None = None
+    tick_period: int = TICK_PERIOD
     state: State = State.OFF
     fault: Fault = Fault.NONE
     level: int = 0
@@ -113,20 +72,21 @@ class Machine:
     limits: DeviceLimits | None = None
     loads: Loads = field(default_factory=Loads)
     tile: Tile = field(default_factory=Tile)
+    playing: Playing = field(default_factory=Playing)
     accepted: int = 0
     refused: int = 0
+    late_ticks: int = 0
     token: int = 0
     session: int = 0
     _deframer: Deframer = field(default_factory=Deframer)
     _now: int = 0
+    _ticked: int = 0
     _heard: int = 0
     _opened: bool = False
     _last: int = 0
     _sent: int = 0
-    _envelope: tuple[int, ...] = ()
-    _period: int = 1
-    _began: int = 0
-    _at: int | None = None
+    _reports: Reports = field(default_factory=Reports)
+    _unread: bytearray = field(default_factory=bytearray)
 
     def __post_init__(self) -> None:
         self.token = (self.seed & CLOCK) or _SEED
@@ -141,14 +101,27 @@ class Machine:
         """Whether the amplifier's enable line is held."""
         return self.state in (State.ARMED, State.PLAYING) or self.level > 0
 
+    @property
+    def reading_due(self) -> int | None:
+        """When the next reading is due (32 bits of µs), or None if none is asked for."""
+        return self._reports.due if self._reports.period else None
+
     def receive(self, data: bytes, now: int) -> bytes:
-        """Take bytes that arrived at `now` (µs); returns the answers' bytes."""
-        answers = bytearray()
+        """Take bytes that arrived at `now` (µs); returns `outgoing`, the answers among it."""
         for frame in self._deframer.take(data):
-            self.tick(now)
+            self._advance(now)
             if frame is not None:
-                answers += self._answer(frame)
-        return bytes(answers)
+                self._answer(frame)
+        return self.outgoing()
+
+    def outgoing(self) -> bytes:
+        """The bytes for the host since the last call: answers and readings, in order.
+
+        What nobody fetches is kept up to 64 KiB; later readings are lost, as on a full wire.
+        """
+        out = bytes(self._unread)
+        self._unread.clear()
+        return out
 
     def trip(self) -> None:
         """The amplifier's fault line or an opened enable line: FAULT, latched, from any state."""
@@ -156,11 +129,27 @@ class Machine:
 
     def tick(self, now: int) -> int:
         """Advance to `now` (µs); returns the output (µV). To be called at least every 1 ms."""
+        if self.state is State.PLAYING:
+            since = (now - self._ticked) & CLOCK
+            if since > self.tick_period + self.tick_period // 2:
+                self.late_ticks = (self.late_ticks + 1) & CLOCK
+        self._ticked = now & CLOCK
+        return self._advance(now)
+
+    def _advance(self, now: int) -> int:
         elapsed = (now - self._now) & CLOCK
         self._now = now & CLOCK
-        if elapsed == 0 or self.limits is None:
-            return self.level
-        limits = self.limits
+        due = self._reports.take(self._now)
+        finger = None
+        if self.sensor is not None and (due or self.playing.mode is Mode.FINGER):
+            finger = self.sensor()
+        if elapsed != 0 and self.limits is not None:
+            self._move(elapsed, self.limits, finger)
+        if due:
+            self._read(finger)
+        return self.level
+
+    def _move(self, elapsed: int, limits: DeviceLimits, finger: Finger | None) -> None:
         # The output was held since the last tick: count that, then move.
         self.loads.count(self.level, elapsed, limits.continuous_voltage, limits.duty)
         falling = elapsed
@@ -178,35 +167,45 @@ class Machine:
                     self._fail(Fault.HEAT)
                 elif self.loads.used > limits.duty * limits.duty_window * 1000:
                     self._fail(Fault.DUTY)
-        target = self._wanted() if self.state is State.PLAYING else 0
+        target = 0
+        if self.state is State.PLAYING:
+            target = self.playing.level(self._now, self.tile, finger)
         if target > self.level:
             rise = limits.slew * min(elapsed, LONGEST_RISE)
             self.level = min(target, self.level + rise)
         else:
             self.level = max(target, self.level - limits.slew * falling)
-        return self.level
 
-    def _wanted(self) -> int:
-        if self._at is not None:
-            return self.tile.level(self._at)
-        if not self._envelope:
-            return 0
-        index = ((self._now - self._began) & CLOCK) // self._period
-        if index >= len(self._envelope) - 1:
-            # Only the last one is kept, so that the clock may wrap while it holds.
-            self._envelope = self._envelope[-1:]
-            return self._envelope[0]
-        return self._envelope[index]
+    def _read(self, finger: Finger | None) -> None:
+        x, y, touching = finger or (0, 0, False)
+        playing = self.playing
+        flags = (
+            m.SENSOR_PRESENT * (self.sensor is not None)
+            | m.PICKUP_PRESENT * (self.pickup is not None)
+            | m.RAN_DRY * playing.dry
+            | m.CAME_LATE * playing.late
+        )
+        playing.forget_marks()
+        pickup = 0 if self.pickup is None else self.pickup()
+        reading = m.Reading(
+            self._now, x, y, int(touching), self.state, self.fault, flags, self.level, pickup,
+            self.late_ticks,
+        )  # fmt: skip
+        # The number is used up even where nobody fetches: the host then sees the loss.
+        self._sent = (self._sent + 1) & 0xFFFF
+        if len(self._unread) < _MOST_UNREAD:
+            self._unread += reading.frame(self._sent).encoded()
+
+    def _send(self, message: m.Message) -> None:
+        self._sent = (self._sent + 1) & 0xFFFF
+        self._unread += message.frame(self._sent).encoded()
 
     def _fail(self, fault: Fault) -> None:
         if self.state is not State.FAULT:
             self.state, self.fault = State.FAULT, fault
-            self._forget_playing()
+            self.playing.stop()
 
-    def _forget_playing(self) -> None:
-        self._envelope, self._at = (), None
-
-    def _answer(self, frame: Frame) -> bytes:
+    def _answer(self, frame: Frame) -> None:
         reason = self._take(frame)
         if reason is Reason.ACCEPTED:
             self.accepted = (self.accepted + 1) & CLOCK
@@ -215,10 +214,20 @@ class Machine:
             self.refused = (self.refused + 1) & CLOCK
         status = m.Status(
             frame.sequence, reason, self.state, self.fault, 0, self.token, self.level,
-            self.accepted, self.refused, self.damaged & CLOCK, self.session,
+            self.accepted, self.refused, self.damaged & CLOCK, self.session, self._now,
         )  # fmt: skip
-        self._sent = (self._sent + 1) & 0xFFFF
-        return status.frame(self._sent).encoded()
+        self._send(status)
+        if reason is Reason.ACCEPTED and frame.type == m.AskInfo.TYPE:
+            self._send(self._info())
+
+    def _info(self) -> m.Info:
+        own = self.own
+        return m.Info(
+            own.voltage, own.slew, own.continuous_voltage, own.heat, own.lowest_frequency,
+            own.highest_frequency, own.duty, own.duty_window, self.tick_period,
+            int(self.sensor is not None), int(self.pickup is not None), m.LONGEST_TILE,
+            FIRMWARE_VERSION,
+        )  # fmt: skip
 
     def _take(self, frame: Frame) -> Reason:
         if frame.version != VERSION:
@@ -243,18 +252,21 @@ class Machine:
         if self.state not in (State.OFF, State.FAULT):
             return Reason.STATE
         self._opened, self._last, self.session = True, sequence, hello.session
+        self._reports.period = 0
         return Reason.ACCEPTED
 
     def _stop(self) -> Reason:
         if self.state is not State.FAULT:
             self.state = State.OFF
-            self._forget_playing()
+            self.playing.stop()
         return Reason.ACCEPTED
 
     def _obey(self, message: m.Message) -> Reason:
         match message:
-            case m.KeepAlive():
+            case m.KeepAlive() | m.AskInfo():
                 return Reason.ACCEPTED
+            case m.Report():
+                return self._reports.begin(self._now, message.period)
             case m.ClearFault():
                 return self._clear(message.fault)
             case m.SetLimits():
@@ -280,9 +292,17 @@ class Machine:
             case m.Position():
                 if not self.tile.ready:
                     return Reason.TILE
-                self._forget_playing()
-                self._at = message.x
+                self.playing.play_place(message.x)
                 return Reason.ACCEPTED
+            case m.Follow():
+                if not self.tile.ready:
+                    return Reason.TILE
+                if self.sensor is None:
+                    return Reason.VALUE
+                self.playing.play_finger()
+                return Reason.ACCEPTED
+            case m.TimedEnvelope():
+                return self._play_timed(message, self.limits)
         return Reason.TYPE  # pragma: no cover - every command is named above
 
     def _clear(self, fault: int) -> Reason:
@@ -296,27 +316,10 @@ class Machine:
     def _limit(self, asked: m.SetLimits) -> Reason:
         if self.state is not State.OFF or self.level > 0:
             return Reason.STATE
-        voltage, continuous = level_of(asked.voltage), level_of(asked.continuous_voltage)
-        own = self.own
-        good = (
-            0 < voltage <= own.voltage
-            and 0 <= continuous <= min(voltage, own.continuous_voltage)
-            and asked.slew <= own.slew
-            and asked.slew * RAMP >= voltage
-            and asked.heat <= own.heat
-            and own.lowest_frequency <= asked.lowest_frequency <= asked.highest_frequency
-            and asked.highest_frequency <= own.highest_frequency
-            and 1 <= asked.duty <= own.duty
-            and 1 <= asked.duty_window <= own.duty_window
-            and asked.insulated <= 1
-            and (voltage <= TOUCH_LEVEL or asked.insulated == 1)
-        )
-        if not good:
+        limits = self.own.narrowed(asked)
+        if limits is None:
             return Reason.VALUE
-        self.limits = DeviceLimits(
-            voltage, asked.slew, continuous, asked.heat, asked.lowest_frequency,
-            asked.highest_frequency, asked.duty, asked.duty_window,
-        )  # fmt: skip
+        self.limits = limits
         self.tile = Tile()
         return Reason.ACCEPTED
 
@@ -334,16 +337,23 @@ class Machine:
             return Reason.STATE
         if not limits.lowest_frequency <= frequency <= limits.highest_frequency:
             return Reason.VALUE
+        if self.state is State.ARMED:
+            self._ticked = self._now
         self.frequency, self.state = frequency, State.PLAYING
         return Reason.ACCEPTED
 
     def _play(self, message: m.Envelope, limits: DeviceLimits) -> Reason:
-        levels = _levels(message.levels, limits)
+        levels = limits.levels(message.levels)
         if levels is None or message.period == 0:
             return Reason.VALUE
-        self._envelope, self._period, self._began = levels, message.period, self._now
-        self._at = None
+        self.playing.play_envelope(self._now, message.period, levels)
         return Reason.ACCEPTED
+
+    def _play_timed(self, message: m.TimedEnvelope, limits: DeviceLimits) -> Reason:
+        levels = limits.levels(message.levels)
+        if levels is None:
+            return Reason.VALUE
+        return self.playing.play_timed(self._now, self.level, message.start, message.period, levels)
 
     def _begin_tile(self, message: m.TileBegin) -> Reason:
         if self.state is State.FAULT:
@@ -356,19 +366,10 @@ class Machine:
     def _fill_tile(self, message: m.TileData, limits: DeviceLimits) -> Reason:
         if self.state is State.FAULT:
             return Reason.STATE
-        filled = len(self.tile.levels)
-        if message.first != filled or filled + len(message.levels) > self.tile.size:
+        if not self.tile.fits(message.first, len(message.levels)):
             return Reason.TILE
-        levels = _levels(message.levels, limits)
+        levels = limits.levels(message.levels)
         if levels is None:
             return Reason.VALUE
         self.tile.levels += levels
         return Reason.ACCEPTED
-
-
-def _levels(volts: tuple[float, ...], limits: DeviceLimits) -> tuple[int, ...] | None:
-    """µV of every amplitude, or None if any is outside the limits: one bad one refuses all."""
-    levels = tuple(level_of(volt) for volt in volts)
-    if all(0 <= level <= limits.voltage for level in levels):
-        return levels
-    return None

@@ -192,11 +192,61 @@ class ClearFault(Message):
 
 
 @dataclass(frozen=True, slots=True)
+class Report(Message):
+    """A reading every `period` µs from now on (at least 200), or none for 0. In every state."""
+
+    TYPE: ClassVar[int] = 0x0D
+    LAYOUT: ClassVar[struct.Struct] = struct.Struct("<I")
+    period: int
+
+
+@dataclass(frozen=True, slots=True)
+class Follow(Message):
+    """Plays the tile at the device's own sensor, and nothing while it is not touched. PLAYING."""
+
+    TYPE: ClassVar[int] = 0x0E
+
+
+@dataclass(frozen=True, slots=True)
+class AskInfo(Message):
+    """Asks for an info, which follows the status. In every state."""
+
+    TYPE: ClassVar[int] = 0x0F
+
+
+@dataclass(frozen=True, slots=True)
+class TimedEnvelope(Message):
+    """Amplitudes (V), the first at `start` on the device's clock (µs), then one every `period` µs.
+
+    Takes the place of what was queued from `start` on; the last one holds. While PLAYING.
+    """
+
+    TYPE: ClassVar[int] = 0x10
+    start: int
+    period: int
+    levels: tuple[Volt, ...]
+
+    def payload(self) -> bytes:
+        """The payload's bytes. Raises `InputError` for too many or not finite amplitudes."""
+        try:
+            start = struct.pack("<I", self.start)
+        except struct.error as error:
+            raise InputError(f"{self.start} us is not on the device's clock: {error}") from error
+        return start + _levels_payload(self.period, self.levels)
+
+    @classmethod
+    def read(cls, payload: bytes) -> Self | None:
+        """The message in a payload, or None if its length is wrong."""
+        parts = _levels_read(payload[4:])
+        return None if parts is None else cls(int.from_bytes(payload[:4], "little"), *parts)
+
+
+@dataclass(frozen=True, slots=True)
 class Status(Message):
-    """The device's answer to every frame whose CRC was right."""
+    """The device's answer to every frame whose CRC was right; `time` is its clock (µs)."""
 
     TYPE: ClassVar[int] = 0x81
-    LAYOUT: ClassVar[struct.Struct] = struct.Struct("<HBBBBIIIIII")
+    LAYOUT: ClassVar[struct.Struct] = struct.Struct("<HBBBBIIIIIII")
     answered_sequence: int
     reason: int
     state: int
@@ -208,16 +258,69 @@ class Status(Message):
     refused: int
     damaged: int
     session: int
+    time: int
 
+
+@dataclass(frozen=True, slots=True)
+class Reading(Message):
+    """What the device measures: its clock (µs), the finger (µm), its output (µV), its pickup (µV).
+
+    `flags`: bit 0 a sensor is there, 1 a pickup is there, 2 a timed envelope ran dry since the
+    last reading, 3 some of it came late. `late_ticks` counts since boot.
+    """
+
+    TYPE: ClassVar[int] = 0x82
+    LAYOUT: ClassVar[struct.Struct] = struct.Struct("<IiiBBBBIII")
+    time: int
+    x: int
+    y: int
+    touching: int
+    state: int
+    fault: int
+    flags: int
+    level: int
+    pickup: int
+    late_ticks: int
+
+
+@dataclass(frozen=True, slots=True)
+class Info(Message):
+    """The firmware's own limits (µV, V/s, µV, V²·ms, mHz, permille, ms), and what it has."""
+
+    TYPE: ClassVar[int] = 0x83
+    LAYOUT: ClassVar[struct.Struct] = struct.Struct("<IIIIIIIIIBBHI")
+    voltage: int
+    slew: int
+    continuous_voltage: int
+    heat: int
+    lowest_frequency: int
+    highest_frequency: int
+    duty: int
+    duty_window: int
+    tick_period: int
+    has_sensor: int
+    has_pickup: int
+    longest_tile: int
+    firmware_version: int
+
+
+SENSOR_PRESENT, PICKUP_PRESENT, RAN_DRY, CAME_LATE = 1, 2, 4, 8
+"""Flags of a reading."""
 
 COMMANDS: dict[int, type[Message]] = {
     kind.TYPE: kind
     for kind in (
         Hello, Stop, SetLimits, Arm, Start, SetFrequency, Envelope, TileBegin, TileData, Position,
-        KeepAlive, ClearFault,
+        KeepAlive, ClearFault, Report, Follow, AskInfo, TimedEnvelope,
     )
 }  # fmt: skip
 """What a host may send, by type."""
+
+Answer = Status | Reading | Info
+ANSWERS: dict[int, type[Status] | type[Reading] | type[Info]] = {
+    Status.TYPE: Status, Reading.TYPE: Reading, Info.TYPE: Info,
+}  # fmt: skip
+"""What a device may send, by type."""
 
 
 def limits_message(limits: Limits) -> SetLimits:

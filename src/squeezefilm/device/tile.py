@@ -19,6 +19,10 @@ class Tile:
         """Whether every amplitude has arrived."""
         return self.size > 0 and len(self.levels) == self.size
 
+    def fits(self, first: int, count: int) -> bool:
+        """Whether `count` amplitudes from number `first` are the next ones and find room."""
+        return first == len(self.levels) and first + count <= self.size
+
     def level(self, x: int) -> int:
         """The amplitude (µV) at `x` µm; towards the table's own value where division rounds."""
         along = x - self.origin

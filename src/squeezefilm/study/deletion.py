@@ -8,7 +8,7 @@ hand, a file system's snapshots and the spare blocks of a solid-state disk are o
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -113,8 +113,8 @@ def _require_gone(store: StudyStore, identifiers: set[str]) -> int:
     wanted = [one.encode() for one in identifiers]
     count, left = 0, []
     for path in _files(store):
-        count += 1
-        if any(one in path.name.encode() for one in wanted) or _holds(path, wanted):
+        count += path.is_file()
+        if any(one in os.fsencode(path.name) for one in wanted) or _holds(path, wanted):
             left.append(str(path))
     if left:
         raise RecordError(
@@ -125,19 +125,21 @@ def _require_gone(store: StudyStore, identifiers: set[str]) -> int:
 
 
 def _files(store: StudyStore) -> Iterator[Path]:
+    """Everything this program wrote: files, and the folders they are in."""
     yield from sorted(store.path.parent.glob(f"{store.path.name}*"))
-    folders: Iterable[Path] = (
+    folders = (
         store.traces,
         store.backups,
         store.exports,
         *(folder for _, folder in exported_folders(store)),
     )
     for folder in folders:
-        for here, _, names in os.walk(folder):
-            yield from (Path(here) / name for name in sorted(names))
+        yield from sorted(folder.rglob("*"))
 
 
 def _holds(path: Path, wanted: list[bytes]) -> bool:
+    if not path.is_file():
+        return False
     longest = max(len(one) for one in wanted)
     tail = b""
     with path.open("rb") as file:

@@ -27,6 +27,8 @@ from squeezefilm.study.schema import APPLICATION_ID, SCHEMA, VERSION
 from squeezefilm.study.trials import Trial, trials
 
 _HIGHEST_SEED = 2**53
+_PATIENCE = 5000
+"""How long a write waits for another program's (ms)."""
 Row = Mapping[str, Any]
 
 
@@ -276,11 +278,14 @@ class StudyStore:
         Raises `RecordError` while another program reads or writes it.
         """
         try:
+            self._connection.execute("PRAGMA busy_timeout = 500")
             self._empty_log()
             self._connection.execute("VACUUM")
             self._empty_log()
         except sqlite3.Error as error:
             raise RecordError(f"{self.path} could not be compacted: {error}") from error
+        finally:
+            self._connection.execute(f"PRAGMA busy_timeout = {_PATIENCE}")
 
     def _empty_log(self) -> None:
         if self._connection.execute("PRAGMA wal_checkpoint(TRUNCATE)").fetchone()[0]:
@@ -328,7 +333,7 @@ def _planned(trial: Trial, participant: str) -> Row:
 
 def _connect(path: Path) -> sqlite3.Connection:
     try:
-        connection = sqlite3.connect(path, isolation_level=None, timeout=5.0)
+        connection = sqlite3.connect(path, isolation_level=None, timeout=_PATIENCE / 1000)
     except sqlite3.Error as error:
         raise RecordError(f"{path} cannot be opened: {error}; is the folder writable?") from error
     try:

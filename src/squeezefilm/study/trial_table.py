@@ -135,12 +135,14 @@ def unguarded(text: str) -> str:
 
 
 def csv_text(rows: Sequence[dict[str, Cell]], columns: Sequence[Column] = COLUMNS) -> str:
-    """CSV (UTF-8, comma, one header line): numbers read back as the same float, nothing is "".
+    """CSV as RFC 4180 has it: comma, CR LF, one header line.
 
-    Text is guarded against formulas; a truth is true or false.
+    Numbers read back as the same float, nothing is an empty cell, a truth is true or false, and
+    text is guarded against formulas.
     """
     stream = io.StringIO()
-    writer = csv.writer(stream, lineterminator="\n")
+    # With a bare LF, Python before 3.13 leaves a CR within a cell unquoted.
+    writer = csv.writer(stream, lineterminator="\r\n")
     writer.writerow([column.name for column in columns])
     for row in rows:
         writer.writerow([cell_text(row[column.name]) for column in columns])

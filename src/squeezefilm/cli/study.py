@@ -1,0 +1,173 @@
+"""Verbs of a study: plan it, run it, look at it, export it, merge it, take somebody out."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from squeezefilm.cli.app import AsJson, app, print_json
+
+study = typer.Typer(
+    name="study",
+    help="Studies with people: plan, run, export; and simulated participants.",
+    no_args_is_help=True,
+)
+app.add_typer(study)
+
+Design = Annotated[
+    str, typer.Argument(metavar="NAME|FILE", help="A preset study or a design in TOML.")
+]
+Store = Annotated[Path, typer.Argument(metavar="STUDY.sqlite", help="The study's file.")]
+Seed = Annotated[int, typer.Option(help="Of all orders.")]
+
+
+@study.command()
+def plan(
+    design: Design,
+    participants: Annotated[int, typer.Option(help="How many.")] = 12,
+    seed: Seed = 0,
+    as_json: AsJson = False,
+) -> None:
+    """Show a design: what is presented, how often, in which orders, and how long it takes."""
+    from squeezefilm.report.terminal_study import show_plan
+    from squeezefilm.study.design import load_design
+    from squeezefilm.study.plan import plan_study
+
+    found = plan_study(load_design(design), participants, seed)
+    if as_json:
+        print_json(found.summary())
+    else:
+        show_plan(found)
+
+
+@study.command()
+def presets(as_json: AsJson = False) -> None:
+    """List the studies that come with the package."""
+    from squeezefilm.presets import study_names
+    from squeezefilm.study.design import load_design
+
+    listing = [{"name": name, "title": load_design(name).title} for name in study_names()]
+    if as_json:
+        print_json(listing)
+    else:
+        for one in listing:
+            typer.echo(f"{one['name']}: {one['title']}")
+
+
+@study.command()
+def run(
+    design: Design,
+    store: Annotated[Path, typer.Option("--store", help="The study's file; made if not there.")],
+    participant: Annotated[
+        str | None, typer.Option(help="Who goes on; somebody new is enrolled without it.")
+    ] = None,
+    conditions: Annotated[
+        Path | None, typer.Option(help="Conditions of the session in TOML: consent, room, skin …")
+    ] = None,
+    consent: Annotated[
+        bool, typer.Option("--consent", help="The participant has consented.")
+    ] = False,
+    drive: Annotated[str, typer.Option(help="twin (a simulated device) or none.")] = "none",
+    acknowledge: Annotated[
+        bool,
+        typer.Option("--acknowledge-ultrasound", help="The exposure was read and acknowledged."),
+    ] = False,
+    seed: Seed = 0,
+    station: Annotated[int, typer.Option(help="Which station this is, from 0.")] = 0,
+    stations: Annotated[int, typer.Option(help="How many stations there are.")] = 1,
+) -> None:
+    """Run a session at the terminal; stop with Ctrl-C, and go on later where it stopped."""
+    from squeezefilm.report import terminal
+    from squeezefilm.report.terminal_study import TerminalExaminer, ask_acknowledgement
+    from squeezefilm.study.terminal_run import open_study, run_session
+
+    with open_study(store, design, seed, station, stations) as found:
+        who = participant or found.enrol()
+        typer.echo(f"participant {who}: go on with --participant {who}")
+        planned = found.design
+        examiner = TerminalExaminer(planned.spoken_question, modulus=planned.modulus)
+        with terminal.progress(enabled=sys.stderr.isatty()) as step:
+            ended = run_session(
+                found,
+                who,
+                examiner,
+                drive=drive,
+                conditions=conditions,
+                consent=consent,
+                acknowledge=(lambda _: True) if acknowledge else ask_acknowledgement,
+                progress=step,
+            )
+    typer.echo(ended)
+
+
+@study.command()
+def status(store: Store, as_json: AsJson = False) -> None:
+    """Show who is enrolled and how far they are."""
+    from squeezefilm.report.terminal_study import show_status
+    from squeezefilm.study.store import StudyStore
+
+    with StudyStore.open(store) as found:
+        if as_json:
+            print_json({"study": found.study["name"], "participants": found.participants()})
+        else:
+            show_status(found)
+
+
+@study.command()
+def export(
+    store: Store,
+    format: Annotated[str, typer.Option("--format", help="csv, psych-ds or bids.")] = "csv",
+    out: Annotated[
+        Path | None, typer.Option(help="Folder; beside the study's file without it.")
+    ] = None,
+) -> None:
+    """Write all answers as CSV, a Psych-DS dataset or a BIDS behavioural dataset."""
+    from squeezefilm.study.exports import export_study
+    from squeezefilm.study.store import StudyStore
+
+    with StudyStore.open(store) as found:
+        typer.echo(f"wrote {export_study(found, format, out)}")  # type: ignore[arg-type] # checked there
+
+
+@study.command()
+def merge(
+    store: Store,
+    others: Annotated[list[Path], typer.Argument(metavar="OTHER.sqlite …", help="To add.")],
+) -> None:
+    """Add other stations' files to this one; merging again changes nothing."""
+    from squeezefilm.report.terminal_study import show_merge
+    from squeezefilm.study.merge import merge as add
+    from squeezefilm.study.store import StudyStore
+
+    with StudyStore.open(store) as found:
+        for other in others:
+            show_merge(add(found, other), str(other))
+
+
+@study.command()
+def backup(store: Store) -> None:
+    """Copy the study's file, as it is now, into the folder of backups beside it."""
+    from squeezefilm.study.store import StudyStore
+
+    with StudyStore.open(store) as found:
+        typer.echo(f"wrote {found.back_up()}")
+
+
+@study.command()
+def delete_participant(
+    store: Store,
+    participant: Annotated[str, typer.Argument(help="The pseudonym.")],
+    yes: Annotated[bool, typer.Option("--yes", help="Do not ask.")] = False,
+) -> None:
+    """Take a participant out of the file, its traces, backups and exports, without a trace."""
+    from squeezefilm.report.terminal_study import show_deletion
+    from squeezefilm.study.deletion import delete_participant as take_out
+    from squeezefilm.study.store import StudyStore
+
+    with StudyStore.open(store) as found:
+        if not yes:
+            typer.confirm(f"Delete every answer and trace of {participant} for good?", abort=True)
+        show_deletion(take_out(found, participant), participant)

@@ -1,0 +1,41 @@
+"""What a device is doing, why it faulted, and what became of a frame: numbers on the wire."""
+
+from __future__ import annotations
+
+from enum import IntEnum
+
+
+class State(IntEnum):
+    """What the device is doing."""
+
+    OFF = 0
+    ARMED = 1
+    PLAYING = 2
+    FAULT = 3
+
+
+class Fault(IntEnum):
+    """Why it faulted."""
+
+    NONE = 0
+    WATCHDOG = 1
+    HEAT = 2
+    DUTY = 3
+    LATE_TICK = 4
+    TRIPPED = 5
+
+
+class Reason(IntEnum):
+    """What became of a frame."""
+
+    ACCEPTED = 0
+    VERSION = 1
+    TYPE = 2
+    LENGTH = 3
+    SEQUENCE = 4
+    STATE = 5
+    VALUE = 6
+    TOKEN = 7
+    NO_LIMITS = 8
+    TILE = 9
+    FULL = 10

@@ -1,0 +1,211 @@
+"""The simulated plate, amplifier, film, finger, hand, sensor and pickup as one object on one clock.
+
+Python around `plant_kernel.advance`; everything that takes time is compiled.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from squeezefilm.contact.sliding import substeps
+from squeezefilm.errors import InputError
+from squeezefilm.film.compiled import announce
+from squeezefilm.quantities import Ampere, FloatArray, Hertz, Metre, MetrePerVolt, Newton, Volt
+from squeezefilm.twin import plant_kernel as k
+from squeezefilm.twin.chance import gaussian
+from squeezefilm.twin.hand import Hand
+from squeezefilm.twin.settings import TwinSettings
+from squeezefilm.twin.truth import TruthRecord
+from squeezefilm.twin.working_point import WorkingPoint
+
+_BUFFER = 2000  # rows between two visits to Python
+_PICKUP_RE, _PICKUP_IM = 11, 12
+
+
+@dataclass(frozen=True, slots=True)
+class PlantCounts:
+    """How often something was not as wanted, in steps of the plant since it began.
+
+    `at_rail`, `at_slew`, `at_current`: the amplifier's limits held the voltage back. `beyond`: the
+    amplitude left the tables. `failed`: the skin chattered without end. `lost`: sensor samples.
+    """
+
+    at_rail: int
+    at_slew: int
+    at_current: int
+    beyond: int
+    failed: int
+    lost: int
+
+
+class Plant:
+    """Plate and finger. Not thread-safe. Advance it to a time; read what it does there.
+
+    `hand` None leaves the plate alone. The truth is appended to `truth_file` where one is named.
+    """
+
+    def __init__(
+        self,
+        point: WorkingPoint,
+        settings: TwinSettings,
+        hand: Hand | None = None,
+        truth_file: Path | None = None,
+    ) -> None:
+        self.point, self.settings, self.hand = point, settings, hand
+        self.truth = TruthRecord(settings.truth_rows, truth_file)
+        self._c = _constants(point, settings, hand)
+        self._places, self._plan = _path(hand, settings.tick_us)
+        self._s, self._n = np.zeros(k.STATE), np.zeros(k.COUNTS, dtype=np.int64)
+        self._s[k.X] = self._s[k.SKIN_X] = self._places[0, 0]
+        self._s[k.Y] = self._places[1, 0]
+        self._s[k.RELATIVE] = math.nan
+        self._s[k.RESONANCE] = k.resonance(0, 0.0, self._c)
+        sensor = settings.sensor
+        waiting = math.ceil((sensor.latency + 10 * sensor.jitter) * sensor.rate) + 16
+        self._ring = np.zeros((waiting, 5))
+        self._buffer = np.empty((_BUFFER, len(k.COLUMNS)))
+        self._rest = (
+            self._s, self._n, self._c, np.ascontiguousarray(point.forces, dtype=float),
+            point.relative_friction, point.load, self._places, self._plan, self._ring, np.ones(1),
+            self._buffer,
+        )  # fmt: skip
+        announce(k.advance, "twin's plant", 20)
+
+    @property
+    def now(self) -> int:
+        """The time it has reached (µs), which never wraps."""
+        return int(self._n[k.NOW])
+
+    def advance(self, until: int, level: int, carrier: int) -> None:
+        """Advance to a time (µs) at an amplitude (µV) and a carrier frequency (mHz).
+
+        Raises `InputError` for a time that has passed.
+        """
+        if until < self.now:
+            raise InputError(f"the plant is at {self.now} us and was asked to go to {until} us")
+        while k.advance(until, level, carrier, *self._rest) < until:
+            self.drain()
+
+    def drain(self) -> None:
+        """Hand the rows of truth made so far to `truth`."""
+        self.truth.append(self._buffer[: self._n[k.ROWS]])
+        self._n[k.ROWS] = 0
+
+    def close(self) -> None:
+        """Hand over the last rows and close their file."""
+        self.drain()
+        self.truth.close()
+
+    @property
+    def envelope(self) -> complex:
+        """z (m): the vibration is Re(−i z e^{iωt}), real when driven at resonance."""
+        return complex(self._s[k.Z_RE], self._s[k.Z_IM])
+
+    @property
+    def amplitude(self) -> Metre:
+        """Of the vibration (m, zero-to-peak, at an antinode)."""
+        return abs(self.envelope)
+
+    @property
+    def resonance_frequency(self) -> Hertz:
+        """Where the plate's own resonance is now, without the finger (Hz)."""
+        return float(self._s[k.RESONANCE])
+
+    @property
+    def voltage(self) -> Volt:
+        """On the plate (V, peak), what limits allow."""
+        return float(self._s[k.VOLTAGE])
+
+    @property
+    def current(self) -> Ampere:
+        """From the amplifier (A, peak)."""
+        return float(self._s[k.CURRENT_A])
+
+    @property
+    def tangential_force(self) -> Newton:
+        """Of the friction between skin and surface (N), positive while the skin goes to +x."""
+        return float(self._s[k.FRICTION])
+
+    @property
+    def counts(self) -> PlantCounts:
+        """What was not as wanted."""
+        which = (k.AT_RAIL, k.AT_SLEW, k.AT_CURRENT, k.BEYOND, k.FAILED, k.LOST_SAMPLES)
+        return PlantCounts(*(int(self._n[i]) for i in which))
+
+    def sensed(self) -> tuple[int, int, bool]:
+        """What the device's position sensor shows now: x and y (µm), and whether it is touched."""
+        x, y = self._s[k.SEEN_X], self._s[k.SEEN_Y]
+        return round(x * 1e6), round(y * 1e6), bool(self._n[k.SEEN_TOUCHING])
+
+    @cached_property
+    def pickup_calibration(self) -> MetrePerVolt:
+        """Vibration amplitude per signal of the pickup (m/V), at the predicted resonance."""
+        pickup = self.settings.pickup
+        if pickup.kind == "sensing_patch":
+            return 1 / pickup.sensitivity
+        omega = 2 * math.pi * self.point.mode.resonance_frequency
+        return 1 / (omega * self.point.force_factor * pickup.shunt)
+
+    def pickup_level(self) -> int:
+        """The amplitude at the pickup's input now (µV), with its noise; 0 without a pickup."""
+        pickup, z = self.settings.pickup, self.envelope
+        if pickup.kind == "none":
+            return 0
+        if pickup.kind == "sensing_patch":
+            signal = pickup.sensitivity * z
+        else:
+            carrier = int(self._n[k.CARRIER])
+            omega = 2 * math.pi * (carrier * 1e-3 if carrier else self.resonance_frequency)
+            leak = 1j * pickup.feedthrough * self.point.capacitance * self.voltage
+            signal = omega * pickup.shunt * (self.point.force_factor * z + leak)
+        seed, now = self.settings.seed, self.now
+        signal += pickup.noise * complex(
+            gaussian(seed, _PICKUP_RE, now), gaussian(seed, _PICKUP_IM, now)
+        )
+        return round(abs(signal) * 1e6)
+
+
+def _path(hand: Hand | None, tick: int) -> tuple[FloatArray, NDArray[np.int64]]:
+    if hand is not None:
+        return hand.path(tick)
+    # A hand that never begins.
+    plan = np.array([1 << 61, 1, 0, -1, 1, 1, 0], dtype=np.int64)
+    return np.zeros((2, 2)), plan
+
+
+def _constants(point: WorkingPoint, settings: TwinSettings, hand: Hand | None) -> FloatArray:
+    display, mode, finger = point.display, point.mode, point.display.finger
+    drift, amplifier, arm = settings.drift, settings.amplifier, settings.arm
+    sensor, dry, pad = settings.sensor, settings.dry, finger.fingerpad
+    step = settings.tick_us // settings.steps_per_tick
+    friction = display.surface().friction_coefficient * finger.friction_factor
+    force = 0.0 if hand is None else hand.normal_force
+    strongest = float(dry.kinetic_force(friction, force))
+    values = {
+        k.C_STEP: step, k.C_ROW: round(settings.truth_period * 1e6), k.C_SEED: settings.seed,
+        k.C_F0: mode.resonance_frequency,
+        k.C_Q: mode.quality_factor * drift.quality_factor_ratio,
+        k.C_PER_VOLT: mode.amplitude_per_volt * drift.quality_factor_ratio,
+        k.C_FACTOR: point.force_factor, k.C_OFFSET: drift.offset, k.C_AGEING: drift.ageing,
+        k.C_COEFFICIENT: drift.temperature_coefficient, k.C_SWING: drift.ambient_swing,
+        k.C_PERIOD: round(drift.ambient_period * 1e6),
+        k.C_RESISTANCE: drift.thermal_resistance, k.C_THERMAL: drift.thermal_time,
+        k.C_GAIN: amplifier.gain, k.C_RAIL: amplifier.highest_voltage,
+        k.C_CURRENT: amplifier.highest_current, k.C_SLEW: amplifier.slew_rate,
+        k.C_C0: point.capacitance, k.C_LOSS: amplifier.loss_tangent,
+        k.C_MASS: arm.mass, k.C_STIFFNESS: arm.stiffness, k.C_DAMPING: arm.damping,
+        k.C_PAD_MASS: pad.mass, k.C_PAD_DAMPING: pad.damping, k.C_PAD_STIFFNESS: pad.stiffness,
+        k.C_SUBSTEPS: substeps(step * 1e-6, pad, dry, strongest),
+        k.C_MU: friction, k.C_STATIC: dry.static_ratio, k.C_STRIBECK: dry.stribeck_speed,
+        k.C_EXPONENT: dry.load_exponent, k.C_REFERENCE: dry.reference_force, k.C_FORCE: force,
+        k.C_HIGHEST: point.highest_amplitude, k.C_RATE: sensor.rate,
+        k.C_LATENCY: sensor.latency * 1e6, k.C_JITTER: sensor.jitter * 1e6,
+        k.C_NOISE: sensor.noise, k.C_QUANTUM: sensor.quantisation, k.C_SHARE_LOST: sensor.loss,
+    }  # fmt: skip
+    return np.array([values[i] for i in range(k.CONSTANTS)], dtype=float)

@@ -1,0 +1,243 @@
+"""The compiled plant: amplifier, plate, film and friction, skin, finger and arm, and the sensor.
+
+It advances to a time on a grid of steps counted in whole µs, so that no phase is lost over hours
+and the outcome does not depend on the pieces in which time is advanced. In each step
+
+1. the amplifier gives what its limits allow,
+2. the plate's envelope is stepped in closed form,
+3. the arm leads the finger, a mass on spring and damper, in closed form under the skin's pull,
+   which is extrapolated to the middle of the step (second order),
+4. the skin follows by the compiled march of `contact.sliding`, under the friction of the law,
+5. the sensor takes its samples, and the truth gets a row where one is due.
+
+Motion is along x for the skin; along y the arm leads without friction.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numba
+import numpy as np
+
+from squeezefilm.contact.skin_motion import slide_by, transition
+from squeezefilm.contact.sliding_kernel import slide_march
+from squeezefilm.twin.chance import gaussian, uniform
+from squeezefilm.twin.envelope_step import (
+    CURRENT,
+    RAIL,
+    SLEW,
+    between,
+    drawn_current,
+    envelope_step,
+    table_place,
+    voltage_given,
+)
+from squeezefilm.twin.hand import wanted
+
+Array = np.ndarray[Any, Any]
+
+# The state, float64.
+(
+    Z_RE, Z_IM, WARMTH, RESONANCE, LOST, X, VX, Y, VY, SKIN_X, SKIN_V, PULL, PULL_BEFORE, BEFORE,
+    FRICTION, FORCE, VOLTAGE, CURRENT_A, RELATIVE, SEEN_X, SEEN_Y,
+) = range(21)  # fmt: skip
+STATE = 21
+# The counts, int64; times in µs.
+(
+    NOW, SEEN_TAKEN, SEEN_TOUCHING, SAMPLE, HEAD, TAIL, ARRIVED, ROWS, AT_RAIL, AT_SLEW, AT_CURRENT,
+    BEYOND, FAILED, LOST_SAMPLES, CARRIER,
+) = range(15)  # fmt: skip
+COUNTS = 15
+# The constants, float64.
+(
+    C_STEP, C_ROW, C_SEED, C_F0, C_Q, C_PER_VOLT, C_FACTOR, C_OFFSET, C_AGEING, C_COEFFICIENT,
+    C_SWING, C_PERIOD, C_RESISTANCE, C_THERMAL, C_GAIN, C_RAIL, C_CURRENT, C_SLEW, C_C0, C_LOSS,
+    C_MASS, C_STIFFNESS, C_DAMPING, C_PAD_MASS, C_PAD_DAMPING, C_PAD_STIFFNESS, C_SUBSTEPS, C_MU,
+    C_STATIC, C_STRIBECK, C_EXPONENT, C_REFERENCE, C_FORCE, C_HIGHEST, C_RATE, C_LATENCY, C_JITTER,
+    C_NOISE, C_QUANTUM, C_SHARE_LOST,
+) = range(40)  # fmt: skip
+CONSTANTS = 40
+COLUMNS = (
+    "time_s", "x_m", "y_m", "speed_m_per_s", "level_V", "frequency_Hz", "amplitude_m",
+    "relative_friction", "tangential_force_N", "normal_force_N", "voltage_V", "current_A",
+    "resonance_Hz", "skin_x_m",
+)  # fmt: skip
+"""Columns of the truth."""
+
+THERMAL = 10_000  # µs between looks at the temperature
+_NOISE_X, _NOISE_Y, _DELAY, _LOSS = 1, 2, 3, 4
+
+
+@numba.njit(cache=True, nogil=True)
+def resonance(time: int, warmth: float, c: Array) -> float:
+    """The plate's resonance frequency (Hz) at a time (µs) and a self-heating (K)."""
+    period = np.int64(c[C_PERIOD])
+    turn = 2.0 * math.pi * ((time % period) / period)
+    kelvin = warmth + c[C_SWING] * math.sin(turn)
+    shift = c[C_OFFSET] + c[C_AGEING] * (time * 1e-6) + c[C_COEFFICIENT] * kelvin
+    return float(c[C_F0] * (1.0 + shift))
+
+
+@numba.njit(cache=True, nogil=True)
+def _sense(t0: int, h_us: int, x0: float, y0: float, s: Array, n: Array, c: Array, ring: Array,
+           touching: bool) -> None:  # fmt: skip
+    seed = int(c[C_SEED])
+    while True:
+        k = n[SAMPLE]
+        taken = np.int64(k * 1e6 / c[C_RATE])
+        if taken > t0 + h_us:
+            break
+        n[SAMPLE] = k + 1
+        if uniform(seed, _LOSS, k) < c[C_SHARE_LOST]:
+            n[LOST_SAMPLES] += 1
+            continue
+        share = (taken - t0) / h_us
+        x = x0 + share * (s[X] - x0) + c[C_NOISE] * gaussian(seed, _NOISE_X, k)
+        y = y0 + share * (s[Y] - y0) + c[C_NOISE] * gaussian(seed, _NOISE_Y, k)
+        if c[C_QUANTUM] > 0.0:
+            x = c[C_QUANTUM] * np.round(x / c[C_QUANTUM])
+            y = c[C_QUANTUM] * np.round(y / c[C_QUANTUM])
+        delay = max(c[C_LATENCY] + c[C_JITTER] * gaussian(seed, _DELAY, k), 0.0)
+        n[ARRIVED] = max(n[ARRIVED], taken + np.int64(round(delay)))
+        at = n[HEAD] % ring.shape[0]
+        ring[at, 0], ring[at, 1], ring[at, 2] = n[ARRIVED], taken, 1.0 if touching else 0.0
+        ring[at, 3], ring[at, 4] = x, y
+        n[HEAD] += 1
+        if n[HEAD] - n[TAIL] > ring.shape[0]:
+            n[TAIL] += 1
+    while n[TAIL] < n[HEAD]:
+        at = n[TAIL] % ring.shape[0]
+        if ring[at, 0] > t0 + h_us:
+            break
+        n[SEEN_TAKEN], n[SEEN_TOUCHING] = np.int64(ring[at, 1]), np.int64(ring[at, 2])
+        s[SEEN_X], s[SEEN_Y] = ring[at, 3], ring[at, 4]
+        n[TAIL] += 1
+
+
+@numba.njit(cache=True, nogil=True)
+def _follow(h: float, x0: float, x1: float, y0: float, y1: float, s: Array, c: Array) -> None:
+    """The finger's bone after a step in which the arm's wanted place goes from 0 to 1."""
+    m, d, k = c[C_MASS], c[C_DAMPING], c[C_STIFFNESS]
+    pull = np.empty(3)
+    by = transition(h, d, k, m)
+    pull[2] = 0.0
+    pull[1] = k * (x1 - x0) / h
+    pull[0] = k * x0 + d * (x1 - x0) / h
+    ahead = s[PULL]
+    if s[BEFORE] > 0.0:
+        ahead += 0.5 * (s[PULL] - s[PULL_BEFORE]) * h / s[BEFORE]
+    s[X], s[VX], _ = slide_by(by, h, s[X], s[VX], pull, ahead, 0.0, m, d, k)
+    pull[1] = k * (y1 - y0) / h
+    pull[0] = k * y0 + d * (y1 - y0) / h
+    s[Y], s[VY], _ = slide_by(by, h, s[Y], s[VY], pull, 0.0, 0.0, m, d, k)
+
+
+@numba.njit(cache=True, nogil=True)
+def _drag(h: float, x0: float, v0: float, start: float, end: float, s: Array, n: Array, c: Array,
+          one: Array) -> None:  # fmt: skip
+    """The skin under a bone that went from x0 with v0, friction limits `start` to `end` (N)."""
+    mean, bend = (s[X] - x0) / h, 0.5 * (s[VX] - v0)
+    bone, limit = np.array([x0, s[X]]), np.array([start, end])
+    v_in, v_out = np.array([mean - bend]), np.array([mean + bend])
+    place, speed = np.array([s[SKIN_X], 0.0]), np.array([s[SKIN_V], 0.0])
+    friction, pull, stuck = np.zeros(2), np.zeros(2), np.zeros(2, dtype=np.bool_)
+    done = slide_march(
+        bone, v_in, v_out, limit, h, int(c[C_SUBSTEPS]),
+        c[C_PAD_MASS], c[C_PAD_DAMPING], c[C_PAD_STIFFNESS], c[C_STATIC], c[C_STRIBECK],
+        0.0, 1.0, one, place, speed, friction, pull, stuck, np.zeros((3, 2)), np.zeros(3),
+    )  # fmt: skip
+    s[PULL_BEFORE], s[BEFORE] = s[PULL], h
+    if done < 2:
+        # Chattering without end: let the skin go with the bone, and say so in the counts.
+        n[FAILED] += 1
+        s[SKIN_X], s[SKIN_V], s[PULL], s[FRICTION] = s[X], 0.0, 0.0, 0.0
+        return
+    s[SKIN_X], s[SKIN_V], s[FRICTION], s[PULL] = place[1], speed[1], friction[1], pull[1]
+
+
+@numba.njit(cache=True, nogil=True)
+def advance(
+    until: int, level: int, carrier: int, s: Array, n: Array, c: Array, forces: Array,
+    friction: Array, load: Array, places: Array, plan: Array, ring: Array, one: Array, truth: Array,
+) -> int:  # fmt: skip
+    """Advance to `until` (µs) at a level (µV) and a carrier frequency (mHz).
+
+    Returns the time reached; earlier than `until` where `truth` (rows, columns) is full, to be
+    emptied by setting the count ROWS to 0. Allocates a few numbers a step, never raises.
+    """
+    step, row = np.int64(c[C_STEP]), np.int64(c[C_ROW])
+    points, highest = friction.shape[1], c[C_HIGHEST]
+    if carrier > 0:
+        n[CARRIER] = carrier
+    here = wanted(n[NOW], places, plan)
+    while n[NOW] < until:
+        if n[ROWS] >= truth.shape[0]:
+            return int(n[NOW])
+        t0 = n[NOW]
+        t1 = min((t0 // step + 1) * step, until)
+        h = (t1 - t0) * 1e-6
+        there = wanted(t1, places, plan)
+        x0, v0, y0 = s[X], s[VX], s[Y]
+        z = complex(s[Z_RE], s[Z_IM])
+        before, began = abs(z), s[FORCE]
+        force = c[C_FORCE] * there[2]
+        f0 = s[RESONANCE]
+        frequency = n[CARRIER] * 1e-3 if n[CARRIER] > 0 else f0
+        if level > 0 or before > 0.0:
+            omega = 2.0 * math.pi * frequency
+            s[VOLTAGE], limited = voltage_given(
+                level * 1e-6 * c[C_GAIN], z, omega, c[C_C0], c[C_LOSS], c[C_FACTOR],
+                c[C_RAIL], c[C_CURRENT], c[C_SLEW],
+            )  # fmt: skip
+            n[AT_RAIL] += limited == RAIL
+            n[AT_SLEW] += limited == SLEW
+            n[AT_CURRENT] += limited == CURRENT
+            z = envelope_step(
+                z, c[C_PER_VOLT] * s[VOLTAGE], h, frequency / f0, c[C_Q], c[C_Q] / (math.pi * f0),
+                0.5 * (began + force), forces, highest, load,
+            )  # fmt: skip
+            s[Z_RE], s[Z_IM] = z.real, z.imag
+            drawn = drawn_current(s[VOLTAGE], z, omega, c[C_C0], c[C_LOSS], c[C_FACTOR])
+            s[CURRENT_A] = abs(drawn)
+            s[LOST] += 0.5 * s[VOLTAGE] * drawn.real * h
+        else:
+            s[VOLTAGE], s[CURRENT_A] = 0.0, 0.0
+        amplitude = abs(z)
+        _follow(h, here[0], there[0], here[1], there[1], s, c)
+        s[FORCE] = force
+        if force > 0.0 or began > 0.0:
+            i, p, j, q, beyond = table_place(force, amplitude, forces, highest, points)
+            n[BEYOND] += beyond
+            relative = between(friction, i, p, j, q)
+            if began <= 0.0:
+                # A relaxed skin, that lands with the bone's place and speed.
+                s[SKIN_X], s[SKIN_V], s[RELATIVE] = x0, v0, relative
+            ref = c[C_REFERENCE]
+            start = c[C_MU] * s[RELATIVE] * ref * (began / ref) ** c[C_EXPONENT]
+            end = c[C_MU] * relative * ref * (force / ref) ** c[C_EXPONENT]
+            s[RELATIVE] = relative
+            _drag(h, x0, v0, start, end, s, n, c, one)
+        if force <= 0.0:
+            s[SKIN_X], s[SKIN_V] = s[X], s[VX]
+            s[PULL], s[PULL_BEFORE], s[BEFORE], s[FRICTION] = 0.0, 0.0, 0.0, 0.0
+            s[RELATIVE] = math.nan
+        n[NOW] = t1
+        here = there
+        _sense(t0, t1 - t0, x0, y0, s, n, c, ring, force > 0.0)
+        if t1 % THERMAL == 0:
+            part = THERMAL * 1e-6
+            fade = math.exp(-part / c[C_THERMAL])
+            end_warmth = c[C_RESISTANCE] * s[LOST] / part
+            s[WARMTH] = end_warmth + (s[WARMTH] - end_warmth) * fade
+            s[LOST] = 0.0
+            s[RESONANCE] = resonance(t1, s[WARMTH], c)
+        if t1 % row == 0:
+            out = truth[n[ROWS]]
+            out[0], out[1], out[2], out[3] = t1 * 1e-6, s[X], s[Y], math.hypot(s[VX], s[VY])
+            out[4], out[5], out[6] = level * 1e-6, frequency, amplitude
+            out[7], out[8], out[9] = s[RELATIVE], s[FRICTION], s[FORCE]
+            out[10], out[11], out[12], out[13] = s[VOLTAGE], s[CURRENT_A], f0, s[SKIN_X]
+            n[ROWS] += 1
+    return int(n[NOW])

@@ -1,0 +1,219 @@
+"""The twin behind a serial port: a process of its own, in real time, over a pseudo-terminal.
+
+    python -m squeezefilm.twin.pty_server DISPLAY [--link PATH] [--truth FILE] [--stroke TEXT] …
+
+It prints the port's name on the first line and runs until SIGTERM or SIGINT. A host may close the
+port and open it again; what the device says meanwhile is lost, as on a wire. The clock starts when
+the name is printed. Where the process falls behind the wall clock it catches up tick by tick, so
+that the device's own clock has no gap.
+"""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import os
+import select
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import tty
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import IO
+
+from squeezefilm.display import load_display
+from squeezefilm.errors import InputError, SqueezefilmError
+from squeezefilm.quantities import Newton, Second
+from squeezefilm.twin.device import TwinDevice
+from squeezefilm.twin.hand import EXPLORING, hand_from
+from squeezefilm.twin.settings import TwinSettings, load_settings
+
+_PAUSE = 1.0  # ms between looks at the port
+_UNCONNECTED_PAUSE = 5.0
+_MOST_BYTES = 4096
+_STEP = 50_000  # µs of catching up between two looks at the port and at signals
+START_LIMIT: Second = 120.0
+"""How long a twin may take to start: it solves its plate and compiles."""
+
+
+class PtyServer:
+    """A twin's pseudo-terminal and its clock. `serve` returns after `stop`."""
+
+    def __init__(self, device: TwinDevice) -> None:
+        self._device = device
+        self._master, slave = os.openpty()
+        tty.setraw(slave)
+        self.port = os.ttyname(slave)
+        # The last host's end is closed, so that its going away shows as a hang-up.
+        os.close(slave)
+        os.set_blocking(self._master, False)
+        self._running = True
+        self._connected = False
+        self.longest_behind = 0
+
+    def stop(self) -> None:
+        """End `serve` soon; may be called from a signal handler."""
+        self._running = False
+
+    def serve(self, parent: int | None = None) -> None:
+        """Run in real time until `stop`, or until the process `parent` is no longer the parent."""
+        began = time.monotonic_ns()
+        poll = select.poll()
+        poll.register(self._master, select.POLLIN)
+        while self._running and (parent is None or os.getppid() == parent):
+            wall = (time.monotonic_ns() - began) // 1000
+            self.longest_behind = max(self.longest_behind, wall - self._device.now)
+            now = min(wall, self._device.now + _STEP)
+            self._say(self._device.advance(now))
+            if now < wall:
+                continue
+            flags = dict(poll.poll(_PAUSE)).get(self._master, 0)
+            self._connected = not flags & select.POLLHUP
+            heard = self._hear() if flags & select.POLLIN else b""
+            if heard:
+                self._device.receive(heard, max(now, (time.monotonic_ns() - began) // 1000))
+                self._say(self._device.advance(self._device.now))
+            elif not self._connected:
+                time.sleep(_UNCONNECTED_PAUSE * 1e-3)
+
+    def close(self) -> None:
+        """Hang up and write the truth out."""
+        os.close(self._master)
+        self._device.close()
+
+    def _hear(self) -> bytes:
+        try:
+            return os.read(self._master, _MOST_BYTES)
+        except (BlockingIOError, OSError):
+            # Nothing there, or no host: a hang-up reads as an error.
+            return b""
+
+    def _say(self, data: bytes) -> None:
+        if not data or not self._connected:
+            return
+        # What a full wire or an absent host does not take is lost, as on a real one.
+        with contextlib.suppress(OSError):
+            os.write(self._master, data)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Serve a twin; see the module. Returns the exit code."""
+    parser = argparse.ArgumentParser(prog="python -m squeezefilm.twin.pty_server")
+    parser.add_argument("display", help="a preset's name or a TOML file")
+    parser.add_argument("--link", type=Path, help="a symbolic link to make to the port")
+    parser.add_argument("--truth", type=Path, help="a CSV for what really happens")
+    parser.add_argument("--settings", type=Path, help="a TOML file of twin settings")
+    parser.add_argument("--stroke", default=EXPLORING, help="the finger's motion, or 'none'")
+    parser.add_argument("--force", type=float, default=0.5, help="it presses with, in N")
+    parser.add_argument("--with-parent", type=int, help="end when this process is not the parent")
+    options = parser.parse_args(arguments)
+    try:
+        settings = load_settings(options.settings) if options.settings else TwinSettings()
+        hand = None
+        if options.stroke != "none":
+            hand = hand_from(options.stroke, normal_force=options.force)
+        display = load_display(options.display)
+        device = TwinDevice(display, settings, hand=hand, truth_file=options.truth)
+        _warm_up(device)
+        server = PtyServer(device)
+    except SqueezefilmError as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 2
+    for number in (signal.SIGTERM, signal.SIGINT):
+        signal.signal(number, lambda *_: server.stop())
+    try:
+        with _linked(options.link, server.port):
+            print(server.port, flush=True)
+            server.serve(options.with_parent)
+    except InputError as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 2
+    finally:
+        server.close()
+    return 0
+
+
+def _warm_up(device: TwinDevice) -> None:
+    """Compile before the clock starts; another device does it, so that this one's is untouched."""
+    spare = TwinDevice(device.display, device.settings, point=device.plant.point)
+    spare.advance(spare.settings.tick_us)
+    spare.close()
+
+
+@contextlib.contextmanager
+def _linked(link: Path | None, port: str) -> Iterator[None]:
+    if link is None:
+        yield
+        return
+    if link.is_symlink():
+        link.unlink()
+    try:
+        link.symlink_to(port)
+    except OSError as error:
+        raise InputError(
+            f"cannot make the link {link} to {port}: {error.strerror}; give another path"
+        ) from error
+    try:
+        yield
+    finally:
+        if link.is_symlink() and str(link.readlink()) == port:
+            link.unlink()
+
+
+@contextlib.contextmanager
+def running_twin(
+    display: str | Path,
+    settings: str | Path | None = None,
+    *,
+    stroke: str = EXPLORING,
+    normal_force: Newton = 0.5,
+    truth: Path | None = None,
+    start_limit: Second = START_LIMIT,
+) -> Iterator[str]:
+    """A twin in a process of its own; yields the name of its serial port.
+
+    `display` is a preset's name or a file, `settings` a TOML file, `stroke` "none" for no finger.
+    The process ends with the block, and on its own if this process dies.
+
+    Raises:
+        InputError: the twin refused to start (its message), or was not there in `start_limit` (s).
+    """
+    command = [sys.executable, "-m", "squeezefilm.twin.pty_server", str(display)]
+    command += ["--stroke", stroke, "--force", repr(normal_force)]
+    command += ["--with-parent", str(os.getpid())]
+    command += [] if settings is None else ["--settings", str(settings)]
+    command += [] if truth is None else ["--truth", str(truth)]
+    with tempfile.TemporaryFile() as said:
+        twin = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=said)
+        try:
+            yield _port_of(twin, said, start_limit)
+        finally:
+            twin.terminate()
+            try:
+                twin.wait(10)
+            except subprocess.TimeoutExpired:
+                twin.kill()
+                twin.wait()
+            if twin.stdout is not None:
+                twin.stdout.close()
+
+
+def _port_of(twin: subprocess.Popen[bytes], said: IO[bytes], limit: Second) -> str:
+    assert twin.stdout is not None
+    there, _, _ = select.select([twin.stdout], [], [], limit)
+    line = twin.stdout.readline().decode().strip() if there else ""
+    if line:
+        return line
+    if not there:
+        raise InputError(f"the twin did not start within {limit:g} s; give it more time")
+    twin.wait()
+    said.seek(0)
+    why = said.read().decode(errors="replace").strip().removeprefix("error: ")
+    raise InputError(f"the twin did not start: {why or f'exit code {twin.returncode}'}")
+
+
+if __name__ == "__main__":
+    sys.exit(main())

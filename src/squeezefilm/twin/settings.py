@@ -1,0 +1,248 @@
+"""What a twin assumes of plate, amplifier, hand, sensor and pickup; readable from a TOML file.
+
+Every table has an `evidence`. Nothing here was measured on a device: the defaults are assumed, and
+say so. Write the source of your own numbers there.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Literal
+
+from squeezefilm.contact.dry_friction import DryFriction
+from squeezefilm.errors import InputError
+from squeezefilm.quantities import (
+    Ampere,
+    Dimensionless,
+    Farad,
+    Kelvin,
+    Kilogram,
+    NewtonPerMetre,
+    NewtonSecondPerMetre,
+    Ohm,
+    Second,
+    Unit,
+    Volt,
+    VoltPerSecond,
+    require,
+)
+from squeezefilm.render.sensor import TOUCH_PANEL_240_HZ, SensorModel
+
+PerKelvin = Annotated[float, Unit("1/K")]
+PerSecond = Annotated[float, Unit("1/s")]
+KelvinPerWatt = Annotated[float, Unit("K/W")]
+VoltPerMetre = Annotated[float, Unit("V/m")]
+ASSUMED = "assumed"
+# Frozen, so that all settings may share it.
+_COULOMB = DryFriction()
+
+PickupKind = Literal["motional_current", "sensing_patch", "none"]
+
+
+@dataclass(frozen=True, slots=True)
+class PlateDrift:
+    """How a plate's resonance departs from the predicted one, f0 (1 + offset + …).
+
+    Args:
+        offset: relative, from the start (1): tolerance of the making.
+        ageing: relative, per time (1/s).
+        temperature_coefficient: relative, per temperature (1/K).
+        ambient_swing, ambient_period: the room's temperature goes to and fro by that much (K) as
+            a sine of that period (s).
+        thermal_resistance: how much the plate warms per power lost in it (K/W); at least 0.
+        thermal_time: time constant of that (s); above 0.
+        quality_factor_ratio: Q over the predicted one (1); above 0. The drive's force per volt
+            stays, so the amplitude at resonance changes with it.
+        evidence: where the numbers are from.
+
+    Raises:
+        InputError: a value outside its range.
+    """
+
+    offset: Dimensionless = 0.0
+    ageing: PerSecond = 0.0
+    temperature_coefficient: PerKelvin = -1e-4
+    ambient_swing: Kelvin = 1.0
+    ambient_period: Second = 3600.0
+    thermal_resistance: KelvinPerWatt = 12.0
+    thermal_time: Second = 480.0
+    quality_factor_ratio: Dimensionless = 1.0
+    evidence: str = ASSUMED
+
+    def __post_init__(self) -> None:
+        require("offset", self.offset, above=-0.5, below=0.5)
+        require("ageing", self.ageing, Unit("1/s"), at_least=-1e-6, at_most=1e-6)
+        coefficient = self.temperature_coefficient
+        require("temperature_coefficient", coefficient, Unit("1/K"), above=-1e-2, below=1e-2)
+        require("ambient_swing", self.ambient_swing, Unit("K"), at_least=0.0, at_most=50.0)
+        require("ambient_period", self.ambient_period, Unit("s"), at_least=1.0, at_most=1e6)
+        require("thermal_resistance", self.thermal_resistance, Unit("K/W"), at_least=0.0)
+        require("thermal_time", self.thermal_time, Unit("s"), above=0.0)
+        require("quality_factor_ratio", self.quality_factor_ratio, above=0.0, at_most=10.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Amplifier:
+    """What an amplifier can give to the plate's capacitance and motional branch.
+
+    Args:
+        gain: voltage on the plate over the voltage asked for (1); above 0.
+        highest_voltage: peak (V); above 0.
+        highest_current: peak (A); above 0.
+        slew_rate: of the output wave (V/s); above 0. A carrier of f keeps V ≤ slew_rate/(2πf).
+        capacitance: of the plate held still (F); None takes that of a rectangular plate's
+            ceramics, and 20 nF where no layout says.
+        loss_tangent: of that capacitance (1); at least 0.
+        evidence: where the numbers are from.
+
+    Raises:
+        InputError: a value outside its range.
+    """
+
+    gain: Dimensionless = 1.0
+    highest_voltage: Volt = 400.0
+    highest_current: Ampere = 2.0
+    slew_rate: VoltPerSecond = 1e8
+    capacitance: Farad | None = None
+    loss_tangent: Dimensionless = 0.02
+    evidence: str = ASSUMED
+
+    def __post_init__(self) -> None:
+        require("gain", self.gain, above=0.0, at_most=1000.0)
+        require("highest_voltage", self.highest_voltage, Unit("V"), above=0.0)
+        require("highest_current", self.highest_current, Unit("A"), above=0.0)
+        require("slew_rate", self.slew_rate, Unit("V/s"), above=0.0)
+        if self.capacitance is not None:
+            require("capacitance", self.capacitance, Unit("F"), above=0.0)
+        require("loss_tangent", self.loss_tangent, at_least=0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Arm:
+    """The arm that leads the finger: mass, spring and damper between finger and wanted place.
+
+    Args:
+        mass: of finger and what of the hand moves with it (kg); above 0.
+        stiffness, damping: of the arm (N/m, N·s/m); above 0, at least 0.
+        evidence: where the numbers are from.
+
+    Raises:
+        InputError: a value outside its range.
+    """
+
+    mass: Kilogram = 0.1
+    stiffness: NewtonPerMetre = 500.0
+    damping: NewtonSecondPerMetre = 12.0
+    evidence: str = ASSUMED
+
+    def __post_init__(self) -> None:
+        require("mass", self.mass, Unit("kg"), above=0.0)
+        require("stiffness", self.stiffness, Unit("N/m"), above=0.0)
+        require("damping", self.damping, Unit("N*s/m"), at_least=0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class PickupModel:
+    """How the device hears the vibration, as an amplitude at its input.
+
+    Args:
+        kind: the motional current over a shunt, a sensing patch, or none.
+        shunt: that the current passes (Ω); above 0.
+        sensitivity: of a sensing patch, volts per metre of vibration amplitude (V/m); above 0.
+        feedthrough: share of the current through the capacitance that its compensation leaves in
+            the motional current's signal (1); at least 0.
+        noise: standard deviation of each quadrature of a reading (V); at least 0.
+        evidence: where the numbers are from.
+
+    Raises:
+        InputError: a value outside its range, or another kind.
+    """
+
+    kind: PickupKind = "motional_current"
+    shunt: Ohm = 10.0
+    sensitivity: VoltPerMetre = 5e5
+    feedthrough: Dimensionless = 0.0
+    noise: Volt = 1e-3
+    evidence: str = ASSUMED
+
+    def __post_init__(self) -> None:
+        if self.kind not in ("motional_current", "sensing_patch", "none"):
+            raise InputError(
+                f"kind = '{self.kind}' is no pickup; allowed: motional_current, sensing_patch, none"
+            )
+        require("shunt", self.shunt, Unit("ohm"), above=0.0)
+        require("sensitivity", self.sensitivity, Unit("V/m"), above=0.0)
+        require("feedthrough", self.feedthrough, at_least=0.0)
+        require("noise", self.noise, Unit("V"), at_least=0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class TwinSettings:
+    """Everything a twin assumes beyond the display's own description.
+
+    Args:
+        seed: of every noise, and of the device's tokens.
+        tick: of the device (s): whole µs, 10 µs to 1 ms.
+        steps_per_tick: equal parts of a tick in which plant and hand are stepped; at least 1.
+        truth_period: between rows of the truth (s): a whole number of ticks.
+        truth_rows: rows kept in memory, the newest; at least 1.
+        highest_amplitude_ratio: friction and load are tabulated up to this multiple of what the
+            display's own voltage gives without a finger (1); above 0. Beyond it the last values
+            hold, and are counted.
+        drift, amplifier, arm, sensor, pickup: see there.
+        dry: static friction and its dependence on speed and load.
+
+    Raises:
+        InputError: a value outside its range.
+    """
+
+    seed: int = 1
+    tick: Second = 100e-6
+    steps_per_tick: int = 2
+    truth_period: Second = 1e-3
+    truth_rows: int = 200_000
+    highest_amplitude_ratio: Dimensionless = 2.0
+    drift: PlateDrift = PlateDrift()
+    amplifier: Amplifier = Amplifier()
+    arm: Arm = Arm()
+    sensor: SensorModel = TOUCH_PANEL_240_HZ
+    pickup: PickupModel = PickupModel()
+    dry: DryFriction = _COULOMB
+
+    def __post_init__(self) -> None:
+        require("tick", self.tick, Unit("s"), at_least=10e-6, at_most=1e-3)
+        require("truth_period", self.truth_period, Unit("s"), at_least=self.tick)
+        require("seed", self.seed, at_least=0, below=2**53)
+        require("steps_per_tick", self.steps_per_tick, at_least=1, at_most=100)
+        require("truth_rows", self.truth_rows, at_least=1)
+        ratio = self.highest_amplitude_ratio
+        require("highest_amplitude_ratio", ratio, above=0.0, at_most=100.0)
+        if not _whole(self.tick * 1e6):
+            raise InputError(f"tick = {self.tick:g} s must be a whole number of microseconds")
+        if self.tick_us % self.steps_per_tick:
+            raise InputError(
+                f"steps_per_tick = {self.steps_per_tick} does not divide a tick of "
+                f"{self.tick_us} us into whole microseconds; take one that does"
+            )
+        if not _whole(self.truth_period / self.tick):
+            raise InputError(
+                f"truth_period = {self.truth_period:g} s is no whole number of ticks of "
+                f"{self.tick:g} s; take one"
+            )
+
+    @property
+    def tick_us(self) -> int:
+        """The device's tick in µs."""
+        return round(self.tick * 1e6)
+
+
+def _whole(number: float) -> bool:
+    return abs(number - round(number)) < 1e-6
+
+
+def load_settings(path: str | Path) -> TwinSettings:
+    """Settings from a TOML file; what it leaves out is assumed. Raises `ConfigError`."""
+    from squeezefilm import config
+
+    return config.load(TwinSettings, path)

@@ -1,0 +1,144 @@
+"""What a display's description makes of plate, film and finger: the constants of a twin's plant."""
+
+from __future__ import annotations
+
+import logging
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from squeezefilm.display import Display
+from squeezefilm.errors import InputError, OutOfRangeError
+from squeezefilm.friction import FrictionLaw, friction_law
+from squeezefilm.plate.layout import RectangularPlate
+from squeezefilm.plate.response import patch_capacitance
+from squeezefilm.plate.working_mode import WorkingMode, working_mode
+from squeezefilm.quantities import (
+    ComplexArray,
+    DimensionlessArray,
+    Farad,
+    FloatArray,
+    Metre,
+    NewtonArray,
+    NewtonPerVolt,
+    Unit,
+    format_quantity,
+)
+from squeezefilm.touch import load_ratios
+from squeezefilm.twin.settings import TwinSettings
+
+_log = logging.getLogger(__name__)
+
+FORCES: FloatArray = np.array([0.05, 0.1, 0.2, 0.35, 0.5, 0.7, 1.0, 1.5, 2.5, 5.0])
+"""Normal forces (N) at which friction and load are tabulated; linear between, held beyond."""
+POINTS = 129
+OTHER_CAPACITANCE: Farad = 20e-9
+"""Where neither settings nor layout say (assumed)."""
+OTHER_COUPLING = 0.1
+"""Effective coupling coefficient where the modal mass is not known (assumed)."""
+
+
+@dataclass(frozen=True, eq=False)
+class WorkingPoint:
+    """A display's working mode and what finger and film do on it, over force and amplitude.
+
+    Attributes:
+        display, mode: what it is of.
+        forces: of the tables' rows (N), shape (m,).
+        highest_amplitude: of the tables' last column (m); column j is at (j/(n−1))² of it.
+        relative_friction: µ′/µ, shape (m, n).
+        load: δ, the finger's modal stiffness over the mode's own, shape (m, n).
+        capacitance: of the plate held still (F).
+        force_factor: modal force per volt (N/V), which is charge per amplitude (C/m) by
+            reciprocity.
+        evidence: what of these was assumed.
+    """
+
+    display: Display
+    mode: WorkingMode
+    forces: NewtonArray
+    highest_amplitude: Metre
+    relative_friction: DimensionlessArray
+    load: ComplexArray
+    capacitance: Farad
+    force_factor: NewtonPerVolt
+    evidence: tuple[str, ...]
+
+    @property
+    def amplitudes(self) -> FloatArray:
+        """Of the tables' columns (m)."""
+        count = self.load.shape[1]
+        return np.asarray(self.highest_amplitude * (np.arange(count) / (count - 1)) ** 2)
+
+
+def working_point(
+    display: Display, settings: TwinSettings, mode: WorkingMode | None = None
+) -> WorkingPoint:
+    """The working point of a display; solves its plate (seconds) unless a `mode` is given.
+
+    Where a plate's working mode cannot be found in three dimensions a beam's is taken, as
+    `predict` does. Raises what these raise, and `InputError` for a mode without amplitude.
+    """
+    evidence: list[str] = []
+    if mode is None:
+        try:
+            mode = working_mode(display.actuator)
+        except InputError as error:
+            if not isinstance(display.actuator, RectangularPlate):
+                raise
+            mode = working_mode(display.actuator, "timoshenko")
+            evidence.append(f"a beam's mode, since the solved plate has none: {error}")
+    if not mode.amplitude_per_volt > 0 or display.drive.voltage <= 0:
+        raise InputError(
+            f"the display '{display.name}' has no amplitude at {display.drive.voltage:g} V; a twin "
+            "needs a drive voltage above 0 and a mode that it moves"
+        )
+    highest = mode.amplitude_per_volt * display.drive.voltage * settings.highest_amplitude_ratio
+    highest, friction, load = _tables(display, mode, highest)
+    capacitance = settings.amplifier.capacitance
+    if capacitance is None and isinstance(display.actuator, RectangularPlate):
+        capacitance = patch_capacitance(display.actuator)
+    elif capacitance is None:
+        capacitance = OTHER_CAPACITANCE
+        evidence.append(f"capacitance assumed: {format_quantity(capacitance, Unit('F'))}")
+    omega = 2 * math.pi * mode.resonance_frequency
+    if mode.modal_mass is not None:
+        factor = mode.amplitude_per_volt * mode.modal_mass * omega**2 / mode.quality_factor
+    else:
+        motional = capacitance * OTHER_COUPLING**2 / (1 - OTHER_COUPLING**2)
+        factor = motional * mode.quality_factor / mode.amplitude_per_volt
+        evidence.append(
+            "modal mass not known: the finger takes nothing from the vibration, and the motional "
+            f"current is that of a coupling coefficient of {OTHER_COUPLING:g} (assumed)"
+        )
+    for line in evidence:
+        _log.info("twin of %s: %s", display.name, line)
+    return WorkingPoint(
+        display, mode, FORCES, highest, friction, load, capacitance, factor, tuple(evidence)
+    )
+
+
+def _tables(
+    display: Display, mode: WorkingMode, highest: Metre
+) -> tuple[Metre, DimensionlessArray, ComplexArray]:
+    """Friction and load up to the amplitude (m) that can be solved, at most `highest`."""
+    for _ in range(12):
+        grid = highest * (np.arange(POINTS) / (POINTS - 1)) ** 2
+        try:
+            laws = [_law(display, mode, float(force)) for force in FORCES]
+            friction = np.stack([law.curve(grid) for law in laws])
+            load = np.stack([load_ratios(mode, law, grid) for law in laws])
+            return highest, np.ascontiguousarray(friction), np.ascontiguousarray(load)
+        except OutOfRangeError as error:
+            # So strong a vibration closes the gap somewhere; the table ends below it.
+            _log.info("tables to %.3g m do not hold (%s); they end lower", highest, error)
+            highest *= 0.7
+    raise OutOfRangeError(
+        f"no friction law could be tabulated for '{display.name}'; its gap closes at "
+        f"{format_quantity(highest, Unit('m'))} already"
+    )
+
+
+def _law(display: Display, mode: WorkingMode, force: float) -> FrictionLaw:
+    return friction_law(display, mode.half_wavelength, mode.resonance_frequency, normal_force=force)

@@ -1,0 +1,205 @@
+"""A study under kill -9 and on a full disk: what was acknowledged is there, once, in order."""
+
+from __future__ import annotations
+
+import json
+import random
+import shutil
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from squeezefilm.study.design import StudyDesign
+from squeezefilm.study.stimuli import Grating, Stimulus
+from squeezefilm.study.store import StudyStore
+from squeezefilm.study.trials import trials
+
+CHILD = Path(__file__).with_name("study_child.py")
+LENGTHS = {"2 mm": 2e-3, "4 mm": 4e-3, "8 mm": 8e-3, "10 mm": 10e-3}
+
+
+def _design(repetitions: int) -> StudyDesign:
+    return StudyDesign(
+        name="faults",
+        title="",
+        displays=("biet2008-plate",),
+        task="match-to-sample",
+        stimuli=tuple(Stimulus(name, at, "period") for name, at in LENGTHS.items()),
+        alternatives=tuple(Grating(name, at, "period") for name, at in LENGTHS.items()),
+        familiarisation=1,
+        repetitions=repetitions,
+    )
+
+
+def _created(path: Path, repetitions: int) -> str:
+    with StudyStore.create(path, _design(repetitions), 7) as store:
+        return store.enrol()
+
+
+def _killed(path: Path, who: str, heard_first: int, delay: float) -> list[int]:
+    """Kill the child `delay` seconds after so many acknowledgements. All it was acknowledged."""
+    command = [sys.executable, str(CHILD), "run", str(path), who]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as child:
+        assert child.stdout is not None
+        assert child.stderr is not None
+        assert child.stdout.readline() == b"ready\n", child.stderr.read().decode()
+        said = [child.stdout.readline().decode() for _ in range(heard_first)]
+        time.sleep(delay)
+        child.kill()
+        said += child.stdout.read().decode().split()
+        # A killed child says nothing more; anything on stderr is a failure of its own.
+        assert child.stderr.read() == b""
+    assert "finished" not in said, "it finished first: give it more trials"
+    return [int(one) for one in said]
+
+
+def _rows(path: Path) -> list[tuple[int, str, str, str]]:
+    with StudyStore.open(path) as store:
+        assert store.rows("PRAGMA integrity_check")[0]["integrity_check"] == "ok"
+        rows = store.rows(
+            "SELECT t.number, t.uuid, r.choice, r.stimuli, r.traces FROM response r "
+            "JOIN trial t ON t.uuid = r.trial ORDER BY t.number"
+        )
+        for row in rows:
+            for name in json.loads(row["traces"]):
+                assert (store.traces / name).is_file()
+    return [(row["number"], row["uuid"], row["choice"], row["stimuli"]) for row in rows]
+
+
+def _survives(path: Path, kills: int, repetitions: int) -> None:
+    who = _created(path, repetitions)
+    planned = trials(_design(repetitions), 0, 7)
+    acknowledged: list[int] = []
+    before: list[tuple[int, str, str, str]] = []
+    unheard, seed = 0, random.Random(1)
+    for kill in range(kills + 1):
+        if kill < kills:
+            heard = _killed(path, who, seed.randrange(12), seed.uniform(0.0, 0.004))
+        else:
+            child = subprocess.run(
+                [sys.executable, str(CHILD), "run", str(path), who],
+                capture_output=True,
+                text=True,
+                check=True,
+            )
+            words = child.stdout.split()
+            assert (words[0], words[-1]) == ("ready", "finished")
+            heard = [int(one) for one in words[1:-1]]
+        acknowledged += heard
+        rows = _rows(path)
+        # What was recorded before stands, and nothing acknowledged is missing.
+        assert rows[: len(before)] == before
+        assert {one[0] for one in rows} >= set(acknowledged)
+        new = len(rows) - len(before) - len(heard)
+        assert new in (0, 1)
+        unheard += new
+        before = rows
+    assert [one[0] for one in before] == [one.number for one in planned]
+    assert len(set(acknowledged)) == len(acknowledged)
+    assert len(acknowledged) + unheard == len(planned)
+    for row, one in zip(before, planned, strict=True):
+        names = sorted(one.alternatives)
+        assert row[2] == (names[one.seed % len(names)] if one.asks else "")
+        assert json.loads(row[3]) == list(one.stimuli)
+    with StudyStore.open(path) as store:
+        shown = store.rows("SELECT count(*) AS n FROM presentation")[0]["n"]
+        stray = len(store.unreferenced_traces())
+    print(
+        f"\n{kills} kills: {len(planned)} trials, {len(acknowledged)} acknowledged, 0 lost, 0 "
+        f"twice; {unheard} recorded whose acknowledgement was not heard, {shown - len(planned)} "
+        f"presented again, {stray} traces without an answer"
+    )
+
+
+def test_kill_9_loses_no_acknowledged_trial(tmp_path: Path) -> None:
+    _survives(tmp_path / "study.sqlite", kills=12, repetitions=60)
+
+
+@pytest.mark.nightly
+def test_kill_9_at_200_moments_loses_no_acknowledged_trial(tmp_path: Path) -> None:
+    _survives(tmp_path / "study.sqlite", kills=200, repetitions=900)
+
+
+def _full(command: list[str], path: Path, who: str, how: str) -> None:
+    done = subprocess.run(
+        [*command, sys.executable, str(CHILD), "full", str(path), who, how],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    found = json.loads(done.stdout)
+    every = list(range(1, len(trials(_design(60), 0, 7)) + 1))
+    count = len(found["acknowledged"])
+    assert 0 < count < len(every)
+    for message in (found["message"], found["again"]):
+        assert "nothing was acknowledged" in message or "nothing was left behind" in message
+    # No acknowledgement without data, nor the other way round; and again while it is full.
+    assert found["recorded"] == found["acknowledged"] == every[:count]
+    assert found["between"] == every[: len(found["between"])]
+    assert found["finally"] == found["order"] == every
+    assert found["integrity"] == "ok"
+    print(f"\n{how}: full after {count} trials ({found['message'][-90:]}), then on to {len(every)}")
+
+
+def test_a_write_beyond_the_limit_acknowledges_nothing_and_the_run_goes_on(tmp_path: Path) -> None:
+    path = tmp_path / "study.sqlite"
+    _full([], path, _created(path, 60), "limit")
+
+
+def test_a_full_disk_acknowledges_nothing_and_the_run_goes_on(tmp_path: Path) -> None:
+    unshare = shutil.which("unshare")
+    disk = tmp_path / "disk"
+    disk.mkdir()
+    made = tmp_path / "made"
+    made.mkdir()
+    who = _created(made / "study.sqlite", 60)
+    script = (
+        f"mount -t tmpfs -o size=16m none '{disk}' && cp '{made}'/study.sqlite '{disk}'/ && "
+        'exec "$@"'
+    )
+    mount = [str(unshare), "-Urm", "sh", "-c", script, "sh"]
+    if unshare is None or subprocess.run([*mount, "true"], capture_output=True).returncode:
+        pytest.skip("no small disk can be mounted here (user namespaces are off)")
+    _full(mount, disk / "study.sqlite", who, "disk")
+
+
+def test_a_database_that_may_not_grow_acknowledges_nothing(tmp_path: Path) -> None:
+    from squeezefilm.errors import RecordError
+    from squeezefilm.study.device import NoDevice
+    from squeezefilm.study.run import Response, StudyRun
+    from squeezefilm.study.session_conditions import SessionConditions
+    from squeezefilm.study.sessions import begin_session
+
+    path = tmp_path / "study.sqlite"
+    who = _created(path, 60)
+    with StudyStore.open(path) as store:
+        begun = begin_session(
+            store, who, NoDevice(), SessionConditions(consent=True), None, acknowledged=False
+        )
+        run = StudyRun(store, begun)
+        pages = store.rows("PRAGMA page_count")[0]["page_count"]
+        store.rows(f"PRAGMA max_page_count = {pages + 4}")
+        told, message = 0, ""
+        while not message:
+            try:
+                shown = run.next_trial()
+                assert shown is not None
+                choice = shown.trial.alternatives[0] if shown.trial.asks else ""
+                run.respond(shown.token, Response(choice=choice))
+            except RecordError as error:
+                message = str(error)
+            else:
+                told += 1
+        assert "full" in message
+        assert "nothing was acknowledged" in message
+        assert told > 0
+        assert len(store.rows("SELECT * FROM response")) == told
+        store.rows("PRAGMA max_page_count = 1000000")
+        shown = run.next_trial()
+        assert shown is not None
+        choice = shown.trial.alternatives[0] if shown.trial.asks else ""
+        assert run.respond(shown.token, Response(choice=choice)).number == told + 1

@@ -1,0 +1,182 @@
+"""CSV, Psych-DS and BIDS: what others read, and what their validators say."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import shutil
+import subprocess
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from squeezefilm.errors import InputError
+from squeezefilm.study.conduct import conduct
+from squeezefilm.study.exports import export_study, exported_folders
+from squeezefilm.study.run import StudyRun
+from squeezefilm.study.session_conditions import SessionConditions
+from squeezefilm.study.sessions import begin_session
+from squeezefilm.study.store import StudyStore
+from squeezefilm.study.trial_table import (
+    COLUMNS,
+    Column,
+    cell_text,
+    csv_text,
+    guarded,
+    trial_table,
+    unguarded,
+)
+
+from .scripted import Bench, Script, gratings, run_through, staircase
+from .test_sessions import LOUD
+
+
+@pytest.fixture
+def store(tmp_path: Path) -> Iterator[StudyStore]:
+    """Two people, one with a formula where a room should be."""
+    found = StudyStore.create(tmp_path / "study.sqlite", gratings(), 7)
+    for _ in range(2):
+        device = Bench()
+        conditions = SessionConditions(consent=True, room='=HYPERLINK("x")')
+        begun = begin_session(found, found.enrol(), device, conditions, LOUD, acknowledged=True)
+        conduct(StudyRun(found, begun), device, Script())
+    yield found
+    found.close()
+
+
+@given(st.text())
+def test_no_text_becomes_a_formula_and_every_text_comes_back(text: str) -> None:
+    text = text.replace("\x00", "")
+    cell = guarded(text)
+    assert unguarded(cell) == text
+    assert cell.lstrip()[:1] not in ("=", "+", "-", "@", "＝", "＋", "－", "＠")
+    assert cell[:1] not in ("\t", "\r", "\n")
+    written = csv_text([{"a": text, "b": 1}], [Column("a", ""), Column("b", "")])
+    _, row = csv.reader(io.StringIO(written, newline=""))
+    assert row == [cell, "1"]
+
+
+@pytest.mark.parametrize("text", ["=1+1", "+1", "-1", "@x", "\t=1", "\r1", " =1", "'x", "＝1"])
+def test_formulas_are_guarded(text: str) -> None:
+    assert guarded(text) == f"'{text}"
+
+
+@given(st.floats(allow_nan=False, allow_infinity=False) | st.integers())
+def test_numbers_stay_numbers(value: float) -> None:
+    assert type(value)(cell_text(value)) == value
+
+
+def test_a_row_a_trial_with_numbers_as_numbers(store: StudyStore) -> None:
+    rows = list(csv.DictReader(io.StringIO(csv_text(trial_table(store)))))
+    assert len(rows) == 18
+    assert list(rows[0]) == [column.name for column in COLUMNS]
+    main = [row for row in rows if row["phase"] == "main"]
+    assert {row["correct"] for row in main} <= {"true", "false"}
+    assert {float(row["stimulus_period_m"]) for row in main} == {2e-3, 4e-3, 8e-3}
+    assert {float(row["stimulus_friction_depth"]) for row in main} == {1.0 - 0.7}
+    felt = [row for row in rows if row["phase"] == "familiarisation"]
+    assert {row["stimulus_friction_depth"] for row in felt} == {""}
+    assert {float(row["mean_speed_m_per_s"]) for row in main} == {0.086}
+
+
+def test_an_adaptive_comparison_has_its_period(tmp_path: Path) -> None:
+    with run_through(tmp_path / "a.sqlite", staircase(6), people=1) as store:
+        rows = trial_table(store)
+    for row in rows:
+        ends = sorted(float(row[key]) for key in ("stimulus_period_m", "second_stimulus_period_m"))
+        assert ends[0] == 4e-3
+        assert ends[1] == pytest.approx(4e-3 * (1 + float(row["intensity"])))
+        assert row["correct"] == (row["choice"] == row["answer"])
+
+
+def test_psych_ds_says_of_every_column_what_it_is(store: StudyStore) -> None:
+    folder = export_study(store, "psych-ds")
+    about = json.loads((folder / "dataset_description.json").read_text())
+    assert about["@context"] == "https://schema.org"
+    assert about["@type"] == "Dataset"
+    assert about["name"]
+    assert about["description"]
+    described = {one["name"] for one in about["variableMeasured"]}
+    data = sorted((folder / "data").glob("*.csv"))
+    assert len(data) == 2
+    columns: set[str] = set()
+    for path in data:
+        parts = path.stem.split("_")
+        assert parts[-1] == "data"
+        for part in parts[:-1]:
+            key, value = part.split("-")
+            assert key.isalpha()
+            assert key.islower()
+            assert value.isalnum()
+        rows = list(csv.reader(io.StringIO(path.read_text(encoding="utf-8"))))
+        assert len({len(row) for row in rows}) == 1
+        sidecar = json.loads(path.with_suffix(".json").read_text())
+        assert [one["name"] for one in sidecar["variableMeasured"]] == rows[0]
+        columns |= set(rows[0])
+        assert "=HYPERLINK" not in {cell[:10] for row in rows for cell in row}
+    assert columns == described
+
+
+def _validated(program: str, *arguments: str) -> subprocess.CompletedProcess[str]:
+    found = shutil.which(program)
+    if found is None:
+        pytest.skip(f"{program} is not installed; it is an oracle, not a dependency")
+    return subprocess.run([found, *arguments], capture_output=True, text=True, check=False)
+
+
+def test_psych_ds_validator(store: StudyStore) -> None:
+    folder = export_study(store, "psych-ds")
+    done = _validated("psychds-validator", str(folder))
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_bids_validator(store: StudyStore) -> None:
+    folder = export_study(store, "bids")
+    done = _validated("bids-validator-deno", "--format", "json", str(folder))
+    issues = json.loads(done.stdout)["issues"]["issues"]
+    errors = [one for one in issues if one["severity"] == "error"]
+    assert errors == []
+    assert done.returncode == 0
+
+
+def test_bids_holds_every_trial_under_its_participant(store: StudyStore) -> None:
+    folder = export_study(store, "bids")
+    people = list(
+        csv.DictReader(
+            io.StringIO((folder / "participants.tsv").read_text(encoding="utf-8")), delimiter="\t"
+        )
+    )
+    assert len(people) == 2
+    sidecar = json.loads((folder / "task-matchtosample_beh.json").read_text())
+    for one in people:
+        name = one["participant_id"]
+        path = folder / name / "beh" / f"{name}_task-matchtosample_beh.tsv"
+        rows = list(csv.DictReader(io.StringIO(path.read_text(encoding="utf-8")), delimiter="\t"))
+        assert len(rows) == 9
+        assert set(rows[0]) <= set(sidecar)
+        assert all(value for row in rows for value in row.values())
+    assert sidecar["response_time_s"]["Units"] == "s"
+
+
+def test_an_export_is_replaced_and_other_peoples_files_are_not(
+    store: StudyStore, tmp_path: Path
+) -> None:
+    target = tmp_path / "out"
+    export_study(store, "bids", target)
+    (target / "participants.tsv").write_text("spoilt")
+    (target / ".participants.tsv.abc").write_text("half")
+    export_study(store, "psych-ds", target)
+    assert (target / "data").is_dir()
+    assert not (target / "participants.tsv").exists()
+    assert not (target / ".participants.tsv.abc").exists()
+    assert exported_folders(store) == [("psych-ds", target.resolve())]
+    (target / "mine.txt").write_text("mine")
+    with pytest.raises(InputError, match=r"mine\.txt"):
+        export_study(store, "csv", target)
+    assert (target / "mine.txt").read_text() == "mine"
+    with pytest.raises(InputError, match="not known"):
+        export_study(store, "excel")  # type: ignore[arg-type]
