@@ -6,6 +6,7 @@ on one thread of its own, and the server's loop goes on meanwhile.
 
 from __future__ import annotations
 
+import base64
 import dataclasses
 from pathlib import Path
 from typing import Any
@@ -21,6 +22,7 @@ from squeezefilm.study.device import NoDevice, StudyDevice
 from squeezefilm.study.exports import export_study
 from squeezefilm.study.exposure import Exposure
 from squeezefilm.study.merge import merge
+from squeezefilm.study.recorded_analysis import analyze_study
 from squeezefilm.study.run import Response, StudyRun
 from squeezefilm.study.session_conditions import SessionConditions
 from squeezefilm.study.sessions import begin_session, display_wanted, end_session
@@ -275,6 +277,45 @@ class Studies:
             raise InputError(f"format = '{format}' is not known; allowed: csv, psych-ds, bids")
         path = export_study(self.store(name), format)  # type: ignore[arg-type] # checked above
         return {"folder": str(path.relative_to(self.folder.parent))}
+
+    def analyze(self, name: str) -> dict[str, Any]:
+        """The analysis of what was answered so far, by display: tables, numbers, figures."""
+        from squeezefilm.report.study_report import key_rows, study_figures
+        from squeezefilm.report.style import png
+
+        found = analyze_study(self.store(name))
+        return {
+            "displays": [
+                {
+                    "display": display,
+                    "numbers": [list(row) for row in key_rows(one)],
+                    "notes": list(one.notes),
+                    "confusion": {
+                        "display": display,
+                        "rows": list(one.matrix.answers),
+                        "columns": list(one.matrix.stimuli),
+                        "counts": one.matrix.counts.tolist(),
+                    },
+                    "figures": [
+                        {"title": title, "png": base64.b64encode(png(figure)).decode()}
+                        for key, (title, figure) in study_figures(one).items()
+                        if key != "confusion"
+                    ],
+                }
+                for display, one in found.items()
+            ]
+        }
+
+    def report(self, name: str) -> dict[str, Any]:
+        """The analysis written as pages beside the study's file."""
+        from squeezefilm.report.study_report import write_study
+
+        folder = self.folder / f"{name}.results"
+        pages = [
+            write_study(one, folder / display)
+            for display, one in analyze_study(self.store(name)).items()
+        ]
+        return {"pages": [str(page.relative_to(self.folder.parent)) for page in pages]}
 
     def merge(self, name: str, other: str) -> dict[str, Any]:
         """Take in the answers of another station's file in the folder."""

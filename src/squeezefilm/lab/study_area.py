@@ -186,6 +186,12 @@ def add_study(lab: Lab) -> StudyThread:
     async def export(asked: ExportStudy) -> Answer:
         return {"type": "exported", **await thread.do(Studies.export, asked.study, asked.format)}
 
+    async def analyze(asked: NamedStudy) -> Answer:
+        return {"type": "analysis", **await thread.do(Studies.analyze, asked.study)}
+
+    async def report(asked: NamedStudy) -> Answer:
+        return {"type": "report", **await thread.do(Studies.report, asked.study)}
+
     async def merged(asked: MergeStudy) -> Answer:
         return {"type": "study", **await thread.do(Studies.merge, asked.study, asked.other)}
 
@@ -231,6 +237,8 @@ def add_study(lab: Lab) -> StudyThread:
     add("delete participant", DeleteParticipant, delete)
     add("export study", ExportStudy, export)
     add("merge study", MergeStudy, merged)
+    add("analyze study", NamedStudy, analyze)
+    add("report study", NamedStudy, report)
     add = lab.participant.add
     add("where", OfSitting, where)
     add("consent", OfSitting, consent)
