@@ -278,44 +278,9 @@ class Studies:
         path = export_study(self.store(name), format)  # type: ignore[arg-type] # checked above
         return {"folder": str(path.relative_to(self.folder.parent))}
 
-    def analyze(self, name: str) -> dict[str, Any]:
-        """The analysis of what was answered so far, by display: tables, numbers, figures."""
-        from squeezefilm.report.study_report import key_rows, study_figures
-        from squeezefilm.report.style import png
-
-        found = analyze_study(self.store(name))
-        return {
-            "displays": [
-                {
-                    "display": display,
-                    "numbers": [list(row) for row in key_rows(one)],
-                    "notes": list(one.notes),
-                    "confusion": {
-                        "display": display,
-                        "rows": list(one.matrix.answers),
-                        "columns": list(one.matrix.stimuli),
-                        "counts": one.matrix.counts.tolist(),
-                    },
-                    "figures": [
-                        {"title": title, "png": base64.b64encode(png(figure)).decode()}
-                        for key, (title, figure) in study_figures(one).items()
-                        if key != "confusion"
-                    ],
-                }
-                for display, one in found.items()
-            ]
-        }
-
-    def report(self, name: str) -> dict[str, Any]:
-        """The analysis written as pages beside the study's file."""
-        from squeezefilm.report.study_report import write_study
-
-        folder = self.folder / f"{name}.results"
-        pages = [
-            write_study(one, folder / display)
-            for display, one in analyze_study(self.store(name)).items()
-        ]
-        return {"pages": [str(page.relative_to(self.folder.parent)) for page in pages]}
+    def path(self, name: str) -> Path:
+        """A study's file."""
+        return existing(self.folder, name, SUFFIX)
 
     def merge(self, name: str, other: str) -> dict[str, Any]:
         """Take in the answers of another station's file in the folder."""
@@ -332,6 +297,50 @@ class Studies:
                 raise InputError("this sitting was not consented to yet")
             self._runs[sitting.id] = StudyRun(self.store(sitting.study), sitting.session)
         return self._runs[sitting.id]
+
+
+def analysis_of(path: Path) -> dict[str, Any]:
+    """The analysis of what was answered so far, by display: tables, numbers, figures.
+
+    In a process of its own: it takes seconds, and answers are being recorded meanwhile.
+    """
+    from squeezefilm.report.study_report import key_rows, study_figures
+    from squeezefilm.report.style import png
+
+    with StudyStore.open(path) as store:
+        found = analyze_study(store)
+    return {
+        "displays": [
+            {
+                "display": display,
+                "numbers": [list(row) for row in key_rows(one)],
+                "notes": list(one.notes),
+                "confusion": {
+                    "display": display,
+                    "rows": list(one.matrix.answers),
+                    "columns": list(one.matrix.stimuli),
+                    "counts": one.matrix.counts.tolist(),
+                },
+                "figures": [
+                    {"title": title, "png": base64.b64encode(png(figure)).decode()}
+                    for key, (title, figure) in study_figures(one).items()
+                    if key != "confusion"
+                ],
+            }
+            for display, one in found.items()
+        ]
+    }
+
+
+def report_of(path: Path) -> dict[str, Any]:
+    """The analysis written as pages beside the study's file."""
+    from squeezefilm.report.study_report import write_study
+
+    with StudyStore.open(path) as store:
+        found = analyze_study(store)
+    folder = path.with_suffix(".results")
+    pages = [write_study(one, folder / display) for display, one in found.items()]
+    return {"pages": [str(page.relative_to(path.parent.parent)) for page in pages]}
 
 
 def device_of(kind: str) -> StudyDevice:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from pydantic import Field
 
 from squeezefilm.errors import InputError
-from squeezefilm.lab.studies import Studies, device_of
+from squeezefilm.lab.studies import Studies, analysis_of, device_of, report_of
 from squeezefilm.lab.wire import Answer, Request
 from squeezefilm.study.exposure import Exposure, exposure
 from squeezefilm.study.run import Response
@@ -187,10 +187,12 @@ def add_study(lab: Lab) -> StudyThread:
         return {"type": "exported", **await thread.do(Studies.export, asked.study, asked.format)}
 
     async def analyze(asked: NamedStudy) -> Answer:
-        return {"type": "analysis", **await thread.do(Studies.analyze, asked.study)}
+        path = await thread.do(Studies.path, asked.study)
+        return {"type": "analysis", **await lab.workers.slow.do("analysis", analysis_of, path)}
 
     async def report(asked: NamedStudy) -> Answer:
-        return {"type": "report", **await thread.do(Studies.report, asked.study)}
+        path = await thread.do(Studies.path, asked.study)
+        return {"type": "report", **await lab.workers.slow.do("report", report_of, path)}
 
     async def merged(asked: MergeStudy) -> Answer:
         return {"type": "study", **await thread.do(Studies.merge, asked.study, asked.other)}
