@@ -8,14 +8,19 @@ from pathlib import Path
 
 from squeezefilm.config.provenance import Provenance
 from squeezefilm.contact.finger import Finger
+from squeezefilm.device.safety import HIGHEST_VOLTAGE, Limits
 from squeezefilm.errors import InputError
 from squeezefilm.materials import Gas
 from squeezefilm.plate.layout import Actuator
 from squeezefilm.quantities import (
     Dimensionless,
+    Hertz,
     Metre,
+    Second,
+    SquareVoltSecond,
     Unit,
     Volt,
+    VoltPerSecond,
     did_you_mean,
     require,
 )
@@ -34,17 +39,96 @@ class Surface:
         require("friction_coefficient", self.friction_coefficient, above=0, at_most=10)
 
 
-HIGHEST_VOLTAGE: Volt = 2000.0
+_SECONDS_OF_HEAT = 10.0
+_FREQUENCY_WINDOW = 0.05
 
 
 @dataclass(frozen=True)
 class Drive:
-    """The electrical drive: the voltage's amplitude (zero-to-peak) at resonance."""
+    """The electrical drive: the voltage's amplitude (zero-to-peak) at resonance, and its limits.
+
+    The limits are what a device is told never to exceed when a texture is played. Those left out
+    are assumed, see `limits`: give your own for hardware.
+
+    Args:
+        voltage: of the display's analysis, and the most that is ever played (V, zero-to-peak).
+        insulation: names the insulation on the side that is touched; needed above 42 V to play.
+        slew: fastest change of the amplitude (V/s); a full rise in 1 ms without one.
+        continuous_voltage: amplitude that may stay for ever (V); `voltage` without one.
+        heat: above it, the sum of V² − continuous_voltage² over time (V²·s); 10 s at `voltage`.
+        lowest_frequency, highest_frequency: of the carrier (Hz); 5 % around its resonance.
+        duty: share of the time with output (1).
+        duty_window: over which the duty counts (s).
+
+    Raises:
+        InputError: a value outside its range; `limits` checks how they fit each other.
+    """
 
     voltage: Volt
+    insulation: str = ""
+    slew: VoltPerSecond | None = None
+    continuous_voltage: Volt | None = None
+    heat: SquareVoltSecond | None = None
+    lowest_frequency: Hertz | None = None
+    highest_frequency: Hertz | None = None
+    duty: Dimensionless = 1.0
+    duty_window: Second = 10.0
 
     def __post_init__(self) -> None:
         require("voltage", self.voltage, Unit("V"), at_least=0, at_most=HIGHEST_VOLTAGE)
+        optional = (
+            ("slew", self.slew, "V/s"),
+            ("continuous_voltage", self.continuous_voltage, "V"),
+            ("heat", self.heat, "V2*s"),
+            ("lowest_frequency", self.lowest_frequency, "Hz"),
+            ("highest_frequency", self.highest_frequency, "Hz"),
+        )
+        for name, value, unit in optional:
+            if value is not None:
+                require(name, value, Unit(unit), at_least=0)
+        require("duty", self.duty, at_least=1e-3, at_most=1)
+        require("duty_window", self.duty_window, Unit("s"), at_least=1e-3, at_most=3600)
+
+    def limits(self, frequency: Hertz, voltage: Volt | None = None) -> Limits:
+        """What a device may be asked for at a carrier near `frequency` (Hz).
+
+        `voltage` (V) asks for less than the drive's own. What the drive does not say is assumed:
+        `assumed_limits` names it.
+
+        Raises:
+            InputError: more voltage than the drive's own, above 42 V without insulation, or limits
+                that contradict each other.
+        """
+        most = self.voltage if voltage is None else voltage
+        require("voltage", most, Unit("V"), above=0, at_most=self.voltage)
+        continuous = self.voltage if self.continuous_voltage is None else self.continuous_voltage
+        return Limits(
+            voltage=most,
+            slew=max(1.0, 1e3 * self.voltage) if self.slew is None else self.slew,
+            continuous_voltage=min(continuous, most),
+            heat=_SECONDS_OF_HEAT * self.voltage**2 if self.heat is None else self.heat,
+            lowest_frequency=(1 - _FREQUENCY_WINDOW) * frequency
+            if self.lowest_frequency is None
+            else self.lowest_frequency,
+            highest_frequency=(1 + _FREQUENCY_WINDOW) * frequency
+            if self.highest_frequency is None
+            else self.highest_frequency,
+            duty=self.duty,
+            duty_window=self.duty_window,
+            insulation=self.insulation,
+        )
+
+    @property
+    def assumed_limits(self) -> tuple[str, ...]:
+        """The limits that the display does not give and `limits` assumes."""
+        given = {
+            "slew": self.slew,
+            "continuous_voltage": self.continuous_voltage,
+            "heat": self.heat,
+            "lowest_frequency": self.lowest_frequency,
+            "highest_frequency": self.highest_frequency,
+        }
+        return tuple(name for name, value in given.items() if value is None)
 
 
 @dataclass(frozen=True)

@@ -92,8 +92,16 @@ class ConvergenceError(SqueezefilmError):
         self.iterations = iterations
 
 
+class DeviceError(SqueezefilmError):
+    """A device that refused, went silent or vanished; says which command, why and what to do."""
+
+
 class RecordError(SqueezefilmError):
     """A record that cannot be written: a full disk, a file that exists, a folder that refuses."""
+
+
+class LoopError(SqueezefilmError):
+    """A real-time loop that could not start, or that died; says which and what to do."""
 
 
 class SqueezefilmWarning(UserWarning):

@@ -13,7 +13,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from squeezefilm.display import HIGHEST_VOLTAGE, Display, Surface
+from squeezefilm.device.safety import HIGHEST_VOLTAGE
+from squeezefilm.display import Display, Surface
 from squeezefilm.errors import (
     InputError,
     OutOfRangeError,

@@ -303,6 +303,7 @@ HertzArray = Annotated[FloatArray, Unit("Hz")]
 PascalArray = Annotated[FloatArray, Unit("Pa")]
 NewtonArray = Annotated[FloatArray, Unit("N")]
 MetrePerSecondArray = Annotated[FloatArray, Unit("m/s")]
+VoltArray = Annotated[FloatArray, Unit("V")]
 MetrePerVoltArray = Annotated[FloatArray, Unit("m/V")]
 
 DimensionlessLike = Annotated[FloatLike, Unit("1")]

@@ -210,3 +210,26 @@ def test_the_noise_s_numbers_are_these_for_ever() -> None:
 
     assert [mixed(one) for one in range(4)] == [by_hand(one) for one in range(4)]
     assert mixed(1) == 1753845952
+
+
+@given(any_textures, st.integers(0, 2**32 - 1))
+@settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])
+def test_what_a_program_does_not_name_has_no_influence(texture: Composable, seed: int) -> None:
+    frictional = texture.quantity != "amplitude"
+    program = lower(
+        texture,
+        largest_amplitude=None if frictional else 4e-6,
+        inverse=INVERSE if frictional else None,
+        friction_coefficient=0.6 if texture.quantity == "friction_reduction" else None,
+    )
+    x, y, v, t = samples(seed)
+    base = evaluate(program, x, y, v, t)
+    others = {
+        "x": (x + 0.0123, y, v, t),
+        "y": (x, y + 0.0123, v, t),
+        "speed": (x, y, 3.7 * v, t),
+        "direction": (x, y, -v, t),
+        "time": (x, y, v, t + 0.123),
+    }
+    for name in others.keys() - program.depends_on:
+        assert np.array_equal(evaluate(program, *others[name]), base), name

@@ -58,6 +58,27 @@ class Program:
         """How many instructions one sample takes."""
         return len(_instructions(self.array))
 
+    @property
+    def depends_on(self) -> frozenset[str]:
+        """What its amplitude may depend on: any of "x", "y", "speed", "direction" and "time".
+
+        Read off the instructions: what is not named has no influence, what is named may have none.
+        """
+        found: set[str] = set()
+        for code, operands in _instructions(self.array):
+            if code == op.ALONG:
+                found |= {name for name, by in zip("xy", operands[:2], strict=True) if by != 0.0}
+            elif code == op.IMAGE:
+                # One row that does not end is the same at every y.
+                strip = operands[1] == 1.0 and operands[6] != 2.0
+                found |= {"x"} if strip else {"x", "y"}
+            else:
+                found |= _INFLUENCES.get(code, frozenset())
+        if self.array[at.H_WAVE_COUNT]:
+            across = self.array[at.H_WAVE_P : at.H_WAVE_Q + 1]
+            found |= {name for name, by in zip("xy", across, strict=True) if by != 0.0}
+        return frozenset(found)
+
 
 def lower(
     texture: Composable,
@@ -260,6 +281,16 @@ def _instructions(program: FloatArray) -> list[tuple[int, FloatArray]]:
         raise _broken("does not end with its last instruction")
     return found
 
+
+# What an instruction brings in besides the stack; ALONG and IMAGE depend on their operands.
+_INFLUENCES: dict[int, frozenset[str]] = {
+    op.RADIUS: frozenset("xy"),
+    op.TIME: frozenset({"time"}),
+    op.SPEED: frozenset({"speed"}),
+    op.BUMP: frozenset({"direction"}),
+    op.NOISE_FIELD: frozenset("xy"),
+    op.ENTER_SCALE: frozenset({"speed"}),
+}
 
 # Operands that divide, and so must not be 0 or below.
 _DIVISORS = {

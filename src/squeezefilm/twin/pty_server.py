@@ -187,7 +187,10 @@ def running_twin(
     command += [] if settings is None else ["--settings", str(settings)]
     command += [] if truth is None else ["--truth", str(truth)]
     with tempfile.TemporaryFile() as said:
-        twin = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=said)
+        # In a session of its own: Ctrl-C is for the program that plays, not for its device.
+        twin = subprocess.Popen(
+            command, stdout=subprocess.PIPE, stderr=said, start_new_session=True
+        )
         try:
             yield _port_of(twin, said, start_limit)
         finally:

@@ -1,0 +1,279 @@
+"""What `squeezefilm play` and `device check` do: a device or its twin, a session, a judgement.
+
+texture → loop process → link → the device's state machine → plate → friction → record → fidelity.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from squeezefilm.analysis.play_setup import play_setup
+from squeezefilm.analysis.played_session import PlayedSession, judge_session
+from squeezefilm.analysis.played_texture import FingerMotion, require_on_display
+from squeezefilm.analysis.render_command import sensor_named
+from squeezefilm.config.write import text_of
+from squeezefilm.device.replay import ReplaySensor
+from squeezefilm.device.streams import open_stream
+from squeezefilm.display import load_display
+from squeezefilm.errors import InputError
+from squeezefilm.formats.trajectories import motion_from, read_trajectory
+from squeezefilm.prediction import predict
+from squeezefilm.quantities import Hertz, MetrePerVolt, Second, Unit, Volt, require
+from squeezefilm.render.compensation import DrivenEnvelope
+from squeezefilm.render.motion import MotionEstimator
+from squeezefilm.render.program import lower
+from squeezefilm.render.sensor import LVDT_10_KHZ, SensorModel
+from squeezefilm.render.texture import Square
+from squeezefilm.results import stamp
+from squeezefilm.session.conversation import Conversation
+from squeezefilm.session.device_check import DeviceCheck, check_device
+from squeezefilm.session.lateness import Lateness
+from squeezefilm.session.loop import LoopProcess
+from squeezefilm.session.plan import DriveTable, LoopPlan
+from squeezefilm.session.play import PlayView
+from squeezefilm.session.record import read_trace
+from squeezefilm.session.run_play import PlayOutcome, run_play
+from squeezefilm.texture_file import TextureFile
+from squeezefilm.twin.pty_server import running_twin
+from squeezefilm.twin.settings import PickupModel, TwinSettings
+
+TRACE_NAME = "trace.sqft"
+TRUTH_NAME = "truth.csv"
+STROKE = "60 mm/s over 4 cm"
+DURATION: Second = 4.0
+LOOP_SECONDS: Second = 3.0
+"""For which `device check` runs this computer's loop."""
+_MARGIN = 2e-3
+_REPLAY_PERIOD: Second = 1e-3
+
+Progress = Callable[[str], None]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PlayResult:
+    """A session: how it ended, its record judged, and the folder that keeps it (None: none)."""
+
+    outcome: PlayOutcome
+    session: PlayedSession
+    folder: Path | None
+
+    def summary(self) -> dict[str, Any]:
+        """What ``--json`` prints and summary.json holds."""
+        outcome = self.outcome
+        return {
+            "ended_because": outcome.ending.value,
+            "message": outcome.message,
+            **self.session.summary(),
+        }
+
+
+def play_texture(
+    target: str | Path,
+    texture: TextureFile,
+    *,
+    drive: str,
+    sensor: str = "device",
+    mode: str = "stream",
+    stroke: str = STROKE,
+    duration: Second = DURATION,
+    rate: Hertz = 5e3,
+    voltage: Volt | None = None,
+    surface: str | None = None,
+    compensation: str = "none",
+    amplitude_per_pickup: MetrePerVolt | None = None,
+    bench_only: bool = False,
+    out: Path | None = None,
+    seed: int = 0,
+    show: Callable[[PlayView], None] | None = None,
+    progress: Progress | None = None,
+) -> PlayResult:
+    """Play a texture on a device or on a twin of the display, in real time, and judge the record.
+
+    Args:
+        target: the display, a preset's name or a file.
+        texture: what is to be felt.
+        drive: "twin", or a device's stream such as "serial:/dev/ttyACM0".
+        sensor: "device" for the device's own, "replay:FILE" for a recorded motion, or a sensor's
+            name: what the device's own is (or the twin's is to be) like.
+        mode: "stream": the host's loop renders; "tile": the device does, by itself.
+        stroke: the twin's finger, as `motion_from` reads it, again and again.
+        duration: for which to play (s).
+        rate: of the loop (Hz).
+        voltage: the most to use (V).
+        surface: of the display.
+        compensation: of the resonator's slowness, "none" or "inverse".
+        amplitude_per_pickup: of a device's pickup (m/V); a twin's is known.
+        bench_only: whether a drive that does not stop by itself may be used.
+        out: where the record (trace.sqft) and a twin's truth (truth.csv) go; thrown away without.
+        seed: of the twin's noise.
+        show: is told what there is to see.
+        progress: is told each step.
+
+    Raises:
+        InputError: what cannot be played, or not safely.
+        DeviceError, LoopError, RecordError: what failed before anything was played.
+    """
+    tell = progress or (lambda _: None)
+    require("duration", duration, Unit("s"), above=0.0, at_most=86_400.0)
+    display = load_display(target)
+    eyes = _eyes(sensor)
+    settings = TwinSettings(seed=seed, sensor=eyes, pickup=PickupModel(kind="sensing_patch"))
+    way = None
+    if drive == "twin":
+        finger = FingerMotion.of(motion_from(stroke), 1e3)
+        require_on_display(display.actuator, finger)
+        # The arm swings a little beyond where it turns.
+        way = (float(np.min(finger.x)) - _MARGIN, float(np.max(finger.x)) + _MARGIN)
+        amplitude_per_pickup = 1 / settings.pickup.sensitivity
+    tell("the display at its largest amplitude")
+    setup = play_setup(
+        display, texture, sensor=eyes, voltage=voltage, surface=surface, rate=rate,
+        compensation=compensation, mode=mode, way=way, amplitude_per_pickup=amplitude_per_pickup,
+    )  # fmt: skip
+    metadata = {
+        **stamp((display, texture, stroke, mode, rate, compensation, sensor), seed),
+        "texture": setup.name,
+        "display": display.name,
+        "drive": drive,
+        "sensor": sensor,
+        "stroke": stroke if drive == "twin" else None,
+        "mode": mode,
+        "assumed_limits": list(setup.assumed_limits),
+    }
+    with _folder(out) as folder:
+        truth = folder / TRUTH_NAME if drive == "twin" else None
+        if drive == "twin":
+            tell("the twin, a process of its own")
+        with device_stream(drive, target, settings, stroke, truth) as stream:
+            tell("playing; Ctrl-C stops safely")
+            outcome = run_play(
+                setup.plan, stream, folder / TRACE_NAME, metadata, duration=duration,
+                sensor=_replay(sensor), show=show, bench_only=bench_only,
+            )  # fmt: skip
+        tell("the record")
+        judged = judge_session(setup, read_trace(outcome.trace), truth)
+    return PlayResult(outcome, judged, out)
+
+
+def check_drive(
+    drive: str,
+    target: str | Path,
+    *,
+    rate: Hertz = 5e3,
+    progress: Progress | None = None,
+) -> DeviceCheck:
+    """Check a device, or a twin of a display, and this computer's loop at a rate (Hz).
+
+    Raises:
+        InputError: a drive or display that cannot be used.
+        DeviceError: a device that does not answer.
+    """
+    tell = progress or (lambda _: None)
+    display = load_display(target)
+    tell("the display's resonance")
+    prediction = predict(display)
+    frequency = prediction.frequency
+    limits = display.drive.limits(frequency)
+    settings = TwinSettings(sensor=LVDT_10_KHZ)
+    with (
+        device_stream(drive, target, settings, STROKE, None) as name,
+        contextlib.closing(open_stream(name)) as stream,
+    ):
+        return check_device(
+            Conversation(stream, time.monotonic, time.sleep),
+            frequency,
+            drive=drive,
+            window=(limits.lowest_frequency, limits.highest_frequency),
+            loop=lambda: loop_lateness(rate),
+            progress=tell,
+        )
+
+
+def loop_lateness(rate: Hertz, duration: Second = LOOP_SECONDS) -> Lateness:
+    """How late this computer's loop is at a rate (Hz), over some seconds; nothing is played."""
+    square = Square(spatial_period=2e-3, low=0.0, high=1e-6)
+    plan = LoopPlan(
+        program=lower(square, largest_amplitude=1e-6),
+        rate=rate,
+        envelope=DrivenEnvelope(1e-3, 1e-3, 1e-6),
+        drive=DriveTable.linear(1e-6, 1.0),
+        estimator=MotionEstimator.for_sensor(LVDT_10_KHZ),
+    )
+    with LoopProcess(plan) as loop:
+        end = time.monotonic() + duration
+        number = 0
+        while time.monotonic() < end:
+            number += 1
+            moment = loop.time
+            x = 0.06 * (moment % 1.0)
+            loop.feed(np.array([[moment, x, 0.0, 1.0, np.nan, np.nan]]))
+            loop.take_commands()
+            loop.take_rows()
+            time.sleep(1e-3)
+    return loop.report().lateness
+
+
+@contextlib.contextmanager
+def device_stream(
+    drive: str,
+    target: str | Path,
+    settings: TwinSettings,
+    stroke: str,
+    truth: Path | None,
+) -> Iterator[str]:
+    """The stream of a drive as `open_stream` reads it; a twin's process lives as long.
+
+    Raises `InputError` for a drive that is none, and for a twin that does not start.
+    """
+    if drive != "twin":
+        if not drive.startswith("serial:"):
+            raise InputError(
+                f"the drive '{drive}' is not known; write twin, or serial:PORT like "
+                "serial:/dev/ttyACM0"
+            )
+        yield drive
+        return
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "twin.toml"
+        file.write_text(text_of(settings), encoding="utf-8")
+        with running_twin(target, file, stroke=stroke, truth=truth) as port:
+            yield f"serial:{port}"
+
+
+def _eyes(sensor: str) -> SensorModel:
+    if sensor == "device" or sensor.startswith("replay:"):
+        return LVDT_10_KHZ
+    return sensor_named(sensor)
+
+
+def _replay(sensor: str) -> Callable[[Callable[[], Second]], ReplaySensor] | None:
+    """Makes the sensor that plays a recorded motion by the loop's clock, at 1 kHz."""
+    if not sensor.startswith("replay:"):
+        return None
+    path = read_trajectory(sensor.removeprefix("replay:"))
+    time = np.arange(0.0, path.duration, _REPLAY_PERIOD)
+    x, y = path.place(time)
+    return lambda clock: ReplaySensor(time, x, y, clock=clock)
+
+
+@contextlib.contextmanager
+def _folder(out: Path | None) -> Iterator[Path]:
+    if out is not None:
+        try:
+            out.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise InputError(
+                f"cannot make the folder {out}: {error.strerror}; give another"
+            ) from error
+        yield out
+        return
+    with tempfile.TemporaryDirectory() as folder:
+        yield Path(folder)

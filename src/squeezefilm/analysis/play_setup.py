@@ -1,0 +1,164 @@
+"""What `squeezefilm play` works out first: texture, display and drive as a loop's plan."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from squeezefilm.analysis.render_command import sensor_named
+from squeezefilm.display import Display
+from squeezefilm.errors import InputError
+from squeezefilm.film.compiled import announce
+from squeezefilm.friction import FrictionModel
+from squeezefilm.prediction import Prediction, predict
+from squeezefilm.quantities import (
+    DimensionlessArray,
+    Hertz,
+    Metre,
+    MetreArray,
+    MetrePerVolt,
+    Newton,
+    Second,
+    Volt,
+)
+from squeezefilm.render.compensation import DrivenEnvelope
+from squeezefilm.render.envelope import envelope_time_constant
+from squeezefilm.render.inverse import FrictionInverse
+from squeezefilm.render.motion import MotionEstimator
+from squeezefilm.render.program import lower
+from squeezefilm.render.sensor import SensorModel
+from squeezefilm.session.plan import DriveTable, FrictionTable, LoopPlan
+from squeezefilm.session.play import REPORT_PERIOD, PlayPlan
+from squeezefilm.session.tick import make_tick
+from squeezefilm.session.tile import TextureTile, tile_of
+from squeezefilm.device.messages import LONGEST_TILE
+from squeezefilm.texture_file import TextureFile
+
+OUTPUT_DELAY: Second = 6e-3
+"""From a tick to its command at the plate: the player's pause, a block's length, the link and what
+its jitter may be (assumed; commands that come later than this are counted, and not played)."""
+_FINEST_PITCH: Metre = 1e-6
+_LONGEST_TILE_WAY: Metre = 0.1
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PlaySetup:
+    """A texture on a display, ready to be played.
+
+    Attributes:
+        display, texture, prediction: the inputs, and the display at its largest voltage.
+        inverse: the display's friction curve, by which amplitudes become friction again.
+        sensor: what the finger is seen with, as the estimator believes it.
+        plan: for the player.
+        assumed_limits: names of the drive's limits that the display does not give.
+    """
+
+    display: Display
+    texture: TextureFile
+    prediction: Prediction
+    inverse: FrictionInverse
+    sensor: SensorModel
+    plan: PlayPlan
+    assumed_limits: tuple[str, ...]
+
+    @property
+    def name(self) -> str:
+        """What the texture is called."""
+        return self.texture.title or f"a texture of {self.texture.texture.quantity}"
+
+    def friction(self, amplitude: MetreArray) -> DimensionlessArray:
+        """Relative friction (1) by the display's law at amplitudes (m), held beyond the largest."""
+        held = np.where(np.isfinite(amplitude), amplitude, np.nan)
+        return np.interp(held, self.inverse.amplitude, self.inverse.relative_friction)
+
+
+def play_setup(
+    display: Display,
+    texture: TextureFile,
+    *,
+    sensor: str | SensorModel = "LVDT 10 kHz",
+    voltage: Volt | None = None,
+    normal_force: Newton | None = None,
+    surface: str | None = None,
+    model: FrictionModel | None = None,
+    rate: Hertz = 5e3,
+    compensation: str = "none",
+    mode: str = "stream",
+    way: tuple[Metre, Metre] | None = None,
+    amplitude_per_pickup: MetrePerVolt | None = None,
+    output_delay: Second = OUTPUT_DELAY,
+) -> PlaySetup:
+    """The plan for a texture on a display.
+
+    Args:
+        display: what plays; its drive's limits are the device's.
+        texture: what is to be felt.
+        sensor: what the finger is seen with, a name or a model.
+        voltage: the most to use (V), less than the drive's own.
+        normal_force, surface, model: as `predict`.
+        rate: of the loop (Hz).
+        compensation: "none" or "inverse".
+        mode: "stream" or "tile".
+        way: x that a tile covers (m), from and to; 0 to 10 cm, or what 512 amplitudes span.
+        amplitude_per_pickup: of the device's pickup (m/V), if known.
+        output_delay: from a tick to its command at the plate (s).
+
+    Raises:
+        InputError: a display that does not vibrate, limits that do not fit, an unknown sensor,
+            compensation or mode, or a texture that no tile can hold.
+    """
+    eyes = sensor if isinstance(sensor, SensorModel) else sensor_named(sensor)
+    p = predict(
+        display, voltage=voltage, normal_force=normal_force, surface=surface, model=model
+    )  # fmt: skip
+    largest = p.vibration_amplitude
+    if p.voltage is None or largest <= 0.0 or p.relative_friction >= 1.0:
+        raise InputError(
+            f"display '{display.name}' changes no friction at {p.voltage or 0.0:g} V, so it "
+            "plays no texture; give it a voltage"
+        )
+    limits = display.drive.limits(p.frequency, p.voltage)
+    inverse = FrictionInverse.from_function(p.law.table(largest), largest)
+    quantity = texture.texture.quantity
+    program = lower(
+        texture.texture,
+        largest_amplitude=largest,
+        inverse=None if quantity == "amplitude" else inverse,
+        friction_coefficient=p.friction_coefficient if quantity == "friction_reduction" else None,
+    )
+    loaded = p.touch.mode or p.mode
+    tau = float(envelope_time_constant(loaded.quality_factor, loaded.resonance_frequency))
+    loop = LoopPlan(
+        program=program,
+        rate=rate,
+        envelope=DrivenEnvelope(tau, tau, largest),
+        drive=DriveTable.linear(largest / p.voltage, p.voltage),
+        estimator=MotionEstimator.for_sensor(eyes),
+        compensation=compensation,  # type: ignore[arg-type] # checked with a message by LoopPlan
+        relative_friction=FrictionTable(inverse.amplitude, inverse.relative_friction),
+        output_delay=output_delay,
+    )
+    announce(make_tick, "real-time loop", 20)
+    plan = PlayPlan(
+        loop=loop,
+        limits=limits,
+        frequency=p.frequency,
+        mode=mode,  # type: ignore[arg-type] # checked with a message by PlayPlan
+        tile=_tile(loop, way) if mode == "tile" else None,
+        report_period=max(REPORT_PERIOD, 200e-6),
+        sensor_latency=eyes.latency,
+        amplitude_per_pickup=amplitude_per_pickup,
+    )
+    return PlaySetup(display, texture, p, inverse, eyes, plan, display.drive.assumed_limits)
+
+
+def _tile(loop: LoopPlan, way: tuple[Metre, Metre] | None) -> TextureTile:
+    first, last = (0.0, _LONGEST_TILE_WAY) if way is None else way
+    if not last > first:
+        raise InputError(f"a tile from {first:g} m to {last:g} m covers nothing; exchange them")
+    # Whole micrometres, which is what the device counts in.
+    pitch = max(1, int(np.ceil((last - first) / ((LONGEST_TILE - 1) * _FINEST_PITCH))))
+    origin = int(np.floor(first / _FINEST_PITCH))
+    size = min(LONGEST_TILE, int(np.ceil((last - first) / (pitch * _FINEST_PITCH))) + 1)
+    return tile_of(loop.program, origin * _FINEST_PITCH, pitch * _FINEST_PITCH, size)

@@ -1,0 +1,249 @@
+"""What a loop shall do: texture, drive, estimator, compensation and rate, and as flat arrays."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Literal, NamedTuple
+
+import numpy as np
+
+from squeezefilm.errors import InputError
+from squeezefilm.quantities import (
+    DimensionlessArray,
+    FloatArray,
+    Hertz,
+    Metre,
+    MetreArray,
+    MetrePerVolt,
+    Second,
+    Unit,
+    Volt,
+    VoltArray,
+    require,
+)
+from squeezefilm.render import motion_kernel
+from squeezefilm.render.compensation import DrivenEnvelope
+from squeezefilm.render.motion import MotionEstimator
+from squeezefilm.render.program import Program
+from squeezefilm.render.renderer import new_state
+from squeezefilm.session.rows import COLUMNS, COMMAND_COLUMNS, SAMPLE_COLUMNS
+
+Array = np.ndarray[Any, Any]
+LoopCompensation = Literal["none", "inverse"]
+
+LEAST_RATE: Hertz = 10.0
+HIGHEST_RATE: Hertz = 50e3
+_METRE, _VOLT = Unit("m"), Unit("V")
+
+# Places in the settings.
+DT, LEAD, OUTPUT_DELAY, INVERSE, LONGEST_GAP = range(5)
+SETTINGS_SIZE = 5
+# Places in the memory that a tick carries to the next.
+TOUCHING, SILENCED, COMMAND, REPORTED_LEVEL, REPORTED_AMPLITUDE, STAMP, ROWS_DROPPED = range(7)
+MEMORY_SIZE = 7
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class DriveTable:
+    """The drive's voltage for a vibration amplitude: straight lines between knots from (0, 0).
+
+    Args:
+        amplitude: rising from 0 (m, zero-to-peak), shape (n,), n ≥ 2.
+        voltage: rising from 0 (V, zero-to-peak), shape (n,).
+
+    Raises:
+        InputError: knots that do not begin with 0 or do not rise.
+    """
+
+    amplitude: MetreArray
+    voltage: VoltArray
+
+    def __post_init__(self) -> None:
+        for name, unit in (("amplitude", _METRE), ("voltage", _VOLT)):
+            values = np.array(getattr(self, name), dtype=float)
+            object.__setattr__(self, name, values)
+            require(name, values, unit, at_least=0.0)
+            if (
+                values.ndim != 1
+                or values.size < 2
+                or values[0] != 0
+                or np.any(np.diff(values) <= 0)
+            ):
+                raise InputError(
+                    f"{name} of the drive's table must begin with 0 and rise from each of at least "
+                    "two knots to the next",
+                    quantity=name,
+                )
+        if self.amplitude.shape != self.voltage.shape:
+            raise InputError(
+                f"the drive's table has {self.amplitude.size} amplitudes and "
+                f"{self.voltage.size} voltages; give one for each"
+            )
+
+    @classmethod
+    def linear(cls, amplitude_per_volt: MetrePerVolt, voltage_limit: Volt) -> DriveTable:
+        """The table of a linear resonator (m/V) up to a voltage (V, zero-to-peak)."""
+        require("amplitude_per_volt", amplitude_per_volt, Unit("m/V"), above=0.0)
+        require("voltage_limit", voltage_limit, _VOLT, above=0.0)
+        top = amplitude_per_volt * voltage_limit
+        return cls(np.array([0.0, top]), np.array([0.0, voltage_limit]))
+
+    @property
+    def largest_amplitude(self) -> Metre:
+        """The amplitude at the table's highest voltage (m, zero-to-peak)."""
+        return float(self.amplitude[-1])
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FrictionTable:
+    """Relative friction over vibration amplitude, linear between knots, to be written down.
+
+    `amplitude` rises from 0 (m, zero-to-peak), `relative_friction` lies within 0…1; shape (n,).
+
+    Raises:
+        InputError: arrays of other shapes or values outside those ranges.
+    """
+
+    amplitude: MetreArray
+    relative_friction: DimensionlessArray
+
+    def __post_init__(self) -> None:
+        amplitude = np.array(self.amplitude, dtype=float)
+        friction = np.array(self.relative_friction, dtype=float)
+        object.__setattr__(self, "amplitude", amplitude)
+        object.__setattr__(self, "relative_friction", friction)
+        require("amplitude", amplitude, _METRE, at_least=0.0)
+        require("relative_friction", friction, at_least=0.0, at_most=1.0)
+        if (
+            amplitude.ndim != 1
+            or amplitude.shape != friction.shape
+            or amplitude.size < 2
+            or amplitude[0] != 0.0
+            or np.any(np.diff(amplitude) <= 0.0)
+        ):
+            raise InputError(
+                f"amplitude and relative_friction of shapes {amplitude.shape} and "
+                f"{friction.shape} are no curve; give amplitudes that rise from 0 and as many "
+                "frictions, at least two"
+            )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LoopPlan:
+    """All that a loop needs; it can be pickled and does not change while the loop runs.
+
+    Args:
+        program: the lowered texture.
+        rate: of the ticks (Hz), 10 Hz to 50 kHz.
+        envelope: the resonator and the limits of its drive; may brake only where the drive can
+            invert the carrier's phase (commands are negative then).
+        drive: volts for amplitudes; must reach the envelope's limit.
+        estimator: of the finger's motion; one runs along x and one along y.
+        compensation: "none" or "inverse". (A preview needs the way ahead, which a loop that knows
+            only samples has to guess; it is offered offline.)
+        relative_friction: the friction to write down for an amplitude; without it, none.
+        output_delay: from when a tick is due to when its command acts at the plate (s), as for a
+            device that queues; below 1 s. The loop predicts across it.
+        host_timeout: time without a word from the host after which the loop plays nothing (s).
+            After lost ticks, up to this long the plate is taken to have followed the last command;
+            past it, to have come to rest.
+
+    Raises:
+        InputError: a value outside its range, an unknown compensation, or a drive that does not
+            reach the envelope's limit.
+    """
+
+    program: Program
+    rate: Hertz
+    envelope: DrivenEnvelope
+    drive: DriveTable
+    estimator: MotionEstimator
+    compensation: LoopCompensation = "none"
+    relative_friction: FrictionTable | None = None
+    output_delay: Second = 0.0
+    host_timeout: Second = 50e-3
+
+    def __post_init__(self) -> None:
+        require("rate", self.rate, Unit("Hz"), at_least=LEAST_RATE, at_most=HIGHEST_RATE)
+        require("output_delay", self.output_delay, Unit("s"), at_least=0.0, below=1.0)
+        require("host_timeout", self.host_timeout, Unit("s"), above=0.0, at_most=60.0)
+        if self.compensation not in ("none", "inverse"):
+            raise InputError(
+                f"compensation = {self.compensation!r} cannot run in the loop; it must be 'none' "
+                "or 'inverse'",
+                quantity="compensation",
+            )
+        if self.envelope.amplitude_limit > self.drive.largest_amplitude * (1 + 1e-9):
+            raise InputError(
+                f"the envelope's limit is {self.envelope.amplitude_limit * 1e6:.4g} um and the "
+                f"drive's table ends at {self.drive.largest_amplitude * 1e6:.4g} um; lower the "
+                "limit, or extend the table",
+                quantity="envelope",
+            )
+
+    @property
+    def period(self) -> Second:
+        """Time from a tick to the next (s)."""
+        return 1 / self.rate
+
+    @property
+    def lead(self) -> Second:
+        """From when a tick is due to the moment that its command is meant for (s).
+
+        The output delay, and half a period (the middle of the step) or, compensated, a whole one
+        (its end); see `render.rendered_stroke`.
+        """
+        return (0.5 if self.compensation == "none" else 1.0) * self.period + self.output_delay
+
+
+class TickArrays(NamedTuple):
+    """A plan as the compiled tick takes it: constants, running states, and room to work in."""
+
+    settings: Array
+    program: Array
+    render_state: Array
+    motion_parameters: Array
+    motion_x: Array
+    motion_y: Array
+    envelope: Array
+    compensator: Array
+    drive_amplitude: Array
+    drive_voltage: Array
+    friction_amplitude: Array
+    friction: Array
+    memory: Array
+    sample: Array
+    row: Array
+    command: Array
+
+
+def tick_arrays(plan: LoopPlan) -> TickArrays:
+    """The arrays of a plan before its first tick."""
+    settings = np.zeros(SETTINGS_SIZE)
+    settings[DT], settings[LEAD] = plan.period, plan.lead
+    settings[OUTPUT_DELAY] = plan.output_delay
+    settings[INVERSE] = float(plan.compensation == "inverse")
+    settings[LONGEST_GAP] = plan.host_timeout
+    memory = np.zeros(MEMORY_SIZE)
+    memory[[REPORTED_LEVEL, REPORTED_AMPLITUDE, STAMP]] = np.nan
+    curve = plan.relative_friction
+    empty: FloatArray = np.zeros(0)
+    return TickArrays(
+        settings=settings,
+        # A copy that may be written to, so that the tick is compiled for one type of array only.
+        program=np.array(plan.program.array),
+        render_state=new_state(plan.program),
+        motion_parameters=plan.estimator.parameters(),
+        motion_x=np.zeros(motion_kernel.STATE_SIZE),
+        motion_y=np.zeros(motion_kernel.STATE_SIZE),
+        envelope=plan.envelope.parameters(plan.period),
+        compensator=plan.envelope.new_state(),
+        drive_amplitude=plan.drive.amplitude,
+        drive_voltage=plan.drive.voltage,
+        friction_amplitude=empty if curve is None else curve.amplitude,
+        friction=empty if curve is None else curve.relative_friction,
+        memory=memory,
+        sample=np.zeros((1, len(SAMPLE_COLUMNS))),
+        row=np.zeros(len(COLUMNS)),
+        command=np.zeros(len(COMMAND_COLUMNS)),
+    )

@@ -1,0 +1,393 @@
+"""Playing a texture: sensor → loop → link → device, and all that happened into the record.
+
+`Player` is one pass of bookkeeping after the other; it neither waits nor has a clock of its own.
+On hardware its clock is the loop's, on a simulated bench (`virtual_play`) a variable: the same code.
+
+The loop's commands carry the time at which they are meant to act. The player turns that into the
+device's clock and sends them ahead, so that what the link's jitter shifts is only when the device
+hears of them. Should the player be held up, the device's watchdog ends what it plays.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import Enum
+from typing import Any, Literal, Protocol
+
+import numpy as np
+
+from squeezefilm.device.host import DeviceHost
+from squeezefilm.device.states import Fault, State
+from squeezefilm.device.messages import MOST_LEVELS, PICKUP_PRESENT, SENSOR_PRESENT, Reading
+from squeezefilm.device.ports import Sensor
+from squeezefilm.device.safety import Limits
+from squeezefilm.errors import DeviceError, InputError
+from squeezefilm.quantities import (
+    FloatArray,
+    Hertz,
+    Metre,
+    MetrePerVolt,
+    Second,
+    Unit,
+    Volt,
+    require,
+)
+from squeezefilm.session import rows as column
+from squeezefilm.session.plan import LoopPlan
+from squeezefilm.session.record import TraceWriter
+from squeezefilm.session.rows import flag_meanings
+from squeezefilm.session.tile import TextureTile
+
+PlayMode = Literal["stream", "tile"]
+REPORT_PERIOD: Second = 1e-3
+RESTING_SAMPLE: Second = 20e-3
+"""A sensor slower than the reports repeats its last place; such repeats are fed this seldom."""
+DEAF_LIMIT: Second = 0.25
+"""Silence of the device after which it is taken to be gone."""
+FADE: Second = 30e-3
+"""From muting the loop to stopping the device: the last commands ramp to zero in it."""
+_STOP_LIMIT: Second = 0.5
+_MICROSECOND = 1e-6
+
+
+class Loop(Protocol):
+    """What a player needs of `LoopProcess` and `SimulatedLoop`."""
+
+    def feed(self, samples: FloatArray) -> int:
+        """Give finger samples."""
+        ...
+
+    def take_commands(self) -> FloatArray:
+        """The commands since the last call."""
+        ...
+
+    def take_rows(self) -> FloatArray:
+        """The rows since the last call."""
+        ...
+
+    def mute(self, muted: bool = True) -> None:
+        """Play nothing."""
+        ...
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PlayPlan:
+    """What is to be played, and on what.
+
+    Args:
+        loop: texture, rate, estimator, compensation, output delay.
+        limits: that the device is given, and holds.
+        frequency: of the carrier (Hz), within the limits.
+        mode: "stream" sends the loop's commands; "tile" gives the device the texture, which it
+            plays at its own sensor while the loop only watches.
+        tile: the texture for mode "tile".
+        report_period: of the device's readings (s); at least 0.2 ms.
+        sensor_latency: of the device's sensor (s), by which its places are older than their stamp.
+        amplitude_per_pickup: vibration amplitude per signal of the pickup (m/V); None if unknown.
+
+    Raises:
+        InputError: a value outside its range, a tile without its mode, or the other way round.
+    """
+
+    loop: LoopPlan
+    limits: Limits
+    frequency: Hertz
+    mode: PlayMode = "stream"
+    tile: TextureTile | None = None
+    report_period: Second = REPORT_PERIOD
+    sensor_latency: Second = 0.0
+    amplitude_per_pickup: MetrePerVolt | None = None
+
+    def __post_init__(self) -> None:
+        limits = self.limits
+        require(
+            "frequency", self.frequency, Unit("Hz"),
+            at_least=limits.lowest_frequency, at_most=limits.highest_frequency,
+        )  # fmt: skip
+        require("report_period", self.report_period, Unit("s"), at_least=200e-6, at_most=20e-3)
+        require("sensor_latency", self.sensor_latency, Unit("s"), at_least=0.0, at_most=1.0)
+        if self.mode not in ("stream", "tile"):
+            raise InputError(f"mode = '{self.mode}' is not known; it may be stream or tile")
+        if (self.mode == "tile") != (self.tile is not None):
+            raise InputError("mode tile needs a tile, and mode stream has none")
+        highest = float(self.loop.drive.voltage[-1])
+        if highest > limits.voltage * (1 + 1e-9):
+            raise InputError(
+                f"the loop may command {highest:.4g} V and the limits allow {limits.voltage:.4g} "
+                "V; lower the loop's drive table",
+                quantity="loop",
+            )
+
+
+class Ending(Enum):
+    """Why a session ended."""
+
+    DURATION = "the time was over"
+    INTERRUPTED = "it was interrupted"
+    FAULT = "the device faulted"
+    LINK = "the link to the device broke"
+    LOOP = "the loop died"
+
+
+@dataclass(frozen=True, slots=True)
+class PlayView:
+    """A moment of a session, for a live view; NaN where not known.
+
+    Time (s), the finger's place (m) and speed (m/s), wanted amplitude, amplitude by the pickup
+    (m), friction, the device's level (V), lag (m), lateness of the last tick (s), the device's
+    state and fault, readings heard, rows recorded, the round trip (s), flags of the last tick.
+    """
+
+    time: Second
+    x: Metre
+    speed: float
+    wanted: Metre
+    amplitude: Metre
+    friction: float
+    level: Volt
+    lag: Metre
+    lateness: Second
+    state: State
+    fault: Fault
+    readings: int
+    rows: int
+    flags: tuple[str, ...]
+
+
+class Player:
+    """A session on a device. Call `begin`, then `step` about every millisecond, then `end`.
+
+    Args:
+        plan: what to play.
+        loop: the loop that runs the plan's `loop`.
+        host: of the device.
+        writer: of the record, with `rows.COLUMNS`.
+        clock: the time on the loop's clock (s).
+        sensor: where the finger is, if not by the device's own sensor; its times are the clock's.
+    """
+
+    def __init__(
+        self,
+        plan: PlayPlan,
+        loop: Loop,
+        host: DeviceHost,
+        writer: TraceWriter,
+        clock: Callable[[], Second],
+        sensor: Sensor | None = None,
+    ) -> None:
+        self.plan, self.loop, self.host, self.writer = plan, loop, host, writer
+        self.clock, self.sensor = clock, sensor
+        self.state, self.fault = State.OFF, Fault.NONE
+        self.readings = self.late_commands = self.repeated = self.device_late_ticks = 0
+        self.ending: Ending | None = None
+        self._last: Reading | None = None
+        self._fed = self._heard = -math.inf
+        self._faded = math.nan
+        self._sending = False
+        self._row: FloatArray = np.full(len(column.COLUMNS), math.nan)
+        self._row[[column.TICK, column.FLAGS]] = 0.0
+
+    def begin(self) -> None:
+        """Give the device its limits and the texture's tile, arm it and start the carrier.
+
+        Raises:
+            DeviceError: a device that refuses or does not answer, or lacks the sensor it needs.
+        """
+        host, plan = self.host, self.plan
+        host.open(plan.limits)
+        if plan.tile is not None:
+            levels = plan.tile.voltage(plan.loop.drive)
+            host.load_tile(plan.tile.origin, plan.tile.pitch, levels)
+        host.report(plan.report_period)
+        host.arm()
+        host.start(plan.frequency)
+        if plan.mode == "tile":
+            host.follow()
+        self._heard = self.clock()
+        self._note("begin", {"mode": plan.mode, "frequency_Hz": plan.frequency})
+
+    def step(self) -> None:
+        """Hear the device, feed the loop, send its commands, write its rows; never waits.
+
+        Sets `ending` where the device faulted.
+
+        Raises:
+            DeviceError: a link that broke, or a device silent for too long.
+            LoopError: a loop that died.
+            RecordError: a record that cannot be written.
+        """
+        now = self.clock()
+        samples = self._hear(now)
+        if self.sensor is not None:
+            samples = self._sensed(self.sensor)
+        if samples:
+            self.loop.feed(np.array(samples))
+        self._send(now)
+        self._write()
+        if now - self._heard > DEAF_LIMIT:
+            raise DeviceError(
+                f"the device has said nothing for {now - self._heard:.2g} s; it stops by its own "
+                "watchdog. Look at its power and its cable"
+            )
+
+    def fade(self) -> None:
+        """Let the loop's next commands be zero; step on for `FADE` before `end`."""
+        if math.isnan(self._faded):
+            self._faded = self.clock()
+            self.loop.mute()
+
+    def end(self, why: Ending, wait: Callable[[Second], None], message: str = "") -> None:
+        """Stop the device, wait until its output is at zero, and write the last rows.
+
+        A device that does not answer any more is left to its watchdog.
+        """
+        self.ending = why
+        stopped = False
+        try:
+            self.host.stop()
+            deadline = self.clock() + _STOP_LIMIT
+            while not stopped and self.clock() < deadline:
+                wait(1e-3)
+                self._hear(self.clock())
+                level = 1 if self._last is None else self._last.level
+                stopped = self.state in (State.OFF, State.FAULT) and level == 0
+            self.host.report(0.0)
+        except DeviceError as error:
+            message = message or str(error)
+        self._write()
+        fields = {
+            "why": why.value,
+            "message": message,
+            "device_at_zero": stopped,
+            "faded_at_s": self._faded,
+            "device_clock_offset_s": self.host.clock.offset,
+            "device_clock_error_s": self.host.clock.error,
+            "readings": self.readings,
+            "repeated_readings": self.repeated,
+            "late_commands": self.late_commands,
+            "device_late_ticks": self.device_late_ticks,
+        }
+        self._note("end", fields)
+
+    def drain(self) -> None:
+        """Write the rows that the loop has made since, also after it ended."""
+        self._write()
+
+    def view(self) -> PlayView:
+        """What there is to see now."""
+        row = self._row
+        return PlayView(
+            time=float(row[column.TIME]),
+            x=float(row[column.X]),
+            speed=float(row[column.SPEED]),
+            wanted=float(row[column.WANTED]),
+            amplitude=float(row[column.AMPLITUDE]),
+            friction=float(row[column.FRICTION]),
+            level=float(row[column.LEVEL]),
+            lag=float(row[column.LAG]),
+            lateness=float(row[column.LATENESS]),
+            state=self.state,
+            fault=self.fault,
+            readings=self.readings,
+            rows=self.writer.acknowledged,
+            flags=tuple(flag_meanings(int(row[column.FLAGS]) & ~column.NEW_SAMPLE)),
+        )
+
+    def _hear(self, now: Second) -> list[tuple[float, ...]]:
+        """Readings since the last call as samples for the loop."""
+        samples: list[tuple[float, ...]] = []
+        for reading in self.host.poll():
+            clock = self.host.clock
+            stamp = clock.unwrapped(reading.time) + clock.offset
+            self._heard = now
+            self.readings += 1
+            self.device_late_ticks = reading.late_ticks
+            self._changed(reading, stamp)
+            if self.sensor is None:
+                if self._repeats(reading, stamp):
+                    self.repeated += 1
+                else:
+                    samples.append(self._sample(reading, stamp))
+                    self._fed = stamp
+            self._last = reading
+        return samples
+
+    def _repeats(self, reading: Reading, stamp: Second) -> bool:
+        """Whether a reading shows a place that was fed already and no news of the finger."""
+        last = self._last
+        if last is None or stamp - self._fed >= RESTING_SAMPLE:
+            return False
+        return (last.x, last.y, last.touching) == (reading.x, reading.y, reading.touching)
+
+    def _sample(self, reading: Reading, stamp: Second) -> tuple[float, ...]:
+        per_volt = self.plan.amplitude_per_pickup
+        amplitude = math.nan
+        if per_volt is not None and reading.flags & PICKUP_PRESENT:
+            amplitude = per_volt * reading.pickup * _MICROSECOND
+        if not reading.flags & SENSOR_PRESENT:
+            raise DeviceError(
+                "the device has no finger sensor; give one with --sensor replay:FILE, or connect it"
+            )
+        return (
+            stamp - self.plan.sensor_latency,
+            reading.x * _MICROSECOND,
+            reading.y * _MICROSECOND,
+            float(reading.touching),
+            reading.level * _MICROSECOND,
+            amplitude,
+        )
+
+    def _sensed(self, sensor: Sensor) -> list[tuple[float, ...]]:
+        samples: list[tuple[float, ...]] = []
+        level = math.nan if self._last is None else self._last.level * _MICROSECOND
+        while (one := sensor.read()) is not None and len(samples) < 1000:
+            samples.append((one.time, one.x, one.y, float(one.touching), level, math.nan))
+        return samples
+
+    def _changed(self, reading: Reading, stamp: Second) -> None:
+        state, fault = State(reading.state), Fault(reading.fault)
+        if (state, fault) != (self.state, self.fault):
+            self.state, self.fault = state, fault
+            self._note(
+                "device",
+                {"state": state.name.lower(), "fault": fault.name.lower(), "time_s": stamp,
+                 "device_time_us": reading.time},
+            )  # fmt: skip
+            if state is State.FAULT:
+                self.ending = Ending.FAULT
+
+    def _send(self, now: Second) -> None:
+        commands = self.loop.take_commands()
+        if self.plan.mode == "stream" and self.state is State.PLAYING and self.host.clock.known:
+            late = commands[:, column.COMMAND_TIME] < now
+            # Those from before the device played are not late; nobody wanted them.
+            self.late_commands += int(np.count_nonzero(late)) if self._sending else 0
+            fresh = commands[~late]
+            self._sending = self._sending or len(fresh) > 0
+            period, clock = self.plan.loop.period, self.host.clock
+            for part in _blocks(fresh):
+                start = clock.stamp(clock.device_time(float(part[0, column.COMMAND_TIME])))
+                self.host.play(np.abs(part[:, column.COMMAND_VOLTAGE]), period, start)
+        self.host.pump(now)
+
+    def _write(self) -> None:
+        made = self.loop.take_rows()
+        if len(made):
+            self.writer.append(made)
+            self._row = made[-1]
+
+    def _note(self, kind: str, fields: dict[str, Any]) -> None:
+        self.writer.event(kind, fields)
+
+
+def _blocks(commands: FloatArray) -> list[FloatArray]:
+    """Commands cut where ticks are missing, and to what fits a frame."""
+    ticks = commands[:, column.COMMAND_TICK]
+    runs = np.split(commands, np.flatnonzero(np.diff(ticks) != 1) + 1)
+    return [
+        run[first : first + MOST_LEVELS]
+        for run in runs
+        for first in range(0, len(run), MOST_LEVELS)
+    ]

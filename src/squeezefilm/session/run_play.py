@@ -1,0 +1,197 @@
+"""A session in real time: the loop in its own process, the link on a port, a record on the disk.
+
+Ctrl-C is no accident: the output ramps to zero, the device is disarmed, the record closed. What
+breaks on the way is told in the outcome, and the record kept.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import signal
+import threading
+import time
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from types import FrameType
+from typing import Any
+
+from squeezefilm.device.host import DeviceHost
+from squeezefilm.device.link import Link
+from squeezefilm.device.states import Fault
+from squeezefilm.device.ports import Sensor
+from squeezefilm.device.safety import require_safe_drive
+from squeezefilm.device.serial_ports import SerialDrive
+from squeezefilm.device.streams import open_stream
+from squeezefilm.errors import DeviceError, LoopError
+from squeezefilm.quantities import Second
+from squeezefilm.results import to_json
+from squeezefilm.session.loop import PRIORITY, LoopProcess
+from squeezefilm.session.play import FADE, Ending, Player, PlayPlan, PlayView
+from squeezefilm.session.record import TraceWriter
+from squeezefilm.session.rows import COLUMNS
+
+PAUSE: Second = 1e-3
+"""Between two looks of the player at its device."""
+SHOW_PERIOD: Second = 0.1
+
+
+@dataclass(frozen=True, slots=True)
+class PlayOutcome:
+    """How a session ended: why, what there is to say of it, and where its record is."""
+
+    ending: Ending
+    message: str
+    trace: Path
+    rows: int
+
+    @property
+    def failed(self) -> bool:
+        """Whether it ended for another reason than its time or its user."""
+        return self.ending not in (Ending.DURATION, Ending.INTERRUPTED)
+
+
+def run_play(
+    plan: PlayPlan,
+    drive: str,
+    trace: Path,
+    metadata: Mapping[str, Any],
+    *,
+    duration: Second,
+    sensor: Callable[[Callable[[], Second]], Sensor] | None = None,
+    show: Callable[[PlayView], None] | None = None,
+    bench_only: bool = False,
+) -> PlayOutcome:
+    """Play for a time, or until Ctrl-C, and record it.
+
+    Args:
+        plan: what to play.
+        drive: the device's stream, such as "serial:/dev/ttyACM0".
+        trace: the record to write, which must not exist.
+        metadata: of the record.
+        duration: for which to play (s).
+        sensor: makes the sensor from the loop's clock, where it is not the device's own.
+        show: is told what there is to see, ten times a second.
+        bench_only: whether a drive that does not stop by itself may be used.
+
+    Raises:
+        InputError: a drive that is not safe, see `require_safe_drive`.
+        DeviceError, LoopError, RecordError: what fails before anything was played.
+    """
+    with (
+        TraceWriter(trace, COLUMNS, metadata) as writer,
+        contextlib.closing(open_stream(drive)) as stream,
+        _interruptible() as interrupted,
+    ):
+        loop = LoopProcess(plan.loop)
+        link = Link(stream, lambda: loop.time)
+        host = DeviceHost(link)
+        drives = SerialDrive(host, plan.loop.period)
+        require_safe_drive(drives, plan.limits, bench_only=bench_only)
+        eyes = None if sensor is None else sensor(lambda: loop.time)
+        player = Player(plan, loop, host, writer, lambda: loop.time, eyes)
+        loop.start()
+        try:
+            with _preferred():
+                ending, message = _played(player, loop, duration, interrupted, show)
+                player.end(ending, time.sleep, message)
+        finally:
+            report = loop.stop()
+        player.drain()
+        writer.event("loop", {**to_json(report), "lateness": report.lateness.to_json()})
+        writer.event("link", to_json(link.statistics))
+        return PlayOutcome(ending, message, trace, writer.acknowledged)
+
+
+def _played(
+    player: Player,
+    loop: LoopProcess,
+    duration: Second,
+    interrupted: Callable[[], bool],
+    show: Callable[[PlayView], None] | None,
+) -> tuple[Ending, str]:
+    """Step until something ends it; returns what, and what to say."""
+    player.begin()
+    began = loop.time
+    shown = 0.0
+    try:
+        while player.ending is None:
+            now = loop.time
+            if now - began >= duration or interrupted():
+                break
+            player.step()
+            if show is not None and now - shown >= SHOW_PERIOD:
+                shown = now
+                show(player.view())
+            time.sleep(PAUSE)
+        if player.ending is Ending.FAULT:
+            return Ending.FAULT, fault_sentence(player.fault)
+        player.fade()
+        faded = loop.time
+        while player.ending is None and loop.time < faded + FADE:
+            player.step()
+            time.sleep(PAUSE)
+    except DeviceError as error:
+        return Ending.LINK, str(error)
+    except LoopError as error:
+        return Ending.LOOP, str(error)
+    return (Ending.INTERRUPTED if interrupted() else Ending.DURATION), ""
+
+
+def fault_sentence(fault: Fault) -> str:
+    """What a device's fault means, for a person."""
+    return _FAULTS.get(fault, f"the device faulted: {fault.name.lower()}")
+
+
+_FAULTS: dict[Fault, str] = {
+    Fault.WATCHDOG: "the device heard nothing for 50 ms, took its output to zero and latched "
+    "(watchdog): this program or the link was held up",
+    Fault.HEAT: "the device's heat limit was reached; lower the voltage or give it pauses",
+    Fault.DUTY: "the device's duty limit was reached; give it pauses",
+    Fault.LATE_TICK: "the device's own loop was late and could not vouch for its output",
+    Fault.TRIPPED: "the amplifier tripped, or its enable line was opened",
+}
+
+
+@contextlib.contextmanager
+def _preferred() -> Iterator[None]:
+    """Before ordinary work, where the system grants it, and after the loop.
+
+    The player works a quarter of the time and sleeps in every millisecond; held up for 50 ms it
+    would cost the session. The loop has said already where priority is not granted.
+    """
+    scheduler = getattr(os, "sched_setscheduler", None)
+    if scheduler is None or os.sched_getscheduler(0) != os.SCHED_OTHER:
+        yield
+        return
+    granted = False
+    with contextlib.suppress(OSError):
+        scheduler(0, os.SCHED_FIFO, os.sched_param(PRIORITY // 5))
+        granted = True
+    try:
+        yield
+    finally:
+        if granted:
+            scheduler(0, os.SCHED_OTHER, os.sched_param(0))
+
+
+@contextlib.contextmanager
+def _interruptible() -> Iterator[Callable[[], bool]]:
+    """Whether Ctrl-C was pressed, instead of an exception in the middle of something."""
+    pressed = threading.Event()
+    if threading.current_thread() is not threading.main_thread():
+        yield pressed.is_set
+        return
+
+    def note(_: int, __: FrameType | None) -> None:
+        pressed.set()
+
+    before = {number: signal.signal(number, note) for number in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        yield pressed.is_set
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+

@@ -1,0 +1,132 @@
+"""A texture as a tile: amplitudes over x that a device looks up by itself, without a loop."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from squeezefilm.device.messages import LONGEST_TILE
+from squeezefilm.errors import InputError, UnreachableError
+from squeezefilm.quantities import (
+    FloatArray,
+    Metre,
+    MetreArray,
+    Unit,
+    VoltArray,
+    format_quantity,
+    require,
+)
+from squeezefilm.render.program import Program
+from squeezefilm.render.renderer import render
+from squeezefilm.session.plan import DriveTable
+
+_METRE = Unit("m")
+_MICROMETRE: Metre = 1e-6
+_FINER = 16
+# What a position may miss a whole number of micrometres by.
+_ROUNDING = 1e-6
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TextureTile:
+    """A texture at even places along x, straight lines between, nothing outside.
+
+    Attributes:
+        program: the texture it was sampled from.
+        origin, pitch: place of the first amplitude and from each to the next (m), whole µm.
+        amplitude: there (m, zero-to-peak), shape (size,).
+        largest_error: how far the tile is from the texture at most, at 16 places per pitch (m);
+            at a square grating's edges that is the whole step, within one pitch.
+        mean_error: the same on average (m).
+    """
+
+    program: Program
+    origin: Metre
+    pitch: Metre
+    amplitude: MetreArray
+    largest_error: Metre
+    mean_error: Metre
+
+    @property
+    def origin_um(self) -> int:
+        """The origin as the device takes it (µm)."""
+        return round(self.origin / _MICROMETRE)
+
+    @property
+    def pitch_um(self) -> int:
+        """The pitch as the device takes it (µm)."""
+        return round(self.pitch / _MICROMETRE)
+
+    def voltage(self, drive: DriveTable) -> VoltArray:
+        """The tile's levels (V, zero-to-peak), shape (size,).
+
+        Raises:
+            InputError: an amplitude above the drive's largest.
+        """
+        require("amplitude", self.amplitude, _METRE, at_most=drive.largest_amplitude)
+        return np.asarray(np.interp(self.amplitude, drive.amplitude, drive.voltage))
+
+
+def tile_of(program: Program, origin: Metre, pitch: Metre, size: int) -> TextureTile:
+    """A steady texture sampled into a device's tile.
+
+    A tile knows no speed, no time and no y, and the device plays it without compensation.
+
+    Args:
+        program: the lowered texture.
+        origin: of the first amplitude (m), a whole number of micrometres within ±2 km.
+        pitch: from one to the next (m), a whole number of micrometres, at least 1 µm.
+        size: how many; 2 to 512.
+
+    Raises:
+        InputError: a texture that may depend on speed, direction, time or y, or a place, pitch or
+            size that the device cannot take.
+        UnreachableError: a texture that wants what the display cannot reach on the tile.
+    """
+    moving = sorted(program.depends_on - {"x"})
+    if moving:
+        raise InputError(
+            f"the texture may depend on {', '.join(moving)}, and a tile holds amplitudes over x "
+            "alone; play it in mode stream",
+            quantity="program",
+        )
+    if not isinstance(size, int) or not 2 <= size <= LONGEST_TILE:
+        raise InputError(
+            f"size = {size!r} cannot be used: a tile holds 2 to {LONGEST_TILE} amplitudes",
+            quantity="size",
+        )
+    require("origin", origin, _METRE, at_least=-2e3, at_most=2e3)
+    require("pitch", pitch, _METRE, at_least=_MICROMETRE, at_most=1.0)
+    for name, value in (("origin", origin), ("pitch", pitch)):
+        steps = value / _MICROMETRE
+        if abs(steps - round(steps)) > _ROUNDING * max(1.0, abs(steps)):
+            raise InputError(
+                f"{name} = {format_quantity(value, _METRE)} is no whole number of micrometres, "
+                "which the device counts in; round it",
+                quantity=name,
+            )
+    places: FloatArray = round(origin / _MICROMETRE) + round(pitch / _MICROMETRE) * np.arange(
+        float(size)
+    )
+    amplitude = _amplitudes(program, places)
+    between: FloatArray = np.linspace(places[0], places[-1], (size - 1) * _FINER + 1)
+    wanted = _amplitudes(program, between)
+    missed = np.abs(np.interp(between, places, amplitude) - wanted)
+    return TextureTile(
+        program, origin, pitch, amplitude, float(np.max(missed)), float(np.mean(missed))
+    )
+
+
+def _amplitudes(program: Program, places: FloatArray) -> FloatArray:
+    """The texture's amplitudes at places along x (µm), each by itself."""
+    # Divided, not multiplied by 1e-6: so a whole number of µm is the same float as in a texture.
+    x = places / 1e6
+    found = render(program, x, 0.0, 0.0, np.arange(x.size, dtype=float))
+    met = found.counters
+    if met.unreachable or met.faults:
+        raise UnreachableError(
+            f"at {met.unreachable + met.faults} of {x.size} places on the tile the texture wants "
+            "what the display cannot reach; change its ends or the tile's place"
+        )
+    return found.amplitude

@@ -1,0 +1,132 @@
+"""The whole bench on a simulated clock: loop, player, link, device, plate and finger, in step.
+
+The player, the link's code and the device's state machine are those of a session in real time; only
+time is made. The same inputs give the same record and the same truth, bit for bit.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from squeezefilm.device.host import DeviceHost
+from squeezefilm.device.link import Link
+from squeezefilm.errors import DeviceError
+from squeezefilm.quantities import Second, Unit, require
+from squeezefilm.results import to_json
+from squeezefilm.session.play import FADE, Ending, Player, PlayPlan
+from squeezefilm.session.record import TraceWriter
+from squeezefilm.session.rows import COLUMNS
+from squeezefilm.session.run_play import PlayOutcome, fault_sentence
+from squeezefilm.session.simulated import SimulatedLoop
+from squeezefilm.twin.device import TwinDevice
+
+STEP: Second = 1e-3
+"""Between two looks of the player at its device."""
+
+
+@dataclass(slots=True)
+class VirtualStream:
+    """A wire to a twin on a simulated clock: what is written arrives `latency` (s) later.
+
+    `now` is the simulated time (s); moving it by `wait` moves the twin and, where one is given,
+    whatever `together` moves.
+    """
+
+    device: TwinDevice
+    latency: Second = 0.5e-3
+    now: Second = 0.0
+    together: Callable[[Second], None] | None = None
+    _under_way: deque[tuple[int, bytes]] = field(default_factory=deque)
+    _arrived: bytearray = field(default_factory=bytearray)
+
+    def clock(self) -> Second:
+        """The simulated time (s)."""
+        return self.now
+
+    def wait(self, duration: Second) -> None:
+        """Let time pass (s)."""
+        self.now += duration
+        if self.together is not None:
+            self.together(self.now)
+        until = round(self.now * 1e6)
+        while self._under_way and self._under_way[0][0] <= until:
+            at, data = self._under_way.popleft()
+            self.device.receive(data, max(at, self.device.now))
+        self._arrived += self.device.advance(max(until, self.device.now))
+
+    def read(self) -> bytes:
+        """What has arrived from the device."""
+        data = bytes(self._arrived)
+        self._arrived.clear()
+        return data
+
+    def write(self, data: bytes) -> None:
+        """Send bytes to the device."""
+        self._under_way.append((round((self.now + self.latency) * 1e6), data))
+
+    def close(self) -> None:
+        """Nothing to close."""
+
+
+def virtual_play(
+    plan: PlayPlan,
+    device: TwinDevice,
+    trace: Path,
+    metadata: Mapping[str, Any],
+    *,
+    duration: Second,
+    latency: Second = 0.5e-3,
+    step: Second = STEP,
+) -> PlayOutcome:
+    """Play on a twin for a time, as fast as the computer can; the truth is in `device.truth`.
+
+    Args:
+        plan: what to play.
+        device: the twin, with a hand on it.
+        trace: the record to write, which must not exist.
+        metadata: of the record.
+        duration: for which to play (s, simulated).
+        latency: of the link to the device (s).
+        step: between two looks of the player (s).
+
+    Raises:
+        DeviceError: a device that refuses to begin.
+        RecordError: a record that cannot be written.
+    """
+    require("duration", duration, Unit("s"), above=0.0)
+    require("step", step, Unit("s"), above=0.0, at_most=20e-3)
+    loop = SimulatedLoop(plan.loop)
+    stream = VirtualStream(device, latency, device.now * 1e-6)
+    start = stream.now
+
+    def clock() -> Second:
+        return stream.now - start
+
+    stream.together = lambda now: loop.advance(now - start)
+    ending, message = Ending.DURATION, ""
+    with TraceWriter(trace, COLUMNS, metadata) as writer:
+        link = Link(stream, clock, stream.wait)
+        player = Player(plan, loop, DeviceHost(link), writer, clock)
+        player.begin()
+        began = clock()
+        try:
+            while player.ending is None and clock() - began < duration:
+                stream.wait(step)
+                player.step()
+            if player.ending is Ending.FAULT:
+                ending, message = Ending.FAULT, fault_sentence(player.fault)
+            player.fade()
+            faded = clock()
+            while player.ending is None and clock() < faded + FADE:
+                stream.wait(step)
+                player.step()
+        except DeviceError as error:
+            ending, message = Ending.LINK, str(error)
+        player.end(ending, stream.wait, message)
+        writer.event("loop", {"lateness": loop.lateness.to_json()})
+        writer.event("link", to_json(link.statistics))
+        return PlayOutcome(ending, message, trace, writer.acknowledged)

@@ -1,0 +1,65 @@
+"""A twin on a pseudo-terminal that tells at its end when it last heard a frame, and all levels.
+
+    python observed_twin.py OUT.json LEVELS.npy
+
+Times are the device's own: no wall clock enters what is judged.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import sys
+from pathlib import Path
+
+import numpy as np
+
+from squeezefilm.device.machine import Fault, Machine
+from squeezefilm.display import load_display
+from squeezefilm.render.sensor import LVDT_10_KHZ
+from squeezefilm.twin.device import TwinDevice
+from squeezefilm.twin.hand import hand_from
+from squeezefilm.twin.pty_server import PtyServer
+from squeezefilm.twin.settings import PickupModel, TwinSettings
+
+
+class Observed(Machine):
+    """A device that remembers each fault: when it came, and when a frame was last accepted."""
+
+    faults: list[dict[str, int]]
+
+    def _fail(self, fault: Fault) -> None:
+        before = self.fault
+        super()._fail(fault)
+        if before != self.fault:
+            seen = {"fault": int(fault), "at_us": self._now, "heard_us": self._heard}
+            self.faults.append(seen)
+
+
+def main(said: Path, levels: Path) -> None:
+    settings = TwinSettings(
+        sensor=LVDT_10_KHZ, pickup=PickupModel(kind="sensing_patch"), truth_period=200e-6
+    )
+    device = TwinDevice(
+        load_display("biet2008-plate"), settings, hand=hand_from("60 mm/s over 4 cm")
+    )
+    own = device.machine
+    device.machine = Observed(
+        own.seed, own.own, sensor=own.sensor, pickup=own.pickup, tick_period=own.tick_period
+    )
+    device.machine.faults = []
+    server = PtyServer(device)
+    for number in (signal.SIGTERM, signal.SIGINT):
+        signal.signal(number, lambda *_: server.stop())
+    print(server.port, flush=True)
+    server.serve(os.getppid())
+    truth = device.truth
+    rows = np.column_stack([truth.column("time_s"), truth.column("level_V")])
+    np.save(levels, rows)
+    said.write_text(json.dumps(device.machine.faults))
+    server.close()
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]), Path(sys.argv[2]))

@@ -1,0 +1,44 @@
+"""A host that plays on a port until it is stopped, killed or unplugged; prints how it ended.
+
+    python playing_host.py PORT TRACE SECONDS
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+import warnings
+from pathlib import Path
+
+from squeezefilm.device.safety import Limits
+from squeezefilm.render.compensation import DrivenEnvelope
+from squeezefilm.render.motion import MotionEstimator
+from squeezefilm.render.program import lower
+from squeezefilm.render.sensor import LVDT_10_KHZ
+from squeezefilm.render.texture import Square
+from squeezefilm.session.plan import DriveTable, LoopPlan
+from squeezefilm.session.play import PlayPlan
+from squeezefilm.session.run_play import run_play
+
+
+def main(port: str, trace: Path, seconds: float) -> None:
+    # Never silent, so that an output at zero is the device's doing.
+    square = Square(spatial_period=2e-3, low=0.5e-6, high=1e-6)
+    loop = LoopPlan(
+        program=lower(square, largest_amplitude=1e-6),
+        rate=2e3,
+        envelope=DrivenEnvelope(1e-3, 1e-3, 1e-6),
+        drive=DriveTable.linear(1e-7, 10.0),
+        estimator=MotionEstimator.for_sensor(LVDT_10_KHZ),
+        output_delay=8e-3,
+    )
+    plan = PlayPlan(loop, Limits(15.0, 15e3, 15.0, 2e4, 30e3, 36e3), 33.5e3)
+    with warnings.catch_warnings():
+        # Real-time priority may not be granted where tests run.
+        warnings.simplefilter("ignore")
+        done = run_play(plan, f"serial:{port}", trace, {}, duration=seconds)
+    print(json.dumps({"ending": done.ending.name, "message": done.message, "rows": done.rows}))
+
+
+if __name__ == "__main__":
+    main(sys.argv[1], Path(sys.argv[2]), float(sys.argv[3]))

@@ -1,0 +1,34 @@
+"""A plan that can be played at once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+from squeezefilm.render.compensation import DrivenEnvelope
+from squeezefilm.render.motion import MotionEstimator
+from squeezefilm.render.program import lower
+from squeezefilm.render.sensor import LVDT_10_KHZ
+from squeezefilm.render.texture import Square
+from squeezefilm.session.plan import DriveTable, FrictionTable, LoopPlan
+
+
+@pytest.fixture
+def plan_of() -> Callable[..., LoopPlan]:
+    """A plan for a square grating of 2 mm, any field replaced."""
+
+    def made(**changes: Any) -> LoopPlan:
+        fields: dict[str, Any] = {
+            "program": lower(Square(2e-3, 0.1e-6, 0.8e-6), largest_amplitude=2e-6),
+            "rate": 5e3,
+            "envelope": DrivenEnvelope(0.5e-3, 0.7e-3, 1e-6),
+            "drive": DriveTable.linear(1e-8, 100.0),
+            "estimator": MotionEstimator.for_sensor(LVDT_10_KHZ),
+            "relative_friction": FrictionTable(np.array([0.0, 2e-6]), np.array([1.0, 0.0])),
+        }
+        return LoopPlan(**{**fields, **changes})
+
+    return made

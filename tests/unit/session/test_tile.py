@@ -1,0 +1,82 @@
+"""Textures as tiles: what is on them, and which cannot be."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from squeezefilm.device.tile import Tile
+from squeezefilm.errors import InputError, UnreachableError
+from squeezefilm.render.composition import Composable
+from squeezefilm.render.coordinate import AlongDirection
+from squeezefilm.render.levels import Amplitude
+from squeezefilm.render.pattern import Pattern
+from squeezefilm.render.pattern_gates import Decay, Periodic, SpeedGate
+from squeezefilm.render.pattern_noise import NoiseField
+from squeezefilm.render.pattern_shapes import Bump, SineWave, SquareWave
+from squeezefilm.render.program import Program, lower
+from squeezefilm.render.texture import Sine, Square
+from squeezefilm.session.plan import DriveTable
+from squeezefilm.session.tile import tile_of
+
+
+def _program(texture: Composable) -> Program:
+    return lower(texture, largest_amplitude=1e-6)
+
+
+def test_a_tile_holds_the_textures_own_amplitudes() -> None:
+    sine = Sine(4e-3, 0.0, 1e-6)
+    tile = tile_of(_program(sine), -2e-3, 50e-6, 401)
+    x = -2e-3 + 50e-6 * np.arange(401)
+    np.testing.assert_allclose(tile.amplitude, sine(x, 0.0, 0.0, 0.0), atol=1e-18)
+    # Of straight lines over a pitch p a sine is missed by (2 pi p/L)^2/8 of half its swing.
+    expected = 0.5e-6 * (2 * math.pi * 50e-6 / 4e-3) ** 2 / 8
+    assert tile.largest_error == pytest.approx(expected, rel=0.01)
+    assert (tile.origin_um, tile.pitch_um) == (-2000, 50)
+
+
+def test_a_device_reads_from_it_what_the_texture_wants() -> None:
+    square = Square(2e-3, 0.1e-6, 0.8e-6)
+    tile = tile_of(_program(square), 0.0, 20e-6, 512)
+    volts = tile.voltage(DriveTable.linear(1e-8, 100.0))
+    device = Tile(tile.origin_um, tile.pitch_um, 512, [round(v * 1e6) for v in volts])
+    for x in range(0, 10_000, 20):
+        wanted = float(square(x * 1e-6 + 1e-9, 0.0, 0.0, 0.0))
+        assert device.level(x) == pytest.approx(wanted * 1e14, rel=1e-9)
+    assert tile.largest_error == pytest.approx(0.7e-6 * 15 / 16)
+    assert 0 < tile.mean_error < 0.01e-6
+
+
+@pytest.mark.parametrize(
+    ("pattern", "words"),
+    [
+        (SquareWave(2e-3, along=AlongDirection(0.3)), "depend on y,"),
+        (NoiseField(1e-3, 7), "depend on y,"),
+        (Periodic(5.0), "depend on time,"),
+        (SpeedGate(above=0.01), "depend on speed,"),
+        (Bump(0.01, 2e-3), "depend on direction,"),
+        (SineWave(2e-3).scaled_by_speed(0.1) * Decay(0.1), "depend on speed, time,"),
+    ],
+)
+def test_what_is_not_steady_along_x_is_refused(pattern: Pattern, words: str) -> None:
+    with pytest.raises(InputError, match=words):
+        tile_of(_program(Amplitude(pattern, 0.0, 1e-6)), 0.0, 50e-6, 100)
+
+
+def test_the_devices_units_and_size_are_kept() -> None:
+    program = _program(Square(2e-3, 0.0, 1e-6))
+    with pytest.raises(InputError, match="2 to 512"):
+        tile_of(program, 0.0, 50e-6, 513)
+    with pytest.raises(InputError, match="whole number of micrometres"):
+        tile_of(program, 0.0, 50.5e-6, 100)
+    with pytest.raises(InputError, match="pitch"):
+        tile_of(program, 0.0, 0.0, 100)
+    with pytest.raises(InputError, match="amplitude"):
+        tile_of(program, 0.0, 50e-6, 100).voltage(DriveTable.linear(1e-8, 10.0))
+
+
+def test_a_texture_out_of_reach_makes_no_tile() -> None:
+    with pytest.raises(UnreachableError, match="100 of 100"):
+        tile_of(_program(Amplitude.constant(2e-6)), 0.0, 50e-6, 100)
