@@ -9,6 +9,7 @@ from pathlib import Path
 
 from squeezefilm.errors import InputError
 from squeezefilm.lab.design_area import add_design
+from squeezefilm.lab.device_area import add_device
 from squeezefilm.lab.feel_area import add_feel
 from squeezefilm.lab.guard import Places
 from squeezefilm.lab.keys import Keys
@@ -43,6 +44,7 @@ def serve(
     add_design(lab)
     add_feel(lab)
     add_study(lab)
+    add_device(lab)
     link = f"http://127.0.0.1:{found}/?token={keys.new_link()}"
     server = server_of(lab)
     say(f"squeezefilm lab: {link}")
