@@ -85,19 +85,18 @@ def run(
     from squeezefilm.study.terminal_run import open_study, run_session
 
     with open_study(store, design, seed, station, stations) as found:
-        who = participant or found.enrol()
-        typer.echo(f"participant {who}: go on with --participant {who}")
         planned = found.design
         examiner = TerminalExaminer(planned.spoken_question, modulus=planned.modulus)
         with terminal.progress(enabled=sys.stderr.isatty()) as step:
             ended = run_session(
                 found,
-                who,
+                participant,
                 examiner,
                 drive=drive,
                 conditions=conditions,
                 consent=consent,
                 acknowledge=(lambda _: True) if acknowledge else ask_acknowledgement,
+                tell=typer.echo,
                 progress=step,
             )
     typer.echo(ended)

@@ -135,7 +135,14 @@ class TerminalExaminer:
         sleep: Callable[[float], None] = time.sleep,
     ) -> None:
         self._question, self._modulus = question, modulus
-        self._read, self._write, self._sleep = read, write, sleep
+        self._reads, self._write, self._sleep = read, write, sleep
+
+    def _read(self, prompt: str) -> str:
+        """One line. The end of the input stops the session as Ctrl-C does."""
+        try:
+            return self._reads(prompt)
+        except EOFError as error:
+            raise KeyboardInterrupt from error
 
     def rest(self, duration: Second) -> None:
         """Wait (s), then for Enter."""

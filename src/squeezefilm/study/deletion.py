@@ -13,7 +13,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from squeezefilm.errors import RecordError
-from squeezefilm.study.exports import erase_file, export_again, exported_folders
+from squeezefilm.study.exports import (
+    erase_file,
+    export_again,
+    exported_folders,
+    own_files,
+)
 from squeezefilm.study.store import StudyStore
 
 _PIECE = 1 << 20
@@ -39,10 +44,14 @@ def delete_participant(store: StudyStore, pseudonym: str) -> Deletion:
     they are merged again.
 
     Raises:
+        InputError: an export's folder has files of other origin in it (nothing was deleted).
         RecordError: another program has the file open (nothing was deleted), or something is left,
             with the file it is in.
     """
-    # First, while nothing is deleted yet: fails if somebody else reads the file.
+    # First, while nothing is deleted yet: these fail if an export can't be made anew, or if
+    # somebody else reads the file.
+    for _, folder in exported_folders(store):
+        own_files(folder)
     store.compact()
     identifiers = {pseudonym} | _identifiers(store, pseudonym)
     backups = []
@@ -53,10 +62,10 @@ def delete_participant(store: StudyStore, pseudonym: str) -> Deletion:
     for path in backups:
         with StudyStore.open(path) as backup:
             identifiers |= _identifiers(backup, pseudonym)
-            _delete_rows(backup, pseudonym)
+            remove_rows(backup, pseudonym)
             backup.compact()
     traces = _traces(store, pseudonym)
-    enrolled, answers = _delete_rows(store, pseudonym)
+    enrolled, answers = remove_rows(store, pseudonym)
     store.compact()
     # Those of programs that were killed could be anybody's.
     for path in store.unreferenced_traces():
@@ -91,7 +100,9 @@ def _traces(store: StudyStore, pseudonym: str) -> list[str]:
     return [name for row in found for name in json.loads(row["traces"])]
 
 
-def _delete_rows(store: StudyStore, pseudonym: str) -> tuple[bool, int]:
+def remove_rows(store: StudyStore, pseudonym: str) -> tuple[bool, int]:
+    """Delete a participant's rows, and nothing else. Whether they were enrolled, and how many
+    answers went. Raises `RecordError` with nothing deleted."""
     sessions = "SELECT uuid FROM session WHERE participant = ?"
     trials = "SELECT uuid FROM trial WHERE participant = ?"
     with store.transaction() as write:

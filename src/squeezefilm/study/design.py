@@ -13,7 +13,7 @@ Four tasks:
 
 from __future__ import annotations
 
-import re
+import dataclasses
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -23,7 +23,17 @@ from squeezefilm.config.provenance import Provenance
 from squeezefilm.errors import InputError
 from squeezefilm.quantities import Dimensionless, Second, Unit, did_you_mean, require
 from squeezefilm.results import config_hash
+from squeezefilm.study.special_trials import (
+    AdaptiveCondition,
+    CatchTrial,
+    require_count,
+    require_different,
+    require_name,
+)
 from squeezefilm.study.stimuli import Grating, Stimulus, Varied, require_one_of
+
+__all__ = ["TASKS", "AdaptiveCondition", "CatchTrial", "Condition", "Order", "StudyDesign", "Task",
+           "load_design"]  # fmt: skip
 
 Task = Literal["match-to-sample", "same-different", "two-interval", "magnitude-estimation"]
 Order = Literal["williams", "latin-square", "shuffled"]
@@ -36,59 +46,7 @@ TASKS: tuple[Task, ...] = (
     "two-interval",
     "magnitude-estimation",
 )
-_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,79}")
 _MOST_TRIALS = 100_000
-
-
-@dataclass(frozen=True)
-class CatchTrial:
-    """A trial whose answer is plain to everyone who attends, and how often it comes.
-
-    `answer` is what is right. In a task of two surfaces `stimulus` comes with the reference.
-    """
-
-    stimulus: Stimulus
-    answer: str
-    count: int = 1
-
-    def __post_init__(self) -> None:
-        _require_count("count", self.count, 1, 1000)
-
-
-@dataclass(frozen=True)
-class AdaptiveCondition:
-    """A series of trials in which a method chooses each comparison after the last answer.
-
-    Args:
-        name: of the series.
-        method: "staircase" or "bayesian".
-        varied: what of the design's reference is changed; what the design's `judged` asks about.
-        start: first difference from the reference, in parts of the reference's value (1).
-        lowest, highest: differences allowed, likewise (1).
-        step: of a staircase, in parts of the reference's value; halved at the first reversals (1).
-        down: correct answers in a row that make a staircase harder.
-        count: trials.
-    """
-
-    name: str
-    method: Literal["staircase", "bayesian"]
-    varied: Varied = "spatial_period"
-    start: Dimensionless = 0.4
-    lowest: Dimensionless = 0.005
-    highest: Dimensionless = 0.9
-    step: Dimensionless = 0.1
-    down: int = 2
-    count: int = 60
-
-    def __post_init__(self) -> None:
-        _require_name(self.name)
-        require_one_of("method", self.method, ("staircase", "bayesian"))
-        require("lowest", self.lowest, above=0.0)
-        require("highest", self.highest, above=self.lowest, at_most=100.0)
-        require("start", self.start, at_least=self.lowest, at_most=self.highest)
-        require("step", self.step, above=0.0, at_most=self.highest)
-        _require_count("down", self.down, 1, 10)
-        _require_count("count", self.count, 1, 10_000)
 
 
 @dataclass(frozen=True)
@@ -114,7 +72,8 @@ class StudyDesign:
         blocks: per display.
         repetitions: of every condition, per block.
         catch: trials to see whether people attend, spread at random over the blocks.
-        adaptive: series in place of fixed repetitions; the stimuli then need only the reference.
+        adaptive: series in place of fixed repetitions; stimuli beside the reference are then for
+            practice and familiarisation only.
         break_between_blocks: rest (s) before every block but the first.
         trial_duration: expected time of one trial (s), for planning.
         note: anything a reader must know, such as what of it is assumed.
@@ -148,25 +107,25 @@ class StudyDesign:
     )
 
     def __post_init__(self) -> None:
-        _require_name(self.name)
+        require_name(self.name)
         require_one_of("task", self.task, TASKS)
         require_one_of("order", self.order, ("williams", "latin-square", "shuffled"))
         if not self.displays:
             raise InputError("displays is empty; name at least one", quantity="displays")
-        _require_different("displays", list(self.displays))
+        require_different("displays", list(self.displays))
         if not self.stimuli:
             raise InputError("stimuli is empty; give at least one", quantity="stimuli")
-        _require_count("familiarisation", self.familiarisation, 0, 20)
-        _require_count("practice", self.practice, 0, 1000)
-        _require_count("blocks", self.blocks, 1, 100)
-        _require_count("repetitions", self.repetitions, 1, 1000)
+        require_count("familiarisation", self.familiarisation, 0, 20)
+        require_count("practice", self.practice, 0, 1000)
+        require_count("blocks", self.blocks, 1, 100)
+        require_count("repetitions", self.repetitions, 1, 1000)
         require("break_between_blocks", self.break_between_blocks, Unit("s"), at_least=0.0)
         require("trial_duration", self.trial_duration, Unit("s"), above=0.0, at_most=3600.0)
         require("modulus", self.modulus, at_least=0.0)
         presented = [one.name for one in self.stimuli] + [one.stimulus.name for one in self.catch]
-        _require_different("stimuli", presented)
-        _require_different("alternatives", [one.name for one in self.alternatives])
-        _require_different("adaptive", [one.name for one in self.adaptive])
+        require_different("stimuli", presented)
+        require_different("alternatives", [one.name for one in self.alternatives])
+        require_different("adaptive", [one.name for one in self.adaptive])
         if self.reference and self.reference not in [one.name for one in self.stimuli]:
             known = [one.name for one in self.stimuli]
             raise InputError(
@@ -196,8 +155,8 @@ class StudyDesign:
 
     @property
     def sha256(self) -> str:
-        """Hash of every value of the design; it changes when anything of it does."""
-        return config_hash(self)
+        """Hash of every value of the design, whatever their sources are said to be."""
+        return config_hash(dataclasses.replace(self, provenance={}))
 
     @property
     def spoken_question(self) -> str:
@@ -297,6 +256,12 @@ class StudyDesign:
                 f"adaptive series need task = 'two-interval', not '{self.task}'",
                 quantity="adaptive",
             )
+        if pair and self.practice and len(self.stimuli) < 2:
+            raise InputError(
+                "practice needs a stimulus to compare with the reference; add one (adaptive "
+                "series use it for practice only), or practice = 0",
+                quantity="practice",
+            )
         for series in self.adaptive:
             self._require_series(series)
         if self.modulus and (self.task != "magnitude-estimation" or not self.reference):
@@ -363,28 +328,3 @@ def load_design(name_or_path: str | Path) -> StudyDesign:
     from squeezefilm import config, presets
 
     return config.load(StudyDesign, presets.resolve_study(name_or_path))
-
-
-def _require_name(name: str) -> None:
-    if not _NAME.fullmatch(name):
-        raise InputError(
-            f"name = {name!r} cannot be used: it goes into file names; write up to 80 of the "
-            "letters A-Z a-z, digits, dot, dash and underscore, beginning with a letter or digit",
-            quantity="name",
-        )
-
-
-def _require_count(name: str, value: int, least: int, most: int) -> None:
-    if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= most:
-        raise InputError(
-            f"{name} = {value!r} cannot be used: it must be a whole number from {least} to {most}",
-            quantity=name,
-        )
-
-
-def _require_different(what: str, names: list[str]) -> None:
-    twice = sorted({name for name in names if names.count(name) > 1})
-    if twice:
-        raise InputError(
-            f"{what} have a name twice ({', '.join(twice)}); name each differently", quantity=what
-        )

@@ -84,12 +84,13 @@ def erase_file(path: Path) -> None:
     path.unlink()
 
 
-def _remove_export(folder: Path) -> None:
-    """Erase an earlier export; an empty folder is welcome. Raises `InputError` for any other."""
+def own_files(folder: Path) -> set[Path]:
+    """The files of an earlier export in a folder; none for a folder that is empty or not there.
+
+    Raises `InputError` where there are others, which an export must not replace.
+    """
     if folder.exists() and not folder.is_dir():
         raise InputError(f"{folder} is a file; give a folder")
-    if not folder.is_dir():
-        return
     mark = folder / _MARK
     present = {path for path in folder.rglob("*") if not path.is_dir()}
     ours: set[Path] = set()
@@ -99,10 +100,17 @@ def _remove_export(folder: Path) -> None:
         ours |= {p for p in present if any(p.name.startswith(f".{one.name}.") for one in ours)}
     if others := sorted(str(path.relative_to(folder)) for path in present - ours):
         raise InputError(
-            f"{folder} has files of its own ({', '.join(others[:3])}); give a new or empty folder"
+            f"{folder} has files of its own ({', '.join(others[:3])}), which an export would "
+            "replace; move them, or give a new or empty folder"
         )
-    # The mark goes last, so that an interrupted removal can be repeated.
-    for path in sorted(present, key=lambda one: one == mark):
+    return present
+
+
+def _remove_export(folder: Path) -> None:
+    """Erase an earlier export. The mark goes last, so that an interrupted removal can be
+    repeated. Raises what `own_files` raises."""
+    mark = folder / _MARK
+    for path in sorted(own_files(folder), key=lambda one: one == mark):
         erase_file(path)
     for path in sorted((p for p in folder.rglob("*") if p.is_dir()), reverse=True):
         path.rmdir()

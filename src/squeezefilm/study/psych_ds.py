@@ -16,7 +16,7 @@ from squeezefilm.study.session_table import SESSION_COLUMNS, session_table
 from squeezefilm.study.store import StudyStore
 from squeezefilm.study.trial_table import COLUMNS, Column, csv_text, trial_table
 
-_TYPES = {"text": "text", "number": "number", "whole": "integer", "truth": "boolean"}
+_KINDS = {"text": "text", "number": "number", "whole": "whole number", "truth": "true or false"}
 
 
 def dataset(store: StudyStore) -> dict[str, str]:
@@ -29,7 +29,6 @@ def dataset(store: StudyStore) -> dict[str, str]:
         "@type": "Dataset",
         "name": design.title or design.name,
         "description": description(store),
-        "schemaVersion": "Psych-DS 0.4.0",
         "keywords": ["tactile perception", "friction modulation", "psychophysics", design.task],
         "variableMeasured": _variables(list(columns.values())),
     }
@@ -78,8 +77,8 @@ def readme(store: StudyStore, standard: str) -> str:
 def _variables(columns: Sequence[Column]) -> list[dict[str, str]]:
     found = []
     for column in columns:
-        one = {"@type": "PropertyValue", "name": column.name, "description": column.description}
-        one["valueReference"] = _TYPES[column.kind]
+        said = f"{column.description} ({_KINDS[column.kind]})"
+        one = {"@type": "PropertyValue", "name": column.name, "description": said}
         if column.unit:
             one["unitText"] = column.unit
         found.append(one)

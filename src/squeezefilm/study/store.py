@@ -332,6 +332,11 @@ def _planned(trial: Trial, participant: str) -> Row:
 
 
 def _connect(path: Path) -> sqlite3.Connection:
+    if sqlite3.sqlite_version_info < (3, 37):
+        raise RecordError(
+            f"this Python has SQLite {sqlite3.sqlite_version}; a study needs 3.37 or later, for "
+            "tables that check the types of what is written"
+        )
     try:
         connection = sqlite3.connect(path, isolation_level=None, timeout=_PATIENCE / 1000)
     except sqlite3.Error as error:

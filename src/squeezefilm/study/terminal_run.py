@@ -9,13 +9,15 @@ from pathlib import Path
 from squeezefilm import config
 from squeezefilm.errors import InputError
 from squeezefilm.study.conduct import Examiner, conduct
+from squeezefilm.study.deletion import remove_rows
 from squeezefilm.study.design import load_design
 from squeezefilm.study.device import NoDevice, StudyDevice
-from squeezefilm.study.exposure import Exposure
+from squeezefilm.study.exposure import Exposure, exposure
 from squeezefilm.study.run import StudyRun
 from squeezefilm.study.session_conditions import SessionConditions
 from squeezefilm.study.sessions import begin_session, display_wanted, end_session
 from squeezefilm.study.store import StudyStore
+from squeezefilm.study.trials import expected_duration
 
 Progress = Callable[[str], None]
 
@@ -43,40 +45,55 @@ def open_study(
 
 def run_session(
     store: StudyStore,
-    participant: str,
+    participant: str | None,
     examiner: Examiner,
     *,
     drive: str = "none",
     conditions: Path | None = None,
     consent: bool = False,
     acknowledge: Callable[[str], bool],
+    tell: Callable[[str], None] = print,
     progress: Progress | None = None,
 ) -> str:
     """One session on the display that the participant's next trial needs. Returns how it ended.
 
+    Without a participant somebody new is enrolled and named by `tell`; not so if the session
+    cannot start.
     `conditions` is a TOML file of `SessionConditions`; `consent` counts beside what it says.
     `acknowledge` is shown the statement on airborne ultrasound. Raises what `begin_session` and
     `conduct` raise.
     """
-    display = display_wanted(store, participant)
-    if display is None:
-        return f"participant {participant} has answered every trial"
     sitting = SessionConditions(consent=consent)
     if conditions is not None:
         sitting = config.load(SessionConditions, conditions)
         sitting = dataclasses.replace(sitting, consent=sitting.consent or consent)
     sitting.require_consent()
-    device, exposed = _device(drive, store, display, progress)
-    acknowledged = exposed is not None and acknowledge(exposed.statement)
-    session = begin_session(store, participant, device, sitting, exposed, acknowledged=acknowledged)
+    who = participant or store.enrol()
+    try:
+        display = display_wanted(store, who)
+        if display is None:
+            return f"participant {who} has answered every trial"
+        device, exposed = _device(drive, store, display, progress)
+        acknowledged = exposed is not None and acknowledge(exposed.statement)
+        session = begin_session(store, who, device, sitting, exposed, acknowledged=acknowledged)
+    except BaseException:
+        if participant is None:
+            remove_rows(store, who)
+        raise
+    tell(f"participant {who}: go on with --participant {who}")
     run = StudyRun(store, session)
-    count = conduct(run, device, examiner)
+    try:
+        count = conduct(run, device, examiner)
+    except KeyboardInterrupt:
+        # Stopped by a person: what was answered up to here deserves its verification too.
+        end_session(store, session, device)
+        raise
     after = end_session(store, session, device)
     said = f"{count} trials on {display} recorded"
     if after.problems:
         said += f". CAUTION, the device is off after the session: {'; '.join(after.problems)}"
     if run.state == "display changes":
-        said += f"; next display: {display_wanted(store, participant)}"
+        said += f"; next display: {display_wanted(store, who)}"
     return said
 
 
@@ -85,4 +102,14 @@ def _device(
 ) -> tuple[StudyDevice, Exposure | None]:
     if drive == "none":
         return NoDevice(), None
-    raise InputError(f"--drive '{drive}' is not known; allowed: none")
+    if drive != "twin":
+        raise InputError(f"--drive '{drive}' is not known; allowed: twin, none")
+    from squeezefilm.display import load_display
+    from squeezefilm.study.twin_device import StudyTwin
+
+    tell = progress or (lambda _: None)
+    found = load_display(display)
+    duration = expected_duration(store.design) / len(store.design.displays)
+    exposed = exposure(found, duration, progress=progress)
+    tell("the twin's working point")
+    return StudyTwin(found), exposed

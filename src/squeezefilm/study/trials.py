@@ -15,7 +15,7 @@ from typing import Literal
 import numpy as np
 
 from squeezefilm.quantities import Second, require
-from squeezefilm.study.design import Condition, Order, StudyDesign
+from squeezefilm.study.design import CatchTrial, Condition, Order, StudyDesign
 
 Phase = Literal["familiarisation", "practice", "main", "catch"]
 _ORDERS, _MATCHING, _SPREAD, _PRACTICE, _NOISE = range(5)
@@ -81,7 +81,8 @@ def williams_square(size: int) -> tuple[tuple[int, ...], ...]:
         (place + 1) // 2 if place % 2 else (size - place // 2) % size for place in range(size)
     ]
     rows = [tuple((one + shift) % size for one in zigzag) for shift in range(size)]
-    return tuple(rows if size % 2 == 0 else rows + [row[::-1] for row in rows])
+    # One condition has no neighbours: its mirror image is itself.
+    return tuple(rows if size % 2 == 0 or size == 1 else rows + [row[::-1] for row in rows])
 
 
 def orders(
@@ -231,26 +232,29 @@ def _display_trials(
 def _adaptive_trials(
     design: StudyDesign, display: str, place: int, participant: int, seed: int, found: list[Trial]
 ) -> None:
-    """The series interleaved at random, and blocks of equal size; the reference comes first in
-    half of the trials of each."""
+    """The series interleaved at random, catch trials between them, in blocks of equal size; the
+    reference comes first in half of the trials of each series."""
     random = _random(seed, _SPREAD, participant, place)
-    queue = []
+    queue: list[tuple[str, bool, CatchTrial | None]] = []
     for series in design.adaptive:
         first = np.arange(series.count) % 2 == 0
-        queue += [(series.name, bool(one)) for one in random.permutation(first)]
+        queue += [(series.name, bool(one), None) for one in random.permutation(first)]
     queue = [queue[i] for i in random.permutation(len(queue))]
+    for catch in (one for one in design.catch for _ in range(one.count)):
+        queue.insert(int(random.integers(1, len(queue) + 1)), ("", False, catch))
     size = -(-len(queue) // design.blocks)
-    for position, (name, reference_first) in enumerate(queue):
+    for position, (name, reference_first, caught) in enumerate(queue):
         rest = position % size == 0 and (place or position)
+        answer = "second" if reference_first else "first"
         found.append(
             Trial(
                 number=len(found) + 1,
                 display=display,
                 block=position // size + 1,
-                phase="main",
-                stimuli=(),
+                phase="main" if caught is None else "catch",
+                stimuli=() if caught is None else design.catch_condition(caught),
                 alternatives=design.answers,
-                answer="second" if reference_first else "first",
+                answer=answer if caught is None else caught.answer,
                 adaptive=name,
                 reference_first=reference_first,
                 pause=design.break_between_blocks if rest else 0.0,

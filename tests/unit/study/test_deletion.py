@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from squeezefilm.errors import RecordError
+from squeezefilm.errors import InputError, RecordError
 from squeezefilm.study.conduct import conduct
 from squeezefilm.study.deletion import delete_participant
 from squeezefilm.study.exports import export_study
@@ -134,4 +134,16 @@ def test_a_freed_number_is_given_again(tmp_path: Path) -> None:
     delete_participant(store, people[1])
     store.enrol()
     assert [one["number"] for one in store.participants()] == [0, 1, 2]
+    store.close()
+
+
+def test_nothing_is_deleted_while_an_export_cannot_be_made_anew(tmp_path: Path) -> None:
+    store, people = _study(tmp_path)
+    folder = export_study(store, "csv")
+    (folder / "mine.txt").write_text("mine")
+    with pytest.raises(InputError, match=r"mine\.txt"):
+        delete_participant(store, people[0])
+    assert len(store.participants()) == 3
+    (folder / "mine.txt").unlink()
+    assert delete_participant(store, people[0]).exports == 1
     store.close()

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import dataclasses
+import textwrap
 from pathlib import Path
 
 import pytest
 
 from squeezefilm import config, presets
 from squeezefilm.errors import ConfigError, InputError
-from squeezefilm.study.design import CatchTrial, StudyDesign, load_design
+from squeezefilm.study.design import AdaptiveCondition, CatchTrial, StudyDesign, load_design
 from squeezefilm.study.stimuli import Grating, Stimulus
+from squeezefilm.study.store import StudyStore
+from squeezefilm.study.trials import trials
 
 TWO_INTERVAL = """
 name = "period-jnd"
@@ -131,3 +134,38 @@ def test_a_study_that_is_not_there_is_named_with_those_that_are(tmp_path: Path) 
         load_design("biet2008-grating")
     with pytest.raises(ConfigError, match="does not exist"):
         load_design(tmp_path / "none.toml")
+
+
+def test_the_design_in_the_documentation_is_one() -> None:
+    page = (Path(__file__).parents[3] / "docs" / "study.md").read_text(encoding="utf-8")
+    block = page[page.index('    name = "period-jnd"') : page.index("**Period or groove width.**")]
+    design = config.load_text(StudyDesign, textwrap.dedent(block))
+    assert design.adaptive[0].count == 60
+    assert len(trials(design, 0, 1)) == 8 + 60 + 4
+
+
+def test_practice_and_series_that_cannot_be_are_refused() -> None:
+    design = config.load_text(StudyDesign, TWO_INTERVAL)
+    alone = dataclasses.replace(
+        design,
+        stimuli=design.stimuli[:1],
+        practice=0,
+        adaptive=(AdaptiveCondition("a", "staircase"),),
+    )
+    with pytest.raises(InputError, match="practice needs a stimulus"):
+        dataclasses.replace(alone, practice=1)
+    deep = (AdaptiveCondition("a", "staircase", "friction_depth", highest=5.0),)
+    with pytest.raises(InputError, match="make them the same"):
+        dataclasses.replace(alone, adaptive=deep)
+    with pytest.raises(InputError, match="cannot go up to highest = 5"):
+        dataclasses.replace(alone, adaptive=deep, judged="friction_depth", catch=())
+
+
+@pytest.mark.parametrize("name", presets.study_names())
+def test_every_preset_is_kept_whole_in_a_studys_file(name: str, tmp_path: Path) -> None:
+    design = load_design(name)
+    assert design.name == name
+    with StudyStore.create(tmp_path / "a.sqlite", design, 7) as store:
+        assert store.design == design
+        assert store.design.sha256 == design.sha256 == store.study["design_sha256"]
+        assert len(trials(design, 0, 7)) > 0

@@ -51,7 +51,7 @@ def test_squares_are_balanced(size: int) -> None:
         assert set(_places(square).values()) == {len(square) // size}
         assert len(_places(square)) == size * size
     square = williams_square(size)
-    assert len(square) == (size if size % 2 == 0 else 2 * size)
+    assert len(square) == (size if size % 2 == 0 or size == 1 else 2 * size)
     if size > 1:
         found = _neighbours(square)
         assert len(found) == size * (size - 1)
@@ -119,21 +119,24 @@ def test_adaptive_series_are_interleaved_and_choose_no_stimulus_beforehand() -> 
     design = dataclasses.replace(
         PAIRS,
         task="two-interval",
-        practice=0,
-        catch=(),
+        practice=3,
+        catch=(dataclasses.replace(PAIRS.catch[0], answer="first"),),
         adaptive=(
             AdaptiveCondition("easy", "staircase", count=20),
             AdaptiveCondition("hard", "staircase", count=20),
         ),
     )
     planned = trials(design, 0, 1)
-    assert Counter(one.adaptive for one in planned) == {"easy": 20, "hard": 20}
+    assert Counter(one.adaptive for one in planned) == {"easy": 20, "hard": 20, "": 7}
+    assert Counter(one.phase for one in planned) == {"practice": 3, "main": 40, "catch": 4}
+    assert {one.stimuli for one in planned if one.phase == "catch"} == {("20 mm", "4 mm")}
     for name in ("easy", "hard"):
         mine = [one for one in planned if one.adaptive == name]
         assert sum(one.reference_first for one in mine) == 10
         assert all(one.answer == ("second" if one.reference_first else "first") for one in mine)
         assert all(one.stimuli == () for one in mine)
-    assert [one.adaptive for one in planned[:20]] != ["easy"] * 20
+    order = [one.adaptive for one in planned if one.adaptive]
+    assert order[:20] != ["easy"] * 20
 
 
 def test_seeds_of_trials_differ_and_survive_a_float() -> None:

@@ -1,0 +1,92 @@
+"""Trials of a design that are not plain repetitions: catch trials and adaptive series."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import Literal
+
+from squeezefilm.errors import InputError
+from squeezefilm.quantities import Dimensionless, require
+from squeezefilm.study.stimuli import Stimulus, Varied, require_one_of
+
+_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,79}")
+
+
+@dataclass(frozen=True)
+class CatchTrial:
+    """A trial whose answer is plain to everyone who attends, and how often it comes.
+
+    `answer` is what is right. In a task of two surfaces `stimulus` comes with the reference.
+    """
+
+    stimulus: Stimulus
+    answer: str
+    count: int = 1
+
+    def __post_init__(self) -> None:
+        require_count("count", self.count, 1, 1000)
+
+
+@dataclass(frozen=True)
+class AdaptiveCondition:
+    """A series of trials in which a method chooses each comparison after the last answer.
+
+    Args:
+        name: of the series.
+        method: "staircase" or "bayesian".
+        varied: what of the design's reference is changed; what the design's `judged` asks about.
+        start: first difference from the reference, in parts of the reference's value (1).
+        lowest, highest: differences allowed, likewise (1).
+        step: of a staircase, in parts of the reference's value; halved at the first reversals (1).
+        down: correct answers in a row that make a staircase harder.
+        count: trials.
+    """
+
+    name: str
+    method: Literal["staircase", "bayesian"]
+    varied: Varied = "spatial_period"
+    start: Dimensionless = 0.4
+    lowest: Dimensionless = 0.005
+    highest: Dimensionless = 0.9
+    step: Dimensionless = 0.1
+    down: int = 2
+    count: int = 60
+
+    def __post_init__(self) -> None:
+        require_name(self.name)
+        require_one_of("method", self.method, ("staircase", "bayesian"))
+        require("lowest", self.lowest, above=0.0)
+        require("highest", self.highest, above=self.lowest, at_most=100.0)
+        require("start", self.start, at_least=self.lowest, at_most=self.highest)
+        require("step", self.step, above=0.0, at_most=self.highest)
+        require_count("down", self.down, 1, 10)
+        require_count("count", self.count, 1, 10_000)
+
+
+def require_name(name: str) -> None:
+    """Refuse a name that cannot go into a file's name. Raises `InputError`."""
+    if not _NAME.fullmatch(name):
+        raise InputError(
+            f"name = {name!r} cannot be used: it goes into file names; write up to 80 of the "
+            "letters A-Z a-z, digits, dot, dash and underscore, beginning with a letter or digit",
+            quantity="name",
+        )
+
+
+def require_count(name: str, value: int, least: int, most: int) -> None:
+    """Refuse what is no whole number between two. Raises `InputError`."""
+    if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= most:
+        raise InputError(
+            f"{name} = {value!r} cannot be used: it must be a whole number from {least} to {most}",
+            quantity=name,
+        )
+
+
+def require_different(what: str, names: list[str]) -> None:
+    """Refuse a name that is there twice. Raises `InputError`."""
+    twice = sorted({name for name in names if names.count(name) > 1})
+    if twice:
+        raise InputError(
+            f"{what} have a name twice ({', '.join(twice)}); name each differently", quantity=what
+        )
