@@ -49,8 +49,10 @@ def touch(mode: WorkingMode, law: FrictionLaw, free_amplitude: Metre) -> Touch:
     """The vibration with a finger on it, whose load depends on the amplitude: solved to 1e-8.
 
     The finger rests where the law has it, film and asperities in the balance of the law (partial
-    levitation, whatever its model). Range: see `loaded_mode` and `interface_stiffness`. Raises
-    `ConvergenceError` if amplitude and finger do not settle, and what the load balance raises.
+    levitation, whatever its model). Where several amplitudes fit (a finger that lets go as the film
+    lifts it) this is the one reached from the free plate. Range: see `loaded_mode` and
+    `interface_stiffness`. Raises `ConvergenceError` if amplitude and finger do not settle, and what
+    the load balance raises.
     """
     if free_amplitude < _LEAST_AMPLITUDE:
         return Touch(free_amplitude, free_amplitude, None, None)

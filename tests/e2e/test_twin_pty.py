@@ -16,6 +16,7 @@ from squeezefilm.errors import InputError
 from squeezefilm.twin.plant_kernel import COLUMNS
 from squeezefilm.twin.pty_server import main, running_twin
 
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="there are no ptys on Windows")
 PATIENCE = 60.0
 DISPLAY = "biet2008-stator"
 
@@ -60,6 +61,22 @@ def test_a_host_may_leave_and_come_back_and_the_truth_is_on_disk(tmp_path: Path)
     np.testing.assert_allclose(np.diff(rows[:, 0]), 1e-3, rtol=1e-6)
 
 
+def test_readings_come_by_the_devices_clock() -> None:
+    with running_twin(DISPLAY, stroke="none") as name, serial.Serial(name, timeout=0.01) as port:
+        assert asked(port, m.Hello(1), 1).reason == 0
+        port.write(m.Report(2000).frame(2).encoded())
+        deframer, end, times = Deframer(), time.monotonic() + PATIENCE, []
+        while len(times) < 100 and time.monotonic() < end:
+            for frame in deframer.take(port.read(256)):
+                if frame is not None and frame.type == m.Reading.TYPE:
+                    reading = m.Reading.read(frame.payload)
+                    assert reading is not None
+                    assert reading.touching == 0
+                    times.append(reading.time)
+    assert len(times) >= 100
+    assert set(np.diff(times)) == {2000}
+
+
 def test_what_cannot_start_says_why_and_leaves_nothing(tmp_path: Path) -> None:
     with (
         pytest.raises(InputError, match="neither a file nor a preset"),
@@ -88,6 +105,7 @@ def test_sigterm_ends_it_cleanly_and_takes_the_link_away(tmp_path: Path) -> None
     assert truth.read_text().endswith("\n")
 
 
+@pytest.mark.skipif(sys.platform != "linux", reason="children are found in Linux's /proc")
 def test_it_dies_with_the_process_that_started_it() -> None:
     script = (
         "import time\nfrom squeezefilm.twin.pty_server import running_twin\n"

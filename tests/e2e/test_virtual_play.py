@@ -40,7 +40,10 @@ def settings(sensor: SensorModel = LVDT_10_KHZ) -> TwinSettings:
 def prepared(display: Display, texture: str = "biet2008-square-4mm", **how: object) -> PlaySetup:
     per_volt = 1 / settings().pickup.sensitivity
     return play_setup(
-        display, preset_texture(texture), amplitude_per_pickup=per_volt, **how  # type: ignore[arg-type]
+        display,
+        preset_texture(texture),
+        amplitude_per_pickup=per_volt,
+        **how,  # type: ignore[arg-type]
     )
 
 

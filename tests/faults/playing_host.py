@@ -1,6 +1,6 @@
 """A host that plays on a port until it is stopped, killed or unplugged; prints how it ended.
 
-    python playing_host.py PORT TRACE SECONDS
+python playing_host.py PORT TRACE SECONDS
 """
 
 from __future__ import annotations

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from squeezefilm.analysis.render_command import sensor_named
+from squeezefilm.device.messages import LONGEST_TILE
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError
 from squeezefilm.film.compiled import announce
@@ -32,7 +33,6 @@ from squeezefilm.session.plan import DriveTable, FrictionTable, LoopPlan
 from squeezefilm.session.play import REPORT_PERIOD, PlayPlan
 from squeezefilm.session.tick import make_tick
 from squeezefilm.session.tile import TextureTile, tile_of
-from squeezefilm.device.messages import LONGEST_TILE
 from squeezefilm.texture_file import TextureFile
 
 OUTPUT_DELAY: Second = 6e-3

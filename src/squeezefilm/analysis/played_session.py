@@ -203,9 +203,7 @@ def recorded_way(setup: PlaySetup, trace: Trace) -> PlayedWay:
     if np.any(np.isfinite(rows[:, column.AMPLITUDE])):
         # A reading's amplitude belongs to the moment of its stamp, not to the ticks that carry it.
         stamps = rows[:, column.ROW_SAMPLE_TIME]
-        new = np.flatnonzero(
-            np.isfinite(stamps) & (np.diff(stamps, prepend=np.nan) != 0) & known
-        )
+        new = np.flatnonzero(np.isfinite(stamps) & (np.diff(stamps, prepend=np.nan) != 0) & known)
         when = stamps[new] + setup.plan.sensor_latency
         rising = np.flatnonzero(np.diff(when, prepend=-math.inf) > 0)
         when, amplitude = when[rising], rows[new[rising], column.AMPLITUDE]
@@ -218,9 +216,7 @@ def recorded_way(setup: PlaySetup, trace: Trace) -> PlayedWay:
         friction = rows[known, column.FRICTION]
         inverse = setup.inverse
         # The record holds friction; its amplitude is the one of the display's curve.
-        amplitude = np.interp(
-            -friction, -inverse.relative_friction, inverse.amplitude, left=0.0
-        )
+        amplitude = np.interp(-friction, -inverse.relative_friction, inverse.amplitude, left=0.0)
         source = "the loop's estimate of the finger and the envelope's model (no pickup)"
     return _way(setup, when, place, pace, amplitude, friction, source)
 

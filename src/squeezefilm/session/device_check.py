@@ -15,8 +15,8 @@ import numpy as np
 
 from squeezefilm.device import messages as m
 from squeezefilm.device.playing import CLOCK
-from squeezefilm.device.states import Fault, Reason, State
 from squeezefilm.device.safety import Limits
+from squeezefilm.device.states import Fault, Reason, State
 from squeezefilm.errors import DeviceError
 from squeezefilm.quantities import Dimensionless, Hertz, Second, Volt
 from squeezefilm.session.conversation import Conversation
@@ -208,9 +208,7 @@ def limit_checks(talk: Conversation, limits: Limits, frequency: Hertz) -> list[C
         ("voltage not a number", (good, math.nan)),
         ("voltage infinite", (good, math.inf)),
     ):
-        results.append(
-            _refusal(talk, name, _envelope(levels), Reason.VALUE, kind=m.Envelope.TYPE)
-        )
+        results.append(_refusal(talk, name, _envelope(levels), Reason.VALUE, kind=m.Envelope.TYPE))
     results.append(_stale(talk))
     results.append(
         _refusal(talk, "frame of a wrong length", b"\1\2\3", Reason.LENGTH, kind=m.Start.TYPE)

@@ -17,12 +17,14 @@ from pathlib import Path
 from types import FrameType
 from typing import Any
 
+import numpy as np
+
 from squeezefilm.device.host import DeviceHost
 from squeezefilm.device.link import Link
-from squeezefilm.device.states import Fault
 from squeezefilm.device.ports import Sensor
 from squeezefilm.device.safety import require_safe_drive
 from squeezefilm.device.serial_ports import SerialDrive
+from squeezefilm.device.states import Fault
 from squeezefilm.device.streams import open_stream
 from squeezefilm.errors import DeviceError, LoopError
 from squeezefilm.quantities import FloatArray, Second
@@ -30,7 +32,8 @@ from squeezefilm.results import to_json
 from squeezefilm.session.loop import PRIORITY, LoopProcess
 from squeezefilm.session.play import FADE, Ending, Player, PlayPlan, PlayView
 from squeezefilm.session.record import TraceWriter
-from squeezefilm.session.rows import COLUMNS
+from squeezefilm.session.rows import COLUMNS, SAMPLE_COLUMNS
+from squeezefilm.session.simulated import SimulatedLoop
 
 PAUSE: Second = 1e-3
 """Between two looks of the player at its device."""
@@ -82,8 +85,8 @@ def run_play(
         DeviceError, LoopError, RecordError: what fails before anything was played.
     """
     with (
-        TraceWriter(trace, COLUMNS, metadata) as writer,
         contextlib.closing(open_stream(drive)) as stream,
+        TraceWriter(trace, COLUMNS, metadata) as writer,
         _interruptible() as interrupted,
     ):
         loop = LoopProcess(plan.loop)
@@ -93,6 +96,7 @@ def run_play(
         require_safe_drive(drives, plan.limits, bench_only=bench_only)
         eyes = None if sensor is None else sensor(lambda: loop.time)
         player = Player(plan, loop, host, writer, lambda: loop.time, eyes, tap)
+        _compile(plan)
         loop.start()
         try:
             with _preferred():
@@ -106,6 +110,15 @@ def run_play(
         return PlayOutcome(ending, message, trace, writer.acknowledged)
 
 
+def _compile(plan: PlayPlan) -> None:
+    """Compile what the player calls, which would hold it up for longer than a watchdog waits."""
+    spare = SimulatedLoop(plan.loop)
+    spare.feed(np.zeros((1, len(SAMPLE_COLUMNS))))
+    spare.advance(2 * plan.loop.period)
+    spare.take_commands()
+    spare.take_rows()
+
+
 def _played(
     player: Player,
     loop: LoopProcess,
@@ -114,7 +127,13 @@ def _played(
     show: Callable[[PlayView], None] | None,
 ) -> tuple[Ending, str]:
     """Step until something ends it; returns what, and what to say."""
-    player.begin()
+    try:
+        player.begin()
+    except DeviceError:
+        # It may have been armed already; should this not reach it, its watchdog is left.
+        with contextlib.suppress(DeviceError):
+            player.host.stop()
+        raise
     began = loop.time
     shown = 0.0
     try:
@@ -195,5 +214,3 @@ def _interruptible() -> Iterator[Callable[[], bool]]:
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
-
-
