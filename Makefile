@@ -5,7 +5,7 @@ BIN := $(VENV)/bin
 OUT ?= out/demo
 WORKERS ?= auto
 
-.PHONY: help demo test check lint types layers gallery docs bench nightly wheel clean
+.PHONY: help demo lab test check lint types layers gallery docs bench nightly wheel clean
 
 help:  ## show this list
 	@grep -E '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 12
@@ -24,6 +24,9 @@ $(VENV)/test.stamp: $(VENV)/run.stamp
 
 demo: $(VENV)/run.stamp  ## analyse the paper's plate and write a report
 	@$(BIN)/squeezefilm analyze biet2008-plate --out $(OUT)
+
+lab: $(VENV)/run.stamp  ## open the lab in the browser
+	@$(BIN)/squeezefilm lab
 
 test: $(VENV)/test.stamp  ## run every test (slow ones: make nightly)
 	@$(BIN)/python -m pytest -n $(WORKERS) --dist loadgroup -m "not nightly"

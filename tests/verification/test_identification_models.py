@@ -92,6 +92,15 @@ def test_errors_without_order_do_not_fit_one_axis() -> None:
 def test_a_stimulus_without_trials_is_refused() -> None:
     with pytest.raises(InputError, match="every stimulus"):
         ordered_sensitivity(np.array([[3, 0], [2, 0]]))
+    with pytest.raises(InputError, match="one and the same"):
+        ordered_sensitivity(np.array([[3, 3], [0, 0]]))
+
+
+def test_an_answer_never_given_is_corrected() -> None:
+    # Its criteria fall together: without the correction the information matrix is singular.
+    found = ordered_sensitivity(np.array([[1, 1, 0], [0, 0, 0], [0, 1, 1]]))
+    assert found.corrected
+    assert np.all(np.isfinite(found.standard_error))
 
 
 def _coverage(spacing: float, trials: int, runs: int) -> float:

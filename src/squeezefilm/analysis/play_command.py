@@ -26,7 +26,7 @@ from squeezefilm.display import load_display
 from squeezefilm.errors import InputError
 from squeezefilm.formats.trajectories import motion_from, read_trajectory
 from squeezefilm.prediction import predict
-from squeezefilm.quantities import Hertz, MetrePerVolt, Second, Unit, Volt, require
+from squeezefilm.quantities import FloatArray, Hertz, MetrePerVolt, Second, Unit, Volt, require
 from squeezefilm.render.compensation import DrivenEnvelope
 from squeezefilm.render.motion import MotionEstimator
 from squeezefilm.render.program import lower
@@ -93,6 +93,7 @@ def play_texture(
     out: Path | None = None,
     seed: int = 0,
     show: Callable[[PlayView], None] | None = None,
+    tap: Callable[[FloatArray], None] | None = None,
     progress: Progress | None = None,
 ) -> PlayResult:
     """Play a texture on a device or on a twin of the display, in real time, and judge the record.
@@ -115,6 +116,7 @@ def play_texture(
         out: where the record (trace.sqft) and a twin's truth (truth.csv) go; thrown away without.
         seed: of the twin's noise.
         show: is told what there is to see.
+        tap: is given the rows as they are recorded; must be quick.
         progress: is told each step.
 
     Raises:
@@ -156,7 +158,7 @@ def play_texture(
             tell("playing; Ctrl-C stops safely")
             outcome = run_play(
                 setup.plan, stream, folder / TRACE_NAME, metadata, duration=duration,
-                sensor=_replay(sensor), show=show, bench_only=bench_only,
+                sensor=_replay(sensor), show=show, tap=tap, bench_only=bench_only,
             )  # fmt: skip
         tell("the record")
         judged = judge_session(setup, read_trace(outcome.trace), truth)

@@ -46,7 +46,7 @@ from squeezefilm.render.coordinate import AlongX, AlongY
 from squeezefilm.render.envelope import envelope_time_constant
 from squeezefilm.render.fidelity_report import FidelityReport, fidelity_report
 from squeezefilm.render.inverse import FrictionInverse
-from squeezefilm.render.program import lower
+from squeezefilm.render.program import Program, lower
 from squeezefilm.render.rendered_stroke import RenderedStroke, rendered_stroke
 from squeezefilm.render.renderer import Counters, render
 from squeezefilm.render.sensor import SENSORS, SensorModel
@@ -136,8 +136,8 @@ class RenderAnalysis:
             "normal_force_N": p.normal_force,
             "largest_amplitude_m": stroke.envelope.amplitude_limit,
             "least_relative_friction": self.played.inverse.least_friction,
-            "resonance_frequency_Hz": _resonance(p)[1],
-            "quality_factor": _resonance(p)[0],
+            "resonance_frequency_Hz": resonance_with_finger(p)[1],
+            "quality_factor": resonance_with_finger(p)[0],
             "envelope_time_constant_s": self.time_constant,
             "control_rate_Hz": stroke.control_rate,
             "duration_s": float(stroke.time[-1]),
@@ -237,7 +237,7 @@ def analyze_render(
         )
     friction = p.law.table(largest)
     inverse = FrictionInverse.from_function(friction, largest)
-    factors = None if what == "ignored" else _factors(display, p)
+    factors = None if what == "ignored" else wave_factors(display, p)
     centred, felt = 1.0, friction
     if factors is not None:
         # Factors are over the best place, the display's law is that of an antinode.
@@ -248,7 +248,7 @@ def analyze_render(
     played = _played(
         texture, motion, finger, p, inverse, factors if what == "compensated" else None
     )
-    quality, resonance = _resonance(p)
+    quality, resonance = resonance_with_finger(p)
     tau = float(envelope_time_constant(quality, resonance))
     tell("the loop along the stroke")
     stroke = rendered_stroke(
@@ -297,22 +297,35 @@ def _played(
     inverse: FrictionInverse,
     compensation: WaveCompensation | None,
 ) -> PlayedTexture:
-    quantity = texture.texture.quantity
-    program = lower(
-        texture.texture,
-        largest_amplitude=p.vibration_amplitude,
-        inverse=None if quantity == "amplitude" else inverse,
-        friction_coefficient=p.friction_coefficient if quantity == "friction_reduction" else None,
-        compensation=compensation,
-    )
+    program = lowered(texture, p, inverse, compensation)
     steady = motion if isinstance(motion, Stroke) else None
     period = single_period(texture.texture, steady) if finger.path is None else None
     # Contrast at a period's harmonics needs four of them in a pass, the start left out.
     if period is not None and float(np.ptp(finger.x)) < 5 * period:
         period = None
-    name = texture.title or f"a texture of {quantity}"
+    name = texture.title or f"a texture of {texture.texture.quantity}"
     return PlayedTexture(
         name, program, inverse, finger, p.friction_coefficient, compensation, period
+    )
+
+
+def lowered(
+    texture: TextureFile,
+    p: Prediction,
+    inverse: FrictionInverse,
+    compensation: WaveCompensation | None = None,
+) -> Program:
+    """The program of a texture on a display whose largest amplitude and friction are predicted.
+
+    `inverse` reads the display's friction backwards. Raises what `lower` raises.
+    """
+    quantity = texture.texture.quantity
+    return lower(
+        texture.texture,
+        largest_amplitude=p.vibration_amplitude,
+        inverse=None if quantity == "amplitude" else inverse,
+        friction_coefficient=p.friction_coefficient if quantity == "friction_reduction" else None,
+        compensation=compensation,
     )
 
 
@@ -345,15 +358,18 @@ def _strongest(stroke: RenderedStroke, period: Metre | None) -> FloatArray | Non
     return np.asarray(best / length, dtype=float) if best.size else None
 
 
-def _resonance(p: Prediction) -> tuple[Dimensionless, Hertz]:
+def resonance_with_finger(p: Prediction) -> tuple[Dimensionless, Hertz]:
     """Quality factor and resonance (Hz) with the finger on the mode, where that is known."""
     if p.touch.mode is None:
         return p.mode.quality_factor, p.mode.resonance_frequency
     return p.touch.mode.quality_factor, p.touch.mode.resonance_frequency
 
 
-def _factors(display: Display, p: Prediction) -> WaveCompensation:
-    """The amplitude that the pad meets along the wave, over that at the best place."""
+def wave_factors(display: Display, p: Prediction) -> WaveCompensation:
+    """The amplitude that the pad meets along the wave, over that at the best place.
+
+    Raises `InputError` for a disc, whose wave is none along a line.
+    """
     plate = display.actuator
     if isinstance(plate, DiscPlate):
         raise InputError(

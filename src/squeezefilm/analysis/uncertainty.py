@@ -193,6 +193,71 @@ def uncertain_friction(
     )
 
 
+@dataclass(frozen=True, eq=False)
+class FrictionBand:
+    """µ′/µ over the vibration amplitude with everything but the amplitude uncertain.
+
+    `low` and `high` are quantiles that hold `level` of the samples at each amplitude; NaN where
+    more than half of them have no load balance.
+    """
+
+    amplitude: MetreArray
+    low: DimensionlessArray
+    high: DimensionlessArray
+    level: Dimensionless
+    samples: int
+
+
+def friction_band(
+    display: Display,
+    prediction: Prediction,
+    amplitude: MetreArray,
+    *,
+    samples: int = 64,
+    seed: int = 1,
+) -> FrictionBand:
+    """The band in which µ′/µ lies at each amplitude (m, zero-to-peak, shape (n,)).
+
+    What is uncertain of finger, gas and surface is varied at once, as in `uncertain_friction`, by
+    `samples` Sobol' points (a power of two); drive and actuator stand still, since the amplitude is
+    the abscissa. Raises `InputError` for amplitudes below 0.
+    """
+    from scipy.stats import qmc
+
+    parameters = uncertain_parameters(display, prediction.surface.name, driven=False)
+    points = qmc.Sobol(len(parameters), rng=seed).random(samples)
+    values = np.column_stack(
+        [item.distribution.quantile(points[:, k]) for k, item in enumerate(parameters)]
+    )
+    compliance = [item.path for item in parameters].index(SKIN_COMPLIANCE)
+    paths = [item.path for item in parameters if item.path != SKIN_COMPLIANCE]
+    rows = np.full((samples, amplitude.size), np.nan)
+    for number, row in enumerate(values):
+        changes = dict(zip(paths, np.delete(row, compliance).tolist(), strict=True))
+        try:
+            here = replaced(display, changes)
+            law = friction_law(
+                here,
+                prediction.mode.half_wavelength,
+                prediction.frequency,
+                surface=here.surface(prediction.surface.name),
+                normal_force=prediction.normal_force,
+                model="partial-levitation",
+                position=prediction.law.position,
+            )
+            limits = law.limits(amplitude)
+        except SqueezefilmError:
+            continue
+        share = float(row[compliance])
+        rows[number] = share * limits.own + (1 - share) * limits.one_gap
+    known = np.isfinite(rows).sum(axis=0) > samples / 2
+    tails = (1 - LEVEL) / 2
+    low, high = np.full(amplitude.size, np.nan), np.full(amplitude.size, np.nan)
+    low[known] = np.nanquantile(rows[:, known], tails, axis=0)
+    high[known] = np.nanquantile(rows[:, known], 1 - tails, axis=0)
+    return FrictionBand(amplitude, low, high, LEVEL, samples)
+
+
 def _nominal(prediction: Prediction) -> float:
     law = dataclasses.replace(prediction.law, model="partial-levitation")
     return law.at(prediction.vibration_amplitude)

@@ -205,3 +205,41 @@ def delete_participant(
         if not yes:
             typer.confirm(f"Delete every answer and trace of {participant} for good?", abort=True)
         show_deletion(take_out(found, participant), participant)
+
+
+@study.command()
+def analyze(
+    store: Store,
+    out: Annotated[
+        Path | None, typer.Option(help="Folder for numbers, figures and a page per display.")
+    ] = None,
+    mixed: Annotated[
+        bool, typer.Option("--mixed", help="Mixed models too (needs the extra 'models').")
+    ] = False,
+    seed: Annotated[int, typer.Option(help="Of the bootstraps.")] = 0,
+    as_json: AsJson = False,
+) -> None:
+    """Analyse what was recorded: confusions, intervals, information transfer, sensitivity."""
+    from squeezefilm.report import terminal
+    from squeezefilm.report.terminal_identification import show_analyses
+    from squeezefilm.study.recorded_analysis import analyze_study
+    from squeezefilm.study.store import StudyStore
+
+    with (
+        StudyStore.open(store) as found,
+        terminal.progress(enabled=sys.stderr.isatty() or not as_json) as step,
+    ):
+        analyses = analyze_study(found, mixed=mixed, seed=seed, progress=step)
+        pages = []
+        if out is not None:
+            from squeezefilm.report.study_report import write_study
+
+            pages = [
+                write_study(one, out / display, progress=step) for display, one in analyses.items()
+            ]
+    if as_json:
+        print_json({display: one.summary() for display, one in analyses.items()})
+        return
+    show_analyses(analyses)
+    for page in pages:
+        typer.echo(f"page: {page}")

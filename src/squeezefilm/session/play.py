@@ -168,6 +168,7 @@ class Player:
         writer: of the record, with `rows.COLUMNS`.
         clock: the time on the loop's clock (s).
         sensor: where the finger is, if not by the device's own sensor; its times are the clock's.
+        tap: is given each block of rows after it was recorded, shape (n, columns); must be quick.
     """
 
     def __init__(
@@ -178,7 +179,9 @@ class Player:
         writer: TraceWriter,
         clock: Callable[[], Second],
         sensor: Sensor | None = None,
+        tap: Callable[[FloatArray], None] | None = None,
     ) -> None:
+        self.tap = tap
         self.plan, self.loop, self.host, self.writer = plan, loop, host, writer
         self.clock, self.sensor = clock, sensor
         self.state, self.fault = State.OFF, Fault.NONE
@@ -397,6 +400,8 @@ class Player:
         made = self.loop.take_rows()
         if len(made):
             self.writer.append(made)
+            if self.tap is not None:
+                self.tap(made)
             self._row = made[-1]
 
     def _note(self, kind: str, fields: dict[str, Any]) -> None:

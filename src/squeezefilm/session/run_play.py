@@ -27,7 +27,7 @@ from squeezefilm.device.serial_ports import SerialDrive
 from squeezefilm.device.states import Fault
 from squeezefilm.device.streams import open_stream
 from squeezefilm.errors import DeviceError, LoopError
-from squeezefilm.quantities import Second
+from squeezefilm.quantities import FloatArray, Second
 from squeezefilm.results import to_json
 from squeezefilm.session.loop import PRIORITY, LoopProcess
 from squeezefilm.session.play import FADE, Ending, Player, PlayPlan, PlayView
@@ -64,6 +64,7 @@ def run_play(
     duration: Second,
     sensor: Callable[[Callable[[], Second]], Sensor] | None = None,
     show: Callable[[PlayView], None] | None = None,
+    tap: Callable[[FloatArray], None] | None = None,
     bench_only: bool = False,
 ) -> PlayOutcome:
     """Play for a time, or until Ctrl-C, and record it.
@@ -76,6 +77,7 @@ def run_play(
         duration: for which to play (s).
         sensor: makes the sensor from the loop's clock, where it is not the device's own.
         show: is told what there is to see, ten times a second.
+        tap: is given the rows as they are recorded; must be quick.
         bench_only: whether a drive that does not stop by itself may be used.
 
     Raises:
@@ -93,7 +95,7 @@ def run_play(
         drives = SerialDrive(host, plan.loop.period)
         require_safe_drive(drives, plan.limits, bench_only=bench_only)
         eyes = None if sensor is None else sensor(lambda: loop.time)
-        player = Player(plan, loop, host, writer, lambda: loop.time, eyes)
+        player = Player(plan, loop, host, writer, lambda: loop.time, eyes, tap)
         _compile(plan)
         loop.start()
         try:

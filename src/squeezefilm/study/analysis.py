@@ -179,7 +179,7 @@ def analyze_identification(
     seed: int = 0,
     progress: Callable[[str], None] | None = None,
 ) -> IdentificationAnalysis:
-    """Analyse identification trials, one row a trial.
+    """Analyse identification trials, one row a trial; leave out practice and catch trials before.
 
     Args:
         participant: who answered, shape (trials,); numbers or texts.
@@ -275,8 +275,8 @@ def _models(
         sensitivity = ordered_sensitivity(counts, level, resamples, seed)
         if sensitivity.corrected:
             notes.append(
-                "d′: some stimuli were never confused; one trial per stimulus was added, spread "
-                "over the answers, and d′ is too low"
+                "d′: some stimuli were never confused, or an answer never given; one trial per "
+                "stimulus was added, spread over the answers, and d′ is too low"
             )
     except InputError as error:
         notes.append(f"d′: {error}")

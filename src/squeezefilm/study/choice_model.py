@@ -4,8 +4,8 @@
 
 (Shepard 1957, 10.1007/BF02288967; Luce 1963). With as many answers as stimuli its expected counts
 are those of a quasi-symmetric table, a_i c_j s_ij, so that maximum likelihood is found by fitting
-margins and sums of mirrored cells in turn (Smith 1982, 10.1016/0022-2496(82)90009-2; Caussinus
-1965). Distances are Shepard's −ln η (1987, 10.1126/science.3629243).
+margins and sums of mirrored cells in turn (Smith 1982, Perception & Psychophysics 31:183;
+Caussinus 1965). Distances are Shepard's −ln η (1987, 10.1126/science.3629243).
 """
 
 from __future__ import annotations

@@ -108,7 +108,7 @@ class InformationTransfer:
     Attributes:
         estimates: one per estimator; the pooled matrix of all participants.
         recommended: key of the one to quote.
-        greatest: log2 of the number of stimuli presented, weighted by their shares: their entropy.
+        greatest: entropy of the stimuli presented; log2 of their number if equally frequent.
         trials, participants, resamples: what it was made of.
     """
 
@@ -133,8 +133,8 @@ def information_transfer(
 ) -> InformationTransfer:
     """Information transfer of the pooled matrix by every estimator, with participant intervals.
 
-    The pooled matrix loses what differs between people: its transfer is at most the mean of
-    theirs.
+    The pooled matrix loses what differs between people: with the same stimuli for all, its
+    transfer is at most the mean of theirs.
 
     Args:
         counts: every participant's matrix, shape (participants, answers, stimuli); or one matrix.

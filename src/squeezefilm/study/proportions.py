@@ -139,12 +139,12 @@ def _draw(random: np.random.Generator, left: IntArray, drawn: int) -> IntArray:
 def _normal_permutation(answers: IntArray, presented: IntArray, observed: int) -> float:
     trials = presented.sum(axis=1).astype(float)
     both = (answers * presented).astype(float)
-    mean = both.sum(axis=1) / trials
-    # A linear statistic of a random pairing of n trials (Hoeffding 1951, 10.1214/aoms/1177729542).
+    mean = both.sum(axis=1) / np.maximum(trials, 1.0)
+    # A linear statistic of a random pairing of n trials (Hoeffding 1951); a single trial has one.
     n = np.maximum(trials, 2.0)
     total, crossed = both.sum(axis=1), (both * (answers + presented)).sum(axis=1)
     variance = (total - crossed / n + (total / n) ** 2) / (n - 1)
-    spread = math.sqrt(float(variance.sum()))
+    spread = math.sqrt(float(variance[trials > 1].sum()))
     if spread == 0.0:
         return 1.0
     z = (observed - 0.5 - float(mean.sum())) / spread

@@ -16,7 +16,7 @@ from scipy import stats
 from scipy.special import ndtr
 
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import Dimensionless, DimensionlessArray, FloatArray
+from squeezefilm.quantities import Dimensionless, DimensionlessArray, FloatArray, require
 from squeezefilm.study.confusion import whole_counts
 from squeezefilm.study.participant_bootstrap import recentred_interval, resampled_counts
 
@@ -40,8 +40,9 @@ class OrderedSensitivity:
         level: of the interval.
         interval_method: which of both.
         corrected: whether one trial per stimulus, spread evenly over the answers, was added
-            because stimuli were never confused and d′ has no finite estimate otherwise (the
-            log-linear rule, Hautus 1995, 10.3758/BF03203619). d′ is then too low.
+            because stimuli were never confused, or an answer never given, and there is no finite
+            estimate otherwise (the log-linear rule, Hautus 1995, 10.3758/BF03203619). d′ is
+            then too low.
         deviance, degrees_of_freedom, p_value: G² against the saturated model; a small p says that
             one axis with equal variances does not describe the answers. The p is rough where
             cells hold fewer than some 5 trials. Both NaN where trials were added.
@@ -81,9 +82,10 @@ def ordered_sensitivity(
         resamples, seed: of the participant bootstrap.
 
     Raises:
-        InputError: fewer than two stimuli or answers, a stimulus without a trial, or an answer
-            never given (its criteria are not defined: leave it out).
+        InputError: fewer than two stimuli or answers, a stimulus without a trial, one and the
+            same answer to everything, or a level not between 0 and 1.
     """
+    require("level", level, above=0.0, below=1.0)
     whole = whole_counts(counts)
     whole = whole[None] if whole.ndim == 2 else whole
     pooled = whole.sum(axis=0)
@@ -92,6 +94,8 @@ def ordered_sensitivity(
         raise InputError(f"{answers} answers to {stimuli} stimuli have no d′; 2 are wanted of each")
     if np.any(pooled.sum(axis=0) == 0):
         raise InputError("d′ needs trials of every stimulus; leave out those never presented")
+    if np.count_nonzero(pooled.sum(axis=1)) < 2:
+        raise InputError("d′ needs two answers at least; one and the same was given to everything")
     n = pooled[None].astype(float)
     criteria, positions, finite = _fit(n)
     corrected = not bool(finite[0])
@@ -191,7 +195,8 @@ def _fit(n: FloatArray) -> tuple[FloatArray, FloatArray, NDArray[np.bool_]]:
         value = (rows * np.log(_probabilities(c, x))).sum(axis=(1, 2))
         return np.where(fine, value, -np.inf)
 
-    active = np.arange(batch)
+    # Around an answer never given the criteria fall together, and no step is defined.
+    active = np.flatnonzero(np.all(n.sum(axis=2) > 0, axis=1))
     now = likelihood(theta, n)
     finite = np.zeros(batch, dtype=bool)
     for _ in range(_MOST_STEPS):

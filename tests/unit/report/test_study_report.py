@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from html.parser import HTMLParser
 from pathlib import Path
 
 import numpy as np
@@ -31,6 +32,25 @@ def study(name: str = "gratings", per: int = 4, spacing: float = 1.5) -> Identif
         origin="simulated", resamples=50, response_time=random.gamma(3, 0.4, who.size) + 0.2,
         exploration={"mean_speed_m_per_s": random.normal(0.08, 0.01, who.size)},
     )  # fmt: skip
+
+
+def _left_open(page: str) -> list[str]:
+    """The tags of a page that are not closed in order."""
+    opened: list[str] = []
+
+    class Reader(HTMLParser):
+        def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+            if tag not in ("meta", "img"):
+                opened.append(tag)
+
+        def handle_endtag(self, tag: str) -> None:
+            if opened and opened[-1] == tag:
+                opened.pop()
+            else:
+                opened.append(f"/{tag}")
+
+    Reader().feed(page)
+    return opened
 
 
 @pytest.fixture(scope="module")
@@ -93,6 +113,7 @@ def test_the_page_is_whole_and_escaped(tmp_path: Path) -> None:
     assert "<script>" not in page
     assert "\x1b" not in page
     assert "<b>simulated</b> answers" in page
+    assert _left_open(page) == []
     folder = tmp_path / "deep" / "study"
     for name in [part.split('"')[0] for part in page.split('img src="')[1:]]:
         assert (folder / name).read_bytes().startswith(b"\x89PNG")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 
 import numpy as np
@@ -143,6 +144,22 @@ def test_normal_limit_agrees_with_shuffles() -> None:
     many = permutation_test(np.concatenate([counts, np.ones((1, 2, 2), dtype=int)]))
     assert many == pytest.approx(few, abs=0.03)
     assert 0.01 < few < 0.99
+
+
+def test_moments_of_the_normal_limit_are_exact() -> None:
+    """Many copies of one person: the mean and variance over all pairings of his answers."""
+    answers, presented = [0, 0, 1, 2, 1], [0, 1, 1, 2, 2]
+    right = [
+        sum(a == s for a, s in zip(order, presented, strict=True))
+        for order in itertools.permutations(answers)
+    ]
+    one = np.zeros((3, 3), dtype=int)
+    np.add.at(one, (answers, presented), 1)
+    single = np.array([[[1, 0, 0], [0, 0, 0], [0, 0, 0]]])
+    people = np.concatenate([np.tile(one, (300, 1, 1)), np.tile(single, (50, 1, 1))])
+    z = (300 * 3 - 0.5 - 300 * np.mean(right)) / math.sqrt(300 * np.var(right))
+    # A single trial has a single pairing: it adds to what is found and expected alike.
+    assert permutation_test(people) == pytest.approx(stats.norm.sf(z), rel=1e-9)
 
 
 def test_p_values_of_guessers_are_even() -> None:

@@ -1,0 +1,66 @@
+"""Connections that do not hang: a request not whole within ten seconds is cut off.
+
+uvicorn has a limit for idle connections after an answer, none for a request that never ends. A
+websocket leaves this protocol when it opens, so its silence is not limited here.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from typing import Any
+
+import h11
+from uvicorn.protocols.http.h11_impl import H11Protocol
+
+from squeezefilm.quantities import Second
+
+SLOWEST_REQUEST: Second = 10.0
+
+
+class TimedProtocol(H11Protocol):
+    """uvicorn's HTTP protocol with a deadline from the first byte (or none) to a whole request."""
+
+    _deadline: asyncio.TimerHandle | None = None
+
+    def connection_made(self, transport: Any) -> None:
+        """Start the clock."""
+        super().connection_made(transport)
+        self._start_clock()
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        """Stop the clock."""
+        self._stop_clock()
+        super().connection_lost(exc)
+
+    def data_received(self, data: bytes) -> None:
+        """Read; bytes of a next request on a kept connection start the clock again."""
+        if self._deadline is None and not self._answering():
+            self._start_clock()
+        super().data_received(data)
+
+    def handle_events(self) -> None:
+        """Act on what was read; what is being answered has no deadline here any more."""
+        super().handle_events()
+        if self._answering():
+            self._stop_clock()
+
+    def handle_websocket_upgrade(self, event: h11.Request) -> None:
+        """Hand the connection to the websocket's own protocol, which has its own limits."""
+        self._stop_clock()
+        super().handle_websocket_upgrade(event)
+
+    def _answering(self) -> bool:
+        return self.cycle is not None and not self.cycle.response_complete
+
+    def _start_clock(self) -> None:
+        self._deadline = self.loop.call_later(SLOWEST_REQUEST, self._cut_off)
+
+    def _stop_clock(self) -> None:
+        if self._deadline is not None:
+            self._deadline.cancel()
+            self._deadline = None
+
+    def _cut_off(self) -> None:
+        self._deadline = None
+        if self.transport is not None and not self.transport.is_closing():
+            self.transport.abort()

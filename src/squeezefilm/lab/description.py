@@ -1,0 +1,166 @@
+"""A display's TOML as a form: every value with its unit, source and what it may be; and one edit.
+
+Edits change the text with tomlkit, so that comments, order and sources stay as somebody wrote them.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import types
+import typing
+from collections.abc import Iterator
+from typing import Any, Literal, Union
+
+import tomlkit
+from tomlkit.exceptions import TOMLKitError
+
+from squeezefilm import config, presets
+from squeezefilm.display import Display
+from squeezefilm.errors import InputError
+from squeezefilm.quantities import Unit, format_quantity, unit_of
+
+LONGEST_VALUE = 2000
+"""Characters of one value in the form."""
+
+
+def preset_text(name: str) -> str:
+    """The TOML text of a preset display. Raises `ConfigError` for a name that is not known."""
+    return presets.path(name).read_text(encoding="utf-8")
+
+
+def display_of(text: str) -> Display:
+    """The display that a TOML text describes. Raises `ConfigError` as `config.load_text` does."""
+    return config.load_text(Display, text)
+
+
+def form(text: str) -> list[dict[str, Any]]:
+    """Every value of a display's text as the page shows it, in the text's order of tables.
+
+    Each is a dict: `path` (dotted, members counted from 0), `section`, `name`, `unit` (symbol; ""
+    for a number without, None for no quantity), `text` as it may be written, `value` (SI),
+    `choices` (or None), `source`, `evidence`, `optional` (whether it may be left out).
+    Raises `ConfigError` for a text that is no display.
+    """
+    display = display_of(text)
+    rows = []
+    for path, value, hint, field in _leaves(display, ()):
+        dotted = ".".join(str(part) for part in path)
+        origin = display.provenance.get(dotted)
+        unit = unit_of(hint)
+        rows.append(
+            {
+                "path": dotted,
+                "section": ".".join(str(part) for part in path[:-1]),
+                "name": str(path[-1]),
+                "unit": None if unit is None else ("" if unit.symbol == "1" else unit.symbol),
+                "text": _text(value, unit),
+                "value": value if isinstance(value, int | float) else None,
+                "whole": isinstance(value, int) and not isinstance(value, bool),
+                "choices": _choices(hint),
+                "source": "" if origin is None else origin.source,
+                "evidence": "" if origin is None else origin.evidence,
+                "optional": field.default is not dataclasses.MISSING,
+            }
+        )
+    return rows
+
+
+def edited(text: str, path: str, value: str) -> str:
+    """The display's text with the value at a dotted path written anew.
+
+    `value` is what a person typed: quantity text, a number, or a word. A source that stood beside
+    the old value no longer vouches for the new one: it is kept with "changed from …" before it, and
+    the evidence becomes assumed.
+
+    Raises:
+        InputError: a path that is not there, or a text that is no display with the new value, in
+            the words of `config.load_text`.
+    """
+    if len(value) > LONGEST_VALUE:
+        raise InputError(f"a value of {len(value)} characters; at most {LONGEST_VALUE} are taken")
+    row = next((one for one in form(text) if one["path"] == path), None)
+    if row is None:
+        raise InputError(f"the display has no value at '{path[:200]}'; open it again")
+    try:
+        document = tomlkit.parse(text)
+        owner: Any = document
+        *heads, last = path.split(".")
+        for part in heads:
+            if isinstance(owner, list):
+                owner = owner[int(part)]
+            else:
+                if part not in owner:
+                    owner[part] = tomlkit.table()
+                owner = owner[part]
+        written = _written(value.strip(), row)
+        old = owner.get(last) if hasattr(owner, "get") else None
+        if isinstance(old, dict) and "value" in old:
+            was, source = old["value"], str(old.get("source", ""))
+            if was != written:
+                old["value"] = written
+                if source and not source.startswith("changed from"):
+                    old["source"] = f"changed from {was} ({source})"
+                old["evidence"] = "assumed"
+                for spread in ("uncertainty", "range"):
+                    old.pop(spread, None)
+        else:
+            owner[last] = written
+        found = tomlkit.dumps(document)
+    except (TOMLKitError, KeyError, IndexError, ValueError, TypeError) as error:
+        raise InputError(
+            f"'{path}' cannot be changed here ({error}); edit the TOML text"
+        ) from error
+    display_of(found)
+    return found
+
+
+def _written(value: str, row: dict[str, Any]) -> Any:
+    if row["unit"] is None:
+        if value in ("true", "false"):
+            return value == "true"
+        return int(value) if row["whole"] else value
+    if row["whole"]:
+        return int(value)
+    if row["unit"] == "":
+        try:
+            return float(value)
+        except ValueError:
+            return value
+    return value
+
+
+def _text(value: Any, unit: Unit | None) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if unit is not None and isinstance(value, int | float):
+        return repr(value) if unit.symbol == "1" else format_quantity(float(value), unit, digits=6)
+    return str(value)
+
+
+def _choices(hint: Any) -> list[str] | None:
+    if typing.get_origin(hint) is Literal:
+        return [str(one) for one in typing.get_args(hint)]
+    if hint is bool:
+        return ["true", "false"]
+    return None
+
+
+def _leaves(
+    node: Any, path: tuple[str | int, ...]
+) -> Iterator[tuple[tuple[str | int, ...], Any, Any, dataclasses.Field[Any]]]:
+    hints = typing.get_type_hints(type(node), include_extras=True)
+    for field in dataclasses.fields(node):
+        if field.metadata.get("loader"):
+            continue
+        value, here = getattr(node, field.name), (*path, field.name)
+        if dataclasses.is_dataclass(value):
+            yield from _leaves(value, here)
+        elif isinstance(value, tuple):
+            for index, item in enumerate(value):
+                if dataclasses.is_dataclass(item):
+                    yield from _leaves(item, (*here, index))
+        elif value is not None:
+            hint = hints[field.name]
+            if typing.get_origin(hint) in (Union, types.UnionType) and unit_of(hint) is None:
+                hint = next(one for one in typing.get_args(hint) if one is not type(None))
+            yield here, value, hint, field

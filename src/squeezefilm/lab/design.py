@@ -1,0 +1,211 @@
+"""What the Design area shows of a display: numbers, curves and shapes, as JSON with units in keys.
+
+Two qualities: `screening` takes a plate as a Timoshenko beam and answers while a slider moves;
+`solved` solves it in three dimensions. Each answer says which made it.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import warnings
+from typing import Any
+
+import numpy as np
+
+from squeezefilm.analysis.uncertainty import friction_band
+from squeezefilm.errors import InputError, SqueezefilmError
+from squeezefilm.lab.description import display_of
+from squeezefilm.plate.layout import Actuator, AnnularStator, DiscPlate, RectangularPlate
+from squeezefilm.plate.solid_mode import response_frequencies
+from squeezefilm.prediction import Prediction, predict
+from squeezefilm.quantities import FloatArray, Unit, parse_quantity
+from squeezefilm.results import stamp
+
+QUALITIES = ("screening", "solved")
+_POINTS = 49
+_LEAST_SPAN = 2e-6
+_GRID = (84, 42)
+
+
+def design(
+    text: str, quality: str, voltage: str | None, surface: str | None, force: str | None
+) -> dict[str, Any]:
+    """The numbers, curves and shape of a display at a working point.
+
+    `voltage` and `force` are quantity texts, None for the display's own. Keys carry units.
+
+    Raises:
+        InputError: a text that is no display, or a working point it does not have.
+    """
+    display = display_of(text)
+    p = predicted(text, quality, voltage, surface, force)
+    mode = p.mode
+    span = max(2.0 * p.vibration_amplitude, _LEAST_SPAN)
+    amplitude = np.linspace(0.0, span, _POINTS)
+    frequency = response_frequencies(mode.resonance_frequency, mode.quality_factor, 121)
+    return {
+        "quality": quality,
+        "name": display.name,
+        "title": display.title,
+        "surface": p.surface.name,
+        "surfaces": [one.name for one in display.surfaces],
+        "voltage_V": p.voltage,
+        "normal_force_N": p.normal_force,
+        "mode": mode.label,
+        "resonance_frequency_Hz": mode.resonance_frequency,
+        "resonance_frequency_error_Hz": mode.frequency_error,
+        "quality_factor": mode.quality_factor,
+        "half_wavelength_m": mode.half_wavelength,
+        "amplitude_per_volt_m_per_V": mode.amplitude_per_volt,
+        "free_amplitude_m": p.touch.free_amplitude,
+        "vibration_amplitude_m": p.vibration_amplitude,
+        "squeeze_number": p.squeeze_number,
+        "relative_friction": p.relative_friction,
+        "friction_coefficient": p.friction_coefficient,
+        "friction_reduction": p.friction_reduction,
+        "tangential_force_N": p.tangential_force,
+        "envelope_time_constant_s": mode.quality_factor / (np.pi * mode.resonance_frequency),
+        "vibration_model": p.amplitude_model,
+        "friction_model": p.model,
+        "friction_curve": {
+            "amplitude_m": amplitude.tolist(),
+            "relative_friction": _listed(p.law.curve(amplitude)),
+            "paper2008": _listed(_paper(p, amplitude)),
+        },
+        "response": {
+            "frequency_Hz": frequency.tolist(),
+            "amplitude_per_volt_m_per_V": _listed(mode.response(frequency)),
+        },
+        "line": _line(p, display.actuator),
+        "shape": _shape(p),
+        "warnings": list(p.warnings),
+        "provenance": stamp(display),
+    }
+
+
+def band(
+    text: str,
+    quality: str,
+    voltage: str | None,
+    surface: str | None,
+    force: str | None,
+    samples: int = 64,
+) -> dict[str, Any]:
+    """The friction curve's band on the same amplitudes as `design` draws it."""
+    display = display_of(text)
+    p = predicted(text, quality, voltage, surface, force)
+    amplitude = np.linspace(0.0, max(2.0 * p.vibration_amplitude, _LEAST_SPAN), _POINTS)
+    found = friction_band(display, p, amplitude[::3], samples=samples)
+    return {
+        "amplitude_m": found.amplitude.tolist(),
+        "low": _listed(found.low),
+        "high": _listed(found.high),
+        "level": found.level,
+        "samples": found.samples,
+    }
+
+
+def predicted(
+    text: str,
+    quality: str,
+    voltage: str | None = None,
+    surface: str | None = None,
+    force: str | None = None,
+) -> Prediction:
+    """The prediction of a display's text at a working point, by the theory of a quality.
+
+    Raises `InputError` as `design` does.
+    """
+    if quality not in QUALITIES:
+        raise InputError(f"quality = {quality!r} is not known; allowed: {', '.join(QUALITIES)}")
+    display = display_of(text)
+    plate = isinstance(display.actuator, RectangularPlate)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        return predict(
+            display,
+            voltage=None if voltage is None else parse_quantity(voltage, Unit("V")),
+            normal_force=None if force is None else parse_quantity(force, Unit("N")),
+            surface=surface,
+            theory=("timoshenko" if quality == "screening" else "solid") if plate else None,
+        )
+
+
+def _paper(p: Prediction, amplitude: FloatArray) -> FloatArray:
+    try:
+        return dataclasses.replace(p.law, model="paper2008").curve(amplitude)
+    except SqueezefilmError:
+        return np.full(amplitude.size, np.nan)
+
+
+def _shape(p: Prediction) -> dict[str, Any] | None:
+    """The mode over the upper face, row by row, 1 at its highest point; None unless solved."""
+    solid = p.mode.solid
+    if solid is None:
+        return None
+    plate = solid.modes.plate
+    x, y = np.linspace(0, plate.length, _GRID[0]), np.linspace(0, plate.width, _GRID[1])
+    field = solid.modes.field(solid.index, x, y, plate.thickness)[:, :, 2]
+    largest = float(np.abs(field).max())
+    return {
+        "columns": _GRID[0],
+        "rows": _GRID[1],
+        "deflection": np.round(field.T.ravel() / largest, 4).tolist(),
+    }
+
+
+def _line(p: Prediction, actuator: Actuator) -> dict[str, Any] | None:
+    """The mode along the plate, a diameter, or the mean circumference: 1 at the working lobe."""
+    line = p.mode.line
+    if line is not None:
+        return {
+            "position_m": line.position[::4].tolist(),
+            "deflection": line.deflection[::4].tolist(),
+            "nodal_positions_m": line.nodal_positions.tolist(),
+        }
+    if not isinstance(actuator, AnnularStator):
+        return None
+    along = np.linspace(0.0, np.pi * actuator.mean_diameter, 241)
+    quarter = actuator.wavelength / 4
+    nodes = np.arange(quarter, along[-1], 2 * quarter)
+    return {
+        "position_m": along.tolist(),
+        "deflection": np.cos(2 * np.pi * along / actuator.wavelength).tolist(),
+        "nodal_positions_m": nodes.tolist(),
+    }
+
+
+def outline(text: str) -> dict[str, Any]:
+    """What plan and side view are drawn from (m): the body, its strips, where they are."""
+    actuator = display_of(text).actuator
+    if isinstance(actuator, RectangularPlate):
+        return {
+            "kind": "plate",
+            "length_m": actuator.length,
+            "width_m": actuator.width,
+            "thickness_m": actuator.thickness,
+            "patches": [
+                {
+                    "x_m": one.x,
+                    "y_m": one.y,
+                    "length_m": one.length,
+                    "width_m": one.width,
+                    "thickness_m": one.thickness,
+                    "polarity": one.polarity,
+                }
+                for one in actuator.patches
+            ],
+        }
+    if isinstance(actuator, DiscPlate):
+        return {"kind": "disc", "diameter_m": actuator.diameter}
+    if isinstance(actuator, AnnularStator):
+        return {
+            "kind": "ring",
+            "diameter_m": actuator.mean_diameter,
+            "radial_width_m": actuator.radial_width,
+        }
+    raise InputError(f"an actuator of type '{actuator.type}' cannot be drawn")
+
+
+def _listed(values: FloatArray) -> list[float | None]:
+    return [float(one) if np.isfinite(one) else None for one in np.asarray(values)]

@@ -1,0 +1,138 @@
+"""The messages of the Device area: what there is to drive, check, play, stop."""
+
+from __future__ import annotations
+
+import asyncio
+from datetime import UTC, datetime
+from typing import TYPE_CHECKING, Any, Literal
+
+from pydantic import Field
+
+from squeezefilm import presets
+from squeezefilm.errors import InputError
+from squeezefilm.lab import device_process
+from squeezefilm.lab.description import display_of
+from squeezefilm.lab.device_process import DeviceSession, DeviceWork
+from squeezefilm.lab.files import existing
+from squeezefilm.lab.wire import LONGEST_TEXT, Answer, Request
+from squeezefilm.quantities import Unit, parse_quantity
+from squeezefilm.results import write_whole
+from squeezefilm.texture_file import texture_from_text
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from squeezefilm.lab.server import Lab
+
+
+class OnDrive(Request):
+    """A drive with a display's text."""
+
+    display: str = Field(max_length=LONGEST_TEXT)
+    drive: str = Field(max_length=200)
+
+
+class PlayDevice(OnDrive):
+    """A texture to play. `armed` says that the person armed it on the page first."""
+
+    armed: bool
+    preset: str | None = Field(None, max_length=100)
+    texture: str | None = Field(None, max_length=LONGEST_TEXT)
+    mode: Literal["stream", "tile"] = "stream"
+    stroke: str = Field("60 mm/s over 4 cm", max_length=200)
+    sensor: str = Field("device", max_length=100)
+    duration: str = Field("10 s", max_length=50)
+    voltage: str | None = Field(None, max_length=50)
+    compensation: Literal["none", "inverse"] = "none"
+    seed: int = Field(0, ge=0, le=2**53)
+
+
+def add_device(lab: Lab) -> DeviceSession:
+    """Let the lab answer the Device area's messages."""
+    loop: list[asyncio.AbstractEventLoop] = []
+
+    def tell(message: dict[str, Any]) -> None:
+        if loop and not loop[0].is_closed():
+            asyncio.run_coroutine_threadsafe(lab.tell(message), loop[0])
+
+    session = DeviceSession(tell)
+    lab.closing.append(session.close)
+
+    async def listing(_: Request) -> Answer:
+        from serial.tools import list_ports
+
+        ports = [
+            {"drive": f"serial:{one.device}", "text": f"{one.device}: {one.description}"}
+            for one in list_ports.comports()
+        ]
+        return {"type": "drives", "ports": ports, "running": session.running}
+
+    async def play(asked: PlayDevice) -> Answer:
+        if not asked.armed:
+            raise InputError("the device is not armed; arm it on the page first")
+        loop[:] = [asyncio.get_running_loop()]
+        duration = parse_quantity(asked.duration, Unit("s"))
+        voltage = None if asked.voltage is None else parse_quantity(asked.voltage, Unit("V"))
+        name = datetime.now(UTC).strftime("%Y%m%dT%H%M%S")
+        work = DeviceWork(
+            display=str(_display(lab, asked.display)),
+            texture=str(_texture(lab, asked)),
+            drive=_drive(asked.drive),
+            mode=asked.mode,
+            stroke=asked.stroke,
+            sensor=asked.sensor,
+            duration=duration,
+            voltage=voltage,
+            compensation=asked.compensation,
+            out=str(lab.folder / "sessions" / name),
+            seed=asked.seed,
+        )
+        session.start(device_process.play, work)
+        return {"type": "playing", "folder": f"sessions/{name}"}
+
+    async def check(asked: OnDrive) -> Answer:
+        loop[:] = [asyncio.get_running_loop()]
+        display = _display(lab, asked.display)
+        session.start(device_process.check, _drive(asked.drive), str(display))
+        return {"type": "checking"}
+
+    async def stop(_: Request) -> Answer:
+        session.stop()
+        return {"type": "stopping"}
+
+    add = lab.experimenter.add
+    add("drives", Request, listing)
+    add("play device", PlayDevice, play)
+    add("check device", OnDrive, check)
+    add("stop device", Request, stop)
+    return session
+
+
+def _drive(text: str) -> str:
+    if text != "twin" and not text.startswith("serial:"):
+        raise InputError(f"drive = '{text[:80]}' is not known; it may be twin or serial:PORT")
+    return text
+
+
+def _display(lab: Lab, text: str) -> Path:
+    name = display_of(text).name
+    file = lab.folder / "sessions" / ".display.toml"
+    file.parent.mkdir(exist_ok=True)
+    write_whole(file, text)
+    assert name
+    return file
+
+
+def _texture(lab: Lab, asked: PlayDevice) -> Path:
+    if (asked.preset is None) == (asked.texture is None):
+        raise InputError("say which texture: a preset or a text, one of them")
+    if asked.preset is not None:
+        if asked.preset in presets.texture_names():
+            return presets.resolve_texture(asked.preset)
+        return existing(lab.folder / "textures", asked.preset, ".toml")
+    folder = lab.folder / "textures"
+    folder.mkdir(exist_ok=True)
+    file = folder / ".played.toml"
+    texture_from_text(str(asked.texture), file=file)
+    write_whole(file, str(asked.texture))
+    return file

@@ -1,0 +1,160 @@
+"""What the Feel area needs to render in the page: a program, the display's friction, its envelope.
+
+The page runs the same program as a device's loop, by the JavaScript port of the interpreter;
+`parity` gives it samples with the compiled interpreter's answers, so that it can show that both
+agree.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from squeezefilm.analysis.render_command import lowered, resonance_with_finger, wave_factors
+from squeezefilm.display import Display
+from squeezefilm.errors import InputError
+from squeezefilm.lab.description import display_of
+from squeezefilm.lab.design import predicted
+from squeezefilm.plate.layout import Actuator, DiscPlate, RectangularPlate
+from squeezefilm.prediction import Prediction
+from squeezefilm.quantities import FloatArray, Metre
+from squeezefilm.render.inverse import FrictionInverse
+from squeezefilm.render.program import Program
+from squeezefilm.render.renderer import render
+from squeezefilm.results import stamp
+from squeezefilm.texture_file import TextureFile, preset_texture, texture_from_text
+
+_KNOTS = 257
+_SKIN = ("mass", "stiffness", "damping")
+
+
+@dataclass(frozen=True, eq=False)
+class _Ready:
+    """A texture made ready for a display."""
+
+    display: Display
+    texture: TextureFile
+    prediction: Prediction
+    friction: Callable[[FloatArray], FloatArray]
+    program: Program
+
+
+def _ready(
+    display_text: str, texture_text: str | None, preset: str | None, quality: str, folder: Path
+) -> _Ready:
+    if (texture_text is None) == (preset is None):
+        raise InputError("say which texture: a preset or a text, one of them")
+    if preset is not None:
+        texture = preset_texture(preset)
+    else:
+        texture = texture_from_text(str(texture_text), file=folder / "texture.toml")
+    display = display_of(display_text)
+    p = predicted(display_text, quality)
+    if p.vibration_amplitude <= 0.0 or p.relative_friction >= 1.0:
+        raise InputError(
+            f"display '{display.name}' changes no friction at {p.voltage or 0.0:g} V, so it "
+            "renders no texture; give it a voltage in the Design area"
+        )
+    friction = p.law.table(p.vibration_amplitude)
+    inverse = FrictionInverse.from_function(friction, p.vibration_amplitude)
+    return _Ready(display, texture, p, friction, lowered(texture, p, inverse))
+
+
+def feel(
+    display_text: str, texture_text: str | None, preset: str | None, quality: str, folder: Path
+) -> dict[str, Any]:
+    """Program, friction curve, envelope, wave and skin of a texture on a display.
+
+    The texture is a preset's name or a TOML text, whose pictures lie in `folder`.
+
+    Raises:
+        InputError: a display or a texture that cannot be used, or a display that does not vibrate.
+    """
+    ready = _ready(display_text, texture_text, preset, quality, folder)
+    display, texture, p = ready.display, ready.texture, ready.prediction
+    largest = p.vibration_amplitude
+    amplitude = np.linspace(0.0, largest, _KNOTS)
+    quality_factor, resonance = resonance_with_finger(p)
+    actuator = display.actuator
+    width, height = _size(actuator)
+    wave = None
+    if not isinstance(actuator, DiscPlate):
+        factors = wave_factors(display, p)
+        along = np.linspace(0.0, 2 * p.mode.half_wavelength, 129)
+        across = isinstance(actuator, RectangularPlate) and actuator.lines_across == "width"
+        found = factors.factor(0.0, along) if across else factors.factor(along, 0.0)
+        wave = {
+            "period_m": 2 * p.mode.half_wavelength,
+            "factor": (found / found[0]).tolist(),
+            "along": "y" if across else "x",
+        }
+    pad = display.finger.fingerpad
+    return {
+        "title": texture.title or f"a texture of {texture.texture.quantity}",
+        "quantity": texture.texture.quantity,
+        "program": ready.program.array.tolist(),
+        "amplitude_m": amplitude.tolist(),
+        "relative_friction": np.asarray(ready.friction(amplitude)).tolist(),
+        "friction_coefficient": p.friction_coefficient,
+        "normal_force_N": p.normal_force,
+        "envelope_time_constant_s": float(quality_factor / (np.pi * resonance)),
+        "resonance_frequency_Hz": float(resonance),
+        "half_wavelength_m": p.mode.half_wavelength,
+        "largest_amplitude_m": largest,
+        "voltage_V": p.voltage,
+        "contact_length_m": display.finger.contact_length,
+        "width_m": width,
+        "height_m": height,
+        "wave": wave,
+        "skin": {name: getattr(pad, name) for name in _SKIN},
+        "vibration_model": p.amplitude_model,
+        "friction_model": p.model,
+        "display": display.name,
+        "provenance": stamp((display, texture)),
+    }
+
+
+def parity(
+    display_text: str,
+    texture_text: str | None,
+    preset: str | None,
+    quality: str,
+    folder: Path,
+    ticks: int = 2000,
+) -> dict[str, Any]:
+    """A random walk of samples with the amplitudes (m) that the compiled interpreter gives."""
+    ready = _ready(display_text, texture_text, preset, quality, folder)
+    width, height = _size(ready.display.actuator)
+    rng = np.random.default_rng(20261121)
+    t = np.cumsum(rng.uniform(1e-4, 4e-3, ticks))
+    v = 0.3 * rng.standard_normal(ticks)
+    x = width * rng.random(ticks)
+    y = height * rng.random(ticks)
+    # Some samples that a sensor should never send.
+    x[rng.integers(0, ticks, 5)] = np.nan
+    done = render(ready.program, x, y, v, t)
+    return {
+        "display": ready.display.name,
+        "x_m": _listed(x),
+        "y_m": y.tolist(),
+        "v_m_per_s": v.tolist(),
+        "t_s": t.tolist(),
+        "amplitude_m": done.amplitude.tolist(),
+    }
+
+
+def _size(actuator: Actuator) -> tuple[Metre, Metre]:
+    """What there is to touch: along the wave, and across it."""
+    if isinstance(actuator, RectangularPlate):
+        return actuator.length, actuator.width
+    if isinstance(actuator, DiscPlate):
+        return actuator.diameter, actuator.diameter
+    return float(np.pi * actuator.mean_diameter), actuator.radial_width
+
+
+def _listed(values: np.ndarray[Any, Any]) -> list[float | None]:
+    return [float(one) if np.isfinite(one) else None for one in values]

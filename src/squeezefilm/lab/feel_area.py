@@ -1,0 +1,153 @@
+"""The messages of the Feel area: textures, pictures, parity, strokes."""
+
+from __future__ import annotations
+
+import base64
+import binascii
+import csv
+import io
+from typing import TYPE_CHECKING, Literal
+
+from pydantic import Field
+
+from squeezefilm import presets
+from squeezefilm.errors import InputError
+from squeezefilm.formats.pictures import picture_from
+from squeezefilm.lab import feel
+from squeezefilm.lab.files import existing, fresh
+from squeezefilm.lab.wire import LONGEST_TEXT, Answer, Request
+from squeezefilm.quantities import Unit, parse_quantity
+from squeezefilm.results import write_whole
+from squeezefilm.texture_file import preset_texture, texture_from_text
+
+if TYPE_CHECKING:
+    from squeezefilm.lab.server import Lab
+
+COLUMNS = (
+    "time_s", "x_m", "y_m", "speed_m_per_s", "wanted_amplitude_m", "amplitude_m",
+    "relative_friction", "tangential_force_N",
+)  # fmt: skip
+"""Of a stroke's table."""
+MOST_ROWS = 200_000
+
+
+class OnDisplay(Request):
+    """A texture (a preset or a text) on a display's text."""
+
+    display: str = Field(max_length=LONGEST_TEXT)
+    preset: str | None = Field(None, max_length=100)
+    texture: str | None = Field(None, max_length=LONGEST_TEXT)
+    quality: Literal["screening", "solved"] = "screening"
+
+
+class TextureText(Request):
+    """The text of a preset texture or of one saved here."""
+
+    preset: str | None = Field(None, max_length=100)
+    file: str | None = Field(None, max_length=100)
+
+
+class AddPicture(Request):
+    """A greyscale PNG in base64, and the side of its pixels with the unit."""
+
+    name: str = Field(max_length=64)
+    data: str = Field(max_length=7_000_000)
+    pixel: str = Field(max_length=100)
+
+
+class SaveTexture(Request):
+    """A texture's text under a name."""
+
+    name: str = Field(max_length=64)
+    text: str = Field(max_length=LONGEST_TEXT)
+
+
+class SaveStroke(Request):
+    """Rows of a stroke, as `COLUMNS` names them, under a name."""
+
+    name: str = Field(max_length=64)
+    rows: list[tuple[float, float, float, float, float, float, float, float]] = Field(
+        max_length=MOST_ROWS
+    )
+
+
+def add_feel(lab: Lab) -> None:
+    """Let the lab answer the Feel area's messages."""
+    folder = lab.folder / "textures"
+
+    async def listing(_: Request) -> Answer:
+        kept = [
+            {"name": name, "title": preset_texture(name).title} for name in presets.texture_names()
+        ]
+        saved = sorted(path.stem for path in folder.glob("*.toml"))
+        return {"type": "textures", "presets": kept, "saved": saved}
+
+    async def text_of(asked: TextureText) -> Answer:
+        if (asked.preset is None) == (asked.file is None):
+            raise InputError("say which texture: a preset or a saved file, one of them")
+        if asked.preset is not None:
+            file = presets.resolve_texture(asked.preset)
+            if asked.preset not in presets.texture_names():
+                raise InputError(f"'{asked.preset}' is no preset texture")
+        else:
+            file = existing(folder, str(asked.file), ".toml")
+        return {"type": "texture text", "text": file.read_text(encoding="utf-8")}
+
+    async def load(asked: OnDisplay) -> Answer:
+        found = await lab.workers.quick.do(
+            "feel", feel.feel, asked.display, asked.texture, asked.preset, asked.quality, folder
+        )
+        return {"type": "feel", **found}
+
+    async def parity(asked: OnDisplay) -> Answer:
+        found = await lab.workers.quick.do(
+            "parity", feel.parity, asked.display, asked.texture, asked.preset, asked.quality, folder
+        )
+        return {"type": "parity", **found}
+
+    async def add_picture(asked: AddPicture) -> Answer:
+        file = fresh(folder, asked.name, ".png")
+        try:
+            data = base64.b64decode(asked.data, validate=True)
+        except binascii.Error as error:
+            raise InputError("the picture's data are no base64; drop it again") from error
+        rows, columns = picture_from(data, asked.name).shape
+        pixel = parse_quantity(asked.pixel, Unit("m"))
+        if not 1e-6 <= pixel <= 0.1:
+            raise InputError(f"a pixel of {asked.pixel}: it may have 1 um to 10 cm")
+        folder.mkdir(exist_ok=True)
+        file.write_bytes(data)
+        text = (
+            f'title = "{file.stem}, {columns} × {rows} pixels of {asked.pixel}"\n\n[texture]\n'
+            'type = "relative_friction"\nlow = 0.6\nhigh = 1.0\n\n[texture.pattern]\n'
+            f'type = "image_file"\nfile = "{file.name}"\npixel = "{asked.pixel}"\n'
+            'outside = "zero"\n'
+        )
+        texture_from_text(text, file=folder / "texture.toml")
+        return {"type": "texture text", "text": text}
+
+    async def save_texture(asked: SaveTexture) -> Answer:
+        texture_from_text(asked.text, file=folder / "texture.toml")
+        file = fresh(folder, asked.name, ".toml")
+        folder.mkdir(exist_ok=True)
+        write_whole(file, asked.text)
+        return {"type": "saved", "file": f"textures/{file.name}"}
+
+    async def save_stroke(asked: SaveStroke) -> Answer:
+        file = fresh(lab.folder / "strokes", asked.name, ".csv")
+        text = io.StringIO()
+        table = csv.writer(text)
+        table.writerow(COLUMNS)
+        table.writerows(asked.rows)
+        file.parent.mkdir(exist_ok=True)
+        write_whole(file, text.getvalue())
+        return {"type": "saved", "file": f"strokes/{file.name}"}
+
+    add = lab.experimenter.add
+    add("textures", Request, listing)
+    add("texture text", TextureText, text_of)
+    add("load texture", OnDisplay, load)
+    add("parity", OnDisplay, parity)
+    add("add picture", AddPicture, add_picture)
+    add("save texture", SaveTexture, save_texture)
+    add("save stroke", SaveStroke, save_stroke)

@@ -1,0 +1,44 @@
+"""Names of files that a page may write or read: below the lab's folder, nothing else."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from squeezefilm.errors import InputError
+
+_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,63}")
+
+
+def named(folder: Path, name: str, suffix: str) -> Path:
+    """The path of a file of that name and suffix in a folder.
+
+    Raises:
+        InputError: a name with anything but letters, digits, '.', '-' and '_', or a link.
+    """
+    stem = name.removesuffix(suffix)
+    if not _NAME.fullmatch(stem) or stem.endswith("."):
+        raise InputError(
+            f"'{name[:80]}' is no name for a file: letters, digits, '.', '-' and '_', not "
+            "beginning with a dot or a dash"
+        )
+    file = folder / f"{stem}{suffix}"
+    if file.is_symlink():
+        raise InputError(f"{file.name} is a link, which the lab neither reads nor writes")
+    return file
+
+
+def existing(folder: Path, name: str, suffix: str) -> Path:
+    """As `named`, of a file that is there. Raises `InputError` if it is not."""
+    file = named(folder, name, suffix)
+    if not file.is_file():
+        raise InputError(f"there is no file {file.name} in the lab's folder")
+    return file
+
+
+def fresh(folder: Path, name: str, suffix: str, *, replace: bool = False) -> Path:
+    """As `named`, of a file that is not there yet. Raises `InputError` if it is."""
+    file = named(folder, name, suffix)
+    if file.exists() and not replace:
+        raise InputError(f"{file.name} exists; choose another name, or allow replacing it")
+    return file

@@ -1,0 +1,246 @@
+"""What stands before every request: host, origin, session, size, and the headers that go back.
+
+A page that only this computer may use is still reachable by any website that this computer's
+browser shows. The Host check stops DNS rebinding, the Origin check foreign pages and cross-site
+requests, the cookie everybody else.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from http.cookies import CookieError, SimpleCookie
+from typing import Any
+from urllib.parse import parse_qs
+
+from starlette.datastructures import Headers
+from starlette.responses import PlainTextResponse, RedirectResponse, Response
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from squeezefilm.lab.keys import Keys, Session
+
+LARGEST_BODY = 8 * 1024 * 1024
+"""Bytes of a request; an image for a texture is the largest thing a page sends."""
+
+SLOWEST_BODY = 10.0
+"""Seconds for a request's body, each part of it."""
+
+POLICY = (
+    "default-src 'self'; img-src 'self' data: blob:; object-src 'none'; base-uri 'none'; "
+    "form-action 'self'; frame-ancestors 'none'"
+)
+
+HEADERS: Mapping[str, str] = {
+    "content-security-policy": POLICY,
+    "x-content-type-options": "nosniff",
+    "referrer-policy": "no-referrer",
+    "cross-origin-opener-policy": "same-origin",
+    "cross-origin-resource-policy": "same-origin",
+    "permissions-policy": "camera=(), geolocation=(), microphone=(), payment=(), usb=()",
+    "cache-control": "no-store",
+}
+
+# What a participant's browser may reach; everything else is the experimenter's.
+_PARTICIPANT = ("/participant", "/static/", "/pair", "/ws/participant", "/favicon.ico")
+_SAFE = {"GET", "HEAD"}
+
+
+@dataclass(frozen=True, slots=True)
+class Places:
+    """Where the lab is served: the hosts it answers to, and whether it is reached by TLS.
+
+    `hosts` are values of the Host header with their port, as a browser sends them.
+    """
+
+    hosts: frozenset[str]
+    secure: bool = False
+    cookie: str = "squeezefilm"
+
+    @property
+    def origins(self) -> frozenset[str]:
+        """Values of the Origin header that the lab's own pages send."""
+        scheme = "https" if self.secure else "http"
+        return frozenset(f"{scheme}://{host}" for host in self.hosts)
+
+
+@dataclass(slots=True)
+class Refusals:
+    """How many requests were refused, by reason."""
+
+    by_reason: dict[str, int] = field(default_factory=dict)
+
+    def count(self, reason: str) -> None:
+        """One more for this reason."""
+        self.by_reason[reason] = self.by_reason.get(reason, 0) + 1
+
+
+class _TooLargeError(Exception):
+    pass
+
+
+class _TooSlowError(Exception):
+    pass
+
+
+class Guard:
+    """The application before the application; it leaves the session in ``scope["lab_session"]``."""
+
+    def __init__(self, app: ASGIApp, keys: Keys, places: Places) -> None:
+        self.app = app
+        self.keys = keys
+        self.places = places
+        self.refusals = Refusals()
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Answer or refuse one request or websocket."""
+        if scope["type"] not in ("http", "websocket"):
+            await self.app(scope, receive, send)
+            return
+        headers = Headers(scope=scope)
+        refused = self._refused(scope, headers)
+        if refused is not None:
+            reason, status, text = refused
+            self.refusals.count(reason)
+            await self._answer(PlainTextResponse(text, status), scope, receive, send)
+            return
+        entered = self._entering(scope)
+        if entered is not None:
+            await self._answer(entered, scope, receive, send)
+            return
+        session = self.keys.session(_cookie(headers, self.places.cookie))
+        path = str(scope["path"])
+        if session is None and path != "/pair":
+            self.refusals.count("session")
+            text = (
+                "This page needs the link that squeezefilm lab printed when it started; each link "
+                "works once. Ask for another with the lab's button 'another station'."
+            )
+            await self._answer(PlainTextResponse(text, 401), scope, receive, send)
+            return
+        if session is not None and session.role == "participant" and not _open_to(path):
+            self.refusals.count("role")
+            text = "This station is paired for participants; that page is the experimenter's."
+            await self._answer(PlainTextResponse(text, 403), scope, receive, send)
+            return
+        scope["lab_session"] = session
+        try:
+            await self.app(scope, _bounded(receive), self._with_headers(send))
+        except _TooLargeError:
+            self.refusals.count("size")
+            text = f"A request of more than {LARGEST_BODY} bytes; send less."
+            await self._answer(PlainTextResponse(text, 413), scope, receive, send)
+        except _TooSlowError:
+            self.refusals.count("slow")
+            text = f"The request was not whole within {SLOWEST_BODY:g} s; send it again."
+            await self._answer(PlainTextResponse(text, 408), scope, receive, send)
+
+    def set_cookie(self, response: Response, session: Session) -> None:
+        """Give a browser its session."""
+        response.set_cookie(
+            self.places.cookie,
+            session.secret,
+            httponly=True,
+            samesite="strict",
+            secure=self.places.secure,
+            path="/",
+        )
+
+    def _refused(self, scope: Scope, headers: Headers) -> tuple[str, int, str] | None:
+        hosts = headers.getlist("host")
+        if len(hosts) != 1 or hosts[0].lower() not in self.places.hosts:
+            return "host", 421, "This server answers only to the address it printed."
+        origins = headers.getlist("origin")
+        known = all(origin.lower() in self.places.origins for origin in origins)
+        if not known or len(origins) > 1:
+            return "origin", 403, "A page from elsewhere asked for this; that is refused."
+        must_say = scope["type"] == "websocket" or scope["method"] not in _SAFE
+        if must_say and not origins:
+            return "origin", 403, "A request that changes something must come from the lab's page."
+        site = headers.get("sec-fetch-site", "none")
+        navigating = headers.get("sec-fetch-mode") == "navigate" and scope.get("method") == "GET"
+        if site not in ("same-origin", "none") and not navigating:
+            return "site", 403, "A page from elsewhere asked for this; that is refused."
+        length = headers.get("content-length", "0")
+        if not length.isdigit() or int(length) > LARGEST_BODY:
+            return "size", 413, f"A request of more than {LARGEST_BODY} bytes; send less."
+        return None
+
+    def _entering(self, scope: Scope) -> Response | None:
+        if scope["type"] != "http" or scope["path"] != "/" or scope["method"] != "GET":
+            return None
+        tokens = parse_qs(scope["query_string"].decode("latin-1")).get("token", [])
+        if not tokens:
+            return None
+        entered = self.keys.use_link(tokens[0])
+        if entered is None:
+            self.refusals.count("link")
+            return PlainTextResponse(
+                "This link was used already, or is older than ten minutes. Each link lets one "
+                "browser in, once.",
+                401,
+            )
+        session, home = entered
+        response = RedirectResponse(home, 303)
+        self.set_cookie(response, session)
+        return response
+
+    async def _answer(self, response: Response, scope: Scope, receive: Receive, send: Send) -> None:
+        if scope["type"] == "websocket":
+            # A close before the handshake is a refusal by status 403.
+            await receive()
+            await send({"type": "websocket.close", "code": 1008, "reason": "refused"})
+            return
+        await response(scope, receive, self._with_headers(send))
+
+    def _with_headers(self, send: Send) -> Send:
+        async def forward(message: Message) -> None:
+            if message["type"] == "http.response.start":
+                own = [(name.encode(), value.encode()) for name, value in HEADERS.items()]
+                given = {name.lower() for name, _ in message.get("headers", [])}
+                message = {
+                    **message,
+                    "headers": [
+                        *message.get("headers", []),
+                        *(pair for pair in own if pair[0] not in given),
+                    ],
+                }
+            await send(message)
+
+        return forward
+
+
+def _open_to(path: str) -> bool:
+    return any(path == one or path.startswith(one) for one in _PARTICIPANT)
+
+
+def _cookie(headers: Headers, name: str) -> str | None:
+    jar: SimpleCookie = SimpleCookie()
+    try:
+        jar.load(headers.get("cookie", ""))
+    except CookieError:
+        return None
+    found: Any = jar.get(name)
+    return None if found is None else str(found.value)
+
+
+def _bounded(receive: Receive) -> Receive:
+    seen, whole = 0, False
+
+    async def bounded() -> Message:
+        nonlocal seen, whole
+        if whole:
+            # Only a disconnection or a websocket's next message can come now: no deadline.
+            return await receive()
+        try:
+            message = await asyncio.wait_for(receive(), SLOWEST_BODY)
+        except TimeoutError:
+            raise _TooSlowError from None
+        whole = message["type"] != "http.request" or not message.get("more_body", False)
+        if message["type"] == "http.request":
+            seen += len(message.get("body", b""))
+            if seen > LARGEST_BODY:
+                raise _TooLargeError
+        return message
+
+    return bounded

@@ -1,0 +1,151 @@
+"""Who may use the lab: one-time links, sessions with a role, pairing codes.
+
+A link works once and is exchanged for a cookie that no script can read. Keys belong to one run of
+the lab; they outlive it only when it is killed, so that a page that was open can go on after a
+restart. Secrets are compared in constant time.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import secrets
+import time
+from collections.abc import Callable
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Literal
+
+from squeezefilm.errors import InputError
+from squeezefilm.quantities import Second
+
+Role = Literal["experimenter", "participant"]
+
+LINK_LIFE: Second = 600.0
+SESSION_LIFE: Second = 12 * 3600.0
+CODE_LIFE: Second = 120.0
+MOST_SESSIONS = 64
+MOST_WRONG_CODES = 5
+"""Wrong codes after which pairing is closed until the experimenter opens it again."""
+
+
+@dataclass(frozen=True, slots=True)
+class Session:
+    """A browser that was let in: its secret, its role, its station's name, until when (UTC s)."""
+
+    secret: str
+    role: Role
+    station: str
+    until: Second
+
+
+@dataclass(frozen=True, slots=True)
+class _Link:
+    role: Role
+    station: str
+    home: str
+    until: Second
+
+
+@dataclass(slots=True)
+class Keys:
+    """All links, sessions and codes of one lab. Not thread-safe: the server's loop owns it.
+
+    `file` keeps sessions over a crash, readable by its owner only; `clock` gives UTC in seconds.
+    """
+
+    file: Path | None = None
+    clock: Callable[[], float] = time.time
+    _links: dict[str, _Link] = field(default_factory=dict)
+    _sessions: dict[str, Session] = field(default_factory=dict)
+    _code: tuple[str, float] | None = None
+    _wrong: int = 0
+    _stations: int = 0
+
+    def __post_init__(self) -> None:
+        if self.file is None or not self.file.exists():
+            return
+        try:
+            kept = [Session(**one) for one in json.loads(self.file.read_text(encoding="utf-8"))]
+        except (OSError, ValueError, TypeError) as error:
+            raise InputError(
+                f"{self.file} is not readable as the lab's keys ({error}); delete it and open the "
+                "new link that the lab prints"
+            ) from error
+        self._sessions = {one.secret: one for one in kept if one.until > self.clock()}
+        self._stations = len(self._sessions)
+
+    def new_link(self, role: Role = "experimenter", home: str | None = None) -> str:
+        """A token that lets one browser in, once, within ten minutes; it begins at `home`."""
+        token = secrets.token_urlsafe(32)
+        self._stations += 1
+        station = f"station {self._stations}"
+        home = home or ("/participant" if role == "participant" else "/")
+        self._links[token] = _Link(role, station, home, self.clock() + LINK_LIFE)
+        return token
+
+    def use_link(self, token: str) -> tuple[Session, str] | None:
+        """The session that a link opens, and where it begins; None for one that is unknown, used
+        or too old."""
+        found = self._links.pop(token, None)
+        if found is None or found.until < self.clock():
+            return None
+        return self._open(found.role, found.station), found.home
+
+    def new_code(self) -> str:
+        """Six digits that pair one tablet as a participant station, once, within two minutes."""
+        self._code = (f"{secrets.randbelow(10**6):06d}", self.clock() + CODE_LIFE)
+        self._wrong = 0
+        return self._code[0]
+
+    def use_code(self, code: str) -> Session | None:
+        """The participant's session that a pairing code opens; None where it is wrong or over.
+
+        After five wrong ones the code is dropped: six digits cannot be guessed in five tries.
+        """
+        if self._code is None or self._code[1] < self.clock():
+            return None
+        if not secrets.compare_digest(self._code[0].encode(), code.encode()):
+            self._wrong += 1
+            if self._wrong >= MOST_WRONG_CODES:
+                self._code = None
+            return None
+        self._code = None
+        self._stations += 1
+        return self._open("participant", f"station {self._stations}")
+
+    def session(self, secret: str | None) -> Session | None:
+        """The session of a cookie's value; None where there is none or it is over."""
+        if not secret:
+            return None
+        for known, session in self._sessions.items():
+            if secrets.compare_digest(known.encode(), secret.encode()):
+                return session if session.until > self.clock() else None
+        return None
+
+    def forget(self) -> None:
+        """End every session and delete the file: a clean exit leaves no key."""
+        self._links.clear()
+        self._sessions.clear()
+        if self.file is not None:
+            self.file.unlink(missing_ok=True)
+
+    def _open(self, role: Role, station: str) -> Session:
+        now = self.clock()
+        self._sessions = {k: s for k, s in self._sessions.items() if s.until > now}
+        while len(self._sessions) >= MOST_SESSIONS:
+            self._sessions.pop(next(iter(self._sessions)))
+        session = Session(secrets.token_urlsafe(32), role, station, now + SESSION_LIFE)
+        self._sessions[session.secret] = session
+        self._keep()
+        return session
+
+    def _keep(self) -> None:
+        if self.file is None:
+            return
+        text = json.dumps([asdict(one) for one in self._sessions.values()])
+        beside = self.file.with_suffix(".new")
+        handle = os.open(beside, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600)
+        with os.fdopen(handle, "w", encoding="utf-8") as out:
+            out.write(text)
+        beside.replace(self.file)

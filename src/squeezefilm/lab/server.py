@@ -1,0 +1,212 @@
+"""The lab's server: pages, one websocket a page, and a clean end."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import logging
+import socket
+from collections.abc import AsyncIterator, Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import uvicorn
+from starlette.applications import Starlette
+from starlette.requests import Request
+from starlette.responses import FileResponse, PlainTextResponse, Response
+from starlette.routing import Route, WebSocketRoute
+from starlette.websockets import WebSocket, WebSocketDisconnect
+
+from squeezefilm import render
+from squeezefilm.errors import InputError
+from squeezefilm.lab.connections import TimedProtocol
+from squeezefilm.lab.guard import Guard, Places
+from squeezefilm.lab.keys import Keys
+from squeezefilm.lab.wire import LARGEST_MESSAGE, Dispatcher, as_text
+from squeezefilm.lab.worker import SupersededError, Workers
+
+STATIC = Path(__file__).parent / "static"
+RENDERER = Path(render.__file__).parent / "static" / "renderer.js"
+PORT = 8631
+_KINDS = {
+    ".html": "text/html; charset=utf-8",
+    ".css": "text/css; charset=utf-8",
+    ".js": "text/javascript; charset=utf-8",
+    ".svg": "image/svg+xml",
+    ".json": "application/json",
+    ".txt": "text/plain; charset=utf-8",
+}
+_LOG = logging.getLogger("squeezefilm.lab")
+_OURS = "The lab failed on this request; the terminal it runs in shows why. Nothing was changed."
+MOST_WAITING = 64
+"""Messages of one page being answered at once; more is a page that does not wait."""
+
+
+@dataclass(slots=True)
+class Lab:
+    """One running lab: where its files lie, its keys, its workers, who answers what."""
+
+    folder: Path
+    keys: Keys
+    places: Places
+    experimenter: Dispatcher = field(default_factory=Dispatcher)
+    participant: Dispatcher = field(default_factory=Dispatcher)
+    workers: Workers = field(default_factory=Workers)
+    pages: set[WebSocket] = field(default_factory=set)
+    closing: list[Callable[[], None]] = field(default_factory=list)
+
+    async def tell(self, message: dict[str, Any], *, participants: bool = False) -> None:
+        """Send a message that nobody asked for to every open page of a kind."""
+        text = as_text(message)
+        for page in list(self.pages):
+            if (page.url.path == "/ws/participant") == participants:
+                with contextlib.suppress(RuntimeError, WebSocketDisconnect):
+                    await page.send_text(text)
+
+    def close(self) -> None:
+        """Stop what runs: devices, workers."""
+        for one in self.closing:
+            one()
+        self.workers.close()
+
+
+def application(lab: Lab) -> Guard:
+    """The ASGI application of a lab, behind its guard."""
+
+    async def page(request: Request) -> Response:
+        name = "participant.html" if request.url.path == "/participant" else "index.html"
+        return _file(STATIC / name)
+
+    async def static(request: Request) -> Response:
+        return static_file(STATIC, request.path_params["path"])
+
+    async def port_of_the_renderer(_: Request) -> Response:
+        return _file(RENDERER)
+
+    async def another(request: Request) -> Response:
+        token = lab.keys.new_link("experimenter")
+        return PlainTextResponse(f"/?token={token}")
+
+    @contextlib.asynccontextmanager
+    async def life(_: Starlette) -> AsyncIterator[None]:
+        yield
+        lab.close()
+
+    app = Starlette(
+        routes=[
+            Route("/", page),
+            Route("/participant", page),
+            Route("/static/renderer.js", port_of_the_renderer),
+            Route("/static/{path:path}", static),
+            Route("/another-station", another, methods=["POST"]),
+            WebSocketRoute("/ws", lambda socket: converse(lab, lab.experimenter, socket)),
+            WebSocketRoute(
+                "/ws/participant", lambda socket: converse(lab, lab.participant, socket)
+            ),
+        ],
+        lifespan=life,
+    )
+    app.state.lab = lab
+    return Guard(app, lab.keys, lab.places)
+
+
+def static_file(folder: Path, name: str) -> Response:
+    """A file below a folder; 404 for anything else, links and climbing paths included."""
+    wanted = folder / name
+    try:
+        real = wanted.resolve(strict=True)
+    except (OSError, ValueError, RuntimeError):
+        return PlainTextResponse("There is no such file.", 404)
+    # A name with a slash at its end, or one that a link leads elsewhere, is not that file.
+    if (
+        str(real) != f"{folder.resolve()}/{name}"
+        or not real.is_relative_to(folder.resolve())
+        or not real.is_file()
+    ):
+        return PlainTextResponse("There is no such file.", 404)
+    return _file(real)
+
+
+def _file(path: Path) -> Response:
+    kind = _KINDS.get(path.suffix)
+    if kind is None:
+        return PlainTextResponse("There is no such file.", 404)
+    return FileResponse(path, media_type=kind)
+
+
+async def converse(lab: Lab, dispatcher: Dispatcher, page: WebSocket) -> None:
+    """Answer one page's messages, each as it is ready, until the page goes."""
+    await page.accept()
+    lab.pages.add(page)
+    waiting: set[asyncio.Task[None]] = set()
+
+    async def one(text: str) -> None:
+        try:
+            answer = await dispatcher.answer(text)
+        except SupersededError:
+            return
+        except Exception:
+            # A mistake of ours: said on the page and in the terminal; the conversation goes on.
+            _LOG.exception("the lab could not answer a message")
+            answer = {"id": None, "type": "error", "message": _OURS}
+        with contextlib.suppress(RuntimeError, WebSocketDisconnect):
+            await page.send_text(as_text(answer))
+
+    try:
+        while True:
+            text = await page.receive_text()
+            if len(waiting) >= MOST_WAITING:
+                await asyncio.wait(waiting, return_when=asyncio.FIRST_COMPLETED)
+            task = asyncio.create_task(one(text))
+            waiting.add(task)
+            task.add_done_callback(waiting.discard)
+    except (WebSocketDisconnect, KeyError):
+        # KeyError: a binary message, which no page of ours sends.
+        pass
+    finally:
+        lab.pages.discard(page)
+        for task in waiting:
+            task.cancel()
+
+
+def listening_socket(port: int, host: str = "127.0.0.1") -> socket.socket:
+    """A socket bound to this computer only; the next free port where `port` is taken.
+
+    Raises:
+        InputError: no port within twenty of the wanted one is free.
+    """
+    for candidate in range(port, port + 20):
+        one = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
+        one.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            one.bind((host, candidate))
+        except OSError:
+            one.close()
+            continue
+        return one
+    raise InputError(
+        f"ports {port} to {port + 19} are all in use; say another with --port, or stop what uses "
+        "them"
+    )
+
+
+def server_of(lab: Lab, **extra: Any) -> uvicorn.Server:
+    """A uvicorn server for a lab, with its limits; `extra` goes to uvicorn's configuration."""
+    config = uvicorn.Config(
+        application(lab),
+        http=TimedProtocol,
+        ws="websockets-sansio",
+        ws_max_size=LARGEST_MESSAGE,
+        ws_ping_interval=20.0,
+        ws_ping_timeout=20.0,
+        timeout_keep_alive=10,
+        timeout_graceful_shutdown=3,
+        limit_concurrency=200,
+        h11_max_incomplete_event_size=32 * 1024,
+        log_level="error",
+        access_log=False,
+        server_header=False,
+        **extra,
+    )
+    return uvicorn.Server(config)

@@ -1,0 +1,295 @@
+// Design: the display as a form, and what follows from it while a slider moves.
+
+import { Chart } from "../chart.js";
+import { displayForm } from "../display_form.js";
+import { displayStore } from "../display_store.js";
+import { element, number, plain, quantity } from "../numbers.js";
+import { PlanView } from "../plan_view.js";
+
+const SETTLE = 500;
+
+export async function show(place, lab) {
+  const store = displayStore(lab);
+  const view = new DesignView(place, lab, store);
+  await view.start();
+  return () => view.close();
+}
+
+class DesignView {
+  constructor(place, lab, store) {
+    Object.assign(this, { place, lab, store, asked: 0, busy: false, next: null, off: [], settled: 0 });
+  }
+
+  async start() {
+    this.build();
+    this.off.push(this.store.on(() => this.refresh()));
+    this.off.push(this.lab.socket.on("connection", ({ open }) => open && this.begin()));
+    if (this.lab.socket.open) await this.begin();
+  }
+
+  async begin() {
+    try {
+      await this.listDisplays();
+      await this.store.start();
+      this.refresh();
+    } catch (error) {
+      this.lab.notify(error.message);
+    }
+  }
+
+  build() {
+    this.choice = element("select", { id: "display-choice", onchange: () => this.choose() });
+    this.undo = element("button", { text: "Undo", title: "Ctrl+Z", onclick: () => this.tried(this.store.undo()) });
+    this.redo = element("button", { text: "Redo", title: "Ctrl+Y", onclick: () => this.tried(this.store.redo()) });
+    this.file = element("input", { type: "file", accept: ".toml", hidden: true, onchange: () => this.readFile() });
+    this.error = element("p", { class: "error", role: "alert", hidden: true });
+    this.form = element("div", { class: "form" });
+    this.quality = element("p", { class: "quality", role: "status", text: "computing…" });
+    this.numbers = {
+      frequency: number("resonance frequency", "resonance_frequency"),
+      amplitude: number("vibration amplitude", "vibration_amplitude"),
+      friction: number("relative friction", "relative_friction"),
+      reduction: number("friction reduction", "friction_reduction"),
+      squeeze: number("squeeze number", "squeeze_number"),
+      wave: number("half wavelength", "half_wavelength"),
+      time: number("envelope time constant", "envelope_time_constant"),
+      force: number("tangential force", "tangential_force"),
+    };
+    this.canvas = element("canvas", { class: "plan", role: "img", "aria-label": "the display from above and from the side, with its mode" });
+    const chart = (title, tip) => {
+      const inside = element("div");
+      return { inside, box: element("section", { class: "card" }, element("h2", { text: title, "data-tip": tip, tabindex: "0" }), inside) };
+    };
+    const friction = chart("Friction against vibration amplitude", "relative_friction");
+    const response = chart("Amplitude per volt against frequency", "amplitude_per_volt");
+    this.warnings = element("section", { class: "card warnings" });
+    const tools = element("div", { class: "row" },
+      element("label", {}, "Display", this.choice), this.undo, this.redo);
+    const files = element("div", { class: "row" },
+      element("button", { text: "Open file…", onclick: () => this.file.click() }),
+      element("button", { text: "Save…", onclick: () => this.save() }),
+      element("button", { text: "Download", onclick: () => this.download() }), this.file);
+    this.place.append(element("div", { class: "columns design" },
+      element("section", { class: "card side" }, tools, files, this.error, this.form),
+      element("div", { class: "results" },
+        element("section", { class: "card" }, this.quality,
+          element("div", { class: "numbers" }, ...Object.values(this.numbers).map((one) => one.box))),
+        element("section", { class: "card" }, this.canvas),
+        element("div", { class: "pair" }, friction.box, response.box), this.warnings)));
+    this.plan = new PlanView(this.canvas);
+    this.frictionChart = new Chart(friction.inside, {
+      x: "vibration amplitude (µm)", y: "µ′/µ", range: [0, 1.02],
+      series: [
+        { label: "90 % lie below", colour: "grid", width: 1 },
+        { label: "90 % lie above", colour: "grid", width: 1 },
+        { label: "this display", colour: "blue", width: 2.5 },
+        { label: "paper's model", colour: "orange", dash: [6, 3] },
+      ],
+      bands: [[0, 1]],
+      marks: (plot, colour) => this.drawPoint(plot, colour),
+    });
+    this.responseChart = new Chart(response.inside, {
+      x: "frequency (kHz)", y: "nm per volt",
+      series: [{ label: "largest interior lobe", colour: "blue", width: 2.5 }],
+    });
+    this.keys = (event) => this.pressed(event);
+    document.addEventListener("keydown", this.keys);
+  }
+
+  close() {
+    for (const off of this.off) off();
+    document.removeEventListener("keydown", this.keys);
+    clearTimeout(this.settled);
+    this.plan.close();
+    this.frictionChart.close();
+    this.responseChart.close();
+  }
+
+  async listDisplays() {
+    const { presets, saved } = await this.lab.socket.ask("displays");
+    const group = (label, names, kind) => element("optgroup", { label },
+      ...names.map((name) => element("option", { value: `${kind}:${name}`, text: name })));
+    this.choice.replaceChildren(element("option", { value: "", text: "choose…" }), group("presets", presets, "preset"),
+      ...(saved.length ? [group("saved here", saved, "file")] : []));
+  }
+
+  async choose() {
+    const [kind, name] = this.choice.value.split(/:(.*)/);
+    if (kind) await this.tried(this.store.open({ [kind]: name }));
+  }
+
+  refresh() {
+    const { current } = this.store;
+    if (!current) return;
+    this.error.hidden = true;
+    this.undo.disabled = !this.store.past.length;
+    this.redo.disabled = !this.store.future.length;
+    for (const option of this.choice.options) {
+      if (option.value.endsWith(`:${current.name}`)) this.choice.value = option.value;
+    }
+    displayForm(this.form, current.form, {
+      write: (path, value) => this.tried(this.store.edit(path, value)),
+      slide: (path, value) => this.compute({ path, value }),
+    });
+    this.compute({});
+  }
+
+  async tried(work) {
+    try {
+      this.error.hidden = true;
+      await work;
+      return true;
+    } catch (error) {
+      this.error.textContent = error.message;
+      this.error.hidden = false;
+      return false;
+    }
+  }
+
+  /** The screening answer at once; the solved one when nothing has moved for half a second. */
+  compute(change) {
+    this.asked += 1;
+    clearTimeout(this.settled);
+    this.next = change;
+    this.pump();
+    const mine = this.asked;
+    this.settled = setTimeout(() => this.solve(mine, change), SETTLE);
+  }
+
+  async pump() {
+    if (this.busy || !this.next) return;
+    const change = this.next;
+    this.next = null;
+    this.busy = true;
+    try {
+      const answer = await this.lab.socket.ask("compute design", { text: this.store.current.text, quality: "screening", ...change });
+      this.present(answer);
+      this.error.hidden = true;
+    } catch (error) {
+      this.error.textContent = error.message;
+      this.error.hidden = false;
+    }
+    this.busy = false;
+    this.pump();
+  }
+
+  async solve(mine, change) {
+    const { text } = this.store.current;
+    const current = () => mine === this.asked && this.plan.outline !== undefined;
+    const plate = this.store.current.outline.kind === "plate";
+    try {
+      let of = "screening";
+      if (plate) {
+        this.quality.textContent = "solving the plate in three dimensions…";
+        const answer = await this.lab.socket.ask("compute design", { text, quality: "solved", ...change });
+        if (!current()) return;
+        of = "solved";
+        this.present(answer);
+      }
+      const band = await this.lab.socket.ask("compute design", { text, quality: "band", of, ...change });
+      if (current()) this.presentBand(band);
+    } catch (error) {
+      if (current()) this.quality.textContent = `not solved: ${error.message}`;
+    }
+  }
+
+  present(found) {
+    this.found = found;
+    const n = this.numbers;
+    const say = (one, text, note = "") => {
+      one.value.textContent = text;
+      one.note.textContent = note;
+    };
+    const error = found.resonance_frequency_error_Hz;
+    say(n.frequency, quantity(found.resonance_frequency_Hz, "Hz", 5), error ? `± ${quantity(error, "Hz", 2)} of the solver` : `mode ${found.mode}`);
+    say(n.amplitude, quantity(found.vibration_amplitude_m, "m"), `${quantity(found.free_amplitude_m, "m")} without finger`);
+    say(n.friction, plain(found.relative_friction), "µ′/µ, 1 = no effect");
+    say(n.reduction, plain(found.friction_reduction), `of µ = ${plain(found.friction_coefficient)} on ${found.surface}`);
+    say(n.squeeze, plain(found.squeeze_number), found.squeeze_number > 10 ? "" : "below the paper's 10");
+    say(n.wave, quantity(found.half_wavelength_m, "m"));
+    say(n.time, quantity(found.envelope_time_constant_s, "s"), `Q = ${plain(found.quality_factor)}`);
+    say(n.force, quantity(found.tangential_force_N, "N"), `at ${quantity(found.normal_force_N, "N")}`);
+    const model = found.vibration_model.replaceAll("_", " ");
+    this.quality.textContent = `${found.quality === "solved" ? "solved" : "screening"}: vibration by ${model}, friction by ${found.friction_model}; ${quantity(found.voltage_V, "V")} at resonance`;
+    this.quality.dataset.quality = found.quality;
+    this.plan.set(this.store.current.outline, found.line, found.shape);
+    const micro = (values) => values.map((value) => (value === null ? null : value * 1e6));
+    const curve = found.friction_curve;
+    const empty = curve.amplitude_m.map(() => null);
+    this.curve = curve;
+    this.frictionChart.set([micro(curve.amplitude_m), empty, empty, curve.relative_friction, curve.paper2008]);
+    const { frequency_Hz: f, amplitude_per_volt_m_per_V: a } = found.response;
+    this.responseChart.set([f.map((one) => one / 1e3), a.map((one) => one * 1e9)]);
+    this.warnings.replaceChildren(element("h2", { text: "What to know" }),
+      ...(found.warnings.length ? found.warnings.map((text) => element("p", { class: "warning", text })) : [element("p", { class: "muted", text: "No warnings." })]));
+  }
+
+  presentBand(band) {
+    const micro = band.amplitude_m.map((value) => value * 1e6);
+    const between = (values) => this.curve.amplitude_m.map((at) => interpolate(micro, values, at * 1e6));
+    this.frictionChart.set([this.curve.amplitude_m.map((one) => one * 1e6), between(band.high), between(band.low),
+      this.curve.relative_friction, this.curve.paper2008]);
+  }
+
+  drawPoint(plot, colour) {
+    if (!this.found) return;
+    const x = plot.valToPos(this.found.vibration_amplitude_m * 1e6, "x", true);
+    const y = plot.valToPos(this.found.relative_friction, "y", true);
+    const g = plot.ctx;
+    g.save();
+    g.fillStyle = colour("blue");
+    g.beginPath();
+    g.arc(x, y, 5 * devicePixelRatio, 0, 2 * Math.PI);
+    g.fill();
+    g.restore();
+  }
+
+  async readFile() {
+    const [file] = this.file.files;
+    this.file.value = "";
+    if (!file) return;
+    if (file.size > 400000) {
+      this.tried(Promise.reject(new Error(`${file.name} has ${file.size} bytes; a display's file has a few thousand`)));
+      return;
+    }
+    await this.tried(this.store.open({ text: await file.text() }));
+  }
+
+  async save() {
+    const name = prompt("Save in the lab's folder under the name", this.store.current.name);
+    if (!name) return;
+    const fields = { text: this.store.current.text, name };
+    try {
+      const { file } = await this.lab.socket.ask("save display", fields);
+      this.lab.notify(`Saved as ${file}.`);
+    } catch (error) {
+      if (/exists/.test(error.message) && confirm(`${error.message}. Replace it?`)) {
+        const { file } = await this.lab.socket.ask("save display", { ...fields, replace: true });
+        this.lab.notify(`Saved as ${file}.`);
+      } else this.tried(Promise.reject(error));
+    }
+    await this.listDisplays();
+  }
+
+  download() {
+    const { text, name } = this.store.current;
+    const link = element("a", { href: URL.createObjectURL(new Blob([text], { type: "text/plain" })), download: `${name}.toml` });
+    link.click();
+    URL.revokeObjectURL(link.href);
+  }
+
+  pressed(event) {
+    if (!(event.ctrlKey || event.metaKey) || event.target.matches("input[type=text]")) return;
+    if (event.key === "z" && !event.shiftKey) this.tried(this.store.undo());
+    else if (event.key === "y" || (event.key === "z" && event.shiftKey)) this.tried(this.store.redo());
+    else return;
+    event.preventDefault();
+  }
+}
+
+function interpolate(x, y, at) {
+  const k = x.findIndex((one) => one >= at);
+  if (k <= 0) return k === 0 ? y[0] : null;
+  if (y[k] === null || y[k - 1] === null) return null;
+  return y[k - 1] + ((at - x[k - 1]) / (x[k] - x[k - 1])) * (y[k] - y[k - 1]);
+}

@@ -1,0 +1,23 @@
+// Help: what the areas are for, the keys, and every quantity.
+
+import { GLOSSARY } from "../glossary.js";
+import { element } from "../numbers.js";
+
+const AREAS = [
+  ["Design", "Change a display and see its mode and friction follow. While a slider moves, a plate is screened as a beam; half a second later it is solved in three dimensions. The line above the numbers says which."],
+  ["Feel", "Drag over the surface at true scale and see friction, amplitude, force and lag as the texture is rendered in the page."],
+  ["Device", "Connect a twin or a real device, arm it, play a texture, watch it, stop it: the space bar stops at any time."],
+  ["Study", "Plan and run a study; a participant has a page of their own."],
+  ["Results", "What a study found, with intervals; export it; delete a participant."],
+];
+
+export function show(place) {
+  place.append(element("div", { class: "help" },
+    element("section", { class: "card" }, element("h2", { text: "The areas" }),
+      ...AREAS.map(([name, text]) => element("p", {}, element("strong", { text: `${name}. ` }), text))),
+    element("section", { class: "card" }, element("h2", { text: "Quantities" }),
+      element("dl", {}, ...Object.values(GLOSSARY).flatMap((one) => [
+        element("dt", { text: one.symbol ? `${one.name}, ${one.symbol}` : one.name }),
+        element("dd", {}, one.text, one.source ? element("small", { text: ` Source: ${one.source}.` }) : null),
+      ])))));
+}

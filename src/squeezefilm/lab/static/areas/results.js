@@ -1,0 +1,114 @@
+// Results: a study's analysis and figures, its exports, and taking a participant out of it.
+
+import { element } from "../numbers.js";
+import { confusionCard } from "./study.js";
+
+export async function show(place, lab) {
+  const view = new ResultsView(place, lab);
+  await view.start();
+  return () => view.close();
+}
+
+class ResultsView {
+  constructor(place, lab) {
+    Object.assign(this, { place, lab, off: [], name: sessionStorage.getItem("squeezefilm study") });
+  }
+
+  async start() {
+    this.error = element("p", { class: "error", role: "alert", hidden: true });
+    this.side = element("section", { class: "card side" });
+    this.main = element("div", { class: "results" });
+    this.place.append(element("div", { class: "columns study" }, this.side, this.main));
+    this.off.push(this.lab.socket.on("connection", ({ open }) => open && this.begin()));
+    if (this.lab.socket.open) await this.begin();
+  }
+
+  begin() {
+    return this.tried(async () => {
+      const { studies } = await this.lab.socket.ask("studies");
+      this.choice = element("select", { id: "results-study", onchange: () => this.tried(() => this.open(this.choice.value)) },
+        ...studies.map((name) => element("option", { value: name, text: name })));
+      this.people = element("div");
+      const ask = (format) => () => this.tried(async () => {
+        const { folder } = await this.lab.socket.ask("export study", { study: this.name, format });
+        this.lab.notify(`Exported to ${folder} in the lab's folder.`);
+      });
+      this.side.replaceChildren(element("h2", { text: "Results" }),
+        element("label", { class: "stack" }, "study", this.choice), this.error,
+        element("h3", { text: "Export" }),
+        element("div", { class: "row" }, ...[["csv", "CSV"], ["psych-ds", "Psych-DS"], ["bids", "BIDS"]].map(([format, text]) => element("button", { text, onclick: ask(format) }))),
+        element("button", { text: "Write the report", onclick: () => this.tried(async () => {
+          const { pages } = await this.lab.socket.ask("report study", { study: this.name });
+          this.lab.notify(`Written: ${pages.join(", ")}`);
+        }) }),
+        element("h3", { text: "Participants" }), this.people);
+      if (!studies.length) {
+        this.main.replaceChildren(element("section", { class: "card" }, element("p", { text: "There is no study yet. Create one in the Study area." })));
+        return;
+      }
+      if (!studies.includes(this.name)) [this.name] = studies;
+      this.choice.value = this.name;
+      await this.open(this.name);
+    });
+  }
+
+  async tried(work) {
+    try {
+      this.error.hidden = true;
+      await work();
+    } catch (error) {
+      this.error.textContent = error.message;
+      this.error.hidden = false;
+    }
+  }
+
+  async open(name) {
+    this.name = name;
+    sessionStorage.setItem("squeezefilm study", name);
+    this.showPeople(await this.lab.socket.ask("study", { study: name }));
+    this.main.replaceChildren(element("section", { class: "card" }, element("p", { class: "muted", role: "status", text: "analysing…" })));
+    try {
+      const { displays } = await this.lab.socket.ask("analyze study", { study: name });
+      this.main.replaceChildren(...displays.flatMap((one) => this.display(one)));
+    } catch (error) {
+      this.main.replaceChildren(element("section", { class: "card" }, element("p", { text: error.message })));
+    }
+  }
+
+  display(one) {
+    const table = confusionCard(one.confusion);
+    table.querySelector("h2").textContent = `Confusions, ${one.display}`;
+    return [table,
+      element("section", { class: "card" }, element("h2", { text: `Numbers, ${one.display}` }),
+        element("div", { class: "scroll" }, element("table", {}, ...one.numbers.map(([name, value, note]) => element("tr", {},
+          element("th", { text: name }), element("td", { text: value }), element("td", { class: "muted", text: note }))))),
+        ...one.notes.map((text) => element("p", { class: "warning", text }))),
+      element("section", { class: "card figures" }, element("h2", { text: `Figures, ${one.display}` }),
+        ...one.figures.map(({ title, png }) => element("figure", {}, element("img", { src: `data:image/png;base64,${png}`, alt: title }), element("figcaption", { text: title }))))];
+  }
+
+  showPeople(study) {
+    this.study = study;
+    this.people.replaceChildren(...study.participants.map((one) => {
+      const box = element("div", { class: "person" }, element("code", { text: one.pseudonym }), element("small", { text: ` ${one.answered} of ${one.planned}` }));
+      const start = element("button", { text: "Delete…", onclick: () => {
+        const typed = element("input", { type: "text", size: "18", "aria-label": `type ${one.pseudonym} to delete` });
+        const go = element("button", { class: "stop", text: "Delete for good", onclick: () => this.tried(async () => {
+          const found = await this.lab.socket.ask("delete participant", { study: this.name, participant: one.pseudonym, confirm: typed.value });
+          this.lab.notify(`Deleted: ${found.deleted.answers} answers, ${found.deleted.traces} traces; ${found.deleted.searched} files searched, nothing left.`);
+          await this.open(this.name);
+        }) });
+        start.replaceWith(element("div", { class: "confirm" }, element("p", { text: `This cannot be undone. Type ${one.pseudonym}:` }), typed, go,
+          element("button", { text: "Keep", onclick: () => this.showPeople(this.study) })));
+        typed.focus();
+      } });
+      box.append(start);
+      return box;
+    }));
+    if (!study.participants.length) this.people.append(element("p", { class: "muted", text: "nobody yet" }));
+  }
+
+  close() {
+    for (const off of this.off) off();
+  }
+}

@@ -1,0 +1,236 @@
+// Study, the experimenter's side: plan, participants, sittings, progress, answers as they come.
+
+import { element, plain } from "../numbers.js";
+
+const FIELDS = [
+  ["room", "room", "text", "like: anechoic chamber"], ["temperature", "temperature (°C)", "number", ""],
+  ["relative_humidity", "relative humidity (%)", "number", ""], ["skin_moisture", "skin moisture", "number", ""],
+  ["skin_moisture_method", "… measured with", "text", "instrument and unit"],
+  ["finger_orientation", "finger's axis from the stroke (°)", "number", ""],
+  ["normal_force_asked", "normal force asked (N)", "number", ""], ["masking_noise", "masking noise", "text", "like: pink noise, 65 dB(A)"],
+  ["note", "note, without names", "text", ""],
+];
+const HANDS = ["", "left", "right"], FINGERS = ["", "thumb", "index", "middle", "ring", "little"];
+
+export async function show(place, lab) {
+  const view = new StudyView(place, lab);
+  await view.start();
+  return () => view.close();
+}
+
+class StudyView {
+  constructor(place, lab) {
+    Object.assign(this, { place, lab, off: [], name: sessionStorage.getItem("squeezefilm study") });
+  }
+
+  async start() {
+    this.error = element("p", { class: "error", role: "alert", hidden: true });
+    this.list = element("section", { class: "card side" });
+    this.main = element("div", { class: "results" });
+    this.place.append(element("div", { class: "columns study" }, this.list, this.main));
+    this.off.push(this.lab.socket.on("study changed", ({ study }) => study === this.name && this.reload(true)));
+    this.off.push(this.lab.socket.on("connection", ({ open }) => open && this.begin()));
+    if (this.lab.socket.open) await this.begin();
+  }
+
+  async begin() {
+    await this.tried(async () => {
+      this.listing = await this.lab.socket.ask("studies");
+      this.showList();
+      if (this.listing.studies.includes(this.name)) await this.open(this.name);
+      else await this.showPlan();
+    });
+  }
+
+  async tried(work) {
+    try {
+      this.error.hidden = true;
+      return await work();
+    } catch (error) {
+      this.error.textContent = error.message;
+      this.error.hidden = false;
+      return null;
+    }
+  }
+
+  showList() {
+    const { designs, studies } = this.listing;
+    this.design = element("select", { id: "design", onchange: () => this.tried(() => this.showPlan()) },
+      ...designs.map((one) => element("option", { value: one.name, text: one.name, title: one.title })));
+    this.title = element("input", { type: "text", id: "study-name", value: "study-1", size: "14" });
+    this.seed = element("input", { type: "text", id: "seed", value: String(Math.floor(Math.random() * 1e9)), size: "11" });
+    const field = (text, input) => element("label", { class: "stack" }, text, input);
+    this.list.replaceChildren(element("h2", { text: "Studies" }),
+      studies.length ? element("ul", { class: "plain" }, ...studies.map((name) => element("li", {},
+        element("button", { text: name, "aria-current": name === this.name ? "true" : null, onclick: () => this.tried(() => this.open(name)) })))) : element("p", { class: "muted", text: "There is none yet." }),
+      element("h3", { text: "A new one" }), field("design", this.design), field("name of its file", this.title), field("seed of all orders", this.seed),
+      element("button", { class: "main", text: "Create the study", onclick: () => this.tried(() => this.create()) }), this.error);
+  }
+
+  async showPlan() {
+    const plan = await this.lab.socket.ask("plan study", { design: this.design.value });
+    this.main.replaceChildren(element("section", { class: "card" }, element("h2", { text: plan.title }),
+      element("p", { text: plan.note }), element("p", { text: `Asked: “${plan.question}”` }),
+      element("table", {}, ...[
+        ["task", plan.task], ["on", plan.displays.join(", ")], ["stimuli", plan.stimuli.join(", ")],
+        ["answers", plan.answers.join(", ") || "any number"], ["trials of a participant", plan.trials],
+        ["time, with breaks", `${plain(plan.duration_s / 60, 3)} min`],
+      ].map(([name, value]) => element("tr", {}, element("th", { text: name }), element("td", { text: value }))))));
+  }
+
+  async create() {
+    const seed = Number(this.seed.value);
+    if (!Number.isInteger(seed) || seed < 0) throw new Error(`the seed '${this.seed.value}' is no whole number from 0 on`);
+    const made = await this.lab.socket.ask("create study", { design: this.design.value, study: this.title.value, seed });
+    this.listing = await this.lab.socket.ask("studies");
+    this.name = made.name;
+    this.showList();
+    this.take(made);
+  }
+
+  async open(name) {
+    this.name = name;
+    this.take(await this.lab.socket.ask("study", { study: name }));
+    for (const button of this.list.querySelectorAll("li button")) {
+      if (button.textContent === name) button.setAttribute("aria-current", "true");
+      else button.removeAttribute("aria-current");
+    }
+  }
+
+  async reload(quietly = false) {
+    if (!this.name || (quietly && this.main.querySelector("form"))) {
+      // A form is being filled in: the numbers beside it may wait.
+      return;
+    }
+    await this.tried(async () => this.take(await this.lab.socket.ask("study", { study: this.name })));
+  }
+
+  take(study) {
+    this.study = study;
+    this.name = study.name;
+    sessionStorage.setItem("squeezefilm study", study.name);
+    const rows = study.participants.map((one) => this.participant(one));
+    this.main.replaceChildren(
+      element("section", { class: "card" }, element("h2", { text: study.name }),
+        element("p", { class: "muted", text: `${study.title}. Seed ${study.seed}.` }),
+        element("div", { class: "scroll" }, element("table", { class: "participants" },
+          element("tr", {}, ...["participant", "answered", "now on", "sitting", ""].map((text) => element("th", { text }))), ...rows)),
+        element("button", { class: "main", text: "Enrol a participant", onclick: () => this.tried(async () => this.take(await this.lab.socket.ask("enrol", { study: study.name }))) })),
+      ...study.confusion.map((table) => confusionCard(table)));
+  }
+
+  participant(one) {
+    const sitting = this.study.sittings.find((found) => found.participant === one.pseudonym);
+    const done = one.answered === one.planned;
+    const actions = element("div", { class: "row" });
+    if (!done) actions.append(element("button", { text: "Prepare a sitting…", onclick: () => this.tried(() => this.prepare(one)) }));
+    if (sitting) {
+      actions.append(
+        element("button", { text: "Open here", onclick: () => window.open(`/participant#${sitting.id}`, "_blank") }),
+        element("button", { text: "Link for another station", onclick: () => this.tried(() => this.link(sitting)) }),
+        element("button", { text: "End the sitting", onclick: () => this.tried(() => this.end(sitting)) }));
+    }
+    return element("tr", { "data-participant": one.pseudonym }, element("td", {}, element("code", { text: one.pseudonym })),
+      element("td", { class: "nowrap" }, element("progress", { value: one.answered, max: one.planned, "aria-label": "answered" }), ` ${one.answered} of ${one.planned}`),
+      element("td", { text: one.display ?? "finished" }), element("td", { text: sitting ? (sitting.begun ? "running" : "prepared") : "–" }), element("td", {}, actions));
+  }
+
+  async link(sitting) {
+    const { path } = await this.lab.socket.ask("station link", { sitting: sitting.id });
+    this.lab.notify(`Open this once, in the other browser: ${location.origin}${path}`);
+  }
+
+  async end(sitting) {
+    const found = await this.lab.socket.ask("end sitting", { sitting: sitting.id });
+    this.take(found);
+    this.lab.notify(found.problems.length ? `The device is off after the session: ${found.problems.join("; ")}` : "The sitting has ended.");
+  }
+
+  async prepare(one) {
+    const inputs = {};
+    const rows = FIELDS.map(([key, text, type, hint]) => {
+      inputs[key] = element("input", { type: "text", inputmode: type === "number" ? "decimal" : null, placeholder: hint, id: `c-${key}` });
+      return element("label", { class: "stack" }, text, inputs[key]);
+    });
+    const list = (key, values) => {
+      inputs[key] = element("select", { id: `c-${key}` }, ...values.map((value) => element("option", { value, text: value || "not noted" })));
+      return element("label", { class: "stack" }, key, inputs[key]);
+    };
+    const consent = element("textarea", { rows: "6", id: "consent-text" });
+    consent.value = this.study.consent;
+    const device = element("select", { id: "sitting-device", onchange: () => this.exposure(one, device.value, warned, box) },
+      element("option", { value: "none", text: "by hand: no device is driven" }),
+      ...(this.study.devices ?? []).map((name) => element("option", { value: name, text: name })));
+    const warned = element("p", { class: "warning", hidden: true });
+    const box = element("input", { type: "checkbox", id: "acknowledged" });
+    const acknowledge = element("label", {}, box, "The exposure to airborne ultrasound was read and accepted");
+    const form = element("form", { class: "sitting" }, element("h2", { text: `A sitting of ${one.pseudonym}` }),
+      element("div", { class: "fields" }, ...rows, list("hand", HANDS), list("finger", FINGERS)),
+      element("label", { class: "stack" }, "consent, as the participant reads it", consent),
+      element("label", { class: "stack" }, "device", device), warned, acknowledge,
+      element("div", { class: "row" }, element("button", { class: "main", type: "submit", text: "Ready for the participant" }),
+        element("button", { type: "button", text: "Cancel", onclick: () => { card.remove(); this.reload(); } })));
+    const card = element("section", { class: "card" }, form);
+    form.addEventListener("submit", (event) => {
+      event.preventDefault();
+      this.tried(async () => {
+        const found = await this.lab.socket.ask("prepare sitting", {
+          study: this.study.name, participant: one.pseudonym, device: device.value, consent: consent.value,
+          conditions: conditionsOf(inputs), acknowledged: box.checked,
+        });
+        card.remove();
+        this.take(found);
+      });
+    });
+    this.main.prepend(card);
+    inputs.room.focus();
+  }
+
+  async exposure(one, device, warned, box) {
+    warned.hidden = device === "none";
+    box.checked = false;
+    if (device === "none") return;
+    warned.textContent = "computing the sound that the display radiates…";
+    await this.tried(async () => {
+      const found = await this.lab.socket.ask("exposure", { study: this.study.name, participant: one.pseudonym });
+      warned.textContent = found.statement;
+    });
+  }
+
+  close() {
+    for (const off of this.off) off();
+  }
+}
+
+function conditionsOf(inputs) {
+  const found = {};
+  const scale = { temperature: (c) => c + 273.15, relative_humidity: (p) => p / 100, finger_orientation: (d) => (d * Math.PI) / 180 };
+  for (const [key, , type] of FIELDS) {
+    const text = inputs[key].value.trim();
+    if (!text) continue;
+    if (type === "number") {
+      const value = Number(text.replace(",", "."));
+      if (!Number.isFinite(value)) throw new Error(`${key.replaceAll("_", " ")}: '${text}' is no number`);
+      found[key] = (scale[key] ?? ((same) => same))(value);
+    } else found[key] = text;
+  }
+  for (const key of ["hand", "finger"]) if (inputs[key].value) found[key] = inputs[key].value;
+  return found;
+}
+
+/** A confusion table in the paper's layout: rows the gratings chosen, columns what was presented. */
+export function confusionCard({ display, rows, columns, counts }) {
+  const sums = columns.map((_, j) => counts.reduce((sum, row) => sum + row[j], 0));
+  const total = sums.reduce((a, b) => a + b, 0);
+  const body = rows.map((name, i) => element("tr", {}, element("th", { scope: "row", text: name }), ...columns.map((column, j) => {
+    const share = sums[j] ? counts[i][j] / sums[j] : null;
+    const cell = element("td", { text: share === null ? "–" : `${Math.round(100 * share)} %`, title: `${counts[i][j]} of ${sums[j]}` });
+    if (share !== null) cell.style.setProperty("--share", `${Math.round(share * 100)}%`);
+    cell.className = name === column ? "cell right" : "cell";
+    return cell;
+  })));
+  return element("section", { class: "card confusion" }, element("h2", { text: `Answers so far, ${display}` }),
+    element("p", { class: "muted", text: `Rows: grating chosen. Columns: period presented. ${total} answers.` }),
+    element("div", { class: "scroll" }, element("table", {},
+      element("tr", {}, element("td", {}), ...columns.map((name) => element("th", { scope: "col", text: name }))), ...body)));
+}

@@ -1,0 +1,82 @@
+// A display's values as a form: a text with its unit, a slider beside it, its source on hover.
+
+import { GLOSSARY } from "./glossary.js";
+import { element, split } from "./numbers.js";
+
+const SPAN = 3;
+const STEPS = 400;
+
+const TITLES = {
+  "": "Display", actuator: "Body", "actuator.substrate": "Substrate", "actuator.ceramic": "Ceramic",
+  "actuator.glue": "Glue", drive: "Drive", finger: "Finger", gas: "Gas",
+};
+const OPEN = new Set(["actuator", "drive", "finger"]);
+
+/** Fill `place` from the rows of `form`; sections that were open stay open, focus stays. */
+export function displayForm(place, rows, { write, slide }) {
+  const opened = new Map([...place.querySelectorAll("details")].map((one) => [one.dataset.section, one.open]));
+  const focus = document.activeElement?.dataset?.path, kind = document.activeElement?.type;
+  const sections = new Map();
+  for (const row of rows) {
+    if (!sections.has(row.section)) sections.set(row.section, []);
+    sections.get(row.section).push(row);
+  }
+  place.replaceChildren();
+  for (const [section, members] of [...sections].sort(([a], [b]) => rank(a) - rank(b))) {
+    const box = element("details", { "data-section": section, open: opened.get(section) ?? OPEN.has(section) },
+      element("summary", { text: title(section, rows) }), ...members.map((row) => field(row, write, slide)));
+    place.append(box);
+  }
+  if (focus) place.querySelector(`[data-path="${CSS.escape(focus)}"][type="${kind}"]`)?.focus();
+}
+
+function rank(section) {
+  const order = ["actuator", "drive", "finger", "surfaces", "actuator.substrate", "actuator.ceramic", "gas", ""];
+  const at = order.findIndex((one) => (one && section.startsWith(`${one}.`)) || section === one);
+  const exact = order.indexOf(section);
+  return (exact >= 0 ? exact : at >= 0 ? at + 0.5 : 99) + (section.includes("patches") ? 20 : 0);
+}
+
+function title(section, rows) {
+  if (section in TITLES) return TITLES[section];
+  const [, group, count] = /(\w+)\.(\d+)$/.exec(section) ?? [];
+  if (group === "surfaces") return `Surface: ${rows.find((row) => row.path === `${section}.name`)?.text}`;
+  if (group === "patches") return `Ceramic patch ${Number(count) + 1}`;
+  return section.replace("actuator.", "").replaceAll("_", " ").replaceAll(".", " ");
+}
+
+function field(row, write, slide) {
+  const id = `f-${row.path.replaceAll(".", "-")}`;
+  const assumed = row.evidence === "assumed";
+  const tip = row.name in GLOSSARY || row.source ? row.name : null;
+  const label = element("label", { for: id, "data-tip": tip, "data-source": row.source || null },
+    row.name.replaceAll("_", " "), assumed ? element("span", { class: "mark", title: `assumed: ${row.source}`, text: " *" }) : null);
+  const source = row.source ? element("small", { class: "source", text: `${row.evidence}: ${row.source}` }) : null;
+  if (row.name === "type") return null;
+  if (row.choices) {
+    const list = element("select", { id, "data-path": row.path, onchange: (event) => write(row.path, event.target.value) },
+      ...row.choices.map((one) => element("option", { value: one, text: one, selected: one === row.text })));
+    return element("div", { class: "field" }, label, list, source);
+  }
+  const text = element("input", { id, type: "text", value: row.text, "data-path": row.path, spellcheck: "false", autocomplete: "off" });
+  const commit = async () => {
+    if (text.value === row.text) return;
+    text.setAttribute("aria-invalid", String(!(await write(row.path, text.value))));
+  };
+  text.addEventListener("change", commit);
+  const parts = row.unit === null || row.whole ? null : split(row.text);
+  let range = null;
+  if (parts && parts.number !== 0) {
+    range = element("input", { type: "range", min: -STEPS, max: STEPS, value: 0, "data-path": row.path, "aria-label": `${row.name.replaceAll("_", " ")}, a third to three times ${row.text}` });
+    const shown = () => {
+      const value = parts.number * SPAN ** (range.value / STEPS);
+      return `${Number(value.toPrecision(4))}${parts.unit ? ` ${parts.unit}` : ""}`;
+    };
+    range.addEventListener("input", () => {
+      text.value = shown();
+      slide(row.path, text.value);
+    });
+    range.addEventListener("change", commit);
+  }
+  return element("div", { class: "field" }, label, text, range, source);
+}

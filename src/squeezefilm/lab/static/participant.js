@@ -1,0 +1,213 @@
+// The participant's page: consent, instructions, trials, breaks. Nothing on it gives an answer away.
+// An answer is kept in the browser until the server says that it is on the disk; handing it in twice
+// changes nothing, so a crash, a reload or a lost connection can neither lose nor double it.
+
+import { element } from "./numbers.js";
+import { Socket } from "./socket.js";
+
+const sitting = location.hash.slice(1);
+const place = document.getElementById("area");
+const connection = document.getElementById("connection");
+const KEPT = `squeezefilm answer ${sitting}`;
+const socket = new Socket("/ws/participant");
+let keys = null;
+let resting = null;
+
+socket.on("connection", ({ open }) => {
+  connection.textContent = open ? "" : "The connection is lost. Nothing you answered is lost; please wait.";
+  connection.classList.toggle("lost", !open);
+  if (open && window.squeezefilmMine) goOn();
+  if (!open) freeze();
+});
+socket.on("sitting ended", (message) => message.sitting === sitting && goOn());
+document.addEventListener("keydown", (event) => keys?.(event));
+begin();
+
+/** One tab a sitting: a second one says so and takes nothing over. */
+function begin() {
+  if (!sitting) return say("No sitting", "This page needs the link that the experimenter gives you.");
+  if (!navigator.locks) return mine();
+  navigator.locks.request(`sitting ${sitting}`, { ifAvailable: true }, (lock) => {
+    if (!lock) {
+      say("Open in another tab", "This sitting is open in another tab of this browser. Go on there, or close that tab and reload this one.");
+      return null;
+    }
+    mine();
+    return new Promise(() => {});
+  });
+  return null;
+}
+
+function mine() {
+  window.squeezefilmMine = true;
+  if (socket.open) goOn();
+}
+
+/** Wherever the server says we are; an answer that was not acknowledged is handed in first. */
+async function goOn() {
+  try {
+    const kept = localStorage.getItem(KEPT);
+    if (kept) {
+      await socket.ask("respond", { sitting, ...JSON.parse(kept) });
+      localStorage.removeItem(KEPT);
+    }
+    show(await socket.ask("where", { sitting }));
+  } catch (error) {
+    if (socket.open) say("This does not work", error.message);
+  }
+}
+
+function freeze() {
+  keys = null;
+  for (const one of place.querySelectorAll("button, input")) one.disabled = true;
+}
+
+function page(...children) {
+  clearInterval(resting);
+  keys = null;
+  place.replaceChildren(element("section", { class: "card sheet" }, ...children));
+}
+
+function say(title, text) {
+  page(element("h2", { text: title }), element("p", { text }));
+}
+
+function show(found) {
+  if (found.state === "consent") return consent(found);
+  if (found.state === "finished") return say("Thank you", "You have answered every trial. Please tell the experimenter.");
+  if (found.state === "ended") return say("This sitting has ended", "Please tell the experimenter.");
+  if (found.state === "display changes") return say("Thank you", "This part is done. The experimenter will prepare the next display.");
+  if (found.state === "trial") return trial(found);
+  return ready(found);
+}
+
+function consent(found) {
+  const box = element("input", { type: "checkbox", id: "consent", onchange: () => { go.disabled = !box.checked; } });
+  const go = element("button", { class: "main", text: "Begin", disabled: true, onclick: () => ask("consent") });
+  page(element("h2", { text: "Before we begin" }), ...found.consent.split("\n").map((text) => element("p", { text })),
+    element("p", {}, element("label", {}, box, "I have read this and consent.")), go);
+}
+
+function ready(found) {
+  page(element("h2", { text: "Ready" }), element("p", { text: found.question }),
+    element("p", { class: "muted", text: `${found.remaining} to go. Choose with the mouse, by touch, or with the number keys; Enter goes on.` }),
+    next("Next"));
+}
+
+function next(text) {
+  return waiting(text, 0, () => ask("next"));
+}
+
+/** A button that can be pressed, or Enter, when the rest is over. */
+function waiting(text, rest, go) {
+  const button = element("button", { class: "main", text, onclick: go });
+  const until = performance.now() + rest * 1000;
+  const tick = () => {
+    const left = Math.ceil((until - performance.now()) / 1000);
+    button.disabled = left > 0;
+    button.textContent = left > 0 ? `Please rest: ${left} s` : text;
+    if (left <= 0) clearInterval(resting);
+  };
+  // The page that this button comes into clears what was there; so start after it.
+  queueMicrotask(() => {
+    keys = (event) => event.key === "Enter" && !button.disabled && document.activeElement !== button && button.click();
+    if (rest > 0) resting = setInterval(tick, 250);
+    tick();
+  });
+  return button;
+}
+
+async function ask(type, fields = {}) {
+  freeze();
+  try {
+    show(await socket.ask(type, { sitting, ...fields }));
+  } catch (error) {
+    if (socket.open) say("This does not work", error.message);
+  }
+}
+
+function trial(found) {
+  if (found.pause_s > 0) {
+    page(element("h2", { text: "A break" }), element("p", { text: "Please rest your finger." }),
+      pauseThen(found));
+    return;
+  }
+  const began = performance.now();
+  const answer = (fields) => hand(found, began, fields);
+  const head = { familiarisation: `Feel the grating ${found.named}`, practice: "Practice", main: "" }[found.phase];
+  const title = element("h2", { text: head || found.question });
+  const left = element("p", { class: "muted", text: `${found.remaining} to go` });
+  if (found.phase === "familiarisation") {
+    page(title, element("p", { text: "Stroke it as long as you like. No answer is asked." }), felt(() => answer({})), left);
+    return;
+  }
+  const parts = [title];
+  if (head) parts.push(element("p", { text: found.question }));
+  if (found.surfaces === 2) parts.push(element("p", { text: "Feel the first surface, then the second." }));
+  if (found.interrupted) parts.push(element("p", { class: "muted", text: "This one was interrupted; it is presented again." }));
+  if (found.numeric) parts.push(estimate(answer));
+  else parts.push(choices(found, answer));
+  parts.push(left);
+  page(...parts.slice(0, -1), left);
+  keys = numberKeys(found, answer);
+}
+
+function pauseThen(found) {
+  return waiting("Go on", found.pause_s, () => trial({ ...found, pause_s: 0 }));
+}
+
+function felt(done) {
+  return waiting("Done", 0, done);
+}
+
+function choices(found, answer) {
+  return element("div", { class: "choices", role: "group", "aria-label": found.question },
+    ...found.alternatives.map((name, k) => element("button", { class: "choice", onclick: () => answer({ choice: name }) },
+      element("small", { text: String(k + 1), "aria-hidden": "true" }), name)));
+}
+
+function estimate(answer) {
+  const number = element("input", { type: "text", inputmode: "decimal", id: "estimate", size: "8", "aria-label": "your number" });
+  const give = () => {
+    const value = Number(number.value.replace(",", "."));
+    if (value > 0 && Number.isFinite(value)) answer({ estimate: value });
+    else number.setAttribute("aria-invalid", "true");
+  };
+  number.addEventListener("keydown", (event) => event.key === "Enter" && give());
+  return element("p", { class: "row" }, number, element("button", { class: "main", text: "Give this number", onclick: give }));
+}
+
+function numberKeys(found, answer) {
+  return (event) => {
+    const k = Number(event.key) - 1;
+    if (Number.isInteger(k) && k >= 0 && k < found.alternatives.length) answer({ choice: found.alternatives[k] });
+  };
+}
+
+async function hand(found, began, fields) {
+  const ended = performance.now();
+  const answer = {
+    token: found.token, ...fields, response_time: (ended - began) / 1e3,
+    started_monotonic: began / 1e3, ended_monotonic: ended / 1e3,
+  };
+  localStorage.setItem(KEPT, JSON.stringify(answer));
+  freeze();
+  try {
+    const told = await socket.ask("respond", { sitting, ...answer });
+    localStorage.removeItem(KEPT);
+    after(told);
+  } catch (error) {
+    if (!socket.open) return;
+    // Refused, not lost: another would be refused as well.
+    localStorage.removeItem(KEPT);
+    say("This does not work", error.message);
+  }
+}
+
+function after(told) {
+  if (told.correct === null || told.correct === undefined) {
+    ask("next");
+    return;
+  }
+  page(element("h2", { text: told.correct ? "Right" : `It was ${told.right}` }), next("Next"));
+}

@@ -1,0 +1,69 @@
+// One websocket to the lab: requests with answers, messages nobody asked for, and coming back after
+// the server was away. Requests that were on the way when it went are refused, never sent twice.
+
+const FIRST_WAIT = 250, LONGEST_WAIT = 4000;
+
+export class Socket {
+  constructor(path) {
+    this.path = path;
+    this.waiting = new Map();
+    this.listeners = new Map();
+    this.number = 0;
+    this.wait = FIRST_WAIT;
+    this.open = false;
+    this.connect();
+  }
+
+  connect() {
+    const scheme = location.protocol === "https:" ? "wss" : "ws";
+    const socket = new WebSocket(`${scheme}://${location.host}${this.path}`);
+    this.socket = socket;
+    socket.addEventListener("open", () => {
+      this.open = true;
+      this.wait = FIRST_WAIT;
+      this.emit("connection", { open: true });
+    });
+    socket.addEventListener("message", (event) => {
+      const message = JSON.parse(event.data);
+      const asked = this.waiting.get(message.id);
+      if (asked) {
+        this.waiting.delete(message.id);
+        if (message.type === "error") asked.reject(new Error(message.message));
+        else asked.resolve(message);
+      } else this.emit(message.type, message);
+    });
+    socket.addEventListener("close", () => {
+      const was = this.open;
+      this.open = false;
+      for (const asked of this.waiting.values()) asked.reject(new Error("the lab went away"));
+      this.waiting.clear();
+      if (was) this.emit("connection", { open: false });
+      setTimeout(() => this.connect(), this.wait);
+      this.wait = Math.min(2 * this.wait, LONGEST_WAIT);
+    });
+  }
+
+  /** The answer to a request; rejected with the server's words, or when the connection is lost. */
+  ask(type, fields = {}) {
+    return new Promise((resolve, reject) => {
+      if (!this.open) {
+        reject(new Error("the lab is not connected"));
+        return;
+      }
+      const id = (this.number += 1);
+      this.waiting.set(id, { resolve, reject });
+      this.socket.send(JSON.stringify({ id, type, ...fields }));
+    });
+  }
+
+  /** Hear messages of a type; returns what stops hearing them. */
+  on(type, listener) {
+    if (!this.listeners.has(type)) this.listeners.set(type, new Set());
+    this.listeners.get(type).add(listener);
+    return () => this.listeners.get(type).delete(listener);
+  }
+
+  emit(type, message) {
+    for (const listener of this.listeners.get(type) ?? []) listener(message);
+  }
+}

@@ -1,0 +1,383 @@
+"""Studies as the lab runs them: files, status, sittings, trials. Plain functions on one thread.
+
+SQLite belongs to the thread that opened it, and a commit waits for the disk: everything here runs
+on one thread of its own, and the server's loop goes on meanwhile.
+"""
+
+from __future__ import annotations
+
+import base64
+import dataclasses
+from pathlib import Path
+from typing import Any
+
+from squeezefilm import presets
+from squeezefilm.errors import InputError
+from squeezefilm.lab.files import existing, fresh
+from squeezefilm.lab.sittings import Sitting, Sittings
+from squeezefilm.results import to_json
+from squeezefilm.study.deletion import delete_participant
+from squeezefilm.study.design import StudyDesign, load_design
+from squeezefilm.study.device import NoDevice, StudyDevice
+from squeezefilm.study.exports import export_study
+from squeezefilm.study.exposure import Exposure
+from squeezefilm.study.merge import merge
+from squeezefilm.study.recorded_analysis import analyze_study
+from squeezefilm.study.run import Response, StudyRun
+from squeezefilm.study.session_conditions import SessionConditions
+from squeezefilm.study.sessions import begin_session, display_wanted, end_session
+from squeezefilm.study.store import StudyStore
+from squeezefilm.study.trials import expected_duration, trial_count
+
+SUFFIX = ".sqlite"
+CONSENT = (
+    "You will stroke surfaces with a finger and answer a question about each. It takes about "
+    "{minutes} minutes, with breaks. You may stop at any time, without giving a reason, and ask "
+    "for your data to be deleted. Your answers are kept under a number, not under your name."
+)
+
+
+class Studies:
+    """The studies in a lab's folder. Every method is called on one and the same thread."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder / "studies"
+        self.sittings = Sittings(self.folder / ".sittings.json")
+        self._open: dict[str, StudyStore] = {}
+        self._runs: dict[str, StudyRun] = {}
+
+    def close(self) -> None:
+        """Close every file."""
+        for store in self._open.values():
+            store.close()
+        self._open.clear()
+        self._runs.clear()
+
+    def listing(self) -> dict[str, Any]:
+        """Preset designs, and studies that have a file."""
+        designs = []
+        for name in presets.study_names():
+            designs.append({"name": name, "title": load_design(name).title})
+        files = sorted(self.folder.glob(f"*{SUFFIX}")) if self.folder.is_dir() else []
+        return {"designs": designs, "studies": [path.stem for path in files]}
+
+    def plan(self, design: str) -> dict[str, Any]:
+        """What a design is and how long it takes."""
+        found = load_design(design)
+        return {
+            **_described(found),
+            "trials": trial_count(found),
+            "duration_s": expected_duration(found),
+            "consent": CONSENT.format(minutes=round(expected_duration(found) / 60)),
+        }
+
+    def create(self, design: str, name: str, seed: int) -> dict[str, Any]:
+        """A new study's file."""
+        path = fresh(self.folder, name, SUFFIX)
+        self._open[path.stem] = StudyStore.create(path, load_design(design), seed)
+        return self.status(path.stem)
+
+    def store(self, name: str) -> StudyStore:
+        """A study's file, open."""
+        if name not in self._open:
+            self._open[name] = StudyStore.open(existing(self.folder, name, SUFFIX))
+        return self._open[name]
+
+    def status(self, name: str) -> dict[str, Any]:
+        """Design, participants with their progress, sittings, and the answers so far as counts."""
+        store = self.store(name)
+        design = store.design
+        return {
+            "name": name,
+            "seed": store.study["seed"],
+            **_described(design),
+            "consent": CONSENT.format(minutes=round(expected_duration(design) / 60)),
+            "participants": [
+                {
+                    "pseudonym": one["uuid"],
+                    "planned": one["planned"],
+                    "answered": one["answered"],
+                    "display": display_wanted(store, one["uuid"]),
+                }
+                for one in store.participants()
+            ],
+            "sittings": [_shown(one) for one in self.sittings.of_study(name)],
+            "confusion": self.confusion(name),
+        }
+
+    def confusion(self, name: str) -> list[dict[str, Any]]:
+        """Counts per display, rows answers and columns stimuli; main trials only."""
+        store = self.store(name)
+        design = store.design
+        if design.task != "match-to-sample":
+            return []
+        rows, columns = list(design.answers), [one.name for one in design.stimuli]
+        found = store.rows(
+            "SELECT t.display, t.stimuli, r.choice, count(*) AS n FROM response r "
+            "JOIN trial t ON t.uuid = r.trial WHERE t.phase = 'main' "
+            "GROUP BY t.display, t.stimuli, r.choice"
+        )
+        tables = []
+        for display in design.displays:
+            counts = [[0] * len(columns) for _ in rows]
+            for one in found:
+                stimulus = one["stimuli"][2:-2]
+                if one["display"] == display and one["choice"] in rows and stimulus in columns:
+                    counts[rows.index(one["choice"])][columns.index(stimulus)] += one["n"]
+            tables.append({"display": display, "rows": rows, "columns": columns, "counts": counts})
+        return tables
+
+    def enrol(self, name: str) -> dict[str, Any]:
+        """One more participant."""
+        self.store(name).enrol()
+        return self.status(name)
+
+    def prepare(
+        self,
+        name: str,
+        participant: str,
+        device: str,
+        consent_text: str,
+        conditions: dict[str, Any],
+        acknowledged: bool,
+    ) -> dict[str, Any]:
+        """A sitting for a participant, to be consented to on the participant's page."""
+        store = self.store(name)
+        store.require_participant(participant)
+        if display_wanted(store, participant) is None:
+            raise InputError(f"participant {participant} has answered every trial; enrol another")
+        # Checked now, so that a mistake is the experimenter's and not the participant's to see.
+        _conditions(conditions, consent_text, consented=False)
+        for one in self.sittings.of_study(name):
+            if one.participant == participant:
+                self.sittings.change(one.id, ended=True)
+        sitting = self.sittings.new(
+            study=name,
+            participant=participant,
+            device=device,
+            consent_text=consent_text,
+            conditions=conditions,
+            acknowledged=acknowledged,
+        )
+        return {"sitting": sitting.id, **self.status(name)}
+
+    def display_of(self, name: str, participant: str) -> str | None:
+        """The display a participant's next trial is on."""
+        return display_wanted(self.store(name), participant)
+
+    def where(self, id: str) -> dict[str, Any]:
+        """What the participant's page shows now; nothing in it gives an answer away."""
+        sitting = self.sittings.get(id)
+        design = self.store(sitting.study).design
+        if sitting.ended:
+            return {"state": "ended"}
+        if sitting.session is None:
+            return {"state": "consent", "consent": sitting.consent_text}
+        run = self.run(sitting)
+        if run.state in ("finished", "display changes"):
+            return {"state": run.state}
+        return {
+            "state": "ready",
+            "question": design.spoken_question,
+            "task": design.task,
+            "remaining": run.remaining,
+        }
+
+    def consent(self, id: str, exposure: Exposure | None, device: StudyDevice) -> dict[str, Any]:
+        """The participant consented: the session begins, or says why it cannot."""
+        sitting = self.sittings.get(id)
+        if sitting.session is None and not sitting.ended:
+            session = begin_session(
+                self.store(sitting.study),
+                sitting.participant,
+                device,
+                _conditions(sitting.conditions, sitting.consent_text, consented=True),
+                exposure,
+                acknowledged=sitting.acknowledged,
+            )
+            self.sittings.change(id, session=session)
+        return self.where(id)
+
+    def present(self, id: str) -> dict[str, Any]:
+        """The next trial without what would give its answer away."""
+        sitting = self.sittings.get(id)
+        if sitting.session is None or sitting.ended:
+            return self.where(id)
+        run = self.run(sitting)
+        found = run.next_trial()
+        if found is None:
+            return self.where(id)
+        trial = found.trial
+        felt_only = trial.phase == "familiarisation"
+        return {
+            "state": "trial",
+            "token": found.token,
+            "phase": "practice"
+            if trial.phase == "practice"
+            else trial.phase.replace("catch", "main"),
+            "question": self.store(sitting.study).design.spoken_question,
+            "alternatives": list(trial.alternatives),
+            "numeric": trial.asks and not trial.alternatives,
+            "surfaces": len(found.surfaces),
+            # A real grating that lies there to be known has its name on it.
+            "named": found.surfaces[0].name if felt_only else "",
+            "pause_s": trial.pause if found.times_presented == 1 else 0.0,
+            "remaining": found.remaining,
+            "interrupted": found.times_presented > 1,
+        }
+
+    def surfaces(self, id: str, token: str) -> list[Any]:
+        """The stimuli of the trial that is presented, for the device."""
+        run = self.run(self.sittings.get(id))
+        found = run._surfaces(run._planned(token))
+        return list(found[1])
+
+    def respond(self, id: str, token: str, response: Response) -> dict[str, Any]:
+        """Record an answer; it is on the disk when this returns."""
+        sitting = self.sittings.get(id)
+        if sitting.session is None:
+            raise InputError("this sitting was not consented to yet")
+        told = self.run(sitting).respond(token, response)
+        phase = self.store(sitting.study).rows(
+            "SELECT phase FROM trial WHERE uuid = ?", [token]
+        )[0]["phase"]  # fmt: skip
+        feedback = phase == "practice"
+        return {
+            "number": told.number,
+            "repeated": told.repeated,
+            "remaining": told.remaining,
+            "right": told.right_answer if feedback else None,
+            "correct": told.correct if feedback else None,
+            "study": sitting.study,
+        }
+
+    def end(self, id: str, device: StudyDevice) -> dict[str, Any]:
+        """End a sitting; its device is verified and the result recorded."""
+        sitting = self.sittings.get(id)
+        problems: tuple[str, ...] = ()
+        if sitting.session is not None and not sitting.ended:
+            found = end_session(self.store(sitting.study), sitting.session, device)
+            problems = found.problems
+        self.sittings.change(id, ended=True)
+        self._runs.pop(id, None)
+        return {"problems": list(problems), **self.status(sitting.study)}
+
+    def delete(self, name: str, participant: str) -> dict[str, Any]:
+        """Take a participant out without a trace."""
+        for one in self.sittings.of_study(name):
+            if one.participant == participant:
+                self._runs.pop(one.id, None)
+        found = delete_participant(self.store(name), participant)
+        self.sittings.forget_participant(name, participant)
+        return {"deleted": to_json(found), **self.status(name)}
+
+    def export(self, name: str, format: str) -> dict[str, Any]:
+        """Export a study beside its file."""
+        if format not in ("csv", "psych-ds", "bids"):
+            raise InputError(f"format = '{format}' is not known; allowed: csv, psych-ds, bids")
+        path = export_study(self.store(name), format)  # type: ignore[arg-type] # checked above
+        return {"folder": str(path.relative_to(self.folder.parent))}
+
+    def path(self, name: str) -> Path:
+        """A study's file."""
+        return existing(self.folder, name, SUFFIX)
+
+    def merge(self, name: str, other: str) -> dict[str, Any]:
+        """Take in the answers of another station's file in the folder."""
+        path = existing(self.folder, other, SUFFIX)
+        if other in self._open:
+            self._open.pop(other).close()
+        found = merge(self.store(name), path)
+        return {"merged": to_json(found), **self.status(name)}
+
+    def run(self, sitting: Sitting) -> StudyRun:
+        """The run of a sitting that was consented to."""
+        if sitting.id not in self._runs:
+            if sitting.session is None:
+                raise InputError("this sitting was not consented to yet")
+            self._runs[sitting.id] = StudyRun(self.store(sitting.study), sitting.session)
+        return self._runs[sitting.id]
+
+
+def analysis_of(path: Path) -> dict[str, Any]:
+    """The analysis of what was answered so far, by display: tables, numbers, figures.
+
+    In a process of its own: it takes seconds, and answers are being recorded meanwhile.
+    """
+    from squeezefilm.report.study_report import key_rows, study_figures
+    from squeezefilm.report.style import png
+
+    with StudyStore.open(path) as store:
+        found = analyze_study(store)
+    return {
+        "displays": [
+            {
+                "display": display,
+                "numbers": [list(row) for row in key_rows(one)],
+                "notes": list(one.notes),
+                "confusion": {
+                    "display": display,
+                    "rows": list(one.matrix.answers),
+                    "columns": list(one.matrix.stimuli),
+                    "counts": one.matrix.counts.tolist(),
+                },
+                "figures": [
+                    {"title": title, "png": base64.b64encode(png(figure)).decode()}
+                    for key, (title, figure) in study_figures(one).items()
+                    if key != "confusion"
+                ],
+            }
+            for display, one in found.items()
+        ]
+    }
+
+
+def report_of(path: Path) -> dict[str, Any]:
+    """The analysis written as pages beside the study's file."""
+    from squeezefilm.report.study_report import write_study
+
+    with StudyStore.open(path) as store:
+        found = analyze_study(store)
+    folder = path.with_suffix(".results")
+    pages = [write_study(one, folder / display) for display, one in found.items()]
+    return {"pages": [str(page.relative_to(path.parent.parent)) for page in pages]}
+
+
+def device_of(kind: str) -> StudyDevice:
+    """What presents a sitting's surfaces. Raises `InputError` for a kind that is not known."""
+    if kind == "none":
+        return NoDevice()
+    raise InputError(f"device = '{kind}' is not known here; allowed: none")
+
+
+def _conditions(given: dict[str, Any], consent_text: str, *, consented: bool) -> SessionConditions:
+    import hashlib
+
+    known = {one.name for one in dataclasses.fields(SessionConditions)}
+    odd = set(given) - (known - {"consent", "consent_form"})
+    if odd:
+        raise InputError(f"conditions have no field '{sorted(odd)[0][:60]}'")
+    form = "text sha256 " + hashlib.sha256(consent_text.encode()).hexdigest()[:16]
+    return SessionConditions(consent=consented, consent_form=form, **given)
+
+
+def _described(design: StudyDesign) -> dict[str, Any]:
+    return {
+        "title": design.title,
+        "task": design.task,
+        "displays": list(design.displays),
+        "stimuli": [one.name for one in design.stimuli],
+        "answers": list(design.answers),
+        "question": design.spoken_question,
+        "note": design.note,
+        "design": design.name,
+    }
+
+
+def _shown(one: Sitting) -> dict[str, Any]:
+    return {
+        "id": one.id,
+        "participant": one.participant,
+        "device": one.device,
+        "begun": one.session is not None,
+    }

@@ -1,0 +1,255 @@
+"""The messages of the Study and Results areas, and of the participant's page."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from pydantic import Field
+
+from squeezefilm.errors import InputError
+from squeezefilm.lab.studies import Studies, analysis_of, device_of, report_of
+from squeezefilm.lab.wire import Answer, Request
+from squeezefilm.study.exposure import Exposure, exposure
+from squeezefilm.study.run import Response
+
+if TYPE_CHECKING:
+    from squeezefilm.lab.server import Lab
+
+T = TypeVar("T")
+_LONGEST_SESSION = 3600.0
+
+
+class NamedStudy(Request):
+    """A study by the name of its file."""
+
+    study: str = Field(max_length=100)
+
+
+class PlanStudy(Request):
+    """A preset design."""
+
+    design: str = Field(max_length=100)
+
+
+class CreateStudy(PlanStudy):
+    """A new study's file."""
+
+    study: str = Field(max_length=64)
+    seed: int = Field(ge=0, le=2**53)
+
+
+class OfParticipant(NamedStudy):
+    """A participant of a study."""
+
+    participant: str = Field(max_length=100)
+
+
+class DeleteParticipant(OfParticipant):
+    """Deleting asks for the pseudonym twice."""
+
+    confirm: str = Field(max_length=100)
+
+
+class PrepareSitting(OfParticipant):
+    """A sitting: what a `SessionConditions` has, and the consent's text."""
+
+    device: str = Field(max_length=100)
+    consent: str = Field(min_length=20, max_length=20_000)
+    conditions: dict[str, str | float | None] = Field(default_factory=dict, max_length=20)
+    acknowledged: bool = False
+
+
+class OfSitting(Request):
+    """A sitting by its id."""
+
+    sitting: str = Field(max_length=100)
+
+
+class Respond(OfSitting):
+    """An answer to the trial with this token."""
+
+    token: str = Field(max_length=100)
+    choice: str = Field("", max_length=200)
+    estimate: float | None = None
+    response_time: float | None = Field(None, ge=0.0, le=86400.0)
+    started_monotonic: float = Field(0.0, ge=0.0, le=1e12)
+    ended_monotonic: float = Field(0.0, ge=0.0, le=1e12)
+
+
+class ExportStudy(NamedStudy):
+    """A study's export."""
+
+    format: str = Field(max_length=20)
+
+
+class MergeStudy(NamedStudy):
+    """Another station's file."""
+
+    other: str = Field(max_length=100)
+
+
+class StudyThread:
+    """The one thread on which all studies of a lab live."""
+
+    def __init__(self, lab: Lab) -> None:
+        self._pool = ThreadPoolExecutor(1, thread_name_prefix="studies")
+        self._lab = lab
+        self._studies: Studies | None = None
+        lab.closing.append(self.close)
+
+    async def do(self, work: Callable[..., T], *arguments: Any) -> T:
+        """`work(studies, *arguments)` on the thread."""
+        return await asyncio.get_running_loop().run_in_executor(
+            self._pool, lambda: work(self._opened(), *arguments)
+        )
+
+    def _opened(self) -> Studies:
+        if self._studies is None:
+            self._studies = Studies(self._lab.folder)
+        return self._studies
+
+    def close(self) -> None:
+        """Close the files and end the thread."""
+        if self._studies is not None:
+            self._pool.submit(self._studies.close).result(timeout=10)
+            self._studies = None
+        self._pool.shutdown(wait=True)
+
+
+def add_study(lab: Lab) -> StudyThread:
+    """Let the lab answer the Study area's and the participants' messages."""
+    thread = StudyThread(lab)
+    exposures: dict[str, Exposure] = {}
+
+    async def exposed(display: str) -> Exposure:
+        if display not in exposures:
+            exposures[display] = await lab.workers.slow.do("exposure", _exposure, display)
+        return exposures[display]
+
+    async def changed(study: str) -> None:
+        await lab.tell({"type": "study changed", "study": study})
+
+    async def listing(_: Request) -> Answer:
+        return {"type": "studies", **await thread.do(Studies.listing)}
+
+    async def plan(asked: PlanStudy) -> Answer:
+        return {"type": "plan", **await thread.do(Studies.plan, asked.design)}
+
+    async def create(asked: CreateStudy) -> Answer:
+        found = await thread.do(Studies.create, asked.design, asked.study, asked.seed)
+        return {"type": "study", **found}
+
+    async def status(asked: NamedStudy) -> Answer:
+        return {"type": "study", **await thread.do(Studies.status, asked.study)}
+
+    async def enrol(asked: NamedStudy) -> Answer:
+        found = await thread.do(Studies.enrol, asked.study)
+        await changed(asked.study)
+        return {"type": "study", **found}
+
+    async def ultrasound(asked: OfParticipant) -> Answer:
+        display = await thread.do(Studies.display_of, asked.study, asked.participant)
+        if display is None:
+            raise InputError(f"participant {asked.participant} has answered every trial")
+        found = await exposed(display)
+        return {"type": "exposure", "display": display, "statement": found.statement}
+
+    async def prepare(asked: PrepareSitting) -> Answer:
+        device_of(asked.device)
+        found = await thread.do(
+            Studies.prepare, asked.study, asked.participant, asked.device, asked.consent,
+            asked.conditions, asked.acknowledged,
+        )  # fmt: skip
+        return {"type": "study", **found}
+
+    async def station(asked: OfSitting) -> Answer:
+        await thread.do(lambda studies: studies.sittings.get(asked.sitting))
+        token = lab.keys.new_link("participant", f"/participant#{asked.sitting}")
+        return {"type": "link", "path": f"/?token={token}"}
+
+    async def end(asked: OfSitting) -> Answer:
+        sitting = await thread.do(lambda studies: studies.sittings.get(asked.sitting))
+        found = await thread.do(Studies.end, asked.sitting, device_of(sitting.device))
+        await lab.tell({"type": "sitting ended", "sitting": asked.sitting}, participants=True)
+        return {"type": "study", **found}
+
+    async def delete(asked: DeleteParticipant) -> Answer:
+        if asked.confirm != asked.participant:
+            raise InputError(f"to delete {asked.participant}, type exactly that; nothing was done")
+        found = await thread.do(Studies.delete, asked.study, asked.participant)
+        await changed(asked.study)
+        return {"type": "study", **found}
+
+    async def export(asked: ExportStudy) -> Answer:
+        return {"type": "exported", **await thread.do(Studies.export, asked.study, asked.format)}
+
+    async def analyze(asked: NamedStudy) -> Answer:
+        path = await thread.do(Studies.path, asked.study)
+        return {"type": "analysis", **await lab.workers.slow.do("analysis", analysis_of, path)}
+
+    async def report(asked: NamedStudy) -> Answer:
+        path = await thread.do(Studies.path, asked.study)
+        return {"type": "report", **await lab.workers.slow.do("report", report_of, path)}
+
+    async def merged(asked: MergeStudy) -> Answer:
+        return {"type": "study", **await thread.do(Studies.merge, asked.study, asked.other)}
+
+    async def where(asked: OfSitting) -> Answer:
+        return {"type": "where", **await thread.do(Studies.where, asked.sitting)}
+
+    async def consent(asked: OfSitting) -> Answer:
+        sitting = await thread.do(lambda studies: studies.sittings.get(asked.sitting))
+        device = device_of(sitting.device)
+        seen = None
+        if device.identity().name != "none":
+            display = await thread.do(Studies.display_of, sitting.study, sitting.participant)
+            seen = await exposed(display or "")
+        found = await thread.do(Studies.consent, asked.sitting, seen, device)
+        await changed(sitting.study)
+        return {"type": "where", **found}
+
+    async def present(asked: OfSitting) -> Answer:
+        return {"type": "where", **await thread.do(Studies.present, asked.sitting)}
+
+    async def respond(asked: Respond) -> Answer:
+        response = Response(
+            choice=asked.choice,
+            estimate=asked.estimate,
+            response_time=asked.response_time,
+            started_monotonic=asked.started_monotonic,
+            ended_monotonic=asked.ended_monotonic,
+        )
+        found = await thread.do(Studies.respond, asked.sitting, asked.token, response)
+        await changed(found.pop("study"))
+        return {"type": "acknowledged", **found}
+
+    add = lab.experimenter.add
+    add("studies", Request, listing)
+    add("plan study", PlanStudy, plan)
+    add("create study", CreateStudy, create)
+    add("study", NamedStudy, status)
+    add("enrol", NamedStudy, enrol)
+    add("exposure", OfParticipant, ultrasound)
+    add("prepare sitting", PrepareSitting, prepare)
+    add("station link", OfSitting, station)
+    add("end sitting", OfSitting, end)
+    add("delete participant", DeleteParticipant, delete)
+    add("export study", ExportStudy, export)
+    add("merge study", MergeStudy, merged)
+    add("analyze study", NamedStudy, analyze)
+    add("report study", NamedStudy, report)
+    add = lab.participant.add
+    add("where", OfSitting, where)
+    add("consent", OfSitting, consent)
+    add("next", OfSitting, present)
+    add("respond", Respond, respond)
+    return thread
+
+
+def _exposure(display: str) -> Exposure:
+    from squeezefilm.display import load_display
+
+    return exposure(load_display(display), _LONGEST_SESSION)

@@ -1,0 +1,94 @@
+"""What page and server say to each other over the websocket: JSON, checked by pydantic.
+
+A request has an `id` that its answer carries, a `type`, and fields of its own. An answer is
+``{"id", "type", …}``; an error is ``{"id", "type": "error", "message"}``, in words that a person
+can act on.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Awaitable, Callable
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from squeezefilm.errors import InputError, SqueezefilmError
+
+LARGEST_MESSAGE = 8 * 1024 * 1024
+"""Bytes of a websocket message."""
+LONGEST_TEXT = 400_000
+"""Characters of one text in a message, a TOML file's for instance."""
+
+
+class Request(BaseModel):
+    """What every request has."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    id: int = Field(ge=0, le=2**53)
+    type: str = Field(max_length=64)
+
+
+Answer = dict[str, Any]
+Handler = Callable[[Any], Awaitable[Answer]]
+
+
+class Dispatcher:
+    """Which message is read as what, and who answers it."""
+
+    def __init__(self) -> None:
+        self._known: dict[str, tuple[type[Request], Handler]] = {}
+
+    def add(self, kind: str, model: type[Request], handler: Handler) -> None:
+        """Answer messages of a type, read as a model, by a handler."""
+        self._known[kind] = (model, handler)
+
+    async def answer(self, text: str) -> Answer:
+        """The answer to one message's text; never raises for what a page may send."""
+        number: int | None = None
+        try:
+            raw = json.loads(text, parse_constant=_no_constant)
+            if not isinstance(raw, dict):
+                raise InputError("a message must be an object with id and type")
+            number = raw.get("id") if isinstance(raw.get("id"), int) else None
+            kind = raw.get("type")
+            if not isinstance(kind, str) or kind not in self._known:
+                raise InputError(
+                    f"a message of type {str(kind)[:64]!r} is not known; known: "
+                    f"{', '.join(sorted(self._known))}"
+                )
+            model, handler = self._known[kind]
+            request = model.model_validate(raw)
+            found = await handler(request)
+        except ValidationError as error:
+            first = error.errors()[0]
+            place = ".".join(str(part) for part in first["loc"])
+            return _error(number, f"{place}: {first['msg']}")
+        except (SqueezefilmError, ValueError, RecursionError) as error:
+            return _error(number, str(error))
+        return {"id": request.id, **found}
+
+
+def as_text(answer: Answer) -> str:
+    """JSON text; a number that is not finite becomes null, which JSON can carry."""
+    return json.dumps(_finite(answer), ensure_ascii=False, allow_nan=False, separators=(",", ":"))
+
+
+def _finite(value: Any) -> Any:
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if isinstance(value, dict):
+        return {key: _finite(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_finite(item) for item in value]
+    return value
+
+
+def _error(number: int | None, message: str) -> Answer:
+    return {"id": number, "type": "error", "message": message[:4000]}
+
+
+def _no_constant(name: str) -> float:
+    raise InputError(f"{name} is no JSON number")
