@@ -63,6 +63,7 @@ def test_a_disc_is_solved() -> None:
     assert circuit["frequency_Hz"] == pytest.approx(result["frequency_Hz"])
 
 
+@pytest.mark.nightly
 def test_glass_presets_are_whole_displays() -> None:
     for name in ("basdogan2020-glass", "touchpad-glass"):
         done = run("analyze", name, "--json", "--samples", "0", "--amplitude", "1 um")

@@ -41,6 +41,7 @@ def study() -> PrototypeStudy:
     return PrototypeStudy(*paper_points(), table, both, (prototype._apart(*both),))
 
 
+@pytest.mark.nightly
 def test_each_explanation_gives_the_measured_frequency(study: PrototypeStudy) -> None:
     for one in study.explanations:
         assert one.frequency == pytest.approx(MEASURED_FREQUENCY, rel=2e-4)
@@ -58,6 +59,7 @@ def test_each_explanation_gives_the_measured_frequency(study: PrototypeStudy) ->
     )
 
 
+@pytest.mark.nightly
 def test_what_tells_glue_from_mass(study: PrototypeStudy) -> None:
     glue, mass = study.explanations
     # Mass added to the substrate leaves the coupling; a soft bond takes most of the ceramic's.
@@ -70,6 +72,7 @@ def test_what_tells_glue_from_mass(study: PrototypeStudy) -> None:
     assert apart["f(9,0) / f(8,0)"] < 2
 
 
+@pytest.mark.nightly
 def test_a_pair_alike_in_everything_is_told_apart_by_nothing(study: PrototypeStudy) -> None:
     glue = study.explanations[0]
     twin = dataclasses.replace(glue, name="its twin")
@@ -87,6 +90,7 @@ def test_a_parameter_that_cannot_explain_is_refused() -> None:
         prototype._explained(paper_plate(), "stiff glue", free, unit, (5e9, 6e9), make)
 
 
+@pytest.mark.nightly
 def test_the_study_is_shown(study: PrototypeStudy) -> None:
     text = "\n".join(prototype_markdown(study))
     assert "30.5 kHz" in text

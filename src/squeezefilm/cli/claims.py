@@ -25,8 +25,11 @@ def reproduce(
     """
     from squeezefilm.analysis.claims import reproduce as run
     from squeezefilm.report import terminal
-    from squeezefilm.report.validation import write_reproduction, write_validation_docs
+    from squeezefilm.report.validation import checkout, write_reproduction, write_validation_docs
 
+    if write_docs:
+        # Minutes of work lie before the writing.
+        checkout()
     with terminal.progress(enabled=sys.stderr.isatty() or not as_json) as step:
         result = run(prototype=out is not None or write_docs, progress=step)
         if out is not None:

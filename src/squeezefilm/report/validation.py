@@ -44,15 +44,20 @@ def write_validation_docs(result: Reproduction, root: Path | None = None) -> Pat
 
     Raises `InputError` where the package is installed without one.
     """
+    path = checkout(root) / "docs" / "validation.md"
+    write_whole(path, validation_markdown(result))
+    return path
+
+
+def checkout(root: Path | None = None) -> Path:
+    """The checkout that this package runs from, or `root`. Raises `InputError` if it is none."""
     top = root or Path(__file__).parents[3]
     if not (top / "docs").is_dir() or not (top / "pyproject.toml").is_file():
         raise InputError(
             "--write-docs needs a checkout of the source, and this is an installed package; "
             "clone the repository and run it there"
         )
-    path = top / "docs" / "validation.md"
-    write_whole(path, validation_markdown(result))
-    return path
+    return top
 
 
 def validation_markdown(result: Reproduction) -> str:

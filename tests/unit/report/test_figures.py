@@ -46,9 +46,18 @@ ODD = {
     "small-ring": ("layout", "mode", "films"),
     "printed-model": ("pressure", "friction", "texture"),
 }
-# One process draws all figures of a display: each computes its analysis for itself.
+OFTEN = {*PRESETS, "hostile-names", "no-voltage", "one-ceramic"}
+"""Drawn at every run; the other odd ones at night."""
+
+
+def _marks(name: str) -> list[pytest.MarkDecorator]:
+    # One process draws all figures of a display: each computes its analysis for itself.
+    group = pytest.mark.xdist_group(name)
+    return [group] if name in OFTEN else [group, pytest.mark.nightly]
+
+
 CASES = [
-    pytest.param(name, key, marks=pytest.mark.xdist_group(name))
+    pytest.param(name, key, marks=_marks(name))
     for name, keys in [*((name, KEYS) for name in PRESETS), *ODD.items()]
     for key in keys
 ]
