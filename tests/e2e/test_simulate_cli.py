@@ -90,3 +90,21 @@ def test_a_design_without_gratings_is_refused(tmp_path: Path) -> None:
     done = run("study", "simulate", "no-such-study")
     assert done.returncode != 0
     assert "biet2008-gratings" in done.stderr
+
+
+def test_power_grows_with_people_and_names_its_assumptions(tmp_path: Path) -> None:
+    design, observer = files(tmp_path)
+    arguments = ("study", "power", design, "2 mm", "4 mm", "--observer", observer)
+    done = run(*arguments, "--studies", "50", "--out", tmp_path / "power.png", "--json")
+    assert done.returncode == 0, done.stderr
+    found = json.loads(done.stdout)
+    curve = found["curve"]
+    assert found["origin"] == "simulated"
+    assert curve["power"][-1] >= curve["power"][0]
+    # Period and twice the period, four answers each: nobody needs dozens of people for that.
+    assert curve["needed"] is not None
+    assert curve["needed"] <= 12
+    assert (tmp_path / "power.png").read_bytes().startswith(b"\x89PNG")
+    wrong = run("study", "power", design, "2mm", "4 mm")
+    assert wrong.returncode == 2
+    assert "Did you mean '2 mm'" in wrong.stderr

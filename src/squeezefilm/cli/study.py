@@ -93,6 +93,47 @@ def simulate(
 
 
 @study.command()
+def power(
+    design: Design,
+    first: Annotated[str, typer.Argument(help='A stimulus, like "8 mm".')],
+    second: Annotated[str, typer.Argument(help="The one to be told from it.")],
+    display: Annotated[
+        str | None, typer.Option(help="One of the design's; its first without it.")
+    ] = None,
+    target: Annotated[float, typer.Option(help="Power asked for.")] = 0.8,
+    studies: Annotated[int, typer.Option(help="Simulated per number of people.")] = 400,
+    observer: Annotated[
+        str, typer.Option(help="What people are made of: a preset or a TOML file.")
+    ] = "fingertip",
+    seed: Annotated[int, typer.Option(help="Of people, answers and studies.")] = 0,
+    out: Annotated[Path | None, typer.Option(help="A PNG of the curve to write.")] = None,
+    as_json: AsJson = False,
+) -> None:
+    """How many people are needed to tell two stimuli apart, by simulated participants."""
+    from squeezefilm.report import terminal
+    from squeezefilm.report.terminal_identification import show_power
+    from squeezefilm.study.design import load_design
+    from squeezefilm.study.observer import load_observer
+    from squeezefilm.study.planned_power import planned_power
+
+    with terminal.progress(enabled=sys.stderr.isatty() or not as_json) as step:
+        found = planned_power(
+            load_design(design), load_observer(observer), first, second, display=display,
+            target=target, studies=studies, seed=seed, progress=step,
+        )  # fmt: skip
+    if out is not None:
+        from squeezefilm.report.study_time_figures import power as drawn
+        from squeezefilm.report.style import png
+        from squeezefilm.results import write_whole
+
+        write_whole(out, png(drawn(found.curve)))
+    if as_json:
+        print_json(found.summary())
+    else:
+        show_power(found)
+
+
+@study.command()
 def run(
     design: Design,
     store: Annotated[Path, typer.Option("--store", help="The study's file; made if not there.")],

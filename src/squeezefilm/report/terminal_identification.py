@@ -10,6 +10,7 @@ from squeezefilm.report.terminal import heading, plain_console, table
 
 if TYPE_CHECKING:
     from squeezefilm.study.analysis import IdentificationAnalysis
+    from squeezefilm.study.planned_power import PlannedPower
 
 
 def show_analyses(analyses: Mapping[str, IdentificationAnalysis]) -> None:
@@ -31,3 +32,29 @@ def show_analyses(analyses: Mapping[str, IdentificationAnalysis]) -> None:
         table(console, ("", "", ""), key_rows(one), fixed=(0,))
         for note in one.notes:
             console.print(f"  {note}", style="dim", highlight=False)
+
+
+def show_power(found: PlannedPower) -> None:
+    """Print how many people tell two stimuli apart, by simulation."""
+    console, curve = plain_console(), found.curve
+    heading(console, f"{found.first} against {found.second} on {found.display}, SIMULATED")
+    table(
+        console,
+        ("people", "studies that find it", "95 % bounds of the simulation"),
+        [
+            (f"{n}", f"{100 * power:.0f} %", f"{100 * low:.0f} to {100 * high:.0f} %")
+            for n, power, low, high in zip(
+                curve.participants, curve.power, curve.low, curve.high, strict=True
+            )
+        ],
+        fixed=(0,),
+    )
+    if curve.needed is None:
+        console.print(f"{curve.participants[-1]} people do not reach {100 * curve.target:.0f} %.")
+    else:
+        console.print(f"{curve.needed} people reach {100 * curve.target:.0f} % power.")
+    console.print(
+        f"One-sided test over people at {curve.alpha:g}; {curve.studies} studies a size, of "
+        f"simulated participants '{found.observer}': what they assume, this assumes.",
+        highlight=False,
+    )

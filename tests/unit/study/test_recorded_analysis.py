@@ -1,0 +1,54 @@
+"""A study's file analysed: the answers that stand in it, and nothing else."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from squeezefilm.errors import InputError
+from squeezefilm.study.conduct import conduct
+from squeezefilm.study.device import NoDevice
+from squeezefilm.study.recorded_analysis import analyze_study
+from squeezefilm.study.run import StudyRun
+from squeezefilm.study.sessions import begin_session
+from squeezefilm.study.store import StudyStore
+from squeezefilm.study.trial_table import trial_table
+
+from .scripted import CONSENT, Script, gratings, staircase
+
+
+def run_through(store: StudyStore, people: int) -> None:
+    for _ in range(people):
+        who = store.enrol()
+        session = begin_session(store, who, NoDevice(), CONSENT, None, acknowledged=False)
+        conduct(StudyRun(store, session), NoDevice(), Script())
+
+
+def test_counts_are_those_of_the_main_trials(tmp_path: Path) -> None:
+    with StudyStore.create(tmp_path / "s.sqlite", gratings(repetitions=3), 4) as store:
+        run_through(store, 3)
+        (found,) = analyze_study(store, resamples=50).values()
+        rows = [row for row in trial_table(store) if row["phase"] == "main"]
+    names = ["2 mm", "4 mm", "8 mm"]
+    counts = np.zeros((3, 3), dtype=int)
+    for row in rows:
+        counts[names.index(str(row["choice"])), names.index(str(row["stimulus"]))] += 1
+    assert counts.sum() == 27
+    assert np.array_equal(found.matrix.counts, counts)
+    assert found.participants == 3
+    assert found.origin == "people"
+
+
+def test_what_is_no_identification_is_refused(tmp_path: Path) -> None:
+    with (
+        StudyStore.create(tmp_path / "j.sqlite", staircase(), 4) as store,
+        pytest.raises(InputError, match="two-interval"),
+    ):
+        analyze_study(store)
+    with (
+        StudyStore.create(tmp_path / "e.sqlite", gratings(), 4) as store,
+        pytest.raises(InputError, match="no answered main trial"),
+    ):
+        analyze_study(store)
