@@ -8,7 +8,6 @@ from __future__ import annotations
 import dataclasses
 import types
 import typing
-from collections.abc import Iterator
 from typing import Any, Literal, Union
 
 import tomlkit
@@ -18,6 +17,7 @@ from squeezefilm import config, presets
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError
 from squeezefilm.quantities import Unit, format_quantity, unit_of
+from squeezefilm.report.numbers import leaves
 
 LONGEST_VALUE = 2000
 """Characters of one value in the form."""
@@ -43,7 +43,8 @@ def form(text: str) -> list[dict[str, Any]]:
     """
     display = display_of(text)
     rows = []
-    for path, value, hint, field in _leaves(display, ()):
+    for path, value, annotation, field in leaves(display):
+        hint = _stated(annotation)
         dotted = ".".join(str(part) for part in path)
         origin = display.provenance.get(dotted)
         unit = unit_of(hint)
@@ -137,30 +138,16 @@ def _text(value: Any, unit: Unit | None) -> str:
     return str(value)
 
 
+def _stated(hint: Any) -> Any:
+    """What a value may be where it is stated: `X` of ``X | None``; a quantity knows itself."""
+    if typing.get_origin(hint) in (Union, types.UnionType) and unit_of(hint) is None:
+        return next(one for one in typing.get_args(hint) if one is not type(None))
+    return hint
+
+
 def _choices(hint: Any) -> list[str] | None:
     if typing.get_origin(hint) is Literal:
         return [str(one) for one in typing.get_args(hint)]
     if hint is bool:
         return ["true", "false"]
     return None
-
-
-def _leaves(
-    node: Any, path: tuple[str | int, ...]
-) -> Iterator[tuple[tuple[str | int, ...], Any, Any, dataclasses.Field[Any]]]:
-    hints = typing.get_type_hints(type(node), include_extras=True)
-    for field in dataclasses.fields(node):
-        if field.metadata.get("loader"):
-            continue
-        value, here = getattr(node, field.name), (*path, field.name)
-        if dataclasses.is_dataclass(value):
-            yield from _leaves(value, here)
-        elif isinstance(value, tuple):
-            for index, item in enumerate(value):
-                if dataclasses.is_dataclass(item):
-                    yield from _leaves(item, (*here, index))
-        elif value is not None:
-            hint = hints[field.name]
-            if typing.get_origin(hint) in (Union, types.UnionType) and unit_of(hint) is None:
-                hint = next(one for one in typing.get_args(hint) if one is not type(None))
-            yield here, value, hint, field

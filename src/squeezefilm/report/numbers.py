@@ -8,7 +8,7 @@ import typing
 import unicodedata
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 from squeezefilm.quantities import Unit, format_quantity, unit_of
 
@@ -173,7 +173,8 @@ def display_values(display: Display) -> list[Value]:
     Members of lists are counted from 1, as the messages of `config.load` count them.
     """
     rows = []
-    for path, value, unit in _leaves(display, ()):
+    for path, value, hint, _ in leaves(display):
+        unit = unit_of(hint)
         origin = display.provenance.get(".".join(str(part) for part in path))
         if isinstance(value, float | int) and not isinstance(value, bool):
             text = shown(value, unit, 6) if unit is not None else f"{value}"
@@ -195,21 +196,29 @@ def dotted(path: tuple[str | int, ...]) -> str:
     return ".".join(str(part + 1) if isinstance(part, int) else part for part in path)
 
 
-def _leaves(
-    node: Any, path: tuple[str | int, ...]
-) -> Iterator[tuple[tuple[str | int, ...], Any, Unit | None]]:
+class Leaf(NamedTuple):
+    """One value of a description: where it stands, its annotation, its field."""
+
+    path: tuple[str | int, ...]
+    value: Any
+    hint: Any
+    field: dataclasses.Field[Any]
+
+
+def leaves(node: Any, path: tuple[str | int, ...] = ()) -> Iterator[Leaf]:
+    """Every value below a dataclass that a file may hold, in order; none for one left out."""
     hints = typing.get_type_hints(type(node), include_extras=True)
     for field in dataclasses.fields(node):
         if field.metadata.get("loader"):
             continue
         value, here = getattr(node, field.name), (*path, field.name)
         if dataclasses.is_dataclass(value):
-            yield from _leaves(value, here)
+            yield from leaves(value, here)
         elif isinstance(value, tuple):
             for index, item in enumerate(value):
-                yield from _leaves(item, (*here, index))
+                yield from leaves(item, (*here, index))
         elif value is not None:
-            yield here, value, unit_of(hints[field.name])
+            yield Leaf(here, value, hints[field.name], field)
 
 
 def film_rows(analysis: Analysis) -> list[tuple[str, str, str, str]]:

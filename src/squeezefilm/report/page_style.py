@@ -55,3 +55,22 @@ footer {{ font-size: .9rem; padding-bottom: 2rem; }}
   svg {{ min-width: 0; }}
 }}
 """
+
+
+def page_head(title: str) -> str:
+    """A page with pictures beside it, from its first line to the opening of its body.
+
+    `title` is HTML already. Scripts and anything from elsewhere are refused by its policy.
+    """
+    policy = "default-src 'none'; style-src 'unsafe-inline'; img-src 'self' file:"
+    return f"""<!DOCTYPE html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta http-equiv="Content-Security-Policy" content="{policy}">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<title>{title}</title>
+<style>{STYLE}
+figure img {{ display: block; width: 100%; height: auto; background: #fff; }}</style>
+</head>
+<body>"""

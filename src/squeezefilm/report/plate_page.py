@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from squeezefilm.quantities import Unit
 from squeezefilm.report.numbers import printable, shown
-from squeezefilm.report.page_style import STYLE
+from squeezefilm.report.page_style import page_head
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -40,17 +40,7 @@ def plate_page(result: PlateAnalysis, figures: list[PlateFigure]) -> str:
     if result.sensitivities is not None:
         sections.append(_section("Sensitivities in numbers", sensitivities(result.sensitivities)))
     stamp = result.summary()["provenance"]
-    return f"""<!DOCTYPE html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'; img-src 'self' file:">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<title>{title}: solved plate</title>
-<style>{STYLE}
-figure img {{ display: block; width: 100%; height: auto; background: #fff; }}</style>
-</head>
-<body>
+    return f"""{page_head(f"{title}: solved plate")}
 <header><h1>{title}</h1>
 <p class="name"><code>{escape(printable(result.display.name))}</code>, plate solved by squeezefilm
 </p></header>
@@ -65,7 +55,7 @@ Numbers: <a href="plate.json">plate.json</a>. The solved volume for ParaView:
 largest).</p></footer>
 </body>
 </html>
-"""  # noqa: E501
+"""
 
 
 def _section(heading: str, body: str) -> str:

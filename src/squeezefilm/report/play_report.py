@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from squeezefilm.report import play_figures as draw
 from squeezefilm.report.numbers import printable
-from squeezefilm.report.page_style import STYLE
+from squeezefilm.report.page_style import page_head
 from squeezefilm.report.style import png
 from squeezefilm.report.terminal_play import play_rows, play_warnings
 from squeezefilm.results import to_json, write_whole
@@ -65,17 +65,7 @@ def _page(result: PlayResult, figures: dict[str, tuple[str, Figure]], files: lis
     )
     warned = "".join(f"<li>{escape(text)}</li>" for text in play_warnings(session))
     links = ", ".join(f'<a href="{escape(name)}">{escape(name)}</a>' for name in files)
-    return f"""<!DOCTYPE html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'; img-src 'self' file:">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<title>{title}: a session</title>
-<style>{STYLE}
-figure img {{ display: block; width: 100%; height: auto; background: #fff; }}</style>
-</head>
-<body>
+    return f"""{page_head(f"{title}: a session")}
 <header><h1>{title}</h1>
 <p class="name">played on <code>{escape(printable(session.setup.display.name))}</code>,
 drive <code>{escape(printable(str(stamp.get("drive", ""))))}</code>, by squeezefilm</p></header>

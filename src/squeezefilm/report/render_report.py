@@ -16,7 +16,7 @@ from squeezefilm.formats.traces import Table, csv_text, parquet_bytes
 from squeezefilm.formats.wav import Waveform, wav_bytes
 from squeezefilm.quantities import FloatArray
 from squeezefilm.report.numbers import printable
-from squeezefilm.report.page_style import STYLE
+from squeezefilm.report.page_style import page_head
 from squeezefilm.report.style import png
 from squeezefilm.report.terminal_render import render_rows
 from squeezefilm.results import to_json, write_whole
@@ -221,17 +221,7 @@ def _page(result: RenderAnalysis, figures: dict[str, tuple[str, Figure]], files:
     warned = "".join(f"<li>{escape(printable(text))}</li>" for text in result.prediction.warnings)
     links = ", ".join(f'<a href="{name}">{name}</a>' for name in files if not name.endswith(
         (".png", ".html")))  # fmt: skip
-    return f"""<!DOCTYPE html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'; img-src 'self' file:">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<title>{title}: rendered texture</title>
-<style>{STYLE}
-figure img {{ display: block; width: 100%; height: auto; background: #fff; }}</style>
-</head>
-<body>
+    return f"""{page_head(f"{title}: rendered texture")}
 <header><h1>{title}</h1>
 <p class="name">rendered on <code>{escape(printable(result.display.name))}</code> by squeezefilm
 </p></header>
@@ -251,4 +241,4 @@ SHA-256 of display, texture and motion <code>{escape(str(stamp["config_sha256"])
 seed {escape(str(stamp["seed"]))}. Beside this page: {links}.</p></footer>
 </body>
 </html>
-"""  # noqa: E501
+"""

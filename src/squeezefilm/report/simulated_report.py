@@ -13,7 +13,7 @@ import numpy as np
 from squeezefilm.errors import InputError
 from squeezefilm.report import observer_figures
 from squeezefilm.report.numbers import printable
-from squeezefilm.report.page_style import STYLE
+from squeezefilm.report.page_style import page_head
 from squeezefilm.report.style import png
 from squeezefilm.results import write_whole
 from squeezefilm.study.simulated import SimulatedStudy
@@ -200,17 +200,7 @@ def _page(study: SimulatedStudy, summary: dict[str, Any], analysed: dict[str, st
             + f"{link}\n</section>\n"
         )
     title = escape(printable(f"{design.name}: simulated participants"))
-    return f"""<!DOCTYPE html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'; img-src 'self' file:">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<title>{title}</title>
-<style>{STYLE}
-figure img {{ display: block; width: 100%; height: auto; background: #fff; }}</style>
-</head>
-<body>
+    return f"""{page_head(f"{title}")}
 <header><h1>{title}</h1>
 <p class="name">{study.participants} <b>simulated</b> participants, observer
 {escape(printable(study.tables.observer.name))}, seed {study.seed}; no person answered</p></header>
@@ -227,4 +217,4 @@ SHA-256 of design and observer <code>{escape(str(provenance["config_sha256"]))}<
 <a href="simulated.json">simulated.json</a>, <a href="trials.csv">trials.csv</a>.</p></footer>
 </body>
 </html>
-"""  # noqa: E501
+"""

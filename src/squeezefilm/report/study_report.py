@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from squeezefilm.errors import InputError
 from squeezefilm.quantities import Unit
 from squeezefilm.report.numbers import printable, shown
-from squeezefilm.report.page_style import STYLE
+from squeezefilm.report.page_style import page_head
 from squeezefilm.report.style import png
 from squeezefilm.results import write_whole
 
@@ -109,17 +109,7 @@ def study_page(
         + (_section("Mixed models", _mixed(analysis)) if analysis.mixed is not None else "")
         + _section("What could not be computed", f"<ul>{notes or '<li>Nothing.</li>'}</ul>")
     )
-    return f"""<!DOCTYPE html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'; img-src 'self' file:">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<title>{title}: identification study</title>
-<style>{STYLE}
-figure img {{ display: block; width: 100%; height: auto; background: #fff; }}</style>
-</head>
-<body>
+    return f"""{page_head(f"{title}: identification study")}
 <header><h1>{title}</h1>
 <p class="name"><b>{escape(printable(analysis.origin))}</b> answers, analysed by squeezefilm</p></header>
 <main>
