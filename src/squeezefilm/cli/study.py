@@ -134,6 +134,31 @@ def power(
 
 
 @study.command()
+def rehearse(
+    design: Design,
+    store: Annotated[Path, typer.Option("--store", help="The study's file; made if not there.")],
+    participants: Annotated[int, typer.Option(help="How many simulated people.")] = 3,
+    observer: Annotated[
+        str, typer.Option(help="What people are made of: a preset or a TOML file.")
+    ] = "fingertip",
+    seed: Seed = 0,
+) -> None:
+    """Let simulated participants do every trial of a study's file, to try analysis and exports."""
+    from squeezefilm.report import terminal
+    from squeezefilm.study.observer import load_observer
+    from squeezefilm.study.rehearsal import rehearse as run_through
+    from squeezefilm.study.terminal_run import open_study
+
+    with (
+        open_study(store, design, seed, 0, 1) as found,
+        terminal.progress(enabled=sys.stderr.isatty()) as step,
+    ):
+        people = run_through(found, load_observer(observer), participants, progress=step)
+    typer.echo(f"{len(people)} simulated participants answered everything; look at it with:")
+    typer.echo(f"squeezefilm study analyze {store}")
+
+
+@study.command()
 def run(
     design: Design,
     store: Annotated[Path, typer.Option("--store", help="The study's file; made if not there.")],

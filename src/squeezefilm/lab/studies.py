@@ -22,6 +22,7 @@ from squeezefilm.study.device import NoDevice, StudyDevice
 from squeezefilm.study.exports import export_study
 from squeezefilm.study.exposure import Exposure
 from squeezefilm.study.merge import merge
+from squeezefilm.study.origin import origin_of
 from squeezefilm.study.recorded_analysis import analyze_study
 from squeezefilm.study.run import Response, StudyRun
 from squeezefilm.study.session_conditions import SessionConditions
@@ -103,6 +104,7 @@ class Studies:
             ],
             "sittings": [_shown(one) for one in self.sittings.of_study(name)],
             "confusion": self.confusion(name),
+            "origin": origin_of(store),
         }
 
     def confusion(self, name: str) -> list[dict[str, Any]]:
@@ -330,6 +332,16 @@ def analysis_of(path: Path) -> dict[str, Any]:
             for display, one in found.items()
         ]
     }
+
+
+def rehearsed(path: Path, participants: int) -> dict[str, Any]:
+    """Simulated participants do the study's file; in a process of its own."""
+    from squeezefilm.study.observer import load_observer
+    from squeezefilm.study.rehearsal import rehearse
+
+    with StudyStore.open(path) as store:
+        people = rehearse(store, load_observer(), participants)
+    return {"people": len(people)}
 
 
 def report_of(path: Path) -> dict[str, Any]:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from pydantic import Field
 
 from squeezefilm.errors import InputError
-from squeezefilm.lab.studies import Studies, analysis_of, device_of, report_of
+from squeezefilm.lab.studies import Studies, analysis_of, device_of, rehearsed, report_of
 from squeezefilm.lab.wire import Answer, Request
 from squeezefilm.study.exposure import Exposure, exposure
 from squeezefilm.study.run import Response
@@ -77,6 +77,12 @@ class Respond(OfSitting):
     response_time: float | None = Field(None, ge=0.0, le=86400.0)
     started_monotonic: float = Field(0.0, ge=0.0, le=1e12)
     ended_monotonic: float = Field(0.0, ge=0.0, le=1e12)
+
+
+class RehearseStudy(NamedStudy):
+    """How many simulated participants do the study."""
+
+    participants: int = Field(ge=1, le=200)
 
 
 class ExportStudy(NamedStudy):
@@ -186,6 +192,12 @@ def add_study(lab: Lab) -> StudyThread:
     async def export(asked: ExportStudy) -> Answer:
         return {"type": "exported", **await thread.do(Studies.export, asked.study, asked.format)}
 
+    async def rehearse(asked: RehearseStudy) -> Answer:
+        path = await thread.do(Studies.path, asked.study)
+        found = await lab.workers.slow.do("rehearsal", rehearsed, path, asked.participants)
+        await changed(asked.study)
+        return {"type": "rehearsed", **found}
+
     async def analyze(asked: NamedStudy) -> Answer:
         path = await thread.do(Studies.path, asked.study)
         return {"type": "analysis", **await lab.workers.slow.do("analysis", analysis_of, path)}
@@ -239,6 +251,7 @@ def add_study(lab: Lab) -> StudyThread:
     add("delete participant", DeleteParticipant, delete)
     add("export study", ExportStudy, export)
     add("merge study", MergeStudy, merged)
+    add("rehearse study", RehearseStudy, rehearse)
     add("analyze study", NamedStudy, analyze)
     add("report study", NamedStudy, report)
     add = lab.participant.add

@@ -8,6 +8,7 @@ import numpy as np
 
 from squeezefilm.errors import InputError
 from squeezefilm.study.analysis import IdentificationAnalysis, analyze_identification
+from squeezefilm.study.origin import origin_of
 from squeezefilm.study.store import StudyStore
 from squeezefilm.study.trial_table import trial_table
 
@@ -17,7 +18,6 @@ _EXPLORED = ("mean_speed_m_per_s", "mean_normal_force_N", "path_length_m")
 def analyze_study(
     store: StudyStore,
     *,
-    origin: str = "people",
     mixed: bool = False,
     resamples: int = 1000,
     seed: int = 0,
@@ -27,7 +27,7 @@ def analyze_study(
 
     Practice, familiarisation and catch trials are left out. Stimuli and gratings are taken in the
     design's order; each stimulus must have the grating of its own period among the answers.
-    `origin` says whose answers they are. See `analyze_identification` for the rest.
+    Results say whose answers they are (`origin_of`). See `analyze_identification` for the rest.
 
     Raises:
         InputError: another task, stimuli that have no right answer, or no answer yet.
@@ -62,7 +62,7 @@ def analyze_study(
             [right.index(str(row["choice"])) for row in here],
             right,
             name=f"{store.study['name']}, {display}",
-            origin=origin,
+            origin=origin_of(store),
             response_time=np.array([np.nan if one is None else one for one in times], dtype=float)
             if any(one is not None for one in times)
             else None,

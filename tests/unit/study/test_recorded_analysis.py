@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from pathlib import Path
 
 import numpy as np
@@ -10,9 +11,13 @@ import pytest
 from squeezefilm.errors import InputError
 from squeezefilm.study.conduct import conduct
 from squeezefilm.study.device import NoDevice
+from squeezefilm.study.observer import load_observer
+from squeezefilm.study.origin import SIMULATED, origin_of
 from squeezefilm.study.recorded_analysis import analyze_study
+from squeezefilm.study.rehearsal import rehearse
 from squeezefilm.study.run import StudyRun
 from squeezefilm.study.sessions import begin_session
+from squeezefilm.study.simulated import simulate_participants
 from squeezefilm.study.store import StudyStore
 from squeezefilm.study.trial_table import trial_table
 
@@ -39,6 +44,24 @@ def test_counts_are_those_of_the_main_trials(tmp_path: Path) -> None:
     assert np.array_equal(found.matrix.counts, counts)
     assert found.participants == 3
     assert found.origin == "people"
+
+
+def test_a_rehearsal_answers_everything_and_says_that_nobody_did(tmp_path: Path) -> None:
+    design = gratings(repetitions=2, displays=("biet2008-stator",))
+    observer = dataclasses.replace(load_observer(), finger_classes=1)
+    with StudyStore.create(tmp_path / "r.sqlite", design, 4) as store:
+        people = rehearse(store, observer, 2)
+        assert origin_of(store) == SIMULATED
+        assert all(one["planned"] == one["answered"] for one in store.participants())
+        assert {one["uuid"] for one in store.participants()} == set(people)
+        (found,) = analyze_study(store, resamples=50).values()
+        expected = simulate_participants(design, observer, 2, 4).confusion(0)
+    assert found.origin == SIMULATED
+    assert np.array_equal(found.matrix.counts, expected.counts)
+    with StudyStore.create(tmp_path / "p.sqlite", design, 4) as store:
+        run_through(store, 1)
+        with pytest.raises(InputError, match="people took part"):
+            rehearse(store, observer, 1)
 
 
 def test_what_is_no_identification_is_refused(tmp_path: Path) -> None:

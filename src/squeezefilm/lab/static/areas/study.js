@@ -115,8 +115,27 @@ class StudyView {
         element("p", { class: "muted", text: `${study.title}. Seed ${study.seed}.` }),
         element("div", { class: "scroll" }, element("table", { class: "participants" },
           element("tr", {}, ...["participant", "answered", "now on", "sitting", ""].map((text) => element("th", { text }))), ...rows)),
-        element("button", { class: "main", text: "Enrol a participant", onclick: () => this.tried(async () => this.take(await this.lab.socket.ask("enrol", { study: study.name }))) })),
+        this.rehearsal(), element("button", { class: "main", text: "Enrol a participant", onclick: () => this.tried(async () => this.take(await this.lab.socket.ask("enrol", { study: study.name }))) })),
       ...study.confusion.map((table) => confusionCard(table)));
+  }
+
+  /** Simulated people may do a study that nobody took part in. */
+  rehearsal() {
+    if (!["nobody", "simulated participants"].includes(this.study.origin)) return null;
+    const count = element("input", { type: "text", value: "3", size: "3", "aria-label": "how many simulated participants" });
+    const button = element("button", { text: "Rehearse with simulated participants", onclick: () => this.tried(async () => {
+      const participants = Number(count.value);
+      if (!(Number.isInteger(participants) && participants > 0)) throw new Error(`'${count.value}' is no number of participants`);
+      button.disabled = true;
+      button.textContent = "simulating…";
+      try {
+        await this.lab.socket.ask("rehearse study", { study: this.study.name, participants });
+      } finally {
+        await this.reload();
+      }
+    }) });
+    const said = this.study.origin === "simulated participants" ? element("p", { class: "warning", text: "Every answer in this file is simulated." }) : null;
+    return element("div", {}, said, element("div", { class: "row" }, count, button));
   }
 
   participant(one) {

@@ -1,0 +1,138 @@
+"""The lab's Device and Results areas in a real browser: a twin checked, played and stopped; a study
+looked at, exported, and somebody taken out of it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+from tests.unit.study.scripted import CONSENT, Script, gratings
+
+from squeezefilm.session.record import read_trace
+from squeezefilm.study.conduct import conduct
+from squeezefilm.study.device import NoDevice
+from squeezefilm.study.run import StudyRun
+from squeezefilm.study.sessions import begin_session
+from squeezefilm.study.store import StudyStore
+
+from .test_lab_pages import CONTRAST, keep, opened
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser
+
+    from .conftest import RunningLab
+
+pytestmark = pytest.mark.chromium
+
+COMPILED = 180_000
+"""ms in which a twin is there, its kernels compiled."""
+
+
+def test_a_twin_is_played_watched_and_stopped_by_the_space_bar(
+    chromium: Browser, running_lab: RunningLab
+) -> None:
+    page, complaints = opened(chromium, running_lab, "device")
+    play = page.get_by_role("button", name="Play", exact=True)
+    page.locator("#device-texture option").first.wait_for(state="attached")
+    assert play.is_disabled()
+    page.locator("#duration").fill("60 s")
+    page.get_by_role("button", name="Arm", exact=True).click()
+    play.click()
+    page.locator(".stopbar", has_text="playing,").wait_for(timeout=COMPILED)
+    state = page.locator(".number b").first
+    page.wait_for_function(
+        "() => document.querySelector('.number b').innerText === 'PLAYING'", timeout=COMPILED
+    )
+    position = page.locator(".number b").nth(1)
+    seen = set()
+    for _ in range(20):
+        seen.add(position.inner_text())
+        page.wait_for_timeout(100)
+    assert len(seen) > 3
+    keep(page, "lab-device-light-1280")
+    assert page.evaluate(CONTRAST) == []
+    page.keyboard.press("Space")
+    page.locator(".stopbar", has_text="it was interrupted").wait_for(timeout=60_000)
+    assert state.inner_text() in ("PLAYING", "OFF")
+    assert play.is_disabled()
+    (folder,) = [one for one in (running_lab.folder / "sessions").iterdir() if one.is_dir()]
+    trace = read_trace(folder / "trace.sqft")
+    assert len(trace.rows) > 5000
+    assert (folder / "play.html").exists()
+    assert complaints == []
+
+
+@pytest.mark.nightly
+def test_a_twin_passes_every_check(chromium: Browser, running_lab: RunningLab) -> None:
+    page, complaints = opened(chromium, running_lab, "device", color_scheme="dark")
+    page.get_by_role("button", name="Check the device").click()
+    page.locator("h2", has_text="check").wait_for(timeout=COMPILED)
+    keep(page, "lab-device-checked-dark-1280")
+    assert page.locator(".failed").all_inner_texts() == []
+    assert page.locator(".passed").count() == 18
+    assert page.evaluate(CONTRAST) == []
+    assert complaints == []
+
+
+def answered(lab: RunningLab, people: int) -> list[str]:
+    """A study in the lab's folder with answered trials; who answered them."""
+    path = lab.folder / "studies" / "first.sqlite"
+    path.parent.mkdir(parents=True)
+    found = []
+    with StudyStore.create(path, gratings(repetitions=4), 4) as store:
+        for _ in range(people):
+            who = store.enrol()
+            session = begin_session(store, who, NoDevice(), CONSENT, None, acknowledged=False)
+            conduct(StudyRun(store, session), NoDevice(), Script())
+            found.append(who)
+    return found
+
+
+def test_a_study_is_looked_at_exported_and_somebody_taken_out(
+    chromium: Browser, running_lab: RunningLab
+) -> None:
+    people = answered(running_lab, 2)
+    page, complaints = opened(chromium, running_lab, "results")
+    page.get_by_text("Confusions, biet2008-plate").wait_for(timeout=60_000)
+    assert page.locator(".confusion td.cell").count() == 9
+    assert page.get_by_role("row", name="Proportion correct").count() >= 3
+    page.locator(".figures img").first.wait_for()
+    keep(page, "lab-results-light-1280")
+    assert page.evaluate(CONTRAST) == []
+    page.get_by_role("button", name="CSV").click()
+    page.locator("#notice", has_text="first.exports/csv").wait_for()
+    assert list((running_lab.folder / "studies" / "first.exports" / "csv").glob("*.csv"))
+    first = page.locator(".person").first
+    pseudonym = first.locator("code").inner_text()
+    assert pseudonym in people
+    first.get_by_role("button", name="Delete…").click()
+    page.get_by_role("button", name="Delete for good").click()
+    page.locator(".error", has_text="type exactly that").wait_for()
+    page.get_by_label("to delete").fill(pseudonym)
+    page.get_by_role("button", name="Delete for good").click()
+    page.locator("#notice", has_text="nothing left").wait_for(timeout=30_000)
+    page.wait_for_function("() => document.querySelectorAll('.person').length === 1")
+    folder = running_lab.folder / "studies"
+    left = [
+        path
+        for path in folder.rglob("*")
+        if path.is_file() and pseudonym.encode() in path.read_bytes()
+    ]
+    assert left == []
+    assert complaints == []
+
+
+@pytest.mark.nightly
+def test_a_study_is_rehearsed_by_simulated_people(
+    chromium: Browser, running_lab: RunningLab
+) -> None:
+    page, complaints = opened(chromium, running_lab, "study")
+    page.get_by_role("button", name="Create the study").click()
+    page.get_by_label("how many simulated participants").fill("2")
+    page.get_by_role("button", name="Rehearse with simulated").click()
+    page.get_by_text("Every answer in this file is simulated.").wait_for(timeout=COMPILED)
+    assert page.locator(".participants tr").count() == 3
+    page.goto(f"{running_lab.address}#results")
+    page.get_by_text("Confusions, biet2008-stator").wait_for(timeout=60_000)
+    keep(page, "lab-results-rehearsed-1280")
+    assert complaints == []
