@@ -165,6 +165,8 @@ def play(connection: Connection, work: DeviceWork) -> None:
             tap=tap,
             progress=lambda text: tell({"type": "device progress", "text": text}),
         )
+        # The device is at zero and disarmed; what is left to be written is not to be cut short.
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
         from squeezefilm.report.play_report import write_play
 
         write_play(result, Path(work.out))
