@@ -177,6 +177,7 @@ class StudyRun:
         trial, surfaces, intensity = self._surfaces(planned)
         _require_answer(trial, response)
         names = [self._store.save_trace(e.trace) for e in response.explorations if e.trace]
+        names += [e.raw_trace for e in response.explorations if e.raw_trace]
         row = self._response_row(planned, trial, response, surfaces, intensity, names)
         with self._store.transaction() as write:
             # Another process with the same participant may have been faster.
