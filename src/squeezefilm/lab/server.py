@@ -7,6 +7,7 @@ import contextlib
 import logging
 import socket
 from collections.abc import AsyncIterator, Callable
+from contextvars import ContextVar
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -43,9 +44,16 @@ MOST_WAITING = 64
 """Messages of one page being answered at once; more is a page that does not wait."""
 
 
+PAGE: ContextVar[WebSocket] = ContextVar("page")
+"""The page whose message is being answered."""
+
+
 @dataclass(slots=True)
 class Lab:
-    """One running lab: where its files lie, its keys, its workers, who answers what."""
+    """One running lab: where its files lie, its keys, its workers, who answers what.
+
+    `left` is called with each page that went away, `closing` when the lab ends.
+    """
 
     folder: Path
     keys: Keys
@@ -55,6 +63,7 @@ class Lab:
     workers: Workers = field(default_factory=Workers)
     pages: set[WebSocket] = field(default_factory=set)
     closing: list[Callable[[], None]] = field(default_factory=list)
+    left: list[Callable[[WebSocket], None]] = field(default_factory=list)
 
     async def tell(self, message: dict[str, Any], *, participants: bool = False) -> None:
         """Send a message that nobody asked for to every open page of a kind."""
@@ -139,6 +148,7 @@ async def converse(lab: Lab, dispatcher: Dispatcher, page: WebSocket) -> None:
     """Answer one page's messages, each as it is ready, until the page goes."""
     await page.accept()
     lab.pages.add(page)
+    PAGE.set(page)
     waiting: set[asyncio.Task[None]] = set()
 
     async def one(text: str) -> None:
@@ -166,6 +176,8 @@ async def converse(lab: Lab, dispatcher: Dispatcher, page: WebSocket) -> None:
         pass
     finally:
         lab.pages.discard(page)
+        for told in lab.left:
+            told(page)
         for task in waiting:
             task.cancel()
 

@@ -189,6 +189,21 @@ class StudyRun:
         assert known is not None
         return known if done is not None else _first_time(known)
 
+    def presented(self, token: str) -> tuple[Trial, tuple[Stimulus | Grating, ...]]:
+        """The trial of a token and its surfaces. Raises `InputError` for a token of no trial of
+        this participant, or of one that is answered or was not presented."""
+        planned = self._planned(token)
+        first = self._store.rows(_PLANNED, [self.participant])
+        if not first or first[0]["uuid"] != token or not first[0]["presentations"]:
+            raise InputError(f"trial {planned['number']} is not being presented; call next_trial")
+        trial, surfaces, _ = self._surfaces(planned)
+        return trial, surfaces
+
+    def recorded(self, token: str) -> bool:
+        """Whether this trial's answer is on the disk. Raises `InputError` for a token of no trial
+        of this participant."""
+        return self._recorded(self._planned(token)) is not None
+
     def _planned(self, token: str) -> dict[str, Any]:
         found = self._store.rows(
             "SELECT * FROM trial WHERE uuid = ? AND participant = ?", [token, self.participant]

@@ -37,8 +37,8 @@ def require_study_drive(drive: str) -> None:
     if drive != "twin" and not (drive.startswith("serial:") and drive[7:].strip()):
         raise InputError(
             f"drive = '{drive[:80]}' is not known; it may be none, rehearsal, twin, or "
-            "serial:PORT like serial:/dev/ttyACM0. A drive that does not stop by itself, such as a sound card, is "
-            "not allowed in a study",
+            "serial:PORT like serial:/dev/ttyACM0. A drive that does not stop by itself, such as a "
+            "sound card, is not allowed in a study",
             quantity="drive",
         )
 

@@ -8,7 +8,6 @@ from collections.abc import Callable
 from pathlib import Path
 
 from squeezefilm import config
-from squeezefilm.display import load_display
 from squeezefilm.errors import InputError
 from squeezefilm.quantities import MetrePerVolt
 from squeezefilm.study.conduct import Examiner, conduct
@@ -18,11 +17,9 @@ from squeezefilm.study.device import NoDevice, StudyDevice
 from squeezefilm.study.exposure import Exposure, exposure
 from squeezefilm.study.run import StudyRun
 from squeezefilm.study.session_conditions import SessionConditions
-from squeezefilm.study.session_device import SessionDevice, require_study_drive
 from squeezefilm.study.sessions import begin_session, display_wanted, end_session
 from squeezefilm.study.store import StudyStore
 from squeezefilm.study.trials import expected_duration
-from squeezefilm.study.twin_device import StudyTwin
 
 Progress = Callable[[str], None]
 
@@ -65,8 +62,8 @@ def run_session(
 
     `drive` is "none", "rehearsal" (the twin in this process, on a virtual clock), "twin" (behind a
     port, in real time) or "serial:PORT", whose pickup gives `amplitude_per_pickup` (m/V; None if
-    not calibrated). Without a participant somebody new is enrolled and named by `tell`; not so if the session
-    cannot start.
+    not calibrated). Without a participant somebody new is enrolled and named by `tell`; not so if
+    the session cannot start.
     `conditions` is a TOML file of `SessionConditions`; `consent` counts beside what it says.
     `acknowledge` is shown the statement on airborne ultrasound. Raises what `begin_session` and
     `conduct` raise.
@@ -118,6 +115,11 @@ def _device(
 ) -> tuple[StudyDevice, Exposure | None]:
     if drive == "none":
         return NoDevice(), None
+    # Plates, film and loop take a second to import, which a study by hand need not wait for.
+    from squeezefilm.display import load_display
+    from squeezefilm.study.session_device import SessionDevice, require_study_drive
+    from squeezefilm.study.twin_device import StudyTwin
+
     if drive != "rehearsal":
         require_study_drive(drive)
     tell = progress or (lambda _: None)

@@ -12,6 +12,8 @@ const KEPT = `squeezefilm answer ${sitting}`;
 const socket = new Socket("/ws/participant");
 let keys = null;
 let resting = null;
+// Whether a device plays a surface, and which presentation what comes back belongs to.
+let playing = false, turn = 0;
 
 socket.on("connection", ({ open }) => {
   connection.textContent = open ? "" : "The connection is lost. Nothing you answered is lost; please wait.";
@@ -20,7 +22,12 @@ socket.on("connection", ({ open }) => {
   if (!open) freeze();
 });
 socket.on("sitting ended", (message) => message.sitting === sitting && goOn());
-document.addEventListener("keydown", (event) => keys?.(event));
+document.addEventListener("keydown", (event) => {
+  if (event.key === " " && playing) {
+    event.preventDefault();
+    stopSurface();
+  } else keys?.(event);
+});
 begin();
 
 /** One tab a sitting: a second one says so and takes nothing over. */
@@ -47,14 +54,21 @@ function mine() {
 async function goOn() {
   try {
     const kept = localStorage.getItem(KEPT);
-    if (kept) {
-      await socket.ask("respond", { sitting, ...JSON.parse(kept) });
-      localStorage.removeItem(KEPT);
-    }
+    if (kept) await handKept(kept);
     show(await socket.ask("where", { sitting }));
   } catch (error) {
-    if (socket.open) say("This does not work", error.message);
+    if (socket.open) failed(error);
   }
+}
+
+async function handKept(kept) {
+  try {
+    await socket.ask("respond", { sitting, ...JSON.parse(kept) });
+  } catch (error) {
+    // Refused, it would be refused for ever: its trial comes again. Lost on the way, it is kept.
+    if (!socket.open) throw error;
+  }
+  localStorage.removeItem(KEPT);
 }
 
 function freeze() {
@@ -72,7 +86,14 @@ function say(title, text) {
   page(element("h2", { text: title }), element("p", { text }));
 }
 
+function failed(error) {
+  playing = false;
+  page(element("h2", { text: "This does not work" }), element("p", { role: "alert", text: error.message }),
+    element("button", { class: "main", text: "Go on", onclick: goOn }));
+}
+
 function show(found) {
+  playing = false;
   if (found.state === "consent") return consent(found);
   if (found.state === "finished") return say("Thank you", "You have answered every trial. Please tell the experimenter.");
   if (found.state === "ended") return say("This sitting has ended", "Please tell the experimenter.");
@@ -122,7 +143,7 @@ async function ask(type, fields = {}) {
   try {
     show(await socket.ask(type, { sitting, ...fields }));
   } catch (error) {
-    if (socket.open) say("This does not work", error.message);
+    if (socket.open) failed(error);
   }
 }
 
@@ -132,6 +153,65 @@ function trial(found) {
       pauseThen(found));
     return;
   }
+  if (found.plays) feel(found, 0);
+  else questions(found);
+}
+
+/** A device plays a surface; the answer's time runs from when it plays, or from the last one's end. */
+async function feel(found, number) {
+  const mine = (turn += 1);
+  const which = found.surfaces === 1 ? "surface" : ["first surface", "second surface"][number];
+  playing = true;
+  page(element("h2", { text: "One moment" }), element("p", { role: "status", text: `The ${which} is being prepared.` }), stopper());
+  try {
+    await socket.ask("feel", { sitting, token: found.token, place: number });
+    if (mine !== turn) return;
+    if (found.surfaces === 1) {
+      questions(found);
+      place.querySelector("section").append(stopper());
+      return;
+    }
+    page(element("h2", { text: `Feel the ${which}` }), waiting("Done", 0, () => feltOne(found, number)), stopper());
+  } catch (error) {
+    if (mine === turn && socket.open) failed(error);
+  }
+}
+
+async function feltOne(found, number) {
+  if (number + 1 < found.surfaces) {
+    feel(found, number + 1);
+    return;
+  }
+  const mine = turn;
+  freeze();
+  try {
+    await socket.ask("felt", { sitting, token: found.token });
+    if (mine !== turn) return;
+    playing = false;
+    questions(found);
+  } catch (error) {
+    if (mine === turn && socket.open) failed(error);
+  }
+}
+
+function stopper() {
+  return element("p", {}, element("button", { class: "stop", text: "Stop (space bar)", onclick: stopSurface }));
+}
+
+/** Silence at once. The trial was not answered; it comes again. */
+async function stopSurface() {
+  turn += 1;
+  playing = false;
+  freeze();
+  try {
+    await socket.ask("stop surface", { sitting });
+    page(element("h2", { text: "Stopped" }), element("p", { text: "The surface was stopped, and nothing was recorded. It is presented again when you go on." }), next("Go on"));
+  } catch (error) {
+    if (socket.open) failed(error);
+  }
+}
+
+function questions(found) {
   const began = performance.now();
   const answer = (fields) => hand(found, began, fields);
   const head = { familiarisation: `Feel the grating ${found.named}`, practice: "Practice", main: "" }[found.phase];
@@ -143,7 +223,7 @@ function trial(found) {
   }
   const parts = [title];
   if (head) parts.push(element("p", { text: found.question }));
-  if (found.surfaces === 2) parts.push(element("p", { text: "Feel the first surface, then the second." }));
+  if (found.surfaces === 2 && !found.plays) parts.push(element("p", { text: "Feel the first surface, then the second." }));
   if (found.interrupted) parts.push(element("p", { class: "muted", text: "This one was interrupted; it is presented again." }));
   if (found.numeric) parts.push(estimate(answer));
   else parts.push(choices(found, answer));
@@ -186,6 +266,8 @@ function numberKeys(found, answer) {
 
 async function hand(found, began, fields) {
   const ended = performance.now();
+  turn += 1;
+  playing = false;
   const answer = {
     token: found.token, ...fields, response_time: (ended - began) / 1e3,
     started_monotonic: began / 1e3, ended_monotonic: ended / 1e3,
@@ -200,7 +282,7 @@ async function hand(found, began, fields) {
     if (!socket.open) return;
     // Refused, not lost: another would be refused as well.
     localStorage.removeItem(KEPT);
-    say("This does not work", error.message);
+    failed(error);
   }
 }
 
