@@ -18,11 +18,22 @@ from squeezefilm.device.host import DeviceHost
 from squeezefilm.device.messages import Reading
 from squeezefilm.device.safety import Limits
 from squeezefilm.errors import DeviceError
-from squeezefilm.quantities import FloatArray, Hertz, HertzArray, Second, Unit, Volt, require
+from squeezefilm.quantities import (
+    Dimensionless,
+    FloatArray,
+    Hertz,
+    HertzArray,
+    Second,
+    Unit,
+    Volt,
+    require,
+)
 
 REPORT_PERIOD: Second = 1e-3
 READINGS = 16
 """Readings averaged at each carrier."""
+PROMINENCE: Dimensionless = 1.1
+"""A resonance is at least so many times what is read at the ends of the sweep."""
 LIFT_LIMIT: Second = 10.0
 """How long a finger may stay on the plate before the sweep is given up."""
 _DEAF_LIMIT: Second = 0.5
@@ -43,7 +54,13 @@ class ResonanceSweep:
 
     @property
     def peak(self) -> tuple[Hertz, Volt]:
-        """The resonance (Hz) and the pickup's amplitude there (V), see `peak`."""
+        """The resonance (Hz) and the pickup's amplitude there (V), see `peak`.
+
+        NaN where nothing stands out over the sweep's ends: far from its resonance a plate answers
+        evenly, and the largest of even readings is noise.
+        """
+        if np.max(self.pickup) < PROMINENCE * max(self.pickup[0], self.pickup[-1]):
+            return math.nan, math.nan
         return peak(self.carriers, self.pickup)
 
 
