@@ -21,7 +21,7 @@ from squeezefilm.session import rows as column
 from squeezefilm.session.record import read_trace
 from squeezefilm.study.conduct import conduct
 from squeezefilm.study.design import StudyDesign
-from squeezefilm.study.device import StudyDevice
+from squeezefilm.study.device import NoDevice, StudyDevice
 from squeezefilm.study.exposure import Exposure
 from squeezefilm.study.run import Acknowledgement, Presentation, StudyRun
 from squeezefilm.study.session_conditions import SessionConditions
@@ -128,6 +128,7 @@ def test_a_session_on_a_twin_behind_a_port(store: StudyStore) -> None:
     assert [one["passed"] for one in verified] == [1, 1]
 
 
+@pytest.mark.nightly
 def test_a_device_that_dies_in_a_trial_leaves_no_answer_and_the_trial_comes_again(
     store: StudyStore, tmp_path: Path
 ) -> None:
@@ -137,8 +138,6 @@ def test_a_device_that_dies_in_a_trial_leaves_no_answer_and_the_trial_comes_agai
         link.symlink_to(port)
         # Not verified here, since its finger never lifts.
         with SessionDevice(DISPLAY, f"serial:{link}", store.traces) as device:
-            from squeezefilm.study.device import NoDevice
-
             who = store.enrol()
             session = begin_session(
                 store, who, NoDevice(), SessionConditions(consent=True), None, acknowledged=False

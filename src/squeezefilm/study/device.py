@@ -58,7 +58,7 @@ class DeviceVerification:
         require("resonance_tolerance", self.resonance_tolerance, above=0.0, below=1.0)
         if self.measurable:
             metre, hertz = Unit("m"), Unit("Hz")
-            if not math.isnan(self.expected_amplitude):
+            if not (math.isnan(self.amplitude) and math.isnan(self.expected_amplitude)):
                 require("expected_amplitude", self.expected_amplitude, metre, above=0.0)
             require(
                 "expected_resonance_frequency", self.expected_resonance_frequency, hertz, above=0.0
