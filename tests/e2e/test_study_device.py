@@ -168,3 +168,31 @@ def test_a_device_that_dies_in_a_trial_leaves_no_answer_and_the_trial_comes_agai
     assert len(store.rows("SELECT * FROM response")) == 2
     # The record of the surface that failed is nobody's.
     assert len(store.unreferenced_traces()) == 1
+
+
+KILLED = """
+import os, signal, sys, time
+from pathlib import Path
+from squeezefilm.study.session_device import SessionDevice
+from squeezefilm.study.stimuli import Stimulus
+if __name__ == "__main__":
+    device = SessionDevice("biet2008-plate", "twin", Path(sys.argv[1]))
+    device.present(Stimulus("8 mm", 8e-3, "period", low=0.8), 1)
+    time.sleep(1)
+    os.kill(os.getpid(), signal.SIGKILL)
+"""
+
+
+@pytest.mark.nightly
+def test_a_study_that_is_killed_leaves_its_device_at_zero(tmp_path: Path) -> None:
+    script, traces = tmp_path / "killed.py", tmp_path / "traces"
+    script.write_text(KILLED, encoding="utf-8")
+    done = subprocess.run([sys.executable, str(script), str(traces)], timeout=120, check=False)
+    assert done.returncode == -signal.SIGKILL
+    (raw,) = traces.iterdir()
+    until = time.monotonic() + 60
+    while not (trace := read_trace(raw)).damage.closed and time.monotonic() < until:
+        time.sleep(0.1)
+    assert trace.damage.whole
+    end = next(one.fields for one in trace.events if one.kind == "end")
+    assert end["device_at_zero"]

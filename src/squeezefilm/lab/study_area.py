@@ -319,7 +319,7 @@ def add_study(lab: Lab, devices: StudyDevices | None = None) -> StudyThread:
             explorations=felt,
         )
         found = await thread.do(Studies.respond, asked.sitting, asked.token, response)
-        devices.answered(asked.sitting)
+        devices.answered(asked.sitting, asked.token)
         await changed(found.pop("study"))
         return {"type": "acknowledged", **found}
 

@@ -168,9 +168,10 @@ class StudyDevices:
             await self._felt(held)
             return tuple(held.felt[place] for place in sorted(held.felt))
 
-    def answered(self, sitting: str) -> None:
-        """The answer is on the disk: what was felt need not be kept."""
-        if (held := self._held.get(sitting)) is not None:
+    def answered(self, sitting: str, token: str) -> None:
+        """This trial's answer is on the disk: what was felt of it need not be kept."""
+        held = self._held.get(sitting)
+        if held is not None and held.token == token:
             held.forget()
 
     def halt(self, sitting: str) -> None:

@@ -88,7 +88,9 @@ def test_two_surfaces_one_after_the_other_are_felt_once() -> None:
         # A page that lost the answer asks again.
         assert await devices.felt("s", "t") == felt
         assert [one.path_length for one in felt] == [0.1, 0.1]
-        devices.answered("s")
+        devices.answered("s", "another")
+        assert await devices.felt("s", "t") == felt
+        devices.answered("s", "t")
         with pytest.raises(DeviceError, match="comes again"):
             await devices.felt("s", "t")
 
