@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from pydantic import Field
 
 from squeezefilm.errors import InputError
+from squeezefilm.lab.keys import CODE_LIFE
 from squeezefilm.lab.studies import Studies, analysis_of, device_of, report_of
 from squeezefilm.lab.wire import Answer, Request
 from squeezefilm.study.exposure import Exposure, exposure
@@ -133,7 +134,8 @@ def add_study(lab: Lab) -> StudyThread:
         await lab.tell({"type": "study changed", "study": study})
 
     async def listing(_: Request) -> Answer:
-        return {"type": "studies", **await thread.do(Studies.listing)}
+        found = await thread.do(Studies.listing)
+        return {"type": "studies", **found, "tablets": lab.lan is not None}
 
     async def plan(asked: PlanStudy) -> Answer:
         return {"type": "plan", **await thread.do(Studies.plan, asked.design)}
@@ -169,6 +171,18 @@ def add_study(lab: Lab) -> StudyThread:
         await thread.do(lambda studies: studies.sittings.get(asked.sitting))
         token = lab.keys.new_link("participant", f"/participant#{asked.sitting}")
         return {"type": "link", "path": f"/?token={token}"}
+
+    async def code(asked: OfSitting) -> Answer:
+        if lab.lan is None:
+            raise InputError("tablets are paired where the lab was started with --lan ADDRESS")
+        await thread.do(lambda studies: studies.sittings.get(asked.sitting))
+        return {
+            "type": "code",
+            "code": lab.keys.new_code(f"/participant#{asked.sitting}"),
+            "link": lab.lan.link,
+            "fingerprint": lab.lan.fingerprint,
+            "life_s": CODE_LIFE,
+        }
 
     async def end(asked: OfSitting) -> Answer:
         sitting = await thread.do(lambda studies: studies.sittings.get(asked.sitting))
@@ -235,6 +249,7 @@ def add_study(lab: Lab) -> StudyThread:
     add("exposure", OfParticipant, ultrasound)
     add("prepare sitting", PrepareSitting, prepare)
     add("station link", OfSitting, station)
+    add("pairing code", OfSitting, code)
     add("end sitting", OfSitting, end)
     add("delete participant", DeleteParticipant, delete)
     add("export study", ExportStudy, export)

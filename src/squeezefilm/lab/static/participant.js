@@ -8,19 +8,25 @@ import { Socket } from "./socket.js";
 const sitting = location.hash.slice(1);
 const place = document.getElementById("area");
 const connection = document.getElementById("connection");
+// The second tap of a double tap would answer the trial after the one it was meant for.
+const TOO_SOON = 250;
 const KEPT = `squeezefilm answer ${sitting}`;
 const socket = new Socket("/ws/participant");
 let keys = null;
 let resting = null;
 
-socket.on("connection", ({ open }) => {
-  connection.textContent = open ? "" : "The connection is lost. Nothing you answered is lost; please wait.";
+socket.on("connection", ({ open, refused }) => {
+  const away = refused ? "This page's session is over. Nothing you answered is lost; please tell the experimenter." : "The connection is lost. Nothing you answered is lost; please wait.";
+  connection.textContent = open ? "" : away;
   connection.classList.toggle("lost", !open);
   if (open && window.squeezefilmMine) goOn();
   if (!open) freeze();
 });
 socket.on("sitting ended", (message) => message.sitting === sitting && goOn());
-document.addEventListener("keydown", (event) => keys?.(event));
+// A key held down repeats, and must not answer the trials that follow.
+document.addEventListener("keydown", (event) => {
+  if (!event.repeat && !event.ctrlKey && !event.altKey && !event.metaKey) keys?.(event);
+});
 begin();
 
 /** One tab a sitting: a second one says so and takes nothing over. */
@@ -53,12 +59,21 @@ async function goOn() {
     }
     show(await socket.ask("where", { sitting }));
   } catch (error) {
-    if (socket.open) say("This does not work", error.message);
+    refused(error);
   }
+}
+
+/** Say why the server refused. An answer is kept only where handing it in again can help. */
+function refused(error) {
+  if (!socket.open) return;
+  if (!error.again) localStorage.removeItem(KEPT);
+  page(element("h2", { text: "This does not work" }), element("p", { text: error.message }),
+    element("p", { text: "Please tell the experimenter." }), waiting("Try again", 0, goOn));
 }
 
 function freeze() {
   keys = null;
+  clearInterval(resting);
   for (const one of place.querySelectorAll("button, input")) one.disabled = true;
 }
 
@@ -66,6 +81,7 @@ function page(...children) {
   clearInterval(resting);
   keys = null;
   place.replaceChildren(element("section", { class: "card sheet" }, ...children));
+  place.focus({ preventScroll: true });
 }
 
 function say(title, text) {
@@ -122,7 +138,7 @@ async function ask(type, fields = {}) {
   try {
     show(await socket.ask(type, { sitting, ...fields }));
   } catch (error) {
-    if (socket.open) say("This does not work", error.message);
+    refused(error);
   }
 }
 
@@ -132,8 +148,8 @@ function trial(found) {
       pauseThen(found));
     return;
   }
-  const began = performance.now();
-  const answer = (fields) => hand(found, began, fields);
+  const began = performance.now() + TOO_SOON;
+  const answer = (fields) => performance.now() >= began && hand(found, began, fields);
   const head = { familiarisation: `Feel the grating ${found.named}`, practice: "Practice", main: "" }[found.phase];
   const title = element("h2", { text: head || found.question });
   const left = element("p", { class: "muted", text: `${found.remaining} to go` });
@@ -148,8 +164,9 @@ function trial(found) {
   if (found.numeric) parts.push(estimate(answer));
   else parts.push(choices(found, answer));
   parts.push(left);
-  page(...parts.slice(0, -1), left);
-  keys = numberKeys(found, answer);
+  page(...parts);
+  if (found.numeric) place.querySelector("#estimate").focus();
+  else keys = numberKeys(found, answer);
 }
 
 function pauseThen(found) {
@@ -168,13 +185,16 @@ function choices(found, answer) {
 
 function estimate(answer) {
   const number = element("input", { type: "text", inputmode: "decimal", id: "estimate", size: "8", "aria-label": "your number" });
+  const wrong = element("span", { role: "alert", class: "mark" });
   const give = () => {
-    const value = Number(number.value.replace(",", "."));
-    if (value > 0 && Number.isFinite(value)) answer({ estimate: value });
-    else number.setAttribute("aria-invalid", "true");
+    const value = Number(number.value.trim().replace(",", "."));
+    if (value > 0 && Number.isFinite(value)) return answer({ estimate: value });
+    number.setAttribute("aria-invalid", "true");
+    wrong.textContent = "Any number above 0, please.";
+    return null;
   };
-  number.addEventListener("keydown", (event) => event.key === "Enter" && give());
-  return element("p", { class: "row" }, number, element("button", { class: "main", text: "Give this number", onclick: give }));
+  number.addEventListener("keydown", (event) => event.key === "Enter" && !event.repeat && give());
+  return element("p", { class: "row" }, number, element("button", { class: "main", text: "Give this number", onclick: give }), wrong);
 }
 
 function numberKeys(found, answer) {
@@ -197,10 +217,7 @@ async function hand(found, began, fields) {
     localStorage.removeItem(KEPT);
     after(told);
   } catch (error) {
-    if (!socket.open) return;
-    // Refused, not lost: another would be refused as well.
-    localStorage.removeItem(KEPT);
-    say("This does not work", error.message);
+    refused(error);
   }
 }
 
