@@ -76,7 +76,16 @@ def _map_under_a_finger(result: Any) -> None:
     assert result["things_lost"] == 2
 
 
+def _friction_threshold(result: Any) -> None:
+    # The person's own threshold is 0.11; its answers are seeded.
+    assert result["low"] < 0.11 < result["high"] < 2 * result["low"]
+    assert result["low"] < result["threshold"] < result["high"]
+    # Half way from chance to the best is a little below 75 % where there are lapses.
+    assert result["d_prime"] == pytest.approx(math.sqrt(2) * 0.6745, abs=0.1)
+
+
 CHECKS = {
+    "friction_threshold": _friction_threshold,
     "map_under_a_finger": _map_under_a_finger,
     "friction_of_the_stator": _friction_of_the_stator,
     "thinner_plate": _thinner_plate,

@@ -159,3 +159,24 @@ def test_a_session_without_a_pickup_is_judged_by_the_envelopes_model(
     found = session.by_record.fidelity
     assert found is not None
     assert found.contrast_kept[0] > 0.95
+
+
+def test_a_session_that_broke_at_once_is_told_and_shown(display: Display, tmp_path: Path) -> None:
+    from squeezefilm.analysis.play_command import PlayResult
+    from squeezefilm.report.play_report import write_play
+    from squeezefilm.session.record import TraceWriter
+    from squeezefilm.session.rows import COLUMNS
+
+    setup = prepared(display)
+    with TraceWriter(tmp_path / "trace.sqft", COLUMNS, {"drive": "serial:none"}) as writer:
+        writer.event("begin")
+    (tmp_path / "truth.csv").write_text("time_s,x_m\n")
+    session = judge_session(setup, read_trace(tmp_path / "trace.sqft"), tmp_path / "truth.csv")
+    assert session.by_truth is None
+    assert session.by_record.fidelity is None
+    outcome = PlayOutcome(Ending.LINK, "it was <unplugged>", tmp_path / "trace.sqft", 0)
+    page = write_play(PlayResult(outcome, session, tmp_path), tmp_path)
+    assert "it was &lt;unplugged&gt;" in page.read_text()
+    assert (
+        '"ended_because": "the link to the device broke"' in (tmp_path / "summary.json").read_text()
+    )

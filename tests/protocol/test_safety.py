@@ -33,13 +33,26 @@ def test_limits_that_cannot_be_used_are_refused(changes: dict[str, Any], words: 
         dataclasses.replace(LIMITS, **changes)
 
 
-def test_a_drive_that_does_not_stop_by_itself_is_refused_above_42_volts() -> None:
-    card: Any = SimpleNamespace(stops_by_itself=False)
-    device: Any = SimpleNamespace(stops_by_itself=True)
-    require_safe_drive(device, LIMITS)
-    require_safe_drive(card, dataclasses.replace(LIMITS, voltage=42.0))
-    with pytest.raises(InputError, match="does not stop by itself"):
-        require_safe_drive(card, LIMITS)
+CARD: Any = SimpleNamespace(stops_by_itself=False)
+DEVICE: Any = SimpleNamespace(stops_by_itself=True)
+LOW = dataclasses.replace(LIMITS, voltage=42.0)
+
+
+@pytest.mark.parametrize("study", [False, True])
+@pytest.mark.parametrize("bench_only", [False, True])
+def test_which_drives_are_safe(study: bool, bench_only: bool) -> None:
+    for limits in (LIMITS, LOW):
+        require_safe_drive(DEVICE, limits, study=study, bench_only=bench_only)
+    with pytest.raises(InputError, match=r"does not stop by itself .* at most 42 V"):
+        require_safe_drive(CARD, LIMITS, study=study, bench_only=bench_only)
+    if study:
+        with pytest.raises(InputError, match="in a study"):
+            require_safe_drive(CARD, LOW, study=True, bench_only=bench_only)
+    elif bench_only:
+        require_safe_drive(CARD, LOW, bench_only=True)
+    else:
+        with pytest.raises(InputError, match="--bench-only"):
+            require_safe_drive(CARD, LOW)
 
 
 def test_the_wire_rounds_limits_to_the_safe_side() -> None:

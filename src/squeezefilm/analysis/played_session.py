@@ -87,7 +87,8 @@ class PlayedSession:
         setup: what was to be played.
         trace: the record.
         by_record: judged as sensor and pickup (or the envelope's model) saw it.
-        by_truth: as it really was; None without a twin's truth.
+        by_truth: as it really was; None without a twin's truth, or where the record does not say
+            how the device's clock stands to the loop's.
         position_error: RMS of the loop's estimate against the truth while it moves (m); None
             without.
         lag: of the ticks at which the finger was known; None if it never was.
@@ -168,8 +169,10 @@ def judge_session(setup: PlaySetup, trace: Trace, truth: Path | None = None) -> 
     rows = trace.rows
     by_record = _judge(setup, recorded_way(setup, trace))
     by_truth, error = None, None
-    if truth is not None:
-        found = _true_way(setup, trace, truth)
+    # How the device's clock stands to the loop's is known from the first answer on.
+    offset = _end_fields(trace).get("device_clock_offset_s")
+    if truth is not None and offset is not None:
+        found = _true_way(setup, trace, truth, offset)
         by_truth = _judge(setup, found)
         error = _position_error(trace, found)
     lag = rows[:, column.LAG]
@@ -200,6 +203,9 @@ def recorded_way(setup: PlaySetup, trace: Trace) -> PlayedWay:
     rows = trace.rows
     time, x, speed = rows[:, column.TIME], rows[:, column.X], rows[:, column.SPEED]
     known = np.isfinite(x)
+    if not np.any(known):
+        none = np.zeros(0)
+        return _way(setup, none, none, none, none, none, "nobody: the finger was not seen")
     if np.any(np.isfinite(rows[:, column.AMPLITUDE])):
         # A reading's amplitude belongs to the moment of its stamp, not to the ticks that carry it.
         stamps = rows[:, column.ROW_SAMPLE_TIME]
@@ -221,14 +227,8 @@ def recorded_way(setup: PlaySetup, trace: Trace) -> PlayedWay:
     return _way(setup, when, place, pace, amplitude, friction, source)
 
 
-def _true_way(setup: PlaySetup, trace: Trace, truth: Path) -> PlayedWay:
+def _true_way(setup: PlaySetup, trace: Trace, truth: Path, offset: Second) -> PlayedWay:
     table = table_from_csv(truth)
-    offset = float(dict(_end_fields(trace)).get("device_clock_offset_s") or math.nan)
-    if not math.isfinite(offset):
-        raise InputError(
-            "the record does not say how the device's clock stands to the loop's, so the truth "
-            "cannot be laid beside it; the session ended before"
-        )
     time = table.column("time_s") + offset
     touching = table.column("normal_force_N") > 0.0
     inside = touching & (time >= 0.0) & (time <= _played_until(trace))

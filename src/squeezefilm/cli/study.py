@@ -58,6 +58,41 @@ def presets(as_json: AsJson = False) -> None:
 
 
 @study.command()
+def simulate(
+    design: Design,
+    participants: Annotated[int, typer.Option(help="How many simulated people.")] = 12,
+    seed: Annotated[int, typer.Option(help="Of orders, people and noise.")] = 0,
+    out: Annotated[
+        Path | None, typer.Option(help="Folder for answers, tables, figures and a page.")
+    ] = None,
+    observer: Annotated[
+        str, typer.Option(help="What people are made of: a preset or a TOML file.")
+    ] = "fingertip",
+    as_json: AsJson = False,
+) -> None:
+    """Let simulated participants do a match-to-sample study; every number is simulated."""
+    from squeezefilm.report import terminal
+    from squeezefilm.report.simulated_report import write_simulated
+    from squeezefilm.report.terminal_simulated import show_simulated
+    from squeezefilm.study.chain import chain_tables
+    from squeezefilm.study.design import load_design
+    from squeezefilm.study.observer import load_observer
+    from squeezefilm.study.simulated import simulate_participants
+
+    planned, people = load_design(design), load_observer(observer)
+    with terminal.progress(enabled=sys.stderr.isatty() or not as_json) as step:
+        tables = chain_tables(planned, people, progress=step)
+        found = simulate_participants(planned, people, participants, seed, tables)
+        written = None if out is None else write_simulated(found, out, step)
+    if as_json:
+        print_json(found.summary())
+        return
+    show_simulated(found)
+    if written is not None:
+        typer.echo(f"page: {written}")
+
+
+@study.command()
 def run(
     design: Design,
     store: Annotated[Path, typer.Option("--store", help="The study's file; made if not there.")],

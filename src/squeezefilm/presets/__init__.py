@@ -1,5 +1,5 @@
-"""Displays named for their paper, each value with its source; textures and studies to
-begin with.
+"""Displays named for their paper, each value with its source; textures, studies and
+simulated observers to begin with.
 
 Files only: rooms above read them.
 """
@@ -55,6 +55,16 @@ def study_names() -> tuple[str, ...]:
 def resolve_study(name_or_path: str | Path) -> Path:
     """The file of a preset study's name or of a path to a TOML file. As `resolve` does."""
     return _resolved(name_or_path, "study", study_names(), _FOLDER / "studies")
+
+
+def observer_names() -> tuple[str, ...]:
+    """The names of all preset simulated observers, sorted."""
+    return tuple(sorted(path.stem for path in (_FOLDER / "observers").glob("*.toml")))
+
+
+def resolve_observer(name_or_path: str | Path) -> Path:
+    """The file of a preset observer's name or of a path to a TOML file. As `resolve` does."""
+    return _resolved(name_or_path, "observer", observer_names(), _FOLDER / "observers")
 
 
 def resolve(name_or_path: str | Path) -> Path:

@@ -109,7 +109,7 @@ def amplitude(session: PlayedSession) -> Figure:
     t = time[inside]
     largest = plan.drive.largest_amplitude
     figure = new_figure(
-        f"The loop commands up to {shown(largest, M, 3)}; the plate follows with "
+        f"The display reaches {shown(largest, M, 3)}; the plate follows its commands with "
         f"τ = {shown(plan.envelope.rise_time_constant, S, 2)}",
         f"mode {session.setup.plan.mode}, compensation {plan.compensation}, commands "
         f"{shown(plan.output_delay, S, 2)} ahead",
@@ -142,8 +142,8 @@ def amplitude(session: PlayedSession) -> Figure:
 def lateness(session: PlayedSession) -> Figure:
     """How late ticks were made, and how long samples wait for their command."""
     said = session.loop().get("lateness")
-    if not said:
-        return message_figure("The loop could not say how late it was", "It died before.")
+    if not said or not said["made"]:
+        return message_figure("The loop could not say how late it was", "It made no tick.")
     found = Lateness.from_json(said)
     due = found.made + found.lost
     lost = f"{100 * found.lost / max(due, 1):.2g} % of {due} ticks were lost"

@@ -21,11 +21,12 @@ from squeezefilm.quantities import Dimensionless, DimensionlessArray, FloatArray
 from squeezefilm.study import psychometric_kernel as kernel
 from squeezefilm.study.psychometric_kernel import BoolArray
 
-# How near to the end of an interval, as shares of the prior's range: for a given quantile of the
-# deviance, and from one simulated quantile to the next.
+# How near to the end of an interval: for a given quantile of the deviance as a share of the
+# prior's range, and from one simulated quantile to the next as a share of the distance from the
+# best value; chance moves the quantile of 1000 deviances by more.
 _NEAR = 1e-4
-_CLOSE = 5e-4
-_MOST_ROUNDS = 6
+_CLOSE = 0.01
+_MOST_ROUNDS = 4
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -158,14 +159,13 @@ def _inverted_end(
     bound: float,
 ) -> float:
     """Alternate the end that a quantile allows and the quantile simulated at that end."""
-    reach = float(likelihood.high[parameter] - likelihood.low[parameter])
     allowed = float(chdtri(1, 1 - level))
     end = float("nan")
     for _ in range(_MOST_ROUNDS):
         before = end
         held = _end(likelihood, bootstrap.best, top, parameter, allowed, bound)
         end = float(held[parameter])
-        if abs(end - before) <= _CLOSE * reach:
+        if abs(end - before) <= _CLOSE * abs(end - float(bootstrap.best[parameter])):
             break
         drops = np.empty(bootstrap.shares.shape[0])
         kernel.profile_drops(

@@ -21,7 +21,7 @@ from squeezefilm.study.psychometric_bootstrap import (
 from squeezefilm.study.psychometric_posterior import (
     PARAMETERS,
     PsychometricPosterior,
-    coarse_maximum,
+    coarse_maxima,
     grid_posterior,
 )
 from squeezefilm.study.psychometric_prior import PsychometricPrior
@@ -106,8 +106,8 @@ def fit_psychometric(
             one answer a row (true, false).
         trials: how many answers there were (rows,).
         shape, axis: of the function.
-        guess_rate: where it is known, at least 0 and below 0.5 with lapses up to 0.5 (1/m for
-            one of m alternatives); None to fit it, as for a yes/no task.
+        guess_rate: where it is known, at least 0 and at most 0.5 (1/m for one of m
+            alternatives); None to fit it, as for a yes/no task.
         prior: without one, `PsychometricPrior.for_stimuli`.
         level: of the intervals, between 0 and 1.
         replicates: of the bootstrap; 0 for none.
@@ -133,7 +133,8 @@ def fit_psychometric(
         beta[2:] = 1.0
         high[kernel.LAPSE] = min(high[kernel.LAPSE], 0.99 - guess_rate)
     likelihood = PenalisedLikelihood(code, free, low, high, beta, x, k, n)
-    best, _ = likelihood.maximum(coarse_maximum(code, axis, prior, guess_rate, x, k, n))
+    starts = coarse_maxima(code, axis, prior, guess_rate, x, k, n)
+    best, _ = max((likelihood.maximum(start) for start in starts), key=lambda found: found[1])
     posterior = grid_posterior(code, axis, prior, guess_rate, x, k, n, best)
     fitted = tuple(name for name, is_free in zip(PARAMETERS, free, strict=True) if is_free)
     likeliest = kernel.log_density(code, best, np.ones(4), x, k, n)

@@ -33,7 +33,7 @@ _LN_LN_2 = math.log(math.log(2.0))
 # are impossible under the parameters anyway.
 _LEAST = 1e-12
 _MOST_STEPS = 200
-_SETTLED = 1e-10
+_SETTLED = 1e-8
 
 
 @njit(nogil=True, cache=True, error_model="numpy")

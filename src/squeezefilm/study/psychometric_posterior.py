@@ -24,7 +24,7 @@ _COARSE = (40, 24, 8, 6)
 _FINE = (48, 40, 20, 1)
 _FINE_WITH_GUESS = (40, 32, 14, 14)
 # Grids narrow until none of their sides shrinks by more than this.
-_SETTLED = 0.6
+_SETTLED = 0.8
 _MOST_PASSES = 8
 # Marginal probability outside of the fine grid, on each side.
 _OUTSIDE = 1e-6
@@ -93,7 +93,9 @@ class PsychometricPosterior:
     def mean(self, parameter: str) -> float:
         """The posterior mean, in the parameter's unit."""
         edges = self.edges[_index(parameter)]
-        return float(np.sum(self.marginal(parameter) * 0.5 * (edges[1:] + edges[:-1])))
+        cells = np.arange(edges.size - 1)
+        middles = PchipInterpolator(np.arange(edges.size), edges)(cells + 0.5)
+        return float(np.sum(self.marginal(parameter) * middles))
 
     def draws(self, count: int, seed: int) -> FloatArray:
         """Samples of (threshold, width, lapse rate, guess rate), shape (count, 4).
@@ -122,7 +124,7 @@ def _index(parameter: str) -> int:
     return PARAMETERS.index(parameter)
 
 
-def coarse_maximum(
+def coarse_maxima(
     code: int,
     axis: Axis,
     prior: PsychometricPrior,
@@ -131,12 +133,20 @@ def coarse_maximum(
     k: FloatArray,
     n: FloatArray,
 ) -> FloatArray:
-    """θ of the likeliest cell of a coarse grid over the whole prior, to start a search from."""
+    """θ of the likeliest cells of a coarse grid over the whole prior, to start searches from.
+
+    One for each sixth of the widths, shape (6, 4): few answers can have a narrow and a wide
+    function as local maxima.
+    """
     low, high = _span(prior, guess_rate, axis)
     cells = _one_guess(_COARSE, guess_rate)
     nodes, weights, _ = _weigh(code, axis, prior, guess_rate, x, k, n, low, high, cells)
-    best = np.unravel_index(int(np.argmax(weights)), weights.shape)
-    return np.array([node[cell] for node, cell in zip(nodes, best, strict=True)])
+    starts = []
+    for first in range(0, cells[1], cells[1] // 6):
+        band = weights[:, first : first + cells[1] // 6]
+        i, j, a, b = np.unravel_index(int(np.argmax(band)), band.shape)
+        starts.append([nodes[0][i], nodes[1][first + j], nodes[2][a], nodes[3][b]])
+    return np.array(starts)
 
 
 def grid_posterior(

@@ -166,7 +166,8 @@ class Staircase:
         if self.rule.axis == "log":
             low = math.log(low) if low > 0 else -math.inf
             high = math.log(high)
-        self._level = min(max(self._level, low), high)
+        # Rounded, so that levels reached by different ways are equal and count as one stimulus.
+        self._level = float(f"{min(max(self._level, low), high):.12g}")
 
     def threshold(self, discard: int = 2) -> float:
         """Mean of the intensities at the reversals (geometric on a logarithmic axis).

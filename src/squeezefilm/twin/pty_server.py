@@ -24,11 +24,12 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import IO
 
+from squeezefilm.device import messages as m
 from squeezefilm.display import load_display
 from squeezefilm.errors import InputError, SqueezefilmError
 from squeezefilm.quantities import Newton, Second
 from squeezefilm.twin.device import TwinDevice
-from squeezefilm.twin.hand import EXPLORING, hand_from
+from squeezefilm.twin.hand import EXPLORING, Hand, hand_from
 from squeezefilm.twin.settings import TwinSettings, load_settings
 
 _PAUSE = 1.0  # ms between looks at the port
@@ -117,7 +118,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             hand = hand_from(options.stroke, normal_force=options.force)
         display = load_display(options.display)
         device = TwinDevice(display, settings, hand=hand, truth_file=options.truth)
-        _warm_up(device)
+        _warm_up(device, hand)
         server = PtyServer(device)
     except SqueezefilmError as error:
         print(f"error: {error}", file=sys.stderr)
@@ -136,10 +137,20 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return 0
 
 
-def _warm_up(device: TwinDevice) -> None:
-    """Compile before the clock starts; another device does it, so that this one's is untouched."""
-    spare = TwinDevice(device.display, device.settings, point=device.plant.point)
-    spare.advance(spare.settings.tick_us)
+def _warm_up(device: TwinDevice, hand: Hand | None) -> None:
+    """Compile whatever a session calls before the clock starts: no stall may look like a host that
+    fell silent. Another device does it, so that this one's is untouched."""
+    spare = TwinDevice(device.display, device.settings, hand=hand, point=device.plant.point)
+    # As little as any display may have: nothing of this leaves the process.
+    limits = m.SetLimits(1.0, 1000, 1.0, 1000, 1000, 1_000_000_000, 1000, 1000, 0)
+    start = m.Start(round(1e3 * device.plant.resonance_frequency))
+    session = [m.Hello(1), m.AskInfo(), m.Report(1000), limits]
+    session += [m.TileBegin(0, 1000, 2), m.TileData(0, (0.5, 1.0))]
+    session += [m.Arm(spare.machine.token), start, m.TimedEnvelope(12_000, 200, (0.5, 1.0))]
+    session += [m.Envelope(200, (0.5, 1.0)), m.Follow(), m.KeepAlive(), m.Stop()]
+    for number, message in enumerate(session, start=1):
+        spare.receive(message.frame(number).encoded(), 1000 * number)
+        spare.advance(1000 * number + 900)
     spare.close()
 
 

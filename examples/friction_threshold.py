@@ -1,0 +1,51 @@
+"""The least drop of friction that a (simulated) person tells from none, in two intervals."""
+
+import json
+
+import numpy as np
+
+from squeezefilm.study.bayesian_adaptive import AdaptiveDesign, BayesianAdaptive
+from squeezefilm.study.discrimination import alternatives_d_prime
+from squeezefilm.study.psychometric import PsychometricFunction
+from squeezefilm.study.psychometric_fit import fit_psychometric
+from squeezefilm.study.psychometric_prior import PsychometricPrior
+
+
+def main() -> dict[str, float]:
+    # Relative drops of friction from 1 to 60 %; the axis is logarithmic.
+    drops = tuple(np.geomspace(0.01, 0.6, 25))
+    prior = PsychometricPrior(threshold=(0.01, 0.5), width=(0.2, 4.0))
+    design = AdaptiveDesign(drops, prior, shape="weibull", axis="log", most_trials=150)
+
+    # Who answers: half way from chance to the best at a drop of 11 %, 2 % lapses (assumed).
+    person = PsychometricFunction("weibull", 0.11, 1.2, 0.5, 0.02, "log")
+    chance = np.random.default_rng(7)
+
+    method = BayesianAdaptive(design)
+    while not method.finished:
+        drop = method.next_stimulus()
+        method.update(drop, bool(chance.random() < person(drop)))
+        if len(method.trials) == 75:  # stopped and resumed: the same as if it had not been
+            method = BayesianAdaptive.from_state(json.loads(json.dumps(method.state())))
+
+    fit = fit_psychometric(
+        [trial.intensity for trial in method.trials],
+        [trial.positive for trial in method.trials],
+        shape="weibull",
+        axis="log",
+        guess_rate=0.5,
+        prior=prior,
+        replicates=199,
+    )
+    threshold = fit.function.threshold
+    for kind in ("posterior", "bootstrap"):
+        low, high = getattr(fit, f"{kind}_interval")["threshold"]
+        print(f"threshold {threshold:.3f} ({low:.3f} to {high:.3f} by {kind})")
+    low, high = fit.posterior_interval["threshold"]
+    d_prime = alternatives_d_prime(float(fit.function(threshold)), alternatives=2)
+    print(f"d' at the threshold is {d_prime:.2f}")
+    return {"threshold": threshold, "low": low, "high": high, "d_prime": d_prime}
+
+
+if __name__ == "__main__":
+    main()

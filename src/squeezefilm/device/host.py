@@ -1,0 +1,293 @@
+"""A device as a host uses it: SI in, messages out, and the ports of a session on top of it.
+
+One thread owns a `DeviceHost` and the drive, sensor and pickup that share it. **Who feeds the
+watchdog**: the host, by calling `pump(now)` more often than every 35 ms, in every state; it sends
+a keep alive only where nothing else was sent for 15 ms. A host that does not come round in time
+is just what the watchdog is for, so no thread here does it behind its back. The commands that wait
+for an answer feed it while they wait.
+"""
+
+from __future__ import annotations
+
+import secrets
+from collections import deque
+from collections.abc import Sequence
+
+from squeezefilm.device import messages as m
+from squeezefilm.device.device_clock import DeviceClock
+from squeezefilm.device.link import Link, refusal
+from squeezefilm.device.playing import CLOCK
+from squeezefilm.device.safety import Limits
+from squeezefilm.device.states import Fault, Reason, State
+from squeezefilm.errors import DeviceError, InputError
+from squeezefilm.quantities import FloatArray, Hertz, Metre, Second, Unit, Volt, require
+
+MOST_READINGS = 10_000
+"""Readings kept for those who have not read them yet."""
+_ZERO_LIMIT: Second = 0.2
+_HARMLESS = (Reason.STATE, Reason.SEQUENCE, Reason.FULL)
+_MICRO = 1e6
+
+
+class DeviceHost:
+    """Commands to one device. Not thread-safe.
+
+    Those that change its state wait for the answer and raise `DeviceError` where it refuses or is
+    silent; `play`, `play_at`, `pump` and `poll` never wait.
+
+    Args:
+        link: to the device.
+        session: number of the session (32 bits); a random one if None.
+    """
+
+    def __init__(self, link: Link, session: int | None = None) -> None:
+        self.link = link
+        self.session = secrets.randbits(32) if session is None else session
+        self.info: m.Info | None = None
+        self.readings: deque[m.Reading] = deque(maxlen=MOST_READINGS)
+        self.readings_heard = 0
+        self._unread: list[m.Reading] = []
+        self._opened = False
+
+    @property
+    def clock(self) -> DeviceClock:
+        """The device's clock against the host's."""
+        return self.link.device_clock
+
+    @property
+    def state(self) -> State | None:
+        """The device's state by its newest word, or None before the first."""
+        newest = self.link.status
+        return None if newest is None else State(newest.state)
+
+    def open(self, limits: Limits) -> m.Info:
+        """Stop the device, begin a session and set its limits; returns what the device is.
+
+        A fault that a silent host has left behind (watchdog) is cleared: this is that host's next
+        word. Any other fault stays.
+
+        Raises:
+            DeviceError: a device that is silent, refuses, has another fault, or whose firmware
+                does not allow the limits.
+        """
+        self.link.drop()
+        self._opened = False
+        self.link.request(m.Stop())
+        status = self.link.request(m.Hello(self.session))
+        if status.session != self.session:
+            raise DeviceError(
+                f"the device answers for session {status.session} and {self.session} was opened; "
+                "another program uses it: end that one"
+            )
+        self.link.poll()
+        self._opened = True
+        self._wait_for_zero()
+        if status.state == State.FAULT:
+            if status.fault != Fault.WATCHDOG:
+                raise DeviceError(
+                    f"the device has the fault '{_fault_name(status.fault)}' of an earlier "
+                    "session; find its cause, then clear it with clear()"
+                )
+            self.clear()
+        self.info = self._ask_info()
+        self._set_limits(limits, self.info)
+        return self.info
+
+    def arm(self) -> None:
+        """OFF → ARMED, with the newest token. Raises `DeviceError`."""
+        self.link.request(m.Arm(self.link.request(m.KeepAlive()).token))
+
+    def start(self, frequency: Hertz) -> None:
+        """ARMED → PLAYING at a carrier frequency (Hz), silent. Raises `DeviceError`."""
+        self.link.request(m.Start(_frequency(frequency)))
+
+    def set_frequency(self, frequency: Hertz) -> None:
+        """Move the carrier (Hz). Raises `DeviceError`."""
+        self.link.request(m.SetFrequency(_frequency(frequency)))
+
+    def play(
+        self, levels: Sequence[Volt] | FloatArray, period: Second, start: int | None = None
+    ) -> None:
+        """Play amplitudes (V), shape (n ≤ 56,), one every `period` (s); does not wait.
+
+        Args:
+            levels: the amplitudes; the last one holds.
+            period: up to 65 ms, in whole µs on the wire.
+            start: when the first one is due on the device's clock (32 bits of µs). Blocks with a
+                start queue up without gaps; without one they play from the moment they arrive, in
+                place of what was playing.
+
+        Raises:
+            InputError: amplitudes or a period that do not fit a frame.
+            DeviceError: the device is gone.
+        """
+        values = tuple(float(level) for level in levels)
+        microseconds = round(period * _MICRO)
+        if not 1 <= microseconds <= 0xFFFF:
+            raise InputError(
+                f"period is {period:g} s; one frame carries 1 us to 65.535 ms; choose one between",
+                quantity="period",
+            )
+        if start is None:
+            self.link.send(m.Envelope(microseconds, values))
+        else:
+            self.link.send(m.TimedEnvelope(start & CLOCK, microseconds, values))
+
+    def play_at(self, x: Metre) -> None:
+        """Play the tile at `x` (m); does not wait. Raises `DeviceError` if the device is gone."""
+        require("x", x, Unit("m"), at_least=-2147.0, at_most=2147.0)
+        self.link.send(m.Position(round(x * _MICRO)))
+
+    def load_tile(self, origin: Metre, pitch: Metre, levels: Sequence[Volt] | FloatArray) -> None:
+        """Load amplitudes (V), shape (n,), from `origin` (m), `pitch` (m) apart, in whole µm.
+
+        Raises:
+            InputError: more than 512 amplitudes, or none, or a pitch below 1 µm.
+            DeviceError: the device refused or did not answer; the tile is then not complete.
+        """
+        values = tuple(float(level) for level in levels)
+        require("origin", origin, Unit("m"), at_least=-2147.0, at_most=2147.0)
+        require("pitch", pitch, Unit("m"), at_least=1e-6, at_most=2147.0)
+        if not 1 <= len(values) <= m.LONGEST_TILE:
+            raise InputError(
+                f"a tile of {len(values)} amplitudes; 1 to {m.LONGEST_TILE} fit; use a wider pitch",
+                quantity="levels",
+            )
+        begin = m.TileBegin(round(origin * _MICRO), round(pitch * _MICRO), len(values))
+        self.link.request(begin)
+        for first in range(0, len(values), m.MOST_LEVELS):
+            self.link.request(m.TileData(first, values[first : first + m.MOST_LEVELS]))
+
+    def follow(self) -> None:
+        """Play the tile at the device's own sensor. Raises `DeviceError`."""
+        self.link.request(m.Follow())
+
+    def report(self, period: Second) -> None:
+        """A reading every `period` (s), at least 200 µs; none for 0. Raises `DeviceError`."""
+        require("period", period, Unit("s"), at_least=0.0, at_most=1000.0)
+        self.link.request(m.Report(round(period * _MICRO)))
+
+    def keep_alive(self) -> None:
+        """Feed the watchdog now; does not wait."""
+        self.link.send(m.KeepAlive())
+
+    def pump(self, now: Second | None = None) -> None:
+        """Hear the device and feed its watchdog if nothing was said for 15 ms; never waits.
+
+        `now` is the host's time where the caller has it already; it is not needed.
+
+        Raises:
+            DeviceError: as `poll`.
+        """
+        self._hear()
+        self.link.keep_alive()
+
+    def poll(self) -> list[m.Reading]:
+        """The readings since the last call, in order; never waits.
+
+        A fault shows in `state` and in readings and raises nothing.
+
+        Raises:
+            DeviceError: the device is gone or was restarted, or refused something sent without
+                waiting for a reason that asking later does not mend.
+        """
+        self._hear()
+        came, self._unread = self._unread, []
+        return came
+
+    def stop(self) -> None:
+        """Ramp to zero and disarm; allowed in every state. Raises `DeviceError` if it is gone."""
+        self.link.request(m.Stop())
+
+    def clear(self) -> None:
+        """Clear the device's fault, once its output is at zero. Raises `DeviceError`."""
+        status = self.link.request(m.KeepAlive())
+        if status.state != State.FAULT:
+            return
+        self._wait_for_zero()
+        self.link.request(m.ClearFault(status.fault))
+
+    def _hear(self) -> None:
+        for message in self.link.poll():
+            if isinstance(message, m.Reading):
+                self.readings.append(message)
+                self.readings_heard += 1
+                self._unread.append(message)
+                del self._unread[:-MOST_READINGS]
+            elif isinstance(message, m.Info):
+                self.info = message
+        newest = self.link.status
+        if self._opened and newest is not None and newest.session != self.session:
+            raise DeviceError(
+                "the device was restarted, or another program opened it: it answers for session "
+                f"{newest.session} and not {self.session}; open it again"
+            )
+        while self.link.refusals:
+            name, status = self.link.refusals.popleft()
+            if self._opened and name in _ASYNCHRONOUS and status.reason not in _HARMLESS:
+                raise refusal(name, status)
+
+    def _ask_info(self) -> m.Info:
+        self.info = None
+        for _ in range(3):
+            self.link.request(m.AskInfo())
+            end = self.link.clock() + _ZERO_LIMIT
+            while self.info is None and self.link.clock() < end:
+                self._hear()
+                self.link.wait(1e-3)
+            if self.info is not None:
+                return self.info
+        raise DeviceError(
+            "the device answers and does not say what it is (info); its firmware is older than "
+            "this program: update it"
+        )
+
+    def _set_limits(self, limits: Limits, info: m.Info) -> None:
+        asked = m.limits_message(limits)
+        for what, wanted, allowed, unit in (
+            ("voltage", limits.voltage, info.voltage / _MICRO, "V"),
+            ("slew", limits.slew, info.slew, "V/s"),
+            (
+                "continuous_voltage",
+                limits.continuous_voltage,
+                info.continuous_voltage / _MICRO,
+                "V",
+            ),
+            ("heat", limits.heat, info.heat / 1e3, "V2*s"),
+            ("highest_frequency", limits.highest_frequency, info.highest_frequency / 1e3, "Hz"),
+            ("duty", limits.duty, info.duty / 1e3, ""),
+            ("duty_window", limits.duty_window, info.duty_window / 1e3, "s"),
+        ):
+            if wanted > allowed * (1 + 1e-9):
+                raise DeviceError(
+                    f"{what} is {wanted:g} {unit} and this device's firmware allows at most "
+                    f"{allowed:g} {unit}; lower it"
+                )
+        if limits.lowest_frequency * 1e3 < info.lowest_frequency:
+            raise DeviceError(
+                f"lowest_frequency is {limits.lowest_frequency:g} Hz and this device's firmware "
+                f"allows at least {info.lowest_frequency / 1e3:g} Hz; raise it"
+            )
+        self.link.request(asked)
+
+    def _wait_for_zero(self) -> None:
+        end = self.link.clock() + _ZERO_LIMIT
+        while (level := self.link.request(m.KeepAlive()).level) > 0:
+            if self.link.clock() > end:
+                raise DeviceError(
+                    f"the device was stopped and its output is still {level / _MICRO:g} V after "
+                    f"{_ZERO_LIMIT:g} s; switch its amplifier off"
+                )
+            self.link.wait(1e-3)
+
+
+_ASYNCHRONOUS = (m.Envelope.__name__, m.TimedEnvelope.__name__, m.Position.__name__)
+
+
+def _frequency(frequency: Hertz) -> int:
+    require("frequency", frequency, Unit("Hz"), at_least=1.0, at_most=1e6)
+    return round(frequency * 1e3)
+
+
+def _fault_name(fault: int) -> str:
+    return Fault(fault).name.lower().replace("_", " ") if fault <= Fault.TRIPPED else str(fault)

@@ -1,0 +1,130 @@
+"""The ports of a session on a device: drive, sensor and pickup that share one `DeviceHost`.
+
+All are called from the thread that owns the host, which also calls `DeviceHost.pump`.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from squeezefilm.device.host import DeviceHost
+from squeezefilm.device.messages import MOST_LEVELS, PICKUP_PRESENT, SENSOR_PRESENT
+from squeezefilm.device.playing import LONGEST_QUEUE, MOST_AHEAD
+from squeezefilm.device.ports import FingerSample
+from squeezefilm.errors import DeviceError
+from squeezefilm.quantities import Dimensionless, FloatArray, Second, Unit, require
+
+LEAD: Second = 5e-3
+"""How far ahead of its time an amplitude is sent: the jitter of the line that leaves no gap."""
+STEERING: Dimensionless = 1e-3
+"""Relative rate at which the stream follows the clocks' drift and better knowledge of them."""
+
+
+class SerialDrive:
+    """A stream of amplitudes, one every `period` (s), played on the device's clock without gaps.
+
+    Blocks follow one another in time whenever they are sent, as long as that is before their time.
+    A writer that was too late starts again `lead` ahead, and `gaps` counts it.
+
+    Args:
+        host: an open device, which must be PLAYING when `write` is called.
+        period: between amplitudes (s); 20 µs to 65 ms.
+        lead: how far ahead of its time the first amplitude is sent (s); at most 0.5 s, and at
+            most half of what the device's queue holds.
+    """
+
+    def __init__(self, host: DeviceHost, period: Second, lead: Second = LEAD) -> None:
+        require("period", period, Unit("s"), at_least=20e-6, at_most=65e-3)
+        most = max(period, min(0.5, LONGEST_QUEUE * period / 2))
+        require("lead", lead, Unit("s"), at_least=0.0, at_most=most)
+        self.host, self.period, self.lead = host, period, lead
+        self.gaps = 0
+        self._next = self._end = math.nan
+
+    @property
+    def stops_by_itself(self) -> bool:
+        """True: the device's watchdog takes the output to zero within 60 ms."""
+        return True
+
+    def write(self, block: FloatArray) -> int:
+        """Queue the amplitudes (V, zero-to-peak) in `block`, shape (n,); returns how many fitted.
+
+        Raises:
+            InputError: an amplitude that is not finite.
+            DeviceError: the device is gone, or no round trip has told its clock yet.
+        """
+        clock, now = self.host.clock, self.host.link.clock()
+        if not clock.known:
+            raise DeviceError(
+                "the device's clock is not known yet; open and start the device first"
+            )
+        if math.isnan(self._next) or self._next < now:
+            self.gaps += not math.isnan(self._next)
+            self._next, self._end = now + self.lead, math.nan
+        longest = min(LONGEST_QUEUE * self.period, MOST_AHEAD * 1e-6) - self.period
+        room = max(0, math.floor((longest - (self._next - now)) / self.period))
+        count = min(len(block), room)
+        for first in range(0, count, MOST_LEVELS):
+            part = block[first : min(count, first + MOST_LEVELS)]
+            duration = len(part) * self.period
+            start = clock.device_time(self._next)
+            if not math.isnan(self._end):
+                # Time is kept on the host's clock, so the queue neither fills nor empties by the
+                # quartzes' drift; what is learnt of the device's clock is followed slowly, so
+                # that no block runs into the next.
+                most = STEERING * duration
+                start = self._end + min(most, max(-most, start - self._end))
+            self.host.play(part, self.period, clock.stamp(start))
+            self._next, self._end = self._next + duration, start + duration
+        return count
+
+
+class DeviceSensor:
+    """The finger as the device's own sensor sees it; its times are the device's clock (s)."""
+
+    def __init__(self, host: DeviceHost) -> None:
+        self.host = host
+        self._heard = host.readings_heard
+
+    def read(self) -> FingerSample | None:
+        """The newest sample since the last call, or None.
+
+        Raises:
+            DeviceError: the device is gone, or has no sensor.
+        """
+        self.host.pump()
+        if self.host.readings_heard == self._heard:
+            return None
+        self._heard = self.host.readings_heard
+        reading = self.host.readings[-1]
+        if not reading.flags & SENSOR_PRESENT:
+            raise DeviceError("the device has no finger sensor; connect one, or use another sensor")
+        time = self.host.clock.unwrapped(reading.time)
+        return FingerSample(time, reading.x * 1e-6, reading.y * 1e-6, reading.touching == 1)
+
+
+class DevicePickup:
+    """The amplitude at the input of the device's pickup (V, zero-to-peak)."""
+
+    def __init__(self, host: DeviceHost) -> None:
+        self.host = host
+        self._heard = host.readings_heard
+
+    def read(self, block: FloatArray) -> int:
+        """Fill `block`, shape (n,), with the newest readings since the last call; how many.
+
+        Raises:
+            DeviceError: the device is gone, or has no pickup.
+        """
+        self.host.pump()
+        new = min(self.host.readings_heard - self._heard, len(self.host.readings), len(block))
+        self._heard = self.host.readings_heard
+        if new == 0:
+            return 0
+        readings = [self.host.readings[i] for i in range(-new, 0)]
+        if not readings[-1].flags & PICKUP_PRESENT:
+            raise DeviceError("the device has no pickup; connect one, or play without")
+        block[:new] = np.array([reading.pickup * 1e-6 for reading in readings])
+        return new

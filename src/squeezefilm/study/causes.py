@@ -1,0 +1,90 @@
+"""Why a stimulus is confused, as the model sees it: numbers of one percept."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from squeezefilm.analysis.render_command import RenderAnalysis
+from squeezefilm.quantities import Dimensionless, FloatArray, Hertz, Metre
+from squeezefilm.study.observer import FingerClass, Observer
+from squeezefilm.study.percepts import Percept, along_way
+from squeezefilm.study.senses import line_amplitudes, line_periods
+from squeezefilm.study.stimuli import Stimulus
+
+
+@dataclass(frozen=True, slots=True)
+class Causes:
+    """What speaks against a stimulus being recognised (over several fingers: medians).
+
+    Attributes:
+        texture_frequency: at which it passes the finger at mean speed (Hz).
+        envelope_bandwidth: at which the display's envelope has lost 3 dB (Hz).
+        contrast_kept: line of the friction rendered over that asked for, at the period (1); the
+            standing wave's ripple may raise it above 1. NaN without a contrast asked for.
+        lag_over_period: way of the finger during the sensor's latency and the envelope's time
+            constant, over the period (1).
+        contact_over_period: length of the contact over the period (1).
+        ripple_share: friction's standard deviation that the standing wave adds over that and the
+            rest together (1); 0 where the wave is ignored, NaN where it is compensated.
+        mean_displacement: of the skin (m).
+        d_prime: evidence for the rhythm of the period (1).
+        clearest_period: most evident rhythm (m).
+        clearest_d_prime: its evidence (1).
+    """
+
+    texture_frequency: Hertz
+    envelope_bandwidth: Hertz
+    contrast_kept: Dimensionless
+    lag_over_period: Dimensionless
+    contact_over_period: Dimensionless
+    ripple_share: Dimensionless
+    mean_displacement: Metre
+    d_prime: Dimensionless
+    clearest_period: Metre
+    clearest_d_prime: Dimensionless
+
+
+def causes(
+    stimulus: Stimulus, found: Percept, played: RenderAnalysis, observer: Observer,
+    finger: FingerClass,
+) -> Causes:  # fmt: skip
+    """The numbers of one percept of a virtual grating; `played` is its rendering."""
+    period, loop = stimulus.period, played.stroke
+    latency = 0.0 if loop.sensor is None else loop.sensor.latency
+    lag = (latency + played.time_constant) * finger.speed
+    rendered, asked = (
+        _line(loop.position, values, observer, period)
+        for values in (loop.relative_friction_rendered, played.asked)
+    )
+    return Causes(
+        texture_frequency=finger.speed / period,
+        envelope_bandwidth=1.0 / (2.0 * math.pi * played.time_constant),
+        contrast_kept=rendered / asked if asked > 1e-6 else float("nan"),
+        lag_over_period=lag / period,
+        contact_over_period=finger.contact_length / period,
+        ripple_share=_ripple_share(played),
+        mean_displacement=found.mean_displacement,
+        d_prime=found.evidence.at(period),
+        clearest_period=float(found.candidates.period[0]),
+        clearest_d_prime=max(float(found.candidates.d_prime[0]), 0.0),
+    )
+
+
+def _line(way: FloatArray, values: FloatArray, observer: Observer, period: Metre) -> float:
+    lines = line_amplitudes(along_way(way, values, observer, (1.0, 1.0)))
+    return float(np.interp(period, line_periods(), lines))
+
+
+def _ripple_share(played: RenderAnalysis) -> Dimensionless:
+    """What the wave adds to the friction that the same amplitudes make over an antinode."""
+    # A compensating renderer's inverse is of the driven amplitude, so there is no plain friction.
+    if played.wave != "felt":
+        return 0.0 if played.wave == "ignored" else float("nan")
+    law = played.played.inverse
+    plain = np.interp(played.stroke.amplitude, law.amplitude, law.relative_friction)
+    added = float(np.std(played.stroke.relative_friction_rendered - plain))
+    rest = float(np.std(plain))
+    return added / (added + rest) if added + rest > 1e-9 else 0.0

@@ -1,0 +1,219 @@
+"""A simulated participant's parameters: senses, uncertainty, exploration, and how people differ.
+
+Read one with `load_observer`. Every value of a preset says where it is from; most are assumed. The
+presets were written down before any table of answers was computed with them, and are not tuned.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from squeezefilm.config.provenance import Provenance
+from squeezefilm.contact.finger import Moisture
+from squeezefilm.errors import InputError
+from squeezefilm.quantities import (
+    Dimensionless,
+    DimensionlessLike,
+    Hertz,
+    HertzLike,
+    Metre,
+    MetrePerSecond,
+    Newton,
+    Pascal,
+    Radian,
+    Second,
+    Unit,
+    require,
+)
+
+_MOST_FINGERS = 64
+_FINGERS_STREAM = 71
+
+
+@dataclass(frozen=True)
+class SensoryChannel:
+    """One kind of mechanoreceptor as a band-pass of skin displacement with a threshold.
+
+    Args:
+        name: like "RA".
+        low, high: corner frequencies (Hz); `low` 0 passes slow changes too.
+        threshold: amplitude (m, zero-to-peak) of a sine inside the band that has d′ = 1.
+        spatial: whether a real grating is felt by its pattern in the skin (`spatial_sensitivity`)
+            instead of by the vibration it makes.
+
+    Raises:
+        InputError: a value outside its range.
+    """
+
+    name: str
+    low: Hertz
+    high: Hertz
+    threshold: Metre
+    spatial: bool = False
+
+    def __post_init__(self) -> None:
+        require("low", self.low, Unit("Hz"), at_least=0.0)
+        require("high", self.high, Unit("Hz"), above=self.low)
+        require("threshold", self.threshold, Unit("m"), above=0.0)
+
+    def gain(self, frequency: HertzLike) -> DimensionlessLike:
+        """Share of a displacement's amplitude that passes, at frequencies (Hz): second-order
+        slopes on both sides, 1/√2 at the corners. The shape is assumed."""
+        f = np.asarray(frequency, dtype=float)
+        falling = 1.0 / np.sqrt(1.0 + (f / self.high) ** 4)
+        if self.low == 0.0:
+            return np.asarray(falling)
+        rising = (f / self.low) ** 2
+        return np.asarray(falling * rising / np.sqrt(1.0 + rising**2))
+
+
+@dataclass(frozen=True)
+class FingerClass:
+    """A finger and how it moves: what differs between people before the senses."""
+
+    contact_length: Metre
+    ridge_angle: Radian
+    moisture: Moisture
+    normal_force: Newton
+    speed: MetrePerSecond
+
+
+@dataclass(frozen=True)
+class Observer:
+    """Everything a simulated participant is made of.
+
+    A spread is the standard deviation of a logarithm over people.
+
+    Args:
+        name, title: what it is called.
+        channels: of the skin.
+        friction_weber_fraction: step of friction over its mean that is told apart in 75 % of
+            two-interval trials (1); applied to slow and fast changes alike.
+        indentation_weber_fraction: the same for the depth of a real grating's indentation (1).
+        period_weber_fraction: the same for spatial periods felt clearly (1).
+        period_spread: of the period's Weber fraction.
+        harmonic_weight: of each further harmonic when a rhythm is told from its lines (1).
+        harmonics: heard together, the fundamental included.
+        candidates: periods that compete for being the one perceived.
+        detection_criterion: evidence (d′) below which nothing is felt, and the person guesses.
+        lapse_rate: share of trials answered blindly (1), median over people.
+        lapse_spread: of the lapse rate.
+        learning_excess: by how much more uncertain a person begins (1).
+        learning_trials: over which that falls by a factor e.
+        contact_length, contact_spread: of the contact along the finger (m), and over people.
+        contact_aspect: width of the contact over its length (1).
+        finger_orientation: of the finger, from the direction of the stroke (rad).
+        dry_share, moist_share: of people (1); the rest are normal.
+        speed, speed_spread: mean speed of a stroke (m/s), and over people.
+        normal_force, force_spread: (N), and over people.
+        stroke_length, passes: of an exploration (m), each pass of least jerk.
+        skin_modulus: plane-strain modulus of the pulp that bulges into grooves (Pa).
+        finger_classes: fingers into which people fall; the chain is computed once for each.
+        response_time, response_time_spread: of a decision without doubt (s), and over trials.
+        doubt_time: more for a decision in full doubt (s).
+
+    Raises:
+        InputError: a value outside its range.
+    """
+
+    name: str
+    title: str
+    channels: tuple[SensoryChannel, ...]
+    friction_weber_fraction: Dimensionless
+    indentation_weber_fraction: Dimensionless
+    period_weber_fraction: Dimensionless
+    period_spread: Dimensionless
+    harmonic_weight: Dimensionless
+    harmonics: int
+    candidates: int
+    detection_criterion: Dimensionless
+    lapse_rate: Dimensionless
+    lapse_spread: Dimensionless
+    learning_excess: Dimensionless
+    learning_trials: Dimensionless
+    contact_length: Metre
+    contact_spread: Dimensionless
+    contact_aspect: Dimensionless
+    finger_orientation: Radian
+    dry_share: Dimensionless
+    moist_share: Dimensionless
+    speed: MetrePerSecond
+    speed_spread: Dimensionless
+    normal_force: Newton
+    force_spread: Dimensionless
+    stroke_length: Metre
+    passes: int
+    skin_modulus: Pascal
+    finger_classes: int
+    response_time: Second
+    response_time_spread: Dimensionless
+    doubt_time: Second
+    provenance: Mapping[str, Provenance] = field(
+        default_factory=dict, metadata={"loader": True}, compare=False, repr=False
+    )
+
+    def __post_init__(self) -> None:
+        if not self.channels:
+            raise InputError("channels is empty; give at least one", quantity="channels")
+        for name in (
+            "friction_weber_fraction", "indentation_weber_fraction", "period_weber_fraction",
+            "learning_trials", "contact_length", "contact_aspect", "speed", "normal_force",
+            "stroke_length", "skin_modulus", "response_time",
+        ):  # fmt: skip
+            require(name, getattr(self, name), above=0.0)
+        for name in (
+            "period_spread", "lapse_spread", "learning_excess", "contact_spread", "speed_spread",
+            "force_spread", "response_time_spread", "doubt_time", "detection_criterion",
+        ):  # fmt: skip
+            require(name, getattr(self, name), at_least=0.0)
+        require("harmonic_weight", self.harmonic_weight, above=0.0, below=1.0)
+        require("lapse_rate", self.lapse_rate, at_least=0.0, at_most=1.0)
+        require("dry_share", self.dry_share, at_least=0.0, at_most=1.0)
+        require("moist_share", self.moist_share, at_least=0.0, at_most=1.0 - self.dry_share)
+        require("finger_orientation", self.finger_orientation, Unit("rad"), at_least=-4, at_most=4)
+        require("harmonics", self.harmonics, at_least=1, at_most=20)
+        require("candidates", self.candidates, at_least=1, at_most=20)
+        require("passes", self.passes, at_least=1, at_most=100)
+        require("finger_classes", self.finger_classes, at_least=1, at_most=_MOST_FINGERS)
+
+    def fingers(self) -> tuple[FingerClass, ...]:
+        """The finger classes: a Latin hypercube over what people differ in, always the same.
+
+        A single class is the median finger.
+        """
+        from scipy.special import ndtri
+
+        count = self.finger_classes
+        random = np.random.default_rng([_FINGERS_STREAM, count])
+        middle = (np.arange(count) + 0.5) / count
+        length, wet, force, speed = (random.permutation(middle) for _ in range(4))
+        angle = self.finger_orientation
+        along = np.hypot(np.cos(angle), self.contact_aspect * np.sin(angle))
+        return tuple(
+            FingerClass(
+                contact_length=float(
+                    self.contact_length * along * np.exp(self.contact_spread * ndtri(length[i]))
+                ),
+                ridge_angle=angle,
+                moisture=self._moisture(float(wet[i])),
+                normal_force=float(self.normal_force * np.exp(self.force_spread * ndtri(force[i]))),
+                speed=float(self.speed * np.exp(self.speed_spread * ndtri(speed[i]))),
+            )
+            for i in range(count)
+        )
+
+    def _moisture(self, share: Dimensionless) -> Moisture:
+        if share < self.dry_share:
+            return "dry"
+        return "moist" if share >= 1.0 - self.moist_share else "normal"
+
+
+def load_observer(name_or_path: str | Path = "fingertip") -> Observer:
+    """The observer of a preset's name or of a TOML file. Raises `ConfigError` if it can't be."""
+    from squeezefilm import config, presets
+
+    return config.load(Observer, presets.resolve_observer(name_or_path))

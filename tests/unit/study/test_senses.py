@@ -1,0 +1,134 @@
+"""Channels, lines and rhythms against what can be worked out by hand."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+
+from squeezefilm.errors import ConfigError, InputError
+from squeezefilm.study.observer import SensoryChannel, load_observer
+from squeezefilm.study.percepts import grating_percept, indentation
+from squeezefilm.study.senses import (
+    D_PRIME_OF_75,
+    SPACING,
+    candidates,
+    channel_gains,
+    evidence,
+    line_amplitudes,
+    line_periods,
+    spatial_sensitivity,
+)
+from squeezefilm.study.stimuli import Grating
+
+OBSERVER = load_observer()
+WAY = np.arange(2e-3, 40e-3, SPACING)
+
+
+def at(period: float, values: np.ndarray) -> float:
+    return float(np.interp(period, line_periods(), values))
+
+
+def square(period: float) -> np.ndarray:
+    return np.where((WAY / period) % 1.0 < 0.5, 0.5, -0.5)
+
+
+def test_every_value_of_a_preset_says_where_it_is_from() -> None:
+    fields = {one.name for one in dataclasses.fields(OBSERVER)}
+    fields -= {"name", "title", "channels", "provenance"}
+    assert fields <= set(OBSERVER.provenance)
+    assert {one.evidence for one in OBSERVER.provenance.values()} == {
+        "published", "assumed", "derived",
+    }  # fmt: skip
+
+
+def test_an_unknown_observer_is_refused_with_those_there_are() -> None:
+    with pytest.raises(ConfigError, match="fingertip"):
+        load_observer("fingertop")
+
+
+def test_the_median_finger_is_alone_and_six_spread_about_it() -> None:
+    (alone,) = dataclasses.replace(OBSERVER, finger_classes=1).fingers()
+    assert (alone.contact_length, alone.speed) == pytest.approx((10e-3, 80e-3))
+    six = OBSERVER.fingers()
+    assert six == OBSERVER.fingers()
+    assert np.exp(np.mean(np.log([one.speed for one in six]))) == pytest.approx(80e-3)
+    assert {one.moisture for one in six} == {"dry", "normal", "moist"}
+
+
+def test_a_channel_has_its_corners_and_slopes() -> None:
+    channel = SensoryChannel("RA", 8.0, 64.0, 1e-5)
+    assert channel.gain(64.0) == pytest.approx(1 / math.sqrt(2), rel=1e-3)
+    assert channel.gain(8.0) == pytest.approx(1 / math.sqrt(2), rel=1e-3)
+    assert channel.gain(0.1) / channel.gain(0.05) == pytest.approx(4.0, rel=1e-2)
+    assert channel.gain(5e3) / channel.gain(1e4) == pytest.approx(4.0, rel=1e-2)
+    with pytest.raises(InputError, match="high"):
+        SensoryChannel("none", 8.0, 8.0, 1e-5)
+
+
+def test_a_line_has_its_amplitude_whatever_its_phase_and_the_drift() -> None:
+    for phase in (0.0, 1.0, 2.5):
+        wave = 3e-6 * np.sin(2 * math.pi * WAY / 2e-3 + phase) + 1e-3 + 5e-3 * WAY
+        assert at(2e-3, line_amplitudes(wave[None, :])) == pytest.approx(3e-6, rel=0.01)
+
+
+def test_the_weber_step_has_the_d_prime_of_three_quarters_right() -> None:
+    # One band that passes everything, no threshold to speak of: Weber's fraction alone.
+    wide = SensoryChannel("all", 0.0, 1e9, 1e-15)
+    alone = dataclasses.replace(OBSERVER, channels=(wide,), harmonics=1)
+    mean, weber = 4e-4, 0.11
+    step = weber * mean * square(2e-3)
+    lines = line_amplitudes(step[None, :])
+    gains = channel_gains(alone, np.full(WAY.size, 0.08))
+    found = evidence(alone, lines, gains, mean, weber)
+    assert found.at(2e-3) == pytest.approx(D_PRIME_OF_75, rel=0.01)
+    assert pytest.approx(math.sqrt(2) * 0.6744897502, rel=1e-9) == D_PRIME_OF_75
+
+
+def test_a_square_is_pi_over_four_clearer_than_a_sine_of_its_swing() -> None:
+    amplitudes = [
+        at(4e-3, line_amplitudes(one[None, :]))
+        for one in (square(4e-3), 0.5 * np.sin(2 * math.pi * WAY / 4e-3))
+    ]
+    assert amplitudes[0] / amplitudes[1] == pytest.approx(4 / math.pi, rel=0.01)
+
+
+def test_the_fundamental_wins_and_its_multiples_are_explained_by_it() -> None:
+    gains = channel_gains(OBSERVER, np.full(WAY.size, 0.08))
+    lines = line_amplitudes(2e-4 * square(2e-3)[None, :])
+    found = candidates(OBSERVER, evidence(OBSERVER, lines, gains, 4e-4, 0.11))
+    assert found.period[0] == pytest.approx(2e-3, rel=0.01)
+    assert found.d_prime[0] > 5 * found.d_prime[1]
+
+
+def test_nothing_gives_no_candidate() -> None:
+    gains = channel_gains(OBSERVER, np.full(WAY.size, 0.08))
+    silent = line_amplitudes(np.full((2, WAY.size), 3e-4))
+    found = candidates(OBSERVER, evidence(OBSERVER, silent, gains, 3e-4, 0.11))
+    assert np.all(np.isneginf(found.d_prime))
+
+
+def test_the_published_spatial_sensitivity() -> None:
+    assert spatial_sensitivity(0.7e-3) == 0.0
+    assert spatial_sensitivity(0.87e-3) == pytest.approx(4.25 * 0.32)
+    assert spatial_sensitivity(5e-3) == spatial_sensitivity(3e-3)
+
+
+def test_skin_bulges_with_pressure_until_it_meets_the_floor() -> None:
+    fine = Grating("fine", 0.4e-3, "period")
+    assert indentation(fine, 5e3, 100e3) == pytest.approx(10e-6)
+    assert indentation(Grating("coarse", 10e-3, "period"), 5e3, 100e3) == 70e-6
+    with pytest.raises(InputError, match="pressure"):
+        indentation(fine, 0.0, 100e3)
+
+
+@pytest.mark.parametrize("means", ["period", "groove width"])
+def test_a_real_grating_is_felt_at_its_whole_period(means: str) -> None:
+    finger = OBSERVER.fingers()[0]
+    for length in (0.4e-3, 2e-3, 4e-3):
+        grating = Grating("one", length, means)  # type: ignore[arg-type]
+        found = grating_percept(grating, OBSERVER, finger)
+        assert found.candidates.period[0] == pytest.approx(grating.period, rel=0.02)
+        assert found.candidates.d_prime[0] > 5.0
