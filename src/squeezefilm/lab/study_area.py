@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from pydantic import Field
 
 from squeezefilm.errors import DeviceError, InputError
+from squeezefilm.lab.keys import CODE_LIFE
 from squeezefilm.lab.server import PAGE
 from squeezefilm.lab.sittings import Sitting
 from squeezefilm.lab.studies import Studies, analysis_of, report_of
@@ -172,7 +173,8 @@ def add_study(lab: Lab, devices: StudyDevices | None = None) -> StudyThread:
         await lab.tell({"type": "study changed", "study": study})
 
     async def listing(_: Request) -> Answer:
-        return {"type": "studies", **await thread.do(Studies.listing)}
+        found = await thread.do(Studies.listing)
+        return {"type": "studies", **found, "tablets": lab.lan is not None}
 
     async def plan(asked: PlanStudy) -> Answer:
         return {"type": "plan", **await thread.do(Studies.plan, asked.design)}
@@ -209,6 +211,18 @@ def add_study(lab: Lab, devices: StudyDevices | None = None) -> StudyThread:
         await thread.do(lambda studies: studies.sittings.get(asked.sitting))
         token = lab.keys.new_link("participant", f"/participant#{asked.sitting}")
         return {"type": "link", "path": f"/?token={token}"}
+
+    async def code(asked: OfSitting) -> Answer:
+        if lab.lan is None:
+            raise InputError("tablets are paired where the lab was started with --lan ADDRESS")
+        await thread.do(lambda studies: studies.sittings.get(asked.sitting))
+        return {
+            "type": "code",
+            "code": lab.keys.new_code(f"/participant#{asked.sitting}"),
+            "link": lab.lan.link,
+            "fingerprint": lab.lan.fingerprint,
+            "life_s": CODE_LIFE,
+        }
 
     async def end(asked: OfSitting) -> Answer:
         sitting = await thread.do(lambda studies: studies.sittings.get(asked.sitting))
@@ -332,6 +346,7 @@ def add_study(lab: Lab, devices: StudyDevices | None = None) -> StudyThread:
     add("exposure", OfParticipant, ultrasound)
     add("prepare sitting", PrepareSitting, prepare)
     add("station link", OfSitting, station)
+    add("pairing code", OfSitting, code)
     add("end sitting", OfSitting, end)
     add("delete participant", DeleteParticipant, delete)
     add("export study", ExportStudy, export)

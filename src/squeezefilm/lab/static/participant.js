@@ -8,6 +8,8 @@ import { Socket } from "./socket.js";
 const sitting = location.hash.slice(1);
 const place = document.getElementById("area");
 const connection = document.getElementById("connection");
+// The second tap of a double tap would answer the trial after the one it was meant for.
+const TOO_SOON = 250;
 const KEPT = `squeezefilm answer ${sitting}`;
 const socket = new Socket("/ws/participant");
 let keys = null;
@@ -15,18 +17,20 @@ let resting = null;
 // Whether a device plays a surface, and which presentation what comes back belongs to.
 let playing = false, turn = 0;
 
-socket.on("connection", ({ open }) => {
-  connection.textContent = open ? "" : "The connection is lost. Nothing you answered is lost; please wait.";
+socket.on("connection", ({ open, refused }) => {
+  const away = refused ? "This page's session is over. Nothing you answered is lost; please tell the experimenter." : "The connection is lost. Nothing you answered is lost; please wait.";
+  connection.textContent = open ? "" : away;
   connection.classList.toggle("lost", !open);
   if (open && window.squeezefilmMine) goOn();
   if (!open) freeze();
 });
 socket.on("sitting ended", (message) => message.sitting === sitting && goOn());
+// A key held down repeats, and must not answer the trials that follow.
 document.addEventListener("keydown", (event) => {
   if (event.key === " " && playing) {
     event.preventDefault();
     stopSurface();
-  } else keys?.(event);
+  } else if (!event.repeat && !event.ctrlKey && !event.altKey && !event.metaKey) keys?.(event);
 });
 begin();
 
@@ -57,7 +61,7 @@ async function goOn() {
     if (kept) await handKept(kept);
     show(await socket.ask("where", { sitting }));
   } catch (error) {
-    if (socket.open) failed(error);
+    refused(error);
   }
 }
 
@@ -65,14 +69,24 @@ async function handKept(kept) {
   try {
     await socket.ask("respond", { sitting, ...JSON.parse(kept) });
   } catch (error) {
-    // Refused, it would be refused for ever: its trial comes again. Lost on the way, it is kept.
-    if (!socket.open) throw error;
+    // Refused, it would be refused for ever: its trial comes again. Else it is kept.
+    if (!socket.open || error.again) throw error;
   }
   localStorage.removeItem(KEPT);
 }
 
+/** Say why the server refused. An answer is kept only where handing it in again can help. */
+function refused(error) {
+  playing = false;
+  if (!socket.open) return;
+  if (!error.again) localStorage.removeItem(KEPT);
+  page(element("h2", { text: "This does not work" }), element("p", { text: error.message }),
+    element("p", { text: "Please tell the experimenter." }), waiting("Try again", 0, goOn));
+}
+
 function freeze() {
   keys = null;
+  clearInterval(resting);
   for (const one of place.querySelectorAll("button, input")) one.disabled = true;
 }
 
@@ -80,16 +94,11 @@ function page(...children) {
   clearInterval(resting);
   keys = null;
   place.replaceChildren(element("section", { class: "card sheet" }, ...children));
+  place.focus({ preventScroll: true });
 }
 
 function say(title, text) {
   page(element("h2", { text: title }), element("p", { text }));
-}
-
-function failed(error) {
-  playing = false;
-  page(element("h2", { text: "This does not work" }), element("p", { role: "alert", text: error.message }),
-    element("button", { class: "main", text: "Go on", onclick: goOn }));
 }
 
 function show(found) {
@@ -143,7 +152,7 @@ async function ask(type, fields = {}) {
   try {
     show(await socket.ask(type, { sitting, ...fields }));
   } catch (error) {
-    if (socket.open) failed(error);
+    refused(error);
   }
 }
 
@@ -173,7 +182,7 @@ async function feel(found, number) {
     }
     page(element("h2", { text: `Feel the ${which}` }), waiting("Done", 0, () => feltOne(found, number)), stopper());
   } catch (error) {
-    if (mine === turn && socket.open) failed(error);
+    if (mine === turn) refused(error);
   }
 }
 
@@ -190,7 +199,7 @@ async function feltOne(found, number) {
     playing = false;
     questions(found);
   } catch (error) {
-    if (mine === turn && socket.open) failed(error);
+    if (mine === turn) refused(error);
   }
 }
 
@@ -207,13 +216,13 @@ async function stopSurface() {
     await socket.ask("stop surface", { sitting });
     page(element("h2", { text: "Stopped" }), element("p", { text: "The surface was stopped, and nothing was recorded. It is presented again when you go on." }), next("Go on"));
   } catch (error) {
-    if (socket.open) failed(error);
+    refused(error);
   }
 }
 
 function questions(found) {
-  const began = performance.now();
-  const answer = (fields) => hand(found, began, fields);
+  const began = performance.now() + TOO_SOON;
+  const answer = (fields) => performance.now() >= began && hand(found, began, fields);
   const head = { familiarisation: `Feel the grating ${found.named}`, practice: "Practice", main: "" }[found.phase];
   const title = element("h2", { text: head || found.question });
   const left = element("p", { class: "muted", text: `${found.remaining} to go` });
@@ -228,8 +237,9 @@ function questions(found) {
   if (found.numeric) parts.push(estimate(answer));
   else parts.push(choices(found, answer));
   parts.push(left);
-  page(...parts.slice(0, -1), left);
-  keys = numberKeys(found, answer);
+  page(...parts);
+  if (found.numeric) place.querySelector("#estimate").focus();
+  else keys = numberKeys(found, answer);
 }
 
 function pauseThen(found) {
@@ -248,13 +258,16 @@ function choices(found, answer) {
 
 function estimate(answer) {
   const number = element("input", { type: "text", inputmode: "decimal", id: "estimate", size: "8", "aria-label": "your number" });
+  const wrong = element("span", { role: "alert", class: "mark" });
   const give = () => {
-    const value = Number(number.value.replace(",", "."));
-    if (value > 0 && Number.isFinite(value)) answer({ estimate: value });
-    else number.setAttribute("aria-invalid", "true");
+    const value = Number(number.value.trim().replace(",", "."));
+    if (value > 0 && Number.isFinite(value)) return answer({ estimate: value });
+    number.setAttribute("aria-invalid", "true");
+    wrong.textContent = "Any number above 0, please.";
+    return null;
   };
-  number.addEventListener("keydown", (event) => event.key === "Enter" && give());
-  return element("p", { class: "row" }, number, element("button", { class: "main", text: "Give this number", onclick: give }));
+  number.addEventListener("keydown", (event) => event.key === "Enter" && !event.repeat && give());
+  return element("p", { class: "row" }, number, element("button", { class: "main", text: "Give this number", onclick: give }), wrong);
 }
 
 function numberKeys(found, answer) {
@@ -279,10 +292,7 @@ async function hand(found, began, fields) {
     localStorage.removeItem(KEPT);
     after(told);
   } catch (error) {
-    if (!socket.open) return;
-    // Refused, not lost: another would be refused as well.
-    localStorage.removeItem(KEPT);
-    failed(error);
+    refused(error);
   }
 }
 
