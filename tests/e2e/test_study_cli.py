@@ -120,7 +120,10 @@ def test_a_study_is_run_interrupted_resumed_exported_merged_and_forgotten(tmp_pa
     [
         (("plan", "biet2008-grating"), "Did you mean 'biet2008-gratings'"),
         (("run", "tiny.toml", "--store", "a.sqlite"), "consent = true"),
-        (("run", "tiny.toml", "--store", "a.sqlite", "--consent", "--drive", "x"), "twin, none"),
+        (
+            ("run", "tiny.toml", "--store", "a.sqlite", "--consent", "--drive", "x"),
+            "drive = 'x' is not known",
+        ),
         (("status", "none.sqlite"), "does not exist"),
         (("status", "tiny.toml"), "no study's file"),
         (("export", "tiny.toml"), "no study's file"),
@@ -135,9 +138,9 @@ def test_mistakes_are_one_message(arguments: tuple[str, ...], says: str, tmp_pat
 
 
 @pytest.mark.nightly
-def test_a_rehearsal_on_the_twin_acknowledges_the_ultrasound(tmp_path: Path) -> None:
+def test_a_rehearsal_acknowledges_the_ultrasound(tmp_path: Path) -> None:
     (tmp_path / "tiny.toml").write_text(DESIGN, encoding="utf-8")
-    start = ("run", "tiny.toml", "--store", "a.sqlite", "--consent", "--drive", "twin")
+    start = ("run", "tiny.toml", "--store", "a.sqlite", "--consent", "--drive", "rehearsal")
     refused = run(*start, cwd=tmp_path, keys="no\n")
     assert refused.returncode == 2
     assert "dB above the guidance" in refused.stdout

@@ -19,8 +19,16 @@ def lab(
     browser: Annotated[
         bool, typer.Option("--browser/--no-browser", help="Open the page in the browser.")
     ] = True,
+    lan: Annotated[
+        str | None,
+        typer.Option(
+            metavar="ADDRESS",
+            help="This computer's address in the local network, to pair tablets as participant "
+            "stations by TLS; needs squeezefilm[lan].",
+        ),
+    ] = None,
 ) -> None:
     """Open the lab, a page on this computer: design, feel, drive and study."""
     from squeezefilm.lab.serve import serve
 
-    serve(folder, port=port, browser=browser, say=lambda line: typer.echo(line))
+    serve(folder, port=port, browser=browser, lan=lan, say=lambda line: typer.echo(line))

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from squeezefilm.cli.app import AsJson, app, print_json
+from squeezefilm.cli.app import AsJson, app, print_json, quantity
 
 study = typer.Typer(
     name="study",
@@ -171,7 +171,16 @@ def run(
     consent: Annotated[
         bool, typer.Option("--consent", help="The participant has consented.")
     ] = False,
-    drive: Annotated[str, typer.Option(help="twin (a simulated device) or none.")] = "none",
+    drive: Annotated[
+        str,
+        typer.Option(
+            help="serial:PORT (a device), twin (a simulated one behind a port, in real time), "
+            "rehearsal (one without a port, as fast as it goes) or none."
+        ),
+    ] = "none",
+    pickup: Annotated[
+        str | None, typer.Option(help='Amplitude per signal of the device\'s pickup: "2 um/V".')
+    ] = None,
     acknowledge: Annotated[
         bool,
         typer.Option("--acknowledge-ultrasound", help="The exposure was read and acknowledged."),
@@ -181,6 +190,7 @@ def run(
     stations: Annotated[int, typer.Option(help="How many stations there are.")] = 1,
 ) -> None:
     """Run a session at the terminal; stop with Ctrl-C, and go on later where it stopped."""
+    from squeezefilm.quantities import Unit
     from squeezefilm.report import terminal
     from squeezefilm.report.terminal_study import TerminalExaminer, ask_acknowledgement
     from squeezefilm.study.terminal_run import open_study, run_session
@@ -194,6 +204,7 @@ def run(
                 participant,
                 examiner,
                 drive=drive,
+                amplitude_per_pickup=quantity(pickup, "--pickup", Unit("m/V")),
                 conditions=conditions,
                 consent=consent,
                 acknowledge=(lambda _: True) if acknowledge else ask_acknowledgement,

@@ -2,7 +2,8 @@
 
 A page that only this computer may use is still reachable by any website that this computer's
 browser shows. The Host check stops DNS rebinding, the Origin check foreign pages and cross-site
-requests, the cookie everybody else.
+requests, the cookie everybody else. On the address for tablets an experimenter's cookie opens
+nothing: whoever listens there can at most be a participant.
 """
 
 from __future__ import annotations
@@ -43,6 +44,8 @@ HEADERS: Mapping[str, str] = {
 
 # What a participant's browser may reach; everything else is the experimenter's.
 _PARTICIPANT = ("/participant", "/static/", "/pair", "/ws/participant", "/favicon.ico")
+# What a tablet needs to type a pairing code, before it has a session; nothing secret is in them.
+_PAIRING = ("/pair", "/static/pair.js", "/static/lab.css", "/static/icon.svg")
 _SAFE = {"GET", "HEAD"}
 
 
@@ -50,11 +53,14 @@ _SAFE = {"GET", "HEAD"}
 class Places:
     """Where the lab is served: the hosts it answers to, and whether it is reached by TLS.
 
-    `hosts` are values of the Host header with their port, as a browser sends them.
+    `hosts` are values of the Host header with their port, as a browser sends them. With
+    `participants_only` no link and no experimenter's session is good here: a station comes in by
+    a pairing code.
     """
 
     hosts: frozenset[str]
     secure: bool = False
+    participants_only: bool = False
     cookie: str = "squeezefilm"
 
     @property
@@ -104,17 +110,21 @@ class Guard:
             self.refusals.count(reason)
             await self._answer(PlainTextResponse(text, status), scope, receive, send)
             return
-        entered = self._entering(scope)
+        entered = self._entering(scope, headers)
         if entered is not None:
             await self._answer(entered, scope, receive, send)
             return
-        session = self.keys.session(_cookie(headers, self.places.cookie))
+        session = self._session(headers)
         path = str(scope["path"])
-        if session is None and path != "/pair":
+        if session is None and not (self.places.participants_only and path in _PAIRING):
             self.refusals.count("session")
             text = (
-                "This page needs the link that squeezefilm lab printed when it started; each link "
-                "works once. Ask for another with the lab's button 'another station'."
+                "This tablet is not paired, or not any more: open /pair here and type the six "
+                "digits that the experimenter's page shows."
+                if self.places.participants_only
+                else "This page needs the link that squeezefilm lab printed when it started; each "
+                "link works once, for one browser. For another station, ask for a link on the "
+                "Study page; to come back after the lab was ended, start it again."
             )
             await self._answer(PlainTextResponse(text, 401), scope, receive, send)
             return
@@ -166,9 +176,18 @@ class Guard:
             return "size", 413, f"A request of more than {LARGEST_BODY} bytes; send less."
         return None
 
-    def _entering(self, scope: Scope) -> Response | None:
+    def _session(self, headers: Headers) -> Session | None:
+        found = self.keys.session(_cookie(headers, self.places.cookie))
+        if found is not None and self.places.participants_only and found.role != "participant":
+            self.refusals.count("role")
+            return None
+        return found
+
+    def _entering(self, scope: Scope, headers: Headers) -> Response | None:
         if scope["type"] != "http" or scope["path"] != "/" or scope["method"] != "GET":
             return None
+        if self.places.participants_only:
+            return RedirectResponse("/pair", 303)
         tokens = parse_qs(scope["query_string"].decode("latin-1")).get("token", [])
         if not tokens:
             return None
@@ -182,7 +201,10 @@ class Guard:
             )
         session, home = entered
         response = RedirectResponse(home, 303)
-        self.set_cookie(response, session)
+        known = self._session(headers)
+        # An experimenter who opens a station's link in the own browser stays the experimenter.
+        if known is None or session.role == "experimenter" or known.role == "participant":
+            self.set_cookie(response, session)
         return response
 
     async def _answer(self, response: Response, scope: Scope, receive: Receive, send: Send) -> None:

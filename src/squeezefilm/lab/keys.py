@@ -58,7 +58,7 @@ class Keys:
     clock: Callable[[], float] = time.time
     _links: dict[str, _Link] = field(default_factory=dict)
     _sessions: dict[str, Session] = field(default_factory=dict)
-    _code: tuple[str, float] | None = None
+    _code: tuple[str, str, float] | None = None
     _wrong: int = 0
     _stations: int = 0
 
@@ -92,27 +92,30 @@ class Keys:
             return None
         return self._open(found.role, found.station), found.home
 
-    def new_code(self) -> str:
-        """Six digits that pair one tablet as a participant station, once, within two minutes."""
-        self._code = (f"{secrets.randbelow(10**6):06d}", self.clock() + CODE_LIFE)
+    def new_code(self, home: str = "/participant") -> str:
+        """Six digits that pair one tablet as a participant station, once, within two minutes; it
+        begins at `home`. A code that was not used yet is dropped."""
+        self._code = (f"{secrets.randbelow(10**6):06d}", home, self.clock() + CODE_LIFE)
         self._wrong = 0
         return self._code[0]
 
-    def use_code(self, code: str) -> Session | None:
-        """The participant's session that a pairing code opens; None where it is wrong or over.
+    def use_code(self, code: str) -> tuple[Session, str] | None:
+        """The participant's session that a pairing code opens, and where it begins; None where
+        the code is wrong or over.
 
         After five wrong ones the code is dropped: six digits cannot be guessed in five tries.
         """
-        if self._code is None or self._code[1] < self.clock():
+        if self._code is None or self._code[2] < self.clock():
             return None
         if not secrets.compare_digest(self._code[0].encode(), code.encode()):
             self._wrong += 1
             if self._wrong >= MOST_WRONG_CODES:
                 self._code = None
             return None
+        home = self._code[1]
         self._code = None
         self._stations += 1
-        return self._open("participant", f"station {self._stations}")
+        return self._open("participant", f"station {self._stations}"), home
 
     def session(self, secret: str | None) -> Session | None:
         """The session of a cookie's value; None where there is none or it is over."""

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import asyncio
 import contextlib
 import webbrowser
 from collections.abc import Callable
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+import uvicorn
 
 from squeezefilm.errors import InputError
 from squeezefilm.lab.design_area import add_design
@@ -16,27 +20,49 @@ from squeezefilm.lab.keys import Keys
 from squeezefilm.lab.server import PORT, Lab, listening_socket, server_of
 from squeezefilm.lab.study_area import add_study
 
+if TYPE_CHECKING:
+    import socket
+
+    from squeezefilm.lab.server import UnheardServer
+
 
 def serve(
     folder: Path,
     *,
     port: int = PORT,
     browser: bool = True,
+    lan: str | None = None,
     say: Callable[[str], None] = print,
 ) -> None:
     """Serve the lab on this computer only, until Ctrl-C; files are saved below `folder`.
+
+    With `lan`, an address of this computer in a private network, tablets reach the participant's
+    page there by TLS, each after it was paired with a code; nothing else is served there.
 
     `say` gets the lines a person reads: the one-time link first. Where the lab was killed, pages
     that were open go on with the lab that is started next in the same folder at the same port.
 
     Raises:
-        InputError: a folder that cannot be written, or no free port.
+        InputError: a folder that cannot be written, no free port, or what `lan` may not be.
     """
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InputError(f"{folder} cannot be made: {error.strerror}; say --folder") from error
-    listener = listening_socket(port)
+    with contextlib.ExitStack() as opened:
+        listener = opened.enter_context(listening_socket(port))
+        _serve(folder, port, browser, lan, say, listener, opened)
+
+
+def _serve(
+    folder: Path,
+    port: int,
+    browser: bool,
+    lan: str | None,
+    say: Callable[[str], None],
+    listener: socket.socket,
+    opened: contextlib.ExitStack,
+) -> None:
     found = int(listener.getsockname()[1])
     hosts = frozenset({f"127.0.0.1:{found}", f"localhost:{found}"})
     keys = Keys(folder / f".lab-{found}.keys")
@@ -46,19 +72,39 @@ def serve(
     add_study(lab)
     add_device(lab)
     link = f"http://127.0.0.1:{found}/?token={keys.new_link()}"
-    server = server_of(lab)
+    servers = [(server_of(lab), listener)]
+    secret = folder / f".lab-{found}.pem"
+    if lan is not None:
+        from squeezefilm.lab.lan import lan_listener, lan_server
+
+        beside = opened.enter_context(lan_listener(lan))
+        servers.append((lan_server(lab, beside, secret), beside))
     say(f"squeezefilm lab: {link}")
     if found != port:
         say(f"port {port} was taken; this one is {found}")
     say("the link works once; files are saved in " + str(folder.resolve()) + "; stop with Ctrl-C")
+    if lab.lan is not None:
+        say(f"tablets, participants only: {lab.lan.link}")
+        say(f"its certificate's SHA-256 fingerprint: {lab.lan.fingerprint}")
     if browser:
         with contextlib.suppress(webbrowser.Error):
             webbrowser.open(link)
     try:
-        server.run(sockets=[listener])
+        asyncio.run(_run(servers))
     except KeyboardInterrupt:
         pass
     finally:
         lab.close()
         keys.forget()
-        listener.close()
+        secret.unlink(missing_ok=True)
+
+
+async def _run(servers: list[tuple[UnheardServer, socket.socket]]) -> None:
+    """Run the first server until a signal ends it, and the others as long."""
+    (first, listener), *others = servers
+    with uvicorn.Server.capture_signals(first):
+        beside = [asyncio.create_task(one.serve(sockets=[at])) for one, at in others]
+        await first.serve(sockets=[listener])
+        for one, _ in others:
+            one.should_exit = True
+        await asyncio.gather(*beside)

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-import logging
 import socket
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Callable, Iterator
+from contextvars import ContextVar
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import uvicorn
 from starlette.applications import Starlette
@@ -26,6 +26,11 @@ from squeezefilm.lab.keys import Keys
 from squeezefilm.lab.wire import LARGEST_MESSAGE, Dispatcher, as_text
 from squeezefilm.lab.worker import SupersededError, Workers
 
+if TYPE_CHECKING:
+    from starlette.types import ASGIApp
+
+    from squeezefilm.lab.lan import LanPlace
+
 STATIC = Path(__file__).parent / "static"
 RENDERER = Path(render.__file__).parent / "static" / "renderer.js"
 PORT = 8631
@@ -37,15 +42,21 @@ _KINDS = {
     ".json": "application/json",
     ".txt": "text/plain; charset=utf-8",
 }
-_LOG = logging.getLogger("squeezefilm.lab")
-_OURS = "The lab failed on this request; the terminal it runs in shows why. Nothing was changed."
 MOST_WAITING = 64
 """Messages of one page being answered at once; more is a page that does not wait."""
 
 
+PAGE: ContextVar[WebSocket] = ContextVar("page")
+"""The page whose message is being answered."""
+
+
 @dataclass(slots=True)
 class Lab:
-    """One running lab: where its files lie, its keys, its workers, who answers what."""
+    """One running lab: where its files lie, its keys, its workers, who answers what.
+
+    `left` is called with each page that went away, `closing` when the lab ends.
+    `lan` says where tablets reach it; None where they were not asked for.
+    """
 
     folder: Path
     keys: Keys
@@ -55,6 +66,8 @@ class Lab:
     workers: Workers = field(default_factory=Workers)
     pages: set[WebSocket] = field(default_factory=set)
     closing: list[Callable[[], None]] = field(default_factory=list)
+    left: list[Callable[[WebSocket], None]] = field(default_factory=list)
+    lan: LanPlace | None = None
 
     async def tell(self, message: dict[str, Any], *, participants: bool = False) -> None:
         """Send a message that nobody asked for to every open page of a kind."""
@@ -76,7 +89,7 @@ def application(lab: Lab) -> Guard:
 
     async def page(request: Request) -> Response:
         name = "participant.html" if request.url.path == "/participant" else "index.html"
-        return _file(STATIC / name)
+        return page_file(name)
 
     async def static(request: Request) -> Response:
         return static_file(STATIC, request.path_params["path"])
@@ -111,6 +124,11 @@ def application(lab: Lab) -> Guard:
     return Guard(app, lab.keys, lab.places)
 
 
+def page_file(name: str) -> Response:
+    """One of the lab's pages."""
+    return _file(STATIC / name)
+
+
 def static_file(folder: Path, name: str) -> Response:
     """A file below a folder; 404 for anything else, links and climbing paths included."""
     wanted = folder / name
@@ -139,6 +157,7 @@ async def converse(lab: Lab, dispatcher: Dispatcher, page: WebSocket) -> None:
     """Answer one page's messages, each as it is ready, until the page goes."""
     await page.accept()
     lab.pages.add(page)
+    PAGE.set(page)
     waiting: set[asyncio.Task[None]] = set()
 
     async def one(text: str) -> None:
@@ -146,10 +165,6 @@ async def converse(lab: Lab, dispatcher: Dispatcher, page: WebSocket) -> None:
             answer = await dispatcher.answer(text)
         except SupersededError:
             return
-        except Exception:
-            # A mistake of ours: said on the page and in the terminal; the conversation goes on.
-            _LOG.exception("the lab could not answer a message")
-            answer = {"id": None, "type": "error", "message": _OURS}
         with contextlib.suppress(RuntimeError, WebSocketDisconnect):
             await page.send_text(as_text(answer))
 
@@ -166,6 +181,8 @@ async def converse(lab: Lab, dispatcher: Dispatcher, page: WebSocket) -> None:
         pass
     finally:
         lab.pages.discard(page)
+        for told in lab.left:
+            told(page)
         for task in waiting:
             task.cancel()
 
@@ -181,6 +198,8 @@ def listening_socket(port: int, host: str = "127.0.0.1") -> socket.socket:
         one.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
             one.bind((host, candidate))
+            # A browser that is faster than the server's start waits here and is not refused.
+            one.listen()
         except OSError:
             one.close()
             continue
@@ -191,10 +210,22 @@ def listening_socket(port: int, host: str = "127.0.0.1") -> socket.socket:
     )
 
 
-def server_of(lab: Lab, **extra: Any) -> uvicorn.Server:
-    """A uvicorn server for a lab, with its limits; `extra` goes to uvicorn's configuration."""
+class UnheardServer(uvicorn.Server):
+    """A server that leaves signals to who runs it: several run side by side in one process."""
+
+    @contextlib.contextmanager
+    def capture_signals(self) -> Iterator[None]:
+        """Capture none."""
+        yield
+
+
+def server_of(lab: Lab, app: ASGIApp | None = None, **extra: Any) -> UnheardServer:
+    """A uvicorn server for a lab, with its limits; `extra` goes to uvicorn's configuration.
+
+    `app` is served instead of the lab's own application.
+    """
     config = uvicorn.Config(
-        application(lab),
+        app or application(lab),
         http=TimedProtocol,
         ws="websockets-sansio",
         ws_max_size=LARGEST_MESSAGE,
@@ -209,4 +240,4 @@ def server_of(lab: Lab, **extra: Any) -> uvicorn.Server:
         server_header=False,
         **extra,
     )
-    return uvicorn.Server(config)
+    return UnheardServer(config)

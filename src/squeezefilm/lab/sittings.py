@@ -73,6 +73,10 @@ class Sittings:
             raise InputError("this sitting is not known; ask the experimenter to prepare it again")
         return found
 
+    def is_open(self, id: str) -> bool:
+        """Whether there is such a sitting and it has not ended."""
+        return id in self._all and not self._all[id].ended
+
     def of_study(self, study: str) -> list[Sitting]:
         """The sittings of a study that have not ended."""
         return [one for one in self._all.values() if one.study == study and not one.ended]

@@ -18,7 +18,7 @@ from squeezefilm.lab.sittings import Sitting, Sittings
 from squeezefilm.results import to_json
 from squeezefilm.study.deletion import delete_participant
 from squeezefilm.study.design import StudyDesign, load_design
-from squeezefilm.study.device import NoDevice, StudyDevice
+from squeezefilm.study.device import StudyDevice
 from squeezefilm.study.exports import export_study
 from squeezefilm.study.exposure import Exposure
 from squeezefilm.study.merge import merge
@@ -27,6 +27,7 @@ from squeezefilm.study.recorded_analysis import analyze_study
 from squeezefilm.study.run import Response, StudyRun
 from squeezefilm.study.session_conditions import SessionConditions
 from squeezefilm.study.sessions import begin_session, display_wanted, end_session
+from squeezefilm.study.stimuli import Stimulus
 from squeezefilm.study.store import StudyStore
 from squeezefilm.study.trials import expected_duration, trial_count
 
@@ -105,6 +106,7 @@ class Studies:
             "sittings": [_shown(one) for one in self.sittings.of_study(name)],
             "confusion": self.confusion(name),
             "origin": origin_of(store),
+            "devices": devices(),
         }
 
     def confusion(self, name: str) -> list[dict[str, Any]]:
@@ -148,6 +150,11 @@ class Studies:
         store.require_participant(participant)
         if display_wanted(store, participant) is None:
             raise InputError(f"participant {participant} has answered every trial; enrol another")
+        if device != "none" and not acknowledged:
+            raise InputError(
+                "the exposure to airborne ultrasound was not acknowledged; read it and accept it, "
+                "or lower the display's voltage"
+            )
         # Checked now, so that a mistake is the experimenter's and not the participant's to see.
         _conditions(conditions, consent_text, consented=False)
         for one in self.sittings.of_study(name):
@@ -166,6 +173,20 @@ class Studies:
     def display_of(self, name: str, participant: str) -> str | None:
         """The display a participant's next trial is on."""
         return display_wanted(self.store(name), participant)
+
+    def display_of_sitting(self, id: str) -> str:
+        """The display of a sitting: of its session, or before it of the next trial."""
+        sitting = self.sittings.get(id)
+        if sitting.session is not None:
+            return str(self.run(sitting).session["display"])
+        display = self.display_of(sitting.study, sitting.participant)
+        if display is None:
+            raise InputError(f"participant {sitting.participant} has answered every trial")
+        return display
+
+    def has_ended(self, id: str) -> bool:
+        """Whether a sitting has ended, or is not known any more."""
+        return not self.sittings.is_open(id)
 
     def where(self, id: str) -> dict[str, Any]:
         """What the participant's page shows now; nothing in it gives an answer away."""
@@ -201,7 +222,7 @@ class Studies:
         return self.where(id)
 
     def present(self, id: str) -> dict[str, Any]:
-        """The next trial without what would give its answer away."""
+        """The next trial (`plays`: on a device) without what would give its answer away."""
         sitting = self.sittings.get(id)
         if sitting.session is None or sitting.ended:
             return self.where(id)
@@ -221,6 +242,7 @@ class Studies:
             "alternatives": list(trial.alternatives),
             "numeric": trial.asks and not trial.alternatives,
             "surfaces": len(found.surfaces),
+            "plays": sitting.device != "none" and isinstance(found.surfaces[0], Stimulus),
             # A real grating that lies there to be known has its name on it.
             "named": found.surfaces[0].name if felt_only else "",
             "pause_s": trial.pause if found.times_presented == 1 else 0.0,
@@ -228,11 +250,31 @@ class Studies:
             "interrupted": found.times_presented > 1,
         }
 
-    def surfaces(self, id: str, token: str) -> list[Any]:
-        """The stimuli of the trial that is presented, for the device."""
-        run = self.run(self.sittings.get(id))
-        found = run._surfaces(run._planned(token))
-        return list(found[1])
+    def surface(self, id: str, token: str, place: int) -> tuple[Stimulus, int]:
+        """Surface number `place` (from 0) of the trial that is presented, and the trial's seed."""
+        sitting = self.sittings.get(id)
+        if sitting.ended:
+            raise InputError("this sitting has ended")
+        trial, surfaces = self.run(sitting).presented(token)
+        if not 0 <= place < len(surfaces):
+            raise InputError(f"trial {trial.number} has {len(surfaces)} surfaces; asked: {place}")
+        found = surfaces[place]
+        if not isinstance(found, Stimulus):
+            raise InputError(f"'{found.name}' is a real grating; no device plays it")
+        return found, trial.seed
+
+    def needs_device(self, id: str, token: str) -> bool:
+        """Whether an answer to this trial needs a device that played it: not one that is recorded
+        already, and not one of a real grating."""
+        sitting = self.sittings.get(id)
+        if sitting.device == "none" or sitting.session is None:
+            return False
+        run = self.run(sitting)
+        return not run.recorded(token) and isinstance(run.presented(token)[1][0], Stimulus)
+
+    def traces(self, name: str) -> Path:
+        """A study's folder of traces."""
+        return self.store(name).traces
 
     def respond(self, id: str, token: str, response: Response) -> dict[str, Any]:
         """Record an answer; it is on the disk when this returns."""
@@ -355,11 +397,11 @@ def report_of(path: Path) -> dict[str, Any]:
     return {"pages": [str(page.relative_to(path.parent.parent)) for page in pages]}
 
 
-def device_of(kind: str) -> StudyDevice:
-    """What presents a sitting's surfaces. Raises `InputError` for a kind that is not known."""
-    if kind == "none":
-        return NoDevice()
-    raise InputError(f"device = '{kind}' is not known here; allowed: none")
+def devices() -> list[str]:
+    """What may present a sitting's surfaces beside nothing: the twin, and the ports there are."""
+    from serial.tools import list_ports
+
+    return ["twin", *sorted(f"serial:{one.device}" for one in list_ports.comports())]
 
 
 def _conditions(given: dict[str, Any], consent_text: str, *, consented: bool) -> SessionConditions:

@@ -9,13 +9,26 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from pydantic import Field
 
-from squeezefilm.errors import InputError
-from squeezefilm.lab.studies import Studies, analysis_of, device_of, rehearsed, report_of
+from squeezefilm.errors import DeviceError, InputError
+from squeezefilm.lab.keys import CODE_LIFE
+from squeezefilm.lab.server import PAGE
+from squeezefilm.lab.sittings import Sitting
+from squeezefilm.lab.studies import Studies, analysis_of, rehearsed, report_of
+from squeezefilm.lab.study_devices import Measured, StudyDevices, require_device
 from squeezefilm.lab.wire import Answer, Request
+from squeezefilm.study.device import (
+    DeviceIdentity,
+    DeviceVerification,
+    Exploration,
+    NoDevice,
+    StudyDevice,
+)
 from squeezefilm.study.exposure import Exposure, exposure
 from squeezefilm.study.run import Response
 
 if TYPE_CHECKING:
+    from starlette.websockets import WebSocket
+
     from squeezefilm.lab.server import Lab
 
 T = TypeVar("T")
@@ -66,6 +79,19 @@ class OfSitting(Request):
     """A sitting by its id."""
 
     sitting: str = Field(max_length=100)
+
+
+class FeelSurface(OfSitting):
+    """A surface of the trial with this token to be played, by its place from 0."""
+
+    token: str = Field(max_length=100)
+    place: int = Field(ge=0, le=9)
+
+
+class SurfacesFelt(OfSitting):
+    """All surfaces of the trial with this token were felt."""
+
+    token: str = Field(max_length=100)
 
 
 class Respond(OfSitting):
@@ -125,9 +151,23 @@ class StudyThread:
         self._pool.shutdown(wait=True)
 
 
-def add_study(lab: Lab) -> StudyThread:
-    """Let the lab answer the Study area's and the participants' messages."""
+def add_study(lab: Lab, devices: StudyDevices | None = None) -> StudyThread:
+    """Let the lab answer the Study area's and the participants' messages.
+
+    `devices` present the surfaces; real sessions on real devices and twins if None.
+    """
+    devices = devices or StudyDevices()
+    lab.closing.append(devices.close)
     thread = StudyThread(lab)
+    pages: dict[str, WebSocket] = {}
+
+    def left(page: WebSocket) -> None:
+        # Nobody is there to feel it, or to stop it.
+        for sitting in [sitting for sitting, one in pages.items() if one is page]:
+            del pages[sitting]
+            devices.halt(sitting)
+
+    lab.left.append(left)
     exposures: dict[str, Exposure] = {}
 
     async def exposed(display: str) -> Exposure:
@@ -139,7 +179,8 @@ def add_study(lab: Lab) -> StudyThread:
         await lab.tell({"type": "study changed", "study": study})
 
     async def listing(_: Request) -> Answer:
-        return {"type": "studies", **await thread.do(Studies.listing)}
+        found = await thread.do(Studies.listing)
+        return {"type": "studies", **found, "tablets": lab.lan is not None}
 
     async def plan(asked: PlanStudy) -> Answer:
         return {"type": "plan", **await thread.do(Studies.plan, asked.design)}
@@ -164,11 +205,12 @@ def add_study(lab: Lab) -> StudyThread:
         return {"type": "exposure", "display": display, "statement": found.statement}
 
     async def prepare(asked: PrepareSitting) -> Answer:
-        device_of(asked.device)
+        require_device(asked.device)
         found = await thread.do(
             Studies.prepare, asked.study, asked.participant, asked.device, asked.consent,
             asked.conditions, asked.acknowledged,
         )  # fmt: skip
+        await release_ended()
         return {"type": "study", **found}
 
     async def station(asked: OfSitting) -> Answer:
@@ -176,15 +218,33 @@ def add_study(lab: Lab) -> StudyThread:
         token = lab.keys.new_link("participant", f"/participant#{asked.sitting}")
         return {"type": "link", "path": f"/?token={token}"}
 
+    async def code(asked: OfSitting) -> Answer:
+        if lab.lan is None:
+            raise InputError("tablets are paired where the lab was started with --lan ADDRESS")
+        await thread.do(lambda studies: studies.sittings.get(asked.sitting))
+        return {
+            "type": "code",
+            "code": lab.keys.new_code(f"/participant#{asked.sitting}"),
+            "link": lab.lan.link,
+            "fingerprint": lab.lan.fingerprint,
+            "life_s": CODE_LIFE,
+        }
+
     async def end(asked: OfSitting) -> Answer:
         sitting = await thread.do(lambda studies: studies.sittings.get(asked.sitting))
-        found = await thread.do(Studies.end, asked.sitting, device_of(sitting.device))
+        device, lost = await measured_last(sitting)
+        found = await thread.do(Studies.end, asked.sitting, device)
+        found["problems"] += [lost] if lost else []
+        await release_ended()
         await lab.tell({"type": "sitting ended", "sitting": asked.sitting}, participants=True)
         return {"type": "study", **found}
 
     async def delete(asked: DeleteParticipant) -> Answer:
         if asked.confirm != asked.participant:
             raise InputError(f"to delete {asked.participant}, type exactly that; nothing was done")
+        for one in await thread.do(lambda studies: studies.sittings.of_study(asked.study)):
+            if one.participant == asked.participant:
+                await devices.release(one.id)
         found = await thread.do(Studies.delete, asked.study, asked.participant)
         await changed(asked.study)
         return {"type": "study", **found}
@@ -209,32 +269,83 @@ def add_study(lab: Lab) -> StudyThread:
     async def merged(asked: MergeStudy) -> Answer:
         return {"type": "study", **await thread.do(Studies.merge, asked.study, asked.other)}
 
+    async def measured(sitting: Sitting) -> StudyDevice:
+        display = await thread.do(Studies.display_of_sitting, sitting.id)
+        traces = await thread.do(Studies.traces, sitting.study)
+        return await devices.measure(sitting.id, sitting.device, display, traces)
+
+    async def measured_last(sitting: Sitting) -> tuple[StudyDevice, str]:
+        """The device after a sitting, which ends also where its device is gone: that is said."""
+        if sitting.session is None or sitting.ended:
+            return NoDevice(), ""
+        try:
+            return await measured(sitting), ""
+        except (DeviceError, InputError) as error:
+            lost = f"the device could not be verified: {error}"
+            found = DeviceVerification(measurable=False, remark=lost)
+            return Measured(DeviceIdentity(sitting.device.partition(":")[0]), found), lost
+
+    async def release_ended() -> None:
+        for held in devices.holders():
+            if await thread.do(Studies.has_ended, held):
+                await devices.release(held)
+
     async def where(asked: OfSitting) -> Answer:
         return {"type": "where", **await thread.do(Studies.where, asked.sitting)}
 
     async def consent(asked: OfSitting) -> Answer:
         sitting = await thread.do(lambda studies: studies.sittings.get(asked.sitting))
-        device = device_of(sitting.device)
-        seen = None
-        if device.identity().name != "none":
-            display = await thread.do(Studies.display_of, sitting.study, sitting.participant)
-            seen = await exposed(display or "")
-        found = await thread.do(Studies.consent, asked.sitting, seen, device)
+        if sitting.session is not None or sitting.ended:
+            return await where(asked)
+        device, seen = await measured(sitting), None
+        try:
+            if sitting.device != "none":
+                seen = await exposed(await thread.do(Studies.display_of_sitting, sitting.id))
+            found = await thread.do(Studies.consent, asked.sitting, seen, device)
+        except BaseException:
+            await devices.release(sitting.id)
+            raise
         await changed(sitting.study)
         return {"type": "where", **found}
 
     async def present(asked: OfSitting) -> Answer:
         return {"type": "where", **await thread.do(Studies.present, asked.sitting)}
 
+    async def feel(asked: FeelSurface) -> Answer:
+        sitting = await thread.do(lambda studies: studies.sittings.get(asked.sitting))
+        if sitting.device == "none":
+            raise InputError("this sitting has no device")
+        surface = await thread.do(Studies.surface, sitting.id, asked.token, asked.place)
+        display = await thread.do(Studies.display_of_sitting, sitting.id)
+        traces = await thread.do(Studies.traces, sitting.study)
+        pages[sitting.id] = PAGE.get()
+        await devices.present(
+            sitting.id, sitting.device, display, traces, surface, asked.token, asked.place
+        )
+        return {"type": "playing", "place": asked.place}
+
+    async def felt(asked: SurfacesFelt) -> Answer:
+        await devices.felt(asked.sitting, asked.token)
+        return {"type": "silent"}
+
+    async def stop(asked: OfSitting) -> Answer:
+        devices.halt(asked.sitting)
+        return {"type": "silent"}
+
     async def respond(asked: Respond) -> Answer:
+        felt: tuple[Exploration, ...] = ()
+        if await thread.do(Studies.needs_device, asked.sitting, asked.token):
+            felt = await devices.felt(asked.sitting, asked.token)
         response = Response(
             choice=asked.choice,
             estimate=asked.estimate,
             response_time=asked.response_time,
             started_monotonic=asked.started_monotonic,
             ended_monotonic=asked.ended_monotonic,
+            explorations=felt,
         )
         found = await thread.do(Studies.respond, asked.sitting, asked.token, response)
+        devices.answered(asked.sitting, asked.token)
         await changed(found.pop("study"))
         return {"type": "acknowledged", **found}
 
@@ -247,6 +358,7 @@ def add_study(lab: Lab) -> StudyThread:
     add("exposure", OfParticipant, ultrasound)
     add("prepare sitting", PrepareSitting, prepare)
     add("station link", OfSitting, station)
+    add("pairing code", OfSitting, code)
     add("end sitting", OfSitting, end)
     add("delete participant", DeleteParticipant, delete)
     add("export study", ExportStudy, export)
@@ -258,6 +370,9 @@ def add_study(lab: Lab) -> StudyThread:
     add("where", OfSitting, where)
     add("consent", OfSitting, consent)
     add("next", OfSitting, present)
+    add("feel", FeelSurface, feel)
+    add("felt", SurfacesFelt, felt)
+    add("stop surface", OfSitting, stop)
     add("respond", Respond, respond)
     return thread
 

@@ -8,13 +8,15 @@ can act on.
 from __future__ import annotations
 
 import json
+import logging
 import math
 from collections.abc import Awaitable, Callable
 from typing import Any
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from squeezefilm.errors import InputError, SqueezefilmError
+from squeezefilm.errors import InputError, RecordError, SqueezefilmError
+from squeezefilm.lab.worker import SupersededError
 
 LARGEST_MESSAGE = 8 * 1024 * 1024
 """Bytes of a websocket message."""
@@ -31,6 +33,9 @@ class Request(BaseModel):
     type: str = Field(max_length=64)
 
 
+_LOG = logging.getLogger("squeezefilm.lab")
+_OURS = "The lab failed on this request; the terminal it runs in shows why."
+
 Answer = dict[str, Any]
 Handler = Callable[[Any], Awaitable[Answer]]
 
@@ -46,7 +51,11 @@ class Dispatcher:
         self._known[kind] = (model, handler)
 
     async def answer(self, text: str) -> Answer:
-        """The answer to one message's text; never raises for what a page may send."""
+        """The answer to one message's text; never raises for what a page may send.
+
+        An error that carries ``"again": true`` changed nothing and may be asked again as it was.
+        Raises `SupersededError` where newer work took this one's place: nobody waits for it.
+        """
         number: int | None = None
         try:
             raw = json.loads(text, parse_constant=_no_constant)
@@ -66,8 +75,17 @@ class Dispatcher:
             first = error.errors()[0]
             place = ".".join(str(part) for part in first["loc"])
             return _error(number, f"{place}: {first['msg']}")
+        except RecordError as error:
+            # Nothing was written, and the same request may be sent again.
+            return {**_error(number, str(error)), "again": True}
         except (SqueezefilmError, ValueError, RecursionError) as error:
             return _error(number, str(error))
+        except SupersededError:
+            raise
+        except Exception:
+            # A mistake of ours: said on the page and in the terminal; the conversation goes on.
+            _LOG.exception("the lab could not answer a message")
+            return _error(number, _OURS)
         return {"id": request.id, **found}
 
 

@@ -65,6 +65,8 @@ def run_play(
     sensor: Callable[[Callable[[], Second]], Sensor] | None = None,
     show: Callable[[PlayView], None] | None = None,
     tap: Callable[[FloatArray], None] | None = None,
+    until: Callable[[], bool] | None = None,
+    study: bool = False,
     bench_only: bool = False,
 ) -> PlayOutcome:
     """Play for a time, or until Ctrl-C, and record it.
@@ -78,6 +80,8 @@ def run_play(
         sensor: makes the sensor from the loop's clock, where it is not the device's own.
         show: is told what there is to see, ten times a second.
         tap: is given the rows as they are recorded; must be quick.
+        until: is asked every millisecond whether to end as on Ctrl-C; must be quick.
+        study: whether participants touch the plate, see `require_safe_drive`.
         bench_only: whether a drive that does not stop by itself may be used.
 
     Raises:
@@ -87,13 +91,17 @@ def run_play(
     with (
         contextlib.closing(open_stream(drive)) as stream,
         TraceWriter(trace, COLUMNS, metadata) as writer,
-        _interruptible() as interrupted,
+        _interruptible() as pressed,
     ):
+
+        def interrupted() -> bool:
+            return pressed() or (until is not None and until())
+
         loop = LoopProcess(plan.loop)
         link = Link(stream, lambda: loop.time)
         host = DeviceHost(link)
         drives = SerialDrive(host, plan.loop.period)
-        require_safe_drive(drives, plan.limits, bench_only=bench_only)
+        require_safe_drive(drives, plan.limits, study=study, bench_only=bench_only)
         eyes = None if sensor is None else sensor(lambda: loop.time)
         player = Player(plan, loop, host, writer, lambda: loop.time, eyes, tap)
         _compile(plan)

@@ -37,7 +37,8 @@ class DeviceVerification:
     """A measurement of the device against what it should be, before or after a session.
 
     The tolerances are relative. A device that nothing can be measured of has `measurable = False`
-    and says why in `remark`: that is recorded, and counts neither as passed nor as failed.
+    and says why in `remark`: that is recorded, and counts neither as passed nor as failed. Where
+    a pickup was never calibrated `expected_amplitude` is NaN, and only the resonance is judged.
 
     Raises:
         InputError: a measured or expected value that is not above 0, or a tolerance outside 0…1.
@@ -57,7 +58,8 @@ class DeviceVerification:
         require("resonance_tolerance", self.resonance_tolerance, above=0.0, below=1.0)
         if self.measurable:
             metre, hertz = Unit("m"), Unit("Hz")
-            require("expected_amplitude", self.expected_amplitude, metre, above=0.0)
+            if not (math.isnan(self.amplitude) and math.isnan(self.expected_amplitude)):
+                require("expected_amplitude", self.expected_amplitude, metre, above=0.0)
             require(
                 "expected_resonance_frequency", self.expected_resonance_frequency, hertz, above=0.0
             )
@@ -85,8 +87,8 @@ class DeviceVerification:
                 Unit("Hz"),
             ),
         ):
-            # Written so that NaN is off.
-            if not abs(measured - expected) <= tolerance * expected:
+            # Written so that a NaN measured is off; one expected is nothing to compare with.
+            if not math.isnan(expected) and not abs(measured - expected) <= tolerance * expected:
                 found.append(
                     f"{name} is {format_quantity(measured, unit)}; it must be within "
                     f"{100 * tolerance:g} % of {format_quantity(expected, unit)}"
@@ -104,13 +106,15 @@ class Exploration:
     """How the finger explored one trial; NaN where the device does not know.
 
     `trace` is a table's CSV text (`formats.traces.csv_text`) of the finger's path, empty if there
-    is none; its metadata must not name the participant.
+    is none; its metadata must not name the participant. `raw_trace` is the random name of a file
+    that the device wrote into the study's folder of traces, empty if there is none.
     """
 
     path_length: Metre = math.nan
     mean_speed: MetrePerSecond = math.nan
     mean_normal_force: Newton = math.nan
     trace: str = ""
+    raw_trace: str = ""
 
 
 class StudyDevice(Protocol):

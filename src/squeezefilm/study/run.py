@@ -177,6 +177,7 @@ class StudyRun:
         trial, surfaces, intensity = self._surfaces(planned)
         _require_answer(trial, response)
         names = [self._store.save_trace(e.trace) for e in response.explorations if e.trace]
+        names += [e.raw_trace for e in response.explorations if e.raw_trace]
         row = self._response_row(planned, trial, response, surfaces, intensity, names)
         with self._store.transaction() as write:
             # Another process with the same participant may have been faster.
@@ -187,6 +188,21 @@ class StudyRun:
         known = self._recorded(planned)
         assert known is not None
         return known if done is not None else _first_time(known)
+
+    def presented(self, token: str) -> tuple[Trial, tuple[Stimulus | Grating, ...]]:
+        """The trial of a token and its surfaces. Raises `InputError` for a token of no trial of
+        this participant, or of one that is answered or was not presented."""
+        planned = self._planned(token)
+        first = self._store.rows(_PLANNED, [self.participant])
+        if not first or first[0]["uuid"] != token or not first[0]["presentations"]:
+            raise InputError(f"trial {planned['number']} is not being presented; call next_trial")
+        trial, surfaces, _ = self._surfaces(planned)
+        return trial, surfaces
+
+    def recorded(self, token: str) -> bool:
+        """Whether this trial's answer is on the disk. Raises `InputError` for a token of no trial
+        of this participant."""
+        return self._recorded(self._planned(token)) is not None
 
     def _planned(self, token: str) -> dict[str, Any]:
         found = self._store.rows(

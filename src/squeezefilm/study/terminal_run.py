@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 from collections.abc import Callable
 from pathlib import Path
 
 from squeezefilm import config
 from squeezefilm.errors import InputError
+from squeezefilm.quantities import MetrePerVolt
 from squeezefilm.study.conduct import Examiner, conduct
 from squeezefilm.study.deletion import remove_rows
 from squeezefilm.study.design import load_design
@@ -49,6 +51,7 @@ def run_session(
     examiner: Examiner,
     *,
     drive: str = "none",
+    amplitude_per_pickup: MetrePerVolt | None = None,
     conditions: Path | None = None,
     consent: bool = False,
     acknowledge: Callable[[str], bool],
@@ -57,8 +60,10 @@ def run_session(
 ) -> str:
     """One session on the display that the participant's next trial needs. Returns how it ended.
 
-    Without a participant somebody new is enrolled and named by `tell`; not so if the session
-    cannot start.
+    `drive` is "none", "rehearsal" (the twin in this process, on a virtual clock), "twin" (behind a
+    port, in real time) or "serial:PORT", whose pickup gives `amplitude_per_pickup` (m/V; None if
+    not calibrated). Without a participant somebody new is enrolled and named by `tell`; not so if
+    the session cannot start.
     `conditions` is a TOML file of `SessionConditions`; `consent` counts beside what it says.
     `acknowledge` is shown the statement on airborne ultrasound. Raises what `begin_session` and
     `conduct` raise.
@@ -69,26 +74,29 @@ def run_session(
         sitting = dataclasses.replace(sitting, consent=sitting.consent or consent)
     sitting.require_consent()
     who = participant or store.enrol()
-    try:
-        display = display_wanted(store, who)
-        if display is None:
-            return f"participant {who} has answered every trial"
-        device, exposed = _device(drive, store, display, progress)
-        acknowledged = exposed is not None and acknowledge(exposed.statement)
-        session = begin_session(store, who, device, sitting, exposed, acknowledged=acknowledged)
-    except BaseException:
-        if participant is None:
-            remove_rows(store, who)
-        raise
-    tell(f"participant {who}: go on with --participant {who}")
-    run = StudyRun(store, session)
-    try:
-        count = conduct(run, device, examiner)
-    except KeyboardInterrupt:
-        # Stopped by a person: what was answered up to here deserves its verification too.
-        end_session(store, session, device)
-        raise
-    after = end_session(store, session, device)
+    with contextlib.ExitStack() as closing:
+        try:
+            display = display_wanted(store, who)
+            if display is None:
+                return f"participant {who} has answered every trial"
+            device, exposed = _device(
+                drive, store, display, amplitude_per_pickup, progress, closing
+            )
+            acknowledged = exposed is not None and acknowledge(exposed.statement)
+            session = begin_session(store, who, device, sitting, exposed, acknowledged=acknowledged)
+        except BaseException:
+            if participant is None:
+                remove_rows(store, who)
+            raise
+        tell(f"participant {who}: go on with --participant {who}")
+        run = StudyRun(store, session)
+        try:
+            count = conduct(run, device, examiner)
+        except KeyboardInterrupt:
+            # Stopped by a person: what was answered up to here deserves its verification too.
+            end_session(store, session, device)
+            raise
+        after = end_session(store, session, device)
     said = f"{count} trials on {display} recorded"
     if after.problems:
         said += f". CAUTION, the device is off after the session: {'; '.join(after.problems)}"
@@ -98,18 +106,29 @@ def run_session(
 
 
 def _device(
-    drive: str, store: StudyStore, display: str, progress: Progress | None
+    drive: str,
+    store: StudyStore,
+    display: str,
+    amplitude_per_pickup: MetrePerVolt | None,
+    progress: Progress | None,
+    closing: contextlib.ExitStack,
 ) -> tuple[StudyDevice, Exposure | None]:
     if drive == "none":
         return NoDevice(), None
-    if drive != "twin":
-        raise InputError(f"--drive '{drive}' is not known; allowed: twin, none")
+    # Plates, film and loop take a second to import, which a study by hand need not wait for.
     from squeezefilm.display import load_display
+    from squeezefilm.study.session_device import SessionDevice, require_study_drive
     from squeezefilm.study.twin_device import StudyTwin
 
+    if drive != "rehearsal":
+        require_study_drive(drive)
     tell = progress or (lambda _: None)
     found = load_display(display)
     duration = expected_duration(store.design) / len(store.design.displays)
     exposed = exposure(found, duration, progress=progress)
-    tell("the twin's working point")
-    return StudyTwin(found), exposed
+    if drive == "rehearsal":
+        tell("the twin's working point")
+        return StudyTwin(found), exposed
+    tell("the device is verified: keep fingers off")
+    device = SessionDevice(display, drive, store.traces, amplitude_per_pickup=amplitude_per_pickup)
+    return closing.enter_context(device), exposed

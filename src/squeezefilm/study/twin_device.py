@@ -17,6 +17,7 @@ from squeezefilm.friction import friction_law
 from squeezefilm.quantities import FloatArray, Hertz, Second
 from squeezefilm.render.composition import Composable
 from squeezefilm.results import config_hash, to_json
+from squeezefilm.session.resonance_sweep import peak
 from squeezefilm.study.device import DeviceIdentity, DeviceVerification, Exploration
 from squeezefilm.study.stimuli import Stimulus
 from squeezefilm.twin.hand import Hand, hand_from
@@ -64,8 +65,8 @@ class StudyTwin:
         self._now = 0
 
     def identity(self) -> DeviceIdentity:
-        """ "twin", with the hashes of the display and of the twin's settings."""
-        return DeviceIdentity("twin", config_hash(self.display), config_hash(self.settings))
+        """ "rehearsal", with the hashes of the display and of the twin's settings."""
+        return DeviceIdentity("rehearsal", config_hash(self.display), config_hash(self.settings))
 
     def verify_device(self) -> DeviceVerification:
         """A sweep of the carrier over the resonance, read at the pickup, without a finger.
@@ -80,7 +81,7 @@ class StudyTwin:
         carrier = mode.resonance_frequency + half * np.linspace(-1, 1, _POINTS)
         read = np.array([self._amplitude(float(one)) for one in carrier])
         self._step(_seconds_to_us(self._time_constant), 0.0, float(carrier[-1]))
-        frequency, amplitude = _peak(carrier, read)
+        frequency, amplitude = peak(carrier, read)
         return DeviceVerification(
             amplitude=amplitude,
             expected_amplitude=mode.amplitude_per_volt * volts,
@@ -113,7 +114,7 @@ class StudyTwin:
         columns = {name: plant.truth.column(name) for name in _TRACE}
         way = np.hypot(np.diff(columns["x_m"]), np.diff(columns["y_m"]))
         moving = float(np.ptp(columns["time_s"])) - self.hand.begin
-        about = {"device": "twin", "settings_sha256": config_hash(self.settings)}
+        about = {"device": "rehearsal", "settings_sha256": config_hash(self.settings)}
         return Exploration(
             path_length=float(way.sum()),
             mean_speed=float(way.sum()) / moving,
@@ -166,19 +167,6 @@ def _levels(point: WorkingPoint, force: float) -> tuple[FloatArray, FloatArray]:
     friction = np.minimum.accumulate(law.curve(amplitudes))
     falling = np.r_[True, np.diff(friction) < 0]
     return friction[falling], amplitudes[falling]
-
-
-def _peak(x: FloatArray, y: FloatArray) -> tuple[float, float]:
-    """Place and height of the vertex of the parabola through the largest value and its
-    neighbours; NaN where it lies at an end of the sweep."""
-    top = int(np.argmax(y))
-    if top in (0, y.size - 1):
-        return math.nan, math.nan
-    left, middle, right = (float(one) for one in y[top - 1 : top + 2])
-    bend = left - 2 * middle + right
-    shift = 0.5 * (left - right) / bend if bend else 0.0
-    step = float(x[1] - x[0])
-    return float(x[top]) + shift * step, middle - 0.25 * (left - right) * shift
 
 
 def _seconds_to_us(duration: Second) -> int:

@@ -187,9 +187,10 @@ def test_a_pairing_code_works_once_and_cannot_be_guessed():
     keys = Keys(clock=clock)
     code = keys.new_code()
     assert keys.use_code("x") is None
-    session = keys.use_code(code)
-    assert session is not None
-    assert session.role == "participant"
+    entered = keys.use_code(code)
+    assert entered is not None
+    assert entered[0].role == "participant"
+    assert entered[1] == "/participant"
     assert keys.use_code(code) is None
     code = keys.new_code()
     wrong = f"{(int(code) + 1) % 10**6:06d}"

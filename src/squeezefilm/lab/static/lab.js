@@ -3,6 +3,7 @@
 
 import { Socket } from "./socket.js";
 import { watchTips } from "./tips.js";
+import { offerTour } from "./tour.js";
 
 const AREAS = ["design", "feel", "device", "study", "results", "help"];
 const place = document.getElementById("area");
@@ -43,10 +44,12 @@ async function showArea() {
   if (mine === turn) leave = (await area.show(place, lab)) ?? null;
 }
 
-lab.socket.on("connection", ({ open }) => {
-  connection.textContent = open ? "connected" : "the lab is not running – trying again";
+lab.socket.on("connection", ({ open, refused }) => {
+  const away = refused ? "this page's session is over – open the link that the lab printed" : "the lab is not running – trying again";
+  connection.textContent = open ? "connected" : away;
   connection.classList.toggle("lost", !open);
 });
 window.addEventListener("hashchange", showArea);
 watchTips(document.getElementById("tip"));
+offerTour(document.getElementById("tour"));
 showArea();

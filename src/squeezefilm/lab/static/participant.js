@@ -8,19 +8,30 @@ import { Socket } from "./socket.js";
 const sitting = location.hash.slice(1);
 const place = document.getElementById("area");
 const connection = document.getElementById("connection");
+// The second tap of a double tap would answer the trial after the one it was meant for.
+const TOO_SOON = 250;
 const KEPT = `squeezefilm answer ${sitting}`;
 const socket = new Socket("/ws/participant");
 let keys = null;
 let resting = null;
+// Whether a device plays a surface, and which presentation what comes back belongs to.
+let playing = false, turn = 0;
 
-socket.on("connection", ({ open }) => {
-  connection.textContent = open ? "" : "The connection is lost. Nothing you answered is lost; please wait.";
+socket.on("connection", ({ open, refused }) => {
+  const away = refused ? "This page's session is over. Nothing you answered is lost; please tell the experimenter." : "The connection is lost. Nothing you answered is lost; please wait.";
+  connection.textContent = open ? "" : away;
   connection.classList.toggle("lost", !open);
   if (open && window.squeezefilmMine) goOn();
   if (!open) freeze();
 });
 socket.on("sitting ended", (message) => message.sitting === sitting && goOn());
-document.addEventListener("keydown", (event) => keys?.(event));
+// A key held down repeats, and must not answer the trials that follow.
+document.addEventListener("keydown", (event) => {
+  if (event.key === " " && playing) {
+    event.preventDefault();
+    stopSurface();
+  } else if (!event.repeat && !event.ctrlKey && !event.altKey && !event.metaKey) keys?.(event);
+});
 begin();
 
 /** One tab a sitting: a second one says so and takes nothing over. */
@@ -47,18 +58,35 @@ function mine() {
 async function goOn() {
   try {
     const kept = localStorage.getItem(KEPT);
-    if (kept) {
-      await socket.ask("respond", { sitting, ...JSON.parse(kept) });
-      localStorage.removeItem(KEPT);
-    }
+    if (kept) await handKept(kept);
     show(await socket.ask("where", { sitting }));
   } catch (error) {
-    if (socket.open) say("This does not work", error.message);
+    refused(error);
   }
+}
+
+async function handKept(kept) {
+  try {
+    await socket.ask("respond", { sitting, ...JSON.parse(kept) });
+  } catch (error) {
+    // Refused, it would be refused for ever: its trial comes again. Else it is kept.
+    if (!socket.open || error.again) throw error;
+  }
+  localStorage.removeItem(KEPT);
+}
+
+/** Say why the server refused. An answer is kept only where handing it in again can help. */
+function refused(error) {
+  playing = false;
+  if (!socket.open) return;
+  if (!error.again) localStorage.removeItem(KEPT);
+  page(element("h2", { text: "This does not work" }), element("p", { text: error.message }),
+    element("p", { text: "Please tell the experimenter." }), waiting("Try again", 0, goOn));
 }
 
 function freeze() {
   keys = null;
+  clearInterval(resting);
   for (const one of place.querySelectorAll("button, input")) one.disabled = true;
 }
 
@@ -66,6 +94,7 @@ function page(...children) {
   clearInterval(resting);
   keys = null;
   place.replaceChildren(element("section", { class: "card sheet" }, ...children));
+  place.focus({ preventScroll: true });
 }
 
 function say(title, text) {
@@ -73,6 +102,7 @@ function say(title, text) {
 }
 
 function show(found) {
+  playing = false;
   if (found.state === "consent") return consent(found);
   if (found.state === "finished") return say("Thank you", "You have answered every trial. Please tell the experimenter.");
   if (found.state === "ended") return say("This sitting has ended", "Please tell the experimenter.");
@@ -122,7 +152,7 @@ async function ask(type, fields = {}) {
   try {
     show(await socket.ask(type, { sitting, ...fields }));
   } catch (error) {
-    if (socket.open) say("This does not work", error.message);
+    refused(error);
   }
 }
 
@@ -132,8 +162,67 @@ function trial(found) {
       pauseThen(found));
     return;
   }
-  const began = performance.now();
-  const answer = (fields) => hand(found, began, fields);
+  if (found.plays) feel(found, 0);
+  else questions(found);
+}
+
+/** A device plays a surface; the answer's time runs from when it plays, or from the last one's end. */
+async function feel(found, number) {
+  const mine = (turn += 1);
+  const which = found.surfaces === 1 ? "surface" : ["first surface", "second surface"][number];
+  playing = true;
+  page(element("h2", { text: "One moment" }), element("p", { role: "status", text: `The ${which} is being prepared.` }), stopper());
+  try {
+    await socket.ask("feel", { sitting, token: found.token, place: number });
+    if (mine !== turn) return;
+    if (found.surfaces === 1) {
+      questions(found);
+      place.querySelector("section").append(stopper());
+      return;
+    }
+    page(element("h2", { text: `Feel the ${which}` }), waiting("Done", 0, () => feltOne(found, number)), stopper());
+  } catch (error) {
+    if (mine === turn) refused(error);
+  }
+}
+
+async function feltOne(found, number) {
+  if (number + 1 < found.surfaces) {
+    feel(found, number + 1);
+    return;
+  }
+  const mine = turn;
+  freeze();
+  try {
+    await socket.ask("felt", { sitting, token: found.token });
+    if (mine !== turn) return;
+    playing = false;
+    questions(found);
+  } catch (error) {
+    if (mine === turn) refused(error);
+  }
+}
+
+function stopper() {
+  return element("p", {}, element("button", { class: "stop", text: "Stop (space bar)", onclick: stopSurface }));
+}
+
+/** Silence at once. The trial was not answered; it comes again. */
+async function stopSurface() {
+  turn += 1;
+  playing = false;
+  freeze();
+  try {
+    await socket.ask("stop surface", { sitting });
+    page(element("h2", { text: "Stopped" }), element("p", { text: "The surface was stopped, and nothing was recorded. It is presented again when you go on." }), next("Go on"));
+  } catch (error) {
+    refused(error);
+  }
+}
+
+function questions(found) {
+  const began = performance.now() + TOO_SOON;
+  const answer = (fields) => performance.now() >= began && hand(found, began, fields);
   const head = { familiarisation: `Feel the grating ${found.named}`, practice: "Practice", main: "" }[found.phase];
   const title = element("h2", { text: head || found.question });
   const left = element("p", { class: "muted", text: `${found.remaining} to go` });
@@ -143,13 +232,14 @@ function trial(found) {
   }
   const parts = [title];
   if (head) parts.push(element("p", { text: found.question }));
-  if (found.surfaces === 2) parts.push(element("p", { text: "Feel the first surface, then the second." }));
+  if (found.surfaces === 2 && !found.plays) parts.push(element("p", { text: "Feel the first surface, then the second." }));
   if (found.interrupted) parts.push(element("p", { class: "muted", text: "This one was interrupted; it is presented again." }));
   if (found.numeric) parts.push(estimate(answer));
   else parts.push(choices(found, answer));
   parts.push(left);
-  page(...parts.slice(0, -1), left);
-  keys = numberKeys(found, answer);
+  page(...parts);
+  if (found.numeric) place.querySelector("#estimate").focus();
+  else keys = numberKeys(found, answer);
 }
 
 function pauseThen(found) {
@@ -168,13 +258,16 @@ function choices(found, answer) {
 
 function estimate(answer) {
   const number = element("input", { type: "text", inputmode: "decimal", id: "estimate", size: "8", "aria-label": "your number" });
+  const wrong = element("span", { role: "alert", class: "mark" });
   const give = () => {
-    const value = Number(number.value.replace(",", "."));
-    if (value > 0 && Number.isFinite(value)) answer({ estimate: value });
-    else number.setAttribute("aria-invalid", "true");
+    const value = Number(number.value.trim().replace(",", "."));
+    if (value > 0 && Number.isFinite(value)) return answer({ estimate: value });
+    number.setAttribute("aria-invalid", "true");
+    wrong.textContent = "Any number above 0, please.";
+    return null;
   };
-  number.addEventListener("keydown", (event) => event.key === "Enter" && give());
-  return element("p", { class: "row" }, number, element("button", { class: "main", text: "Give this number", onclick: give }));
+  number.addEventListener("keydown", (event) => event.key === "Enter" && !event.repeat && give());
+  return element("p", { class: "row" }, number, element("button", { class: "main", text: "Give this number", onclick: give }), wrong);
 }
 
 function numberKeys(found, answer) {
@@ -186,6 +279,8 @@ function numberKeys(found, answer) {
 
 async function hand(found, began, fields) {
   const ended = performance.now();
+  turn += 1;
+  playing = false;
   const answer = {
     token: found.token, ...fields, response_time: (ended - began) / 1e3,
     started_monotonic: began / 1e3, ended_monotonic: ended / 1e3,
@@ -197,10 +292,7 @@ async function hand(found, began, fields) {
     localStorage.removeItem(KEPT);
     after(told);
   } catch (error) {
-    if (!socket.open) return;
-    // Refused, not lost: another would be refused as well.
-    localStorage.removeItem(KEPT);
-    say("This does not work", error.message);
+    refused(error);
   }
 }
 

@@ -28,7 +28,7 @@ export class Socket {
       const asked = this.waiting.get(message.id);
       if (asked) {
         this.waiting.delete(message.id);
-        if (message.type === "error") asked.reject(new Error(message.message));
+        if (message.type === "error") asked.reject(Object.assign(new Error(message.message), { again: message.again === true }));
         else asked.resolve(message);
       } else this.emit(message.type, message);
     });
@@ -37,10 +37,21 @@ export class Socket {
       this.open = false;
       for (const asked of this.waiting.values()) asked.reject(new Error("the lab went away"));
       this.waiting.clear();
-      if (was) this.emit("connection", { open: false });
+      if (was) this.emit("connection", { open: false, refused: false });
+      else this.askWhy();
       setTimeout(() => this.connect(), this.wait);
       this.wait = Math.min(2 * this.wait, LONGEST_WAIT);
     });
+  }
+
+  /** A browser does not tell a page why its websocket was refused; a request's status does. */
+  async askWhy() {
+    try {
+      const answer = await fetch("/static/numbers.js", { method: "HEAD" });
+      if (answer.status === 401 || answer.status === 403) this.emit("connection", { open: false, refused: true });
+    } catch {
+      // The server is not there; the next try says more.
+    }
   }
 
   /** The answer to a request; rejected with the server's words, or when the connection is lost. */

@@ -2,6 +2,7 @@
 
 import { GLOSSARY } from "../glossary.js";
 import { element } from "../numbers.js";
+import { startTour } from "../tour.js";
 
 const AREAS = [
   ["Design", "Change a display and see its mode and friction follow. While a slider moves, a plate is screened as a beam; half a second later it is solved in three dimensions. The line above the numbers says which."],
@@ -11,10 +12,22 @@ const AREAS = [
   ["Results", "What a study found, with intervals; export it; delete a participant."],
 ];
 
+const KEYS = [
+  ["Tab, Shift+Tab", "to the next or the last control; the first Tab offers to skip to the content"],
+  ["Enter, Space", "press a button; Space stops the device while the Device area plays"],
+  ["arrow keys", "move a slider by a step; on the surface in Feel, move the finger"],
+  ["Escape", "close the tour or an explanation"],
+  ["1 to 9", "on the participant's page: choose the answer with that number"],
+  ["Enter", "on the participant's page: go on"],
+];
+
 export function show(place) {
   place.append(element("div", { class: "help" },
     element("section", { class: "card" }, element("h2", { text: "The areas" }),
       ...AREAS.map(([name, text]) => element("p", {}, element("strong", { text: `${name}. ` }), text))),
+    element("section", { class: "card" }, element("h2", { text: "Keys" }),
+      element("table", {}, ...KEYS.map(([keys, text]) => element("tr", {}, element("th", { scope: "row", class: "nowrap", text: keys }), element("td", { text })))),
+      element("p", {}, element("button", { text: "Start the tour again", onclick: startTour }))),
     element("section", { class: "card" }, element("h2", { text: "Quantities" }),
       element("dl", {}, ...Object.values(GLOSSARY).flatMap((one) => [
         element("dt", { text: one.symbol ? `${one.name}, ${one.symbol}` : one.name }),

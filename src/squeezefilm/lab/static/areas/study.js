@@ -102,7 +102,28 @@ class StudyView {
       // A form is being filled in: the numbers beside it may wait.
       return;
     }
-    await this.tried(async () => this.take(await this.lab.socket.ask("study", { study: this.name })));
+    await this.tried(async () => {
+      const found = await this.lab.socket.ask("study", { study: this.name });
+      if (quietly && this.main.querySelector("form")) return;
+      if (!quietly || !this.progress(found)) this.take(found);
+    });
+  }
+
+  /** Numbers of a study that is shown already, without replacing what a hand or the focus is on;
+   * whether that was enough. */
+  progress(study) {
+    const shape = (one) => JSON.stringify([one.name, one.sittings, one.participants.map((each) => [each.pseudonym, each.display, each.answered === each.planned])]);
+    if (!this.study || shape(study) !== shape(this.study)) return false;
+    for (const one of study.participants) {
+      const row = this.main.querySelector(`tr[data-participant="${CSS.escape(one.pseudonym)}"]`);
+      if (!row) return false;
+      row.querySelector("progress").value = one.answered;
+      row.querySelector(".count").textContent = ` ${one.answered} of ${one.planned}`;
+    }
+    this.study = study;
+    for (const card of this.main.querySelectorAll(".confusion")) card.remove();
+    this.main.append(...study.confusion.map((table) => confusionCard(table)));
+    return true;
   }
 
   take(study) {
@@ -147,16 +168,22 @@ class StudyView {
       actions.append(
         element("button", { text: "Open here", onclick: () => window.open(`/participant#${sitting.id}`, "_blank") }),
         element("button", { text: "Link for another station", onclick: () => this.tried(() => this.link(sitting)) }),
+        this.listing.tablets ? element("button", { text: "Code for a tablet", onclick: () => this.tried(() => this.code(sitting)) }) : "",
         element("button", { text: "End the sitting", onclick: () => this.tried(() => this.end(sitting)) }));
     }
     return element("tr", { "data-participant": one.pseudonym }, element("td", {}, element("code", { text: one.pseudonym })),
-      element("td", { class: "nowrap" }, element("progress", { value: one.answered, max: one.planned, "aria-label": "answered" }), ` ${one.answered} of ${one.planned}`),
+      element("td", { class: "nowrap" }, element("progress", { value: one.answered, max: one.planned, "aria-label": "answered" }), element("span", { class: "count", text: ` ${one.answered} of ${one.planned}` })),
       element("td", { text: one.display ?? "finished" }), element("td", { text: sitting ? (sitting.begun ? "running" : "prepared") : "–" }), element("td", {}, actions));
   }
 
   async link(sitting) {
     const { path } = await this.lab.socket.ask("station link", { sitting: sitting.id });
     this.lab.notify(`Open this once, in the other browser: ${location.origin}${path}`);
+  }
+
+  async code(sitting) {
+    const { code, link, fingerprint, life_s: life } = await this.lab.socket.ask("pairing code", { sitting: sitting.id });
+    this.lab.notify(`On the tablet open ${link} and type ${code.slice(0, 3)} ${code.slice(3)} within ${life / 60} minutes. Its browser warns of the certificate; go on only if its SHA-256 fingerprint is ${fingerprint}`);
   }
 
   async end(sitting) {
@@ -201,6 +228,7 @@ class StudyView {
         this.take(found);
       });
     });
+    this.main.querySelector("form")?.closest("section").remove();
     this.main.prepend(card);
     inputs.room.focus();
   }

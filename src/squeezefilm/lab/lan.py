@@ -1,0 +1,231 @@
+"""Tablets as participant stations: a second listener, by TLS, that knows no experimenter.
+
+It is there only where the experimenter asked for it with an address. Its application has the
+participant's page and the page for a pairing code, nothing else; its guard accepts no session but
+a participant's. A tablet cannot know the certificate beforehand: the terminal prints the
+fingerprint that the tablet's browser shows.
+"""
+
+from __future__ import annotations
+
+import datetime
+import errno
+import hashlib
+import ipaddress
+import os
+import socket
+import ssl
+from dataclasses import dataclass
+from pathlib import Path
+
+from starlette.applications import Starlette
+from starlette.requests import Request
+from starlette.responses import JSONResponse, PlainTextResponse, Response
+from starlette.routing import Route, WebSocketRoute
+
+from squeezefilm.errors import InputError
+from squeezefilm.lab.guard import Guard, Places
+from squeezefilm.lab.server import (
+    STATIC,
+    Lab,
+    UnheardServer,
+    converse,
+    page_file,
+    server_of,
+    static_file,
+)
+
+PORT = 8632
+_NOT_OURS = (errno.EADDRNOTAVAIL, errno.EACCES)
+_LIFE = datetime.timedelta(days=30)
+_LONGEST_CODE = 32
+
+
+@dataclass(frozen=True, slots=True)
+class LanPlace:
+    """Where tablets reach the lab: its address as a link, its certificate's fingerprint."""
+
+    link: str
+    fingerprint: str
+
+
+def lan_listener(address: str, port: int = PORT) -> socket.socket:
+    """A socket bound to one address of this computer in its local network.
+
+    Raises:
+        InputError: no IPv4 address, one for every network, one of the open internet, one that is
+            not this computer's, or no free port.
+    """
+    try:
+        found = ipaddress.IPv4Address(address)
+    except ValueError:
+        raise InputError(
+            f"--lan {address[:60]} is no IPv4 address; give this computer's in the local network, "
+            "like 192.168.1.20"
+        ) from None
+    if found.is_unspecified or found.is_multicast or not found.is_private:
+        raise InputError(
+            f"--lan {found} is not allowed: only one address of this computer in a private network "
+            "(10.x, 172.16–31.x, 192.168.x, 169.254.x) is"
+        )
+    for candidate in range(port, port + 20):
+        one = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
+        one.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            one.bind((str(found), candidate))
+            one.listen()
+        except OSError as error:
+            one.close()
+            if error.errno in _NOT_OURS:
+                raise InputError(
+                    f"--lan {found} is no address of this computer; look it up in its network "
+                    "settings"
+                ) from error
+            continue
+        return one
+    raise InputError(f"ports {port} to {port + 19} of {found} are all in use; stop what uses them")
+
+
+def certificate(address: str, file: Path) -> str:
+    """Make a self-signed certificate and its key in one file; the SHA-256 fingerprint.
+
+    A file that a killed lab left is used again while it is good for this address, so that a
+    tablet that trusted it comes back by itself. Only its owner can read it.
+
+    Raises:
+        InputError: the package `cryptography` is not there.
+    """
+    try:
+        from cryptography import x509
+        from cryptography.hazmat.primitives import hashes, serialization
+        from cryptography.hazmat.primitives.asymmetric import ec
+        from cryptography.x509.oid import ExtendedKeyUsageOID, NameOID
+    except ImportError as error:
+        raise InputError(
+            "--lan needs the package cryptography for its certificate; install squeezefilm[lan]"
+        ) from error
+    now = datetime.datetime.now(datetime.UTC)
+    kept = _fingerprint_of(file, address, now + datetime.timedelta(days=1))
+    if kept is not None:
+        return kept
+    key = ec.generate_private_key(ec.SECP256R1())
+    name = x509.Name([x509.NameAttribute(NameOID.COMMON_NAME, "squeezefilm lab")])
+    made = (
+        x509.CertificateBuilder()
+        .subject_name(name)
+        .issuer_name(name)
+        .public_key(key.public_key())
+        .serial_number(x509.random_serial_number())
+        .not_valid_before(now - datetime.timedelta(days=1))
+        .not_valid_after(now + _LIFE)
+        .add_extension(
+            x509.SubjectAlternativeName([x509.IPAddress(ipaddress.ip_address(address))]), False
+        )
+        .add_extension(x509.BasicConstraints(ca=False, path_length=None), True)
+        .add_extension(x509.ExtendedKeyUsage([ExtendedKeyUsageOID.SERVER_AUTH]), False)
+        .sign(key, hashes.SHA256())
+    )
+    secret = key.private_bytes(
+        serialization.Encoding.PEM,
+        serialization.PrivateFormat.PKCS8,
+        serialization.NoEncryption(),
+    )
+    beside = file.with_suffix(".new")
+    beside.unlink(missing_ok=True)
+    handle = os.open(beside, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
+    with os.fdopen(handle, "wb") as out:
+        out.write(secret + made.public_bytes(serialization.Encoding.PEM))
+    beside.replace(file)
+    return _spaced(made.public_bytes(serialization.Encoding.DER))
+
+
+def lan_application(lab: Lab, places: Places) -> Guard:
+    """The ASGI application for tablets: pairing, the participant's page, its messages."""
+
+    async def participant(_: Request) -> Response:
+        return page_file("participant.html")
+
+    async def pairing(_: Request) -> Response:
+        return page_file("pair.html")
+
+    async def static(request: Request) -> Response:
+        return static_file(STATIC, request.path_params["path"])
+
+    async def pair(request: Request) -> Response:
+        code = b""
+        async for part in request.stream():
+            code += part
+            if len(code) > _LONGEST_CODE:
+                return PlainTextResponse("A pairing code has six digits.", 413)
+        entered = lab.keys.use_code("".join(code.decode("utf-8", "replace").split()))
+        if entered is None:
+            guard.refusals.count("code")
+            return PlainTextResponse(
+                "This code is not right, was used already, or is older than two minutes. Ask the "
+                "experimenter for a new one.",
+                401,
+            )
+        session, home = entered
+        answer = JSONResponse({"home": home})
+        guard.set_cookie(answer, session)
+        return answer
+
+    guard = Guard(
+        Starlette(
+            routes=[
+                Route("/pair", pairing),
+                Route("/pair", pair, methods=["POST"]),
+                Route("/participant", participant),
+                Route("/static/{path:path}", static),
+                WebSocketRoute(
+                    "/ws/participant", lambda page: converse(lab, lab.participant, page)
+                ),
+            ]
+        ),
+        lab.keys,
+        places,
+    )
+    return guard
+
+
+def lan_server(lab: Lab, listener: socket.socket, file: Path) -> UnheardServer:
+    """The server for tablets; it says in `lab.lan` where it is. Raises as `certificate`."""
+    address, port = listener.getsockname()[:2]
+    fingerprint = certificate(address, file)
+    host = f"{address}:{port}"
+    places = Places(
+        frozenset({host}), secure=True, participants_only=True, cookie=f"squeezefilm-lan-{port}"
+    )
+    lab.lan = LanPlace(f"https://{host}/pair", fingerprint)
+    return server_of(
+        lab,
+        lan_application(lab, places),
+        ssl_certfile=str(file),
+        ssl_keyfile=str(file),
+        lifespan="off",
+    )
+
+
+def _fingerprint_of(file: Path, address: str, until: datetime.datetime) -> str | None:
+    from cryptography import x509
+
+    if file.is_symlink() or not file.is_file():
+        return None
+    try:
+        found = x509.load_pem_x509_certificate(file.read_bytes())
+        names = found.extensions.get_extension_for_class(x509.SubjectAlternativeName).value
+        # That key and certificate belong together is checked by loading them as TLS does.
+        ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER).load_cert_chain(file)
+    except (ValueError, OSError, x509.ExtensionNotFound):
+        return None
+    fits = ipaddress.ip_address(address) in names.get_values_for_type(x509.IPAddress)
+    if not fits or found.not_valid_after_utc < until:
+        return None
+    from cryptography.hazmat.primitives.serialization import Encoding
+
+    return _spaced(found.public_bytes(Encoding.DER))
+
+
+def _spaced(certificate_bytes: bytes) -> str:
+    text = hashlib.sha256(certificate_bytes).hexdigest().upper()
+    return ":".join(text[k : k + 2] for k in range(0, len(text), 2))

@@ -1,0 +1,263 @@
+"""The devices that sittings use: one sitting at a time on each, every call on a thread of its own.
+
+A device takes seconds to be measured and a second to begin a surface. Neither the server's loop nor
+the thread on which the studies live waits for it.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Protocol, TypeVar
+
+from squeezefilm.errors import DeviceError, InputError, SqueezefilmError
+from squeezefilm.study.device import (
+    DeviceIdentity,
+    DeviceVerification,
+    Exploration,
+    NoDevice,
+    StudyDevice,
+)
+from squeezefilm.study.stimuli import Stimulus
+
+T = TypeVar("T")
+
+
+class LabDevice(StudyDevice, Protocol):
+    """A study's device that can be stopped from any thread, and let go."""
+
+    def halt(self) -> None:
+        """Silence it now, from any thread."""
+        ...
+
+    def close(self) -> None:
+        """Let it go."""
+        ...
+
+
+Maker = Callable[[str, str, Path], LabDevice]
+"""Makes the device of a display, a kind ("twin", "serial:PORT") and a folder for raw traces."""
+
+
+@dataclass(frozen=True)
+class Measured:
+    """A `StudyDevice` that was identified and verified already; it plays nothing."""
+
+    who: DeviceIdentity
+    found: DeviceVerification
+
+    def identity(self) -> DeviceIdentity:
+        """Who it was."""
+        return self.who
+
+    def verify_device(self) -> DeviceVerification:
+        """What was measured just now."""
+        return self.found
+
+    def present(self, stimulus: Stimulus, seed: int) -> None:
+        """Refused: this is only what was measured."""
+        raise InputError("a measurement presents nothing")
+
+    def stop(self) -> Exploration:
+        """Nothing plays."""
+        return Exploration()
+
+
+@dataclass
+class _Held:
+    """A device in the hands of a sitting: what it presents, and what was felt of it so far."""
+
+    kind: str
+    device: LabDevice
+    thread: ThreadPoolExecutor = field(default_factory=lambda: ThreadPoolExecutor(1, "device"))
+    token: str = ""
+    playing: int | None = None
+    felt: dict[int, Exploration] = field(default_factory=dict)
+    halted: bool = False
+
+    def forget(self) -> None:
+        """Nothing of a trial counts any more: it comes again."""
+        self.token, self.playing, self.felt, self.halted = "", None, {}, False
+
+
+class StudyDevices:
+    """Devices by the sittings that use them. Its methods are called on the server's loop."""
+
+    def __init__(self, make: Maker | None = None) -> None:
+        self._make = make or _session_device
+        self._held: dict[str, _Held] = {}
+        self._busy: dict[str, asyncio.Lock] = {}
+
+    async def measure(self, sitting: str, kind: str, display: str, traces: Path) -> StudyDevice:
+        """The device of a sitting, identified and verified; takes seconds.
+
+        Raises:
+            InputError: a device that another sitting uses.
+            DeviceError: one that is not there, refuses or faults.
+        """
+        if kind == "none":
+            return NoDevice()
+        async with self._turn(sitting):
+            held = await self._taken(sitting, kind, display, traces)
+            await self._silence(held)
+            held.forget()
+            found = await self._on(held, held.device.verify_device)
+            return Measured(await self._on(held, held.device.identity), found)
+
+    async def present(
+        self,
+        sitting: str,
+        kind: str,
+        display: str,
+        traces: Path,
+        surface: tuple[Stimulus, int],
+        token: str,
+        place: int,
+    ) -> None:
+        """Play surface number `place` of a trial; returns when it plays.
+
+        Raises:
+            InputError: a device that another sitting uses, a surface it cannot play, or the
+                surfaces of a trial out of their order.
+            DeviceError: a device that failed, now or with the surface before; the trial begins
+                again with its first surface.
+        """
+        async with self._turn(sitting):
+            held = await self._taken(sitting, kind, display, traces)
+            if place == 0:
+                await self._silence(held)
+                held.forget()
+                held.token = token
+            elif held.token != token or held.halted:
+                raise InputError("the surface before was not presented; begin the trial again")
+            else:
+                await self._felt(held)
+            if place != len(held.felt):
+                raise InputError(f"surface {len(held.felt) + 1} comes next, not {place + 1}")
+            try:
+                await self._on(held, held.device.present, *surface)
+            except BaseException:
+                held.forget()
+                raise
+            held.playing = place
+
+    async def felt(self, sitting: str, token: str) -> tuple[Exploration, ...]:
+        """Silence the device and say how the trial's surfaces were explored.
+
+        Asked again before `answered` it says the same again.
+
+        Raises:
+            DeviceError: a surface that failed, was stopped, or that this lab did not present: the
+                trial has no answer, and comes again.
+        """
+        held = self._held.get(sitting)
+        if held is None or held.token != token or held.halted:
+            if held is not None:
+                async with self._turn(sitting):
+                    await self._silence(held)
+                    held.forget()
+            raise DeviceError(
+                "this surface was stopped or interrupted before the answer; nothing was "
+                "recorded, and the trial comes again"
+            )
+        async with self._turn(sitting):
+            await self._felt(held)
+            return tuple(held.felt[place] for place in sorted(held.felt))
+
+    def answered(self, sitting: str, token: str) -> None:
+        """This trial's answer is on the disk: what was felt of it need not be kept."""
+        held = self._held.get(sitting)
+        if held is not None and held.token == token:
+            held.forget()
+
+    def halt(self, sitting: str) -> None:
+        """Silence a sitting's device at once; its trial comes again. Never waits."""
+        if (held := self._held.get(sitting)) is not None:
+            held.halted = True
+            held.device.halt()
+
+    async def release(self, sitting: str) -> None:
+        """Let a sitting's device go; nothing where it has none."""
+        if (held := self._held.get(sitting)) is not None:
+            held.device.halt()
+            async with self._turn(sitting):
+                await self._on(held, held.device.close)
+                self._held.pop(sitting, None)
+                held.thread.shutdown(wait=False)
+
+    def holders(self) -> list[str]:
+        """The sittings that have a device."""
+        return list(self._held)
+
+    def close(self) -> None:
+        """Silence and let go of every device."""
+        for held in self._held.values():
+            held.device.halt()
+        for held in self._held.values():
+            held.thread.submit(held.device.close)
+            held.thread.shutdown(wait=True)
+        self._held.clear()
+
+    def _turn(self, sitting: str) -> asyncio.Lock:
+        return self._busy.setdefault(sitting, asyncio.Lock())
+
+    async def _taken(self, sitting: str, kind: str, display: str, traces: Path) -> _Held:
+        for other, held in self._held.items():
+            if other != sitting and held.kind == kind:
+                raise InputError(
+                    f"the device '{kind}' is in use by another sitting; end that one first"
+                )
+        if sitting not in self._held:
+            self._held[sitting] = _Held(kind, self._make(display, kind, traces))
+        return self._held[sitting]
+
+    async def _felt(self, held: _Held) -> None:
+        """Stop what plays and keep how it was explored; what failed ends the trial."""
+        if held.playing is None:
+            return
+        place, held.playing = held.playing, None
+        try:
+            held.felt[place] = await self._on(held, held.device.stop)
+        except BaseException:
+            held.forget()
+            raise
+
+    async def _silence(self, held: _Held) -> None:
+        """Stop what plays, whatever it says: the trial comes again anyway."""
+        held.playing = None
+        # A device that failed has let go by itself; a new presentation begins anew.
+        with contextlib.suppress(DeviceError):
+            await self._on(held, held.device.stop)
+
+    async def _on(self, held: _Held, work: Callable[..., T], *arguments: Any) -> T:
+        done = asyncio.get_running_loop().run_in_executor(held.thread, work, *arguments)
+        try:
+            return await asyncio.shield(done)
+        except asyncio.CancelledError:
+            # The page went away while the device was at work: silence is next in its turn.
+            held.halted = True
+            held.thread.submit(_silenced, held.device)
+            raise
+
+
+def _silenced(device: LabDevice) -> None:
+    with contextlib.suppress(SqueezefilmError):
+        device.stop()
+
+
+def require_device(kind: str) -> None:
+    """Refuse a device that no sitting may use. Raises `InputError` that says which may."""
+    from squeezefilm.study.session_device import require_study_drive
+
+    if kind != "none":
+        require_study_drive(kind)
+
+
+def _session_device(display: str, kind: str, traces: Path) -> LabDevice:
+    from squeezefilm.study.session_device import SessionDevice
+
+    return SessionDevice(display, kind, traces)
