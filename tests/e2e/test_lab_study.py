@@ -465,6 +465,44 @@ def test_servers_killed_at_every_moment_of_an_answer(
     assert answered(path) == rows(path, "SELECT count(*) FROM trial")[0][0] == 40
 
 
+def test_an_answer_that_could_not_be_written_is_handed_in_again(
+    chromium: Browser, running_lab: RunningLab
+) -> None:
+    path = small_study(running_lab.folder, familiarisation=0, practice=0, pause=0.0)
+    page, _ = opened(chromium, running_lab, "study")
+    chosen(page, "small")
+    link = link_of(page, prepared(page))
+    person = chromium.new_context().new_page()
+    refused: list[str] = []
+
+    def between(socket: Any) -> None:
+        server = socket.connect_to_server()
+
+        def sent(text: str) -> None:
+            asked = json.loads(text)
+            if asked["type"] != "respond" or refused:
+                server.send(text)
+                return
+            # What the server says where the disk is full, before anything was written.
+            refused.append(text)
+            said = {"id": asked["id"], "type": "error", "message": "no room", "again": True}
+            socket.send(json.dumps(said))
+
+        socket.on_message(sent)
+
+    person.route_web_socket(re.compile("/ws/participant"), between)
+    person.goto(link)
+    consented(person)
+    step(person)
+    step(person, answer=2)
+    person.get_by_text("no room").wait_for()
+    assert answered(path) == 0
+    person.keyboard.press("Enter")
+    person.locator("h2", has_text="Ready").wait_for()
+    given = json.loads(refused[0])
+    assert rows(path, "SELECT trial, choice FROM response") == [(given["token"], given["choice"])]
+
+
 def test_a_session_that_is_over_is_said_in_words(
     chromium: Browser, start_lab: Start, tmp_path: Path
 ) -> None:
