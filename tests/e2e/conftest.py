@@ -10,7 +10,7 @@ import socket
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -107,9 +107,24 @@ def _free_port() -> int:
         return int(one.getsockname()[1])
 
 
+Start = Callable[..., RunningLab]
+
+
 @pytest.fixture
-def running_lab(tmp_path: Path) -> Iterator[RunningLab]:
+def start_lab() -> Iterator[Start]:
+    """Starts labs; those that still run at the end of the test are ended as Ctrl-C does."""
+    started: list[RunningLab] = []
+
+    def start(folder: Path, port: int | None = None, *options: str) -> RunningLab:
+        started.append(RunningLab(folder, port, *options))
+        return started[-1]
+
+    yield start
+    codes = [lab.stop() for lab in started if lab.process.returncode is None]
+    assert codes == [0] * len(codes)
+
+
+@pytest.fixture
+def running_lab(tmp_path: Path, start_lab: Start) -> RunningLab:
     """A lab with an empty folder."""
-    lab = RunningLab(tmp_path / "lab")
-    yield lab
-    assert lab.stop() == 0
+    return start_lab(tmp_path / "lab")

@@ -20,11 +20,8 @@ pytestmark = pytest.mark.chromium
 
 SOLVED = 60_000
 CONTRAST = """() => {
-  const parse = (text) => {
-    const numbers = (text.match(/[\\d.]+/g) || []).map(Number);
-    // color-mix comes out as shares of one.
-    return text.startsWith("color(") ? numbers.map((n, k) => (k < 3 ? 255 * n : n)) : numbers;
-  };
+  const parse = (text) => (text.match(/[\\d.]+/g) || []).map(Number)
+    .map((one, k) => (text.startsWith("color(srgb") && k < 3 ? 255 * one : one));
   const light = (c) => { const [r, g, b] = c.slice(0, 3).map((v) => { v /= 255;
     return v <= 0.03928 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4; });
     return 0.2126 * r + 0.7152 * g + 0.0722 * b; };

@@ -16,6 +16,7 @@ const KEYS = [
   ["Tab, Shift+Tab", "to the next or the last control; the first Tab offers to skip to the content"],
   ["Enter, Space", "press a button; Space stops the device while the Device area plays"],
   ["arrow keys", "move a slider by a step; on the surface in Feel, move the finger"],
+  ["Ctrl+Z, Ctrl+Y", "in Design: undo, redo"],
   ["Escape", "close the tour or an explanation"],
   ["1 to 9", "on the participant's page: choose the answer with that number"],
   ["Enter", "on the participant's page: go on"],

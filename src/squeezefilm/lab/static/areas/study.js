@@ -42,13 +42,14 @@ class StudyView {
     });
   }
 
-  async tried(work) {
+  /** Do it, or say beside what was pressed why not. */
+  async tried(work, said = this.error) {
     try {
-      this.error.hidden = true;
+      said.hidden = true;
       return await work();
     } catch (error) {
-      this.error.textContent = error.message;
-      this.error.hidden = false;
+      said.textContent = error.message;
+      said.hidden = false;
       return null;
     }
   }
@@ -178,12 +179,12 @@ class StudyView {
 
   async link(sitting) {
     const { path } = await this.lab.socket.ask("station link", { sitting: sitting.id });
-    this.lab.notify(`Open this once, in the other browser: ${location.origin}${path}`);
+    this.lab.notify(`For ${sitting.participant}, once, in another browser: ${location.origin}${path}`);
   }
 
   async code(sitting) {
     const { code, link, fingerprint, life_s: life } = await this.lab.socket.ask("pairing code", { sitting: sitting.id });
-    this.lab.notify(`On the tablet open ${link} and type ${code.slice(0, 3)} ${code.slice(3)} within ${life / 60} minutes. Its browser warns of the certificate; go on only if its SHA-256 fingerprint is ${fingerprint}`);
+    this.lab.notify(`For ${sitting.participant}: on the tablet open ${link} and type ${code.slice(0, 3)} ${code.slice(3)} within ${life / 60} minutes. Its browser warns of the certificate; go on only if its SHA-256 fingerprint is ${fingerprint}`);
   }
 
   async end(sitting) {
@@ -204,17 +205,21 @@ class StudyView {
     };
     const consent = element("textarea", { rows: "6", id: "consent-text" });
     consent.value = this.study.consent;
-    const device = element("select", { id: "sitting-device", onchange: () => this.exposure(one, device.value, warned, box) },
+    const device = element("select", { id: "sitting-device", onchange: () => {
+      acknowledge.hidden = device.value === "none";
+      this.exposure(one, device.value, warned, box);
+    } },
       element("option", { value: "none", text: "by hand: no device is driven" }),
       ...(this.study.devices ?? []).map((name) => element("option", { value: name, text: name })));
     const warned = element("p", { class: "warning", hidden: true });
     const box = element("input", { type: "checkbox", id: "acknowledged" });
-    const acknowledge = element("label", {}, box, "The exposure to airborne ultrasound was read and accepted");
+    const acknowledge = element("label", { hidden: true }, box, "The exposure to airborne ultrasound was read and accepted");
+    const wrong = element("p", { class: "error", role: "alert", hidden: true });
     const form = element("form", { class: "sitting" }, element("h2", { text: `A sitting of ${one.pseudonym}` }),
       element("div", { class: "fields" }, ...rows, list("hand", HANDS), list("finger", FINGERS)),
       element("label", { class: "stack" }, "consent, as the participant reads it", consent),
       element("label", { class: "stack" }, "device", device), warned, acknowledge,
-      element("div", { class: "row" }, element("button", { class: "main", type: "submit", text: "Ready for the participant" }),
+      wrong, element("div", { class: "row" }, element("button", { class: "main", type: "submit", text: "Ready for the participant" }),
         element("button", { type: "button", text: "Cancel", onclick: () => { card.remove(); this.reload(); } })));
     const card = element("section", { class: "card" }, form);
     form.addEventListener("submit", (event) => {
@@ -226,7 +231,7 @@ class StudyView {
         });
         card.remove();
         this.take(found);
-      });
+      }, wrong);
     });
     this.main.querySelector("form")?.closest("section").remove();
     this.main.prepend(card);
