@@ -49,6 +49,8 @@ def test_a_surface_is_played_stopped_by_the_space_bar_and_answered(
         stop.or_(done).first.wait_for(timeout=PATIENCE)
         if stop.is_visible():
             break
+        # A page may take no answer that comes before anybody can have read it.
+        person.wait_for_timeout(500)
         left = person.locator("p.muted").last.inner_text()
         done.click()
         person.wait_for_function(
