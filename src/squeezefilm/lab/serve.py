@@ -73,14 +73,15 @@ def _serve(
     add_device(lab)
     link = f"http://127.0.0.1:{found}/?token={keys.new_link()}"
     secret = folder / f".lab-{found}.pem"
+    servers = [(server_of(lab), listener)]
+    if lan is not None:
+        from squeezefilm.lab.lan import lan_listener, lan_server
+
+        # A mistake here leaves the keys of a lab that was killed as they are.
+        beside = opened.enter_context(lan_listener(lan))
+        servers.append((lan_server(lab, beside, secret), beside))
     # From here on an end, however early, leaves no key behind.
     try:
-        servers = [(server_of(lab), listener)]
-        if lan is not None:
-            from squeezefilm.lab.lan import lan_listener, lan_server
-
-            beside = opened.enter_context(lan_listener(lan))
-            servers.append((lan_server(lab, beside, secret), beside))
         say(f"squeezefilm lab: {link}")
         if found != port:
             say(f"port {port} was taken; this one is {found}")
