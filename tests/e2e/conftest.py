@@ -35,9 +35,11 @@ def chromium_path() -> str:
     pytest.skip(reason)
 
 
-@pytest.fixture(scope="session")
+# Not for the session: while Playwright runs, its event loop does, and no other test of the process
+# could run one of its own.
+@pytest.fixture(scope="module")
 def chromium(chromium_path: str) -> Iterator[Browser]:
-    """A running Chromium for all tests of one process."""
+    """A running Chromium for all tests of one file."""
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as playwright:

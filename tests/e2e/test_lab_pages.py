@@ -154,6 +154,8 @@ def test_a_texture_is_felt_recorded_replayed_and_saved(
     page.locator("#notice", has_text="strokes/first.csv").wait_for()
     stroke = read_trajectory(running_lab.folder / "strokes" / "first.csv")
     assert stroke.duration > 0.05
+    felt = (running_lab.folder / "strokes" / "first.felt.csv").read_text().splitlines()
+    assert felt[0].startswith("time_s,x_m,y_m,speed_m_per_s")
     with page.expect_download() as download:
         page.get_by_role("button", name="Download CSV").click()
     text = Path(download.value.path()).read_text()

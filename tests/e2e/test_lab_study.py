@@ -277,7 +277,7 @@ def test_a_whole_sitting_by_keys_with_practice_and_rest(
 def test_two_stations_at_once_by_mouse_and_touch(
     chromium: Browser, start_lab: Start, tmp_path: Path
 ) -> None:
-    path = small_study(tmp_path, familiarisation=1, practice=1, blocks=1, pause=0.0)
+    path = small_study(tmp_path, familiarisation=0, practice=0, blocks=1, pause=0.0)
     lab = start_lab(tmp_path)
     page, complaints = opened(chromium, lab, "study")
     chosen(page, "small")
@@ -297,7 +297,7 @@ def test_two_stations_at_once_by_mouse_and_touch(
         if all(ends):
             break
         # Numbers come in, and what the experimenter is on stays.
-        if turn < 5:
+        if turn < 4:
             assert page.evaluate("document.activeElement.innerText") == "Enrol a participant"
     assert all(ends)
     keep(page, "lab-study-two-stations")
@@ -306,8 +306,8 @@ def test_two_stations_at_once_by_mouse_and_touch(
         "SELECT t.participant, count(*), count(DISTINCT r.session) FROM response r "
         "JOIN trial t ON t.uuid = r.trial GROUP BY t.participant",
     )
-    assert [one[1:] for one in counts] == [(11, 1), (11, 1)]
-    assert answered(path) == 22
+    assert [one[1:] for one in counts] == [(5, 1), (5, 1)]
+    assert answered(path) == 10
     # A station's link has the participant's role, in its browser and for good.
     for person in people:
         assert person.goto(lab.address).status == 403  # type: ignore[union-attr]
@@ -339,7 +339,7 @@ def test_reload_second_tab_and_held_keys(chromium: Browser, running_lab: Running
     person = station(page, prepared(page), chromium)
     consented(person)
     step(person)
-    for _ in range(5):
+    for _ in range(3):
         person.reload()
         person.locator("h2", has_text="Ready").wait_for()
     second = person.context.new_page()
@@ -423,6 +423,7 @@ def test_a_killed_server_loses_and_doubles_nothing(
     page.locator(".count", has_text=f"{count} of 10").wait_for()
 
 
+@pytest.mark.nightly
 def test_what_a_killed_server_computed_ends_with_it(
     chromium: Browser, start_lab: Start, tmp_path: Path
 ) -> None:
@@ -503,6 +504,7 @@ def test_an_answer_that_could_not_be_written_is_handed_in_again(
     assert rows(path, "SELECT trial, choice FROM response") == [(given["token"], given["choice"])]
 
 
+@pytest.mark.nightly
 def test_a_session_that_is_over_is_said_in_words(
     chromium: Browser, start_lab: Start, tmp_path: Path
 ) -> None:
@@ -616,14 +618,28 @@ def test_a_stored_script_is_shown_as_text(chromium: Browser, running_lab: Runnin
     assert complaints == []
 
 
-@pytest.mark.parametrize("colours", ["light", pytest.param("dark", marks=pytest.mark.nightly)])
+# What Design and Feel compute takes seconds; by day they are looked at in test_lab_pages.
+@pytest.mark.parametrize(
+    ("colours", "areas"),
+    [
+        ("light", ("device", "study", "results", "help")),
+        *(
+            pytest.param(
+                one,
+                ("design", "feel", "device", "study", "results", "help"),
+                marks=pytest.mark.nightly,
+            )
+            for one in ("light", "dark")
+        ),
+    ],
+)
 def test_every_area_has_contrast_and_fits_its_width(
-    chromium: Browser, running_lab: RunningLab, colours: Any
+    chromium: Browser, running_lab: RunningLab, colours: Any, areas: tuple[str, ...]
 ) -> None:
     small_study(running_lab.folder, familiarisation=0, practice=0, pause=0.0)
     page, complaints = opened(chromium, running_lab, "help", color_scheme=colours)
     page.evaluate("sessionStorage.setItem('squeezefilm study', 'small')")
-    for area in ("design", "feel", "device", "study", "results", "help"):
+    for area in areas:
         page.evaluate("area => { location.hash = area; }", area)
         page.locator(f"main[data-area={area}] .card").first.wait_for()
         if area == "design":

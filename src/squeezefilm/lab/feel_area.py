@@ -6,6 +6,7 @@ import base64
 import binascii
 import csv
 import io
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Literal
 
 from pydantic import Field
@@ -135,12 +136,11 @@ def add_feel(lab: Lab) -> None:
 
     async def save_stroke(asked: SaveStroke) -> Answer:
         file = fresh(lab.folder / "strokes", asked.name, ".csv")
-        text = io.StringIO()
-        table = csv.writer(text)
-        table.writerow(COLUMNS)
-        table.writerows(asked.rows)
+        felt = fresh(lab.folder / "strokes", f"{file.stem}.felt", ".csv")
         file.parent.mkdir(exist_ok=True)
-        write_whole(file, text.getvalue())
+        # The motion alone is what a stroke's file has elsewhere; what was felt lies beside it.
+        write_whole(felt, _csv(COLUMNS, asked.rows))
+        write_whole(file, _csv(COLUMNS[:3], [row[:3] for row in asked.rows]))
         return {"type": "saved", "file": f"strokes/{file.name}"}
 
     add = lab.experimenter.add
@@ -151,3 +151,11 @@ def add_feel(lab: Lab) -> None:
     add("add picture", AddPicture, add_picture)
     add("save texture", SaveTexture, save_texture)
     add("save stroke", SaveStroke, save_stroke)
+
+
+def _csv(columns: Sequence[str], rows: Iterable[Sequence[float]]) -> str:
+    text = io.StringIO()
+    table = csv.writer(text)
+    table.writerow(columns)
+    table.writerows(rows)
+    return text.getvalue()

@@ -72,24 +72,26 @@ def _serve(
     add_study(lab)
     add_device(lab)
     link = f"http://127.0.0.1:{found}/?token={keys.new_link()}"
-    servers = [(server_of(lab), listener)]
     secret = folder / f".lab-{found}.pem"
+    servers = [(server_of(lab), listener)]
     if lan is not None:
         from squeezefilm.lab.lan import lan_listener, lan_server
 
+        # A mistake here leaves the keys of a lab that was killed as they are.
         beside = opened.enter_context(lan_listener(lan))
         servers.append((lan_server(lab, beside, secret), beside))
-    say(f"squeezefilm lab: {link}")
-    if found != port:
-        say(f"port {port} was taken; this one is {found}")
-    say("the link works once; files are saved in " + str(folder.resolve()) + "; stop with Ctrl-C")
-    if lab.lan is not None:
-        say(f"tablets, participants only: {lab.lan.link}")
-        say(f"its certificate's SHA-256 fingerprint: {lab.lan.fingerprint}")
-    if browser:
-        with contextlib.suppress(webbrowser.Error):
-            webbrowser.open(link)
+    # From here on an end, however early, leaves no key behind.
     try:
+        say(f"squeezefilm lab: {link}")
+        if found != port:
+            say(f"port {port} was taken; this one is {found}")
+        say(f"the link works once; files are saved in {folder.resolve()}; stop with Ctrl-C")
+        if lab.lan is not None:
+            say(f"tablets, participants only: {lab.lan.link}")
+            say(f"its certificate's SHA-256 fingerprint: {lab.lan.fingerprint}")
+        if browser:
+            with contextlib.suppress(webbrowser.Error):
+                webbrowser.open(link)
         asyncio.run(_run(servers))
     except KeyboardInterrupt:
         pass
