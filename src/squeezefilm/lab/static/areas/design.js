@@ -80,8 +80,8 @@ class DesignView {
     this.frictionChart = new Chart(friction.inside, {
       x: "vibration amplitude (µm)", y: "µ′/µ", range: [0, 1.02],
       series: [
-        { label: "90 % lie below", colour: "grid", width: 1 },
-        { label: "90 % lie above", colour: "grid", width: 1 },
+        { label: "95 % lie below", colour: "grid", width: 1 },
+        { label: "5 % lie below", colour: "grid", width: 1 },
         { label: "this display", colour: "blue", width: 2.5 },
         { label: "paper's model", colour: "orange", dash: [6, 3] },
       ],
