@@ -203,6 +203,11 @@ def test_a_study_from_its_plan_to_its_export(chromium: Browser, running_lab: Run
     # The experimenter sees it without asking.
     page.locator(".count", has_text="13 of 120").wait_for()
     page.get_by_text("3 answers.").wait_for()
+    # By hand, somebody has to know what to present; the participant's page does not.
+    now = page.locator(".byhand strong").inner_text()
+    newest = "SELECT trial FROM presentation ORDER BY presented_utc DESC"
+    run = f"SELECT stimuli FROM trial WHERE uuid = ({newest})"
+    assert [now] == json.loads(rows(running_lab.folder / "studies" / "gratings.sqlite", run)[0][0])
     keep(page, "lab-study-progress-light-1280")
     page.get_by_role("button", name="End the sitting").click()
     page.locator("#notice", has_text="The sitting has ended").wait_for()

@@ -163,8 +163,8 @@ async def converse(lab: Lab, dispatcher: Dispatcher, page: WebSocket) -> None:
     async def one(text: str) -> None:
         try:
             answer = await dispatcher.answer(text)
-        except SupersededError:
-            return
+        except SupersededError as error:
+            answer = {"id": error.number, "type": "error", "message": "newer work took its place"}
         with contextlib.suppress(RuntimeError, WebSocketDisconnect):
             await page.send_text(as_text(answer))
 

@@ -47,6 +47,7 @@ class Studies:
         self.sittings = Sittings(self.folder / ".sittings.json")
         self._open: dict[str, StudyStore] = {}
         self._runs: dict[str, StudyRun] = {}
+        self._now: dict[str, tuple[str, ...]] = {}
 
     def close(self) -> None:
         """Close every file."""
@@ -103,11 +104,18 @@ class Studies:
                 }
                 for one in store.participants()
             ],
-            "sittings": [_shown(one) for one in self.sittings.of_study(name)],
+            "sittings": [
+                {**_shown(one), "by_hand": self._by_hand(one)}
+                for one in self.sittings.of_study(name)
+            ],
             "confusion": self.confusion(name),
             "origin": origin_of(store),
             "devices": devices(),
         }
+
+    def _by_hand(self, sitting: Sitting) -> list[str]:
+        """What the experimenter has to put before the participant now, in order."""
+        return list(self._now.get(sitting.id, ())) if sitting.device == "none" else []
 
     def confusion(self, name: str) -> list[dict[str, Any]]:
         """Counts per display, rows answers and columns stimuli; main trials only."""
@@ -232,7 +240,9 @@ class Studies:
             return self.where(id)
         trial = found.trial
         felt_only = trial.phase == "familiarisation"
+        self._now[id] = tuple(one.name for one in found.surfaces)
         return {
+            "study": sitting.study,
             "state": "trial",
             "token": found.token,
             "phase": "practice"
@@ -282,6 +292,7 @@ class Studies:
         if sitting.session is None:
             raise InputError("this sitting was not consented to yet")
         told = self.run(sitting).respond(token, response)
+        self._now.pop(id, None)
         phase = self.store(sitting.study).rows(
             "SELECT phase FROM trial WHERE uuid = ?", [token]
         )[0]["phase"]  # fmt: skip
@@ -304,6 +315,7 @@ class Studies:
             problems = found.problems
         self.sittings.change(id, ended=True)
         self._runs.pop(id, None)
+        self._now.pop(id, None)
         return {"problems": list(problems), **self.status(sitting.study)}
 
     def delete(self, name: str, participant: str) -> dict[str, Any]:

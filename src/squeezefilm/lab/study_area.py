@@ -309,7 +309,12 @@ def add_study(lab: Lab, devices: StudyDevices | None = None) -> StudyThread:
         return {"type": "where", **found}
 
     async def present(asked: OfSitting) -> Answer:
-        return {"type": "where", **await thread.do(Studies.present, asked.sitting)}
+        found = await thread.do(Studies.present, asked.sitting)
+        study = found.pop("study", None)
+        if study is not None:
+            # Who presents by hand is told what; the participant's page is not.
+            await changed(study)
+        return {"type": "where", **found}
 
     async def feel(asked: FeelSurface) -> Answer:
         sitting = await thread.do(lambda studies: studies.sittings.get(asked.sitting))

@@ -80,7 +80,8 @@ class Dispatcher:
             return {**_error(number, str(error)), "again": True}
         except (SqueezefilmError, ValueError, RecursionError) as error:
             return _error(number, str(error))
-        except SupersededError:
+        except SupersededError as error:
+            error.number = number
             raise
         except Exception:
             # A mistake of ours: said on the page and in the terminal; the conversation goes on.

@@ -21,7 +21,9 @@ T = TypeVar("T")
 
 
 class SupersededError(Exception):
-    """Work that was not begun, because newer work took its place."""
+    """Work that was not begun, because newer work took its place; of which request, if known."""
+
+    number: int | None = None
 
 
 class Busy:

@@ -174,7 +174,8 @@ class StudyView {
     }
     return element("tr", { "data-participant": one.pseudonym }, element("td", {}, element("code", { text: one.pseudonym })),
       element("td", { class: "nowrap" }, element("progress", { value: one.answered, max: one.planned, "aria-label": "answered" }), element("span", { class: "count", text: ` ${one.answered} of ${one.planned}` })),
-      element("td", { text: one.display ?? "finished" }), element("td", { text: sitting ? (sitting.begun ? "running" : "prepared") : "–" }), element("td", {}, actions));
+      element("td", { text: one.display ?? "finished" }), element("td", {}, sitting ? (sitting.begun ? "running" : "prepared") : "–",
+        sitting?.by_hand.length ? element("div", { class: "byhand" }, "present now: ", element("strong", { text: sitting.by_hand.join(", then ") })) : null), element("td", {}, actions));
   }
 
   async link(sitting) {
