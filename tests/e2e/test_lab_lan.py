@@ -167,6 +167,7 @@ def test_the_certificate_is_the_one_that_was_printed(start_lab: Start, tmp_path:
     lab.kill()
     again = start_lab(tmp_path, lab.port, "--lan", ADDRESS)
     assert said[0] in again.said
+    assert Tablet(again).ask("GET", "/pair")[0] == 200
     assert again.stop() == 0
     assert not list(tmp_path.glob(".lab-*"))
     last = start_lab(tmp_path, lab.port, "--lan", ADDRESS)

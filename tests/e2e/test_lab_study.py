@@ -264,7 +264,7 @@ def test_a_whole_sitting_by_keys_with_practice_and_rest(
     for one in seen:
         assert set(one) == {
             "id", "type", "state", "token", "phase", "question", "alternatives", "numeric",
-            "surfaces", "named", "pause_s", "remaining", "interrupted",
+            "surfaces", "plays", "named", "pause_s", "remaining", "interrupted",
         }  # fmt: skip
         assert one["named"] == ""
         # The alternatives stand in the same order whatever is right.

@@ -113,13 +113,14 @@ class StudyView {
   /** Numbers of a study that is shown already, without replacing what a hand or the focus is on;
    * whether that was enough. */
   progress(study) {
-    const shape = (one) => JSON.stringify([one.name, one.sittings, one.participants.map((each) => [each.pseudonym, each.display, each.answered === each.planned])]);
+    const shape = (one) => JSON.stringify([one.name, one.sittings.map(({ by_hand: _, ...rest }) => rest), one.participants.map((each) => [each.pseudonym, each.display, each.answered === each.planned])]);
     if (!this.study || shape(study) !== shape(this.study)) return false;
     for (const one of study.participants) {
       const row = this.main.querySelector(`tr[data-participant="${CSS.escape(one.pseudonym)}"]`);
       if (!row) return false;
       row.querySelector("progress").value = one.answered;
       row.querySelector(".count").textContent = ` ${one.answered} of ${one.planned}`;
+      row.querySelector(".byhand").replaceChildren(...byHand(study, one.pseudonym));
     }
     this.study = study;
     for (const card of this.main.querySelectorAll(".confusion")) card.remove();
@@ -175,7 +176,7 @@ class StudyView {
     return element("tr", { "data-participant": one.pseudonym }, element("td", {}, element("code", { text: one.pseudonym })),
       element("td", { class: "nowrap" }, element("progress", { value: one.answered, max: one.planned, "aria-label": "answered" }), element("span", { class: "count", text: ` ${one.answered} of ${one.planned}` })),
       element("td", { text: one.display ?? "finished" }), element("td", {}, sitting ? (sitting.begun ? "running" : "prepared") : "–",
-        sitting?.by_hand.length ? element("div", { class: "byhand" }, "present now: ", element("strong", { text: sitting.by_hand.join(", then ") })) : null), element("td", {}, actions));
+        element("div", { class: "byhand" }, ...byHand(this.study, one.pseudonym))), element("td", {}, actions));
   }
 
   async link(sitting) {
@@ -253,6 +254,12 @@ class StudyView {
   close() {
     for (const off of this.off) off();
   }
+}
+
+/** What the experimenter has to put before a participant who has no device. */
+function byHand(study, pseudonym) {
+  const found = study.sittings.find((one) => one.participant === pseudonym)?.by_hand ?? [];
+  return found.length ? ["present now: ", element("strong", { text: found.join(", then ") })] : [];
 }
 
 function conditionsOf(inputs) {
