@@ -30,7 +30,7 @@ def test_a_device_in_order_is_recorded_before_and_after(tmp_path: Path) -> None:
         device.amplitude = 1.5e-6
         after = end_session(store, begun, device)
         assert "amplitude is 1.5 um" in after.problems[0]
-        rows = store.rows("SELECT * FROM verification ORDER BY made_utc")
+        rows = store.rows("SELECT * FROM verification ORDER BY moment DESC")
         assert [(r["moment"], r["passed"], r["session"]) for r in rows] == [
             ("before", 1, begun),
             ("after", 0, begun),
