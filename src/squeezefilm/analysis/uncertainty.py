@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,7 +18,7 @@ from squeezefilm.analysis.parameters import (
 )
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError, OutOfRangeError, SqueezefilmError
-from squeezefilm.friction import friction_law
+from squeezefilm.friction import FrictionLaw, friction_law
 from squeezefilm.plate.layout import AnnularStator, RectangularPlate
 from squeezefilm.plate.response import beam_response
 from squeezefilm.plate.working_mode import working_mode
@@ -229,26 +229,12 @@ def friction_band(
     values = np.column_stack(
         [item.distribution.quantile(points[:, k]) for k, item in enumerate(parameters)]
     )
-    compliance = [item.path for item in parameters].index(SKIN_COMPLIANCE)
-    paths = [item.path for item in parameters if item.path != SKIN_COMPLIANCE]
     rows = np.full((samples, amplitude.size), np.nan)
-    for number, row in enumerate(values):
-        changes = dict(zip(paths, np.delete(row, compliance).tolist(), strict=True))
+    for number, (changes, share) in enumerate(_changes(parameters, values)):
         try:
-            here = replaced(display, changes)
-            law = friction_law(
-                here,
-                prediction.mode.half_wavelength,
-                prediction.frequency,
-                surface=here.surface(prediction.surface.name),
-                normal_force=prediction.normal_force,
-                model="partial-levitation",
-                position=prediction.law.position,
-            )
-            limits = law.limits(amplitude)
+            limits = _law(replaced(display, changes), prediction).limits(amplitude)
         except SqueezefilmError:
             continue
-        share = float(row[compliance])
         rows[number] = share * limits.own + (1 - share) * limits.one_gap
     known = np.isfinite(rows).sum(axis=0) > samples / 2
     tails = (1 - LEVEL) / 2
@@ -272,37 +258,47 @@ def _evaluate(
 ) -> tuple[DimensionlessArray, MetreArray]:
     friction = np.full(len(values), np.nan)
     amplitude = np.full(len(values), np.nan)
-    compliance = [item.path for item in parameters].index(SKIN_COMPLIANCE)
-    paths = [item.path for item in parameters if item.path != SKIN_COMPLIANCE]
     scale = _Amplitude(display, prediction)
     every = max(1, len(values) // 20)
-    for number, row in enumerate(values):
+    for number, (changes, compliance) in enumerate(_changes(parameters, values)):
         if number % every == 0:
             tell(f"friction of sample {number + 1} of {len(values)}")
-        changes = dict(zip(paths, np.delete(row, compliance).tolist(), strict=True))
         try:
             here = replaced(display, changes)
-            friction[number], amplitude[number] = _one(
-                here, prediction, scale(here), float(row[compliance])
-            )
+            friction[number], amplitude[number] = _one(here, prediction, scale(here), compliance)
         except SqueezefilmError:
             continue
     return friction, amplitude
 
 
+def _changes(
+    parameters: tuple[Parameter, ...], values: FloatArray
+) -> Iterator[tuple[dict[str, float], float]]:
+    """Of each sample: values by their path in the display, and the skin's compliance."""
+    compliance = [item.path for item in parameters].index(SKIN_COMPLIANCE)
+    paths = [item.path for item in parameters if item.path != SKIN_COMPLIANCE]
+    for row in values:
+        changes = dict(zip(paths, np.delete(row, compliance).tolist(), strict=True))
+        yield changes, float(row[compliance])
+
+
+def _law(display: Display, prediction: Prediction) -> FrictionLaw:
+    """Partial levitation on a display with other values, at a prediction's working point."""
+    return friction_law(
+        display,
+        prediction.mode.half_wavelength,
+        prediction.frequency,
+        surface=display.surface(prediction.surface.name),
+        normal_force=prediction.normal_force,
+        model="partial-levitation",
+        position=prediction.law.position,
+    )
+
+
 def _one(
     display: Display, prediction: Prediction, free_amplitude: Metre, compliance: float
 ) -> tuple[float, float]:
-    p = prediction
-    law = friction_law(
-        display,
-        p.mode.half_wavelength,
-        p.frequency,
-        surface=display.surface(p.surface.name),
-        normal_force=p.normal_force,
-        model="partial-levitation",
-        position=p.law.position,
-    )
+    p, law = prediction, _law(display, prediction)
     amplitude = free_amplitude
     if p.voltage is not None and p.mode.modal_mass is not None:
         mode = dataclasses.replace(
