@@ -71,10 +71,21 @@ class RunningLab:
             stdout=subprocess.PIPE,
             text=True,
         )  # fmt: skip
+        self._read("--lan" in options)
+
+    @classmethod
+    def of(cls, process: subprocess.Popen[str], folder: Path) -> RunningLab:
+        """A lab that somebody else started."""
+        lab = cls.__new__(cls)
+        lab.folder, lab.process = folder, process
+        lab._read(tablets=False)
+        return lab
+
+    def _read(self, tablets: bool) -> None:
         assert self.process.stdout is not None
         # Whatever port it found free in the end is in the link; the line about files is the last
         # that every lab says, the fingerprint the last of one with tablets.
-        end = "fingerprint" if "--lan" in options else "files are saved"
+        end = "fingerprint" if tablets else "files are saved"
         self.said = ""
         for line in self.process.stdout:
             self.said += line

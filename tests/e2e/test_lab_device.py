@@ -29,6 +29,7 @@ COMPILED = 180_000
 """ms in which a twin is there, its kernels compiled."""
 
 
+@pytest.mark.realtime
 def test_a_twin_is_played_watched_and_stopped_by_the_space_bar(
     chromium: Browser, running_lab: RunningLab
 ) -> None:
@@ -39,14 +40,23 @@ def test_a_twin_is_played_watched_and_stopped_by_the_space_bar(
     page.locator("#duration").fill("60 s")
     state, position = page.locator(".number b").first, page.locator(".number b").nth(1)
     said = page.locator(".stopbar")
-    for _ in range(4):
-        page.get_by_role("button", name="Arm", exact=True).click()
+    arm = page.get_by_role("button", name="Arm", exact=True)
+    # Whoever stops while it is still starting has stopped it.
+    arm.click()
+    play.click()
+    said.filter(has_text="a process of its own").wait_for(timeout=COMPILED)
+    page.keyboard.press("Space")
+    said.filter(has_text="stopped before anything was played").wait_for(timeout=COMPILED)
+    for _ in range(6):
+        arm.click()
         play.click()
         said.filter(has_text=re.compile("playing,|ended")).wait_for(timeout=COMPILED)
-        seen = set()
+        seen = {position.inner_text()}
         for _ in range(40):
+            page.wait_for_timeout(50)
             seen.add(position.inner_text())
-            page.wait_for_timeout(100)
+            if len(seen) > 3:
+                break
         # A machine that holds a process up for 50 ms is stopped by the device, as it must be.
         if "heard nothing for 50 ms" not in said.inner_text():
             break
@@ -60,12 +70,13 @@ def test_a_twin_is_played_watched_and_stopped_by_the_space_bar(
     assert play.is_disabled()
     folder = max(one for one in (running_lab.folder / "sessions").iterdir() if one.is_dir())
     trace = read_trace(folder / "trace.sqft")
-    assert len(trace.rows) > 5000
+    assert len(trace.rows) > 1000
     assert (folder / "play.html").exists()
     assert complaints == []
 
 
 @pytest.mark.nightly
+@pytest.mark.realtime
 def test_a_twin_passes_every_check(chromium: Browser, running_lab: RunningLab) -> None:
     page, complaints = opened(chromium, running_lab, "device", color_scheme="dark")
     page.get_by_role("button", name="Check the device").click()

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
     from .conftest import RunningLab
 
-pytestmark = [pytest.mark.chromium, pytest.mark.nightly]
+pytestmark = [pytest.mark.chromium, pytest.mark.nightly, pytest.mark.realtime]
 PATIENCE = 120_000
 
 

@@ -24,6 +24,7 @@ def run(*words: str, code: int = 0) -> subprocess.CompletedProcess[str]:
     return done
 
 
+@pytest.mark.realtime
 def test_a_texture_is_played_on_a_twin_and_judged(tmp_path: Path) -> None:
     for attempt in range(3):
         out = tmp_path / f"session-{attempt}"
@@ -101,6 +102,7 @@ def test_what_cannot_be_played_is_said(
 
 
 @pytest.mark.nightly
+@pytest.mark.realtime
 def test_a_twin_is_checked_through_its_port() -> None:
     done = run("device", "check", "--drive", "twin", "--rate", "1 kHz", "--json")
     check = json.loads(done.stdout)

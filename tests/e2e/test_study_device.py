@@ -31,7 +31,10 @@ from squeezefilm.study.stimuli import Grating, Stimulus
 from squeezefilm.study.store import StudyStore
 from squeezefilm.twin.settings import PickupModel, TwinSettings
 
-pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="there are no ptys on Windows")
+pytestmark = [
+    pytest.mark.realtime,
+    pytest.mark.skipif(sys.platform == "win32", reason="there are no ptys on Windows"),
+]
 DISPLAY = "biet2008-plate"
 PICKUP = PickupModel(kind="sensing_patch")
 EXPOSURE = Exposure(DISPLAY, 33e3, 0.5, 120.0, 60.0, None, "", "made up for this test")

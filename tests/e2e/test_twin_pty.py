@@ -16,7 +16,10 @@ from squeezefilm.errors import InputError
 from squeezefilm.twin.plant_kernel import COLUMNS
 from squeezefilm.twin.pty_server import main, running_twin
 
-pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="there are no ptys on Windows")
+pytestmark = [
+    pytest.mark.realtime,
+    pytest.mark.skipif(sys.platform == "win32", reason="there are no ptys on Windows"),
+]
 PATIENCE = 60.0
 DISPLAY = "biet2008-stator"
 

@@ -28,6 +28,7 @@ from squeezefilm.session.pacing import MARGIN
 from squeezefilm.session.plan import DriveTable, LoopPlan
 from squeezefilm.session.ring import ring_waiting
 
+pytestmark = pytest.mark.realtime
 # Far beyond what any of it takes; a limit for a test that hangs.
 PATIENCE = 60.0
 RATE = 1e3

@@ -23,9 +23,12 @@ from squeezefilm.device.machine import Fault
 from squeezefilm.session import rows as column
 from squeezefilm.session.record import read_trace
 
-pytestmark = pytest.mark.skipif(
-    sys.platform == "win32", reason="pseudo-terminals and SIGSTOP need a POSIX system"
-)
+pytestmark = [
+    pytest.mark.realtime,
+    pytest.mark.skipif(
+        sys.platform == "win32", reason="pseudo-terminals and SIGSTOP need a POSIX system"
+    ),
+]
 HERE = Path(__file__).parent
 ZERO_WITHIN = 60e-3
 _PATIENCE = 120.0

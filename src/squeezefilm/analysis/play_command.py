@@ -47,6 +47,8 @@ from squeezefilm.twin.settings import PickupModel, TwinSettings
 
 TRACE_NAME = "trace.sqft"
 TRUTH_NAME = "truth.csv"
+JUDGING = "the record"
+"""The step told of after playing; until then nothing of it can be shown."""
 STROKE = "60 mm/s over 4 cm"
 DURATION: Second = 4.0
 LOOP_SECONDS: Second = 3.0
@@ -160,7 +162,7 @@ def play_texture(
                 setup.plan, stream, folder / TRACE_NAME, metadata, duration=duration,
                 sensor=_replay(sensor), show=show, tap=tap, bench_only=bench_only,
             )  # fmt: skip
-        tell("the record")
+        tell(JUDGING)
         judged = judge_session(setup, read_trace(outcome.trace), truth)
     return PlayResult(outcome, judged, out)
 

@@ -27,6 +27,8 @@ ROW_PERIOD: Second = 2e-3
 """Between two rows that the page's scope gets; the record has them all."""
 _STOP_LIMIT: Second = 5.0
 
+_STOPPED_BEFORE = "stopped before anything was played"
+
 Tell = Callable[[dict[str, Any]], None]
 
 
@@ -54,6 +56,7 @@ class DeviceSession:
         self._tell = tell
         self._process: Any = None
         self._reader: threading.Thread | None = None
+        self._stopped = False
 
     @property
     def running(self) -> bool:
@@ -68,6 +71,7 @@ class DeviceSession:
         """
         if self.running:
             raise InputError("a device is in use by this lab already; stop it first")
+        self._stopped = False
         context = multiprocessing.get_context("spawn")
         ours, theirs = context.Pipe(duplex=False)
         self._process = context.Process(target=work, args=(theirs, *arguments), daemon=False)
@@ -79,6 +83,7 @@ class DeviceSession:
     def stop(self) -> None:
         """Ask it to ramp to zero, disarm and end. Returns at once."""
         if self.running:
+            self._stopped = True
             os.kill(self._process.pid, signal.SIGINT)
 
     def close(self) -> None:
@@ -90,34 +95,44 @@ class DeviceSession:
                 self._process.kill()
 
     def _read(self, connection: Connection, process: Any) -> None:
-        ended = False
+        end: dict[str, Any] | None = None
         while True:
             try:
                 message = connection.recv()
             except (EOFError, OSError):
                 break
-            ended = ended or message["type"] == "device ended"
-            self._tell(message)
+            if message["type"] == "device ended":
+                end = message
+            else:
+                self._tell(message)
+        # Told only now: who hears of the end may begin again at once.
         process.join()
-        if not ended:
-            self._tell(
-                {
-                    "type": "device ended",
-                    "failed": True,
-                    "message": "the process that played ended without a word; the device stops by "
-                    "its own watchdog",
-                }
-            )
+        if end is None and self._stopped:
+            end = {"type": "device ended", "failed": False, "message": _STOPPED_BEFORE}
+        elif end is None:
+            end = {
+                "type": "device ended",
+                "failed": True,
+                "message": "the process that played ended without a word; the device stops by "
+                "its own watchdog",
+            }
+        self._tell(end)
 
 
 def play(connection: Connection, work: DeviceWork) -> None:
     """Play, and tell of it."""
-    from squeezefilm.analysis.play_command import play_texture
+    from squeezefilm.analysis.play_command import JUDGING, play_texture
     from squeezefilm.session.rows import COLUMNS
     from squeezefilm.texture_file import preset_texture
 
     tell = _telling(connection)
     last = -math.inf
+    stage = ""
+
+    def progress(text: str) -> None:
+        nonlocal stage
+        stage = text
+        tell({"type": "device progress", "text": text})
 
     def tap(rows: FloatArray) -> None:
         nonlocal last
@@ -163,7 +178,7 @@ def play(connection: Connection, work: DeviceWork) -> None:
             seed=work.seed,
             show=show,
             tap=tap,
-            progress=lambda text: tell({"type": "device progress", "text": text}),
+            progress=progress,
         )
         # The device is at zero and disarmed; what is left to be written is not to be cut short.
         signal.signal(signal.SIGINT, signal.SIG_IGN)
@@ -179,6 +194,14 @@ def play(connection: Connection, work: DeviceWork) -> None:
                 "folder": work.out,
             }
         )
+    except KeyboardInterrupt:
+        # Whatever was driven is at zero: only what comes before and after playing ends like this.
+        message = (
+            f"stopped during: {stage}; what was played is recorded in {work.out}, not judged"
+            if stage == JUDGING
+            else _STOPPED_BEFORE
+        )
+        tell({"type": "device ended", "failed": False, "message": message})
     except SqueezefilmError as error:
         tell({"type": "device ended", "failed": True, "message": str(error)})
 
@@ -209,6 +232,8 @@ def check(connection: Connection, drive: str, display: str) -> None:
             }
         )
         tell({"type": "device ended", "failed": False, "message": "checked"})
+    except KeyboardInterrupt:
+        tell({"type": "device ended", "failed": False, "message": "the check was stopped"})
     except SqueezefilmError as error:
         tell({"type": "device ended", "failed": True, "message": str(error)})
 

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import signal
 import webbrowser
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
-
-import uvicorn
 
 from squeezefilm.errors import InputError
 from squeezefilm.lab.design_area import add_design
@@ -82,31 +81,45 @@ def _serve(
         servers.append((lan_server(lab, beside, secret), beside))
     # From here on an end, however early, leaves no key behind.
     try:
-        say(f"squeezefilm lab: {link}")
-        if found != port:
-            say(f"port {port} was taken; this one is {found}")
-        say(f"the link works once; files are saved in {folder.resolve()}; stop with Ctrl-C")
-        if lab.lan is not None:
-            say(f"tablets, participants only: {lab.lan.link}")
-            say(f"its certificate's SHA-256 fingerprint: {lab.lan.fingerprint}")
-        if browser:
-            with contextlib.suppress(webbrowser.Error):
-                webbrowser.open(link)
-        asyncio.run(_run(servers))
-    except KeyboardInterrupt:
-        pass
+        with _ended_by_signals(servers[0][0]):
+            say(f"squeezefilm lab: {link}")
+            if found != port:
+                say(f"port {port} was taken; this one is {found}")
+            say(f"the link works once; files are saved in {folder.resolve()}; stop with Ctrl-C")
+            if lab.lan is not None:
+                say(f"tablets, participants only: {lab.lan.link}")
+                say(f"its certificate's SHA-256 fingerprint: {lab.lan.fingerprint}")
+            if browser:
+                with contextlib.suppress(webbrowser.Error):
+                    webbrowser.open(link)
+            asyncio.run(_run(servers))
     finally:
         lab.close()
         keys.forget()
         secret.unlink(missing_ok=True)
 
 
+@contextlib.contextmanager
+def _ended_by_signals(server: UnheardServer) -> Iterator[None]:
+    """Let Ctrl-C and SIGTERM end a server, also one that has not begun.
+
+    asyncio's own handling cancels the first task wherever it is, uvicorn's begins only when the
+    server runs: a Ctrl-C between the two was lost, or ended in a traceback.
+    """
+    signals = (signal.SIGINT, signal.SIGTERM)
+    before = [(one, signal.signal(one, server.handle_exit)) for one in signals]
+    try:
+        yield
+    finally:
+        for one, handler in before:
+            signal.signal(one, handler)
+
+
 async def _run(servers: list[tuple[UnheardServer, socket.socket]]) -> None:
-    """Run the first server until a signal ends it, and the others as long."""
+    """Run the first server until it is told to exit, and the others as long."""
     (first, listener), *others = servers
-    with uvicorn.Server.capture_signals(first):
-        beside = [asyncio.create_task(one.serve(sockets=[at])) for one, at in others]
-        await first.serve(sockets=[listener])
-        for one, _ in others:
-            one.should_exit = True
-        await asyncio.gather(*beside)
+    beside = [asyncio.create_task(one.serve(sockets=[at])) for one, at in others]
+    await first.serve(sockets=[listener])
+    for one, _ in others:
+        one.should_exit = True
+    await asyncio.gather(*beside)

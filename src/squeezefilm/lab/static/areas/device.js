@@ -19,7 +19,7 @@ class DeviceView {
     this.build();
     const hear = (type, act) => this.off.push(this.lab.socket.on(type, act));
     hear("connection", ({ open }) => open && this.begin());
-    hear("device progress", ({ text }) => { this.said.textContent = `${text}…`; });
+    hear("device progress", ({ text }) => this.say(`${text}…`));
     hear("device view", (view) => this.view(view));
     hear("device rows", (found) => this.rows(found));
     hear("device checked", (found) => this.checked(found));
@@ -95,7 +95,7 @@ class DeviceView {
         ...saved.map((name) => element("option", { value: name, text: name })));
       this.texture.value = "biet2008-square-4mm";
       this.setRunning(running);
-      this.said.textContent = running ? "playing" : "ready";
+      this.say(running ? "playing" : "ready");
     });
   }
 
@@ -106,6 +106,7 @@ class DeviceView {
     } catch (error) {
       this.error.textContent = error.message;
       this.error.hidden = false;
+      if (!this.running) this.say("ready");
     }
   }
 
@@ -127,16 +128,22 @@ class DeviceView {
     this.playButton.disabled = running || !this.armed;
   }
 
+  say(text, failed = false) {
+    this.said.textContent = text;
+    this.said.classList.toggle("error", failed);
+  }
+
   async check() {
     this.results.hidden = true;
+    this.say("starting the check…");
     await this.lab.socket.ask("check device", { display: this.store.current.text, drive: this.drive.value });
     this.setRunning(true);
-    this.said.textContent = "checking…";
   }
 
   async play() {
     for (const scope of this.scopes) scope.clear();
     this.results.hidden = true;
+    this.say("starting…");
     const fields = {
       display: this.store.current.text, drive: this.drive.value, armed: this.armed, preset: this.texture.value,
       mode: this.mode.value, stroke: this.stroke.value, duration: this.duration.value, compensation: this.compensation.value,
@@ -144,20 +151,20 @@ class DeviceView {
     if (this.voltage.value.trim()) fields.voltage = this.voltage.value;
     const { folder } = await this.lab.socket.ask("play device", fields);
     this.setRunning(true);
-    this.said.textContent = `starting; recorded in ${folder}`;
+    this.say(`starting; recorded in ${folder}`);
   }
 
   stop() {
     this.disarm();
     if (!this.running) return;
-    this.said.textContent = "stopping…";
+    this.say("stopping…");
     this.tried(() => this.lab.socket.ask("stop device"));
   }
 
   view(view) {
     if (!this.running) this.setRunning(true);
     const n = this.numbers;
-    this.said.textContent = `playing, ${plain(view.time_s)} s`;
+    this.say(`playing, ${plain(view.time_s)} s`);
     n.state.value.textContent = view.state;
     n.position.value.textContent = view.x_m === null ? "not touching" : `${(view.x_m * 1e3).toFixed(2)} mm`;
     n.position.note.textContent = view.speed_m_per_s === null ? "" : `${plain(view.speed_m_per_s * 1e3)} mm/s`;
@@ -196,8 +203,7 @@ class DeviceView {
   ended({ failed, message, summary, folder }) {
     this.setRunning(false);
     this.disarm();
-    this.said.textContent = failed ? `ended: ${message}` : (summary ? `done: ${message}; recorded in ${folder}` : "ready");
-    this.said.classList.toggle("error", Boolean(failed));
+    this.say(failed ? `ended: ${message}` : (summary ? `done: ${message}; recorded in ${folder}` : message), Boolean(failed));
     if (!summary) return;
     const lines = Object.entries(summary).filter(([, value]) => typeof value === "number" || typeof value === "string").slice(0, 40);
     this.results.hidden = false;

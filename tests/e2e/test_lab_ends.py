@@ -1,0 +1,68 @@
+"""Ctrl-C in the lab's terminal, at any moment: a clean end, nothing on the screen, no key left."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from websockets.sync.client import connect
+from websockets.typing import Origin
+
+from .conftest import RunningLab
+from .test_lab_lan import experimenters_secret
+
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="signals to groups need POSIX")
+
+
+def ended(process: subprocess.Popen[str]) -> str:
+    """What a lab said to its error output after Ctrl-C, which reaches all of its processes."""
+    os.killpg(process.pid, signal.SIGINT)
+    _, errors = process.communicate(timeout=60)
+    assert process.returncode == 0, errors
+    return errors
+
+
+def begun(folder: Path) -> subprocess.Popen[str]:
+    return subprocess.Popen(
+        [
+            sys.executable, "-c", "from squeezefilm.cli import main; main()",
+            "lab", "--no-browser", "--folder", str(folder),
+        ],
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("wait", [0.0, 2e-3, 5e-3, 0.02])
+def test_as_soon_as_the_link_is_there(tmp_path: Path, wait: float) -> None:
+    process = begun(tmp_path)
+    assert process.stdout is not None
+    assert "http://127.0.0.1" in process.stdout.readline()
+    time.sleep(wait)
+    assert ended(process) == ""
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_while_it_computes(tmp_path: Path) -> None:
+    process = begun(tmp_path)
+    lab = RunningLab.of(process, tmp_path)
+    own = f"127.0.0.1:{lab.port}"
+    with connect(
+        f"ws://{own}/ws",
+        origin=Origin(f"http://{own}"),
+        additional_headers={"Cookie": f"squeezefilm-{lab.port}={experimenters_secret(lab)}"},
+    ) as page:
+        page.send(json.dumps({"id": 1, "type": "open display", "preset": "biet2008-plate"}))
+        text = json.loads(page.recv(30))["text"]
+        for quality in ("screening", "solved"):
+            page.send(
+                json.dumps({"id": 2, "type": "compute design", "text": text, "quality": quality})
+            )
+        assert json.loads(page.recv(120))["type"] == "design"
+        assert ended(process) == ""
+    assert list(tmp_path.iterdir()) == []
