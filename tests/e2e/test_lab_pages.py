@@ -78,6 +78,8 @@ def test_a_display_is_changed_undone_saved_and_opened_again(
     solved = frequency.inner_text()
     assert solved.startswith("33.5")
     thickness = page.locator("input[type=text][data-path='actuator.thickness']")
+    thickness.focus()
+    page.locator(".limits", has_text="as they are: above 0 m").wait_for(timeout=SOLVED)
     thickness.fill("2.2 mm")
     thickness.press("Enter")
     quality.filter(has_text="screening").wait_for(timeout=SOLVED)

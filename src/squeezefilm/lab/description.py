@@ -44,7 +44,7 @@ def form(text: str) -> list[dict[str, Any]]:
     display = display_of(text)
     rows = []
     for path, value, annotation, field in leaves(display):
-        hint = _stated(annotation)
+        hint = stated(annotation)
         dotted = ".".join(str(part) for part in path)
         origin = display.provenance.get(dotted)
         unit = unit_of(hint)
@@ -57,7 +57,7 @@ def form(text: str) -> list[dict[str, Any]]:
                 "text": _text(value, unit),
                 "value": value if isinstance(value, int | float) else None,
                 "whole": isinstance(value, int) and not isinstance(value, bool),
-                "choices": _choices(hint),
+                "choices": choices(hint),
                 "source": "" if origin is None else origin.source,
                 "evidence": "" if origin is None else origin.evidence,
                 "optional": field.default is not dataclasses.MISSING,
@@ -138,14 +138,15 @@ def _text(value: Any, unit: Unit | None) -> str:
     return str(value)
 
 
-def _stated(hint: Any) -> Any:
+def stated(hint: Any) -> Any:
     """What a value may be where it is stated: `X` of ``X | None``; a quantity knows itself."""
     if typing.get_origin(hint) in (Union, types.UnionType) and unit_of(hint) is None:
         return next(one for one in typing.get_args(hint) if one is not type(None))
     return hint
 
 
-def _choices(hint: Any) -> list[str] | None:
+def choices(hint: Any) -> list[str] | None:
+    """The words that a value may be, where it is one of a few."""
     if typing.get_origin(hint) is Literal:
         return [str(one) for one in typing.get_args(hint)]
     if hint is bool:

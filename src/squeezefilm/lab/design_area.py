@@ -9,6 +9,7 @@ from pydantic import Field
 from squeezefilm import presets
 from squeezefilm.errors import InputError
 from squeezefilm.lab import description, design
+from squeezefilm.lab.field_limits import allowed
 from squeezefilm.lab.files import existing, fresh
 from squeezefilm.lab.wire import LONGEST_TEXT, Answer, Request
 from squeezefilm.results import write_whole
@@ -46,6 +47,13 @@ class ComputeDesign(Request):
     value: str | None = Field(None, max_length=description.LONGEST_VALUE)
 
 
+class FieldLimits(Request):
+    """A value of a display's text by its dotted path."""
+
+    text: str = Field(max_length=LONGEST_TEXT)
+    path: str = Field(max_length=200)
+
+
 class SaveDisplay(Request):
     """A display's text under a name in the lab's folder."""
 
@@ -76,6 +84,10 @@ def add_design(lab: Lab) -> None:
     async def edit(asked: EditDisplay) -> Answer:
         return _display(description.edited(asked.text, asked.path, asked.value))
 
+    async def limits(asked: FieldLimits) -> Answer:
+        found = await lab.workers.quick.do("limits", allowed, asked.text, asked.path)
+        return {"type": "field limits", "path": asked.path, "allowed": found}
+
     async def compute(asked: ComputeDesign) -> Answer:
         text = asked.text
         if asked.path is not None and asked.value is not None:
@@ -102,6 +114,7 @@ def add_design(lab: Lab) -> None:
     add("displays", Request, listing)
     add("open display", OpenDisplay, open_display)
     add("edit display", EditDisplay, edit)
+    add("field limits", FieldLimits, limits)
     add("compute design", ComputeDesign, compute)
     add("save display", SaveDisplay, save)
 

@@ -255,7 +255,7 @@ class Studies:
             "plays": sitting.device != "none" and isinstance(found.surfaces[0], Stimulus),
             # A real grating that lies there to be known has its name on it.
             "named": found.surfaces[0].name if felt_only else "",
-            "pause_s": trial.pause if found.times_presented == 1 else 0.0,
+            "pause_s": found.rest,
             "remaining": found.remaining,
             "interrupted": found.times_presented > 1,
         }

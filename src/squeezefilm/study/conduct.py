@@ -49,8 +49,8 @@ def conduct(
     """
     count = 0
     while (presentation := run.next_trial()) is not None:
-        if presentation.trial.pause:
-            examiner.rest(presentation.trial.pause)
+        if presentation.rest:
+            examiner.rest(presentation.rest)
         response = _presented(presentation, device, examiner, clock)
         told = run.respond(presentation.token, response)
         examiner.acknowledge(presentation, told)

@@ -12,6 +12,7 @@ import json
 import math
 import uuid
 from dataclasses import dataclass, field
+from datetime import datetime
 from typing import Any, Literal
 
 from squeezefilm import __version__
@@ -43,6 +44,7 @@ class Presentation:
         intensity: of an adaptive series' comparison (1), else None.
         times_presented: this one included; above 1 after an interruption.
         remaining: trials of the participant that are not answered yet, this one included.
+        rest: what is left of the break before it (s), which began with its first presentation.
     """
 
     trial: Trial
@@ -51,6 +53,7 @@ class Presentation:
     intensity: float | None
     times_presented: int
     remaining: int
+    rest: Second
 
 
 @dataclass(frozen=True)
@@ -148,7 +151,13 @@ class StudyRun:
         self._store.add("presentation", shown)
         self._presented = row["uuid"]
         return Presentation(
-            trial, row["uuid"], surfaces, intensity, row["presentations"] + 1, self.remaining
+            trial,
+            row["uuid"],
+            surfaces,
+            intensity,
+            row["presentations"] + 1,
+            self.remaining,
+            self._rest_left(row, shown["presented_utc"]),
         )
 
     def respond(self, token: str, response: Response) -> Acknowledgement:
@@ -203,6 +212,17 @@ class StudyRun:
         """Whether this trial's answer is on the disk. Raises `InputError` for a token of no trial
         of this participant."""
         return self._recorded(self._planned(token)) is not None
+
+    def _rest_left(self, row: Row, now: str) -> Second:
+        whole = float(row["pause_s"])
+        if not whole:
+            return 0.0
+        first = self._store.rows(
+            "SELECT min(presented_utc) AS at FROM presentation WHERE trial = ?", [row["uuid"]]
+        )[0]["at"]
+        gone = (datetime.fromisoformat(now) - datetime.fromisoformat(first)).total_seconds()
+        # A clock that was set back meanwhile makes no break longer than it was planned.
+        return min(max(whole - gone, 0.0), whole)
 
     def _planned(self, token: str) -> dict[str, Any]:
         found = self._store.rows(

@@ -71,7 +71,8 @@ def session_table(store: StudyStore) -> list[dict[str, Cell]]:
         ):
             cells[f"ultrasound_{ours}"] = exposure.get(theirs)
         made = store.rows(
-            "SELECT moment, result, passed FROM verification WHERE session = ? ORDER BY made_utc",
+            "SELECT moment, result, passed FROM verification WHERE session = ? ORDER BY made_utc, "
+            "moment DESC",
             [row["uuid"]],
         )
         for one in made:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import json
 import sqlite3
+from datetime import datetime, timedelta
 from pathlib import Path
 
 import pytest
@@ -229,3 +230,33 @@ def test_nothing_in_the_file_asks_for_an_address_or_a_program(tmp_path: Path) ->
     assert "participant" in columns
     for word in ("address", "agent", "host", "ip", "mail", "birth", "user"):
         assert not [one for one in columns if word in one.split("_")]
+
+
+def test_a_break_goes_on_where_it_was_and_starts_once(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    design = dataclasses.replace(gratings(), blocks=2, break_between_blocks=60.0)
+    with StudyStore.create(tmp_path / "a.sqlite", design, 7) as store:
+        run = session(store, store.enrol())
+        while (shown := run.next_trial()) is not None and not shown.trial.pause:
+            assert shown.rest == 0.0
+            run.respond(
+                shown.token,
+                Response(choice=shown.trial.alternatives[0] if shown.trial.asks else ""),
+            )
+        assert shown is not None
+        assert shown.rest == pytest.approx(60.0)
+        began = datetime.fromisoformat(
+            store.rows("SELECT max(presented_utc) AS at FROM presentation")[0]["at"]
+        )
+        for later, left in ((20.0, 40.0), (59.0, 1.0), (600.0, 0.0), (-300.0, 60.0)):
+            monkeypatch.setattr(
+                "squeezefilm.study.run.utc_now",
+                lambda later=later: (began + timedelta(seconds=later)).isoformat(
+                    timespec="milliseconds"
+                ),
+            )
+            again = StudyRun(store, run.session["uuid"]).next_trial()
+            assert again is not None
+            assert again.token == shown.token
+            assert again.rest == pytest.approx(left, abs=2e-3)

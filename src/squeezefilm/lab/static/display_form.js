@@ -13,7 +13,7 @@ const TITLES = {
 const OPEN = new Set(["actuator", "drive", "finger"]);
 
 /** Fill `place` from the rows of `form`; sections that were open stay open, focus stays. */
-export function displayForm(place, rows, { write, slide }) {
+export function displayForm(place, rows, { write, slide, limits }) {
   const opened = new Map([...place.querySelectorAll("details")].map((one) => [one.dataset.section, one.open]));
   const focus = document.activeElement?.dataset?.path, kind = document.activeElement?.type;
   const sections = new Map();
@@ -24,7 +24,7 @@ export function displayForm(place, rows, { write, slide }) {
   place.replaceChildren();
   for (const [section, members] of [...sections].sort(([a], [b]) => rank(a) - rank(b))) {
     const box = element("details", { "data-section": section, open: opened.get(section) ?? OPEN.has(section) },
-      element("summary", { text: title(section, rows) }), ...members.map((row) => field(row, write, slide)));
+      element("summary", { text: title(section, rows) }), ...members.map((row) => field(row, write, slide, limits)));
     place.append(box);
   }
   if (focus) place.querySelector(`[data-path="${CSS.escape(focus)}"][type="${kind}"]`)?.focus();
@@ -45,7 +45,7 @@ function title(section, rows) {
   return section.replace("actuator.", "").replaceAll("_", " ").replaceAll(".", " ");
 }
 
-function field(row, write, slide) {
+function field(row, write, slide, limits) {
   const id = `f-${row.path.replaceAll(".", "-")}`;
   const assumed = row.evidence === "assumed";
   const tip = row.name in GLOSSARY || row.source ? row.name : null;
@@ -78,5 +78,15 @@ function field(row, write, slide) {
     });
     range.addEventListener("change", commit);
   }
-  return element("div", { class: "field" }, label, text, range, source);
+  const allowed = row.unit === null && !row.whole ? null : element("small", { class: "limits", id: `${id}-limits`, text: "allowed: …" });
+  const box = element("div", { class: "field" }, label, text, range, allowed, source);
+  if (allowed) {
+    text.setAttribute("aria-describedby", allowed.id);
+    // Asked for when somebody is here: they depend on the other values.
+    box.addEventListener("focusin", async () => {
+      const found = await limits(row.path);
+      if (found) allowed.textContent = `allowed, with the other values as they are: ${found}`;
+    });
+  }
+  return box;
 }

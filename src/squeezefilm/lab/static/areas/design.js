@@ -130,8 +130,18 @@ class DesignView {
     displayForm(this.form, current.form, {
       write: (path, value) => this.tried(this.store.edit(path, value)),
       slide: (path, value) => this.compute({ path, value }),
+      limits: (path) => this.limits(path),
     });
     this.compute({});
+  }
+
+  /** What a value may be, in words; none where newer work took its place. */
+  async limits(path) {
+    try {
+      return (await this.lab.socket.ask("field limits", { text: this.store.current.text, path })).allowed;
+    } catch {
+      return "";
+    }
   }
 
   async tried(work) {
