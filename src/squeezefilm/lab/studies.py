@@ -6,7 +6,6 @@ on one thread of its own, and the server's loop goes on meanwhile.
 
 from __future__ import annotations
 
-import base64
 import dataclasses
 from pathlib import Path
 from typing import Any
@@ -23,7 +22,6 @@ from squeezefilm.study.exports import export_study
 from squeezefilm.study.exposure import Exposure
 from squeezefilm.study.merge import merge
 from squeezefilm.study.origin import origin_of
-from squeezefilm.study.recorded_analysis import analyze_study
 from squeezefilm.study.run import Response, StudyRun
 from squeezefilm.study.session_conditions import SessionConditions
 from squeezefilm.study.sessions import begin_session, display_wanted, end_session
@@ -353,60 +351,6 @@ class Studies:
                 raise InputError("this sitting was not consented to yet")
             self._runs[sitting.id] = StudyRun(self.store(sitting.study), sitting.session)
         return self._runs[sitting.id]
-
-
-def analysis_of(path: Path) -> dict[str, Any]:
-    """The analysis of what was answered so far, by display: tables, numbers, figures.
-
-    In a process of its own: it takes seconds, and answers are being recorded meanwhile.
-    """
-    from squeezefilm.report.study_report import key_rows, study_figures
-    from squeezefilm.report.style import png
-
-    with StudyStore.open(path) as store:
-        found = analyze_study(store)
-    return {
-        "displays": [
-            {
-                "display": display,
-                "numbers": [list(row) for row in key_rows(one)],
-                "notes": list(one.notes),
-                "confusion": {
-                    "display": display,
-                    "rows": list(one.matrix.answers),
-                    "columns": list(one.matrix.stimuli),
-                    "counts": one.matrix.counts.tolist(),
-                },
-                "figures": [
-                    {"title": title, "png": base64.b64encode(png(figure)).decode()}
-                    for key, (title, figure) in study_figures(one).items()
-                    if key != "confusion"
-                ],
-            }
-            for display, one in found.items()
-        ]
-    }
-
-
-def rehearsed(path: Path, participants: int) -> dict[str, Any]:
-    """Simulated participants do the study's file; in a process of its own."""
-    from squeezefilm.study.observer import load_observer
-    from squeezefilm.study.rehearsal import rehearse
-
-    with StudyStore.open(path) as store:
-        people = rehearse(store, load_observer(), participants)
-    return {"people": len(people)}
-
-
-def report_of(path: Path) -> dict[str, Any]:
-    """The analysis written as pages beside the study's file."""
-    from squeezefilm.report.study_report import write_study
-
-    with StudyStore.open(path) as store:
-        found = analyze_study(store)
-    folder = path.with_suffix(".results")
-    pages = [write_study(one, folder / display) for display, one in found.items()]
-    return {"pages": [str(page.relative_to(path.parent.parent)) for page in pages]}
 
 
 def devices() -> list[str]:

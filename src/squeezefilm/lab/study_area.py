@@ -13,8 +13,9 @@ from squeezefilm.errors import DeviceError, InputError
 from squeezefilm.lab.keys import CODE_LIFE
 from squeezefilm.lab.server import PAGE
 from squeezefilm.lab.sittings import Sitting
-from squeezefilm.lab.studies import Studies, analysis_of, rehearsed, report_of
+from squeezefilm.lab.studies import Studies
 from squeezefilm.lab.study_devices import Measured, StudyDevices, require_device
+from squeezefilm.lab.study_work import analysis_of, rehearsed, report_of
 from squeezefilm.lab.wire import Answer, Request
 from squeezefilm.study.device import (
     DeviceIdentity,
