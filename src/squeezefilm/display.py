@@ -8,7 +8,7 @@ from pathlib import Path
 
 from squeezefilm.config.provenance import Provenance
 from squeezefilm.contact.finger import Finger
-from squeezefilm.device.safety import HIGHEST_VOLTAGE, Limits
+from squeezefilm.device.safety import HIGHEST_VOLTAGE, TOUCH_VOLTAGE, Limits
 from squeezefilm.errors import InputError
 from squeezefilm.materials import Gas
 from squeezefilm.plate.layout import Actuator
@@ -171,6 +171,41 @@ class Display:
         raise InputError(
             f"display '{self.name}' has no surface '{name}'.{did_you_mean(name, known)} "
             f"It has: {', '.join(known)}"
+        )
+
+    def limits(self, frequency: Hertz, voltage: Volt | None = None, *, twin: bool) -> Limits:
+        """What this display's device, or its twin, may be asked for. See `Drive.limits`.
+
+        Raises:
+            InputError: as `Drive.limits` and `require_insulation`.
+        """
+        self.require_insulation(voltage, twin=twin)
+        return self.drive.limits(frequency, voltage)
+
+    def require_insulation(self, voltage: Volt | None = None, *, twin: bool) -> None:
+        """Refuse more than 42 V (`voltage`, or the drive's own) without insulation at the touched
+        side. One that is marked as assumed is nobody's claim yet: nobody can touch a twin, so there
+        it counts, and for no other device.
+
+        Raises:
+            InputError: no insulation is named, or only an assumed one.
+        """
+        most = self.drive.voltage if voltage is None else voltage
+        named = self.drive.insulation.strip()
+        stated = self.provenance.get("drive.insulation")
+        assumed = stated is not None and stated.evidence == "assumed"
+        if most <= TOUCH_VOLTAGE or (named and (twin or not assumed)):
+            return
+        raise InputError(
+            f"voltage is {most:g} V; above {TOUCH_VOLTAGE:g} V peak the display '{self.name}' must "
+            "name its touch-side insulation, "
+            + (
+                f"and '{named}' is assumed, which counts for the twin only; say in a file of your "
+                "own (squeezefilm new) where yours is from, with evidence other than assumed"
+                if named
+                else 'e.g. insulation = "0.5 mm glass, 4 kV tested"'
+            ),
+            quantity="insulation",
         )
 
 

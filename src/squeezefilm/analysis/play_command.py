@@ -141,6 +141,7 @@ def play_texture(
     setup = play_setup(
         display, texture, sensor=eyes, voltage=voltage, surface=surface, rate=rate,
         compensation=compensation, mode=mode, way=way, amplitude_per_pickup=amplitude_per_pickup,
+        twin=drive == "twin",
     )  # fmt: skip
     metadata = {
         **stamp((display, texture, stroke, mode, rate, compensation, sensor), seed),
@@ -185,7 +186,7 @@ def check_drive(
     tell("the display's resonance")
     prediction = predict(display)
     frequency = prediction.frequency
-    limits = display.drive.limits(frequency)
+    limits = display.limits(frequency, twin=drive == "twin")
     settings = TwinSettings(sensor=LVDT_10_KHZ)
     with (
         device_stream(drive, target, settings, STROKE, None) as name,

@@ -88,6 +88,7 @@ def play_setup(
     way: tuple[Metre, Metre] | None = None,
     amplitude_per_pickup: MetrePerVolt | None = None,
     output_delay: Second = OUTPUT_DELAY,
+    twin: bool = False,
 ) -> PlaySetup:
     """The plan for a texture on a display.
 
@@ -103,6 +104,7 @@ def play_setup(
         way: x that a tile covers (m), from and to; 0 to 10 cm, or what 512 amplitudes span.
         amplitude_per_pickup: of the device's pickup (m/V), if known.
         output_delay: from a tick to its command at the plate (s).
+        twin: whether it is for a twin, where an assumed insulation counts.
 
     Raises:
         InputError: a display that does not vibrate, limits that do not fit, an unknown sensor,
@@ -118,7 +120,7 @@ def play_setup(
             f"display '{display.name}' changes no friction at {p.voltage or 0.0:g} V, so it "
             "plays no texture; give it a voltage"
         )
-    limits = display.drive.limits(p.frequency, p.voltage)
+    limits = display.limits(p.frequency, p.voltage, twin=twin)
     inverse = FrictionInverse.from_function(p.law.table(largest), largest)
     quantity = texture.texture.quantity
     program = lower(

@@ -206,7 +206,8 @@ def add_study(lab: Lab, devices: StudyDevices | None = None) -> StudyThread:
         return {"type": "exposure", "display": display, "statement": found.statement}
 
     async def prepare(asked: PrepareSitting) -> Answer:
-        require_device(asked.device)
+        display = await thread.do(Studies.display_of, asked.study, asked.participant)
+        require_device(asked.device, display)
         found = await thread.do(
             Studies.prepare, asked.study, asked.participant, asked.device, asked.consent,
             asked.conditions, asked.acknowledged,

@@ -249,12 +249,19 @@ def _silenced(device: LabDevice) -> None:
         device.stop()
 
 
-def require_device(kind: str) -> None:
-    """Refuse a device that no sitting may use. Raises `InputError` that says which may."""
+def require_device(kind: str, display: str | None) -> None:
+    """Refuse a device that no sitting may use, or that may not play this display.
+
+    Raises `InputError` that says which may.
+    """
+    from squeezefilm.display import load_display
     from squeezefilm.study.session_device import require_study_drive
 
-    if kind != "none":
-        require_study_drive(kind)
+    if kind == "none":
+        return
+    require_study_drive(kind)
+    if display is not None:
+        load_display(display).require_insulation(twin=kind == "twin")
 
 
 def _session_device(display: str, kind: str, traces: Path) -> LabDevice:

@@ -7,6 +7,7 @@ breaks on the way is told in the outcome, and the record kept.
 from __future__ import annotations
 
 import contextlib
+import gc
 import os
 import signal
 import threading
@@ -22,6 +23,7 @@ import numpy as np
 from squeezefilm.device.host import DeviceHost
 from squeezefilm.device.link import Link
 from squeezefilm.device.ports import Sensor
+from squeezefilm.device.priority import PLAYERS_PRIORITY, real_time_granted
 from squeezefilm.device.safety import require_safe_drive
 from squeezefilm.device.serial_ports import SerialDrive
 from squeezefilm.device.states import Fault
@@ -29,7 +31,7 @@ from squeezefilm.device.streams import open_stream
 from squeezefilm.errors import DeviceError, LoopError
 from squeezefilm.quantities import FloatArray, Second
 from squeezefilm.results import to_json
-from squeezefilm.session.loop import PRIORITY, LoopProcess
+from squeezefilm.session.loop import LoopProcess
 from squeezefilm.session.play import FADE, Ending, Player, PlayPlan, PlayView
 from squeezefilm.session.record import TraceWriter
 from squeezefilm.session.rows import COLUMNS, SAMPLE_COLUMNS
@@ -105,19 +107,20 @@ def run_play(
         eyes = None if sensor is None else sensor(lambda: loop.time)
         player = Player(plan, loop, host, writer, lambda: loop.time, eyes, tap)
         _compile(plan)
-        loop.start()
-        try:
-            with _preferred():
-                try:
-                    ending, message = _played(player, loop, duration, interrupted, show)
-                except BaseException:
-                    # A full disk, say; should the device not hear it, its watchdog is left.
-                    with contextlib.suppress(DeviceError):
-                        host.stop()
-                    raise
-                player.end(ending, time.sleep, message)
-        finally:
-            report = loop.stop()
+        with _collected():
+            loop.start()
+            try:
+                with _preferred():
+                    try:
+                        ending, message = _played(player, loop, duration, interrupted, show)
+                    except BaseException:
+                        # A full disk, say; should the device not hear it, its watchdog is left.
+                        with contextlib.suppress(DeviceError):
+                            host.stop()
+                        raise
+                    player.end(ending, time.sleep, message)
+            finally:
+                report = loop.stop()
         player.drain()
         writer.event("loop", {**to_json(report), "lateness": report.lateness.to_json()})
         writer.event("link", to_json(link.statistics))
@@ -186,25 +189,34 @@ _FAULTS: dict[Fault, str] = {
 
 
 @contextlib.contextmanager
+def _collected() -> Iterator[None]:
+    """Collect garbage now, and then only what is made from now on.
+
+    A full collection of all that the solvers have loaded takes 50 to 100 ms: as long as the
+    device waits before it stops.
+    """
+    gc.collect()
+    gc.freeze()
+    try:
+        yield
+    finally:
+        gc.unfreeze()
+
+
+@contextlib.contextmanager
 def _preferred() -> Iterator[None]:
     """Before ordinary work, where the system grants it, and after the loop.
 
     The player works a quarter of the time and sleeps in every millisecond; held up for 50 ms it
     would cost the session. The loop has said already where priority is not granted.
     """
-    scheduler = getattr(os, "sched_setscheduler", None)
-    if scheduler is None or os.sched_getscheduler(0) != os.SCHED_OTHER:
-        yield
-        return
-    granted = False
-    with contextlib.suppress(OSError):
-        scheduler(0, os.SCHED_FIFO, os.sched_param(PRIORITY // 5))
-        granted = True
+    ordinary = hasattr(os, "sched_getscheduler") and os.sched_getscheduler(0) == os.SCHED_OTHER
+    granted = ordinary and real_time_granted(PLAYERS_PRIORITY)
     try:
         yield
     finally:
         if granted:
-            scheduler(0, os.SCHED_OTHER, os.sched_param(0))
+            os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))
 
 
 @contextlib.contextmanager

@@ -16,6 +16,7 @@ import sys
 import time
 from dataclasses import dataclass
 
+from squeezefilm.device.priority import real_time_granted
 from squeezefilm.session import clock, shared
 from squeezefilm.session.atomics import load_acquire, store_release
 from squeezefilm.session.pacing import (
@@ -44,17 +45,6 @@ class Orders:
     priority: int | None
     parent: int
     compiled_clock: bool
-
-
-def real_time_granted(priority: int) -> bool:
-    """Ask for SCHED_FIFO for the calling thread; whether it was given."""
-    if not hasattr(os, "sched_setscheduler"):
-        return False
-    try:
-        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(priority))
-    except OSError:
-        return False
-    return True
 
 
 def memory_locked() -> bool:

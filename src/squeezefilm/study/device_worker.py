@@ -118,7 +118,7 @@ class Bench:
         display, orders = self._loaded(), self._orders
         predicted = predict(display)
         mode, volts = predicted.mode, VERIFICATION_SHARE * display.drive.voltage
-        limits = display.drive.limits(mode.resonance_frequency, volts)
+        limits = display.limits(mode.resonance_frequency, volts, twin=self._orders.drive == "twin")
         half = _SPAN * mode.resonance_frequency / (2 * mode.quality_factor)
         carriers = np.linspace(
             max(limits.lowest_frequency, mode.resonance_frequency - half),
@@ -195,6 +195,7 @@ class Bench:
             sensor=LVDT_10_KHZ,
             rate=self._orders.rate,
             amplitude_per_pickup=self._amplitude_per_pickup,
+            twin=self._orders.drive == "twin",
         )
 
     def _streaming(self, finger: str) -> str:

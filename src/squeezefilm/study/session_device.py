@@ -59,7 +59,8 @@ class SessionDevice:
         rate: of the loop (Hz).
 
     Raises:
-        InputError: a drive that may not be used in a study.
+        InputError: a drive that may not be used in a study, or a display that this drive may not
+            play, `Display.require_insulation`.
     """
 
     def __init__(
@@ -75,6 +76,8 @@ class SessionDevice:
     ) -> None:
         require_study_drive(drive)
         self._display = load_display(target)
+        # Now, and not when the first surface is to be felt.
+        self._display.require_insulation(twin=drive == "twin")
         own = TwinSettings(sensor=LVDT_10_KHZ, pickup=PickupModel(kind="sensing_patch"))
         self._orders = WorkerOrders(
             str(target), drive, str(traces), settings or own, stroke, rate, amplitude_per_pickup

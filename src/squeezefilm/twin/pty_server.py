@@ -5,13 +5,15 @@
 It prints the port's name on the first line and runs until SIGTERM or SIGINT. A host may close the
 port and open it again; what the device says meanwhile is lost, as on a wire. The clock starts when
 the name is printed. Where the process falls behind the wall clock it catches up tick by tick, so
-that the device's own clock has no gap.
+that the device's own clock has no gap. What waits in the port then came at some time of the gap,
+nobody knows when: it is heard evenly over it, as a device that was not held up would have heard it.
 """
 
 from __future__ import annotations
 
 import argparse
 import contextlib
+import gc
 import os
 import select
 import signal
@@ -25,6 +27,7 @@ from pathlib import Path
 from typing import IO
 
 from squeezefilm.device import messages as m
+from squeezefilm.device.priority import PLAYERS_PRIORITY, real_time_granted
 from squeezefilm.display import load_display
 from squeezefilm.errors import InputError, SqueezefilmError
 from squeezefilm.quantities import Newton, Second
@@ -35,7 +38,8 @@ from squeezefilm.twin.settings import TwinSettings, load_settings
 _PAUSE = 1.0  # ms between looks at the port
 _UNCONNECTED_PAUSE = 5.0
 _MOST_BYTES = 4096
-_STEP = 50_000  # µs of catching up between two looks at the port and at signals
+_HELD_UP = 20_000  # µs behind the wall clock, from which on the process was held up
+_SLICE = 1_000  # µs of catching up at once
 START_LIMIT: Second = 120.0
 """How long a twin may take to start: it solves its plate and compiles."""
 
@@ -51,6 +55,8 @@ class PtyServer:
         # The last host's end is closed, so that its going away shows as a hang-up.
         os.close(slave)
         os.set_blocking(self._master, False)
+        self._poll = select.poll()
+        self._poll.register(self._master, select.POLLIN)
         self._running = True
         self._connected = False
         self.longest_behind = 0
@@ -62,16 +68,17 @@ class PtyServer:
     def serve(self, parent: int | None = None) -> None:
         """Run in real time until `stop`, or until the process `parent` is no longer the parent."""
         began = time.monotonic_ns()
-        poll = select.poll()
-        poll.register(self._master, select.POLLIN)
         while self._running and (parent is None or os.getppid() == parent):
             wall = (time.monotonic_ns() - began) // 1000
-            self.longest_behind = max(self.longest_behind, wall - self._device.now)
-            now = min(wall, self._device.now + _STEP)
-            self._say(self._device.advance(now))
-            if now < wall:
+            behind = wall - self._device.now
+            self.longest_behind = max(self.longest_behind, behind)
+            if behind > _HELD_UP:
+                self._connected = not self._flags(0.0) & select.POLLHUP
+                self._catch_up(wall)
                 continue
-            flags = dict(poll.poll(_PAUSE)).get(self._master, 0)
+            now = wall
+            self._say(self._device.advance(now))
+            flags = self._flags(_PAUSE)
             self._connected = not flags & select.POLLHUP
             heard = self._hear() if flags & select.POLLIN else b""
             if heard:
@@ -80,10 +87,27 @@ class PtyServer:
             elif not self._connected:
                 time.sleep(_UNCONNECTED_PAUSE * 1e-3)
 
+    def _catch_up(self, wall: int) -> None:
+        began = self._device.now
+        waiting = b"".join(iter(self._hear, b""))
+        slices = -(-(wall - began) // _SLICE)
+        for k in range(slices):
+            if not self._running:
+                return
+            at = began + (wall - began) * (k + 1) // slices
+            self._say(self._device.advance(at))
+            heard = waiting[len(waiting) * k // slices : len(waiting) * (k + 1) // slices]
+            if heard:
+                self._device.receive(heard, at)
+
     def close(self) -> None:
         """Hang up and write the truth out."""
         os.close(self._master)
         self._device.close()
+
+    def _flags(self, wait: float) -> int:
+        """What the port has to say, within `wait` (ms)."""
+        return dict(self._poll.poll(wait)).get(self._master, 0)
 
     def _hear(self) -> bytes:
         try:
@@ -127,7 +151,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
         signal.signal(number, lambda *_: server.stop())
     try:
         with _linked(options.link, server.port):
+            # A device does not stand still while a solver's garbage is collected, and has its
+            # processor for itself; as near to that as the system allows.
+            gc.collect()
+            gc.freeze()
             print(server.port, flush=True)
+            real_time_granted(PLAYERS_PRIORITY)
             server.serve(options.with_parent)
     except InputError as error:
         print(f"error: {error}", file=sys.stderr)

@@ -18,7 +18,7 @@ from squeezefilm.lab.guard import Places
 from squeezefilm.lab.keys import Keys
 from squeezefilm.lab.server import PAGE, Lab
 from squeezefilm.lab.study_area import add_study
-from squeezefilm.lab.study_devices import StudyDevices
+from squeezefilm.lab.study_devices import StudyDevices, require_device
 from squeezefilm.study.device import DeviceIdentity, DeviceVerification, Exploration
 from squeezefilm.study.exposure import Exposure
 from squeezefilm.study.stimuli import Stimulus
@@ -278,3 +278,13 @@ def test_a_trial_is_recorded_only_with_what_its_device_presented(
         passed = [one["passed"] for one in store.rows("SELECT passed FROM verification")]
         assert sorted(passed) == [0, 1, 1]
         assert math.isclose(row["mean_speed_m_per_s"], 0.08)
+
+
+def test_the_experimenter_is_told_what_a_device_may_not_play() -> None:
+    require_device("none", "biet2008-stator")
+    require_device("twin", "biet2008-stator")
+    require_device("serial:/dev/ttyACM0", "biet2008-plate")
+    with pytest.raises(InputError, match="touch-side insulation"):
+        require_device("serial:/dev/ttyACM0", "biet2008-stator")
+    with pytest.raises(InputError, match="is not known"):
+        require_device("sound", None)

@@ -73,6 +73,12 @@ def test_a_drive_that_no_study_may_use_is_refused(drive: str, tmp_path: Path) ->
         SessionDevice("biet2008-plate", drive, tmp_path)
 
 
+def test_a_display_that_a_device_may_not_play_is_refused_before_a_session(tmp_path: Path) -> None:
+    SessionDevice("biet2008-stator", "twin", tmp_path).close()
+    with pytest.raises(InputError, match="touch-side insulation"):
+        SessionDevice("biet2008-stator", "serial:/dev/ttyACM0", tmp_path)
+
+
 def test_a_device_is_told_apart_by_display_and_calibration_and_not_by_its_port(
     tmp_path: Path,
 ) -> None:

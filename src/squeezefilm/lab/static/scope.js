@@ -1,8 +1,8 @@
 // A strip of the last seconds: lines over time, drawn anew with every frame.
 
 export class Scope {
-  constructor(canvas, lines, { seconds = 3, unit = "" } = {}) {
-    Object.assign(this, { canvas, lines, seconds, unit, rows: [] });
+  constructor(canvas, lines, { seconds = 3, least = 0 } = {}) {
+    Object.assign(this, { canvas, lines, seconds, least, rows: [] });
   }
 
   add(time, values) {
@@ -70,7 +70,6 @@ export class Scope {
   }
 
   range() {
-    if (this.fixed) return this.fixed;
     let low = Infinity, high = -Infinity;
     for (const row of this.rows) {
       for (const value of row.slice(1)) {
@@ -81,6 +80,6 @@ export class Scope {
       }
     }
     if (!(high > low)) return { low: 0, high: 1 };
-    return { low: Math.min(0, low), high: high * 1.05 };
+    return { low: Math.min(0, low), high: Math.max(high * 1.05, this.least) };
   }
 }

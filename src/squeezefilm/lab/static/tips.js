@@ -8,8 +8,8 @@ export function watchTips(box) {
   function show(target) {
     const found = GLOSSARY[target.dataset.tip];
     const entry = found ?? { name: target.dataset.tip.replaceAll("_", " "), text: "" };
-    const source = target.dataset.source || entry.source;
-    if (!found && !source) return;
+    const own = target.dataset.source;
+    if (!found && !own) return;
     shown = target;
     box.replaceChildren();
     const head = document.createElement("strong");
@@ -17,9 +17,10 @@ export function watchTips(box) {
     const body = document.createElement("div");
     body.textContent = entry.text;
     box.append(head, body);
-    if (source) {
+    for (const [what, source] of [["Source", entry.source], ["This value", own]]) {
+      if (!source) continue;
       const from = document.createElement("div");
-      from.textContent = `Source: ${source}`;
+      from.textContent = `${what}: ${source}`;
       box.append(from);
     }
     box.hidden = false;

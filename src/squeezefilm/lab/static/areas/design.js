@@ -17,7 +17,7 @@ export async function show(place, lab) {
 
 class DesignView {
   constructor(place, lab, store) {
-    Object.assign(this, { place, lab, store, asked: 0, busy: false, next: null, off: [], settled: 0 });
+    Object.assign(this, { place, lab, store, asked: 0, busy: false, next: null, off: [], settled: 0, solvedAt: 0 });
   }
 
   async start() {
@@ -168,12 +168,13 @@ class DesignView {
 
   async pump() {
     if (this.busy || !this.next) return;
-    const change = this.next;
+    const change = this.next, mine = this.asked;
     this.next = null;
     this.busy = true;
     try {
       const answer = await this.lab.socket.ask("compute design", { text: this.store.current.text, quality: "screening", ...change });
-      this.present(answer);
+      // A busy computer may have solved it by now.
+      if (mine > this.solvedAt) this.present(answer);
       this.error.hidden = true;
     } catch (error) {
       this.error.textContent = error.message;
@@ -194,6 +195,7 @@ class DesignView {
         const answer = await this.lab.socket.ask("compute design", { text, quality: "solved", ...change });
         if (!current()) return;
         of = "solved";
+        this.solvedAt = mine;
         this.present(answer);
       }
       const band = await this.lab.socket.ask("compute design", { text, quality: "band", of, ...change });

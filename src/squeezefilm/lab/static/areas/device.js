@@ -59,10 +59,10 @@ class DeviceView {
     const field = (name, input) => element("label", { class: "stack" }, name, input);
     this.display = element("p", { class: "muted" });
     this.numbers = {
-      state: number("state"), position: number("position"), friction: number("relative friction", "relative_friction"),
-      amplitude: number("vibration amplitude", "vibration_amplitude"), level: number("voltage", "voltage"), lag: number("lag"), late: number("lateness of the loop"), fault: number("fault"),
+      state: number("state", "device_state"), position: number("position", "finger_position"), friction: number("relative friction", "relative_friction"),
+      amplitude: number("vibration amplitude", "vibration_amplitude"), level: number("voltage", "voltage"), lag: number("lag", "loop_lag"), late: number("lateness of the loop", "lateness"), fault: number("fault", "fault"),
     };
-    const canvases = ["position (mm)", "command and level (V)", "amplitude wanted and measured (µm)", "lateness (ms)"].map((name) => {
+    const canvases = ["position (mm)", "command and level (V)", "amplitude wanted and measured (µm)", "lateness (µs)"].map((name) => {
       const canvas = element("canvas", { class: "scope small", role: "img", "aria-label": name });
       return { canvas, box: element("div", {}, element("h3", { text: name }), canvas) };
     });
@@ -70,7 +70,7 @@ class DeviceView {
       new Scope(canvases[0].canvas, [{ label: "position", colour: "blue" }]),
       new Scope(canvases[1].canvas, [{ label: "command", colour: "orange", dash: [5, 3] }, { label: "level", colour: "blue" }]),
       new Scope(canvases[2].canvas, [{ label: "wanted", colour: "orange", dash: [5, 3] }, { label: "measured", colour: "blue" }]),
-      new Scope(canvases[3].canvas, [{ label: "lateness", colour: "purple" }]),
+      new Scope(canvases[3].canvas, [{ label: "lateness", colour: "purple" }], { least: 1 }),
     ];
     this.results = element("section", { class: "card", hidden: true });
     this.place.append(element("div", { class: "columns device" },
@@ -187,7 +187,7 @@ class DeviceView {
       this.scopes[0].add(time, [scaled(row, "x_m", 1e3)]);
       this.scopes[1].add(time, [scaled(row, "command_V", 1), scaled(row, "device_level_V", 1)]);
       this.scopes[2].add(time, [scaled(row, "wanted_amplitude_m", 1e6), scaled(row, "amplitude_m", 1e6)]);
-      this.scopes[3].add(time, [scaled(row, "lateness_s", 1e3)]);
+      this.scopes[3].add(time, [scaled(row, "lateness_s", 1e6)]);
     }
     if (rows.length && rows[0][at.time_s] < this.clock - 60) this.clock = rows.at(-1)[at.time_s];
   }

@@ -88,7 +88,7 @@ class FeelView {
     this.canvas = element("canvas", { class: "surface", tabindex: "0", role: "img", "aria-label": "the surface; drag over it with mouse, pen or touch, or use the arrow keys" });
     this.numbers = {
       friction: number("relative friction", "relative_friction"), amplitude: number("vibration amplitude", "vibration_amplitude"),
-      force: number("tangential force", "tangential_force"), lag: number("lag", "lag"), speed: number("speed"), delay: number("event → friction", "event_delay"),
+      force: number("tangential force", "tangential_force"), lag: number("lag", "lag"), speed: number("speed", "finger_speed"), delay: number("event → friction", "event_delay"),
     };
     this.scopeCanvas = element("canvas", { class: "scope", role: "img", "aria-label": "relative friction wanted and met over the last seconds" });
     this.record = element("button", { text: "Record", "aria-pressed": "false", onclick: () => this.toggleRecord() });

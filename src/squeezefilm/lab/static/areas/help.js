@@ -1,6 +1,6 @@
 // Help: what the areas are for, the keys, and every quantity.
 
-import { GLOSSARY } from "../glossary.js";
+import { DISPLAY, MOTION, RESULTS } from "../glossary.js";
 import { element } from "../numbers.js";
 import { startTour } from "../tour.js";
 
@@ -30,8 +30,12 @@ export function show(place) {
       element("table", {}, ...KEYS.map(([keys, text]) => element("tr", {}, element("th", { scope: "row", class: "nowrap", text: keys }), element("td", { text })))),
       element("p", {}, element("button", { text: "Start the tour again", onclick: startTour }))),
     element("section", { class: "card" }, element("h2", { text: "Quantities" }),
-      element("dl", {}, ...Object.values(GLOSSARY).flatMap((one) => [
-        element("dt", { text: one.symbol ? `${one.name}, ${one.symbol}` : one.name }),
-        element("dd", {}, one.text, one.source ? element("small", { text: ` Source: ${one.source}.` }) : null),
-      ])))));
+      element("p", { text: "“Paper” is Biet, Giraud, Lemaire-Semail, The implementation of tactile feedback using squeeze film effect; its misprints are corrected, see docs/models.md." }),
+      ...[["The display", DISPLAY], ["A finger on it", MOTION], ["What people answered", RESULTS]].flatMap(([title, quantities]) => [
+        element("h3", { text: title }),
+        element("dl", {}, ...Object.values(quantities).flatMap((one) => [
+          element("dt", { text: one.symbol ? `${one.name}, ${one.symbol}` : one.name }),
+          element("dd", {}, one.text, element("small", { text: ` Source: ${one.source}.` })),
+        ])),
+      ]))));
 }

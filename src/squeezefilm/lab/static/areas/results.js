@@ -9,6 +9,17 @@ export async function show(place, lab) {
   return () => view.close();
 }
 
+const EXPLAINED = [
+  ["Participants", "participants"], ["Proportion correct", "proportion_correct"], ["Guessing", "guessing"],
+  ["p against guessing", "chance_p"], ["p against unrelated", "permutation_p"], ["Information transfer", "information_transfer"],
+  ["Total sensitivity", "total_sensitivity"], ["d′", "d_prime"], ["Response time", "response_time"],
+];
+
+/** The glossary's entry for a row of the analysis. */
+function explained(row) {
+  return EXPLAINED.find(([start]) => row.startsWith(start))?.[1] ?? null;
+}
+
 class ResultsView {
   constructor(place, lab) {
     Object.assign(this, { place, lab, off: [], name: sessionStorage.getItem("squeezefilm study") });
@@ -81,7 +92,7 @@ class ResultsView {
     return [table,
       element("section", { class: "card" }, element("h2", { text: `Numbers, ${one.display}` }),
         element("div", { class: "scroll" }, element("table", {}, ...one.numbers.map(([name, value, note]) => element("tr", {},
-          element("th", { text: name }), element("td", { text: value }), element("td", { class: "muted", text: note }))))),
+          element("th", { text: name, tabindex: "0", "data-tip": explained(name) }), element("td", { text: value }), element("td", { class: "muted", text: note }))))),
         ...one.notes.map((text) => element("p", { class: "warning", text }))),
       element("section", { class: "card figures" }, element("h2", { text: `Figures, ${one.display}` }),
         ...one.figures.map(({ title, png }) => element("figure", {}, element("img", { src: `data:image/png;base64,${png}`, alt: title }), element("figcaption", { text: title }))))];

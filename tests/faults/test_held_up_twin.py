@@ -1,0 +1,108 @@
+"""A twin whose process was held up: what came meanwhile is heard evenly over that time."""
+
+from __future__ import annotations
+
+import itertools
+import os
+import sys
+import tty
+from collections.abc import Iterator
+
+import pytest
+
+from squeezefilm.device import messages as m
+from squeezefilm.device.states import Fault, State
+from squeezefilm.display import load_display
+from squeezefilm.twin import pty_server
+from squeezefilm.twin.device import TwinDevice
+from squeezefilm.twin.pty_server import PtyServer
+from squeezefilm.twin.settings import TwinSettings
+
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="there are no ptys on Windows")
+
+
+class Told:
+    """In place of a twin's device: what it was told, and when."""
+
+    def __init__(self) -> None:
+        self.now = 0
+        self.heard: list[tuple[int, bytes]] = []
+
+    def advance(self, now: int) -> bytes:
+        assert now >= self.now
+        self.now = now
+        return b""
+
+    def receive(self, data: bytes, now: int) -> None:
+        assert now == self.now
+        self.heard.append((now, data))
+
+    def close(self) -> None:
+        """Nothing to close."""
+
+
+class Clock:
+    """Stands while the server works, but for one jump; ends the server some looks after it."""
+
+    def __init__(self, server: PtyServer, jump: int) -> None:
+        self.looks, self.server, self.jump = 0, server, jump
+
+    def __call__(self) -> int:
+        self.looks += 1
+        if self.looks > 6:
+            self.server.stop()
+        return 0 if self.looks == 1 else self.jump * 1000
+
+
+@pytest.fixture
+def host() -> Iterator[list[int]]:
+    opened: list[int] = []
+    yield opened
+    for one in opened:
+        os.close(one)
+
+
+@pytest.mark.parametrize("jump", [30_000, 200_000, 3_000_000])
+def test_what_came_meanwhile_is_heard_evenly_and_whole(
+    jump: int, host: list[int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    device = Told()
+    server = PtyServer(device)  # type: ignore[arg-type] # all that a server asks of it
+    host.append(os.open(server.port, os.O_RDWR | os.O_NOCTTY))
+    tty.setraw(host[0])
+    sent = bytes(range(256)) * 8
+    os.write(host[0], sent)
+    monkeypatch.setattr(pty_server.time, "monotonic_ns", Clock(server, jump))
+    server.serve()
+    server.close()
+    assert device.now == jump
+    assert b"".join(data for _, data in device.heard) == sent
+    times = [0, *(at for at, _ in device.heard), jump]
+    assert max(b - a for a, b in itertools.pairwise(times)) <= max(2_000, jump / 1000)
+
+
+@pytest.mark.parametrize(
+    ("spoken", "fault"), [(40, Fault.NONE), (0, Fault.WATCHDOG)], ids=["spoke", "silent"]
+)
+def test_a_host_that_spoke_meanwhile_did_not_fall_silent(
+    spoken: int, fault: Fault, host: list[int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    device = TwinDevice(load_display("biet2008-stator"), TwinSettings())
+    said = [
+        m.Hello(1),
+        m.SetLimits(10.0, 15_000, 10.0, 1000, 38_000_000, 42_000_000, 1000, 1000, 0),
+    ]
+    said += [m.Arm(device.machine.token), m.Start(40_500_000), m.Envelope(200, (0.5, 1.0))]
+    for number, message in enumerate(said, start=1):
+        device.receive(message.frame(number).encoded(), 1000 * number)
+    device.advance(6000)
+    assert device.machine.state is State.PLAYING
+    server = PtyServer(device)
+    host.append(os.open(server.port, os.O_RDWR | os.O_NOCTTY))
+    tty.setraw(host[0])
+    alive = (m.KeepAlive().frame(number + 6).encoded() for number in range(spoken))
+    os.write(host[0], b"".join(alive))
+    monkeypatch.setattr(pty_server.time, "monotonic_ns", Clock(server, device.now + 200_000))
+    server.serve()
+    assert device.machine.fault is fault
+    server.close()
