@@ -163,6 +163,7 @@ def test_a_plate_is_solved_with_its_error(tmp_path: Path) -> None:
     assert vtu.read_bytes() == (out / "mode.vtu").read_bytes()
 
 
+@pytest.mark.nightly
 def test_sensitivities_and_tracks_of_a_small_plate(tmp_path: Path) -> None:
     file = tmp_path / "small.toml"
     text = presets.path("biet2008-plate").read_text()

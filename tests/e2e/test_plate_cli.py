@@ -24,6 +24,7 @@ def solved(name: str, *more: str) -> dict[str, object]:
     return dict(json.loads(done.stdout))
 
 
+@pytest.mark.nightly
 def test_a_stator_is_solved_and_says_what_was_fitted(tmp_path: Path) -> None:
     done = run("plate", "biet2008-stator", "--out", tmp_path)
     assert done.returncode == 0, done.stderr

@@ -12,7 +12,8 @@ import pytest
 if TYPE_CHECKING:
     from playwright.sync_api import Browser
 
-pytestmark = pytest.mark.chromium
+# One worker: the page is made once.
+pytestmark = [pytest.mark.chromium, pytest.mark.xdist_group("report-page")]
 
 FIGURES = (
     "layout", "mode", "response", "pressure", "friction", "films", "wavelength", "texture",
@@ -20,7 +21,10 @@ FIGURES = (
 )  # fmt: skip
 
 
-@pytest.fixture(scope="module", params=["biet2008-plate", "biet2008-stator"])
+@pytest.fixture(
+    scope="module",
+    params=["biet2008-plate", pytest.param("biet2008-stator", marks=pytest.mark.nightly)],
+)
 def report(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
     from squeezefilm.analysis.analyze import analyze
     from squeezefilm.display import load_display

@@ -54,6 +54,7 @@ def test_the_wheel_has_data_licence_and_types(unpacked: Path) -> None:
     assert not any(name.startswith(("tests", "docs")) for name in files)
 
 
+@pytest.mark.nightly
 def test_its_commands_run(unpacked: Path) -> None:
     claims = json.loads(_run(unpacked, "reproduce", "--json").stdout)
     assert claims["changed"] == []
