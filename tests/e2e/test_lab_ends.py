@@ -11,11 +11,9 @@ import time
 from pathlib import Path
 
 import pytest
-from websockets.sync.client import connect
-from websockets.typing import Origin
 
 from .conftest import RunningLab
-from .test_lab_lan import experimenters_secret
+from .test_lab_lan import experimenters_page
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="signals to groups need POSIX")
 
@@ -51,12 +49,7 @@ def test_as_soon_as_the_link_is_there(tmp_path: Path, wait: float) -> None:
 def test_while_it_computes(tmp_path: Path) -> None:
     process = begun(tmp_path)
     lab = RunningLab.of(process, tmp_path)
-    own = f"127.0.0.1:{lab.port}"
-    with connect(
-        f"ws://{own}/ws",
-        origin=Origin(f"http://{own}"),
-        additional_headers={"Cookie": f"squeezefilm-{lab.port}={experimenters_secret(lab)}"},
-    ) as page:
+    with experimenters_page(lab) as page:
         page.send(json.dumps({"id": 1, "type": "open display", "preset": "biet2008-plate"}))
         text = json.loads(page.recv(30))["text"]
         for quality in ("screening", "solved"):

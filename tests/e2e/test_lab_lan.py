@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 from websockets.asyncio.client import connect as connect_in_one_thread
-from websockets.sync.client import connect
+from websockets.sync.client import ClientConnection, connect
 from websockets.typing import Origin
 
 from squeezefilm.errors import InputError
@@ -76,6 +76,15 @@ def experimenters_secret(lab: RunningLab) -> str:
     return str(answer.headers["set-cookie"].split(";")[0].split("=", 1)[1])
 
 
+def experimenters_page(lab: RunningLab) -> ClientConnection:
+    """A websocket of an experimenter's page at the lab's own address."""
+    own = f"127.0.0.1:{lab.port}"
+    cookie = f"squeezefilm-{lab.port}={experimenters_secret(lab)}"
+    return connect(
+        f"ws://{own}/ws", origin=Origin(f"http://{own}"), additional_headers={"Cookie": cookie}
+    )
+
+
 def test_nobody_is_an_experimenter_there(start_lab: Start, tmp_path: Path) -> None:
     lab = start_lab(tmp_path, None, "--lan", ADDRESS)
     tablet = Tablet(lab)
@@ -111,12 +120,7 @@ def test_a_paired_tablet_says_a_participants_messages_only(
     small_study(tmp_path)
     lab = start_lab(tmp_path, None, "--lan", ADDRESS)
     tablet = Tablet(lab)
-    own = f"127.0.0.1:{lab.port}"
-    with connect(
-        f"ws://{own}/ws",
-        origin=Origin(f"http://{own}"),
-        additional_headers={"Cookie": f"squeezefilm-{lab.port}={experimenters_secret(lab)}"},
-    ) as experimenter:
+    with experimenters_page(lab) as experimenter:
 
         def ask(**message: object) -> dict[str, Any]:
             experimenter.send(json.dumps({"id": 1, **message}))

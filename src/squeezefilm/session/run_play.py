@@ -23,7 +23,11 @@ import numpy as np
 from squeezefilm.device.host import DeviceHost
 from squeezefilm.device.link import Link
 from squeezefilm.device.ports import Sensor
-from squeezefilm.device.priority import PLAYERS_PRIORITY, real_time_granted
+from squeezefilm.device.priority import (
+    PLAYERS_PRIORITY,
+    collect_garbage_first,
+    real_time_granted,
+)
 from squeezefilm.device.safety import require_safe_drive
 from squeezefilm.device.serial_ports import SerialDrive
 from squeezefilm.device.states import Fault
@@ -190,13 +194,8 @@ _FAULTS: dict[Fault, str] = {
 
 @contextlib.contextmanager
 def _collected() -> Iterator[None]:
-    """Collect garbage now, and then only what is made from now on.
-
-    A full collection of all that the solvers have loaded takes 50 to 100 ms: as long as the
-    device waits before it stops.
-    """
-    gc.collect()
-    gc.freeze()
+    """`collect_garbage_first`, and everything again afterwards."""
+    collect_garbage_first()
     try:
         yield
     finally:

@@ -7,7 +7,6 @@ real-time priority, says that it is ready, and ticks until the host says stop or
 from __future__ import annotations
 
 import ctypes
-import gc
 import mmap
 import os
 import pickle
@@ -16,7 +15,7 @@ import sys
 import time
 from dataclasses import dataclass
 
-from squeezefilm.device.priority import real_time_granted
+from squeezefilm.device.priority import collect_garbage_first, real_time_granted
 from squeezefilm.session import clock, shared
 from squeezefilm.session.atomics import load_acquire, store_release
 from squeezefilm.session.pacing import (
@@ -77,8 +76,7 @@ def run_loop(orders: Orders, memory: shared.Shared) -> None:
         silence(tick_arrays(plan), rehearsal.control, 0, timeout)
         make_due_tick(tick_arrays(plan), rehearsal, 0)
     arrays = tick_arrays(plan)
-    gc.collect()
-    gc.freeze()
+    collect_garbage_first()
     control[shared.PACING] = shared.PACING_COMPILED if compiled else shared.PACING_PORTABLE
     control[shared.LOCKED] = int(memory_locked())
     real_time = orders.priority is not None and real_time_granted(orders.priority)

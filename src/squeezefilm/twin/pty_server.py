@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import argparse
 import contextlib
-import gc
 import os
 import select
 import signal
@@ -27,7 +26,11 @@ from pathlib import Path
 from typing import IO
 
 from squeezefilm.device import messages as m
-from squeezefilm.device.priority import PLAYERS_PRIORITY, real_time_granted
+from squeezefilm.device.priority import (
+    PLAYERS_PRIORITY,
+    collect_garbage_first,
+    real_time_granted,
+)
 from squeezefilm.display import load_display
 from squeezefilm.errors import InputError, SqueezefilmError
 from squeezefilm.quantities import Newton, Second
@@ -153,8 +156,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         with _linked(options.link, server.port):
             # A device does not stand still while a solver's garbage is collected, and has its
             # processor for itself; as near to that as the system allows.
-            gc.collect()
-            gc.freeze()
+            collect_garbage_first()
             print(server.port, flush=True)
             real_time_granted(PLAYERS_PRIORITY)
             server.serve(options.with_parent)
