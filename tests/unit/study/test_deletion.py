@@ -59,7 +59,8 @@ def test_no_byte_of_a_participant_is_left_anywhere(tmp_path: Path) -> None:
     reader.execute("PRAGMA wal_checkpoint(PASSIVE)")
     reader.close()
     # A trace of a program that was killed before its answer was recorded.
-    (store.traces / "left-over.csv").write_text(SECRET)
+    left_over = f"{'0f' * 16}.csv"
+    (store.traces / left_over).write_text(SECRET)
     words = [gone, SECRET]
     for table, key in (("session", "participant"), ("trial", "participant")):
         rows = store.rows(f"SELECT uuid FROM {table} WHERE {key} = ?", [gone])
@@ -81,7 +82,7 @@ def test_no_byte_of_a_participant_is_left_anywhere(tmp_path: Path) -> None:
         for who in (people[0], people[2])
     ]
     places = {name for _, name in _left(tmp_path, words)}
-    assert {"study.sqlite", "small_trials.csv", "participants.tsv", "left-over.csv"} <= places
+    assert {"study.sqlite", "small_trials.csv", "participants.tsv", left_over} <= places
     assert any(name.endswith("-wal") for name in places)
     done = delete_participant(store, gone)
     assert done.enrolled
@@ -107,11 +108,13 @@ def test_the_search_finds_what_is_planted(tmp_path: Path) -> None:
     store.backups.mkdir()
     planted = store.backups / "mail.txt"
     planted.write_bytes(b"x" * (1 << 20) + people[0][:8].encode() + people[0][8:].encode())
-    with pytest.raises(RecordError, match=r"mail\.txt"):
+    with pytest.raises(InputError, match=r"nothing was deleted: .*mail\.txt"):
         delete_participant(store, people[0])
+    assert len(store.participants()) == 3
     planted.unlink()
     done = delete_participant(store, people[0])
-    assert not done.enrolled
+    assert done.enrolled
+    assert not delete_participant(store, people[0]).enrolled
     store.close()
 
 
