@@ -102,8 +102,8 @@ def show_deletion(done: Deletion, pseudonym: str) -> None:
     """Print what was deleted, that nothing of them is left, and what was not touched."""
     print(
         f"{pseudonym}: {done.answers} answers, {done.traces} traces and {done.sittings} sittings "
-        f"deleted; {done.backups} backups and {done.exports} exports gone through; nothing found in "
-        f"{done.searched} files"
+        f"deleted; {done.backups} backups and {done.exports} exports gone through; nothing found "
+        f"in {done.searched} files"
         if done.enrolled
         else f"{pseudonym} was not enrolled; nothing found in {done.searched} files"
     )

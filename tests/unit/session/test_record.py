@@ -13,7 +13,8 @@ from squeezefilm.errors import InputError
 from squeezefilm.formats.traces import table_from_csv, table_from_parquet
 from squeezefilm.results import stamp
 from squeezefilm.session.export import export_trace
-from squeezefilm.session.record import TraceWriter, read_trace
+from squeezefilm.session.record import TraceWriter
+from squeezefilm.session.trace_reading import read_trace
 
 COLUMNS = ("time_s", "x_m")
 
