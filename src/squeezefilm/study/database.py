@@ -45,12 +45,6 @@ def claim(path: Path) -> Identity:
     """
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        for part in _LEFT_BEHIND:
-            if os.path.lexists(f"{path}{part}"):
-                raise InputError(
-                    f"{path.name}{part} lies there from a file that was removed, and would be "
-                    f"taken for this one's; move it away, or give another name than {path}"
-                )
         handle = os.open(path, os.O_RDWR | os.O_CREAT | os.O_EXCL, 0o644)
     except FileExistsError as error:
         raise InputError(f"{path} exists; open it to go on, or give another name") from error
@@ -58,6 +52,13 @@ def claim(path: Path) -> Identity:
         raise RecordError(f"{path} cannot be made: {error.strerror}; choose another") from error
     found = os.fstat(handle)
     os.close(handle)
+    for part in _LEFT_BEHIND:
+        if os.path.lexists(f"{path}{part}"):
+            path.unlink()
+            raise InputError(
+                f"{path.name}{part} lies there from a file that was removed, and would be taken "
+                f"for this one's; move it away, or give another name than {path}"
+            )
     return found.st_dev, found.st_ino
 
 

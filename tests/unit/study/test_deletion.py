@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+import os
 import sqlite3
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
-from squeezefilm.errors import InputError, RecordError
+from squeezefilm.errors import InputError, RecordError, SqueezefilmError
 from squeezefilm.study.conduct import conduct
 from squeezefilm.study.deletion import delete_participant
 from squeezefilm.study.exports import export_study
 from squeezefilm.study.run import StudyRun
 from squeezefilm.study.session_conditions import SessionConditions
 from squeezefilm.study.sessions import begin_session, end_session
+from squeezefilm.study.sittings import FILE, Sittings
 from squeezefilm.study.store import StudyStore
 
 from .scripted import TRACE, Bench, Script, gratings
@@ -150,3 +153,138 @@ def test_nothing_is_deleted_while_an_export_cannot_be_made_anew(tmp_path: Path) 
     (folder / "mine.txt").unlink()
     assert delete_participant(store, people[0]).exports == 1
     store.close()
+
+
+def test_the_labs_sittings_go_too(tmp_path: Path) -> None:
+    store, people = _study(tmp_path)
+    sittings = Sittings(tmp_path / FILE)
+    fields = {"study": "study", "device": "none", "consent_text": "c"}
+    for who in people:
+        sittings.new(participant=who, **fields)
+    done = delete_participant(store, people[1])
+    assert done.sittings == 1
+    assert _left(tmp_path, [people[1], SECRET]) == []
+    assert [one.participant for one in sittings.of_study("study")] == [people[0], people[2]]
+    store.close()
+
+
+def test_a_persons_own_files_are_left_and_told(tmp_path: Path) -> None:
+    store, people = _study(tmp_path)
+    target = tmp_path / "precious.txt"
+    target.write_text("precious")
+    (store.traces / "notes.txt").write_text("mine")
+    (store.traces / "folder").mkdir()
+    (store.traces / "folder" / "more.csv").write_text("mine")
+    (store.traces / "link.csv").symlink_to(target)
+    done = delete_participant(store, people[1])
+    assert _left(tmp_path, [people[1], SECRET]) == []
+    assert [Path(one).relative_to(store.traces).as_posix() for one in done.left] == [
+        "folder",
+        "folder/more.csv",
+        "link.csv",
+        "notes.txt",
+    ]
+    assert {target.read_text(), (store.traces / "notes.txt").read_text()} == {"precious", "mine"}
+    store.close()
+
+
+def _link_in_place_of_a_trace(store: StudyStore, who: str) -> None:
+    (name, *_), *_ = _traces(store, who)
+    (store.traces / name).rename(store.traces.with_name("elsewhere.csv"))
+    (store.traces / name).symlink_to(store.traces.with_name("elsewhere.csv"))
+
+
+def _second_name_of_a_trace(store: StudyStore, who: str) -> None:
+    (name, *_), *_ = _traces(store, who)
+    os.link(store.traces / name, store.traces.with_name("elsewhere.csv"))
+
+
+def _notes_about_somebody(store: StudyStore, who: str) -> None:
+    (store.traces / "folder").mkdir()
+    (store.traces / "folder" / "notes.txt").write_text(f"{who} was late")
+
+
+def _linked_traces(store: StudyStore, who: str) -> None:
+    store.traces.rename(store.traces.with_name("far away"))
+    store.traces.symlink_to(store.traces.with_name("far away"))
+
+
+def _linked_export(store: StudyStore, who: str) -> None:
+    folder = export_study(store, "csv")
+    (folder / "small_trials.csv").rename(store.traces.with_name("elsewhere.csv"))
+    (folder / "small_trials.csv").symlink_to(store.traces.with_name("elsewhere.csv"))
+
+
+def _linked_sittings(store: StudyStore, who: str) -> None:
+    store.path.with_name("elsewhere.json").write_text("[]")
+    store.path.with_name(FILE).symlink_to(store.path.with_name("elsewhere.json"))
+
+
+def _open_elsewhere(store: StudyStore, who: str) -> None:
+    _OPEN.append(sqlite3.connect(store.path))
+    _OPEN[-1].execute("SELECT count(*) FROM response").fetchone()
+
+
+_OPEN: list[sqlite3.Connection] = []
+
+
+def _traces(store: StudyStore, who: str) -> list[list[str]]:
+    import json
+
+    rows = store.rows(
+        "SELECT r.traces FROM response r JOIN trial t ON t.uuid = r.trial WHERE t.participant = ? "
+        "AND r.traces != '[]' ORDER BY t.number",
+        [who],
+    )
+    return [json.loads(row["traces"]) for row in rows]
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows has other links")
+@pytest.mark.parametrize(
+    ("obstacle", "says"),
+    [
+        (_link_in_place_of_a_trace, "is a link"),
+        (_second_name_of_a_trace, "2 names of the same file"),
+        (_notes_about_somebody, r"notes\.txt was not written by this program"),
+        (_linked_traces, "is a link"),
+        (_linked_export, "has files of its own"),
+        (_linked_sittings, "is a link"),
+        (_open_elsewhere, "is open in another program"),
+    ],
+)
+def test_what_would_not_be_complete_is_refused_with_nothing_deleted(
+    tmp_path: Path, obstacle: Callable[[StudyStore, str], None], says: str
+) -> None:
+    store, people = _study(tmp_path)
+    obstacle(store, people[1])
+    before = {path: path.read_bytes() for path in tmp_path.rglob("*.[cj]s*") if path.is_file()}
+    with pytest.raises(SqueezefilmError, match=says):
+        delete_participant(store, people[1])
+    assert {path: path.read_bytes() for path in before} == before
+    assert len(store.participants()) == 3
+    while _OPEN:
+        _OPEN.pop().close()
+    store.close()
+
+
+def test_a_backup_that_was_never_finished_goes(tmp_path: Path) -> None:
+    store, people = _study(tmp_path)
+    whole = store.back_up()
+    half = whole.with_name(f".{whole.name}.unfinished")
+    half.write_text(people[1])
+    half.with_name(f"{half.name}-journal").write_text(people[1])
+    mine = store.backups / "foreign.sqlite"
+    sqlite3.connect(mine).close()
+    done = delete_participant(store, people[1])
+    assert (done.backups, done.left) == (1, (str(mine),))
+    assert sorted(store.backups.iterdir()) == sorted([whole, mine])
+    store.close()
+
+
+@pytest.mark.parametrize("pseudonym", ["", "a", "../../x", "*", "0" * 15, "0" * 40, "Z" * 16])
+def test_what_is_no_pseudonym_is_refused(tmp_path: Path, pseudonym: str) -> None:
+    with (
+        StudyStore.create(tmp_path / "study.sqlite", gratings(), 7) as store,
+        pytest.raises(InputError, match="no participant's pseudonym"),
+    ):
+        delete_participant(store, pseudonym)
