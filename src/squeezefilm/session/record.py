@@ -90,7 +90,8 @@ class TraceWriter:
             self._closed = True
             if not replace and os.path.samestat(os.fstat(self._file), self.path.stat()):
                 # Nothing was acknowledged in it, and it would keep its name from a next one.
-                self.path.unlink()
+                with contextlib.suppress(OSError):
+                    self.path.unlink()
             os.close(self._file)
             raise
 

@@ -63,10 +63,14 @@ def claim(path: Path) -> Identity:
 
 
 def discard(path: Path, claimed: Identity) -> None:
-    """Remove a file that this process claimed, with its log; whatever else lies there stays."""
+    """Remove a file that this process claimed, with its log; whatever else lies there stays.
+
+    What the disk does not let go of stays too: why it was to be removed is what a person must see.
+    """
     if identity_of(path) == claimed:
         for part in (*_LEFT_BEHIND, ""):
-            path.with_name(path.name + part).unlink(missing_ok=True)
+            with contextlib.suppress(OSError):
+                path.with_name(path.name + part).unlink(missing_ok=True)
 
 
 def is_study(path: Path) -> bool:

@@ -339,10 +339,8 @@ class StudyStore:
         self._database.compact()
 
     def back_up(self) -> Path:
-        """A copy of the file as it is now, in `backups`; there whole or not at all.
-
-        Raises `RecordError`, also for a damaged file.
-        """
+        """A copy of the file as it is now, in `backups`; there whole or not at all. Raises
+        `RecordError`, also for a damaged file."""
         self.require_whole()
         stamp = datetime.now(UTC).strftime("%Y%m%dT%H%M%S%fZ")
         target = self.backups / f"{self.path.stem}-{stamp}-{secrets.token_hex(3)}{self.path.suffix}"
@@ -353,7 +351,8 @@ class StudyStore:
             unfinished.replace(target)
             sync_folder(target.parent)
         except (sqlite3.Error, OSError) as error:
-            unfinished.unlink(missing_ok=True)
+            with contextlib.suppress(OSError):
+                unfinished.unlink(missing_ok=True)
             raise RecordError(f"no backup could be written to {target}: {error}") from error
         return target
 
