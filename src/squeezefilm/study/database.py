@@ -21,6 +21,9 @@ _PATIENCE = 5000
 _PARTS = ("", "-wal", "-shm")
 _LEFT_BEHIND = ("-wal", "-shm", "-journal")
 
+FAILURES = (sqlite3.Error, UnicodeDecodeError)
+"""What `sqlite3` raises; the last one where it cannot even read what SQLite says of a torn file."""
+
 Identity = tuple[int, int]
 
 
@@ -101,21 +104,28 @@ def require_study(path: Path) -> None:
 
 
 def _marks(path: Path) -> tuple[int, int]:
-    """Application id and version, read without a lock and without a write."""
-    found = _read_marks(path, "mode=ro&immutable=1")
-    if found[0] == 0 and path.with_name(f"{path.name}-wal").exists():
-        # A program that was killed may have left all it wrote in the log.
-        found = _read_marks(path, "mode=ro")
-    return found
+    """Application id and version, read without a write."""
+    logged = path.with_name(f"{path.name}-wal").exists()
+    try:
+        # Without a lock either, and without the log.
+        found = _read_marks(path, "mode=ro&immutable=1")
+        if found[0] or not logged:
+            return found
+    except FAILURES as error:
+        if not logged:
+            raise InputError(f"{path} is no study's file: {error}") from error
+    # All that was written may be in the log alone, or half of it in the file: what a program
+    # leaves that was killed, or whose disk was full.
+    try:
+        return _read_marks(path, "mode=ro")
+    except FAILURES as error:
+        raise InputError(f"{path} is no study's file: {error}") from error
 
 
 def _read_marks(path: Path, how: str) -> tuple[int, int]:
-    try:
-        place = f"{path.absolute().as_uri()}?{how}"
-        with contextlib.closing(sqlite3.connect(place, uri=True)) as connection:
-            return _marks_of(connection)
-    except sqlite3.Error as error:
-        raise InputError(f"{path} is no study's file: {error}") from error
+    place = f"{path.absolute().as_uri()}?{how}"
+    with contextlib.closing(sqlite3.connect(place, uri=True)) as connection:
+        return _marks_of(connection)
 
 
 def _marks_of(connection: sqlite3.Connection) -> tuple[int, int]:
@@ -160,7 +170,7 @@ class Database:
             }
             if self._parts[path] != found:
                 raise RecordError(f"{path} was replaced while it was being opened; open it again")
-        except sqlite3.Error as error:
+        except FAILURES as error:
             self.connection.close()
             raise RecordError(f"{path} cannot be opened: {error}") from error
         except BaseException:
@@ -192,7 +202,7 @@ class Database:
             self.connection.execute("VACUUM")
             self._empty_log()
             self.require_in_place()
-        except sqlite3.Error as error:
+        except FAILURES as error:
             raise RecordError(f"{self.path} could not be compacted: {error}") from error
         finally:
             self.connection.execute(f"PRAGMA busy_timeout = {_PATIENCE}")
@@ -231,7 +241,7 @@ def require_alone(path: Path) -> None:
             connection.execute("PRAGMA locking_mode = EXCLUSIVE")
             connection.execute("BEGIN IMMEDIATE")
             connection.execute("ROLLBACK")
-    except sqlite3.Error as error:
+    except FAILURES as error:
         raise RecordError(
             f"{path} is open in another program ({error}); close every session, then try again"
         ) from error
@@ -245,7 +255,7 @@ def _connect(path: Path, new: bool) -> sqlite3.Connection:
         )
     try:
         connection = sqlite3.connect(path, isolation_level=None, timeout=_PATIENCE / 1000)
-    except sqlite3.Error as error:
+    except FAILURES as error:
         raise RecordError(f"{path} cannot be opened: {error}; is the folder writable?") from error
     try:
         if not new:
@@ -266,7 +276,7 @@ def _connect(path: Path, new: bool) -> sqlite3.Connection:
         connection.execute("PRAGMA cell_size_check = ON")
         # Journals of statements and sorting stay in memory: no copy of a row in a stray file.
         connection.execute("PRAGMA temp_store = MEMORY")
-    except sqlite3.DatabaseError as error:
+    except FAILURES as error:
         connection.close()
         if "not a database" in str(error):
             raise InputError(f"{path} is no study's file: {error}") from error

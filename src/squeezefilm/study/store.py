@@ -25,6 +25,7 @@ from squeezefilm.quantities import require
 from squeezefilm.results import sync_folder, write_whole
 from squeezefilm.study.contents import is_trace, require_contents
 from squeezefilm.study.database import (
+    FAILURES,
     Database,
     claim,
     discard,
@@ -227,7 +228,7 @@ class StudyStore:
             cursor = self._database.connection.execute(query, tuple(values))
             names = [one[0] for one in cursor.description]
             return [dict(zip(names, row, strict=True)) for row in cursor]
-        except sqlite3.Error as error:
+        except FAILURES as error:
             raise RecordError(f"{self.path} cannot be read: {error}") from error
 
     def values(self, query: str) -> list[tuple[Any, ...]]:
@@ -245,7 +246,7 @@ class StudyStore:
             connection.execute("COMMIT")
             # What was removed or replaced meanwhile holds this row no more.
             self._database.require_in_place()
-        except sqlite3.Error as error:
+        except FAILURES as error:
             _roll_back(connection)
             raise RecordError(
                 f"{self.path} could not take the row: {error}; nothing was acknowledged. "
@@ -350,7 +351,7 @@ class StudyStore:
             self._database.copy_to(unfinished)
             unfinished.replace(target)
             sync_folder(target.parent)
-        except (sqlite3.Error, OSError) as error:
+        except (*FAILURES, OSError) as error:
             with contextlib.suppress(OSError):
                 unfinished.unlink(missing_ok=True)
             raise RecordError(f"no backup could be written to {target}: {error}") from error
