@@ -157,18 +157,18 @@ class Database:
 
     def __init__(self, path: Path, *, new: bool = False) -> None:
         self.path = path
-        found = identity_of(path)
+        # Also for who goes to another folder meanwhile.
+        place = path.absolute()
+        found = identity_of(place)
         self.connection = _connect(path, new)
         try:
             # The log is there once something was read.
             self.connection.execute("SELECT count(*) FROM sqlite_schema").fetchone()
             # SQLite puts log and index beside the file itself, a link or not.
             real = path.resolve()
-            self._parts = {
-                place: identity_of(place)
-                for place in (path, *(real.with_name(real.name + part) for part in _PARTS))
-            }
-            if self._parts[path] != found:
+            parts = (place, *(real.with_name(real.name + part) for part in _PARTS))
+            self._parts = {part: identity_of(part) for part in parts}
+            if self._parts[place] != found:
                 raise RecordError(f"{path} was replaced while it was being opened; open it again")
         except FAILURES as error:
             self.connection.close()

@@ -166,7 +166,7 @@ def _require_gone(store: StudyStore, sittings: Sittings, identifiers: set[str]) 
     # Closing a file that SQLite has open would drop SQLite's locks on it.
     with store.closed_meanwhile():
         beside = store.path.parent.glob(f"{glob.escape(store.path.name)}*")
-        every = {sittings.file, *beside, *_in_folders(store, exported_folders(store))}
+        every = _placed({sittings.file, *beside, *_in_folders(_folders(store))})
         if left := _found_in(every, identifiers):
             raise RecordError(
                 f"the participant's rows are deleted, but traces are left in {', '.join(left)}; "
@@ -182,14 +182,24 @@ def _own(store: StudyStore) -> list[Path]:
     ours = backups | {store.exports / LIST, *(folder for _, folder in exports)}
     ours |= {path for _, folder in exports for path in folder.rglob("*")}
     ours |= {store.path.with_name(f"{store.path.name}{part}") for part in ("", "-wal", "-shm")}
+    ours |= {path for path in _in_folders([store.traces]) if is_trace(path.name)}
     beside = store.path.parent.glob(f"{glob.escape(store.path.name)}*")
-    found = {*beside, *_in_folders(store, exports)} - ours
-    return sorted(one for one in found if one.parent != store.traces or not is_trace(one.name))
+    return sorted(_placed({*beside, *_in_folders(_folders(store))}) - _placed(ours))
 
 
-def _in_folders(store: StudyStore, exports: Iterable[tuple[str, Path]]) -> Iterator[Path]:
-    for folder in (store.traces, store.backups, store.exports, *(one for _, one in exports)):
+def _folders(store: StudyStore) -> list[Path]:
+    exports = [folder for _, folder in exported_folders(store)]
+    return [store.traces, store.backups, store.exports, *exports]
+
+
+def _in_folders(folders: Iterable[Path]) -> Iterator[Path]:
+    for folder in folders:
         yield from folder.rglob("*")
+
+
+def _placed(paths: Iterable[Path]) -> set[Path]:
+    """Paths by which the same file is the same, however it was asked for; links stay links."""
+    return {path.parent.resolve() / path.name for path in paths}
 
 
 def _found_in(paths: Iterable[Path], identifiers: set[str]) -> list[str]:

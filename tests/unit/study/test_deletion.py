@@ -288,3 +288,17 @@ def test_what_is_no_pseudonym_is_refused(tmp_path: Path, pseudonym: str) -> None
         pytest.raises(InputError, match="no participant's pseudonym"),
     ):
         delete_participant(store, pseudonym)
+
+
+def test_a_relative_path_is_the_same_study(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    store, people = _study(Path())
+    for format in ("csv", "bids"):
+        export_study(store, format)  # type: ignore[arg-type]
+    store.back_up()
+    done = delete_participant(store, people[1])
+    assert (done.exports, done.backups, done.left) == (2, 1, ())
+    assert _left(tmp_path, [people[1], SECRET]) == []
+    monkeypatch.chdir(tmp_path.parent)
+    assert store.enrol()
+    store.close()
