@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 import hashlib
 import json
@@ -95,10 +96,31 @@ def write_whole(path: Path, content: str | bytes) -> None:
         os.chmod(temporary, 0o666 & ~_umask())  # noqa: PTH101
         os.replace(temporary, path)  # noqa: PTH105
     except OSError as error:
-        Path(temporary).unlink(missing_ok=True)
+        with contextlib.suppress(OSError):
+            Path(temporary).unlink(missing_ok=True)
         raise InputError(
             f"cannot write {path}: {error.strerror}; nothing was left behind"
         ) from error
+    try:
+        sync_folder(path.parent)
+    except OSError as error:
+        raise InputError(
+            f"{path} is written, but the disk did not confirm it: {error.strerror}; write it again"
+        ) from error
+
+
+def sync_folder(folder: Path) -> None:
+    """Force a folder's names onto the disk: only then does a new file survive a power cut.
+
+    Raises `OSError`. Windows syncs them by itself, and opens no folder.
+    """
+    if os.name == "nt":
+        return
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)
 
 
 def _umask() -> int:

@@ -18,7 +18,7 @@ from squeezefilm.config.write import text_of
 from squeezefilm.errors import DeviceError
 from squeezefilm.render.sensor import LVDT_10_KHZ
 from squeezefilm.session import rows as column
-from squeezefilm.session.record import read_trace
+from squeezefilm.session.trace_reading import read_trace
 from squeezefilm.study.conduct import conduct
 from squeezefilm.study.design import StudyDesign
 from squeezefilm.study.device import NoDevice, StudyDevice

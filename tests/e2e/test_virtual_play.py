@@ -13,8 +13,8 @@ from squeezefilm.display import Display, load_display
 from squeezefilm.render.sensor import LVDT_10_KHZ, TOUCH_PANEL_240_HZ, SensorModel
 from squeezefilm.session import virtual_play as bench
 from squeezefilm.session.play import Ending, Player
-from squeezefilm.session.record import read_trace
 from squeezefilm.session.run_play import PlayOutcome
+from squeezefilm.session.trace_reading import read_trace
 from squeezefilm.session.virtual_play import virtual_play
 from squeezefilm.texture_file import preset_texture
 from squeezefilm.twin.device import TwinDevice

@@ -21,7 +21,7 @@ import pytest
 
 from squeezefilm.device.machine import Fault
 from squeezefilm.session import rows as column
-from squeezefilm.session.record import read_trace
+from squeezefilm.session.trace_reading import read_trace
 
 pytestmark = [
     pytest.mark.realtime,

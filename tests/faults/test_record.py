@@ -14,7 +14,8 @@ import pytest
 
 from squeezefilm.errors import InputError, RecordError
 from squeezefilm.session import trace_file
-from squeezefilm.session.record import Trace, TraceWriter, read_trace
+from squeezefilm.session.record import TraceWriter
+from squeezefilm.session.trace_reading import Trace, read_trace
 
 COLUMNS = ("tick", "x_m", "level_V")
 

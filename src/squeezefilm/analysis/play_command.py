@@ -39,8 +39,8 @@ from squeezefilm.session.lateness import Lateness
 from squeezefilm.session.loop import LoopProcess
 from squeezefilm.session.plan import DriveTable, LoopPlan
 from squeezefilm.session.play import PlayView
-from squeezefilm.session.record import read_trace
 from squeezefilm.session.run_play import PlayOutcome, run_play
+from squeezefilm.session.trace_reading import read_trace
 from squeezefilm.texture_file import TextureFile
 from squeezefilm.twin.pty_server import running_twin
 from squeezefilm.twin.settings import PickupModel, TwinSettings

@@ -36,7 +36,7 @@ from squeezefilm.render.rendered_stroke import RenderedStroke
 from squeezefilm.render.renderer import render
 from squeezefilm.results import to_json
 from squeezefilm.session import rows as column
-from squeezefilm.session.record import Trace
+from squeezefilm.session.trace_reading import Trace
 
 _SMOOTHING: Second = 20e-3
 _STILL = 0.15

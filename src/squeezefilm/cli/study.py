@@ -198,19 +198,18 @@ def run(
     with open_study(store, design, seed, station, stations) as found:
         planned = found.design
         examiner = TerminalExaminer(planned.spoken_question, modulus=planned.modulus)
-        with terminal.progress(enabled=sys.stderr.isatty()) as step:
-            ended = run_session(
-                found,
-                participant,
-                examiner,
-                drive=drive,
-                amplitude_per_pickup=quantity(pickup, "--pickup", Unit("m/V")),
-                conditions=conditions,
-                consent=consent,
-                acknowledge=(lambda _: True) if acknowledge else ask_acknowledgement,
-                tell=typer.echo,
-                progress=step,
-            )
+        ended = run_session(
+            found,
+            participant,
+            examiner,
+            drive=drive,
+            amplitude_per_pickup=quantity(pickup, "--pickup", Unit("m/V")),
+            conditions=conditions,
+            consent=consent,
+            acknowledge=(lambda _: True) if acknowledge else ask_acknowledgement,
+            tell=typer.echo,
+            progress=lambda: terminal.progress(enabled=sys.stderr.isatty()),
+        )
     typer.echo(ended)
 
 

@@ -1,7 +1,8 @@
 """Tables of samples in CSV and Parquet: units in the names of columns, origin kept with the file.
 
 CSV is UTF-8 with a comma, one header line, and before it one comment line ``# {JSON}`` with the
-metadata; numbers are written so that they read back as the same float, a missing one is empty.
+metadata, in whose texts commas and semicolons are escaped, so that no spreadsheet finds a formula
+behind one; numbers are written so that they read back as the same float, a missing one is empty.
 Parquet keeps the metadata under the key ``squeezefilm`` of the schema and needs pyarrow (the extra
 ``squeezefilm[parquet]``).
 """
@@ -25,6 +26,7 @@ from squeezefilm.errors import ConfigError, InputError
 from squeezefilm.quantities import FloatArray
 
 _NAME = re.compile(r"[a-z][A-Za-z0-9_.]*")
+_JSON_TEXT = re.compile(r'"(?:[^"\\]|\\.)*"')
 _KEY = b"squeezefilm"
 _MOST_BYTES = 2_000_000_000
 
@@ -66,13 +68,20 @@ class Table:
 def csv_text(table: Table) -> str:
     """The CSV text of a table; `table_from_csv` reads an equal table back."""
     stream = io.StringIO()
-    stream.write(f"# {json.dumps(dict(table.metadata), allow_nan=False)}\n")
+    stream.write(f"# {_one_cell(json.dumps(dict(table.metadata), allow_nan=False))}\n")
     writer = csv.writer(stream, lineterminator="\n")
     writer.writerow(table.columns)
     lists = [np.asarray(column, dtype=float).tolist() for column in table.columns.values()]
     for row in zip(*lists, strict=True):
         writer.writerow(["" if math.isnan(value) else repr(value) for value in row])
     return stream.getvalue()
+
+
+def _one_cell(text: str) -> str:
+    """JSON of which no text is cut into cells, the second of which might begin like a formula."""
+    return _JSON_TEXT.sub(
+        lambda found: found.group().replace(",", "\\u002c").replace(";", "\\u003b"), text
+    )
 
 
 def table_from_csv(path: str | Path) -> Table:

@@ -7,6 +7,7 @@ restart. Secrets are compared in constant time.
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import secrets
@@ -51,7 +52,8 @@ class _Link:
 class Keys:
     """All links, sessions and codes of one lab. Not thread-safe: the server's loop owns it.
 
-    `file` keeps sessions over a crash, readable by its owner only; `clock` gives UTC in seconds.
+    `file` keeps sessions over a crash, readable by its owner only, as long as there is room for
+    it; `clock` gives UTC in seconds.
     """
 
     file: Path | None = None
@@ -148,7 +150,14 @@ class Keys:
             return
         text = json.dumps([asdict(one) for one in self._sessions.values()])
         beside = self.file.with_suffix(".new")
-        handle = os.open(beside, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600)
-        with os.fdopen(handle, "w", encoding="utf-8") as out:
-            out.write(text)
-        beside.replace(self.file)
+        # The file only lets pages go on after a crash: on a full disk nobody is turned away.
+        with contextlib.suppress(OSError):
+            beside.unlink(missing_ok=True)
+            handle = os.open(beside, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
+            try:
+                with os.fdopen(handle, "w", encoding="utf-8") as out:
+                    out.write(text)
+                beside.replace(self.file)
+            except OSError:
+                beside.unlink(missing_ok=True)
+                raise

@@ -13,7 +13,6 @@ from typing import Any
 from squeezefilm import presets
 from squeezefilm.errors import InputError
 from squeezefilm.lab.files import existing, fresh
-from squeezefilm.lab.sittings import Sitting, Sittings
 from squeezefilm.results import to_json
 from squeezefilm.study.deletion import delete_participant
 from squeezefilm.study.design import StudyDesign, load_design
@@ -25,6 +24,7 @@ from squeezefilm.study.origin import origin_of
 from squeezefilm.study.run import Response, StudyRun
 from squeezefilm.study.session_conditions import SessionConditions
 from squeezefilm.study.sessions import begin_session, display_wanted, end_session
+from squeezefilm.study.sittings import FILE, Sitting, Sittings
 from squeezefilm.study.stimuli import Stimulus
 from squeezefilm.study.store import StudyStore
 from squeezefilm.study.trials import expected_duration, trial_count
@@ -42,7 +42,7 @@ class Studies:
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder / "studies"
-        self.sittings = Sittings(self.folder / ".sittings.json")
+        self.sittings = Sittings(self.folder / FILE)
         self._open: dict[str, StudyStore] = {}
         self._runs: dict[str, StudyRun] = {}
         self._now: dict[str, tuple[str, ...]] = {}
@@ -163,9 +163,6 @@ class Studies:
             )
         # Checked now, so that a mistake is the experimenter's and not the participant's to see.
         _conditions(conditions, consent_text, consented=False)
-        for one in self.sittings.of_study(name):
-            if one.participant == participant:
-                self.sittings.change(one.id, ended=True)
         sitting = self.sittings.new(
             study=name,
             participant=participant,
@@ -322,7 +319,6 @@ class Studies:
             if one.participant == participant:
                 self._runs.pop(one.id, None)
         found = delete_participant(self.store(name), participant)
-        self.sittings.forget_participant(name, participant)
         return {"deleted": to_json(found), **self.status(name)}
 
     def export(self, name: str, format: str) -> dict[str, Any]:

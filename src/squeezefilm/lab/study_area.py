@@ -12,7 +12,6 @@ from pydantic import Field
 from squeezefilm.errors import DeviceError, InputError
 from squeezefilm.lab.keys import CODE_LIFE
 from squeezefilm.lab.server import PAGE
-from squeezefilm.lab.sittings import Sitting
 from squeezefilm.lab.studies import Studies
 from squeezefilm.lab.study_devices import Measured, StudyDevices, require_device
 from squeezefilm.lab.study_work import analysis_of, rehearsed, report_of
@@ -26,6 +25,7 @@ from squeezefilm.study.device import (
 )
 from squeezefilm.study.exposure import Exposure, exposure
 from squeezefilm.study.run import Response
+from squeezefilm.study.sittings import Sitting
 
 if TYPE_CHECKING:
     from starlette.websockets import WebSocket

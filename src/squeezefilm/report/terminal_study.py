@@ -99,13 +99,16 @@ def show_status(store: StudyStore) -> None:
 
 
 def show_deletion(done: Deletion, pseudonym: str) -> None:
-    """Print what was deleted and that nothing is left."""
+    """Print what was deleted, that nothing of them is left, and what was not touched."""
     print(
-        f"{pseudonym}: {done.answers} answers and {done.traces} traces deleted; {done.backups} "
-        f"backups and {done.exports} exports gone through; nothing found in {done.searched} files"
+        f"{pseudonym}: {done.answers} answers, {done.traces} traces and {done.sittings} sittings "
+        f"deleted; {done.backups} backups and {done.exports} exports gone through; nothing found "
+        f"in {done.searched} files"
         if done.enrolled
         else f"{pseudonym} was not enrolled; nothing found in {done.searched} files"
     )
+    if done.left:
+        print(f"left as they are, being no files of this program: {', '.join(done.left)}")
 
 
 def show_merge(done: Merge, other: str) -> None:

@@ -1,24 +1,28 @@
 """Taking a participant out of a study without a trace.
 
-Rows, traces, backups and exports that this program wrote are all gone through, and then searched,
-byte by byte, for every identifier that belonged to the participant. What was copied elsewhere by
-hand, a file system's snapshots and the spare blocks of a solid-state disk are out of reach.
+All that this program wrote is gone through: rows, traces, backups, exports, the lab's sittings. It
+is then searched, byte by byte, for every identifier that belonged to the participant. Whatever
+could keep this from being complete is looked for first, and refused with nothing deleted. Files
+that this program did not write are a person's own: they are searched, told, and left. What was
+copied elsewhere by hand, a file system's snapshots and the spare blocks of a solid-state disk are
+out of reach.
 """
 
 from __future__ import annotations
 
+import glob
+import json
 import os
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from squeezefilm.errors import RecordError
-from squeezefilm.study.exports import (
-    erase_file,
-    export_again,
-    exported_folders,
-    own_files,
-)
+from squeezefilm.errors import InputError, RecordError
+from squeezefilm.study.contents import is_trace, require_identifier
+from squeezefilm.study.database import same_folders
+from squeezefilm.study.erasure import erase_file, require_plain
+from squeezefilm.study.exports import LIST, export_again, exported_folders, own_files
+from squeezefilm.study.sittings import FILE, Sittings
 from squeezefilm.study.store import StudyStore
 
 _PIECE = 1 << 20
@@ -26,53 +30,93 @@ _PIECE = 1 << 20
 
 @dataclass(frozen=True)
 class Deletion:
-    """What was taken out. `searched` counts the files in which nothing was found afterwards."""
+    """What was taken out. `searched` counts the files in which nothing was found afterwards;
+    `left` are files and folders of other origin among them, which are as they were."""
 
     enrolled: bool
     answers: int
     traces: int
     backups: int
     exports: int
+    sittings: int
     searched: int
+    left: tuple[str, ...]
 
 
 def delete_participant(store: StudyStore, pseudonym: str) -> Deletion:
-    """Take a participant out of the file, its traces, backups and exports, and verify it.
+    """Take a participant out of the file, its traces, backups, exports and sittings; verify it.
 
     Exports are made anew without them. May be repeated: a pseudonym that is not there (any more)
     is searched for all the same. Other stations' files must be gone through one by one, before
     they are merged again.
 
     Raises:
-        InputError: an export's folder has files of other origin in it (nothing was deleted).
-        RecordError: another program has the file open (nothing was deleted), or something is left,
-            with the file it is in.
+        InputError: what is no pseudonym; or nothing was deleted, since the deletion would not be
+            complete: an export's folder or a file of other origin holds the participant, a file
+            to be erased is a link, another study keeps its traces in the same folder.
+        RecordError: another program has the file open (nothing was deleted); or the disk refused
+            on the way, or something is left, with the file it is in: repeat it.
     """
-    # First, while nothing is deleted yet: these fail if an export can't be made anew, or if
-    # somebody else reads the file.
-    for _, folder in exported_folders(store):
-        own_files(folder)
-    store.compact()
-    identifiers = {pseudonym} | _identifiers(store, pseudonym)
-    backups = []
-    if store.backups.is_dir():
-        backups = sorted(
-            path for path in store.backups.iterdir() if path.suffix == store.path.suffix
+    require_identifier(pseudonym)
+    sittings = Sittings(store.path.with_name(FILE))
+    # First, while nothing is deleted yet, all that could fail on the way.
+    backups, erased, identifiers = _surveyed(store, sittings, pseudonym)
+    left = _own(store)
+    if held := _found_in(left, identifiers):
+        raise InputError(
+            f"nothing was deleted: {', '.join(held)} was not written by this program and holds "
+            f"what belongs to {pseudonym}; take it out of there, or move the file away, then repeat"
         )
+    store.compact()
     for path in backups:
         with StudyStore.open(path) as backup:
-            identifiers |= _identifiers(backup, pseudonym)
             remove_rows(backup, pseudonym)
             backup.compact()
     traces = _traces(store, pseudonym)
     enrolled, answers = remove_rows(store, pseudonym)
     store.compact()
     # Those of programs that were killed could be anybody's.
-    for path in store.unreferenced_traces():
+    for path in (*store.unreferenced_traces(), *erased):
         erase_file(path)
+    sat = sittings.forget(pseudonym)
     folders = export_again(store)
-    searched = _require_gone(store, identifiers)
-    return Deletion(enrolled, answers, len(traces), len(backups), folders, searched)
+    searched = _require_gone(store, sittings, identifiers)
+    return Deletion(
+        enrolled, answers, len(traces), len(backups), folders, sat, searched,
+        tuple(str(path) for path in left),
+    )  # fmt: skip
+
+
+def _surveyed(
+    store: StudyStore, sittings: Sittings, pseudonym: str
+) -> tuple[list[Path], list[Path], set[str]]:
+    """The backups to go through, the unfinished ones to erase, and what to search for.
+
+    Raises what keeps a deletion from being complete.
+    """
+    if others := same_folders(store.path):
+        raise InputError(
+            f"nothing was deleted: {others[0]} keeps its traces in the same folder as {store.path},"
+            f" {store.traces.name}; move one of the studies to another folder, with its traces"
+        )
+    for _, folder in exported_folders(store):
+        own_files(folder)
+    sittings.require_erasable()
+    store.require_alone()
+    store.require_whole()
+    backups, unfinished = store.backup_files()
+    identifiers = {pseudonym} | _identifiers(store, pseudonym)
+    for path in backups:
+        with StudyStore.open(path) as backup:
+            identifiers |= _identifiers(backup, pseudonym)
+    traces = [store.traces / name for name in _traces(store, pseudonym)]
+    for path in (*unfinished, *store.unreferenced_traces(), *traces):
+        if os.path.lexists(path):
+            require_plain(path)
+    for folder in {path.parent for path in (*backups, *traces)}:
+        if folder.is_dir() and not os.access(folder, os.W_OK | os.X_OK):
+            raise InputError(f"nothing was deleted: {folder} cannot be written to; allow it first")
+    return backups, unfinished, identifiers
 
 
 def _identifiers(store: StudyStore, pseudonym: str) -> set[str]:
@@ -91,8 +135,6 @@ def _identifiers(store: StudyStore, pseudonym: str) -> set[str]:
 
 
 def _traces(store: StudyStore, pseudonym: str) -> list[str]:
-    import json
-
     found = store.rows(
         "SELECT r.traces FROM response r JOIN trial t ON t.uuid = r.trial WHERE t.participant = ?",
         [pseudonym],
@@ -119,44 +161,68 @@ def remove_rows(store: StudyStore, pseudonym: str) -> tuple[bool, int]:
         return gone.rowcount > 0, answers
 
 
-def _require_gone(store: StudyStore, identifiers: set[str]) -> int:
+def _require_gone(store: StudyStore, sittings: Sittings, identifiers: set[str]) -> int:
     """Search every file for every identifier. Raises `RecordError` naming where one is left."""
-    wanted = [one.encode() for one in identifiers]
-    count, left = 0, []
-    for path in _files(store):
-        count += path.is_file()
-        if any(one in os.fsencode(path.name) for one in wanted) or _holds(path, wanted):
-            left.append(str(path))
-    if left:
-        raise RecordError(
-            f"the participant's rows are deleted, but traces are left in {', '.join(left)}; "
-            "delete these files by hand, or repeat with every other program closed"
-        )
-    return count
+    # Closing a file that SQLite has open would drop SQLite's locks on it.
+    with store.closed_meanwhile():
+        beside = store.path.parent.glob(f"{glob.escape(store.path.name)}*")
+        every = _placed({sittings.file, *beside, *_in_folders(_folders(store))})
+        if left := _found_in(every, identifiers):
+            raise RecordError(
+                f"the participant's rows are deleted, but traces are left in {', '.join(left)}; "
+                "delete these files by hand, or repeat with every other program closed"
+            )
+    return sum(path.is_file() for path in every)
 
 
-def _files(store: StudyStore) -> Iterator[Path]:
-    """Everything this program wrote: files, and the folders they are in."""
-    yield from sorted(store.path.parent.glob(f"{store.path.name}*"))
-    folders = (
-        store.traces,
-        store.backups,
-        store.exports,
-        *(folder for _, folder in exported_folders(store)),
-    )
+def _own(store: StudyStore) -> list[Path]:
+    """What lies among a study's files and was not written by this program, sorted."""
+    exports = exported_folders(store)
+    backups = {path for some in store.backup_files() for path in some}
+    ours = backups | {store.exports / LIST, *(folder for _, folder in exports)}
+    ours |= {path for _, folder in exports for path in folder.rglob("*")}
+    ours |= {store.path.with_name(f"{store.path.name}{part}") for part in ("", "-wal", "-shm")}
+    ours |= {path for path in _in_folders([store.traces]) if is_trace(path.name)}
+    beside = store.path.parent.glob(f"{glob.escape(store.path.name)}*")
+    return sorted(_placed({*beside, *_in_folders(_folders(store))}) - _placed(ours))
+
+
+def _folders(store: StudyStore) -> list[Path]:
+    exports = [folder for _, folder in exported_folders(store)]
+    return [store.traces, store.backups, store.exports, *exports]
+
+
+def _in_folders(folders: Iterable[Path]) -> Iterator[Path]:
     for folder in folders:
-        yield from sorted(folder.rglob("*"))
+        yield from folder.rglob("*")
+
+
+def _placed(paths: Iterable[Path]) -> set[Path]:
+    """Paths by which the same file is the same, however it was asked for; links stay links."""
+    return {path.parent.resolve() / path.name for path in paths}
+
+
+def _found_in(paths: Iterable[Path], identifiers: set[str]) -> list[str]:
+    """Those whose name or content has one of the identifiers in it; links lead out of here."""
+    wanted = [one.encode() for one in identifiers]
+    return sorted(
+        str(path)
+        for path in paths
+        if any(one in os.fsencode(path.name) for one in wanted)
+        or (path.is_file() and not path.is_symlink() and _holds(path, wanted))
+    )
 
 
 def _holds(path: Path, wanted: list[bytes]) -> bool:
-    if not path.is_file():
-        return False
     longest = max(len(one) for one in wanted)
     tail = b""
-    with path.open("rb") as file:
-        while piece := file.read(_PIECE):
-            whole = tail + piece
-            if any(one in whole for one in wanted):
-                return True
-            tail = whole[-longest:]
+    try:
+        with path.open("rb") as file:
+            while piece := file.read(_PIECE):
+                whole = tail + piece
+                if any(one in whole for one in wanted):
+                    return True
+                tail = whole[-longest:]
+    except OSError as error:
+        raise RecordError(f"{path} cannot be searched: {error.strerror}") from error
     return False

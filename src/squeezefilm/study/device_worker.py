@@ -38,9 +38,9 @@ from squeezefilm.render.sensor import LVDT_10_KHZ
 from squeezefilm.results import stamp
 from squeezefilm.session import rows as column
 from squeezefilm.session.play import Ending, PlayView
-from squeezefilm.session.record import Trace, read_trace
 from squeezefilm.session.resonance_sweep import sweep_resonance
 from squeezefilm.session.run_play import PlayOutcome, run_play
+from squeezefilm.session.trace_reading import Trace, read_trace
 from squeezefilm.study.device import DeviceVerification, Exploration
 from squeezefilm.study.stimuli import Stimulus
 from squeezefilm.texture_file import TextureFile

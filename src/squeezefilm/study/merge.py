@@ -6,6 +6,8 @@ added, and a row that both have with different content is a contradiction that s
 
 from __future__ import annotations
 
+import json
+import os
 import sqlite3
 from collections import Counter
 from dataclasses import dataclass
@@ -13,6 +15,7 @@ from pathlib import Path
 
 from squeezefilm.errors import ContradictionError, InputError
 from squeezefilm.results import write_whole
+from squeezefilm.study.erasure import read_plain
 from squeezefilm.study.schema import TABLES
 from squeezefilm.study.store import StudyStore, insert
 
@@ -36,10 +39,11 @@ def merge(store: StudyStore, other: str | Path) -> Merge:
     Somebody who was deleted here but not there comes back: delete them in every file first.
 
     Raises:
-        InputError: the same file, or one of another study (another design or seed).
+        InputError: the same file, one of another study (another design or seed), or one with
+            contents that this program does not write, such as a trace's name that leads elsewhere.
         ContradictionError: rows with the same identifier and different content, such as a
             participant who went on at two stations; nothing was merged.
-        RecordError: nothing was merged.
+        RecordError: nothing was merged; one of the files is damaged, or nothing could be written.
     """
     if Path(other).resolve() == store.path.resolve():
         raise InputError(f"{other} is this file itself; give another station's")
@@ -51,6 +55,8 @@ def merge(store: StudyStore, other: str | Path) -> Merge:
                     f"{other} is of another study: its {what} is {foreign[key]}, here it is "
                     f"{ours[key]}; stations must be created from one design and one seed"
                 )
+        store.require_whole()
+        theirs.require_whole()
         traces = _copy_traces(store, theirs)
         added: Counter[str] = Counter()
         present: Counter[str] = Counter()
@@ -105,19 +111,17 @@ def _merge_table(
 def _copy_traces(store: StudyStore, theirs: StudyStore) -> int:
     """Copy traces we have not, before any row that names them. Names are random, so one name is
     one trace."""
-    import json
-
     count = 0
     for row in theirs.rows("SELECT traces FROM response"):
         for name in json.loads(row["traces"]):
             source, target = theirs.traces / name, store.traces / name
-            if target.exists():
+            if os.path.lexists(target):
                 continue
-            if not source.is_file():
+            if not os.path.lexists(source):
                 raise InputError(
                     f"{theirs.path} names the trace {name}, which is not in {theirs.traces}; "
                     "bring the folder along"
                 )
-            write_whole(target, source.read_bytes())
+            write_whole(target, read_plain(source))
             count += 1
     return count

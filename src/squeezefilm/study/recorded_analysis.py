@@ -31,6 +31,7 @@ def analyze_study(
 
     Raises:
         InputError: another task, stimuli that have no right answer, or no answer yet.
+        RecordError: the file is damaged.
     """
     design = store.design
     if design.task != "match-to-sample":
@@ -45,6 +46,7 @@ def analyze_study(
             "an identification needs one right answer for each stimulus and no other answers; "
             f"stimuli: {', '.join(stimuli)}; answers: {', '.join(design.answers)}"
         )
+    store.require_whole()
     rows = [row for row in trial_table(store) if row["phase"] == "main"]
     found = {}
     for display in design.displays:

@@ -10,7 +10,9 @@ from __future__ import annotations
 
 import json
 import math
+import time
 import uuid
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from datetime import datetime
 from typing import Any, Literal
@@ -93,13 +95,17 @@ class StudyRun:
     """One session of a participant: `next_trial`, present it, `respond`, until `state` is
     "finished" or "display changes" (then begin a session on the other display)."""
 
-    def __init__(self, store: StudyStore, session: str) -> None:
+    def __init__(
+        self, store: StudyStore, session: str, *, clock: Callable[[], Second] = time.monotonic
+    ) -> None:
         found = store.rows("SELECT * FROM session WHERE uuid = ?", [session])
         if not found:
             raise InputError(f"there is no session {session} in {store.path}; begin one first")
         self._store = store
         self._session = found[0]
         self._presented: str | None = None
+        self._clock = clock
+        self._first_shown: tuple[str, Second] = ("", 0.0)
 
     @property
     def session(self) -> Row:
@@ -217,6 +223,12 @@ class StudyRun:
         whole = float(row["pause_s"])
         if not whole:
             return 0.0
+        if not row["presentations"]:
+            self._first_shown = row["uuid"], self._clock()
+        token, begun = self._first_shown
+        if token == row["uuid"]:
+            # Its beginning was seen here: the wall clock may be set meanwhile, this one is not.
+            return max(whole - (self._clock() - begun), 0.0)
         first = self._store.rows(
             "SELECT min(presented_utc) AS at FROM presentation WHERE trial = ?", [row["uuid"]]
         )[0]["at"]

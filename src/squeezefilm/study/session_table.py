@@ -59,7 +59,7 @@ def session_table(store: StudyStore) -> list[dict[str, Cell]]:
     )
     found: list[dict[str, Cell]] = []
     for row in sessions:
-        cells: dict[str, Cell] = {**row, **json.loads(row["conditions"])}
+        cells: dict[str, Cell] = {**json.loads(row["conditions"]), **row}
         exposure = json.loads(row["exposure"]) or {}
         for ours, theirs in (
             ("level_dB", "level_dB"),

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import contextlib
 import json
+import re
 import secrets
 import sqlite3
 import uuid
@@ -21,14 +22,26 @@ from typing import Any
 from squeezefilm import __version__
 from squeezefilm.errors import InputError, RecordError
 from squeezefilm.quantities import require
-from squeezefilm.results import write_whole
+from squeezefilm.results import sync_folder, write_whole
+from squeezefilm.study.contents import is_trace, require_contents
+from squeezefilm.study.database import (
+    FAILURES,
+    Database,
+    claim,
+    discard,
+    is_study,
+    require_alone,
+    require_study,
+    same_folders,
+)
 from squeezefilm.study.design import StudyDesign
+from squeezefilm.study.erasure import require_plain
 from squeezefilm.study.schema import APPLICATION_ID, SCHEMA, VERSION
 from squeezefilm.study.trials import Trial, trials
 
 _HIGHEST_SEED = 2**53
-_PATIENCE = 5000
-"""How long a write waits for another program's (ms)."""
+_UNFINISHED = ".unfinished"
+"""Ends the name of a backup that is being written."""
 Row = Mapping[str, Any]
 
 
@@ -43,9 +56,9 @@ class StudyStore:
     Reads return plain rows; `StudyRun` and the functions of this room are what writes trials.
     """
 
-    def __init__(self, path: Path, connection: sqlite3.Connection) -> None:
+    def __init__(self, path: Path, database: Database) -> None:
         self.path = path
-        self._connection = connection
+        self._database = database
         self._design: StudyDesign | None = None
 
     @classmethod
@@ -72,75 +85,106 @@ class StudyStore:
             InputError: a file that exists, or numbers outside their range.
             RecordError: a file that cannot be written.
         """
-        from squeezefilm.config.write import text_of
-
         path = Path(path)
         require("seed", seed, at_least=0, at_most=_HIGHEST_SEED)
         require("stations", stations, at_least=1, at_most=10_000)
         require("station", station, at_least=0, below=stations)
         if path.suffix in ("", ".traces", ".backups", ".exports"):
             raise InputError(f"{path}: give the file a suffix of its own, like study.sqlite")
-        if path.exists():
-            raise InputError(f"{path} exists; open it to go on, or give another name")
-        path.parent.mkdir(parents=True, exist_ok=True)
+        claimed = claim(path)
         try:
-            store = cls(path, _connect(path))
-            with store.transaction() as write:
-                # Not executescript, which commits: the tables are there with their study, or not.
-                for statement in SCHEMA.split(";"):
-                    if statement.strip():
-                        write.execute(statement)
-                write.execute(f"PRAGMA application_id = {APPLICATION_ID}")
-                write.execute(f"PRAGMA user_version = {VERSION}")
-                row = {
-                    "uuid": str(uuid.uuid4()),
-                    "name": design.name,
-                    "design": text_of(design),
-                    "design_sha256": design.sha256,
-                    "seed": seed,
-                    "station": station,
-                    "stations": stations,
-                    "squeezefilm_version": __version__,
-                    "created_utc": utc_now(),
-                }
-                insert(write, "study", row)
+            if others := same_folders(path):
+                raise InputError(
+                    f"{others[0]} keeps its traces, backups and exports in the folders that {path} "
+                    "would use; give a name that differs in more than the suffix"
+                )
+            database = Database(path, new=True)
         except BaseException:
-            # Nothing half-made stays: there was no file before.
-            for part in ("", "-wal", "-shm"):
-                path.with_name(path.name + part).unlink(missing_ok=True)
+            discard(path, claimed)
+            raise
+        store = cls(path, database)
+        try:
+            store._fill(design, seed, station, stations)
+        except BaseException:
+            # Nothing half-made stays, and nothing goes that somebody else put there.
+            store.close()
+            discard(path, claimed)
             raise
         return store
 
+    def _fill(self, design: StudyDesign, seed: int, station: int, stations: int) -> None:
+        from squeezefilm.config.write import text_of
+
+        row = {
+            "uuid": str(uuid.uuid4()),
+            "name": design.name,
+            "design": text_of(design),
+            "design_sha256": design.sha256,
+            "seed": seed,
+            "station": station,
+            "stations": stations,
+            "squeezefilm_version": __version__,
+            "created_utc": utc_now(),
+        }
+        with self.transaction() as write:
+            # Not executescript, which commits: the tables are there with their study, or not.
+            for statement in SCHEMA.split(";"):
+                if statement.strip():
+                    write.execute(statement)
+            write.execute(f"PRAGMA application_id = {APPLICATION_ID}")
+            write.execute(f"PRAGMA user_version = {VERSION}")
+            insert(write, "study", row)
+
     @classmethod
     def open(cls, path: str | Path) -> StudyStore:
-        """A study's file, opened to go on.
+        """A study's file, opened to go on. What is no study's file is not changed.
 
-        Raises `InputError` for what is no study's file or one of another version.
+        Raises:
+            InputError: no study's file, one of another version, or one with contents that this
+                program does not write.
+            RecordError: it cannot be opened or read.
         """
         path = Path(path)
-        if not path.is_file():
-            raise InputError(f"{path} does not exist; plan a study and create its file first")
-        connection = _connect(path)
+        require_study(path)
+        store = cls(path, Database(path))
         try:
-            kind = connection.execute("PRAGMA application_id").fetchone()[0]
-            version = connection.execute("PRAGMA user_version").fetchone()[0]
-        except sqlite3.DatabaseError as error:
-            connection.close()
-            raise InputError(f"{path} is no study's file: {error}") from error
-        if kind != APPLICATION_ID:
-            connection.close()
-            raise InputError(f"{path} is no study's file; give one that `study run` made")
-        if version != VERSION:
-            connection.close()
-            raise InputError(
-                f"{path} has tables of version {version}; this program reads version {VERSION}; "
-                "use the version of squeezefilm that made it"
-            )
-        return cls(path, connection)
+            require_contents(store)
+        except BaseException:
+            store.close()
+            raise
+        return store
 
     def close(self) -> None:
         """Close the file; its write-ahead log is folded in where nobody else has it open."""
-        self._connection.close()
+        self._database.close()
+
+    @contextlib.contextmanager
+    def closed_meanwhile(self) -> Iterator[None]:
+        """Let go of the file, and open it again at the end: for who reads its bytes.
+
+        Raises `RecordError` if it was replaced meanwhile.
+        """
+        self._database.close()
+        try:
+            yield
+        finally:
+            self._database = Database(self.path)
+
+    def require_alone(self) -> None:
+        """Refuse while any other connection has the file open. Raises `RecordError`."""
+        with self.closed_meanwhile():
+            require_alone(self.path)
+
+    def require_whole(self) -> None:
+        """Refuse a damaged file: numbers of it are not to be trusted. Raises `RecordError`."""
+        found = self.rows("PRAGMA integrity_check(3)")
+        said = [str(row["integrity_check"]) for row in found]
+        if said != ["ok"]:
+            raise RecordError(
+                f"{self.path} is damaged ({'; '.join(said)[:300]}), so that nothing of it is given "
+                f"out. Copy it, and go on with the last good backup in {self.backups}; what else "
+                "can be read of the copy, `sqlite3 COPY .recover` shows"
+            )
 
     def __enter__(self) -> StudyStore:
         return self
@@ -179,22 +223,30 @@ class StudyStore:
 
     def rows(self, query: str, values: Iterable[Any] = ()) -> list[dict[str, Any]]:
         """What a query finds, as dictionaries. Raises `RecordError` if the file cannot be read."""
+        self._database.require_in_place()
         try:
-            cursor = self._connection.execute(query, tuple(values))
+            cursor = self._database.connection.execute(query, tuple(values))
             names = [one[0] for one in cursor.description]
             return [dict(zip(names, row, strict=True)) for row in cursor]
-        except sqlite3.Error as error:
+        except FAILURES as error:
             raise RecordError(f"{self.path} cannot be read: {error}") from error
+
+    def values(self, query: str) -> list[tuple[Any, ...]]:
+        """As `rows`, without the columns' names."""
+        return [tuple(row.values()) for row in self.rows(query)]
 
     @contextlib.contextmanager
     def transaction(self) -> Iterator[sqlite3.Connection]:
         """One transaction: all of it is on the disk when it ends, or nothing is and it raises."""
-        connection = self._connection
+        connection = self._database.connection
         try:
             connection.execute("BEGIN IMMEDIATE")
+            self._database.require_in_place()
             yield connection
             connection.execute("COMMIT")
-        except sqlite3.Error as error:
+            # What was removed or replaced meanwhile holds this row no more.
+            self._database.require_in_place()
+        except FAILURES as error:
             _roll_back(connection)
             raise RecordError(
                 f"{self.path} could not take the row: {error}; nothing was acknowledged. "
@@ -265,46 +317,57 @@ class StudyStore:
         return name
 
     def unreferenced_traces(self) -> list[Path]:
-        """Files among the traces that no answer names, from programs that were killed."""
+        """Traces that this program wrote and no answer names: of programs that were killed.
+
+        Raises `InputError` where one of them is a link, or has a second name.
+        """
         if not self.traces.is_dir():
             return []
         found = self.rows("SELECT traces FROM response")
         named = {name for row in found for name in json.loads(row["traces"])}
-        return sorted(path for path in self.traces.iterdir() if path.name not in named)
+        stray = sorted(
+            path for path in self.traces.iterdir() if is_trace(path.name) and path.name not in named
+        )
+        for path in stray:
+            require_plain(path)
+        return stray
 
     def compact(self) -> None:
         """Rewrite the file without anything deleted, and empty its write-ahead log.
 
         Raises `RecordError` while another program reads or writes it.
         """
-        try:
-            self._connection.execute("PRAGMA busy_timeout = 500")
-            self._empty_log()
-            self._connection.execute("VACUUM")
-            self._empty_log()
-        except sqlite3.Error as error:
-            raise RecordError(f"{self.path} could not be compacted: {error}") from error
-        finally:
-            self._connection.execute(f"PRAGMA busy_timeout = {_PATIENCE}")
-
-    def _empty_log(self) -> None:
-        if self._connection.execute("PRAGMA wal_checkpoint(TRUNCATE)").fetchone()[0]:
-            raise RecordError(
-                f"{self.path} is open in another program; close every session, then try again"
-            )
+        self._database.compact()
 
     def back_up(self) -> Path:
-        """A copy of the file as it is now, in `backups`. Raises `RecordError`."""
+        """A copy of the file as it is now, in `backups`; there whole or not at all. Raises
+        `RecordError`, also for a damaged file."""
+        self.require_whole()
         stamp = datetime.now(UTC).strftime("%Y%m%dT%H%M%S%fZ")
-        target = self.backups / f"{self.path.stem}-{stamp}{self.path.suffix}"
+        target = self.backups / f"{self.path.stem}-{stamp}-{secrets.token_hex(3)}{self.path.suffix}"
+        unfinished = target.with_name(f".{target.name}{_UNFINISHED}")
         try:
             target.parent.mkdir(exist_ok=True)
-            with contextlib.closing(sqlite3.connect(target)) as copy:
-                self._connection.backup(copy)
-        except (sqlite3.Error, OSError) as error:
-            target.unlink(missing_ok=True)
+            self._database.copy_to(unfinished)
+            unfinished.replace(target)
+            sync_folder(target.parent)
+        except (*FAILURES, OSError) as error:
+            with contextlib.suppress(OSError):
+                unfinished.unlink(missing_ok=True)
             raise RecordError(f"no backup could be written to {target}: {error}") from error
         return target
+
+    def backup_files(self) -> tuple[list[Path], list[Path]]:
+        """Backups, and what is left of those that were never finished."""
+        if not self.backups.is_dir():
+            return [], []
+        every = sorted(self.backups.iterdir())
+        name = re.compile(
+            rf"\.{re.escape(self.path.stem)}-\w+-\w+{re.escape(self.path.suffix + _UNFINISHED)}"
+            r"(-journal)?"
+        )
+        whole = [path for path in every if path.suffix == self.path.suffix and is_study(path)]
+        return whole, [path for path in every if name.fullmatch(path.name)]
 
 
 def insert(write: sqlite3.Connection, table: str, row: Row) -> None:
@@ -329,40 +392,6 @@ def _planned(trial: Trial, participant: str) -> Row:
         "pause_s": trial.pause,
         "seed": trial.seed,
     }
-
-
-def _connect(path: Path) -> sqlite3.Connection:
-    if sqlite3.sqlite_version_info < (3, 37):
-        raise RecordError(
-            f"this Python has SQLite {sqlite3.sqlite_version}; a study needs 3.37 or later, for "
-            "tables that check the types of what is written"
-        )
-    try:
-        connection = sqlite3.connect(path, isolation_level=None, timeout=_PATIENCE / 1000)
-    except sqlite3.Error as error:
-        raise RecordError(f"{path} cannot be opened: {error}; is the folder writable?") from error
-    try:
-        mode = connection.execute("PRAGMA journal_mode = WAL").fetchone()[0]
-        if mode != "wal":
-            raise RecordError(
-                f"{path} lies where no write-ahead log can be kept (journal_mode is {mode}); put "
-                "it on a local disk"
-            )
-        connection.execute("PRAGMA synchronous = FULL")
-        connection.execute("PRAGMA fullfsync = ON")
-        connection.execute("PRAGMA foreign_keys = ON")
-        connection.execute("PRAGMA secure_delete = ON")
-        # Journals of statements and sorting stay in memory: no copy of a row in a stray file.
-        connection.execute("PRAGMA temp_store = MEMORY")
-    except sqlite3.DatabaseError as error:
-        connection.close()
-        if "not a database" in str(error):
-            raise InputError(f"{path} is no study's file: {error}") from error
-        raise RecordError(f"{path} cannot be opened: {error}") from error
-    except RecordError:
-        connection.close()
-        raise
-    return connection
 
 
 def _roll_back(connection: sqlite3.Connection) -> None:

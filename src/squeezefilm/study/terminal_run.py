@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import dataclasses
 from collections.abc import Callable
+from contextlib import AbstractContextManager
 from pathlib import Path
 
 from squeezefilm import config
@@ -56,7 +57,7 @@ def run_session(
     consent: bool = False,
     acknowledge: Callable[[str], bool],
     tell: Callable[[str], None] = print,
-    progress: Progress | None = None,
+    progress: Callable[[], AbstractContextManager[Progress]] | None = None,
 ) -> str:
     """One session on the display that the participant's next trial needs. Returns how it ended.
 
@@ -65,7 +66,8 @@ def run_session(
     not calibrated). Without a participant somebody new is enrolled and named by `tell`; not so if
     the session cannot start.
     `conditions` is a TOML file of `SessionConditions`; `consent` counts beside what it says.
-    `acknowledge` is shown the statement on airborne ultrasound. Raises what `begin_session` and
+    `acknowledge` is shown the statement on airborne ultrasound. `progress` shows what goes on
+    while it is open; it is closed whenever anybody is asked. Raises what `begin_session` and
     `conduct` raise.
     """
     sitting = SessionConditions(consent=consent)
@@ -73,17 +75,24 @@ def run_session(
         sitting = config.load(SessionConditions, conditions)
         sitting = dataclasses.replace(sitting, consent=sitting.consent or consent)
     sitting.require_consent()
+    shown = progress or (lambda: contextlib.nullcontext(lambda _: None))
     who = participant or store.enrol()
     with contextlib.ExitStack() as closing:
         try:
             display = display_wanted(store, who)
             if display is None:
                 return f"participant {who} has answered every trial"
-            device, exposed = _device(
-                drive, store, display, amplitude_per_pickup, progress, closing
-            )
+            with shown() as step:
+                device, exposed = _device(
+                    drive, store, display, amplitude_per_pickup, step, closing
+                )
             acknowledged = exposed is not None and acknowledge(exposed.statement)
-            session = begin_session(store, who, device, sitting, exposed, acknowledged=acknowledged)
+            with shown() as step:
+                if exposed is not None:
+                    step("the device is verified: keep fingers off")
+                session = begin_session(
+                    store, who, device, sitting, exposed, acknowledged=acknowledged
+                )
         except BaseException:
             if participant is None:
                 remove_rows(store, who)
@@ -110,7 +119,7 @@ def _device(
     store: StudyStore,
     display: str,
     amplitude_per_pickup: MetrePerVolt | None,
-    progress: Progress | None,
+    tell: Progress,
     closing: contextlib.ExitStack,
 ) -> tuple[StudyDevice, Exposure | None]:
     if drive == "none":
@@ -122,13 +131,11 @@ def _device(
 
     if drive != "rehearsal":
         require_study_drive(drive)
-    tell = progress or (lambda _: None)
     found = load_display(display)
     duration = expected_duration(store.design) / len(store.design.displays)
-    exposed = exposure(found, duration, progress=progress)
+    exposed = exposure(found, duration, progress=tell)
     if drive == "rehearsal":
         tell("the twin's working point")
         return StudyTwin(found), exposed
-    tell("the device is verified: keep fingers off")
     device = SessionDevice(display, drive, store.traces, amplitude_per_pickup=amplitude_per_pickup)
     return closing.enter_context(device), exposed

@@ -80,3 +80,22 @@ def test_without_pyarrow_the_message_says_what_to_do(monkeypatch: pytest.MonkeyP
     monkeypatch.setitem(sys.modules, "pyarrow", None)
     with pytest.raises(InputError, match=r"install squeezefilm\[parquet\], or write CSV"):
         parquet_bytes(Table({"x_m": np.zeros(1)}))
+
+
+@settings(deadline=None)
+@given(st.text(alphabet="=+-@,;\t\r\n\"'\\\\ab# {}[]:", max_size=30))
+def test_no_text_of_the_metadata_becomes_a_formulas_cell(text: str) -> None:
+    import csv
+    import io
+    import tempfile
+
+    table = Table({"time_s": np.array([-1.5, 2.0])}, {"title": text, text: ["=1", text]})
+    written = csv_text(table)
+    for separator in ",;\t":
+        for row in csv.reader(io.StringIO(written), delimiter=separator):
+            for cell in row:
+                assert cell.lstrip()[:1] not in ("=", "+", "@")
+                assert not cell.lstrip().startswith("-") or float(cell.split(",")[0]) < 0
+    with tempfile.TemporaryDirectory() as folder:
+        (Path(folder) / "t.csv").write_text(written, encoding="utf-8", newline="")
+        assert same(table_from_csv(Path(folder) / "t.csv"), table)

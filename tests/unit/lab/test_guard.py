@@ -212,3 +212,27 @@ def test_sessions_outlive_a_crash_and_no_clean_end(tmp_path):
     assert not file.exists()
     assert again.session(session.secret) is None
     assert Keys(file).session(session.secret) is None
+
+
+def test_a_full_disk_burns_no_link(tmp_path, monkeypatch):
+    import errno
+    import os
+
+    def full(*_):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    keys = Keys(tmp_path / "keys")
+    first, _ = keys.use_link(keys.new_link())
+    link, code = keys.new_link("participant"), keys.new_code()
+    with monkeypatch.context() as patched:
+        patched.setattr(os, "open", full)
+        for entered in (keys.use_link(link), keys.use_code(code)):
+            session, _ = entered
+            assert keys.session(session.secret) == session
+    assert keys.use_link(link) is None
+    assert sorted(one.name for one in tmp_path.iterdir()) == ["keys"]
+    # What could not be kept is kept as soon as there is room.
+    assert Keys(tmp_path / "keys").session(session.secret) is None
+    keys.use_link(keys.new_link())
+    assert Keys(tmp_path / "keys").session(session.secret) == session
+    assert Keys(tmp_path / "keys").session(first.secret) == first

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import numpy as np
@@ -12,8 +13,10 @@ from squeezefilm.cli import app
 from squeezefilm.errors import InputError
 from squeezefilm.formats.traces import table_from_csv, table_from_parquet
 from squeezefilm.results import stamp
+from squeezefilm.session import trace_file
 from squeezefilm.session.export import export_trace
-from squeezefilm.session.record import TraceWriter, read_trace
+from squeezefilm.session.record import TraceWriter
+from squeezefilm.session.trace_reading import read_trace
 
 COLUMNS = ("time_s", "x_m")
 
@@ -162,3 +165,61 @@ def test_what_the_disk_refuses_later_is_told_at_the_next_call(
     monkeypatch.undo()
     writer.close()
     assert read_trace(tmp_path / "one.sqft").damage.whole
+
+
+def test_what_a_sync_failed_on_no_later_one_answers_for(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from squeezefilm.errors import RecordError
+    from squeezefilm.session import record
+
+    def refuse(_: int) -> None:
+        raise OSError(5, "Input/output error")
+
+    with TraceWriter(tmp_path / "one.sqft", COLUMNS, {}, sync_period=1e6) as writer:
+        writer.append(np.zeros((5, 2)))
+        writer.sync()
+        writer.append(np.zeros((5, 2)))
+        with monkeypatch.context() as patched:
+            patched.setattr(record.os, "fsync", refuse)
+            with pytest.raises(RecordError, match="Input/output error"):
+                writer.sync()
+        # The system forgets pages that it could not write: a sync that works says nothing of them.
+        writer.append(np.zeros((5, 2)))
+        writer.sync()
+        assert (writer.acknowledged, writer.synced) == (15, 5)
+
+
+def test_a_record_that_could_not_begin_leaves_its_name_free(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from squeezefilm.errors import RecordError
+    from squeezefilm.session import record
+
+    def refuse(_: int) -> None:
+        raise OSError(28, "No space left on device")
+
+    with monkeypatch.context() as patched:
+        patched.setattr(record.os, "fsync", refuse)
+        with pytest.raises(RecordError, match="No space left"):
+            TraceWriter(tmp_path / "one.sqft", COLUMNS, {})
+    assert list(tmp_path.iterdir()) == []
+    TraceWriter(tmp_path / "one.sqft", COLUMNS, {}).close()
+
+
+def test_a_block_without_rows_names_no_columns(tmp_path: Path) -> None:
+    """Four billion columns of which there is no row, and no metadata that name them."""
+    path = tmp_path / "one.sqft"
+    block = trace_file.block_bytes(trace_file.BlockKind.ROWS, 0, b"\xff\xff\xff\xff")
+    path.write_bytes(trace_file.file_header() + block)
+    found = read_trace(path)
+    assert found.columns == ()
+    assert "1 blocks are whole but say nothing" in " ".join(found.damage.sentences)
+
+
+def test_a_pipe_is_not_waited_for(tmp_path: Path) -> None:
+    if not hasattr(os, "mkfifo"):
+        pytest.skip("there are no pipes in folders here")
+    os.mkfifo(tmp_path / "pipe.sqft")
+    with pytest.raises(InputError, match="it is no file"):
+        read_trace(tmp_path / "pipe.sqft")

@@ -180,3 +180,70 @@ def test_an_export_is_replaced_and_other_peoples_files_are_not(
     assert (target / "mine.txt").read_text() == "mine"
     with pytest.raises(InputError, match="not known"):
         export_study(store, "excel")  # type: ignore[arg-type]
+
+
+def test_a_link_among_an_exports_files_is_left(store: StudyStore, tmp_path: Path) -> None:
+    target = tmp_path / "precious.txt"
+    target.write_text("precious")
+    folder = export_study(store, "psych-ds")
+    (folder / "README.md").unlink()
+    (folder / "README.md").symlink_to(target)
+    with pytest.raises(InputError, match=r"has files of its own \(README\.md\)"):
+        export_study(store, "psych-ds")
+    (folder / "README.md").unlink()
+    (folder / "data").rename(tmp_path / "data")
+    (folder / "data").symlink_to(tmp_path / "data")
+    with pytest.raises(InputError, match=r"has files of its own \(data\)"):
+        export_study(store, "psych-ds")
+    assert target.read_text() == "precious"
+    assert all(one.stat().st_size for one in (tmp_path / "data").iterdir())
+
+
+@pytest.mark.parametrize("mark", ["", "{", "[]", '{"files": 1}', "[" * 100_000])
+def test_a_damaged_mark_is_one_message(store: StudyStore, mark: str) -> None:
+    folder = export_study(store, "csv")
+    (folder / ".squeezefilm-export.json").write_text(mark)
+    with pytest.raises(InputError, match="remove this export by hand"):
+        export_study(store, "csv")
+
+
+def test_no_cell_of_any_export_is_a_formula(tmp_path: Path) -> None:
+    from squeezefilm.study.design import StudyDesign
+    from squeezefilm.study.exports import FORMATS
+    from squeezefilm.study.stimuli import Grating, Stimulus
+
+    evil = "cmd|' /C calc'!A0"
+    # Names of stimuli are printable; texts of a sitting are any.
+    names = {f"{begin}{evil}": (k + 1) * 1e-3 for k, begin in enumerate(("=", "+", "-", "@", "＝"))}
+    design = StudyDesign(
+        name="small",
+        title=f"={evil}",
+        displays=("biet2008-plate",),
+        task="match-to-sample",
+        stimuli=tuple(Stimulus(name, at, "period") for name, at in names.items()),
+        alternatives=tuple(Grating(name, at, "period") for name, at in names.items()),
+        note=f"={evil}",
+    )
+    texts = ("room", "note", "masking_noise", "skin_moisture_method", "consent_form")
+    begins = ("\t", "\r", "\n=", " =", "'=")
+    written = {name: f"{begin}{evil}" for name, begin in zip(texts, begins, strict=True)}
+    conditions = SessionConditions(consent=True, finger_orientation=-0.5, **written)
+    with StudyStore.create(tmp_path / "study.sqlite", design, 7) as found:
+        device = Bench()
+        begun = begin_session(found, found.enrol(), device, conditions, LOUD, acknowledged=True)
+        conduct(StudyRun(found, begun), device, Script())
+        folders = [export_study(found, format) for format in FORMATS]
+    negative = 0
+    for path in (one for folder in folders for one in folder.rglob("*.[ct]sv")):
+        kind = "excel" if path.suffix == ".csv" else "excel-tab"
+        for row in csv.reader(io.StringIO(path.read_bytes().decode(), newline=""), kind):
+            for cell in row:
+                # A number may begin with its sign, and stays one; nothing else may.
+                if cell.lstrip()[:1] in ("=", "+", "-", "@", "＝") or cell[:1] in (
+                    "\t",
+                    "\r",
+                    "\n",
+                ):
+                    assert float(cell) == -0.5
+                    negative += 1
+    assert negative == 3

@@ -131,3 +131,56 @@ def test_files_that_are_no_studies_are_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="station"):
         StudyStore.create(tmp_path / "x.sqlite", gratings(), 7, station=3, stations=3)
     assert not (tmp_path / "x.sqlite").exists()
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["../../escaped.txt", "/escaped.txt", "..", "", ".", "a/b.csv", "con.csv", "x" * 300, "\u0000"],
+)
+def test_a_traces_name_that_leads_elsewhere_is_refused(tmp_path: Path, name: str) -> None:
+    import json
+
+    (tmp_path / "ours").mkdir()
+    (tmp_path / "theirs" / "deep").mkdir(parents=True)
+    (tmp_path / "escaped.txt").write_text("theirs")
+    other = tmp_path / "theirs" / "deep" / "other.sqlite"
+    _station(other, 1, people=1).close()
+    connection = sqlite3.connect(other, isolation_level=None)
+    connection.execute("UPDATE response SET traces = ?", [json.dumps([name])])
+    connection.close()
+    with _station(tmp_path / "ours" / "study.sqlite", 0, people=1) as store:
+        before, files = _contents(store), sorted(tmp_path.rglob("*"))
+        with pytest.raises(InputError, match="has traces = "):
+            merge(store, other)
+        assert _contents(store) == before
+        assert sorted(tmp_path.rglob("*")) == files
+    with pytest.raises(InputError, match="was not written by this program"):
+        StudyStore.open(other)
+
+
+def test_a_participant_whose_pseudonym_is_a_path_is_refused(tmp_path: Path) -> None:
+    other = tmp_path / "other.sqlite"
+    with StudyStore.create(other, gratings(), 7) as store:
+        store.enrol()
+    connection = sqlite3.connect(other, isolation_level=None)
+    connection.execute("UPDATE participant SET uuid = '../../escaped'")
+    connection.execute("UPDATE trial SET participant = '../../escaped'")
+    connection.close()
+    # It would be the name of a folder in a BIDS export.
+    with pytest.raises(InputError, match=r"participant '../../escaped' has uuid"):
+        StudyStore.open(other)
+
+
+def test_a_link_among_anothers_traces_is_not_followed(tmp_path: Path) -> None:
+    (tmp_path / "secret.txt").write_text("of this machine")
+    other = tmp_path / "b.sqlite"
+    with _station(other, 1, people=1) as theirs:
+        trace = next(theirs.traces.iterdir())
+        trace.unlink()
+        trace.symlink_to(tmp_path / "secret.txt")
+    with _station(tmp_path / "a.sqlite", 0, people=1) as store:
+        before = _contents(store)
+        with pytest.raises(InputError, match="is a link"):
+            merge(store, other)
+        assert _contents(store) == before
+        assert not (store.traces / trace.name).exists()

@@ -14,6 +14,7 @@ from squeezefilm.errors import InputError
 from squeezefilm.study.conduct import conduct
 from squeezefilm.study.design import StudyDesign
 from squeezefilm.study.device import Exploration, NoDevice
+from squeezefilm.study.exports import export_study
 from squeezefilm.study.run import Response, StudyRun
 from squeezefilm.study.sessions import display_wanted
 from squeezefilm.study.stimuli import Stimulus
@@ -260,3 +261,55 @@ def test_a_break_goes_on_where_it_was_and_starts_once(
             assert again is not None
             assert again.token == shown.token
             assert again.rest == pytest.approx(left, abs=2e-3)
+
+
+@pytest.mark.parametrize("step", [3600.0, -3600.0])
+def test_a_clock_that_is_set_changes_no_answer_and_no_break(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, step: float
+) -> None:
+    from datetime import UTC, datetime, timedelta
+
+    from squeezefilm.study.sessions import end_session
+
+    wall, ticks = [0.0], [1000.0]
+
+    def now() -> str:
+        at = datetime(2026, 11, 1, 12, tzinfo=UTC) + timedelta(seconds=wall[0])
+        return at.isoformat(timespec="milliseconds")
+
+    def tick() -> float:
+        ticks[0] += 1.0
+        return ticks[0]
+
+    for room in ("run", "conduct", "sessions", "store"):
+        monkeypatch.setattr(f"squeezefilm.study.{room}.utc_now", now)
+    design = dataclasses.replace(gratings(1), blocks=2, break_between_blocks=60.0)
+    with StudyStore.create(tmp_path / "a.sqlite", design, 7) as store:
+        begun = session(store, store.enrol()).session["uuid"]
+        run, device = StudyRun(store, begun, clock=lambda: ticks[0]), NoDevice()
+        expected, told = [], []
+        while (shown := run.next_trial()) is not None:
+            # The clock is set in the middle of every trial, and of every break.
+            wall[0] += step
+            if shown.rest:
+                assert shown.rest == 60.0
+                ticks[0] += 20.0
+                again = run.next_trial()
+                assert again is not None
+                assert again.rest == 40.0
+            choice = shown.trial.alternatives[0] if shown.trial.asks else ""
+            expected.append((shown.trial.number, choice))
+            begun_at, ended_at = tick(), tick()
+            answer = Response(
+                choice=choice, response_time=1.0, started_monotonic=begun_at,
+                ended_monotonic=ended_at,
+            )  # fmt: skip
+            told.append(run.respond(shown.token, answer).number)
+        end_session(store, begun, device)
+        rows = store.rows(WHERE)
+        assert [(row["number"], row["choice"]) for row in rows] == expected
+        assert told == [number for number, _ in expected]
+        assert {row["ended_monotonic_s"] - row["started_monotonic_s"] for row in rows} == {1.0}
+        assert len(expected) == 9
+    with StudyStore.open(tmp_path / "a.sqlite") as store:
+        assert export_study(store, "csv").is_dir()

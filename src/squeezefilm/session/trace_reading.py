@@ -1,0 +1,198 @@
+"""Reading a trace: every whole block of whatever is left of its file, and what is missing."""
+
+from __future__ import annotations
+
+import json
+import mmap
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from squeezefilm.errors import InputError
+from squeezefilm.quantities import FloatArray
+from squeezefilm.session import trace_file as file
+
+
+@dataclass(frozen=True, slots=True)
+class TraceEvent:
+    """Something that happened: its kind, its fields, and how many rows stood before it."""
+
+    kind: str
+    fields: Mapping[str, Any]
+    row: int
+
+
+@dataclass(frozen=True, slots=True)
+class Damage:
+    """What is missing of a trace.
+
+    `lost_bytes` belong to no whole block, `lost_blocks` are missing by their numbers, `closed`
+    says whether the writer came to its end, `sentences` say all of it for a person.
+    """
+
+    lost_bytes: int
+    lost_blocks: int
+    closed: bool
+    sentences: tuple[str, ...]
+
+    @property
+    def whole(self) -> bool:
+        """Whether the trace is all that was written, to the end."""
+        return self.closed and not self.lost_bytes and not self.lost_blocks
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Trace:
+    """A recorded session: `rows` of shape (n, columns) with NaN for none, events, metadata.
+
+    The columns' names carry their units.
+    """
+
+    columns: tuple[str, ...]
+    rows: FloatArray
+    events: tuple[TraceEvent, ...]
+    metadata: Mapping[str, Any]
+    damage: Damage
+
+    def column(self, name: str) -> FloatArray:
+        """The column of that name, shape (n,). Raises `InputError` if there is none."""
+        if name not in self.columns:
+            raise InputError(f"there is no column '{name}'; there are {', '.join(self.columns)}")
+        return self.rows[:, self.columns.index(name)]
+
+
+def read_trace(path: str | Path) -> Trace:
+    """The trace in a file: every whole block of it, and what is missing.
+
+    Content that is cut, damaged or no trace at all raises nothing; `Trace.damage` says so.
+
+    Raises:
+        InputError: a file that cannot be opened, or what is no file (a pipe has no end).
+    """
+    if Path(path).exists() and not Path(path).is_file():
+        raise InputError(f"cannot read the trace {path}: it is no file")
+    try:
+        with Path(path).open("rb") as stream:
+            if os.fstat(stream.fileno()).st_size == 0:
+                return _trace(b"")
+            with mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ) as data:
+                return _trace(data)
+    except (OSError, ValueError) as error:
+        raise InputError(f"cannot read the trace {path}: {error}") from error
+
+
+@dataclass(slots=True)
+class _Found:
+    """What was found so far in a file."""
+
+    metadata: dict[str, Any] | None = None
+    events: list[TraceEvent] = field(default_factory=list)
+    tables: list[tuple[int, int, int]] = field(default_factory=list)
+    rows: int = 0
+    next_number: int = 0
+    lost_blocks: int = 0
+    lost_bytes: int = 0
+    closed: bool = False
+    gaps: list[file.Gap] = field(default_factory=list)
+    misread: int = 0
+
+
+def _trace(data: bytes | mmap.mmap) -> Trace:
+    found = _Found()
+    for part in file.blocks(data):
+        if isinstance(part, file.Gap):
+            found.lost_bytes += part.end - part.start
+            found.gaps.append(part)
+        elif part.number < found.next_number:
+            found.misread += 1
+        else:
+            found.lost_blocks += part.number - found.next_number
+            found.next_number = part.number + 1
+            _take(found, part, data)
+    metadata = found.metadata or {}
+    columns = _columns(metadata, found)
+    kept = [table for table in found.tables if table[2] == len(columns)]
+    found.misread += len(found.tables) - len(kept)
+    rows = np.empty((sum(count for _, count, _ in kept), len(columns)))
+    at = 0
+    for start, count, width in kept:
+        values = np.frombuffer(data[start : start + 8 * count * width], dtype="<f8")
+        rows[at : at + count] = values.reshape(count, width)
+        at += count
+    return Trace(columns, rows, tuple(found.events), metadata, _damage(found, data))
+
+
+def _take(found: _Found, block: file.Block, data: bytes | mmap.mmap) -> None:
+    payload = data[block.start : block.start + block.length]
+    match block.kind:
+        case file.BlockKind.ROWS:
+            width = file.ROW_HEAD.unpack_from(payload)[0] if block.length >= 4 else 0
+            count, rest = divmod(block.length - 4, 8 * width) if width else (0, 1)
+            if rest or not count:
+                found.misread += 1
+                return
+            found.tables.append((block.start + file.ROW_HEAD.size, count, width))
+            found.rows += count
+        case file.BlockKind.CLOSING:
+            found.closed = True
+        case _:
+            said = _json_object(payload)
+            if said is None:
+                found.misread += 1
+            elif block.kind is file.BlockKind.METADATA:
+                found.metadata = said
+            else:
+                row, fields = said.get("row"), said.get("fields")
+                found.events.append(
+                    TraceEvent(
+                        str(said.get("kind", "")),
+                        fields if isinstance(fields, dict) else {},
+                        row if isinstance(row, int) else found.rows,
+                    )
+                )
+
+
+def _columns(metadata: Mapping[str, Any], found: _Found) -> tuple[str, ...]:
+    named = metadata.get("columns")
+    if isinstance(named, list) and named:
+        return tuple(str(name) for name in named)
+    # The names went with the metadata; the values did not.
+    width = found.tables[0][2] if found.tables else 0
+    return tuple(f"column_{number + 1}" for number in range(width))
+
+
+def _damage(found: _Found, data: bytes | mmap.mmap) -> Damage:
+    said = []
+    version = file.header_version(data)
+    if version is None:
+        said.append("the file's header is missing or damaged")
+    elif version != file.VERSION:
+        said.append(f"the file is of version {version}; this program reads {file.VERSION}")
+    if found.metadata is None:
+        said.append("the metadata are lost, and with them the columns' names")
+    if found.lost_blocks:
+        said.append(f"{found.lost_blocks} blocks are missing by their numbers")
+    for gap in found.gaps[:5]:
+        said.append(f"bytes {gap.start} to {gap.end - 1} belong to no whole block")
+    if len(found.gaps) > 5:
+        said.append(f"and {len(found.gaps) - 5} more such places")
+    if found.misread:
+        said.append(f"{found.misread} blocks are whole but say nothing this program understands")
+    if not found.closed:
+        said.append(
+            "the record was not closed: the program ended before; all that was acknowledged and "
+            "not damaged since is here"
+        )
+    return Damage(found.lost_bytes, found.lost_blocks, found.closed, tuple(said))
+
+
+def _json_object(payload: bytes) -> dict[str, Any] | None:
+    try:
+        value = json.loads(payload)
+    except (ValueError, RecursionError):
+        return None
+    return value if isinstance(value, dict) else None
