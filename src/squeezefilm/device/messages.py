@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import struct
-from dataclasses import astuple, dataclass
+from dataclasses import dataclass
 from typing import ClassVar, Self
 
 import numpy as np
@@ -34,7 +34,7 @@ class Message:
 
     def payload(self) -> bytes:
         """The payload's bytes. Raises `InputError` for a value the layout cannot carry."""
-        values = astuple(self)
+        values = [getattr(self, name) for name in self.__slots__]
         if any(isinstance(value, float) and not math.isfinite(value) for value in values):
             raise InputError(f"{self} holds a voltage that is not finite; send a finite one")
         try:
