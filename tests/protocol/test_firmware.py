@@ -34,21 +34,6 @@ HIGHEST = 0x44FA0000  # 2000 V
 pytestmark = pytest.mark.xdist_group("firmware")
 
 
-@pytest.fixture(scope="module")
-def library(tmp_path_factory: pytest.TempPathFactory) -> Library:
-    return Library(tmp_path_factory.mktemp("firmware"))
-
-
-@pytest.fixture(scope="module", params=["plain", "sanitized"])
-def firmware(
-    request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
-) -> Library | Sanitized:
-    if request.param == "sanitized":
-        return Sanitized(tmp_path_factory.mktemp("sanitized"))
-    made: Library = request.getfixturevalue("library")
-    return made
-
-
 def test_framing_in_c(library: Library) -> None:
     functions = library.functions
     assert functions.sf_crc32(b"123456789", ctypes.c_size_t(9)) == 0xCBF43926
