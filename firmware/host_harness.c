@@ -1,15 +1,37 @@
-/* The firmware on a host, for tests: one machine, driven through a shared library. */
-#include "squeezefilm_fw.h"
+/* The firmware in tests: one machine, driven by a script of calls. It runs on this computer, with
+ * sanitizers or without, and built for Arm in an emulator; tests/protocol/recording.py writes the
+ * script and what the Python twin did.
+ *
+ * Every number in a script is 32 bits, little-endian. What is written after a call is what it sent
+ * (its count, then its bytes), and after a tick its level.
+ */
+#include "host_harness.h"
 
 #include <string.h>
 
 static sf_machine machine;
-static uint8_t answers[1 << 20];
-static size_t answer_count;
+static const uint8_t *script;
+static uint8_t *record;
+static size_t recorded, record_room;
 static uint32_t carrier_level, carrier_frequency;
 static int carrier_enabled;
 static sf_finger finger;
 static uint32_t pickup_level;
+
+static void put(const void *bytes, size_t count)
+{
+    if (recorded + count <= record_room)
+        memcpy(record + recorded, bytes, count);
+    recorded += count;
+}
+
+static uint32_t number(void)
+{
+    uint32_t value = (uint32_t)script[0] | (uint32_t)script[1] << 8 | (uint32_t)script[2] << 16 |
+                     (uint32_t)script[3] << 24;
+    script += 4;
+    return value;
+}
 
 static void carrier(void *board, int enabled, uint32_t level, uint32_t frequency)
 {
@@ -22,10 +44,7 @@ static void carrier(void *board, int enabled, uint32_t level, uint32_t frequency
 static void send(void *board, const uint8_t *bytes, size_t count)
 {
     (void)board;
-    if (answer_count + count <= sizeof answers) {
-        memcpy(answers + answer_count, bytes, count);
-        answer_count += count;
-    }
+    put(bytes, count);
 }
 
 static sf_finger sensor(void *board)
@@ -40,53 +59,36 @@ static uint32_t pickup(void *board)
     return pickup_level;
 }
 
-void host_boot(const uint32_t *own, uint32_t seed, int has_sensor, int has_pickup, uint32_t period);
-void host_feed(int32_t x, int32_t y, int touching, uint32_t level);
-void host_receive(const uint8_t *bytes, size_t count, uint32_t now);
-size_t host_outgoing(void);
-const uint8_t *host_answers(void);
-uint32_t host_tick(uint32_t now);
-void host_trip(void);
-void host_snapshot(int64_t *out);
-
-void host_boot(const uint32_t *own, uint32_t seed, int has_sensor, int has_pickup, uint32_t period)
+static void boot(void)
 {
-    sf_limits limits = {own[0], own[1], own[2], own[3], own[4], own[5], own[6], own[7]};
-    sf_board board = {NULL, carrier, send, has_sensor ? sensor : NULL, has_pickup ? pickup : NULL,
-                      period};
-    answer_count = 0;
-    sf_boot(&machine, &limits, seed, &board);
+    sf_limits own = {number(), 0, 0, 0, 0, 0, 0, 0};
+    sf_board board = {NULL, carrier, send, NULL, NULL, 0};
+    uint32_t seed;
+    own.slew = number();
+    own.continuous_voltage = number();
+    own.heat = number();
+    own.lowest_frequency = number();
+    own.highest_frequency = number();
+    own.duty = number();
+    own.duty_window = number();
+    seed = number();
+    if (number()) {
+        board.sensor = sensor;
+        board.pickup = pickup;
+    }
+    board.tick_period = number();
+    sf_boot(&machine, &own, seed, &board);
 }
 
-void host_feed(int32_t x, int32_t y, int touching, uint32_t level)
+static void feed(void)
 {
-    finger.x = x;
-    finger.y = y;
-    finger.touching = touching;
-    pickup_level = level;
+    finger.x = (int32_t)number();
+    finger.y = (int32_t)number();
+    finger.touching = (int)number();
+    pickup_level = number();
 }
 
-void host_receive(const uint8_t *bytes, size_t count, uint32_t now)
-{
-    for (size_t i = 0; i < count; i++)
-        sf_receive(&machine, bytes[i], now);
-}
-
-/* How many bytes lie in host_answers since the last call. */
-size_t host_outgoing(void)
-{
-    size_t count = answer_count;
-    answer_count = 0;
-    return count;
-}
-
-const uint8_t *host_answers(void) { return answers; }
-
-uint32_t host_tick(uint32_t now) { return sf_tick(&machine, now); }
-
-void host_trip(void) { sf_trip(&machine); }
-
-void host_snapshot(int64_t *out)
+static void snapshot(void)
 {
     const int64_t values[] = {
         machine.state, machine.fault, machine.level, machine.frequency, machine.heat,
@@ -94,5 +96,56 @@ void host_snapshot(int64_t *out)
         machine.damaged, machine.late_ticks, machine.playing, machine.queue_count, machine.dry,
         machine.late, carrier_enabled, carrier_level, carrier_frequency,
     };
-    memcpy(out, values, sizeof values);
+    put(values, sizeof values);
+}
+
+/* Puts the count of what was sent since `from` in the room that was left for it. */
+static void end_of_call(size_t from)
+{
+    uint32_t count = (uint32_t)(recorded - from - 4);
+    if (recorded <= record_room)
+        memcpy(record + from, &count, sizeof count);
+}
+
+static void none_sent_yet(void) { put("\0\0\0\0", 4); }
+
+size_t host_run(const uint8_t *calls, size_t count, uint8_t *out, size_t room)
+{
+    const uint8_t *end = calls + count;
+    script = calls;
+    record = out;
+    record_room = room;
+    recorded = 0;
+    while (script < end) {
+        uint8_t call = *script++;
+        size_t from = recorded;
+        if (call == 'B') {
+            boot();
+        } else if (call == 'F') {
+            feed();
+        } else if (call == 'X') {
+            sf_trip(&machine);
+        } else if (call == 'S') {
+            snapshot();
+        } else if (call == 'T') {
+            uint32_t level;
+            none_sent_yet();
+            level = sf_tick(&machine, number());
+            end_of_call(from);
+            put(&level, sizeof level);
+        } else {
+            uint32_t now = number(), left = number();
+            none_sent_yet();
+            for (; left; left--)
+                sf_receive(&machine, *script++, now);
+            end_of_call(from);
+        }
+    }
+    return recorded;
+}
+
+void host_levels(const uint32_t *bits, size_t count, int32_t *out)
+{
+    for (size_t i = 0; i < count; i++)
+        out[i] = sf_level(bits[i]);
 }

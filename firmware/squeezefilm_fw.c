@@ -12,6 +12,10 @@
 #define MOST_AHEAD 1000000
 #define SHORTEST_REPORT 200u
 #define LONGEST_REPORT 1000000000u
+#define CRC_START 0xFFFFFFFFu
+#define CRC_RESIDUE 0xDEBB20E3u /* what a frame with its own CRC behind it leaves */
+#define MINUS_ZERO 0x80000000u
+#define HIGHEST_VOLTS 0x44FA0000u /* 2000 V */
 #define HEADER 4
 #define OVERHEAD 8
 
@@ -50,14 +54,26 @@ static void put32(uint8_t *p, uint32_t value)
     put16(p + 2, value >> 16);
 }
 
+/* Four bits at a time: 64 bytes of table, where eight bits would take 1 KiB of a small flash and of
+ * its cache. */
+static uint32_t crc_step(uint32_t crc, uint8_t byte)
+{
+    static const uint32_t table[16] = {
+        0x00000000u, 0x1DB71064u, 0x3B6E20C8u, 0x26D930ACu,
+        0x76DC4190u, 0x6B6B51F4u, 0x4DB26158u, 0x5005713Cu,
+        0xEDB88320u, 0xF00F9344u, 0xD6D6A3E8u, 0xCB61B38Cu,
+        0x9B64C2B0u, 0x86D3D2D4u, 0xA00AE278u, 0xBDBDF21Cu,
+    };
+    crc ^= byte;
+    crc = (crc >> 4) ^ table[crc & 15u];
+    return (crc >> 4) ^ table[crc & 15u];
+}
+
 uint32_t sf_crc32(const uint8_t *bytes, size_t count)
 {
-    uint32_t crc = 0xFFFFFFFFu;
-    for (size_t i = 0; i < count; i++) {
-        crc ^= bytes[i];
-        for (int bit = 0; bit < 8; bit++)
-            crc = (crc >> 1) ^ ((crc & 1u) ? 0xEDB88320u : 0u);
-    }
+    uint32_t crc = CRC_START;
+    for (size_t i = 0; i < count; i++)
+        crc = crc_step(crc, bytes[i]);
     return ~crc;
 }
 
@@ -76,37 +92,19 @@ size_t sf_cobs_encode(const uint8_t *bytes, size_t count, uint8_t *out)
     return end;
 }
 
-int sf_cobs_decode(const uint8_t *bytes, size_t count, uint8_t *out)
+/* In integers, since most small processors have no binary64. A positive binary32 is
+ * mantissa * 2^-places, and such numbers, infinity and NaN among them, are ordered as their bits. */
+int32_t sf_level(uint32_t bits)
 {
-    size_t at = 0;
-    int length = 0;
-    while (at < count) {
-        size_t code = bytes[at], end = at + code;
-        if (code == 0 || end > count)
-            return -1;
-        for (size_t i = at + 1; i < end; i++) {
-            if (!bytes[i])
-                return -1;
-            out[length++] = bytes[i];
-        }
-        if (code < 255 && end < count)
-            out[length++] = 0;
-        at = end;
-    }
-    return length;
-}
-
-/* uV of a binary32 in V, to the nearest; -1 if NaN, infinite, negative or above 2000 V. */
-static int64_t level_of(const uint8_t *p)
-{
-    uint32_t bits = get32(p);
-    float volts;
-    if ((bits & 0x7F800000u) == 0x7F800000u)
+    uint32_t places = 150u - (bits >> 23), mantissa = (bits & 0x7FFFFFu) | 0x800000u;
+    if (bits == MINUS_ZERO)
+        return 0;
+    if (bits > HIGHEST_VOLTS)
         return -1;
-    memcpy(&volts, &bits, sizeof volts);
-    if (!(volts >= 0.0f && volts <= 2000.0f))
-        return -1;
-    return (int64_t)((double)volts * 1e6 + 0.5);
+    /* mantissa * 10^6 is below 2^44: with more places it is less than half. At 2000 V there are 13. */
+    if (places > 45)
+        return 0;
+    return (int32_t)(((uint64_t)mantissa * 1000000u + ((uint64_t)1 << (places - 1))) >> places);
 }
 
 /* --- output ------------------------------------------------------------------------------ */
@@ -165,14 +163,31 @@ static uint32_t of_envelope(sf_machine *m)
     return m->envelope[index];
 }
 
+/* How many queued amplitudes are due before `time`. Their times rise, so it takes 10 looks and not
+ * 512, which would be longer than a tick may take. */
+static uint32_t queued_before(const sf_machine *m, uint32_t time)
+{
+    uint32_t least = 0, most = m->queue_count;
+    while (least < most) {
+        uint32_t middle = (least + most) / 2;
+        if (until(m->queue_time[(m->queue_first + middle) % SF_LONGEST_QUEUE], time) < 0)
+            least = middle + 1;
+        else
+            most = middle;
+    }
+    return least;
+}
+
 static uint32_t of_queue(sf_machine *m)
 {
-    while (m->queue_count && until(m->queue_time[m->queue_first], m->now) <= 0) {
-        m->played = m->queue_time[m->queue_first];
-        m->held = m->queue_level[m->queue_first];
+    uint32_t due = queued_before(m, m->now + 1);
+    if (due) {
+        uint32_t newest = (m->queue_first + due - 1) % SF_LONGEST_QUEUE;
+        m->played = m->queue_time[newest];
+        m->held = m->queue_level[newest];
         m->has_played = 1;
-        m->queue_first = (m->queue_first + 1) % SF_LONGEST_QUEUE;
-        m->queue_count--;
+        m->queue_first = (newest + 1) % SF_LONGEST_QUEUE;
+        m->queue_count -= due;
     }
     if (m->queue_count == 0 && m->has_played) {
         uint32_t held = m->now - m->played;
@@ -330,7 +345,7 @@ void sf_trip(sf_machine *m) { fail(m, SF_TRIPPED); }
 static int set_limits(sf_machine *m, const uint8_t *p)
 {
     const sf_limits *own = &m->own;
-    int64_t voltage = level_of(p), continuous = level_of(p + 8);
+    int64_t voltage = sf_level(get32(p)), continuous = sf_level(get32(p + 8));
     sf_limits asked;
     if (m->state != SF_OFF || m->level > 0)
         return SF_BAD_STATE;
@@ -386,13 +401,14 @@ static int tune(sf_machine *m, uint32_t frequency, int state)
 /* Writes nothing unless every amplitude is within the limits: one bad one refuses all. */
 static int take_levels(const sf_machine *m, const uint8_t *p, uint32_t count, uint32_t *out)
 {
+    uint32_t levels[SF_MOST_LEVELS];
     for (uint32_t i = 0; i < count; i++) {
-        int64_t level = level_of(p + 4 * i);
-        if (level < 0 || level > m->limits.voltage)
+        int32_t level = sf_level(get32(p + 4 * i));
+        if (level < 0 || (uint32_t)level > m->limits.voltage)
             return 0;
+        levels[i] = (uint32_t)level;
     }
-    for (uint32_t i = 0; i < count; i++)
-        out[i] = (uint32_t)level_of(p + 4 * i);
+    memcpy(out, levels, count * sizeof *levels);
     return 1;
 }
 
@@ -424,9 +440,8 @@ static int play_timed(sf_machine *m, const uint8_t *p)
     if (!take_levels(m, p + 7, count, levels) || period == 0 || ahead > MOST_AHEAD ||
         ahead < -MOST_AHEAD)
         return SF_BAD_VALUE;
-    while (timed && kept < m->queue_count &&
-           until(m->queue_time[(m->queue_first + kept) % SF_LONGEST_QUEUE], start) < 0)
-        kept++;
+    if (timed)
+        kept = queued_before(m, start);
     while (timed && m->has_played && skip < count && until(start + skip * period, m->played) <= 0)
         skip++;
     if (kept + count - skip > SF_LONGEST_QUEUE)
@@ -630,35 +645,59 @@ static void send_info(sf_machine *m)
     send(m, INFO, frame, 44);
 }
 
+static void keep(sf_machine *m, uint8_t byte)
+{
+    m->crc = crc_step(m->crc, byte);
+    m->frame[m->frame_count++] = byte;
+}
+
+/* Undoes COBS and goes on with the CRC byte by byte, so that the byte that ends a frame finds little
+ * left to do. A frame that fits is one byte shorter than what it was stuffed to. */
+static void unstuff(sf_machine *m, uint8_t byte)
+{
+    int first = m->stuffed == 0;
+    if (m->stuffed <= SF_LONGEST_FRAME + 1)
+        m->stuffed++;
+    if (m->stuffed > SF_LONGEST_FRAME + 1)
+        return;
+    if (m->block_left) {
+        m->block_left--;
+        keep(m, byte);
+    } else {
+        m->block_left = byte - 1u;
+        if (!first)
+            keep(m, 0);
+    }
+}
+
 void sf_receive(sf_machine *m, uint8_t byte, uint32_t now)
 {
-    uint8_t frame[SF_LONGEST_FRAME + 2];
-    int count, reason;
+    uint32_t count = m->frame_count;
+    int whole, reason;
     if (byte) {
-        if (m->stuffed_count < sizeof m->stuffed)
-            m->stuffed[m->stuffed_count++] = byte;
+        unstuff(m, byte);
         return;
     }
-    if (m->stuffed_count == 0)
+    if (m->stuffed == 0)
         return;
-    count = sf_cobs_decode(m->stuffed, m->stuffed_count, frame);
-    m->stuffed_count = 0;
-    if (count < OVERHEAD || count > SF_LONGEST_FRAME ||
-        sf_crc32(frame, (size_t)count - 4) != get32(frame + count - 4)) {
+    whole = m->stuffed <= SF_LONGEST_FRAME + 1 && m->block_left == 0 && count >= OVERHEAD &&
+            m->crc == CRC_RESIDUE;
+    m->stuffed = m->block_left = m->frame_count = 0;
+    m->crc = CRC_START;
+    if (!whole)
         m->damaged++;
-        advance(m, now);
-        return;
-    }
     advance(m, now);
-    reason = take(m, frame, (size_t)count - OVERHEAD);
+    if (!whole)
+        return;
+    reason = take(m, m->frame, count - OVERHEAD);
     if (reason == SF_ACCEPTED) {
         m->accepted++;
         m->heard = m->now;
     } else {
         m->refused++;
     }
-    answer(m, get16(frame + 2), reason);
-    if (reason == SF_ACCEPTED && frame[1] == ASK_INFO)
+    answer(m, get16(m->frame + 2), reason);
+    if (reason == SF_ACCEPTED && m->frame[1] == ASK_INFO)
         send_info(m);
 }
 
@@ -669,5 +708,6 @@ void sf_boot(sf_machine *m, const sf_limits *own, uint32_t seed, const sf_board 
     m->token = seed ? seed : 0x9E3779B9u;
     m->period = 1;
     m->tile_pitch = 1;
+    m->crc = CRC_START;
     m->board = *board;
 }

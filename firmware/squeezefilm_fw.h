@@ -1,9 +1,8 @@
 /* The reference firmware's state machine and framing: C99, no allocation, no libm, no clock.
  *
  * The twin of src/squeezefilm/device/machine.py; docs/protocol.md states the rules. Everything is
- * integer (us, uV, mHz, um) but the volts on the wire: IEEE binary32, turned into uV by one exact
- * multiplication in binary64. Do not compile it with -ffast-math. Not reentrant: call it from one
- * context, or mask interrupts around it.
+ * integer (us, uV, mHz, um); the volts on the wire, IEEE binary32, are turned into uV in integers too,
+ * exactly. Not reentrant: call it from one context, or mask interrupts around it.
  *
  * A board gives its hooks (sf_board) and three calls: sf_receive for every byte from the host,
  * sf_tick every tick_period from a hardware timer (at least every 1 ms), sf_trip from the
@@ -86,8 +85,8 @@ typedef struct {
     uint32_t tile[SF_LONGEST_TILE];
     uint32_t tile_pitch, tile_size, tile_filled;
     int32_t tile_origin;
-    uint8_t stuffed[SF_LONGEST_FRAME + 2];
-    size_t stuffed_count;
+    uint8_t frame[SF_LONGEST_FRAME]; /* what has come of one, unstuffed, and its CRC up to there */
+    uint32_t frame_count, stuffed, block_left, crc;
 } sf_machine;
 
 /* Boots off. `seed` is where tokens start: take a random number, or a counter of boots. A board that
@@ -98,10 +97,10 @@ void sf_receive(sf_machine *m, uint8_t byte, uint32_t now);
 uint32_t sf_tick(sf_machine *m, uint32_t now);
 void sf_trip(sf_machine *m);
 
+/* uV of the bits of a binary32 in V, to the nearest; -1 if NaN, infinite, negative or above 2000 V. */
+int32_t sf_level(uint32_t bits);
 uint32_t sf_crc32(const uint8_t *bytes, size_t count);
-/* Return the count written; sf_cobs_decode returns -1 for bytes that are no block. The room
- * needed is count + count/254 + 1 and count. */
+/* Returns the count written; the room needed is count + count/254 + 1. */
 size_t sf_cobs_encode(const uint8_t *bytes, size_t count, uint8_t *out);
-int sf_cobs_decode(const uint8_t *bytes, size_t count, uint8_t *out);
 
 #endif

@@ -7,6 +7,7 @@ import pkgutil
 import re
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -103,6 +104,18 @@ def test_every_runtime_dependency_has_a_permissive_licence() -> None:
         if REFUSED.search(licence) or not ALLOWED.search(licence):
             bad[name] = licence
     assert bad == {}
+
+
+def test_the_emulator_under_the_gpl_is_for_tests_alone() -> None:
+    # Its package calls itself BSD, which its Python is; the engine within is GPL-2.
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
+    extras = project["optional-dependencies"]
+    asking = [name for name, parts in extras.items() if any("unicorn" in part for part in parts)]
+    assert asking == ["firmware-test"]
+    assert not any("unicorn" in part for part in project["dependencies"])
+    for folder in ("src", "examples", "benchmarks"):
+        for file in (ROOT / folder).rglob("*.py"):
+            assert not re.search(r"import unicorn|from unicorn", file.read_text("utf-8")), file
 
 
 def test_constraints_pin_and_hold_no_address() -> None:

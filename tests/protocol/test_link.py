@@ -194,7 +194,7 @@ def test_a_device_that_was_restarted_is_noticed() -> None:
 
 def test_a_refused_amplitude_is_told_and_a_fault_is_not_an_error() -> None:
     wire, _, host = playing()
-    host.play([61.0], 1e-3)
+    host.link.send(m.Envelope(1000, (61.0,)))  # the host itself would refuse it
     with pytest.raises(DeviceError, match="refused Envelope in state PLAYING: a value is outside"):
         run(wire, host, 0.01)
     wire.machine.trip()
@@ -207,8 +207,11 @@ def test_what_cannot_be_sent_is_refused_here() -> None:
     wire, link, host = playing()
     sent = link.statistics.sent
     for call, words in (
-        (lambda: host.play([1.0], 0.1), "period is 0.1 s"),
-        (lambda: host.play([math.nan], 1e-3), "not finite"),
+        (
+            lambda: host.play([1.0], 0.1),
+            "period = 100 ms cannot be used: it must be .* at most 65.54 ms",
+        ),
+        (lambda: host.play([math.nan], 1e-3), "levels = nan V cannot be used: it must be finite"),
         (lambda: host.play([1.0] * 57, 1e-3), "1 to 56 fit"),
         (lambda: host.load_tile(0.0, 1e-3, [1.0] * 513), "1 to 512 fit"),
         (lambda: host.load_tile(0.0, 1e-7, [1.0]), "pitch"),

@@ -1,35 +1,39 @@
 """A stream of blocks stamped with the device's time: no gap and no repetition, in C and Python."""
 
-import ctypes
 import random
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 import pytest
 
 from squeezefilm.device import messages as m
-from squeezefilm.device.machine import CLOCK, DeviceLimits, Machine
+from squeezefilm.device.machine import CLOCK
 from squeezefilm.device.safety import Limits
 
-from .test_firmware import Compiled, firmware  # noqa: F401
+from .builds import Library
+from .recording import Recording
 
 FAST = Limits(60.0, 1e9, 60.0, 0.0, 20e3, 60e3, insulation="glass")
 PERIOD, LEAD = 200, 5_000
-Device = Machine | Compiled
+pytestmark = pytest.mark.xdist_group("firmware")
 
 
-@pytest.fixture(params=["python", "c"])
-def boot(
-    request: pytest.FixtureRequest,
-    firmware: ctypes.CDLL,  # noqa: F811
-) -> Callable[[], Device]:
-    """Makes a device that has just booted."""
-    if request.param == "python":
-        return lambda: Machine(1)
-    return lambda: Compiled(firmware, 1, DeviceLimits())
+@pytest.fixture
+def boot(library: Library) -> Iterator[Callable[[], Recording]]:
+    """Makes a device that has just booted; what it did, the firmware in C does as well."""
+    made: list[Recording] = []
+
+    def booted() -> Recording:
+        made.append(Recording(1))
+        return made[-1]
+
+    yield booted
+    assert made
+    for recording in made:
+        assert library.record(recording) == recording.record
 
 
 def played(
-    device: Device, blocks: list[tuple[int, m.TimedEnvelope]], start: int, end: int
+    device: Recording, blocks: list[tuple[int, m.TimedEnvelope]], start: int, end: int
 ) -> list[int]:
     """The samples (mV) that `device` plays at its ticks; `blocks` arrive at their times."""
     now, sequence = start, 0
@@ -66,7 +70,7 @@ def stream(
 @pytest.mark.parametrize("size", [5, 25])
 @pytest.mark.parametrize("start", [1_000, 2**32 - 300_000])
 def test_every_sample_is_played_for_its_time(
-    boot: Callable[[], Device], size: int, start: int
+    boot: Callable[[], Recording], size: int, start: int
 ) -> None:
     count = 3_000
     blocks = stream(start, count, size, 0, random.Random(size))
@@ -75,14 +79,14 @@ def test_every_sample_is_played_for_its_time(
     assert levels.index(1) == LEAD // 100 - 1
 
 
-def test_a_lost_block_is_a_held_sample_and_shifts_nothing(boot: Callable[[], Device]) -> None:
+def test_a_lost_block_is_a_held_sample_and_shifts_nothing(boot: Callable[[], Recording]) -> None:
     blocks = stream(0, 100, 5, 0, random.Random(1))
     del blocks[10]
     levels = [level for level in played(boot(), blocks, 0, LEAD + 100 * PERIOD - 100) if level]
     assert levels == [50 if 51 <= n <= 55 else n for n in range(1, 101) for _ in (1, 2)]
 
 
-def test_overlapping_blocks_survive_any_one_lost_block(boot: Callable[[], Device]) -> None:
+def test_overlapping_blocks_survive_any_one_lost_block(boot: Callable[[], Recording]) -> None:
     blocks = stream(0, 500, 5, 5, random.Random(2))[:-1]
     kept = [block for number, block in enumerate(blocks) if number % 2 == 0]
     levels = [level for level in played(boot(), kept, 0, LEAD + 495 * PERIOD - 100) if level]
@@ -90,7 +94,7 @@ def test_overlapping_blocks_survive_any_one_lost_block(boot: Callable[[], Device
 
 
 def test_what_was_queued_can_be_corrected_and_what_was_played_cannot(
-    boot: Callable[[], Device],
+    boot: Callable[[], Recording],
 ) -> None:
     first = m.TimedEnvelope(1_000, 1_000, (0.001, 0.002, 0.003, 0.004))
     second = m.TimedEnvelope(1_000, 1_000, (0.009, 0.008, 0.007))
@@ -99,7 +103,7 @@ def test_what_was_queued_can_be_corrected_and_what_was_played_cannot(
     assert levels == [0] * 9 + [1] * 10 + [2] * 10 + [7] * 31
 
 
-def test_a_block_that_comes_late_plays_the_rest_of_it(boot: Callable[[], Device]) -> None:
+def test_a_block_that_comes_late_plays_the_rest_of_it(boot: Callable[[], Recording]) -> None:
     late = m.TimedEnvelope(1_000, 1_000, (0.001, 0.002, 0.003, 0.004))
     levels = played(boot(), [(2_950, late)], 0, 5_000)
     assert levels == [0] * 29 + [3] * 10 + [4] * 11

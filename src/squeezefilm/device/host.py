@@ -12,15 +12,20 @@ from __future__ import annotations
 import secrets
 from collections import deque
 from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
 
 from squeezefilm.device import messages as m
+from squeezefilm.device.arguments import amplitudes, binary32_below, number, whole_number
 from squeezefilm.device.device_clock import DeviceClock
 from squeezefilm.device.link import Link, refusal
 from squeezefilm.device.playing import CLOCK
-from squeezefilm.device.safety import Limits
+from squeezefilm.device.reports import LONGEST_REPORT, SHORTEST_REPORT
+from squeezefilm.device.safety import HIGHEST_VOLTAGE, Limits
 from squeezefilm.device.states import Fault, Reason, State
 from squeezefilm.errors import DeviceError, InputError
-from squeezefilm.quantities import FloatArray, Hertz, Metre, Second, Unit, Volt, require
+from squeezefilm.quantities import FloatArray, Hertz, Metre, Second, Unit, Volt
 
 MOST_READINGS = 10_000
 """Readings kept for those who have not read them yet."""
@@ -48,6 +53,7 @@ class DeviceHost:
         self.readings_heard = 0
         self._unread: list[m.Reading] = []
         self._opened = False
+        self._limits: Limits | None = None
 
     @property
     def clock(self) -> DeviceClock:
@@ -91,6 +97,7 @@ class DeviceHost:
             self.clear()
         self.info = self._ask_info()
         self._set_limits(limits, self.info)
+        self._limits = limits
         return self.info
 
     def arm(self) -> None:
@@ -98,12 +105,15 @@ class DeviceHost:
         self.link.request(m.Arm(self.link.request(m.KeepAlive()).token))
 
     def start(self, frequency: Hertz) -> None:
-        """ARMED → PLAYING at a carrier frequency (Hz), silent. Raises `DeviceError`."""
-        self.link.request(m.Start(_frequency(frequency)))
+        """ARMED → PLAYING at a carrier frequency (Hz), silent.
+
+        Raises `InputError` for one outside the limits, and `DeviceError`.
+        """
+        self.link.request(m.Start(self._carrier(frequency)))
 
     def set_frequency(self, frequency: Hertz) -> None:
-        """Move the carrier (Hz). Raises `DeviceError`."""
-        self.link.request(m.SetFrequency(_frequency(frequency)))
+        """Move the carrier (Hz). Raises as `start`."""
+        self.link.request(m.SetFrequency(self._carrier(frequency)))
 
     def play(
         self, levels: Sequence[Volt] | FloatArray, period: Second, start: int | None = None
@@ -112,49 +122,48 @@ class DeviceHost:
 
         Args:
             levels: the amplitudes; the last one holds.
-            period: up to 65 ms, in whole µs on the wire.
+            period: 1 µs to 65 ms, in whole µs on the wire.
             start: when the first one is due on the device's clock (32 bits of µs). Blocks with a
                 start queue up without gaps; without one they play from the moment they arrive, in
                 place of what was playing.
 
         Raises:
-            InputError: amplitudes or a period that do not fit a frame.
+            InputError: amplitudes below zero, above the limits or too many, or a period or a
+                start that the wire cannot carry; nothing is sent.
             DeviceError: the device is gone.
         """
-        values = tuple(float(level) for level in levels)
-        microseconds = round(period * _MICRO)
-        if not 1 <= microseconds <= 0xFFFF:
-            raise InputError(
-                f"period is {period:g} s; one frame carries 1 us to 65.535 ms; choose one between",
-                quantity="period",
-            )
+        values = self._volts(levels)
+        microseconds = round(_MICRO * number("period", period, Unit("s"), 1e-6, 65.535e-3))
         if start is None:
             self.link.send(m.Envelope(microseconds, values))
         else:
-            self.link.send(m.TimedEnvelope(start & CLOCK, microseconds, values))
+            first = whole_number("start", start) & CLOCK
+            self.link.send(m.TimedEnvelope(first, microseconds, values))
 
     def play_at(self, x: Metre) -> None:
-        """Play the tile at `x` (m); does not wait. Raises `DeviceError` if the device is gone."""
-        require("x", x, Unit("m"), at_least=-2147.0, at_most=2147.0)
-        self.link.send(m.Position(round(x * _MICRO)))
+        """Play the tile at `x` (m); does not wait.
+
+        Raises `InputError` for a place beyond 2147 m, and `DeviceError` if the device is gone.
+        """
+        self.link.send(m.Position(round(_MICRO * number("x", x, Unit("m"), -2147.0, 2147.0))))
 
     def load_tile(self, origin: Metre, pitch: Metre, levels: Sequence[Volt] | FloatArray) -> None:
         """Load amplitudes (V), shape (n,), from `origin` (m), `pitch` (m) apart, in whole µm.
 
         Raises:
-            InputError: more than 512 amplitudes, or none, or a pitch below 1 µm.
+            InputError: more than 512 amplitudes, or none, or one below zero or above the limits,
+                or a pitch below 1 µm.
             DeviceError: the device refused or did not answer; the tile is then not complete.
         """
-        values = tuple(float(level) for level in levels)
-        require("origin", origin, Unit("m"), at_least=-2147.0, at_most=2147.0)
-        require("pitch", pitch, Unit("m"), at_least=1e-6, at_most=2147.0)
+        values = self._volts(levels)
+        first_place = round(_MICRO * number("origin", origin, Unit("m"), -2147.0, 2147.0))
+        apart = round(_MICRO * number("pitch", pitch, Unit("m"), 1e-6, 2147.0))
         if not 1 <= len(values) <= m.LONGEST_TILE:
             raise InputError(
                 f"a tile of {len(values)} amplitudes; 1 to {m.LONGEST_TILE} fit; use a wider pitch",
                 quantity="levels",
             )
-        begin = m.TileBegin(round(origin * _MICRO), round(pitch * _MICRO), len(values))
-        self.link.request(begin)
+        self.link.request(m.TileBegin(first_place, apart, len(values)))
         for first in range(0, len(values), m.MOST_LEVELS):
             self.link.request(m.TileData(first, values[first : first + m.MOST_LEVELS]))
 
@@ -163,9 +172,14 @@ class DeviceHost:
         self.link.request(m.Follow())
 
     def report(self, period: Second) -> None:
-        """A reading every `period` (s), at least 200 µs; none for 0. Raises `DeviceError`."""
-        require("period", period, Unit("s"), at_least=0.0, at_most=1000.0)
-        self.link.request(m.Report(round(period * _MICRO)))
+        """A reading every `period` (s), at least 200 µs; none for 0.
+
+        Raises `InputError` for another period, and `DeviceError`.
+        """
+        seconds = number("period", period, Unit("s"), 0.0, LONGEST_REPORT / _MICRO)
+        if seconds > 0.0:
+            number("period", period, Unit("s"), SHORTEST_REPORT / _MICRO, LONGEST_REPORT / _MICRO)
+        self.link.request(m.Report(round(_MICRO * seconds)))
 
     def keep_alive(self) -> None:
         """Feed the watchdog now; does not wait."""
@@ -227,6 +241,20 @@ class DeviceHost:
             if self._opened and name in _ASYNCHRONOUS and status.reason not in _HARMLESS:
                 raise refusal(name, status)
 
+    def _volts(self, levels: Any) -> tuple[Volt, ...]:
+        """Amplitudes within the limits, once those are set, and within the wire's before."""
+        highest = HIGHEST_VOLTAGE if self._limits is None else self._limits.voltage
+        # What was computed from a limit, and the limit itself as binary32, may be above it by a
+        # rounding: the device, whose limit was rounded down, would refuse the frame.
+        volts = amplitudes(levels, highest * (1 + 1e-9)).astype(np.float32)
+        return tuple(np.minimum(volts, binary32_below(highest)).tolist())
+
+    def _carrier(self, frequency: Hertz) -> int:
+        limits = self._limits
+        lowest = 1.0 if limits is None else limits.lowest_frequency
+        highest = 1e6 if limits is None else limits.highest_frequency
+        return round(1e3 * number("frequency", frequency, Unit("Hz"), lowest, highest))
+
     def _ask_info(self) -> m.Info:
         self.info = None
         for _ in range(3):
@@ -282,11 +310,6 @@ class DeviceHost:
 
 
 _ASYNCHRONOUS = (m.Envelope.__name__, m.TimedEnvelope.__name__, m.Position.__name__)
-
-
-def _frequency(frequency: Hertz) -> int:
-    require("frequency", frequency, Unit("Hz"), at_least=1.0, at_most=1e6)
-    return round(frequency * 1e3)
 
 
 def _fault_name(fault: int) -> str:

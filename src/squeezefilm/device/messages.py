@@ -1,19 +1,18 @@
 """What frames say: one frozen dataclass per message, with its type's number and its layout.
 
-Volts are IEEE binary32, everything else is integer; all little-endian. A message checks nothing of
-its own: the host's `Limits` and the device both refuse what is out of range. Only what the layout
-cannot carry is refused here.
+Volts are IEEE binary32, everything else is integer; all little-endian. What is within the limits of
+a session is for the host and the device to say. Refused here is what the layout cannot carry, and
+what no device takes for volts: below zero, above 2000 V, not finite.
 """
 
 from __future__ import annotations
 
 import math
 import struct
-from dataclasses import astuple, dataclass
+from dataclasses import dataclass, fields
 from typing import ClassVar, Self
 
-import numpy as np
-
+from squeezefilm.device.arguments import amplitudes, binary32_below
 from squeezefilm.device.frames import Frame
 from squeezefilm.device.safety import Limits
 from squeezefilm.errors import InputError
@@ -34,12 +33,9 @@ class Message:
 
     def payload(self) -> bytes:
         """The payload's bytes. Raises `InputError` for a value the layout cannot carry."""
-        values = astuple(self)
-        if any(isinstance(value, float) and not math.isfinite(value) for value in values):
-            raise InputError(f"{self} holds a voltage that is not finite; send a finite one")
         try:
-            return self.LAYOUT.pack(*values)
-        except (struct.error, OverflowError) as error:
+            return self.LAYOUT.pack(*(getattr(self, field.name) for field in fields(self)))
+        except (struct.error, OverflowError, TypeError) as error:
             raise InputError(f"{self} does not fit its layout: {error}") from error
 
     def frame(self, sequence: int) -> Frame:
@@ -89,6 +85,11 @@ class SetLimits(Message):
     duty_window: int
     insulated: int
 
+    def payload(self) -> bytes:
+        """The payload's bytes. Raises `InputError` for what is no voltage or does not fit."""
+        amplitudes((self.voltage, self.continuous_voltage))
+        return Message.payload(self)
+
 
 @dataclass(frozen=True, slots=True)
 class Arm(Message):
@@ -126,7 +127,7 @@ class Envelope(Message):
     levels: tuple[Volt, ...]
 
     def payload(self) -> bytes:
-        """The payload's bytes. Raises `InputError` for too many or not finite amplitudes."""
+        """The payload's bytes. Raises `InputError` for too many, or what is no amplitude."""
         return _levels_payload(self.period, self.levels)
 
     @classmethod
@@ -156,7 +157,7 @@ class TileData(Message):
     levels: tuple[Volt, ...]
 
     def payload(self) -> bytes:
-        """The payload's bytes. Raises `InputError` for too many or not finite amplitudes."""
+        """The payload's bytes. Raises `InputError` for too many, or what is no amplitude."""
         return _levels_payload(self.first, self.levels)
 
     @classmethod
@@ -227,10 +228,10 @@ class TimedEnvelope(Message):
     levels: tuple[Volt, ...]
 
     def payload(self) -> bytes:
-        """The payload's bytes. Raises `InputError` for too many or not finite amplitudes."""
+        """The payload's bytes. Raises `InputError` for too many, or what is no amplitude."""
         try:
             start = struct.pack("<I", self.start)
-        except struct.error as error:
+        except (struct.error, TypeError) as error:
             raise InputError(f"{self.start} us is not on the device's clock: {error}") from error
         return start + _levels_payload(self.period, self.levels)
 
@@ -326,9 +327,9 @@ ANSWERS: dict[int, type[Status] | type[Reading] | type[Info]] = {
 def limits_message(limits: Limits) -> SetLimits:
     """The limits as the wire carries them, each rounded to the safe side."""
     return SetLimits(
-        _below(limits.voltage),
+        float(binary32_below(limits.voltage)),
         int(limits.slew),
-        _below(limits.continuous_voltage),
+        float(binary32_below(limits.continuous_voltage)),
         int(limits.heat * 1e3),
         math.ceil(limits.lowest_frequency * 1e3),
         int(limits.highest_frequency * 1e3),
@@ -338,23 +339,16 @@ def limits_message(limits: Limits) -> SetLimits:
     )
 
 
-def _below(value: float) -> float:
-    """The largest binary32 that is not above `value`."""
-    near = np.float32(value)
-    return float(near if float(near) <= value else np.nextafter(near, np.float32(0)))
-
-
 def _levels_payload(number: int, levels: tuple[float, ...]) -> bytes:
+    volts = amplitudes(levels)
     if not 1 <= len(levels) <= MOST_LEVELS:
         raise InputError(
             f"{len(levels)} amplitudes in one frame; 1 to {MOST_LEVELS} fit; send them in parts"
         )
-    if not all(math.isfinite(level) for level in levels):
-        raise InputError("an amplitude is not finite; the device refuses the whole frame")
     try:
-        return struct.pack(f"<HB{len(levels)}f", number, len(levels), *levels)
-    except (struct.error, OverflowError) as error:
-        raise InputError(f"amplitudes that do not fit the layout: {error}") from error
+        return struct.pack("<HB", number, len(levels)) + volts.astype("<f4").tobytes()
+    except (struct.error, TypeError) as error:
+        raise InputError(f"{number} before the amplitudes does not fit: {error}") from error
 
 
 def _levels_read(payload: bytes) -> tuple[int, tuple[float, ...]] | None:

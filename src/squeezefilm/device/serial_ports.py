@@ -9,12 +9,13 @@ import math
 
 import numpy as np
 
+from squeezefilm.device.arguments import number
 from squeezefilm.device.host import DeviceHost
 from squeezefilm.device.messages import MOST_LEVELS, PICKUP_PRESENT, SENSOR_PRESENT
 from squeezefilm.device.playing import LONGEST_QUEUE, MOST_AHEAD
 from squeezefilm.device.ports import FingerSample
 from squeezefilm.errors import DeviceError
-from squeezefilm.quantities import Dimensionless, FloatArray, Second, Unit, require
+from squeezefilm.quantities import Dimensionless, FloatArray, Second, Unit
 
 LEAD: Second = 5e-3
 """How far ahead of its time an amplitude is sent: the jitter of the line that leaves no gap."""
@@ -36,10 +37,9 @@ class SerialDrive:
     """
 
     def __init__(self, host: DeviceHost, period: Second, lead: Second = LEAD) -> None:
-        require("period", period, Unit("s"), at_least=20e-6, at_most=65e-3)
-        most = max(period, min(0.5, LONGEST_QUEUE * period / 2))
-        require("lead", lead, Unit("s"), at_least=0.0, at_most=most)
-        self.host, self.period, self.lead = host, period, lead
+        self.host, self.period = host, number("period", period, Unit("s"), 20e-6, 65e-3)
+        most = max(self.period, min(0.5, LONGEST_QUEUE * self.period / 2))
+        self.lead = number("lead", lead, Unit("s"), 0.0, most)
         self.gaps = 0
         self._next = self._end = math.nan
 
@@ -52,7 +52,7 @@ class SerialDrive:
         """Queue the amplitudes (V, zero-to-peak) in `block`, shape (n,); returns how many fitted.
 
         Raises:
-            InputError: an amplitude that is not finite.
+            InputError: an amplitude that is not finite, below zero or above the limits.
             DeviceError: the device is gone, or no round trip has told its clock yet.
         """
         clock, now = self.host.clock, self.host.link.clock()

@@ -1,0 +1,170 @@
+"""The firmware built for a Cortex-M, in an emulator that counts what it executes.
+
+unicorn is exact in what instructions do; it has no clock, so what is counted is instructions and
+not cycles (on an M0+ one takes 1 to 2).
+"""
+
+from __future__ import annotations
+
+import ctypes
+import subprocess
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from .builds import FIRMWARE, STRICT, build, missing, tool
+from .recording import Recording
+
+HERE = Path(__file__).parent
+FLASH, RAM, ROOM, RETURN = 0x10000, 0x20000000, 0x40000000, 0x0FFF0000
+_STACK = 0x10000
+_PAINT = b"\xa5"
+
+
+class _Counter(ctypes.Structure):
+    """As `instruction_counter.c` has it."""
+
+    _fields_ = (
+        ("caller", ctypes.c_uint64),
+        ("caller_end", ctypes.c_uint64),
+        ("entry", ctypes.c_uint64 * 2),
+        ("longest", ctypes.c_uint64 * 2),
+        ("calls", ctypes.c_uint64 * 2),
+        ("total", ctypes.c_uint64),
+        ("count", ctypes.c_uint64),
+        ("inside", ctypes.c_uint64),
+    )
+
+
+@dataclass
+class Work:
+    """The most that one call took: instructions of `sf_receive` and `sf_tick`, bytes of stack."""
+
+    receive: int = 0
+    tick: int = 0
+    stack: int = 0
+
+
+class Arm:
+    """One core with the firmware in its flash. `work` is the most that was seen up to now."""
+
+    def __init__(self, core: str, folder: Path, counter: ctypes.CDLL) -> None:
+        self.core = core
+        image = _linked(core, FIRMWARE, "host_run", folder / f"{core}.elf")
+        self.symbols = symbols(image)
+        flash = folder / f"{core}.bin"
+        _run("arm-none-eabi-objcopy", "-O", "binary", "-j", ".flash", image, flash)
+        self._flash = flash.read_bytes()
+        self._counter = counter
+        self.work = Work()
+
+    def record(self, recording: Recording) -> bytes:
+        """What it did. Whatever is no instruction or no memory of this core raises."""
+        unicorn = _unicorn()
+        arm = unicorn.arm_const
+        script, most = bytes(recording.script), len(recording.record) + 4096
+        core = unicorn.Uc(unicorn.UC_ARCH_ARM, unicorn.UC_MODE_THUMB | unicorn.UC_MODE_MCLASS)
+        core.ctl_set_cpu_model(
+            {
+                "cortex-m0plus": arm.UC_CPU_ARM_CORTEX_M0,  # the same instructions
+                "cortex-m3": arm.UC_CPU_ARM_CORTEX_M3,
+                "cortex-m4": arm.UC_CPU_ARM_CORTEX_M4,
+            }[self.core]
+        )
+        core.mem_map(FLASH, _pages(len(self._flash)), unicorn.UC_PROT_READ | unicorn.UC_PROT_EXEC)
+        core.mem_write(FLASH, self._flash)
+        end = max(address + size for address, size in self.symbols.values())
+        top = RAM + _pages(end - RAM) + _STACK
+        data = unicorn.UC_PROT_READ | unicorn.UC_PROT_WRITE
+        core.mem_map(RAM, top - RAM, data)
+        core.mem_write(top - _STACK, _PAINT * _STACK)
+        out = ROOM + _pages(len(script))
+        core.mem_map(ROOM, out - ROOM, unicorn.UC_PROT_READ)
+        core.mem_write(ROOM, script)
+        core.mem_map(out, _pages(most), data)
+        counter = self._count(core)
+        for register, value in (
+            (arm.UC_ARM_REG_R0, ROOM),
+            (arm.UC_ARM_REG_R1, len(script)),
+            (arm.UC_ARM_REG_R2, out),
+            (arm.UC_ARM_REG_R3, most),
+            (arm.UC_ARM_REG_SP, top),
+            (arm.UC_ARM_REG_LR, RETURN | 1),
+        ):
+            core.reg_write(register, value)
+        core.emu_start(self.symbols["host_run"][0] | 1, RETURN)
+        stack = len(bytes(core.mem_read(top - _STACK, _STACK)).lstrip(_PAINT))
+        self.work.receive = max(self.work.receive, counter.longest[0])
+        self.work.tick = max(self.work.tick, counter.longest[1])
+        self.work.stack = max(self.work.stack, stack)
+        assert list(counter.calls) == [recording.received, recording.ticks]
+        return bytes(core.mem_read(out, min(most, core.reg_read(arm.UC_ARM_REG_R0))))
+
+    def _count(self, core: Any) -> _Counter:
+        unicorn = _unicorn()
+        caller, size = self.symbols["host_run"]
+        counter = _Counter(caller, caller + size)
+        for i, name in enumerate(("sf_receive", "sf_tick")):
+            counter.entry[i] = self.symbols[name][0]
+        # As Uc.hook_add does it, which takes functions of Python only: they would be too slow.
+        failed = unicorn.unicorn_py3.unicorn.uclib.uc_hook_add(
+            core._uch,
+            ctypes.byref(ctypes.c_size_t()),
+            unicorn.UC_HOOK_CODE,
+            ctypes.cast(self._counter.count_instruction, ctypes.c_void_p),
+            ctypes.addressof(counter),
+            ctypes.c_uint64(1),
+            ctypes.c_uint64(0),
+        )
+        assert failed == 0
+        return counter
+
+
+def _pages(size: int) -> int:
+    return -(-size // 4096) * 4096
+
+
+def _run(program: str, *arguments: str | Path) -> str:
+    command = [tool(program), *map(str, arguments)]
+    return subprocess.run(command, capture_output=True, text=True, check=True).stdout
+
+
+def _linked(core: str, sources: tuple[Path, ...], entry: str, built: Path) -> Path:
+    flags = (
+        *STRICT, "-O2", "-mthumb", f"-mcpu={core}", "-ffunction-sections", "-fdata-sections",
+        "--specs=nano.specs", "-nostartfiles",
+        f"-Wl,--gc-sections,-T,{HERE / 'arm.ld'},-e,{entry},-u,sf_boot,-u,sf_tick,-u,sf_trip",
+    )  # fmt: skip
+    return build(tool("arm-none-eabi-gcc"), flags, sources, built)
+
+
+def firmware_alone(core: str, folder: Path) -> tuple[dict[str, tuple[int, int]], int]:
+    """The names in the firmware without a harness, what it needs of the compiler's libraries
+    among them, and the bytes of flash that all takes."""
+    image = _linked(core, FIRMWARE[:1], "sf_receive", folder / f"{core}-alone.elf")
+    return symbols(image), int(_run("arm-none-eabi-size", image).splitlines()[1].split()[0])
+
+
+def symbols(image: Path) -> dict[str, tuple[int, int]]:
+    """The address and the size (0 where none is stated) of every name."""
+    named = {}
+    for line in _run("arm-none-eabi-nm", "-S", image).splitlines():
+        address, *size, _, name = line.split()
+        named[name] = (int(address, 16), int(size[0], 16) if size else 0)
+    return named
+
+
+def _unicorn() -> Any:
+    try:
+        import unicorn
+        import unicorn.arm_const
+    except ImportError:
+        missing("unicorn is not installed, which runs Arm code; install squeezefilm[firmware-test]")
+    return unicorn
+
+
+def instruction_counter(folder: Path) -> ctypes.CDLL:
+    """The emulator's hook for every instruction, built for this computer."""
+    flags = (*STRICT, "-O2", "-shared", "-fPIC")
+    source = (HERE / "instruction_counter.c",)
+    return ctypes.CDLL(str(build(tool("cc", "gcc", "clang"), flags, source, folder / "counter.so")))
