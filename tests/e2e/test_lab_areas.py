@@ -21,6 +21,8 @@ pytestmark = pytest.mark.chromium
 AREAS = ("design", "feel", "device", "study", "results", "help")
 SIZES = ((360, 740), (412, 915), (640, 450), (768, 1024), (960, 700), (1280, 900), (1920, 1080))
 """CSS pixels; 640 × 450 is a screen of 1280 × 900 at 200 %."""
+COMPUTED = ("compute design", "load texture", "parity", "analyze study", "field limits")
+"""What takes as long as the machine lets it."""
 FRAMES = """(() => {
   const ask = requestAnimationFrame.bind(window), drop = cancelAnimationFrame.bind(window);
   const waiting = new Set();
@@ -85,7 +87,7 @@ class Watched:
     def settle(self) -> None:
         """Until everything that was asked is answered, but for what is computed."""
         for _ in range(600):
-            quick = {one["id"] for one in self.asked if one["type"] != "compute design"}
+            quick = {one["id"] for one in self.asked if one["type"] not in COMPUTED}
             if quick <= self.answered:
                 return
             self.page.wait_for_timeout(50)
@@ -140,6 +142,7 @@ def test_an_area_that_was_left_is_silent(seen: Watched) -> None:
     )
     seen.settle()
     page.get_by_role("heading", name="Quantities").wait_for()
+    assert page.locator("#area > *").count() == 1
     asked = len(seen.asked)
     page.wait_for_timeout(700)
     assert (page.evaluate("framesWaiting()"), listeners(page)) == (0, before)
@@ -159,11 +162,60 @@ def test_an_area_that_was_left_is_silent(seen: Watched) -> None:
     assert seen.count("stop everything") == 0
 
 
+VISITS = """async () => {
+  const { Visit } = await import("/static/visit.js");
+  const sent = [], heard = new Set(), notes = [];
+  let answer = null;
+  const ask = (type) => (sent.push(type), new Promise((yes, no) => { answer = { yes, no }; }));
+  const on = (type, listener) => (heard.add(listener), () => heard.delete(listener));
+  const socket = { ask, on, open: true }, kept = { value: "typed" }, after = [];
+  const page = { socket, notify: (text) => notes.push(text), shared: {} };
+  const visit = new Visit(page);
+  const told = (name) => [(value) => after.push(`${name} ${value}`), () => after.push("failed")];
+  visit.socket.on("x", () => {});
+  visit.remember("area", { kept });
+  visit.socket.ask("here").then(...told("here"));
+  answer.yes("answered");
+  await null; await null; await null;
+  visit.socket.ask("slow").then(...told("slow"));
+  const slow = answer;
+  visit.act("done").then(...told("done"));
+  const done = answer;
+  visit.act("refused").then(...told("refused"));
+  const refused = answer;
+  const hearing = heard.size;
+  visit.leave();
+  slow.yes("late");
+  done.yes("all the same");
+  refused.no(new Error("in words"));
+  visit.socket.ask("after").then(...told("after"));
+  visit.socket.on("x", () => {});
+  visit.frames(() => after.push("drew"));
+  await new Promise((later) => setTimeout(later, 60));
+  return { sent, hearing, heard: heard.size, notes, after, kept: page.shared.area.kept };
+}"""
+
+
+def test_a_visit_ends_what_was_begun_in_it(seen: Watched) -> None:
+    seen.go("help")
+    assert seen.page.evaluate(VISITS) == {
+        "sent": ["here", "slow", "done", "refused"],
+        "hearing": 1,
+        "heard": 0,
+        # What was asked to be done is done and said; what was only to be shown is not.
+        "notes": ["in words"],
+        "after": ["here answered", "done all the same"],
+        "kept": "typed",
+    }
+
+
 def test_every_area_has_room_at_every_size(seen: Watched) -> None:
     page = seen.page
     page.emulate_media(color_scheme="dark")
     seen.go("study")
+    page.locator("#study-name").fill("roomy")
     page.get_by_role("button", name="Create the study").click()
+    page.locator("h2", has_text="roomy").wait_for()
     page.get_by_role("button", name="Enrol a participant").click()
     page.get_by_role("button", name="Prepare a sitting…").click()
     page.locator("form.sitting").wait_for()

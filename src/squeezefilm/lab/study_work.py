@@ -41,7 +41,7 @@ def analysis_of(path: Path) -> dict[str, Any]:
                 ],
             }
             for display, one in found.items()
-        ]
+        ],
     }
 
 
