@@ -84,7 +84,7 @@ export class Scope {
     }
     // With 0 always in it, what never changes has its place on the axis as well.
     low = Math.min(0, low);
-    high = Math.max(0, high * 1.05, this.least);
+    high = Math.max(high * 1.05, this.least);
     return high > low ? { low, high } : { low: 0, high: 1 };
   }
 }
