@@ -48,9 +48,8 @@ class ConfigError(InputError):
         super().__init__(str(self), quantity=key)
 
     def __str__(self) -> str:
-        place = self.file or ""
-        if self.line is not None:
-            place += f", line {self.line}"
+        line = None if self.line is None else f"line {self.line}"
+        place = ", ".join(part for part in (self.file, line) if part)
         parts = [part for part in (place, self.key) if part]
         return ": ".join([*parts, self.message])
 

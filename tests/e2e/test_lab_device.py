@@ -66,9 +66,15 @@ def test_a_twin_is_played_watched_and_stopped_by_the_space_bar(
     assert len(seen) > 3
     keep(page, "lab-device-light-1280")
     assert page.evaluate(CONTRAST) == []
+    # From another area as well; and what was shown while it played is not shown after it.
+    page.goto(f"{running_lab.address}#help")
+    said.filter(has_text="playing,").wait_for()
     page.keyboard.press("Space")
+    said.wait_for(state="hidden", timeout=60_000)
+    page.goto(f"{running_lab.address}#device")
     page.locator(".stopbar", has_text="it was interrupted").wait_for(timeout=60_000)
     assert play.is_disabled()
+    assert state.inner_text() == "–"
     folder = max(one for one in (running_lab.folder / "sessions").iterdir() if one.is_dir())
     trace = read_trace(folder / "trace.sqft")
     assert len(trace.rows) > 1000

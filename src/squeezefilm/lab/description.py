@@ -82,6 +82,7 @@ def edited(text: str, path: str, value: str) -> str:
     row = next((one for one in form(text) if one["path"] == path), None)
     if row is None:
         raise InputError(f"the display has no value at '{path[:200]}'; open it again")
+    written = _written(value.strip(), row)
     try:
         document = tomlkit.parse(text)
         owner: Any = document
@@ -93,7 +94,6 @@ def edited(text: str, path: str, value: str) -> str:
                 if part not in owner:
                     owner[part] = tomlkit.table()
                 owner = owner[part]
-        written = _written(value.strip(), row)
         old = owner.get(last) if hasattr(owner, "get") else None
         if isinstance(old, dict) and "value" in old:
             was, source = old["value"], str(old.get("source", ""))
@@ -116,12 +116,14 @@ def edited(text: str, path: str, value: str) -> str:
 
 
 def _written(value: str, row: dict[str, Any]) -> Any:
-    if row["unit"] is None:
-        if value in ("true", "false"):
-            return value == "true"
-        return int(value) if row["whole"] else value
     if row["whole"]:
-        return int(value)
+        try:
+            return int(value)
+        except ValueError as error:
+            name = row["path"]
+            raise InputError(f"{name}: '{value}' is no whole number; write one, like 8") from error
+    if row["unit"] is None:
+        return value == "true" if value in ("true", "false") else value
     if row["unit"] == "":
         try:
             return float(value)

@@ -155,10 +155,13 @@ def _shape(p: Prediction) -> dict[str, Any] | None:
 
 
 def _line(p: Prediction, actuator: Actuator) -> dict[str, Any] | None:
-    """The mode along the plate, a diameter, or the mean circumference: 1 at the working lobe."""
+    """The mode along or across the plate, a diameter, or the mean circumference: 1 at the working
+    lobe. `along` is the plate's axis that the positions are on."""
     line = p.mode.line
     if line is not None:
+        across = isinstance(actuator, RectangularPlate) and actuator.lines_across == "width"
         return {
+            "along": "y" if across else "x",
             "position_m": line.position[::4].tolist(),
             "deflection": line.deflection[::4].tolist(),
             "nodal_positions_m": line.nodal_positions.tolist(),
@@ -169,6 +172,7 @@ def _line(p: Prediction, actuator: Actuator) -> dict[str, Any] | None:
     quarter = actuator.wavelength / 4
     nodes = np.arange(quarter, along[-1], 2 * quarter)
     return {
+        "along": "x",
         "position_m": along.tolist(),
         "deflection": np.cos(2 * np.pi * along / actuator.wavelength).tolist(),
         "nodal_positions_m": nodes.tolist(),

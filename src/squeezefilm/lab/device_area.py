@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Callable
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -23,6 +24,10 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from squeezefilm.lab.server import Lab
+
+
+DEVICE = "device"
+"""The key of the Device area's session in `Lab.playing`."""
 
 
 class OnDrive(Request):
@@ -51,12 +56,22 @@ def add_device(lab: Lab) -> DeviceSession:
     """Let the lab answer the Device area's messages."""
     loop: list[asyncio.AbstractEventLoop] = []
 
+    async def told(message: dict[str, Any]) -> None:
+        if message["type"] == "device ended" and not session.running:
+            lab.playing.forget(DEVICE)
+        await lab.tell(message)
+
     def tell(message: dict[str, Any]) -> None:
         if loop and not loop[0].is_closed():
-            asyncio.run_coroutine_threadsafe(lab.tell(message), loop[0])
+            asyncio.run_coroutine_threadsafe(told(message), loop[0])
 
     session = DeviceSession(tell)
     lab.closing.append(session.close)
+
+    def start(what: str, work: Callable[..., None], *arguments: Any) -> None:
+        loop[:] = [asyncio.get_running_loop()]
+        session.start(work, *arguments)
+        lab.playing.note(DEVICE, what, session.stop, plays=True)
 
     async def listing(_: Request) -> Answer:
         from serial.tools import list_ports
@@ -65,12 +80,11 @@ def add_device(lab: Lab) -> DeviceSession:
             {"drive": f"serial:{one.device}", "text": f"{one.device}: {one.description}"}
             for one in list_ports.comports()
         ]
-        return {"type": "drives", "ports": ports, "running": session.running}
+        return {"type": "drives", "ports": ports}
 
     async def play(asked: PlayDevice) -> Answer:
         if not asked.armed:
             raise InputError("the device is not armed; arm it on the page first")
-        loop[:] = [asyncio.get_running_loop()]
         duration = parse_quantity(asked.duration, Unit("s"))
         voltage = None if asked.voltage is None else parse_quantity(asked.voltage, Unit("V"))
         name = datetime.now(UTC).strftime("%Y%m%dT%H%M%S")
@@ -87,24 +101,27 @@ def add_device(lab: Lab) -> DeviceSession:
             out=str(lab.folder / "sessions" / name),
             seed=asked.seed,
         )
-        session.start(device_process.play, work)
+        start(f"a texture on {work.drive}", device_process.play, work)
         return {"type": "playing", "folder": f"sessions/{name}"}
 
     async def check(asked: OnDrive) -> Answer:
-        loop[:] = [asyncio.get_running_loop()]
-        display = _display(lab, asked.display)
-        session.start(device_process.check, _drive(asked.drive), str(display))
+        display, drive = _display(lab, asked.display), _drive(asked.drive)
+        start(f"the check of {drive}", device_process.check, drive, str(display))
         return {"type": "checking"}
 
+    async def playing(_: Request) -> Answer:
+        return lab.playing.message()
+
     async def stop(_: Request) -> Answer:
-        session.stop()
+        lab.playing.stop()
         return {"type": "stopping"}
 
     add = lab.experimenter.add
     add("drives", Request, listing)
     add("play device", PlayDevice, play)
     add("check device", OnDrive, check)
-    add("stop device", Request, stop)
+    add("what plays", Request, playing)
+    add("stop everything", Request, stop)
     return session
 
 

@@ -189,6 +189,7 @@ def play(connection: Connection, work: DeviceWork) -> None:
             {
                 "type": "device ended",
                 "failed": result.outcome.failed,
+                "ending": result.outcome.ending.name,
                 "message": result.outcome.message or result.outcome.ending.value,
                 "summary": result.summary(),
                 "folder": work.out,

@@ -23,6 +23,7 @@ from squeezefilm.errors import InputError
 from squeezefilm.lab.connections import TimedProtocol
 from squeezefilm.lab.guard import Guard, Places
 from squeezefilm.lab.keys import Keys
+from squeezefilm.lab.playing import Playing
 from squeezefilm.lab.wire import LARGEST_MESSAGE, Dispatcher, as_text
 from squeezefilm.lab.worker import SupersededError, Workers
 
@@ -68,6 +69,10 @@ class Lab:
     closing: list[Callable[[], None]] = field(default_factory=list)
     left: list[Callable[[WebSocket], None]] = field(default_factory=list)
     lan: LanPlace | None = None
+    playing: Playing = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.playing = Playing(self.tell)
 
     async def tell(self, message: dict[str, Any], *, participants: bool = False) -> None:
         """Send a message that nobody asked for to every open page of a kind."""

@@ -158,6 +158,7 @@ def add_study(lab: Lab, devices: StudyDevices | None = None) -> StudyThread:
     `devices` present the surfaces; real sessions on real devices and twins if None.
     """
     devices = devices or StudyDevices()
+    devices.playing = lab.playing
     lab.closing.append(devices.close)
     thread = StudyThread(lab)
     pages: dict[str, WebSocket] = {}

@@ -11,8 +11,9 @@ import contextlib
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
-from typing import Any, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 from squeezefilm.errors import DeviceError, InputError, SqueezefilmError
 from squeezefilm.study.device import (
@@ -23,6 +24,9 @@ from squeezefilm.study.device import (
     StudyDevice,
 )
 from squeezefilm.study.stimuli import Stimulus
+
+if TYPE_CHECKING:
+    from squeezefilm.lab.playing import Playing
 
 T = TypeVar("T")
 
@@ -71,6 +75,7 @@ class Measured:
 class _Held:
     """A device in the hands of a sitting: what it presents, and what was felt of it so far."""
 
+    sitting: str
     kind: str
     device: LabDevice
     thread: ThreadPoolExecutor = field(default_factory=lambda: ThreadPoolExecutor(1, "device"))
@@ -85,9 +90,13 @@ class _Held:
 
 
 class StudyDevices:
-    """Devices by the sittings that use them. Its methods are called on the server's loop."""
+    """Devices by the sittings that use them. Its methods are called on the server's loop.
+
+    `playing`, where there is one, is kept up to date on which of them play.
+    """
 
     def __init__(self, make: Maker | None = None) -> None:
+        self.playing: Playing | None = None
         self._make = make or _session_device
         self._held: dict[str, _Held] = {}
         self._busy: dict[str, asyncio.Lock] = {}
@@ -138,10 +147,12 @@ class StudyDevices:
                 await self._felt(held)
             if place != len(held.felt):
                 raise InputError(f"surface {len(held.felt) + 1} comes next, not {place + 1}")
+            self._shown(held, plays=True)
             try:
                 await self._on(held, held.device.present, *surface)
             except BaseException:
                 held.forget()
+                self._shown(held, plays=False)
                 raise
             held.playing = place
 
@@ -179,6 +190,7 @@ class StudyDevices:
         if (held := self._held.get(sitting)) is not None:
             held.halted = True
             held.device.halt()
+            self._shown(held, plays=False)
 
     async def release(self, sitting: str) -> None:
         """Let a sitting's device go; nothing where it has none."""
@@ -188,6 +200,8 @@ class StudyDevices:
                 await self._on(held, held.device.close)
                 self._held.pop(sitting, None)
                 held.thread.shutdown(wait=False)
+            if self.playing is not None:
+                self.playing.forget(sitting)
 
     def holders(self) -> list[str]:
         """The sittings that have a device."""
@@ -212,8 +226,15 @@ class StudyDevices:
                     f"the device '{kind}' is in use by another sitting; end that one first"
                 )
         if sitting not in self._held:
-            self._held[sitting] = _Held(kind, self._make(display, kind, traces))
+            self._held[sitting] = _Held(sitting, kind, self._make(display, kind, traces))
+            self._shown(self._held[sitting], plays=False)
         return self._held[sitting]
+
+    def _shown(self, held: _Held, *, plays: bool) -> None:
+        """Let every page's stop bar know."""
+        if self.playing is not None:
+            what = f"a participant's surface on {held.kind}"
+            self.playing.note(held.sitting, what, partial(self.halt, held.sitting), plays=plays)
 
     async def _felt(self, held: _Held) -> None:
         """Stop what plays and keep how it was explored; what failed ends the trial."""
@@ -225,6 +246,8 @@ class StudyDevices:
         except BaseException:
             held.forget()
             raise
+        finally:
+            self._shown(held, plays=False)
 
     async def _silence(self, held: _Held) -> None:
         """Stop what plays, whatever it says: the trial comes again anyway."""
@@ -232,6 +255,7 @@ class StudyDevices:
         # A device that failed has let go by itself; a new presentation begins anew.
         with contextlib.suppress(DeviceError):
             await self._on(held, held.device.stop)
+        self._shown(held, plays=False)
 
     async def _on(self, held: _Held, work: Callable[..., T], *arguments: Any) -> T:
         done = asyncio.get_running_loop().run_in_executor(held.thread, work, *arguments)

@@ -19,8 +19,10 @@ def analysis_of(path: Path) -> dict[str, Any]:
     from squeezefilm.report.style import png
 
     with StudyStore.open(path) as store:
+        answers = sum(one["answered"] for one in store.participants())
         found = analyze_study(store)
     return {
+        "answers": answers,
         "displays": [
             {
                 "display": display,
@@ -39,7 +41,7 @@ def analysis_of(path: Path) -> dict[str, Any]:
                 ],
             }
             for display, one in found.items()
-        ]
+        ],
     }
 
 

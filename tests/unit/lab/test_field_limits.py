@@ -7,6 +7,7 @@ import pytest
 from squeezefilm import presets
 from squeezefilm.errors import InputError, SqueezefilmError
 from squeezefilm.lab.description import edited, form, preset_text
+from squeezefilm.lab.design import design
 from squeezefilm.lab.field_limits import allowed
 
 PLATE = preset_text("biet2008-plate")
@@ -76,3 +77,22 @@ def test_what_is_said_is_what_the_file_takes(name: str) -> None:
                 edited(text, row["path"], f"{beyond:.9g}{with_unit}")
             tried += 1
     assert tried >= 5
+
+
+@pytest.mark.parametrize(
+    ("path", "says"),
+    [
+        ("actuator.nodal_lines", "actuator.nodal_lines: 'abc' is no whole number; write one"),
+        ("actuator.thickness", "line 11: actuator.thickness: 'abc' is no quantity; write a number"),
+    ],
+)
+def test_a_word_in_a_number_s_field_is_refused_in_a_sentence(path: str, says: str) -> None:
+    with pytest.raises(InputError) as refused:
+        edited(PLATE, path, "abc")
+    assert str(refused.value).startswith(says)
+
+
+def test_the_mode_of_a_plate_says_along_which_axis_it_lies() -> None:
+    across = edited(PLATE, "actuator.lines_across", "width")
+    for text, axis in ((PLATE, "x"), (across, "y")):
+        assert design(text, "screening", None, None, None)["line"]["along"] == axis

@@ -14,6 +14,7 @@ import pytest
 
 from squeezefilm.errors import DeviceError, InputError
 from squeezefilm.lab import study_area
+from squeezefilm.lab.device_area import add_device
 from squeezefilm.lab.guard import Places
 from squeezefilm.lab.keys import Keys
 from squeezefilm.lab.server import PAGE, Lab
@@ -187,12 +188,17 @@ class Talk:
 
         monkeypatch.setattr(self.lab.workers.slow, "do", exposed)
         add_study(self.lab, StudyDevices(lambda *_: fake))
+        add_device(self.lab)
         self.store = folder / "studies" / "one.sqlite"
 
     async def say(self, type: str, **fields: Any) -> dict[str, Any]:
         speaker = self.lab.experimenter if type in self.lab.experimenter._known else None
         whom = speaker or self.lab.participant
         return await whom.answer(json.dumps({"id": 1, "type": type, **fields}))
+
+    async def playing(self) -> list[bool]:
+        """Of every sitting with a device, whether it plays."""
+        return [one["plays"] for one in (await self.say("what plays"))["now"]]
 
     async def prepared(self) -> str:
         await self.say("create study", design="biet2008-gratings", study="one", seed=3)
@@ -251,6 +257,14 @@ def test_a_trial_is_recorded_only_with_what_its_device_presented(
         fake.breaks = False
         again = await talk.say("next", sitting=sitting)
         assert (again["token"], again["interrupted"]) == (token, True)
+        assert await talk.playing() == [False]
+        await talk.say("feel", sitting=sitting, token=token, place=0)
+        # The experimenter's stop stops a participant's surface as well.
+        assert await talk.playing() == [True]
+        await talk.say("stop everything")
+        assert fake.asked[-1] == "halt"
+        assert await talk.playing() == [False]
+        assert "comes again" in (await talk.say("respond", **answer))["message"]
         await talk.say("feel", sitting=sitting, token=token, place=0)
         # The page goes away: nobody is there to feel it.
         for told in talk.lab.left:
@@ -268,6 +282,7 @@ def test_a_trial_is_recorded_only_with_what_its_device_presented(
         ended = await talk.say("end sitting", sitting=sitting)
         assert ended["problems"] == []
         assert fake.asked[-1] == "close"
+        assert await talk.playing() == []
 
     play(work())
     talk.lab.close()

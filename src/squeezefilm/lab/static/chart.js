@@ -1,5 +1,6 @@
 // uPlot in the lab's colours, following a dark screen and the width of its place.
 
+import { plain } from "./numbers.js";
 import uPlot from "./vendor/uPlot.js";
 
 const colour = (role) => getComputedStyle(document.documentElement).getPropertyValue(`--${role}`).trim();
@@ -42,7 +43,7 @@ export class Chart {
         { label: x },
         ...series.map((one) => ({
           label: one.label, stroke: colour(one.colour ?? "blue"), width: one.width ?? 2,
-          dash: one.dash, points: { show: false }, value: (_, value) => value?.toPrecision(3) ?? "–",
+          dash: one.dash, points: { show: false }, value: (_, value) => plain(value),
         })),
       ],
       bands: bands.map(([high, low]) => ({ series: [high + 1, low + 1], fill: colour("plus") })),

@@ -54,15 +54,14 @@ function field(row, write, slide, limits) {
   const source = row.source ? element("small", { class: "source", text: `${row.evidence}: ${row.source}` }) : null;
   if (row.name === "type") return null;
   if (row.choices) {
-    const list = element("select", { id, "data-path": row.path, onchange: (event) => write(row.path, event.target.value) },
+    const list = element("select", { id, "data-path": row.path },
       ...row.choices.map((one) => element("option", { value: one, text: one, selected: one === row.text })));
-    return element("div", { class: "field" }, label, list, source);
+    const { wrong, commit } = committed(list, row, write);
+    list.addEventListener("change", commit);
+    return element("div", { class: "field" }, label, list, wrong, source);
   }
   const text = element("input", { id, type: "text", value: row.text, "data-path": row.path, spellcheck: "false", autocomplete: "off" });
-  const commit = async () => {
-    if (text.value === row.text) return;
-    text.setAttribute("aria-invalid", String(!(await write(row.path, text.value))));
-  };
+  const { wrong, commit } = committed(text, row, write);
   text.addEventListener("change", commit);
   const parts = row.unit === null || row.whole ? null : split(row.text);
   let range = null;
@@ -79,9 +78,9 @@ function field(row, write, slide, limits) {
     range.addEventListener("change", commit);
   }
   const allowed = row.unit === null && !row.whole ? null : element("small", { class: "limits", id: `${id}-limits`, text: "allowed: …" });
-  const box = element("div", { class: "field" }, label, text, range, allowed, source);
+  const box = element("div", { class: "field" }, label, text, range, wrong, allowed, source);
   if (allowed) {
-    text.setAttribute("aria-describedby", allowed.id);
+    text.setAttribute("aria-describedby", `${wrong.id} ${allowed.id}`);
     // Asked for when somebody is here: they depend on the other values.
     box.addEventListener("focusin", async () => {
       const found = await limits(row.path);
@@ -89,4 +88,17 @@ function field(row, write, slide, limits) {
     });
   }
   return box;
+}
+
+/** What writes a control's value, and where a refusal is said: beside it, until it holds what may be. */
+function committed(control, row, write) {
+  const wrong = element("p", { class: "error", role: "alert", id: `${control.id}-wrong`, hidden: true });
+  control.setAttribute("aria-describedby", wrong.id);
+  const commit = async () => {
+    const refused = control.value === row.text ? "" : await write(row.path, control.value);
+    control.setAttribute("aria-invalid", String(refused !== ""));
+    wrong.textContent = refused;
+    wrong.hidden = refused === "";
+  };
+  return { wrong, commit };
 }

@@ -1,12 +1,12 @@
-// The display that is being worked on, for every area: its text, what it says, undo and redo.
+// The display that is being worked on, one for all areas: its text, what it says, undo and redo.
 // Kept in the tab's own storage, so that a reload loses nothing.
 
 const KEY = "squeezefilm display";
 const MOST_STEPS = 200;
 
 export class DisplayStore {
-  constructor(lab) {
-    this.lab = lab;
+  constructor(socket) {
+    this.socket = socket;
     this.past = [];
     this.future = [];
     this.current = null;
@@ -20,7 +20,7 @@ export class DisplayStore {
 
   /** Open a preset, a saved file or a text; forgets what could be undone. */
   async open(fields) {
-    this.take(await this.lab.socket.ask("open display", fields));
+    this.take(await this.socket.ask("open display", fields));
     this.past = [];
     this.future = [];
     this.changed();
@@ -29,6 +29,14 @@ export class DisplayStore {
   /** The display of the last visit, or the paper's plate. */
   async start() {
     if (this.current) return;
+    // Areas that are entered one after the other wait for the same.
+    this.starting ??= this.restore().finally(() => {
+      this.starting = null;
+    });
+    await this.starting;
+  }
+
+  async restore() {
     const kept = sessionStorage.getItem(KEY);
     try {
       await this.open(kept ? { text: kept } : { preset: "biet2008-plate" });
@@ -42,7 +50,7 @@ export class DisplayStore {
   /** Write one value anew; rejected, with nothing changed, where it cannot be. */
   async edit(path, value) {
     const before = this.current.text;
-    const answer = await this.lab.socket.ask("edit display", { text: before, path, value });
+    const answer = await this.socket.ask("edit display", { text: before, path, value });
     this.past.push(before);
     if (this.past.length > MOST_STEPS) this.past.shift();
     this.future = [];
@@ -60,7 +68,7 @@ export class DisplayStore {
 
   async step(from, to) {
     if (!from.length) return;
-    const answer = await this.lab.socket.ask("open display", { text: from.at(-1) });
+    const answer = await this.socket.ask("open display", { text: from.at(-1) });
     from.pop();
     to.push(this.current.text);
     this.take(answer);
@@ -75,10 +83,4 @@ export class DisplayStore {
   changed() {
     for (const listener of this.listeners) listener(this.current);
   }
-}
-
-/** The one store of this page. */
-export function displayStore(lab) {
-  lab.shared.display ??= new DisplayStore(lab);
-  return lab.shared.display;
 }

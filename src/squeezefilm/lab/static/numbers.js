@@ -9,15 +9,21 @@ export function quantity(value, unit, digits = 3) {
   if (value === null || value === undefined || !Number.isFinite(value)) return "–";
   if (unit === "" || unit === "1") return plain(value, digits);
   if (Math.abs(value) < 1e-13) return `0 ${unit}`;
-  const size = Math.abs(value);
-  const [scale, prefix] = PREFIXES.find(([one]) => size >= one * 0.9995) ?? PREFIXES.at(-1);
+  // Rounded first: 999.6 mV in three digits are 1 V.
+  const size = Number(Math.abs(value).toPrecision(digits));
+  const [scale, prefix] = PREFIXES.find(([one]) => size >= one) ?? PREFIXES.at(-1);
   return `${plain(value / scale, digits)} ${prefix}${unit}`;
 }
 
 /** A number without a unit, to so many digits. */
 export function plain(value, digits = 3) {
   if (value === null || value === undefined || !Number.isFinite(value)) return "–";
-  return Number(value.toPrecision(digits)).toString().replace("-", "−");
+  return Number(value.toPrecision(digits)).toString().replaceAll("-", "−");
+}
+
+/** A number with so many decimals, for what changes many times a second and must not jump. */
+export function fixed(value, decimals) {
+  return value.toFixed(decimals).replace("-", "−");
 }
 
 /** "2.5 mm" as its number and what stands behind it; null where it is no quantity. */

@@ -27,7 +27,7 @@ socket.on("connection", ({ open, refused }) => {
 socket.on("sitting ended", (message) => message.sitting === sitting && goOn());
 // A key held down repeats, and must not answer the trials that follow.
 document.addEventListener("keydown", (event) => {
-  if (event.key === " " && playing) {
+  if ((event.key === " " || event.key === "Escape") && playing) {
     event.preventDefault();
     stopSurface();
   } else if (!event.repeat && !event.ctrlKey && !event.altKey && !event.metaKey) keys?.(event);

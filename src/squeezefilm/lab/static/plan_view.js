@@ -1,5 +1,7 @@
 // The body from above and from the side, its ceramics, its nodal lines, and the mode in motion.
 
+import { plain } from "./numbers.js";
+
 const PLAN = 0.62;
 
 export class PlanView {
@@ -9,16 +11,11 @@ export class PlanView {
     this.line = null;
     this.shape = null;
     this.still = matchMedia("(prefers-reduced-motion: reduce)").matches;
-    this.frame = requestAnimationFrame((now) => this.draw(now));
   }
 
   set(outline, line, shape) {
     Object.assign(this, { outline, line, shape });
     this.picture = null;
-  }
-
-  close() {
-    cancelAnimationFrame(this.frame);
   }
 
   colours() {
@@ -30,7 +27,6 @@ export class PlanView {
   }
 
   draw(now) {
-    this.frame = requestAnimationFrame((later) => this.draw(later));
     const { canvas, outline } = this;
     const width = canvas.clientWidth, height = canvas.clientHeight, ratio = devicePixelRatio || 1;
     if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio)) {
@@ -61,7 +57,7 @@ export class PlanView {
     const w = size[0] * scale, h = size[1] * scale;
     const left = box.left + (box.width - w) / 2, top = box.top + (box.height - h) / 2;
     g.fillStyle = c.ink;
-    const mm = (metres) => `${Number((metres * 1e3).toPrecision(4))} mm`;
+    const mm = (metres) => `${plain(metres * 1e3, 4)} mm`;
     if (outline.kind !== "plate") return this.drawRound(g, left, top, scale, w, h, c, phase, box);
     g.fillText(`from above, ${mm(size[0])} × ${mm(size[1])}; ceramics dashed, nodal lines dotted`, box.left, 14);
     g.fillStyle = c.metal;
@@ -79,8 +75,13 @@ export class PlanView {
     g.strokeStyle = c.blue;
     for (const at of this.shape ? [] : this.line.nodal_positions_m) {
       g.beginPath();
-      g.moveTo(left + at * scale, top);
-      g.lineTo(left + at * scale, top + h);
+      if (this.line.along === "y") {
+        g.moveTo(left, top + h - at * scale);
+        g.lineTo(left + w, top + h - at * scale);
+      } else {
+        g.moveTo(left + at * scale, top);
+        g.lineTo(left + at * scale, top + h);
+      }
       g.stroke();
     }
     g.restore();
@@ -92,7 +93,7 @@ export class PlanView {
   drawRound(g, left, top, scale, w, h, c, phase, box) {
     const { outline, line } = this;
     const x = left + w / 2, y = top + h / 2;
-    const mm = `${Number((outline.diameter_m * 1e3).toPrecision(4))} mm`;
+    const mm = `${plain(outline.diameter_m * 1e3, 4)} mm`;
     if (outline.kind === "ring") {
       g.fillText(`from above, mean diameter ${mm}; up in blue, down in red`, box.left, 14);
       const r = (outline.diameter_m / 2) * scale, thick = outline.radial_width_m * scale;
@@ -167,7 +168,8 @@ export class PlanView {
     const largest = Math.max(...w.map(Math.abs));
     const middle = box.top + box.height / 2 + 6, high = box.height / 2 - 10;
     g.fillStyle = c.ink;
-    const what = { plate: "along the plate", disc: "along a diameter", ring: "along the circumference" };
+    const plate = this.line.along === "y" ? "across the plate" : "along the plate";
+    const what = { plate, disc: "along a diameter", ring: "along the circumference" };
     g.fillText(`from the side, ${what[this.outline.kind]}; deflection drawn larger`, 14, box.top + 4);
     g.strokeStyle = c.grid;
     g.beginPath();

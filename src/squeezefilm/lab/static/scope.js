@@ -1,5 +1,7 @@
 // A strip of the last seconds: lines over time, drawn anew with every frame.
 
+import { plain } from "./numbers.js";
+
 export class Scope {
   constructor(canvas, lines, { seconds = 3, least = 0 } = {}) {
     Object.assign(this, { canvas, lines, seconds, least, rows: [] });
@@ -26,18 +28,19 @@ export class Scope {
     const g = canvas.getContext("2d");
     g.setTransform(ratio, 0, 0, ratio, 0, 0);
     g.clearRect(0, 0, width, height);
-    const left = 44, bottom = height - 22, top = 8, { low, high } = this.range();
+    const bottom = height - 22, top = 8, { low, high } = this.range();
     const at = (value) => bottom - ((value - low) / (high - low)) * (bottom - top);
     g.font = "12px system-ui, sans-serif";
     g.fillStyle = colour("ink");
     g.strokeStyle = colour("grid");
-    for (let k = 0; k <= 4; k += 1) {
-      const value = low + ((high - low) * k) / 4;
+    const marks = [0, 1, 2, 3, 4].map((k) => low + ((high - low) * k) / 4);
+    const left = Math.max(44, ...marks.map((value) => g.measureText(plain(value)).width + 8));
+    for (const value of marks) {
       g.beginPath();
       g.moveTo(left, at(value));
       g.lineTo(width, at(value));
       g.stroke();
-      g.fillText(value.toPrecision(3).replace(/\.?0+$/, ""), 2, at(value) + 4);
+      g.fillText(plain(value), 2, at(value) + 4);
     }
     g.fillText(`last ${this.seconds} s`, left, height - 6);
     let beside = left + 80;
@@ -79,7 +82,9 @@ export class Scope {
         }
       }
     }
-    if (!(high > low)) return { low: 0, high: 1 };
-    return { low: Math.min(0, low), high: Math.max(high * 1.05, this.least) };
+    // With 0 always in it, what never changes has its place on the axis as well.
+    low = Math.min(0, low);
+    high = Math.max(high * 1.05, this.least);
+    return high > low ? { low, high } : { low: 0, high: 1 };
   }
 }

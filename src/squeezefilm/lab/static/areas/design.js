@@ -2,35 +2,31 @@
 
 import { Chart } from "../chart.js";
 import { displayForm } from "../display_form.js";
-import { displayStore } from "../display_store.js";
 import { element, number, plain, quantity } from "../numbers.js";
 import { PlanView } from "../plan_view.js";
 
 const SETTLE = 500;
 
 export async function show(place, lab) {
-  const store = displayStore(lab);
-  const view = new DesignView(place, lab, store);
-  await view.start();
-  return () => view.close();
+  await new DesignView(place, lab, lab.display).start();
 }
 
 class DesignView {
   constructor(place, lab, store) {
-    Object.assign(this, { place, lab, store, asked: 0, busy: false, next: null, off: [], settled: 0, solvedAt: 0 });
+    Object.assign(this, { place, lab, store, asked: 0, busy: false, next: null, settled: 0, solvedAt: 0 });
   }
 
   async start() {
     this.build();
-    this.off.push(this.store.on(() => this.refresh()));
-    this.off.push(this.lab.socket.on("connection", ({ open }) => open && this.begin()));
+    this.lab.keep(this.store.on(() => this.refresh()));
+    this.lab.socket.on("connection", ({ open }) => open && this.begin());
     if (this.lab.socket.open) await this.begin();
   }
 
   async begin() {
     try {
       await this.listDisplays();
-      await this.store.start();
+      await this.lab.during(this.store.start());
       this.refresh();
     } catch (error) {
       this.lab.notify(error.message);
@@ -77,6 +73,7 @@ class DesignView {
         element("section", { class: "card" }, this.canvas),
         element("div", { class: "pair" }, friction.box, response.box), this.warnings)));
     this.plan = new PlanView(this.canvas);
+    this.lab.frames((now) => this.plan.draw(now));
     this.frictionChart = new Chart(friction.inside, {
       x: "vibration amplitude (µm)", y: "µ′/µ", range: [0, 1.02],
       series: [
@@ -92,17 +89,9 @@ class DesignView {
       x: "frequency (kHz)", y: "nm per volt",
       series: [{ label: "largest interior lobe", colour: "blue", width: 2.5 }],
     });
-    this.keys = (event) => this.pressed(event);
-    document.addEventListener("keydown", this.keys);
-  }
-
-  close() {
-    for (const off of this.off) off();
-    document.removeEventListener("keydown", this.keys);
-    clearTimeout(this.settled);
-    this.plan.close();
-    this.frictionChart.close();
-    this.responseChart.close();
+    document.addEventListener("keydown", (event) => this.pressed(event), { signal: this.lab.signal });
+    this.lab.keep(() => clearTimeout(this.settled));
+    for (const one of [this.frictionChart, this.responseChart]) this.lab.keep(() => one.close());
   }
 
   async listDisplays() {
@@ -128,7 +117,7 @@ class DesignView {
       if (option.value.endsWith(`:${current.name}`)) this.choice.value = option.value;
     }
     displayForm(this.form, current.form, {
-      write: (path, value) => this.tried(this.store.edit(path, value)),
+      write: (path, value) => refusal(this.store.edit(path, value)),
       slide: (path, value) => this.compute({ path, value }),
       limits: (path) => this.limits(path),
     });
@@ -272,11 +261,11 @@ class DesignView {
     if (!name) return;
     const fields = { text: this.store.current.text, name };
     try {
-      const { file } = await this.lab.socket.ask("save display", fields);
+      const { file } = await this.lab.act("save display", fields);
       this.lab.notify(`Saved as ${file}.`);
     } catch (error) {
       if (/exists/.test(error.message) && confirm(`${error.message}. Replace it?`)) {
-        const { file } = await this.lab.socket.ask("save display", { ...fields, replace: true });
+        const { file } = await this.lab.act("save display", { ...fields, replace: true });
         this.lab.notify(`Saved as ${file}.`);
       } else this.tried(Promise.reject(error));
     }
@@ -296,6 +285,16 @@ class DesignView {
     else if (event.key === "y" || (event.key === "z" && event.shiftKey)) this.tried(this.store.redo());
     else return;
     event.preventDefault();
+  }
+}
+
+/** Why something was refused, in words; empty where it was not. */
+async function refusal(work) {
+  try {
+    await work;
+    return "";
+  } catch (error) {
+    return error.message;
   }
 }
 

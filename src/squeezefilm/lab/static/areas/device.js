@@ -1,43 +1,42 @@
-// Device: choose a twin or a port, check it, arm it, play, watch, stop. The space bar stops.
+// Device: choose a twin or a port, check it, arm it, play, watch. The page's stop bar stops.
 
-import { displayStore } from "../display_store.js";
-import { element, number, plain, quantity } from "../numbers.js";
+import { element, fixed, number, plain, quantity } from "../numbers.js";
 import { Scope } from "../scope.js";
 
 export async function show(place, lab) {
-  const view = new DeviceView(place, lab, displayStore(lab));
-  await view.start();
-  return () => view.close();
+  await new DeviceView(place, lab, lab.display).start();
 }
+
+// After so long without a word from what plays, what is shown is old.
+const SILENT = 1000;
+// What is known of the device's state after a session ended so.
+const AFTER = { DURATION: "STOPPED", INTERRUPTED: "STOPPED", FAULT: "FAULT" };
 
 class DeviceView {
   constructor(place, lab, store) {
-    Object.assign(this, { place, lab, store, off: [], armed: false, running: false, clock: 0 });
+    Object.assign(this, { place, lab, store, armed: false, running: false, clock: 0, heard: null });
   }
 
   async start() {
     this.build();
-    const hear = (type, act) => this.off.push(this.lab.socket.on(type, act));
-    hear("connection", ({ open }) => open && this.begin());
-    hear("device progress", ({ text }) => this.say(`${text}…`));
+    const hear = this.lab.socket.on;
+    hear("connection", ({ open }) => (open ? this.begin() : this.lost()));
+    hear("playing", ({ now }) => this.take(now));
     hear("device view", (view) => this.view(view));
     hear("device rows", (found) => this.rows(found));
     hear("device checked", (found) => this.checked(found));
     hear("device ended", (found) => this.ended(found));
+    const bar = this.lab.stopBar;
+    bar.stay(this.lab.signal);
+    bar.place.addEventListener("stopped", () => this.disarm(), { signal: this.lab.signal });
+    this.lab.frames((now) => this.draw(now));
     if (this.lab.socket.open) await this.begin();
-    const frame = () => {
-      for (const scope of this.scopes) scope.draw(this.clock);
-      this.frame = requestAnimationFrame(frame);
-    };
-    frame();
-    // Anywhere on this page, before any button it might press.
-    this.keys = (event) => {
-      if (event.code !== "Space" || event.target.matches("input[type=text]")) return;
-      event.preventDefault();
-      event.stopPropagation();
-      this.stop();
-    };
-    document.addEventListener("keydown", this.keys, true);
+  }
+
+  draw(now) {
+    for (const scope of this.scopes) scope.draw(this.clock);
+    const silent = this.heard !== null && now - this.heard > SILENT;
+    this.numbers.state.note.textContent = silent ? `nothing heard for ${plain((now - this.heard) / 1e3, 2)} s` : "";
   }
 
   build() {
@@ -54,8 +53,6 @@ class DeviceView {
     this.checkButton = element("button", { text: "Check the device", onclick: () => this.tried(() => this.check()) });
     this.armButton = element("button", { text: "Arm", "aria-pressed": "false", onclick: () => this.arm() });
     this.playButton = element("button", { class: "main", text: "Play", disabled: true, onclick: () => this.tried(() => this.play()) });
-    this.stopButton = element("button", { class: "stop", text: "STOP (space bar)", onclick: () => this.stop() });
-    this.said = element("p", { class: "muted", role: "status", text: "not connected" });
     const field = (name, input) => element("label", { class: "stack" }, name, input);
     this.display = element("p", { class: "muted" });
     this.numbers = {
@@ -78,24 +75,26 @@ class DeviceView {
         field("compensation of the resonator", this.compensation), field("the twin's finger", this.stroke), field("for", this.duration), field("most voltage", this.voltage),
         this.checkButton, this.armButton, this.playButton, this.error),
       element("div", { class: "results" },
-        element("section", { class: "card row stopbar" }, this.stopButton, this.said),
         element("section", { class: "card" }, element("div", { class: "numbers" }, ...Object.values(this.numbers).map((one) => one.box))),
         this.results,
         element("section", { class: "card scopes" }, ...canvases.map((one) => one.box)))));
+    const { mode, compensation, stroke, duration, voltage } = this;
+    this.lab.remember("device", { mode, compensation, stroke, duration, voltage });
   }
 
   async begin() {
     await this.tried(async () => {
-      await this.store.start();
+      await this.lab.during(this.store.start());
       this.display.textContent = `Display: ${this.store.current.name}, as the Design area has it.`;
-      const { ports, running } = await this.lab.socket.ask("drives");
-      for (const one of ports) this.drive.append(element("option", { value: one.drive, text: one.text }));
-      const { presets, saved } = await this.lab.socket.ask("textures");
+      this.take((await this.lab.socket.ask("what plays")).now);
+      const { ports } = await this.lab.socket.ask("drives"), [twin] = this.drive.options, chosen = this.drive.value;
+      this.drive.replaceChildren(twin, ...ports.map((one) => element("option", { value: one.drive, text: one.text })));
+      this.drive.value = ports.some((one) => one.drive === chosen) ? chosen : "twin";
+      const { presets, saved } = await this.lab.socket.ask("textures"), played = this.texture.value;
       this.texture.replaceChildren(...presets.map((one) => element("option", { value: one.name, text: one.title || one.name })),
         ...saved.map((name) => element("option", { value: name, text: name })));
-      this.texture.value = "biet2008-square-4mm";
-      this.setRunning(running);
-      this.say(running ? "playing" : "ready");
+      this.texture.value = played || "biet2008-square-4mm";
+      if (!played) this.lab.remember("device", { drive: this.drive, texture: this.texture });
     });
   }
 
@@ -106,7 +105,6 @@ class DeviceView {
     } catch (error) {
       this.error.textContent = error.message;
       this.error.hidden = false;
-      if (!this.running) this.say("ready");
     }
   }
 
@@ -121,6 +119,16 @@ class DeviceView {
     if (this.armed) this.arm();
   }
 
+  take(now) {
+    this.setRunning(now.some((one) => one.key === "device"));
+  }
+
+  /** The server went away, and with it whatever was known. */
+  lost() {
+    this.blank("not known");
+    this.setRunning(false);
+  }
+
   setRunning(running) {
     this.running = running;
     this.checkButton.disabled = running;
@@ -128,45 +136,28 @@ class DeviceView {
     this.playButton.disabled = running || !this.armed;
   }
 
-  say(text, failed = false) {
-    this.said.textContent = text;
-    this.said.classList.toggle("error", failed);
-  }
-
   async check() {
     this.results.hidden = true;
-    this.say("starting the check…");
-    await this.lab.socket.ask("check device", { display: this.store.current.text, drive: this.drive.value });
-    this.setRunning(true);
+    const fields = { display: this.store.current.text, drive: this.drive.value };
+    await this.lab.during(this.lab.stopBar.begin("starting the check…", "check device", fields));
   }
 
   async play() {
     for (const scope of this.scopes) scope.clear();
     this.results.hidden = true;
-    this.say("starting…");
     const fields = {
       display: this.store.current.text, drive: this.drive.value, armed: this.armed, preset: this.texture.value,
       mode: this.mode.value, stroke: this.stroke.value, duration: this.duration.value, compensation: this.compensation.value,
     };
     if (this.voltage.value.trim()) fields.voltage = this.voltage.value;
-    const { folder } = await this.lab.socket.ask("play device", fields);
-    this.setRunning(true);
-    this.say(`starting; recorded in ${folder}`);
-  }
-
-  stop() {
-    this.disarm();
-    if (!this.running) return;
-    this.say("stopping…");
-    this.tried(() => this.lab.socket.ask("stop device"));
+    await this.lab.during(this.lab.stopBar.begin("starting…", "play device", fields));
   }
 
   view(view) {
-    if (!this.running) this.setRunning(true);
     const n = this.numbers;
-    this.say(`playing, ${plain(view.time_s)} s`);
+    this.heard = performance.now();
     n.state.value.textContent = view.state;
-    n.position.value.textContent = view.x_m === null ? "not touching" : `${(view.x_m * 1e3).toFixed(2)} mm`;
+    n.position.value.textContent = view.x_m === null ? "not touching" : `${fixed(view.x_m * 1e3, 2)} mm`;
     n.position.note.textContent = view.speed_m_per_s === null ? "" : `${plain(view.speed_m_per_s * 1e3)} mm/s`;
     n.friction.value.textContent = plain(view.relative_friction);
     n.amplitude.value.textContent = quantity(view.amplitude_m, "m");
@@ -200,20 +191,26 @@ class DeviceView {
           element("td", { text: one.name }), element("td", { text: one.measured }), element("td", { text: one.passed ? one.allowed : `${one.allowed}. ${one.advice}` }))))));
   }
 
-  ended({ failed, message, summary, folder }) {
-    this.setRunning(false);
+  /** Numbers of a moment that is over would be taken for those of now. */
+  blank(state, fault = "–", why = "") {
+    this.heard = null;
+    for (const one of Object.values(this.numbers)) {
+      one.value.textContent = "–";
+      one.note.textContent = "";
+    }
+    this.numbers.state.value.textContent = state;
+    this.numbers.fault.value.textContent = fault;
+    this.numbers.fault.note.textContent = why;
+  }
+
+  ended({ failed, ending, message, summary }) {
     this.disarm();
-    this.say(failed ? `ended: ${message}` : (summary ? `done: ${message}; recorded in ${folder}` : message), Boolean(failed));
+    const unknown = failed ? "not known" : "–";
+    this.blank(AFTER[ending] ?? unknown, ending === "FAULT" ? "yes" : unknown, failed ? message : "");
     if (!summary) return;
     const lines = Object.entries(summary).filter(([, value]) => typeof value === "number" || typeof value === "string").slice(0, 40);
     this.results.hidden = false;
     this.results.replaceChildren(element("h2", { text: "The session" }), element("div", { class: "scroll" }, element("table", {},
       ...lines.map(([key, value]) => element("tr", {}, element("th", { text: key.replaceAll("_", " ") }), element("td", { text: typeof value === "number" ? plain(value, 4) : value }))))));
-  }
-
-  close() {
-    cancelAnimationFrame(this.frame);
-    document.removeEventListener("keydown", this.keys, true);
-    for (const off of this.off) off();
   }
 }

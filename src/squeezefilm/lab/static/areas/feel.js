@@ -1,54 +1,62 @@
 // Feel: drag over a texture at true scale; what the finger meets is rendered here, in the page.
 
-import { displayStore } from "../display_store.js";
 import { Finger, lookup, parity } from "../finger.js";
-import { element, number, plain, quantity } from "../numbers.js";
+import { gratingFields, gratingText } from "../grating.js";
+import { element, fixed, number, plain, quantity } from "../numbers.js";
 import { Renderer } from "../renderer.js";
 import { Scope } from "../scope.js";
 import { SurfaceView } from "../surface_view.js";
 
 const CARD_MM = 85.6;
 const MOST_ROWS = 100000;
+const TEXTURE = "squeezefilm texture";
 
 export async function show(place, lab) {
-  const view = new FeelView(place, lab, displayStore(lab));
-  await view.start();
-  return () => view.close();
+  await new FeelView(place, lab, lab.display).start();
 }
 
 class FeelView {
   constructor(place, lab, store) {
-    Object.assign(this, { place, lab, store, off: [], rows: [], delays: [], down: false, frames: 0, alive: true });
+    Object.assign(this, { place, lab, store, rows: [], delays: [], down: false, drawn: 0 });
   }
 
   async start() {
     this.build();
-    this.off.push(this.lab.socket.on("connection", ({ open }) => open && this.begin()));
+    this.lab.frames((now) => this.animate(now));
+    this.lab.socket.on("connection", ({ open }) => open && this.begin());
     if (this.lab.socket.open) await this.begin();
-    this.frame = requestAnimationFrame((now) => this.animate(now));
   }
 
   async begin() {
     try {
-      await this.store.start();
+      await this.lab.during(this.store.start());
       await this.listTextures();
-      if (!this.ready) await this.choose(`preset:biet2008-square-4mm`);
+      if (!this.ready) await this.goOn();
     } catch (error) {
       this.fail(error);
     }
+  }
+
+  /** What was felt and recorded when the area was left, the texture also before a reload. */
+  async goOn() {
+    this.rows = this.lab.shared.stroke ?? [];
+    const kept = sessionStorage.getItem(TEXTURE);
+    if (!kept) {
+      await this.choose("preset:biet2008-square-4mm");
+      return;
+    }
+    const { text, choice, source } = JSON.parse(kept);
+    Object.assign(this, { source });
+    this.text.value = text;
+    this.choice.value = choice;
+    await this.reload();
   }
 
   build() {
     this.choice = element("select", { id: "texture-choice", onchange: () => this.choose(this.choice.value) });
     this.error = element("p", { class: "error", role: "alert", hidden: true });
     this.text = element("textarea", { id: "texture-text", rows: "12", spellcheck: "false", "aria-label": "the texture as TOML", onchange: () => this.useText() });
-    this.grating = {
-      shape: element("select", { "aria-label": "shape" }, ...["square_wave", "sine_wave", "pulse_wave"].map((one) => element("option", { value: one, text: one.replace("_wave", "") }))),
-      period: element("input", { type: "text", value: "4 mm", size: "7", "aria-label": "spatial period" }),
-      low: element("input", { type: "text", value: "0.7", size: "4", "aria-label": "lowest relative friction" }),
-      high: element("input", { type: "text", value: "1.0", size: "4", "aria-label": "highest relative friction" }),
-      angle: element("input", { type: "text", value: "0 deg", size: "6", "aria-label": "direction" }),
-    };
+    this.grating = gratingFields();
     const g = this.grating;
     const compose = element("details", {}, element("summary", { text: "Compose a grating" }),
       element("div", { class: "row" }, element("label", {}, "shape", g.shape), element("label", {}, "period", g.period)),
@@ -119,8 +127,9 @@ class FeelView {
     resize();
     this.scope = new Scope(this.scopeCanvas, [
       { label: "friction wanted", colour: "orange", dash: [5, 3] }, { label: "friction met", colour: "blue" },
-    ]);
-    this.scope.fixed = { low: 0, high: 1 };
+    ], { least: 1 });
+    this.lab.remember("feel", { ...this.grating, pixel: this.pixel, wave: this.wave.box, solved: this.solved.box });
+    this.view.showWave = this.wave.box.checked;
     this.listen();
   }
 
@@ -176,9 +185,7 @@ class FeelView {
   }
 
   animate(now) {
-    if (!this.alive) return;
-    this.frame = requestAnimationFrame((later) => this.animate(later));
-    this.frames += 1;
+    this.drawn += 1;
     if (this.replaying) this.stepReplay(now);
     const { met, numbers: n } = this;
     if (met) {
@@ -195,10 +202,10 @@ class FeelView {
       n.lag.value.textContent = `${plain((moving ? met.lag : 0) * 1e3)} mm`;
       n.lag.note.textContent = "of the vibration behind the finger";
       n.speed.value.textContent = `${plain((moving ? met.speed : 0) * 1e3)} mm/s`;
-      if (this.frames % 15 === 0 && this.delays.length) {
+      if (this.drawn % 15 === 0 && this.delays.length) {
         const sorted = [...this.delays].sort((a, b) => a - b);
-        n.delay.value.textContent = `${sorted[Math.floor(sorted.length / 2)].toFixed(2)} ms`;
-        n.delay.note.textContent = `95 %: ${sorted[Math.floor(sorted.length * 0.95)].toFixed(2)} ms`;
+        n.delay.value.textContent = `${fixed(sorted[Math.floor(sorted.length / 2)], 2)} ms`;
+        n.delay.note.textContent = `95 %: ${fixed(sorted[Math.floor(sorted.length * 0.95)], 2)} ms`;
       }
     }
     this.scope.draw(now / 1e3);
@@ -233,10 +240,12 @@ class FeelView {
   }
 
   async compose() {
-    const { shape, period, low, high, angle } = this.grating;
-    const along = /^0(\.0*)?\s*(deg|rad)?$/.test(angle.value.trim()) ? "" : `, along = { type = "direction", angle = "${angle.value}" }`;
-    this.text.value = `title = "${shape.value.replace("_wave", "")}, ${period.value}"\n\n[texture]\ntype = "relative_friction"\nlow = ${low.value}\nhigh = ${high.value}\n`
-      + `pattern = { type = "${shape.value}", spatial_period = "${period.value}"${along} }\n`;
+    try {
+      this.text.value = gratingText(this.grating);
+    } catch (error) {
+      this.fail(error);
+      return;
+    }
     await this.useText();
   }
 
@@ -247,6 +256,7 @@ class FeelView {
       this.heading.textContent = "preparing…";
       const ready = await this.lab.socket.ask("load texture", asked);
       this.error.hidden = true;
+      sessionStorage.setItem(TEXTURE, JSON.stringify({ text: this.text.value, choice: this.choice.value, source: this.source }));
       this.take(ready);
       const samples = await this.lab.socket.ask("parity", asked);
       const { ticks, worst } = parity(ready.program, samples);
@@ -274,6 +284,7 @@ class FeelView {
     this.view.set(ready, (x, y) => friction(renderer.value(x, y, 0.08, 0)));
     this.port?.postMessage({ ready });
     this.scope.clear();
+    this.showStroke();
   }
 
   async setSound(on) {
@@ -283,7 +294,8 @@ class FeelView {
     }
     if (!this.audio) {
       this.audio = new AudioContext();
-      await this.audio.audioWorklet.addModule("/static/skin_sound.js");
+      this.lab.keep(() => this.audio.close());
+      await this.lab.during(this.audio.audioWorklet.addModule("/static/skin_sound.js"));
       const node = new AudioWorkletNode(this.audio, "skin-sound", { outputChannelCount: [1] });
       node.connect(this.audio.destination);
       this.port = node.port;
@@ -297,9 +309,14 @@ class FeelView {
     this.record.setAttribute("aria-pressed", String(this.recording));
     this.record.textContent = this.recording ? "Stop recording" : "Record";
     if (this.recording) {
-      this.rows = [];
+      this.rows = this.lab.shared.stroke = [];
       this.began = performance.now() / 1e3;
     }
+    this.showStroke();
+  }
+
+  /** What may be done with the stroke that was recorded, and how long it is. */
+  showStroke() {
     const some = !this.recording && this.rows.length > 0;
     for (const button of [this.replay, this.save, this.download]) button.disabled = !some;
     this.rate.textContent = some ? `${this.rows.length} samples, ${plain(this.rows.at(-1)[0] - this.rows[0][0])} s` : "";
@@ -326,7 +343,7 @@ class FeelView {
     const name = prompt("Save the stroke in the lab's folder under the name", "stroke");
     if (!name) return;
     try {
-      const { file } = await this.lab.socket.ask("save stroke", { name, rows: this.rows });
+      const { file } = await this.lab.act("save stroke", { name, rows: this.rows });
       this.lab.notify(`Saved as ${file}.`);
     } catch (error) {
       this.fail(error);
@@ -361,7 +378,7 @@ class FeelView {
     const name = prompt("Save the texture in the lab's folder under the name", "texture");
     if (!name) return;
     try {
-      const { file } = await this.lab.socket.ask("save texture", { name, text: this.text.value });
+      const { file } = await this.lab.act("save texture", { name, text: this.text.value });
       this.lab.notify(`Saved as ${file}.`);
       await this.listTextures();
     } catch (error) {
@@ -373,13 +390,6 @@ class FeelView {
     this.error.textContent = error.message;
     this.error.hidden = false;
     this.heading.textContent = this.ready ? this.heading.textContent.replace("preparing…", this.ready.title) : "no texture";
-  }
-
-  close() {
-    this.alive = false;
-    cancelAnimationFrame(this.frame);
-    this.audio?.close();
-    for (const off of this.off) off();
   }
 }
 

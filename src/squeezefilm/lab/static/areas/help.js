@@ -7,14 +7,16 @@ import { startTour } from "../tour.js";
 const AREAS = [
   ["Design", "Change a display and see its mode and friction follow. While a slider moves, a plate is screened as a beam; half a second later it is solved in three dimensions. The line above the numbers says which."],
   ["Feel", "Drag over the surface at true scale and see friction, amplitude, force and lag as the texture is rendered in the page."],
-  ["Device", "Connect a twin or a real device, arm it, play a texture, watch it, stop it: the space bar stops at any time."],
+  ["Device", "Connect a twin or a real device, arm it, play a texture, watch it. The bar with STOP stays below every area while anything plays or may."],
   ["Study", "Plan and run a study; a participant has a page of their own."],
   ["Results", "What a study found, with intervals; export it; delete a participant."],
 ];
 
 const KEYS = [
   ["Tab, Shift+Tab", "to the next or the last control; the first Tab offers to skip to the content"],
-  ["Enter, Space", "press a button; Space stops the device while the Device area plays"],
+  ["Enter, Space", "press a button"],
+  ["Space, while something plays", "in every area: stop it, unless a text is being typed; then it is a blank, and Escape or the STOP button stops"],
+  ["Escape, while something plays", "in every area and in a field as well: stop it"],
   ["arrow keys", "move a slider by a step; on the surface in Feel, move the finger"],
   ["Ctrl+Z, Ctrl+Y", "in Design: undo, redo"],
   ["Escape", "close the tour or an explanation"],

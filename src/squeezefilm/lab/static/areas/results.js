@@ -4,9 +4,7 @@ import { element } from "../numbers.js";
 import { confusionCard } from "./study.js";
 
 export async function show(place, lab) {
-  const view = new ResultsView(place, lab);
-  await view.start();
-  return () => view.close();
+  await new ResultsView(place, lab).start();
 }
 
 const EXPLAINED = [
@@ -20,9 +18,13 @@ function explained(row) {
   return EXPLAINED.find(([start]) => row.startsWith(start))?.[1] ?? null;
 }
 
+function answersIn(study) {
+  return study.participants.reduce((sum, one) => sum + one.answered, 0);
+}
+
 class ResultsView {
   constructor(place, lab) {
-    Object.assign(this, { place, lab, off: [], name: sessionStorage.getItem("squeezefilm study") });
+    Object.assign(this, { place, lab, name: sessionStorage.getItem("squeezefilm study") });
   }
 
   async start() {
@@ -30,7 +32,8 @@ class ResultsView {
     this.side = element("section", { class: "card side" });
     this.main = element("div", { class: "results" });
     this.place.append(element("div", { class: "columns study" }, this.side, this.main));
-    this.off.push(this.lab.socket.on("connection", ({ open }) => open && this.begin()));
+    this.lab.socket.on("study changed", ({ study }) => study === this.name && this.tried(() => this.changed()));
+    this.lab.socket.on("connection", ({ open }) => open && this.begin());
     if (this.lab.socket.open) await this.begin();
   }
 
@@ -41,7 +44,7 @@ class ResultsView {
         ...studies.map((name) => element("option", { value: name, text: name })));
       this.people = element("div");
       const ask = (format) => () => this.tried(async () => {
-        const { folder } = await this.lab.socket.ask("export study", { study: this.name, format });
+        const { folder } = await this.lab.act("export study", { study: this.name, format });
         this.lab.notify(`Exported to ${folder} in the lab's folder.`);
       });
       this.side.replaceChildren(element("h2", { text: "Results" }),
@@ -49,7 +52,7 @@ class ResultsView {
         element("h3", { text: "Export" }),
         element("div", { class: "row" }, ...[["csv", "CSV"], ["psych-ds", "Psych-DS"], ["bids", "BIDS"]].map(([format, text]) => element("button", { text, onclick: ask(format) }))),
         element("button", { text: "Write the report", onclick: () => this.tried(async () => {
-          const { pages } = await this.lab.socket.ask("report study", { study: this.name });
+          const { pages } = await this.lab.act("report study", { study: this.name });
           this.lab.notify(`Written: ${pages.join(", ")}`);
         }) }),
         element("h3", { text: "Participants" }), this.people);
@@ -74,16 +77,47 @@ class ResultsView {
   }
 
   async open(name) {
-    this.name = name;
+    Object.assign(this, { name, analysed: null });
     sessionStorage.setItem("squeezefilm study", name);
     this.showPeople(await this.lab.socket.ask("study", { study: name }));
-    this.main.replaceChildren(element("section", { class: "card" }, element("p", { class: "muted", role: "status", text: "analysing…" })));
+    await this.analyse(name);
+  }
+
+  async analyse(name) {
+    const card = (attributes, ...children) => this.main.replaceChildren(element("section", { class: "card" }, element("p", attributes), ...children));
+    card({ class: "muted", role: "status", text: "analysing…" });
+    const before = answersIn(this.study);
     try {
-      const { displays } = await this.lab.socket.ask("analyze study", { study: name });
+      const { answers, displays } = await this.lab.socket.ask("analyze study", { study: name });
+      if (name !== this.name) return;
+      this.analysed = answers;
       this.main.replaceChildren(...displays.flatMap((one) => this.display(one)));
+      if (answers > answersIn(this.study)) await this.changed();
     } catch (error) {
-      this.main.replaceChildren(element("section", { class: "card" }, element("p", { text: error.message })));
+      if (name !== this.name) return;
+      this.analysed = before;
+      card({ text: error.message });
     }
+    this.sayNewer();
+  }
+
+  /** People and what they answered go on while somebody reads; a hand that deletes is left alone. */
+  async changed() {
+    const { name } = this, study = await this.lab.socket.ask("study", { study: name });
+    if (name !== this.name) return;
+    if (this.people.querySelector(".confirm")) this.study = study;
+    else this.showPeople(study);
+    this.sayNewer();
+  }
+
+  /** What was analysed is of one moment; say where there are answers of a later one. */
+  sayNewer() {
+    this.main.querySelector(".newer")?.remove();
+    const newer = answersIn(this.study) - (this.analysed ?? Infinity);
+    if (!(newer > 0)) return;
+    this.main.prepend(element("section", { class: "card row newer" },
+      element("p", { text: `${newer} ${newer === 1 ? "answer" : "answers"} came since what is shown here was computed.` }),
+      element("button", { text: "Analyse again", onclick: () => this.tried(() => this.analyse(this.name)) })));
   }
 
   display(one) {
@@ -105,7 +139,7 @@ class ResultsView {
       const start = element("button", { text: "Delete…", onclick: () => {
         const typed = element("input", { type: "text", size: "18", "aria-label": `type ${one.pseudonym} to delete` });
         const go = element("button", { class: "stop", text: "Delete for good", onclick: () => this.tried(async () => {
-          const found = await this.lab.socket.ask("delete participant", { study: this.name, participant: one.pseudonym, confirm: typed.value });
+          const found = await this.lab.act("delete participant", { study: this.name, participant: one.pseudonym, confirm: typed.value });
           this.lab.notify(`Deleted: ${found.deleted.answers} answers, ${found.deleted.traces} traces; ${found.deleted.searched} files searched, nothing left.`);
           await this.open(this.name);
         }) });
@@ -117,9 +151,5 @@ class ResultsView {
       return box;
     }));
     if (!study.participants.length) this.people.append(element("p", { class: "muted", text: "nobody yet" }));
-  }
-
-  close() {
-    for (const off of this.off) off();
   }
 }

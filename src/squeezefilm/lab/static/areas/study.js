@@ -13,14 +13,12 @@ const FIELDS = [
 const HANDS = ["", "left", "right"], FINGERS = ["", "thumb", "index", "middle", "ring", "little"];
 
 export async function show(place, lab) {
-  const view = new StudyView(place, lab);
-  await view.start();
-  return () => view.close();
+  await new StudyView(place, lab).start();
 }
 
 class StudyView {
   constructor(place, lab) {
-    Object.assign(this, { place, lab, off: [], name: sessionStorage.getItem("squeezefilm study") });
+    Object.assign(this, { place, lab, name: sessionStorage.getItem("squeezefilm study") });
   }
 
   async start() {
@@ -28,8 +26,8 @@ class StudyView {
     this.list = element("section", { class: "card side" });
     this.main = element("div", { class: "results" });
     this.place.append(element("div", { class: "columns study" }, this.list, this.main));
-    this.off.push(this.lab.socket.on("study changed", ({ study }) => study === this.name && this.reload(true)));
-    this.off.push(this.lab.socket.on("connection", ({ open }) => open && this.begin()));
+    this.lab.socket.on("study changed", ({ study }) => study === this.name && this.reload(true));
+    this.lab.socket.on("connection", ({ open }) => open && this.begin());
     if (this.lab.socket.open) await this.begin();
   }
 
@@ -82,7 +80,7 @@ class StudyView {
   async create() {
     const seed = Number(this.seed.value);
     if (!Number.isInteger(seed) || seed < 0) throw new Error(`the seed '${this.seed.value}' is no whole number from 0 on`);
-    const made = await this.lab.socket.ask("create study", { design: this.design.value, study: this.title.value, seed });
+    const made = await this.lab.act("create study", { design: this.design.value, study: this.title.value, seed });
     this.listing = await this.lab.socket.ask("studies");
     this.name = made.name;
     this.showList();
@@ -138,7 +136,7 @@ class StudyView {
         element("p", { class: "muted", text: `${study.title}. Seed ${study.seed}.` }),
         element("div", { class: "scroll" }, element("table", { class: "participants" },
           element("tr", {}, ...["participant", "answered", "now on", "sitting", ""].map((text) => element("th", { text }))), ...rows)),
-        this.rehearsal(), element("button", { class: "main", text: "Enrol a participant", onclick: () => this.tried(async () => this.take(await this.lab.socket.ask("enrol", { study: study.name }))) })),
+        this.rehearsal(), element("button", { class: "main", text: "Enrol a participant", onclick: () => this.tried(async () => this.take(await this.lab.act("enrol", { study: study.name }))) })),
       ...study.confusion.map((table) => confusionCard(table)));
   }
 
@@ -152,7 +150,7 @@ class StudyView {
       button.disabled = true;
       button.textContent = "simulating…";
       try {
-        await this.lab.socket.ask("rehearse study", { study: this.study.name, participants });
+        await this.lab.act("rehearse study", { study: this.study.name, participants });
       } finally {
         await this.reload();
       }
@@ -190,7 +188,7 @@ class StudyView {
   }
 
   async end(sitting) {
-    const found = await this.lab.socket.ask("end sitting", { sitting: sitting.id });
+    const found = await this.lab.act("end sitting", { sitting: sitting.id });
     this.take(found);
     this.lab.notify(found.problems.length ? `The device is off after the session: ${found.problems.join("; ")}` : "The sitting has ended.");
   }
@@ -227,7 +225,7 @@ class StudyView {
     form.addEventListener("submit", (event) => {
       event.preventDefault();
       this.tried(async () => {
-        const found = await this.lab.socket.ask("prepare sitting", {
+        const found = await this.lab.act("prepare sitting", {
           study: this.study.name, participant: one.pseudonym, device: device.value, consent: consent.value,
           conditions: conditionsOf(inputs), acknowledged: box.checked,
         });
@@ -249,10 +247,6 @@ class StudyView {
       const found = await this.lab.socket.ask("exposure", { study: this.study.name, participant: one.pseudonym });
       warned.textContent = found.statement;
     });
-  }
-
-  close() {
-    for (const off of this.off) off();
   }
 }
 
