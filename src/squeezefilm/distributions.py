@@ -7,11 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import DimensionlessArray, FloatArray, require
+from squeezefilm.quantities import DimensionlessArray, FloatArray, checked_numbers, require
 
 _WIDEST = 3.0  # standard deviations kept of a normal distribution
 
 
+@checked_numbers
 @dataclass(frozen=True)
 class Normal:
     """A normal distribution cut at three standard deviations, in the unit of its quantity.
@@ -26,6 +27,7 @@ class Normal:
         require("mean", self.mean)
         require("uncertainty", self.standard_deviation, above=0)
 
+    @checked_numbers
     def quantile(self, p: DimensionlessArray) -> FloatArray:
         """The values (in the quantity's unit, the shape of `p`) not exceeded with probability p."""
         from scipy.special import ndtr, ndtri
@@ -41,6 +43,7 @@ class Normal:
         return self.mean - reach, self.mean + reach
 
 
+@checked_numbers
 @dataclass(frozen=True)
 class Uniform:
     """Anywhere between two values alike. Raises `InputError` unless low < high."""
@@ -57,6 +60,7 @@ class Uniform:
                 quantity="range",
             )
 
+    @checked_numbers
     def quantile(self, p: DimensionlessArray) -> FloatArray:
         """The values (in the quantity's unit, the shape of `p`) not exceeded with probability p."""
         return self.low + (self.high - self.low) * np.asarray(p, dtype=float)

@@ -34,6 +34,7 @@ from squeezefilm.quantities import (
     MetrePerSecond,
     Newton,
     Unit,
+    checked_numbers,
     did_you_mean,
     format_quantity,
     require,
@@ -66,6 +67,7 @@ def shares_load(model: FrictionModel) -> bool:
     return model.startswith("partial-levitation")
 
 
+@checked_numbers
 @dataclass(frozen=True, eq=False)
 class FrictionLimits:
     """µ′/µ (dimensionless) at amplitudes (m) in the two limits of the skin, and their spread.
@@ -84,6 +86,7 @@ class FrictionLimits:
         return np.abs(self.own - self.one_gap)
 
 
+@checked_numbers
 @dataclass(frozen=True)
 class FrictionLaw:
     """µ′/µ as a function of the vibration amplitude, at one frequency and force, by one model.
@@ -122,6 +125,7 @@ class FrictionLaw:
                 quantity="position",
             )
 
+    @checked_numbers
     def gap(self, amplitude: MetreLike) -> PaperGap:
         """The gap at an amplitude (m), antinode and groove at the centre of the contact."""
         return PaperGap(
@@ -133,6 +137,7 @@ class FrictionLaw:
             contact_length=self.finger.contact_length,
         )
 
+    @checked_numbers
     def load(self, amplitude: Metre) -> FilmLoad:
         """What the film carries at an amplitude (m), with its error. See `film_load`."""
         if self.model == "paper2008-printed":
@@ -149,6 +154,7 @@ class FrictionLaw:
             plateau_width=self.finger.plateau_width,
         )
 
+    @checked_numbers
     def sharing(
         self,
         amplitude: MetreLike,
@@ -182,6 +188,7 @@ class FrictionLaw:
             skin=finger.skin if yielding else None,
         )
 
+    @checked_numbers
     def limits(self, amplitude: MetreLike) -> FrictionLimits:
         """µ′/µ in both limits of partial levitation at amplitudes (m), whatever the model."""
         a = np.atleast_1d(np.asarray(amplitude, dtype=float))
@@ -191,6 +198,7 @@ class FrictionLaw:
         )
         return FrictionLimits(a, own, tied)
 
+    @checked_numbers
     def tapped(self, amplitude: MetreLike, speed: MetrePerSecond) -> DimensionlessArray:
         """µ′/µ by the competing mechanism, intermittent contact without gas, at amplitudes (m) and
         a finger speed (m/s), whatever the model: the mean over the ridges. See `contact.tapping`.
@@ -230,10 +238,12 @@ class FrictionLaw:
             f"film within {table.relative_error:.1e}",
         )
 
+    @checked_numbers
     def at(self, amplitude: Metre) -> Dimensionless:
         """µ′/µ (dimensionless, 0 to 1) at one amplitude (m)."""
         return float(self.curve(np.array([amplitude]))[0])
 
+    @checked_numbers
     def curve(self, amplitude: MetreArray) -> DimensionlessArray:
         """µ′/µ (dimensionless, 0 to 1) at an array of amplitudes (m), same shape (1-D)."""
         ambient = self.gas.ambient_pressure
@@ -248,6 +258,7 @@ class FrictionLaw:
         pressures = np.array([1 + self.load(float(a)).over_pressure for a in np.ravel(amplitude)])
         return np.asarray(self._shared(pressures))
 
+    @checked_numbers
     def under(self, load: FilmLoad, amplitude: Metre) -> Dimensionless:
         """µ′/µ (dimensionless) with a film already solved at an amplitude (m), as `load` has it."""
         if not is_solved(self.model):
@@ -271,6 +282,7 @@ class FrictionLaw:
     def _closed_form(self) -> PaperModel:
         return "paper2008-printed" if self.model == "paper2008-printed" else "paper2008"
 
+    @checked_numbers
     def amplitude_for(self, relative_friction: Dimensionless) -> Metre:
         """The least amplitude (m, zero-to-peak) that brings µ′/µ down to a wanted value.
 
@@ -316,6 +328,7 @@ class FrictionLaw:
             f"{least:.4g} at the least; press less, take a smoother surface or ask for less"
         )
 
+    @checked_numbers
     def table(
         self, highest_amplitude: Metre, points: int | None = None
     ) -> Callable[[MetreArray], DimensionlessArray]:
@@ -351,6 +364,7 @@ class FrictionLaw:
         return friction
 
 
+@checked_numbers
 def friction_law(
     display: Display,
     half_wavelength: Metre,

@@ -23,6 +23,7 @@ from squeezefilm.quantities import (
     PascalSecond,
     SquareMetrePerNewton,
     Unit,
+    checked_numbers,
     require,
 )
 
@@ -31,6 +32,7 @@ PiezoDataSet = Literal["from_d31", "printed_e31"]
 VACUUM_PERMITTIVITY: FaradPerMetre = 8.8541878128e-12
 
 
+@checked_numbers
 @dataclass(frozen=True)
 class ElasticMaterial:
     """An isotropic, linear elastic substrate.
@@ -62,6 +64,7 @@ class ElasticMaterial:
         return self.young_modulus / (1 - self.poisson_ratio**2)
 
 
+@checked_numbers
 def isotropic_stiffness(young_modulus: Pascal, poisson_ratio: Dimensionless) -> FloatArray:
     """The 6 × 6 stiffness (Pa) of an isotropic solid; Voigt order xx, yy, zz, yz, xz, xy."""
     s = np.zeros((6, 6))
@@ -71,6 +74,7 @@ def isotropic_stiffness(young_modulus: Pascal, poisson_ratio: Dimensionless) -> 
     return np.asarray(np.linalg.inv(s))
 
 
+@checked_numbers
 @dataclass(frozen=True)
 class PiezoConstants:
     """The full set of constants of a ceramic poled along z (class 6mm).
@@ -186,6 +190,7 @@ _PZT_5H = {
 }  # fmt: skip
 
 
+@checked_numbers
 @dataclass(frozen=True)
 class Piezoceramic:
     """A thin ceramic plate poled through its thickness, working in its plane (the 31 effect).
@@ -331,6 +336,7 @@ class Piezoceramic:
         warnings.warn(message, ContradictionWarning, stacklevel=2)
 
 
+@checked_numbers
 @dataclass(frozen=True)
 class Gas:
     """The gas between finger and surface, at ambient pressure."""
@@ -346,6 +352,7 @@ class Gas:
         require("density", self.density, Unit("kg/m3"), above=0)
         require("mean_free_path", self.mean_free_path, Unit("m"), above=0)
 
+    @checked_numbers
     def at_pressure(self, ambient_pressure: Pascal) -> Gas:
         """The same gas at the same temperature under another ambient pressure (Pa).
 

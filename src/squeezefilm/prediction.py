@@ -42,6 +42,7 @@ from squeezefilm.quantities import (
     Newton,
     Unit,
     Volt,
+    checked_numbers,
     require,
 )
 from squeezefilm.touch import Touch, kept_at, touch
@@ -84,6 +85,7 @@ class Prediction:
     warnings: tuple[str, ...]
 
 
+@checked_numbers
 def predict(
     display: Display,
     *,
@@ -225,6 +227,7 @@ def _limits(law: FrictionLaw, amplitude: Metre) -> tuple[Dimensionless, Dimensio
     return float(found.own[0]), float(found.one_gap[0])
 
 
+@checked_numbers
 def voltage_for_friction(
     display: Display,
     relative_friction: Dimensionless,

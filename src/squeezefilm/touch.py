@@ -18,6 +18,7 @@ from squeezefilm.quantities import (
     Metre,
     MetreArray,
     MetreLike,
+    checked_numbers,
 )
 
 _MOST_STEPS = 40
@@ -45,6 +46,7 @@ class Touch:
         return self.amplitude / self.free_amplitude if self.free_amplitude > 0 else 1.0
 
 
+@checked_numbers
 def touch(mode: WorkingMode, law: FrictionLaw, free_amplitude: Metre) -> Touch:
     """The vibration with a finger on it, whose load depends on the amplitude: solved to 1e-8.
 
@@ -83,6 +85,7 @@ def touch(mode: WorkingMode, law: FrictionLaw, free_amplitude: Metre) -> Touch:
     )
 
 
+@checked_numbers
 def kept_at(mode: WorkingMode, law: FrictionLaw, amplitude: Metre) -> Dimensionless:
     """The amplitude with the finger over the one without, where the former is known (m)."""
     if mode.modal_mass is None or amplitude < _LEAST_AMPLITUDE:
@@ -93,6 +96,7 @@ def kept_at(mode: WorkingMode, law: FrictionLaw, amplitude: Metre) -> Dimensionl
     return loaded.amplitude_ratio(law.frequency) / free.amplitude_ratio(law.frequency)
 
 
+@checked_numbers
 def load_ratios(mode: WorkingMode, law: FrictionLaw, amplitude: MetreArray) -> ComplexArray:
     """The finger's modal stiffness over the mode's own, δ (complex), at amplitudes with the finger
     on (m), shape (n,). Zero where the modal mass is not known: the finger is left out."""

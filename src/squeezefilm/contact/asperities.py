@@ -29,6 +29,7 @@ from squeezefilm.quantities import (
     Pascal,
     PascalLike,
     Unit,
+    checked_numbers,
     closed_form,
     did_you_mean,
     require,
@@ -57,6 +58,7 @@ def exponential_pressure(
     return reference_pressure * np.exp(-(gap - reference_gap) / decay_length)
 
 
+@checked_numbers
 def exponential_mean_pressure(
     mean_gap: MetreLike,
     amplitude: MetreLike,
@@ -75,6 +77,7 @@ def exponential_mean_pressure(
     return np.asarray(pressure * i0e(np.asarray(amplitude) / decay_length))[()]
 
 
+@checked_numbers
 def gaussian_overlap(separation: DimensionlessLike) -> DimensionlessLike:
     """F(t) = ∫_t^∞ (z − t)^{3/2} exp(−z²/2)/√(2π) dz (dimensionless) for t from −8 to 20.
 
@@ -100,6 +103,7 @@ def _gaussian_coefficients() -> FloatArray:
     return np.asarray(chebyshev.chebfit(nodes, values, _TERMS - 1))
 
 
+@checked_numbers
 @dataclass(frozen=True)
 class AsperityLaw:
     """The pressure that asperities carry at a gap, independent of load and frequency.
@@ -125,6 +129,7 @@ class AsperityLaw:
                 f"Allowed: {', '.join(ASPERITY_HEIGHTS)}"
             )
 
+    @checked_numbers
     def pressure(self, gap: MetreLike) -> PascalLike:
         """p_a (Pa) at a gap (m); broadcasts."""
         if self.heights == "exponential":
@@ -138,6 +143,7 @@ class AsperityLaw:
         overlap = np.where(separation <= _HIGHEST, overlap, 0.0)
         return np.asarray(self.reference_pressure * overlap / reference)[()]
 
+    @checked_numbers
     def mean_pressure(self, mean_gap: MetreLike, amplitude: MetreLike) -> PascalLike:
         """⟨p_a(u − a cos T)⟩ over a period (Pa); broadcasts.
 
@@ -157,6 +163,7 @@ class AsperityLaw:
         gap = u[..., None] - a[..., None] * phase
         return np.asarray(np.mean(self.pressure(gap), axis=-1))[()]
 
+    @checked_numbers
     def gap_for(self, pressure: Pascal) -> Metre:
         """The gap (m) at which the asperities alone, at rest, carry a pressure (Pa).
 
@@ -183,6 +190,7 @@ class AsperityLaw:
             )
         return float(brentq(excess, _LOWEST, _HIGHEST)) * self.decay_length
 
+    @checked_numbers
     def scaled(self, factor: Dimensionless) -> AsperityLaw:
         """The law of a geometrically similar interface, all heights times `factor` (> 0)."""
         require("factor", factor, above=0)

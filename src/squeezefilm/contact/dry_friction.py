@@ -20,11 +20,13 @@ from squeezefilm.quantities import (
     Newton,
     NewtonLike,
     Unit,
+    checked_numbers,
     format_quantity,
     require,
 )
 
 
+@checked_numbers
 @dataclass(frozen=True, slots=True)
 class DryFriction:
     """Coulomb's law, set-valued at rest, with three options that each default to off.
@@ -62,6 +64,7 @@ class DryFriction:
         require("load_exponent", self.load_exponent, above=0.0, at_most=1.0)
         require("reference_force", self.reference_force, Unit("N"), above=0.0)
 
+    @checked_numbers
     def kinetic_force(
         self, friction_coefficient: DimensionlessLike, normal_force: NewtonLike
     ) -> NewtonLike:
@@ -78,6 +81,7 @@ class DryFriction:
         )
         return force
 
+    @checked_numbers
     def over_kinetic(self, speed: MetrePerSecondLike) -> DimensionlessLike:
         """Friction at a speed over that of fast sliding (1); at rest, the limit of what holds."""
         require("speed", speed, Unit("m/s"))
@@ -87,6 +91,7 @@ class DryFriction:
         return np.asarray(1 + (self.static_ratio - 1) * np.exp(-w / self.stribeck_speed))
 
 
+@checked_numbers
 @dataclass(frozen=True, slots=True, eq=False)
 class FrictionProfile:
     """Friction that belongs to places of the surface: a factor by skin position, linear between.
@@ -124,6 +129,7 @@ class FrictionProfile:
         return self.start + self.spacing * (np.size(self.relative_friction) - 1)
 
 
+@checked_numbers
 def sampled_profile(
     relative_friction: Callable[[MetreArray], FloatArray], start: Metre, end: Metre, points: int
 ) -> FrictionProfile:

@@ -17,7 +17,15 @@ from squeezefilm.errors import InputError
 from squeezefilm.film.gap import PaperGap, squeeze_number
 from squeezefilm.film.limits import contact_mean_pressure
 from squeezefilm.materials import Gas
-from squeezefilm.quantities import Dimensionless, Hertz, Metre, Unit, did_you_mean, require
+from squeezefilm.quantities import (
+    Dimensionless,
+    Hertz,
+    Metre,
+    Unit,
+    checked_numbers,
+    did_you_mean,
+    require,
+)
 
 if TYPE_CHECKING:
     from squeezefilm.film.periodic import FilmSolution
@@ -62,6 +70,7 @@ class FilmLoad:
     status: str
 
 
+@checked_numbers
 def film_load(
     gap: PaperGap,
     frequency: Hertz,
@@ -129,6 +138,7 @@ def _sigma(gap: PaperGap, frequency: Hertz, gas: Gas) -> float:
     )
 
 
+@checked_numbers
 def line_film(
     gap: PaperGap,
     frequency: Hertz,

@@ -21,6 +21,7 @@ from squeezefilm.quantities import (
     Radian,
     SquareMetre,
     Unit,
+    checked_numbers,
     did_you_mean,
     format_quantity,
     require,
@@ -40,6 +41,7 @@ FRICTION_OF_MOISTURE: dict[Moisture, float] = {"dry": 0.6, "normal": 1.0, "moist
 _ASPERITIES, _SKIN, _FINGERPAD = AsperityLaw(), Skin(), FingerpadDynamics()
 
 
+@checked_numbers
 @dataclass(frozen=True)
 class Finger:
     """A fingertip resting on the surface.
@@ -109,6 +111,7 @@ class Finger:
         """From groove to crest, 2 h_e."""
         return 2 * self.ridge_amplitude
 
+    @checked_numbers
     def contact_area(self, normal_force: Newton | None = None) -> SquareMetre:
         """A = l0² (F/F_ref)^exponent under a force (N; None: the finger's own)."""
         force = self.normal_force if normal_force is None else normal_force
@@ -116,11 +119,13 @@ class Finger:
         reference = self.contact_area_force or self.normal_force
         return self.contact_length**2 * float((force / reference) ** self.contact_area_exponent)
 
+    @checked_numbers
     def plateau_pressure(self, normal_force: Newton | None = None) -> Pascal:
         """p_plateau = F L/(A w): what a flattened ridge carries in the mean."""
         force = self.normal_force if normal_force is None else normal_force
         return force / self.contact_area(force) * self.ridge_period / self.plateau_width
 
+    @checked_numbers
     def asperity_law(self, surface_roughness: Metre) -> AsperityLaw:
         """What the asperities of this skin carry on a surface of a roughness (m).
 

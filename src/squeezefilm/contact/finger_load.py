@@ -15,11 +15,12 @@ from squeezefilm.contact.skin import Skin
 from squeezefilm.film.gap import squeeze_number
 from squeezefilm.film.linear import relative_damping, relative_stiffness
 from squeezefilm.materials import Gas
-from squeezefilm.quantities import Hertz, Metre, Unit, require
+from squeezefilm.quantities import Hertz, Metre, Unit, checked_numbers, require
 
 _PHASES = np.cos(2 * np.pi * np.arange(64) / 64)
 
 
+@checked_numbers
 def interface_stiffness(
     mean_gap: Metre,
     amplitude: Metre,
@@ -48,6 +49,7 @@ def interface_stiffness(
     return film + 2 * float(np.mean(pressure * _PHASES)) / swing
 
 
+@checked_numbers
 def finger_stiffness(
     interface: complex, skin: Skin, frequency: Hertz, plateau_share: float
 ) -> complex:

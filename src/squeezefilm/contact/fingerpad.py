@@ -30,6 +30,7 @@ from squeezefilm.quantities import (
     Second,
     SecondLike,
     Unit,
+    checked_numbers,
     closed_form,
     require,
 )
@@ -45,6 +46,7 @@ EVIDENCE = {
 """Where the defaults of `FingerpadDynamics` come from: none was read in a source or measured."""
 
 
+@checked_numbers
 @dataclass(frozen=True, slots=True)
 class FingerpadDynamics:
     """The lumped tangential dynamics of a fingerpad.

@@ -28,6 +28,7 @@ from squeezefilm.quantities import (
     MetreLike,
     PascalLike,
     Unit,
+    checked_numbers,
     require,
 )
 
@@ -48,6 +49,7 @@ def default_tolerance(slip: str) -> float:
     return 5e-4 if slip in _SMOOTH_LAWS else 5e-3
 
 
+@checked_numbers
 class FilmTable:
     """The film of a plateau at one frequency, width and gas, over mean gap and amplitude.
 
@@ -99,6 +101,7 @@ class FilmTable:
         """The bound on the relative error of the over-pressure; 0 where no film was needed."""
         return 0.0 if self.error is None else self.error
 
+    @checked_numbers
     def over_pressure(self, mean_gap: MetreLike, amplitude: MetreLike) -> PascalLike:
         """⟨p_gas⟩ − p0 (Pa), mean over plateau and period; broadcasts.
 
@@ -208,6 +211,7 @@ def _coefficients(values: FloatArray) -> FloatArray:
     return np.ascontiguousarray(result)
 
 
+@checked_numbers
 @lru_cache(maxsize=256)
 def film_table(
     frequency: Hertz, width: Metre, gas: Gas, slip: str = "first", tolerance: float | None = None

@@ -12,6 +12,7 @@ from squeezefilm.quantities import (
     Second,
     SecondLike,
     Unit,
+    checked_numbers,
     closed_form,
     require,
 )
@@ -24,6 +25,7 @@ EVIDENCE = {
 """Where the defaults of `Occlusion` come from."""
 
 
+@checked_numbers
 @dataclass(frozen=True, slots=True)
 class Occlusion:
     """Friction that grows with the time a finger has been on a smooth, impermeable surface.
@@ -51,6 +53,7 @@ class Occlusion:
         require("time_constant", self.time_constant, Unit("s"), above=0.0)
         require("contact_time", self.contact_time, Unit("s"), at_least=0.0)
 
+    @checked_numbers
     def factor(self, time: SecondLike) -> DimensionlessLike:
         """What the friction coefficient is multiplied by, `time` after the motion starts (1)."""
         return occlusion_factor(self.contact_time + time, self.rise, self.time_constant)

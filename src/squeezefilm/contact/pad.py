@@ -31,6 +31,7 @@ from squeezefilm.quantities import (
     PascalArray,
     Radian,
     Unit,
+    checked_numbers,
     format_quantity,
     require,
 )
@@ -38,6 +39,7 @@ from squeezefilm.quantities import (
 Limit = Literal["own", "one-gap"]
 
 
+@checked_numbers
 @dataclass(frozen=True, eq=False)
 class PadPosture:
     """How the pad lies on the wave.
@@ -88,6 +90,7 @@ class PadFriction:
         return self.film_pressure / (self.asperity_pressure + self.film_pressure)
 
 
+@checked_numbers
 def ridge_points(finger: Finger, contact_length: Metre | None = None) -> FloatArray:
     """Where along the wave (m from the pad's centre) the ridges are sampled, each point alike.
 
@@ -116,6 +119,7 @@ def ridge_points(finger: Finger, contact_length: Metre | None = None) -> FloatAr
     return np.asarray(points, dtype=float)
 
 
+@checked_numbers
 def pad_friction(
     table: FilmTable,
     asperities: AsperityLaw,
@@ -180,6 +184,7 @@ def pad_friction(
     )
 
 
+@checked_numbers
 @dataclass(frozen=True, eq=False)
 class FrictionRipple:
     """What a pad feels of the standing wave itself as it moves along it at constant amplitude.
@@ -204,6 +209,7 @@ class FrictionRipple:
         return float(np.ptp(self.relative_friction)) / self.mean
 
 
+@checked_numbers
 def friction_ripple(
     table: FilmTable,
     asperities: AsperityLaw,

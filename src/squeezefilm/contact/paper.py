@@ -24,6 +24,7 @@ from squeezefilm.quantities import (
     Pascal,
     PascalLike,
     Unit,
+    checked_numbers,
     closed_form,
     format_quantity,
     require,
@@ -93,6 +94,7 @@ def _unclipped(gap: PaperGap, force: Any, ambient: float, model: PaperModel) -> 
     return 1 - over_pressure / (pressure if model == "paper2008-printed" else pressure / ambient)
 
 
+@checked_numbers
 def relative_friction(
     gap: PaperGap,
     normal_force: NewtonLike,
@@ -114,6 +116,7 @@ def relative_friction(
     return value if np.ndim(value) else float(value)
 
 
+@checked_numbers
 def vibration_amplitude_for(
     relative_friction: Dimensionless,
     gap: PaperGap,
@@ -161,6 +164,7 @@ def vibration_amplitude_for(
     return float(brentq(excess, low, high, xtol=1e-16, rtol=1e-12))
 
 
+@checked_numbers
 def zero_friction_amplitude(
     gap: PaperGap,
     normal_force: Newton,

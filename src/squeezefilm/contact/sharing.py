@@ -29,6 +29,7 @@ from squeezefilm.quantities import (
     PascalArray,
     PascalLike,
     Unit,
+    checked_numbers,
     format_quantity,
     require,
 )
@@ -68,6 +69,7 @@ class LoadSharing:
         return self.film_error * (1 - self.relative_friction) + np.abs(self.residual)
 
 
+@checked_numbers
 def share_load(
     table: FilmTable,
     asperities: AsperityLaw,
@@ -149,6 +151,7 @@ class TiedSharing:
         return self.film_error * (1 - self.relative_friction) + abs(self.residual)
 
 
+@checked_numbers
 def share_load_tied(
     table: FilmTable,
     asperities: AsperityLaw,

@@ -18,10 +18,12 @@ from squeezefilm.quantities import (
     PascalPerMetre,
     PascalSecondPerMetre,
     Unit,
+    checked_numbers,
     require,
 )
 
 
+@checked_numbers
 @dataclass(frozen=True)
 class Skin:
     """Mass, stiffness and damping of the skin per area, at ultrasonic frequency.
@@ -39,6 +41,7 @@ class Skin:
         require("stiffness_per_area", self.stiffness_per_area, Unit("Pa/m"), at_least=0)
         require("damping_per_area", self.damping_per_area, Unit("Pa*s/m"), at_least=0)
 
+    @checked_numbers
     def dynamic_stiffness(self, frequency: Hertz) -> complex:
         """k − m ω² + iωc in Pa/m, ω = 2π frequency."""
         require("frequency", frequency, Unit("Hz"), above=0)
@@ -48,6 +51,7 @@ class Skin:
             self.damping_per_area * omega,
         )
 
+    @checked_numbers
     def displacement(self, pressure: Pascal, frequency: Hertz) -> float:
         """How far (m, amplitude) an alternating pressure (Pa, amplitude) moves the skin."""
         return float(pressure / abs(self.dynamic_stiffness(frequency)))

@@ -21,6 +21,7 @@ from squeezefilm.quantities import (
     NewtonArray,
     Second,
     Unit,
+    checked_numbers,
     closed_form,
     format_quantity,
     require,
@@ -78,6 +79,7 @@ def texture_frequency(speed: MetrePerSecondLike, spatial_period: MetreLike) -> H
     return speed / spatial_period
 
 
+@checked_numbers
 def skin_vibration(
     motion: Sliding,
     fundamental: Hertz,
@@ -147,6 +149,7 @@ def skin_vibration(
     )
 
 
+@checked_numbers
 def line_amplitudes(signals: FloatArray, time_step: Second, lines: HertzArray) -> FloatArray:
     """Zero-to-peak amplitudes of sines at the frequencies `lines` (Hz) in signals (…, samples).
 

@@ -40,6 +40,7 @@ from squeezefilm.quantities import (
     Second,
     SecondArray,
     Unit,
+    checked_numbers,
     format_quantity,
     require,
 )
@@ -125,6 +126,7 @@ class Sliding:
         )
 
 
+@checked_numbers
 def slide(
     bone_position: MetreArray,
     time_step: Second,
@@ -229,6 +231,7 @@ def slide(
     )
 
 
+@checked_numbers
 def interval_speeds(
     bone: MetreArray, time_step: Second
 ) -> tuple[MetrePerSecondArray, MetrePerSecondArray]:
@@ -262,6 +265,7 @@ def _over_time(name: str, values: NewtonLike | DimensionlessLike, n: int) -> Flo
     return np.broadcast_to(array, (n,))
 
 
+@checked_numbers
 def substeps(time_step: Second, pad: FingerpadDynamics, law: DryFriction, strongest: float) -> int:
     """Parts of a step (s) short enough for the skin, and for friction that falls with speed.
 

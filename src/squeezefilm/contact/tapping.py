@@ -34,6 +34,7 @@ from squeezefilm.quantities import (
     Pascal,
     PascalPerMetre,
     Unit,
+    checked_numbers,
     closed_form,
     require,
 )
@@ -88,6 +89,7 @@ class Tapping:
         return 1 - self.relative_friction
 
 
+@checked_numbers
 def contact_angle(amplitude: Metre, rest_penetration: Metre) -> float:
     """Half the phase (rad) in contact, θ0, at which taps of a linear skin carry the load.
 
@@ -104,6 +106,7 @@ def contact_angle(amplitude: Metre, rest_penetration: Metre) -> float:
     return float(brentq(lambda t: np.sin(t) - t * np.cos(t) - wanted, 0.0, np.pi, xtol=1e-14))
 
 
+@checked_numbers
 def tapping_friction(
     amplitude: Metre,
     frequency: Hertz,

@@ -17,6 +17,7 @@ from squeezefilm.quantities import (
     Pascal,
     PascalSecond,
     Unit,
+    checked_numbers,
     format_quantity,
     require,
 )
@@ -122,6 +123,7 @@ def _film(
     )  # fmt: skip
 
 
+@checked_numbers
 def mean_gap_for_load(
     load: Pascal,
     amplitude: Metre,
@@ -233,6 +235,7 @@ def mean_gap_for_load(
     )
 
 
+@checked_numbers
 def levitation_limit(
     amplitude: Metre,
     frequency: Hertz,

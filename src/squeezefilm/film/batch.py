@@ -28,7 +28,13 @@ from squeezefilm.film.resolution import (
     tables,
 )
 from squeezefilm.film.slip import slip_law
-from squeezefilm.quantities import DimensionlessArray, DimensionlessLike, FloatArray, require
+from squeezefilm.quantities import (
+    DimensionlessArray,
+    DimensionlessLike,
+    FloatArray,
+    checked_numbers,
+    require,
+)
 
 Progress = Callable[[int, int], None]
 
@@ -77,6 +83,7 @@ def compiled() -> Any:
     return uniform
 
 
+@checked_numbers
 def solve_strips(
     squeeze_number: DimensionlessLike,
     excursion_ratio: DimensionlessLike,
@@ -103,6 +110,7 @@ def solve_strips(
     )  # fmt: skip
 
 
+@checked_numbers
 def solve_discs(
     squeeze_number: DimensionlessLike,
     excursion_ratio: DimensionlessLike,

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from squeezefilm.film.batch import solve_strips
-from squeezefilm.quantities import Dimensionless, require
+from squeezefilm.quantities import Dimensionless, checked_numbers, require
 
 _SIGMA = 3600.0
 
@@ -24,6 +24,7 @@ class EdgeLayer:
     model: str
 
 
+@checked_numbers
 def edge_layer(
     excursion_ratio: Dimensionless,
     *,

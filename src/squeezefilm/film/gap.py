@@ -25,6 +25,7 @@ from squeezefilm.quantities import (
     PascalSecond,
     SecondLike,
     Unit,
+    checked_numbers,
     closed_form,
     require,
 )
@@ -128,6 +129,7 @@ def frequency_for_squeeze_number(
     return pressure / (24 * np.pi * viscosity * length**2)
 
 
+@checked_numbers
 @dataclass(frozen=True, eq=False)
 class PaperGap:
     """The gap of the paper's model; lengths in m, the vibration amplitude a scalar or 1-D array.
@@ -164,6 +166,7 @@ class PaperGap:
                 "give a number or a one-dimensional array"
             )
 
+    @checked_numbers
     def with_amplitude(self, vibration_amplitude: MetreLike) -> PaperGap:
         """The same gap at another vibration amplitude (m, scalar or 1-D array)."""
         return dataclasses.replace(self, vibration_amplitude=vibration_amplitude)
@@ -208,10 +211,12 @@ class PaperGap:
         """Whether antinode and groove lie at the centre of the contact, as in the paper."""
         return self.wave_offset == 0 and self.ridge_offset == 0
 
+    @checked_numbers
     def wave_phase(self, X: FloatArray) -> FloatArray:
         """The argument of the wave's cosine at X = x/l0 (rad)."""
         return self.wave_number * (X - self.wave_offset / self.contact_length)
 
+    @checked_numbers
     def ridge_phase(self, X: FloatArray) -> FloatArray:
         """The argument of the ridges' cosine at X = x/l0 (rad)."""
         return self.ridge_number * (X - self.ridge_offset / self.contact_length)

@@ -20,6 +20,7 @@ from squeezefilm.quantities import (
     DimensionlessArray,
     DimensionlessLike,
     FloatArray,
+    checked_numbers,
     closed_form,
     require,
     require_valid,
@@ -237,6 +238,7 @@ def _inverse_cube_integral(theta: Any, delta: Any) -> Any:
     return E - 2 * delta * np.sin(E) + delta**2 * (E / 2 + np.sin(2 * E) / 4)
 
 
+@checked_numbers
 def mean_pressure_profile(
     X: DimensionlessArray, gap: PaperGap, model: PaperModel = "paper2008"
 ) -> DimensionlessArray:
@@ -308,6 +310,7 @@ def _panels(gap: PaperGap) -> tuple[FloatArray, float]:
     return np.unique(np.concatenate([[low], inner, [high]])), e
 
 
+@checked_numbers
 def contact_mean_pressure(
     gap: PaperGap, model: PaperModel = "paper2008", *, tolerance: float = 1e-10
 ) -> DimensionlessLike:

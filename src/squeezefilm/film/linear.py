@@ -27,6 +27,7 @@ from squeezefilm.quantities import (
     Pascal,
     PascalSecond,
     SquareMetre,
+    checked_numbers,
     closed_form,
     require,
     require_valid,
@@ -270,6 +271,7 @@ def incompressible_strip_damping(
     return viscosity * area * length**2 / film_thickness**3
 
 
+@checked_numbers
 def crossover_squeeze_number(
     planform: Planform = "strip", aspect_ratio: Dimensionless = 1.0
 ) -> Dimensionless:

@@ -31,6 +31,7 @@ from squeezefilm.quantities import (
     Dimensionless,
     DimensionlessArray,
     FloatArray,
+    checked_numbers,
     require,
 )
 
@@ -81,6 +82,7 @@ class FilmSolution:
     profile: GapProfile | None
 
 
+@checked_numbers
 def solve_strip(
     squeeze_number: Dimensionless,
     excursion_ratio: Dimensionless,
@@ -107,6 +109,7 @@ def solve_strip(
     )  # fmt: skip
 
 
+@checked_numbers
 def solve_disc(
     squeeze_number: Dimensionless,
     excursion_ratio: Dimensionless,
@@ -172,6 +175,7 @@ def _solve_uniform(
     )  # fmt: skip
 
 
+@checked_numbers
 def solve_profile(
     squeeze_number: Dimensionless,
     profile: GapProfile | Callable[[FloatArray, FloatArray], ArrayLike],

@@ -17,7 +17,13 @@ from squeezefilm.film.planar_gap import GapFunction, PlanarGap, require_periodic
 from squeezefilm.film.planar_kernel import row_block
 from squeezefilm.film.planar_ladder import RUNGS, Ladder, PlanarShape, climb_to
 from squeezefilm.film.slip import slip_law
-from squeezefilm.quantities import ComplexArray, Dimensionless, DimensionlessArray, require
+from squeezefilm.quantities import (
+    ComplexArray,
+    Dimensionless,
+    DimensionlessArray,
+    checked_numbers,
+    require,
+)
 
 
 @dataclass(frozen=True)
@@ -60,6 +66,7 @@ class FilmPlanar:
     tolerance: Dimensionless
 
 
+@checked_numbers
 def solve_rectangle(
     squeeze_number: Dimensionless,
     excursion_ratio: Dimensionless,
@@ -87,6 +94,7 @@ def solve_rectangle(
     )  # fmt: skip
 
 
+@checked_numbers
 def solve_ellipse(
     squeeze_number: Dimensionless,
     excursion_ratio: Dimensionless,
@@ -113,6 +121,7 @@ def solve_ellipse(
     )  # fmt: skip
 
 
+@checked_numbers
 def solve_planar(
     shape: PlanarShape,
     gap: GapFunction,

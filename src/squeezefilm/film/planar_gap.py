@@ -8,12 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from squeezefilm.errors import GeometryError, InputError
-from squeezefilm.quantities import Dimensionless, FloatArray, require
+from squeezefilm.quantities import Dimensionless, FloatArray, checked_numbers, require
 
 GapFunction = Callable[[FloatArray, FloatArray, FloatArray], FloatArray]
 """H(X, Y, T): takes X and Y (places, 1) and T (1, times), returns what broadcasts with them."""
 
 
+@checked_numbers
 @dataclass(frozen=True)
 class PlanarGap:
     """H = 1 + ε cos(k1 X) cos T + δ cos(k2 X): a standing wave under static ridges.
@@ -35,6 +36,7 @@ class PlanarGap:
         require("ridge_height", self.ridge_height, at_least=0.0, below=1.0)
         require("ridge_wave_number", self.ridge_wave_number, at_least=0.0)
 
+    @checked_numbers
     def __call__(self, X: FloatArray, Y: FloatArray, T: FloatArray) -> FloatArray:
         """H at places X, Y and times T, broadcast."""
         wave = np.cos(self.wave_number * X) * np.cos(T)

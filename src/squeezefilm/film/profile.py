@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from squeezefilm.errors import GeometryError, InputError
-from squeezefilm.quantities import ComplexArray, FloatArray, require
+from squeezefilm.quantities import ComplexArray, FloatArray, checked_numbers, require
 
 _TIMES = 128
 _MOST_ORDERS = 40
@@ -137,6 +137,7 @@ def _extrema(values: FloatArray) -> int:
     return int(np.count_nonzero(rise[1:] * rise[:-1] < 0.0))
 
 
+@checked_numbers
 def flexural_profile(
     excursion_ratio: float,
     *,

@@ -23,7 +23,13 @@ from squeezefilm.film.transient import (
     stage_times,
 )
 from squeezefilm.film.transient_kernel import march
-from squeezefilm.quantities import Dimensionless, DimensionlessArray, FloatArray, require
+from squeezefilm.quantities import (
+    Dimensionless,
+    DimensionlessArray,
+    FloatArray,
+    checked_numbers,
+    require,
+)
 
 _MEMORY = 8
 """Periods the acceleration remembers."""
@@ -88,6 +94,7 @@ class _Mixer:
         return image
 
 
+@checked_numbers
 def settle_to_periodic(
     gap: Gap,
     squeeze_number: Dimensionless,

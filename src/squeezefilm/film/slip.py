@@ -10,7 +10,13 @@ from __future__ import annotations
 import numpy as np
 
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import DimensionlessLike, FloatLike, did_you_mean, require
+from squeezefilm.quantities import (
+    DimensionlessLike,
+    FloatLike,
+    checked_numbers,
+    did_you_mean,
+    require,
+)
 
 NO_SLIP, FIRST, SECOND, FUKUI_KANEKO, VEIJOLA = range(5)
 
@@ -37,6 +43,7 @@ def slip_law(slip: str, knudsen_number: float) -> int:
     return SLIP_LAWS[slip] if knudsen_number > 0.0 else NO_SLIP
 
 
+@checked_numbers
 def flow_factor(local_knudsen_number: DimensionlessLike, slip: str = "first") -> FloatLike:
     """The factor φ by which slip raises the flow of a film at a local Knudsen number λ/h.
 

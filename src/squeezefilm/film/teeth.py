@@ -13,7 +13,7 @@ import numpy as np
 from squeezefilm.errors import InputError
 from squeezefilm.film.planar import FilmPlanar, solve_planar
 from squeezefilm.film.planar_gap import GapFunction, PlanarGap
-from squeezefilm.quantities import Dimensionless, FloatArray, require
+from squeezefilm.quantities import Dimensionless, FloatArray, checked_numbers, require
 
 _PHASES = 5
 
@@ -48,6 +48,7 @@ def _tooth_gap(gap: PlanarGap, excursion: float, width: float, shift: float) -> 
     return on_tooth
 
 
+@checked_numbers
 def compare_teeth(
     squeeze_number: Dimensionless,
     gap: PlanarGap,

@@ -18,7 +18,13 @@ from squeezefilm.film.compiled import announce
 from squeezefilm.film.line_grid import Gap, Shape, gap_table, line_grid, mean_over
 from squeezefilm.film.slip import slip_law
 from squeezefilm.film.transient_kernel import BACKWARD_EULER, BDF2, SDIRK2, march
-from squeezefilm.quantities import Dimensionless, DimensionlessArray, FloatArray, require
+from squeezefilm.quantities import (
+    Dimensionless,
+    DimensionlessArray,
+    FloatArray,
+    checked_numbers,
+    require,
+)
 
 Scheme = Literal["bdf2", "sdirk2", "backward_euler"]
 SCHEMES: dict[str, int] = {"bdf2": BDF2, "sdirk2": SDIRK2, "backward_euler": BACKWARD_EULER}
@@ -76,6 +82,7 @@ def _gas_balanced(volume: FloatArray, m: FloatArray, before: FloatArray, scheme:
     return float(volume @ (1.5 * m - 0.5 * before if scheme == "bdf2" else m))
 
 
+@checked_numbers
 def solve_transient(
     gap: Gap,
     squeeze_number: Dimensionless,

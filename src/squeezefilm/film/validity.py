@@ -23,6 +23,7 @@ from squeezefilm.quantities import (
     Pascal,
     PascalSecond,
     Unit,
+    checked_numbers,
     closed_form,
     format_quantity,
 )
@@ -84,6 +85,7 @@ def crest_squeeze_number(
     return 24 * viscosity * omega * radius / (ambient_pressure * film_thickness)
 
 
+@checked_numbers
 def asymptotic_fraction(squeeze_number: DimensionlessLike) -> DimensionlessLike:
     """The share of the over-pressure of σ → ∞ that a smooth strip has at σ (dimensionless).
 
@@ -142,6 +144,7 @@ class FilmValidity:
         raise InputError(f"there is no check '{name}'; there are {allowed}")
 
 
+@checked_numbers
 def film_validity(
     gap: PaperGap, frequency: Hertz, gas: Gas, *, strict: bool = False
 ) -> FilmValidity:

@@ -34,6 +34,7 @@ from squeezefilm.quantities import (
     MetrePerSecond,
     Unit,
     Volt,
+    checked_numbers,
     require,
 )
 from squeezefilm.render.composition import Composable, require_texture
@@ -58,6 +59,7 @@ ToFriction = Callable[[FloatArray], DimensionlessArray]
 """Values of a texture, in its quantity → relative friction (1)."""
 
 
+@checked_numbers
 @dataclass(frozen=True, slots=True)
 class ReferenceDevice:
     """What an export says of the display it was made for.
@@ -102,6 +104,7 @@ class HjifExport:
     largest_error: Dimensionless
 
 
+@checked_numbers
 def hjif_of(
     texture: Composable,
     start: Metre,

@@ -17,7 +17,13 @@ from typing import Any
 import numpy as np
 
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import DimensionlessArray, FloatArray, Metre, MetreArray
+from squeezefilm.quantities import (
+    DimensionlessArray,
+    FloatArray,
+    Metre,
+    MetreArray,
+    checked_numbers,
+)
 from squeezefilm.render.levels import RelativeFriction
 from squeezefilm.render.pattern import Pattern
 from squeezefilm.render.pattern_image import MOST_PIXELS, Image
@@ -189,6 +195,7 @@ def texture_of_hjif(document: Any) -> HjifImport:
     return HjifImport(RelativeFriction(image, low, high), start, end, tuple(lost))
 
 
+@checked_numbers
 def friction_along(document: Any, x: MetreArray) -> DimensionlessArray:
     """The friction of a document at places along its way (1), in the shape of `x` (m).
 

@@ -17,12 +17,13 @@ from typing import Any, Literal
 
 from squeezefilm.errors import InputError
 from squeezefilm.formats.pictures import read_picture
-from squeezefilm.quantities import FloatArray, Metre, Unit, require
+from squeezefilm.quantities import FloatArray, Metre, Unit, checked_numbers, require
 from squeezefilm.render.opcodes import Assembler
 from squeezefilm.render.pattern import Pattern
 from squeezefilm.render.pattern_image import OUTSIDE, Image
 
 
+@checked_numbers
 @dataclass(frozen=True, slots=True)
 class ImageFile(Pattern):
     """An image whose pixels are in a PNG file; `image` reads them. See `Image` for the rest.

@@ -23,7 +23,7 @@ from typing import Any
 import numpy as np
 
 from squeezefilm.errors import ConfigError, InputError
-from squeezefilm.quantities import FloatArray
+from squeezefilm.quantities import FloatArray, checked_numbers
 
 _NAME = re.compile(r"[a-z][A-Za-z0-9_.]*")
 _JSON_TEXT = re.compile(r'"(?:[^"\\]|\\.)*"')
@@ -31,6 +31,7 @@ _KEY = b"squeezefilm"
 _MOST_BYTES = 2_000_000_000
 
 
+@checked_numbers
 @dataclass(frozen=True, slots=True, eq=False)
 class Table:
     """Columns of equal length by name (`position_m`, …), and where they are from.

@@ -18,7 +18,7 @@ from typing import Any, Literal, get_args
 import numpy as np
 
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import FloatArray, Hertz, Unit, require
+from squeezefilm.quantities import FloatArray, Hertz, Unit, checked_numbers, require
 
 Encoding = Literal["float32", "int16", "int24"]
 ENCODINGS: tuple[Encoding, ...] = get_args(Encoding)
@@ -33,6 +33,7 @@ _WIDTH = {"float32": 4, "int16": 2, "int24": 3}
 _LONGEST_NOTE = 1_000_000
 
 
+@checked_numbers
 @dataclass(frozen=True, slots=True, eq=False)
 class Waveform:
     """One channel of samples of a physical quantity.

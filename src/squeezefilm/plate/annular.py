@@ -32,6 +32,7 @@ from squeezefilm.quantities import (
     MetrePerVolt,
     NewtonPerVolt,
     Unit,
+    checked_numbers,
     require,
 )
 
@@ -88,6 +89,7 @@ class AnnularMode:
         stiffness = (2 * math.pi * self.frequency) ** 2 * self.modal_mass
         return self.quality_factor * self.modal_force(drive) / stiffness
 
+    @checked_numbers
     def coupling_coefficient(self, drive: SectorDrive, capacitance: Farad) -> Dimensionless:
         """Effective coupling k of the mode on `drive`: k² = F²/(F² + ω² M C), with C clamped."""
         stiffness = (2 * math.pi * self.frequency) ** 2 * self.modal_mass
@@ -95,6 +97,7 @@ class AnnularMode:
         return force / math.sqrt(force**2 + stiffness * capacitance)
 
 
+@checked_numbers
 def annular_modes(
     section: AnnularSection,
     harmonic: int,
@@ -137,6 +140,7 @@ def annular_modes(
     return tuple(modes)
 
 
+@checked_numbers
 def bending_mode(
     section: AnnularSection,
     diameters: int,
@@ -179,6 +183,7 @@ def clamped_capacitance(section: AnnularSection, drive: SectorDrive) -> Farad:
     return float(total * drive.angle)
 
 
+@checked_numbers
 def annular_admittance(
     section: AnnularSection,
     drive: SectorDrive,

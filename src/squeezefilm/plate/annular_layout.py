@@ -23,6 +23,7 @@ from squeezefilm.quantities import (
     Metre,
     Radian,
     Unit,
+    checked_numbers,
     format_quantity,
     require,
 )
@@ -32,6 +33,7 @@ _M = Unit("m")
 _SAME = 5e-10
 
 
+@checked_numbers
 @dataclass(frozen=True, eq=False)
 class RingLayer:
     """One rectangle of the (r, z) section, revolved: radii and heights in metres.
@@ -66,6 +68,7 @@ class RingLayer:
         return self.solid.piezoelectric is not None
 
 
+@checked_numbers
 @dataclass(frozen=True, eq=False)
 class AnnularSection:
     """Layers that together make a ring or a disc, free everywhere.
@@ -170,6 +173,7 @@ class SectorDrive:
         """The angle that the electrodes cover."""
         return sum(end - start for start, end, _ in self.sectors)
 
+    @checked_numbers
     def coefficient(self, harmonic: int) -> complex:
         """∫ s(θ) exp(−i m θ) dθ of the polarity s; its size is what drives cos m(θ − θ0).
 
@@ -184,6 +188,7 @@ class SectorDrive:
         return complex(total * 1j / harmonic)
 
 
+@checked_numbers
 def alternate_sectors(count: int, width: Radian, start: Radian = 0.0) -> SectorDrive:
     """`count` neighbouring sectors of one width, of alternate poling: the channel of a motor.
 
@@ -205,6 +210,7 @@ def full_drive() -> SectorDrive:
     return SectorDrive(((0.0, 2 * math.pi, 1),))
 
 
+@checked_numbers
 def motor_stator(
     *,
     mean_diameter: Metre,
@@ -252,6 +258,7 @@ def motor_stator(
     return AnnularSection(tuple(layers), wave_diameter=mean_diameter)
 
 
+@checked_numbers
 def bonded_disc(
     *,
     diameter: Metre,

@@ -16,10 +16,12 @@ from squeezefilm.quantities import (
     FloatArray,
     KilogramPerCubicMetre,
     Unit,
+    checked_numbers,
     require,
 )
 
 
+@checked_numbers
 @dataclass(frozen=True, eq=False)
 class RingSolid:
     """A linear solid that looks the same from every angle θ.
@@ -69,6 +71,7 @@ class RingSolid:
             )
 
 
+@checked_numbers
 def isotropic_solid(
     material: ElasticMaterial, loss_factor: Dimensionless | None = None
 ) -> RingSolid:
@@ -85,6 +88,7 @@ def isotropic_solid(
     )
 
 
+@checked_numbers
 def piezoceramic_solid(
     ceramic: Piezoceramic, loss_factor: Dimensionless | None = None
 ) -> RingSolid:
@@ -105,6 +109,7 @@ def piezoceramic_solid(
     )
 
 
+@checked_numbers
 def stiff_teeth(solid: RingSolid, fill: Dimensionless) -> RingSolid:
     """A layer of radial teeth, smeared, at its upper bound: everything times `fill`.
 
@@ -121,6 +126,7 @@ def stiff_teeth(solid: RingSolid, fill: Dimensionless) -> RingSolid:
     )
 
 
+@checked_numbers
 def soft_teeth(solid: RingSolid, fill: Dimensionless) -> RingSolid:
     """A layer of radial teeth, smeared, at its lower bound: no hoop stiffness at all.
 

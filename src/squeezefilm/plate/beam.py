@@ -26,6 +26,7 @@ from squeezefilm.quantities import (
     MetreLike,
     NewtonMetre,
     Unit,
+    checked_numbers,
     closed_form,
     format_quantity,
     require,
@@ -65,6 +66,7 @@ def euler_bernoulli_half_wavelength(
     return half_wavelength
 
 
+@checked_numbers
 def timoshenko_frequency(half_wavelength: MetreLike, section: Laminate) -> HertzLike:
     """The frequency (Hz) of a flexural wave of given half wavelength in a Timoshenko beam.
 
@@ -103,10 +105,12 @@ class BeamMode:
     nodal_positions: MetreArray
     modal_mass_per_width: KilogramPerMetre
 
+    @checked_numbers
     def deflection_at(self, x: FloatArray | float) -> FloatArray:
         """The scaled deflection at positions x (m)."""
         return np.asarray(np.interp(x, self.position, self.deflection))
 
+    @checked_numbers
     def rotation_at(self, x: FloatArray | float) -> FloatArray:
         """The section's rotation (rad per metre of scaled deflection) at positions x (m)."""
         return np.asarray(np.interp(x, self.position, self.rotation))
@@ -140,6 +144,7 @@ def _determinant(
     return (alpha**2 + m) * alpha * c * th + (m - beta**2) * s * beta
 
 
+@checked_numbers
 def free_beam_mode(
     section: Laminate,
     length: Metre,

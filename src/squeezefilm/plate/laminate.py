@@ -22,6 +22,7 @@ from squeezefilm.quantities import (
     NewtonPerVolt,
     Pascal,
     Unit,
+    checked_numbers,
     require,
 )
 
@@ -29,6 +30,7 @@ CrossSection = Literal["paper", "plane_stress", "plane_strain"]
 SHEAR_CORRECTION = 5 / 6
 
 
+@checked_numbers
 @dataclass(frozen=True)
 class Layer:
     """One layer of a laminate: its thickness, bending modulus, shear modulus and density."""
@@ -45,6 +47,7 @@ class Layer:
         require("density", self.density, Unit("kg/m3"), above=0)
 
 
+@checked_numbers
 @dataclass(frozen=True)
 class Laminate:
     """The section constants of a laminate per unit width.
@@ -61,6 +64,7 @@ class Laminate:
     shear_stiffness: NewtonPerMetre
     layers: tuple[Layer, ...]
 
+    @checked_numbers
     def moment_arm(self, layer: int) -> Metre:
         """The distance of a layer's mid-plane from the neutral axis, positive upwards."""
         below = sum(other.thickness for other in self.layers[:layer])

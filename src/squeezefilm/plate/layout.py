@@ -18,6 +18,7 @@ from squeezefilm.quantities import (
     SquareMetre,
     Unit,
     Volt,
+    checked_numbers,
     format_quantity,
     require,
 )
@@ -30,6 +31,7 @@ Electrode = Literal["driven", "shorted", "open", "shunted"]
 Edge = Literal["left", "right", "front", "back"]
 
 
+@checked_numbers
 @dataclass(frozen=True)
 class CeramicPatch:
     """One rectangular ceramic on a face of the plate.
@@ -66,6 +68,7 @@ class CeramicPatch:
             )
 
 
+@checked_numbers
 @dataclass(frozen=True)
 class GlueLayer:
     """The glue between every ceramic and the plate, as an isotropic layer."""
@@ -84,6 +87,7 @@ class GlueLayer:
         require("quality_factor", self.quality_factor, above=0.5)
 
 
+@checked_numbers
 @dataclass(frozen=True)
 class FoamSupport:
     """A strip of foam or gasket under (or over) the plate, as springs spread over a rectangle.
@@ -122,6 +126,7 @@ class FoamSupport:
         return along, along, self.young_modulus / self.thickness
 
 
+@checked_numbers
 def rim_supports(
     length: Metre, width: Metre, strip: Metre, thickness: Metre, young_modulus: Pascal,
     quality_factor: Dimensionless = 3.0, face: Face = "bottom",
@@ -142,6 +147,7 @@ def rim_supports(
 _Part = TypeVar("_Part", CeramicPatch, FoamSupport)
 
 
+@checked_numbers
 @dataclass(frozen=True)
 class RectangularPlate:
     """A rectangular plate with ceramics bonded to its faces.
@@ -265,6 +271,7 @@ def _overlap(a: CeramicPatch | FoamSupport, b: CeramicPatch | FoamSupport) -> st
     return None
 
 
+@checked_numbers
 @dataclass(frozen=True)
 class AnnularStator:
     """The ring of an ultrasonic motor fed on one channel: a standing wave of known frequency and
@@ -315,6 +322,7 @@ class AnnularStator:
         return math.pi * self.mean_diameter / self.wavelength
 
 
+@checked_numbers
 @dataclass(frozen=True)
 class DiscPlate:
     """A disc (or an annulus, with an `inner_diameter`) with a ceramic disc or ring bonded below.

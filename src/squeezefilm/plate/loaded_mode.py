@@ -13,10 +13,12 @@ from squeezefilm.quantities import (
     Metre,
     SquareMetre,
     Unit,
+    checked_numbers,
     require,
 )
 
 
+@checked_numbers
 @dataclass(frozen=True)
 class LoadedMode:
     """One mode with a load on it: its new resonance and quality factor.
@@ -39,6 +41,7 @@ class LoadedMode:
         loss = 1 / self.free_quality_factor + self.load_ratio.imag
         return float((1 + self.load_ratio.real) / loss)
 
+    @checked_numbers
     def amplitude_ratio(self, frequency: Hertz) -> Dimensionless:
         """The amplitude at a frequency (Hz), over that of the free mode at its resonance.
 
@@ -49,6 +52,7 @@ class LoadedMode:
         return float(1 / abs(Q * (1 + self.load_ratio - x**2) + 1j))
 
 
+@checked_numbers
 def mean_square_wave(
     half_wavelength: Metre, contact_length: Metre, position: Metre = 0.0
 ) -> Dimensionless:
@@ -60,6 +64,7 @@ def mean_square_wave(
     return float((1 + np.cos(k * position) * np.sin(reach) / reach) / 2)
 
 
+@checked_numbers
 def loaded_mode(
     frequency: Hertz,
     quality_factor: Dimensionless,

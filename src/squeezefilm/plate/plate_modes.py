@@ -19,6 +19,7 @@ from squeezefilm.quantities import (
     HertzArray,
     Metre,
     MetreArray,
+    checked_numbers,
     did_you_mean,
 )
 
@@ -129,6 +130,7 @@ class PlateModes:
         """How many modes there are."""
         return self.frequencies.size
 
+    @checked_numbers
     def index(self, label: Label) -> int:
         """The position of the mode with these nodal lines.
 
@@ -144,6 +146,7 @@ class PlateModes:
             )
         return max(found, key=lambda i: abs(self.drive_forces[i]))
 
+    @checked_numbers
     def field(self, mode: int, x: FloatArray, y: FloatArray, z: Metre) -> FloatArray:
         """Displacement (u, v, w) of a mode on the grid of `x` × `y` at height `z` above the
         plate's lower face, shape (x, y, 3), in 1/√kg."""
@@ -151,6 +154,7 @@ class PlateModes:
         values: FloatArray = solved.field(vector[:, None], np.asarray(x), np.asarray(y), z)[0]
         return values
 
+    @checked_numbers
     def nodal_positions(self, mode: int) -> MetreArray:
         """Where w vanishes along the side that more nodal lines cross, of the shape's dominant
         part (m): along the length, or along the width of a mode such as (0,7)."""
@@ -158,6 +162,7 @@ class PlateModes:
         lines = zero_crossings(self.x, along), zero_crossings(self.y, across)
         return lines[0] if lines[0].size >= lines[1].size else lines[1]
 
+    @checked_numbers
     def half_wavelength(self, mode: int) -> Metre:
         """The mean distance of nodal lines along the side that more of them cross (m); NaN with
         fewer than two.
@@ -227,6 +232,7 @@ def tracked(before: PlateModes, after: PlateModes) -> list[tuple[int, float]]:
     return [(int(k), float(row[k])) for row in likeness for k in [int(np.argmax(row))]]
 
 
+@checked_numbers
 def check_band(band: tuple[Hertz, Hertz]) -> None:
     """Refuse a band that is none."""
     if not 0 <= band[0] < band[1] or not np.isfinite(band[1]):

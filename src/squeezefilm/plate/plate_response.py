@@ -38,12 +38,14 @@ from squeezefilm.quantities import (
     PascalSecondPerMetre,
     Unit,
     Volt,
+    checked_numbers,
     require,
 )
 
 _GRID = (121, 81)
 
 
+@checked_numbers
 @dataclass(frozen=True)
 class SurfaceLoad:
     """A finger or film on a rectangle of the upper face: mass, damping and stiffness per area."""
@@ -64,6 +66,7 @@ class SurfaceLoad:
         return x, y, np.outer(weights, weights) * self.length * self.width / 4
 
 
+@checked_numbers
 @dataclass(frozen=True)
 class EquivalentCircuit:
     """Butterworth–Van Dyke: C0 parallel to a series of R1, L1 and C1, near one resonance."""
@@ -75,6 +78,7 @@ class EquivalentCircuit:
     motional_inductance: Henry
     motional_capacitance: Farad
 
+    @checked_numbers
     def admittance(self, frequency: HertzArray) -> ComplexArray:
         """Y (S) of the circuit at frequencies (Hz)."""
         omega = 2 * np.pi * np.asarray(frequency, dtype=float)
@@ -111,6 +115,7 @@ class HarmonicResponse:
         """Z = 1/Y (Ω)."""
         return 1 / self.admittance
 
+    @checked_numbers
     def displacement(self, x: MetreArray, y: MetreArray) -> ComplexArray:
         """Complex w per volt (m/V) on the grid of `x` × `y` of the upper face, shape (frequencies,
         x, y)."""
@@ -121,10 +126,12 @@ class HarmonicResponse:
     def _top(self) -> float:
         return self.plate.thickness
 
+    @checked_numbers
     def amplitude_at(self, x: Metre, y: Metre) -> FloatArray:
         """|w| per volt (m/V) at a point, for every frequency."""
         return np.abs(self.displacement(np.array([x]), np.array([y]))[:, 0, 0])
 
+    @checked_numbers
     def line(
         self, at: int, points: int = 201, y: Metre | None = None
     ) -> tuple[MetreArray, ComplexArray]:
@@ -153,18 +160,22 @@ class HarmonicResponse:
         """The number of the frequency with the largest amplitude."""
         return int(np.argmax(self.maximum))
 
+    @checked_numbers
     def current(self, voltage: Volt) -> FloatArray:
         """The amplifier's current amplitude (A) at a voltage amplitude."""
         return np.abs(self.admittance) * voltage
 
+    @checked_numbers
     def apparent_power(self, voltage: Volt) -> FloatArray:
         """Vrms · Irms (VA): what the amplifier must be able to give."""
         return self.current(voltage) * voltage / 2
 
+    @checked_numbers
     def input_power(self, voltage: Volt) -> FloatArray:
         """Mean electrical power (W) taken at a voltage amplitude."""
         return self.admittance.real * voltage**2 / 2
 
+    @checked_numbers
     def dissipated_power(self, voltage: Volt) -> FloatArray:
         """Mean power (W) lost in materials, supports, shunts and loads; equals the input power."""
         omega = 2 * np.pi * self.frequencies
@@ -185,6 +196,7 @@ class HarmonicResponse:
             out += omega**2 / 2 * load.damping * np.sum(np.abs(w) ** 2 * area, axis=(1, 2))
         return out * voltage**2
 
+    @checked_numbers
     def stored_energy(self, voltage: Volt) -> tuple[FloatArray, FloatArray]:
         """Mean kinetic and mean potential energy (J; elastic and of supports, less the electric)
         of the plate at a voltage amplitude."""
@@ -248,6 +260,7 @@ def _run(after: IntArray, peak: int) -> int:
     return count
 
 
+@checked_numbers
 def harmonic_response(
     plate: RectangularPlate,
     frequencies: HertzArray,
@@ -353,6 +366,7 @@ def _truncation(
     return float(np.max(change / np.max(np.abs(admittance))))
 
 
+@checked_numbers
 def direct_admittance(
     plate: RectangularPlate, frequency: Hertz, resolution: Resolution = NORMAL
 ) -> tuple[complex, list[ComplexArray]]:

@@ -30,6 +30,7 @@ from squeezefilm.quantities import (
     MetrePerVoltArray,
     NewtonPerVolt,
     Unit,
+    checked_numbers,
     closed_form,
     require,
 )
@@ -84,10 +85,12 @@ class BeamResponse:
             )
         )
 
+    @checked_numbers
     def amplitude_at(self, frequency: HertzArray, position: Metre) -> MetrePerVoltArray:
         """|w| per volt (m/V) at one position over an array of frequencies, by superposition."""
         return np.abs(self.transfer(frequency, np.array([position]))[:, 0])
 
+    @checked_numbers
     def transfer(self, frequency: HertzArray, position: MetreArray) -> ComplexArray:
         """Complex w per volt (m/V), shape (frequencies, positions), superposed over `modes`.
 

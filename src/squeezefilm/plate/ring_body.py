@@ -31,6 +31,7 @@ from squeezefilm.quantities import (
     Metre,
     MetreArray,
     MetrePerVolt,
+    checked_numbers,
 )
 
 Direction = Literal["circumference", "diameter"]
@@ -126,6 +127,7 @@ def _disc(disc: DiscPlate) -> RingBody:
     return RingBody(section, drive, (disc.nodal_circles, m), quality)
 
 
+@checked_numbers
 def surface_profile(mode: AnnularMode, radius: MetreArray) -> DimensionlessArray:
     """The mode's u_z on the surface at radii (m), between its nodes by a cubic spline."""
     values: DimensionlessArray = CubicSpline(mode.surface_radius, mode.surface_shape)(radius)

@@ -27,6 +27,7 @@ from squeezefilm.quantities import (
     Unit,
     Volt,
     Watt,
+    checked_numbers,
     require,
 )
 
@@ -60,19 +61,23 @@ class RingResponse:
         """The number of the frequency with the largest amplitude."""
         return int(np.argmax(self.maximum))
 
+    @checked_numbers
     def current(self, voltage: Volt) -> Ampere:
         """The current amplitude (A) at resonance."""
         return float(np.abs(self.admittance[self.resonance])) * voltage
 
+    @checked_numbers
     def apparent_power(self, voltage: Volt) -> Watt:
         """Half of voltage times current amplitude (VA) at resonance."""
         return voltage * self.current(voltage) / 2
 
+    @checked_numbers
     def input_power(self, voltage: Volt) -> Watt:
         """The power taken up (W) at resonance, from the conductance."""
         return float(self.admittance[self.resonance].real) * voltage**2 / 2
 
 
+@checked_numbers
 def ring_response(
     body: RingBody,
     mode: AnnularMode,

@@ -28,6 +28,7 @@ from squeezefilm.quantities import (
     MetrePerVolt,
     NewtonPerVolt,
     Unit,
+    checked_numbers,
     format_quantity,
     require,
 )
@@ -73,6 +74,7 @@ class ShearMode:
         """Whether the plate moves without deforming."""
         return self.frequency == 0
 
+    @checked_numbers
     def amplitude_per_volt(self, quality_factor: Dimensionless) -> MetrePerVolt:
         """Zero-to-peak deflection at the plate's highest point, per volt at resonance (m/V).
 
@@ -84,6 +86,7 @@ class ShearMode:
         omega2 = (2 * math.pi * self.frequency) ** 2
         return quality_factor * abs(self.modal_force) / (omega2 * self.modal_mass)
 
+    @checked_numbers
     def deflection_at(self, x: Metre, y: Metre) -> Dimensionless:
         """The scaled deflection at a point, bilinear between nodes."""
         require("x", x, Unit("m"), at_least=float(self.x[0]), at_most=float(self.x[-1]))
@@ -101,6 +104,7 @@ class ShearMode:
         return crossings
 
 
+@checked_numbers
 def shear_modes(
     plate: RectangularPlate | ShearLayout,
     near: Hertz,
@@ -147,6 +151,7 @@ def shear_modes(
     return tuple(sorted(nearest, key=lambda mode: mode.frequency))
 
 
+@checked_numbers
 def shear_mode(
     plate: RectangularPlate | ShearLayout,
     nodal_lines: tuple[int, int],

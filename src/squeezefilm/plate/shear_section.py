@@ -18,12 +18,14 @@ from squeezefilm.quantities import (
     Metre,
     NewtonPerMetre,
     Unit,
+    checked_numbers,
     require,
 )
 
 _SAME = 1e-9
 
 
+@checked_numbers
 @dataclass(frozen=True, eq=False)
 class ShearSection:
     """One laminate per unit area: N = A ε + B κ, M = B ε + D κ, Q = S γ.
@@ -51,6 +53,7 @@ class ShearSection:
         return law
 
 
+@checked_numbers
 @dataclass(frozen=True, eq=False)
 class ShearLayout:
     """A rectangular plate cut into cells by `x_edges` and `y_edges` (m), each of one section.
@@ -72,6 +75,7 @@ class ShearLayout:
         return bool(same_edges and np.array_equal(self.section, np.flip(self.section, axis)))
 
 
+@checked_numbers
 def isotropic_section(material: ElasticMaterial, thickness: Metre) -> ShearSection:
     """A bare plate of one material (plane stress, Reissner's shear factor 5/6)."""
     require("thickness", thickness, Unit("m"), above=0)
@@ -85,6 +89,7 @@ def isotropic_section(material: ElasticMaterial, thickness: Metre) -> ShearSecti
     )
 
 
+@checked_numbers
 def monomorph_section(
     substrate: ElasticMaterial,
     thickness: Metre,
@@ -146,6 +151,7 @@ def shear_layout(plate: RectangularPlate, *, induced_potential: bool = True) -> 
     return ShearLayout(x_edges, y_edges, sections, (polarity != 0).astype(int), polarity)
 
 
+@checked_numbers
 def uniform_shear_layout(length: Metre, width: Metre, section: ShearSection) -> ShearLayout:
     """A plate of one section, without drive."""
     require("length", length, Unit("m"), above=0)

@@ -26,6 +26,7 @@ from squeezefilm.quantities import (
     MetrePerVolt,
     MetrePerVoltArray,
     Unit,
+    checked_numbers,
     require,
 )
 
@@ -36,6 +37,7 @@ _LINE_POINTS = 401
 _TOLERANCE = 3e-3
 
 
+@checked_numbers
 def response_frequencies(
     frequency: Hertz, quality_factor: Dimensionless, points: int = RESPONSE_POINTS
 ) -> FloatArray:
@@ -90,6 +92,7 @@ class SolidMode:
         """See `PlateModes.half_wavelength` (m)."""
         return self.modes.half_wavelength(self.index)
 
+    @checked_numbers
     def amplitude_per_volt_at(self, frequency: HertzLike) -> MetrePerVoltArray:
         """|w| per volt (m/V) at the largest interior lobe of the centreline, at frequencies (Hz).
 

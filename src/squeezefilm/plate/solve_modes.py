@@ -22,7 +22,7 @@ from squeezefilm.plate.mode_table import collected_modes
 from squeezefilm.plate.plate_modes import Label, PlateModes, check_band
 from squeezefilm.plate.plate_symmetry import Parity, all_classes, drive_classes
 from squeezefilm.plate.refined_modes import RefinedModes, refined_modes, with_label
-from squeezefilm.quantities import Dimensionless, Hertz, Unit, require
+from squeezefilm.quantities import Dimensionless, Hertz, Unit, checked_numbers, require
 
 Progress = Callable[[str, float], None]
 
@@ -30,6 +30,7 @@ Progress = Callable[[str, float], None]
 _WIDTHS = (8, 24)
 
 
+@checked_numbers
 def solve_modes(
     plate: RectangularPlate,
     *,

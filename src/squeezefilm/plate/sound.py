@@ -27,6 +27,7 @@ from squeezefilm.quantities import (
     MetrePerSecond,
     Radian,
     Unit,
+    checked_numbers,
     format_quantity,
     require,
 )
@@ -89,6 +90,7 @@ GUIDANCE = (
 """Published guidance, one entry per band and audience; the reviews call its basis thin."""
 
 
+@checked_numbers
 def exposure_guidance(
     frequency: Hertz, audience: Literal["public", "occupational"] = "public"
 ) -> ExposureGuidance | None:
@@ -100,6 +102,7 @@ def exposure_guidance(
     return None
 
 
+@checked_numbers
 @dataclass(frozen=True, eq=False)
 class RadiatingSurface:
     """A flat surface cut into points: positions (n, 2) in m, areas (n,) in m², normal velocity
@@ -116,6 +119,7 @@ class RadiatingSurface:
         return float(np.hypot(*self.position.T).max())
 
 
+@checked_numbers
 def rectangular_surface(
     x: MetreArray,
     y: MetreArray,
@@ -148,6 +152,7 @@ def rectangular_surface(
     return RadiatingSurface(frequency, grid.reshape(-1, 2), area.ravel(), values.ravel())
 
 
+@checked_numbers
 def ring_surface(
     radius: MetreArray,
     velocity: ComplexArray,
@@ -185,6 +190,7 @@ def ring_surface(
     return RadiatingSurface(frequency, position.reshape(-1, 2), area.ravel(), moving.ravel())
 
 
+@checked_numbers
 def sound_pressure(
     surface: RadiatingSurface,
     points: MetreArray,
@@ -254,6 +260,7 @@ class SoundField:
         return tuple(level - self.guidance.level_dB for level in self.sound_pressure_level_dB)
 
 
+@checked_numbers
 def sound_field(
     surface: RadiatingSurface,
     distances: tuple[Metre, ...] = DISTANCES,

@@ -25,6 +25,7 @@ from squeezefilm.quantities import (
     Metre,
     Unit,
     Volt,
+    checked_numbers,
     format_quantity,
     require,
 )
@@ -47,6 +48,7 @@ HARD_PZT = Piezoceramic(
 """A hard ceramic of the kind motors use, in round numbers; assumed for the USR60."""
 
 
+@checked_numbers
 @dataclass(frozen=True)
 class StatorAssumptions:
     """What the paper does not give of its USR60 stator. Every default is assumed.
@@ -70,6 +72,7 @@ class StatorAssumptions:
     tooth_model: ToothModel = "soft"
 
 
+@checked_numbers
 @dataclass(frozen=True, eq=False)
 class StatorFit:
     """A stator whose `ring_thickness` (metal between ceramic and teeth) was fitted.
@@ -92,11 +95,13 @@ class StatorFit:
     derived: dict[str, float] = field(default_factory=dict)
     assumed: dict[str, object] = field(default_factory=dict)
 
+    @checked_numbers
     def amplitude(self, voltage: Volt) -> Metre:
         """Zero-to-peak amplitude at resonance at a voltage amplitude (m), linear in it."""
         return self.mode.amplitude_per_volt(self.drive) * voltage
 
 
+@checked_numbers
 def stator_section(
     mean_diameter: Metre,
     ring_thickness: Metre,
@@ -125,6 +130,7 @@ def stator_section(
     )
 
 
+@checked_numbers
 def fit_stator(
     frequency: Hertz = 40.5e3,
     wavelength: Metre = 18.7e-3,

@@ -35,6 +35,7 @@ from squeezefilm.quantities import (
     MetrePerVolt,
     MetrePerVoltArray,
     MetrePerVoltLike,
+    checked_numbers,
     closed_form,
     did_you_mean,
 )
@@ -89,6 +90,7 @@ class WorkingMode:
     solid: SolidMode | None = None
     beam: BeamResponse | None = None
 
+    @checked_numbers
     def amplitude_per_volt_at(self, frequency: HertzLike) -> MetrePerVoltLike:
         """Zero-to-peak amplitude per volt (m/V) at a frequency near resonance.
 
@@ -98,6 +100,7 @@ class WorkingMode:
             frequency, self.resonance_frequency, self.quality_factor
         )
 
+    @checked_numbers
     def response(self, frequency: HertzArray) -> MetrePerVoltArray:
         """Zero-to-peak amplitude per volt (m/V) at frequencies (Hz), with the neighbouring modes
         where the model has them."""

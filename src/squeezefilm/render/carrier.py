@@ -34,6 +34,7 @@ from squeezefilm.quantities import (
     Radian,
     SecondArray,
     Unit,
+    checked_numbers,
     closed_form,
     format_quantity,
     require,
@@ -91,6 +92,7 @@ def _resonate(
         x, v = m00 * x + m01 * v + b0 * u, m10 * x + m11 * v + b1 * u
 
 
+@checked_numbers
 def resonator_response(
     drive: MetreArray,
     sample_rate: Hertz,
@@ -129,6 +131,7 @@ def resonator_response(
     return place, quadrature
 
 
+@checked_numbers
 @dataclass(frozen=True, slots=True, eq=False)
 class CarrierTrace:
     """An amplitude command played as a carrier into a resonator; arrays of shape (samples,).
@@ -160,6 +163,7 @@ class CarrierTrace:
         return float(np.max(np.abs(self.amplitude - self.amplitude_modelled)))
 
 
+@checked_numbers
 def carrier_trace(
     command: MetreArray,
     samples_per_command: int,
@@ -220,6 +224,7 @@ def carrier_trace(
     )
 
 
+@checked_numbers
 def samples_per_command(command_rate: Hertz, sample_rate: Hertz = DAC_RATE) -> int:
     """How many converter samples one command lasts, for rates that divide evenly.
 

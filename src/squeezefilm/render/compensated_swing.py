@@ -17,11 +17,13 @@ from squeezefilm.quantities import (
     MetrePerSecondLike,
     Second,
     Unit,
+    checked_numbers,
     require,
 )
 from squeezefilm.render.compensation import DrivenEnvelope
 
 
+@checked_numbers
 def square_swing_compensated(
     spatial_period: MetreLike,
     speed: MetrePerSecondLike,
@@ -69,6 +71,7 @@ def square_swing_compensated(
     return float(kept) if kept.ndim == 0 else kept
 
 
+@checked_numbers
 def fastest_compensated_speed(
     spatial_period: Metre,
     envelope: DrivenEnvelope,
@@ -101,6 +104,7 @@ def fastest_compensated_speed(
     return float(unit * math.exp(brentq(lacking, -30.0, 30.0, xtol=1e-13, rtol=1e-13)))
 
 
+@checked_numbers
 def least_cycle(envelope: DrivenEnvelope, swing: Metre, highest: Metre | None = None) -> Second:
     """Shortest period in which any drive within the limits swings the amplitude by so much (s).
 

@@ -41,6 +41,7 @@ from squeezefilm.quantities import (
     SecondLike,
     Unit,
     Volt,
+    checked_numbers,
     closed_form,
     require,
 )
@@ -71,6 +72,7 @@ def slew_time(
     return time
 
 
+@checked_numbers
 @dataclass(frozen=True, slots=True)
 class DrivenEnvelope:
     """A resonator's envelope and the command that its drive can give.
@@ -96,6 +98,7 @@ class DrivenEnvelope:
         require("amplitude_limit", self.amplitude_limit, Unit("m"), above=0.0)
 
     @classmethod
+    @checked_numbers
     def of_resonator(
         cls,
         quality_factor: DimensionlessLike,
@@ -121,6 +124,7 @@ class DrivenEnvelope:
         """Least command (m): minus the limit where the phase may be inverted, else 0."""
         return -self.amplitude_limit if self.braking else 0.0
 
+    @checked_numbers
     def parameters(self, time_step: Second) -> FloatArray:
         """What the compiled steps need at a time step (s): shape (4,), see the kernel."""
         require("time_step", time_step, Unit("s"), above=0.0)
@@ -133,6 +137,7 @@ class DrivenEnvelope:
             ]
         )
 
+    @checked_numbers
     def new_state(self, amplitude: Metre = 0.0) -> FloatArray:
         """A compensator's state where the resonator has `amplitude` (m); shape (5,).
 
@@ -144,6 +149,7 @@ class DrivenEnvelope:
         state[kernel.AMPLITUDE] = amplitude
         return state
 
+    @checked_numbers
     def response(self, command: MetreArray, time_step: Second, initial: Metre = 0.0) -> MetreArray:
         """Amplitude at each sample under a stepwise command (m), exactly; may be negative.
 
@@ -186,12 +192,14 @@ class CompensatedDrive:
     saturated_bottom: Dimensionless
     model: str
 
+    @checked_numbers
     def voltage(self, amplitude_per_volt: MetrePerVolt) -> FloatArray:
         """The drive's voltage amplitude at each sample (V); negative in inverted phase."""
         require("amplitude_per_volt", amplitude_per_volt, Unit("m/V"), above=0.0)
         return np.asarray(self.command / amplitude_per_volt)
 
 
+@checked_numbers
 def compensated_drive(
     wanted: MetreArray,
     time_step: Second,
@@ -247,6 +255,7 @@ def compensated_drive(
     )
 
 
+@checked_numbers
 def preview_samples(
     envelope: DrivenEnvelope, time_step: Second, preview: Second | None = None
 ) -> int:
@@ -262,6 +271,7 @@ def preview_samples(
     return max(1, math.ceil(span / time_step - 1e-9))
 
 
+@checked_numbers
 def preview_work(samples: int) -> FloatArray:
     """Working memory of `previewed_step` for so many samples ahead, shape (5, 2·samples + 2)."""
     return np.empty((5, 2 * samples + 2))

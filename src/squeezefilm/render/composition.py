@@ -39,6 +39,7 @@ from squeezefilm.quantities import (
     MetreLike,
     MetrePerSecondLike,
     SecondLike,
+    checked_numbers,
     require,
 )
 from squeezefilm.render.coordinate import (
@@ -85,6 +86,7 @@ class Composable:
         """What a greater value feels like."""
         return "stickier" if self.quantity == "relative_friction" else "slipperier"
 
+    @checked_numbers
     def __call__(
         self, x: MetreLike, y: MetreLike, v: MetrePerSecondLike, t: SecondLike, /
     ) -> FloatArray:
@@ -131,6 +133,7 @@ class Composable:
         """The same as `mask`, for conditions: ``texture.when(speed > 0.02)``."""
         return Masked(self, condition)
 
+    @checked_numbers
     def then(
         self, other: Composable, at: Metre, *, fade: Metre = 0.0, along: Coordinate | None = None
     ) -> Sequence:
@@ -236,6 +239,7 @@ class Product(Composable):
         assembler.emit(MULTIPLY)
 
 
+@checked_numbers
 @dataclass(frozen=True, slots=True)
 class Scaled(Composable):
     """`texture` times a number from 0 to 1000. Raises `InputError` outside that."""
@@ -292,6 +296,7 @@ class Masked(Composable):
         assembler.emit(FADE, AT_REST[self.quantity])
 
 
+@checked_numbers
 @dataclass(frozen=True, slots=True)
 class Sequence(Composable):
     """One texture after another in space: `textures[k]` up to `edges[k]`, the last beyond.

@@ -18,6 +18,7 @@ from squeezefilm.quantities import (
     Radian,
     SecondLike,
     Unit,
+    checked_numbers,
     require,
 )
 from squeezefilm.render.opcodes import ALONG, RADIUS, Assembler
@@ -50,6 +51,7 @@ class AlongX(Coordinate):
 
     type: Literal["x"] = field(default="x", repr=False)
 
+    @checked_numbers
     def at(self, x: MetreArray, y: MetreArray) -> MetreArray:
         """`x` (m)."""
         return x
@@ -68,6 +70,7 @@ class AlongY(Coordinate):
 
     type: Literal["y"] = field(default="y", repr=False)
 
+    @checked_numbers
     def at(self, x: MetreArray, y: MetreArray) -> MetreArray:
         """`y` (m)."""
         return y
@@ -76,6 +79,7 @@ class AlongY(Coordinate):
         assembler.emit(ALONG, 0.0, 1.0, 0.0)
 
 
+@checked_numbers
 @dataclass(frozen=True, slots=True)
 class AlongDirection(Coordinate):
     """x cos(angle) + y sin(angle): the way along a line at `angle` (rad) from x towards y.
@@ -89,6 +93,7 @@ class AlongDirection(Coordinate):
     def __post_init__(self) -> None:
         require("angle", self.angle, Unit("rad"))
 
+    @checked_numbers
     def at(self, x: MetreArray, y: MetreArray) -> MetreArray:
         """The way along the line (m)."""
         return np.asarray(math.cos(self.angle) * x + math.sin(self.angle) * y)
@@ -97,6 +102,7 @@ class AlongDirection(Coordinate):
         assembler.emit(ALONG, math.cos(self.angle), math.sin(self.angle), 0.0)
 
 
+@checked_numbers
 @dataclass(frozen=True, slots=True)
 class FromPoint(Coordinate):
     """The distance from the point (`x`, `y`), for rings and discs; never negative.
@@ -112,6 +118,7 @@ class FromPoint(Coordinate):
         require_place("x", self.x)
         require_place("y", self.y)
 
+    @checked_numbers
     def at(self, x: MetreArray, y: MetreArray) -> MetreArray:
         """The distance (m)."""
         # Not hypot: a plain root is the same operation in every interpreter of a program.
@@ -121,11 +128,13 @@ class FromPoint(Coordinate):
         assembler.emit(RADIUS, self.x, self.y)
 
 
+@checked_numbers
 def require_place(name: str, value: Metre) -> None:
     """Refuse a place (m) that is not finite or farther than 10 m from the origin."""
     require(name, value, METRE, at_least=-FARTHEST, at_most=FARTHEST)
 
 
+@checked_numbers
 def require_fade(value: Metre, at_most: Metre) -> None:
     """Refuse a fade (m) that is neither 0 nor between a nanometre and `at_most`."""
     if value != 0.0:
@@ -142,6 +151,7 @@ def require_coordinate(value: object) -> None:
         )
 
 
+@checked_numbers
 def finger_arguments(
     x: MetreLike, y: MetreLike, v: MetrePerSecondLike, t: SecondLike
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:

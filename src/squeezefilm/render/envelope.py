@@ -27,6 +27,7 @@ from squeezefilm.quantities import (
     Second,
     SecondLike,
     Unit,
+    checked_numbers,
     closed_form,
     require,
 )
@@ -141,6 +142,7 @@ def _time_constants_per_period(kept: DimensionlessLike, shape: Shape) -> Dimensi
     raise InputError(f"shape = {shape!r} is not known; it must be 'square' or 'sine'")
 
 
+@checked_numbers
 def envelope_response(
     command: MetreArray,
     time_step: Second,

@@ -20,6 +20,7 @@ from squeezefilm.quantities import (
     MetrePerSecondArray,
     Second,
     Unit,
+    checked_numbers,
     format_quantity,
     require,
 )
@@ -93,6 +94,7 @@ def _swing(values: FloatArray) -> float:
     return float(np.max(values) - np.min(values)) if values.size else 0.0
 
 
+@checked_numbers
 @dataclass(frozen=True, slots=True, eq=False)
 class FidelityTable:
     """Which spatial periods keep their swing at which finger speeds.
@@ -138,6 +140,7 @@ class FidelityTable:
         return self.friction_kept >= self.kept
 
 
+@checked_numbers
 def fidelity_table(
     time_constant: Second,
     relative_friction: RelativeFriction,

@@ -16,6 +16,7 @@ from squeezefilm.quantities import (
     SecondArray,
     SecondLike,
     Unit,
+    checked_numbers,
     require,
 )
 
@@ -24,6 +25,7 @@ _ROUNDING = 1e-12
 _MOST_SAMPLES = 20_000_000
 
 
+@checked_numbers
 @dataclass(frozen=True, slots=True, eq=False)
 class FingerPath:
     """A finger's recorded or drawn motion; between two samples it goes straight at constant speed.
@@ -79,6 +81,7 @@ class FingerPath:
         """Whether the motion keeps to the line y = 0."""
         return not np.any(self.y)
 
+    @checked_numbers
     def position(self, t: SecondLike) -> MetreArray:
         """x at time `t` since the motion began (m), in the shape of `t`.
 
@@ -87,6 +90,7 @@ class FingerPath:
         """
         return self.place(t)[0]
 
+    @checked_numbers
     def place(self, t: SecondLike) -> tuple[MetreArray, MetreArray]:
         """x and y at time `t` since the motion began (m). Raises as `position` does."""
         times = self._within(t)
@@ -95,10 +99,12 @@ class FingerPath:
             np.asarray(np.interp(times, self.time, self.y)),
         )
 
+    @checked_numbers
     def travelled(self, t: SecondLike) -> MetreArray:
         """Length of the path up to time `t` (m); never falls. Raises as `position` does."""
         return np.asarray(np.interp(self._within(t), self.time, self._way))
 
+    @checked_numbers
     def place_after(self, way: MetreLike) -> tuple[MetreArray, MetreArray]:
         """x and y once `way` of the path is done (m); straight on before its start and past its
         end, as one who has only heard of the motion so far would have it."""
@@ -136,6 +142,7 @@ class OverPath:
         """Time the whole motion takes (s)."""
         return self.path.duration
 
+    @checked_numbers
     def position(self, t: SecondLike) -> MetreArray:
         """The way done at time `t` (m). Raises `InputError` for a time outside the motion."""
         return self.path.travelled(t)

@@ -16,6 +16,7 @@ from squeezefilm.quantities import (
     Metre,
     MetreArray,
     Unit,
+    checked_numbers,
     format_quantity,
     require,
 )
@@ -28,6 +29,7 @@ _AT_REST = 1e-4
 _FLAT = 1e-12
 
 
+@checked_numbers
 @dataclass(frozen=True, slots=True, eq=False)
 class FrictionInverse:
     """Knots of a falling friction curve, read backwards with straight lines between them.
@@ -48,6 +50,7 @@ class FrictionInverse:
     error_source: Literal["measured", "estimated"]
 
     @classmethod
+    @checked_numbers
     def from_function(
         cls,
         relative_friction: Callable[[MetreArray], DimensionlessArray],
@@ -87,6 +90,7 @@ class FrictionInverse:
         return cls(amplitude, friction, error, "measured")
 
     @classmethod
+    @checked_numbers
     def from_arrays(
         cls,
         amplitude: MetreArray,
@@ -125,6 +129,7 @@ class FrictionInverse:
         """The least relative friction that can be reached (1)."""
         return float(self.relative_friction[-1])
 
+    @checked_numbers
     def amplitude_for(self, relative_friction: DimensionlessLike) -> MetreArray:
         """The amplitude (m, zero-to-peak) that makes a relative friction (1), in its shape.
 

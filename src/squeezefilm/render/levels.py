@@ -13,6 +13,7 @@ from squeezefilm.quantities import (
     FloatArray,
     Metre,
     Unit,
+    checked_numbers,
     format_quantity,
     require,
 )
@@ -57,6 +58,7 @@ class _Level(Composable):
             )
 
 
+@checked_numbers
 @dataclass(frozen=True, slots=True)
 class Amplitude(_Level):
     """A vibration amplitude: `low` (m, zero-to-peak) where the pattern is 0, `high` where it is 1.
@@ -73,6 +75,7 @@ class Amplitude(_Level):
         self._require(Unit("m"), LARGEST_AMPLITUDE)
 
     @classmethod
+    @checked_numbers
     def constant(cls, value: Metre) -> Amplitude:
         """The same amplitude (m, zero-to-peak) everywhere."""
         return cls(Constant(), value, value)
@@ -83,6 +86,7 @@ class Amplitude(_Level):
         return "amplitude"
 
 
+@checked_numbers
 @dataclass(frozen=True, slots=True)
 class RelativeFriction(_Level):
     """Friction over that of the surface at rest (1): `low` where the pattern is 0, else `high`.
@@ -100,6 +104,7 @@ class RelativeFriction(_Level):
         self._require(Unit("1"), 1.0)
 
     @classmethod
+    @checked_numbers
     def constant(cls, value: Dimensionless) -> RelativeFriction:
         """The same relative friction (1) everywhere."""
         return cls(Constant(), value, value)
@@ -110,6 +115,7 @@ class RelativeFriction(_Level):
         return "relative_friction"
 
 
+@checked_numbers
 @dataclass(frozen=True, slots=True)
 class FrictionReduction(_Level):
     """Friction coefficient taken away, µ − µ′ (1): `low` where the pattern is 0, else `high`.
@@ -127,6 +133,7 @@ class FrictionReduction(_Level):
         self._require(Unit("1"), _LARGEST_REDUCTION)
 
     @classmethod
+    @checked_numbers
     def constant(cls, value: Dimensionless) -> FrictionReduction:
         """The same reduction (1) everywhere."""
         return cls(Constant(), value, value)

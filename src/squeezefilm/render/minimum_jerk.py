@@ -20,6 +20,7 @@ from squeezefilm.quantities import (
     Second,
     SecondLike,
     Unit,
+    checked_numbers,
     require,
 )
 
@@ -32,11 +33,13 @@ class Trajectory(Protocol):
         """Time the motion takes (s)."""
         ...
 
+    @checked_numbers
     def position(self, t: SecondLike, /) -> MetreArray:
         """Position at time t (m), 0 ≤ t ≤ duration, in the shape of `t`."""
         ...
 
 
+@checked_numbers
 @dataclass(frozen=True, slots=True)
 class MinimumJerkStroke:
     """A finger's motion along x: `passes` passes of `length`, each of least jerk, to and fro.
@@ -76,6 +79,7 @@ class MinimumJerkStroke:
         """Speed in the middle of each pass (m/s): 15/8 of the mean."""
         return 1.875 * self.length / self.pass_duration
 
+    @checked_numbers
     def position(self, t: SecondLike) -> MetreArray:
         """Position x of the finger at time `t` since the motion began (m), in the shape of `t`.
 

@@ -35,6 +35,7 @@ from squeezefilm.quantities import (
     Second,
     SecondArray,
     Unit,
+    checked_numbers,
     require,
 )
 from squeezefilm.render import motion_kernel as kernel
@@ -45,6 +46,7 @@ AccelerationDensity = Annotated[float, Unit("m2/s3")]
 JerkDensity = Annotated[float, Unit("m2/s5")]
 
 
+@checked_numbers
 @dataclass(frozen=True, slots=True)
 class MotionModel:
     """What is assumed of a finger before any sample: how it starts and how it changes.
@@ -86,6 +88,7 @@ class MotionModel:
             )
 
     @classmethod
+    @checked_numbers
     def white_acceleration(
         cls, density: AccelerationDensity = 0.05, speed_deviation: MetrePerSecond = 0.15
     ) -> MotionModel:
@@ -93,6 +96,7 @@ class MotionModel:
         return cls(density, 0.0, speed_deviation, 0.0)
 
 
+@checked_numbers
 @dataclass(frozen=True, slots=True)
 class MotionEstimator:
     """The settings of an estimator; its running state is an array from `new_state`.
@@ -208,6 +212,7 @@ class MotionEstimate:
     counts: MotionCounts
 
 
+@checked_numbers
 def estimate_motion(
     estimator: MotionEstimator,
     stream: SensorStream,
@@ -254,6 +259,7 @@ def horizon(sensor: SensorModel) -> Second:
     return sensor.latency + 0.5 / sensor.rate
 
 
+@checked_numbers
 def prediction_deviation(
     estimator: MotionEstimator, interval: Second, lookahead: Second
 ) -> tuple[Metre, MetrePerSecond]:

@@ -56,7 +56,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import FloatArray
+from squeezefilm.quantities import FloatArray, checked_numbers
 
 VERSION = 1
 """Version of the instructions and of the program's layout."""
@@ -108,6 +108,7 @@ LARGEST_TABLES = 4_000_000
 """What a program may take: values on the stack, numbers of code, numbers of tables."""
 
 
+@checked_numbers
 @dataclass(slots=True)
 class Assembler:
     """Collects instructions and tables, and watches the stack. Not thread-safe; use it once."""

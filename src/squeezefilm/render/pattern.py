@@ -27,6 +27,7 @@ from squeezefilm.quantities import (
     MetrePerSecondLike,
     SecondLike,
     Unit,
+    checked_numbers,
     require,
 )
 from squeezefilm.render.coordinate import finger_arguments
@@ -54,6 +55,7 @@ class Pattern:
 
     __slots__ = ()
 
+    @checked_numbers
     def __call__(
         self, x: MetreLike, y: MetreLike, v: MetrePerSecondLike, t: SecondLike, /
     ) -> DimensionlessArray:
@@ -85,6 +87,7 @@ class Pattern:
             "a * b for both, or add textures, whose values have a quantity"
         )
 
+    @checked_numbers
     def scaled_by_speed(
         self,
         reference_speed: MetrePerSecond,
@@ -205,6 +208,7 @@ def _lower_all(patterns: tuple[Pattern, ...], opcode: int, assembler: Assembler)
             assembler.emit(opcode)
 
 
+@checked_numbers
 @dataclass(frozen=True, slots=True)
 class SpeedScaled(Pattern):
     """`pattern` stretched about the origin in proportion to the finger's speed.

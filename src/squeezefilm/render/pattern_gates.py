@@ -21,6 +21,7 @@ from squeezefilm.quantities import (
     Radian,
     Second,
     Unit,
+    checked_numbers,
     require,
 )
 from squeezefilm.render import opcodes
@@ -33,6 +34,7 @@ _FASTEST: MetrePerSecond = 1000.0
 _LONGEST: Second = 86_400.0
 
 
+@checked_numbers
 @dataclass(frozen=True, slots=True)
 class SpeedGate(Pattern):
     """1 while the finger's speed |v| is above `above` and below `below`, else 0.
@@ -93,6 +95,7 @@ speed = Speed()
 """The finger's speed, for ``texture.when(speed > 0.02)``; ~ and & join comparisons."""
 
 
+@checked_numbers
 @dataclass(frozen=True, slots=True)
 class Attack(Pattern):
     """Rises linearly from 0 at `start` to 1 after `duration`, and stays.
@@ -122,6 +125,7 @@ class Attack(Pattern):
         assembler.emit(opcodes.RAMP, self.start, self.start + self.duration)
 
 
+@checked_numbers
 @dataclass(frozen=True, slots=True)
 class Decay(Pattern):
     """1 until `start`, then exp(−(t − start)/time_constant).
@@ -151,6 +155,7 @@ class Decay(Pattern):
         assembler.emit(opcodes.DECAY, self.start, self.time_constant)
 
 
+@checked_numbers
 @dataclass(frozen=True, slots=True)
 class Periodic(Pattern):
     """A square or a sine of time: what comes and goes `frequency` times a second.

@@ -8,7 +8,14 @@ from typing import Any, Literal
 import numpy as np
 
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import Dimensionless, DimensionlessArray, FloatArray, Metre, require
+from squeezefilm.quantities import (
+    Dimensionless,
+    DimensionlessArray,
+    FloatArray,
+    Metre,
+    checked_numbers,
+    require,
+)
 from squeezefilm.render.coordinate import METRE, require_place
 from squeezefilm.render.opcodes import IMAGE, Assembler
 from squeezefilm.render.pattern import Pattern
@@ -20,6 +27,7 @@ OUTSIDE = ("hold", "repeat", "zero")
 """What an image does beyond its frame, in the order of the opcode's operand."""
 
 
+@checked_numbers
 @dataclass(frozen=True, slots=True)
 class Image(Pattern):
     """Values from 0 to 1 on a grid of square pixels, bilinear between their centres.
@@ -75,6 +83,7 @@ class Image(Pattern):
             )
 
     @classmethod
+    @checked_numbers
     def from_array(
         cls,
         values: DimensionlessArray,

@@ -18,7 +18,13 @@ from typing import Any, Literal
 import numpy as np
 
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import Dimensionless, FloatArray, Metre, require
+from squeezefilm.quantities import (
+    Dimensionless,
+    FloatArray,
+    Metre,
+    checked_numbers,
+    require,
+)
 from squeezefilm.render.coordinate import METRE, X_AXIS, Coordinate, require_coordinate
 from squeezefilm.render.opcodes import ADD, NOISE, NOISE_FIELD, WEIGH, Assembler
 from squeezefilm.render.pattern import Pattern
@@ -66,6 +72,7 @@ def _weights(f: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatAr
     )
 
 
+@checked_numbers
 def line_noise(u: FloatArray, state: int) -> FloatArray:
     """Noise at `u` lattice spacings from the origin, from a mixed seed; any shape."""
     cell = np.floor(u)
@@ -76,6 +83,7 @@ def line_noise(u: FloatArray, state: int) -> FloatArray:
     return total
 
 
+@checked_numbers
 def field_noise(u: FloatArray, w: FloatArray, state: int) -> FloatArray:
     """Noise at (`u`, `w`) lattice spacings from the origin, from a mixed seed; any one shape."""
     column, row = np.floor(u), np.floor(w)
@@ -113,6 +121,7 @@ def _require_noise(finest: Metre, seed: int, octaves: int, persistence: Dimensio
     require("persistence", persistence, above=0.0, at_most=1.0)
 
 
+@checked_numbers
 @dataclass(frozen=True, slots=True)
 class Noise(Pattern):
     """Seeded noise along one coordinate, with nothing finer than `finest_period`.
@@ -160,6 +169,7 @@ class Noise(Pattern):
                 assembler.emit(ADD)
 
 
+@checked_numbers
 @dataclass(frozen=True, slots=True)
 class NoiseField(Pattern):
     """Seeded noise in the plane, with nothing finer than `finest_period` along x or y.

@@ -9,7 +9,15 @@ from typing import Literal
 import numpy as np
 
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import Dimensionless, FloatArray, Metre, Radian, Unit, require
+from squeezefilm.quantities import (
+    Dimensionless,
+    FloatArray,
+    Metre,
+    Radian,
+    Unit,
+    checked_numbers,
+    require,
+)
 from squeezefilm.render.coordinate import (
     FARTHEST,
     FINEST,
@@ -39,6 +47,7 @@ from squeezefilm.render.pattern import Pattern
 _FULL_WIDTH = 2.0 * math.sqrt(2.0 * math.log(2.0))
 
 
+@checked_numbers
 @dataclass(frozen=True, slots=True)
 class Constant(Pattern):
     """The same `share` (1, from 0 to 1) everywhere. Raises `InputError` outside that."""
@@ -56,6 +65,7 @@ class Constant(Pattern):
         assembler.emit(CONSTANT, self.share)
 
 
+@checked_numbers
 @dataclass(frozen=True, slots=True)
 class SquareWave(Pattern):
     """1 over the first `duty` of every period, 0 over the rest.
@@ -91,6 +101,7 @@ class SquareWave(Pattern):
         assembler.emit(SQUARE, self.spatial_period, self.phase / (2 * math.pi), self.duty)
 
 
+@checked_numbers
 @dataclass(frozen=True, slots=True)
 class SineWave(Pattern):
     """½ + ½ sin(2πs/spatial_period + phase), s being the coordinate `along`.
@@ -115,6 +126,7 @@ class SineWave(Pattern):
         assembler.emit(SINE, self.spatial_period, self.phase / (2 * math.pi))
 
 
+@checked_numbers
 @dataclass(frozen=True, slots=True)
 class Pulse(Pattern):
     """One localised rise to 1 at `centre`, ½ at `width`/2 to either side.
@@ -160,6 +172,7 @@ class Pulse(Pattern):
             assembler.emit(HANN, self.centre, self.width)
 
 
+@checked_numbers
 @dataclass(frozen=True, slots=True)
 class Ramp(Pattern):
     """From 0 at `start` to 1 at `end`, held beyond; falling if `end` lies before `start`.
@@ -206,6 +219,7 @@ class Ramp(Pattern):
             assembler.emit(SMOOTH)
 
 
+@checked_numbers
 @dataclass(frozen=True, slots=True)
 class Band(Pattern):
     """1 from `start` to `end`, 0 outside, with edges linear over `fade`: a mask in space.
@@ -236,6 +250,7 @@ class Band(Pattern):
         require_coordinate(self.along)
 
     @classmethod
+    @checked_numbers
     def disc(cls, x: Metre, y: Metre, radius: Metre, fade: Metre = 0.0) -> Band:
         """1 within `radius` (m) of the point (`x`, `y`) (m)."""
         require("radius", radius, METRE, above=0.0)
@@ -253,6 +268,7 @@ class Band(Pattern):
         assembler.emit(BAND, self.start, self.end, self.fade)
 
 
+@checked_numbers
 @dataclass(frozen=True, slots=True)
 class Bump(Pattern):
     """The slope of a Gaussian bump or hole, felt as its shape: ½ far away, 1 and 0 on its flanks.

@@ -8,7 +8,13 @@ from typing import Any, get_args
 import numpy as np
 
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import Dimensionless, FloatArray, Metre, require
+from squeezefilm.quantities import (
+    Dimensionless,
+    FloatArray,
+    Metre,
+    checked_numbers,
+    require,
+)
 from squeezefilm.render import layout as at
 from squeezefilm.render import opcodes as op
 from squeezefilm.render.composition import Composable, Quantity, require_texture
@@ -25,6 +31,7 @@ _LONGEST = 10_000_000
 _MOST_TICKS = 1_000_000
 
 
+@checked_numbers
 @dataclass(frozen=True, slots=True, eq=False)
 class Program:
     """A lowered texture with its inverse friction and limits, as one flat array of floats.
@@ -80,6 +87,7 @@ class Program:
         return frozenset(found)
 
 
+@checked_numbers
 def lower(
     texture: Composable,
     *,
@@ -192,6 +200,7 @@ def _assembled(
     return np.concatenate(parts)
 
 
+@checked_numbers
 def checked(array: FloatArray) -> FloatArray:
     """A program's array, copied and made read-only, if an interpreter can run it safely.
 

@@ -22,6 +22,7 @@ from squeezefilm.quantities import (
     MetrePerSecondArray,
     SecondArray,
     Unit,
+    checked_numbers,
     format_quantity,
     require,
 )
@@ -86,6 +87,7 @@ class RenderedStroke:
     model: str
 
 
+@checked_numbers
 def rendered_stroke(
     texture: Texture,
     trajectory: Trajectory,

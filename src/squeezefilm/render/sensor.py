@@ -23,6 +23,7 @@ from squeezefilm.quantities import (
     Second,
     SecondArray,
     Unit,
+    checked_numbers,
     format_quantity,
     require,
 )
@@ -31,6 +32,7 @@ from squeezefilm.quantities import (
 _MOST_SAMPLES = 20_000_000
 
 
+@checked_numbers
 @dataclass(frozen=True, slots=True)
 class SensorModel:
     """A sensor of finger position: how often, how late, how irregular and how noisy it is.
@@ -111,6 +113,7 @@ SENSORS: dict[str, SensorModel] = {
 """The presets by name; all assumed."""
 
 
+@checked_numbers
 @dataclass(frozen=True, slots=True, eq=False)
 class SensorStream:
     """What a sensor reported, in the order of arrival; arrays of shape (samples,).
@@ -131,6 +134,7 @@ class SensorStream:
     position: MetreArray
 
 
+@checked_numbers
 def sensor_stream(
     sensor: SensorModel,
     position: Callable[[SecondArray], MetreArray],

@@ -19,6 +19,7 @@ from squeezefilm.quantities import (
     SecondArray,
     SecondLike,
     Unit,
+    checked_numbers,
     format_quantity,
     require,
 )
@@ -32,6 +33,7 @@ _MOST_SAMPLES = 20_000_000
 _ROUNDING = 1e-12
 
 
+@checked_numbers
 @dataclass(frozen=True, slots=True)
 class Stroke:
     """A finger's motion along x: `passes` passes of `length` at constant `speed`, turning at once.
@@ -75,6 +77,7 @@ class Stroke:
         """Time the whole stroke takes (s)."""
         return self.passes * self.pass_duration
 
+    @checked_numbers
     def position(self, t: SecondLike) -> MetreArray:
         """Position x of the finger at time `t` since the stroke began (m), in the shape of `t`.
 
@@ -85,6 +88,7 @@ class Stroke:
         along = np.clip(path - done * self.length, 0.0, self.length)
         return np.asarray(self.start + np.where(done % 2 == 0, along, self.length - along))
 
+    @checked_numbers
     def velocity(self, t: SecondLike) -> MetrePerSecondArray:
         """Velocity along x at time `t` (m/s), in the shape of `t`: ±`speed`, negative on the way
         back; at a turn that of the pass that begins, at the end that of the last.
@@ -102,6 +106,7 @@ class Stroke:
         path = np.minimum(np.asarray(t, dtype=float), self.duration) * self.speed
         return np.asarray(path), np.minimum(np.floor(path / self.length), self.passes - 1)
 
+    @checked_numbers
     def sampled(self, rate: Hertz) -> tuple[SecondArray, MetreArray]:
         """Times 0, 1/rate, 2/rate … within the stroke (s), and the positions at them (m).
 

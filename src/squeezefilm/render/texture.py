@@ -25,6 +25,7 @@ from squeezefilm.quantities import (
     Radian,
     SecondLike,
     Unit,
+    checked_numbers,
     format_quantity,
     require,
 )
@@ -46,6 +47,7 @@ class Texture(Protocol):
     whose quantity is not the amplitude needs a renderer to become one.
     """
 
+    @checked_numbers
     def __call__(
         self, x: MetreLike, y: MetreLike, v: MetrePerSecondLike, t: SecondLike, /
     ) -> MetreArray:
@@ -53,6 +55,7 @@ class Texture(Protocol):
         ...
 
 
+@checked_numbers
 @dataclass(frozen=True, slots=True)
 class Square(Composable):
     """A square grating along x: amplitude `high` over `duty` of each period, `low` over the rest.
@@ -88,6 +91,7 @@ class Square(Composable):
         require("duty", self.duty, above=0.0, below=1.0)
 
     @classmethod
+    @checked_numbers
     def from_groove_and_ridge(
         cls, groove: Metre, ridge: Metre, *, low: Metre, high: Metre, phase: Radian = 0.0
     ) -> Square:
@@ -119,6 +123,7 @@ class Square(Composable):
         assembler.emit(BETWEEN, self.low, self.high)
 
 
+@checked_numbers
 @dataclass(frozen=True, slots=True)
 class Sine(Composable):
     """A sine grating along x: amplitude between `low` and `high`, once per spatial period.

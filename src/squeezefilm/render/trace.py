@@ -17,6 +17,7 @@ from squeezefilm.quantities import (
     Second,
     SecondArray,
     Unit,
+    checked_numbers,
     format_quantity,
     require,
 )
@@ -36,6 +37,7 @@ _PER_STROKE = 1000
 _FEWEST_PER_PERIOD = 4
 
 
+@checked_numbers
 @dataclass(frozen=True, slots=True, eq=False)
 class FrictionTrace:
     """What a finger meets along a stroke, wanted and rendered; arrays of shape (samples,).
@@ -73,6 +75,7 @@ class FrictionTrace:
         return self.time_constant * self.stroke.speed
 
 
+@checked_numbers
 def friction_trace(
     texture: Texture,
     stroke: Stroke,

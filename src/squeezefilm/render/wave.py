@@ -21,6 +21,7 @@ from squeezefilm.quantities import (
     Metre,
     MetreArray,
     MetreLike,
+    checked_numbers,
     require,
 )
 from squeezefilm.render.coordinate import FARTHEST, METRE, X_AXIS, Coordinate, FromPoint
@@ -29,6 +30,7 @@ from squeezefilm.render.inverse import FrictionInverse
 _MOST_FACTORS = 65_536
 
 
+@checked_numbers
 def wave_factor(
     position: MetreLike, half_wavelength: Metre, contact_length: Metre = 0.0
 ) -> DimensionlessArray:
@@ -59,6 +61,7 @@ def _area(u: FloatArray) -> FloatArray:
     return np.asarray(2.0 * n + np.sin(u - n * math.pi))
 
 
+@checked_numbers
 @dataclass(frozen=True, slots=True)
 class WaveCompensation:
     """By what share the wave is weaker place by place; a renderer divides amplitudes by it.
@@ -88,6 +91,7 @@ class WaveCompensation:
             raise InputError("a wave runs along a direction; give AlongX, AlongY, AlongDirection")
 
     @classmethod
+    @checked_numbers
     def over_contact(
         cls,
         half_wavelength: Metre,
@@ -113,6 +117,7 @@ class WaveCompensation:
         return cls(half_wavelength, tuple(factors.tolist()), along)
 
     @classmethod
+    @checked_numbers
     def from_ripple(
         cls,
         position: MetreArray,
@@ -150,6 +155,7 @@ class WaveCompensation:
         factors = np.clip(amplitude / largest, least, 1.0)
         return cls(half_wavelength, tuple(factors.tolist()), along)
 
+    @checked_numbers
     def factor(self, x: MetreLike, y: MetreLike = 0.0) -> DimensionlessArray:
         """The factor at places (1), as the renderer reads it: linear between those of a period."""
         where = self.along.at(np.asarray(x, dtype=float), np.asarray(y, dtype=float))

@@ -1,4 +1,4 @@
-"""Units in the type, quantity text, and the registry of closed forms.
+"""Units in the type, and quantity text.
 
 Inside the package every number is an SI float; its unit stands in its annotation
 (`Metre = Annotated[float, Unit("m")]`). Outside, in TOML and on the command line, a quantity is
@@ -12,19 +12,17 @@ for closed forms that broadcast.
 from __future__ import annotations
 
 import functools
-import inspect
 import re
 import typing
-import warnings
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass
 from decimal import Decimal, localcontext
-from typing import Annotated, Any, ParamSpec, TypeVar
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from squeezefilm.errors import InputError, OutOfRangeError, OutOfRangeWarning, QuantityError
+from squeezefilm.errors import QuantityError
 
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -318,105 +316,3 @@ NewtonLike = Annotated[FloatLike, Unit("N")]
 PascalLike = Annotated[FloatLike, Unit("Pa")]
 MetrePerVoltLike = Annotated[FloatLike, Unit("m/V")]
 VoltLike = Annotated[FloatLike, Unit("V")]
-
-# --- checks and closed forms ----------------------------------------------------------------
-
-
-def require(
-    name: str,
-    value: Any,
-    unit: Unit = Unit("1"),
-    *,
-    above: float | None = None,
-    at_least: float | None = None,
-    below: float | None = None,
-    at_most: float | None = None,
-) -> None:
-    """Refuse a value (scalar or array) that is not finite or not within the bounds given in SI.
-
-    Raises `InputError` that names the quantity, the offending value with its unit and the bound.
-    """
-    array = np.asarray(getattr(value, "magnitude", value), dtype=float)
-    wanted: list[str] = []
-    good = np.isfinite(array)
-    for bound, word, holds in (
-        (above, "above", np.greater),
-        (at_least, "at least", np.greater_equal),
-        (below, "below", np.less),
-        (at_most, "at most", np.less_equal),
-    ):
-        if bound is not None:
-            good = good & holds(array, bound)
-            wanted.append(f"{word} {format_quantity(bound, unit)}")
-    if not np.all(good):
-        offender = float(array.ravel()[np.flatnonzero(~good)[0]])
-        allowed = " and ".join(["finite", *wanted])
-        raise InputError(
-            f"{name} = {format_quantity(offender, unit)} cannot be used: it must be {allowed}",
-            quantity=name,
-        )
-
-
-def require_valid(
-    name: str, value: Any, low: float, high: float, because: str, *, strict: bool = True
-) -> None:
-    """Refuse (strict) or warn of a dimensionless group outside the validity range of a model.
-
-    Raises `OutOfRangeError`, or warns `OutOfRangeWarning` if not `strict`.
-    """
-    array = np.atleast_1d(np.asarray(getattr(value, "magnitude", value), dtype=float))
-    outside = ~((array >= low) & (array <= high))
-    if not np.any(outside):
-        return
-    offender = float(array[np.flatnonzero(outside)[0]])
-    message = f"{name} = {offender:.4g} is outside {low:.4g} to {high:.4g}, where {because}"
-    if strict:
-        raise OutOfRangeError(f"{message}; pass strict=False to compute it all the same")
-    warnings.warn(message, OutOfRangeWarning, stacklevel=3)
-
-
-_P = ParamSpec("_P")
-_R = TypeVar("_R")
-
-CLOSED_FORMS: dict[str, Callable[..., Any]] = {}
-"""Every closed form by its dotted name, so that one test can call them all with pint quantities."""
-
-
-def closed_form(
-    *, positive: str = "", nonnegative: str = ""
-) -> Callable[[Callable[_P, _R]], Callable[_P, _R]]:
-    """Mark a formula: it enters `CLOSED_FORMS`, and its arguments are checked before it runs.
-
-    `positive` and `nonnegative` name arguments (separated by blanks); every other argument with a
-    unit in its annotation must be finite. The formula itself must use only arithmetic and NumPy
-    functions, so that it can be called with pint quantities.
-    """
-    strictly, weakly = set(positive.split()), set(nonnegative.split())
-
-    def mark(function: Callable[_P, _R]) -> Callable[_P, _R]:
-        signature = inspect.signature(function)
-        unknown = (strictly | weakly) - set(signature.parameters)
-        if unknown:
-            raise TypeError(f"{function.__qualname__} has no argument {sorted(unknown)}")
-        units: dict[str, Unit] = {}
-
-        @functools.wraps(function)
-        def checked(*args: _P.args, **kwargs: _P.kwargs) -> _R:
-            if not units:
-                hints = typing.get_type_hints(function, include_extras=True)
-                units.update({k: u for k, h in hints.items() if (u := unit_of(h)) is not None})
-            for name, value in signature.bind(*args, **kwargs).arguments.items():
-                if name in units and value is not None:
-                    require(
-                        name,
-                        value,
-                        units[name],
-                        above=0.0 if name in strictly else None,
-                        at_least=0.0 if name in weakly else None,
-                    )
-            return function(*args, **kwargs)
-
-        CLOSED_FORMS[f"{function.__module__}.{function.__qualname__}"] = checked
-        return checked
-
-    return mark

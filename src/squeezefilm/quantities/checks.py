@@ -1,0 +1,312 @@
+"""The one check of numbers: what public calls take, and that what they give is finite.
+
+`checked_numbers` reads the annotations of a function, a method or a dataclass and refuses what is no such
+number before anything is computed with it; `closed_form` does the same for a formula and registers
+it. Both refuse to give a number that is not finite: arguments so extreme that a float cannot hold
+what comes of them raise `OutOfRangeError`. Bounds beyond that stand with `require`.
+"""
+
+from __future__ import annotations
+
+import collections.abc
+import functools
+import inspect
+import math
+import types
+import typing
+import warnings
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any, Literal, ParamSpec, TypeVar
+
+import numpy as np
+
+from squeezefilm.errors import InputError, OutOfRangeError, OutOfRangeWarning
+from squeezefilm.quantities.units import Unit, format_quantity, unit_of
+
+__all__ = ["CLOSED_FORMS", "checked_numbers", "closed_form", "require", "require_valid"]
+
+_PURE = Unit("1")
+
+
+def _real(name: str, value: Any) -> Any:
+    """A value as an array of floats. Raises `InputError` for what is no real number or array."""
+    try:
+        array = np.asarray(getattr(value, "magnitude", value))
+        if array.dtype.kind in "fiu" or (array.dtype.kind == "O" and _is_whole(value)):
+            return np.asarray(array, dtype=float)
+    except (OverflowError, ValueError):
+        # A whole number above every float, or rows of unequal length.
+        pass
+    raise InputError(
+        f"{name} = {_shortened(value)} cannot be used: it must be a real number, or an array of "
+        "real numbers, that a float can hold",
+        quantity=name,
+    )
+
+
+def _is_whole(value: Any) -> bool:
+    return isinstance(value, int | np.integer) and not isinstance(value, bool)
+
+
+def _shortened(value: Any) -> str:
+    if _is_whole(value):
+        return f"a whole number of {int(value).bit_length()} bits"
+    text = repr(value)
+    return text if len(text) <= 60 else f"{text[:57]}..."
+
+
+def require(
+    name: str,
+    value: Any,
+    unit: Unit = _PURE,
+    *,
+    above: float | None = None,
+    at_least: float | None = None,
+    below: float | None = None,
+    at_most: float | None = None,
+) -> None:
+    """Refuse a value (scalar or array) that is no number, not finite or not within the bounds (SI).
+
+    Raises `InputError` that names the quantity, the offending value with its unit and the bound.
+    """
+    array = _real(name, value)
+    wanted: list[str] = []
+    good = np.isfinite(array)
+    for bound, word, holds in (
+        (above, "above", np.greater),
+        (at_least, "at least", np.greater_equal),
+        (below, "below", np.less),
+        (at_most, "at most", np.less_equal),
+    ):
+        if bound is not None:
+            good = good & holds(array, bound)
+            wanted.append(f"{word} {format_quantity(bound, unit)}")
+    if not np.all(good):
+        offender = float(array.ravel()[np.flatnonzero(~good)[0]])
+        allowed = " and ".join(["finite", *wanted])
+        raise InputError(
+            f"{name} = {format_quantity(offender, unit)} cannot be used: it must be {allowed}",
+            quantity=name,
+        )
+
+
+def require_valid(
+    name: str, value: Any, low: float, high: float, because: str, *, strict: bool = True
+) -> None:
+    """Refuse (strict) or warn of a dimensionless group outside the validity range of a model.
+
+    Raises `OutOfRangeError`, or warns `OutOfRangeWarning` if not `strict`.
+    """
+    array = np.atleast_1d(_real(name, value))
+    outside = ~((array >= low) & (array <= high))
+    if not np.any(outside):
+        return
+    offender = float(array[np.flatnonzero(outside)[0]])
+    message = f"{name} = {offender:.4g} is outside {low:.4g} to {high:.4g}, where {because}"
+    if strict:
+        raise OutOfRangeError(f"{message}; pass strict=False to compute it all the same")
+    warnings.warn(message, OutOfRangeWarning, stacklevel=3)
+
+
+_Kind = Literal["number", "array", "either", "complex", "count", "container"]
+
+
+@dataclass(frozen=True, slots=True)
+class _Rule:
+    """What an annotation says of an argument: one number, an array, either, a count, or numbers in
+    a container of another kind, which is left as it is."""
+
+    kind: _Kind
+    unit: Unit
+    optional: bool
+    above: float | None = None
+    at_least: float | None = None
+
+
+def _rule(hint: Any, above: float | None, at_least: float | None) -> _Rule | None:
+    """The rule of an annotation, None where it stands for no number."""
+    parts = [hint]
+    if typing.get_origin(hint) in (typing.Union, types.UnionType):
+        parts = [part for part in typing.get_args(hint) if part is not type(None)]
+    optional = parts != [hint] and type(None) in typing.get_args(hint)
+    if any(typing.get_origin(part) is collections.abc.Callable for part in parts):
+        return None
+    unit = unit_of(hint) or _PURE
+    if len(parts) > 1:
+        return _Rule("container", unit, optional, above, at_least) if unit_of(hint) else None
+    plain = parts[0]
+    if typing.get_origin(plain) is typing.Annotated:
+        plain = plain.__origin__
+    kind: _Kind | None
+    kinds = {typing.get_origin(part) or part for part in typing.get_args(plain)} or {plain}
+    if typing.get_origin(plain) is np.ndarray:
+        dtype = typing.get_args(typing.get_args(plain)[1])[0]
+        kind = "array" if dtype is np.float64 else "complex" if dtype is np.complex128 else None
+    elif plain in (float, int):
+        kind = "number" if plain is float else "count"
+    elif kinds == {float, np.ndarray}:
+        kind = "either"
+    elif kinds <= {complex, np.ndarray}:
+        kind = "complex"
+    else:
+        kind = "container" if unit_of(hint) else None
+    return None if kind is None else _Rule(kind, unit, optional, above, at_least)
+
+
+def _checked_value(name: str, value: Any, rule: _Rule) -> Any:
+    """The value as the call takes it, floats for numbers. Raises `InputError`."""
+    if type(value) is float and rule.kind in ("number", "either") and math.isfinite(value):
+        if (rule.above is None or value > rule.above) and (
+            rule.at_least is None or value >= rule.at_least
+        ):
+            return value
+    elif value is None and rule.optional:
+        return value
+    if rule.kind == "count":
+        if not _is_whole(value):
+            raise InputError(
+                f"{name} = {_shortened(value)} cannot be used: it must be a whole number",
+                quantity=name,
+            )
+        return value
+    if rule.kind == "complex":
+        return _complex_value(name, value)
+    require(name, value, rule.unit, above=rule.above, at_least=rule.at_least)
+    if hasattr(value, "magnitude") or rule.kind == "container":
+        return value
+    array = np.asarray(value, dtype=float)
+    if rule.kind == "number" and array.ndim:
+        raise InputError(f"{name} has the shape {array.shape}; one number is wanted", quantity=name)
+    if rule.kind == "array" and not array.ndim:
+        raise InputError(f"{name} is one number; an array is wanted", quantity=name)
+    return array if array.ndim else float(array)
+
+
+def _complex_value(name: str, value: Any) -> Any:
+    array = np.asarray(value)
+    if array.dtype.kind not in "fiuc" or not np.all(np.isfinite(array)):
+        raise InputError(
+            f"{name} = {_shortened(value)} cannot be used: it must be a finite number, real or "
+            "complex, or an array of such numbers",
+            quantity=name,
+        )
+    return value
+
+
+def _numbers(result: Any) -> Iterator[Any]:
+    """The floats, and arrays of floats, of a result."""
+    if isinstance(result, tuple):
+        for part in result:
+            yield from _numbers(part)
+    elif isinstance(result, float | complex | np.ndarray) or hasattr(result, "magnitude"):
+        array = np.asarray(getattr(result, "magnitude", result))
+        if array.dtype.kind in "fc":
+            yield array
+
+
+def _beyond(function: Callable[..., Any], arguments: dict[str, Any], why: str) -> OutOfRangeError:
+    shown = [f"{k} = {v:.4g}" for k, v in arguments.items() if isinstance(v, float)]
+    what = function.__qualname__.removesuffix(".__init__")
+    return OutOfRangeError(
+        f"{what} leaves the range of a float ({why})"
+        + (f" at {', '.join(shown)} in SI units" if shown else "")
+        + "; take values of a size that occurs"
+    )
+
+
+_P = ParamSpec("_P")
+_R = TypeVar("_R")
+_T = TypeVar("_T", bound=Callable[..., Any])
+
+CLOSED_FORMS: dict[str, Callable[..., Any]] = {}
+"""Every closed form by its dotted name, so that one test can call them all with pint quantities."""
+
+
+def _guarded(
+    function: Callable[_P, _R], strictly: frozenset[str], weakly: frozenset[str]
+) -> Callable[_P, _R]:
+    """The function, its arguments checked before and its result after."""
+    names = list(inspect.signature(function).parameters)
+    unknown = (strictly | weakly) - set(names)
+    if unknown:
+        raise TypeError(f"{function.__qualname__} has no argument {sorted(unknown)}")
+    rules: dict[str, _Rule] = {}
+    ready: list[bool] = []
+
+    def read_annotations() -> None:
+        hints = typing.get_type_hints(function, include_extras=True)
+        hints.pop("return", None)
+        for name, hint in hints.items():
+            above, at_least = 0.0 if name in strictly else None, 0.0 if name in weakly else None
+            if (rule := _rule(hint, above, at_least)) is not None:
+                rules[name] = rule
+        ready.append(True)
+
+    def check(arguments: dict[str, Any]) -> dict[str, Any]:
+        shapes = []
+        for name, value in arguments.items():
+            if (rule := rules.get(name)) is None:
+                continue
+            arguments[name] = good = _checked_value(name, value, rule)
+            if rule.kind == "either" and isinstance(good, np.ndarray):
+                shapes.append((name, good.shape))
+        try:
+            np.broadcast_shapes(*(shape for _, shape in shapes))
+        except ValueError:
+            of = ", ".join(f"{name} {shape}" for name, shape in shapes)
+            raise InputError(f"the shapes do not fit each other: {of}") from None
+        return arguments
+
+    @functools.wraps(function)
+    def guarded(*args: _P.args, **kwargs: _P.kwargs) -> _R:
+        if not ready:
+            read_annotations()
+        if len(args) > len(names):
+            return function(*args, **kwargs)  # which says how many arguments it takes
+        named = check(dict(zip(names, args, strict=False)))
+        rest = check(dict(kwargs))
+        try:
+            with np.errstate(over="raise", divide="raise", invalid="raise"):
+                result = function(*named.values(), **rest)
+        except (ArithmeticError, np.linalg.LinAlgError) as error:
+            raise _beyond(function, named | rest, str(error)) from error
+        if all(np.all(np.isfinite(numbers)) for numbers in _numbers(result)):
+            return result
+        raise _beyond(function, named | rest, "the result is not finite")
+
+    return guarded
+
+
+def checked_numbers(item: _T) -> _T:
+    """Check what a function, a method or a dataclass takes against its annotations, and what it
+    gives.
+
+    An argument annotated as a number (`Metre`, `float`, `int`) is one finite number, one annotated
+    as an array (`MetreArray`) a finite array, one that may be either (`MetreLike`) broadcasts with
+    the others; whole numbers and arrays of them arrive as floats. The call raises `InputError` for
+    anything else, and `OutOfRangeError` where the arithmetic overflows, divides by zero or gives a
+    number that is not finite.
+    """
+    if isinstance(item, type):
+        made = typing.cast(Any, item)
+        made.__init__ = _guarded(made.__init__, frozenset(), frozenset())
+        return typing.cast(_T, item)
+    return typing.cast(_T, _guarded(item, frozenset(), frozenset()))
+
+
+def closed_form(
+    *, positive: str = "", nonnegative: str = ""
+) -> Callable[[Callable[_P, _R]], Callable[_P, _R]]:
+    """Mark a formula: it enters `CLOSED_FORMS`, and is `checked_numbers`.
+
+    `positive` and `nonnegative` name arguments (separated by blanks). The formula itself must use
+    only arithmetic and NumPy functions, so that it can be called with pint quantities.
+    """
+
+    def mark(function: Callable[_P, _R]) -> Callable[_P, _R]:
+        guarded = _guarded(function, frozenset(positive.split()), frozenset(nonnegative.split()))
+        CLOSED_FORMS[f"{function.__module__}.{function.__qualname__}"] = guarded
+        return guarded
+
+    return mark

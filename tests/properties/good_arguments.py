@@ -1,0 +1,448 @@
+"""A good value for every argument of the public calls: by its name, by its unit, or by its type.
+
+Where one value will not do for a call, `FOR_ONE_CALL` says which does.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+import inspect
+import typing
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+from public_calls import PublicCall
+
+from squeezefilm.contact.asperities import AsperityLaw
+from squeezefilm.contact.dry_friction import DryFriction, FrictionProfile
+from squeezefilm.contact.film_load import FilmLoad, film_load
+from squeezefilm.contact.finger import Finger
+from squeezefilm.contact.fingerpad import FingerpadDynamics
+from squeezefilm.contact.gas_table import FilmTable, film_table
+from squeezefilm.contact.occlusion import Occlusion
+from squeezefilm.contact.pad import FrictionRipple, PadPosture
+from squeezefilm.contact.skin import Skin
+from squeezefilm.contact.sliding import Sliding, slide
+from squeezefilm.display import Display, Surface, load_display
+from squeezefilm.distributions import Normal, Uniform
+from squeezefilm.film.gap import PaperGap
+from squeezefilm.film.planar_gap import PlanarGap
+from squeezefilm.film.profile import GapProfile, flexural_profile
+from squeezefilm.formats.hjif import ReferenceDevice, hjif_of
+from squeezefilm.friction import FrictionLaw
+from squeezefilm.materials import ElasticMaterial, Gas, PiezoConstants, Piezoceramic
+from squeezefilm.plate.annular import AnnularMode, bending_mode
+from squeezefilm.plate.annular_layout import AnnularSection, RingLayer, SectorDrive, bonded_disc
+from squeezefilm.plate.annular_layout import full_drive
+from squeezefilm.plate.annular_materials import RingSolid, isotropic_solid
+from squeezefilm.plate.beam import BeamMode
+from squeezefilm.plate.laminate import Laminate, Layer, plate_laminate
+from squeezefilm.plate.layout import CeramicPatch, RectangularPlate
+from squeezefilm.plate.loaded_mode import LoadedMode
+from squeezefilm.plate.plate_response import (
+    EquivalentCircuit,
+    HarmonicResponse,
+    SurfaceLoad,
+    harmonic_response,
+)
+from squeezefilm.plate.response import BeamResponse, beam_response
+from squeezefilm.plate.shear_section import ShearLayout, ShearSection, isotropic_section
+from squeezefilm.plate.shear_section import shear_layout
+from squeezefilm.plate.plate_modes import PlateModes
+from squeezefilm.plate.ring_body import RingBody
+from squeezefilm.plate.ring_response import RingResponse, ring_response
+from squeezefilm.plate.shear_plate import ShearMode, shear_modes
+from squeezefilm.plate.solid_mode import SolidMode, solid_mode
+from squeezefilm.plate.solve_modes import solve_modes
+from squeezefilm.plate.sound import RadiatingSurface, rectangular_surface
+from squeezefilm.plate.stator import StatorAssumptions
+from squeezefilm.plate.working_mode import WorkingMode, working_mode
+from squeezefilm.quantities import Unit, unit_of
+from squeezefilm.render.compensation import CompensatedDrive, DrivenEnvelope, compensated_drive
+from squeezefilm.render.composition import Composable
+from squeezefilm.render.coordinate import AlongX, AlongY, Coordinate
+from squeezefilm.render.finger_path import FingerPath, OverPath
+from squeezefilm.render.inverse import FrictionInverse
+from squeezefilm.render.levels import Amplitude, RelativeFriction
+from squeezefilm.render.minimum_jerk import MinimumJerkStroke, Trajectory
+from squeezefilm.render.motion import MotionEstimator, MotionModel
+from squeezefilm.render.pattern import Pattern
+from squeezefilm.render.pattern_shapes import SineWave
+from squeezefilm.render.program import Program, lower
+from squeezefilm.render.renderer import Played, Renderer
+from squeezefilm.render.sensor import LVDT_10_KHZ, SensorModel, SensorStream, sensor_stream
+from squeezefilm.render.stroke import Stroke
+from squeezefilm.render.texture import Square, Texture
+from squeezefilm.render.wave import WaveCompensation
+
+BRASS = ElasticMaterial("brass", 100e9, 0.35, 8500.0, 200.0)
+PZT = Piezoceramic("PZT", 67.9e9, 0.29, 23e9, 7700.0, -247e-12, 1900.0, 60.0)
+PLATE = RectangularPlate(
+    30e-3, 10e-3, 2e-3, 4, 60.0, BRASS, PZT, (CeramicPatch(12e-3, 0.0, 6e-3, 10e-3, 1e-3),)
+)
+SINE = SineWave(2e-3)
+ENVELOPE = DrivenEnvelope(0.5e-3, 0.5e-3, 2e-6)
+FINGER = Finger(10e-3, 50e-6, 350e-6, 0.5)
+AIR = Gas(1.81e-5, 101325.0, 1.2, 68e-9)
+WAYS = np.linspace(0.0, 1e-3, 9)
+
+
+def falling_friction(amplitude: Any) -> Any:
+    return 1 - np.asarray(amplitude) / 4e-6
+
+
+def _law() -> FrictionLaw:
+    return FrictionLaw(
+        Surface("bare", 1e-6, 0.6), FINGER, AIR, 8e-3, 30e3, 0.5, "partial-levitation"
+    )
+
+
+def _disc() -> AnnularSection:
+    return bonded_disc(
+        diameter=25e-3, thickness=1e-3, plate=BRASS, ceramic=PZT,
+        ceramic_outer_diameter=15e-3, ceramic_thickness=0.5e-3,
+    )  # fmt: skip
+
+
+def _hjif() -> Any:
+    return hjif_of(made(RelativeFriction), 0.0, 20e-3, device=made(ReferenceDevice)).document
+
+
+def _fields_of(value: Any) -> dict[str, Any]:
+    return {field.name: getattr(value, field.name) for field in dataclasses.fields(value)}
+
+
+# Objects of the domain, made when first asked for.
+MADE: dict[Any, Callable[[], Any]] = {
+    AsperityLaw: AsperityLaw,
+    DryFriction: lambda: DryFriction(1.2, 0.01),
+    FrictionProfile: lambda: FrictionProfile(0.0, 1e-3, np.ones(4)),
+    Finger: lambda: FINGER,
+    FingerpadDynamics: FingerpadDynamics,
+    FilmTable: lambda: film_table(30e3, 250e-6, AIR),
+    FilmLoad: lambda: film_load(MADE[PaperGap](), 30e3, AIR, "paper2008"),
+    Occlusion: Occlusion,
+    PadPosture: PadPosture,
+    FrictionRipple: lambda: FrictionRipple(WAYS, np.linspace(0.5, 1, 9), 1e-2, 8e-3),
+    Skin: Skin,
+    Sliding: lambda: slide(np.linspace(0, 1e-2, 200), 1e-3, 0.6, 0.5),
+    Display: lambda: load_display("biet2008-plate"),
+    Surface: lambda: Surface("bare", 1e-6, 0.6),
+    Normal: lambda: Normal(1.0, 0.1),
+    Uniform: lambda: Uniform(0.5, 1.0),
+    PaperGap: lambda: PaperGap(1e-6, 0.5e-6, 50e-6, 350e-6, 16e-3, 10e-3),
+    PlanarGap: lambda: PlanarGap(0.2),
+    GapProfile: lambda: flexural_profile(0.2),
+    ReferenceDevice: lambda: ReferenceDevice("mine", 200.0, 5.0, 1e-4),
+    FrictionLaw: _law,
+    ElasticMaterial: lambda: BRASS,
+    Gas: lambda: AIR,
+    Piezoceramic: lambda: PZT,
+    PiezoConstants: lambda: PZT.full_constants,
+    AnnularMode: lambda: bending_mode(_disc(), 0, 1, degree=3),
+    AnnularSection: _disc,
+    SectorDrive: full_drive,
+    RingLayer: lambda: _disc().layers[0],
+    RingSolid: lambda: isotropic_solid(BRASS),
+    BeamMode: lambda: beam_response(PLATE).mode,
+    Laminate: lambda: plate_laminate(PLATE),
+    Layer: lambda: Layer(1e-3, 100e9, 40e9, 8500.0),
+    RectangularPlate: lambda: PLATE,
+    CeramicPatch: lambda: PLATE.patches[0],
+    LoadedMode: lambda: LoadedMode(30e3, 60.0, 0.01 + 0.01j),
+    SurfaceLoad: lambda: SurfaceLoad(10e-3, 2e-3, 5e-3, 5e-3, 1.0),
+    EquivalentCircuit: lambda: EquivalentCircuit(30e3, 60.0, 1e-9, 100.0, 0.03, 1e-9),
+    BeamResponse: lambda: beam_response(PLATE),
+    ShearLayout: lambda: shear_layout(PLATE),
+    ShearSection: lambda: isotropic_section(BRASS, 2e-3),
+    RadiatingSurface: lambda: rectangular_surface(
+        np.linspace(0, 0.02, 9), np.linspace(0, 0.01, 5), np.ones((9, 5)) + 0j, 30e3
+    ),
+    StatorAssumptions: StatorAssumptions,
+    WorkingMode: lambda: working_mode(PLATE, "timoshenko"),
+    Unit: lambda: Unit("m"),
+    CompensatedDrive: lambda: compensated_drive(np.full(50, 1e-6), 1e-4, ENVELOPE),
+    DrivenEnvelope: lambda: ENVELOPE,
+    Composable: lambda: RelativeFriction(SINE, 0.5, 0.9),
+    RelativeFriction: lambda: RelativeFriction(SINE, 0.5, 0.9),
+    Coordinate: AlongX,
+    FingerPath: lambda: FingerPath(np.linspace(0, 1, 9), np.linspace(0, 0.02, 9), np.zeros(9)),
+    FrictionInverse: lambda: FrictionInverse.from_function(falling_friction, 2e-6),
+    MotionEstimator: lambda: MotionEstimator.for_sensor(LVDT_10_KHZ),
+    MotionModel: MotionModel,
+    Pattern: lambda: SINE,
+    Program: lambda: lower(Amplitude(SINE, 0.0, 1e-6), largest_amplitude=2e-6),
+    Renderer: lambda: Renderer(MADE[Program]()),
+    SensorModel: lambda: LVDT_10_KHZ,
+    SensorStream: lambda: sensor_stream(LVDT_10_KHZ, lambda t: 0.1 * t, 0.05, 1),
+    Stroke: lambda: Stroke(0.1, 0.02),
+    Texture: lambda: Square(2e-3, 0.0, 1e-6),
+    Trajectory: lambda: Stroke(0.1, 0.02),
+    MinimumJerkStroke: lambda: MinimumJerkStroke(0.02, 0.1),
+    WaveCompensation: lambda: WaveCompensation.over_contact(8e-3, 2e-3, count=32),
+    Path: lambda: Path("missing"),
+    PlateModes: lambda: solve_modes(PLATE, near=60e3, count=1),
+    SolidMode: lambda: solid_mode(PLATE),
+    HarmonicResponse: lambda: harmonic_response(PLATE, np.array([30e3, 31e3])),
+    ShearMode: lambda: shear_modes(PLATE, 30e3, 1, degree=3)[0],
+    RingBody: lambda: RingBody(_disc(), full_drive(), (0, 1), None),
+    RingResponse: lambda: ring_response(
+        made(RingBody), made(AnnularMode), np.array([30e3]), (0,), 2
+    ),
+    OverPath: lambda: OverPath(made(FingerPath)),
+    Played: lambda: Played(made(Program)),
+    AlongX: AlongX,
+    AlongY: AlongY,
+}  # fmt: skip
+
+_BY_UNIT = {
+    "m": 1e-3, "m2": 1e-4, "s": 1e-3, "Hz": 30e3, "1": 0.5, "rad": 0.3, "N": 0.5, "N/m": 1e3,
+    "N/V": 0.1, "N*s/m": 1.0, "N*m": 50.0, "Pa": 1e4, "Pa*s": 1.81e-5, "kg": 1e-3, "kg/m3": 1.2,
+    "kg/m2": 10.0, "V": 10.0, "m/V": 1e-7, "F": 1e-9, "ohm": 100.0, "m/s": 0.1, "1/m": 100.0,
+    "C/m2": -5.0, "m2/N": 1e-11, "Pa/m": 1e9, "Pa*s/m": 1e3, "m2/s3": 0.05, "m2/s5": 40.0,
+    "m/s2": 2.0, "A": 0.1, "V*s/A": 0.03, "m/N": 1e-3,
+}  # fmt: skip
+
+_BY_NAME: dict[str, Any] = {
+    "amplitude": 1e-6, "free_amplitude": 1e-6, "low": 0.0, "high": 1e-6, "roughness": 1e-6,
+    "vibration_amplitude": 1e-6, "ridge_amplitude": 50e-6, "ridge_period": 350e-6,
+    "plateau_width": 250e-6, "film_thickness": 5e-6, "mean_gap": 5e-6, "gap": 2e-6,
+    "decay_length": 0.6e-6, "reference_gap": 2e-6, "mean_free_path": 68e-9,
+    "ambient_pressure": 101325.0, "quality_factor": 60.0, "young_modulus": 100e9,
+    "modulus": 100e9, "shear_modulus": 40e9, "density": 8500.0, "half_wavelength": 8e-3,
+    "wavelength": 16e-3, "contact_length": 10e-3, "length": 30e-3, "width": 10e-3,
+    "highest_amplitude": 2e-6, "largest_amplitude": 2e-6, "polytropic_index": 1.2,
+    "polytropic_exponent": 1.0, "squeeze_number": 100.0, "amplitude_ratio": 0.2,
+    "excursion_ratio": 0.2, "ridge_ratio": 0.2, "relative_permittivity": 1000.0,
+    "mean_pressure": 1.2, "harmonic": 1, "nodal_lines": 4, "count": 4, "cells": 16, "steps": 32,
+    "points": 33, "seed": 1, "passes": 1, "degree": 3, "order": 3, "knots": 33, "tolerance": 1e-3,
+    "duration": 0.05, "rate": 1e3, "sample_rate": 192e3, "command_rate": 1e3, "control_rate": 1e3,
+    "spatial_period": 2e-3, "voltage": 10.0, "surface_roughness": 1e-6, "sensor_rate": 1e3,
+    "reference_speed": 0.1, "command": np.full(64, 1e-6), "wanted": np.full(64, 1e-6),
+    "initial": 0.0, "start": 0.0, "end": 20e-3, "time_step": 1e-4, "time_constant": 0.5e-3,
+    "relative_friction": 0.7, "X": 0.25, "speed": 0.1, "frequency_error": 1.0, "voltage_limit": 20.0,
+    "amplitude_per_volt": 1e-7, "name": "some", "title": "some", "text": "2 um", "path": "none",
+    "display": "biet2008-plate", "insulation": "glass", "slip": "first", "samples_per_command": 192,
+    "poisson_ratio": 0.3, "samples": 4, "digits": 4, "value": 0.5, "bits": 8,
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Later:
+    """A good value that is made when the call is first tried."""
+
+    make: Callable[[], Any]
+
+
+def still_gap(X: Any, T: Any) -> Any:
+    return 1 + 0.2 * np.cos(T) + 0 * X
+
+
+def planar_gap(X: Any, Y: Any, T: Any) -> Any:
+    return 1 + 0.2 * np.cos(T) + 0 * X + 0 * Y
+
+
+_GRID = np.linspace(0.0, 1.0, 9)
+_FALL = {"relative_friction": falling_friction}
+_RADIATOR = {
+    "x": np.linspace(0, 0.02, 9), "y": np.linspace(0, 0.01, 5), "velocity": np.ones((9, 5)) + 0j,
+}  # fmt: skip
+_BAND = {"band": (20e3, 40e3)}
+_STATOR = {
+    "mean_diameter": 53.6e-3, "radial_width": 12e-3, "ring_thickness": 3e-3,
+    "ceramic_thickness": 0.5e-3,
+}  # fmt: skip
+_WAVE = np.linspace(0.0, 8e-3, 8, endpoint=False)
+_SERIES = {name: np.linspace(0.0, 0.01, 5) for name in ("x", "y", "v", "t")}
+
+FOR_ONE_CALL: dict[str, dict[str, Any]] = {
+    "contact.dry_friction.sampled_profile": {"relative_friction": np.cos},
+    "contact.finger_load.finger_stiffness": {"interface": 1e5 + 1e3j},
+    "contact.skin_vibration.skin_vibration": {"fundamental": 50.0, "start": 0.02},
+    "contact.skin_vibration.line_amplitudes": {"signals": np.cos(np.arange(640.0)), "time_step": 1e-3, "lines": np.array([100.0])},
+    "contact.tapping.contact_angle": {"rest_penetration": 1e-6},
+    "film.line_grid.gap_table": {"gap": still_gap, "X": _GRID, "T": _GRID},
+    "film.settling.settle_to_periodic": {"gap": still_gap},
+    "film.transient.solve_transient": {"gap": still_gap, "end": 1.0, "steps": 32, "cells": 16},
+    "film.planar.solve_planar": {"shape": "rectangle", "gap": planar_gap, "squeeze_number": 10.0},
+    "film.planar.solve_rectangle": {"squeeze_number": 10.0},
+    "film.planar.solve_ellipse": {"squeeze_number": 10.0},
+    "film.gap.PaperGap.wave_phase": {"X": _GRID},
+    "film.gap.PaperGap.ridge_phase": {"X": _GRID},
+    "film.planar_gap.PlanarGap.__call__": {"X": _GRID, "Y": _GRID, "T": _GRID},
+    "film.teeth.compare_teeth": {"tooth_width": 0.2, "tooth_pitch": 0.25, "squeeze_number": 10.0},
+    "film.transient.check_film": {"shape": "strip", "sigma": 10.0, "n": 1.0, "knudsen": 0.0},
+    "formats.hjif_read.friction_along": {"document": Later(_hjif)},
+    "formats.hjif.hjif_of": {"texture": Later(lambda: made(RelativeFriction))},
+    "formats.image_file.ImageFile": {"file": "picture.png"},
+    "formats.pictures.picture_bytes": {"values": np.full((4, 4), 0.5)},
+    "formats.traces.Table": {"columns": {"time_s": _GRID}},
+    "formats.wav.Waveform": {"samples": _GRID * 1e-7, "unit": "m", "full_scale": 1e-6},
+    "materials.PiezoConstants": Later(lambda: _fields_of(PZT.full_constants)),
+    "materials.Piezoceramic": {"in_plane_poisson_ratio": 0.29, "in_plane_stiffness": 68e9, "charge_coefficient": -247e-12},
+    "plate.annular.bending_mode": {"diameters": 0, "circles": 1},
+    "plate.annular.annular_modes": {"harmonic": 1, "degree": 3, "count": 1},
+    "plate.annular.annular_admittance": {"harmonics": (0,), "degree": 3, "modes": 2},
+    "plate.annular_layout.RingLayer": {"inner_radius": 1e-3, "outer_radius": 10e-3, "bottom": 0.0, "top": 1e-3},
+    "plate.annular_layout.AnnularSection": {"layers": Later(lambda: _disc().layers)},
+    "plate.annular_layout.SectorDrive": {"sectors": ((0.0, 1.0, 1),)},
+    "plate.annular_layout.motor_stator": _STATOR,
+    "plate.annular_layout.bonded_disc": {"diameter": 25e-3, "thickness": 1e-3, "ceramic_outer_diameter": 15e-3, "ceramic_thickness": 0.5e-3},
+    "plate.annular_materials.RingSolid": {"stiffness": Later(lambda: isotropic_solid(BRASS).stiffness)},
+    "plate.beam.BeamMode.deflection_at": {"x": WAYS},
+    "plate.beam.BeamMode.rotation_at": {"x": WAYS},
+    "plate.laminate.Laminate.moment_arm": {"layer": 0},
+    "plate.layout.RectangularPlate": {"width": 10e-3, "thickness": 2e-3, "patches": PLATE.patches},
+    "plate.layout.AnnularStator": {"mean_diameter": 53.6e-3, "radial_width": 12e-3, "wavelength": 18.7e-3},
+    "plate.layout.DiscPlate": {"diameter": 25e-3, "ceramic_outer_diameter": 15e-3, "ceramic_thickness": 0.5e-3},
+    "plate.loaded_mode.LoadedMode": {"load_ratio": 0.01 + 0.01j},
+    "plate.loaded_mode.loaded_mode": {"stiffness_per_area": 1e6 + 1e5j},
+    "plate.plate_modes.check_band": _BAND,
+    "plate.reduced_plate.resolved_frequency": _BAND,
+    "plate.plate_mesh.wave_number": {"frequency": 30e3},
+    "plate.plate_mesh.plate_model": {"frequency": 30e3},
+    "plate.plate_modes.PlateModes.index": {"label": Later(lambda: made(PlateModes).labels[0])},
+    "plate.plate_modes.PlateModes.field": {"mode": 0, "x": WAYS, "y": WAYS},
+    "plate.plate_modes.PlateModes.nodal_positions": {"mode": 0},
+    "plate.plate_modes.PlateModes.half_wavelength": {"mode": 0},
+    "plate.plate_response.HarmonicResponse.line": {"at": 0},
+    "plate.plate_response.harmonic_response": {"frequencies": np.array([30e3, 31e3])},
+    "plate.response.BeamResponse.amplitude_at": {"position": 10e-3},
+    "plate.response.BeamResponse.transfer": {"frequency": np.array([30e3]), "position": WAYS},
+    "plate.ring_response.ring_response": {"frequencies": np.array([30e3]), "harmonics": (0,)},
+    "plate.shear_plate.shear_modes": {"near": 30e3, "count": 1, "degree": 3},
+    "plate.shear_plate.shear_mode": {"near": 60e3, "degree": 3, "nodal_lines": (4, 0)},
+    "plate.shear_section.ShearSection": Later(lambda: _fields_of(made(ShearSection))),
+    "plate.shear_section.ShearLayout": Later(lambda: _fields_of(made(ShearLayout))),
+    "plate.sound.rectangular_surface": _RADIATOR,
+    "plate.sound.ring_surface": {"radius": np.linspace(0, 0.02, 9), "velocity": np.ones(9) + 0j},
+    "plate.sound.RadiatingSurface": Later(lambda: _fields_of(made(RadiatingSurface))),
+    "plate.sound.sound_pressure": {"points": np.array([[0.0, 0.0, 0.3]])},
+    "plate.sound.pressure_level": {"pressure": np.array([1.0 + 1j])},
+    "plate.solve_modes.solve_modes": {"count": 1, "near": 60e3},
+    "plate.stator.stator_section": {"mean_diameter": 53.6e-3, "ring_thickness": 3e-3},
+    "plate.stator.fit_stator": {"degree": 3},
+    "quantities.require": {"name": "length", "value": 1.0},
+    "quantities.require_valid": {"name": "length", "value": 1.0, "low": 0.0, "high": 2.0, "because": "so"},
+    "render.carrier.carrier_trace": {"frequency": 30e3},
+    "render.compensated_swing.least_cycle": {"swing": 1e-6},
+    "render.compensation.slew_time": {"start": 0.0, "target": 1e-6, "limit": 2e-6},
+    "render.composition.Sequence": {"textures": Later(lambda: (made(RelativeFriction),) * 2), "edges": (1e-3,)},
+    "render.composition.Sum": {"textures": Later(lambda: (made(RelativeFriction),) * 2)},
+    "render.composition.Composable.then": {"other": Later(lambda: made(RelativeFriction))},
+    "render.coordinate.require_fade": {"value": 1e-4, "at_most": 1e-3},
+    "render.fidelity.fidelity_table": {**_FALL, "spatial_periods": (2e-3,), "speeds": (0.1,)},
+    "render.finger_path.FingerPath": {"time": _GRID, "x": WAYS, "y": WAYS},
+    "render.inverse.FrictionInverse.from_function": _FALL,
+    "render.inverse.FrictionInverse.from_arrays": {"amplitude": WAYS * 1e-3, "relative_friction": falling_friction(WAYS * 1e-3)},
+    "render.levels.Amplitude.constant": {"value": 1e-6},
+    "render.levels.RelativeFriction": {"low": 0.4, "high": 0.8},
+    "render.levels.FrictionReduction": {"low": 0.4, "high": 0.8},
+    "render.pattern_gates.SpeedGate": {"above": 0.05, "below": 0.2},
+    "render.pattern_gates.Periodic": {"frequency": 50.0},
+    "render.pattern_image.Image": {"values": ((0.0, 1.0), (1.0, 0.0))},
+    "render.pattern_image.Image.from_array": {"values": np.full((4, 4), 0.5)},
+    "render.pattern_noise.mixed": {"value": 5},
+    "render.pattern_noise.line_noise": {"u": _GRID, "state": 1},
+    "render.pattern_noise.field_noise": {"u": _GRID, "w": _GRID, "state": 1},
+    "render.program.Program": {"array": Later(lambda: made(Program).array)},
+    "render.program.checked": {"array": Later(lambda: made(Program).array)},
+    "render.program.lower": {"texture": Later(lambda: Amplitude(SINE, 0.0, 1e-6)), "largest_amplitude": 2e-6},
+    "render.rendered_stroke.rendered_stroke": {**_FALL, "texture": Later(lambda: made(Texture))},
+    "render.renderer.render": _SERIES,
+    "render.renderer.evaluate": _SERIES,
+    "render.renderer.Renderer.tick": {"t": 0.001},
+    "render.sensor.SensorModel": {"rate": 1e3, "noise": 1e-6},
+    "render.sensor.sensor_stream": {"position": np.cos, "duration": 0.02},
+    "render.trace.friction_trace": _FALL,
+    "render.wave.WaveCompensation": {"factors": (1.0, 1.0, 1.0, 1.0)},
+    "render.wave.WaveCompensation.from_ripple": {"position": _WAVE, "relative_friction": np.full(8, 0.7)},
+}  # fmt: skip
+"""What a call needs besides, or in place of, what its arguments' names say."""
+
+
+@functools.cache
+def made(kind: Any) -> Any:
+    """The object of the domain of this type."""
+    return MADE[kind]()
+
+
+def _choices(hint: Any) -> tuple[Any, ...]:
+    if typing.get_origin(hint) is Literal:
+        return typing.get_args(hint)
+    return ()
+
+
+def good_value(name: str, hint: Any) -> Any:
+    """A good value of an argument, or raises LookupError."""
+    if name in _BY_NAME and (unit_of(hint) or hint in (int, float, str)):
+        value = _BY_NAME[name]
+    elif (unit := unit_of(hint)) is not None:
+        value = _BY_UNIT[unit.symbol]
+    elif hint is float:
+        value = 1.0
+    else:
+        kind = next(
+            (p for p in (hint, *typing.get_args(hint)) if inspect.isclass(p) and p in MADE), None
+        )
+        if kind is not None:
+            return made(kind)
+        if choices := _choices(hint):
+            return choices[0]
+        raise LookupError(name)
+    if unit_of(hint) is not None and "ndarray" in str(hint) and "float |" not in str(hint):
+        return np.full(5, value) if np.ndim(value) == 0 else value
+    return value
+
+
+def good_arguments(call: PublicCall) -> dict[str, Any]:
+    """Arguments with which a call works, the instance it needs under "self".
+
+    Raises LookupError with the name of the argument for which there is none.
+    """
+    given = _now(FOR_ONE_CALL.get(call.name, {}))
+    given = {name: _now(value) for name, value in given.items()}
+    arguments: dict[str, Any] = {}
+    if call.owner is not None and "self" not in given:
+        kind = call.owner if call.owner in MADE else None
+        if kind is None:
+            own = constructor_of(call.owner)
+            arguments["self"] = own.function(**good_arguments(own))
+        else:
+            arguments["self"] = made(kind)
+    for name, parameter in inspect.signature(call.function).parameters.items():
+        if name in given or name == "self":
+            continue
+        if parameter.default is not inspect.Parameter.empty:
+            continue
+        if parameter.kind in (parameter.VAR_POSITIONAL, parameter.VAR_KEYWORD):
+            continue
+        arguments[name] = good_value(name, call.hints[name])
+    return {**arguments, **given}
+
+
+def _now(value: Any) -> Any:
+    return value.make() if isinstance(value, Later) else value
+
+
+def constructor_of(owner: type[Any]) -> PublicCall:
+    from public_calls import public_calls
+
+    return public_calls()[f"{owner.__module__}.{owner.__qualname__}".removeprefix("squeezefilm.")]
+
+
+def invoke(call: PublicCall, arguments: dict[str, Any]) -> Any:
+    """Call it, arguments that stand before a slash by position."""
+    rest = dict(arguments)
+    positional = [rest.pop("self")] if "self" in rest else []
+    for name, parameter in inspect.signature(call.function).parameters.items():
+        if parameter.kind is parameter.POSITIONAL_ONLY and name in rest:
+            positional.append(rest.pop(name))
+    return call.function(*positional, **rest)
+
+
+__all__ = ["FOR_ONE_CALL", "dataclasses", "good_arguments", "invoke"]
