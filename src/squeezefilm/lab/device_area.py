@@ -53,7 +53,7 @@ def add_device(lab: Lab) -> DeviceSession:
 
     def tell(message: dict[str, Any]) -> None:
         if loop and not loop[0].is_closed():
-            asyncio.run_coroutine_threadsafe(lab.tell(message), loop[0])
+            loop[0].call_soon_threadsafe(lab.tell, message)
 
     session = DeviceSession(tell)
     lab.closing.append(session.close)

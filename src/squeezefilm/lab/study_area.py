@@ -176,8 +176,8 @@ def add_study(lab: Lab, devices: StudyDevices | None = None) -> StudyThread:
             exposures[display] = await lab.workers.slow.do("exposure", _exposure, display)
         return exposures[display]
 
-    async def changed(study: str) -> None:
-        await lab.tell({"type": "study changed", "study": study})
+    def changed(study: str) -> None:
+        lab.tell({"type": "study changed", "study": study})
 
     async def listing(_: Request) -> Answer:
         found = await thread.do(Studies.listing)
@@ -195,7 +195,7 @@ def add_study(lab: Lab, devices: StudyDevices | None = None) -> StudyThread:
 
     async def enrol(asked: NamedStudy) -> Answer:
         found = await thread.do(Studies.enrol, asked.study)
-        await changed(asked.study)
+        changed(asked.study)
         return {"type": "study", **found}
 
     async def ultrasound(asked: OfParticipant) -> Answer:
@@ -238,7 +238,7 @@ def add_study(lab: Lab, devices: StudyDevices | None = None) -> StudyThread:
         found = await thread.do(Studies.end, asked.sitting, device)
         found["problems"] += [lost] if lost else []
         await release_ended()
-        await lab.tell({"type": "sitting ended", "sitting": asked.sitting}, participants=True)
+        lab.tell({"type": "sitting ended", "sitting": asked.sitting}, participants=True)
         return {"type": "study", **found}
 
     async def delete(asked: DeleteParticipant) -> Answer:
@@ -248,7 +248,7 @@ def add_study(lab: Lab, devices: StudyDevices | None = None) -> StudyThread:
             if one.participant == asked.participant:
                 await devices.release(one.id)
         found = await thread.do(Studies.delete, asked.study, asked.participant)
-        await changed(asked.study)
+        changed(asked.study)
         return {"type": "study", **found}
 
     async def export(asked: ExportStudy) -> Answer:
@@ -257,7 +257,7 @@ def add_study(lab: Lab, devices: StudyDevices | None = None) -> StudyThread:
     async def rehearse(asked: RehearseStudy) -> Answer:
         path = await thread.do(Studies.path, asked.study)
         found = await lab.workers.slow.do("rehearsal", rehearsed, path, asked.participants)
-        await changed(asked.study)
+        changed(asked.study)
         return {"type": "rehearsed", **found}
 
     async def analyze(asked: NamedStudy) -> Answer:
@@ -307,7 +307,7 @@ def add_study(lab: Lab, devices: StudyDevices | None = None) -> StudyThread:
         except BaseException:
             await devices.release(sitting.id)
             raise
-        await changed(sitting.study)
+        changed(sitting.study)
         return {"type": "where", **found}
 
     async def present(asked: OfSitting) -> Answer:
@@ -315,7 +315,7 @@ def add_study(lab: Lab, devices: StudyDevices | None = None) -> StudyThread:
         study = found.pop("study", None)
         if study is not None:
             # Who presents by hand is told what; the participant's page is not.
-            await changed(study)
+            changed(study)
         return {"type": "where", **found}
 
     async def feel(asked: FeelSurface) -> Answer:
@@ -353,7 +353,7 @@ def add_study(lab: Lab, devices: StudyDevices | None = None) -> StudyThread:
         )
         found = await thread.do(Studies.respond, asked.sitting, asked.token, response)
         devices.answered(asked.sitting, asked.token)
-        await changed(found.pop("study"))
+        changed(found.pop("study"))
         return {"type": "acknowledged", **found}
 
     add = lab.experimenter.add
