@@ -27,7 +27,7 @@ from squeezefilm.lab.door import MOST_OPEN, Connection, Door
 from squeezefilm.lab.guard import CONNECTION, Guard, Places
 from squeezefilm.lab.keys import Keys
 from squeezefilm.lab.pages import OpenPage
-from squeezefilm.lab.wire import LARGEST_MESSAGE, Dispatcher, as_text
+from squeezefilm.lab.wire import LARGEST_FROM_PARTICIPANT, LARGEST_MESSAGE, Dispatcher, as_text
 from squeezefilm.lab.worker import SupersededError, Workers
 
 if TYPE_CHECKING:
@@ -66,7 +66,7 @@ class Lab:
     keys: Keys
     places: Places
     experimenter: Dispatcher = field(default_factory=Dispatcher)
-    participant: Dispatcher = field(default_factory=Dispatcher)
+    participant: Dispatcher = field(default_factory=lambda: Dispatcher(LARGEST_FROM_PARTICIPANT))
     workers: Workers = field(default_factory=Workers)
     pages: dict[WebSocket, OpenPage] = field(default_factory=dict)
     closing: list[Callable[[], None]] = field(default_factory=list)
