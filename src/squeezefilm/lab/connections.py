@@ -98,6 +98,11 @@ class PageProtocol(WebSocketsSansIOProtocol):
         self.pong_timer = None
         self.refuse(1011, "the page did not answer")
 
+    def shutdown(self) -> None:
+        """Close as the server ends; for no page longer than a moment."""
+        super().shutdown()
+        self.loop.call_later(_LAST_WORD, self.transport.abort)
+
     def refuse(self, code: int, reason: str) -> None:
         """Close with a reason; what the page has not read two seconds later is dropped."""
         if self.transport.is_closing():

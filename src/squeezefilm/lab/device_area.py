@@ -11,13 +11,13 @@ from pydantic import Field
 from squeezefilm import presets
 from squeezefilm.errors import InputError
 from squeezefilm.lab import device_process
-from squeezefilm.lab.description import display_of
+from squeezefilm.lab.description import name_of
 from squeezefilm.lab.device_process import DeviceSession, DeviceWork
+from squeezefilm.lab.feel import title_of
 from squeezefilm.lab.files import existing
 from squeezefilm.lab.wire import LONGEST_TEXT, Answer, Request
 from squeezefilm.quantities import Unit, parse_quantity
 from squeezefilm.results import write_whole
-from squeezefilm.texture_file import texture_from_text
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -75,8 +75,8 @@ def add_device(lab: Lab) -> DeviceSession:
         voltage = None if asked.voltage is None else parse_quantity(asked.voltage, Unit("V"))
         name = datetime.now(UTC).strftime("%Y%m%dT%H%M%S")
         work = DeviceWork(
-            display=str(_display(lab, asked.display)),
-            texture=str(_texture(lab, asked)),
+            display=str(await _display(lab, asked.display)),
+            texture=str(await _texture(lab, asked)),
             drive=_drive(asked.drive),
             mode=asked.mode,
             stroke=asked.stroke,
@@ -92,7 +92,7 @@ def add_device(lab: Lab) -> DeviceSession:
 
     async def check(asked: OnDrive) -> Answer:
         loop[:] = [asyncio.get_running_loop()]
-        display = _display(lab, asked.display)
+        display = await _display(lab, asked.display)
         session.start(device_process.check, _drive(asked.drive), str(display))
         return {"type": "checking"}
 
@@ -114,16 +114,15 @@ def _drive(text: str) -> str:
     return text
 
 
-def _display(lab: Lab, text: str) -> Path:
-    name = display_of(text).name
+async def _display(lab: Lab, text: str) -> Path:
+    await lab.workers.quick.do(None, name_of, text)
     file = lab.folder / "sessions" / ".display.toml"
     file.parent.mkdir(exist_ok=True)
     write_whole(file, text)
-    assert name
     return file
 
 
-def _texture(lab: Lab, asked: PlayDevice) -> Path:
+async def _texture(lab: Lab, asked: PlayDevice) -> Path:
     if (asked.preset is None) == (asked.texture is None):
         raise InputError("say which texture: a preset or a text, one of them")
     if asked.preset is not None:
@@ -133,6 +132,6 @@ def _texture(lab: Lab, asked: PlayDevice) -> Path:
     folder = lab.folder / "textures"
     folder.mkdir(exist_ok=True)
     file = folder / ".played.toml"
-    texture_from_text(str(asked.texture), file=file)
+    await lab.workers.quick.do(None, title_of, str(asked.texture), file)
     write_whole(file, str(asked.texture))
     return file

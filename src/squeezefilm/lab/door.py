@@ -85,7 +85,7 @@ class Door:
         self._tls = tls
         # In the order they came in.
         self._open: dict[Connection, None] = {}
-        self._beginning: set[asyncio.Task[None]] = set()
+        self._beginning: dict[asyncio.Task[None], Connection] = {}
         self._spoke = -_QUIET
         listener.setblocking(False)
         self._keeper = asyncio.get_running_loop().create_task(self._keep())
@@ -119,8 +119,8 @@ class Door:
             connection = Connection(accepted, address, self._forget)
             self._open[connection] = None
             task = loop.create_task(self._begin(connection))
-            self._beginning.add(task)
-            task.add_done_callback(self._beginning.discard)
+            self._beginning[task] = connection
+            task.add_done_callback(self._begun)
 
     async def _begin(self, connection: Connection) -> None:
         # A handshake that fails or takes too long, or a connection that is gone already.
@@ -131,6 +131,12 @@ class Door:
                 ssl=self._tls,
                 ssl_handshake_timeout=None if self._tls is None else SLOWEST_HANDSHAKE,
             )
+
+    def _begun(self, task: asyncio.Task[None]) -> None:
+        connection = self._beginning.pop(task)
+        if task.cancelled():
+            # It may not even have begun to begin.
+            connection.close()
 
     def _has_room(self, address: str) -> bool:
         """Whether a newcomer may stay; a stranger may have had to go for it."""

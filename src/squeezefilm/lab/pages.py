@@ -29,16 +29,12 @@ class OpenPage:
         self._unread: asyncio.Queue[str] = asyncio.Queue(MOST_UNREAD)
         self._writer = asyncio.get_running_loop().create_task(self._write())
 
-    def tell(self, text: str) -> None:
-        """Send a message that the page did not ask for; a page with too many of them is dropped."""
+    def say(self, text: str) -> None:
+        """Send a message, in its turn; a page with too many that it did not read is dropped."""
         try:
             self._unread.put_nowait(text)
         except asyncio.QueueFull:
             self.drop()
-
-    async def answer(self, text: str) -> None:
-        """Send an answer; waits while the queue is full."""
-        await self._unread.put(text)
 
     def drop(self) -> None:
         """Close the page with the reason, whether it reads or not."""

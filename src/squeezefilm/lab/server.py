@@ -8,7 +8,6 @@ import errno
 import os
 import socket
 from collections.abc import AsyncIterator, Callable, Iterator
-from contextvars import ContextVar
 from dataclasses import dataclass, field
 from pathlib import Path, PurePath
 from typing import TYPE_CHECKING, Any
@@ -28,7 +27,7 @@ from squeezefilm.lab.guard import CONNECTION, Guard, Places
 from squeezefilm.lab.keys import Keys
 from squeezefilm.lab.pages import OpenPage
 from squeezefilm.lab.wire import LARGEST_FROM_PARTICIPANT, LARGEST_MESSAGE, Dispatcher, as_text
-from squeezefilm.lab.worker import SupersededError, Workers
+from squeezefilm.lab.worker import PAGE, SupersededError, Workers
 
 if TYPE_CHECKING:
     from starlette.types import ASGIApp
@@ -47,11 +46,7 @@ _KINDS = {
     ".txt": "text/plain; charset=utf-8",
 }
 MOST_WAITING = 64
-"""Messages of one page being answered at once; more is a page that does not wait."""
-
-
-PAGE: ContextVar[WebSocket] = ContextVar("page")
-"""The page whose message is being answered."""
+"""Messages of one page being answered at once; more is no page of ours."""
 
 
 @dataclass(slots=True)
@@ -78,7 +73,7 @@ class Lab:
         text = as_text(message)
         for page in list(self.pages.values()):
             if page.is_participant == participants:
-                page.tell(text)
+                page.say(text)
 
     def close(self) -> None:
         """Stop what runs: devices, workers."""
@@ -164,6 +159,8 @@ async def converse(lab: Lab, dispatcher: Dispatcher, page: WebSocket) -> None:
     await page.accept()
     line = lab.pages[page] = OpenPage(page)
     PAGE.set(page)
+    if not line.is_participant:
+        lab.workers.quick.begin()
     waiting: set[asyncio.Task[None]] = set()
 
     async def one(text: str) -> None:
@@ -171,7 +168,7 @@ async def converse(lab: Lab, dispatcher: Dispatcher, page: WebSocket) -> None:
             answer = await dispatcher.answer(text)
         except SupersededError as error:
             answer = {"id": error.number, "type": "error", "message": "newer work took its place"}
-        await line.answer(as_text(answer))
+        line.say(as_text(answer))
 
     try:
         while (message := await page.receive())["type"] == "websocket.receive":
@@ -180,7 +177,8 @@ async def converse(lab: Lab, dispatcher: Dispatcher, page: WebSocket) -> None:
                 line.refuse(1003, "a message that is not text, which no page of the lab sends")
                 continue
             if len(waiting) >= MOST_WAITING:
-                await asyncio.wait(waiting, return_when=asyncio.FIRST_COMPLETED)
+                line.refuse(1008, f"more than {MOST_WAITING} requests at once, which no page makes")
+                continue
             task = asyncio.create_task(one(text))
             waiting.add(task)
             task.add_done_callback(waiting.discard)
@@ -191,6 +189,7 @@ async def converse(lab: Lab, dispatcher: Dispatcher, page: WebSocket) -> None:
             told(page)
         for task in waiting:
             task.cancel()
+        lab.workers.cancel(page)
 
 
 def listening_socket(port: int, host: str = "127.0.0.1") -> socket.socket:

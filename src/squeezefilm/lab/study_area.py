@@ -11,12 +11,12 @@ from pydantic import Field
 
 from squeezefilm.errors import DeviceError, InputError
 from squeezefilm.lab.keys import CODE_LIFE
-from squeezefilm.lab.server import PAGE
 from squeezefilm.lab.sittings import Sitting
 from squeezefilm.lab.studies import Studies
 from squeezefilm.lab.study_devices import Measured, StudyDevices, require_device
 from squeezefilm.lab.study_work import analysis_of, rehearsed, report_of
 from squeezefilm.lab.wire import Answer, Request
+from squeezefilm.lab.worker import PAGE
 from squeezefilm.study.device import (
     DeviceIdentity,
     DeviceVerification,
@@ -173,7 +173,7 @@ def add_study(lab: Lab, devices: StudyDevices | None = None) -> StudyThread:
 
     async def exposed(display: str) -> Exposure:
         if display not in exposures:
-            exposures[display] = await lab.workers.slow.do("exposure", _exposure, display)
+            exposures[display] = await lab.workers.slow.do(None, _exposure, display)
         return exposures[display]
 
     def changed(study: str) -> None:
@@ -256,7 +256,7 @@ def add_study(lab: Lab, devices: StudyDevices | None = None) -> StudyThread:
 
     async def rehearse(asked: RehearseStudy) -> Answer:
         path = await thread.do(Studies.path, asked.study)
-        found = await lab.workers.slow.do("rehearsal", rehearsed, path, asked.participants)
+        found = await lab.workers.slow.do(None, rehearsed, path, asked.participants)
         changed(asked.study)
         return {"type": "rehearsed", **found}
 
