@@ -14,16 +14,15 @@ from pydantic import BaseModel, ValidationError
 
 from squeezefilm.config.lines import locate
 from squeezefilm.config.provenance import Spread, distribution_of, split_provenance
+from squeezefilm.config.scan import DEEPEST, LONGEST_TEXT, require_quick_toml
 from squeezefilm.config.schema import family, model_of, reads_from_file
 from squeezefilm.distributions import Distribution
 from squeezefilm.errors import ConfigError, InputError
 from squeezefilm.quantities import did_you_mean, unit_of
 
 T = TypeVar("T")
-LONGEST_FILE = 4_000_000
-"""Bytes a file may have; a description of a display has a few thousand."""
-DEEPEST = 100
-"""Tables and lists within each other: far past any description, and safe to build."""
+MOST_ERRORS = 20
+"""Errors of one file that are told; each is looked for in the text."""
 
 
 def load(cls: type[T], path: str | Path) -> T:
@@ -39,8 +38,8 @@ def load(cls: type[T], path: str | Path) -> T:
     if not path.exists():
         raise ConfigError("does not exist; give the path of a TOML file", file=path)
     try:
-        if path.stat().st_size > LONGEST_FILE:
-            raise ConfigError(f"is larger than {LONGEST_FILE} bytes, no configuration", file=path)
+        if path.stat().st_size > LONGEST_TEXT:
+            raise ConfigError(f"is larger than {LONGEST_TEXT} bytes, no configuration", file=path)
         text = path.read_text(encoding="utf-8")
     except UnicodeDecodeError as error:
         raise ConfigError("is not UTF-8 text; give a TOML file", file=path) from error
@@ -51,6 +50,7 @@ def load(cls: type[T], path: str | Path) -> T:
 
 def load_text(cls: type[T], text: str, *, file: str | Path | None = None) -> T:
     """The dataclass `cls` read from TOML text; `file` is what messages name. See `load`."""
+    require_quick_toml(text, file)
     try:
         raw = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
@@ -171,18 +171,18 @@ def _all_errors(
     cls: type[Any], error: ValidationError, text: str, file: str | Path | None
 ) -> ConfigError:
     found: list[ConfigError] = []
-    for item in error.errors():
+    count = error.error_count()
+    for item in error.errors()[:MOST_ERRORS]:
         path, owner = _path_and_owner(cls, item["loc"])
         message = _message(item, path, owner)
         found.append(
             ConfigError(message, file=file, line=locate(text, path), key=_dotted(path) or None)
         )
-    if len(found) == 1:
+    if count == 1:
         return found[0]
     lines = "\n".join(f"  {one.key}: {one.message}" + _at(one.line) for one in found)
-    return ConfigError(
-        f"{len(found)} things are not right:\n{lines}", file=file, line=None, key=None
-    )
+    more = f"\n  and {count - len(found)} more" if count > len(found) else ""
+    return ConfigError(f"{count} things are not right:\n{lines}{more}", file=file)
 
 
 def _at(line: int | None) -> str:

@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from squeezefilm.config.scan import require_quick_json
 from squeezefilm.errors import InputError
 from squeezefilm.quantities import (
     DimensionlessArray,
@@ -83,11 +84,13 @@ def read_hjif(path: str | Path) -> HjifImport:
     try:
         if Path(path).stat().st_size > _MOST_BYTES:
             raise InputError(f"{path} is larger than {_MOST_BYTES} bytes; cut it")
-        document = json.loads(Path(path).read_text(encoding="utf-8"))
+        text = Path(path).read_text(encoding="utf-8")
+        require_quick_json(text)
+        document = json.loads(text)
     except OSError as error:
         raise InputError(f"{path} cannot be read: {error.strerror}") from error
     except (ValueError, RecursionError) as error:
-        raise InputError(f"{path} is no JSON, so no HJIF: {error}") from error
+        raise InputError(f"{path} is no JSON that can be read, so no HJIF: {error}") from error
     try:
         return texture_of_hjif(document)
     except InputError as error:

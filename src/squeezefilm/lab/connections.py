@@ -1,7 +1,8 @@
 """Connections that do not hang: a request not whole within ten seconds is cut off.
 
 uvicorn has a limit for idle connections after an answer, none for a request that never ends. A
-websocket leaves this protocol when it opens, so its silence is not limited here.
+websocket leaves this protocol when it opens, so its silence is not limited here; it is closed with
+a reason that the page can show, also where the page reads nothing any more.
 """
 
 from __future__ import annotations
@@ -11,10 +12,16 @@ from typing import Any
 
 import h11
 from uvicorn.protocols.http.h11_impl import H11Protocol
+from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
+from websockets.http11 import Request
 
 from squeezefilm.quantities import Second
 
 SLOWEST_REQUEST: Second = 10.0
+CLOSE = "squeezefilm.close"
+"""The name in a websocket's scope, below its extensions, of its `PageProtocol.refuse`."""
+_LAST_WORD: Second = 2.0
+_NO_TEXT = "a message that is not UTF-8 text"
 
 
 class TimedProtocol(H11Protocol):
@@ -64,3 +71,45 @@ class TimedProtocol(H11Protocol):
         self._deadline = None
         if self.transport is not None and not self.transport.is_closing():
             self.transport.abort()
+
+
+class PageProtocol(WebSocketsSansIOProtocol):
+    """uvicorn's websocket, which closes with a reason and waits for no page that does not read."""
+
+    def handle_connect(self, event: Request) -> None:
+        """Begin; whoever answers may close it at once by what the scope holds."""
+        super().handle_connect(event)
+        if self.response.status_code == 101:
+            extensions: dict[str, Any] = self.scope["extensions"]
+            extensions[CLOSE] = self.refuse
+
+    def send_receive_event_to_app(self) -> None:
+        """Hand a whole message on; one that is no text is refused, without a traceback."""
+        if self.curr_msg_data_type == "text":
+            try:
+                b"".join(self.frames).decode()
+            except UnicodeDecodeError:
+                self.refuse(1007, _NO_TEXT)
+                return
+        super().send_receive_event_to_app()
+
+    def keepalive_timeout(self) -> None:
+        """End a page that answered no ping."""
+        self.pong_timer = None
+        self.refuse(1011, "the page did not answer")
+
+    def shutdown(self) -> None:
+        """Close as the server ends; for no page longer than a moment."""
+        super().shutdown()
+        self.loop.call_later(_LAST_WORD, self.transport.abort)
+
+    def refuse(self, code: int, reason: str) -> None:
+        """Close with a reason; what the page has not read two seconds later is dropped."""
+        if self.transport.is_closing():
+            return
+        if not self.close_sent:
+            self.queue.put_nowait({"type": "websocket.disconnect", "code": code, "reason": reason})
+            self.conn.send_close(code, reason)
+            self.transport.write(b"".join(self.conn.data_to_send()))
+            self.close_sent = True
+        self.loop.call_later(_LAST_WORD, self.transport.abort)

@@ -33,6 +33,11 @@ def display_of(text: str) -> Display:
     return config.load_text(Display, text)
 
 
+def name_of(text: str) -> str:
+    """The name of the display that a TOML text describes. Raises as `display_of`."""
+    return display_of(text).name
+
+
 def form(text: str) -> list[dict[str, Any]]:
     """Every value of a display's text as the page shows it, in the text's order of tables.
 

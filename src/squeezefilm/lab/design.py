@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import dataclasses
 import warnings
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from squeezefilm.analysis.uncertainty import friction_band
 from squeezefilm.errors import InputError, SqueezefilmError
-from squeezefilm.lab.description import display_of
+from squeezefilm.lab.description import display_of, edited, form
 from squeezefilm.plate.layout import Actuator, AnnularStator, DiscPlate, RectangularPlate
 from squeezefilm.plate.solid_mode import response_frequencies
 from squeezefilm.prediction import Prediction, predict
@@ -25,6 +26,56 @@ QUALITIES = ("screening", "solved")
 _POINTS = 49
 _LEAST_SPAN = 2e-6
 _GRID = (84, 42)
+
+
+def opened(text: str) -> dict[str, Any]:
+    """A display's text with all that its form shows. Raises as `description.display_of`."""
+    display = display_of(text)
+    return {
+        "text": text,
+        "name": display.name,
+        "title": display.title,
+        "form": form(text),
+        "outline": outline(text),
+    }
+
+
+def changed(text: str, path: str, value: str) -> dict[str, Any]:
+    """As `opened`, with one value written anew. Raises as `description.edited`."""
+    return opened(edited(text, path, value))
+
+
+@dataclass(frozen=True, slots=True)
+class WorkingPoint:
+    """What is asked of a display's text; `path` and `value` are an edit made on the way.
+
+    `voltage` and `force` are quantity texts, None for the display's own.
+    """
+
+    text: str
+    voltage: str | None = None
+    surface: str | None = None
+    force: str | None = None
+    path: str | None = None
+    value: str | None = None
+
+    def edited(self) -> str:
+        """The text with the edit. Raises as `description.edited`."""
+        if self.path is None or self.value is None:
+            return self.text
+        return edited(self.text, self.path, self.value)
+
+
+def designed(point: WorkingPoint, quality: str) -> dict[str, Any]:
+    """As `design`, with the text. Raises as `design` and `description.edited`."""
+    text = point.edited()
+    found = design(text, quality, point.voltage, point.surface, point.force)
+    return {"text": text, **found}
+
+
+def banded(point: WorkingPoint, quality: str) -> dict[str, Any]:
+    """As `band`. Raises as `design` and `description.edited`."""
+    return band(point.edited(), quality, point.voltage, point.surface, point.force)
 
 
 def design(

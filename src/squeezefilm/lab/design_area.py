@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Literal
 
 from pydantic import Field
@@ -12,6 +13,7 @@ from squeezefilm.lab import description, design
 from squeezefilm.lab.field_limits import allowed
 from squeezefilm.lab.files import existing, fresh
 from squeezefilm.lab.wire import LONGEST_TEXT, Answer, Request
+from squeezefilm.lab.worker import PAGE
 from squeezefilm.results import write_whole
 
 if TYPE_CHECKING:
@@ -79,29 +81,38 @@ def add_design(lab: Lab) -> None:
             text = existing(lab.folder, asked.file, ".toml").read_text(encoding="utf-8")
         else:
             text = str(asked.text)
-        return _display(text)
+        return await display(design.opened, text)
+
+    async def display(work: Callable[..., Answer], *arguments: str) -> Answer:
+        return {"type": "display", **await lab.workers.quick.do(None, work, *arguments)}
 
     async def edit(asked: EditDisplay) -> Answer:
-        return _display(description.edited(asked.text, asked.path, asked.value))
+        return await display(design.changed, asked.text, asked.path, asked.value)
 
     async def limits(asked: FieldLimits) -> Answer:
         found = await lab.workers.quick.do("limits", allowed, asked.text, asked.path)
         return {"type": "field limits", "path": asked.path, "allowed": found}
 
     async def compute(asked: ComputeDesign) -> Answer:
-        text = asked.text
-        if asked.path is not None and asked.value is not None:
-            text = description.edited(text, asked.path, asked.value)
-        point = asked.voltage, asked.surface, asked.force
-        if asked.quality == "band":
-            found = await lab.workers.slow.do("band", design.band, text, asked.of, *point)
+        point = design.WorkingPoint(
+            asked.text, asked.voltage, asked.surface, asked.force, asked.path, asked.value
+        )
+        quick, slow = lab.workers.quick, lab.workers.slow
+        if asked.quality == "screening":
+            found = await quick.do("screening", design.designed, point, "screening", gives_way=True)
+        elif asked.quality == "solved":
+            found = await slow.do("solved", design.designed, point, "solved", gives_way=True)
+        else:
+            found = await slow.do("band", design.banded, point, asked.of, gives_way=True)
             return {"type": "band", **found}
-        line = lab.workers.quick if asked.quality == "screening" else lab.workers.slow
-        found = await line.do(f"design {asked.quality}", design.design, text, asked.quality, *point)
-        return {"type": "design", "text": text, **found}
+        return {"type": "design", **found}
+
+    async def cancel(_: Request) -> Answer:
+        lab.workers.cancel(PAGE.get(None))
+        return {"type": "cancelled"}
 
     async def save(asked: SaveDisplay) -> Answer:
-        description.display_of(asked.text)
+        await lab.workers.quick.do(None, description.name_of, asked.text)
         file = fresh(lab.folder, asked.name, ".toml", replace=asked.replace)
         write_whole(file, asked.text)
         return {"type": "saved", "file": file.name}
@@ -116,16 +127,5 @@ def add_design(lab: Lab) -> None:
     add("edit display", EditDisplay, edit)
     add("field limits", FieldLimits, limits)
     add("compute design", ComputeDesign, compute)
+    add("cancel design", Request, cancel)
     add("save display", SaveDisplay, save)
-
-
-def _display(text: str) -> Answer:
-    display = description.display_of(text)
-    return {
-        "type": "display",
-        "text": text,
-        "name": display.name,
-        "title": display.title,
-        "form": description.form(text),
-        "outline": design.outline(text),
-    }

@@ -12,13 +12,13 @@ from pydantic import Field
 from squeezefilm import presets
 from squeezefilm.errors import InputError
 from squeezefilm.lab import device_process
-from squeezefilm.lab.description import display_of
+from squeezefilm.lab.description import name_of
 from squeezefilm.lab.device_process import DeviceSession, DeviceWork
+from squeezefilm.lab.feel import title_of
 from squeezefilm.lab.files import existing
 from squeezefilm.lab.wire import LONGEST_TEXT, Answer, Request
 from squeezefilm.quantities import Unit, parse_quantity
 from squeezefilm.results import write_whole
-from squeezefilm.texture_file import texture_from_text
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -56,14 +56,14 @@ def add_device(lab: Lab) -> DeviceSession:
     """Let the lab answer the Device area's messages."""
     loop: list[asyncio.AbstractEventLoop] = []
 
-    async def told(message: dict[str, Any]) -> None:
+    def told(message: dict[str, Any]) -> None:
         if message["type"] == "device ended" and not session.running:
             lab.playing.forget(DEVICE)
-        await lab.tell(message)
+        lab.tell(message)
 
     def tell(message: dict[str, Any]) -> None:
         if loop and not loop[0].is_closed():
-            asyncio.run_coroutine_threadsafe(told(message), loop[0])
+            loop[0].call_soon_threadsafe(told, message)
 
     session = DeviceSession(tell)
     lab.closing.append(session.close)
@@ -89,8 +89,8 @@ def add_device(lab: Lab) -> DeviceSession:
         voltage = None if asked.voltage is None else parse_quantity(asked.voltage, Unit("V"))
         name = datetime.now(UTC).strftime("%Y%m%dT%H%M%S")
         work = DeviceWork(
-            display=str(_display(lab, asked.display)),
-            texture=str(_texture(lab, asked)),
+            display=str(await _display(lab, asked.display)),
+            texture=str(await _texture(lab, asked)),
             drive=_drive(asked.drive),
             mode=asked.mode,
             stroke=asked.stroke,
@@ -105,7 +105,7 @@ def add_device(lab: Lab) -> DeviceSession:
         return {"type": "playing", "folder": f"sessions/{name}"}
 
     async def check(asked: OnDrive) -> Answer:
-        display, drive = _display(lab, asked.display), _drive(asked.drive)
+        display, drive = await _display(lab, asked.display), _drive(asked.drive)
         start(f"the check of {drive}", device_process.check, drive, str(display))
         return {"type": "checking"}
 
@@ -131,16 +131,15 @@ def _drive(text: str) -> str:
     return text
 
 
-def _display(lab: Lab, text: str) -> Path:
-    name = display_of(text).name
+async def _display(lab: Lab, text: str) -> Path:
+    await lab.workers.quick.do(None, name_of, text)
     file = lab.folder / "sessions" / ".display.toml"
     file.parent.mkdir(exist_ok=True)
     write_whole(file, text)
-    assert name
     return file
 
 
-def _texture(lab: Lab, asked: PlayDevice) -> Path:
+async def _texture(lab: Lab, asked: PlayDevice) -> Path:
     if (asked.preset is None) == (asked.texture is None):
         raise InputError("say which texture: a preset or a text, one of them")
     if asked.preset is not None:
@@ -150,6 +149,6 @@ def _texture(lab: Lab, asked: PlayDevice) -> Path:
     folder = lab.folder / "textures"
     folder.mkdir(exist_ok=True)
     file = folder / ".played.toml"
-    texture_from_text(str(asked.texture), file=file)
+    await lab.workers.quick.do(None, title_of, str(asked.texture), file)
     write_whole(file, str(asked.texture))
     return file

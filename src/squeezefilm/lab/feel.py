@@ -17,6 +17,7 @@ import numpy as np
 from squeezefilm.analysis.render_command import lowered, resonance_with_finger, wave_factors
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError
+from squeezefilm.formats.pictures import picture_from
 from squeezefilm.lab.description import display_of
 from squeezefilm.lab.design import predicted
 from squeezefilm.plate.layout import Actuator, DiscPlate, RectangularPlate
@@ -62,6 +63,20 @@ def _ready(
     friction = p.law.table(p.vibration_amplitude)
     inverse = FrictionInverse.from_function(friction, p.vibration_amplitude)
     return _Ready(display, texture, p, friction, lowered(texture, p, inverse))
+
+
+def title_of(text: str, file: Path) -> str:
+    """The title of a texture's text, whose pictures lie beside `file`.
+
+    Raises `ConfigError` as `texture_from_text` does.
+    """
+    return texture_from_text(text, file=file).title
+
+
+def pixels_of(data: bytes, name: str) -> tuple[int, int]:
+    """Rows and columns of a picture's bytes. Raises `InputError` as `picture_from` does."""
+    rows, columns = picture_from(data, name).shape
+    return rows, columns
 
 
 def feel(

@@ -6,20 +6,19 @@ import base64
 import binascii
 import csv
 import io
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Literal
 
 from pydantic import Field
 
 from squeezefilm import presets
 from squeezefilm.errors import InputError
-from squeezefilm.formats.pictures import picture_from
 from squeezefilm.lab import feel
 from squeezefilm.lab.files import existing, fresh
 from squeezefilm.lab.wire import LONGEST_TEXT, Answer, Request
 from squeezefilm.quantities import Unit, parse_quantity
 from squeezefilm.results import write_whole
-from squeezefilm.texture_file import preset_texture, texture_from_text
+from squeezefilm.texture_file import preset_texture
 
 if TYPE_CHECKING:
     from squeezefilm.lab.server import Lab
@@ -74,7 +73,7 @@ class SaveStroke(Request):
 
 def add_feel(lab: Lab) -> None:
     """Let the lab answer the Feel area's messages."""
-    folder = lab.folder / "textures"
+    folder, quick = lab.folder / "textures", lab.workers.quick
 
     async def listing(_: Request) -> Answer:
         kept = [
@@ -94,17 +93,17 @@ def add_feel(lab: Lab) -> None:
             file = existing(folder, str(asked.file), ".toml")
         return {"type": "texture text", "text": file.read_text(encoding="utf-8")}
 
+    async def on_display(work: Callable[..., Answer], asked: OnDisplay) -> Answer:
+        # What takes seconds stays out of a drag's way.
+        line = quick if asked.quality == "screening" else lab.workers.slow
+        texture = asked.texture, asked.preset, asked.quality, folder
+        return await line.do(work.__name__, work, asked.display, *texture, gives_way=True)
+
     async def load(asked: OnDisplay) -> Answer:
-        found = await lab.workers.quick.do(
-            "feel", feel.feel, asked.display, asked.texture, asked.preset, asked.quality, folder
-        )
-        return {"type": "feel", **found}
+        return {"type": "feel", **await on_display(feel.feel, asked)}
 
     async def parity(asked: OnDisplay) -> Answer:
-        found = await lab.workers.quick.do(
-            "parity", feel.parity, asked.display, asked.texture, asked.preset, asked.quality, folder
-        )
-        return {"type": "parity", **found}
+        return {"type": "parity", **await on_display(feel.parity, asked)}
 
     async def add_picture(asked: AddPicture) -> Answer:
         file = fresh(folder, asked.name, ".png")
@@ -112,7 +111,7 @@ def add_feel(lab: Lab) -> None:
             data = base64.b64decode(asked.data, validate=True)
         except binascii.Error as error:
             raise InputError("the picture's data are no base64; drop it again") from error
-        rows, columns = picture_from(data, asked.name).shape
+        rows, columns = await quick.do(None, feel.pixels_of, data, asked.name)
         pixel = parse_quantity(asked.pixel, Unit("m"))
         if not 1e-6 <= pixel <= 0.1:
             raise InputError(f"a pixel of {asked.pixel}: it may have 1 um to 10 cm")
@@ -124,11 +123,11 @@ def add_feel(lab: Lab) -> None:
             f'type = "image_file"\nfile = "{file.name}"\npixel = "{asked.pixel}"\n'
             'outside = "zero"\n'
         )
-        texture_from_text(text, file=folder / "texture.toml")
+        await quick.do(None, feel.title_of, text, folder / "texture.toml")
         return {"type": "texture text", "text": text}
 
     async def save_texture(asked: SaveTexture) -> Answer:
-        texture_from_text(asked.text, file=folder / "texture.toml")
+        await quick.do(None, feel.title_of, asked.text, folder / "texture.toml")
         file = fresh(folder, asked.name, ".toml")
         folder.mkdir(exist_ok=True)
         write_whole(file, asked.text)

@@ -48,6 +48,9 @@ _PARTICIPANT = ("/participant", "/static/", "/pair", "/ws/participant", "/favico
 _PAIRING = ("/pair", "/static/pair.js", "/static/lab.css", "/static/icon.svg")
 _SAFE = {"GET", "HEAD"}
 
+CONNECTION = "connection"
+"""The name in a scope's state of the `door.Connection` by which a request came."""
+
 
 @dataclass(frozen=True, slots=True)
 class Places:
@@ -134,6 +137,9 @@ class Guard:
             await self._answer(PlainTextResponse(text, 403), scope, receive, send)
             return
         scope["lab_session"] = session
+        connection = scope.get("state", {}).get(CONNECTION)
+        if connection is not None and session is not None:
+            connection.is_stranger = False
         try:
             await self.app(scope, _bounded(receive), self._with_headers(send))
         except _TooLargeError:

@@ -9,14 +9,13 @@ fingerprint that the tablet's browser shows.
 from __future__ import annotations
 
 import datetime
-import errno
 import hashlib
 import ipaddress
 import os
-import socket
 import ssl
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from starlette.applications import Starlette
 from starlette.requests import Request
@@ -24,19 +23,23 @@ from starlette.responses import JSONResponse, PlainTextResponse, Response
 from starlette.routing import Route, WebSocketRoute
 
 from squeezefilm.errors import InputError
+from squeezefilm.lab.door import MOST_OF_ADDRESS, MOST_OPEN
 from squeezefilm.lab.guard import Guard, Places
 from squeezefilm.lab.server import (
     STATIC,
     Lab,
     UnheardServer,
     converse,
+    listening_socket,
     page_file,
     server_of,
     static_file,
 )
 
+if TYPE_CHECKING:
+    import socket
+
 PORT = 8632
-_NOT_OURS = (errno.EADDRNOTAVAIL, errno.EACCES)
 _LIFE = datetime.timedelta(days=30)
 _LONGEST_CODE = 32
 
@@ -68,22 +71,12 @@ def lan_listener(address: str, port: int = PORT) -> socket.socket:
             f"--lan {found} is not allowed: only one address of this computer in a private network "
             "(10.x, 172.16–31.x, 192.168.x, 169.254.x) is"
         )
-    for candidate in range(port, port + 20):
-        one = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
-        one.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        try:
-            one.bind((str(found), candidate))
-            one.listen()
-        except OSError as error:
-            one.close()
-            if error.errno in _NOT_OURS:
-                raise InputError(
-                    f"--lan {found} is no address of this computer; look it up in its network "
-                    "settings"
-                ) from error
-            continue
-        return one
-    raise InputError(f"ports {port} to {port + 19} of {found} are all in use; stop what uses them")
+    try:
+        return listening_socket(port, str(found))
+    except OSError as error:
+        raise InputError(
+            f"--lan {found} is no address of this computer; look it up in its network settings"
+        ) from error
 
 
 def certificate(address: str, file: Path) -> str:
@@ -188,8 +181,13 @@ def lan_application(lab: Lab, places: Places) -> Guard:
     return guard
 
 
-def lan_server(lab: Lab, listener: socket.socket, file: Path) -> UnheardServer:
-    """The server for tablets; it says in `lab.lan` where it is. Raises as `certificate`."""
+def lan_server(
+    lab: Lab, listener: socket.socket, file: Path, most: int = MOST_OPEN
+) -> UnheardServer:
+    """The server for tablets, `most` connections at once; it says in `lab.lan` where it is.
+
+    Raises as `certificate`.
+    """
     address, port = listener.getsockname()[:2]
     fingerprint = certificate(address, file)
     host = f"{address}:{port}"
@@ -200,6 +198,8 @@ def lan_server(lab: Lab, listener: socket.socket, file: Path) -> UnheardServer:
     return server_of(
         lab,
         lan_application(lab, places),
+        most=most,
+        most_of_address=MOST_OF_ADDRESS,
         ssl_certfile=str(file),
         ssl_keyfile=str(file),
         lifespan="off",

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import asyncio
-from collections.abc import Callable, Coroutine
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -24,10 +23,9 @@ class Playing:
     are called on the server's loop.
     """
 
-    def __init__(self, tell: Callable[[Message], Coroutine[Any, Any, None]]) -> None:
+    def __init__(self, tell: Callable[[Message], None]) -> None:
         self._tell = tell
         self._held: dict[str, _Held] = {}
-        self._telling: set[asyncio.Task[None]] = set()
 
     def note(self, key: str, text: str, stop: Callable[[], None], *, plays: bool) -> None:
         """`text` names what plays, or where `plays` is false may begin to at any moment.
@@ -57,6 +55,4 @@ class Playing:
         return {"type": "playing", "now": now}
 
     def _changed(self) -> None:
-        task = asyncio.get_running_loop().create_task(self._tell(self.message()))
-        self._telling.add(task)
-        task.add_done_callback(self._telling.discard)
+        self._tell(self.message())

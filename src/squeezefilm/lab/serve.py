@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from squeezefilm.errors import InputError
 from squeezefilm.lab.design_area import add_design
 from squeezefilm.lab.device_area import add_device
+from squeezefilm.lab.door import room_for
 from squeezefilm.lab.feel_area import add_feel
 from squeezefilm.lab.guard import Places
 from squeezefilm.lab.keys import Keys
@@ -72,13 +73,14 @@ def _serve(
     add_device(lab)
     link = f"http://127.0.0.1:{found}/?token={keys.new_link()}"
     secret = folder / f".lab-{found}.pem"
-    servers = [(server_of(lab), listener)]
+    most = room_for(1 if lan is None else 2)
+    servers = [(server_of(lab, most=most), listener)]
     if lan is not None:
         from squeezefilm.lab.lan import lan_listener, lan_server
 
         # A mistake here leaves the keys of a lab that was killed as they are.
         beside = opened.enter_context(lan_listener(lan))
-        servers.append((lan_server(lab, beside, secret), beside))
+        servers.append((lan_server(lab, beside, secret, most), beside))
     # From here on an end, however early, leaves no key behind.
     try:
         with _ended_by_signals(servers[0][0]):

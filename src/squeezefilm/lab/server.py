@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import errno
+import os
 import socket
 from collections.abc import AsyncIterator, Callable, Iterator
-from contextvars import ContextVar
 from dataclasses import dataclass, field
-from pathlib import Path
+from pathlib import Path, PurePath
 from typing import TYPE_CHECKING, Any
 
 import uvicorn
@@ -16,16 +17,18 @@ from starlette.applications import Starlette
 from starlette.requests import Request
 from starlette.responses import FileResponse, PlainTextResponse, Response
 from starlette.routing import Route, WebSocketRoute
-from starlette.websockets import WebSocket, WebSocketDisconnect
+from starlette.websockets import WebSocket
 
 from squeezefilm import render
 from squeezefilm.errors import InputError
-from squeezefilm.lab.connections import TimedProtocol
-from squeezefilm.lab.guard import Guard, Places
+from squeezefilm.lab.connections import PageProtocol, TimedProtocol
+from squeezefilm.lab.door import MOST_OPEN, Connection, Door
+from squeezefilm.lab.guard import CONNECTION, Guard, Places
 from squeezefilm.lab.keys import Keys
+from squeezefilm.lab.pages import OpenPage
 from squeezefilm.lab.playing import Playing
-from squeezefilm.lab.wire import LARGEST_MESSAGE, Dispatcher, as_text
-from squeezefilm.lab.worker import SupersededError, Workers
+from squeezefilm.lab.wire import LARGEST_FROM_PARTICIPANT, LARGEST_MESSAGE, Dispatcher, as_text
+from squeezefilm.lab.worker import PAGE, SupersededError, Workers
 
 if TYPE_CHECKING:
     from starlette.types import ASGIApp
@@ -44,11 +47,7 @@ _KINDS = {
     ".txt": "text/plain; charset=utf-8",
 }
 MOST_WAITING = 64
-"""Messages of one page being answered at once; more is a page that does not wait."""
-
-
-PAGE: ContextVar[WebSocket] = ContextVar("page")
-"""The page whose message is being answered."""
+"""Messages of one page being answered at once; more is no page of ours."""
 
 
 @dataclass(slots=True)
@@ -63,9 +62,9 @@ class Lab:
     keys: Keys
     places: Places
     experimenter: Dispatcher = field(default_factory=Dispatcher)
-    participant: Dispatcher = field(default_factory=Dispatcher)
+    participant: Dispatcher = field(default_factory=lambda: Dispatcher(LARGEST_FROM_PARTICIPANT))
     workers: Workers = field(default_factory=Workers)
-    pages: set[WebSocket] = field(default_factory=set)
+    pages: dict[WebSocket, OpenPage] = field(default_factory=dict)
     closing: list[Callable[[], None]] = field(default_factory=list)
     left: list[Callable[[WebSocket], None]] = field(default_factory=list)
     lan: LanPlace | None = None
@@ -74,13 +73,12 @@ class Lab:
     def __post_init__(self) -> None:
         self.playing = Playing(self.tell)
 
-    async def tell(self, message: dict[str, Any], *, participants: bool = False) -> None:
-        """Send a message that nobody asked for to every open page of a kind."""
+    def tell(self, message: dict[str, Any], *, participants: bool = False) -> None:
+        """Send a message that nobody asked for to every open page of a kind; waits for none."""
         text = as_text(message)
-        for page in list(self.pages):
-            if (page.url.path == "/ws/participant") == participants:
-                with contextlib.suppress(RuntimeError, WebSocketDisconnect):
-                    await page.send_text(text)
+        for page in list(self.pages.values()):
+            if page.is_participant == participants:
+                page.say(text)
 
     def close(self) -> None:
         """Stop what runs: devices, workers."""
@@ -141,14 +139,17 @@ def static_file(folder: Path, name: str) -> Response:
         real = wanted.resolve(strict=True)
     except (OSError, ValueError, RuntimeError):
         return PlainTextResponse("There is no such file.", 404)
-    # A name with a slash at its end, or one that a link leads elsewhere, is not that file.
-    if (
-        str(real) != f"{folder.resolve()}/{name}"
-        or not real.is_relative_to(folder.resolve())
-        or not real.is_file()
-    ):
+    if not is_named(real, folder.resolve(), name) or not real.is_file():
         return PlainTextResponse("There is no such file.", 404)
     return _file(real)
+
+
+def is_named(real: PurePath, folder: PurePath, name: str) -> bool:
+    """Whether a resolved path is the one below a resolved folder that an address names.
+
+    A name with a slash at its end, with a backslash, or one that a link leads elsewhere is not.
+    """
+    return real.is_relative_to(folder) and real.relative_to(folder).as_posix() == name
 
 
 def _file(path: Path) -> Response:
@@ -161,8 +162,10 @@ def _file(path: Path) -> Response:
 async def converse(lab: Lab, dispatcher: Dispatcher, page: WebSocket) -> None:
     """Answer one page's messages, each as it is ready, until the page goes."""
     await page.accept()
-    lab.pages.add(page)
+    line = lab.pages[page] = OpenPage(page)
     PAGE.set(page)
+    if not line.is_participant:
+        lab.workers.quick.begin()
     waiting: set[asyncio.Task[None]] = set()
 
     async def one(text: str) -> None:
@@ -170,26 +173,28 @@ async def converse(lab: Lab, dispatcher: Dispatcher, page: WebSocket) -> None:
             answer = await dispatcher.answer(text)
         except SupersededError as error:
             answer = {"id": error.number, "type": "error", "message": "newer work took its place"}
-        with contextlib.suppress(RuntimeError, WebSocketDisconnect):
-            await page.send_text(as_text(answer))
+        line.say(as_text(answer))
 
     try:
-        while True:
-            text = await page.receive_text()
+        while (message := await page.receive())["type"] == "websocket.receive":
+            text = message.get("text")
+            if text is None:
+                line.refuse(1003, "a message that is not text, which no page of the lab sends")
+                continue
             if len(waiting) >= MOST_WAITING:
-                await asyncio.wait(waiting, return_when=asyncio.FIRST_COMPLETED)
+                line.refuse(1008, f"more than {MOST_WAITING} requests at once, which no page makes")
+                continue
             task = asyncio.create_task(one(text))
             waiting.add(task)
             task.add_done_callback(waiting.discard)
-    except (WebSocketDisconnect, KeyError):
-        # KeyError: a binary message, which no page of ours sends.
-        pass
     finally:
-        lab.pages.discard(page)
+        del lab.pages[page]
+        line.close()
         for told in lab.left:
             told(page)
         for task in waiting:
             task.cancel()
+        lab.workers.cancel(page)
 
 
 def listening_socket(port: int, host: str = "127.0.0.1") -> socket.socket:
@@ -197,42 +202,84 @@ def listening_socket(port: int, host: str = "127.0.0.1") -> socket.socket:
 
     Raises:
         InputError: no port within twenty of the wanted one is free.
+        OSError: `host` is no address of this computer.
     """
     for candidate in range(port, port + 20):
         one = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
-        one.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        if os.name == "posix":
+            # Elsewhere this would let two labs have one port.
+            one.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
             one.bind((host, candidate))
             # A browser that is faster than the server's start waits here and is not refused.
             one.listen()
-        except OSError:
+        except OSError as error:
             one.close()
+            if error.errno == errno.EADDRNOTAVAIL:
+                raise
             continue
         return one
     raise InputError(
-        f"ports {port} to {port + 19} are all in use; say another with --port, or stop what uses "
-        "them"
+        f"ports {port} to {port + 19} of {host} are all in use; say another with --port, or stop "
+        "what uses them"
     )
 
 
 class UnheardServer(uvicorn.Server):
-    """A server that leaves signals to who runs it: several run side by side in one process."""
+    """A server that leaves signals to who runs it: several run side by side in one process.
+
+    `most` connections at once are let in at each of its listeners, `most_of_address` from one
+    address.
+    """
+
+    def __init__(self, config: uvicorn.Config, most: int, most_of_address: int) -> None:
+        super().__init__(config)
+        self.doors: list[Door] = []
+        self._most, self._most_of_address = most, most_of_address
 
     @contextlib.contextmanager
     def capture_signals(self) -> Iterator[None]:
         """Capture none."""
         yield
 
+    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        """Begin, and let in at doors of our own what comes to the listeners."""
+        await super().startup([])
+        for listener in sockets or []:
+            door = Door(
+                listener, self._serving, most=self._most,
+                most_of_address=self._most_of_address, tls=self.config.ssl,
+            )  # fmt: skip
+            self.doors.append(door)
 
-def server_of(lab: Lab, app: ASGIApp | None = None, **extra: Any) -> UnheardServer:
+    async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
+        """Let nobody in any more, and end."""
+        for door in self.doors:
+            door.close()
+        await super().shutdown(sockets)
+
+    def _serving(self, connection: Connection) -> asyncio.Protocol:
+        state = {**self.lifespan.state, CONNECTION: connection}
+        return TimedProtocol(config=self.config, server_state=self.server_state, app_state=state)
+
+
+def server_of(
+    lab: Lab,
+    app: ASGIApp | None = None,
+    *,
+    most: int = MOST_OPEN,
+    most_of_address: int = MOST_OPEN,
+    **extra: Any,
+) -> UnheardServer:
     """A uvicorn server for a lab, with its limits; `extra` goes to uvicorn's configuration.
 
-    `app` is served instead of the lab's own application.
+    `app` is served instead of the lab's own application. For the others see `UnheardServer`.
     """
     config = uvicorn.Config(
         app or application(lab),
         http=TimedProtocol,
-        ws="websockets-sansio",
+        ws=PageProtocol,
+        proxy_headers=False,
         ws_max_size=LARGEST_MESSAGE,
         ws_ping_interval=20.0,
         ws_ping_timeout=20.0,
@@ -245,4 +292,4 @@ def server_of(lab: Lab, app: ASGIApp | None = None, **extra: Any) -> UnheardServ
         server_header=False,
         **extra,
     )
-    return UnheardServer(config)
+    return UnheardServer(config, most, most_of_address)

@@ -11,11 +11,11 @@ from pydantic import Field
 
 from squeezefilm.errors import DeviceError, InputError
 from squeezefilm.lab.keys import CODE_LIFE
-from squeezefilm.lab.server import PAGE
 from squeezefilm.lab.studies import Studies
 from squeezefilm.lab.study_devices import Measured, StudyDevices, require_device
 from squeezefilm.lab.study_work import analysis_of, rehearsed, report_of
 from squeezefilm.lab.wire import Answer, Request
+from squeezefilm.lab.worker import PAGE
 from squeezefilm.study.device import (
     DeviceIdentity,
     DeviceVerification,
@@ -174,11 +174,11 @@ def add_study(lab: Lab, devices: StudyDevices | None = None) -> StudyThread:
 
     async def exposed(display: str) -> Exposure:
         if display not in exposures:
-            exposures[display] = await lab.workers.slow.do("exposure", _exposure, display)
+            exposures[display] = await lab.workers.slow.do(None, _exposure, display)
         return exposures[display]
 
-    async def changed(study: str) -> None:
-        await lab.tell({"type": "study changed", "study": study})
+    def changed(study: str) -> None:
+        lab.tell({"type": "study changed", "study": study})
 
     async def listing(_: Request) -> Answer:
         found = await thread.do(Studies.listing)
@@ -196,7 +196,7 @@ def add_study(lab: Lab, devices: StudyDevices | None = None) -> StudyThread:
 
     async def enrol(asked: NamedStudy) -> Answer:
         found = await thread.do(Studies.enrol, asked.study)
-        await changed(asked.study)
+        changed(asked.study)
         return {"type": "study", **found}
 
     async def ultrasound(asked: OfParticipant) -> Answer:
@@ -239,7 +239,7 @@ def add_study(lab: Lab, devices: StudyDevices | None = None) -> StudyThread:
         found = await thread.do(Studies.end, asked.sitting, device)
         found["problems"] += [lost] if lost else []
         await release_ended()
-        await lab.tell({"type": "sitting ended", "sitting": asked.sitting}, participants=True)
+        lab.tell({"type": "sitting ended", "sitting": asked.sitting}, participants=True)
         return {"type": "study", **found}
 
     async def delete(asked: DeleteParticipant) -> Answer:
@@ -249,7 +249,7 @@ def add_study(lab: Lab, devices: StudyDevices | None = None) -> StudyThread:
             if one.participant == asked.participant:
                 await devices.release(one.id)
         found = await thread.do(Studies.delete, asked.study, asked.participant)
-        await changed(asked.study)
+        changed(asked.study)
         return {"type": "study", **found}
 
     async def export(asked: ExportStudy) -> Answer:
@@ -257,8 +257,8 @@ def add_study(lab: Lab, devices: StudyDevices | None = None) -> StudyThread:
 
     async def rehearse(asked: RehearseStudy) -> Answer:
         path = await thread.do(Studies.path, asked.study)
-        found = await lab.workers.slow.do("rehearsal", rehearsed, path, asked.participants)
-        await changed(asked.study)
+        found = await lab.workers.slow.do(None, rehearsed, path, asked.participants)
+        changed(asked.study)
         return {"type": "rehearsed", **found}
 
     async def analyze(asked: NamedStudy) -> Answer:
@@ -308,7 +308,7 @@ def add_study(lab: Lab, devices: StudyDevices | None = None) -> StudyThread:
         except BaseException:
             await devices.release(sitting.id)
             raise
-        await changed(sitting.study)
+        changed(sitting.study)
         return {"type": "where", **found}
 
     async def present(asked: OfSitting) -> Answer:
@@ -316,7 +316,7 @@ def add_study(lab: Lab, devices: StudyDevices | None = None) -> StudyThread:
         study = found.pop("study", None)
         if study is not None:
             # Who presents by hand is told what; the participant's page is not.
-            await changed(study)
+            changed(study)
         return {"type": "where", **found}
 
     async def feel(asked: FeelSurface) -> Answer:
@@ -354,7 +354,7 @@ def add_study(lab: Lab, devices: StudyDevices | None = None) -> StudyThread:
         )
         found = await thread.do(Studies.respond, asked.sitting, asked.token, response)
         devices.answered(asked.sitting, asked.token)
-        await changed(found.pop("study"))
+        changed(found.pop("study"))
         return {"type": "acknowledged", **found}
 
     add = lab.experimenter.add

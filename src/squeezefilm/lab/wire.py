@@ -20,6 +20,8 @@ from squeezefilm.lab.worker import SupersededError
 
 LARGEST_MESSAGE = 8 * 1024 * 1024
 """Bytes of a websocket message."""
+LARGEST_FROM_PARTICIPANT = 64 * 1024
+"""Characters of a participant's message: an answer, never a file."""
 LONGEST_TEXT = 400_000
 """Characters of one text in a message, a TOML file's for instance."""
 
@@ -41,9 +43,10 @@ Handler = Callable[[Any], Awaitable[Answer]]
 
 
 class Dispatcher:
-    """Which message is read as what, and who answers it."""
+    """Which message is read as what, and who answers it; longer ones than `longest` are refused."""
 
-    def __init__(self) -> None:
+    def __init__(self, longest: int = LARGEST_MESSAGE) -> None:
+        self._longest = longest
         self._known: dict[str, tuple[type[Request], Handler]] = {}
 
     def add(self, kind: str, model: type[Request], handler: Handler) -> None:
@@ -58,6 +61,10 @@ class Dispatcher:
         """
         number: int | None = None
         try:
+            if len(text) > self._longest:
+                raise InputError(
+                    f"a message of {len(text)} characters; at most {self._longest} are read"
+                )
             raw = json.loads(text, parse_constant=_no_constant)
             if not isinstance(raw, dict):
                 raise InputError("a message must be an object with id and type")

@@ -1,88 +1,223 @@
 """Physics in processes of its own, so that the page's messages never wait for a solve.
 
-Work of one slot supersedes older work of the same slot that has not begun: a slider that is
-dragged asks thirty times a second and wants the last answer only.
+Work of one slot supersedes older work of the same slot: a slider that is dragged asks thirty times
+a second and wants the last answer only. What has begun goes on for a moment, because most work is
+done by then and a new process takes seconds to start; longer, and its process is ended with it.
 """
 
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import multiprocessing
 import os
 import signal
 import threading
+import time
 from collections.abc import Callable
-from concurrent.futures import ProcessPoolExecutor
-from concurrent.futures.process import BrokenProcessPool
-from typing import Any, TypeVar
+from contextvars import ContextVar
+from dataclasses import dataclass
+from multiprocessing.connection import Connection
+from multiprocessing.context import SpawnProcess
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from squeezefilm.errors import SqueezefilmError
+from squeezefilm.quantities import Second
+
+if TYPE_CHECKING:
+    from starlette.websockets import WebSocket
 
 T = TypeVar("T")
 
+LARGEST_MEMORY = 2 * 1024**3
+"""Bytes of data that a process which computes may hold."""
+GRACE: Second = 2.0
+"""How long work goes on that newer work wants to replace."""
+PAGE: ContextVar[WebSocket] = ContextVar("page")
+"""The page whose message is being answered."""
+_SPAWN = multiprocessing.get_context("spawn")
+
 
 class SupersededError(Exception):
-    """Work that was not begun, because newer work took its place; of which request, if known."""
+    """Work whose answer nobody waits for, because newer work came; of which request, if known."""
 
     number: int | None = None
 
 
+@dataclass(eq=False, slots=True)
+class _Job:
+    """One piece of work that was asked for."""
+
+    page: WebSocket | None
+    slot: str | None
+    gives_way: bool
+    began: float = 0.0
+    ended_because: Exception | None = None
+
+
+@dataclass(slots=True)
+class _Process:
+    """A process that computes, and the line to it."""
+
+    process: SpawnProcess
+    line: Connection
+
+    @classmethod
+    def started(cls) -> _Process:
+        ours, theirs = _SPAWN.Pipe()
+        process = _SPAWN.Process(target=_work, args=(theirs,), daemon=True)
+        process.start()
+        theirs.close()
+        return cls(process, ours)
+
+    def ask(self, work: Callable[..., T], arguments: tuple[Any, ...]) -> tuple[bool, Any]:
+        """Whether it worked, and the result or the error. Raises `EOFError` if the process dies."""
+        try:
+            self.line.send((work, arguments))
+            answer: tuple[bool, Any] = self.line.recv()
+        except OSError as error:
+            raise EOFError from error
+        return answer
+
+    def end(self) -> None:
+        """Kill it; whoever waits for its answer gets an `EOFError`."""
+        self.process.kill()
+
+
 class Busy:
-    """One line of work: a process, and at most one piece of work waiting per slot."""
+    """One line of work: a process, and at most one piece of work waiting per page and slot.
 
-    def __init__(self) -> None:
-        self._pool: ProcessPoolExecutor | None = None
+    Work that takes longer than `longest` (s) is ended.
+    """
+
+    def __init__(self, longest: Second) -> None:
+        self._longest = longest
+        self._process: _Process | None = None
         self._turn = asyncio.Lock()
-        self._newest: dict[str, int] = {}
+        self._jobs: list[_Job] = []
+        self._running: _Job | None = None
 
-    async def do(self, slot: str, work: Callable[..., T], *arguments: Any) -> T:
+    async def do(
+        self, slot: str | None, work: Callable[..., T], *arguments: Any, gives_way: bool = False
+    ) -> T:
         """The result of `work(*arguments)` in the process.
 
-        Raises:
-            SupersededError: newer work of the same slot came while this waited.
-            SqueezefilmError: what the work raised, or that its process died.
-        """
-        mine = self._newest.get(slot, 0) + 1
-        self._newest[slot] = mine
-        async with self._turn:
-            if self._newest[slot] != mine:
-                raise SupersededError("newer work took its place")
-            return await self._run(work, arguments)
+        Args:
+            slot: newer work of the same page and slot takes this one's place; None if none does.
+            gives_way: whether it is ended for newer work, for `cancel` and with its page also
+                when it has begun.
 
-    async def _run(self, work: Callable[..., T], arguments: tuple[Any, ...]) -> T:
-        if self._pool is None:
-            self._pool = ProcessPoolExecutor(
-                1, multiprocessing.get_context("spawn"), initializer=_prepare
-            )
+        Raises:
+            SupersededError: newer work of the same slot came.
+            SqueezefilmError: what the work raised, that it took too long or too much memory, was
+                cancelled, or that its process died.
+        """
+        job = _Job(PAGE.get(None), slot, gives_way)
+        if slot is not None:
+            for older in self._jobs:
+                if (older.page, older.slot) == (job.page, slot):
+                    self._give_way(older)
+        self._jobs.append(job)
+        running = asyncio.create_task(self._in_turn(job, work, arguments))
+        # Nobody may wait for it any more when it fails.
+        running.add_done_callback(lambda one: one.cancelled() or one.exception())
         try:
-            return await asyncio.get_running_loop().run_in_executor(self._pool, work, *arguments)
-        except BrokenProcessPool as error:
-            self._pool = None
-            raise SqueezefilmError(
+            # What writes a file is not torn where the page that asked for it is closed.
+            return await asyncio.shield(running)
+        except asyncio.CancelledError:
+            if gives_way or job is not self._running:
+                self._end(job, _newer())
+            raise
+
+    def begin(self) -> None:
+        """Start the process where there is none, so that the first work need not wait for it."""
+        if self._process is None:
+            self._process = _Process.started()
+
+    def cancel(self, page: WebSocket | None) -> None:
+        """End what a page asked for and would give way."""
+        for job in list(self._jobs):
+            if job.page is page and job.gives_way:
+                self._end(job, SqueezefilmError("the computation was cancelled"))
+
+    def _give_way(self, older: _Job) -> None:
+        """Let newer work take the place of an older piece that waits, or has run long enough."""
+        if older is not self._running:
+            self._end(older, _newer())
+        elif older.gives_way:
+            left = older.began + GRACE - time.monotonic()
+            asyncio.get_running_loop().call_later(max(left, 0.0), self._end, older, _newer())
+
+    async def _in_turn(self, job: _Job, work: Callable[..., T], arguments: tuple[Any, ...]) -> T:
+        try:
+            async with self._turn:
+                if job.ended_because is not None:
+                    raise job.ended_because
+                self._running, job.began = job, time.monotonic()
+                return await self._run(job, work, arguments)
+        finally:
+            self._jobs.remove(job)
+            self._running = None if self._running is job else self._running
+
+    async def _run(self, job: _Job, work: Callable[..., T], arguments: tuple[Any, ...]) -> T:
+        self.begin()
+        process = self._process
+        assert process is not None
+        loop = asyncio.get_running_loop()
+        late = SqueezefilmError(
+            f"this took more than {self._longest:g} s and was ended; ask for less: fewer nodal "
+            "lines, samples or participants, or a coarser quality"
+        )
+        alarm = loop.call_later(self._longest, self._end, job, late)
+        try:
+            worked, found = await loop.run_in_executor(None, process.ask, work, arguments)
+        except EOFError as error:
+            self._process = None if self._process is process else self._process
+            raise job.ended_because or SqueezefilmError(
                 "the process that computes ended; it starts again with the next request"
             ) from error
+        finally:
+            alarm.cancel()
+        if not worked:
+            raise found
+        result: T = found
+        return result
+
+    def _end(self, job: _Job, why: Exception) -> None:
+        """End a piece of work for a reason, unless it is done."""
+        if job not in self._jobs:
+            return
+        job.ended_because = job.ended_because or why
+        if job is self._running:
+            self.close()
 
     def close(self) -> None:
         """End the process; what it was doing is dropped."""
-        if self._pool is not None:
-            processes = list(getattr(self._pool, "_processes", {}).values())
-            self._pool.shutdown(wait=False, cancel_futures=True)
-            for process in processes:
-                process.kill()
-            self._pool = None
+        if self._process is not None:
+            self._process.end()
+            self._process = None
 
 
 class Workers:
     """Two lines of work: one for what a drag asks for, one for what takes seconds."""
 
     def __init__(self) -> None:
-        self.quick = Busy()
-        self.slow = Busy()
+        self.quick = Busy(30.0)
+        self.slow = Busy(600.0)
+
+    def cancel(self, page: WebSocket | None) -> None:
+        """End a page's work that gives way, in both."""
+        self.quick.cancel(page)
+        self.slow.cancel(page)
 
     def close(self) -> None:
         """End both."""
         self.quick.close()
         self.slow.close()
+
+
+def _newer() -> SupersededError:
+    return SupersededError("newer work took its place")
 
 
 def _end_with_parent() -> None:
@@ -93,15 +228,50 @@ def _end_with_parent() -> None:
         os._exit(1)
 
 
+def _work(line: Connection) -> None:
+    """Answer one piece of work after the other, until the line is closed."""
+    _prepare()
+    with contextlib.suppress(EOFError, OSError):
+        while True:
+            work, arguments = line.recv()
+            line.send(_answered(work, arguments))
+
+
+def _answered(work: Callable[..., Any], arguments: tuple[Any, ...]) -> tuple[bool, Any]:
+    try:
+        return True, work(*arguments)
+    except MemoryError:
+        return False, SqueezefilmError(
+            f"this needs more than {LARGEST_MEMORY / 1024**3:g} GiB of memory and was ended; ask "
+            "for less: fewer nodal lines, samples or participants, or a coarser quality"
+        )
+    except Exception as error:
+        # Whoever asked handles it as its own.
+        return False, error
+
+
 def _prepare() -> None:
     # Ctrl-C in a terminal reaches every process of the lab; the server's own ends this one.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_end_with_parent, daemon=True).start()
     for library in ("OMP", "OPENBLAS", "MKL"):
         os.environ.setdefault(f"{library}_NUM_THREADS", "1")
+    _limit_memory()
     import warnings
 
     from squeezefilm.errors import SqueezefilmWarning
 
     # Answers carry their warnings as sentences.
     warnings.simplefilter("ignore", SqueezefilmWarning)
+
+
+def _limit_memory() -> None:
+    """Let an allocation far beyond any solve fail here, before the computer's memory is full."""
+    try:
+        import resource
+    except ImportError:
+        # Windows has no such limit; the time limit holds there.
+        return
+    _, hard = resource.getrlimit(resource.RLIMIT_DATA)
+    if hard == resource.RLIM_INFINITY or hard > LARGEST_MEMORY:
+        resource.setrlimit(resource.RLIMIT_DATA, (LARGEST_MEMORY, hard))

@@ -4,8 +4,10 @@ import { Chart } from "../chart.js";
 import { displayForm } from "../display_form.js";
 import { element, number, plain, quantity } from "../numbers.js";
 import { PlanView } from "../plan_view.js";
+import { WorkLine } from "../work_line.js";
 
 const SETTLE = 500;
+const SCREENING = "computing the screening answer…";
 
 export async function show(place, lab) {
   await new DesignView(place, lab, lab.display).start();
@@ -41,6 +43,7 @@ class DesignView {
     this.error = element("p", { class: "error", role: "alert", hidden: true });
     this.form = element("div", { class: "form" });
     this.quality = element("p", { class: "quality", role: "status", text: "computing…" });
+    this.work = new WorkLine(() => this.cancel());
     this.numbers = {
       frequency: number("resonance frequency", "resonance_frequency"),
       amplitude: number("vibration amplitude", "vibration_amplitude"),
@@ -67,8 +70,8 @@ class DesignView {
       element("button", { text: "Download", onclick: () => this.download() }), this.file);
     this.place.append(element("div", { class: "columns design" },
       element("section", { class: "card side" }, tools, files, this.error, this.form),
-      element("div", { class: "results" },
-        element("section", { class: "card" }, this.quality,
+      this.results = element("div", { class: "results" },
+        element("section", { class: "card" }, this.quality, this.work.box,
           element("div", { class: "numbers" }, ...Object.values(this.numbers).map((one) => one.box))),
         element("section", { class: "card" }, this.canvas),
         element("div", { class: "pair" }, friction.box, response.box), this.warnings)));
@@ -150,6 +153,8 @@ class DesignView {
     this.asked += 1;
     clearTimeout(this.settled);
     this.next = change;
+    this.older(true);
+    this.work.begin(SCREENING);
     this.pump();
     const mine = this.asked;
     this.settled = setTimeout(() => this.solve(mine, change), SETTLE);
@@ -164,10 +169,16 @@ class DesignView {
       const answer = await this.lab.socket.ask("compute design", { text: this.store.current.text, quality: "screening", ...change });
       // A busy computer may have solved it by now.
       if (mine > this.solvedAt) this.present(answer);
+      if (mine === this.asked) this.work.end(SCREENING);
+      this.older(mine !== this.asked);
       this.error.hidden = true;
     } catch (error) {
-      this.error.textContent = error.message;
-      this.error.hidden = false;
+      // Work that was ended for newer work says nothing.
+      if (mine === this.asked) {
+        this.work.end(SCREENING);
+        this.error.textContent = error.message;
+        this.error.hidden = false;
+      }
     }
     this.busy = false;
     this.pump();
@@ -180,18 +191,46 @@ class DesignView {
     try {
       let of = "screening";
       if (plate) {
-        this.quality.textContent = "solving the plate in three dimensions…";
+        this.work.begin("solving the plate in three dimensions…");
         const answer = await this.lab.socket.ask("compute design", { text, quality: "solved", ...change });
         if (!current()) return;
         of = "solved";
         this.solvedAt = mine;
         this.present(answer);
+        this.older(false);
       }
+      this.work.begin("computing the band of what is uncertain…");
       const band = await this.lab.socket.ask("compute design", { text, quality: "band", of, ...change });
-      if (current()) this.presentBand(band);
+      if (current()) {
+        this.work.end();
+        this.presentBand(band);
+      }
     } catch (error) {
-      if (current()) this.quality.textContent = `not solved: ${error.message}`;
+      if (current()) {
+        this.work.end();
+        this.quality.textContent = `not solved: ${error.message}`;
+      }
     }
+  }
+
+  /** Grey what is shown while it belongs to an older design than the form. */
+  older(is) {
+    this.results.classList.toggle("older", is);
+    this.results.setAttribute("aria-busy", String(is));
+  }
+
+  /** End what is computed; what is shown stays, grey if it is of an older design. */
+  async cancel() {
+    // What is on its way already is not shown either.
+    this.asked += 1;
+    this.solvedAt = this.asked;
+    this.next = null;
+    clearTimeout(this.settled);
+    this.work.end();
+    this.quality.textContent = this.results.classList.contains("older")
+      ? "cancelled: the numbers are of an older design; change a value to compute again"
+      : `cancelled: ${this.quality.textContent}`;
+    await this.tried(this.lab.socket.ask("cancel design"));
   }
 
   present(found) {

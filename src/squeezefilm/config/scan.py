@@ -1,0 +1,79 @@
+"""A look at text before it is parsed: what would take a parser long is refused in linear time.
+
+Parsers are quadratic in the parts of one key, recurse with each bracket, and make an object of
+every value. None of that is known before they have run, so it is counted here, without them.
+"""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from squeezefilm.errors import ConfigError
+
+LONGEST_TEXT = 4_000_000
+"""Bytes of a TOML text; a description of a display has a few thousand."""
+DEEPEST = 100
+"""Tables and lists within each other, and parts of a key: far past any description."""
+MOST_LINES = 50_000
+"""Lines of a TOML text, and its keys, tables and lists."""
+MOST_JSON_PARTS = 1_000_000
+"""Values, lists and objects of a JSON text."""
+
+# Every alternative ends, also where a quote is missing, so that no place is looked at twice.
+_STRING_OR_COMMENT = re.compile(
+    r'"""(?:[^"\\]++|\\.|"(?!""))*+(?:"{3,5}|\Z|\\\Z)'
+    r"|'''(?:[^']++|'(?!''))*+(?:'{3,5}|\Z)"
+    r'|"(?:[^"\\\n]++|\\[^\n])*+"?'
+    r"|'[^'\n]*+'?"
+    r"|#[^\n]*+",
+    re.DOTALL,
+)
+_JSON_STRING = re.compile(r'"(?:[^"\\]++|\\.)*+"?', re.DOTALL)
+_BETWEEN_KEYS = re.compile(r"[\[\]{}=,\n]")
+
+
+def require_quick_toml(text: str, file: str | Path | None = None) -> None:
+    """Refuse a TOML text that no parser reads in a moment, whatever it says.
+
+    Raises:
+        ConfigError: a text that is too long, has too many lines, keys or tables, is nested too
+            deeply, or has a key of too many parts.
+    """
+    if len(text) > LONGEST_TEXT:
+        raise ConfigError(f"is larger than {LONGEST_TEXT} bytes, no configuration", file=file)
+    lines = text.count("\n")
+    bare = _STRING_OR_COMMENT.sub("s", text)
+    parts = bare.count("=") + bare.count("[") + bare.count("{")
+    if max(lines, parts) > MOST_LINES:
+        raise ConfigError(
+            f"has {max(lines, parts)} lines, or keys, tables and lists; at most {MOST_LINES} are "
+            "read: leave some out",
+            file=file,
+        )
+    if (longest := 1 + max(one.count(".") for one in _BETWEEN_KEYS.split(bare))) > DEEPEST:
+        raise ConfigError(
+            f"is nested {longest} deep by one key; at most {DEEPEST} are read", file=file
+        )
+    if (depth := _depth(bare)) > DEEPEST:
+        raise ConfigError(f"is nested {depth} deep; at most {DEEPEST} are read", file=file)
+
+
+def require_quick_json(text: str, file: str | Path | None = None) -> None:
+    """Refuse a JSON text of too many values, or nested too deeply. Raises `ConfigError`."""
+    bare = _JSON_STRING.sub("s", text)
+    if (parts := bare.count(",") + bare.count("[") + bare.count("{")) > MOST_JSON_PARTS:
+        raise ConfigError(
+            f"has {parts} values; at most {MOST_JSON_PARTS} are read: make it smaller", file=file
+        )
+    if (depth := _depth(bare)) > DEEPEST:
+        raise ConfigError(f"is nested {depth} deep; at most {DEEPEST} are read", file=file)
+
+
+def _depth(bare: str) -> int:
+    """How many brackets are open at once."""
+    depth = deepest = 0
+    for bracket in re.findall(r"[\[\]{}]", bare):
+        depth = depth + 1 if bracket in "[{" else max(depth - 1, 0)
+        deepest = max(deepest, depth)
+    return deepest

@@ -1,0 +1,63 @@
+"""What is on its way to an open page: a bounded queue, written by a task of its own.
+
+Nobody who tells all pages something waits for one of them; a page that does not read is dropped.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+
+from starlette.websockets import WebSocket, WebSocketDisconnect
+
+from squeezefilm.lab.connections import CLOSE
+from squeezefilm.quantities import Second
+
+MOST_UNREAD = 256
+"""Messages that may wait for one page."""
+SLOWEST_PAGE: Second = 10.0
+"""For a page to take one message."""
+_TOO_SLOW = "this page did not read what the lab said to it; reload it"
+
+
+class OpenPage:
+    """One page and the messages on their way to it."""
+
+    def __init__(self, page: WebSocket) -> None:
+        self.is_participant = page.url.path == "/ws/participant"
+        self._page = page
+        self._unread: asyncio.Queue[str] = asyncio.Queue(MOST_UNREAD)
+        self._writer = asyncio.get_running_loop().create_task(self._write())
+
+    def say(self, text: str) -> None:
+        """Send a message, in its turn; a page with too many that it did not read is dropped."""
+        try:
+            self._unread.put_nowait(text)
+        except asyncio.QueueFull:
+            self.drop()
+
+    def drop(self) -> None:
+        """Close the page with the reason, whether it reads or not."""
+        self._writer.cancel()
+        self.refuse(1013, _TOO_SLOW)
+
+    def refuse(self, code: int, reason: str) -> None:
+        """Close the page with a websocket's code and the reason in words."""
+        close: Callable[[int, str], None] = self._page.scope["extensions"][CLOSE]
+        close(code, reason)
+
+    def close(self) -> None:
+        """The page is gone: nothing more is written."""
+        self._writer.cancel()
+
+    async def _write(self) -> None:
+        try:
+            while True:
+                text = await self._unread.get()
+                async with asyncio.timeout(SLOWEST_PAGE):
+                    await self._page.send_text(text)
+        except TimeoutError:
+            self.drop()
+        except (RuntimeError, WebSocketDisconnect):
+            # It closed meanwhile; whoever reads from it hears that too.
+            return
