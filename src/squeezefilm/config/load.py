@@ -17,11 +17,11 @@ from squeezefilm.config.provenance import Spread, distribution_of, split_provena
 from squeezefilm.config.schema import family, model_of, reads_from_file
 from squeezefilm.distributions import Distribution
 from squeezefilm.errors import ConfigError, InputError
+from squeezefilm.hard_limits import DESCRIPTION_BYTES
 from squeezefilm.quantities import did_you_mean, unit_of
+from squeezefilm.regular_file import read_regular_text
 
 T = TypeVar("T")
-LONGEST_FILE = 4_000_000
-"""Bytes a file may have; a description of a display has a few thousand."""
 DEEPEST = 100
 """Tables and lists within each other: far past any description, and safe to build."""
 
@@ -33,20 +33,8 @@ def load(cls: type[T], path: str | Path) -> T:
     of the values by their dotted path. Raises `ConfigError` for anything that is not right, with
     file, line, key, what is allowed and a did-you-mean; it reports every error it can see at once.
     """
-    path = Path(path)
-    if path.is_dir():
-        raise ConfigError("is a directory; give a TOML file", file=path)
-    if not path.exists():
-        raise ConfigError("does not exist; give the path of a TOML file", file=path)
-    try:
-        if path.stat().st_size > LONGEST_FILE:
-            raise ConfigError(f"is larger than {LONGEST_FILE} bytes, no configuration", file=path)
-        text = path.read_text(encoding="utf-8")
-    except UnicodeDecodeError as error:
-        raise ConfigError("is not UTF-8 text; give a TOML file", file=path) from error
-    except OSError as error:
-        raise ConfigError(f"cannot be read: {error.strerror}", file=path) from error
-    return load_text(cls, text, file=path)
+    text = read_regular_text(path, DESCRIPTION_BYTES, "a TOML file")
+    return load_text(cls, text, file=Path(path))
 
 
 def load_text(cls: type[T], text: str, *, file: str | Path | None = None) -> T:

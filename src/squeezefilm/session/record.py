@@ -24,7 +24,9 @@ from typing import Any, Self
 import numpy as np
 
 from squeezefilm.errors import InputError, RecordError
+from squeezefilm.hard_limits import TRACE_BYTES
 from squeezefilm.quantities import FloatArray, Second, Unit, require
+from squeezefilm.regular_file import opened
 from squeezefilm.results import to_json
 from squeezefilm.session import trace_file as file
 
@@ -288,13 +290,13 @@ def read_trace(path: str | Path) -> Trace:
         InputError: a file that cannot be opened.
     """
     try:
-        with Path(path).open("rb") as stream:
-            if os.fstat(stream.fileno()).st_size == 0:
+        with opened(path, TRACE_BYTES, "a trace") as handle:
+            if os.fstat(handle).st_size == 0:
                 return _trace(b"")
-            with mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ) as data:
+            with mmap.mmap(handle, 0, access=mmap.ACCESS_READ) as data:
                 return _trace(data)
-    except (OSError, ValueError) as error:
-        raise InputError(f"cannot read the trace {path}: {error}") from error
+    except OSError as error:
+        raise InputError(f"the trace {path} cannot be read: {error.strerror}") from error
 
 
 @dataclass(slots=True)
