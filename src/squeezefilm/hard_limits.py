@@ -53,9 +53,20 @@ def require_within(
     )
 
 
+def require_fields(described: object, **limits: HardLimit) -> None:
+    """Refuse a description one of whose fields is outside its hard limit; None is left alone.
+
+    ``require_fields(self, length=SIDE, thickness=LAYER)``. Raises as `require_within` does.
+    """
+    for name, limit in limits.items():
+        value = getattr(described, name)
+        if value is not None:
+            require_within(limit, value, name)
+
+
 def _shown(value: float, unit: Unit) -> str:
     """Counts are written out, other numbers with four digits and their unit."""
-    if unit == _ONE and value.is_integer() and abs(value) < 1e15:
+    if unit == _ONE and float(value).is_integer() and abs(value) < 1e15:
         return f"{int(value):,}".replace(",", " ")
     return format_quantity(value, unit)
 
@@ -102,7 +113,7 @@ SKIN_MASS = HardLimit("a mass per area", 1e-6, 1e5, Unit("kg/m2"), "of skin; " +
 SKIN_STIFFNESS = HardLimit("a stiffness per area", 0.0, 1e15, Unit("Pa/m"), "of skin; " + _SLIP)
 SKIN_DAMPING = HardLimit("a damping per area", 0.0, 1e12, Unit("Pa*s/m"), "of skin; " + _SLIP)
 FINGER_SPEED = HardLimit(
-    "a finger's speed", 1e-6, 5.0, Unit("m/s"), "from 1 m in twelve days to faster than any hand"
+    "a finger's speed", 1e-9, 5.0, Unit("m/s"), "from standing still to faster than any hand"
 )
 STROKE_LENGTH = HardLimit("a stroke's length", 1e-9, 10.0, _M, "no surface is longer; " + _SLIP)
 STROKE_START = HardLimit("where a stroke starts", -10.0, 10.0, _M, "no surface is longer; " + _SLIP)
