@@ -10,6 +10,7 @@ from squeezefilm.config.provenance import Provenance
 from squeezefilm.contact.finger import Finger
 from squeezefilm.device.safety import HIGHEST_VOLTAGE, TOUCH_VOLTAGE, Limits
 from squeezefilm.errors import InputError
+from squeezefilm.hard_limits import ROUGHNESS, require_fields
 from squeezefilm.materials import Gas
 from squeezefilm.plate.layout import Actuator
 from squeezefilm.quantities import (
@@ -35,7 +36,7 @@ class Surface:
     friction_coefficient: Dimensionless
 
     def __post_init__(self) -> None:
-        require("roughness", self.roughness, Unit("m"), above=0)
+        require_fields(self, roughness=ROUGHNESS)
         require("friction_coefficient", self.friction_coefficient, above=0, at_most=10)
 
 

@@ -11,6 +11,22 @@ from typing import Literal
 import numpy as np
 
 from squeezefilm.errors import ContradictionError, ContradictionWarning
+from squeezefilm.hard_limits import (
+    CHARGE_COEFFICIENT,
+    COMPLIANCE,
+    CROSS_COMPLIANCE,
+    DENSITY,
+    FREE_PATH,
+    GAS_DENSITY,
+    MODULUS,
+    PERMITTIVITY,
+    PRESSURE,
+    QUALITY,
+    STRESS_COEFFICIENT,
+    VISCOSITY,
+    require_fields,
+    require_within,
+)
 from squeezefilm.quantities import (
     CoulombPerSquareMetre,
     Dimensionless,
@@ -22,7 +38,6 @@ from squeezefilm.quantities import (
     Pascal,
     PascalSecond,
     SquareMetrePerNewton,
-    Unit,
     checked_numbers,
     require,
 )
@@ -47,11 +62,9 @@ class ElasticMaterial:
     quality_factor: Dimensionless | None = None
 
     def __post_init__(self) -> None:
-        if self.quality_factor is not None:
-            require("quality_factor", self.quality_factor, above=0.5)
-        require("young_modulus", self.young_modulus, Unit("Pa"), above=0)
+        require_fields(self, quality_factor=QUALITY, young_modulus=MODULUS)
         require("poisson_ratio", self.poisson_ratio, above=-1, below=0.5)
-        require("density", self.density, Unit("kg/m3"), above=0)
+        require_fields(self, density=DENSITY)
 
     @property
     def shear_modulus(self) -> Pascal:
@@ -104,11 +117,13 @@ class PiezoConstants:
 
     def __post_init__(self) -> None:
         for name in ("compliance_11", "compliance_33", "compliance_44", "compliance_66"):
-            require(name, getattr(self, name), Unit("m2/N"), above=0)
+            require_within(COMPLIANCE, getattr(self, name), name)
         for name in ("compliance_12", "compliance_13"):
-            require(name, getattr(self, name), Unit("m2/N"))
+            require_within(CROSS_COMPLIANCE, getattr(self, name), name)
+        for name in ("charge_coefficient_31", "charge_coefficient_33", "charge_coefficient_15"):
+            require_within(CHARGE_COEFFICIENT, getattr(self, name), name)
         for name in ("clamped_permittivity_11", "clamped_permittivity_33"):
-            require(name, getattr(self, name), at_least=1)
+            require_within(PERMITTIVITY, getattr(self, name), name)
         if np.linalg.eigvalsh(self.compliance_matrix)[0] <= 0:
             raise ContradictionError(
                 "the compliances of the ceramic contradict each other: the elastic energy of some "
@@ -215,16 +230,18 @@ class Piezoceramic:
     constants: PiezoConstants | None = None
 
     def __post_init__(self) -> None:
-        require("in_plane_stiffness", self.in_plane_stiffness, Unit("Pa"), above=0)
+        require_fields(self, in_plane_stiffness=MODULUS)
         require("in_plane_poisson_ratio", self.in_plane_poisson_ratio, above=-1, below=0.5)
-        require("shear_modulus", self.shear_modulus, Unit("Pa"), above=0)
-        require("density", self.density, Unit("kg/m3"), above=0)
-        require("charge_coefficient", self.charge_coefficient, Unit("m/V"))
-        require("relative_permittivity", self.relative_permittivity, at_least=1)
-        require("quality_factor", self.quality_factor, above=0.5)
-        if self.stress_coefficient is not None:
-            require("stress_coefficient", self.stress_coefficient, Unit("C/m2"))
-        elif self.data_set == "printed_e31":
+        require_fields(
+            self,
+            shear_modulus=MODULUS,
+            density=DENSITY,
+            charge_coefficient=CHARGE_COEFFICIENT,
+            relative_permittivity=PERMITTIVITY,
+            quality_factor=QUALITY,
+            stress_coefficient=STRESS_COEFFICIENT,
+        )
+        if self.stress_coefficient is None and self.data_set == "printed_e31":
             raise ContradictionError(
                 "data_set = 'printed_e31' needs a stress_coefficient; give one in C/m2, "
                 "or choose data_set = 'from_d31'"
@@ -347,10 +364,13 @@ class Gas:
     mean_free_path: Metre
 
     def __post_init__(self) -> None:
-        require("viscosity", self.viscosity, Unit("Pa*s"), above=0)
-        require("ambient_pressure", self.ambient_pressure, Unit("Pa"), above=0)
-        require("density", self.density, Unit("kg/m3"), above=0)
-        require("mean_free_path", self.mean_free_path, Unit("m"), above=0)
+        require_fields(
+            self,
+            viscosity=VISCOSITY,
+            ambient_pressure=PRESSURE,
+            density=GAS_DENSITY,
+            mean_free_path=FREE_PATH,
+        )
 
     @checked_numbers
     def at_pressure(self, ambient_pressure: Pascal) -> Gas:
@@ -359,7 +379,7 @@ class Gas:
         Density goes with the pressure, the mean free path with its inverse; the viscosity stays
         (kinetic theory, down to where the gas is no continuum between the walls of its vessel).
         """
-        require("ambient_pressure", ambient_pressure, Unit("Pa"), above=0)
+        require_within(PRESSURE, ambient_pressure, "ambient_pressure")
         ratio = ambient_pressure / self.ambient_pressure
         return Gas(
             self.viscosity, ambient_pressure, self.density * ratio, self.mean_free_path / ratio

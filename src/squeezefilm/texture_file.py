@@ -60,8 +60,6 @@ def preset_texture(name_or_path: str | Path) -> TextureFile:
 def _with_images(found: TextureFile, path: Path | None) -> TextureFile:
     try:
         whole = image_file.with_images(found, None if path is None else path.parent)
-    except ConfigError:
-        raise
     except InputError as error:
         raise ConfigError(str(error), file=path, key=error.quantity or "file") from error
     assert isinstance(whole, TextureFile)

@@ -171,7 +171,7 @@ def test_a_file_that_is_no_trace_is_read_as_one_that_lost_all(
 
 
 def test_a_file_that_is_not_there_is_the_callers_mistake(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="cannot read the trace"):
+    with pytest.raises(InputError, match="cannot be read"):
         read_trace(tmp_path / "none.sqft")
 
 

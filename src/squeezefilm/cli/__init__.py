@@ -38,7 +38,11 @@ def main() -> None:
         os.environ.setdefault(f"{library}_NUM_THREADS", "1")
     _show_announcements()
     try:
-        app()
+        try:
+            app()
+        finally:
+            # What was printed may not fit where it goes; later the interpreter would trip over it.
+            sys.stdout.flush()
     except SqueezefilmError as error:
         typer.echo(f"error: {error}", err=True)
         sys.exit(2)
@@ -46,4 +50,20 @@ def main() -> None:
         typer.echo("interrupted; nothing half-written was left", err=True)
         sys.exit(130)
     except BrokenPipeError:
+        _forget_output()
         sys.exit(0)
+    except OSError as error:
+        _forget_output()
+        where = f"{error.filename!s:.200}: " if error.filename else ""
+        typer.echo(
+            f"error: {where}{error.strerror or error}; give another file or folder, or free space",
+            err=True,
+        )
+        sys.exit(2)
+
+
+def _forget_output() -> None:
+    """Drop what is left to be printed; the interpreter would fail to print it at exit."""
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, sys.stdout.fileno())
+    os.close(nowhere)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -58,6 +59,22 @@ def _root(
     ] = False,
 ) -> None:
     pass
+
+
+def reachable(path: Path | None) -> Path | None:
+    """The path of an option that is written to, refused before any work if nothing can be there.
+
+    Raises `InputError` for a name too long for the system, or a way to it through a file.
+    """
+    if path is not None:
+        try:
+            path.lstat()
+        except FileNotFoundError:
+            pass
+        except (OSError, ValueError) as error:
+            why = error.strerror if isinstance(error, OSError) else error
+            raise InputError(f"{path!s:.200}: nothing can be written there: {why}") from error
+    return path
 
 
 def quantity(text: str | None, option: str, unit: Unit) -> float | None:

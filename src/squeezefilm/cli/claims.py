@@ -8,12 +8,14 @@ from typing import Annotated
 
 import typer
 
-from squeezefilm.cli.app import AsJson, app, print_json
+from squeezefilm.cli.app import AsJson, app, print_json, reachable
 
 
 @app.command()
 def reproduce(
-    out: Annotated[Path | None, typer.Option(help="Write figures 4, 5, 10, 11 and a page.")] = None,
+    out: Annotated[
+        Path | None, typer.Option(callback=reachable, help="Write figures 4, 5, 10, 11 and a page.")
+    ] = None,
     as_json: AsJson = False,
     write_docs: Annotated[
         bool, typer.Option("--write-docs", help="In a checkout: rewrite docs/validation.md.")

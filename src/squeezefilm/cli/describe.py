@@ -20,6 +20,7 @@ from squeezefilm.cli.app import (
     app,
     print_json,
     quantity,
+    reachable,
 )
 
 
@@ -49,7 +50,7 @@ def show(target: Target, as_json: AsJson = False) -> None:
 
 @app.command()
 def new(
-    file: Annotated[Path, typer.Argument(help="The TOML file to write.")],
+    file: Annotated[Path, typer.Argument(callback=reachable, help="The TOML file to write.")],
     source: Annotated[str, typer.Option("--from", help="The preset to start from.")],
     force: Annotated[bool, typer.Option("--force", help="Replace the file if it exists.")] = False,
 ) -> None:
@@ -64,7 +65,8 @@ def new(
 def analyze(
     target: Target,
     out: Annotated[
-        Path | None, typer.Option(help="Write result.json and report.html to this folder.")
+        Path | None,
+        typer.Option(callback=reachable, help="Write result.json and report.html to this folder."),
     ] = None,
     as_json: AsJson = False,
     voltage: Voltage = None,

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from squeezefilm.cli.app import AsJson, OnSurface, app, print_json, quantity
+from squeezefilm.cli.app import AsJson, OnSurface, app, print_json, quantity, reachable
 
 device_app = typer.Typer(
     help="A device on a serial port, or the twin of a display.",
@@ -59,7 +59,10 @@ def play(
         bool, typer.Option("--bench-only", help="Allow a drive that does not stop by itself.")
     ] = False,
     out: Annotated[
-        Path | None, typer.Option(help="Folder for the record, numbers, figures and a page.")
+        Path | None,
+        typer.Option(
+            callback=reachable, help="Folder for the record, numbers, figures and a page."
+        ),
     ] = None,
     seed: Annotated[int, typer.Option(help="Of the twin's noise.")] = 0,
     as_json: AsJson = False,
@@ -120,7 +123,9 @@ def play(
 @app.command()
 def export(
     trace: Annotated[Path, typer.Argument(help="A trace that a session recorded.")],
-    to: Annotated[Path, typer.Option(help="The file to write, .csv or .parquet.")],
+    to: Annotated[
+        Path, typer.Option(callback=reachable, help="The file to write, .csv or .parquet.")
+    ],
     as_json: AsJson = False,
 ) -> None:
     """Write a recorded trace as CSV or Parquet, with its metadata, and say what it had lost."""

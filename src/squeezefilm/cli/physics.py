@@ -19,6 +19,7 @@ from squeezefilm.cli.app import (
     app,
     print_json,
     quantity,
+    reachable,
 )
 from squeezefilm.errors import InputError
 
@@ -51,7 +52,9 @@ def friction(
         int, typer.Option(help="Base samples of the uncertainty, a power of two; 0 for none.")
     ] = 64,
     seed: Annotated[int, typer.Option(help="Of the samples.")] = 1,
-    out: Annotated[Path | None, typer.Option(help="Folder for friction.json and figures.")] = None,
+    out: Annotated[
+        Path | None, typer.Option(callback=reachable, help="Folder for friction.json and figures.")
+    ] = None,
     as_json: AsJson = False,
 ) -> None:
     """The friction a finger meets, how the load is shared, and how sure all of it is."""
@@ -109,7 +112,9 @@ def film(
     sweep: Annotated[
         bool, typer.Option("--sweep", help="Draw the map over squeeze number and excursion.")
     ] = False,
-    out: Annotated[Path | None, typer.Option(help="Folder for the map and its numbers.")] = None,
+    out: Annotated[
+        Path | None, typer.Option(callback=reachable, help="Folder for the map and its numbers.")
+    ] = None,
     as_json: AsJson = False,
 ) -> None:
     """Solve the periodic gas film of one shape, or map it over squeeze number and excursion."""
@@ -154,9 +159,14 @@ def plate(
             help="Working mode by nodal lines, like 8,0; of discs and rings circles, diameters."
         ),
     ] = None,
-    out: Annotated[Path | None, typer.Option(help="Folder for a page with figures.")] = None,
+    out: Annotated[
+        Path | None, typer.Option(callback=reachable, help="Folder for a page with figures.")
+    ] = None,
     vtu: Annotated[
-        Path | None, typer.Option(help="Write the solved volume for ParaView to this .vtu file.")
+        Path | None,
+        typer.Option(
+            callback=reachable, help="Write the solved volume for ParaView to this .vtu file."
+        ),
     ] = None,
     sensitivity: Annotated[
         bool, typer.Option("--sensitivity", help="What other materials and sizes would change.")

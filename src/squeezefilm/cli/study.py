@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from squeezefilm.cli.app import AsJson, app, print_json, quantity
+from squeezefilm.cli.app import AsJson, app, print_json, quantity, reachable
 
 study = typer.Typer(
     name="study",
@@ -63,7 +63,8 @@ def simulate(
     participants: Annotated[int, typer.Option(help="How many simulated people.")] = 12,
     seed: Annotated[int, typer.Option(help="Of orders, people and noise.")] = 0,
     out: Annotated[
-        Path | None, typer.Option(help="Folder for answers, tables, figures and a page.")
+        Path | None,
+        typer.Option(callback=reachable, help="Folder for answers, tables, figures and a page."),
     ] = None,
     observer: Annotated[
         str, typer.Option(help="What people are made of: a preset or a TOML file.")
@@ -106,7 +107,9 @@ def power(
         str, typer.Option(help="What people are made of: a preset or a TOML file.")
     ] = "fingertip",
     seed: Annotated[int, typer.Option(help="Of people, answers and studies.")] = 0,
-    out: Annotated[Path | None, typer.Option(help="A PNG of the curve to write.")] = None,
+    out: Annotated[
+        Path | None, typer.Option(callback=reachable, help="A PNG of the curve to write.")
+    ] = None,
     as_json: AsJson = False,
 ) -> None:
     """How many people are needed to tell two stimuli apart, by simulated participants."""
@@ -136,7 +139,10 @@ def power(
 @study.command()
 def rehearse(
     design: Design,
-    store: Annotated[Path, typer.Option("--store", help="The study's file; made if not there.")],
+    store: Annotated[
+        Path,
+        typer.Option("--store", callback=reachable, help="The study's file; made if not there."),
+    ],
     participants: Annotated[int, typer.Option(help="How many simulated people.")] = 3,
     observer: Annotated[
         str, typer.Option(help="What people are made of: a preset or a TOML file.")
@@ -161,7 +167,10 @@ def rehearse(
 @study.command()
 def run(
     design: Design,
-    store: Annotated[Path, typer.Option("--store", help="The study's file; made if not there.")],
+    store: Annotated[
+        Path,
+        typer.Option("--store", callback=reachable, help="The study's file; made if not there."),
+    ],
     participant: Annotated[
         str | None, typer.Option(help="Who goes on; somebody new is enrolled without it.")
     ] = None,
@@ -231,7 +240,8 @@ def export(
     store: Store,
     format: Annotated[str, typer.Option("--format", help="csv, psych-ds or bids.")] = "csv",
     out: Annotated[
-        Path | None, typer.Option(help="Folder; beside the study's file without it.")
+        Path | None,
+        typer.Option(callback=reachable, help="Folder; beside the study's file without it."),
     ] = None,
 ) -> None:
     """Write all answers as CSV, a Psych-DS dataset or a BIDS behavioural dataset."""
@@ -287,7 +297,10 @@ def delete_participant(
 def analyze(
     store: Store,
     out: Annotated[
-        Path | None, typer.Option(help="Folder for numbers, figures and a page per display.")
+        Path | None,
+        typer.Option(
+            callback=reachable, help="Folder for numbers, figures and a page per display."
+        ),
     ] = None,
     mixed: Annotated[
         bool, typer.Option("--mixed", help="Mixed models too (needs the extra 'models').")

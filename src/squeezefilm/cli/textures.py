@@ -8,7 +8,16 @@ from typing import Annotated
 
 import typer
 
-from squeezefilm.cli.app import AsJson, Force, Model, OnSurface, app, print_json, quantity
+from squeezefilm.cli.app import (
+    AsJson,
+    Force,
+    Model,
+    OnSurface,
+    app,
+    print_json,
+    quantity,
+    reachable,
+)
 from squeezefilm.errors import InputError
 
 
@@ -22,7 +31,10 @@ def render(
         str, typer.Option(help='Finger motion: STROKE.csv, or "60 mm/s over 4 cm, 2 passes".')
     ] = "60 mm/s over 4 cm, 2 passes",
     out: Annotated[
-        Path | None, typer.Option(help="Folder for trace, envelope, numbers, figures, a page.")
+        Path | None,
+        typer.Option(
+            callback=reachable, help="Folder for trace, envelope, numbers, figures, a page."
+        ),
     ] = None,
     as_json: AsJson = False,
     sensor: Annotated[

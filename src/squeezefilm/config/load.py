@@ -14,11 +14,13 @@ from pydantic import BaseModel, ValidationError
 
 from squeezefilm.config.lines import locate
 from squeezefilm.config.provenance import Spread, distribution_of, split_provenance
-from squeezefilm.config.scan import DEEPEST, LONGEST_TEXT, require_quick_toml
+from squeezefilm.config.scan import DEEPEST, require_quick_toml
 from squeezefilm.config.schema import family, model_of, reads_from_file
 from squeezefilm.distributions import Distribution
 from squeezefilm.errors import ConfigError, InputError
+from squeezefilm.hard_limits import DESCRIPTION_BYTES
 from squeezefilm.quantities import did_you_mean, unit_of
+from squeezefilm.regular_file import read_regular_text
 
 T = TypeVar("T")
 MOST_ERRORS = 20
@@ -32,20 +34,8 @@ def load(cls: type[T], path: str | Path) -> T:
     of the values by their dotted path. Raises `ConfigError` for anything that is not right, with
     file, line, key, what is allowed and a did-you-mean; it reports every error it can see at once.
     """
-    path = Path(path)
-    if path.is_dir():
-        raise ConfigError("is a directory; give a TOML file", file=path)
-    if not path.exists():
-        raise ConfigError("does not exist; give the path of a TOML file", file=path)
-    try:
-        if path.stat().st_size > LONGEST_TEXT:
-            raise ConfigError(f"is larger than {LONGEST_TEXT} bytes, no configuration", file=path)
-        text = path.read_text(encoding="utf-8")
-    except UnicodeDecodeError as error:
-        raise ConfigError("is not UTF-8 text; give a TOML file", file=path) from error
-    except OSError as error:
-        raise ConfigError(f"cannot be read: {error.strerror}", file=path) from error
-    return load_text(cls, text, file=path)
+    text = read_regular_text(path, DESCRIPTION_BYTES, "a TOML file")
+    return load_text(cls, text, file=Path(path))
 
 
 def load_text(cls: type[T], text: str, *, file: str | Path | None = None) -> T:

@@ -10,9 +10,8 @@ import re
 from pathlib import Path
 
 from squeezefilm.errors import ConfigError
+from squeezefilm.hard_limits import DESCRIPTION_BYTES
 
-LONGEST_TEXT = 4_000_000
-"""Bytes of a TOML text; a description of a display has a few thousand."""
 DEEPEST = 100
 """Tables and lists within each other, and parts of a key: far past any description."""
 MOST_LINES = 50_000
@@ -40,8 +39,9 @@ def require_quick_toml(text: str, file: str | Path | None = None) -> None:
         ConfigError: a text that is too long, has too many lines, keys or tables, is nested too
             deeply, or has a key of too many parts.
     """
-    if len(text) > LONGEST_TEXT:
-        raise ConfigError(f"is larger than {LONGEST_TEXT} bytes, no configuration", file=file)
+    most = int(DESCRIPTION_BYTES.most)
+    if len(text) > most:
+        raise ConfigError(f"is larger than {most} bytes, no configuration", file=file)
     lines = text.count("\n")
     bare = _STRING_OR_COMMENT.sub("s", text)
     parts = bare.count("=") + bare.count("[") + bare.count("{")

@@ -9,9 +9,10 @@ import typing
 from decimal import Decimal
 from typing import Any
 
-from squeezefilm.config.scan import DEEPEST, LONGEST_TEXT
+from squeezefilm.config.scan import DEEPEST
 from squeezefilm.config.schema import reads_from_file
 from squeezefilm.errors import InputError
+from squeezefilm.hard_limits import DESCRIPTION_BYTES, require_within
 from squeezefilm.quantities import Unit, format_quantity, parse_quantity, unit_of
 
 _Path = tuple[str, ...]
@@ -35,11 +36,7 @@ def text_of(value: Any) -> str:
         size = len(text.encode("utf-8"))
     except UnicodeEncodeError as error:
         raise InputError(f"half a character cannot be written: {error}") from error
-    if size > LONGEST_TEXT:
-        raise InputError(
-            f"the text would have {size} bytes; a file may have {LONGEST_TEXT}; "
-            "give an image fewer pixels"
-        )
+    require_within(DESCRIPTION_BYTES, size, enough="give an image fewer pixels")
     return text
 
 

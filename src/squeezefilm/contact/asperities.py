@@ -20,6 +20,7 @@ from typing import Literal, get_args
 import numpy as np
 
 from squeezefilm.errors import InputError
+from squeezefilm.hard_limits import DECAY_LENGTH, PRESSURE, require_fields
 from squeezefilm.quantities import (
     Dimensionless,
     DimensionlessLike,
@@ -119,9 +120,9 @@ class AsperityLaw:
     heights: AsperityHeights = "exponential"
 
     def __post_init__(self) -> None:
-        require("reference_pressure", self.reference_pressure, Unit("Pa"), above=0)
-        require("reference_gap", self.reference_gap, Unit("m"), above=0)
-        require("decay_length", self.decay_length, Unit("m"), above=0)
+        require_fields(
+            self, reference_pressure=PRESSURE, reference_gap=DECAY_LENGTH, decay_length=DECAY_LENGTH
+        )
         if self.heights not in ASPERITY_HEIGHTS:
             raise InputError(
                 f"heights = '{self.heights}' is no distribution of asperity heights."

@@ -12,6 +12,17 @@ from squeezefilm.contact.asperities import AsperityLaw
 from squeezefilm.contact.fingerpad import FingerpadDynamics
 from squeezefilm.contact.skin import Skin
 from squeezefilm.errors import InputError
+from squeezefilm.hard_limits import (
+    CONTACT_LENGTH,
+    FORCE,
+    RIDGE_AMPLITUDE,
+    RIDGE_PERIOD,
+    RIDGES,
+    ROUGHNESS,
+    SKIN_ROUGHNESS,
+    require_fields,
+    require_within,
+)
 from squeezefilm.quantities import (
     Dimensionless,
     FloatLike,
@@ -77,16 +88,20 @@ class Finger:
     moisture: Moisture = "normal"
 
     def __post_init__(self) -> None:
-        for name in ("contact_length", "ridge_period", "asperity_roughness"):
-            require(name, getattr(self, name), Unit("m"), above=0)
-        require("ridge_amplitude", self.ridge_amplitude, Unit("m"), at_least=0)
-        require("normal_force", self.normal_force, Unit("N"), above=0)
-        require("plateau_width", self.plateau_width, Unit("m"), above=0)
+        require_fields(
+            self,
+            contact_length=CONTACT_LENGTH,
+            ridge_period=RIDGE_PERIOD,
+            plateau_width=RIDGE_PERIOD,
+            asperity_roughness=ROUGHNESS,
+            ridge_amplitude=RIDGE_AMPLITUDE,
+            normal_force=FORCE,
+        )
+        _require_ridges(self.contact_length, self.ridge_period)
         require("contact_area_exponent", self.contact_area_exponent, at_least=0, at_most=1)
-        if self.contact_area_force is not None:
-            require("contact_area_force", self.contact_area_force, Unit("N"), above=0)
+        require_fields(self, contact_area_force=FORCE)
         require("ridge_angle", self.ridge_angle, Unit("rad"), at_least=-math.pi, at_most=math.pi)
-        require("skin_roughness", self.skin_roughness, Unit("m"), at_least=0)
+        require_fields(self, skin_roughness=SKIN_ROUGHNESS)
         if self.moisture not in MOISTURES:
             raise InputError(
                 f"moisture = '{self.moisture}' is not known."
@@ -115,9 +130,11 @@ class Finger:
     def contact_area(self, normal_force: Newton | None = None) -> SquareMetre:
         """A = l0² (F/F_ref)^exponent under a force (N; None: the finger's own)."""
         force = self.normal_force if normal_force is None else normal_force
-        require("normal_force", force, Unit("N"), above=0)
+        require_within(FORCE, force, "normal_force")
         reference = self.contact_area_force or self.normal_force
-        return self.contact_length**2 * float((force / reference) ** self.contact_area_exponent)
+        area = self.contact_length**2 * float((force / reference) ** self.contact_area_exponent)
+        _require_ridges(math.sqrt(area), self.ridge_period)
+        return area
 
     @checked_numbers
     def plateau_pressure(self, normal_force: Newton | None = None) -> Pascal:
@@ -148,3 +165,10 @@ class Finger:
     def friction_factor(self) -> Dimensionless:
         """The unexcited friction over that of normally moist skin (assumed)."""
         return FRICTION_OF_MOISTURE[self.moisture]
+
+
+def _require_ridges(side: Metre, period: Metre) -> None:
+    """Refuse a contact with more ridges than can be worked on."""
+    shown, finest = (format_quantity(one, Unit("m")) for one in (side, side / RIDGES.most))
+    enough = f"a contact of {shown} may have a ridge_period of {finest} or more"
+    require_within(RIDGES, side // period, enough=enough)

@@ -13,6 +13,12 @@ from typing import Annotated, Any, cast
 
 import numpy as np
 
+from squeezefilm.hard_limits import (
+    PAD_DAMPING,
+    PAD_MASS,
+    PAD_STIFFNESS,
+    require_fields,
+)
 from squeezefilm.quantities import (
     ComplexArray,
     Dimensionless,
@@ -32,7 +38,6 @@ from squeezefilm.quantities import (
     Unit,
     checked_numbers,
     closed_form,
-    require,
 )
 
 KilogramLike = Annotated[float | np.ndarray, Unit("kg")]
@@ -69,9 +74,7 @@ class FingerpadDynamics:
     mass: Kilogram = 1.5e-4
 
     def __post_init__(self) -> None:
-        require("stiffness", self.stiffness, Unit("N/m"), above=0.0)
-        require("damping", self.damping, Unit("N*s/m"), at_least=0.0)
-        require("mass", self.mass, Unit("kg"), above=0.0)
+        require_fields(self, stiffness=PAD_STIFFNESS, damping=PAD_DAMPING, mass=PAD_MASS)
 
     @property
     def resonance_frequency(self) -> Hertz:

@@ -11,6 +11,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from squeezefilm.hard_limits import (
+    SKIN_DAMPING,
+    SKIN_MASS,
+    SKIN_STIFFNESS,
+    require_fields,
+)
 from squeezefilm.quantities import (
     Hertz,
     KilogramPerSquareMetre,
@@ -37,9 +43,12 @@ class Skin:
     damping_per_area: PascalSecondPerMetre = 0.0
 
     def __post_init__(self) -> None:
-        require("mass_per_area", self.mass_per_area, Unit("kg/m2"), above=0)
-        require("stiffness_per_area", self.stiffness_per_area, Unit("Pa/m"), at_least=0)
-        require("damping_per_area", self.damping_per_area, Unit("Pa*s/m"), at_least=0)
+        require_fields(
+            self,
+            mass_per_area=SKIN_MASS,
+            stiffness_per_area=SKIN_STIFFNESS,
+            damping_per_area=SKIN_DAMPING,
+        )
 
     @checked_numbers
     def dynamic_stiffness(self, frequency: Hertz) -> complex:

@@ -18,6 +18,7 @@ import numpy as np
 
 from squeezefilm.config.scan import require_quick_json
 from squeezefilm.errors import InputError
+from squeezefilm.hard_limits import HJIF_BYTES
 from squeezefilm.quantities import (
     DimensionlessArray,
     FloatArray,
@@ -25,12 +26,12 @@ from squeezefilm.quantities import (
     MetreArray,
     checked_numbers,
 )
+from squeezefilm.regular_file import read_regular_text
 from squeezefilm.render.levels import RelativeFriction
 from squeezefilm.render.pattern import Pattern
 from squeezefilm.render.pattern_image import MOST_PIXELS, Image
 from squeezefilm.render.pattern_shapes import SineWave, SquareWave
 
-_MOST_BYTES = 50_000_000
 _COARSE: Metre = 10e-6
 _SIGNALS = ("Sine", "Square", "Triangle", "SawToothUp", "SawToothDown")
 _NEEDED: dict[str, dict[str, type | tuple[type, ...]]] = {
@@ -81,14 +82,10 @@ class _Line:
 
 def read_hjif(path: str | Path) -> HjifImport:
     """The texture in an .hjif file. Raises `InputError` for a file that is none, saying where."""
+    text = read_regular_text(path, HJIF_BYTES, "an HJIF file")
     try:
-        if Path(path).stat().st_size > _MOST_BYTES:
-            raise InputError(f"{path} is larger than {_MOST_BYTES} bytes; cut it")
-        text = Path(path).read_text(encoding="utf-8")
         require_quick_json(text)
         document = json.loads(text)
-    except OSError as error:
-        raise InputError(f"{path} cannot be read: {error.strerror}") from error
     except (ValueError, RecursionError) as error:
         raise InputError(f"{path} is no JSON that can be read, so no HJIF: {error}") from error
     try:

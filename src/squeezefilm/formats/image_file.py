@@ -69,7 +69,14 @@ class ImageFile(Pattern):
             InputError: a file that lies elsewhere (a link may lead out) or cannot be read.
         """
         inside = folder.resolve()
-        path = (inside / self.file).resolve()
+        try:
+            path = (inside / self.file).resolve()
+        except (OSError, RuntimeError) as error:
+            # Before Python 3.13 a circle of links is no OSError.
+            raise InputError(
+                f"file = '{self.file}' cannot be followed: {error}; copy the picture there",
+                quantity="file",
+            ) from error
         if not path.is_relative_to(inside):
             raise InputError(
                 f"file = '{self.file}' leads out of {folder}; copy the picture there",

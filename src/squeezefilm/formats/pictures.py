@@ -16,11 +16,12 @@ from typing import Literal
 import numpy as np
 
 from squeezefilm.errors import InputError
+from squeezefilm.hard_limits import PICTURE_BYTES
 from squeezefilm.quantities import DimensionlessArray, checked_numbers, require
+from squeezefilm.regular_file import read_regular
 from squeezefilm.render.pattern_image import MOST_PIXELS
 
 _SIGNATURE = b"\x89PNG\r\n\x1a\n"
-_MOST_BYTES = 16_000_000
 _KINDS = {0: "greyscale", 2: "colour", 3: "colour from a palette", 4: "greyscale with alpha",
           6: "colour with alpha"}  # fmt: skip
 
@@ -32,16 +33,7 @@ def read_picture(path: str | Path) -> DimensionlessArray:
         InputError: a file that cannot be read, is no greyscale PNG of 8 or 16 bits, is damaged,
             or has more pixels than an `Image` may have (1 048 576).
     """
-    try:
-        size = Path(path).stat().st_size
-        if size > _MOST_BYTES:
-            raise InputError(
-                f"{path} has {size} bytes; a picture may have {_MOST_BYTES}: make it smaller"
-            )
-        data = Path(path).read_bytes()
-    except OSError as error:
-        raise InputError(f"{path} cannot be read: {error.strerror}") from error
-    return picture_from(data, str(path))
+    return picture_from(read_regular(path, PICTURE_BYTES, "a PNG"), str(path))
 
 
 def picture_from(data: bytes, name: str = "the picture") -> DimensionlessArray:

@@ -23,12 +23,13 @@ from typing import Any
 import numpy as np
 
 from squeezefilm.errors import ConfigError, InputError
+from squeezefilm.hard_limits import TABLE_BYTES
 from squeezefilm.quantities import FloatArray, checked_numbers
+from squeezefilm.regular_file import read_regular, read_regular_text
 
 _NAME = re.compile(r"[a-z][A-Za-z0-9_.]*")
 _JSON_TEXT = re.compile(r'"(?:[^"\\]|\\.)*"')
 _KEY = b"squeezefilm"
-_MOST_BYTES = 2_000_000_000
 
 
 @checked_numbers
@@ -140,14 +141,7 @@ def _numbers(row: list[str], names: list[str], path: str | Path, line: int) -> l
 
 def text_of_file(path: str | Path) -> str:
     """The UTF-8 text of a file. Raises `ConfigError` for one that cannot be read so."""
-    try:
-        if Path(path).stat().st_size > _MOST_BYTES:
-            raise ConfigError(f"is larger than {_MOST_BYTES} bytes; cut it", file=path)
-        return Path(path).read_text(encoding="utf-8-sig")
-    except UnicodeDecodeError as error:
-        raise ConfigError("is not UTF-8 text; save it as CSV in UTF-8", file=path) from error
-    except OSError as error:
-        raise ConfigError(f"cannot be read: {error.strerror}", file=path) from error
+    return read_regular_text(path, TABLE_BYTES, "a CSV file")
 
 
 def parquet_bytes(table: Table) -> bytes:
@@ -174,7 +168,8 @@ def table_from_parquet(path: str | Path) -> Table:
     arrow, parquet = _arrow()
     try:
         # Read whole first: pyarrow would otherwise guess at partitions from folder names.
-        held = parquet.read_table(io.BytesIO(Path(path).read_bytes()))
+        data = read_regular(path, TABLE_BYTES, "a Parquet file")
+        held = parquet.read_table(io.BytesIO(data))
         columns = {name: _floats(held.column(name)) for name in held.column_names}
         note = (held.schema.metadata or {}).get(_KEY, b"{}")
         return Table(columns, json.loads(note))

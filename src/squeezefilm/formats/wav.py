@@ -18,7 +18,9 @@ from typing import Any, Literal, get_args
 import numpy as np
 
 from squeezefilm.errors import InputError
+from squeezefilm.hard_limits import WAVE_BYTES
 from squeezefilm.quantities import FloatArray, Hertz, Unit, checked_numbers, require
+from squeezefilm.regular_file import read_regular
 
 Encoding = Literal["float32", "int16", "int24"]
 ENCODINGS: tuple[Encoding, ...] = get_args(Encoding)
@@ -123,11 +125,7 @@ def _chunk(name: bytes, body: bytes) -> bytes:
 
 def read_wav(path: str | Path) -> Waveform:
     """The waveform in a file written by `wav_bytes`. Raises `InputError` for any other file."""
-    try:
-        data = Path(path).read_bytes()
-    except OSError as error:
-        raise InputError(f"{path} cannot be read: {error.strerror}") from error
-    return waveform_from(data, str(path))
+    return waveform_from(read_regular(path, WAVE_BYTES, "a WAV file"), str(path))
 
 
 def waveform_from(data: bytes, name: str = "the file") -> Waveform:

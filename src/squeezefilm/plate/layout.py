@@ -2,26 +2,38 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
 from typing import Literal, TypeVar
 
+from squeezefilm import hard_limits as hard
 from squeezefilm.errors import GeometryError, InputError
 from squeezefilm.materials import ElasticMaterial, Piezoceramic
+from squeezefilm.plate.round_layout import AnnularStator, DiscPlate, GlueLayer
 from squeezefilm.quantities import (
     Dimensionless,
-    Hertz,
-    KilogramPerCubicMetre,
     Metre,
     Ohm,
     Pascal,
     SquareMetre,
     Unit,
-    Volt,
     checked_numbers,
     format_quantity,
-    require,
 )
+
+__all__ = [
+    "Actuator",
+    "AnnularStator",
+    "CeramicPatch",
+    "DiscPlate",
+    "Edge",
+    "Electrode",
+    "Face",
+    "FoamSupport",
+    "GlueLayer",
+    "RectangularPlate",
+    "rim_supports",
+    "turned",
+]
 
 _M = Unit("m")
 
@@ -54,37 +66,21 @@ class CeramicPatch:
     shunt_resistance: Ohm | None = None
 
     def __post_init__(self) -> None:
-        require("x", self.x, _M, at_least=0)
-        require("y", self.y, _M, at_least=0)
-        for name in ("length", "width", "thickness"):
-            require(name, getattr(self, name), _M, above=0)
-        if self.shunt_resistance is not None:
-            require("shunt_resistance", self.shunt_resistance, Unit("ohm"), above=0)
+        hard.require_fields(
+            self,
+            x=hard.PLACE,
+            y=hard.PLACE,
+            length=hard.SIDE,
+            width=hard.SIDE,
+            thickness=hard.LAYER,
+        )
+        hard.require_fields(self, shunt_resistance=hard.RESISTANCE)
         if (self.electrode == "shunted") != (self.shunt_resistance is not None):
             raise InputError(
                 f"electrode = '{self.electrode}' and shunt_resistance do not go together; a "
                 "shunted electrode needs one, the others have none",
                 quantity="shunt_resistance",
             )
-
-
-@checked_numbers
-@dataclass(frozen=True)
-class GlueLayer:
-    """The glue between every ceramic and the plate, as an isotropic layer."""
-
-    thickness: Metre
-    young_modulus: Pascal
-    poisson_ratio: Dimensionless = 0.38
-    density: KilogramPerCubicMetre = 1150.0
-    quality_factor: Dimensionless = 20.0
-
-    def __post_init__(self) -> None:
-        require("thickness", self.thickness, _M, above=0)
-        require("young_modulus", self.young_modulus, Unit("Pa"), above=0)
-        require("poisson_ratio", self.poisson_ratio, above=-1, below=0.5)
-        require("density", self.density, Unit("kg/m3"), above=0)
-        require("quality_factor", self.quality_factor, above=0.5)
 
 
 @checked_numbers
@@ -109,14 +105,20 @@ class FoamSupport:
     face: Face = "bottom"
 
     def __post_init__(self) -> None:
-        require("x", self.x, _M, at_least=0)
-        require("y", self.y, _M, at_least=0)
-        for name in ("length", "width", "thickness"):
-            require(name, getattr(self, name), _M, above=0)
-        require("young_modulus", self.young_modulus, Unit("Pa"), above=0)
-        require("quality_factor", self.quality_factor, above=0.5)
-        if self.shear_modulus is not None:
-            require("shear_modulus", self.shear_modulus, Unit("Pa"), at_least=0)
+        hard.require_fields(
+            self,
+            x=hard.PLACE,
+            y=hard.PLACE,
+            length=hard.SIDE,
+            width=hard.SIDE,
+            thickness=hard.LAYER,
+        )
+        hard.require_fields(
+            self,
+            young_modulus=hard.MODULUS,
+            quality_factor=hard.QUALITY,
+            shear_modulus=hard.SHEAR_MODULUS,
+        )
 
     @property
     def stiffness_per_area(self) -> tuple[float, float, float]:
@@ -176,10 +178,16 @@ class RectangularPlate:
     lines_across: Literal["length", "width"] = "length"
 
     def __post_init__(self) -> None:
-        for name in ("length", "width", "thickness"):
-            require(name, getattr(self, name), _M, above=0)
-        require("nodal_lines", self.nodal_lines, at_least=2)
-        require("quality_factor", self.quality_factor, above=0.5)
+        hard.require_fields(
+            self,
+            length=hard.SIDE,
+            width=hard.SIDE,
+            thickness=hard.LAYER,
+            nodal_lines=hard.NODAL_LINES,
+            quality_factor=hard.QUALITY,
+        )
+        hard.require_within(hard.PARTS_OF_A_PLATE, len(self.patches), "number of patches")
+        hard.require_within(hard.PARTS_OF_A_PLATE, len(self.supports), "number of supports")
         if not self.patches:
             raise GeometryError("patches is empty; a plate needs at least one ceramic to drive it")
         self._check_overhang()
@@ -269,140 +277,6 @@ def _overlap(a: CeramicPatch | FoamSupport, b: CeramicPatch | FoamSupport) -> st
     if x > 1e-9 and y > 1e-9:
         return f"{format_quantity(x, _M)} × {format_quantity(y, _M)}"
     return None
-
-
-@checked_numbers
-@dataclass(frozen=True)
-class AnnularStator:
-    """The ring of an ultrasonic motor fed on one channel: a standing wave of known frequency and
-    length. Its amplitude is not computed but measured, at `reference_voltage`, and scales with it.
-    The surface may be toothed: `tooth_pitch` along the circumference, slots of `slot_width`.
-    """
-
-    mean_diameter: Metre
-    radial_width: Metre
-    wavelength: Metre
-    resonance_frequency: Hertz
-    quality_factor: Dimensionless
-    reference_amplitude: Metre
-    reference_voltage: Volt
-    tooth_pitch: Metre | None = None
-    slot_width: Metre | None = None
-    type: Literal["annular_stator"] = "annular_stator"
-
-    def __post_init__(self) -> None:
-        for name in ("mean_diameter", "radial_width", "wavelength", "reference_amplitude"):
-            require(name, getattr(self, name), _M, above=0)
-        require("resonance_frequency", self.resonance_frequency, Unit("Hz"), above=0)
-        require("quality_factor", self.quality_factor, above=0.5)
-        require("reference_voltage", self.reference_voltage, Unit("V"), above=0)
-        if self.radial_width >= self.mean_diameter:
-            raise GeometryError(
-                f"radial_width = {format_quantity(self.radial_width, _M)} is not smaller than "
-                f"mean_diameter = {format_quantity(self.mean_diameter, _M)}; a ring needs a hole"
-            )
-        if (self.tooth_pitch is None) != (self.slot_width is None):
-            raise GeometryError(
-                "tooth_pitch and slot_width belong together; give both, or neither for a plain ring"
-            )
-        if self.tooth_pitch is not None and self.slot_width is not None:
-            require("tooth_pitch", self.tooth_pitch, _M, above=0)
-            require("slot_width", self.slot_width, _M, above=0, below=self.tooth_pitch)
-        waves = self.wavelengths_around
-        if abs(waves - round(waves)) > 0.05 or round(waves) < 1:
-            raise GeometryError(
-                f"{waves:.2f} wavelengths of {format_quantity(self.wavelength, _M)} fit on the "
-                f"mean diameter of {format_quantity(self.mean_diameter, _M)}; a standing wave "
-                "needs a whole number (within 0.05)"
-            )
-
-    @property
-    def wavelengths_around(self) -> Dimensionless:
-        """How many wavelengths fit on the mean circumference."""
-        return math.pi * self.mean_diameter / self.wavelength
-
-
-@checked_numbers
-@dataclass(frozen=True)
-class DiscPlate:
-    """A disc (or an annulus, with an `inner_diameter`) with a ceramic disc or ring bonded below.
-
-    The working mode B(`nodal_circles`, `nodal_diameters`) is solved, nothing of it is measured.
-    Without nodal diameters one electrode covers the whole ceramic; with m of them the ceramic has
-    `sectors` neighbouring sectors of π/m, poled in turn (2m go all round). `quality_factor` is that
-    of the whole assembly; it holds for every material unless the substrate has its own. The disc is
-    free everywhere.
-
-    Raises `GeometryError` for a ceramic that overhangs, `InputError` for sectors that do not fit.
-    """
-
-    diameter: Metre
-    thickness: Metre
-    quality_factor: Dimensionless
-    substrate: ElasticMaterial
-    ceramic: Piezoceramic
-    ceramic_outer_diameter: Metre
-    ceramic_thickness: Metre
-    inner_diameter: Metre = 0.0
-    ceramic_inner_diameter: Metre = 0.0
-    nodal_circles: int = 1
-    nodal_diameters: int = 0
-    sectors: int = 0
-    glue: GlueLayer | None = None
-    type: Literal["disc"] = "disc"
-
-    def __post_init__(self) -> None:
-        for name in ("diameter", "thickness", "ceramic_outer_diameter", "ceramic_thickness"):
-            require(name, getattr(self, name), _M, above=0)
-        require("inner_diameter", self.inner_diameter, _M, at_least=0, below=self.diameter)
-        require(
-            "ceramic_inner_diameter", self.ceramic_inner_diameter, _M,
-            at_least=0, below=self.ceramic_outer_diameter,
-        )  # fmt: skip
-        require("quality_factor", self.quality_factor, above=0.5)
-        require("nodal_circles", self.nodal_circles, at_least=0)
-        require("nodal_diameters", self.nodal_diameters, at_least=0)
-        self._check_ceramic()
-        m = self.nodal_diameters
-        if m == 0 and self.sectors:
-            raise InputError(
-                f"sectors = {self.sectors} drive no mode without nodal diameters; leave them out "
-                "for one electrode all round, or give nodal_diameters",
-                quantity="sectors",
-            )
-        if m > 0 and not 1 <= self.sectors <= 2 * m:
-            raise InputError(
-                f"sectors = {self.sectors} is not allowed with {m} nodal diameters: from 1 to "
-                f"{2 * m} sectors of half a wave fit round the disc",
-                quantity="sectors",
-            )
-        if self.nodal_circles == 0 and m < 2:
-            raise InputError(
-                f"B(0,{m}) is a motion of the rigid disc; give a nodal circle, or two nodal "
-                "diameters",
-                quantity="nodal_circles",
-            )
-
-    def _check_ceramic(self) -> None:
-        if self.ceramic_outer_diameter > self.diameter + 1e-9:
-            raise GeometryError(
-                f"the ceramic of {format_quantity(self.ceramic_outer_diameter, _M)} overhangs the "
-                f"disc of {format_quantity(self.diameter, _M)}; make it smaller",
-                quantity="ceramic_outer_diameter",
-            )
-        if self.ceramic_inner_diameter < self.inner_diameter - 1e-9:
-            raise GeometryError(
-                f"the ceramic begins at a diameter of "
-                f"{format_quantity(self.ceramic_inner_diameter, _M)} and overhangs the hole of "
-                f"{format_quantity(self.inner_diameter, _M)}; give it a larger "
-                "ceramic_inner_diameter",
-                quantity="ceramic_inner_diameter",
-            )
-
-    @property
-    def nodal_lines(self) -> int:
-        """Nodal circles and diameters together."""
-        return self.nodal_circles + self.nodal_diameters
 
 
 Actuator = RectangularPlate | AnnularStator | DiscPlate

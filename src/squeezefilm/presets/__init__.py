@@ -80,10 +80,18 @@ def _resolved(name_or_path: str | Path, kind: str, known: tuple[str, ...], folde
     looks_like_name = candidate.name == text and candidate.suffix != ".toml"
     if looks_like_name and text in known:
         return folder / f"{text}.toml"
-    if looks_like_name and not candidate.exists():
+    if looks_like_name and not _exists(candidate):
         kinds = "Studies" if kind == "study" else f"{kind.capitalize()}s"
         raise ConfigError(
-            f"'{text}' is neither a file nor a {kind}.{did_you_mean(text, known)} "
+            f"'{text[:100]}' is neither a file nor a {kind}.{did_you_mean(text, known)} "
             f"{kinds}: {', '.join(known)}"
         )
     return candidate
+
+
+def _exists(path: Path) -> bool:
+    try:
+        return path.exists()
+    except OSError:
+        # A name longer than the system has, for one.
+        return False

@@ -16,7 +16,7 @@ import re
 import typing
 from collections.abc import Iterable
 from dataclasses import dataclass
-from decimal import Decimal, localcontext
+from decimal import Decimal, DecimalException, localcontext
 from typing import Annotated, Any
 
 import numpy as np
@@ -68,7 +68,9 @@ _PREFIXES = {
     "c": "1e-2", "d": "1e-1", "k": "1e3", "M": "1e6", "G": "1e9",
 }  # fmt: skip
 
-_FACTOR = re.compile(r"([^\s*/^·\d]+|1)\s*(?:\^|\*\*)?\s*(-?\d+)?")
+# A text past it is no quantity, and would be searched for one in vain for minutes.
+_LONGEST_TEXT = 200
+_FACTOR = re.compile(r"([^\s*/^·\d]+|1)\s*(?:\^|\*\*)?\s*(-?\d{1,2})?")
 _QUANTITY = re.compile(
     r"\s*(?P<number>[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?|[+-]?(?:nan|inf(?:inity)?))"
     r"\s*(?P<unit>\S.*?)?\s*",
@@ -167,12 +169,20 @@ def parse_quantity(text: str, unit: Unit) -> float:
     Raises `QuantityError` for a text without a number, without a unit (unless the quantity is
     dimensionless), of another dimension, not finite, or too large for a float.
     """
+    if len(text) > _LONGEST_TEXT:
+        raise QuantityError(
+            f"'{text[:40]}…' is no quantity: it has {len(text)} characters, and at most "
+            f'{_LONGEST_TEXT} are read; write a number and a unit, like "{_example(unit)}"'
+        )
     match = _QUANTITY.fullmatch(text)
     if match is None:
         raise QuantityError(
             f"'{text}' is no quantity; write a number and a unit, like \"{_example(unit)}\""
         )
-    number = Decimal(match.group("number"))
+    try:
+        number = Decimal(match.group("number"))
+    except DecimalException as error:
+        raise QuantityError(f"'{text}' is too large or too small to be represented") from error
     if not number.is_finite():
         raise QuantityError(f"'{text}' is not a finite number; a quantity must be finite")
     symbol = match.group("unit")
@@ -192,9 +202,12 @@ def parse_quantity(text: str, unit: Unit) -> float:
             f"'{text}' has the wrong dimension; a quantity in "
             f"{unit.label or 'no unit (dimensionless)'} is wanted, in one of {allowed_units(unit)}"
         )
-    with localcontext() as context:
-        context.prec = 60
-        value = float(number * scale)
+    try:
+        with localcontext() as context:
+            context.prec = 60
+            value = float(number * scale)
+    except DecimalException:
+        value = float("inf")
     if not np.isfinite(value):
         raise QuantityError(f"'{text}' is too large to be represented")
     return value

@@ -269,9 +269,11 @@ def display_values(target: str) -> list[dict[str, Any]]:
     """
     from squeezefilm import presets
     from squeezefilm.display import load_display
+    from squeezefilm.hard_limits import DESCRIPTION_BYTES
+    from squeezefilm.regular_file import read_regular_text
 
     load_display(target)  # for its messages: what is listed below can be analysed
-    text = presets.resolve(target).read_text(encoding="utf-8")
+    text = read_regular_text(presets.resolve(target), DESCRIPTION_BYTES, "a TOML file")
     # Numbers are kept as they were typed: 0.30 does not become 0.3.
     return list(_written(tomllib.loads(text, parse_float=_Typed), ()))
 

@@ -13,7 +13,9 @@ from typing import Any
 import numpy as np
 
 from squeezefilm.errors import InputError
+from squeezefilm.hard_limits import TRACE_BYTES
 from squeezefilm.quantities import FloatArray
+from squeezefilm.regular_file import opened
 from squeezefilm.session import trace_file as file
 
 
@@ -73,14 +75,14 @@ def read_trace(path: str | Path) -> Trace:
     Raises:
         InputError: a file that cannot be opened, or what is no file (a pipe has no end).
     """
-    if Path(path).exists() and not Path(path).is_file():
-        raise InputError(f"cannot read the trace {path}: it is no file")
     try:
-        with Path(path).open("rb") as stream:
-            if os.fstat(stream.fileno()).st_size == 0:
+        with opened(path, TRACE_BYTES, "a trace") as handle:
+            if os.fstat(handle).st_size == 0:
                 return _trace(b"")
-            with mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ) as data:
+            with mmap.mmap(handle, 0, access=mmap.ACCESS_READ) as data:
                 return _trace(data)
+    except InputError:
+        raise
     except (OSError, ValueError) as error:
         raise InputError(f"cannot read the trace {path}: {error}") from error
 

@@ -1,0 +1,178 @@
+"""The hard limits of size and work: the one place that says how large anything may be.
+
+Two kinds. Sizes of what is described (a plate's side, a modulus): far wider than anything that is
+built, so that only a slip of unit or a damaged file meets them, and narrow enough that no formula
+runs out of floats. Amounts of work (steps of a stroke, unknowns of a solve, bytes of a file):
+what ends in minutes within a few gigabytes on a small computer. `require_within` refuses what is
+outside, before anything is computed, and says what would be enough.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from squeezefilm.errors import InputError
+from squeezefilm.quantities import FloatLike, Unit, format_quantity
+
+
+@dataclass(frozen=True, slots=True)
+class HardLimit:
+    """From `least` to `most` of what `name` says, in `unit`; `reason` is what people are told."""
+
+    name: str
+    least: float
+    most: float
+    unit: Unit
+    reason: str
+
+    @property
+    def range(self) -> str:
+        """What is allowed, in words: ``"from 1 um to 10 m"``."""
+        return f"from {_shown(self.least, self.unit)} to {_shown(self.most, self.unit)}"
+
+
+def require_within(
+    limit: HardLimit, asked: FloatLike, quantity: str | None = None, *, enough: str = ""
+) -> None:
+    """Refuse a value (SI; scalar or array) outside a hard limit.
+
+    `quantity` is the field that was asked for (without one the limit's name), `enough` a sentence
+    that says what would do. Raises `InputError` with the value, the limit, its reason and `enough`.
+    """
+    values = np.asarray(asked, dtype=float)
+    outside = ~((values >= limit.least) & (values <= limit.most))
+    if not outside.any():
+        return
+    offender = float(values[outside].flat[0])
+    raise InputError(
+        f"{quantity or limit.name} = {_shown(offender, limit.unit)} cannot be used: it must be "
+        f"{limit.range} ({limit.name}: {limit.reason})" + (f"; {enough}" if enough else ""),
+        quantity=quantity,
+    )
+
+
+def require_fields(described: object, **limits: HardLimit) -> None:
+    """Refuse a description one of whose fields is outside its hard limit; None is left alone.
+
+    ``require_fields(self, length=SIDE, thickness=LAYER)``. Raises as `require_within` does.
+    """
+    for name, limit in limits.items():
+        value = getattr(described, name)
+        if value is not None:
+            require_within(limit, value, name)
+
+
+def _shown(value: float, unit: Unit) -> str:
+    """Counts are written out, other numbers with four digits and their unit."""
+    if unit == _ONE and float(value).is_integer() and abs(value) < 1e15:
+        return f"{int(value):,}".replace(",", " ")
+    return format_quantity(value, unit)
+
+
+_ONE, _M, _HZ, _S, _N, _PA = (Unit(symbol) for symbol in ("1", "m", "Hz", "s", "N", "Pa"))
+_SLIP = "anything outside is a slip of unit"
+
+# --- sizes of what is described ---------------------------------------------------------------
+
+SIDE = HardLimit("a side or a diameter", 1e-6, 10.0, _M, "MEMS to table tops; " + _SLIP)
+PLACE = HardLimit("a distance from an edge", 0.0, 10.0, _M, "no body is larger; " + _SLIP)
+LAYER = HardLimit("the thickness of a layer", 1e-8, 1.0, _M, "thin films to blocks; " + _SLIP)
+MODULUS = HardLimit("a modulus", 1e3, 1e13, _PA, "foam to beyond diamond; " + _SLIP)
+SHEAR_MODULUS = HardLimit("a shear modulus", 0.0, 1e13, _PA, "up to beyond diamond; " + _SLIP)
+DENSITY = HardLimit("a density", 1.0, 1e5, Unit("kg/m3"), "aerogel to beyond osmium; " + _SLIP)
+QUALITY = HardLimit("a quality factor", 0.5000001, 1e8, _ONE, "from no resonance to beyond quartz")
+COMPLIANCE = HardLimit("a compliance", 1e-14, 1e-3, Unit("m2/N"), "of any solid; " + _SLIP)
+CROSS_COMPLIANCE = HardLimit("a compliance", -1e-3, 1e-3, Unit("m2/N"), "of any solid; " + _SLIP)
+CHARGE_COEFFICIENT = HardLimit(
+    "a charge coefficient", -1e-6, 1e-6, Unit("m/V"), "beyond any ceramic or crystal; " + _SLIP
+)
+STRESS_COEFFICIENT = HardLimit(
+    "a stress coefficient", -1e4, 1e4, Unit("C/m2"), "beyond any ceramic or crystal; " + _SLIP
+)
+PERMITTIVITY = HardLimit("a relative permittivity", 1.0, 1e7, _ONE, "vacuum to beyond any ceramic")
+RESISTANCE = HardLimit("a resistance", 1e-6, 1e15, Unit("ohm"), "a busbar to the best insulator")
+FREQUENCY = HardLimit("a frequency", 1.0, 1e9, _HZ, "of a vibration in a solid; " + _SLIP)
+ROUGHNESS = HardLimit("a roughness", 1e-11, 1e-3, _M, "below an atom to a rasp; " + _SLIP)
+SKIN_ROUGHNESS = HardLimit("a skin's roughness", 0.0, 1e-3, _M, "none to a rasp; " + _SLIP)
+RIDGE_AMPLITUDE = HardLimit("half a ridge's height", 0.0, 1e-2, _M, "none to a glove; " + _SLIP)
+CONTACT_LENGTH = HardLimit("a contact's length", 1e-6, 1.0, _M, "a hair to a forearm; " + _SLIP)
+RIDGE_PERIOD = HardLimit("a ridge's period", 1e-6, 1.0, _M, "a hair to a forearm; " + _SLIP)
+DECAY_LENGTH = HardLimit("a decay length", 1e-11, 1e-3, _M, "below an atom to a rasp; " + _SLIP)
+FORCE = HardLimit("a force", 1e-6, 1e4, _N, "a fly to a car's jack; " + _SLIP)
+PRESSURE = HardLimit("a pressure", 1e-3, 1e10, _PA, "a high vacuum to a press; " + _SLIP)
+VISCOSITY = HardLimit("a viscosity", 1e-8, 1e3, Unit("Pa*s"), "below any gas to honey; " + _SLIP)
+GAS_DENSITY = HardLimit("a gas's density", 1e-9, 1e4, Unit("kg/m3"), "of any gas; " + _SLIP)
+FREE_PATH = HardLimit("a mean free path", 1e-13, 1e3, _M, "of any gas; " + _SLIP)
+VIBRATION = HardLimit("a vibration's amplitude", 0.0, 1e-3, _M, "no plate survives more")
+PAD_STIFFNESS = HardLimit("a stiffness", 1e-3, 1e9, Unit("N/m"), "of a fingertip; " + _SLIP)
+PAD_DAMPING = HardLimit("a damping", 0.0, 1e6, Unit("N*s/m"), "of a fingertip; " + _SLIP)
+PAD_MASS = HardLimit("a mass", 1e-9, 1e3, Unit("kg"), "of a fingertip; " + _SLIP)
+SKIN_MASS = HardLimit("a mass per area", 1e-6, 1e5, Unit("kg/m2"), "of skin; " + _SLIP)
+SKIN_STIFFNESS = HardLimit("a stiffness per area", 0.0, 1e15, Unit("Pa/m"), "of skin; " + _SLIP)
+SKIN_DAMPING = HardLimit("a damping per area", 0.0, 1e12, Unit("Pa*s/m"), "of skin; " + _SLIP)
+FINGER_SPEED = HardLimit(
+    "a finger's speed", 1e-9, 5.0, Unit("m/s"), "from standing still to faster than any hand"
+)
+STROKE_LENGTH = HardLimit("a stroke's length", 1e-9, 10.0, _M, "no surface is longer; " + _SLIP)
+STROKE_START = HardLimit("where a stroke starts", -10.0, 10.0, _M, "no surface is longer; " + _SLIP)
+
+# --- work -------------------------------------------------------------------------------------
+
+NODAL_LINES = HardLimit(
+    "nodal lines", 2, 1000, _ONE, "a mode is found by going through all below it"
+)
+NODAL_CIRCLES = HardLimit(
+    "nodal circles or diameters", 0, 100, _ONE, "a mode is found by going through all below it"
+)
+PARTS_OF_A_PLATE = HardLimit(
+    "ceramics or supports", 0, 200, _ONE, "every pair is checked, and every edge takes elements"
+)
+RIDGES = HardLimit(
+    "ridges under a contact", 0, 2000, _ONE, "each is a film and a load balance of its own"
+)
+SOLID_UNKNOWNS = HardLimit(
+    "unknowns of a three-dimensional solve", 1, 600_000, _ONE, "more take hours and all memory"
+)
+SOLID_MEMORY = HardLimit(
+    "bytes of a three-dimensional solve", 1, 6e9, _ONE, "more is not in a small computer"
+)
+EDGE_UNKNOWNS = HardLimit(
+    "unknowns of one harmonic of a ring", 1, 400_000, _ONE, "more take hours and all memory"
+)
+TRACKED_VALUES = HardLimit(
+    "values of a tracked parameter", 2, 1000, _ONE, "each is two solved plates, at seconds each"
+)
+MOTION_SAMPLES = HardLimit(
+    "samples of a motion", 2, 20_000_000, _ONE, "160 MB for every array of a trace"
+)
+RENDER_STEPS = HardLimit(
+    "steps of a rendered stroke", 1, 5_000_000, _ONE, "forty arrays of 40 MB each"
+)
+LAG_PRODUCTS = HardLimit(
+    "products of a lag's correlation", 0, 2e9, _ONE, "more take minutes for one number"
+)
+SIMULATED_TICKS = HardLimit("simulated ticks", 1, 20_000_000, _ONE, "a gigabyte of rows")
+PIXELS = HardLimit("pixels of an image", 1, 1_048_576, _ONE, "one table of 8 MB in a program")
+SIMULATED_TRIALS = HardLimit(
+    "answers of simulated people", 1, 20_000_000, _ONE, "eighty bytes for each of them"
+)
+PLANNED_TRIALS = HardLimit(
+    "planned trials", 1, 2_000_000, _ONE, "each participant's order is made and kept"
+)
+STUDIES = HardLimit(
+    "simulated studies of one size", 10, 100_000, _ONE, "each is drawn and tested by itself"
+)
+
+# --- texts and files --------------------------------------------------------------------------
+
+NAME = HardLimit("characters of a name", 1, 200, _ONE, "it becomes a file's name or a title")
+DESCRIPTION_BYTES = HardLimit(
+    "bytes of a description", 0, 4_000_000, _ONE, "a display has a few thousand"
+)
+PICTURE_BYTES = HardLimit("bytes of a picture", 0, 16_000_000, _ONE, "a megapixel of 16 bits")
+TABLE_BYTES = HardLimit("bytes of a table", 0, 2_000_000_000, _ONE, "it is read into memory")
+HJIF_BYTES = HardLimit("bytes of an HJIF", 0, 50_000_000, _ONE, "it is read into memory")
+WAVE_BYTES = HardLimit("bytes of a WAV file", 0, 2**32, _ONE, "what the format can hold")
+TRACE_BYTES = HardLimit("bytes of a trace", 0, 1e12, _ONE, "a month of the fastest loop")

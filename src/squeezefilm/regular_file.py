@@ -1,0 +1,87 @@
+"""How every file that somebody names is read: a regular file of a limited size, and no other.
+
+A pipe would be waited for without an end, and a device such as /dev/zero has none.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import stat
+from collections.abc import Iterator
+from pathlib import Path
+
+from squeezefilm.errors import ConfigError
+from squeezefilm.hard_limits import HardLimit
+
+# Opening a pipe would wait for a writer, and a terminal would become this process's own.
+_FLAGS = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_NOCTTY", 0)
+_FLAGS |= getattr(os, "O_BINARY", 0)
+
+
+@contextlib.contextmanager
+def opened(path: str | Path, limit: HardLimit, what: str) -> Iterator[int]:
+    """The descriptor of a regular file, open for reading; `what` is what it should be ("a TOML
+    file"). Raises as `read_regular` does."""
+    try:
+        handle = os.open(path, _FLAGS)
+    except FileNotFoundError as error:
+        raise ConfigError(
+            f"cannot be read: it does not exist; give the path of {what}", file=path
+        ) from error
+    except (OSError, ValueError) as error:
+        # Windows opens no folder, and a NUL in a path is no OSError.
+        raise _refused(path, what, error) from error
+    try:
+        found = os.fstat(handle)
+        if stat.S_ISDIR(found.st_mode):
+            raise ConfigError(f"cannot be read: it is a directory; give {what}", file=path)
+        if not stat.S_ISREG(found.st_mode):
+            raise ConfigError(
+                "cannot be read: it is a pipe, a device or a socket, and no regular file; save "
+                f"what comes from it, and give {what}",
+                file=path,
+            )
+        if found.st_size > limit.most:
+            raise ConfigError(
+                f"is larger than {limit.most:,.0f} bytes ({limit.name}: {limit.reason}): it has "
+                f"{found.st_size:,}; give {what} that is smaller".replace(",", " "),
+                file=path,
+            )
+        yield handle
+    finally:
+        os.close(handle)
+
+
+def read_regular(path: str | Path, limit: HardLimit, what: str) -> bytes:
+    """The bytes of a file; `what` is what it should be, for messages ("a TOML file").
+
+    Raises `ConfigError` for a file that is not there, cannot be read, is no regular file (a
+    directory, a pipe, a device) or has more bytes than `limit` allows.
+    """
+    with opened(path, limit, what) as handle:
+        try:
+            with os.fdopen(handle, "rb", closefd=False) as stream:
+                # No more than was looked at: a file may grow while it is read.
+                return stream.read(int(limit.most))
+        except OSError as error:
+            raise _refused(path, what, error) from error
+
+
+def read_regular_text(path: str | Path, limit: HardLimit, what: str) -> str:
+    """The UTF-8 text of a file (a byte order mark is dropped), with line ends as "\\n".
+
+    Raises as `read_regular` does, and `ConfigError` for what is not UTF-8.
+    """
+    try:
+        text = read_regular(path, limit, what).decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise ConfigError(f"is not UTF-8 text; save it in UTF-8 as {what}", file=path) from error
+    return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def _refused(path: str | Path, what: str, error: OSError | ValueError) -> ConfigError:
+    if isinstance(error, PermissionError) and Path(path).is_dir():
+        return ConfigError(f"cannot be read: it is a directory; give {what}", file=path)
+    why = error.strerror if isinstance(error, OSError) else str(error)
+    return ConfigError(f"cannot be read: {why}; give the path of {what}", file=path)
