@@ -20,7 +20,6 @@ import subprocess
 import sys
 import tempfile
 import time
-import tty
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import IO
@@ -48,9 +47,15 @@ START_LIMIT: Second = 120.0
 
 
 class PtyServer:
-    """A twin's pseudo-terminal and its clock. `serve` returns after `stop`."""
+    """A twin's pseudo-terminal and its clock. `serve` returns after `stop`.
+
+    Raises `InputError` on a system without pseudo-terminals.
+    """
 
     def __init__(self, device: TwinDevice) -> None:
+        require_pseudo_terminals()
+        import tty
+
         self._device = device
         self._master, slave = os.openpty()
         tty.setraw(slave)
@@ -205,6 +210,15 @@ def _linked(link: Path | None, port: str) -> Iterator[None]:
             link.unlink()
 
 
+def require_pseudo_terminals() -> None:
+    """Raise `InputError` on a system without pseudo-terminals, as Windows is."""
+    if not hasattr(os, "openpty"):
+        raise InputError(
+            "a twin stands behind a pseudo-terminal, which this system does not have; use Linux or "
+            "macOS (on Windows: its subsystem for Linux), or a device at a serial port"
+        )
+
+
 @contextlib.contextmanager
 def running_twin(
     display: str | Path,
@@ -221,8 +235,10 @@ def running_twin(
     The process ends with the block, and on its own if this process dies.
 
     Raises:
-        InputError: the twin refused to start (its message), or was not there in `start_limit` (s).
+        InputError: the twin refused to start (its message), was not there in `start_limit` (s), or
+            the system has no pseudo-terminals.
     """
+    require_pseudo_terminals()
     command = [sys.executable, "-m", "squeezefilm.twin.pty_server", str(display)]
     command += ["--stroke", stroke, "--force", repr(normal_force)]
     command += ["--with-parent", str(os.getpid())]

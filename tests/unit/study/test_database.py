@@ -212,18 +212,17 @@ def test_nothing_is_acknowledged_into_a_file_that_is_not_there(
 def test_what_goes_while_it_is_written_is_not_acknowledged(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    store, run = _begun(tmp_path / "study.sqlite")
-    shown = run.next_trial()
-    assert shown is not None
+    store, _ = _begun(tmp_path / "study.sqlite")
     insert = store_module.insert
 
     def inserted(write: sqlite3.Connection, table: str, row: object) -> None:
         insert(write, table, row)  # type: ignore[arg-type]
-        _removed(store.path)
+        if table == "trial":
+            _removed(store.path)
 
-    monkeypatch.setattr("squeezefilm.study.run.insert", inserted)
+    monkeypatch.setattr(store_module, "insert", inserted)
     with pytest.raises(RecordError, match="nothing is acknowledged any more"):
-        run.respond(shown.token, Response())
+        store.enrol()
     store.close()
 
 
@@ -245,17 +244,26 @@ def test_a_deletion_keeps_the_locks_that_keep_others_from_removing_the_log(tmp_p
     store.close()
 
 
-@pytest.mark.parametrize("mode", ["delete", "wal"])
+@pytest.mark.parametrize("mode", ["delete", "wal", "wal, of a program that was killed"])
 def test_a_foreign_database_is_not_changed(tmp_path: Path, mode: str) -> None:
     path = tmp_path / "foreign.sqlite"
     connection = sqlite3.connect(path)
-    connection.execute(f"PRAGMA journal_mode = {mode}")
+    connection.execute(f"PRAGMA journal_mode = {mode.partition(',')[0]}")
     connection.execute("CREATE TABLE t (x)")
-    before = {one.name: one.read_bytes() for one in tmp_path.iterdir() if "shm" not in one.name}
+    if "killed" in mode:
+        (tmp_path / "killed").mkdir()
+        for part in (path, tmp_path / "foreign.sqlite-wal"):
+            shutil.copy(part, tmp_path / "killed")
+        path = tmp_path / "killed" / path.name
+
+    def contents() -> dict[str, bytes]:
+        beside = path.parent.glob(f"{path.name}*")
+        return {one.name: one.read_bytes() for one in beside if not one.name.endswith("-shm")}
+
+    before = contents()
     with pytest.raises(InputError, match="no study's file"):
         StudyStore.open(path)
-    after = {one.name: one.read_bytes() for one in tmp_path.iterdir() if "shm" not in one.name}
-    assert after == before
+    assert contents() == before
     connection.close()
 
 

@@ -1,0 +1,174 @@
+"""Work in a process of its own: newest wins, and nothing takes for ever or eats the memory."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import signal
+import sys
+import time
+from collections.abc import Coroutine
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from squeezefilm.errors import ConfigError, SqueezefilmError
+from squeezefilm.lab import worker
+from squeezefilm.lab.description import name_of
+from squeezefilm.lab.worker import PAGE, Busy, SupersededError
+
+LONG = 600.0
+
+
+@pytest.fixture(scope="module")
+def busy() -> Any:
+    """One process for all tests, where they do not end it; it starts in a second or more."""
+    one = Busy(LONG)
+    yield one
+    one.close()
+
+
+def play(work: Coroutine[Any, Any, None]) -> None:
+    asyncio.run(asyncio.wait_for(work, 120))
+
+
+async def begun(file: Path) -> int:
+    """The process of a piece of work that says that it began."""
+    while not file.exists() or not file.read_text():
+        await asyncio.sleep(0.01)
+    return int(file.read_text())
+
+
+def endless(file: str) -> None:
+    """Work that says where it runs and never ends."""
+    Path(file).write_text(str(os.getpid()))
+    time.sleep(LONG)
+
+
+def forgets_itself(size: int) -> int:
+    """Work that needs memory."""
+    return len(bytearray(size))
+
+
+def where() -> int:
+    """The process it runs in."""
+    return os.getpid()
+
+
+def ends_itself() -> None:
+    """Work that its process does not outlive."""
+    os._exit(3)
+
+
+def test_work_that_takes_too_long_is_ended_and_the_next_is_done(tmp_path: Path) -> None:
+    async def work() -> None:
+        busy = Busy(1.0)
+        with pytest.raises(SqueezefilmError, match=r"more than 1 s.*ask for less"):
+            await busy.do("slot", endless, str(tmp_path / "a"))
+        busy._longest = LONG
+        first = await busy.do(None, where)
+        with pytest.raises(SqueezefilmError, match="starts again with the next request"):
+            await busy.do(None, ends_itself)
+        assert await busy.do(None, where) != first
+        busy.close()
+
+    play(work())
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="limits of memory are Linux's")
+def test_work_that_needs_too_much_memory_is_refused_and_the_process_goes_on(busy: Busy) -> None:
+    async def work() -> None:
+        process = await busy.do(None, where)
+        assert await busy.do(None, forgets_itself, 1000) == 1000
+        with pytest.raises(SqueezefilmError, match=r"more than 2 GiB of memory.*ask for less"):
+            await busy.do(None, forgets_itself, worker.LARGEST_MEMORY)
+        assert await busy.do(None, where) == process
+
+    play(work())
+
+
+def test_what_work_raises_keeps_its_type_and_place(busy: Busy) -> None:
+    async def work() -> None:
+        with pytest.raises(ConfigError, match="not valid TOML") as error:
+            await busy.do(None, name_of, "name = ")
+        assert error.value.__class__ is ConfigError
+        assert "not valid TOML" in error.value.message
+
+    play(work())
+
+
+def test_newest_wins_and_cancel_ends_what_runs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(worker, "GRACE", 0.01)
+
+    async def work() -> None:
+        busy = Busy(LONG)
+
+        def asked(name: str, **options: Any) -> asyncio.Task[None]:
+            file = str(tmp_path / name)
+            return asyncio.create_task(busy.do("slot", endless, file, **options))
+
+        PAGE.set("one page")  # type: ignore[arg-type]
+        first = asked("first", gives_way=True)
+        process = await begun(tmp_path / "first")
+        second = asked("second", gives_way=True)
+        with pytest.raises(SupersededError):
+            await first
+        assert await begun(tmp_path / "second") != process
+        # Waiting work of a slot goes at once; that of other pages does not.
+        third = asked("third")
+        PAGE.set("another page")  # type: ignore[arg-type]
+        other = asyncio.create_task(busy.do("slot", where))
+        await asyncio.sleep(0)
+        busy.cancel("another page")  # type: ignore[arg-type]
+        busy.cancel("one page")  # type: ignore[arg-type]
+        with pytest.raises((SqueezefilmError, SupersededError)):
+            await second
+        await begun(tmp_path / "third")
+        # What would not give way ends with the lab only.
+        busy.cancel("one page")  # type: ignore[arg-type]
+        busy.close()
+        with pytest.raises(SqueezefilmError, match="ended"):
+            await third
+        assert await other > 0
+        busy.close()
+
+    play(work())
+
+
+def test_work_ends_with_its_page_unless_it_writes(tmp_path: Path) -> None:
+    async def work() -> None:
+        busy = Busy(LONG)
+        for gives_way in (True, False):
+            file = tmp_path / str(gives_way)
+            task = asyncio.create_task(busy.do(None, endless, str(file), gives_way=gives_way))
+            process = await begun(file)
+            task.cancel()
+            with pytest.raises(asyncio.CancelledError):
+                await task
+            if gives_way:
+                assert await busy.do(None, where) != process
+            else:
+                os.kill(process, 0)
+                os.kill(process, signal.SIGTERM)
+        busy.close()
+
+    play(work())
+
+
+@pytest.mark.nightly
+def test_a_stopped_process_is_ended_by_its_time() -> None:
+    async def work() -> None:
+        busy = Busy(LONG)
+        process = await busy.do(None, where)
+        busy._longest = 1.0
+        os.kill(process, signal.SIGSTOP)
+        with pytest.raises(SqueezefilmError, match="more than 1 s"):
+            await busy.do(None, where)
+        busy._longest = LONG
+        assert await busy.do(None, where) != process
+        busy.close()
+
+    play(work())
