@@ -41,7 +41,8 @@ def load_text(cls: type[T], text: str, *, file: str | Path | None = None) -> T:
     """The dataclass `cls` read from TOML text; `file` is what messages name. See `load`."""
     try:
         raw = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
+    except ValueError as error:
+        # Beside TOMLDecodeError: a whole number of more digits than Python takes.
         raise ConfigError(f"is not valid TOML: {error}", file=file) from error
     except RecursionError as error:
         raise ConfigError("is nested too deeply to be read; nest less", file=file) from error
