@@ -53,6 +53,19 @@ def require_within(
     )
 
 
+def require_motion(limit: HardLimit, steps: float, duration: float, rate: float) -> None:
+    """Refuse more (or fewer) steps of a motion than a limit allows, before they are made.
+
+    `duration` (s) and `rate` (Hz) are what makes them. Raises `InputError`, saying from which to
+    which duration would do.
+    """
+    least, most = (format_quantity(count / rate, _S) for count in (limit.least, limit.most))
+    shown, pace = format_quantity(duration, _S), format_quantity(rate, _HZ)
+    enough = f"the motion takes {shown} at {pace}, and from {least} to {most} would do: make it"
+    enough += " shorter or faster" if steps > limit.most else " longer or slower"
+    require_within(limit, float(np.floor(steps)), enough=enough)
+
+
 def require_fields(described: object, **limits: HardLimit) -> None:
     """Refuse a description one of whose fields is outside its hard limit; None is left alone.
 
@@ -116,12 +129,13 @@ FINGER_SPEED = HardLimit(
     "a finger's speed", 1e-9, 5.0, Unit("m/s"), "from standing still to faster than any hand"
 )
 STROKE_LENGTH = HardLimit("a stroke's length", 1e-9, 10.0, _M, "no surface is longer; " + _SLIP)
+PASS_DURATION = HardLimit("a pass's duration", 1e-6, 1e9, _S, "a pass may take thirty years")
 STROKE_START = HardLimit("where a stroke starts", -10.0, 10.0, _M, "no surface is longer; " + _SLIP)
 
 # --- work -------------------------------------------------------------------------------------
 
 NODAL_LINES = HardLimit(
-    "nodal lines", 2, 1000, _ONE, "a mode is found by going through all below it"
+    "nodal lines", 2, 300, _ONE, "a mode is found by going through all below it"
 )
 NODAL_CIRCLES = HardLimit(
     "nodal circles or diameters", 0, 100, _ONE, "a mode is found by going through all below it"
@@ -132,34 +146,36 @@ PARTS_OF_A_PLATE = HardLimit(
 RIDGES = HardLimit(
     "ridges under a contact", 0, 2000, _ONE, "each is a film and a load balance of its own"
 )
-SOLID_UNKNOWNS = HardLimit(
-    "unknowns of a three-dimensional solve", 1, 600_000, _ONE, "more take hours and all memory"
-)
 SOLID_MEMORY = HardLimit(
-    "bytes of a three-dimensional solve", 1, 6e9, _ONE, "more is not in a small computer"
+    "bytes of a three-dimensional solve", 0, 8e9, _ONE, "it would take hours and all memory"
 )
-EDGE_UNKNOWNS = HardLimit(
-    "unknowns of one harmonic of a ring", 1, 400_000, _ONE, "more take hours and all memory"
+RING_ELEMENTS = HardLimit(
+    "elements of a ring's section", 1, 4000, _ONE, "it would take hours and all memory"
+)
+BAND_MODES = HardLimit(
+    "modes in a band", 0, 500, _ONE, "each is a field over the whole plate, refined by itself"
 )
 TRACKED_VALUES = HardLimit(
-    "values of a tracked parameter", 2, 1000, _ONE, "each is two solved plates, at seconds each"
+    "values of a tracked parameter", 2, 200, _ONE, "each is a solved plate, at seconds to minutes"
 )
+ASPECT = HardLimit("an aspect ratio", 1e-6, 1e6, _ONE, "beyond, a strip is the same film")
 MOTION_SAMPLES = HardLimit(
     "samples of a motion", 2, 20_000_000, _ONE, "160 MB for every array of a trace"
 )
 RENDER_STEPS = HardLimit(
-    "steps of a rendered stroke", 1, 5_000_000, _ONE, "forty arrays of 40 MB each"
+    "steps of a rendered stroke", 2, 3_000_000, _ONE, "forty arrays of 24 MB each"
 )
 LAG_PRODUCTS = HardLimit(
-    "products of a lag's correlation", 0, 2e9, _ONE, "more take minutes for one number"
+    "products of a lag's correlation", 0, 5e8, _ONE, "more take minutes for one number"
 )
 SIMULATED_TICKS = HardLimit("simulated ticks", 1, 20_000_000, _ONE, "a gigabyte of rows")
 PIXELS = HardLimit("pixels of an image", 1, 1_048_576, _ONE, "one table of 8 MB in a program")
+PARTICIPANT_TRIALS = HardLimit("trials of one participant", 1, 20_000, _ONE, "a month of sittings")
 SIMULATED_TRIALS = HardLimit(
     "answers of simulated people", 1, 20_000_000, _ONE, "eighty bytes for each of them"
 )
 PLANNED_TRIALS = HardLimit(
-    "planned trials", 1, 2_000_000, _ONE, "each participant's order is made and kept"
+    "planned trials", 1, 500_000, _ONE, "each participant's order is made and kept"
 )
 STUDIES = HardLimit(
     "simulated studies of one size", 10, 100_000, _ONE, "each is drawn and tested by itself"

@@ -255,6 +255,19 @@ def test_presets_are_listed() -> None:
         assert name in done.stdout
 
 
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full here")
+def test_output_that_does_not_fit_is_one_message_and_exit_code_two() -> None:
+    with Path("/dev/full").open("w") as full:
+        done = subprocess.run(
+            [*PROGRAM, "presets", "--json"], stdout=full, stderr=subprocess.PIPE, text=True,
+            check=False,
+        )  # fmt: skip
+    assert done.returncode == 2
+    assert done.stderr == (
+        "error: No space left on device; give another file or folder, or free space\n"
+    )
+
+
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [
@@ -284,6 +297,8 @@ def test_presets_are_listed() -> None:
         (("film", "--squeeze-number", "1", "--excursion", "0.5", "--shape", "disk"), "disc"),
         (("new", "x.toml", "--from", "biet"), "there is no preset 'biet'"),
         (("show", "nothing"), "neither a file nor a preset"),
+        (("friction", "biet2008-stator", "--force", "1e99999999999999999999 N"), "too large"),
+        (("reproduce", "--out", "a" * 300), "nothing can be written there"),
     ],
 )
 def test_mistakes_are_one_message_and_exit_code_two(

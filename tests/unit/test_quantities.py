@@ -118,3 +118,15 @@ def test_closed_form_checks_its_arguments() -> None:
         doubled(0.0)
     with pytest.raises(TypeError, match="no argument"):
         closed_form(positive="width")(doubled)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "1e99999999999999999999 N", "1e-99999999999999999999 N", "1e999999 GN", "1 N99", "1 N" * 99,
+        "1 N" + " " * 100_000 + "x", "1 N^" + "9" * 5000, "9" * 5000 + " N", "1 kN99*kN99",
+    ],
+)  # fmt: skip
+def test_texts_that_no_number_can_hold_are_refused_at_once(text: str) -> None:
+    with pytest.raises(QuantityError):
+        parse_quantity(text, Unit("N"))

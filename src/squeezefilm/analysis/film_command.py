@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 
 from squeezefilm.errors import InputError
+from squeezefilm.hard_limits import ASPECT, require_within
 from squeezefilm.quantities import (
     Dimensionless,
     DimensionlessArray,
     did_you_mean,
-    require,
 )
 from squeezefilm.results import stamp, to_json
 
@@ -38,7 +38,7 @@ class FilmRequest:
                 f"shape = '{self.shape}' is not known.{did_you_mean(self.shape, SHAPES)} "
                 f"Allowed: {', '.join(SHAPES)}"
             )
-        require("aspect_ratio", self.aspect_ratio, above=0)
+        require_within(ASPECT, self.aspect_ratio, "aspect_ratio")
 
 
 @dataclass(frozen=True)

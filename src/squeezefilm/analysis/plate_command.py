@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -12,6 +13,7 @@ from squeezefilm.analysis.plate_sensitivity import SensitivityTable, plate_sensi
 from squeezefilm.analysis.plate_tracking import ModeTracks, TrackRequest, track_modes
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError
+from squeezefilm.hard_limits import NODAL_LINES, require_within
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.plate_modes import Label, PlateModes, profiles, zero_crossings
 from squeezefilm.plate.plate_response import EquivalentCircuit, HarmonicResponse, harmonic_response
@@ -123,8 +125,11 @@ class PlateAnalysis:
 def parse_mode(text: str) -> tuple[int, int]:
     """The label of a mode from text such as ``"8,0"``. Raises `InputError` for anything else."""
     parts = text.strip("() ").split(",")
-    if len(parts) == 2 and all(part.strip().isdigit() for part in parts):
-        return int(parts[0]), int(parts[1])
+    if len(parts) == 2 and all(re.fullmatch(r"\s*[0-9]{1,9}\s*", part) for part in parts):
+        label = int(parts[0]), int(parts[1])
+        for lines in label:
+            require_within(NODAL_LINES, max(lines, NODAL_LINES.least), "--mode")
+        return label
     raise InputError(f"--mode '{text}' is no mode; write nodal lines across length, width: 8,0")
 
 

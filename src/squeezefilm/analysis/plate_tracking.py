@@ -22,6 +22,7 @@ from squeezefilm.analysis.plate_sensitivity import (
     with_young_modulus,
 )
 from squeezefilm.errors import InputError
+from squeezefilm.hard_limits import TRACKED_VALUES, require_within
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.plate_modes import Label, PlateModes
 from squeezefilm.plate.solve_modes import solve_modes
@@ -91,8 +92,7 @@ class TrackRequest:
             )
         if not self.start < self.stop:
             raise InputError("--from must be smaller than --to", quantity="track")
-        if self.values < 2:
-            raise InputError("a track needs at least 2 values", quantity="track")
+        require_within(TRACKED_VALUES, self.values, "--values")
 
 
 @dataclass(frozen=True, eq=False)

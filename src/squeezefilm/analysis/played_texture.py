@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from squeezefilm.errors import InputError
+from squeezefilm.hard_limits import RENDER_STEPS, require_motion
 from squeezefilm.plate.layout import Actuator, AnnularStator, DiscPlate, RectangularPlate
 from squeezefilm.quantities import (
     Dimensionless,
@@ -62,12 +63,9 @@ class FingerMotion:
     @classmethod
     def of(cls, motion: Stroke | MinimumJerkStroke | FingerPath, rate: float) -> FingerMotion:
         """The motion at times 0, 1/rate, … (rate in Hz). Raises `InputError` for too few steps."""
-        steps = int(np.floor(motion.duration * rate * (1 + 1e-12)))
-        if steps < 2:
-            raise InputError(
-                f"the motion of {motion.duration:.4g} s is over before the loop has made three "
-                f"steps at {rate:.6g} Hz; make it longer"
-            )
+        rounded = motion.duration * rate * (1 + 1e-12)
+        require_motion(RENDER_STEPS, rounded, motion.duration, rate)
+        steps = int(np.floor(rounded))
         time = np.minimum(np.arange(steps + 1) / rate, motion.duration)
         path = None
         trajectory: Trajectory = motion

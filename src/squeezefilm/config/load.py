@@ -43,7 +43,8 @@ def load_text(cls: type[T], text: str, *, file: str | Path | None = None) -> T:
     require_quick_toml(text, file)
     try:
         raw = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
+    except ValueError as error:
+        # Beside TOMLDecodeError: a whole number of more digits than Python takes.
         raise ConfigError(f"is not valid TOML: {error}", file=file) from error
     except RecursionError as error:
         raise ConfigError("is nested too deeply to be read; nest less", file=file) from error

@@ -20,10 +20,10 @@ import numpy as np
 
 from squeezefilm.errors import ConfigError, InputError
 from squeezefilm.formats.traces import Table, table_from_csv, text_of_file
+from squeezefilm.hard_limits import FINGER_SPEED
 from squeezefilm.quantities import (
     Metre,
     MetreArray,
-    MetrePerSecond,
     SecondArray,
     Unit,
     did_you_mean,
@@ -37,7 +37,6 @@ Motion = Stroke | MinimumJerkStroke | FingerPath
 """What a finger does, however it was said."""
 
 _COLUMNS = ("time_s", "x_m", "y_m")
-_FASTEST: MetrePerSecond = 5.0
 _EXAMPLE = "60 mm/s over 4 cm, 3 passes"
 
 
@@ -123,11 +122,12 @@ def _require_slow(
     time: SecondArray, x: MetreArray, y: MetreArray, path: str | Path, first: int
 ) -> None:
     speed = np.hypot(np.diff(x), np.diff(y)) / np.diff(time)
-    fast = np.flatnonzero(speed > _FASTEST)
+    fast = np.flatnonzero(speed > FINGER_SPEED.most)
     if fast.size:
         raise ConfigError(
-            f"the finger would move at {speed[fast[0]]:.4g} m/s, and at most {_FASTEST:g} m/s are "
-            "believed; check the units (time_s in seconds, x_m in metres)",
+            f"the finger would move at {speed[fast[0]]:.4g} m/s, and at most "
+            f"{FINGER_SPEED.most:g} m/s are believed; check the units (time_s in seconds, x_m in "
+            "metres)",
             file=path,
             line=first + int(fast[0]) + 1,
         )

@@ -14,6 +14,7 @@ import numpy as np
 from scipy import sparse
 
 from squeezefilm.errors import GeometryError, OutOfRangeError
+from squeezefilm.hard_limits import RING_ELEMENTS, require_within
 from squeezefilm.plate.annular_layout import AnnularSection, RingLayer
 from squeezefilm.plate.nodal_basis import gauss_points, graded_edges, lagrange, node_coordinates
 from squeezefilm.quantities import FloatArray, Unit, format_quantity
@@ -97,6 +98,7 @@ def ring_mesh(section: AnnularSection, *, graded: bool = True) -> RingMesh:
     shortest = 0.02 * section.thickness
     r_edges = graded_edges(r_breaks, longest, singular_r, shortest=shortest)
     z_edges = graded_edges(z_breaks, np.inf, singular_z, shortest=shortest)
+    require_within(RING_ELEMENTS, (r_edges.size - 1) * (z_edges.size - 1))
     rm, zm = (r_edges[1:] + r_edges[:-1]) / 2, (z_edges[1:] + z_edges[:-1]) / 2
     fill = np.full((rm.size, zm.size), -1)
     for index, a in enumerate(layers):

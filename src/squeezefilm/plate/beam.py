@@ -9,11 +9,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
 from squeezefilm.errors import InputError, OutOfRangeError
+from squeezefilm.hard_limits import NODAL_LINES, require_within
 from squeezefilm.plate.laminate import Laminate
 from squeezefilm.quantities import (
     FloatArray,
@@ -33,6 +34,7 @@ from squeezefilm.quantities import (
 )
 
 BeamTheory = Literal["euler_bernoulli", "timoshenko"]
+_LEAST_POINTS = 2001
 
 
 @closed_form(positive="half_wavelength bending_stiffness mass_per_area")
@@ -116,29 +118,28 @@ class BeamMode:
         return np.asarray(np.interp(x, self.position, self.rotation))
 
 
-def _wave_numbers(
-    omega: float, G: float, M: float, S: float, J: float
-) -> tuple[float, float, float]:
-    """α (decaying part), β (oscillating part) and m = Mω²/S at a frequency below the cut-off."""
-    m = M * omega**2 / S if math.isfinite(S) else 0.0
+def _wave_numbers(omega: Any, G: float, M: float, S: float, J: float) -> tuple[Any, Any, Any]:
+    """α (decaying part), β (oscillating part) and m = Mω²/S at frequencies below the cut-off;
+    broadcasts."""
+    m = M * omega**2 / S if math.isfinite(S) else 0.0 * omega
     p = G * m + J * omega**2
     q = M * omega**2 * (1 - (J * omega**2 / S if math.isfinite(S) else 0.0))
-    if q <= 0:
+    if np.any(q <= 0):
         raise OutOfRangeError(
-            f"{omega / 2 / math.pi:.4g} Hz lies above the beam's cut-off frequency, where the "
-            "decaying wave oscillates too; beam theory does not hold there, use fewer nodal lines"
+            f"{np.max(omega) / 2 / math.pi:.4g} Hz lies above the beam's cut-off frequency, where "
+            "the decaying wave oscillates too; beam theory does not hold there, use fewer nodal "
+            "lines"
         )
-    root = math.sqrt(p * p + 4 * G * q)
-    beta2 = (p + root) / (2 * G)
-    return math.sqrt(q / (G * beta2)), math.sqrt(beta2), m
+    beta2 = (p + np.sqrt(p * p + 4 * G * q)) / (2 * G)
+    return np.sqrt(q / (G * beta2)), np.sqrt(beta2), m
 
 
 def _determinant(
-    omega: float, symmetric: bool, length: float, constants: tuple[float, float, float, float]
-) -> float:
+    omega: Any, symmetric: bool, length: float, constants: tuple[float, float, float, float]
+) -> Any:
     alpha, beta, m = _wave_numbers(omega, *constants)
     half = beta * length / 2
-    th, s, c = math.tanh(alpha * length / 2), math.sin(half), math.cos(half)
+    th, s, c = np.tanh(alpha * length / 2), np.sin(half), np.cos(half)
     if symmetric:
         return (alpha**2 + m) * s * alpha - (m - beta**2) * c * th * beta
     return (alpha**2 + m) * alpha * c * th + (m - beta**2) * s * beta
@@ -150,7 +151,6 @@ def free_beam_mode(
     length: Metre,
     nodal_lines: int,
     theory: BeamTheory = "timoshenko",
-    points: int = 2001,
 ) -> BeamMode:
     """The bending mode of a free–free beam with a given number of nodal lines (≥ 2).
 
@@ -165,6 +165,7 @@ def free_beam_mode(
         raise InputError(
             f"nodal_lines = {nodal_lines}: a free beam bends with at least 2; fewer is rigid motion"
         )
+    require_within(NODAL_LINES, nodal_lines, "nodal_lines")
     G, M = section.bending_stiffness, section.mass_per_area
     euler = theory == "euler_bernoulli"
     S = math.inf if euler else section.shear_stiffness
@@ -177,10 +178,12 @@ def free_beam_mode(
     if not euler:
         upper = min(upper, 0.999999 * math.sqrt(S / J))
     wanted = nodal_lines // 2
-    grid = upper * np.linspace(1e-3, 1, 160 * nodal_lines)
-    values = [_determinant(w, symmetric, length, constants) for w in grid]
-    brackets = [i for i in range(len(grid) - 1) if values[i] * values[i + 1] < 0]
-    if len(brackets) < wanted:
+    # Modes are even in the root of the frequency: however many there are, the first one, at three
+    # half waves, is not passed over.
+    grid = upper * np.linspace(0.5 / nodal_lines, 1, 160 * nodal_lines) ** 2
+    signs = np.signbit(_determinant(grid, symmetric, length, constants))
+    brackets = np.flatnonzero(signs[:-1] != signs[1:])
+    if brackets.size < wanted:
         raise OutOfRangeError(
             f"a mode with {nodal_lines} nodal lines on {format_quantity(length, Unit('m'))} lies "
             "above the cut-off frequency of the Timoshenko beam; ask for fewer nodal lines"
@@ -196,6 +199,7 @@ def free_beam_mode(
             rtol=1e-14,
         )
     )
+    points = max(_LEAST_POINTS, 40 * nodal_lines + 1)
     return _mode(omega, symmetric, length, constants, theory, nodal_lines, points)
 
 
@@ -212,7 +216,7 @@ def _mode(
     alpha, beta, m = _wave_numbers(omega, *constants)
     x = np.linspace(0, length, points)
     xi = x - length / 2
-    end = math.exp(-alpha * length)
+    end = np.exp(-alpha * length)
     # cosh and sinh divided by cosh(αL/2), from decaying exponentials only.
     right, left = np.exp(alpha * (xi - length / 2)), np.exp(-alpha * (xi + length / 2))
     ch, sh = (right + left) / (1 + end), (right - left) / (1 + end)

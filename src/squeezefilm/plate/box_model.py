@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from squeezefilm.errors import GeometryError, InputError
+from squeezefilm.hard_limits import SOLID_MEMORY, require_within
 from squeezefilm.plate.lobatto import LineMesh
 from squeezefilm.quantities import Dimensionless, FloatArray, KilogramPerCubicMetre
 
@@ -93,6 +94,31 @@ class Foundation:
     loss: Dimensionless = 0.0
 
 
+def kept_products(y: LineMesh, z: LineMesh, trunk: float) -> NDArray[np.bool_]:
+    """Which products of functions along y and z a `trunk` keeps, shape (y, z functions)."""
+
+    def relative(mesh: LineMesh) -> FloatArray:
+        highest = max(mesh.orders)
+        return (mesh.function_orders - 1) / max(highest - 1, 1)
+
+    total = relative(y)[:, None] + relative(z)[None, :]
+    return np.asarray(total <= trunk + 1e-9)
+
+
+def require_memory(x: LineMesh, y: LineMesh, z: LineMesh, trunk: float) -> None:
+    """Refuse meshes whose factors would not fit into memory, before anything is made of them.
+
+    A slice has four unknowns at each of its functions, and its dense blocks are 20 bytes a pair
+    of them with what is made on the way (measured on the presets). Raises `InputError`.
+    """
+    slice_unknowns = 4 * int(np.count_nonzero(kept_products(y, z, trunk)))
+    enough = (
+        f"{x.nodes.size} slices of {slice_unknowns} unknowns are too many; ask for fewer nodal "
+        "lines or a lower frequency, or take a beam (--theory timoshenko)"
+    )
+    require_within(SOLID_MEMORY, 20.0 * x.nodes.size * slice_unknowns**2, enough=enough)
+
+
 @dataclass(frozen=True, eq=False)
 class BoxModel:
     """A solid of boxes: three line meshes, the medium of each cell (−1: empty) and the number of
@@ -117,13 +143,7 @@ class BoxModel:
     @functools.cached_property
     def kept(self) -> NDArray[np.bool_]:
         """Which products of y and z functions are used, shape (y, z functions)."""
-
-        def relative(mesh: LineMesh) -> FloatArray:
-            highest = max(mesh.orders)
-            return (mesh.function_orders - 1) / max(highest - 1, 1)
-
-        total = relative(self.y)[:, None] + relative(self.z)[None, :]
-        return np.asarray(total <= self.trunk + 1e-9)
+        return kept_products(self.y, self.z, self.trunk)
 
     def __post_init__(self) -> None:
         shape = (self.x.elements, self.y.elements, self.z.elements)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from squeezefilm.errors import InputError, OutOfRangeError, SqueezefilmError
+from squeezefilm.hard_limits import BAND_MODES, require_within
 from squeezefilm.plate.beam import free_beam_mode, timoshenko_frequency
 from squeezefilm.plate.box_model import IntArray
 from squeezefilm.plate.electrode_circuits import inverse_with_open
@@ -92,6 +93,7 @@ def coarse_modes(
             expected = modes_below(slabs, limits[1]) - (
                 modes_below(slabs, limits[0]) if low > 0 else 0
             )
+            require_within(BAND_MODES, expected, "band", enough="ask for a narrower band")
 
         def wanted(values: FloatArray) -> IntArray:
             inside = np.flatnonzero((values > limits[0]) & (values < limits[1]))

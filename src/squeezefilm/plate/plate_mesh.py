@@ -23,6 +23,7 @@ from squeezefilm.plate.box_model import (
     Foundation,
     IntArray,
     Medium,
+    require_memory,
 )
 from squeezefilm.plate.layout import CeramicPatch, Face, FoamSupport, RectangularPlate
 from squeezefilm.plate.lobatto import MAX_ORDER, LineMesh
@@ -264,6 +265,7 @@ def plate_model(
     y = _line(breaks[across][0], inner, half[across], thickness, resolution.edge_layers_y,
               resolution.order_x, wave, resolution.extra_y, cut=False)  # fmt: skip
     z, layers, ceramics = _through_thickness(plate, resolution)
+    require_memory(x, y, z, resolution.trunk)
     shape = (x.elements, y.elements, z.elements)
     medium, ceramic = np.full(shape, -1), np.full(shape, -1)
     centre_x = (np.array(x.edges[1:]) + np.array(x.edges[:-1])) / 2

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from squeezefilm.errors import InputError
+from squeezefilm.hard_limits import FREQUENCY, require_within
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.plate_mesh import PlateModel
 from squeezefilm.plate.plate_symmetry import Parity
@@ -241,3 +242,4 @@ def check_band(band: tuple[Hertz, Hertz]) -> None:
             "frequency",
             quantity="band",
         )
+    require_within(FREQUENCY, band[1], "band")

@@ -13,6 +13,7 @@ from typing import Annotated
 import numpy as np
 
 from squeezefilm.errors import InputError
+from squeezefilm.hard_limits import LAG_PRODUCTS, require_within
 from squeezefilm.quantities import (
     Dimensionless,
     DimensionlessArray,
@@ -257,6 +258,10 @@ def _lag(
     reach = _LONGEST_LAG if period is None else period / 2
     most = max(2, math.ceil(reach / step))
     step = reach / most
+    points = sum(float(way[-1] - way[0]) / step for way, _, _ in passes)
+    require_within(
+        LAG_PRODUCTS, points * (2 * most + 1), enough="take a coarser texture or a shorter stroke"
+    )
     shifts = np.arange(-most, most + 1)
     score = np.zeros(shifts.size)
     for way, wanted, rendered in passes:

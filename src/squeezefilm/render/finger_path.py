@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from squeezefilm.errors import InputError
+from squeezefilm.hard_limits import MOTION_SAMPLES, require_within
 from squeezefilm.quantities import (
     FloatArray,
     Metre,
@@ -22,7 +23,6 @@ from squeezefilm.quantities import (
 
 _FARTHEST: Metre = 10.0
 _ROUNDING = 1e-12
-_MOST_SAMPLES = 20_000_000
 
 
 @checked_numbers
@@ -49,11 +49,12 @@ class FingerPath:
 
     def __post_init__(self) -> None:
         shapes = {np.shape(self.time), np.shape(self.x), np.shape(self.y)}
-        if len(shapes) > 1 or len(self.time.shape) != 1 or not 2 <= self.time.size < _MOST_SAMPLES:
+        if len(shapes) > 1 or len(self.time.shape) != 1 or self.time.size < 2:
             raise InputError(
                 f"time, x and y of shapes {sorted(shapes)} are no motion; give three lists of one "
                 "length, at least 2"
             )
+        require_within(MOTION_SAMPLES, self.time.size)
         require("time", self.time, Unit("s"))
         require("x", self.x, Unit("m"), at_least=-_FARTHEST, at_most=_FARTHEST)
         require("y", self.y, Unit("m"), at_least=-_FARTHEST, at_most=_FARTHEST)

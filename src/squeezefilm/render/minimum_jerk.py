@@ -13,6 +13,7 @@ from typing import Protocol
 import numpy as np
 
 from squeezefilm.errors import InputError
+from squeezefilm.hard_limits import PASS_DURATION, STROKE_LENGTH, STROKE_START, require_fields
 from squeezefilm.quantities import (
     Metre,
     MetreArray,
@@ -60,9 +61,7 @@ class MinimumJerkStroke:
     start: Metre = 0.0
 
     def __post_init__(self) -> None:
-        require("length", self.length, Unit("m"), above=0.0, at_most=10.0)
-        require("pass_duration", self.pass_duration, Unit("s"), above=0.0)
-        require("start", self.start, Unit("m"))
+        require_fields(self, length=STROKE_LENGTH, pass_duration=PASS_DURATION, start=STROKE_START)
         if not isinstance(self.passes, int) or isinstance(self.passes, bool) or self.passes < 1:
             raise InputError(
                 f"passes = {self.passes!r} cannot be used: it must be a whole number, at least 1 "

@@ -8,6 +8,7 @@ from typing import Any, Literal
 import numpy as np
 
 from squeezefilm.errors import InputError
+from squeezefilm.hard_limits import PIXELS
 from squeezefilm.quantities import (
     Dimensionless,
     DimensionlessArray,
@@ -20,7 +21,7 @@ from squeezefilm.render.coordinate import METRE, require_place
 from squeezefilm.render.opcodes import IMAGE, Assembler
 from squeezefilm.render.pattern import Pattern
 
-MOST_PIXELS = 1_048_576
+MOST_PIXELS = int(PIXELS.most)
 """Pixels one image may have."""
 
 OUTSIDE = ("hold", "repeat", "zero")

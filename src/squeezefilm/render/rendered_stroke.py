@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from squeezefilm.errors import InputError
+from squeezefilm.hard_limits import RENDER_STEPS, require_motion
 from squeezefilm.quantities import (
     Dimensionless,
     DimensionlessArray,
@@ -23,7 +24,6 @@ from squeezefilm.quantities import (
     SecondArray,
     Unit,
     checked_numbers,
-    format_quantity,
     require,
 )
 from squeezefilm.render import compensation_kernel as kernel
@@ -41,7 +41,6 @@ from squeezefilm.render.sensor import SensorModel, sensor_stream
 from squeezefilm.render.texture import Texture
 from squeezefilm.render.trace import RelativeFriction
 
-_MOST_STEPS = 5_000_000
 _WINDOW_ROWS = 4096
 
 
@@ -119,7 +118,7 @@ def rendered_stroke(
         seed: of the sensor's noise.
 
     Raises:
-        InputError: a value outside its range, fewer than two or more than five million control
+        InputError: a value outside its range, fewer than two or more than three million control
             steps, an estimator without a sensor, or a texture or friction that does not return
             one finite value at least 0 per sample.
     """
@@ -131,13 +130,9 @@ def rendered_stroke(
         )
     if sensor is None and estimator is not None:
         raise InputError("an estimator needs a sensor to listen to; give a sensor as well")
-    steps = math.floor(trajectory.duration * control_rate * (1 + 1e-12))
-    if not 1 <= steps <= _MOST_STEPS:
-        raise InputError(
-            f"control_rate = {format_quantity(control_rate, Unit('Hz'))} makes {steps} steps of "
-            f"{format_quantity(trajectory.duration, Unit('s'))}; there must be from 1 to "
-            f"{_MOST_STEPS}"
-        )
+    rounded = trajectory.duration * control_rate * (1 + 1e-12)
+    require_motion(RENDER_STEPS, rounded, trajectory.duration, control_rate)
+    steps = math.floor(rounded)
     dt = 1 / control_rate
     time: FloatArray = np.arange(steps + 1, dtype=np.float64) * dt
     position = trajectory.position(np.minimum(time, trajectory.duration))

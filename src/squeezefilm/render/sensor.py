@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from squeezefilm.errors import InputError
+from squeezefilm.hard_limits import MOTION_SAMPLES, require_motion
 from squeezefilm.quantities import (
     Dimensionless,
     Hertz,
@@ -24,12 +25,8 @@ from squeezefilm.quantities import (
     SecondArray,
     Unit,
     checked_numbers,
-    format_quantity,
     require,
 )
-
-# 160 MB per array of a stream.
-_MOST_SAMPLES = 20_000_000
 
 
 @checked_numbers
@@ -160,13 +157,9 @@ def sensor_stream(
     """
     require("duration", duration, Unit("s"), above=0.0)
     require("start", start, Unit("s"))
-    count = math.floor(duration * sensor.rate * (1 + 1e-12)) + 1
-    if count > _MOST_SAMPLES:
-        raise InputError(
-            f"duration = {format_quantity(duration, Unit('s'))} at "
-            f"{format_quantity(sensor.rate, Unit('Hz'))} takes more than {_MOST_SAMPLES} samples; "
-            "shorten it"
-        )
+    steps = duration * sensor.rate * (1 + 1e-12)
+    require_motion(MOTION_SAMPLES, steps + 2, duration, sensor.rate)
+    count = math.floor(steps) + 1
     random = np.random.default_rng(seed)
     taken = start + np.minimum(np.arange(count) / sensor.rate, duration)
     true = np.asarray(position(taken), dtype=float)

@@ -8,6 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from squeezefilm.errors import InputError
+from squeezefilm.hard_limits import (
+    FINGER_SPEED,
+    MOTION_SAMPLES,
+    STROKE_LENGTH,
+    STROKE_START,
+    require_fields,
+)
 from squeezefilm.quantities import (
     FloatArray,
     Hertz,
@@ -24,11 +31,6 @@ from squeezefilm.quantities import (
     require,
 )
 
-# Bounds that only a slip of unit passes (60 for 60 mm/s, 40 for 40 mm).
-_LONGEST: Metre = 10.0
-_FASTEST: MetrePerSecond = 5.0
-# 160 MB per array of a trace; past it a stroke is better cut in pieces.
-_MOST_SAMPLES = 20_000_000
 # Times made by dividing integers by a rate may pass the end by a rounding error.
 _ROUNDING = 1e-12
 
@@ -58,9 +60,7 @@ class Stroke:
     start: Metre = 0.0
 
     def __post_init__(self) -> None:
-        require("speed", self.speed, Unit("m/s"), above=0.0, at_most=_FASTEST)
-        require("length", self.length, Unit("m"), above=0.0, at_most=_LONGEST)
-        require("start", self.start, Unit("m"))
+        require_fields(self, speed=FINGER_SPEED, length=STROKE_LENGTH, start=STROKE_START)
         if not isinstance(self.passes, int) or isinstance(self.passes, bool) or self.passes < 1:
             raise InputError(
                 f"passes = {self.passes!r} cannot be used: it must be a whole number, at least 1 "
@@ -118,9 +118,9 @@ class Stroke:
         """
         require("rate", rate, Unit("Hz"), above=0.0)
         steps = self.duration * rate * (1 + _ROUNDING)
-        if not 1 <= steps < _MOST_SAMPLES:
+        if not 1 <= steps < MOTION_SAMPLES.most:
             lowest = format_quantity(1 / self.duration, Unit("Hz"))
-            highest = format_quantity(_MOST_SAMPLES / self.duration, Unit("Hz"))
+            highest = format_quantity(MOTION_SAMPLES.most / self.duration, Unit("Hz"))
             raise InputError(
                 f"rate = {format_quantity(rate, Unit('Hz'))} cannot be used for a stroke of "
                 f"{format_quantity(self.duration, Unit('s'))}: it must be at least {lowest} and "

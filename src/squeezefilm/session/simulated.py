@@ -10,6 +10,7 @@ import numba
 import numpy as np
 
 from squeezefilm.errors import InputError
+from squeezefilm.hard_limits import SIMULATED_TICKS, require_within
 from squeezefilm.quantities import (
     FloatArray,
     MetreArray,
@@ -29,8 +30,6 @@ from squeezefilm.session.rows import COLUMNS, COMMAND_COLUMNS, MUTED, SAMPLE_COL
 from squeezefilm.session.shared import private_views
 
 Array = np.ndarray[Any, Any]
-
-_MOST_TICKS = 20_000_000
 
 
 @numba.njit(cache=True, nogil=True)
@@ -178,8 +177,9 @@ def run_ticks(
             f"arrival of shape {times.shape} does not fit {block.shape[0]} samples; give one time "
             "for each, none before the one ahead of it"
         )
-    if not isinstance(ticks, int) or not 1 <= ticks <= _MOST_TICKS:
-        raise InputError(f"ticks = {ticks!r} cannot be used: it must be 1 to {_MOST_TICKS}")
+    if not isinstance(ticks, int):
+        raise InputError(f"ticks = {ticks!r} cannot be used: it must be a whole number")
+    require_within(SIMULATED_TICKS, ticks, "ticks")
     arrays, memory = tick_arrays(plan), private_views()
     rows = np.empty((ticks, len(COLUMNS)))
     commands = np.empty((ticks, len(COMMAND_COLUMNS)))

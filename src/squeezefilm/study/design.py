@@ -21,6 +21,7 @@ from typing import Literal
 
 from squeezefilm.config.provenance import Provenance
 from squeezefilm.errors import InputError
+from squeezefilm.hard_limits import PARTICIPANT_TRIALS, require_within
 from squeezefilm.quantities import Dimensionless, Second, Unit, did_you_mean, require
 from squeezefilm.results import config_hash
 from squeezefilm.study.special_trials import (
@@ -46,7 +47,6 @@ TASKS: tuple[Task, ...] = (
     "two-interval",
     "magnitude-estimation",
 )
-_MOST_TRIALS = 100_000
 
 
 @dataclass(frozen=True)
@@ -135,13 +135,27 @@ class StudyDesign:
             )
         self._require_task()
         self._require_answers()
-        count = self.blocks * self.repetitions * len(self.stimuli) * 4 * len(self.displays)
-        require("number of trials of a participant", count, at_most=_MOST_TRIALS)
+        require_within(
+            PARTICIPANT_TRIALS,
+            self.most_trials,
+            enough="give fewer repetitions, blocks, stimuli, series or displays",
+        )
 
     @property
     def two_surfaces(self) -> bool:
         """Whether a trial presents two surfaces, one after the other."""
         return self.task in ("same-different", "two-interval")
+
+    @property
+    def most_trials(self) -> int:
+        """At least as many trials as a participant has, without making them."""
+        pairs = {"same-different": 4, "two-interval": 2}.get(self.task, 1)
+        main = self.blocks * self.repetitions * len(self.stimuli) * pairs
+        if self.adaptive:
+            main = sum(one.count for one in self.adaptive)
+        felt = self.familiarisation * max(len(self.stimuli), len(self.alternatives))
+        caught = sum(one.count for one in self.catch)
+        return len(self.displays) * (main + felt + caught + self.practice)
 
     @property
     def answers(self) -> tuple[str, ...]:

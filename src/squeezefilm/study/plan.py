@@ -6,6 +6,7 @@ from collections import Counter
 from dataclasses import dataclass
 from typing import Any
 
+from squeezefilm.hard_limits import PLANNED_TRIALS, require_within
 from squeezefilm.quantities import Second, require
 from squeezefilm.study.design import StudyDesign
 from squeezefilm.study.trials import Trial, expected_duration, trials, williams_square
@@ -91,6 +92,10 @@ def plan_study(design: StudyDesign, participants: int = 1, seed: int = 0) -> Stu
     Raises `InputError` for less than 1 or more than 1000 participants, or a seed below 0.
     """
     require("participants", participants, at_least=1, at_most=1000)
+    require("seed", seed, at_least=0)
+    most = int(PLANNED_TRIALS.most // design.most_trials)
+    enough = f"of {design.most_trials} trials each, at most {most} participants are planned at once"
+    require_within(PLANNED_TRIALS, participants * design.most_trials, enough=enough)
     schedules = tuple(trials(design, number, seed) for number in range(participants))
     return StudyPlan(
         design, participants, seed, schedules, expected_duration(design), _balanced(design)

@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy import stats
 
 from squeezefilm.errors import InputError
+from squeezefilm.hard_limits import STUDIES, require_within
 from squeezefilm.quantities import Dimensionless, DimensionlessArray, FloatArray, require
 from squeezefilm.results import config_hash, write_whole
 from squeezefilm.study.confusion import IntArray, whole_counts
@@ -189,6 +190,7 @@ def power_curve(
             f"participants = {sizes} with {studies} studies cannot be simulated; at least one size "
             "of at least 2, and at least 10 studies, are wanted"
         )
+    require_within(STUDIES, studies, "studies")
     require("alpha", alpha, above=0.0, below=1.0)
     require("target", target, above=0.0, below=1.0)
     if cache is not None and not key:

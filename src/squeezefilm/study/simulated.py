@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from squeezefilm.errors import InputError
+from squeezefilm.hard_limits import SIMULATED_TRIALS, require_within
 from squeezefilm.quantities import (
     Dimensionless,
     DimensionlessArray,
@@ -155,6 +156,9 @@ def simulate_participants(
     """
     require("participants", participants, at_least=1, at_most=_MOST_PEOPLE)
     require("seed", seed, at_least=0)
+    most = int(SIMULATED_TRIALS.most // design.most_trials)
+    enough = f"of {design.most_trials} trials each, at most {most} people are simulated"
+    require_within(SIMULATED_TRIALS, participants * design.most_trials, enough=enough)
     found = chain_tables(design, observer) if tables is None else tables
     if found.design != design or found.observer != observer:
         raise InputError("the tables are of another design or observer; leave them out")
