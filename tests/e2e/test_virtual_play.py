@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -143,6 +144,9 @@ def test_a_host_that_is_held_up_ends_with_the_devices_watchdog(
     outcome, session = played(prepared(display), point, tmp_path)
     assert outcome.ending is Ending.FAULT
     assert "watchdog" in outcome.message
+    held_up = re.search(r"this program was held up for (\d+) ms", outcome.message)
+    assert held_up is not None
+    assert 190 <= int(held_up[1]) <= 210
     assert outcome.failed
     assert session.trace.damage.whole
     assert any(event["fault"] == "watchdog" for event in session.device_events)

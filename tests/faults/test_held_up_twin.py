@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import functools
 import itertools
 import os
 import sys
+import time
 import tty
 from collections.abc import Iterator
 
@@ -17,6 +19,7 @@ from squeezefilm.twin import pty_server
 from squeezefilm.twin.device import TwinDevice
 from squeezefilm.twin.pty_server import PtyServer
 from squeezefilm.twin.settings import TwinSettings
+from squeezefilm.twin.working_point import WorkingPoint, working_point
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="there are no ptys on Windows")
 
@@ -81,13 +84,13 @@ def test_what_came_meanwhile_is_heard_evenly_and_whole(
     assert max(b - a for a, b in itertools.pairwise(times)) <= max(2_000, jump / 1000)
 
 
-@pytest.mark.parametrize(
-    ("spoken", "fault"), [(40, Fault.NONE), (0, Fault.WATCHDOG)], ids=["spoke", "silent"]
-)
-def test_a_host_that_spoke_meanwhile_did_not_fall_silent(
-    spoken: int, fault: Fault, host: list[int], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    device = TwinDevice(load_display("biet2008-stator"), TwinSettings())
+@functools.cache
+def point() -> WorkingPoint:
+    return working_point(load_display("biet2008-stator"), TwinSettings())
+
+
+def playing_twin() -> TwinDevice:
+    device = TwinDevice(load_display("biet2008-stator"), TwinSettings(), point=point())
     said = [
         m.Hello(1),
         m.SetLimits(10.0, 15_000, 10.0, 1000, 38_000_000, 42_000_000, 1000, 1000, 0),
@@ -97,6 +100,16 @@ def test_a_host_that_spoke_meanwhile_did_not_fall_silent(
         device.receive(message.frame(number).encoded(), 1000 * number)
     device.advance(6000)
     assert device.machine.state is State.PLAYING
+    return device
+
+
+@pytest.mark.parametrize(
+    ("spoken", "fault"), [(40, Fault.NONE), (0, Fault.WATCHDOG)], ids=["spoke", "silent"]
+)
+def test_a_host_that_spoke_meanwhile_did_not_fall_silent(
+    spoken: int, fault: Fault, host: list[int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    device = playing_twin()
     server = PtyServer(device)
     host.append(os.open(server.port, os.O_RDWR | os.O_NOCTTY))
     tty.setraw(host[0])
@@ -105,4 +118,92 @@ def test_a_host_that_spoke_meanwhile_did_not_fall_silent(
     monkeypatch.setattr(pty_server.time, "monotonic_ns", Clock(server, device.now + 200_000))
     server.serve()
     assert device.machine.fault is fault
+    server.close()
+
+
+def test_a_patient_twin_that_was_held_up_itself_blames_nobody(
+    host: list[int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    device = playing_twin()
+    server = PtyServer(device, patient=True)
+    host.append(os.open(server.port, os.O_RDWR | os.O_NOCTTY))
+    monkeypatch.setattr(pty_server.time, "monotonic_ns", Clock(server, device.now + 900_000))
+    server.serve()
+    assert device.machine.fault is Fault.NONE
+    server.close()
+
+
+class Seconds:
+    """A clock of 1 ms a look, and what a host has read by then; `faulted` is when the twin did."""
+
+    def __init__(self, server: PtyServer, device: TwinDevice, reads: range) -> None:
+        self.server, self.device, self.reads = server, device, reads
+        self.began = self.now = device.now
+        self.read, self.faulted = 0, -1
+
+    def __call__(self) -> int:
+        self.now += 1000
+        since = (self.now - self.began) // 1000
+        if since in self.reads:
+            self.read = self.server._said
+        if self.device.machine.state is State.FAULT:
+            self.faulted = since
+        if self.faulted >= 0 or since > 3000:
+            self.server.stop()
+        return self.now * 1000 if since > 1 else 0
+
+
+@pytest.mark.parametrize(
+    ("reads", "patient", "earliest", "latest"),
+    [
+        (range(3000), True, 50, 53),
+        (range(3000), False, 50, 53),
+        (range(0), False, 50, 53),
+        (range(0), True, 1_040, 1_070),
+        (range(300, 3000), True, 330, 360),
+    ],
+    ids=["reads on", "reads on, strict", "is held up, strict", "is stopped", "reads again"],
+)
+def test_a_twins_watchdog_waits_for_a_host_that_is_held_up(
+    reads: range,
+    patient: bool,
+    earliest: int,
+    latest: int,
+    host: list[int],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    device = playing_twin()
+    device.receive(m.Report(1000).frame(6).encoded(), device.now)
+    server = PtyServer(device, patient=patient)
+    host.append(os.open(server.port, os.O_RDWR | os.O_NOCTTY))
+    clock = Seconds(server, device, reads)
+    monkeypatch.setattr(server, "_unread", lambda: server._said - clock.read)
+    monkeypatch.setattr(pty_server, "_PAUSE", 0.0)
+    monkeypatch.setattr(pty_server.time, "monotonic_ns", clock)
+    # The port is full at some time; what does not fit is lost, and was not said.
+    server.serve()
+    server.close()
+    assert device.machine.fault is Fault.WATCHDOG
+    assert earliest <= clock.faulted <= latest
+
+
+def test_how_much_a_host_has_not_read_is_known(host: list[int]) -> None:
+    server = PtyServer(Told(), patient=True)  # type: ignore[arg-type] # as above
+    assert server._unread() == 0
+    host.append(os.open(server.port, os.O_RDWR | os.O_NOCTTY))
+    tty.setraw(host[0])
+
+    def comes_to(count: int) -> bool:
+        end = time.monotonic() + 30.0
+        while server._unread() != count and time.monotonic() < end:
+            time.sleep(1e-3)
+        return server._unread() == count
+
+    server._connected = True
+    server._say(bytes(300))
+    assert comes_to(300)
+    assert os.read(host[0], 120) == bytes(120)
+    assert comes_to(180)
+    assert os.read(host[0], 4096) == bytes(180)
+    assert comes_to(0)
     server.close()

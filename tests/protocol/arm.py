@@ -131,10 +131,16 @@ def _run(program: str, *arguments: str | Path) -> str:
 
 def _linked(core: str, sources: tuple[Path, ...], entry: str, built: Path) -> Path:
     flags = (
-        *STRICT, "-O2", "-mthumb", f"-mcpu={core}", "-ffunction-sections", "-fdata-sections",
-        "--specs=nano.specs", "-nostartfiles",
+        *STRICT,
+        "-O2",
+        "-mthumb",
+        f"-mcpu={core}",
+        "-ffunction-sections",
+        "-fdata-sections",
+        "--specs=nano.specs",
+        "-nostartfiles",
         f"-Wl,--gc-sections,-T,{HERE / 'arm.ld'},-e,{entry},-u,sf_boot,-u,sf_tick,-u,sf_trip",
-    )  # fmt: skip
+    )
     return build(tool("arm-none-eabi-gcc"), flags, sources, built)
 
 

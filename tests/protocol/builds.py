@@ -65,9 +65,13 @@ class Sanitized:
 
     def __init__(self, folder: Path) -> None:
         flags = (
-            *STRICT, "-g", "-O1", "-fsanitize=address,undefined", "-fno-sanitize-recover=all",
+            *STRICT,
+            "-g",
+            "-O1",
+            "-fsanitize=address,undefined",
+            "-fno-sanitize-recover=all",
             "-fno-omit-frame-pointer",
-        )  # fmt: skip
+        )
         sources = (*FIRMWARE, SOURCES / "script_main.c")
         self._program = build(tool("cc", "gcc", "clang"), flags, sources, folder / "sanitized")
 

@@ -93,11 +93,20 @@ def test_messages_carry_no_voltage_that_no_device_takes(volts: float) -> None:
 @pytest.mark.parametrize("odd", [math.nan, 1.5, -1, 2**32, None, "x", [1]])
 def test_messages_carry_no_number_that_does_not_fit(odd: Any) -> None:
     for message in (
-        m.Hello(odd), m.Arm(odd), m.Start(odd), m.SetFrequency(odd), m.Envelope(odd, (1.0,)),
-        m.TileBegin(0, odd, 1), m.TileBegin(0, 1, odd), m.TileData(odd, (1.0,)),
-        m.ClearFault(odd), m.Report(odd), m.TimedEnvelope(odd, 1, (1.0,)),
-        m.TimedEnvelope(0, odd, (1.0,)), m.SetLimits(1.0, odd, 1.0, 1, 1, 1, 1, 1, 1),
-    ):  # fmt: skip
+        m.Hello(odd),
+        m.Arm(odd),
+        m.Start(odd),
+        m.SetFrequency(odd),
+        m.Envelope(odd, (1.0,)),
+        m.TileBegin(0, odd, 1),
+        m.TileBegin(0, 1, odd),
+        m.TileData(odd, (1.0,)),
+        m.ClearFault(odd),
+        m.Report(odd),
+        m.TimedEnvelope(odd, 1, (1.0,)),
+        m.TimedEnvelope(0, odd, (1.0,)),
+        m.SetLimits(1.0, odd, 1.0, 1, 1, 1, 1, 1, 1),
+    ):
         with pytest.raises(InputError):
             message.payload()
 

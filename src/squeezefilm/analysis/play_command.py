@@ -189,7 +189,7 @@ def check_drive(
     limits = display.limits(frequency, twin=drive == "twin")
     settings = TwinSettings(sensor=LVDT_10_KHZ)
     with (
-        device_stream(drive, target, settings, STROKE, None) as name,
+        device_stream(drive, target, settings, STROKE, None, strict=True) as name,
         contextlib.closing(open_stream(name)) as stream,
     ):
         return check_device(
@@ -233,8 +233,12 @@ def device_stream(
     settings: TwinSettings,
     stroke: str,
     truth: Path | None,
+    *,
+    strict: bool = False,
 ) -> Iterator[str]:
     """The stream of a drive as `open_stream` reads it; a twin's process lives as long.
+
+    `strict`: a twin's watchdog counts all time, as a real device's does.
 
     Raises `InputError` for a drive that is none, and for a twin that does not start.
     """
@@ -249,7 +253,7 @@ def device_stream(
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "twin.toml"
         file.write_text(text_of(settings), encoding="utf-8")
-        with running_twin(target, file, stroke=stroke, truth=truth) as port:
+        with running_twin(target, file, stroke=stroke, truth=truth, strict=strict) as port:
             yield f"serial:{port}"
 
 

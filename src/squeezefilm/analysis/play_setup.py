@@ -146,6 +146,7 @@ def play_setup(
         loop=loop,
         limits=limits,
         frequency=p.frequency,
+        twin=twin,
         mode=mode,  # type: ignore[arg-type] # checked with a message by PlayPlan
         tile=_tile(loop, way) if mode == "tile" else None,
         report_period=max(REPORT_PERIOD, 200e-6),

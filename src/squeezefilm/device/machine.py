@@ -57,7 +57,8 @@ class Machine:
     `seed` is where its tokens start (a device takes a random number); `own` are the firmware's
     limits, which no message passes. `sensor` gives the finger's position x and y (µm) and whether
     it touches, `pickup` the amplitude at the pickup's input (µV); both are called in a tick that
-    needs them. `tick_period` (µs) is how often `tick` is meant to be called.
+    needs them. `tick_period` (µs) is how often `tick` is meant to be called. `excused` (µs) is by
+    how much longer the watchdog waits for the next accepted frame: 0 but where a twin says so.
     """
 
     seed: int = 1
@@ -69,6 +70,7 @@ class Machine:
     fault: Fault = Fault.NONE
     level: int = 0
     frequency: int = 0
+    excused: int = 0
     limits: DeviceLimits | None = None
     loads: Loads = field(default_factory=Loads)
     tile: Tile = field(default_factory=Tile)
@@ -155,9 +157,9 @@ class Machine:
         falling = elapsed
         if self.state in (State.ARMED, State.PLAYING):
             silent = (self._now - self._heard) & CLOCK
-            if silent > SILENCE:
+            if silent > SILENCE + self.excused:
                 # The ramp counts from the deadline, not from the tick that noticed it.
-                falling = min(elapsed, silent - SILENCE)
+                falling = min(elapsed, silent - SILENCE - self.excused)
                 self._fail(Fault.WATCHDOG)
             elif elapsed > LATE_TICK:
                 falling = 0
@@ -209,7 +211,7 @@ class Machine:
         reason = self._take(frame)
         if reason is Reason.ACCEPTED:
             self.accepted = (self.accepted + 1) & CLOCK
-            self._heard = self._now
+            self._heard, self.excused = self._now, 0
         else:
             self.refused = (self.refused + 1) & CLOCK
         status = m.Status(

@@ -1,9 +1,9 @@
 """The one check of numbers: what public calls take, and that what they give is finite.
 
 `checked_numbers` reads the annotations of a function, a method or a dataclass and refuses what is
-no such number before anything is computed with it; `closed_form` does the same for a formula and registers
-it. Both refuse to give a number that is not finite: arguments so extreme that a float cannot hold
-what comes of them raise `OutOfRangeError`. Bounds beyond that stand with `require`.
+no such number before anything is computed with it; `closed_form` does the same for a formula and
+registers it. Both refuse to give a number that is not finite: arguments so extreme that a float
+cannot hold what comes of them raise `OutOfRangeError`. Bounds beyond that stand with `require`.
 """
 
 from __future__ import annotations

@@ -88,6 +88,7 @@ class PlayPlan:
         report_period: of the device's readings (s); at least 0.2 ms.
         sensor_latency: of the device's sensor (s), by which its places are older than their stamp.
         amplitude_per_pickup: vibration amplitude per signal of the pickup (m/V); None if unknown.
+        twin: whether the device is a twin, whose watchdog counts its own time.
 
     Raises:
         InputError: a value outside its range, a tile without its mode, or the other way round.
@@ -101,6 +102,7 @@ class PlayPlan:
     report_period: Second = REPORT_PERIOD
     sensor_latency: Second = 0.0
     amplitude_per_pickup: MetrePerVolt | None = None
+    twin: bool = False
 
     def __post_init__(self) -> None:
         limits = self.limits
@@ -190,6 +192,7 @@ class Player:
         self._last: Reading | None = None
         self._fed = self._heard = self._commanded = self._stepped = -math.inf
         self._faded = math.nan
+        self._gap, self._gap_at = 0.0, -math.inf
         self._sending = False
         self._row: FloatArray = np.full(len(column.COLUMNS), math.nan)
         self._row[[column.TICK, column.FLAGS]] = 0.0
@@ -198,6 +201,11 @@ class Player:
     def faulted(self) -> bool:
         """Whether the device has faulted."""
         return self.ending is Ending.FAULT
+
+    @property
+    def held_up(self) -> Second:
+        """The longest time between two steps of late (s)."""
+        return self._gap
 
     def begin(self) -> None:
         """Give the device its limits and the texture's tile, arm it and start the carrier.
@@ -229,6 +237,9 @@ class Player:
             RecordError: a record that cannot be written.
         """
         now = self.clock()
+        gap = now - self._stepped
+        if math.isfinite(gap) and (gap >= self._gap or now - self._gap_at > DEAF_LIMIT):
+            self._gap, self._gap_at = gap, now
         samples = self._hear(now)
         if self.sensor is not None:
             samples = self._sensed(self.sensor)

@@ -44,6 +44,8 @@ from squeezefilm.session.simulated import SimulatedLoop
 PAUSE: Second = 1e-3
 """Between two looks of the player at its device."""
 SHOW_PERIOD: Second = 0.1
+LONGEST_SILENCE: Second = 35e-3
+"""Between two steps of the player, with which a device's watchdog is fed in time for certain."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -162,7 +164,7 @@ def _played(
                 show(player.view())
             time.sleep(PAUSE)
         if player.faulted:
-            return Ending.FAULT, fault_sentence(player.fault)
+            return Ending.FAULT, fault_sentence(player)
         player.fade()
         faded = loop.time
         while player.ending is None and loop.time < faded + FADE:
@@ -173,18 +175,29 @@ def _played(
     except LoopError as error:
         return Ending.LOOP, str(error)
     if player.faulted:
-        return Ending.FAULT, fault_sentence(player.fault)
+        return Ending.FAULT, fault_sentence(player)
     return (Ending.INTERRUPTED if interrupted() else Ending.DURATION), ""
 
 
-def fault_sentence(fault: Fault) -> str:
-    """What a device's fault means, for a person."""
-    return _FAULTS.get(fault, f"the device faulted: {fault.name.lower()}")
+def fault_sentence(player: Player) -> str:
+    """What its device's fault means, for a person."""
+    fault = player.fault
+    if fault is not Fault.WATCHDOG:
+        return _FAULTS.get(fault, f"the device faulted: {fault.name.lower()}")
+    heard = "the device heard nothing for 50 ms"
+    if player.plan.twin:
+        heard = "the twin heard nothing for 50 ms of its own time"
+    why = (
+        f"this program was held up for {1e3 * player.held_up:.0f} ms. Close other programs, or "
+        "allow real-time priority"
+        if player.held_up > LONGEST_SILENCE
+        else "this program was not held up, so what it sent was lost or late on the way; look at "
+        "the cable, and at what else the computer does"
+    )
+    return f"{heard}, took its output to zero and latched (watchdog): {why}"
 
 
 _FAULTS: dict[Fault, str] = {
-    Fault.WATCHDOG: "the device heard nothing for 50 ms, took its output to zero and latched "
-    "(watchdog): this program or the link was held up",
     Fault.HEAT: "the device's heat limit was reached; lower the voltage or give it pauses",
     Fault.DUTY: "the device's duty limit was reached; give it pauses",
     Fault.LATE_TICK: "the device's own loop was late and could not vouch for its output",

@@ -123,7 +123,7 @@ def virtual_play(
                 stream.wait(step)
                 player.step()
             if player.faulted:
-                ending, message = Ending.FAULT, fault_sentence(player.fault)
+                ending, message = Ending.FAULT, fault_sentence(player)
         except DeviceError as error:
             ending, message = Ending.LINK, str(error)
         except LoopError as error:

@@ -7,6 +7,10 @@ port and open it again; what the device says meanwhile is lost, as on a wire. Th
 the name is printed. Where the process falls behind the wall clock it catches up tick by tick, so
 that the device's own clock has no gap. What waits in the port then came at some time of the gap,
 nobody knows when: it is heard evenly over it, as a device that was not held up would have heard it.
+
+A computer that is busy holds up programs for longer than a device waits for its host. Its twin's
+watchdog therefore counts the twin's own time: neither that for which this process was held up, nor
+that for which the host leaves unread what it was told, up to a second. A real device waits 50 ms.
 """
 
 from __future__ import annotations
@@ -16,6 +20,7 @@ import contextlib
 import os
 import select
 import signal
+import struct
 import subprocess
 import sys
 import tempfile
@@ -42,6 +47,7 @@ _UNCONNECTED_PAUSE = 5.0
 _MOST_BYTES = 4096
 _HELD_UP = 20_000  # µs behind the wall clock, from which on the process was held up
 _SLICE = 1_000  # µs of catching up at once
+_READS_WITHIN = 5_000  # µs after which a host that is not held up has read what it was told
 START_LIMIT: Second = 120.0
 """How long a twin may take to start: it solves its plate and compiles."""
 
@@ -49,14 +55,19 @@ START_LIMIT: Second = 120.0
 class PtyServer:
     """A twin's pseudo-terminal and its clock. `serve` returns after `stop`.
 
+    Args:
+        device: what answers.
+        patient: whether its watchdog counts the twin's own time (see the module), or all time, as
+            a real device's does.
+
     Raises `InputError` on a system without pseudo-terminals.
     """
 
-    def __init__(self, device: TwinDevice) -> None:
+    def __init__(self, device: TwinDevice, *, patient: bool = False) -> None:
         require_pseudo_terminals()
         import tty
 
-        self._device = device
+        self._device, self._patient = device, patient
         self._master, slave = os.openpty()
         tty.setraw(slave)
         self.port = os.ttyname(slave)
@@ -68,6 +79,7 @@ class PtyServer:
         self._running = True
         self._connected = False
         self.longest_behind = 0
+        self._said = self._read = self._read_at = self._heard_at = 0
 
     def stop(self) -> None:
         """End `serve` soon; may be called from a signal handler."""
@@ -85,11 +97,18 @@ class PtyServer:
                 self._catch_up(wall)
                 continue
             now = wall
+            if (
+                self._patient
+                and wall - self._heard_at > _READS_WITHIN
+                and self._host_is_held_up(wall)
+            ):
+                self._device.excuse(behind)
             self._say(self._device.advance(now))
             flags = self._flags(_PAUSE)
             self._connected = not flags & select.POLLHUP
             heard = self._hear() if flags & select.POLLIN else b""
             if heard:
+                self._heard_at = now
                 self._device.receive(heard, max(now, (time.monotonic_ns() - began) // 1000))
                 self._say(self._device.advance(self._device.now))
             elif not self._connected:
@@ -103,6 +122,8 @@ class PtyServer:
             if not self._running:
                 return
             at = began + (wall - began) * (k + 1) // slices
+            if self._patient:
+                self._device.excuse(at - self._device.now)
             self._say(self._device.advance(at))
             heard = waiting[len(waiting) * k // slices : len(waiting) * (k + 1) // slices]
             if heard:
@@ -117,6 +138,32 @@ class PtyServer:
         """What the port has to say, within `wait` (ms)."""
         return dict(self._poll.poll(wait)).get(self._master, 0)
 
+    def _host_is_held_up(self, wall: int) -> bool:
+        """Whether it leaves unread what it was told: one that is silent on purpose reads on."""
+        if not self._connected:
+            return False
+        unread = self._unread()
+        if unread == 0 or self._said - unread != self._read:
+            self._read, self._read_at = self._said - unread, wall
+        return wall - self._read_at > _READS_WITHIN
+
+    def _unread(self) -> int:
+        """Bytes that the host has not read yet; 0 where the system does not tell."""
+        import fcntl
+        import termios
+
+        try:
+            port = os.open(self.port, os.O_RDONLY | os.O_NOCTTY | os.O_NONBLOCK)
+        except OSError:
+            return 0
+        try:
+            (count,) = struct.unpack("i", fcntl.ioctl(port, termios.FIONREAD, bytes(4)))
+        except OSError:
+            return 0
+        finally:
+            os.close(port)
+        return int(count)
+
     def _hear(self) -> bytes:
         try:
             return os.read(self._master, _MOST_BYTES)
@@ -129,7 +176,7 @@ class PtyServer:
             return
         # What a full wire or an absent host does not take is lost, as on a real one.
         with contextlib.suppress(OSError):
-            os.write(self._master, data)
+            self._said += os.write(self._master, data)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -141,6 +188,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--settings", type=Path, help="a TOML file of twin settings")
     parser.add_argument("--stroke", default=EXPLORING, help="the finger's motion, or 'none'")
     parser.add_argument("--force", type=float, default=0.5, help="it presses with, in N")
+    parser.add_argument(
+        "--strict", action="store_true", help="a watchdog that counts all time, as a real device's"
+    )
     parser.add_argument("--with-parent", type=int, help="end when this process is not the parent")
     options = parser.parse_args(arguments)
     try:
@@ -151,7 +201,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         display = load_display(options.display)
         device = TwinDevice(display, settings, hand=hand, truth_file=options.truth)
         _warm_up(device, hand)
-        server = PtyServer(device)
+        server = PtyServer(device, patient=not options.strict)
     except SqueezefilmError as error:
         print(f"error: {error}", file=sys.stderr)
         return 2
@@ -228,10 +278,12 @@ def running_twin(
     normal_force: Newton = 0.5,
     truth: Path | None = None,
     start_limit: Second = START_LIMIT,
+    strict: bool = False,
 ) -> Iterator[str]:
     """A twin in a process of its own; yields the name of its serial port.
 
-    `display` is a preset's name or a file, `settings` a TOML file, `stroke` "none" for no finger.
+    `display` is a preset's name or a file, `settings` a TOML file, `stroke` "none" for no finger,
+    `strict` for a watchdog that counts all time.
     The process ends with the block, and on its own if this process dies.
 
     Raises:
@@ -244,6 +296,7 @@ def running_twin(
     command += ["--with-parent", str(os.getpid())]
     command += [] if settings is None else ["--settings", str(settings)]
     command += [] if truth is None else ["--truth", str(truth)]
+    command += ["--strict"] if strict else []
     with tempfile.TemporaryFile() as said:
         # In a session of its own: Ctrl-C is for the program that plays, not for its device.
         twin = subprocess.Popen(
