@@ -16,7 +16,7 @@ from typing import Literal
 import numpy as np
 
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import DimensionlessArray, checked_numbers, require
+from squeezefilm.quantities import DimensionlessArray, require
 from squeezefilm.render.pattern_image import MOST_PIXELS
 
 _SIGNATURE = b"\x89PNG\r\n\x1a\n"
@@ -73,7 +73,6 @@ def picture_from(data: bytes, name: str = "the picture") -> DimensionlessArray:
     return np.asarray(found / (2**bits - 1))
 
 
-@checked_numbers
 def picture_bytes(values: DimensionlessArray, bits: Literal[8, 16] = 8) -> bytes:
     """The greyscale PNG of values from 0 to 1, shape (rows, columns), the top row first.
 
