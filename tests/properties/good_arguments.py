@@ -34,15 +34,21 @@ from squeezefilm.film.planar_gap import PlanarGap
 from squeezefilm.film.profile import GapProfile, flexural_profile
 from squeezefilm.formats.hjif import ReferenceDevice, hjif_of
 from squeezefilm.friction import FrictionLaw
-from squeezefilm.materials import ElasticMaterial, Gas, PiezoConstants, Piezoceramic
+from squeezefilm.materials import ElasticMaterial, Gas, Piezoceramic, PiezoConstants
 from squeezefilm.plate.annular import AnnularMode, bending_mode
-from squeezefilm.plate.annular_layout import AnnularSection, RingLayer, SectorDrive, bonded_disc
-from squeezefilm.plate.annular_layout import full_drive
+from squeezefilm.plate.annular_layout import (
+    AnnularSection,
+    RingLayer,
+    SectorDrive,
+    bonded_disc,
+    full_drive,
+)
 from squeezefilm.plate.annular_materials import RingSolid, isotropic_solid
 from squeezefilm.plate.beam import BeamMode
 from squeezefilm.plate.laminate import Laminate, Layer, plate_laminate
 from squeezefilm.plate.layout import CeramicPatch, RectangularPlate
 from squeezefilm.plate.loaded_mode import LoadedMode
+from squeezefilm.plate.plate_modes import PlateModes
 from squeezefilm.plate.plate_response import (
     EquivalentCircuit,
     HarmonicResponse,
@@ -50,12 +56,15 @@ from squeezefilm.plate.plate_response import (
     harmonic_response,
 )
 from squeezefilm.plate.response import BeamResponse, beam_response
-from squeezefilm.plate.shear_section import ShearLayout, ShearSection, isotropic_section
-from squeezefilm.plate.shear_section import shear_layout
-from squeezefilm.plate.plate_modes import PlateModes
 from squeezefilm.plate.ring_body import RingBody
 from squeezefilm.plate.ring_response import RingResponse, ring_response
 from squeezefilm.plate.shear_plate import ShearMode, shear_modes
+from squeezefilm.plate.shear_section import (
+    ShearLayout,
+    ShearSection,
+    isotropic_section,
+    shear_layout,
+)
 from squeezefilm.plate.solid_mode import SolidMode, solid_mode
 from squeezefilm.plate.solve_modes import solve_modes
 from squeezefilm.plate.sound import RadiatingSurface, rectangular_surface

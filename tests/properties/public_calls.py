@@ -21,8 +21,7 @@ import squeezefilm
 from squeezefilm.quantities import unit_of
 
 ROOMS = frozenset(
-    "film plate contact render friction prediction touch materials quantities distributions "
-    "formats".split()
+    ["film", "plate", "contact", "render", "friction", "prediction", "touch", "materials", "quantities", "distributions", "formats"]
 )
 _REAL_ARRAY = np.ndarray[tuple[Any, ...], np.dtype[np.float64]]
 _NUMBERS = (int, float, _REAL_ARRAY)
@@ -101,7 +100,7 @@ NOT_CALLED = {
     contact.gas_table.FilmTable.build film.compiled.announce
     plate.plate_volume.PlateVolume.displacement plate.plate_volume.PlateVolume.potential
     plate.plate_volume.harmonic_fields plate.plate_volume.mode_fields
-    plate.plate_volume.plate_volume render.coordinate.Coordinate.at
+    plate.plate_volume.plate_volume render.coordinate.Coordinate.at render.coordinate.FromPoint.at render.coordinate.AlongY.at render.coordinate.AlongX.at render.coordinate.AlongDirection.at
     render.fidelity_report.fidelity_report render.motion.MotionCounts.of
     render.renderer.counters_of
     """,

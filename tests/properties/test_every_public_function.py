@@ -1,11 +1,8 @@
 from __future__ import annotations
-import warnings
+
 from typing import Any
-import dataclasses
+
 import numpy as np
-from good_arguments import good_arguments, invoke
-from public_calls import NAMES_NOT_CALLED, PublicCall, public_calls
-from squeezefilm.errors import SqueezefilmError, SqueezefilmWarning
 
 HOSTILE: dict[str, Any] = {
     "nan": float("nan"),

@@ -17,7 +17,6 @@ from squeezefilm.errors import InputError
 from squeezefilm.quantities import (
     Dimensionless,
     DimensionlessLike,
-    FloatArray,
     HertzLike,
     Metre,
     MetreLike,
@@ -212,11 +211,11 @@ class PaperGap:
         return self.wave_offset == 0 and self.ridge_offset == 0
 
     @checked_numbers
-    def wave_phase(self, X: FloatArray) -> FloatArray:
+    def wave_phase(self, X: DimensionlessLike) -> DimensionlessLike:
         """The argument of the wave's cosine at X = x/l0 (rad)."""
         return self.wave_number * (X - self.wave_offset / self.contact_length)
 
     @checked_numbers
-    def ridge_phase(self, X: FloatArray) -> FloatArray:
+    def ridge_phase(self, X: DimensionlessLike) -> DimensionlessLike:
         """The argument of the ridges' cosine at X = x/l0 (rad)."""
         return self.ridge_number * (X - self.ridge_offset / self.contact_length)

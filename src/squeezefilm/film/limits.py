@@ -240,7 +240,7 @@ def _inverse_cube_integral(theta: Any, delta: Any) -> Any:
 
 @checked_numbers
 def mean_pressure_profile(
-    X: DimensionlessArray, gap: PaperGap, model: PaperModel = "paper2008"
+    X: DimensionlessLike, gap: PaperGap, model: PaperModel = "paper2008"
 ) -> DimensionlessArray:
     """The mean over a period of the pressure over ambient, P̄(X), as σ → ∞ (dimensionless).
 
@@ -279,7 +279,7 @@ def mean_pressure_profile(
     theta = gap.ridge_phase(X)
     a, b = 1 + delta * np.cos(theta), epsilon * np.cos(gap.wave_phase(X))
     ends = np.array([-0.5, 0.5])
-    theta_l, theta_r = gap.ridge_phase(ends)
+    theta_l, theta_r = np.asarray(gap.ridge_phase(ends))
     wave_l, wave_r = np.cos(gap.wave_phase(ends))
     v_l = 1 + 1.5 * (epsilon * wave_l / (1 + delta * np.cos(theta_l))) ** 2
     v_r = 1 + 1.5 * (epsilon * wave_r / (1 + delta * np.cos(theta_r))) ** 2
@@ -302,7 +302,7 @@ def _panels(gap: PaperGap) -> tuple[FloatArray, float]:
     e = (1 - q) / (1 + q) if q < 1 else 0.0
     low, high = (float(_eccentric(gap.ridge_phase(np.array(x)), e)) for x in (-0.5, 0.5))
     ridges = np.pi * np.arange(np.ceil(low / np.pi), np.floor(high / np.pi) + 1)
-    first, last = gap.wave_phase(np.array([-0.5, 0.5]))
+    first, last = np.asarray(gap.wave_phase(np.array([-0.5, 0.5])))
     waves = np.pi / 2 * np.arange(np.ceil(2 * first / np.pi), np.floor(2 * last / np.pi) + 1)
     positions = waves / gap.wave_number + gap.wave_offset / gap.contact_length
     inner = np.concatenate([ridges, _eccentric(gap.ridge_phase(positions), e)])

@@ -17,7 +17,7 @@ import numpy as np
 
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import PICTURE_BYTES
-from squeezefilm.quantities import DimensionlessArray, checked_numbers, require
+from squeezefilm.quantities import DimensionlessArray, require
 from squeezefilm.regular_file import read_regular
 from squeezefilm.render.pattern_image import MOST_PIXELS
 
@@ -65,7 +65,6 @@ def picture_from(data: bytes, name: str = "the picture") -> DimensionlessArray:
     return np.asarray(found / (2**bits - 1))
 
 
-@checked_numbers
 def picture_bytes(values: DimensionlessArray, bits: Literal[8, 16] = 8) -> bytes:
     """The greyscale PNG of values from 0 to 1, shape (rows, columns), the top row first.
 

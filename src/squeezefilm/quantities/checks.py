@@ -124,34 +124,39 @@ class _Rule:
     at_least: float | None = None
 
 
+def _members(hint: Any) -> list[Any]:
+    """The types that an annotation allows, without their units."""
+    if typing.get_origin(hint) is typing.Annotated:
+        return _members(hint.__origin__)
+    if typing.get_origin(hint) in (typing.Union, types.UnionType):
+        return [member for part in typing.get_args(hint) for member in _members(part)]
+    return [hint]
+
+
 def _rule(hint: Any, above: float | None, at_least: float | None) -> _Rule | None:
     """The rule of an annotation, None where it stands for no number."""
-    parts = [hint]
-    if typing.get_origin(hint) in (typing.Union, types.UnionType):
-        parts = [part for part in typing.get_args(hint) if part is not type(None)]
-    optional = parts != [hint] and type(None) in typing.get_args(hint)
-    if any(typing.get_origin(part) is collections.abc.Callable for part in parts):
-        return None
-    unit = unit_of(hint) or _PURE
-    if len(parts) > 1:
-        return _Rule("container", unit, optional, above, at_least) if unit_of(hint) else None
-    plain = parts[0]
-    if typing.get_origin(plain) is typing.Annotated:
-        plain = plain.__origin__
-    kind: _Kind | None
-    kinds = {typing.get_origin(part) or part for part in typing.get_args(plain)} or {plain}
-    if typing.get_origin(plain) is np.ndarray:
-        dtype = typing.get_args(typing.get_args(plain)[1])[0]
-        kind = "array" if dtype is np.float64 else "complex" if dtype is np.complex128 else None
-    elif plain in (float, int):
-        kind = "number" if plain is float else "count"
+    members = _members(hint)
+    plain = [member for member in members if member is not type(None)]
+    kinds = {typing.get_origin(member) or member for member in plain}
+    unit = unit_of(hint)
+    kind: _Kind
+    if kinds == {float}:
+        kind = "number"
+    elif kinds == {int}:
+        kind = "count"
     elif kinds == {float, np.ndarray}:
         kind = "either"
-    elif kinds <= {complex, np.ndarray}:
+    elif kinds in ({complex}, {complex, np.ndarray}):
         kind = "complex"
+    elif kinds == {np.ndarray} and "float64" in str(plain[0]):
+        kind = "array"
+    elif kinds == {np.ndarray} and "complex128" in str(plain[0]):
+        kind = "complex"
+    elif unit is not None and collections.abc.Callable not in kinds:
+        kind = "container"
     else:
-        kind = "container" if unit_of(hint) else None
-    return None if kind is None else _Rule(kind, unit, optional, above, at_least)
+        return None
+    return _Rule(kind, unit or _PURE, len(plain) < len(members), above, at_least)
 
 
 def _checked_value(name: str, value: Any, rule: _Rule) -> Any:
@@ -179,7 +184,9 @@ def _checked_value(name: str, value: Any, rule: _Rule) -> Any:
     if rule.kind == "number" and array.ndim:
         raise InputError(f"{name} has the shape {array.shape}; one number is wanted", quantity=name)
     if rule.kind == "array" and not array.ndim:
-        raise InputError(f"{name} is one number; an array is wanted", quantity=name)
+        raise InputError(
+            f"{name} is one number; an array of at least one sample is wanted", quantity=name
+        )
     return array if array.ndim else float(array)
 
 
@@ -235,8 +242,11 @@ def _guarded(
     ready: list[bool] = []
 
     def read_annotations() -> None:
-        hints = typing.get_type_hints(function, include_extras=True)
-        hints.pop("return", None)
+        # The result's annotation may be imported for type checking only.
+        taken = types.SimpleNamespace(__annotations__=dict(inspect.get_annotations(function)))
+        taken.__annotations__.pop("return", None)
+        names_there = getattr(inspect.unwrap(function), "__globals__", {})
+        hints = typing.get_type_hints(taken, names_there, include_extras=True)
         for name, hint in hints.items():
             above, at_least = 0.0 if name in strictly else None, 0.0 if name in weakly else None
             if (rule := _rule(hint, above, at_least)) is not None:
@@ -255,7 +265,7 @@ def _guarded(
             np.broadcast_shapes(*(shape for _, shape in shapes))
         except ValueError:
             of = ", ".join(f"{name} {shape}" for name, shape in shapes)
-            raise InputError(f"the shapes do not fit each other: {of}") from None
+            raise InputError(f"the shapes of {of} do not broadcast") from None
         return arguments
 
     @functools.wraps(function)

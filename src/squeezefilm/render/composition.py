@@ -86,7 +86,6 @@ class Composable:
         """What a greater value feels like."""
         return "stickier" if self.quantity == "relative_friction" else "slipperier"
 
-    @checked_numbers
     def __call__(
         self, x: MetreLike, y: MetreLike, v: MetrePerSecondLike, t: SecondLike, /
     ) -> FloatArray:

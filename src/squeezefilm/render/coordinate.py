@@ -51,7 +51,6 @@ class AlongX(Coordinate):
 
     type: Literal["x"] = field(default="x", repr=False)
 
-    @checked_numbers
     def at(self, x: MetreArray, y: MetreArray) -> MetreArray:
         """`x` (m)."""
         return x
@@ -70,7 +69,6 @@ class AlongY(Coordinate):
 
     type: Literal["y"] = field(default="y", repr=False)
 
-    @checked_numbers
     def at(self, x: MetreArray, y: MetreArray) -> MetreArray:
         """`y` (m)."""
         return y
@@ -93,7 +91,6 @@ class AlongDirection(Coordinate):
     def __post_init__(self) -> None:
         require("angle", self.angle, Unit("rad"))
 
-    @checked_numbers
     def at(self, x: MetreArray, y: MetreArray) -> MetreArray:
         """The way along the line (m)."""
         return np.asarray(math.cos(self.angle) * x + math.sin(self.angle) * y)
@@ -118,7 +115,6 @@ class FromPoint(Coordinate):
         require_place("x", self.x)
         require_place("y", self.y)
 
-    @checked_numbers
     def at(self, x: MetreArray, y: MetreArray) -> MetreArray:
         """The distance (m)."""
         # Not hypot: a plain root is the same operation in every interpreter of a program.
@@ -128,13 +124,11 @@ class FromPoint(Coordinate):
         assembler.emit(RADIUS, self.x, self.y)
 
 
-@checked_numbers
 def require_place(name: str, value: Metre) -> None:
     """Refuse a place (m) that is not finite or farther than 10 m from the origin."""
     require(name, value, METRE, at_least=-FARTHEST, at_most=FARTHEST)
 
 
-@checked_numbers
 def require_fade(value: Metre, at_most: Metre) -> None:
     """Refuse a fade (m) that is neither 0 nor between a nanometre and `at_most`."""
     if value != 0.0:
@@ -151,7 +145,6 @@ def require_coordinate(value: object) -> None:
         )
 
 
-@checked_numbers
 def finger_arguments(
     x: MetreLike, y: MetreLike, v: MetrePerSecondLike, t: SecondLike
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:

@@ -55,7 +55,6 @@ class Pattern:
 
     __slots__ = ()
 
-    @checked_numbers
     def __call__(
         self, x: MetreLike, y: MetreLike, v: MetrePerSecondLike, t: SecondLike, /
     ) -> DimensionlessArray:

@@ -84,7 +84,6 @@ class Image(Pattern):
             )
 
     @classmethod
-    @checked_numbers
     def from_array(
         cls,
         values: DimensionlessArray,

@@ -19,7 +19,6 @@ from squeezefilm.quantities import (
     Second,
     SecondLike,
     Unit,
-    checked_numbers,
 )
 from squeezefilm.render import layout as at
 from squeezefilm.render.coordinate import finger_arguments
@@ -77,7 +76,6 @@ class Renderer:
         self.program = program
         self.state = new_state(program)
 
-    @checked_numbers
     def tick(self, x: Metre, y: Metre, v: MetrePerSecond, t: Second) -> Metre:
         """The amplitude (m, zero-to-peak) for one sample; never raises. See `interpreter.tick`."""
         return float(tick(self.program.array, self.state, float(x), float(y), float(v), float(t)))
@@ -114,7 +112,6 @@ class Rendered:
     program: Program
 
 
-@checked_numbers
 def render(
     program: Program, x: MetreLike, y: MetreLike, v: MetrePerSecondLike, t: SecondLike
 ) -> Rendered:
@@ -134,7 +131,6 @@ def render(
     return Rendered(amplitude, flags, counters_of(state), program)
 
 
-@checked_numbers
 def evaluate(
     program: Program, x: MetreLike, y: MetreLike, v: MetrePerSecondLike, t: SecondLike
 ) -> FloatArray:
@@ -161,7 +157,6 @@ class Played:
 
     program: Program
 
-    @checked_numbers
     def __call__(
         self, x: MetreLike, y: MetreLike, v: MetrePerSecondLike, t: SecondLike, /
     ) -> MetreArray:

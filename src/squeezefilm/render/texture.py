@@ -47,7 +47,6 @@ class Texture(Protocol):
     whose quantity is not the amplitude needs a renderer to become one.
     """
 
-    @checked_numbers
     def __call__(
         self, x: MetreLike, y: MetreLike, v: MetrePerSecondLike, t: SecondLike, /
     ) -> MetreArray:

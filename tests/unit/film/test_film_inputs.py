@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import logging
 import subprocess
 import sys
@@ -177,7 +178,7 @@ def test_edge_layer_range():
 def test_the_first_compile_is_announced(tmp_path, caplog):
     dispatcher = SimpleNamespace(
         stats=SimpleNamespace(cache_path=str(tmp_path)),
-        py_func=solve_strips,
+        py_func=inspect.unwrap(solve_strips),
         __name__="solve_rows",
     )
     with caplog.at_level(logging.INFO, logger="squeezefilm"):
