@@ -13,12 +13,14 @@ from squeezefilm.study.device import (
     NoDevice,
     StudyDevice,
 )
+from squeezefilm.study.exposure import Exposure
 from squeezefilm.study.run import Acknowledgement, Presentation, StudyRun
 from squeezefilm.study.session_conditions import SessionConditions
 from squeezefilm.study.sessions import begin_session
 from squeezefilm.study.stimuli import Grating, Stimulus
 from squeezefilm.study.store import StudyStore
 
+LOUD = Exposure("biet2008-plate", 33e3, 0.5, 124.0, 1200.0, 100.0, "somebody 1984", "estimated")
 CONSENT = SessionConditions(consent=True, room="quiet room")
 TRACE = '# {"seed": 1}\ntime_s,x_m\n0.0,0.0\n0.1,0.01\n'
 

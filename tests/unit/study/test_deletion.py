@@ -19,8 +19,7 @@ from squeezefilm.study.sessions import begin_session, end_session
 from squeezefilm.study.sittings import FILE, Sittings
 from squeezefilm.study.store import StudyStore
 
-from .scripted import TRACE, Bench, Script, gratings
-from .test_sessions import LOUD
+from .scripted import LOUD, TRACE, Bench, Script, gratings
 
 SECRET = "marker of one sitting"
 

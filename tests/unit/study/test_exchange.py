@@ -31,8 +31,7 @@ from squeezefilm.study.trial_table import (
     unguarded,
 )
 
-from .scripted import Bench, Script, gratings, run_through, staircase
-from .test_sessions import LOUD
+from .scripted import LOUD, Bench, Script, gratings, run_through, staircase
 
 
 @pytest.fixture

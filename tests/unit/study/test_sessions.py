@@ -13,14 +13,12 @@ from squeezefilm import config
 from squeezefilm.errors import ConfigError, InputError
 from squeezefilm.plate.sound import SoundField, exposure_guidance
 from squeezefilm.study.device import DeviceVerification, NoDevice
-from squeezefilm.study.exposure import Exposure, exposure_of
+from squeezefilm.study.exposure import exposure_of
 from squeezefilm.study.session_conditions import SessionConditions
 from squeezefilm.study.sessions import begin_session, end_session
 from squeezefilm.study.store import StudyStore
 
-from .scripted import CONSENT, Bench, gratings
-
-LOUD = Exposure("biet2008-plate", 33e3, 0.5, 124.0, 1200.0, 100.0, "somebody 1984", "estimated")
+from .scripted import CONSENT, LOUD, Bench, gratings
 
 
 def test_a_device_in_order_is_recorded_before_and_after(tmp_path: Path) -> None:
