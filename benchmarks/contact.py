@@ -28,7 +28,7 @@ from squeezefilm.contact.pad import pad_friction, ridge_points
 from squeezefilm.contact.sharing import share_load
 from squeezefilm.contact.skin import Skin
 from squeezefilm.display import load_display
-from squeezefilm.film.periodic import solve_strip
+from squeezefilm.film.periodic.film import solve_strip
 
 FREQUENCY, HALF_WAVELENGTH = 40.5e3, 9.35e-3
 

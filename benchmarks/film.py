@@ -25,12 +25,12 @@ from typing import Any
 import numpy as np
 from scipy.linalg import solve_banded
 
-from squeezefilm.film.batch import solve_strips
 from squeezefilm.film.line_grid import uniform_gap
-from squeezefilm.film.periodic import solve_profile, solve_strip
-from squeezefilm.film.planar import solve_ellipse
-from squeezefilm.film.profile import flexural_profile
-from squeezefilm.film.settling import settle_to_periodic
+from squeezefilm.film.periodic.batch import solve_strips
+from squeezefilm.film.periodic.film import solve_profile, solve_strip
+from squeezefilm.film.periodic.profile import flexural_profile
+from squeezefilm.film.planar.film import solve_ellipse
+from squeezefilm.film.transient.settling import settle_to_periodic
 
 
 def best_time(run: Callable[[], object], repeats: int = 3) -> float:

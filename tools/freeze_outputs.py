@@ -88,7 +88,7 @@ def answer(case: str) -> Any:
             return {"refused": str(error)}
         except SystemExit as end:
             return {"exit": end.code, "printed": printed.getvalue()}
-        except Exception as error:  # noqa: BLE001 # an unknown option after a change is an answer too
+        except Exception as error:  # an unknown option after a change is an answer too
             return {"failed": f"{type(error).__name__}: {error}"}
     text = printed.getvalue()
     return json.loads(text) if "--json" in arguments else text

@@ -20,8 +20,8 @@ from squeezefilm.contact.pad import Limit, PadFriction, PadPosture, pad_friction
 from squeezefilm.contact.tapping import tapping_friction
 from squeezefilm.display import Display, Surface
 from squeezefilm.errors import InputError, OutOfRangeError, UnreachableError
+from squeezefilm.film.closed.limits import PaperModel, contact_mean_pressure
 from squeezefilm.film.gap import PaperGap
-from squeezefilm.film.limits import PaperModel, contact_mean_pressure
 from squeezefilm.materials import Gas
 from squeezefilm.quantities import (
     Dimensionless,

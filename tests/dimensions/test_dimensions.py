@@ -43,7 +43,7 @@ SMALL = 0.1
 
 # What a formula needs that 0.1 is outside of.
 VALUES: dict[tuple[str, str], float] = {
-    ("squeezefilm.film.limits.edge_layer_load", "squeeze_number"): 100.0,
+    ("squeezefilm.film.closed.limits.edge_layer_load", "squeeze_number"): 100.0,
     # The gap must not close.
     ("squeezefilm.contact.wedge.wedge_pressure", "amplitude"): 0.05,
     # The amplitude must lie between where it starts and what it is drawn to.

@@ -28,7 +28,8 @@ from squeezefilm.analysis import render_command
 from squeezefilm.analysis.friction_command import friction_map
 from squeezefilm.display import Display, load_display
 from squeezefilm.errors import SqueezefilmError, SqueezefilmWarning
-from squeezefilm.film import batch, periodic
+from squeezefilm.film.periodic import batch
+from squeezefilm.film.periodic import film as periodic
 from squeezefilm.formats.trajectories import motion_from
 from squeezefilm.plate import annular, solve_modes
 from squeezefilm.plate.layout import RectangularPlate

@@ -30,8 +30,8 @@ from squeezefilm.contact.sliding import Sliding, slide
 from squeezefilm.display import Display, Surface, load_display
 from squeezefilm.distributions import Normal, Uniform
 from squeezefilm.film.gap import PaperGap
-from squeezefilm.film.planar_gap import PlanarGap
-from squeezefilm.film.profile import GapProfile, flexural_profile
+from squeezefilm.film.periodic.profile import GapProfile, flexural_profile
+from squeezefilm.film.planar.gap import PlanarGap
 from squeezefilm.formats.hjif import ReferenceDevice, hjif_of
 from squeezefilm.friction import FrictionLaw
 from squeezefilm.materials import ElasticMaterial, Gas, Piezoceramic, PiezoConstants

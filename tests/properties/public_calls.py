@@ -21,7 +21,19 @@ import squeezefilm
 from squeezefilm.quantities import unit_of
 
 ROOMS = frozenset(
-    ["film", "plate", "contact", "render", "friction", "prediction", "touch", "materials", "quantities", "distributions", "formats"]
+    [
+        "film",
+        "plate",
+        "contact",
+        "render",
+        "friction",
+        "prediction",
+        "touch",
+        "materials",
+        "quantities",
+        "distributions",
+        "formats",
+    ]
 )
 _REAL_ARRAY = np.ndarray[tuple[Any, ...], np.dtype[np.float64]]
 _NUMBERS = (int, float, _REAL_ARRAY)

@@ -6,9 +6,9 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from squeezefilm.film.batch import solve_discs, solve_strips
-from squeezefilm.film.periodic import solve_profile, solve_strip
-from squeezefilm.film.profile import flexural_profile
+from squeezefilm.film.periodic.batch import solve_discs, solve_strips
+from squeezefilm.film.periodic.film import solve_profile, solve_strip
+from squeezefilm.film.periodic.profile import flexural_profile
 from squeezefilm.film.slip import SLIP_LAWS
 
 sigmas = st.floats(-2.0, 4.0).map(lambda power: 10.0**power)

@@ -10,7 +10,7 @@ from squeezefilm.contact.asperities import AsperityLaw
 from squeezefilm.contact.gas_table import film_table
 from squeezefilm.contact.sharing import share_load, share_load_tied
 from squeezefilm.contact.tapping import tapping_friction
-from squeezefilm.film.periodic import solve_strip
+from squeezefilm.film.periodic.film import solve_strip
 from squeezefilm.materials import Gas
 
 GAS = Gas(1.85e-5, 1e5, 1.2, 67e-9)

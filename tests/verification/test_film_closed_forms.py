@@ -8,7 +8,7 @@ from scipy.integrate import quad
 from scipy.special import ive
 
 from squeezefilm.errors import ConvergenceError, InputError, OutOfRangeError, OutOfRangeWarning
-from squeezefilm.film import limits, linear
+from squeezefilm.film.closed import limits, linear
 from squeezefilm.film.gap import PaperGap
 
 EVERY_SIGMA = np.geomspace(1e-12, 1e12, 200)

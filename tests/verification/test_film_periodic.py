@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from squeezefilm.film.balance import levitation_limit, mean_gap_for_load
-from squeezefilm.film.batch import solve_discs, solve_strips
-from squeezefilm.film.edge import edge_layer
-from squeezefilm.film.kernel import newton
-from squeezefilm.film.periodic import solve_disc, solve_profile, solve_strip
-from squeezefilm.film.profile import flexural_profile
-from squeezefilm.film.resolution import tables
+from squeezefilm.film.periodic.balance import levitation_limit, mean_gap_for_load
+from squeezefilm.film.periodic.batch import solve_discs, solve_strips
+from squeezefilm.film.periodic.edge import edge_layer
+from squeezefilm.film.periodic.film import solve_disc, solve_profile, solve_strip
+from squeezefilm.film.periodic.kernel import newton
+from squeezefilm.film.periodic.profile import flexural_profile
+from squeezefilm.film.periodic.resolution import tables
 
 STRIP_LOADS = {
     (0.1, 1.0): 1.000108, (0.1, 10.0): 1.005188, (0.1, 100.0): 1.010778,
@@ -169,7 +169,7 @@ def test_infinite_sigma_under_a_wavy_gap():
 
 def load_on_one_grid(cells, nt, sigma=30.0, eps=0.6):
     """The over-pressure on one grid, without extrapolation."""
-    from squeezefilm.film import uniform as u
+    from squeezefilm.film.periodic import uniform as u
 
     ntp, DT, mask = tables(nt)
     H, H3, w, c, s = (np.empty(ntp) for _ in range(5))

@@ -9,13 +9,13 @@ import pytest
 
 from squeezefilm.errors import ConvergenceError, GeometryError, InputError
 from squeezefilm.film.line_grid import uniform_gap
-from squeezefilm.film.planar import solve_ellipse, solve_planar, solve_rectangle
-from squeezefilm.film.planar_balance import Balancer, Film, derivative, resampled
-from squeezefilm.film.planar_cut import cut_ellipse_grid
-from squeezefilm.film.planar_gap import PlanarGap
-from squeezefilm.film.planar_grid import disc_grid, ellipse_grid, graded_line, rectangle_grid
-from squeezefilm.film.settling import settle_to_periodic
-from squeezefilm.film.teeth import compare_teeth
+from squeezefilm.film.planar.balance import Balancer, Film, derivative, resampled
+from squeezefilm.film.planar.cut import cut_ellipse_grid
+from squeezefilm.film.planar.film import solve_ellipse, solve_planar, solve_rectangle
+from squeezefilm.film.planar.gap import PlanarGap
+from squeezefilm.film.planar.grid import disc_grid, ellipse_grid, graded_line, rectangle_grid
+from squeezefilm.film.planar.teeth import compare_teeth
+from squeezefilm.film.transient.settling import settle_to_periodic
 
 
 def blech(squeeze_number: float, aspect: float, terms: int = 4001) -> tuple[float, float]:
@@ -351,7 +351,7 @@ def test_ridges_that_reach_the_surface_are_refused():
 
 
 def test_a_tolerance_out_of_reach_raises_with_the_best_state(monkeypatch):
-    monkeypatch.setattr("squeezefilm.film.planar_ladder._MEMORY", 2e6)
+    monkeypatch.setattr("squeezefilm.film.planar.ladder._MEMORY", 2e6)
     with pytest.raises(ConvergenceError, match="memory") as caught:
         solve_ellipse(10.0, 0.5, 1.5, tolerance=1e-5)
     assert caught.value.partial.over_pressure == pytest.approx(0.22470, rel=5e-3)

@@ -7,8 +7,8 @@ import pytest
 
 from squeezefilm.errors import ConvergenceError, GeometryError, InputError
 from squeezefilm.film.line_grid import uniform_gap
-from squeezefilm.film.settling import settle_to_periodic
-from squeezefilm.film.transient import solve_transient
+from squeezefilm.film.transient.march import solve_transient
+from squeezefilm.film.transient.settling import settle_to_periodic
 
 STRIP = {
     (0.1, 1.0): 1.000108, (0.1, 10.0): 1.005188, (0.1, 100.0): 1.010778,

@@ -26,7 +26,7 @@ from squeezefilm.contact.wedge import sliding_ratio, wedge_pressure
 from squeezefilm.display import load_display
 from squeezefilm.errors import InputError, OutOfRangeError, UnreachableError
 from squeezefilm.film.gap import PaperGap
-from squeezefilm.film.periodic import solve_strip
+from squeezefilm.film.periodic.film import solve_strip
 from squeezefilm.friction import friction_law
 from squeezefilm.materials import Gas
 

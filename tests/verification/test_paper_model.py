@@ -7,13 +7,13 @@ import pytest
 
 from squeezefilm.contact import paper
 from squeezefilm.errors import InputError, UnreachableError
+from squeezefilm.film.closed.limits import contact_mean_pressure, mean_pressure_profile
 from squeezefilm.film.gap import (
     PaperGap,
     frequency_for_squeeze_number,
     squeeze_number,
     squeeze_number_printed,
 )
-from squeezefilm.film.limits import contact_mean_pressure, mean_pressure_profile
 
 FORCE, AMBIENT, VISCOSITY, CONTACT = 0.5, 1e5, 1.85e-5, 10e-3
 

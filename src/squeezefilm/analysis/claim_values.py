@@ -29,13 +29,13 @@ from squeezefilm.contact.paper import (
     zero_friction_amplitude,
 )
 from squeezefilm.display import Display, load_display
+from squeezefilm.film.closed.limits import contact_mean_pressure, mean_pressure_profile
 from squeezefilm.film.gap import (
     PaperGap,
     frequency_for_squeeze_number,
     squeeze_number,
     squeeze_number_printed,
 )
-from squeezefilm.film.limits import contact_mean_pressure, mean_pressure_profile
 from squeezefilm.film.validity import asymptotic_fraction
 from squeezefilm.friction import friction_law
 from squeezefilm.plate.beam import euler_bernoulli_half_wavelength, timoshenko_frequency

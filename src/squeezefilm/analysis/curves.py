@@ -10,7 +10,7 @@ from squeezefilm.analysis.procedure import PAPER_HALF_WAVELENGTHS, friction_crit
 from squeezefilm.contact.film_load import is_still, line_film
 from squeezefilm.display import Display, Surface
 from squeezefilm.errors import UnreachableError
-from squeezefilm.film.limits import mean_pressure_profile
+from squeezefilm.film.closed.limits import mean_pressure_profile
 from squeezefilm.friction import FrictionLaw, FrictionModel, friction_law
 from squeezefilm.plate.solid_mode import response_frequencies
 from squeezefilm.prediction import Prediction

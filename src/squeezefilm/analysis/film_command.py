@@ -87,8 +87,8 @@ def solve_film(
 ) -> FilmAnswer:
     """One film. σ is on the width of a strip, the radius of a disc, the X side of a rectangle or
     the X semi-axis of an ellipse. Raises what the film solvers raise."""
-    from squeezefilm.film.periodic import solve_disc, solve_strip
-    from squeezefilm.film.planar import solve_ellipse, solve_rectangle
+    from squeezefilm.film.periodic.film import solve_disc, solve_strip
+    from squeezefilm.film.planar.film import solve_ellipse, solve_rectangle
 
     gas = {
         "polytropic_exponent": request.polytropic_exponent,
@@ -139,7 +139,7 @@ def sweep_film(
 
     Raises `InputError` for shapes in the plane, which are too slow for a map of thousands.
     """
-    from squeezefilm.film.batch import solve_discs, solve_strips
+    from squeezefilm.film.periodic.batch import solve_discs, solve_strips
 
     if request.shape not in _LINES:
         raise InputError(

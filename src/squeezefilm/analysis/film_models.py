@@ -152,8 +152,8 @@ def _teeth(display: Display, prediction: Prediction) -> ToothResult | None:
     actuator = display.actuator
     if not isinstance(actuator, AnnularStator) or actuator.tooth_pitch is None:
         return None
-    from squeezefilm.film.planar_gap import PlanarGap
-    from squeezefilm.film.teeth import compare_teeth
+    from squeezefilm.film.planar.gap import PlanarGap
+    from squeezefilm.film.planar.teeth import compare_teeth
 
     assert actuator.slot_width is not None
     p, gas = prediction, display.gas
@@ -190,7 +190,7 @@ def _teeth(display: Display, prediction: Prediction) -> ToothResult | None:
 
 def _balance(display: Display, prediction: Prediction) -> PlateauBalance | None:
     from squeezefilm.errors import UnreachableError
-    from squeezefilm.film.balance import mean_gap_for_load
+    from squeezefilm.film.periodic.balance import mean_gap_for_load
 
     p, finger, gas = prediction, display.finger, display.gas
     load = finger.mean_pressure * finger.ridge_period / finger.plateau_width

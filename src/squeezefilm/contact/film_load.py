@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from squeezefilm.errors import InputError
+from squeezefilm.film.closed.limits import contact_mean_pressure
 from squeezefilm.film.gap import PaperGap, squeeze_number
-from squeezefilm.film.limits import contact_mean_pressure
 from squeezefilm.materials import Gas
 from squeezefilm.quantities import (
     Dimensionless,
@@ -28,7 +28,7 @@ from squeezefilm.quantities import (
 )
 
 if TYPE_CHECKING:
-    from squeezefilm.film.periodic import FilmSolution
+    from squeezefilm.film.periodic.film import FilmSolution
 
 FilmModel = Literal["paper2008", "film-sealed", "film-open", "film-plateau", "film-smooth"]
 FILM_MODELS: tuple[FilmModel, ...] = (
@@ -154,8 +154,8 @@ def line_film(
     The solution's pressures are over ambient, X = x/l0; without `field` it has the load only.
     Raises what `solve_profile` raises.
     """
-    from squeezefilm.film.periodic import solve_profile
-    from squeezefilm.film.profile import flexural_profile
+    from squeezefilm.film.periodic.film import solve_profile
+    from squeezefilm.film.periodic.profile import flexural_profile
 
     reference = float(gap.reference_thickness if ridges else gap.crest_thickness)
     profile = flexural_profile(
@@ -178,7 +178,7 @@ def line_film(
 
 
 def _open(gap: PaperGap, frequency: Hertz, gas: Gas, slip: str, tolerance: float) -> FilmLoad:
-    from squeezefilm.film.planar import solve_rectangle
+    from squeezefilm.film.planar.film import solve_rectangle
 
     reference = float(gap.reference_thickness)
     sigma = _sigma(gap, frequency, gas)
@@ -215,7 +215,7 @@ def _plateaus(
     slip: str,
     tolerance: float,
 ) -> FilmLoad:
-    from squeezefilm.film.batch import solve_strips
+    from squeezefilm.film.periodic.batch import solve_strips
 
     require("plateau_width", plateau_width, Unit("m"), above=0, at_most=gap.ridge_period)
     crest = float(gap.crest_thickness)

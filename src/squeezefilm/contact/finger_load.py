@@ -12,8 +12,8 @@ import numpy as np
 
 from squeezefilm.contact.asperities import AsperityLaw
 from squeezefilm.contact.skin import Skin
+from squeezefilm.film.closed.linear import relative_damping, relative_stiffness
 from squeezefilm.film.gap import squeeze_number
-from squeezefilm.film.linear import relative_damping, relative_stiffness
 from squeezefilm.materials import Gas
 from squeezefilm.quantities import Hertz, Metre, Unit, checked_numbers, require
 

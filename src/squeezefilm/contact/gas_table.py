@@ -16,8 +16,8 @@ from functools import lru_cache
 import numpy as np
 
 from squeezefilm.errors import ConvergenceError
-from squeezefilm.film.batch import solve_strips
-from squeezefilm.film.resolution import IntArray
+from squeezefilm.film.periodic.batch import solve_strips
+from squeezefilm.film.periodic.resolution import IntArray
 from squeezefilm.film.slip import slip_law
 from squeezefilm.materials import Gas
 from squeezefilm.quantities import (

@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 
 from squeezefilm.errors import InputError, UnreachableError
+from squeezefilm.film.closed.limits import PAPER_MODELS, PaperModel, contact_mean_pressure
 from squeezefilm.film.gap import PaperGap
-from squeezefilm.film.limits import PAPER_MODELS, PaperModel, contact_mean_pressure
 from squeezefilm.quantities import (
     Dimensionless,
     DimensionlessLike,

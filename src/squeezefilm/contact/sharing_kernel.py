@@ -11,7 +11,7 @@ import math
 import numpy as np
 from numba import njit
 
-from squeezefilm.film.resolution import IntArray
+from squeezefilm.film.periodic.resolution import IntArray
 from squeezefilm.quantities import FloatArray
 
 BALANCED, NEEDS_PANEL, PRESSED_THROUGH, OUT_OF_TABLE, UNSETTLED = range(5)

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from squeezefilm.errors import InputError, OutOfRangeError, OutOfRangeWarning
+from squeezefilm.film.closed.linear import relative_stiffness
 from squeezefilm.film.gap import PaperGap, squeeze_number
-from squeezefilm.film.linear import relative_stiffness
 from squeezefilm.materials import Gas
 from squeezefilm.quantities import (
     Dimensionless,

@@ -12,12 +12,13 @@ import numpy as np
 import pytest
 
 from squeezefilm.errors import ConvergenceError, GeometryError, InputError, UnreachableError
-from squeezefilm.film import batch, compiled
-from squeezefilm.film.balance import mean_gap_for_load
-from squeezefilm.film.batch import solve_strips
-from squeezefilm.film.edge import edge_layer
-from squeezefilm.film.periodic import solve_disc, solve_profile, solve_strip
-from squeezefilm.film.profile import (
+from squeezefilm.film import compiled
+from squeezefilm.film.periodic import batch
+from squeezefilm.film.periodic.balance import mean_gap_for_load
+from squeezefilm.film.periodic.batch import solve_strips
+from squeezefilm.film.periodic.edge import edge_layer
+from squeezefilm.film.periodic.film import solve_disc, solve_profile, solve_strip
+from squeezefilm.film.periodic.profile import (
     flexural_profile,
     profile_from_function,
     profile_from_samples,
@@ -193,7 +194,7 @@ def test_the_first_compile_is_announced(tmp_path, caplog):
 
 def test_importing_the_film_imports_neither_scipy_nor_numba():
     code = (
-        "import sys, squeezefilm.film.periodic, squeezefilm.film.batch, squeezefilm.film.balance;"
+        "import sys, squeezefilm.film.periodic.film, squeezefilm.film.periodic.batch, squeezefilm.film.periodic.balance;"
         "print([m for m in ('scipy', 'numba') if m in sys.modules])"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

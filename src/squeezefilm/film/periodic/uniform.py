@@ -12,7 +12,7 @@ import math
 import numpy as np
 from numba import njit
 
-from squeezefilm.film.kernel import newton, prolong
+from squeezefilm.film.periodic.kernel import newton, prolong
 from squeezefilm.quantities import FloatArray
 
 STRIP, DISC = 0, 1

@@ -12,8 +12,8 @@ import math
 import numpy as np
 from numba import njit
 
-from squeezefilm.film.kernel import newton, prolong
-from squeezefilm.film.uniform import (
+from squeezefilm.film.periodic.kernel import newton, prolong
+from squeezefilm.film.periodic.uniform import (
     CHECK,
     COARSE,
     ERROR,

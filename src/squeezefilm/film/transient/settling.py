@@ -14,7 +14,8 @@ from squeezefilm.errors import ConvergenceError
 from squeezefilm.film.compiled import announce
 from squeezefilm.film.line_grid import Gap, Shape, gap_table, line_grid, mean_over
 from squeezefilm.film.slip import slip_law
-from squeezefilm.film.transient import (
+from squeezefilm.film.transient.kernel import march
+from squeezefilm.film.transient.march import (
     NEWTON_LIMIT,
     NEWTON_TOLERANCE,
     SCHEMES,
@@ -22,7 +23,6 @@ from squeezefilm.film.transient import (
     check_film,
     stage_times,
 )
-from squeezefilm.film.transient_kernel import march
 from squeezefilm.quantities import (
     Dimensionless,
     DimensionlessArray,

@@ -14,10 +14,10 @@ import numpy as np
 
 from squeezefilm.errors import InputError
 from squeezefilm.film.line_grid import refined_line
-from squeezefilm.film.planar_balance import Balance, Balancer, Film, resampled
-from squeezefilm.film.planar_cut import cut_ellipse_grid
-from squeezefilm.film.planar_gap import PlanarGap, gap_values
-from squeezefilm.film.planar_grid import (
+from squeezefilm.film.planar.balance import Balance, Balancer, Film, resampled
+from squeezefilm.film.planar.cut import cut_ellipse_grid
+from squeezefilm.film.planar.gap import PlanarGap, gap_values
+from squeezefilm.film.planar.grid import (
     PlanarGrid,
     disc_grid,
     ellipse_grid,

@@ -12,10 +12,10 @@ from dataclasses import dataclass
 
 from squeezefilm.errors import ConvergenceError, InputError
 from squeezefilm.film.compiled import announce
-from squeezefilm.film.planar_balance import Film
-from squeezefilm.film.planar_gap import GapFunction, PlanarGap, require_periodic
-from squeezefilm.film.planar_kernel import row_block
-from squeezefilm.film.planar_ladder import RUNGS, Ladder, PlanarShape, climb_to
+from squeezefilm.film.planar.balance import Film
+from squeezefilm.film.planar.gap import GapFunction, PlanarGap, require_periodic
+from squeezefilm.film.planar.kernel import row_block
+from squeezefilm.film.planar.ladder import RUNGS, Ladder, PlanarShape, climb_to
 from squeezefilm.film.slip import slip_law
 from squeezefilm.quantities import (
     ComplexArray,

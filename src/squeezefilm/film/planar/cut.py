@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from squeezefilm.film.planar_grid import PlanarGrid
+from squeezefilm.film.planar.grid import PlanarGrid
 from squeezefilm.quantities import FloatArray
 
 

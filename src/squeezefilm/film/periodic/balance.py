@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from squeezefilm.errors import ConvergenceError, InputError, UnreachableError
-from squeezefilm.film.batch import FilmBatch, solve_discs, solve_strips
+from squeezefilm.film.periodic.batch import FilmBatch, solve_discs, solve_strips
 from squeezefilm.quantities import (
     Dimensionless,
     FloatArray,

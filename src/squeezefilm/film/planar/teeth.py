@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from squeezefilm.errors import InputError
-from squeezefilm.film.planar import FilmPlanar, solve_planar
-from squeezefilm.film.planar_gap import GapFunction, PlanarGap
+from squeezefilm.film.planar.film import FilmPlanar, solve_planar
+from squeezefilm.film.planar.gap import GapFunction, PlanarGap
 from squeezefilm.quantities import Dimensionless, FloatArray, checked_numbers, require
 
 _PHASES = 5

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from squeezefilm.film.batch import solve_strips
+from squeezefilm.film.periodic.batch import solve_strips
 from squeezefilm.quantities import Dimensionless, checked_numbers, require
 
 _SIGMA = 3600.0

@@ -16,15 +16,15 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from squeezefilm.errors import ConvergenceError, InputError
-from squeezefilm.film.batch import check_film, compiled, solve_all
 from squeezefilm.film.compiled import announce
-from squeezefilm.film.profile import (
+from squeezefilm.film.periodic.batch import check_film, compiled, solve_all
+from squeezefilm.film.periodic.profile import (
     GapProfile,
     evaluate,
     profile_from_function,
     sampled_grid,
 )
-from squeezefilm.film.resolution import CELLS, CHECKS, TIMES, first_guess, refined, tables
+from squeezefilm.film.periodic.resolution import CELLS, CHECKS, TIMES, first_guess, refined, tables
 from squeezefilm.film.slip import slip_law
 from squeezefilm.quantities import (
     ComplexArray,
@@ -206,8 +206,8 @@ def solve_profile(
     require("squeeze_number", squeeze_number, above=0.0)
     check_film(squeeze_number, 0.0, polytropic_exponent, tolerance)
     law = slip_law(slip, knudsen_number)
-    from squeezefilm.film import uniform as u
-    from squeezefilm.film.varying import solve_varying
+    from squeezefilm.film.periodic import uniform as u
+    from squeezefilm.film.periodic.varying import solve_varying
 
     announce(solve_varying, "solver of film profiles", 20)
     closed = profile.symmetric

@@ -13,9 +13,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import lapack
 
-from squeezefilm.film.planar_gap import GapFunction, gap_values
-from squeezefilm.film.planar_grid import IntArray, PlanarGrid
-from squeezefilm.film.planar_kernel import assemble, row_block, take_off
+from squeezefilm.film.planar.gap import GapFunction, gap_values
+from squeezefilm.film.planar.grid import IntArray, PlanarGrid
+from squeezefilm.film.planar.kernel import assemble, row_block, take_off
 from squeezefilm.quantities import ComplexArray, FloatArray
 
 _OVERSAMPLE = 6

@@ -18,7 +18,7 @@ import numpy as np
 
 from squeezefilm.errors import ConvergenceError, InputError
 from squeezefilm.film.compiled import announce
-from squeezefilm.film.resolution import (
+from squeezefilm.film.periodic.resolution import (
     CELLS,
     CHECKS,
     TIMES,
@@ -77,7 +77,7 @@ class FilmBatch:
 @lru_cache(maxsize=1)
 def compiled() -> Any:
     """The compiled solver; says on the log when this processor has to compile it first."""
-    from squeezefilm.film import uniform
+    from squeezefilm.film.periodic import uniform
 
     announce(uniform.solve_rows, "film solver", 20)
     return uniform

@@ -17,7 +17,7 @@ from squeezefilm.errors import ConvergenceError, InputError
 from squeezefilm.film.compiled import announce
 from squeezefilm.film.line_grid import Gap, Shape, gap_table, line_grid, mean_over
 from squeezefilm.film.slip import slip_law
-from squeezefilm.film.transient_kernel import BACKWARD_EULER, BDF2, SDIRK2, march
+from squeezefilm.film.transient.kernel import BACKWARD_EULER, BDF2, SDIRK2, march
 from squeezefilm.quantities import (
     Dimensionless,
     DimensionlessArray,

@@ -17,7 +17,7 @@ import math
 
 from numba import njit
 
-from squeezefilm.film.lanes import (
+from squeezefilm.film.periodic.lanes import (
     add,
     broadcast,
     div,
