@@ -26,10 +26,10 @@ from pathlib import Path
 import numpy as np
 
 from squeezefilm.display import load_display
-from squeezefilm.plate.box_model import BoxModel
+from squeezefilm.plate.elements.box_model import BoxModel
 from squeezefilm.plate.layout import RectangularPlate
-from squeezefilm.plate.plate_response import harmonic_response
-from squeezefilm.plate.solve_modes import solve_modes
+from squeezefilm.plate.solid.response import harmonic_response
+from squeezefilm.plate.solid.solve import solve_modes
 
 CONVERGED = {"from_d31": 33574.0, "printed_e31": 33422.0}
 

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 from scipy.sparse.linalg import LinearOperator, eigsh
 
-from squeezefilm.plate.box_model import BoxModel
-from squeezefilm.plate.lobatto import LineMesh
+from squeezefilm.plate.elements.box_model import BoxModel
+from squeezefilm.plate.elements.lobatto import LineMesh
 from squeezefilm.quantities import FloatArray
 
 

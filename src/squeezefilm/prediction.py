@@ -31,8 +31,8 @@ from squeezefilm.friction import (
     friction_law,
     shares_load,
 )
+from squeezefilm.plate.beam.response import beam_doubt
 from squeezefilm.plate.layout import Actuator, RectangularPlate
-from squeezefilm.plate.response import beam_doubt
 from squeezefilm.plate.working_mode import PlateTheory, WorkingMode, working_mode
 from squeezefilm.quantities import (
     Dimensionless,

@@ -31,8 +31,9 @@ from squeezefilm.errors import SqueezefilmError, SqueezefilmWarning
 from squeezefilm.film.periodic import batch
 from squeezefilm.film.periodic import film as periodic
 from squeezefilm.formats.trajectories import motion_from
-from squeezefilm.plate import annular, solve_modes
 from squeezefilm.plate.layout import RectangularPlate
+from squeezefilm.plate.ring import modes as annular
+from squeezefilm.plate.solid import solve as solve_modes
 from squeezefilm.prediction import predict
 from squeezefilm.study.design import load_design
 from squeezefilm.study.plan import plan_study

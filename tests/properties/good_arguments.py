@@ -35,40 +35,40 @@ from squeezefilm.film.planar.gap import PlanarGap
 from squeezefilm.formats.hjif import ReferenceDevice, hjif_of
 from squeezefilm.friction import FrictionLaw
 from squeezefilm.materials import ElasticMaterial, Gas, Piezoceramic, PiezoConstants
-from squeezefilm.plate.annular import AnnularMode, bending_mode
-from squeezefilm.plate.annular_layout import (
+from squeezefilm.plate.beam.modes import BeamMode
+from squeezefilm.plate.beam.response import BeamResponse, beam_response
+from squeezefilm.plate.laminate import Laminate, Layer, plate_laminate
+from squeezefilm.plate.layout import CeramicPatch, RectangularPlate
+from squeezefilm.plate.loaded_mode import LoadedMode
+from squeezefilm.plate.ring.body import RingBody
+from squeezefilm.plate.ring.materials import RingSolid, isotropic_solid
+from squeezefilm.plate.ring.modes import AnnularMode, bending_mode
+from squeezefilm.plate.ring.response import RingResponse, ring_response
+from squeezefilm.plate.ring.section import (
     AnnularSection,
     RingLayer,
     SectorDrive,
     bonded_disc,
     full_drive,
 )
-from squeezefilm.plate.annular_materials import RingSolid, isotropic_solid
-from squeezefilm.plate.beam import BeamMode
-from squeezefilm.plate.laminate import Laminate, Layer, plate_laminate
-from squeezefilm.plate.layout import CeramicPatch, RectangularPlate
-from squeezefilm.plate.loaded_mode import LoadedMode
-from squeezefilm.plate.plate_modes import PlateModes
-from squeezefilm.plate.plate_response import (
-    EquivalentCircuit,
-    HarmonicResponse,
-    SurfaceLoad,
-    harmonic_response,
-)
-from squeezefilm.plate.response import BeamResponse, beam_response
-from squeezefilm.plate.ring_body import RingBody
-from squeezefilm.plate.ring_response import RingResponse, ring_response
-from squeezefilm.plate.shear_plate import ShearMode, shear_modes
-from squeezefilm.plate.shear_section import (
+from squeezefilm.plate.ring.stator import StatorAssumptions
+from squeezefilm.plate.shear.modes import ShearMode, shear_modes
+from squeezefilm.plate.shear.section import (
     ShearLayout,
     ShearSection,
     isotropic_section,
     shear_layout,
 )
-from squeezefilm.plate.solid_mode import SolidMode, solid_mode
-from squeezefilm.plate.solve_modes import solve_modes
+from squeezefilm.plate.solid.modes import PlateModes
+from squeezefilm.plate.solid.response import (
+    EquivalentCircuit,
+    HarmonicResponse,
+    SurfaceLoad,
+    harmonic_response,
+)
+from squeezefilm.plate.solid.solve import solve_modes
+from squeezefilm.plate.solid.working import SolidMode, solid_mode
 from squeezefilm.plate.sound import RadiatingSurface, rectangular_surface
-from squeezefilm.plate.stator import StatorAssumptions
 from squeezefilm.plate.working_mode import WorkingMode, working_mode
 from squeezefilm.quantities import Unit, unit_of
 from squeezefilm.render.compensation import CompensatedDrive, DrivenEnvelope, compensated_drive

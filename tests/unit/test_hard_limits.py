@@ -15,11 +15,11 @@ from squeezefilm.config.load import load_text
 from squeezefilm.display import Display, load_display
 from squeezefilm.errors import ConfigError, InputError
 from squeezefilm.hard_limits import HardLimit, require_fields, require_motion, require_within
-from squeezefilm.plate.beam import free_beam_mode
+from squeezefilm.plate.beam.modes import free_beam_mode
 from squeezefilm.plate.laminate import plate_laminate
 from squeezefilm.plate.layout import RectangularPlate
-from squeezefilm.plate.plate_mesh import plate_model
-from squeezefilm.plate.plate_modes import check_band
+from squeezefilm.plate.solid.mesh import plate_model
+from squeezefilm.plate.solid.modes import check_band
 from squeezefilm.presets import path as preset_path
 from squeezefilm.quantities import Unit
 from squeezefilm.render.minimum_jerk import MinimumJerkStroke

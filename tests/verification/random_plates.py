@@ -5,11 +5,11 @@ import dataclasses
 import numpy as np
 
 from squeezefilm.materials import ElasticMaterial, Piezoceramic
-from squeezefilm.plate.coarse_modes import estimated_frequency
+from squeezefilm.plate.elements.slabs import Slabs
 from squeezefilm.plate.layout import CeramicPatch, GlueLayer, RectangularPlate
-from squeezefilm.plate.plate_mesh import Resolution, plate_model
-from squeezefilm.plate.plate_symmetry import all_classes
-from squeezefilm.plate.slabs import Slabs
+from squeezefilm.plate.solid.coarse_modes import estimated_frequency
+from squeezefilm.plate.solid.mesh import Resolution, plate_model
+from squeezefilm.plate.solid.symmetry import all_classes
 
 SUBSTRATES = (
     ElasticMaterial("copper-beryllium", 123e9, 0.30, 8250),

@@ -11,15 +11,15 @@ from scipy.linalg import eigh
 
 from squeezefilm.display import load_display
 from squeezefilm.errors import InputError
-from squeezefilm.plate.beam import (
+from squeezefilm.plate.beam.modes import (
     euler_bernoulli_frequency,
     euler_bernoulli_half_wavelength,
     free_beam_mode,
     timoshenko_frequency,
 )
+from squeezefilm.plate.beam.response import BeamResponse, beam_response
 from squeezefilm.plate.laminate import Laminate, Layer, laminate, plate_laminate
 from squeezefilm.plate.layout import RectangularPlate
-from squeezefilm.plate.response import BeamResponse, beam_response
 from squeezefilm.plate.working_mode import working_mode
 
 

@@ -12,8 +12,8 @@ from squeezefilm.friction import friction_law
 from squeezefilm.materials import Gas
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.loaded_mode import LoadedMode, loaded_mode, mean_square_wave
-from squeezefilm.plate.plate_response import SurfaceLoad, harmonic_response
-from squeezefilm.plate.solid_mode import solid_mode
+from squeezefilm.plate.solid.response import SurfaceLoad, harmonic_response
+from squeezefilm.plate.solid.working import solid_mode
 from squeezefilm.plate.working_mode import working_mode
 from squeezefilm.touch import load_ratios, touch
 

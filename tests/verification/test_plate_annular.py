@@ -15,14 +15,21 @@ from scipy.sparse.linalg import LinearOperator, eigsh, splu, spsolve
 
 from squeezefilm.errors import GeometryError, InputError, UnreachableError
 from squeezefilm.materials import ElasticMaterial
-from squeezefilm.plate.annular import (
+from squeezefilm.plate.ring.elements import harmonic_system
+from squeezefilm.plate.ring.materials import (
+    RingSolid,
+    isotropic_solid,
+    piezoceramic_solid,
+    soft_teeth,
+    stiff_teeth,
+)
+from squeezefilm.plate.ring.modes import (
     annular_admittance,
     annular_modes,
     bending_mode,
     clamped_capacitance,
 )
-from squeezefilm.plate.annular_elements import harmonic_system
-from squeezefilm.plate.annular_layout import (
+from squeezefilm.plate.ring.section import (
     AnnularSection,
     RingLayer,
     SectorDrive,
@@ -31,14 +38,7 @@ from squeezefilm.plate.annular_layout import (
     full_drive,
     motor_stator,
 )
-from squeezefilm.plate.annular_materials import (
-    RingSolid,
-    isotropic_solid,
-    piezoceramic_solid,
-    soft_teeth,
-    stiff_teeth,
-)
-from squeezefilm.plate.stator import (
+from squeezefilm.plate.ring.stator import (
     HARD_PZT,
     PHOSPHOR_BRONZE,
     StatorAssumptions,

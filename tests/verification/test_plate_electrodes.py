@@ -8,9 +8,9 @@ import pytest
 
 from squeezefilm.errors import OutOfRangeError
 from squeezefilm.plate.layout import CeramicPatch, FoamSupport, RectangularPlate
-from squeezefilm.plate.plate_mesh import Resolution, plate_model
-from squeezefilm.plate.plate_response import harmonic_response
-from squeezefilm.plate.solve_modes import solve_modes
+from squeezefilm.plate.solid.mesh import Resolution, plate_model
+from squeezefilm.plate.solid.response import harmonic_response
+from squeezefilm.plate.solid.solve import solve_modes
 
 from .test_plate_solid import monomorph, small
 from .test_solid_elements import FROM_D31, frequencies, monomorph_on_a_uniform_mesh

@@ -11,14 +11,14 @@ import functools
 import numpy as np
 import pytest
 
-from squeezefilm.plate.blas_threads import one_blas_thread
-from squeezefilm.plate.coarse_modes import coarse_modes
-from squeezefilm.plate.krylov import modes_near, prolonged
-from squeezefilm.plate.plate_mesh import plate_model
-from squeezefilm.plate.plate_symmetry import all_classes
-from squeezefilm.plate.refined_modes import extrapolated, refined_modes
-from squeezefilm.plate.slab_factor import SlabFactor
-from squeezefilm.plate.slabs import Slabs
+from squeezefilm.plate.elements.blas_threads import one_blas_thread
+from squeezefilm.plate.elements.krylov import modes_near, prolonged
+from squeezefilm.plate.elements.slab_factor import SlabFactor
+from squeezefilm.plate.elements.slabs import Slabs
+from squeezefilm.plate.solid.coarse_modes import coarse_modes
+from squeezefilm.plate.solid.mesh import plate_model
+from squeezefilm.plate.solid.refined_modes import extrapolated, refined_modes
+from squeezefilm.plate.solid.symmetry import all_classes
 
 from .random_plates import REFINED, affordable_plate, guess
 

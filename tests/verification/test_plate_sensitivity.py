@@ -19,7 +19,7 @@ from squeezefilm.display import load_display
 from squeezefilm.errors import InputError
 from squeezefilm.materials import ElasticMaterial
 from squeezefilm.plate.layout import CeramicPatch, RectangularPlate
-from squeezefilm.plate.solve_modes import solve_modes
+from squeezefilm.plate.solid.solve import solve_modes
 
 
 def _paper() -> RectangularPlate:

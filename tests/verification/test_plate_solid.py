@@ -9,6 +9,8 @@ import pytest
 from squeezefilm.display import load_display
 from squeezefilm.errors import ContradictionError, GeometryError, InputError, OutOfRangeError
 from squeezefilm.materials import ElasticMaterial, Piezoceramic, PiezoConstants
+from squeezefilm.plate.elements.slab_factor import SlabFactor
+from squeezefilm.plate.elements.slabs import Slabs
 from squeezefilm.plate.layout import (
     CeramicPatch,
     FoamSupport,
@@ -16,18 +18,16 @@ from squeezefilm.plate.layout import (
     RectangularPlate,
     rim_supports,
 )
-from squeezefilm.plate.plate_mesh import COARSE, plate_model
-from squeezefilm.plate.plate_modes import SolvedModel, tracked
-from squeezefilm.plate.plate_response import (
+from squeezefilm.plate.solid.mesh import COARSE, plate_model
+from squeezefilm.plate.solid.modes import SolvedModel, tracked
+from squeezefilm.plate.solid.reduced import harmonic_solution, reduced_class, surface_values
+from squeezefilm.plate.solid.response import (
     SurfaceLoad,
     direct_admittance,
     harmonic_response,
 )
-from squeezefilm.plate.plate_symmetry import all_classes, drive_classes
-from squeezefilm.plate.reduced_plate import harmonic_solution, reduced_class, surface_values
-from squeezefilm.plate.slab_factor import SlabFactor
-from squeezefilm.plate.slabs import Slabs
-from squeezefilm.plate.solve_modes import solve_modes
+from squeezefilm.plate.solid.solve import solve_modes
+from squeezefilm.plate.solid.symmetry import all_classes, drive_classes
 
 # Raw on a graded grid of a prototype, about 0.03 % above the converged values (PLATES.md); the
 # modal force of the alternating drive in N/(V √kg), zero where symmetry makes it so.
@@ -194,7 +194,7 @@ def test_classes_of_symmetry_together_are_the_whole_plate() -> None:
     shift = (2 * np.pi * 17e3) ** 2
 
     def found(parity: tuple[object, object], count: int) -> list[float]:
-        from squeezefilm.plate.krylov import modes_near
+        from squeezefilm.plate.elements.krylov import modes_near
 
         slabs = Slabs(plate_model(plate, 30e3, COARSE, parity).model)  # type: ignore[arg-type]
         start = np.random.default_rng(0).standard_normal((slabs.unknowns, 4))

@@ -16,11 +16,11 @@ from squeezefilm.plate.layout import (
     rim_supports,
     turned,
 )
-from squeezefilm.plate.mode_table import energy_shares_of
-from squeezefilm.plate.plate_modes import PlateModes
-from squeezefilm.plate.plate_response import harmonic_response
-from squeezefilm.plate.shear_guess import bare_frequency, screened_frequency, straightness
-from squeezefilm.plate.solve_modes import solve_modes
+from squeezefilm.plate.solid.mode_table import energy_shares_of
+from squeezefilm.plate.solid.modes import PlateModes
+from squeezefilm.plate.solid.response import harmonic_response
+from squeezefilm.plate.solid.shear_guess import bare_frequency, screened_frequency, straightness
+from squeezefilm.plate.solid.solve import solve_modes
 
 GLASS = ElasticMaterial("glass", 72e9, 0.22, 2480, quality_factor=1000)
 CERAMIC = Piezoceramic("PZT", 67.9e9, 0.2897, 23e9, 7700, -180e-12, 1900, 75)

@@ -12,10 +12,10 @@ from squeezefilm.display import load_display
 from squeezefilm.errors import InputError
 from squeezefilm.materials import ElasticMaterial
 from squeezefilm.plate.layout import CeramicPatch, GlueLayer, RectangularPlate
-from squeezefilm.plate.plate_modes import PlateModes
-from squeezefilm.plate.plate_response import HarmonicResponse, harmonic_response
-from squeezefilm.plate.plate_volume import harmonic_fields, mode_fields, plate_volume
-from squeezefilm.plate.solve_modes import solve_modes
+from squeezefilm.plate.solid.modes import PlateModes
+from squeezefilm.plate.solid.response import HarmonicResponse, harmonic_response
+from squeezefilm.plate.solid.solve import solve_modes
+from squeezefilm.plate.solid.volume import harmonic_fields, mode_fields, plate_volume
 from squeezefilm.report.vtu import LARGEST_DISPLACEMENT, write_vtu
 
 Solved = tuple[PlateModes, HarmonicResponse]

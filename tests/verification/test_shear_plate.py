@@ -11,11 +11,11 @@ import pytest
 from squeezefilm.display import load_display
 from squeezefilm.errors import InputError
 from squeezefilm.materials import ElasticMaterial
-from squeezefilm.plate.beam import free_beam_mode
+from squeezefilm.plate.beam.modes import free_beam_mode
 from squeezefilm.plate.laminate import plate_laminate
 from squeezefilm.plate.layout import CeramicPatch, RectangularPlate
-from squeezefilm.plate.shear_plate import MODELLING_ERROR, shear_mode, shear_modes
-from squeezefilm.plate.shear_section import isotropic_section, shear_layout, uniform_shear_layout
+from squeezefilm.plate.shear.modes import MODELLING_ERROR, shear_mode, shear_modes
+from squeezefilm.plate.shear.section import isotropic_section, shear_layout, uniform_shear_layout
 
 STEEL = ElasticMaterial("NAFEMS steel", 200e9, 0.3, 8000.0)
 

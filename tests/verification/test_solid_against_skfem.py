@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from squeezefilm.plate.box_model import BoxModel, Electrode, Medium
-from squeezefilm.plate.krylov import modes_near
-from squeezefilm.plate.lobatto import LineMesh
-from squeezefilm.plate.slab_factor import SlabFactor
-from squeezefilm.plate.slabs import Slabs
+from squeezefilm.plate.elements.box_model import BoxModel, Electrode, Medium
+from squeezefilm.plate.elements.krylov import modes_near
+from squeezefilm.plate.elements.lobatto import LineMesh
+from squeezefilm.plate.elements.slab_factor import SlabFactor
+from squeezefilm.plate.elements.slabs import Slabs
 
 from .test_solid_elements import STEEL, monomorph_on_a_uniform_mesh, pzt_5a
 

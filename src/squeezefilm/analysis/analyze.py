@@ -33,12 +33,12 @@ from squeezefilm.analysis.verdict import Finding, verdict
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError, OutOfRangeError
 from squeezefilm.friction import FrictionModel
-from squeezefilm.plate.beam import BeamTheory
+from squeezefilm.plate.beam.modes import BeamTheory
+from squeezefilm.plate.beam.response import beam_response
 from squeezefilm.plate.laminate import CrossSection
 from squeezefilm.plate.layout import RectangularPlate
-from squeezefilm.plate.response import beam_response
-from squeezefilm.plate.shear_plate import shear_mode
-from squeezefilm.plate.solid_mode import solid_mode
+from squeezefilm.plate.shear.modes import shear_mode
+from squeezefilm.plate.solid.working import solid_mode
 from squeezefilm.plate.working_mode import PlateTheory
 from squeezefilm.prediction import Prediction, predict
 from squeezefilm.quantities import Hertz, Metre, Newton, Second, Volt

@@ -38,10 +38,10 @@ from squeezefilm.film.gap import (
 )
 from squeezefilm.film.validity import asymptotic_fraction
 from squeezefilm.friction import friction_law
-from squeezefilm.plate.beam import euler_bernoulli_half_wavelength, timoshenko_frequency
+from squeezefilm.plate.beam.modes import euler_bernoulli_half_wavelength, timoshenko_frequency
+from squeezefilm.plate.beam.response import beam_response
 from squeezefilm.plate.laminate import Laminate, plate_laminate
 from squeezefilm.plate.layout import AnnularStator, RectangularPlate
-from squeezefilm.plate.response import beam_response
 from squeezefilm.quantities import Metre
 
 PRINTED_HALF_WAVELENGTH: Metre = 10.37e-3

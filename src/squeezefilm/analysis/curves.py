@@ -12,7 +12,7 @@ from squeezefilm.display import Display, Surface
 from squeezefilm.errors import UnreachableError
 from squeezefilm.film.closed.limits import mean_pressure_profile
 from squeezefilm.friction import FrictionLaw, FrictionModel, friction_law
-from squeezefilm.plate.solid_mode import response_frequencies
+from squeezefilm.plate.solid.working import response_frequencies
 from squeezefilm.prediction import Prediction
 from squeezefilm.quantities import (
     Dimensionless,

@@ -14,12 +14,12 @@ from squeezefilm.analysis.plate_tracking import ModeTracks, TrackRequest, track_
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import NODAL_LINES, require_within
+from squeezefilm.plate.beam.response import beam_response
 from squeezefilm.plate.layout import RectangularPlate
-from squeezefilm.plate.plate_modes import Label, PlateModes, profiles, zero_crossings
-from squeezefilm.plate.plate_response import EquivalentCircuit, HarmonicResponse, harmonic_response
-from squeezefilm.plate.response import beam_response
-from squeezefilm.plate.shear_plate import shear_mode
-from squeezefilm.plate.solve_modes import solve_modes
+from squeezefilm.plate.shear.modes import shear_mode
+from squeezefilm.plate.solid.modes import Label, PlateModes, profiles, zero_crossings
+from squeezefilm.plate.solid.response import EquivalentCircuit, HarmonicResponse, harmonic_response
+from squeezefilm.plate.solid.solve import solve_modes
 from squeezefilm.plate.sound import SoundField, rectangular_surface, sound_field
 from squeezefilm.quantities import (
     ComplexArray,

@@ -17,10 +17,10 @@ import numpy as np
 from squeezefilm.errors import InputError
 from squeezefilm.materials import Piezoceramic
 from squeezefilm.plate.layout import GlueLayer, RectangularPlate
-from squeezefilm.plate.plate_modes import Label, PlateModes, tracked
-from squeezefilm.plate.plate_response import harmonic_response
-from squeezefilm.plate.plate_symmetry import drive_signs
-from squeezefilm.plate.solve_modes import solve_modes
+from squeezefilm.plate.solid.modes import Label, PlateModes, tracked
+from squeezefilm.plate.solid.response import harmonic_response
+from squeezefilm.plate.solid.solve import solve_modes
+from squeezefilm.plate.solid.symmetry import drive_signs
 from squeezefilm.quantities import (
     Dimensionless,
     Hertz,

@@ -24,8 +24,8 @@ from squeezefilm.analysis.plate_sensitivity import (
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import TRACKED_VALUES, require_within
 from squeezefilm.plate.layout import RectangularPlate
-from squeezefilm.plate.plate_modes import Label, PlateModes
-from squeezefilm.plate.solve_modes import solve_modes
+from squeezefilm.plate.solid.modes import Label, PlateModes
+from squeezefilm.plate.solid.solve import solve_modes
 from squeezefilm.quantities import (
     Dimensionless,
     FloatArray,

@@ -14,7 +14,7 @@ import numpy as np
 from squeezefilm.contact.paper import vibration_amplitude_for
 from squeezefilm.errors import InputError, UnreachableError
 from squeezefilm.film.gap import PaperGap, frequency_for_squeeze_number
-from squeezefilm.plate.beam import (
+from squeezefilm.plate.beam.modes import (
     euler_bernoulli_half_wavelength,
     free_beam_mode,
     timoshenko_frequency,

@@ -11,23 +11,23 @@ import numpy as np
 from squeezefilm.analysis.plate_command import ModeRow
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError
-from squeezefilm.plate.annular import AnnularMode, annular_modes
 from squeezefilm.plate.layout import AnnularStator, DiscPlate
-from squeezefilm.plate.plate_modes import check_band
-from squeezefilm.plate.plate_response import EquivalentCircuit
-from squeezefilm.plate.ring_body import (
+from squeezefilm.plate.ring.body import (
     Direction,
     RingBody,
     half_wavelength_of,
     nodal_circles,
     ring_body,
 )
-from squeezefilm.plate.ring_response import (
+from squeezefilm.plate.ring.modes import AnnularMode, annular_modes
+from squeezefilm.plate.ring.response import (
     RingResponse,
     ring_circuit,
     ring_response,
     static_capacitance,
 )
+from squeezefilm.plate.solid.modes import check_band
+from squeezefilm.plate.solid.response import EquivalentCircuit
 from squeezefilm.plate.sound import SoundField, ring_surface, sound_field
 from squeezefilm.quantities import (
     Farad,

@@ -19,8 +19,8 @@ from squeezefilm.analysis.parameters import (
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError, OutOfRangeError, SqueezefilmError
 from squeezefilm.friction import FrictionLaw, friction_law
+from squeezefilm.plate.beam.response import beam_response
 from squeezefilm.plate.layout import AnnularStator, RectangularPlate
-from squeezefilm.plate.response import beam_response
 from squeezefilm.plate.working_mode import working_mode
 from squeezefilm.prediction import Prediction
 from squeezefilm.quantities import (

@@ -17,7 +17,7 @@ from squeezefilm.analysis.uncertainty import friction_band
 from squeezefilm.errors import InputError, SqueezefilmError
 from squeezefilm.lab.description import display_of, edited, form
 from squeezefilm.plate.layout import Actuator, AnnularStator, DiscPlate, RectangularPlate
-from squeezefilm.plate.solid_mode import response_frequencies
+from squeezefilm.plate.solid.working import response_frequencies
 from squeezefilm.prediction import Prediction, predict
 from squeezefilm.quantities import FloatArray, Unit, parse_quantity
 from squeezefilm.results import stamp

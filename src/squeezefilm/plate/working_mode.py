@@ -12,16 +12,16 @@ from typing import Literal, get_args
 import numpy as np
 
 from squeezefilm.errors import InputError, OutOfRangeError
+from squeezefilm.plate.beam.response import BeamResponse, beam_response
 from squeezefilm.plate.laminate import CrossSection
 from squeezefilm.plate.layout import Actuator, AnnularStator, DiscPlate, RectangularPlate
-from squeezefilm.plate.response import BeamResponse, beam_response
-from squeezefilm.plate.ring_body import (
+from squeezefilm.plate.ring.body import (
     nodal_circles,
     ring_body,
     ring_working_mode,
     surface_profile,
 )
-from squeezefilm.plate.solid_mode import SolidMode, solid_mode
+from squeezefilm.plate.solid.working import SolidMode, solid_mode
 from squeezefilm.quantities import (
     Dimensionless,
     DimensionlessLike,

@@ -9,7 +9,7 @@ import numpy as np
 
 from squeezefilm.analysis.analyze import analyze
 from squeezefilm.display import load_display
-from squeezefilm.plate.beam import euler_bernoulli_frequency, timoshenko_frequency
+from squeezefilm.plate.beam.modes import euler_bernoulli_frequency, timoshenko_frequency
 from squeezefilm.plate.laminate import Laminate, plate_laminate
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.report.friction_figures import friction, pressure, wavelength

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from squeezefilm.plate.plate_modes import zero_crossings
+from squeezefilm.plate.solid.modes import zero_crossings
 from squeezefilm.report.mode_surface import driven_shape, mode_surface
 from squeezefilm.report.plate_figures import half_power
 from squeezefilm.report.style import (

@@ -11,7 +11,7 @@ from squeezefilm.report.terminal_modes import show_guidance, show_modes, sound_r
 
 if TYPE_CHECKING:
     from squeezefilm.analysis.ring_command import RingAnalysis
-    from squeezefilm.plate.stator import StatorFit
+    from squeezefilm.plate.ring.stator import StatorFit
 
 _HZ, _M, _PER_VOLT = Unit("Hz"), Unit("m"), Unit("m/V")
 

@@ -12,9 +12,9 @@ from squeezefilm.errors import InputError
 from squeezefilm.results import write_whole
 
 if TYPE_CHECKING:
-    from squeezefilm.plate.plate_modes import PlateModes
-    from squeezefilm.plate.plate_response import HarmonicResponse
-    from squeezefilm.plate.plate_volume import PlateVolume
+    from squeezefilm.plate.solid.modes import PlateModes
+    from squeezefilm.plate.solid.response import HarmonicResponse
+    from squeezefilm.plate.solid.volume import PlateVolume
     from squeezefilm.quantities import FloatArray, Volt
 
 LARGEST_DISPLACEMENT = 1e-6
@@ -38,7 +38,7 @@ def write_vtu(
     frequencies, voltage and the number of every material. The file is written whole or not at
     all. Raises `InputError` for a name that does not end in .vtu.
     """
-    from squeezefilm.plate.plate_volume import harmonic_fields, mode_fields, plate_volume
+    from squeezefilm.plate.solid.volume import harmonic_fields, mode_fields, plate_volume
 
     if path.suffix != ".vtu":
         raise InputError(f"{path} does not end in .vtu; ParaView tells the format by the ending")

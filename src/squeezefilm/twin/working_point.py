@@ -11,8 +11,8 @@ import numpy as np
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError, OutOfRangeError
 from squeezefilm.friction import FrictionLaw, friction_law
+from squeezefilm.plate.beam.response import patch_capacitance
 from squeezefilm.plate.layout import RectangularPlate
-from squeezefilm.plate.response import patch_capacitance
 from squeezefilm.plate.working_mode import WorkingMode, working_mode
 from squeezefilm.quantities import (
     ComplexArray,

@@ -12,8 +12,8 @@ from squeezefilm.errors import (
     InputError,
     OutOfRangeError,
 )
+from squeezefilm.plate.beam.response import beam_response, half_power_band, patch_capacitance
 from squeezefilm.plate.layout import AnnularStator, CeramicPatch, RectangularPlate
-from squeezefilm.plate.response import beam_response, half_power_band, patch_capacitance
 
 
 @pytest.fixture

@@ -1,0 +1,1 @@
+"""High-order elements on boxes: nodes, slices, their factorisation, and the eigensolver on them."""

@@ -1,0 +1,167 @@
+"""A solid made of boxes on a tensor-product grid: what the plate solver solves.
+
+Knows nothing of plates and displays. Each cell of the grid is empty or filled by a `Medium`;
+cells of one ceramic carry its number, so that its potential is its own.
+"""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from squeezefilm.errors import GeometryError, InputError
+from squeezefilm.hard_limits import SOLID_MEMORY, require_within
+from squeezefilm.plate.elements.lobatto import LineMesh
+from squeezefilm.quantities import Dimensionless, FloatArray, KilogramPerCubicMetre
+
+IntArray = NDArray[np.int64]
+EndCondition = Literal["free", "symmetric", "antisymmetric", "clamped"]
+
+# The Voigt row of each displacement gradient (component, direction).
+_VOIGT = {
+    (0, 0): 0, (1, 1): 1, (2, 2): 2, (1, 2): 3, (2, 1): 3, (0, 2): 4, (2, 0): 4, (0, 1): 5,
+    (1, 0): 5,
+}  # fmt: skip
+
+
+# Unknown potentials are counted in this unit (V), so that dielectric and elastic entries of the
+# matrices are alike in size; without it elimination loses most digits.
+POTENTIAL_UNIT = 3e9
+
+
+@dataclass(frozen=True, eq=False)
+class Medium:
+    """What a cell is filled with: `stiffness` c at constant field (6 × 6, Pa), `stress_matrix` e
+    (3 × 6, C/m²), `permittivity` ε at constant strain (3 × 3, F/m), density and `loss` (the
+    structural loss factor 1/Q of c). Voigt order xx, yy, zz, yz, xz, xy."""
+
+    name: str
+    stiffness: FloatArray
+    density: KilogramPerCubicMetre
+    loss: Dimensionless = 0.0
+    stress_matrix: FloatArray | None = None
+    permittivity: FloatArray | None = None
+
+    @property
+    def piezoelectric(self) -> bool:
+        """Whether the medium carries a potential."""
+        return self.stress_matrix is not None
+
+    def gradient_matrix(self, mechanical: float = 1.0, electrical: float = 1.0) -> FloatArray:
+        """The symmetric 4·3 × 4·3 matrix between gradients of (u, v, w, φ) and their fluxes.
+
+        Potentials count in `POTENTIAL_UNIT`. Index (component, direction), shape (4, 3, 4, 3). The
+        quadratic form of it is the elastic energy minus the electric one, twice. `mechanical`
+        scales c, `electrical` e and ε.
+        """
+        out = np.zeros((4, 3, 4, 3))
+        for (a, c), row in _VOIGT.items():
+            for (b, d), column in _VOIGT.items():
+                out[a, c, b, d] = mechanical * self.stiffness[row, column]
+            if self.stress_matrix is not None:
+                for d in range(3):
+                    out[a, c, 3, d] = out[3, d, a, c] = (
+                        electrical * POTENTIAL_UNIT * self.stress_matrix[d, row]
+                    )
+        if self.permittivity is not None:
+            out[3, :, 3, :] = -electrical * POTENTIAL_UNIT**2 * self.permittivity
+        return out
+
+
+@dataclass(frozen=True)
+class Electrode:
+    """The electrodes of one ceramic: z-node planes of the driven and of the grounded face."""
+
+    driven_plane: int
+    grounded_plane: int
+
+
+@dataclass(frozen=True)
+class Foundation:
+    """Springs under a rectangle of grid cells, on one z-node plane.
+
+    `stiffness` per area (Pa/m) along x, y, z; `loss` its loss factor.
+    """
+
+    x_elements: tuple[int, int]
+    y_elements: tuple[int, int]
+    z_plane: int
+    stiffness: tuple[float, float, float]
+    loss: Dimensionless = 0.0
+
+
+def kept_products(y: LineMesh, z: LineMesh, trunk: float) -> NDArray[np.bool_]:
+    """Which products of functions along y and z a `trunk` keeps, shape (y, z functions)."""
+
+    def relative(mesh: LineMesh) -> FloatArray:
+        highest = max(mesh.orders)
+        return (mesh.function_orders - 1) / max(highest - 1, 1)
+
+    total = relative(y)[:, None] + relative(z)[None, :]
+    return np.asarray(total <= trunk + 1e-9)
+
+
+def require_memory(x: LineMesh, y: LineMesh, z: LineMesh, trunk: float) -> None:
+    """Refuse meshes whose factors would not fit into memory, before anything is made of them.
+
+    A slice has four unknowns at each of its functions, and its dense blocks are 20 bytes a pair
+    of them with what is made on the way (measured on the presets). Raises `InputError`.
+    """
+    slice_unknowns = 4 * int(np.count_nonzero(kept_products(y, z, trunk)))
+    enough = (
+        f"{x.nodes.size} slices of {slice_unknowns} unknowns are too many; ask for fewer nodal "
+        "lines or a lower frequency, or take a beam (--theory timoshenko)"
+    )
+    require_within(SOLID_MEMORY, 20.0 * x.nodes.size * slice_unknowns**2, enough=enough)
+
+
+@dataclass(frozen=True, eq=False)
+class BoxModel:
+    """A solid of boxes: three line meshes, the medium of each cell (−1: empty) and the number of
+    the ceramic it belongs to (−1: none), both of shape (x, y, z elements).
+
+    `ends` are the conditions on the four sides x−, x+, y−, y+. `trunk` leaves out functions of
+    high order along y and z at once: those with a sum of relative orders (q − 1)/(p − 1) above it
+    (infinite: the full tensor product).
+    """
+
+    x: LineMesh
+    y: LineMesh
+    z: LineMesh
+    media: tuple[Medium, ...]
+    medium: IntArray
+    ceramic: IntArray
+    electrodes: tuple[Electrode, ...] = ()
+    ends: tuple[EndCondition, EndCondition, EndCondition, EndCondition] = ("free",) * 4
+    foundations: tuple[Foundation, ...] = field(default=())
+    trunk: float = np.inf
+
+    @functools.cached_property
+    def kept(self) -> NDArray[np.bool_]:
+        """Which products of y and z functions are used, shape (y, z functions)."""
+        return kept_products(self.y, self.z, self.trunk)
+
+    def __post_init__(self) -> None:
+        shape = (self.x.elements, self.y.elements, self.z.elements)
+        if self.medium.shape != shape or self.ceramic.shape != shape:
+            raise InputError(f"medium and ceramic must have the shape {shape} of the grid")
+        if self.medium.max(initial=-1) >= len(self.media):
+            raise InputError("a cell names a medium that is not in media")
+        for number in range(len(self.electrodes)):
+            cells = self.ceramic == number
+            if not cells.any():
+                raise GeometryError(
+                    f"electrode {number + 1} has no ceramic under it; give it a ceramic or drop it"
+                )
+            if not all(self.media[m].piezoelectric for m in np.unique(self.medium[cells])):
+                raise GeometryError(
+                    f"electrode {number + 1} lies on a material that is not piezoelectric"
+                )
+        piezo = np.isin(self.medium, [i for i, m in enumerate(self.media) if m.piezoelectric])
+        if np.any(piezo & ((self.ceramic < 0) | (self.ceramic >= len(self.electrodes)))):
+            # A potential held nowhere would leave the matrix singular.
+            raise GeometryError("a piezoelectric cell belongs to no ceramic with electrodes")

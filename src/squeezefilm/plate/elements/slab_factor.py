@@ -1,0 +1,395 @@
+"""K − σM of a row of slices, factorised by dense blocks; equal stretches of the plate only once.
+
+The row is cut at the middle of every ceramic and of every gap into cells. The unknowns inside a
+cell are eliminated onto its two end slices; a cell that repeats another, or its mirror image, is
+the same dense matrix up to signs. The displays of this field repeat one ceramic many times, so
+most of the work is done once. The remaining chain of end slices is eliminated from left to right.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from squeezefilm.plate.elements.block_ldl import PartialLDL, partial_ldl
+from squeezefilm.plate.elements.cross_section import CrossSection
+from squeezefilm.plate.elements.lobatto import line_matrices
+from squeezefilm.plate.elements.slabs import Slabs, relabelled
+
+Matrix = NDArray[Any]
+
+
+@dataclass(frozen=True, eq=False)
+class _Cell:
+    """A stretch of elements eliminated onto its end slices.
+
+    `bubbles[k]` eliminates the inner slices of its k-th element onto its two end slices;
+    `joints[k]` the slice between elements k and k + 1 onto the first slice and slice k + 2.
+    """
+
+    bubbles: tuple[PartialLDL, ...]
+    joints: tuple[PartialLDL, ...]
+    ends: Matrix
+    negative: int
+
+
+@dataclass(frozen=True, eq=False)
+class _Place:
+    """Where a cell stands: its elements in the order of the cell, mirrored or not."""
+
+    cell: _Cell
+    elements: tuple[int, ...]
+    mirrored: bool
+
+
+class SlabFactor:
+    """(K − σM)⁻¹ of a discretised model, real for a real shift.
+
+    `sections` replaces the slice matrices (complex ones carry losses); `count` also counts the
+    modes below the shift, in `modes_below`.
+    """
+
+    def __init__(
+        self,
+        slabs: Slabs,
+        shift: float,
+        *,
+        sections: list[CrossSection] | None = None,
+        count: bool = False,
+    ) -> None:
+        self._slabs, self._shift, self._count = slabs, shift, count
+        self._sections = sections or slabs.sections
+        self._dynamic: dict[int, Matrix] = {}
+        self._bubbles: dict[Any, PartialLDL] = {}
+        # Reflection along x turns u and nothing else.
+        self._mirror_signs = np.where(slabs.components == 0, -1.0, 1.0)
+        cells: dict[Any, _Cell] = {}
+        self._places: list[_Place] = []
+        for elements in _cut(slabs):
+            forward, backward = self._key(elements), self._key(elements[::-1])
+            mirrored = forward not in cells and backward in cells and _mirrors(slabs, elements)
+            key = backward if mirrored else forward
+            ordered = elements[::-1] if mirrored else elements
+            if key not in cells:
+                cells[key] = self._cell(ordered)
+            self._places.append(_Place(cells[key], tuple(ordered), mirrored))
+        self._chain()
+
+    @property
+    def modes_below(self) -> int:
+        """How many modes lie below the shift (Sylvester's law of inertia)."""
+        potentials = int(np.sum((self._slabs.components == 3) & ~self._slabs.held))
+        return self._negative - potentials
+
+    # -- factorisation ----------------------------------------------------------------------
+
+    def _key(self, elements: Sequence[int]) -> tuple[Any, ...]:
+        model = self._slabs.model
+        x = model.x
+        ceramic = relabelled(model.ceramic[list(elements)]).tobytes()
+        lengths = tuple(round((x.edges[e + 1] - x.edges[e]) * 1e12) for e in elements)
+        return (
+            tuple(self._slabs.patterns[e] for e in elements),
+            ceramic,
+            lengths,
+            tuple(x.orders[e] for e in elements),
+        )
+
+    def _backward(self, elements: Sequence[int]) -> bool:
+        return len(elements) > 1 and elements[1] < elements[0]
+
+    def _nodes(self, elements: Sequence[int], k: int) -> list[int]:
+        x = self._slabs.model.x
+        e = elements[k]
+        nodes = list(range(x.first_node[e], x.first_node[e + 1] + 1))
+        return nodes[::-1] if self._backward(elements) else nodes
+
+    def _bubble(self, e: int) -> PartialLDL:
+        slabs, x = self._slabs, self._slabs.model.x
+        length, order = x.edges[e + 1] - x.edges[e], x.orders[e]
+        n = slabs.sections[e].codes.size
+        section = self._sections[e]
+        key = (slabs.patterns[e], id(section.P2), round(length * 1e12), order)
+        if key in self._bubbles:
+            return self._bubbles[key]
+        M, D, S = line_matrices(length, order)
+        if id(section) not in self._dynamic:
+            self._dynamic[id(section)] = section.P0 - self._shift * section.R
+        P0 = self._dynamic[id(section)]
+        ranks = [*range(1, order), 0, order]
+        A = np.empty((n * (order + 1), n * (order + 1)), dtype=P0.dtype)
+        for i, a in enumerate(ranks):
+            for j, b in enumerate(ranks[i:], i):
+                block = S[a, b] * section.P2 + M[a, b] * P0
+                block += D[a, b] * section.P1
+                block += D[b, a] * section.P1.T
+                A[i * n : (i + 1) * n, j * n : (j + 1) * n] = block
+                if i != j:
+                    A[j * n : (j + 1) * n, i * n : (i + 1) * n] = block.T
+        self._bubbles[key] = partial_ldl(A, n * (order - 1), count=self._count)
+        return self._bubbles[key]
+
+    def _ends(self, elements: Sequence[int], k: int, bubble: PartialLDL) -> tuple[Matrix, int]:
+        """The end matrix of element k over all unknowns of its two end slices, in the order and
+        with the signs of the cell."""
+        slabs, x = self._slabs, self._slabs.model.x
+        e = elements[k]
+        order = x.orders[e]
+        nodes = (x.first_node[e], x.first_node[e] + order)
+        at0, at1 = slabs.places(e, 0), slabs.places(e, order)
+        sizes = (slabs.sizes[nodes[0]], slabs.sizes[nodes[1]])
+        out = bubble.schur
+        if at0.size != sizes[0] or at1.size != sizes[1]:
+            out = np.zeros((sum(sizes), sum(sizes)), dtype=bubble.schur.dtype)
+            where = np.concatenate([at0, sizes[0] + at1])
+            out[np.ix_(where, where)] = bubble.schur
+        return out, sizes[0]
+
+    def _cell(self, elements: Sequence[int]) -> _Cell:
+        # Cells are always made in ascending order of x; mirrored ones reuse them.
+        bubbles = tuple(self._bubble(e) for e in elements)
+        front, n0 = self._ends(elements, 0, bubbles[0])
+        joints = []
+        for k in range(1, len(elements)):
+            element, m0 = self._ends(elements, k, bubbles[k])
+            m1 = element.shape[0] - m0
+            A = np.zeros((m0 + n0 + m1, m0 + n0 + m1), dtype=front.dtype)
+            order = np.concatenate([np.arange(m0, m0 + n0), np.arange(m0)])
+            A[np.ix_(order, order)] = front
+            ends = np.concatenate([np.arange(m0), np.arange(m0 + n0, A.shape[0])])
+            A[np.ix_(ends, ends)] += element
+            joint = partial_ldl(A, m0, count=self._count)
+            joints.append(joint)
+            front = joint.schur
+        negative = sum(part.negative for part in (*bubbles, *joints))
+        return _Cell(bubbles, tuple(joints), front, negative)
+
+    def _signs(self, node: int) -> Matrix:
+        offsets = self._slabs.offsets
+        return self._mirror_signs[offsets[node] : offsets[node + 1]]
+
+    def _chain(self) -> None:
+        """Eliminate the end slices of all cells from left to right."""
+        self._negative = sum(place.cell.negative for place in self._places)
+        self._links: list[PartialLDL] = []
+        carried: Matrix | None = None
+        for place in self._places:
+            S = place.cell.ends
+            left, right = self._left(place), self._right(place)
+            n = self._slabs.sizes[left]
+            if place.mirrored:
+                signs = np.concatenate([self._signs(right), self._signs(left)])
+                swap = np.concatenate([np.arange(S.shape[0] - n, S.shape[0]),
+                                       np.arange(S.shape[0] - n)])  # fmt: skip
+                S = (S * signs[:, None] * signs[None, :])[np.ix_(swap, swap)]
+            else:
+                S = S.copy()
+            held = np.flatnonzero(self._held(left, right))
+            S[held, :] = S[:, held] = 0
+            if carried is not None:
+                S[:n, :n] += carried
+            # A held unknown keeps its place in the slice: its row is that of the identity.
+            inside = held[held < n]
+            S[inside, inside] = 1
+            link = partial_ldl(S, n, count=self._count)
+            self._links.append(link)
+            carried = link.schur
+        assert carried is not None
+        last = np.flatnonzero(self._held(self._right(self._places[-1])))
+        carried[last, last] = 1
+        self._final = partial_ldl(carried, carried.shape[0], count=self._count)
+        self._negative += sum(link.negative for link in (*self._links, self._final))
+
+    def _held(self, *nodes: int) -> Matrix:
+        offsets = self._slabs.offsets
+        return np.concatenate([self._slabs.held[offsets[n] : offsets[n + 1]] for n in nodes])
+
+    def _left(self, place: _Place) -> int:
+        return self._slabs.model.x.first_node[min(place.elements)]
+
+    def _right(self, place: _Place) -> int:
+        return self._slabs.model.x.first_node[max(place.elements) + 1]
+
+    # -- solution ---------------------------------------------------------------------------
+
+    def solve(self, right: Matrix) -> Matrix:
+        """The solution for each column of `right`, shape (unknowns, vectors)."""
+        offsets = self._slabs.offsets
+        right = np.where(self._slabs.held[:, None], 0, right)
+        slices = [
+            np.array(right[a:b], dtype=self._dtype(right)) for a, b in itertools.pairwise(offsets)
+        ]
+        vectors = right.shape[1]
+        groups: dict[int, list[_Place]] = {}
+        for place in self._places:
+            groups.setdefault(id(place.cell), []).append(place)
+        # Places that share a cell are solved as one block of right sides.
+        blocks = [self._gathered(group, slices) for group in groups.values()]
+        kept = [
+            self._forward(group[0], block)
+            for group, block in zip(groups.values(), blocks, strict=True)
+        ]
+        for group, block in zip(groups.values(), blocks, strict=True):
+            for number, place in enumerate(group):
+                columns = slice(number * vectors, (number + 1) * vectors)
+                for node, update in zip(
+                    (self._nodes(place.elements, 0)[0],
+                     self._nodes(place.elements, len(place.elements) - 1)[-1]),
+                    (block[0], block[-1]), strict=True,
+                ):  # fmt: skip
+                    slices[node] += self._signed(place, node, update[:, columns])
+        for node in (0, len(slices) - 1):
+            slices[node][self._held(node)] = 0
+        for place, link in zip(self._places, self._links, strict=True):
+            left = self._left(place)
+            slices[left], update = link.forward(slices[left])
+            slices[self._right(place)] -= update
+        last = self._right(self._places[-1])
+        reduced, _ = self._final.forward(slices[last])
+        slices[last] = self._final.backward(reduced, np.empty((0, vectors)))
+        for place, link in zip(self._places[::-1], self._links[::-1], strict=True):
+            left = self._left(place)
+            slices[left] = link.backward(slices[left], slices[self._right(place)])
+        for group, block, parts in zip(groups.values(), blocks, kept, strict=True):
+            self._finish(group, slices, block, parts)
+        return np.concatenate(slices)
+
+    def _dtype(self, right: Matrix) -> Any:
+        return np.result_type(right.dtype, self._final.W.dtype)
+
+    def _cell_nodes(self, place: _Place) -> list[int]:
+        nodes = [self._nodes(place.elements, 0)[0]]
+        for k in range(len(place.elements)):
+            nodes += self._nodes(place.elements, k)[1:]
+        return nodes
+
+    def _signed(self, place: _Place, node: int, values: Matrix) -> Matrix:
+        """To or from the signs of a mirrored cell (u changes its sign)."""
+        return values * self._signs(node)[:, None] if place.mirrored else values
+
+    def _gathered(self, group: list[_Place], slices: list[Matrix]) -> list[Matrix]:
+        """The right sides of all places of one cell, side by side; none at the end slices."""
+        nodes = [self._cell_nodes(place) for place in group]
+        block = []
+        for at in range(len(nodes[0])):
+            parts = [
+                self._signed(place, own[at], slices[own[at]])
+                for place, own in zip(group, nodes, strict=True)
+            ]
+            block.append(np.concatenate(parts, axis=1))
+        block[0] = np.zeros_like(block[0])
+        block[-1] = np.zeros_like(block[-1])
+        return block
+
+    def _spans(self, place: _Place) -> list[tuple[int, int]]:
+        """First and last slice of each element, counted within the cell."""
+        orders = [self._slabs.model.x.orders[e] for e in place.elements]
+        stops = np.cumsum(orders)
+        return [(int(b - p), int(b)) for b, p in zip(stops, orders, strict=True)]
+
+    def _forward(self, place: _Place, block: list[Matrix]) -> list[Matrix]:
+        """Carry right sides inside a cell to its ends (in place); returns the reduced sides."""
+        cell, spans = place.cell, self._spans(place)
+        kept: list[Matrix] = []
+        for k, (bubble, (start, stop)) in enumerate(zip(cell.bubbles, spans, strict=True)):
+            if stop - start == 1:
+                kept.append(np.empty(0))
+                continue
+            reduced, update = bubble.forward(np.concatenate(block[start + 1 : stop]))
+            kept.append(reduced)
+            at0, at1 = self._end_places(place, k)
+            block[start][at0] -= update[: at0.size]
+            block[stop][at1] -= update[at0.size :]
+        n0 = block[0].shape[0]
+        for k, joint in enumerate(cell.joints):
+            middle, after = spans[k][1], spans[k + 1][1]
+            block[middle], update = joint.forward(block[middle])
+            block[0] -= update[:n0]
+            block[after] -= update[n0:]
+        return kept
+
+    def _finish(
+        self, group: list[_Place], slices: list[Matrix], block: list[Matrix], kept: list[Matrix]
+    ) -> None:
+        """Solve inside the cells, their end slices being known."""
+        place = group[0]
+        cell, spans = place.cell, self._spans(place)
+        nodes = [self._cell_nodes(other) for other in group]
+        for at in (0, -1):
+            block[at] = np.concatenate(
+                [
+                    self._signed(other, own[at], slices[own[at]])
+                    for other, own in zip(group, nodes, strict=True)
+                ],
+                axis=1,
+            )
+        for k in range(len(cell.joints) - 1, -1, -1):
+            middle, after = spans[k][1], spans[k + 1][1]
+            ends = np.concatenate([block[0], block[after]])
+            block[middle] = cell.joints[k].backward(block[middle], ends)
+        for k, (start, stop) in enumerate(spans):
+            if stop - start == 1:
+                continue
+            at0, at1 = self._end_places(place, k)
+            ends = np.concatenate([block[start][at0], block[stop][at1]])
+            inside = cell.bubbles[k].backward(kept[k], ends)
+            block[start + 1 : stop] = np.split(inside, stop - start - 1)
+        vectors = block[0].shape[1] // len(group)
+        for number, (other, own) in enumerate(zip(group, nodes, strict=True)):
+            columns = slice(number * vectors, (number + 1) * vectors)
+            for at in range(1, len(own) - 1):
+                slices[own[at]] = self._signed(other, own[at], block[at][:, columns])
+
+    def _end_places(self, place: _Place, k: int) -> tuple[Matrix, Matrix]:
+        e = place.elements[k]
+        order = self._slabs.model.x.orders[e]
+        at0, at1 = self._slabs.places(e, 0), self._slabs.places(e, order)
+        return (at1, at0) if self._backward(place.elements) else (at0, at1)
+
+
+def _cut(slabs: Slabs) -> list[list[int]]:
+    """Elements grouped into cells: cut at the middle of each stretch of one pattern."""
+    model = slabs.model
+    elements = model.x.elements
+    keys = [slabs.patterns[e] + model.ceramic[e].tobytes() for e in range(elements)]
+    runs: list[list[int]] = []
+    for e in range(elements):
+        if runs and keys[e] == keys[runs[-1][-1]]:
+            runs[-1].append(e)
+        else:
+            runs.append([e])
+    cells: list[list[int]] = [[]]
+    for number, run in enumerate(runs):
+        # Half of a stretch goes to the cell before, half to the cell after; a stretch at an end
+        # of the plate is cut too, if it has a middle.
+        edges = [model.x.edges[e] for e in (*run, run[-1] + 1)]
+        middle = (edges[0] + edges[-1]) / 2
+        at = int(np.argmin(np.abs(np.array(edges) - middle)))
+        cuttable = len(run) > 1 and abs(edges[at] - middle) < 1e-9
+        symmetric_end = (number == 0 and model.ends[0] != "free") or (
+            number == len(runs) - 1 and model.ends[1] != "free"
+        )
+        if not cuttable or symmetric_end:
+            cells[-1].extend(run)
+            continue
+        cells[-1].extend(run[:at])
+        cells.append(list(run[at:]))
+    return [cell for cell in cells if cell]
+
+
+def _mirrors(slabs: Slabs, elements: Sequence[int]) -> bool:
+    """Whether a stretch may reuse its mirror image: not where two ceramics touch along x, for
+    there the order of their potentials would change."""
+    x = slabs.model.x
+    for e in elements[1:]:
+        node = x.first_node[e]
+        both = np.intersect1d(slabs.sections[e - 1].codes, slabs.sections[e].codes)
+        sections = slabs.sections[e - 1].codes.size, slabs.sections[e].codes.size
+        if slabs.sizes[node] > max(sections) and both.size < min(sections):
+            return False
+    return True

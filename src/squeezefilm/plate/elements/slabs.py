@@ -1,0 +1,243 @@
+"""A box model as a row of slices along x: its unknowns, its operators, its electrodes.
+
+Unknowns are ordered slice by slice (x node by x node). Operators are applied through the slice
+matrices, never assembled.
+"""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass
+
+import numpy as np
+
+from squeezefilm.plate.elements.box_model import BoxModel, EndCondition, IntArray
+from squeezefilm.plate.elements.cross_section import (
+    CrossSection,
+    Springs,
+    Weight,
+    code_parts,
+    cross_section,
+)
+from squeezefilm.plate.elements.lobatto import line_matrices
+from squeezefilm.quantities import FloatArray
+
+
+def _held(condition: EndCondition) -> tuple[int, ...]:
+    if condition == "free":
+        return ()
+    if condition == "clamped":
+        return (0, 1, 2)
+    return (0,) if condition == "symmetric" else (1, 2, 3)
+
+
+class Slabs:
+    """The discretised model: `codes` of the unknowns of each slice and the slice matrices."""
+
+    def __init__(self, model: BoxModel) -> None:
+        self.model = model
+        self.patterns: list[bytes] = []
+        sections: dict[bytes, CrossSection] = {}
+        self.sections: list[CrossSection] = []
+        # Slices that differ only in the numbers of their ceramics share their matrices.
+        shapes: dict[bytes, CrossSection] = {}
+        for e in range(model.x.elements):
+            exact, shape = _pattern(model, e)
+            if exact not in sections:
+                codes = None
+                if shape in shapes and len(model.electrodes) > 1:
+                    codes = _renumbered(model, shapes[shape], e)
+                sections[exact] = codes or cross_section(model, e)
+                shapes.setdefault(shape, sections[exact])
+            self.sections.append(sections[exact])
+            self.patterns.append(shape)
+        self._number()
+
+    def _number(self) -> None:
+        x = self.model.x
+        count = x.nodes.size
+        parts: list[list[IntArray]] = [[] for _ in range(count)]
+        for e, section in enumerate(self.sections):
+            for a in range(x.orders[e] + 1):
+                parts[x.first_node[e] + a].append(section.codes)
+        self.codes: list[IntArray] = []
+        for some in parts:
+            self.codes.append(functools.reduce(np.union1d, some) if len(some) > 1 else some[0])
+        self.sizes = [codes.size for codes in self.codes]
+        self.offsets = [int(k) for k in np.concatenate([[0], np.cumsum(self.sizes)])]
+        self.unknowns = self.offsets[-1]
+        # Unknowns that the conditions on x− and x+ hold at zero stay in the count, so that cells
+        # at the ends of the plate are like any other.
+        self.held = np.zeros(self.unknowns, dtype=bool)
+        for n, condition in ((0, self.model.ends[0]), (count - 1, self.model.ends[1])):
+            component = self.parts[n][0]
+            at = slice(self.offsets[n], self.offsets[n + 1])
+            self.held[at] |= np.isin(component, _held(condition))
+
+    def places(self, element: int, local: int) -> IntArray:
+        """Where the unknowns of an element's section stand in the slice of its node `local`."""
+        codes = self.codes[self.model.x.first_node[element] + local]
+        mine = self.sections[element].codes
+        return np.arange(mine.size) if codes.size == mine.size else np.searchsorted(codes, mine)
+
+    @functools.cached_property
+    def components(self) -> IntArray:
+        """The component (0–2 displacement, 3 potential) of every unknown."""
+        return np.concatenate([part for part, _, _ in self.parts])
+
+    @functools.cached_property
+    def parts(self) -> list[tuple[IntArray, IntArray, IntArray]]:
+        """Component, y function and z function of every slice's unknowns."""
+        known: dict[int, tuple[IntArray, IntArray, IntArray]] = {}
+        return [known.setdefault(id(codes), code_parts(self.model, codes)) for codes in self.codes]
+
+    @functools.cached_property
+    def _element_places(self) -> list[list[IntArray]]:
+        x = self.model.x
+        return [
+            [self.offsets[x.first_node[e] + a] + self.places(e, a) for a in range(x.orders[e] + 1)]
+            for e in range(x.elements)
+        ]
+
+    @functools.cached_property
+    def electrode_columns(self) -> tuple[FloatArray, FloatArray]:
+        """G (unknowns × electrodes) and C (electrodes²): the force of one volt on the unknowns is
+        −G, and the charge on the electrodes is −(Gᵀ x + C V)."""
+        number = len(self.model.electrodes)
+        G, C = np.zeros((self.unknowns, number)), np.zeros((number, number))
+        for e, section in enumerate(self.sections):
+            if not section.electrodes:
+                continue
+            M, D, _ = self._lines(e)
+            columns = np.array(section.electrodes, dtype=np.int64)
+            for a in range(M.shape[0]):
+                start = self.offsets[self.model.x.first_node[e] + a]
+                part = M[a].sum() * section.g0 + D[a].sum() * section.g1
+                G[np.ix_(start + self.places(e, a), columns)] += part
+            C[np.ix_(columns, columns)] += M.sum() * section.c0
+        G[self.held] = 0
+        return G, C
+
+    def _lines(self, element: int) -> tuple[FloatArray, FloatArray, FloatArray]:
+        x = self.model.x
+        return line_matrices(x.edges[element + 1] - x.edges[element], x.orders[element])
+
+    def mass_times(self, U: FloatArray) -> FloatArray:
+        """M U for U of shape (unknowns, vectors); potentials have no mass."""
+        return self._apply(U, self.sections, mass=True)
+
+    def stiffness_times(
+        self, U: FloatArray, sections: list[CrossSection] | None = None
+    ) -> FloatArray:
+        """K U, or with other slice matrices (see `weighted_sections`)."""
+        return self._apply(U, sections or self.sections, mass=False)
+
+    def weighted_sections(self, weight: Weight, springs: Springs) -> list[CrossSection]:
+        """Slice matrices with scaled constants: for energy shares and losses."""
+        made: dict[int, CrossSection] = {}
+        out = []
+        for e, section in enumerate(self.sections):
+            if id(section) not in made:
+                made[id(section)] = cross_section(self.model, e, weight, springs=springs)
+            out.append(made[id(section)])
+        return out
+
+    def _apply(self, U: FloatArray, sections: list[CrossSection], mass: bool) -> FloatArray:
+        U = np.where(self.held[:, None], 0, U)
+        out = np.zeros_like(U)
+        for e, section in enumerate(sections):
+            M, D, S = self._lines(e)
+            n, nodes, vectors = section.codes.size, M.shape[0], U.shape[1]
+            places = self._element_places[e]
+            local = np.stack([U[at] for at in places], axis=1)
+            flat = local.reshape(n, nodes * vectors)
+
+            def along(line: FloatArray, values: FloatArray) -> FloatArray:
+                return np.asarray(np.matmul(line, values))
+
+            shape = local.shape
+            if mass:
+                result = along(M, (section.R @ flat).reshape(shape))
+            else:
+                result = along(S, (section.P2 @ flat).reshape(shape))
+                result += along(D, (section.P1 @ flat).reshape(shape))
+                result += along(D.T, (section.P1.T @ flat).reshape(shape))
+                result += along(M, (section.P0 @ flat).reshape(shape))
+            for a, at in enumerate(places):
+                out[at] += result[:, a]
+        out[self.held] = 0
+        return out
+
+    def grid(self, vector: FloatArray) -> FloatArray:
+        """A vector's displacements: values at the x nodes, hierarchic coefficients along y and z;
+        shape (x nodes, y functions, z functions, 3), zero where empty."""
+        model = self.model
+        shape = (model.x.nodes.size, model.y.nodes.size, model.z.nodes.size, 3)
+        out = np.zeros(shape, dtype=vector.dtype)
+        for n, (component, iy, iz) in enumerate(self.parts):
+            moving = component < 3
+            part = vector[self.offsets[n] : self.offsets[n + 1]][moving]
+            out[n, iy[moving], iz[moving], component[moving]] = part
+        return out
+
+
+@dataclass(frozen=True)
+class _Relabel:
+    """Ceramics numbered by first appearance."""
+
+    seen: dict[int, int]
+
+    def __call__(self, numbers: IntArray) -> IntArray:
+        out = np.full(numbers.shape, -1)
+        for index in np.ndindex(numbers.shape):
+            number = int(numbers[index])
+            if number >= 0:
+                out[index] = self.seen.setdefault(number, len(self.seen))
+        return out
+
+
+def relabelled(ceramic: IntArray) -> IntArray:
+    """Ceramic numbers replaced by their order of first appearance."""
+    return _Relabel({})(ceramic)
+
+
+def _pattern(model: BoxModel, e: int) -> tuple[bytes, bytes]:
+    springs = repr(
+        [f for f in model.foundations if f.x_elements[0] <= e < f.x_elements[1]]
+    ).encode()
+    planes = repr(
+        [
+            model.electrodes[n]
+            for n in dict.fromkeys(model.ceramic[e].ravel().tolist())
+            if 0 <= n < len(model.electrodes)
+        ]
+    ).encode()
+    medium = model.medium[e].tobytes()
+    exact = medium + model.ceramic[e].tobytes() + planes + springs
+    return exact, medium + relabelled(model.ceramic[e]).tobytes() + planes + springs
+
+
+def _renumbered(model: BoxModel, section: CrossSection, element: int) -> CrossSection | None:
+    """The slice of `element`, from one that differs only in the numbers of its ceramics.
+
+    None where the unknowns would change their order, so that it has to be assembled anew.
+    """
+    own = model.ceramic[element].ravel().tolist()
+    numbers = [n for n in dict.fromkeys(own) if n >= 0]
+    component, iy, iz = code_parts(model, section.codes)
+    electric = component == 3
+    base = 4 * model.y.nodes.size * model.z.nodes.size
+    ceramics = max(len(model.electrodes), 1)
+    old = (section.codes[electric] - base) % ceramics
+    # Ceramics in the order of their number, here and there, must be the same ones.
+    before, after = sorted(section.electrodes), sorted(numbers)
+    if len(before) != len(after):
+        return None
+    new = np.array(after, dtype=np.int64)[np.searchsorted(before, old)] if before else old
+    codes = section.codes.copy()
+    codes[electric] = base + (iy * model.z.nodes.size + iz)[electric] * ceramics + new
+    return CrossSection(
+        codes=codes,
+        P2=section.P2, P1=section.P1, P0=section.P0, R=section.R,
+        electrodes=tuple(after), g0=section.g0, g1=section.g1, c0=section.c0,
+    )  # fmt: skip

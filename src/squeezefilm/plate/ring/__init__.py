@@ -1,0 +1,1 @@
+"""Discs and rings as piezoelectric solids, one Fourier harmonic at a time."""

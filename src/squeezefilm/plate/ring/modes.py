@@ -1,0 +1,354 @@
+"""Modes of discs and annuli, and what one channel of their ceramic makes of a volt.
+
+Three-dimensional elasticity and piezoelectricity; the angle is solved by Fourier harmonics, the
+(r, z) half section by high-order elements. A mode B(n, m) bends with n nodal circles and m nodal
+diameters.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy import sparse
+from scipy.sparse.linalg import LinearOperator, eigsh, splu
+
+from squeezefilm.errors import ConvergenceError, InputError
+from squeezefilm.plate.ring.elements import HarmonicSystem, harmonic_system, ring_mesh
+from squeezefilm.plate.ring.section import AnnularSection, SectorDrive
+from squeezefilm.quantities import (
+    ComplexArray,
+    Dimensionless,
+    DimensionlessArray,
+    Farad,
+    FloatArray,
+    Hertz,
+    HertzArray,
+    Kilogram,
+    Metre,
+    MetreArray,
+    MetrePerVolt,
+    NewtonPerVolt,
+    Unit,
+    checked_numbers,
+    require,
+)
+
+DEFAULT_DEGREE = 5
+
+
+@dataclass(frozen=True, eq=False)
+class AnnularMode:
+    """One mode of a free ring or disc.
+
+    `frequency_error` estimates the discretisation error, which is towards too high. The shape is
+    u_r = U cos mθ, u_θ = V sin mθ, u_z = W cos mθ: `displacement` (nodes, 3) holds U, V, W at
+    `node_radius` and `node_height`, scaled so that the largest |W| on the surface is 1;
+    `surface_shape` is W at `surface_radius`. `modal_mass` belongs to that scale.
+    `modal_force_all_round` is the force of one volt for the polarity cos mθ ↦ 1, per radian of
+    ∫ s cos mθ dθ. `axial_share` is the share of the kinetic energy in u_z; `layer_energy` that of
+    the strain energy in each layer.
+    """
+
+    harmonic: int
+    label: str
+    frequency: Hertz
+    frequency_error: Hertz
+    quality_factor: Dimensionless
+    modal_mass: Kilogram
+    modal_force_all_round: NewtonPerVolt
+    half_wavelength: Metre | None
+    axial_share: Dimensionless
+    layer_energy: DimensionlessArray
+    node_radius: MetreArray
+    node_height: MetreArray
+    displacement: DimensionlessArray
+    surface_radius: MetreArray
+    surface_shape: DimensionlessArray
+    model: str = "annular_3d"
+
+    @property
+    def is_rigid(self) -> bool:
+        """Whether the body moves without deforming."""
+        return self.label == "rigid"
+
+    def modal_force(self, drive: SectorDrive) -> NewtonPerVolt:
+        """The force of one volt on the mode turned to where `drive` moves it most (N/V)."""
+        return abs(self.modal_force_all_round * drive.coefficient(self.harmonic))
+
+    def amplitude_per_volt(self, drive: SectorDrive) -> MetrePerVolt:
+        """Zero-to-peak u_z at the surface's highest antinode, per volt at resonance (m/V).
+
+        Q F / (ω² M): exact for structural damping 1/Q of one mode. Raises `InputError` for a
+        rigid-body motion, which has no resonance.
+        """
+        if self.is_rigid:
+            raise InputError("a rigid-body motion has no resonance; choose an elastic mode")
+        stiffness = (2 * math.pi * self.frequency) ** 2 * self.modal_mass
+        return self.quality_factor * self.modal_force(drive) / stiffness
+
+    @checked_numbers
+    def coupling_coefficient(self, drive: SectorDrive, capacitance: Farad) -> Dimensionless:
+        """Effective coupling k of the mode on `drive`: k² = F²/(F² + ω² M C), with C clamped."""
+        stiffness = (2 * math.pi * self.frequency) ** 2 * self.modal_mass
+        force = self.modal_force(drive)
+        return force / math.sqrt(force**2 + stiffness * capacitance)
+
+
+@checked_numbers
+def annular_modes(
+    section: AnnularSection,
+    harmonic: int,
+    *,
+    near: Hertz = 0.0,
+    count: int = 4,
+    degree: int = DEFAULT_DEGREE,
+    quality_factor: Dimensionless | None = None,
+) -> tuple[AnnularMode, ...]:
+    """The `count` modes of one Fourier harmonic nearest to a frequency, in rising order.
+
+    Electrodes are shorted. `quality_factor` is that of the assembly; without it each mode's Q
+    follows from the layers' loss factors and strain energies. The error estimate compares with one
+    degree less and presumes the slowest convergence that the corners allow, 1/degree².
+    Range: linear, perfectly bonded, ceramics all round (see `harmonic_system` for sectors).
+    Raises `InputError` for a harmonic or degree that cannot be, or if no Q can be found;
+    `ConvergenceError` if the eigenvalues do not converge.
+    """
+    require("harmonic", harmonic, at_least=0)
+    require("degree", degree, at_least=3, at_most=12)
+    require("count", count, at_least=1)
+    require("near", near, Unit("Hz"), at_least=0)
+    if quality_factor is not None:
+        require("quality_factor", quality_factor, above=0.5)
+    mesh = ring_mesh(section)
+    fine = harmonic_system(section, harmonic, degree, mesh)
+    coarse = harmonic_system(section, harmonic, degree - 1, mesh)
+    squares, vectors = _eigenpairs(fine, near, count)
+    # A mode at the rim of the list may be another one at the lower degree: ask for two more.
+    rough, _ = _eigenpairs(coarse, near, count + 2)
+    growth = 1 / ((degree / (degree - 1)) ** 2 - 1)
+    modes = []
+    for square, vector in zip(squares, vectors.T, strict=True):
+        nearest = rough[np.argmin(np.abs(rough - square))]
+        mode = _mode(section, fine, float(square), vector, quality_factor)
+        error = 0.0
+        if not mode.is_rigid:
+            error = growth * abs(math.sqrt(max(nearest, 0.0)) / (2 * math.pi) - mode.frequency)
+        modes.append(replace(mode, frequency_error=error))
+    return tuple(modes)
+
+
+@checked_numbers
+def bending_mode(
+    section: AnnularSection,
+    diameters: int,
+    circles: int = 0,
+    *,
+    degree: int = DEFAULT_DEGREE,
+    quality_factor: Dimensionless | None = None,
+) -> AnnularMode:
+    """The mode B(`circles`, `diameters`): the lowest of that label that moves the surface.
+
+    A thin web has modes of its own in which the surface hardly moves; they are passed over (modal
+    mass above the body's mass, or in-plane motion). Arguments as in `annular_modes`.
+    Raises `InputError` if there is none among the lowest modes.
+    """
+    label = f"B({circles},{diameters})"
+    modes = annular_modes(
+        section, diameters, count=6 + 2 * circles, degree=degree, quality_factor=quality_factor
+    )
+    for mode in modes:
+        if mode.label == label and mode.modal_mass <= section.mass:
+            return mode
+    raise InputError(
+        f"no mode {label} among the lowest {len(modes)} with {diameters} nodal diameters "
+        f"({', '.join(mode.label for mode in modes)}); ask annular_modes near its frequency"
+    )
+
+
+def clamped_capacitance(section: AnnularSection, drive: SectorDrive) -> Farad:
+    """The capacitance of the driven sectors with the ceramic held (F): ε33S A/h, no fringes.
+
+    Raises `InputError` if no layer is piezoelectric.
+    """
+    total = 0.0
+    for layer in section.layers:
+        if layer.solid.permittivity is not None and layer.is_piezoelectric:
+            area = (layer.outer_radius**2 - layer.inner_radius**2) / 2
+            total += layer.solid.permittivity[2] * area / layer.thickness
+    if total == 0:
+        raise InputError("no layer is piezoelectric; add a ceramic to have an admittance")
+    return float(total * drive.angle)
+
+
+@checked_numbers
+def annular_admittance(
+    section: AnnularSection,
+    drive: SectorDrive,
+    frequency: HertzArray,
+    *,
+    harmonics: Sequence[int],
+    quality_factor: Dimensionless | None = None,
+    modes: int = 6,
+    degree: int = DEFAULT_DEGREE,
+) -> ComplexArray:
+    """The admittance of one channel (A/V), shape of `frequency`, by modes and their remainder.
+
+    Each harmonic in `harmonics` enters with its `modes` modes nearest to the band and a static
+    remainder; harmonics left out take their (small, capacitive) share away. Near a resonance its
+    own harmonic suffices; a channel of a few sectors also drives the harmonics beside it.
+    Damping is structural; the ceramic's dielectric loss is left out.
+    Raises `InputError` for an empty list of harmonics or frequencies that are not positive.
+    """
+    frequency = np.asarray(frequency, dtype=float)
+    require("frequency", frequency, Unit("Hz"), above=0)
+    if not harmonics:
+        raise InputError("harmonics is empty; name at least the one of the mode wanted")
+    omega = 2 * np.pi * frequency
+    charge = np.full(frequency.shape, clamped_capacitance(section, drive), dtype=complex)
+    middle = float(frequency.mean())
+    mesh = ring_mesh(section)
+    for m in harmonics:
+        system = harmonic_system(section, m, degree, mesh)
+        squares, vectors = _eigenpairs(system, middle, modes)
+        weight = abs(drive.coefficient(m)) ** 2
+        # What the modes left out add hardly depends on frequency: take it in the middle, from a
+        # direct solve, at a point moved off the resonances by the shift.
+        shift = _shift(system, middle)
+        static = float(system.force @ _factor(system, shift)(system.force))
+        for square, vector in zip(squares, vectors.T, strict=True):
+            force2 = float(vector @ system.force) ** 2  # vectors have unit modal mass
+            static -= force2 / (square - shift)
+            mode = _mode(section, system, float(square), vector, quality_factor)
+            loss = 0.0 if mode.is_rigid else 1 / mode.quality_factor
+            charge += weight * force2 / (square * (1 + 1j * loss) - omega**2)
+        charge += weight * static
+    admittance: ComplexArray = 1j * omega * charge
+    return admittance
+
+
+def _shift(system: HarmonicSystem, near: Hertz) -> float:
+    """The shift of ω² for modes near a frequency, kept off rigid-body modes at zero."""
+    scale = abs(system.matrix.diagonal()[: system.displacements] / system.mass.diagonal()).min()
+    return (2 * math.pi * near) ** 2 * (1 + 1e-7) - 1e-7 * float(scale)
+
+
+def _factor(system: HarmonicSystem, shift: float) -> LinearOperator:
+    n = system.displacements
+    size = system.matrix.shape[0]
+    mass = system.mass.tocoo()
+    padded_mass = sparse.coo_matrix((mass.data, (mass.row, mass.col)), shape=(size, size))
+    factors = splu((system.matrix - shift * padded_mass).tocsc(), diag_pivot_thresh=0.0)
+    padded = np.zeros(size)
+
+    def solve(b: FloatArray) -> FloatArray:
+        padded[:n] = np.ravel(b)
+        answer: FloatArray = factors.solve(padded)[:n]
+        return answer
+
+    return LinearOperator((n, n), matvec=solve, dtype=float)
+
+
+def _eigenpairs(system: HarmonicSystem, near: Hertz, count: int) -> tuple[FloatArray, FloatArray]:
+    """The ω² nearest to a frequency, rising, and their vectors of unit modal mass."""
+    n = system.displacements
+    if count >= n:
+        raise InputError(f"{count} modes were asked for of {n} unknowns; ask for fewer")
+    shift = _shift(system, near)
+    start = np.random.default_rng(1).standard_normal(n)
+    try:
+        squares, vectors = eigsh(
+            system.mass,  # not used: OPinv holds the potential too
+            k=count,
+            M=system.mass,
+            sigma=shift,
+            OPinv=_factor(system, shift),
+            v0=start,
+            tol=1e-11,
+        )
+    except Exception as error:
+        raise ConvergenceError(
+            f"the modes of harmonic {system.harmonic} near {near:.6g} Hz did not converge "
+            f"({error}); ask for fewer modes or another degree"
+        ) from error
+    order = np.argsort(squares)
+    return squares[order], vectors[:, order]
+
+
+def _mode(
+    section: AnnularSection,
+    system: HarmonicSystem,
+    square: float,
+    vector: FloatArray,
+    quality_factor: Dimensionless | None,
+) -> AnnularMode:
+    field = system.field(vector)
+    surface = np.flatnonzero(np.abs(system.z - section.surface_height) <= 5e-10)
+    surface = surface[np.argsort(system.r[surface])]
+    shape = field[surface, 2]
+    peak = float(shape[np.argmax(np.abs(shape))])
+    # In-plane motions hardly lift the surface: scale them by their largest component instead.
+    largest = float(field.flat[np.argmax(np.abs(field))])
+    scale = peak if abs(peak) > 1e-6 * abs(largest) else largest
+    axial = system.unknown[:, 2]
+    axial = axial[axial >= 0]
+    share = float(vector[axial] @ (system.mass @ vector)[axial])
+    energies = np.array([vector @ (part @ vector) for part in system.layer_stiffness])
+    total = float(energies.sum())
+    rigid = system.harmonic < 2 and square < 1e-5 * _elastic_scale(section)
+    m, mean = system.harmonic, section.mean_diameter
+    return AnnularMode(
+        harmonic=m,
+        label="rigid" if rigid else _label(m, share, field, shape),
+        frequency=0.0 if rigid else math.sqrt(max(square, 0.0)) / (2 * math.pi),
+        frequency_error=0.0,
+        quality_factor=math.inf if rigid else _quality(section, energies, quality_factor),
+        modal_mass=1 / scale**2,
+        modal_force_all_round=float(vector @ system.force) / scale,
+        half_wavelength=math.pi * mean / (2 * m) if m > 0 else None,
+        axial_share=share,
+        layer_energy=energies / total if total > 0 else energies,
+        node_radius=system.r,
+        node_height=system.z,
+        displacement=field / scale,
+        surface_radius=system.r[surface],
+        surface_shape=shape / scale,
+    )
+
+
+def _elastic_scale(section: AnnularSection) -> float:
+    """A low ω² of bending: (E/ρ) h²/R⁴ of the softest and heaviest that the section has."""
+    radius = max(layer.outer_radius for layer in section.layers)
+    thin = min(layer.thickness for layer in section.layers)
+    stiff = min(
+        layer.solid.stiffness[2, 2] / layer.solid.density
+        for layer in section.layers
+        if layer.solid.stiffness[0, 0] > 0
+    )
+    return float(stiff * thin**2 / radius**4)
+
+
+def _label(m: int, axial_share: float, field: FloatArray, shape: FloatArray) -> str:
+    """B(n, m) for bending; R or T in the plane, by whether it is more radial or more hoop."""
+    if axial_share < 0.5:
+        radial, hoop = np.abs(field[:, 0]).max(), np.abs(field[:, 1]).max()
+        return f"{'R' if radial >= hoop else 'T'}({m})"
+    strong = shape[np.abs(shape) > 0.02 * np.abs(shape).max()]
+    return f"B({int(np.count_nonzero(np.diff(np.sign(strong))))},{m})"
+
+
+def _quality(
+    section: AnnularSection, energies: FloatArray, quality_factor: Dimensionless | None
+) -> float:
+    if quality_factor is not None:
+        return quality_factor
+    losses = [layer.solid.loss_factor for layer in section.layers]
+    if any(loss is None for loss in losses):
+        raise InputError(
+            "quality_factor is not given, and not every layer has a loss_factor; give either",
+            quantity="quality_factor",
+        )
+    loss = float(np.dot(energies, np.array(losses, dtype=float)) / energies.sum())
+    return 1 / loss if loss > 0 else math.inf

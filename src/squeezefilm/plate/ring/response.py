@@ -1,0 +1,148 @@
+"""The harmonic response of a ring or a disc around one mode: amplitude, admittance, circuit."""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from squeezefilm.plate.ring.body import RingBody, surface_profile
+from squeezefilm.plate.ring.modes import (
+    AnnularMode,
+    annular_admittance,
+    annular_modes,
+    clamped_capacitance,
+)
+from squeezefilm.plate.solid.response import EquivalentCircuit
+from squeezefilm.quantities import (
+    Ampere,
+    ComplexArray,
+    Farad,
+    FloatArray,
+    HertzArray,
+    MetreArray,
+    Unit,
+    Volt,
+    Watt,
+    checked_numbers,
+    require,
+)
+
+_RADII = 121
+
+
+@dataclass(frozen=True, eq=False)
+class RingResponse:
+    """The response to one volt (zero to peak) on the channel, at `frequencies` (Hz).
+
+    `motion` is u_z per volt (m/V, complex) on the surface at θ of an antinode, shape (frequencies,
+    radii), by superposition of `terms` modes of one harmonic; it varies as cos mθ around.
+    `admittance` (S), time factor e^{iωt}, of the harmonics `harmonics`.
+    """
+
+    frequencies: HertzArray
+    radius: MetreArray
+    motion: ComplexArray
+    admittance: ComplexArray
+    harmonics: tuple[int, ...]
+    terms: int
+    model: str = "annular_3d"
+
+    @functools.cached_property
+    def maximum(self) -> FloatArray:
+        """The largest |u_z| per volt (m/V) on the surface, for every frequency."""
+        return np.asarray(np.max(np.abs(self.motion), axis=1))
+
+    @property
+    def resonance(self) -> int:
+        """The number of the frequency with the largest amplitude."""
+        return int(np.argmax(self.maximum))
+
+    @checked_numbers
+    def current(self, voltage: Volt) -> Ampere:
+        """The current amplitude (A) at resonance."""
+        return float(np.abs(self.admittance[self.resonance])) * voltage
+
+    @checked_numbers
+    def apparent_power(self, voltage: Volt) -> Watt:
+        """Half of voltage times current amplitude (VA) at resonance."""
+        return voltage * self.current(voltage) / 2
+
+    @checked_numbers
+    def input_power(self, voltage: Volt) -> Watt:
+        """The power taken up (W) at resonance, from the conductance."""
+        return float(self.admittance[self.resonance].real) * voltage**2 / 2
+
+
+@checked_numbers
+def ring_response(
+    body: RingBody,
+    mode: AnnularMode,
+    frequencies: HertzArray,
+    harmonics: Sequence[int],
+    terms: int = 6,
+) -> RingResponse:
+    """The response around `mode` at `frequencies` (Hz).
+
+    Motion comes from the `terms` modes of the mode's harmonic nearest to it; the admittance from
+    all of `harmonics`. Structural damping. Linear; sectors' fringes and the ceramic's dielectric
+    loss are left out. Raises `InputError` for frequencies that are not positive.
+    """
+    frequencies = np.asarray(frequencies, dtype=float)
+    require("frequencies", frequencies, Unit("Hz"), above=0)
+    m, quality = mode.harmonic, body.quality_factor
+    near = annular_modes(body.section, m, near=mode.frequency, count=terms, quality_factor=quality)
+    omega2 = (2 * np.pi * frequencies) ** 2
+    radius = np.linspace(mode.surface_radius[0], mode.surface_radius[-1], _RADII)
+    motion = np.zeros((frequencies.size, radius.size), dtype=complex)
+    polarity = body.drive.coefficient(m)
+    for one in near:
+        own = (2 * math.pi * one.frequency) ** 2
+        loss = 0.0 if one.is_rigid else 1 / one.quality_factor
+        force = one.modal_force_all_round * abs(polarity)
+        receptance = force / (one.modal_mass * (own * (1 + 1j * loss) - omega2))
+        motion += receptance[:, None] * surface_profile(one, radius)[None, :]
+    admittance = annular_admittance(
+        body.section, body.drive, frequencies,
+        harmonics=tuple(harmonics), quality_factor=quality, modes=terms,
+    )  # fmt: skip
+    return RingResponse(frequencies, radius, motion, admittance, tuple(harmonics), len(near))
+
+
+def ring_circuit(body: RingBody, mode: AnnularMode, response: RingResponse) -> EquivalentCircuit:
+    """Butterworth-Van Dyke around the mode: the motional branch from modal mass and force, the
+    static capacitance from what the sweep's admittance has beside it.
+
+    L1 = M/F², C1 = F²/(ω² M), R1 = ω M/(Q F²). Raises `ZeroDivisionError` for a mode that the
+    channel does not drive.
+    """
+    omega0, force = 2 * math.pi * mode.frequency, mode.modal_force(body.drive)
+    bare = EquivalentCircuit(
+        frequency=mode.frequency,
+        quality_factor=mode.quality_factor,
+        static_capacitance=0.0,
+        motional_resistance=omega0 * mode.modal_mass / (mode.quality_factor * force**2),
+        motional_inductance=mode.modal_mass / force**2,
+        motional_capacitance=force**2 / (omega0**2 * mode.modal_mass),
+    )
+    omega = 2 * np.pi * response.frequencies
+    rest = (response.admittance - bare.admittance(response.frequencies)) / (1j * omega)
+    return EquivalentCircuit(
+        frequency=bare.frequency,
+        quality_factor=bare.quality_factor,
+        static_capacitance=float(np.median(rest.real)),
+        motional_resistance=bare.motional_resistance,
+        motional_inductance=bare.motional_inductance,
+        motional_capacitance=bare.motional_capacitance,
+    )
+
+
+def static_capacitance(body: RingBody, circuit: EquivalentCircuit | None) -> Farad:
+    """The capacitance beside a mode (F): that of the circuit, which other modes add to, or of the
+    held ceramic where no circuit is known."""
+    if circuit is not None:
+        return circuit.static_capacitance
+    return clamped_capacitance(body.section, body.drive)

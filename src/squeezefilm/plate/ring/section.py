@@ -1,0 +1,299 @@
+"""What a ring or a disc is made of and where, in its (r, z) half section, and how it is driven."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from squeezefilm.errors import GeometryError, InputError
+from squeezefilm.materials import ElasticMaterial, Piezoceramic
+from squeezefilm.plate.ring.materials import (
+    RingSolid,
+    isotropic_solid,
+    piezoceramic_solid,
+    soft_teeth,
+)
+from squeezefilm.quantities import (
+    Dimensionless,
+    Kilogram,
+    Metre,
+    Radian,
+    Unit,
+    checked_numbers,
+    format_quantity,
+    require,
+)
+
+_M = Unit("m")
+# Half a nanometre: what two edges may differ by and still be the same edge.
+_SAME = 5e-10
+
+
+@checked_numbers
+@dataclass(frozen=True, eq=False)
+class RingLayer:
+    """One rectangle of the (r, z) section, revolved: radii and heights in metres.
+
+    A piezoelectric layer has electrodes on the whole of its lower and upper face, and is bonded,
+    earthed, at its upper face unless `driven_face` is "upper".
+    """
+
+    inner_radius: Metre
+    outer_radius: Metre
+    bottom: Metre
+    top: Metre
+    solid: RingSolid
+    driven_face: str = "lower"
+
+    def __post_init__(self) -> None:
+        require("inner_radius", self.inner_radius, _M, at_least=0)
+        require("outer_radius", self.outer_radius, _M, above=self.inner_radius)
+        require("bottom", self.bottom, _M)
+        require("top", self.top, _M, above=self.bottom)
+        if self.driven_face not in ("lower", "upper"):
+            raise InputError("driven_face must be 'lower' or 'upper'", quantity="driven_face")
+
+    @property
+    def thickness(self) -> Metre:
+        """Top minus bottom."""
+        return self.top - self.bottom
+
+    @property
+    def is_piezoelectric(self) -> bool:
+        """Whether the layer has electrodes."""
+        return self.solid.piezoelectric is not None
+
+
+@checked_numbers
+@dataclass(frozen=True, eq=False)
+class AnnularSection:
+    """Layers that together make a ring or a disc, free everywhere.
+
+    `wave_diameter` is where wavelengths are measured: by default twice the mean radius of the
+    surface. Raises `GeometryError` for layers that overlap or do not hang together.
+    """
+
+    layers: tuple[RingLayer, ...]
+    wave_diameter: Metre | None = None
+
+    def __post_init__(self) -> None:
+        if not self.layers:
+            raise GeometryError("layers is empty; a ring needs at least one")
+        if self.wave_diameter is not None:
+            require("wave_diameter", self.wave_diameter, _M, above=0)
+        for i, a in enumerate(self.layers):
+            for j, b in enumerate(self.layers[:i]):
+                wide = min(a.outer_radius, b.outer_radius) - max(a.inner_radius, b.inner_radius)
+                high = min(a.top, b.top) - max(a.bottom, b.bottom)
+                if wide > _SAME and high > _SAME:
+                    raise GeometryError(
+                        f"ring layers {j + 1} and {i + 1} overlap by {format_quantity(wide, _M)} × "
+                        f"{format_quantity(high, _M)}; move one of them"
+                    )
+        self._check_connected()
+
+    def _check_connected(self) -> None:
+        reached, todo = {0}, [0]
+        while todo:
+            a = self.layers[todo.pop()]
+            for j, b in enumerate(self.layers):
+                wide = min(a.outer_radius, b.outer_radius) - max(a.inner_radius, b.inner_radius)
+                high = min(a.top, b.top) - max(a.bottom, b.bottom)
+                touching = min(wide, high) > -_SAME and max(wide, high) > _SAME
+                if j not in reached and touching:
+                    reached.add(j)
+                    todo.append(j)
+        if len(reached) < len(self.layers):
+            loose = min(set(range(len(self.layers))) - reached)
+            raise GeometryError(
+                f"ring layer {loose + 1} does not touch the others; let them share a face"
+            )
+
+    @property
+    def thickness(self) -> Metre:
+        """Overall height."""
+        return self.surface_height - min(layer.bottom for layer in self.layers)
+
+    @property
+    def mass(self) -> Kilogram:
+        """The mass of the whole body."""
+        return math.pi * sum(
+            a.solid.density * a.thickness * (a.outer_radius**2 - a.inner_radius**2)
+            for a in self.layers
+        )
+
+    @property
+    def surface_height(self) -> Metre:
+        """The z of the surface that is touched: the highest one."""
+        return max(layer.top for layer in self.layers)
+
+    @property
+    def surface_radii(self) -> tuple[Metre, Metre]:
+        """Inner and outer radius of the surface that is touched."""
+        at = [x for x in self.layers if abs(x.top - self.surface_height) <= _SAME]
+        return min(x.inner_radius for x in at), max(x.outer_radius for x in at)
+
+    @property
+    def mean_diameter(self) -> Metre:
+        """Where wavelengths are measured."""
+        return self.wave_diameter or sum(self.surface_radii)
+
+
+@dataclass(frozen=True)
+class SectorDrive:
+    """Which sectors of the ceramic ring one channel drives: (start, end, polarity) in radians.
+
+    Polarity is the direction of poling (+1 or −1) under one common electrode, or the sign of its
+    voltage. Raises `GeometryError` for sectors that overlap.
+    """
+
+    sectors: tuple[tuple[Radian, Radian, int], ...]
+
+    def __post_init__(self) -> None:
+        if not self.sectors:
+            raise GeometryError("sectors is empty; a channel needs at least one")
+        for start, end, polarity in self.sectors:
+            require("sector start", start, Unit("rad"))
+            require("sector end", end, Unit("rad"), above=start, at_most=start + 2 * math.pi + 1e-9)
+            if polarity not in (1, -1):
+                raise InputError("polarity must be 1 or -1", quantity="polarity")
+        ordered = sorted(self.sectors)
+        for (_, end, _), (start, _, _) in itertools.pairwise(ordered):
+            if end > start + 1e-9:
+                raise GeometryError("sectors overlap; let each end where the next starts")
+        if ordered[-1][1] - ordered[0][0] > 2 * math.pi + 1e-9:
+            raise GeometryError("sectors overlap: together they go round more than once")
+
+    @property
+    def angle(self) -> Radian:
+        """The angle that the electrodes cover."""
+        return sum(end - start for start, end, _ in self.sectors)
+
+    @checked_numbers
+    def coefficient(self, harmonic: int) -> complex:
+        """∫ s(θ) exp(−i m θ) dθ of the polarity s; its size is what drives cos m(θ − θ0).
+
+        Alternate sectors all round give 4 for their own harmonic, one of full poling 2π for m = 0.
+        """
+        if harmonic == 0:
+            return complex(sum(sign * (end - start) for start, end, sign in self.sectors))
+        total = sum(
+            sign * (np.exp(-1j * harmonic * end) - np.exp(-1j * harmonic * start))
+            for start, end, sign in self.sectors
+        )
+        return complex(total * 1j / harmonic)
+
+
+@checked_numbers
+def alternate_sectors(count: int, width: Radian, start: Radian = 0.0) -> SectorDrive:
+    """`count` neighbouring sectors of one width, of alternate poling: the channel of a motor.
+
+    A motor in B(0, m) has sectors of π/m; its one channel has fewer than 2m of them, since the
+    other channel and the gaps between the two take the rest.
+    """
+    require("count", count, at_least=1)
+    require("width", width, Unit("rad"), above=0)
+    return SectorDrive(
+        tuple(
+            (start + k * width, start + (k + 1) * width, 1 if k % 2 == 0 else -1)
+            for k in range(count)
+        )
+    )
+
+
+def full_drive() -> SectorDrive:
+    """One electrode all round: drives the axisymmetric modes of a disc."""
+    return SectorDrive(((0.0, 2 * math.pi, 1),))
+
+
+@checked_numbers
+def motor_stator(
+    *,
+    mean_diameter: Metre,
+    radial_width: Metre,
+    ring_thickness: Metre,
+    ceramic_thickness: Metre,
+    metal: ElasticMaterial,
+    ceramic: Piezoceramic,
+    tooth_height: Metre = 0.0,
+    tooth_fill: Dimensionless = 0.8,
+    teeth: Callable[[RingSolid, float], RingSolid] = soft_teeth,
+    web_thickness: Metre = 0.0,
+    web_inner_radius: Metre = 0.0,
+    loss_factor: Dimensionless | None = None,
+) -> AnnularSection:
+    """The section of a travelling-wave motor's stator: ceramic below, metal ring, teeth on top.
+
+    A thin web (with its lower face level with the ring's) reaches inwards to `web_inner_radius` if
+    `web_thickness` is not 0. `teeth` is `soft_teeth` or `stiff_teeth`, the two bounds of the tooth
+    layer; `tooth_fill` the share of the circumference that is tooth.
+    Raises `GeometryError` for a web that is not inside the ring.
+    """
+    require("mean_diameter", mean_diameter, _M, above=0)
+    require("radial_width", radial_width, _M, above=0, below=mean_diameter)
+    require("ring_thickness", ring_thickness, _M, above=0)
+    require("tooth_height", tooth_height, _M, at_least=0)
+    require("web_thickness", web_thickness, _M, at_least=0, at_most=ring_thickness)
+    inner, outer = (mean_diameter - radial_width) / 2, (mean_diameter + radial_width) / 2
+    solid = isotropic_solid(metal, loss_factor)
+    base = ceramic_thickness
+    layers = [
+        RingLayer(inner, outer, 0.0, base, piezoceramic_solid(ceramic, loss_factor)),
+        RingLayer(inner, outer, base, base + ring_thickness, solid),
+    ]
+    if tooth_height > 0:
+        low = base + ring_thickness
+        layers.append(RingLayer(inner, outer, low, low + tooth_height, teeth(solid, tooth_fill)))
+    if web_thickness > 0:
+        if not 0 <= web_inner_radius < inner:
+            raise GeometryError(
+                f"web_inner_radius = {format_quantity(web_inner_radius, _M)} is not inside the "
+                f"ring, which begins at {format_quantity(inner, _M)}"
+            )
+        layers.append(RingLayer(web_inner_radius, inner, base, base + web_thickness, solid))
+    return AnnularSection(tuple(layers), wave_diameter=mean_diameter)
+
+
+@checked_numbers
+def bonded_disc(
+    *,
+    diameter: Metre,
+    thickness: Metre,
+    plate: ElasticMaterial,
+    ceramic: Piezoceramic,
+    ceramic_outer_diameter: Metre,
+    ceramic_thickness: Metre,
+    ceramic_inner_diameter: Metre = 0.0,
+    inner_diameter: Metre = 0.0,
+    glue: ElasticMaterial | None = None,
+    glue_thickness: Metre = 0.0,
+    loss_factor: Dimensionless | None = None,
+) -> AnnularSection:
+    """The section of a disc display (T-PaD): a glass disc with a ceramic disc or ring below.
+
+    The bond is perfect, or a layer of `glue`. `inner_diameter` makes the disc an annulus. Without
+    `loss_factor` each material has its own, where it has one.
+    Raises `GeometryError` for a ceramic that overhangs the disc.
+    """
+    if ceramic_outer_diameter > diameter + _SAME:
+        raise GeometryError(
+            f"the ceramic of diameter {format_quantity(ceramic_outer_diameter, _M)} overhangs the "
+            f"disc of {format_quantity(diameter, _M)}; make it smaller"
+        )
+    solid = isotropic_solid(plate, loss_factor)
+    piezo = piezoceramic_solid(ceramic, loss_factor)
+    inner, outer = ceramic_inner_diameter / 2, ceramic_outer_diameter / 2
+    base = ceramic_thickness
+    layers = [RingLayer(inner, outer, 0.0, base, piezo)]
+    if glue is not None:
+        require("glue_thickness", glue_thickness, _M, above=0)
+        layers.append(
+            RingLayer(inner, outer, base, base + glue_thickness, isotropic_solid(glue, loss_factor))
+        )
+        base += glue_thickness
+    layers.append(RingLayer(inner_diameter / 2, diameter / 2, base, base + thickness, solid))
+    return AnnularSection(tuple(layers), wave_diameter=diameter)

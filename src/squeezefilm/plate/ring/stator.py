@@ -1,0 +1,202 @@
+"""A motor stator of which only frequency and wavelength are known: fit the rest, and say so."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from dataclasses import dataclass, field
+from typing import Literal
+
+from scipy.optimize import brentq
+
+from squeezefilm.errors import UnreachableError
+from squeezefilm.materials import ElasticMaterial, Piezoceramic
+from squeezefilm.plate.ring.materials import soft_teeth, stiff_teeth
+from squeezefilm.plate.ring.modes import DEFAULT_DEGREE, AnnularMode, bending_mode
+from squeezefilm.plate.ring.section import (
+    AnnularSection,
+    SectorDrive,
+    alternate_sectors,
+    motor_stator,
+)
+from squeezefilm.quantities import (
+    Dimensionless,
+    Hertz,
+    Metre,
+    Unit,
+    Volt,
+    checked_numbers,
+    format_quantity,
+    require,
+)
+
+ToothModel = Literal["soft", "stiff"]
+_M, _HZ = Unit("m"), Unit("Hz")
+PHOSPHOR_BRONZE = ElasticMaterial("phosphor bronze", 112e9, 0.33, 8800.0)
+"""What motor stators are commonly made of; handbook values (C51900), assumed for the USR60."""
+
+HARD_PZT = Piezoceramic(
+    name="hard PZT (assumed)",
+    in_plane_stiffness=90e9,
+    in_plane_poisson_ratio=0.2897,
+    shear_modulus=30e9,
+    density=7700.0,
+    charge_coefficient=-120e-12,
+    relative_permittivity=700.0,
+    quality_factor=500.0,
+)
+"""A hard ceramic of the kind motors use, in round numbers; assumed for the USR60."""
+
+
+@checked_numbers
+@dataclass(frozen=True)
+class StatorAssumptions:
+    """What the paper does not give of its USR60 stator. Every default is assumed.
+
+    `outer_diameter` 60 mm is read off the motor's name; ceramic, teeth and materials are of the
+    usual size and kind for such motors. A channel of 8 half-wave sectors is what a 9-wave motor
+    with 4 + 4 waves driven, a quarter and three quarters of a wave left over, has (Sashida and
+    Kenjo, An Introduction to Ultrasonic Motors, 1993; from memory, to be checked).
+    """
+
+    outer_diameter: Metre = 60e-3
+    ceramic_thickness: Metre = 0.5e-3
+    tooth_height: Metre = 1.5e-3
+    tooth_fill: Dimensionless = 0.8
+    web_thickness: Metre = 0.0
+    web_inner_radius: Metre = 0.0
+    metal: ElasticMaterial = PHOSPHOR_BRONZE
+    ceramic: Piezoceramic = HARD_PZT
+    quality_factor: Dimensionless = 200.0
+    driven_sectors: int = 8
+    tooth_model: ToothModel = "soft"
+
+
+@checked_numbers
+@dataclass(frozen=True, eq=False)
+class StatorFit:
+    """A stator whose `ring_thickness` (metal between ceramic and teeth) was fitted.
+
+    `fitted` and `assumed` name what was fitted and what was assumed, in SI units; `derived` what
+    follows from the given wavelength. `frequency_bounds` are the frequencies that this thickness
+    would have with the teeth soft (no hoop stiffness) and stiff (fill × E): how far the tooth
+    layer is uncertain; `thickness_bounds` the thicknesses that each bound would have been fitted
+    to (the thinnest allowed where the stiff bound is too high even so).
+    """
+
+    section: AnnularSection
+    mode: AnnularMode
+    drive: SectorDrive
+    ring_thickness: Metre
+    frequency_bounds: tuple[Hertz, Hertz]
+    thickness_bounds: tuple[Metre, Metre]
+    assumptions: StatorAssumptions
+    fitted: dict[str, float] = field(default_factory=dict)
+    derived: dict[str, float] = field(default_factory=dict)
+    assumed: dict[str, object] = field(default_factory=dict)
+
+    @checked_numbers
+    def amplitude(self, voltage: Volt) -> Metre:
+        """Zero-to-peak amplitude at resonance at a voltage amplitude (m), linear in it."""
+        return self.mode.amplitude_per_volt(self.drive) * voltage
+
+
+@checked_numbers
+def stator_section(
+    mean_diameter: Metre,
+    ring_thickness: Metre,
+    assumptions: StatorAssumptions,
+    tooth_model: ToothModel,
+) -> AnnularSection:
+    """The section with one ring thickness and one bound of the teeth.
+
+    Raises `InputError` if the outer diameter does not exceed the mean diameter.
+    """
+    a = assumptions
+    require("outer_diameter", a.outer_diameter, _M, above=mean_diameter, below=2 * mean_diameter)
+    return motor_stator(
+        mean_diameter=mean_diameter,
+        radial_width=a.outer_diameter - mean_diameter,
+        ring_thickness=ring_thickness,
+        ceramic_thickness=a.ceramic_thickness,
+        metal=a.metal,
+        ceramic=a.ceramic,
+        tooth_height=a.tooth_height,
+        tooth_fill=a.tooth_fill,
+        teeth=stiff_teeth if tooth_model == "stiff" else soft_teeth,
+        web_thickness=a.web_thickness,
+        web_inner_radius=a.web_inner_radius,
+        loss_factor=1 / a.quality_factor,
+    )
+
+
+@checked_numbers
+def fit_stator(
+    frequency: Hertz = 40.5e3,
+    wavelength: Metre = 18.7e-3,
+    waves: int = 9,
+    assumptions: StatorAssumptions | None = None,
+    *,
+    thinnest: Metre = 0.3e-3,
+    thickest: Metre = 10e-3,
+    degree: int = DEFAULT_DEGREE,
+) -> StatorFit:
+    """Fit the metal's thickness so that B(0, `waves`) falls on `frequency`.
+
+    The mean diameter is `waves` × `wavelength`/π; everything else is assumed (see
+    `StatorAssumptions`) and listed in the result. One frequency fits one dimension and validates
+    nothing: the amplitude that follows is a prediction under these assumptions.
+    Raises `UnreachableError` if no thickness between `thinnest` and `thickest` has the frequency.
+    """
+    a = assumptions or StatorAssumptions()
+    require("frequency", frequency, _HZ, above=0)
+    require("wavelength", wavelength, _M, above=0)
+    require("waves", waves, at_least=2)
+    require("thinnest", thinnest, _M, above=0)
+    start = max(thinnest, a.web_thickness)  # a ring is no thinner than its web
+    require("thickest", thickest, _M, above=start)
+    mean_diameter = waves * wavelength / math.pi
+
+    def mode(thickness: float, model: ToothModel) -> AnnularMode:
+        section = stator_section(mean_diameter, thickness, a, model)
+        return bending_mode(section, waves, degree=degree, quality_factor=a.quality_factor)
+
+    def fit(model: ToothModel) -> float:
+        ends = [mode(t, model).frequency - frequency for t in (start, thickest)]
+        if ends[0] * ends[1] > 0:
+            raise UnreachableError(
+                f"no ring thickness from {format_quantity(start, _M)} to "
+                f"{format_quantity(thickest, _M)} puts B(0,{waves}) with {model} teeth on "
+                f"{format_quantity(frequency, _HZ)}: it lies between "
+                f"{format_quantity(ends[0] + frequency, _HZ)} and "
+                f"{format_quantity(ends[1] + frequency, _HZ)}; change the assumptions",
+                quantity="frequency",
+            )
+        return float(
+            brentq(lambda t: mode(t, model).frequency - frequency, start, thickest, xtol=1e-9)
+        )
+
+    has_teeth = a.tooth_height > 0
+    soft = fit("soft")
+    # The stiff bound may be out of reach with any metal at all; it bounds the fit, it is not it.
+    try:
+        stiff = fit("stiff") if has_teeth else soft
+    except UnreachableError:
+        if a.tooth_model == "stiff":
+            raise
+        stiff = start
+    thickness = soft if a.tooth_model == "soft" else stiff
+    section = stator_section(mean_diameter, thickness, a, a.tooth_model)
+    found = mode(thickness, a.tooth_model)
+    return StatorFit(
+        section=section,
+        mode=found,
+        drive=alternate_sectors(a.driven_sectors, math.pi / waves),
+        ring_thickness=thickness,
+        frequency_bounds=(mode(thickness, "soft").frequency, mode(thickness, "stiff").frequency),
+        thickness_bounds=(stiff, soft),
+        assumptions=a,
+        fitted={"ring_thickness": thickness},
+        derived={"mean_diameter": mean_diameter},
+        assumed={f.name: getattr(a, f.name) for f in dataclasses.fields(a)},
+    )

@@ -1,0 +1,1 @@
+"""Plates as piezoelectric solids in three dimensions: modes, errors, response, admittance."""

@@ -1,0 +1,141 @@
+"""What a mode's frequency owes to circuits at the electrodes: open terminals, floating electrodes,
+resistive shunts. All by a few bordered solves with the factorisation that has them shorted."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from scipy.linalg import eig
+
+from squeezefilm.errors import ConvergenceError
+from squeezefilm.plate.elements.krylov import with_open_electrodes
+from squeezefilm.plate.elements.slab_factor import SlabFactor
+from squeezefilm.plate.elements.slabs import Slabs
+from squeezefilm.plate.solid.modes import SolvedModel
+from squeezefilm.plate.solid.reduced import plate_circuit
+from squeezefilm.plate.solid.symmetry import drive_signs
+from squeezefilm.quantities import ComplexArray, FloatArray
+
+
+def inverse_with_open(
+    slabs: Slabs, solved: SolvedModel, factor: SlabFactor
+) -> Callable[..., FloatArray]:
+    """The inverse with the plate's own open electrodes."""
+    columns = _floating(solved)
+    return with_open_electrodes(slabs, factor.solve, columns) if columns.size else factor.solve
+
+
+def _floating(solved: SolvedModel) -> FloatArray:
+    """The electrodes that the plate leaves open, each by itself."""
+    patches = solved.plate.patches
+    return tied_electrodes(
+        solved, [[(i, 1.0)] for i, p in enumerate(patches) if p.electrode == "open"]
+    )
+
+
+def tied_electrodes(solved: SolvedModel, groups: list[list[tuple[int, float]]]) -> FloatArray:
+    """Model electrodes tied together, one column a group of (patch, sign); empty groups and
+    repeated ones (mirror images) left out."""
+    electrodes = len(solved.built.model.electrodes)
+    columns: list[FloatArray] = []
+    for group in groups:
+        column = np.zeros(electrodes)
+        for patch, sign in group:
+            if solved.built.share_of[patch] == 0:
+                continue
+            column[solved.built.electrode_of[patch]] += sign * solved.built.sign_of[patch]
+        column = np.sign(np.round(column, 9))
+        if np.any(column) and not any(
+            np.array_equal(np.abs(column), np.abs(other)) for other in columns
+        ):
+            columns.append(column)
+    return np.stack(columns, axis=1) if columns else np.zeros((electrodes, 0))
+
+
+def open_values(
+    solved: SolvedModel, factor: SlabFactor, shift: float, values: FloatArray, vectors: FloatArray
+) -> FloatArray:
+    """ω² of the same modes with the drive's terminals open; `factor` is K − `shift` M."""
+    slabs = solved.slabs
+    signs = drive_signs(solved.plate)
+    port = tied_electrodes(solved, [[(i, s) for i, s in enumerate(signs) if s]])
+    opened = _floating(solved)
+    columns = np.concatenate([port, opened], axis=1)
+    G, _ = slabs.electrode_columns
+    force = G @ port
+    if values.size == 0 or not port.size or np.max(np.abs(force.T @ vectors)) < 1e-9:
+        return values.copy()
+    solve = with_open_electrodes(slabs, factor.solve, columns)
+    # Rayleigh–Ritz over the modes and one step of the open inverse: open modes are near.
+    X = np.concatenate([vectors, solve(slabs.mass_times(vectors))], axis=1)
+    X = np.concatenate([X, solve(slabs.mass_times(X[:, vectors.shape[1] :]))], axis=1)
+    MX = slabs.mass_times(X)
+    lifted = solve(MX)
+    a, b = MX.T @ lifted, X.T @ MX
+    size, turn = np.linalg.eigh((b + b.T) / 2)
+    good = size > 1e-11 * size[-1]
+    T = turn[:, good] / np.sqrt(size[good])
+    inverse, turn2 = np.linalg.eigh(T.T @ (a + a.T) @ T / 2)
+    ritz = shift + 1 / inverse
+    overlap = (vectors.T @ MX @ (T @ turn2)) ** 2
+    best = np.argmax(overlap, axis=1)
+    return np.asarray(np.maximum(ritz[best], values))
+
+
+def shunted_frequencies(
+    solved: SolvedModel, factor: SlabFactor, values: FloatArray, vectors: FloatArray
+) -> ComplexArray:
+    """Complex ω (rad/s, time factor e^{iωt}) of modes with their electrodes' resistors at work.
+
+    `values` and `vectors` (unit modal mass of the model) are those with shunts short. A resistor R
+    at an electrode of charge q and capacitance C adds iωR/(1 + iωRC) times the square of the
+    electrode's force to the stiffness: nothing for R → 0, that of an open electrode for R → ∞. The
+    eigenproblem, nonlinear in ω, is solved by iteration on the space of these modes and of the
+    static answers to the electrodes. Raises `ConvergenceError` where that does not settle.
+    """
+    omega = np.sqrt(values).astype(complex)
+    circuit = [one for one in plate_circuit(solved.plate, solved) if np.isfinite(one[1])]
+    if not circuit or values.size == 0:
+        return omega
+    slabs = solved.slabs
+    number = [one[0] for one in circuit]
+    weight = np.array([resistance * share for _, resistance, share in circuit])
+    G, C = slabs.electrode_columns
+    G, C = G[:, number], C[np.ix_(number, number)]
+    opened = _floating(solved)
+    solve = with_open_electrodes(slabs, factor.solve, opened) if opened.size else factor.solve
+    answer = solve(G / np.max(np.abs(G)))
+    more = solve(slabs.mass_times(answer))
+    X = np.concatenate([vectors, answer, more, solve(slabs.mass_times(more))], axis=1)
+    X = X / np.sqrt(np.maximum(np.sum(X * slabs.mass_times(X), axis=0), 1e-300))
+    M = X.T @ slabs.mass_times(X)
+    size, turn = np.linalg.eigh((M + M.T) / 2)
+    X = X @ (turn[:, size > 1e-10] / np.sqrt(size[size > 1e-10]))
+    K = X.T @ slabs.stiffness_times(X)
+    if opened.size:
+        Go, Co = slabs.electrode_columns
+        force = X.T @ (Go @ opened)
+        K = K - force @ np.linalg.solve(opened.T @ Co @ opened, force.T)
+    force, start = X.T @ G, X.T @ slabs.mass_times(vectors)
+    for mode in range(values.size):
+        shape = start[:, mode].astype(complex)
+        for _ in range(60):
+            scale = 1j * omega[mode] * weight
+            stiffer = np.linalg.solve(
+                np.eye(weight.size) - scale[:, None] * C, scale[:, None] * force.T
+            )
+            squares, shapes = eig(K + force @ stiffer)
+            likeness = np.abs(shape.conj() @ shapes) / np.linalg.norm(shapes, axis=0)
+            best = int(np.argmax(likeness))
+            before, omega[mode] = omega[mode], np.sqrt(squares[best])
+            shape = shapes[:, best]
+            if abs(omega[mode] - before) <= 1e-10 * abs(before):
+                break
+        else:
+            raise ConvergenceError(
+                "the frequency of a mode with shunted electrodes did not settle; its mode passes "
+                "into another one, ask with the electrodes open or shorted",
+                iterations=60,
+            )
+    return omega

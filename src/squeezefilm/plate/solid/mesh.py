@@ -1,0 +1,441 @@
+"""From a described plate to a box model: cells, media, electrodes, symmetry, graded elements.
+
+The `Resolution` says how fine. Its numbers come from measured convergence of the paper's plate:
+every strip edge is a singular line, and there layers that shrink towards it pay; across the
+thickness and along y one element of high order does, its mixed high orders left out (`trunk`).
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from squeezefilm.errors import GeometryError, OutOfRangeError
+from squeezefilm.materials import isotropic_stiffness
+from squeezefilm.plate.elements.box_model import (
+    BoxModel,
+    Electrode,
+    EndCondition,
+    Foundation,
+    IntArray,
+    Medium,
+    require_memory,
+)
+from squeezefilm.plate.elements.lobatto import MAX_ORDER, LineMesh
+from squeezefilm.plate.layout import CeramicPatch, Face, FoamSupport, RectangularPlate
+from squeezefilm.plate.solid.symmetry import (
+    SNAP,
+    Parity,
+    mirror_map,
+    symmetric_axes,
+)
+from squeezefilm.quantities import Dimensionless, Metre, Unit, format_quantity
+
+# Largest side of the plate over its thinnest layer. Measured on the paper's plate: a layer of glue
+# with the plate's own constants moves (8,0) in proportion to its thickness, to 2e-6, up to a
+# ratio of 8e6; digits are lost from 8e7. The limit keeps far from that.
+_THINNEST = 2e4
+# Half a wave over the plate's thickness. Measured on free square plates: the lowest mode is within
+# 4e-5 of thin-plate theory at 290, within 1e-4 at 230, and off by 1e-3 at 430 and by 22 % at 1400,
+# where bending is lost in the rounding of membrane stiffness.
+_SLENDEREST = 250.0
+
+
+@dataclass(frozen=True)
+class Resolution:
+    """How fine a plate is meshed.
+
+    `edge_layers` are distances of element edges from a ceramic's edge, in units of the thinner of
+    plate and ceramic (`edge_layers_y` those across the slices), `bond_layers` those from a bond
+    across the thickness, in units of the layer's own. `order_x` is the least order of elements in
+    the plane, `order_z` that across each layer; `extra_x` and `extra_y` are added to 0.65 times the
+    phase (rad) that the shortest wave covers in an element.
+    """
+
+    edge_layers: tuple[float, ...]
+    edge_layers_y: tuple[float, ...]
+    order_x: int
+    extra_x: float
+    extra_y: float
+    order_z: int
+    bond_layers: tuple[float, ...] = ()
+    trunk: Dimensionless = 1.0
+
+
+# From each to the next every kind of error (smooth, at strip edges, at the bond) falls by a factor
+# of three or more: only then does the difference of two say what the finer one still lacks.
+COARSE = Resolution((0.9,), (0.9,), 3, 1, 2, 3, trunk=1.3)
+NORMAL = Resolution((0.2, 1.2), (0.3,), 3, 3, 4, 6)
+FINE = Resolution((0.06, 0.4, 1.5), (0.15,), 3, 3, 5.5, 5, (0.1,))
+
+
+@dataclass(frozen=True, eq=False)
+class PlateModel:
+    """A plate, or the half or quarter of it that one class of symmetry needs, as a box model.
+
+    `parity` is the class along x and y (None where that half is not used); `copies` how many
+    times the model makes the plate; `swapped` whether the model's x is the plate's y;
+    `electrode_of[i]` the model's electrode for patch i and `sign_of[i]` the sign of its potential
+    relative to it; `share_of[i]` is how many times the model's part of that ceramic makes a whole
+    one (0 where antisymmetry makes its charge vanish and allows it no potential).
+    """
+
+    model: BoxModel
+    parity: tuple[Parity | None, Parity | None]
+    copies: int
+    swapped: bool
+    electrode_of: tuple[int, ...]
+    sign_of: tuple[float, ...]
+    share_of: tuple[float, ...]
+
+
+def wave_number(plate: RectangularPlate, frequency: float) -> float:
+    """The largest flexural wave number (rad/m) to resolve at a frequency: that of the bare plate,
+    with a first-order correction for shear."""
+    E = plate.substrate.plane_strain_modulus
+    h, rho = plate.thickness, plate.substrate.density
+    omega = 2 * math.pi * frequency
+    bending = E * h**3 / 12
+    k2 = omega * math.sqrt(rho * h / bending)
+    shear = plate.substrate.shear_modulus * h * 5 / 6
+    k2 = 0.5 * omega**2 * rho * h / shear + math.sqrt(
+        (0.5 * omega**2 * rho * h / shear) ** 2 + k2**2
+    )
+    return math.sqrt(k2)
+
+
+def _merged(values: Iterable[float]) -> list[float]:
+    out: list[float] = []
+    for value in sorted(values):
+        if not out or value > out[-1] + SNAP:
+            out.append(value)
+    return out
+
+
+def _breaks(plate: RectangularPlate, axis: int, half: bool) -> tuple[list[float], list[float]]:
+    """All element edges that the layout asks for along an axis, and those of ceramics."""
+    span = (plate.length, plate.width)[axis]
+    ceramics: list[float] = []
+    springs: list[float] = []
+    parts: tuple[CeramicPatch | FoamSupport, ...] = (*plate.patches, *plate.supports)
+    for part in parts:
+        start, extent = ((part.x, part.length), (part.y, part.width))[axis]
+        (ceramics if isinstance(part, CeramicPatch) else springs).extend([start, start + extent])
+    stop = span / 2 if half else span
+    inside = [v for v in ceramics + springs if SNAP < v < stop - SNAP]
+    every = _merged([0.0, *inside, stop])
+    # An edge that coincides with the plate's own is snapped to it.
+    sharp = [v for v in every if any(abs(v - c) < 2 * SNAP for c in ceramics)]
+    return every, sharp
+
+
+def _line(
+    every: list[float],
+    sharp: list[float],
+    half: bool,
+    thickness: float,
+    layers: tuple[float, ...],
+    order: int,
+    wave: float,
+    extra: float,
+    *,
+    cut: bool,
+) -> LineMesh:
+    """A graded mesh; `cut` puts an element edge at the middle of each interval."""
+    edges: list[float] = [every[0]]
+    distances = [c * thickness for c in layers]
+    for a, b in itertools.pairwise(every):
+        last_half = half and b == every[-1]
+        near = distances if a in sharp else []
+        far = distances if b in sharp and not last_half else []
+        span = b - a if last_half else (b - a) / 2
+        # The last layer inside a short interval (a gap) still resolves its edge.
+        limit = max(0.3 * span, 1e-12)
+        near = [d for d in near if d < 0.75 * span] or ([limit] if near else [])
+        far = [d for d in far if d < 0.75 * span] or ([limit] if far else [])
+        pieces = [a, *(a + d for d in near), *(b - d for d in reversed(far)), b]
+        middle = (a + b) / 2
+        if cut and not last_half and (near or far):
+            pieces = sorted({*pieces, middle})
+        edges += pieces[1:]
+    fine: list[float] = [edges[0]]
+    orders: list[int] = []
+    for a, b in itertools.pairwise(edges):
+        # No element longer than about one wavelength: higher orders cost more than elements.
+        number = max(1, math.ceil(wave * (b - a) / (4.5 if cut else 11.0)))
+        for k in range(number):
+            fine.append(a + (b - a) * (k + 1) / number)
+            need = 0.65 * wave * (b - a) / number + extra
+            orders.append(int(min(max(order, round(need)), MAX_ORDER)))
+    return LineMesh(tuple(fine), tuple(orders))
+
+
+def _losses(plate: RectangularPlate) -> tuple[float, float, float]:
+    if plate.substrate.quality_factor is None:
+        whole = 1 / plate.quality_factor
+        return whole, whole, whole if plate.glue is None else 1 / plate.glue.quality_factor
+    glue = 0.0 if plate.glue is None else 1 / plate.glue.quality_factor
+    return 1 / plate.substrate.quality_factor, 1 / plate.ceramic.quality_factor, glue
+
+
+def _media(plate: RectangularPlate) -> tuple[Medium, ...]:
+    constants = plate.ceramic.full_constants
+    substrate, ceramic, glue = _losses(plate)
+    density = plate.ceramic.density
+
+    def piezo(name: str, sign: float) -> Medium:
+        return Medium(
+            name, constants.stiffness_matrix, density, ceramic,
+            sign * constants.stress_matrix, constants.permittivity_matrix,
+        )  # fmt: skip
+
+    media = [
+        Medium(
+            "substrate",
+            isotropic_stiffness(plate.substrate.young_modulus, plate.substrate.poisson_ratio),
+            plate.substrate.density,
+            substrate,
+        ),
+        # Poled away from the plate: towards −z below it, where all e change their sign.
+        piezo("ceramic_bottom", -1.0),
+        piezo("ceramic_top", 1.0),
+    ]
+    if plate.glue is not None:
+        media.append(
+            Medium(
+                "glue",
+                isotropic_stiffness(plate.glue.young_modulus, plate.glue.poisson_ratio),
+                plate.glue.density,
+                glue,
+            )
+        )
+    return tuple(media)
+
+
+def plate_model(
+    plate: RectangularPlate,
+    frequency: float,
+    resolution: Resolution = NORMAL,
+    parity: tuple[Parity | None, Parity | None] = (None, None),
+) -> PlateModel:
+    """The box model of a plate for modes up to about `frequency`, in one class of symmetry.
+
+    Raises `GeometryError` for a class that the plate does not have, `OutOfRangeError` for a plate
+    so thin against its length that elements lose their digits.
+    """
+    for axis in (0, 1):
+        if parity[axis] is not None and not symmetric_axes(plate)[axis]:
+            raise GeometryError(
+                f"the plate is not symmetric along {'xy'[axis]}; parity None is allowed there"
+            )
+    thinnest = min(
+        plate.thickness,
+        *(patch.thickness for patch in plate.patches),
+        math.inf if plate.glue is None else plate.glue.thickness,
+    )
+    if max(plate.length, plate.width) > _THINNEST * thinnest:
+        raise OutOfRangeError(
+            f"a layer of {format_quantity(thinnest, Unit('m'))} on a plate of "
+            f"{format_quantity(max(plate.length, plate.width), Unit('m'))} has an aspect ratio "
+            f"above {_THINNEST:.0f}, where three-dimensional elements lose their digits; use "
+            "a plate theory"
+        )
+    wave = wave_number(plate, frequency)
+    if math.pi / wave > _SLENDEREST * plate.thickness:
+        ratio = math.pi / wave / plate.thickness
+        raise OutOfRangeError(
+            f"at {frequency:.4g} Hz half a wave on the plate is {ratio:.0f} times its thickness; "
+            f"above {_SLENDEREST:.0f} three-dimensional elements lose their digits; ask for a "
+            "higher frequency or use a plate theory"
+        )
+    half = tuple(p is not None for p in parity)
+    breaks = [_breaks(plate, axis, half[axis]) for axis in (0, 1)]
+    # Slices stand across the axis with more edges: they are smaller then.
+    swapped = (len(breaks[1][0]), plate.width) > (len(breaks[0][0]), plate.length)
+    along, across = (1, 0) if swapped else (0, 1)
+    thickness = min(plate.thickness, *(patch.thickness for patch in plate.patches))
+    x = _line(*breaks[along], half[along], thickness, resolution.edge_layers, resolution.order_x,
+              wave, resolution.extra_x, cut=True)  # fmt: skip
+    # A ceramic that ends with the plate's own edge ends there without a corner.
+    inner = [v for v in breaks[across][1] if v > 0 and v != breaks[across][0][-1]]
+    y = _line(breaks[across][0], inner, half[across], thickness, resolution.edge_layers_y,
+              resolution.order_x, wave, resolution.extra_y, cut=False)  # fmt: skip
+    z, layers, ceramics = _through_thickness(plate, resolution)
+    require_memory(x, y, z, resolution.trunk)
+    shape = (x.elements, y.elements, z.elements)
+    medium, ceramic = np.full(shape, -1), np.full(shape, -1)
+    centre_x = (np.array(x.edges[1:]) + np.array(x.edges[:-1])) / 2
+    centre_y = (np.array(y.edges[1:]) + np.array(y.edges[:-1])) / 2
+
+    def cells(part: CeramicPatch | FoamSupport) -> tuple[IntArray, IntArray]:
+        spans = [(part.x, part.x + part.length), (part.y, part.y + part.width)]
+        (x0, x1), (y0, y1) = spans[along], spans[across]
+        return (
+            np.flatnonzero((centre_x > x0) & (centre_x < x1)),
+            np.flatnonzero((centre_y > y0) & (centre_y < y1)),
+        )
+
+    medium[:, :, slice(*layers["plate"])] = 0
+    electrode_of, sign_of = _electrode_map(plate, parity)
+    electrodes: list[Electrode] = []
+    number_of: dict[int, int] = {}
+    # Ceramics are numbered across first, then along: the same order in every slice.
+    order = sorted(
+        range(len(plate.patches)),
+        key=lambda i: (plate.patches[i].y, plate.patches[i].x)[:: 1 if not swapped else -1],
+    )
+    for i in order:
+        patch = plate.patches[i]
+        rows, columns = cells(patch)
+        if electrode_of[i] != i or rows.size == 0 or columns.size == 0:
+            continue
+        number_of[i] = len(electrodes)
+        first, last = ceramics[patch.face, _snapped(patch.thickness)]
+        block = np.ix_(rows, columns, np.arange(first, last))
+        medium[block] = 1 if patch.face == "bottom" else 2
+        ceramic[block] = number_of[i]
+        if plate.glue is not None:
+            glued = np.arange(*layers[f"glue_{patch.face}"])
+            medium[np.ix_(rows, columns, glued)] = 3
+        low, high = z.first_node[first], z.first_node[last]
+        electrodes.append(Electrode(low, high) if patch.face == "bottom" else Electrode(high, low))
+    bottom, top = (z.first_node[k] for k in layers["plate"])
+    foundations = []
+    for support in plate.supports:
+        rows, columns = cells(support)
+        if rows.size and columns.size:
+            kx, ky, kz = support.stiffness_per_area
+            foundations.append(
+                Foundation(
+                    (int(rows[0]), int(rows[-1]) + 1),
+                    (int(columns[0]), int(columns[-1]) + 1),
+                    top if support.face == "top" else bottom,
+                    (ky, kx, kz) if swapped else (kx, ky, kz),
+                    1 / support.quality_factor,
+                )
+            )
+    ends: list[EndCondition] = []
+    for axis, names in ((along, _names(along)), (across, _names(across))):
+        ends.append("clamped" if names[0] in plate.clamped_edges else "free")
+        own = parity[axis]
+        if own is None:
+            ends.append("clamped" if names[1] in plate.clamped_edges else "free")
+        else:
+            ends.append("symmetric" if own == "S" else "antisymmetric")
+    model = BoxModel(
+        x, y, z, _media(plate), medium, ceramic, tuple(electrodes),
+        (ends[0], ends[1], ends[2], ends[3]), tuple(foundations), resolution.trunk,
+    )  # fmt: skip
+    return PlateModel(
+        model,
+        parity,
+        2 ** sum(half),
+        swapped,
+        tuple(number_of[electrode_of[i]] for i in range(len(plate.patches))),
+        sign_of,
+        tuple(_share(plate, patch, parity) for patch in plate.patches),
+    )
+
+
+def _share(
+    plate: RectangularPlate, patch: CeramicPatch, parity: tuple[Parity | None, Parity | None]
+) -> float:
+    share = 1.0
+    for axis in (0, 1):
+        middle = (plate.length, plate.width)[axis] / 2
+        start, extent = ((patch.x, patch.length), (patch.y, patch.width))[axis]
+        if parity[axis] is not None and start < middle - SNAP and start + extent > middle + SNAP:
+            share *= 2.0 if parity[axis] == "S" else 0.0
+    return share
+
+
+def _names(axis: int) -> tuple[str, str]:
+    return ("left", "right") if axis == 0 else ("front", "back")
+
+
+def _electrode_map(
+    plate: RectangularPlate, parity: tuple[Parity | None, Parity | None]
+) -> tuple[list[int], tuple[float, ...]]:
+    """The patch in the modelled part that stands for each patch, and its relative sign."""
+    stands = list(range(len(plate.patches)))
+    signs = [1.0] * len(plate.patches)
+    for axis in (0, 1):
+        if parity[axis] is None:
+            continue
+        mirror = mirror_map(plate, axis)
+        assert mirror is not None
+        middle = ((plate.length, plate.width)[axis]) / 2
+        for i, patch in enumerate(plate.patches):
+            start = (patch.x, patch.y)[axis]
+            if start >= middle - SNAP:
+                image = mirror[i]
+                if parity[axis] == "A":
+                    signs[i] = -signs[i]
+                stands = [image if s == i else s for s in stands]
+    return stands, tuple(signs)
+
+
+def _thicknesses(plate: RectangularPlate, face: Face) -> list[Metre]:
+    """The different thicknesses of the ceramics on a face, ascending."""
+    return _merged(patch.thickness for patch in plate.patches if patch.face == face)
+
+
+def _through_thickness(
+    plate: RectangularPlate, resolution: Resolution
+) -> tuple[LineMesh, dict[str, tuple[int, int]], dict[tuple[Face, int], tuple[int, int]]]:
+    """The mesh along z (0 at the plate's lower face), the range of elements of plate and glue by
+    name, and that of each patch's ceramic by its face and thickness (in units of `SNAP`)."""
+    glue = 0.0 if plate.glue is None else plate.glue.thickness
+    edges, orders = [0.0], []
+    layers: dict[str, tuple[int, int]] = {}
+    ceramics: dict[tuple[Face, int], tuple[int, int]] = {}
+
+    def add(thickness: Metre, order: int, *, from_below: bool, from_above: bool) -> None:
+        """One layer, its elements shrinking towards the bond below or above it."""
+        near = [c * thickness for c in resolution.bond_layers]
+        inner = [d for d in near if from_below] + [thickness - d for d in near if from_above]
+        bottom = edges[-1]
+        for part in [*sorted(inner), thickness]:
+            edges.append(bottom + part)
+            orders.append(order)
+
+    below = _thicknesses(plate, "bottom")
+    above = _thicknesses(plate, "top")
+    # Without its start: z = 0 is the plate's lower face, found when all below is known.
+    for outer, own in itertools.pairwise([*reversed(below), 0.0]):
+        add(outer - own, resolution.order_z, from_below=False, from_above=own == 0.0)
+    under = len(orders)
+    if below and glue:
+        add(glue, min(resolution.order_z, 4), from_below=False, from_above=False)
+        layers["glue_bottom"] = (under, len(orders))
+    start = len(orders)
+    add(plate.thickness, resolution.order_z, from_below=bool(below), from_above=bool(above))
+    layers["plate"] = (start, len(orders))
+    over = len(orders)
+    if above and glue:
+        add(glue, min(resolution.order_z, 4), from_below=False, from_above=False)
+        layers["glue_top"] = (over, len(orders))
+        over = len(orders)
+    for own, outer in itertools.pairwise([0.0, *above]):
+        add(outer - own, resolution.order_z, from_below=own == 0.0, from_above=False)
+    shift = edges[start]
+    mesh = LineMesh(tuple(v - shift for v in edges), tuple(orders))
+    for thickness in below:
+        at = _nearest(mesh, mesh.edges[under] - thickness)
+        ceramics["bottom", _snapped(thickness)] = (at, under)
+    for thickness in above:
+        at = _nearest(mesh, mesh.edges[over] + thickness)
+        ceramics["top", _snapped(thickness)] = (over, at)
+    return mesh, layers, ceramics
+
+
+def _nearest(mesh: LineMesh, position: Metre) -> int:
+    return int(np.argmin(np.abs(np.array(mesh.edges) - position)))
+
+
+def _snapped(length: Metre) -> int:
+    return round(length / SNAP)

@@ -1,0 +1,136 @@
+"""Refined modes of all classes of symmetry gathered, signed and sorted: what is returned."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from squeezefilm.errors import InputError
+from squeezefilm.plate.elements.box_model import Medium
+from squeezefilm.plate.elements.slabs import Slabs
+from squeezefilm.plate.layout import RectangularPlate
+from squeezefilm.plate.solid.electrode_circuits import open_values, shunted_frequencies
+from squeezefilm.plate.solid.modes import MODEL, PlateModes, label_of, surface_shapes
+from squeezefilm.plate.solid.refined_modes import RefinedModes, extrapolated
+from squeezefilm.plate.solid.symmetry import drive_signs
+from squeezefilm.quantities import FloatArray
+
+
+def energy_shares_of(slabs: Slabs, vectors: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """The share of each medium, and of springs, in a mode's elastic energy (modes × media), and the
+    loss factor that these shares and each medium's and spring's own loss make."""
+    model = slabs.model
+    energy, lost = [], []
+    used = set(np.unique(model.medium).tolist())
+    for number, medium in enumerate(model.media):
+        if number not in used:
+            energy.append(np.zeros(vectors.shape[1]))
+            lost.append(energy[-1])
+            continue
+
+        def only(other: Medium, own: Medium = medium) -> tuple[float, float]:
+            return float(other is own), 0.0
+
+        sections = slabs.weighted_sections(only, springs=0.0)
+        energy.append(np.sum(vectors * slabs.stiffness_times(vectors, sections), axis=0))
+        lost.append(energy[-1] * medium.loss)
+    if model.foundations:
+        for total, springs in ((energy, 1.0), (lost, [f.loss for f in model.foundations])):
+            sections = slabs.weighted_sections(lambda m: (0.0, 0.0), springs=springs)
+            total.append(np.sum(vectors * slabs.stiffness_times(vectors, sections), axis=0))
+    table, whole = np.stack(energy, axis=1), np.sum(energy, axis=0)
+    return table / whole[:, None], np.sum(lost, axis=0) / whole
+
+
+def collected_modes(
+    plate: RectangularPlate,
+    pieces: list[RefinedModes],
+    tolerance: float,
+    band: tuple[float, float] | None,
+) -> PlateModes:
+    """The modes of all classes in ascending order, those outside a band left out.
+
+    Raises `InputError` where none is left.
+    """
+    rows = []
+    x = y = np.zeros(0)
+    signs = drive_signs(plate)
+    for piece in pieces:
+        frequency, error = extrapolated(piece.coarse_values, piece.values, piece.level)
+        scale = 1 / np.sqrt(piece.solved.built.copies)
+        vectors = piece.vectors * scale
+        x, y, surface = surface_shapes(piece.solved, vectors)
+        G, _ = piece.solved.slabs.electrode_columns
+        built = piece.solved.built
+        per_electrode = -(G.T @ vectors).T
+        own = np.array(built.sign_of) * np.array(built.share_of)
+        forces = per_electrode[:, list(built.electrode_of)] * own[None, :]
+        # Ratios need few digits: they are taken from the coarse mesh.
+        rough, some = piece.found, piece.found.vectors[:, piece.index]
+        shares, losses = energy_shares_of(rough.solved.slabs, some)
+        omega = shunted_frequencies(piece.solved, piece.factor, piece.values, piece.vectors)
+        shunted = omega.real / np.sqrt(piece.values)
+        frequency, error = frequency * shunted, error * shunted
+        losses = losses + 2 * omega.imag / omega.real
+        known = rough.values[piece.index]
+        opened = open_values(rough.solved, rough.factor, rough.shift, known, some) / known
+        for i in range(frequency.size):
+            top = surface[i]
+            turn = 1.0
+            driven = float(forces[i] @ signs)
+            # The sign of a mode is free: the drive pushes it up, or its largest value does.
+            largest = top[:, :, 2].flat[int(np.argmax(np.abs(top[:, :, 2])))]
+            if driven < -1e-9 or (abs(driven) <= 1e-9 and largest < 0):
+                turn = -1.0
+            rows.append(
+                (
+                    frequency[i], error[i], np.sqrt(piece.values[i]) / (2 * np.pi),
+                    label_of(top, x, y), piece.found.parity, turn * top[:, :, 2],
+                    turn * forces[i], abs(driven), frequency[i] / shunted[i] * np.sqrt(opened[i]),
+                    shares[i], 1 / max(float(losses[i]), 1e-30),
+                    (piece.solved, turn * vectors[:, i]),
+                )
+            )  # fmt: skip
+    if band is not None:
+        rows = [row for row in rows if band[0] <= row[0] <= band[1]]
+    if not rows:
+        low, high = band or (0.0, 0.0)
+        raise InputError(
+            f"no mode lies between {low:.6g} Hz and {high:.6g} Hz; widen the band, or ask for the "
+            "modes near a frequency",
+            quantity="band",
+        )
+    rows.sort(key=lambda row: row[0])
+    columns = list(zip(*rows, strict=True))
+    frequencies, errors = np.array(columns[0]), np.array(columns[1])
+    opened_f = np.array(columns[8])
+    over = int(np.sum(errors > tolerance * frequencies))
+    status = (
+        f"all {len(rows)} modes within {tolerance:.1e} (estimated)"
+        if over == 0
+        else f"{over} of {len(rows)} modes have an estimated error above {tolerance:.1e}; the "
+        "finest mesh was used"
+    )
+    media = pieces[0].solved.built.model
+    names = [m.name for m in media.media] + (["supports"] if media.foundations else [])
+    return PlateModes(
+        plate=plate,
+        frequencies=frequencies,
+        errors=errors,
+        mesh_frequencies=np.array(columns[2]),
+        labels=columns[3],
+        parities=columns[4],
+        x=x,
+        y=y,
+        shapes=np.stack(columns[5]),
+        modal_forces=np.stack(columns[6]),
+        drive_forces=np.array(columns[7]),
+        open_frequencies=opened_f,
+        couplings=np.sqrt(np.maximum(0.0, 1 - (frequencies / opened_f) ** 2)),
+        quality_factors=np.array(columns[10]),
+        materials=tuple(names),
+        energy_shares=np.stack(columns[9]),
+        model=MODEL,
+        status=status,
+        unknowns=max(piece.solved.slabs.unknowns for piece in pieces),
+        _fields=columns[11],
+    )

@@ -1,0 +1,245 @@
+"""The modes of a plate: what `solve_modes` returns, with shapes, labels and fields."""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from squeezefilm.errors import InputError
+from squeezefilm.hard_limits import FREQUENCY, require_within
+from squeezefilm.plate.elements.slabs import Slabs
+from squeezefilm.plate.layout import RectangularPlate
+from squeezefilm.plate.solid.mesh import PlateModel
+from squeezefilm.plate.solid.symmetry import Parity
+from squeezefilm.quantities import (
+    DimensionlessArray,
+    FloatArray,
+    Hertz,
+    HertzArray,
+    Metre,
+    MetreArray,
+    checked_numbers,
+    did_you_mean,
+)
+
+Label = tuple[int, int]
+MODEL = "piezoelectric_solid_3d"
+
+
+@dataclass(frozen=True, eq=False)
+class SolvedModel:
+    """One class of symmetry, discretised: what fields are evaluated on."""
+
+    plate: RectangularPlate
+    built: PlateModel
+    slabs: Slabs
+
+    def field(self, vectors: FloatArray, x: FloatArray, y: FloatArray, z: float) -> FloatArray:
+        """Displacements at the grid of `x` and `y` (plate coordinates, m) at height `z` (m, the
+        plate's lower face at 0): shape (vectors, x, y, 3)."""
+        Ex, Ey, Ez, signs = self._evaluation(x, y, z)
+        out = np.empty((vectors.shape[1], len(x), len(y), 3), dtype=vectors.dtype)
+        for column in range(vectors.shape[1]):
+            grid = np.tensordot(self.slabs.grid(vectors[:, column]), Ez, axes=(2, 0))
+            values = np.einsum("ai,bj,ijc->abc", Ex, Ey, grid, optimize=True)
+            if self.built.swapped:
+                values = values.transpose(1, 0, 2)[:, :, [1, 0, 2]]
+            out[column] = values
+        return out * signs
+
+    def force(self, x: FloatArray, y: FloatArray, z: float, w: FloatArray) -> FloatArray:
+        """The load vector of forces `w` (N, along z, shape (x, y)) at the grid of points: the
+        adjoint of `field`, projected on the class of symmetry; shape (unknowns,)."""
+        Ex, Ey, Ez, signs = self._evaluation(x, y, z)
+        weighted = np.asarray(w, dtype=float) * signs[:, :, 2]
+        if self.built.swapped:
+            weighted = weighted.T
+        plane = Ex.T @ weighted @ Ey
+        parts = []
+        for n, (component, iy, iz) in enumerate(self.slabs.parts):
+            parts.append(np.where(component == 2, plane[n, iy] * Ez[iz], 0.0))
+        out = np.concatenate(parts) / self.built.copies
+        out[self.slabs.held] = 0
+        return out
+
+    def _evaluation(
+        self, x: FloatArray, y: FloatArray, z: float
+    ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        built, model = self.built, self.built.model
+        spans = (self.plate.length, self.plate.width)
+        folded, signs = [], []
+        for axis, points in enumerate((np.asarray(x, dtype=float), np.asarray(y, dtype=float))):
+            parity = built.parity[axis]
+            beyond = np.zeros(points.size, dtype=bool)
+            if parity is not None:
+                beyond = points > spans[axis] / 2
+            folded.append(np.where(beyond, spans[axis] - points, points))
+            normal, other = (-1.0, 1.0) if parity == "S" else (1.0, -1.0)
+            sign = np.ones((points.size, 3))
+            sign[beyond] = other
+            sign[beyond, axis] = normal
+            signs.append(sign)
+        along, across = (folded[1], folded[0]) if built.swapped else (folded[0], folded[1])
+        return (
+            model.x.interpolation(along),
+            model.y.hierarchic_interpolation(across),
+            model.z.hierarchic_interpolation(np.array([z]))[0],
+            signs[0][:, None, :] * signs[1][None, :, :],
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class PlateModes:
+    """Modes of a plate in ascending order, electrodes as the plate describes them.
+
+    `frequencies` are extrapolated to the converged value from two meshes, `errors` the estimated
+    distance from it, `mesh_frequencies` those of the finer mesh. `labels` are nodal lines across
+    the length and across the width (None for motion in the plane), `parities` the symmetry class.
+    `shapes` is w on the upper face over `x` × `y`, shape (modes, x, y), of modes with unit modal
+    mass, so in 1/√kg. `modal_forces` (modes × patches) is the force of one volt on each patch's
+    electrode on such a mode, in N/(V √kg), and `drive_forces` that of one volt on the drive.
+    `couplings` is the effective coupling coefficient √(1 − f_short²/f_open²) of the drive's
+    terminals, `quality_factors` from the materials' losses weighted by their elastic energy,
+    whose shares are in `energy_shares` (modes × `materials`).
+    """
+
+    plate: RectangularPlate
+    frequencies: HertzArray
+    errors: HertzArray
+    mesh_frequencies: HertzArray
+    labels: tuple[Label | None, ...]
+    parities: tuple[tuple[Parity | None, Parity | None], ...]
+    x: MetreArray
+    y: MetreArray
+    shapes: FloatArray
+    modal_forces: FloatArray
+    drive_forces: FloatArray
+    open_frequencies: HertzArray
+    couplings: DimensionlessArray
+    quality_factors: DimensionlessArray
+    materials: tuple[str, ...]
+    energy_shares: DimensionlessArray
+    model: str
+    status: str
+    unknowns: int
+    _fields: tuple[tuple[SolvedModel, FloatArray], ...] = field(repr=False, default=())
+
+    @property
+    def count(self) -> int:
+        """How many modes there are."""
+        return self.frequencies.size
+
+    @checked_numbers
+    def index(self, label: Label) -> int:
+        """The position of the mode with these nodal lines.
+
+        Of several the most strongly driven one is taken. Raises `InputError` where there is none.
+        """
+        found = [i for i, own in enumerate(self.labels) if own == label]
+        if not found:
+            known = [str(own) for own in self.labels if own is not None]
+            raise InputError(
+                f"no mode {label} is among those solved ({', '.join(known)})."
+                f"{did_you_mean(str(label), known)} Solve near another frequency or a wider band",
+                quantity="label",
+            )
+        return max(found, key=lambda i: abs(self.drive_forces[i]))
+
+    @checked_numbers
+    def field(self, mode: int, x: FloatArray, y: FloatArray, z: Metre) -> FloatArray:
+        """Displacement (u, v, w) of a mode on the grid of `x` × `y` at height `z` above the
+        plate's lower face, shape (x, y, 3), in 1/√kg."""
+        solved, vector = self._fields[mode]
+        values: FloatArray = solved.field(vector[:, None], np.asarray(x), np.asarray(y), z)[0]
+        return values
+
+    @checked_numbers
+    def nodal_positions(self, mode: int) -> MetreArray:
+        """Where w vanishes along the side that more nodal lines cross, of the shape's dominant
+        part (m): along the length, or along the width of a mode such as (0,7)."""
+        along, across, _ = profiles(self.shapes[mode])
+        lines = zero_crossings(self.x, along), zero_crossings(self.y, across)
+        return lines[0] if lines[0].size >= lines[1].size else lines[1]
+
+    @checked_numbers
+    def half_wavelength(self, mode: int) -> Metre:
+        """The mean distance of nodal lines along the side that more of them cross (m); NaN with
+        fewer than two.
+
+        Of six or more, the outermost at each end is left out: the free edge's near field moves it.
+        """
+        nodes = self.nodal_positions(mode)
+        if nodes.size >= 6:
+            nodes = nodes[1:-1]
+        return float(np.mean(np.diff(nodes))) if nodes.size > 1 else float("nan")
+
+    @functools.cached_property
+    def half_wavelengths(self) -> MetreArray:
+        """`half_wavelength` of every mode."""
+        return np.array([self.half_wavelength(i) for i in range(self.count)])
+
+
+def profiles(shape: FloatArray) -> tuple[FloatArray, FloatArray, float]:
+    """The product X(x) Y(y) nearest to a shape, and its share of the shape's square."""
+    U, s, V = np.linalg.svd(shape, full_matrices=False)
+    return U[:, 0] * s[0], V[0], float(s[0] ** 2 / np.sum(s**2)) if s[0] > 0 else 0.0
+
+
+def zero_crossings(position: FloatArray, profile: FloatArray) -> FloatArray:
+    """Where a profile changes sign; values below 1e-6 of its largest count as none."""
+    strong = np.abs(profile) > 1e-6 * np.max(np.abs(profile))
+    x, w = position[strong], profile[strong]
+    at = np.flatnonzero(np.signbit(w[1:]) != np.signbit(w[:-1]))
+    return np.asarray(x[at] - w[at] * (x[at + 1] - x[at]) / (w[at + 1] - w[at]))
+
+
+_POINTS = (97, 65)
+
+
+def surface_shapes(
+    solved: SolvedModel, vectors: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """A grid x, y over the whole plate and the displacements there on its upper face."""
+    plate = solved.plate
+    x, y = np.linspace(0, plate.length, _POINTS[0]), np.linspace(0, plate.width, _POINTS[1])
+    return x, y, solved.field(vectors, x, y, plate.thickness)
+
+
+def label_of(surface: FloatArray, x: FloatArray, y: FloatArray) -> Label | None:
+    """Nodal lines across the length and the width from displacements (x, y, 3) on the upper face;
+    None where the motion is mostly in the plane."""
+    w = surface[:, :, 2]
+    in_plane = float(np.mean(surface[:, :, 0] ** 2 + surface[:, :, 1] ** 2))
+    if float(np.mean(w**2)) < 0.3 * in_plane:
+        return None
+    X, Y, _ = profiles(w)
+    return zero_crossings(x, X).size, zero_crossings(y, Y).size
+
+
+def tracked(before: PlateModes, after: PlateModes) -> list[tuple[int, float]]:
+    """For each mode of `before` the mode of `after` that moves most alike, and how alike.
+
+    The modal assurance criterion of the surface shapes, over relative coordinates: 1 for the same
+    shape, 0 for orthogonal ones. For plates whose parameters differ a little.
+    """
+    if before.shapes.shape[1:] != after.shapes.shape[1:]:
+        raise InputError("the shapes stand on different grids; solve both with the same points")
+    a = before.shapes.reshape(before.count, -1)
+    b = after.shapes.reshape(after.count, -1)
+    norm = np.sum(a**2, axis=1)[:, None] * np.sum(b**2, axis=1)[None, :]
+    likeness = (a @ b.T) ** 2 / norm
+    return [(int(k), float(row[k])) for row in likeness for k in [int(np.argmax(row))]]
+
+
+@checked_numbers
+def check_band(band: tuple[Hertz, Hertz]) -> None:
+    """Refuse a band that is none."""
+    if not 0 <= band[0] < band[1] or not np.isfinite(band[1]):
+        raise InputError(
+            f"band = {band[0]:.6g} Hz to {band[1]:.6g} Hz is none; give a lower and a higher "
+            "frequency",
+            quantity="band",
+        )
+    require_within(FREQUENCY, band[1], "band")

@@ -1,0 +1,222 @@
+"""A plate reduced to a few dozen coordinates that answer a drive over a band.
+
+The coordinates of a class of symmetry are a Krylov space of (K − σM)⁻¹ started from the forces at
+work (the electrodes' and those of surface loads): the modes near the band, and what the modes left
+out add quasi-statically, in one. Losses, loads and circuits are projected on it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from squeezefilm.plate.elements.box_model import Foundation, Medium
+from squeezefilm.plate.elements.slab_factor import SlabFactor
+from squeezefilm.plate.elements.slabs import Slabs
+from squeezefilm.plate.layout import RectangularPlate
+from squeezefilm.plate.solid.mesh import NORMAL, Resolution, plate_model
+from squeezefilm.plate.solid.modes import SolvedModel
+from squeezefilm.plate.solid.symmetry import Parity, drive_signs
+from squeezefilm.quantities import ComplexArray, FloatArray, Hertz
+
+
+@dataclass(frozen=True, eq=False)
+class ReducedClass:
+    """One class of symmetry, reduced: `basis` (unknowns × coordinates), mass, stiffness, loss
+    (mechanical and of supports) and electrode matrices, of the whole plate.
+
+    `drive` is the potential of each model electrode per volt of the drive; `circuit` lists the
+    electrodes (number, Ω, share) that are open (infinite) or shunted.
+    """
+
+    solved: SolvedModel
+    resolution: Resolution
+    basis: FloatArray
+    mass: FloatArray
+    stiffness: FloatArray
+    loss: FloatArray
+    coupling: FloatArray
+    capacitance: FloatArray
+    drive: FloatArray
+    circuit: tuple[tuple[int, float, float], ...]
+
+
+def class_drive(plate: RectangularPlate, solved: SolvedModel) -> FloatArray:
+    """The part of the drive in a class: potential of each model electrode per volt."""
+    built, signs = solved.built, drive_signs(plate)
+    out = np.zeros(len(built.model.electrodes))
+    members = np.zeros(out.size)
+    for i, electrode in enumerate(built.electrode_of):
+        out[electrode] += built.sign_of[i] * signs[i] * (built.share_of[i] != 0)
+        members[electrode] += 1
+    return out / np.maximum(members, 1)
+
+
+def resolved_frequency(band: tuple[Hertz, Hertz]) -> Hertz:
+    """The frequency that meshes for a band are made for: as `solve_modes` makes its own."""
+    return max(band[1], 1.15 * sum(band) / 2)
+
+
+def plate_circuit(
+    plate: RectangularPlate, solved: SolvedModel
+) -> tuple[tuple[int, float, float], ...]:
+    """Open and shunted electrodes of a class: model electrode, resistance (Ω, infinite if open) and
+    how many times the model's part of the ceramic makes a whole one."""
+    out: dict[int, tuple[int, float, float]] = {}
+    for i, patch in enumerate(plate.patches):
+        share = solved.built.share_of[i]
+        if patch.electrode not in ("open", "shunted") or share == 0:
+            continue
+        resistance = np.inf if patch.shunt_resistance is None else patch.shunt_resistance
+        out[solved.built.electrode_of[i]] = (solved.built.electrode_of[i], resistance, share)
+    return tuple(out.values())
+
+
+def loss_weight(medium: Medium) -> tuple[float, float]:
+    """The weight that makes a matrix of losses: each medium's own times its stiffness."""
+    return medium.loss, 0.0
+
+
+def reduced_class(
+    plate: RectangularPlate,
+    parity: tuple[Parity | None, Parity | None],
+    band: tuple[Hertz, Hertz],
+    steps: int,
+    loads: list[tuple[FloatArray, FloatArray, FloatArray]],
+    resolution: Resolution = NORMAL,
+) -> ReducedClass:
+    """Reduce one class over a band with `steps` block Krylov steps.
+
+    `loads` are surface forces (x, y, w as in `SolvedModel.force`) whose responses the space must
+    hold too.
+    """
+    built = plate_model(plate, resolved_frequency(band), resolution, parity)
+    slabs = Slabs(built.model)
+    solved = SolvedModel(plate, built, slabs)
+    shift = (2 * np.pi) ** 2 * 0.5 * (band[0] ** 2 + band[1] ** 2) * 1.0007**2
+    factor = SlabFactor(slabs, shift)
+    G, C = slabs.electrode_columns
+    drive, circuit = class_drive(plate, solved), plate_circuit(plate, solved)
+    columns = [G @ drive] if np.any(drive) else []
+    columns += [G[:, number] for number, _, _ in circuit]
+    columns += [solved.force(x, y, plate.thickness, w) for x, y, w in loads]
+    basis = _krylov_space(slabs, factor, np.stack(columns, axis=1), steps)
+    sections = slabs.weighted_sections(loss_weight, springs=spring_losses(built.model.foundations))
+    KW, LW = slabs.stiffness_times(basis), slabs.stiffness_times(basis, sections)
+    n = float(built.copies)
+    return ReducedClass(
+        solved,
+        resolution,
+        basis,
+        n * _symmetric(basis.T @ slabs.mass_times(basis)),
+        n * _symmetric(basis.T @ KW),
+        n * _symmetric(basis.T @ LW),
+        n * basis.T @ G,
+        n * C,
+        drive,
+        circuit,
+    )
+
+
+def spring_losses(foundations: tuple[Foundation, ...]) -> list[float]:
+    """The loss factor of each spring."""
+    return [one.loss for one in foundations]
+
+
+def _symmetric(matrix: FloatArray) -> FloatArray:
+    return (matrix + matrix.T) / 2
+
+
+def _krylov_space(slabs: Slabs, factor: SlabFactor, columns: FloatArray, steps: int) -> FloatArray:
+    """(K − σM)⁻¹ applied to the columns, and `steps` times (K − σM)⁻¹M to that, with unit mass."""
+    X = factor.solve(columns / np.maximum(np.linalg.norm(columns, axis=0), 1e-300))
+    Q = np.zeros((slabs.unknowns, 0))
+    MQ = Q
+    for _ in range(steps):
+        MX = slabs.mass_times(X)
+        norm = np.sqrt(np.maximum(np.sum(X * MX, axis=0), 1e-300))
+        X, MX = X / norm, MX / norm
+        for _ in range(2):
+            part = MQ.T @ X
+            X, MX = X - Q @ part, MX - MQ @ part
+        if np.sum(X * MX) < 1e-6 * X.shape[1]:
+            # Little is left: the product carried along has lost its digits.
+            MX = slabs.mass_times(X)
+        size, turn = np.linalg.eigh(_symmetric(X.T @ MX))
+        # What is left of a direction that the space already holds is rounding.
+        good = size > 1e-20
+        if not good.any():
+            break
+        scale = turn[:, good] / np.sqrt(size[good])
+        X, MX = X @ scale, MX @ scale
+        Q, MQ = np.concatenate([Q, X], axis=1), np.concatenate([MQ, MX], axis=1)
+        X = factor.solve(MX)
+    return Q
+
+
+def surface_values(parts: list[ReducedClass], x: FloatArray, y: FloatArray, z: float) -> FloatArray:
+    """w of every coordinate of all classes on a grid, shape (coordinates, x, y)."""
+    return np.concatenate([one.solved.field(one.basis, x, y, z)[..., 2] for one in parts])
+
+
+def harmonic_solution(
+    parts: list[ReducedClass],
+    omega: FloatArray,
+    added: ComplexArray | None,
+    force: ComplexArray | None,
+    voltage: float,
+) -> tuple[ComplexArray, list[ComplexArray], ComplexArray]:
+    """Coordinates (frequencies × coordinates), electrode potentials of each class (frequencies ×
+    electrodes) and the charge at the drive's terminals, at angular frequencies `omega`.
+
+    `added` (frequencies × coordinates²) is the dynamic stiffness of surface loads, `force` outer
+    forces on the coordinates.
+    """
+    sizes = [one.basis.shape[1] for one in parts]
+    circuits = [len(one.circuit) for one in parts]
+    total, extra = sum(sizes), sum(circuits)
+    A = np.zeros((omega.size, total + extra, total + extra), dtype=complex)
+    b = np.zeros((omega.size, total + extra), dtype=complex)
+    start, row = 0, total
+    w2 = (omega**2)[:, None, None]
+    for one, size in zip(parts, sizes, strict=True):
+        at = slice(start, start + size)
+        A[:, at, at] = one.stiffness + 1j * one.loss - w2 * one.mass
+        b[:, at] = -(one.coupling @ one.drive) * voltage
+        # Charge = −(Gᵀx + C V); a shunt draws V = −iωR · charge, an open electrode none.
+        held = one.capacitance @ one.drive * voltage
+        for number, resistance, share in one.circuit:
+            A[:, at, row] = one.coupling[:, number]
+            # Matrices are of the whole plate; one patch carries this part of them.
+            part = share / one.solved.built.copies
+            scale = 1.0 if np.isinf(resistance) else 1j * omega * resistance * part
+            unit = np.ones(omega.size) * scale
+            A[:, row, at] = unit[:, None] * one.coupling[:, number]
+            column = row - one.circuit.index((number, resistance, share))
+            for k, (other, _, _) in enumerate(one.circuit):
+                A[:, row, column + k] += unit * one.capacitance[number, other]
+            if not np.isinf(resistance):
+                A[:, row, row] -= 1
+            b[:, row] = -unit * held[number]
+            row += 1
+        start += size
+    if added is not None:
+        A[:, :total, :total] += added
+    if force is not None:
+        b[:, :total] += force
+    # Circuit rows are in farads, the others in newtons: bring them to one size.
+    scale_rows = np.max(np.abs(A), axis=2, keepdims=True)
+    solution = np.linalg.solve(A / scale_rows, (b / scale_rows[:, :, 0])[:, :, None])[:, :, 0]
+    potentials, charge = [], np.zeros(omega.size, dtype=complex)
+    start, row = 0, total
+    for one, size in zip(parts, sizes, strict=True):
+        V = np.broadcast_to(one.drive * voltage, (omega.size, one.drive.size)).astype(complex)
+        for number, _, _ in one.circuit:
+            V[:, number] = solution[:, row]
+            row += 1
+        x = solution[:, start : start + size]
+        charge -= (x @ one.coupling + V @ one.capacitance) @ one.drive
+        potentials.append(V)
+        start += size
+    return solution[:, :total], potentials, charge

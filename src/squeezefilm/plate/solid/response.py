@@ -1,0 +1,412 @@
+"""Harmonic response of a plate: amplitude per volt, admittance, power, equivalent circuit."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from squeezefilm.errors import GeometryError, InputError
+from squeezefilm.plate.elements.blas_threads import one_blas_thread
+from squeezefilm.plate.elements.box_model import IntArray
+from squeezefilm.plate.layout import RectangularPlate
+from squeezefilm.plate.solid.extrapolated import extrapolated_class
+from squeezefilm.plate.solid.mesh import NORMAL, Resolution
+from squeezefilm.plate.solid.modes import MODEL
+from squeezefilm.plate.solid.reduced import (
+    ReducedClass,
+    harmonic_solution,
+    reduced_class,
+    surface_values,
+)
+from squeezefilm.plate.solid.symmetry import all_classes, drive_classes, drive_signs
+from squeezefilm.quantities import (
+    ComplexArray,
+    Dimensionless,
+    Farad,
+    FloatArray,
+    Henry,
+    Hertz,
+    HertzArray,
+    KilogramPerSquareMetre,
+    Metre,
+    MetreArray,
+    Ohm,
+    PascalPerMetre,
+    PascalSecondPerMetre,
+    Unit,
+    Volt,
+    checked_numbers,
+    require,
+)
+
+_GRID = (121, 81)
+
+
+@checked_numbers
+@dataclass(frozen=True)
+class SurfaceLoad:
+    """A finger or film on a rectangle of the upper face: mass, damping and stiffness per area."""
+
+    x: Metre
+    y: Metre
+    length: Metre
+    width: Metre
+    mass: KilogramPerSquareMetre = 0.0
+    damping: PascalSecondPerMetre = 0.0
+    stiffness: PascalPerMetre = 0.0
+
+    def points(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Gauss points along x and y and their weights (m²), shape (x, y)."""
+        nodes, weights = np.polynomial.legendre.leggauss(8)
+        x = self.x + self.length * (nodes + 1) / 2
+        y = self.y + self.width * (nodes + 1) / 2
+        return x, y, np.outer(weights, weights) * self.length * self.width / 4
+
+
+@checked_numbers
+@dataclass(frozen=True)
+class EquivalentCircuit:
+    """Butterworth–Van Dyke: C0 parallel to a series of R1, L1 and C1, near one resonance."""
+
+    frequency: Hertz
+    quality_factor: Dimensionless
+    static_capacitance: Farad
+    motional_resistance: Ohm
+    motional_inductance: Henry
+    motional_capacitance: Farad
+
+    @checked_numbers
+    def admittance(self, frequency: HertzArray) -> ComplexArray:
+        """Y (S) of the circuit at frequencies (Hz)."""
+        omega = 2 * np.pi * np.asarray(frequency, dtype=float)
+        series = (
+            self.motional_resistance
+            + 1j * omega * self.motional_inductance
+            + 1 / (1j * omega * self.motional_capacitance)
+        )
+        return np.asarray(1j * omega * self.static_capacitance + 1 / series)
+
+
+@dataclass(frozen=True, eq=False)
+class HarmonicResponse:
+    """The response of a plate to one volt (zero to peak) on its drive, at `frequencies` (Hz).
+
+    `admittance` in siemens, time factor e^{iωt}. `method` says how it was made and
+    `truncation_error` the largest relative change of the admittance when the reduced space loses
+    its last quarter.
+    """
+
+    plate: RectangularPlate
+    frequencies: HertzArray
+    admittance: ComplexArray
+    method: str
+    truncation_error: Dimensionless
+    model: str
+    _parts: list[ReducedClass] = field(repr=False)
+    _coordinates: ComplexArray = field(repr=False)
+    _potentials: list[ComplexArray] = field(repr=False)
+    _loads: tuple[SurfaceLoad, ...] = field(repr=False, default=())
+
+    @property
+    def impedance(self) -> ComplexArray:
+        """Z = 1/Y (Ω)."""
+        return 1 / self.admittance
+
+    @checked_numbers
+    def displacement(self, x: MetreArray, y: MetreArray) -> ComplexArray:
+        """Complex w per volt (m/V) on the grid of `x` × `y` of the upper face, shape (frequencies,
+        x, y)."""
+        values = surface_values(self._parts, np.atleast_1d(x), np.atleast_1d(y), self._top)
+        return np.asarray(np.tensordot(self._coordinates, values, 1))
+
+    @property
+    def _top(self) -> float:
+        return self.plate.thickness
+
+    @checked_numbers
+    def amplitude_at(self, x: Metre, y: Metre) -> FloatArray:
+        """|w| per volt (m/V) at a point, for every frequency."""
+        return np.abs(self.displacement(np.array([x]), np.array([y]))[:, 0, 0])
+
+    @checked_numbers
+    def line(
+        self, at: int, points: int = 201, y: Metre | None = None
+    ) -> tuple[MetreArray, ComplexArray]:
+        """w per volt (m/V) along the plate's length at frequency number `at`; by default on the
+        centreline."""
+        x = np.linspace(0, self.plate.length, points)
+        across = self.plate.width / 2 if y is None else y
+        values = surface_values(self._parts, x, np.array([across]), self._top)[:, :, 0]
+        return x, self._coordinates[at] @ values
+
+    @functools.cached_property
+    def maximum(self) -> FloatArray:
+        """The largest |w| per volt (m/V) anywhere on the upper face, for every frequency."""
+        x = np.linspace(0, self.plate.length, _GRID[0])
+        y = np.linspace(0, self.plate.width, _GRID[1])
+        values = surface_values(self._parts, x, y, self._top).reshape(
+            self._coordinates.shape[1], -1
+        )
+        out = np.empty(self.frequencies.size)
+        for k, row in enumerate(self._coordinates):
+            out[k] = np.sqrt(np.max((row.real @ values) ** 2 + (row.imag @ values) ** 2))
+        return out
+
+    @property
+    def resonance(self) -> int:
+        """The number of the frequency with the largest amplitude."""
+        return int(np.argmax(self.maximum))
+
+    @checked_numbers
+    def current(self, voltage: Volt) -> FloatArray:
+        """The amplifier's current amplitude (A) at a voltage amplitude."""
+        return np.abs(self.admittance) * voltage
+
+    @checked_numbers
+    def apparent_power(self, voltage: Volt) -> FloatArray:
+        """Vrms · Irms (VA): what the amplifier must be able to give."""
+        return self.current(voltage) * voltage / 2
+
+    @checked_numbers
+    def input_power(self, voltage: Volt) -> FloatArray:
+        """Mean electrical power (W) taken at a voltage amplitude."""
+        return self.admittance.real * voltage**2 / 2
+
+    @checked_numbers
+    def dissipated_power(self, voltage: Volt) -> FloatArray:
+        """Mean power (W) lost in materials, supports, shunts and loads; equals the input power."""
+        omega = 2 * np.pi * self.frequencies
+        out = np.zeros(omega.size)
+        start = 0
+        for one, V in zip(self._parts, self._potentials, strict=True):
+            size = one.basis.shape[1]
+            q = self._coordinates[:, start : start + size]
+            out += omega / 2 * np.einsum("fi,ij,fj->f", q.conj(), one.loss, q).real
+            for number, resistance, share in one.circuit:
+                if np.isfinite(resistance):
+                    patches = one.solved.built.copies / share
+                    out += patches * np.abs(V[:, number]) ** 2 / (2 * resistance)
+            start += size
+        for load in self._loads:
+            x, y, area = load.points()
+            w = self.displacement(x, y)
+            out += omega**2 / 2 * load.damping * np.sum(np.abs(w) ** 2 * area, axis=(1, 2))
+        return out * voltage**2
+
+    @checked_numbers
+    def stored_energy(self, voltage: Volt) -> tuple[FloatArray, FloatArray]:
+        """Mean kinetic and mean potential energy (J; elastic and of supports, less the electric)
+        of the plate at a voltage amplitude."""
+        omega = 2 * np.pi * self.frequencies
+        kinetic, potential, start = np.zeros(omega.size), np.zeros(omega.size), 0
+        for one in self._parts:
+            size = one.basis.shape[1]
+            q = self._coordinates[:, start : start + size]
+            kinetic += omega**2 / 4 * np.einsum("fi,ij,fj->f", q.conj(), one.mass, q).real
+            potential += np.einsum("fi,ij,fj->f", q.conj(), one.stiffness, q).real / 4
+            start += size
+        return kinetic * voltage**2, potential * voltage**2
+
+    def equivalent_circuit(self) -> EquivalentCircuit:
+        """Butterworth–Van Dyke parameters of the strongest resonance in the band.
+
+        From the circle of the motional admittance: C0 and a straight background by least squares
+        over the half-power band. Raises `InputError` for fewer than 8 points in it.
+        """
+        peak = int(np.argmax(self.admittance.real))
+        strong = np.flatnonzero(self.admittance.real > 0.3 * self.admittance.real[peak])
+        near = strong[(strong >= peak - 10**6)]
+        # The contiguous stretch around the peak only.
+        gaps = np.flatnonzero(np.diff(near) > 1)
+        for gap in gaps:
+            if near[gap] < peak:
+                near = near[near > near[gap]]
+        near = near[: int(np.sum(near <= peak)) + _run(near[near > peak], peak)]
+        if near.size < 8:
+            raise InputError(
+                f"only {near.size} frequencies lie within the resonance; give at least 8 there "
+                "(a step below f/8Q)"
+            )
+        from scipy.optimize import least_squares
+
+        f, Y = self.frequencies[near], self.admittance[near]
+        omega, f0 = 2 * np.pi * f, self.frequencies[peak]
+        g = float(self.admittance.real[peak])
+        width = max(f[-1] - f[0], f0 * 1e-6)
+        c0 = float(np.median(Y.imag / omega))
+
+        def residual(p: FloatArray) -> FloatArray:
+            fr, q, conductance, c = f0 * (1 + p[0] * 1e-3), np.exp(p[1]), np.exp(p[2]), p[3] * c0
+            x = q * (f / fr - fr / f)
+            error = (conductance / (1 + 1j * x) + 1j * omega * c - Y) / g
+            return np.concatenate([error.real, error.imag])
+
+        fit = least_squares(residual, [0.0, np.log(1.5 * f0 / width), np.log(g), 1.0], x_scale=0.1)
+        fr, q = f0 * (1 + fit.x[0] * 1e-3), float(np.exp(fit.x[1]))
+        R1 = float(np.exp(-fit.x[2]))
+        L1 = q * R1 / (2 * np.pi * fr)
+        return EquivalentCircuit(
+            float(fr), q, float(fit.x[3] * c0), R1, L1, 1 / ((2 * np.pi * fr) ** 2 * L1)
+        )
+
+
+def _run(after: IntArray, peak: int) -> int:
+    count = 0
+    while count < after.size and after[count] == peak + 1 + count:
+        count += 1
+    return count
+
+
+@checked_numbers
+def harmonic_response(
+    plate: RectangularPlate,
+    frequencies: HertzArray,
+    *,
+    loads: Sequence[SurfaceLoad] = (),
+    steps: int | None = None,
+    resolution: Resolution = NORMAL,
+    extrapolate: bool = True,
+    progress: Callable[[str, float], None] | None = None,
+) -> HarmonicResponse:
+    """The response to one volt on the drive over a band of frequencies (Hz, ascending).
+
+    Reduced by a Krylov space about the band's centre, which holds the modes near it and the
+    quasi-static answer of all others; `steps` is its length (chosen by the band if None), and
+    the truncation error is reported. Losses are structural (constant 1/Q of each material).
+
+    The stiffness is scaled, by a few 1e-4, so that the most strongly driven mode in or near the
+    band stands at its frequency extrapolated from two meshes, where `solve_modes` has it (the
+    largest amplitude lies a little beside it, by damping and other modes). Without `extrapolate`,
+    or on a mesh other than NORMAL and FINE, resonances lie where the mesh has them.
+
+    Raises `InputError` for frequencies that are not ascending and positive or a plate without a
+    driven electrode, `GeometryError` for a load beside the plate.
+    """
+    f = np.atleast_1d(np.asarray(frequencies, dtype=float))
+    require("frequencies", f, Unit("Hz"), above=0)
+    if f.size > 1 and np.any(np.diff(f) <= 0):
+        raise InputError("frequencies must ascend", quantity="frequencies")
+    if not np.any(drive_signs(plate)):
+        raise InputError("no electrode is driven; give at least one patch electrode = 'driven'")
+    for load in loads:
+        if load.x + load.length > plate.length + 1e-9 or load.y + load.width > plate.width + 1e-9:
+            raise GeometryError("a surface load overhangs the plate; move it or make it smaller")
+    # A load breaks the symmetry of the drive: then every class answers.
+    classes = all_classes(plate) if loads else drive_classes(plate)
+    band = float(f[0]), float(f[-1])
+    if steps is None:
+        steps = int(np.clip(14 + 40 * (band[1] - band[0]) / band[1], 14, 60))
+    pressures = [load.points() for load in loads]
+    with one_blas_thread():
+        parts = []
+        for number, parity in enumerate(classes):
+            if progress is not None:
+                progress(f"reducing class {number + 1} of {len(classes)}", number / len(classes))
+            part = reduced_class(plate, parity, band, steps, pressures, resolution)
+            parts.append(extrapolated_class(part, band) if extrapolate else part)
+        omega = 2 * np.pi * f
+        added = _load_stiffness(plate, parts, loads, omega) if loads else None
+        q, potentials, charge = harmonic_solution(parts, omega, added, None, 1.0)
+        admittance = 1j * omega * charge
+        error = _truncation(parts, omega, added, admittance)
+    return HarmonicResponse(
+        plate, f, admittance, f"reduced to {q.shape[1]} coordinates", error, MODEL,
+        parts, q, potentials, tuple(loads),
+    )  # fmt: skip
+
+
+def _load_stiffness(
+    plate: RectangularPlate,
+    parts: list[ReducedClass],
+    loads: Sequence[SurfaceLoad],
+    omega: FloatArray,
+) -> ComplexArray:
+    total = sum(one.basis.shape[1] for one in parts)
+    out = np.zeros((omega.size, total, total), dtype=complex)
+    for load in loads:
+        x, y, area = load.points()
+        w = surface_values(parts, x, y, plate.thickness).reshape(total, -1)
+        overlap = (w * area.ravel()) @ w.T
+        dynamic = load.stiffness + 1j * omega * load.damping - omega**2 * load.mass
+        out += dynamic[:, None, None] * overlap
+    return out
+
+
+def _truncation(
+    parts: list[ReducedClass],
+    omega: FloatArray,
+    added: ComplexArray | None,
+    admittance: ComplexArray,
+) -> float:
+    """How much the admittance changes when each space loses its last quarter."""
+    some = omega[:: max(1, omega.size // 12)]
+    pick = np.arange(0, omega.size, max(1, omega.size // 12))
+    shorter: list[ReducedClass] = []
+    indices: list[int] = []
+    start = 0
+    for one in parts:
+        size = one.basis.shape[1]
+        n = max(1, (3 * size) // 4)
+        indices += range(start, start + n)
+        start += size
+        shorter.append(
+            ReducedClass(
+                one.solved, one.resolution, one.basis[:, :n], one.mass[:n, :n],
+                one.stiffness[:n, :n],
+                one.loss[:n, :n], one.coupling[:n], one.capacitance, one.drive, one.circuit,
+            )
+        )  # fmt: skip
+    kept = np.array(indices)
+    less = None if added is None else added[np.ix_(pick, kept, kept)]
+    _, _, charge = harmonic_solution(shorter, some, less, None, 1.0)
+    change = np.abs(1j * some * charge - admittance[pick])
+    return float(np.max(change / np.max(np.abs(admittance))))
+
+
+@checked_numbers
+def direct_admittance(
+    plate: RectangularPlate, frequency: Hertz, resolution: Resolution = NORMAL
+) -> tuple[complex, list[ComplexArray]]:
+    """Y (S) by a direct solve with complex constants at one frequency, and the solution of each
+    driven class: the check of the reduced response. Electrodes driven or shorted only."""
+    from squeezefilm.plate.elements.cross_section import CrossSection
+    from squeezefilm.plate.elements.slab_factor import SlabFactor
+    from squeezefilm.plate.elements.slabs import Slabs
+    from squeezefilm.plate.solid.mesh import plate_model
+    from squeezefilm.plate.solid.modes import SolvedModel
+    from squeezefilm.plate.solid.reduced import (
+        class_drive,
+        loss_weight,
+        resolved_frequency,
+        spring_losses,
+    )
+
+    omega, charge = 2 * np.pi * frequency, 0j
+    solutions: list[ComplexArray] = []
+    with one_blas_thread():
+        for parity in drive_classes(plate):
+            built = plate_model(
+                plate, resolved_frequency((frequency, frequency)), resolution, parity
+            )
+            slabs = Slabs(built.model)
+            solved = SolvedModel(plate, built, slabs)
+            lossy = slabs.weighted_sections(loss_weight, spring_losses(built.model.foundations))
+            made: dict[int, CrossSection] = {}
+            sections = []
+            for real, loss in zip(slabs.sections, lossy, strict=True):
+                if id(real.P2) not in made:
+                    made[id(real.P2)] = CrossSection(
+                        real.codes, real.P2 + 1j * loss.P2, real.P1 + 1j * loss.P1,
+                        real.P0 + 1j * loss.P0, real.R, real.electrodes, real.g0, real.g1, real.c0,
+                    )  # fmt: skip
+                sections.append(made[id(real.P2)])
+            factor = SlabFactor(slabs, omega**2, sections=sections)
+            G, C = slabs.electrode_columns
+            drive = class_drive(plate, solved)
+            x = factor.solve(-(G @ drive)[:, None].astype(complex))
+            charge -= complex(built.copies * (drive @ (G.T @ x[:, 0] + C @ drive)))
+            solutions.append(x[:, 0])
+    return 1j * omega * charge, solutions

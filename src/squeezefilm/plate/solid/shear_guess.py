@@ -1,0 +1,72 @@
+"""Where to look for a mode of a plate that carries ceramic on a part of its face only.
+
+The beam takes ceramic to be everywhere and so lies far off on a glass plate with strips at two
+edges. The shear plate sees the strips where they are, and costs a second.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from squeezefilm.errors import ConvergenceError, InputError
+from squeezefilm.plate.layout import RectangularPlate
+from squeezefilm.plate.shear.modes import ShearMode, shear_modes
+from squeezefilm.plate.shear.section import shear_layout
+from squeezefilm.plate.solid.modes import profiles, zero_crossings
+from squeezefilm.quantities import Dimensionless, FloatArray, Hertz
+
+# So many modes of one class of symmetry around the bare plate's frequency are looked at: strips on
+# a part of the face move a mode by some ten percent.
+_NEAREST = 16
+
+
+def bare_frequency(plate: RectangularPlate, label: tuple[int, int]) -> Hertz:
+    """The frequency of the substrate alone (Hz), with free edges: k of a free-free beam along each
+    side, Kirchhoff's plate. Good to 10 % for plates thin against the half wavelength.
+
+    0 for labels that are no bending (fewer than two lines across a side do not bend it).
+    """
+    spans = (plate.length, plate.width)
+    k2 = sum(
+        ((n - 0.5) * math.pi / span) ** 2 for n, span in zip(label, spans, strict=True) if n > 1
+    )
+    substrate, h = plate.substrate, plate.thickness
+    stiffness = substrate.plane_strain_modulus * h**3 / 12
+    return k2 / (2 * math.pi) * math.sqrt(stiffness / (substrate.density * h))
+
+
+def screened_frequency(plate: RectangularPlate, label: tuple[int, int]) -> Hertz | None:
+    """The frequency of a mode by the shear plate (Hz), searched around the bare plate's.
+
+    Of several with these nodal lines the one whose shape is most nearly that of straight lines:
+    strips mix neighbours, and a mixture may count the same lines. None where the shear plate knows
+    no such mode: then the caller's own guess must do.
+    """
+    bare = bare_frequency(plate, label)
+    if bare == 0:
+        return None
+    layout = shear_layout(plate)
+    signs = (1 if lines % 2 == 0 else -1 for lines in label)
+    parity = tuple(s if layout.mirrored(axis) else 0 for axis, s in enumerate(signs))
+    try:
+        modes = shear_modes(layout, bare, _NEAREST, parities=((parity[0], parity[1]),))
+    except (InputError, ConvergenceError):
+        return None
+    found = [mode for mode in modes if not mode.is_rigid and _lines(mode) == label]
+    best = max(found, key=lambda mode: straightness(mode.deflection), default=None)
+    return None if best is None else best.frequency
+
+
+def _lines(mode: ShearMode) -> tuple[int, int]:
+    """Nodal lines counted as the solved plate counts them: on the shape's dominant product."""
+    along, across, _ = profiles(mode.deflection)
+    return zero_crossings(mode.x, along).size, zero_crossings(mode.y, across).size
+
+
+def straightness(deflection: FloatArray) -> Dimensionless:
+    """The share of a shape's square that is one profile along x times one along y: 1 for straight
+    nodal lines. `deflection` on a grid, shape (x, y)."""
+    size = np.linalg.svd(deflection, compute_uv=False)
+    return float(size[0] ** 2 / np.sum(size**2))

@@ -1,0 +1,121 @@
+"""`solve_modes`: the modes of a plate near a frequency, in a band, or with given nodal lines.
+
+Two meshes are solved. The coarse one finds the modes, counts them (Sylvester), and gives what needs
+few digits: coupling and energy shares. The finer one starts from these shapes. Its frequency and
+the difference between the two give the extrapolated frequency and its estimated error.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from squeezefilm.errors import InputError
+from squeezefilm.plate.elements.blas_threads import one_blas_thread
+from squeezefilm.plate.layout import RectangularPlate
+from squeezefilm.plate.solid.coarse_modes import (
+    chosen_modes,
+    class_fits,
+    coarse_modes,
+    estimated_frequency,
+)
+from squeezefilm.plate.solid.mode_table import collected_modes
+from squeezefilm.plate.solid.modes import Label, PlateModes, check_band
+from squeezefilm.plate.solid.refined_modes import RefinedModes, refined_modes, with_label
+from squeezefilm.plate.solid.symmetry import Parity, all_classes, drive_classes
+from squeezefilm.quantities import Dimensionless, Hertz, Unit, checked_numbers, require
+
+Progress = Callable[[str, float], None]
+
+# So many modes of a class are looked at around the guess of a mode that is asked for by its lines.
+_WIDTHS = (8, 24)
+
+
+@checked_numbers
+def solve_modes(
+    plate: RectangularPlate,
+    *,
+    near: Hertz | None = None,
+    band: tuple[Hertz, Hertz] | None = None,
+    mode: Label | None = None,
+    count: int = 6,
+    tolerance: Dimensionless = 1e-3,
+    driven_only: bool = False,
+    progress: Progress | None = None,
+) -> PlateModes:
+    """Modes of a plate by three-dimensional piezoelectric finite elements.
+
+    One of: `near` (Hz), the `count` modes nearest to it; `band` (Hz, Hz), all modes in it, their
+    number checked by Sylvester's law on the coarse mesh; `mode`, the one with these nodal lines
+    across length and width. With none of them the plate's working mode is solved. `driven_only`
+    leaves out the classes of symmetry that the drive does not excite. Where the estimated error of
+    a mode exceeds `tolerance` (relative) finer meshes are used, and `status` says if that was not
+    enough. `progress` is called with a text and a fraction.
+
+    Electrodes are shorted or driven (the same for free vibration) unless a patch says open or
+    shunted: a resistor's stiffening counts in `frequencies`, its loss in `quality_factors`; shapes
+    and couplings are those with it short. Valid for linear, small vibration in vacuum. Interrupted,
+    it leaves nothing behind.
+
+    Raises `InputError` for a band without modes or a label that is not found, `OutOfRangeError` for
+    plates too thin for solid elements.
+    """
+    if sum(option is not None for option in (near, band, mode)) > 1:
+        raise InputError("give one of near, band and mode; they choose the modes in different ways")
+    require("tolerance", tolerance, above=0, below=1)
+    require("count", count, at_least=1)
+    if near is not None:
+        require("near", near, Unit("Hz"), above=0)
+    if band is not None:
+        check_band(band)
+    if near is None and band is None and mode is None:
+        mode = plate.working_label
+    tell = progress or (lambda text, fraction: None)
+    with one_blas_thread():
+        return _solved(plate, near, band, mode, count, tolerance, driven_only, tell)
+
+
+def _solved(
+    plate: RectangularPlate,
+    near: float | None,
+    band: tuple[float, float] | None,
+    mode: Label | None,
+    count: int,
+    tolerance: float,
+    driven_only: bool,
+    tell: Progress,
+) -> PlateModes:
+    classes = drive_classes(plate) if driven_only else all_classes(plate)
+    if mode is not None:
+        near = estimated_frequency(plate, mode)
+        classes = [c for c in all_classes(plate) if class_fits(c, mode)]
+    centre = near if near is not None else sum(band or (0.0, 0.0)) / 2
+    highest = band[1] if band is not None else 1.15 * centre
+    # What a coarse mesh takes for the mode may be another on a finer one: then look further.
+    for nearest in _WIDTHS if mode is not None else (count,):
+        found = []
+        for number, parity in enumerate(classes):
+            tell(f"coarse mesh, symmetry {_name(parity)}", 0.3 * number / len(classes))
+            found.append(coarse_modes(plate, parity, centre, highest, band, nearest))
+        last = nearest == _WIDTHS[-1]
+        try:
+            chosen = chosen_modes(found, near, band, mode, count)
+        except InputError:
+            if last or mode is None:
+                raise
+            continue
+        pieces: list[RefinedModes] = []
+        for number, (one, index) in enumerate(zip(found, chosen, strict=True)):
+            if index.size:
+                tell(f"fine mesh, symmetry {_name(one.parity)}", 0.3 + 0.7 * number / len(found))
+                pieces.append(refined_modes(plate, one, index, highest, tolerance))
+        if mode is None:
+            break
+        labelled = [piece for piece in (with_label(p, mode) for p in pieces) if piece.index.size]
+        if labelled:
+            pieces = labelled
+            break
+    return collected_modes(plate, pieces, tolerance, band)
+
+
+def _name(parity: tuple[Parity | None, Parity | None]) -> str:
+    return "".join(p or "-" for p in parity)

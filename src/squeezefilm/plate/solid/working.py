@@ -1,0 +1,160 @@
+"""The working mode of a plate by the solved solid, with its response: what a display's chain needs.
+
+One plate is asked for its mode many times (analysis, curves, tests), so the last few answers are
+kept.
+"""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass
+
+import numpy as np
+
+from squeezefilm.plate.layout import RectangularPlate
+from squeezefilm.plate.solid.modes import MODEL, PlateModes
+from squeezefilm.plate.solid.response import HarmonicResponse, harmonic_response
+from squeezefilm.plate.solid.solve import solve_modes
+from squeezefilm.quantities import (
+    Dimensionless,
+    FloatArray,
+    Hertz,
+    HertzLike,
+    Kilogram,
+    Metre,
+    MetreArray,
+    MetrePerVolt,
+    MetrePerVoltArray,
+    Unit,
+    checked_numbers,
+    require,
+)
+
+RESPONSE_POINTS = 200
+_LINE_POINTS = 401
+# A plate with strips on a part of it takes half a minute to a part in a thousand; this is enough
+# for a display, and the estimate stands beside the frequency.
+_TOLERANCE = 3e-3
+
+
+@checked_numbers
+def response_frequencies(
+    frequency: Hertz, quality_factor: Dimensionless, points: int = RESPONSE_POINTS
+) -> FloatArray:
+    """Frequencies (Hz) around a resonance, ±8/Q, dense where the curve turns within f/Q."""
+    span = min(max(8 / quality_factor, 0.02), 0.5)
+    near = np.sinh(np.linspace(-4, 4, points)) / np.sinh(4)
+    return np.asarray(frequency * (1 + span * near))
+
+
+@dataclass(frozen=True, eq=False)
+class SolidMode:
+    """One mode of a plate, its response to one volt, and its centreline at resonance.
+
+    `modes` holds it at `index`; `response` surrounds the resonance. `position` and `deflection` are
+    the mode along the centreline of the upper face that crosses its nodal lines (along the length,
+    or the width), 1 at its largest interior lobe, which is at `lobe` (x, y);
+    `nodal_positions` the nodal lines along it; `amplitude_per_volt` is the largest
+    answer of that lobe within the mode's bandwidth, `modal_amplitude_per_volt` what this mode has
+    in it, Q F φ / ω²: much less where the drive moves its neighbours only.
+    `modal_mass` is the mass that has the mode's kinetic energy if it moves as the lobe does.
+    """
+
+    modes: PlateModes
+    index: int
+    response: HarmonicResponse
+    position: MetreArray
+    deflection: FloatArray
+    nodal_positions: MetreArray
+    lobe: tuple[Metre, Metre]
+    amplitude_per_volt: MetrePerVolt
+    modal_amplitude_per_volt: MetrePerVolt
+    modal_mass: Kilogram
+    model: str = MODEL
+
+    @property
+    def frequency(self) -> Hertz:
+        """Resonance frequency (Hz), extrapolated from two meshes."""
+        return float(self.modes.frequencies[self.index])
+
+    @property
+    def frequency_error(self) -> Hertz:
+        """Estimated error of `frequency` (Hz): of the discretisation, not of the data."""
+        return float(self.modes.errors[self.index])
+
+    @property
+    def quality_factor(self) -> Dimensionless:
+        """From the materials' losses, weighted by their share of the energy."""
+        return float(self.modes.quality_factors[self.index])
+
+    @property
+    def half_wavelength(self) -> Metre:
+        """See `PlateModes.half_wavelength` (m)."""
+        return self.modes.half_wavelength(self.index)
+
+    @checked_numbers
+    def amplitude_per_volt_at(self, frequency: HertzLike) -> MetrePerVoltArray:
+        """|w| per volt (m/V) at the largest interior lobe of the centreline, at frequencies (Hz).
+
+        Solved anew at each of them, all modes in. Raises `InputError` unless they are above 0.
+        """
+        wanted = np.atleast_1d(np.asarray(frequency, dtype=float))
+        require("frequency", wanted, Unit("Hz"), above=0)
+        ascending, back = np.unique(wanted, return_inverse=True)
+        plate = self.modes.plate
+        # With the resonance in the band, its mode is in the reduced space and not far outside.
+        band = np.union1d(ascending, self.frequency)
+        response = harmonic_response(plate, band)
+        amplitude = response.amplitude_at(*self.lobe)
+        return np.asarray(amplitude[np.searchsorted(band, ascending)][back])
+
+
+@functools.lru_cache(maxsize=32)
+def solid_mode(plate: RectangularPlate, label: tuple[int, int] | None = None) -> SolidMode:
+    """A plate's mode with the nodal lines of `label` by three-dimensional piezoelectric elements.
+
+    Without a label the plate's working mode. Raises what `solve_modes` and
+    `harmonic_response` raise: `InputError` where there is no such mode or nothing drives the
+    plate, `GeometryError` for a plate that the elements cannot carry.
+    """
+    wanted = label or plate.working_label
+    modes = solve_modes(plate, mode=wanted, tolerance=_TOLERANCE)
+    index = modes.index(wanted)
+    frequency, quality = float(modes.frequencies[index]), float(modes.quality_factors[index])
+    response = harmonic_response(plate, response_frequencies(frequency, quality))
+    lengthwise = wanted[0] >= wanted[1]
+    span, across = (plate.length, plate.width)[:: 1 if lengthwise else -1]
+    x, middle = np.linspace(0, span, _LINE_POINTS), np.array([across / 2])
+    if lengthwise:
+        line = modes.field(index, x, middle, plate.thickness)[:, 0, 2]
+    else:
+        line = modes.field(index, middle, x, plate.thickness)[0, :, 2]
+    nodes = modes.nodal_positions(index)
+    inside = _interior(x, nodes)
+    at = int(np.flatnonzero(inside)[np.argmax(np.abs(line[inside]))])
+    # At the mode, not at the highest point of the band: a neighbour may move more.
+    near = np.abs(response.frequencies / frequency - 1) < 1 / quality
+    lobe = float(x[at]), across / 2
+    lobe = lobe if lengthwise else lobe[::-1]
+    amplitude = response.amplitude_at(*lobe)
+    return SolidMode(
+        modes=modes,
+        index=index,
+        response=response,
+        position=x,
+        deflection=line / line[at],
+        nodal_positions=nodes,
+        lobe=lobe,
+        amplitude_per_volt=float(np.max(np.where(near, amplitude, 0.0))),
+        modal_amplitude_per_volt=float(
+            quality * abs(modes.drive_forces[index] * line[at]) / (2 * np.pi * frequency) ** 2
+        ),
+        modal_mass=float(1 / line[at] ** 2),
+    )
+
+
+def _interior(position: MetreArray, nodes: MetreArray) -> np.ndarray[tuple[int], np.dtype[np.bool]]:
+    """Between the outermost nodal lines: free ends move further than any finger meets."""
+    if nodes.size < 2:
+        return np.ones(position.size, dtype=bool)
+    return np.asarray((position > nodes[0]) & (position < nodes[-1]))
