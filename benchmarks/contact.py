@@ -23,10 +23,10 @@ from collections.abc import Callable
 import numpy as np
 from scipy.optimize import brentq
 
-from squeezefilm.contact.gas_table import FilmTable
-from squeezefilm.contact.pad import pad_friction, ridge_points
-from squeezefilm.contact.sharing import share_load
-from squeezefilm.contact.skin import Skin
+from squeezefilm.contact.finger.skin import Skin
+from squeezefilm.contact.sharing.balance import share_load
+from squeezefilm.contact.sharing.gas_table import FilmTable
+from squeezefilm.contact.sharing.pad import pad_friction, ridge_points
 from squeezefilm.display import load_display
 from squeezefilm.film.periodic.film import solve_strip
 

@@ -1,7 +1,7 @@
 """A square grating under a finger whose skin has a mass: its force, and how the skin vibrates."""
 
 from squeezefilm.analysis.stroke_force import stroke_force
-from squeezefilm.contact.fingerpad import EVIDENCE
+from squeezefilm.contact.finger.fingerpad import EVIDENCE
 from squeezefilm.display import load_display
 from squeezefilm.prediction import predict
 from squeezefilm.render.envelope import envelope_time_constant

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from squeezefilm.config.provenance import Provenance
-from squeezefilm.contact.finger import Finger
+from squeezefilm.contact.finger.fingertip import Finger
 from squeezefilm.device.safety import HIGHEST_VOLTAGE, TOUCH_VOLTAGE, Limits
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import ROUGHNESS, require_fields

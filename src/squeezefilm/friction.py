@@ -12,12 +12,18 @@ from typing import Literal, cast, get_args
 
 import numpy as np
 
-from squeezefilm.contact import paper
-from squeezefilm.contact.film_load import FilmLoad, FilmModel, film_load
-from squeezefilm.contact.finger import Finger
-from squeezefilm.contact.gas_table import film_table
-from squeezefilm.contact.pad import Limit, PadFriction, PadPosture, pad_friction, ridge_points
-from squeezefilm.contact.tapping import tapping_friction
+from squeezefilm.contact.finger.fingertip import Finger
+from squeezefilm.contact.sharing import paper
+from squeezefilm.contact.sharing.film_load import FilmLoad, FilmModel, film_load
+from squeezefilm.contact.sharing.gas_table import film_table
+from squeezefilm.contact.sharing.pad import (
+    Limit,
+    PadFriction,
+    PadPosture,
+    pad_friction,
+    ridge_points,
+)
+from squeezefilm.contact.sharing.tapping import tapping_friction
 from squeezefilm.display import Display, Surface
 from squeezefilm.errors import InputError, OutOfRangeError, UnreachableError
 from squeezefilm.film.closed.limits import PaperModel, contact_mean_pressure

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from squeezefilm.contact.finger_load import finger_stiffness, interface_stiffness
-from squeezefilm.contact.pad import Limit, PadFriction
+from squeezefilm.contact.finger.load import finger_stiffness, interface_stiffness
+from squeezefilm.contact.sharing.pad import Limit, PadFriction
 from squeezefilm.errors import ConvergenceError
 from squeezefilm.friction import FrictionLaw
 from squeezefilm.plate.loaded_mode import LoadedMode, loaded_mode, mean_square_wave

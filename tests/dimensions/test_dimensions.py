@@ -35,7 +35,7 @@ pint_units: Any = pint.UnitRegistry()
 
 MISPRINTS = {
     "squeezefilm.film.gap.squeeze_number_printed": "eq 4 has l0 where l0² belongs",
-    "squeezefilm.contact.paper.relative_friction_from_pressure_printed": "eq 14 has P_f in Pa",
+    "squeezefilm.contact.sharing.paper.relative_friction_from_pressure_printed": "eq 14 has P_f in Pa",
 }
 
 # A number small enough for every formula's range (ε, δ, Kn, Poisson's ratio …).
@@ -45,7 +45,7 @@ SMALL = 0.1
 VALUES: dict[tuple[str, str], float] = {
     ("squeezefilm.film.closed.limits.edge_layer_load", "squeeze_number"): 100.0,
     # The gap must not close.
-    ("squeezefilm.contact.wedge.wedge_pressure", "amplitude"): 0.05,
+    ("squeezefilm.contact.sharing.wedge.wedge_pressure", "amplitude"): 0.05,
     # The amplitude must lie between where it starts and what it is drawn to.
     ("squeezefilm.render.compensation.slew_time", "start"): 0.05,
     ("squeezefilm.render.compensation.slew_time", "limit"): 0.2,

@@ -7,9 +7,9 @@ from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
 from squeezefilm.contact.asperities import AsperityLaw
-from squeezefilm.contact.gas_table import film_table
-from squeezefilm.contact.sharing import share_load, share_load_tied
-from squeezefilm.contact.tapping import tapping_friction
+from squeezefilm.contact.sharing.balance import share_load, share_load_tied
+from squeezefilm.contact.sharing.gas_table import film_table
+from squeezefilm.contact.sharing.tapping import tapping_friction
 from squeezefilm.film.periodic.film import solve_strip
 from squeezefilm.materials import Gas
 

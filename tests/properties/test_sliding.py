@@ -6,9 +6,9 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from squeezefilm.contact.dry_friction import DryFriction
-from squeezefilm.contact.fingerpad import FingerpadDynamics
-from squeezefilm.contact.sliding import Sliding, slide
+from squeezefilm.contact.finger.fingerpad import FingerpadDynamics
+from squeezefilm.contact.sliding.dry_friction import DryFriction
+from squeezefilm.contact.sliding.march import Sliding, slide
 
 SAMPLES = 200
 

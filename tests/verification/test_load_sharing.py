@@ -15,14 +15,14 @@ from squeezefilm.contact.asperities import (
     exponential_mean_pressure,
     gaussian_overlap,
 )
-from squeezefilm.contact.finger import Finger
-from squeezefilm.contact.gas_table import DEEPEST_EXCURSION, FilmTable, film_table
-from squeezefilm.contact.pad import PadPosture, friction_ripple, pad_friction, ridge_points
-from squeezefilm.contact.paper import relative_friction
-from squeezefilm.contact.sharing import share_load, share_load_tied
-from squeezefilm.contact.skin import Skin
-from squeezefilm.contact.tapping import contact_angle, tapping_friction
-from squeezefilm.contact.wedge import sliding_ratio, wedge_pressure
+from squeezefilm.contact.finger.fingertip import Finger
+from squeezefilm.contact.finger.skin import Skin
+from squeezefilm.contact.sharing.balance import share_load, share_load_tied
+from squeezefilm.contact.sharing.gas_table import DEEPEST_EXCURSION, FilmTable, film_table
+from squeezefilm.contact.sharing.pad import PadPosture, friction_ripple, pad_friction, ridge_points
+from squeezefilm.contact.sharing.paper import relative_friction
+from squeezefilm.contact.sharing.tapping import contact_angle, tapping_friction
+from squeezefilm.contact.sharing.wedge import sliding_ratio, wedge_pressure
 from squeezefilm.display import load_display
 from squeezefilm.errors import InputError, OutOfRangeError, UnreachableError
 from squeezefilm.film.gap import PaperGap
@@ -182,7 +182,7 @@ def test_the_gaussian_overlap_is_its_integral() -> None:
 
 @pytest.mark.parametrize("heights", ["exponential", "gaussian"])
 def test_period_means_agree_with_quadrature_and_with_the_compiled_code(heights: str) -> None:
-    from squeezefilm.contact.sharing_kernel import asperity_mean
+    from squeezefilm.contact.sharing.kernel import asperity_mean
 
     law = AsperityLaw(heights=heights)  # type: ignore[arg-type]
     for u, a in ((2e-6, 0.1e-6), (3e-6, 1.5e-6), (6e-6, 5e-6), (22e-6, 20e-6)):
@@ -228,7 +228,7 @@ def test_the_mean_of_the_exponential_law_holds_for_swings_of_many_decay_lengths(
 @pytest.mark.parametrize("stiffness", [0.0, 4e11])
 def test_no_energy_is_created(table: FilmTable, damping: float, stiffness: float) -> None:
     # What the plate puts in per period, Im(p̂ ā), is what film and skin take: asperities keep none.
-    from squeezefilm.contact.sharing_kernel import asperity_mean, film_value
+    from squeezefilm.contact.sharing.kernel import asperity_mean, film_value
 
     skin = Skin(stiffness_per_area=stiffness, damping_per_area=damping)
     a = 1.5e-6

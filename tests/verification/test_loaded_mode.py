@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from squeezefilm.contact.asperities import AsperityLaw
-from squeezefilm.contact.finger_load import finger_stiffness, interface_stiffness
-from squeezefilm.contact.skin import Skin
+from squeezefilm.contact.finger.load import finger_stiffness, interface_stiffness
+from squeezefilm.contact.finger.skin import Skin
 from squeezefilm.display import load_display
 from squeezefilm.errors import InputError
 from squeezefilm.friction import friction_law

@@ -9,16 +9,16 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from squeezefilm.contact.dry_friction import DryFriction, FrictionProfile, sampled_profile
-from squeezefilm.contact.fingerpad import (
+from squeezefilm.contact.finger.fingerpad import (
     FingerpadDynamics,
     friction_transmitted,
     skin_displacement_per_friction,
     slip_duration,
     stick_duration,
 )
-from squeezefilm.contact.occlusion import Occlusion
-from squeezefilm.contact.sliding import Sliding, slide
+from squeezefilm.contact.finger.occlusion import Occlusion
+from squeezefilm.contact.sliding.dry_friction import DryFriction, FrictionProfile, sampled_profile
+from squeezefilm.contact.sliding.march import Sliding, slide
 from squeezefilm.quantities import FloatArray
 
 STIFFNESS, MASS = 1000.0, 1.5e-4

@@ -23,7 +23,7 @@ from squeezefilm.analysis.procedure import (
     friction_criterion,
 )
 from squeezefilm.analysis.prototype import MODAL_FREQUENCY, paper_points
-from squeezefilm.contact.paper import (
+from squeezefilm.contact.sharing.paper import (
     relative_friction,
     vibration_amplitude_for,
     zero_friction_amplitude,

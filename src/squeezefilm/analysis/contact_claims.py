@@ -13,11 +13,11 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 
 from squeezefilm.analysis.claim_values import CLAIM_VALUES, ClaimValue
-from squeezefilm.contact.finger import Finger
-from squeezefilm.contact.gas_table import film_table
-from squeezefilm.contact.sharing import share_load
-from squeezefilm.contact.skin import Skin
-from squeezefilm.contact.tapping import tapping_friction
+from squeezefilm.contact.finger.fingertip import Finger
+from squeezefilm.contact.finger.skin import Skin
+from squeezefilm.contact.sharing.balance import share_load
+from squeezefilm.contact.sharing.gas_table import film_table
+from squeezefilm.contact.sharing.tapping import tapping_friction
 from squeezefilm.materials import Gas
 from squeezefilm.quantities import Dimensionless, Hertz, Metre, Pascal
 

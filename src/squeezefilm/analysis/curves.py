@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from squeezefilm.analysis.procedure import PAPER_HALF_WAVELENGTHS, friction_criterion
-from squeezefilm.contact.film_load import is_still, line_film
+from squeezefilm.contact.sharing.film_load import is_still, line_film
 from squeezefilm.display import Display, Surface
 from squeezefilm.errors import UnreachableError
 from squeezefilm.film.closed.limits import mean_pressure_profile

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from squeezefilm.contact.film_load import DESCRIPTIONS, FILM_MODELS, FilmModel, is_still
+from squeezefilm.contact.sharing.film_load import DESCRIPTIONS, FILM_MODELS, FilmModel, is_still
 from squeezefilm.display import Display
 from squeezefilm.errors import SqueezefilmError
 from squeezefilm.friction import FrictionLaw, friction_law

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from squeezefilm.contact.paper import vibration_amplitude_for
+from squeezefilm.contact.sharing.paper import vibration_amplitude_for
 from squeezefilm.errors import InputError, UnreachableError
 from squeezefilm.film.gap import PaperGap, frequency_for_squeeze_number
 from squeezefilm.plate.beam.modes import (

@@ -21,9 +21,9 @@ from squeezefilm.analysis.played_texture import (
     require_on_image,
     single_period,
 )
-from squeezefilm.contact.gas_table import film_table
-from squeezefilm.contact.pad import friction_ripple
-from squeezefilm.contact.sliding import Sliding, slide
+from squeezefilm.contact.sharing.gas_table import film_table
+from squeezefilm.contact.sharing.pad import friction_ripple
+from squeezefilm.contact.sliding.march import Sliding, slide
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError
 from squeezefilm.formats.trajectories import Motion

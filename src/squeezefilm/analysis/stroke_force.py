@@ -6,11 +6,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from squeezefilm.contact.dry_friction import DryFriction
-from squeezefilm.contact.fingerpad import FingerpadDynamics
-from squeezefilm.contact.occlusion import Occlusion
-from squeezefilm.contact.skin_vibration import SkinVibration, skin_vibration, texture_frequency
-from squeezefilm.contact.sliding import Sliding, slide
+from squeezefilm.contact.finger.fingerpad import FingerpadDynamics
+from squeezefilm.contact.finger.occlusion import Occlusion
+from squeezefilm.contact.sliding.dry_friction import DryFriction
+from squeezefilm.contact.sliding.march import Sliding, slide
+from squeezefilm.contact.sliding.skin_vibration import (
+    SkinVibration,
+    skin_vibration,
+    texture_frequency,
+)
 from squeezefilm.errors import InputError
 from squeezefilm.quantities import Dimensionless, Newton, NewtonLike, Second, Unit, require
 from squeezefilm.render.texture import Sine, Square

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from squeezefilm.analysis.stroke_force import StrokeForce
-    from squeezefilm.contact.skin_vibration import SkinVibration
+    from squeezefilm.contact.sliding.skin_vibration import SkinVibration
 
 _PERIODS_SHOWN = 6
 _MOST_POINTS = 4000

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from squeezefilm.config.provenance import Provenance
-from squeezefilm.contact.finger import Moisture
+from squeezefilm.contact.finger.fingertip import Moisture
 from squeezefilm.errors import InputError
 from squeezefilm.quantities import (
     Dimensionless,

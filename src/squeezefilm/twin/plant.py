@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from squeezefilm.contact.sliding import substeps
+from squeezefilm.contact.sliding.march import substeps
 from squeezefilm.errors import InputError
 from squeezefilm.film.compiled import announce
 from squeezefilm.quantities import Ampere, FloatArray, Hertz, Metre, MetrePerVolt, Newton, Volt

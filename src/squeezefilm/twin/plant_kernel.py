@@ -21,8 +21,8 @@ from typing import Any
 import numba
 import numpy as np
 
-from squeezefilm.contact.skin_motion import slide_by, transition
-from squeezefilm.contact.sliding_kernel import slide_march
+from squeezefilm.contact.sliding.kernel import slide_march
+from squeezefilm.contact.sliding.skin_motion import slide_by, transition
 from squeezefilm.twin.chance import gaussian, uniform
 from squeezefilm.twin.envelope_step import (
     CURRENT,

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Literal
 
-from squeezefilm.contact.dry_friction import DryFriction
+from squeezefilm.contact.sliding.dry_friction import DryFriction
 from squeezefilm.errors import InputError
 from squeezefilm.quantities import (
     Ampere,

@@ -9,11 +9,15 @@ import numpy as np
 import pytest
 
 from squeezefilm.analysis.stroke_force import StrokeForce, stroke_force
-from squeezefilm.contact.dry_friction import DryFriction, FrictionProfile, sampled_profile
-from squeezefilm.contact.fingerpad import FingerpadDynamics
-from squeezefilm.contact.occlusion import Occlusion
-from squeezefilm.contact.skin_vibration import line_amplitudes, skin_vibration, texture_frequency
-from squeezefilm.contact.sliding import interval_speeds, slide
+from squeezefilm.contact.finger.fingerpad import FingerpadDynamics
+from squeezefilm.contact.finger.occlusion import Occlusion
+from squeezefilm.contact.sliding.dry_friction import DryFriction, FrictionProfile, sampled_profile
+from squeezefilm.contact.sliding.march import interval_speeds, slide
+from squeezefilm.contact.sliding.skin_vibration import (
+    line_amplitudes,
+    skin_vibration,
+    texture_frequency,
+)
 from squeezefilm.errors import InputError, OutOfRangeError
 from squeezefilm.render.stroke import Stroke
 from squeezefilm.render.texture import Square

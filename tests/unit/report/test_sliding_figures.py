@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from squeezefilm.analysis.stroke_force import StrokeForce, stroke_force
-from squeezefilm.contact.dry_friction import DryFriction
-from squeezefilm.contact.fingerpad import FingerpadDynamics
+from squeezefilm.contact.finger.fingerpad import FingerpadDynamics
+from squeezefilm.contact.sliding.dry_friction import DryFriction
 from squeezefilm.render.stroke import Stroke
 from squeezefilm.render.texture import Square
 from squeezefilm.render.trace import friction_trace

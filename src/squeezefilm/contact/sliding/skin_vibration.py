@@ -8,7 +8,7 @@ from typing import Annotated
 
 import numpy as np
 
-from squeezefilm.contact.sliding import MetrePerSquareSecondArray, Sliding
+from squeezefilm.contact.sliding.march import MetrePerSquareSecondArray, Sliding
 from squeezefilm.errors import InputError
 from squeezefilm.quantities import (
     FloatArray,

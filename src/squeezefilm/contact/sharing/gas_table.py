@@ -107,7 +107,7 @@ class FilmTable:
 
         Raises `InputError` for an amplitude above 0.985 of the gap or a gap off the table.
         """
-        from squeezefilm.contact.sharing_kernel import film_value
+        from squeezefilm.contact.sharing.kernel import film_value
 
         u, a = np.broadcast_arrays(np.asarray(mean_gap, float), np.asarray(amplitude, float))
         require("mean_gap", u, Unit("m"), above=0)

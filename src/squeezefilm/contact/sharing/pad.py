@@ -14,10 +14,10 @@ from typing import Literal
 import numpy as np
 
 from squeezefilm.contact.asperities import AsperityLaw
-from squeezefilm.contact.finger import Finger
-from squeezefilm.contact.gas_table import FilmTable
-from squeezefilm.contact.sharing import share_load, share_load_tied
-from squeezefilm.contact.skin import Skin
+from squeezefilm.contact.finger.fingertip import Finger
+from squeezefilm.contact.finger.skin import Skin
+from squeezefilm.contact.sharing.balance import share_load, share_load_tied
+from squeezefilm.contact.sharing.gas_table import FilmTable
 from squeezefilm.errors import InputError
 from squeezefilm.quantities import (
     Dimensionless,

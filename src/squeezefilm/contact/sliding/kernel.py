@@ -14,7 +14,7 @@ from typing import Any
 import numba
 import numpy as np
 
-from squeezefilm.contact.skin_motion import (
+from squeezefilm.contact.sliding.skin_motion import (
     HALVINGS,
     end_of_slip,
     first_rise,

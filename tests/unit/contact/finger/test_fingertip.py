@@ -10,10 +10,10 @@ import pytest
 from squeezefilm import presets
 from squeezefilm.config import load
 from squeezefilm.contact.asperities import AsperityLaw
-from squeezefilm.contact.finger import Finger
-from squeezefilm.contact.fingers import FINGERS, finger_preset
-from squeezefilm.contact.pad import ridge_points
-from squeezefilm.contact.skin import Skin
+from squeezefilm.contact.finger.fingertip import Finger
+from squeezefilm.contact.finger.named import FINGERS, finger_preset
+from squeezefilm.contact.finger.skin import Skin
+from squeezefilm.contact.sharing.pad import ridge_points
 from squeezefilm.display import Display, load_display
 from squeezefilm.errors import ConfigError, InputError
 

@@ -9,8 +9,8 @@ from typing import Literal, get_args
 import numpy as np
 
 from squeezefilm.contact.asperities import AsperityLaw
-from squeezefilm.contact.fingerpad import FingerpadDynamics
-from squeezefilm.contact.skin import Skin
+from squeezefilm.contact.finger.fingerpad import FingerpadDynamics
+from squeezefilm.contact.finger.skin import Skin
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import (
     CONTACT_LENGTH,

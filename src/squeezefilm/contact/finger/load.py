@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from squeezefilm.contact.asperities import AsperityLaw
-from squeezefilm.contact.skin import Skin
+from squeezefilm.contact.finger.skin import Skin
 from squeezefilm.film.closed.linear import relative_damping, relative_stiffness
 from squeezefilm.film.gap import squeeze_number
 from squeezefilm.materials import Gas

@@ -21,10 +21,10 @@ from typing import Annotated
 import numpy as np
 from numpy.typing import NDArray
 
-from squeezefilm.contact.dry_friction import DryFriction, FrictionProfile
-from squeezefilm.contact.fingerpad import FingerpadDynamics
-from squeezefilm.contact.occlusion import Occlusion
-from squeezefilm.contact.sliding_kernel import MOST_EVENTS, slide_march
+from squeezefilm.contact.finger.fingerpad import FingerpadDynamics
+from squeezefilm.contact.finger.occlusion import Occlusion
+from squeezefilm.contact.sliding.dry_friction import DryFriction, FrictionProfile
+from squeezefilm.contact.sliding.kernel import MOST_EVENTS, slide_march
 from squeezefilm.errors import ConvergenceError, InputError, OutOfRangeError
 from squeezefilm.quantities import (
     Dimensionless,

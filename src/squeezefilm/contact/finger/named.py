@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
-from squeezefilm.contact.finger import Finger
+from squeezefilm.contact.finger.fingertip import Finger
 from squeezefilm.errors import InputError
 from squeezefilm.quantities import did_you_mean
 

@@ -1,0 +1,1 @@
+"""The finger that slides, sticks and slips: dry friction, the march in time, what the skin does."""
