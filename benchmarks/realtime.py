@@ -29,11 +29,11 @@ from typing import Any
 
 import numpy as np
 
-from squeezefilm.render.compensation import DrivenEnvelope
-from squeezefilm.render.motion import MotionEstimator
-from squeezefilm.render.program import lower
-from squeezefilm.render.sensor import LVDT_10_KHZ
-from squeezefilm.render.texture import Square
+from squeezefilm.render.motion.estimator import MotionEstimator
+from squeezefilm.render.motion.sensor import LVDT_10_KHZ
+from squeezefilm.render.program.lowering import lower
+from squeezefilm.render.resonator.compensation import DrivenEnvelope
+from squeezefilm.render.texture.gratings import Square
 from squeezefilm.session import shared
 from squeezefilm.session.atomics import store_release
 from squeezefilm.session.lateness import Lateness

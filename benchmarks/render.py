@@ -19,16 +19,17 @@ from collections.abc import Callable
 
 import numpy as np
 
-from squeezefilm.render import interpreter, opcodes
-from squeezefilm.render.composition import Composable
-from squeezefilm.render.inverse import FrictionInverse
-from squeezefilm.render.levels import Amplitude, RelativeFriction
-from squeezefilm.render.pattern_gates import Attack, speed
-from squeezefilm.render.pattern_noise import Noise, NoiseField
-from squeezefilm.render.pattern_shapes import Band, Bump, Pulse, SineWave, SquareWave
-from squeezefilm.render.program import Program, lower
-from squeezefilm.render.renderer import Renderer, evaluate, new_state
-from squeezefilm.render.texture import Square
+from squeezefilm.render import opcodes
+from squeezefilm.render.program import interpreter
+from squeezefilm.render.program.inverse import FrictionInverse
+from squeezefilm.render.program.lowering import Program, lower
+from squeezefilm.render.program.renderer import Renderer, evaluate, new_state
+from squeezefilm.render.texture.composition import Composable
+from squeezefilm.render.texture.gates import Attack, speed
+from squeezefilm.render.texture.gratings import Square
+from squeezefilm.render.texture.levels import Amplitude, RelativeFriction
+from squeezefilm.render.texture.noise import Noise, NoiseField
+from squeezefilm.render.texture.shapes import Band, Bump, Pulse, SineWave, SquareWave
 
 INVERSE = FrictionInverse.from_function(lambda a: 0.3 + 0.7 * np.exp(-((a / 2e-6) ** 2)), 4e-6)
 
@@ -135,7 +136,7 @@ def table(count: int) -> None:
 def opcode_costs(count: int) -> None:
     """What one further instruction adds: the slope between programs with 1 and 33 of it."""
     print("\nWhat one instruction takes, ns (the slope between 8 and 40 in a row)")
-    from squeezefilm.render import layout as at
+    from squeezefilm.render.program import layout as at
 
     arrays = samples(count)
     head = program_of(Amplitude(SineWave(1e-3), 0.0, 1e-6)).array[: at.HEADER]

@@ -4,10 +4,10 @@ from squeezefilm.analysis.stroke_force import stroke_force
 from squeezefilm.contact.finger.fingerpad import EVIDENCE
 from squeezefilm.display import load_display
 from squeezefilm.prediction import predict
-from squeezefilm.render.envelope import envelope_time_constant
-from squeezefilm.render.stroke import Stroke
-from squeezefilm.render.texture import Square
-from squeezefilm.render.trace import friction_trace
+from squeezefilm.render.fidelity.trace import friction_trace
+from squeezefilm.render.motion.stroke import Stroke
+from squeezefilm.render.resonator.envelope import envelope_time_constant
+from squeezefilm.render.texture.gratings import Square
 
 
 def main() -> dict[str, float]:

@@ -2,11 +2,11 @@
 
 from squeezefilm.display import load_display
 from squeezefilm.prediction import predict
-from squeezefilm.render.envelope import envelope_time_constant
-from squeezefilm.render.fidelity import swing_kept
-from squeezefilm.render.stroke import Stroke
-from squeezefilm.render.texture import Square
-from squeezefilm.render.trace import friction_trace
+from squeezefilm.render.fidelity.survival import swing_kept
+from squeezefilm.render.fidelity.trace import friction_trace
+from squeezefilm.render.motion.stroke import Stroke
+from squeezefilm.render.resonator.envelope import envelope_time_constant
+from squeezefilm.render.texture.gratings import Square
 
 
 def main() -> dict[float, float]:

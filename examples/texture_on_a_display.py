@@ -4,14 +4,14 @@ import numpy as np
 
 from squeezefilm.display import load_display
 from squeezefilm.prediction import predict
-from squeezefilm.render.inverse import FrictionInverse
-from squeezefilm.render.levels import RelativeFriction
-from squeezefilm.render.pattern_gates import speed
-from squeezefilm.render.pattern_noise import Noise
-from squeezefilm.render.pattern_shapes import Band, Bump, SquareWave
-from squeezefilm.render.program import lower
-from squeezefilm.render.renderer import render
-from squeezefilm.render.wave import WaveCompensation
+from squeezefilm.render.program.inverse import FrictionInverse
+from squeezefilm.render.program.lowering import lower
+from squeezefilm.render.program.renderer import render
+from squeezefilm.render.program.wave import WaveCompensation
+from squeezefilm.render.texture.gates import speed
+from squeezefilm.render.texture.levels import RelativeFriction
+from squeezefilm.render.texture.noise import Noise
+from squeezefilm.render.texture.shapes import Band, Bump, SquareWave
 from squeezefilm.texture_file import texture_from_text, texture_text
 
 

@@ -3,12 +3,12 @@
 from squeezefilm.analysis.compensated_textures import driven_envelope
 from squeezefilm.display import load_display
 from squeezefilm.prediction import predict
-from squeezefilm.render.compensated_swing import fastest_compensated_speed
-from squeezefilm.render.fidelity_report import FidelityReport, fidelity_report
-from squeezefilm.render.rendered_stroke import rendered_stroke
-from squeezefilm.render.sensor import LVDT_10_KHZ
-from squeezefilm.render.stroke import Stroke
-from squeezefilm.render.texture import Square
+from squeezefilm.render.fidelity.rendered_stroke import rendered_stroke
+from squeezefilm.render.fidelity.report import FidelityReport, fidelity_report
+from squeezefilm.render.motion.sensor import LVDT_10_KHZ
+from squeezefilm.render.motion.stroke import Stroke
+from squeezefilm.render.resonator.square_swing import fastest_compensated_speed
+from squeezefilm.render.texture.gratings import Square
 
 
 def main() -> dict[str, FidelityReport]:

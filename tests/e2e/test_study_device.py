@@ -16,7 +16,7 @@ import pytest
 
 from squeezefilm.config.write import text_of
 from squeezefilm.errors import DeviceError
-from squeezefilm.render.sensor import LVDT_10_KHZ
+from squeezefilm.render.motion.sensor import LVDT_10_KHZ
 from squeezefilm.session import rows as column
 from squeezefilm.session.trace_reading import read_trace
 from squeezefilm.study.conduct import conduct

@@ -11,7 +11,7 @@ import pytest
 from squeezefilm.analysis.play_setup import PlaySetup, play_setup
 from squeezefilm.analysis.played_session import PlayedSession, judge_session
 from squeezefilm.display import Display, load_display
-from squeezefilm.render.sensor import LVDT_10_KHZ, TOUCH_PANEL_240_HZ, SensorModel
+from squeezefilm.render.motion.sensor import LVDT_10_KHZ, TOUCH_PANEL_240_HZ, SensorModel
 from squeezefilm.session import virtual_play as bench
 from squeezefilm.session.play import Ending, Player
 from squeezefilm.session.run_play import PlayOutcome

@@ -17,7 +17,7 @@ import numpy as np
 
 from squeezefilm.device.machine import Fault, Machine
 from squeezefilm.display import load_display
-from squeezefilm.render.sensor import LVDT_10_KHZ
+from squeezefilm.render.motion.sensor import LVDT_10_KHZ
 from squeezefilm.twin.device import TwinDevice
 from squeezefilm.twin.hand import hand_from
 from squeezefilm.twin.pty_server import PtyServer

@@ -71,22 +71,26 @@ from squeezefilm.plate.solid.working import SolidMode, solid_mode
 from squeezefilm.plate.sound import RadiatingSurface, rectangular_surface
 from squeezefilm.plate.working_mode import WorkingMode, working_mode
 from squeezefilm.quantities import Unit, unit_of
-from squeezefilm.render.compensation import CompensatedDrive, DrivenEnvelope, compensated_drive
-from squeezefilm.render.composition import Composable
-from squeezefilm.render.coordinate import AlongX, AlongY, Coordinate
-from squeezefilm.render.finger_path import FingerPath, OverPath
-from squeezefilm.render.inverse import FrictionInverse
-from squeezefilm.render.levels import Amplitude, RelativeFriction
-from squeezefilm.render.minimum_jerk import MinimumJerkStroke, Trajectory
-from squeezefilm.render.motion import MotionEstimator, MotionModel
-from squeezefilm.render.pattern import Pattern
-from squeezefilm.render.pattern_shapes import SineWave
-from squeezefilm.render.program import Program, lower
-from squeezefilm.render.renderer import Played, Renderer
-from squeezefilm.render.sensor import LVDT_10_KHZ, SensorModel, SensorStream, sensor_stream
-from squeezefilm.render.stroke import Stroke
-from squeezefilm.render.texture import Square, Texture
-from squeezefilm.render.wave import WaveCompensation
+from squeezefilm.render.motion.estimator import MotionEstimator, MotionModel
+from squeezefilm.render.motion.finger_path import FingerPath, OverPath
+from squeezefilm.render.motion.minimum_jerk import MinimumJerkStroke, Trajectory
+from squeezefilm.render.motion.sensor import LVDT_10_KHZ, SensorModel, SensorStream, sensor_stream
+from squeezefilm.render.motion.stroke import Stroke
+from squeezefilm.render.program.inverse import FrictionInverse
+from squeezefilm.render.program.lowering import Program, lower
+from squeezefilm.render.program.renderer import Played, Renderer
+from squeezefilm.render.program.wave import WaveCompensation
+from squeezefilm.render.resonator.compensation import (
+    CompensatedDrive,
+    DrivenEnvelope,
+    compensated_drive,
+)
+from squeezefilm.render.texture.composition import Composable
+from squeezefilm.render.texture.coordinate import AlongX, AlongY, Coordinate
+from squeezefilm.render.texture.gratings import Square, Texture
+from squeezefilm.render.texture.levels import Amplitude, RelativeFriction
+from squeezefilm.render.texture.pattern import Pattern
+from squeezefilm.render.texture.shapes import SineWave
 
 BRASS = ElasticMaterial("brass", 100e9, 0.35, 8500.0, 200.0)
 PZT = Piezoceramic("PZT", 67.9e9, 0.29, 23e9, 7700.0, -247e-12, 1900.0, 60.0)

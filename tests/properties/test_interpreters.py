@@ -15,13 +15,13 @@ from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 
 from squeezefilm.render import opcodes
-from squeezefilm.render.composition import Composable
-from squeezefilm.render.inverse import FrictionInverse
-from squeezefilm.render.levels import Amplitude, RelativeFriction
-from squeezefilm.render.pattern_noise import mixed
-from squeezefilm.render.program import Program, lower
-from squeezefilm.render.renderer import evaluate, render
-from squeezefilm.render.wave import WaveCompensation
+from squeezefilm.render.program.inverse import FrictionInverse
+from squeezefilm.render.program.lowering import Program, lower
+from squeezefilm.render.program.renderer import evaluate, render
+from squeezefilm.render.program.wave import WaveCompensation
+from squeezefilm.render.texture.composition import Composable
+from squeezefilm.render.texture.levels import Amplitude, RelativeFriction
+from squeezefilm.render.texture.noise import mixed
 
 from .texture_strategies import any_textures
 

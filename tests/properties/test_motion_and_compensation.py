@@ -9,10 +9,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from squeezefilm.quantities import FloatArray
-from squeezefilm.render import motion_kernel as kernel
-from squeezefilm.render.compensated_swing import square_swing_compensated
-from squeezefilm.render.compensation import DrivenEnvelope, compensated_drive
-from squeezefilm.render.motion import MotionEstimator, MotionModel
+from squeezefilm.render.motion import kernel
+from squeezefilm.render.motion.estimator import MotionEstimator, MotionModel
+from squeezefilm.render.resonator.compensation import DrivenEnvelope, compensated_drive
+from squeezefilm.render.resonator.square_swing import square_swing_compensated
 
 wishes = st.lists(st.floats(0.0, 2e-6), min_size=1, max_size=60).map(np.array)
 envelopes = st.builds(

@@ -6,15 +6,15 @@ import numpy as np
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from squeezefilm.render.envelope import (
+from squeezefilm.render.motion.stroke import Stroke
+from squeezefilm.render.resonator.envelope import (
     envelope_response,
     fastest_speed,
     finest_period,
     sine_swing_kept,
     square_swing_kept,
 )
-from squeezefilm.render.stroke import Stroke
-from squeezefilm.render.texture import Sine, Square
+from squeezefilm.render.texture.gratings import Sine, Square
 
 periods = st.floats(1e-4, 0.05)
 speeds = st.floats(1e-3, 1.0)

@@ -4,9 +4,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from squeezefilm.config.schema import family
-from squeezefilm.render.composition import Composable
-from squeezefilm.render.coordinate import Coordinate
-from squeezefilm.render.pattern import Pattern
+from squeezefilm.render.texture.composition import Composable
+from squeezefilm.render.texture.coordinate import Coordinate
+from squeezefilm.render.texture.pattern import Pattern
 from squeezefilm.texture_file import TextureFile, texture_from_text, texture_text
 
 from .texture_strategies import any_textures

@@ -14,7 +14,7 @@ from squeezefilm.device.machine import State
 from squeezefilm.device.safety import Limits
 from squeezefilm.display import load_display
 from squeezefilm.errors import InputError
-from squeezefilm.render.sensor import SensorModel, sensor_stream
+from squeezefilm.render.motion.sensor import SensorModel, sensor_stream
 from squeezefilm.twin.device import TwinDevice
 from squeezefilm.twin.hand import hand_from
 from squeezefilm.twin.plant import Plant

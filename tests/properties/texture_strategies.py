@@ -5,10 +5,27 @@ from __future__ import annotations
 import numpy as np
 from hypothesis import strategies as st
 
-from squeezefilm.render.composition import Composable, Masked, Product, Scaled, Sequence, Sum
-from squeezefilm.render.coordinate import X_AXIS, AlongDirection, AlongY, Coordinate, FromPoint
-from squeezefilm.render.levels import Amplitude, FrictionReduction, RelativeFriction
-from squeezefilm.render.pattern import (
+from squeezefilm.render.texture.composition import (
+    Composable,
+    Masked,
+    Product,
+    Scaled,
+    Sequence,
+    Sum,
+)
+from squeezefilm.render.texture.coordinate import (
+    X_AXIS,
+    AlongDirection,
+    AlongY,
+    Coordinate,
+    FromPoint,
+)
+from squeezefilm.render.texture.gates import Attack, Decay, Periodic, SpeedGate
+from squeezefilm.render.texture.gratings import Sine, Square
+from squeezefilm.render.texture.image import Image
+from squeezefilm.render.texture.levels import Amplitude, FrictionReduction, RelativeFriction
+from squeezefilm.render.texture.noise import Noise, NoiseField
+from squeezefilm.render.texture.pattern import (
     Complement,
     Greatest,
     Least,
@@ -16,10 +33,7 @@ from squeezefilm.render.pattern import (
     SpeedScaled,
     Times,
 )
-from squeezefilm.render.pattern_gates import Attack, Decay, Periodic, SpeedGate
-from squeezefilm.render.pattern_image import Image
-from squeezefilm.render.pattern_noise import Noise, NoiseField
-from squeezefilm.render.pattern_shapes import (
+from squeezefilm.render.texture.shapes import (
     Band,
     Bump,
     Constant,
@@ -28,7 +42,6 @@ from squeezefilm.render.pattern_shapes import (
     SineWave,
     SquareWave,
 )
-from squeezefilm.render.texture import Sine, Square
 
 shares = st.floats(0.0, 1.0)
 places = st.floats(-0.05, 0.05)

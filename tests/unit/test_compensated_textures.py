@@ -17,9 +17,9 @@ from squeezefilm.analysis.compensated_textures import (
 from squeezefilm.display import load_display
 from squeezefilm.errors import InputError
 from squeezefilm.prediction import Prediction, predict
-from squeezefilm.render.compensation import DrivenEnvelope
-from squeezefilm.render.minimum_jerk import MinimumJerkStroke
-from squeezefilm.render.sensor import LVDT_10_KHZ, TOUCH_PANEL_60_HZ
+from squeezefilm.render.motion.minimum_jerk import MinimumJerkStroke
+from squeezefilm.render.motion.sensor import LVDT_10_KHZ, TOUCH_PANEL_60_HZ
+from squeezefilm.render.resonator.compensation import DrivenEnvelope
 from squeezefilm.results import to_json
 
 # τ of the paper's plate as solved, and of its stator with the Q assumed for it.

@@ -22,8 +22,8 @@ from squeezefilm.plate.solid.mesh import plate_model
 from squeezefilm.plate.solid.modes import check_band
 from squeezefilm.presets import path as preset_path
 from squeezefilm.quantities import Unit
-from squeezefilm.render.minimum_jerk import MinimumJerkStroke
-from squeezefilm.render.stroke import Stroke
+from squeezefilm.render.motion.minimum_jerk import MinimumJerkStroke
+from squeezefilm.render.motion.stroke import Stroke
 from squeezefilm.study.design import load_design
 from squeezefilm.study.plan import plan_study
 

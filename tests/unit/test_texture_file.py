@@ -5,12 +5,12 @@ from pathlib import Path
 import pytest
 
 from squeezefilm.errors import ConfigError, InputError
-from squeezefilm.render.coordinate import AlongDirection
-from squeezefilm.render.levels import Amplitude, RelativeFriction
-from squeezefilm.render.pattern import Complement, Pattern, Times
-from squeezefilm.render.pattern_image import Image
-from squeezefilm.render.pattern_noise import Noise
-from squeezefilm.render.pattern_shapes import Band, SquareWave
+from squeezefilm.render.texture.coordinate import AlongDirection
+from squeezefilm.render.texture.image import Image
+from squeezefilm.render.texture.levels import Amplitude, RelativeFriction
+from squeezefilm.render.texture.noise import Noise
+from squeezefilm.render.texture.pattern import Complement, Pattern, Times
+from squeezefilm.render.texture.shapes import Band, SquareWave
 from squeezefilm.texture_file import (
     TextureFile,
     load_texture,

@@ -9,21 +9,25 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import minimize
 
-from squeezefilm.render import compensation_kernel as kernel
-from squeezefilm.render.carrier import carrier_trace, hold_gain, resonator_response
-from squeezefilm.render.compensated_swing import (
-    fastest_compensated_speed,
-    least_cycle,
-    square_swing_compensated,
-)
-from squeezefilm.render.compensation import (
+from squeezefilm.render.resonator import kernel
+from squeezefilm.render.resonator.carrier import carrier_trace, hold_gain, resonator_response
+from squeezefilm.render.resonator.compensation import (
     DrivenEnvelope,
     compensated_drive,
     preview_work,
     slew_time,
 )
-from squeezefilm.render.envelope import envelope_response, envelope_time_constant, finest_period
-from squeezefilm.render.envelope import square_swing_kept as bare_swing
+from squeezefilm.render.resonator.envelope import (
+    envelope_response,
+    envelope_time_constant,
+    finest_period,
+)
+from squeezefilm.render.resonator.envelope import square_swing_kept as bare_swing
+from squeezefilm.render.resonator.square_swing import (
+    fastest_compensated_speed,
+    least_cycle,
+    square_swing_compensated,
+)
 
 # The paper's plate: solved resonance and assumed Q (docs/models.md); limits in units of a_max.
 FREQUENCY, Q = 33.583e3, 60.0

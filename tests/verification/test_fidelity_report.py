@@ -9,16 +9,16 @@ import numpy as np
 import pytest
 
 from squeezefilm.quantities import FloatArray
-from squeezefilm.render.compensated_swing import square_swing_compensated
-from squeezefilm.render.compensation import DrivenEnvelope
-from squeezefilm.render.envelope import sine_swing_kept
-from squeezefilm.render.fidelity_report import fidelity_report
-from squeezefilm.render.minimum_jerk import MinimumJerkStroke
-from squeezefilm.render.motion import MotionEstimator
-from squeezefilm.render.rendered_stroke import RenderedStroke, rendered_stroke
-from squeezefilm.render.sensor import LVDT_10_KHZ, SENSORS, SensorModel
-from squeezefilm.render.stroke import Stroke
-from squeezefilm.render.texture import Sine, Square
+from squeezefilm.render.fidelity.rendered_stroke import RenderedStroke, rendered_stroke
+from squeezefilm.render.fidelity.report import fidelity_report
+from squeezefilm.render.motion.estimator import MotionEstimator
+from squeezefilm.render.motion.minimum_jerk import MinimumJerkStroke
+from squeezefilm.render.motion.sensor import LVDT_10_KHZ, SENSORS, SensorModel
+from squeezefilm.render.motion.stroke import Stroke
+from squeezefilm.render.resonator.compensation import DrivenEnvelope
+from squeezefilm.render.resonator.envelope import sine_swing_kept
+from squeezefilm.render.resonator.square_swing import square_swing_compensated
+from squeezefilm.render.texture.gratings import Sine, Square
 
 LIMIT, TAU = 1e-6, 0.57e-3
 FREE = DrivenEnvelope(TAU, TAU, 100 * LIMIT, braking=True)

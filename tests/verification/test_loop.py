@@ -14,23 +14,23 @@ from typing import Literal
 import numpy as np
 import pytest
 
-from squeezefilm.render.compensation import DrivenEnvelope
-from squeezefilm.render.composition import Composable
-from squeezefilm.render.levels import Amplitude
-from squeezefilm.render.minimum_jerk import MinimumJerkStroke
-from squeezefilm.render.motion import MotionEstimator
-from squeezefilm.render.pattern_gates import Periodic, SpeedGate
-from squeezefilm.render.pattern_noise import Noise
-from squeezefilm.render.program import lower
-from squeezefilm.render.rendered_stroke import RenderedStroke, rendered_stroke
-from squeezefilm.render.sensor import (
+from squeezefilm.render.fidelity.rendered_stroke import RenderedStroke, rendered_stroke
+from squeezefilm.render.motion.estimator import MotionEstimator
+from squeezefilm.render.motion.minimum_jerk import MinimumJerkStroke
+from squeezefilm.render.motion.sensor import (
     LVDT_10_KHZ,
     TOUCH_PANEL_60_HZ,
     TOUCH_PANEL_240_HZ,
     SensorModel,
     sensor_stream,
 )
-from squeezefilm.render.texture import Sine, Square
+from squeezefilm.render.program.lowering import lower
+from squeezefilm.render.resonator.compensation import DrivenEnvelope
+from squeezefilm.render.texture.composition import Composable
+from squeezefilm.render.texture.gates import Periodic, SpeedGate
+from squeezefilm.render.texture.gratings import Sine, Square
+from squeezefilm.render.texture.levels import Amplitude
+from squeezefilm.render.texture.noise import Noise
 from squeezefilm.session import rows as column
 from squeezefilm.session.lateness import CLASSES, lateness_class
 from squeezefilm.session.plan import DriveTable, FrictionTable, LoopPlan

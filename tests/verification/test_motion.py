@@ -10,15 +10,15 @@ import pytest
 import scipy.linalg
 
 from squeezefilm.quantities import FloatArray
-from squeezefilm.render import motion_kernel as kernel
-from squeezefilm.render.minimum_jerk import MinimumJerkStroke
-from squeezefilm.render.motion import (
+from squeezefilm.render.motion import kernel
+from squeezefilm.render.motion.estimator import (
     MotionEstimator,
     MotionModel,
     estimate_motion,
     prediction_deviation,
 )
-from squeezefilm.render.sensor import LVDT_10_KHZ, SensorModel, SensorStream, sensor_stream
+from squeezefilm.render.motion.minimum_jerk import MinimumJerkStroke
+from squeezefilm.render.motion.sensor import LVDT_10_KHZ, SensorModel, SensorStream, sensor_stream
 
 MODELS = {
     "white acceleration": MotionModel.white_acceleration(0.05),

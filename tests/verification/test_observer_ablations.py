@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.display import Display, load_display
-from squeezefilm.render.sensor import LVDT_10_KHZ
+from squeezefilm.render.motion.sensor import LVDT_10_KHZ
 from squeezefilm.study.chain import ChainTables, chain_tables
 from squeezefilm.study.design import StudyDesign, load_design
 from squeezefilm.study.observer import Observer, load_observer

@@ -5,7 +5,10 @@ import math
 import numpy as np
 import pytest
 
-from squeezefilm.render.envelope import (
+from squeezefilm.render.fidelity.survival import fidelity_table, swing_kept
+from squeezefilm.render.fidelity.trace import friction_trace
+from squeezefilm.render.motion.stroke import Stroke
+from squeezefilm.render.resonator.envelope import (
     envelope_bandwidth,
     envelope_response,
     envelope_time_constant,
@@ -13,10 +16,7 @@ from squeezefilm.render.envelope import (
     sine_swing_kept,
     square_swing_kept,
 )
-from squeezefilm.render.fidelity import fidelity_table, swing_kept
-from squeezefilm.render.stroke import Stroke
-from squeezefilm.render.texture import Sine, Square
-from squeezefilm.render.trace import friction_trace
+from squeezefilm.render.texture.gratings import Sine, Square
 
 LOW, HIGH = 0.2e-6, 2e-6
 

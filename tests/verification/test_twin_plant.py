@@ -11,9 +11,9 @@ from scipy.integrate import solve_ivp
 from squeezefilm.display import load_display
 from squeezefilm.plate.working_mode import resonance_factor
 from squeezefilm.prediction import predict
-from squeezefilm.render.carrier import carrier_trace
-from squeezefilm.render.envelope import envelope_time_constant
-from squeezefilm.render.stroke import Stroke
+from squeezefilm.render.motion.stroke import Stroke
+from squeezefilm.render.resonator.carrier import carrier_trace
+from squeezefilm.render.resonator.envelope import envelope_time_constant
 from squeezefilm.twin.envelope_step import envelope_step, voltage_given
 from squeezefilm.twin.hand import Hand
 from squeezefilm.twin.plant import Plant

@@ -42,11 +42,11 @@ from squeezefilm.plate.solid.working import solid_mode
 from squeezefilm.plate.working_mode import PlateTheory
 from squeezefilm.prediction import Prediction, predict
 from squeezefilm.quantities import Hertz, Metre, Newton, Second, Volt
-from squeezefilm.render.envelope import envelope_bandwidth, envelope_time_constant
-from squeezefilm.render.fidelity import FidelityTable, fidelity_table
-from squeezefilm.render.stroke import Stroke
-from squeezefilm.render.texture import Square
-from squeezefilm.render.trace import FrictionTrace, friction_trace
+from squeezefilm.render.fidelity.survival import FidelityTable, fidelity_table
+from squeezefilm.render.fidelity.trace import FrictionTrace, friction_trace
+from squeezefilm.render.motion.stroke import Stroke
+from squeezefilm.render.resonator.envelope import envelope_bandwidth, envelope_time_constant
+from squeezefilm.render.texture.gratings import Square
 from squeezefilm.results import stamp, to_json
 
 Progress = Callable[[str], None]

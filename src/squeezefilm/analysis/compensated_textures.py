@@ -22,14 +22,18 @@ from squeezefilm.quantities import (
     Volt,
     require,
 )
-from squeezefilm.render.compensated_swing import fastest_compensated_speed, least_cycle
-from squeezefilm.render.compensation import CompensatedDrive, DrivenEnvelope, compensated_drive
-from squeezefilm.render.fidelity_report import FidelityReport, fidelity_report
-from squeezefilm.render.minimum_jerk import MinimumJerkStroke, Trajectory
-from squeezefilm.render.rendered_stroke import rendered_stroke
-from squeezefilm.render.sensor import SENSORS, SensorModel
-from squeezefilm.render.texture import Sine
-from squeezefilm.render.trace import RelativeFriction
+from squeezefilm.render.fidelity.rendered_stroke import rendered_stroke
+from squeezefilm.render.fidelity.report import FidelityReport, fidelity_report
+from squeezefilm.render.fidelity.trace import RelativeFriction
+from squeezefilm.render.motion.minimum_jerk import MinimumJerkStroke, Trajectory
+from squeezefilm.render.motion.sensor import SENSORS, SensorModel
+from squeezefilm.render.resonator.compensation import (
+    CompensatedDrive,
+    DrivenEnvelope,
+    compensated_drive,
+)
+from squeezefilm.render.resonator.square_swing import fastest_compensated_speed, least_cycle
+from squeezefilm.render.texture.gratings import Sine
 
 _STEPS_PER_PERIOD = 1000
 _PERIODS = 8

@@ -27,11 +27,11 @@ from squeezefilm.errors import InputError
 from squeezefilm.formats.trajectories import motion_from, read_trajectory
 from squeezefilm.prediction import predict
 from squeezefilm.quantities import FloatArray, Hertz, MetrePerVolt, Second, Unit, Volt, require
-from squeezefilm.render.compensation import DrivenEnvelope
-from squeezefilm.render.motion import MotionEstimator
-from squeezefilm.render.program import lower
-from squeezefilm.render.sensor import LVDT_10_KHZ, SensorModel
-from squeezefilm.render.texture import Square
+from squeezefilm.render.motion.estimator import MotionEstimator
+from squeezefilm.render.motion.sensor import LVDT_10_KHZ, SensorModel
+from squeezefilm.render.program.lowering import lower
+from squeezefilm.render.resonator.compensation import DrivenEnvelope
+from squeezefilm.render.texture.gratings import Square
 from squeezefilm.results import stamp
 from squeezefilm.session.conversation import Conversation
 from squeezefilm.session.device_check import DeviceCheck, check_device

@@ -23,12 +23,12 @@ from squeezefilm.quantities import (
     Second,
     Volt,
 )
-from squeezefilm.render.compensation import DrivenEnvelope
-from squeezefilm.render.envelope import envelope_time_constant
-from squeezefilm.render.inverse import FrictionInverse
-from squeezefilm.render.motion import MotionEstimator
-from squeezefilm.render.program import lower
-from squeezefilm.render.sensor import SensorModel
+from squeezefilm.render.motion.estimator import MotionEstimator
+from squeezefilm.render.motion.sensor import SensorModel
+from squeezefilm.render.program.inverse import FrictionInverse
+from squeezefilm.render.program.lowering import lower
+from squeezefilm.render.resonator.compensation import DrivenEnvelope
+from squeezefilm.render.resonator.envelope import envelope_time_constant
 from squeezefilm.session.plan import DriveTable, FrictionTable, LoopPlan
 from squeezefilm.session.play import REPORT_PERIOD, PlayPlan
 from squeezefilm.session.tick import make_tick

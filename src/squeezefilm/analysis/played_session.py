@@ -31,9 +31,9 @@ from squeezefilm.quantities import (
     SecondArray,
     SecondLike,
 )
-from squeezefilm.render.fidelity_report import FidelityReport, fidelity_report
-from squeezefilm.render.rendered_stroke import RenderedStroke
-from squeezefilm.render.renderer import render
+from squeezefilm.render.fidelity.rendered_stroke import RenderedStroke
+from squeezefilm.render.fidelity.report import FidelityReport, fidelity_report
+from squeezefilm.render.program.renderer import render
 from squeezefilm.results import to_json
 from squeezefilm.session import rows as column
 from squeezefilm.session.trace_reading import Trace

@@ -30,16 +30,16 @@ from squeezefilm.quantities import (
     Unit,
     format_quantity,
 )
-from squeezefilm.render.composition import Composable
-from squeezefilm.render.finger_path import FingerPath, OverPath
-from squeezefilm.render.inverse import FrictionInverse
-from squeezefilm.render.minimum_jerk import MinimumJerkStroke, Trajectory
-from squeezefilm.render.pattern import SpeedScaled
-from squeezefilm.render.pattern_image import Image
-from squeezefilm.render.program import Program
-from squeezefilm.render.renderer import evaluate
-from squeezefilm.render.stroke import Stroke
-from squeezefilm.render.wave import WaveCompensation
+from squeezefilm.render.motion.finger_path import FingerPath, OverPath
+from squeezefilm.render.motion.minimum_jerk import MinimumJerkStroke, Trajectory
+from squeezefilm.render.motion.stroke import Stroke
+from squeezefilm.render.program.inverse import FrictionInverse
+from squeezefilm.render.program.lowering import Program
+from squeezefilm.render.program.renderer import evaluate
+from squeezefilm.render.program.wave import WaveCompensation
+from squeezefilm.render.texture.composition import Composable
+from squeezefilm.render.texture.image import Image
+from squeezefilm.render.texture.pattern import SpeedScaled
 
 _METRE = Unit("m")
 

@@ -41,17 +41,17 @@ from squeezefilm.quantities import (
     Volt,
     did_you_mean,
 )
-from squeezefilm.render.compensation import COMPENSATIONS, Compensation, DrivenEnvelope
-from squeezefilm.render.coordinate import AlongX, AlongY
-from squeezefilm.render.envelope import envelope_time_constant
-from squeezefilm.render.fidelity_report import FidelityReport, fidelity_report
-from squeezefilm.render.inverse import FrictionInverse
-from squeezefilm.render.program import Program, lower
-from squeezefilm.render.rendered_stroke import RenderedStroke, rendered_stroke
-from squeezefilm.render.renderer import Counters, render
-from squeezefilm.render.sensor import SENSORS, SensorModel
-from squeezefilm.render.stroke import Stroke
-from squeezefilm.render.wave import WaveCompensation
+from squeezefilm.render.fidelity.rendered_stroke import RenderedStroke, rendered_stroke
+from squeezefilm.render.fidelity.report import FidelityReport, fidelity_report
+from squeezefilm.render.motion.sensor import SENSORS, SensorModel
+from squeezefilm.render.motion.stroke import Stroke
+from squeezefilm.render.program.inverse import FrictionInverse
+from squeezefilm.render.program.lowering import Program, lower
+from squeezefilm.render.program.renderer import Counters, render
+from squeezefilm.render.program.wave import WaveCompensation
+from squeezefilm.render.resonator.compensation import COMPENSATIONS, Compensation, DrivenEnvelope
+from squeezefilm.render.resonator.envelope import envelope_time_constant
+from squeezefilm.render.texture.coordinate import AlongX, AlongY
 from squeezefilm.results import stamp, to_json
 from squeezefilm.texture_file import TextureFile
 

@@ -17,8 +17,8 @@ from squeezefilm.contact.sliding.skin_vibration import (
 )
 from squeezefilm.errors import InputError
 from squeezefilm.quantities import Dimensionless, Newton, NewtonLike, Second, Unit, require
-from squeezefilm.render.texture import Sine, Square
-from squeezefilm.render.trace import FrictionTrace
+from squeezefilm.render.fidelity.trace import FrictionTrace
+from squeezefilm.render.texture.gratings import Sine, Square
 
 # Of the skin's slower time constant: what is left of a start by then is 1 %.
 _SETTLING = 5.0

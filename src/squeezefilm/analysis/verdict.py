@@ -12,7 +12,7 @@ from squeezefilm.analysis.film_models import FilmComparison
 from squeezefilm.display import Display
 from squeezefilm.prediction import Prediction
 from squeezefilm.quantities import Dimensionless, Metre
-from squeezefilm.render.fidelity import FidelityTable
+from squeezefilm.render.fidelity.survival import FidelityTable
 
 # Below this drop of the relative friction a difference is not noticed: Fehlberg 2022 reports about
 # 0.2; the paper asks for 0.3.

@@ -37,10 +37,10 @@ from squeezefilm.quantities import (
     checked_numbers,
     require,
 )
-from squeezefilm.render.composition import Composable, require_texture
-from squeezefilm.render.coordinate import AlongX
-from squeezefilm.render.levels import RelativeFriction
-from squeezefilm.render.pattern_shapes import SineWave, SquareWave
+from squeezefilm.render.texture.composition import Composable, require_texture
+from squeezefilm.render.texture.coordinate import AlongX
+from squeezefilm.render.texture.levels import RelativeFriction
+from squeezefilm.render.texture.shapes import SineWave, SquareWave
 
 VERSION, PROFILE, LEVEL, TIMESCALE = "2023", "Main", 1, 1000
 MICRO, MILLI = -6, -3

@@ -27,10 +27,10 @@ from squeezefilm.quantities import (
     checked_numbers,
 )
 from squeezefilm.regular_file import read_regular_text
-from squeezefilm.render.levels import RelativeFriction
-from squeezefilm.render.pattern import Pattern
-from squeezefilm.render.pattern_image import MOST_PIXELS, Image
-from squeezefilm.render.pattern_shapes import SineWave, SquareWave
+from squeezefilm.render.texture.image import MOST_PIXELS, Image
+from squeezefilm.render.texture.levels import RelativeFriction
+from squeezefilm.render.texture.pattern import Pattern
+from squeezefilm.render.texture.shapes import SineWave, SquareWave
 
 _COARSE: Metre = 10e-6
 _SIGNALS = ("Sine", "Square", "Triangle", "SawToothUp", "SawToothDown")

@@ -19,8 +19,8 @@ from squeezefilm.errors import InputError
 from squeezefilm.formats.pictures import read_picture
 from squeezefilm.quantities import FloatArray, Metre, Unit, checked_numbers, require
 from squeezefilm.render.opcodes import Assembler
-from squeezefilm.render.pattern import Pattern
-from squeezefilm.render.pattern_image import OUTSIDE, Image
+from squeezefilm.render.texture.image import OUTSIDE, Image
+from squeezefilm.render.texture.pattern import Pattern
 
 
 @checked_numbers

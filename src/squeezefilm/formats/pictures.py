@@ -19,7 +19,7 @@ from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import PICTURE_BYTES
 from squeezefilm.quantities import DimensionlessArray, require
 from squeezefilm.regular_file import read_regular
-from squeezefilm.render.pattern_image import MOST_PIXELS
+from squeezefilm.render.texture.image import MOST_PIXELS
 
 _SIGNATURE = b"\x89PNG\r\n\x1a\n"
 _KINDS = {0: "greyscale", 2: "colour", 3: "colour from a palette", 4: "greyscale with alpha",

@@ -29,9 +29,9 @@ from squeezefilm.quantities import (
     did_you_mean,
     parse_quantity,
 )
-from squeezefilm.render.finger_path import FingerPath
-from squeezefilm.render.minimum_jerk import MinimumJerkStroke
-from squeezefilm.render.stroke import Stroke
+from squeezefilm.render.motion.finger_path import FingerPath
+from squeezefilm.render.motion.minimum_jerk import MinimumJerkStroke
+from squeezefilm.render.motion.stroke import Stroke
 
 Motion = Stroke | MinimumJerkStroke | FingerPath
 """What a finger does, however it was said."""

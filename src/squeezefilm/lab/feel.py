@@ -23,9 +23,9 @@ from squeezefilm.lab.design import predicted
 from squeezefilm.plate.layout import Actuator, DiscPlate, RectangularPlate
 from squeezefilm.prediction import Prediction
 from squeezefilm.quantities import FloatArray, Metre
-from squeezefilm.render.inverse import FrictionInverse
-from squeezefilm.render.program import Program
-from squeezefilm.render.renderer import render
+from squeezefilm.render.program.inverse import FrictionInverse
+from squeezefilm.render.program.lowering import Program
+from squeezefilm.render.program.renderer import render
 from squeezefilm.results import stamp
 from squeezefilm.texture_file import TextureFile, preset_texture, texture_from_text
 

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from squeezefilm.render.fidelity import PAPER_PERIODS
-from squeezefilm.render.minimum_jerk import MinimumJerkStroke
+from squeezefilm.render.fidelity.survival import PAPER_PERIODS
+from squeezefilm.render.motion.minimum_jerk import MinimumJerkStroke
 from squeezefilm.report.numbers import M, S, shown
 from squeezefilm.report.style import (
     INK,

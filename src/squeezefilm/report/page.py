@@ -24,7 +24,7 @@ from squeezefilm.results import to_json, write_whole
 
 if TYPE_CHECKING:
     from squeezefilm.analysis.analyze import Analysis
-    from squeezefilm.render.trace import FrictionTrace
+    from squeezefilm.render.fidelity.trace import FrictionTrace
 
 # More samples of a trace than a reader can use would make megabytes of text.
 _MOST_SAMPLES = 4000

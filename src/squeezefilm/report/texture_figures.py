@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from squeezefilm.render.texture import Sine, Square
+from squeezefilm.render.texture.gratings import Sine, Square
 from squeezefilm.report.numbers import M, S, shown
 from squeezefilm.report.style import (
     BLUE,
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from squeezefilm.analysis.analyze import Analysis
     from squeezefilm.quantities import FloatArray
-    from squeezefilm.render.trace import FrictionTrace
+    from squeezefilm.render.fidelity.trace import FrictionTrace
 
 _NOTHING = (
     "The amplitude at the working point changes no friction, so there is no texture to draw: raise "

@@ -21,11 +21,11 @@ from squeezefilm.quantities import (
     VoltArray,
     require,
 )
-from squeezefilm.render import motion_kernel
-from squeezefilm.render.compensation import DrivenEnvelope
-from squeezefilm.render.motion import MotionEstimator
-from squeezefilm.render.program import Program
-from squeezefilm.render.renderer import new_state
+from squeezefilm.render.motion import kernel as motion_kernel
+from squeezefilm.render.motion.estimator import MotionEstimator
+from squeezefilm.render.program.lowering import Program
+from squeezefilm.render.program.renderer import new_state
+from squeezefilm.render.resonator.compensation import DrivenEnvelope
 from squeezefilm.session.rows import COLUMNS, COMMAND_COLUMNS, SAMPLE_COLUMNS
 
 Array = np.ndarray[Any, Any]

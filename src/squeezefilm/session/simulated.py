@@ -19,7 +19,7 @@ from squeezefilm.quantities import (
     Unit,
     require,
 )
-from squeezefilm.render.sensor import SensorStream
+from squeezefilm.render.motion.sensor import SensorStream
 from squeezefilm.session import plan as at
 from squeezefilm.session import shared
 from squeezefilm.session.lateness import Lateness

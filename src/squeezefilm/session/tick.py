@@ -14,10 +14,12 @@ from typing import Any
 import numba
 import numpy as np
 
-from squeezefilm.render import compensation_kernel, layout, motion_kernel
-from squeezefilm.render.compensation_kernel import compensated_step, envelope_step
-from squeezefilm.render.interpreter import tick as rendered_amplitude
-from squeezefilm.render.motion_kernel import motion_at, motion_step
+from squeezefilm.render.motion import kernel as motion_kernel
+from squeezefilm.render.motion.kernel import motion_at, motion_step
+from squeezefilm.render.program import layout
+from squeezefilm.render.program.interpreter import tick as rendered_amplitude
+from squeezefilm.render.resonator import kernel as compensation_kernel
+from squeezefilm.render.resonator.kernel import compensated_step, envelope_step
 from squeezefilm.session import plan as at
 from squeezefilm.session import rows as column
 from squeezefilm.session.ring import DROPPED, ring_put, ring_take

@@ -17,8 +17,8 @@ from squeezefilm.quantities import (
     format_quantity,
     require,
 )
-from squeezefilm.render.program import Program
-from squeezefilm.render.renderer import render
+from squeezefilm.render.program.lowering import Program
+from squeezefilm.render.program.renderer import render
 from squeezefilm.session.plan import DriveTable
 
 _METRE = Unit("m")

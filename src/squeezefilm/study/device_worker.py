@@ -34,7 +34,7 @@ from squeezefilm.errors import SqueezefilmError
 from squeezefilm.formats.traces import Table, csv_text
 from squeezefilm.prediction import predict
 from squeezefilm.quantities import Dimensionless, FloatArray, Hertz, MetrePerVolt, Second
-from squeezefilm.render.sensor import LVDT_10_KHZ
+from squeezefilm.render.motion.sensor import LVDT_10_KHZ
 from squeezefilm.results import stamp
 from squeezefilm.session import rows as column
 from squeezefilm.session.play import Ending, PlayView

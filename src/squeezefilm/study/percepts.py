@@ -25,8 +25,8 @@ from squeezefilm.quantities import (
     Unit,
     require,
 )
-from squeezefilm.render.minimum_jerk import MinimumJerkStroke
-from squeezefilm.render.sensor import LVDT_10_KHZ, SensorModel
+from squeezefilm.render.motion.minimum_jerk import MinimumJerkStroke
+from squeezefilm.render.motion.sensor import LVDT_10_KHZ, SensorModel
 from squeezefilm.study.observer import FingerClass, Observer
 from squeezefilm.study.senses import (
     SETTLING,

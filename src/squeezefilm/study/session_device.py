@@ -18,7 +18,7 @@ from typing import Any, Self
 from squeezefilm.display import load_display
 from squeezefilm.errors import DeviceError, InputError
 from squeezefilm.quantities import Hertz, MetrePerVolt, Second
-from squeezefilm.render.sensor import LVDT_10_KHZ
+from squeezefilm.render.motion.sensor import LVDT_10_KHZ
 from squeezefilm.results import config_hash
 from squeezefilm.study.device import DeviceIdentity, DeviceVerification, Exploration
 from squeezefilm.study.device_worker import WorkerOrders, serve

@@ -13,11 +13,11 @@ from typing import Any, Literal
 
 from squeezefilm.errors import InputError
 from squeezefilm.quantities import Dimensionless, Metre, Radian, Unit, did_you_mean, require
-from squeezefilm.render.composition import Composable
-from squeezefilm.render.coordinate import FARTHEST, FINEST, AlongDirection
-from squeezefilm.render.levels import RelativeFriction
-from squeezefilm.render.pattern import Pattern
-from squeezefilm.render.pattern_shapes import SineWave, SquareWave
+from squeezefilm.render.texture.composition import Composable
+from squeezefilm.render.texture.coordinate import FARTHEST, FINEST, AlongDirection
+from squeezefilm.render.texture.levels import RelativeFriction
+from squeezefilm.render.texture.pattern import Pattern
+from squeezefilm.render.texture.shapes import SineWave, SquareWave
 
 PeriodMeans = Literal["period", "groove width"]
 Waveform = Literal["square", "sine", "constant"]

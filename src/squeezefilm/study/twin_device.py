@@ -15,7 +15,7 @@ from squeezefilm.display import Display
 from squeezefilm.formats.traces import Table, csv_text
 from squeezefilm.friction import friction_law
 from squeezefilm.quantities import FloatArray, Hertz, Second
-from squeezefilm.render.composition import Composable
+from squeezefilm.render.texture.composition import Composable
 from squeezefilm.results import config_hash, to_json
 from squeezefilm.session.resonance_sweep import peak
 from squeezefilm.study.device import DeviceIdentity, DeviceVerification, Exploration

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from squeezefilm.errors import InputError
 from squeezefilm.formats.trajectories import Motion, motion_from
 from squeezefilm.quantities import FloatArray, Newton, Second, Unit, require
-from squeezefilm.render.finger_path import FingerPath
+from squeezefilm.render.motion.finger_path import FingerPath
 
 Array = np.ndarray[Any, Any]
 

@@ -27,7 +27,7 @@ from squeezefilm.quantities import (
     VoltPerSecond,
     require,
 )
-from squeezefilm.render.sensor import TOUCH_PANEL_240_HZ, SensorModel
+from squeezefilm.render.motion.sensor import TOUCH_PANEL_240_HZ, SensorModel
 
 PerKelvin = Annotated[float, Unit("1/K")]
 PerSecond = Annotated[float, Unit("1/s")]

@@ -19,9 +19,9 @@ from squeezefilm.contact.sliding.skin_vibration import (
     texture_frequency,
 )
 from squeezefilm.errors import InputError, OutOfRangeError
-from squeezefilm.render.stroke import Stroke
-from squeezefilm.render.texture import Square
-from squeezefilm.render.trace import friction_trace
+from squeezefilm.render.fidelity.trace import friction_trace
+from squeezefilm.render.motion.stroke import Stroke
+from squeezefilm.render.texture.gratings import Square
 
 DT = 1e-4
 BONE = 0.08 * DT * np.arange(2000)

@@ -11,12 +11,12 @@ import pytest
 from squeezefilm.errors import InputError
 from squeezefilm.formats.hjif import HjifExport, ReferenceDevice, hjif_of
 from squeezefilm.formats.hjif_read import friction_along, read_hjif, require_hjif, texture_of_hjif
-from squeezefilm.render.composition import Composable
-from squeezefilm.render.coordinate import AlongY
-from squeezefilm.render.levels import Amplitude, RelativeFriction
-from squeezefilm.render.pattern import Pattern
-from squeezefilm.render.pattern_noise import Noise
-from squeezefilm.render.pattern_shapes import Band, Bump, Pulse, Ramp, SineWave, SquareWave
+from squeezefilm.render.texture.composition import Composable
+from squeezefilm.render.texture.coordinate import AlongY
+from squeezefilm.render.texture.levels import Amplitude, RelativeFriction
+from squeezefilm.render.texture.noise import Noise
+from squeezefilm.render.texture.pattern import Pattern
+from squeezefilm.render.texture.shapes import Band, Bump, Pulse, Ramp, SineWave, SquareWave
 
 DEVICE = ReferenceDevice("biet2008-plate", 33.6e3, 15.0, 1.7e-6)
 X = np.linspace(3e-3, 37e-3, 9973)

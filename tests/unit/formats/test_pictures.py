@@ -10,7 +10,7 @@ import pytest
 from squeezefilm.errors import ConfigError, InputError
 from squeezefilm.formats.image_file import ImageFile
 from squeezefilm.formats.pictures import picture_bytes, picture_from, read_picture
-from squeezefilm.render.pattern_image import MOST_PIXELS
+from squeezefilm.render.texture.image import MOST_PIXELS
 from squeezefilm.texture_file import load_texture, texture_from_text
 
 GRID = np.random.default_rng(5).random((7, 11))

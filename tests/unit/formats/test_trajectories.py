@@ -8,9 +8,9 @@ import pytest
 
 from squeezefilm.errors import ConfigError, InputError
 from squeezefilm.formats.trajectories import motion_from, read_trajectory, stroke_from_text
-from squeezefilm.render.finger_path import FingerPath, OverPath
-from squeezefilm.render.minimum_jerk import MinimumJerkStroke
-from squeezefilm.render.stroke import Stroke
+from squeezefilm.render.motion.finger_path import FingerPath, OverPath
+from squeezefilm.render.motion.minimum_jerk import MinimumJerkStroke
+from squeezefilm.render.motion.stroke import Stroke
 
 
 def test_strokes_in_words() -> None:

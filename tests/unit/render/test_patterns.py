@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from squeezefilm.errors import InputError
-from squeezefilm.render.coordinate import AlongDirection, AlongY, FromPoint
-from squeezefilm.render.pattern import Pattern
-from squeezefilm.render.pattern_gates import Attack, Decay, Periodic, SpeedGate, speed
-from squeezefilm.render.pattern_image import Image
-from squeezefilm.render.pattern_noise import Noise, NoiseField
-from squeezefilm.render.pattern_shapes import (
+from squeezefilm.render.texture.coordinate import AlongDirection, AlongY, FromPoint
+from squeezefilm.render.texture.gates import Attack, Decay, Periodic, SpeedGate, speed
+from squeezefilm.render.texture.image import Image
+from squeezefilm.render.texture.noise import Noise, NoiseField
+from squeezefilm.render.texture.pattern import Pattern
+from squeezefilm.render.texture.shapes import (
     Band,
     Bump,
     Constant,
@@ -102,7 +102,7 @@ def test_these_values_of_the_noise_never_change() -> None:
     x = np.array([-3.7e-3, 0.0, 0.25e-3, 5.0])
 
     def value(cell: int, seed: int) -> float:
-        from squeezefilm.render.pattern_noise import STEP_ALONG, mixed
+        from squeezefilm.render.texture.noise import STEP_ALONG, mixed
 
         return mixed(mixed(seed) ^ (cell * STEP_ALONG % 2**32)) / 2**32
 

@@ -12,10 +12,10 @@ from squeezefilm.analysis.compensated_textures import (
     sensor_contrast,
     texture_survival,
 )
-from squeezefilm.render.compensation import DrivenEnvelope
-from squeezefilm.render.minimum_jerk import MinimumJerkStroke
-from squeezefilm.render.sensor import LVDT_10_KHZ, TOUCH_PANEL_60_HZ
-from squeezefilm.render.stroke import Stroke
+from squeezefilm.render.motion.minimum_jerk import MinimumJerkStroke
+from squeezefilm.render.motion.sensor import LVDT_10_KHZ, TOUCH_PANEL_60_HZ
+from squeezefilm.render.motion.stroke import Stroke
+from squeezefilm.render.resonator.compensation import DrivenEnvelope
 from squeezefilm.report import fidelity_figures, style
 
 PLATE = DrivenEnvelope(0.5687e-3, 0.5687e-3, 1.72e-6, braking=True)

@@ -7,9 +7,9 @@ import pytest
 from squeezefilm.analysis.stroke_force import StrokeForce, stroke_force
 from squeezefilm.contact.finger.fingerpad import FingerpadDynamics
 from squeezefilm.contact.sliding.dry_friction import DryFriction
-from squeezefilm.render.stroke import Stroke
-from squeezefilm.render.texture import Square
-from squeezefilm.render.trace import friction_trace
+from squeezefilm.render.fidelity.trace import friction_trace
+from squeezefilm.render.motion.stroke import Stroke
+from squeezefilm.render.texture.gratings import Square
 from squeezefilm.report import style
 from squeezefilm.report.sliding_figures import tangential_force
 

@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from squeezefilm.render.compensation import DrivenEnvelope
-from squeezefilm.render.motion import MotionEstimator
-from squeezefilm.render.program import lower
-from squeezefilm.render.sensor import LVDT_10_KHZ
-from squeezefilm.render.texture import Square
+from squeezefilm.render.motion.estimator import MotionEstimator
+from squeezefilm.render.motion.sensor import LVDT_10_KHZ
+from squeezefilm.render.program.lowering import lower
+from squeezefilm.render.resonator.compensation import DrivenEnvelope
+from squeezefilm.render.texture.gratings import Square
 from squeezefilm.session.plan import DriveTable, FrictionTable, LoopPlan
 
 

@@ -12,7 +12,7 @@ from squeezefilm.device.link import Link
 from squeezefilm.device.states import State
 from squeezefilm.display import load_display
 from squeezefilm.errors import DeviceError, InputError
-from squeezefilm.render.sensor import LVDT_10_KHZ
+from squeezefilm.render.motion.sensor import LVDT_10_KHZ
 from squeezefilm.session.resonance_sweep import ResonanceSweep, peak, sweep_resonance
 from squeezefilm.session.virtual_play import VirtualStream
 from squeezefilm.twin.device import TwinDevice

@@ -11,8 +11,9 @@ from numba.core.runtime import _nrt_python, rtsys
 
 from squeezefilm.errors import InputError
 from squeezefilm.quantities import FloatArray
-from squeezefilm.render import compensation_kernel, layout
-from squeezefilm.render.compensation import DrivenEnvelope
+from squeezefilm.render.program import layout
+from squeezefilm.render.resonator import kernel as compensation_kernel
+from squeezefilm.render.resonator.compensation import DrivenEnvelope
 from squeezefilm.session import rows as column
 from squeezefilm.session.plan import DriveTable, LoopPlan
 from squeezefilm.session.shared import COMMANDS, ROWS

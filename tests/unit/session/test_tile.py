@@ -9,15 +9,15 @@ import pytest
 
 from squeezefilm.device.tile import Tile
 from squeezefilm.errors import InputError, UnreachableError
-from squeezefilm.render.composition import Composable
-from squeezefilm.render.coordinate import AlongDirection
-from squeezefilm.render.levels import Amplitude
-from squeezefilm.render.pattern import Pattern
-from squeezefilm.render.pattern_gates import Decay, Periodic, SpeedGate
-from squeezefilm.render.pattern_noise import NoiseField
-from squeezefilm.render.pattern_shapes import Bump, SineWave, SquareWave
-from squeezefilm.render.program import Program, lower
-from squeezefilm.render.texture import Sine, Square
+from squeezefilm.render.program.lowering import Program, lower
+from squeezefilm.render.texture.composition import Composable
+from squeezefilm.render.texture.coordinate import AlongDirection
+from squeezefilm.render.texture.gates import Decay, Periodic, SpeedGate
+from squeezefilm.render.texture.gratings import Sine, Square
+from squeezefilm.render.texture.levels import Amplitude
+from squeezefilm.render.texture.noise import NoiseField
+from squeezefilm.render.texture.pattern import Pattern
+from squeezefilm.render.texture.shapes import Bump, SineWave, SquareWave
 from squeezefilm.session.plan import DriveTable
 from squeezefilm.session.tile import tile_of
 

@@ -147,11 +147,11 @@ def test_a_study_refuses_a_drive_that_does_not_stop_by_itself(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     from squeezefilm.device.safety import Limits
-    from squeezefilm.render.compensation import DrivenEnvelope
-    from squeezefilm.render.motion import MotionEstimator
-    from squeezefilm.render.program import lower
-    from squeezefilm.render.sensor import LVDT_10_KHZ
-    from squeezefilm.render.texture import Square
+    from squeezefilm.render.motion.estimator import MotionEstimator
+    from squeezefilm.render.motion.sensor import LVDT_10_KHZ
+    from squeezefilm.render.program.lowering import lower
+    from squeezefilm.render.resonator.compensation import DrivenEnvelope
+    from squeezefilm.render.texture.gratings import Square
     from squeezefilm.session.plan import DriveTable, LoopPlan
 
     class Silent:

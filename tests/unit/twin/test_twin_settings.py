@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from squeezefilm.errors import ConfigError, InputError
-from squeezefilm.render.finger_path import FingerPath
-from squeezefilm.render.stroke import Stroke
+from squeezefilm.render.motion.finger_path import FingerPath
+from squeezefilm.render.motion.stroke import Stroke
 from squeezefilm.twin.chance import gaussian, uniform
 from squeezefilm.twin.hand import Hand, hand_from, wanted
 from squeezefilm.twin.plant_kernel import COLUMNS

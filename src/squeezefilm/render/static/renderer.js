@@ -1,6 +1,6 @@
 // The renderer's interpreter for a page: the same programs, operation by operation, as the compiled
-// one (squeezefilm.render.interpreter). Programs and states are Float64Arrays laid out as
-// squeezefilm.render.layout says; opcodes are explained in squeezefilm.render.opcodes.
+// one (squeezefilm.render.program.interpreter). Programs and states are Float64Arrays laid out as
+// squeezefilm.render.program.layout says; opcodes are explained in squeezefilm.render.opcodes.
 // An ES module with no imports and no build step.
 
 export const MAGIC = 0x53515a46;

@@ -1,0 +1,172 @@
+"""Friction under a moving finger: a texture, a stroke and a slow resonator put together."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from squeezefilm.errors import InputError
+from squeezefilm.quantities import (
+    DimensionlessArray,
+    FloatArray,
+    Hertz,
+    Metre,
+    MetreArray,
+    Second,
+    SecondArray,
+    Unit,
+    checked_numbers,
+    format_quantity,
+    require,
+)
+from squeezefilm.render.motion.stroke import Stroke
+from squeezefilm.render.resonator.envelope import envelope_response
+from squeezefilm.render.texture.composition import Composable
+from squeezefilm.render.texture.gratings import Sine, Square, Texture
+
+RelativeFriction = Callable[[MetreArray], DimensionlessArray]
+"""Vibration amplitude (m, zero-to-peak) → friction divided by that of the unexcited surface (1)."""
+
+# 50 samples a time constant draw the exponential smoothly; 128 a period put the extremes of a
+# sine within 3e-4 of its swing.
+_PER_TIME_CONSTANT = 50
+_PER_PERIOD = 128
+_PER_STROKE = 1000
+_FEWEST_PER_PERIOD = 4
+
+
+@checked_numbers
+@dataclass(frozen=True, slots=True, eq=False)
+class FrictionTrace:
+    """What a finger meets along a stroke, wanted and rendered; arrays of shape (samples,).
+
+    Attributes:
+        texture, stroke, time_constant, sample_rate: the inputs (time constant in s, rate in Hz).
+        model: the model of the resonator.
+        time: since the stroke began (s).
+        position: of the finger along x (m).
+        command: vibration amplitude the texture wants at `position` (m, zero-to-peak).
+        amplitude: vibration amplitude the resonator has there (m, zero-to-peak).
+        relative_friction_wanted: relative friction at `command` (1).
+        relative_friction_rendered: relative friction at `amplitude` (1).
+    """
+
+    texture: Texture
+    stroke: Stroke
+    time_constant: Second
+    sample_rate: Hertz
+    time: SecondArray
+    position: MetreArray
+    command: MetreArray
+    amplitude: MetreArray
+    relative_friction_wanted: DimensionlessArray
+    relative_friction_rendered: DimensionlessArray
+    model: str = "first-order envelope at resonance, open loop"
+
+    @property
+    def lag(self) -> Metre:
+        """How far behind the finger the texture trails (m): τ·v.
+
+        The delay of a slow pattern; a pattern as fast as the envelope's bandwidth trails less (a
+        sine by arctan(ωτ)/ω in time), but has lost swing.
+        """
+        return self.time_constant * self.stroke.speed
+
+
+@checked_numbers
+def friction_trace(
+    texture: Texture,
+    stroke: Stroke,
+    time_constant: Second,
+    relative_friction: RelativeFriction,
+    sample_rate: Hertz | None = None,
+) -> FrictionTrace:
+    """The friction a finger meets along a stroke over a texture, wanted and rendered.
+
+    The texture's amplitude at the middle of each step is held over that step and passed through
+    the resonator exactly (`envelope_response`); the amplitude begins settled at what the texture
+    wants where the stroke starts, as if the finger had rested there. The stroke runs along y = 0.
+    Friction is quasi-static: it follows the amplitude at once, which leaves out the skin's own
+    transient (some 20 ms, PHYSICS §5).
+
+    Args:
+        texture: vibration amplitude wanted, by position, velocity and time.
+        stroke: the finger's motion.
+        time_constant: of the resonator's envelope (s), see `envelope_time_constant`.
+        relative_friction: vibration amplitudes (m, zero-to-peak; shape (n,)) → relative friction
+            (1; the same shape). Called twice.
+        sample_rate: of the trace (Hz). Without one: 50 samples a time constant, 128 a spatial
+            period and 1000 a stroke at least, and for a `Square` or `Sine` a whole even number a
+            period, so that the edges of a grating of duty ½ and phase 0 fall on samples. Otherwise
+            an edge is misplaced by up to one step.
+
+    Raises:
+        InputError: a time constant or rate not above 0, a rate below 4 samples a spatial period,
+            more than 20 million samples, a texture or friction whose values are not finite, are
+            negative or have another shape than what they were given.
+    """
+    require("time_constant", time_constant, Unit("s"), above=0.0)
+    if isinstance(texture, Composable) and texture.quantity != "amplitude":
+        raise InputError(
+            f"a texture of {texture.quantity} commands no amplitude; pass "
+            "Played(lower(texture, inverse=…)), the amplitude that a display plays it with"
+        )
+    rate = _rate(texture, stroke, time_constant, sample_rate)
+    time, position = stroke.sampled(rate)
+    wanted = texture(position, 0.0, stroke.velocity(time), time)
+    command = _values("texture", wanted, time, Unit("m"))
+    middle = time[:-1] + 0.5 / rate
+    held = texture(stroke.position(middle), 0.0, stroke.velocity(middle), middle)
+    # The last sample's command is held over a step that nobody sees.
+    steps = np.append(_values("texture", held, middle, Unit("m")), command[-1])
+    amplitude = envelope_response(steps, 1 / rate, time_constant, initial=float(command[0]))
+    return FrictionTrace(
+        texture=texture,
+        stroke=stroke,
+        time_constant=time_constant,
+        sample_rate=rate,
+        time=time,
+        position=position,
+        command=command,
+        amplitude=amplitude,
+        relative_friction_wanted=_friction(relative_friction, command),
+        relative_friction_rendered=_friction(relative_friction, amplitude),
+    )
+
+
+def _rate(
+    texture: Texture, stroke: Stroke, time_constant: Second, sample_rate: Hertz | None
+) -> Hertz:
+    passed = stroke.speed / texture.spatial_period if isinstance(texture, Square | Sine) else None
+    if sample_rate is None:
+        rate = max(_PER_TIME_CONSTANT / time_constant, _PER_STROKE / stroke.duration)
+        if passed is None:
+            return rate
+        halves = np.ceil(max(rate / passed, _PER_PERIOD) / 2)
+        return float(2 * halves * passed)
+    require("sample_rate", sample_rate, Unit("Hz"), above=0.0)
+    if passed is not None and sample_rate < _FEWEST_PER_PERIOD * passed:
+        raise InputError(
+            f"sample_rate = {format_quantity(sample_rate, Unit('Hz'))} cannot show a grating that "
+            f"passes {format_quantity(passed, Unit('Hz'))} times a second: it must be at least "
+            f"{format_quantity(_FEWEST_PER_PERIOD * passed, Unit('Hz'))}; leave it out for one "
+            "that fits"
+        )
+    return sample_rate
+
+
+def _friction(relative_friction: RelativeFriction, amplitude: MetreArray) -> DimensionlessArray:
+    return _values("relative_friction", relative_friction(amplitude), amplitude, Unit("1"))
+
+
+def _values(name: str, values: FloatArray, given: FloatArray, unit: Unit) -> FloatArray:
+    array = np.asarray(values, dtype=float)
+    if array.shape != given.shape:
+        raise InputError(
+            f"{name} returned values of shape {array.shape} where {given.shape} was given; it must "
+            "return one value per sample"
+        )
+    require(f"a value returned by {name}", array, unit, at_least=0.0)
+    return array

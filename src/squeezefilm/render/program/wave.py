@@ -1,0 +1,169 @@
+"""The standing wave under the finger: how much of its amplitude a contact meets, place by place.
+
+A plate in a standing wave |cos(πx/λ½)| vibrates at antinodes and rests at nodes, so a texture
+that asks for one amplitude is felt with a ripple of period λ½, half the wavelength. `wave_factor`
+predicts the share of the amplitude a contact meets; `WaveCompensation` gives it to the renderer,
+which divides by it.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from squeezefilm.errors import InputError
+from squeezefilm.quantities import (
+    Dimensionless,
+    DimensionlessArray,
+    FloatArray,
+    Metre,
+    MetreArray,
+    MetreLike,
+    checked_numbers,
+    require,
+)
+from squeezefilm.render.program.inverse import FrictionInverse
+from squeezefilm.render.texture.coordinate import FARTHEST, METRE, X_AXIS, Coordinate, FromPoint
+
+_MOST_FACTORS = 65_536
+
+
+@checked_numbers
+def wave_factor(
+    position: MetreLike, half_wavelength: Metre, contact_length: Metre = 0.0
+) -> DimensionlessArray:
+    """Mean of |cos(πx/half_wavelength)| over a contact centred at `position` (1), in its shape.
+
+    `contact_length` (m) is the contact's extent along the wave; 0 for a point. Antinodes lie at
+    whole multiples of `half_wavelength` (m). The mean of amplitude, not of friction: it predicts
+    the friction of a contact as far as friction is linear in amplitude over it. From the integral
+    of |cos u|, which is 2n + sin(u − nπ) with n = ⌊u/π + ½⌋.
+
+    Raises:
+        InputError: a position that is not finite, a half wavelength not above 0, a negative
+            contact.
+    """
+    require("position", position, METRE)
+    require("half_wavelength", half_wavelength, METRE, above=0.0, at_most=FARTHEST)
+    require("contact_length", contact_length, METRE, at_least=0.0, at_most=FARTHEST)
+    u = math.pi * np.asarray(position, dtype=float) / half_wavelength
+    half = 0.5 * math.pi * contact_length / half_wavelength
+    # Below this width the difference loses more to rounding than the point does to its width.
+    if half < 1e-5:
+        return np.asarray(np.abs(np.cos(u)))
+    return np.asarray((_area(u + half) - _area(u - half)) / (2.0 * half))
+
+
+def _area(u: FloatArray) -> FloatArray:
+    n = np.floor(u / math.pi + 0.5)
+    return np.asarray(2.0 * n + np.sin(u - n * math.pi))
+
+
+@checked_numbers
+@dataclass(frozen=True, slots=True)
+class WaveCompensation:
+    """By what share the wave is weaker place by place; a renderer divides amplitudes by it.
+
+    Build it with `over_contact` or `from_ripple`.
+
+    Args:
+        half_wavelength: the period (m); from 1 µm to 10 m.
+        factors: local amplitude over that at the strongest place (1), evenly spaced over one
+            period from coordinate 0; above 0, at most 1. The least is the greatest gain's inverse.
+        along: the coordinate across the nodal lines; no distance from a point.
+
+    Raises:
+        InputError: a value outside its range.
+    """
+
+    half_wavelength: Metre
+    factors: tuple[Dimensionless, ...]
+    along: Coordinate = X_AXIS
+
+    def __post_init__(self) -> None:
+        require("half_wavelength", self.half_wavelength, METRE, at_least=1e-6, at_most=FARTHEST)
+        if not 2 <= len(self.factors) <= _MOST_FACTORS:
+            raise InputError(f"{len(self.factors)} factors cannot be used; give 2 to 65 536")
+        require("factors", self.factors, above=0.0, at_most=1.0)
+        if isinstance(self.along, FromPoint):
+            raise InputError("a wave runs along a direction; give AlongX, AlongY, AlongDirection")
+
+    @classmethod
+    @checked_numbers
+    def over_contact(
+        cls,
+        half_wavelength: Metre,
+        contact_length: Metre,
+        *,
+        least: Dimensionless = 0.1,
+        along: Coordinate = X_AXIS,
+        count: int = 256,
+    ) -> WaveCompensation:
+        """From `wave_factor`, divided by its largest; `least` bounds what is made up for.
+
+        Where the contact meets less than the share `least`, the ripple is made up for in part.
+
+        Raises:
+            InputError: a value outside its range.
+        """
+        require("least", least, above=0.0, at_most=1.0)
+        if not 2 <= count <= _MOST_FACTORS:
+            raise InputError(f"count = {count} cannot be used: it must be 2 to {_MOST_FACTORS}")
+        places = np.arange(count) / count * half_wavelength
+        found = wave_factor(places, half_wavelength, contact_length)
+        factors = np.clip(found / np.max(found), least, 1.0)
+        return cls(half_wavelength, tuple(factors.tolist()), along)
+
+    @classmethod
+    @checked_numbers
+    def from_ripple(
+        cls,
+        position: MetreArray,
+        relative_friction: DimensionlessArray,
+        inverse: FrictionInverse,
+        half_wavelength: Metre,
+        *,
+        least: Dimensionless = 0.1,
+        along: Coordinate = X_AXIS,
+    ) -> WaveCompensation:
+        """From the friction of a pad that crosses the wave at one drive, computed or measured.
+
+        `position` (m) are evenly spaced places over one `half_wavelength` from 0 on, its end left
+        out; `relative_friction` (1) the friction there; `inverse` that of the pad where friction
+        falls most. The amplitude that explains the friction at each place, over the largest such,
+        is the factor. Exact where the place acts as a factor on the amplitude.
+
+        Raises:
+            InputError: places that are not such, or a friction the inverse does not reach.
+        """
+        places = np.asarray(position, dtype=float)
+        friction = np.asarray(relative_friction, dtype=float)
+        require("least", least, above=0.0, at_most=1.0)
+        even = np.arange(places.size) / max(places.size, 1) * half_wavelength
+        if places.ndim != 1 or places.shape != friction.shape or places.size < 4:
+            raise InputError("position and relative_friction must be two lists of one length, ≥ 4")
+        if np.max(np.abs(places - even)) > 1e-6 * half_wavelength:
+            raise InputError(
+                "position must be evenly spaced from 0 over one half wavelength, its end left out"
+            )
+        amplitude = inverse.amplitude_for(friction)
+        largest = float(np.max(amplitude))
+        if largest == 0.0:
+            raise InputError("nothing vibrates at any of these places, so there is no ripple")
+        factors = np.clip(amplitude / largest, least, 1.0)
+        return cls(half_wavelength, tuple(factors.tolist()), along)
+
+    @checked_numbers
+    def factor(self, x: MetreLike, y: MetreLike = 0.0) -> DimensionlessArray:
+        """The factor at places (1), as the renderer reads it: linear between those of a period."""
+        where = self.along.at(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
+        count = len(self.factors)
+        u = where / self.half_wavelength
+        u = (u - np.floor(u)) * count
+        below = np.floor(u)
+        i = below.astype(int) % count
+        table = np.array(self.factors)
+        f = u - below
+        return np.asarray((1.0 - f) * table[i] + f * table[(i + 1) % count])

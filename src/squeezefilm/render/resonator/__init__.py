@@ -1,0 +1,1 @@
+"""The slow resonator: its envelope, the carrier, and compensation of its slowness."""

@@ -1,0 +1,287 @@
+"""Getting a texture through a slow resonator: the envelope's inverse, within the voltage.
+
+The envelope follows its command by τ da/dt = c − a (`envelope`). Its inverse, c = w + τ dw/dt,
+would make the amplitude the one wanted; between samples, exactly,
+
+    c[k] = (w[k+1] − a[k] E) / (1 − E),   E = exp(−Δt/τ).
+
+The command is bounded by the drive's voltage, −b c_max ≤ c ≤ c_max with c_max the amplitude that
+the full voltage holds; b = 1 where the amplifier may invert the carrier's phase to brake, else 0.
+Many amplifiers can: the phase is a sign in the signal. Without it nothing makes the amplitude
+fall faster than the resonator's own loss. A compensator carries the amplitude that the resonator
+must have, so that it takes up where saturation left it, and counts the samples that saturate.
+
+Open loop: a time constant that is wrong by a share d leaves about d of each step's height as
+error for one τ (a finger put down changes Q). Rise and fall may differ (`rise_time_constant`,
+`fall_time_constant`): a linear plate has one, an amplifier with a slow side has two.
+
+Two laws: "inverse" wants each next sample as soon as the limits let it; "preview" looks ahead and
+takes the plan with least squared error, which starts edges before they are due.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from squeezefilm.errors import InputError
+from squeezefilm.quantities import (
+    Dimensionless,
+    DimensionlessLike,
+    FloatArray,
+    HertzLike,
+    Metre,
+    MetreArray,
+    MetreLike,
+    MetrePerVolt,
+    Second,
+    SecondLike,
+    Unit,
+    Volt,
+    checked_numbers,
+    closed_form,
+    require,
+)
+from squeezefilm.render.resonator import kernel
+from squeezefilm.render.resonator.envelope import envelope_time_constant
+
+Compensation = Literal["none", "inverse", "preview"]
+COMPENSATIONS: tuple[Compensation, ...] = ("none", "inverse", "preview")
+
+# Past three time constants ahead a plan's first command no longer changes by a percent.
+_PREVIEW_TIME_CONSTANTS = 3.0
+
+
+@closed_form(positive="time_constant")
+def slew_time(
+    time_constant: SecondLike, start: MetreLike, target: MetreLike, limit: MetreLike
+) -> SecondLike:
+    """Least time from one amplitude to another under a bounded command (s).
+
+    τ ln((limit − start)/(limit − target)) = τ ln((1 − a0/a_max)/(1 − a_t/a_max)), where `limit` is
+    the command held meanwhile: +a_max to rise, 0 or −a_max to fall. All arguments (s, m, m, m)
+    broadcast. Raises `InputError` for a time constant not above 0, or a target that does not lie
+    between `start` and `limit` (it is never reached).
+    """
+    ratio = (limit - start) / (limit - target)
+    require("(limit - start)/(limit - target)", ratio, at_least=1.0)
+    time: SecondLike = time_constant * np.log(ratio)
+    return time
+
+
+@checked_numbers
+@dataclass(frozen=True, slots=True)
+class DrivenEnvelope:
+    """A resonator's envelope and the command that its drive can give.
+
+    Args:
+        rise_time_constant, fall_time_constant: of the amplitude while it rises and falls (s);
+            above 0. Equal for a linear resonator.
+        amplitude_limit: amplitude that the full voltage holds (m, zero-to-peak); above 0.
+        braking: whether the drive may invert the carrier's phase.
+
+    Raises:
+        InputError: a value outside its range.
+    """
+
+    rise_time_constant: Second
+    fall_time_constant: Second
+    amplitude_limit: Metre
+    braking: bool = False
+
+    def __post_init__(self) -> None:
+        require("rise_time_constant", self.rise_time_constant, Unit("s"), above=0.0)
+        require("fall_time_constant", self.fall_time_constant, Unit("s"), above=0.0)
+        require("amplitude_limit", self.amplitude_limit, Unit("m"), above=0.0)
+
+    @classmethod
+    @checked_numbers
+    def of_resonator(
+        cls,
+        quality_factor: DimensionlessLike,
+        frequency: HertzLike,
+        amplitude_per_volt: MetrePerVolt,
+        voltage_limit: Volt,
+        braking: bool = False,
+    ) -> DrivenEnvelope:
+        """The envelope of a linear resonator at resonance, driven with up to `voltage_limit` (V).
+
+        `amplitude_per_volt` (m/V) is zero-to-peak over zero-to-peak, in the steady state.
+
+        Raises:
+            InputError: a value that is not above 0.
+        """
+        require("amplitude_per_volt", amplitude_per_volt, Unit("m/V"), above=0.0)
+        require("voltage_limit", voltage_limit, Unit("V"), above=0.0)
+        time_constant = float(envelope_time_constant(quality_factor, frequency))
+        return cls(time_constant, time_constant, amplitude_per_volt * voltage_limit, braking)
+
+    @property
+    def lowest_command(self) -> Metre:
+        """Least command (m): minus the limit where the phase may be inverted, else 0."""
+        return -self.amplitude_limit if self.braking else 0.0
+
+    @checked_numbers
+    def parameters(self, time_step: Second) -> FloatArray:
+        """What the compiled steps need at a time step (s): shape (4,), see the kernel."""
+        require("time_step", time_step, Unit("s"), above=0.0)
+        return np.array(
+            [
+                math.exp(-time_step / self.rise_time_constant),
+                math.exp(-time_step / self.fall_time_constant),
+                self.lowest_command,
+                self.amplitude_limit,
+            ]
+        )
+
+    @checked_numbers
+    def new_state(self, amplitude: Metre = 0.0) -> FloatArray:
+        """A compensator's state where the resonator has `amplitude` (m); shape (5,).
+
+        Raises:
+            InputError: an amplitude below 0 or above the limit.
+        """
+        require("amplitude", amplitude, Unit("m"), at_least=0.0, at_most=self.amplitude_limit)
+        state = np.zeros(kernel.STATE_SIZE)
+        state[kernel.AMPLITUDE] = amplitude
+        return state
+
+    @checked_numbers
+    def response(self, command: MetreArray, time_step: Second, initial: Metre = 0.0) -> MetreArray:
+        """Amplitude at each sample under a stepwise command (m), exactly; may be negative.
+
+        A negative amplitude is vibration in the inverted phase, whose friction is that of its
+        magnitude. `command` (m), shape (n,), is held from each sample to the next.
+
+        Raises:
+            InputError: a command that is empty, of another shape or not finite, or a time step
+                not above 0.
+        """
+        held = _samples("command", command)
+        require("initial", initial, Unit("m"))
+        rise, fall, _, _ = self.parameters(time_step)
+        amplitude = np.empty_like(held)
+        kernel.envelope_march(held, initial, rise, fall, amplitude)
+        return amplitude
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CompensatedDrive:
+    """A command made for amplitudes wanted, and what the envelope does under it; shape (n,).
+
+    Attributes:
+        envelope, compensation, time_step: the inputs (s).
+        wanted: amplitude wanted at each sample (m, zero-to-peak).
+        command: amplitude commanded from each sample to the next (m); negative where it brakes.
+        amplitude: the envelope's at each sample (m).
+        saturated_top, saturated_bottom: share of samples whose command met the upper and lower
+            limit (1).
+        model: the law and the envelope.
+    """
+
+    envelope: DrivenEnvelope
+    compensation: Compensation
+    time_step: Second
+    wanted: MetreArray
+    command: MetreArray
+    amplitude: MetreArray
+    saturated_top: Dimensionless
+    saturated_bottom: Dimensionless
+    model: str
+
+    @checked_numbers
+    def voltage(self, amplitude_per_volt: MetrePerVolt) -> FloatArray:
+        """The drive's voltage amplitude at each sample (V); negative in inverted phase."""
+        require("amplitude_per_volt", amplitude_per_volt, Unit("m/V"), above=0.0)
+        return np.asarray(self.command / amplitude_per_volt)
+
+
+@checked_numbers
+def compensated_drive(
+    wanted: MetreArray,
+    time_step: Second,
+    envelope: DrivenEnvelope,
+    compensation: Compensation = "inverse",
+    initial: Metre | None = None,
+    preview: Second | None = None,
+) -> CompensatedDrive:
+    """The command for amplitudes wanted at samples, and the amplitude that it makes.
+
+    Args:
+        wanted: amplitude wanted at each sample (m, zero-to-peak), shape (n,); at least 0.
+        time_step: between samples (s).
+        envelope: the resonator and its limits.
+        compensation: "none" commands what is wanted from each sample on, within the limit.
+        initial: amplitude at the first sample (m); without one, the first wanted (or the limit).
+        preview: how far ahead "preview" looks (s); without one, three time constants.
+
+    Raises:
+        InputError: amplitudes that are empty, not finite or negative, a time step or preview not
+            above 0, an initial amplitude outside the limits, or an unknown compensation.
+    """
+    if compensation not in COMPENSATIONS:
+        raise InputError(
+            f"compensation = {compensation!r} is not known; it must be one of "
+            f"{', '.join(COMPENSATIONS)}"
+        )
+    goal = _samples("wanted", wanted)
+    require("wanted", goal, Unit("m"), at_least=0.0)
+    first = min(float(goal[0]), envelope.amplitude_limit) if initial is None else initial
+    state, parameters = envelope.new_state(first), envelope.parameters(time_step)
+    command, code = np.empty_like(goal), np.zeros(goal.size, dtype=np.int64)
+    if compensation == "none":
+        np.minimum(goal, envelope.amplitude_limit, out=command)
+        code[goal > envelope.amplitude_limit] = kernel.TOPPED
+    elif compensation == "inverse":
+        kernel.compensated_march(state, parameters, goal, command, code)
+    else:
+        ahead = preview_samples(envelope, time_step, preview)
+        kernel.previewed_march(state, parameters, goal, ahead, preview_work(ahead), command, code)
+    names = {"none": "no compensation", "inverse": "inverse filter", "preview": "preview"}
+    return CompensatedDrive(
+        envelope=envelope,
+        compensation=compensation,
+        time_step=time_step,
+        wanted=goal,
+        command=command,
+        amplitude=envelope.response(command, time_step, first),
+        saturated_top=float(np.mean(code == kernel.TOPPED)),
+        saturated_bottom=float(np.mean(code == kernel.BOTTOMED)),
+        model=f"first-order envelope at resonance, {names[compensation]}, "
+        f"{'phase inversion allowed' if envelope.braking else 'no phase inversion'}",
+    )
+
+
+@checked_numbers
+def preview_samples(
+    envelope: DrivenEnvelope, time_step: Second, preview: Second | None = None
+) -> int:
+    """How many samples a preview (s; three time constants without one) looks ahead.
+
+    Raises:
+        InputError: a preview or time step not above 0.
+    """
+    slowest = max(envelope.rise_time_constant, envelope.fall_time_constant)
+    span = _PREVIEW_TIME_CONSTANTS * slowest if preview is None else preview
+    require("preview", span, Unit("s"), above=0.0)
+    require("time_step", time_step, Unit("s"), above=0.0)
+    return max(1, math.ceil(span / time_step - 1e-9))
+
+
+@checked_numbers
+def preview_work(samples: int) -> FloatArray:
+    """Working memory of `previewed_step` for so many samples ahead, shape (5, 2·samples + 2)."""
+    return np.empty((5, 2 * samples + 2))
+
+
+def _samples(name: str, values: MetreArray) -> FloatArray:
+    array = np.ascontiguousarray(values, dtype=float)
+    if array.ndim != 1 or array.size == 0:
+        raise InputError(
+            f"{name} of shape {array.shape} cannot be used: give one row of at least one sample"
+        )
+    require(name, array, Unit("m"))
+    return array

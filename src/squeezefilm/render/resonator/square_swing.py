@@ -1,0 +1,137 @@
+"""What compensation gains on a square grating, in closed form, and what no drive could gain."""
+
+from __future__ import annotations
+
+import math
+from typing import Literal
+
+import numpy as np
+
+from squeezefilm.errors import InputError
+from squeezefilm.quantities import (
+    Dimensionless,
+    DimensionlessLike,
+    Metre,
+    MetreLike,
+    MetrePerSecond,
+    MetrePerSecondLike,
+    Second,
+    Unit,
+    checked_numbers,
+    require,
+)
+from squeezefilm.render.resonator.compensation import DrivenEnvelope
+
+
+@checked_numbers
+def square_swing_compensated(
+    spatial_period: MetreLike,
+    speed: MetrePerSecondLike,
+    envelope: DrivenEnvelope,
+    low: Metre,
+    high: Metre,
+    compensation: Literal["none", "inverse"] = "inverse",
+) -> DimensionlessLike:
+    """Swing of amplitude left of a square grating of duty ½ in the steady state (1).
+
+    For half a period h = spatial_period/(2 speed) the amplitude closes in on the limit above (with
+    "none": on `high`) and stops at `high`; for the other half on the limit below (`low`) and stops
+    at `low`:
+
+        a_high = min(high, top − (top − a_low) exp(−h/τ_rise))
+        a_low = max(low, bottom + (a_high − bottom) exp(−h/τ_fall)),
+
+    solved for the cycle that repeats. Without compensation and with one time constant this is
+    tanh(h/2τ), `square_swing_kept`. `spatial_period` (m) and `speed` (m/s) broadcast.
+
+    Raises:
+        InputError: a period or speed not above 0, or not 0 ≤ low < high ≤ limit.
+    """
+    require("spatial_period", spatial_period, Unit("m"), above=0.0)
+    require("speed", speed, Unit("m/s"), above=0.0)
+    require("low", low, Unit("m"), at_least=0.0, below=high)
+    require("high", high, Unit("m"), at_most=envelope.amplitude_limit)
+    if compensation not in ("none", "inverse"):
+        raise InputError(
+            f"compensation = {compensation!r} has no closed form; it must be 'none' or 'inverse'"
+        )
+    half = np.asarray(spatial_period, dtype=float) / (2 * np.asarray(speed, dtype=float))
+    rise = np.exp(-half / envelope.rise_time_constant)
+    fall = np.exp(-half / envelope.fall_time_constant)
+    bare = compensation == "none"
+    top = high if bare else envelope.amplitude_limit
+    bottom = low if bare else envelope.lowest_command
+    # The cycle that meets neither stop; then those that meet one, which are then the cycle.
+    free_high = (top * (1 - rise) + rise * bottom * (1 - fall)) / (1 - rise * fall)
+    a_high = np.minimum(free_high, high)
+    a_low = np.maximum(low, bottom + (a_high - bottom) * fall)
+    a_high = np.minimum(high, top - (top - a_low) * rise)
+    a_low = np.maximum(low, bottom + (a_high - bottom) * fall)
+    kept = (a_high - a_low) / (high - low)
+    return float(kept) if kept.ndim == 0 else kept
+
+
+@checked_numbers
+def fastest_compensated_speed(
+    spatial_period: Metre,
+    envelope: DrivenEnvelope,
+    low: Metre,
+    high: Metre,
+    compensation: Literal["none", "inverse"] = "inverse",
+    kept: Dimensionless = 0.9,
+) -> MetrePerSecond:
+    """Fastest finger (m/s) under which a square grating keeps a share `kept` of its swing.
+
+    The inverse of `square_swing_compensated` in speed, found to 1e-12; proportional to the period.
+
+    Raises:
+        InputError: see `square_swing_compensated`, or a share not between 0 and 1.
+    """
+    require("kept", kept, above=0.0, below=1.0)
+    from scipy.optimize import brentq
+
+    unit = spatial_period / max(envelope.rise_time_constant, envelope.fall_time_constant)
+
+    def lacking(log_speed: float) -> float:
+        speed = unit * math.exp(log_speed)
+        return (
+            float(
+                square_swing_compensated(spatial_period, speed, envelope, low, high, compensation)
+            )
+            - kept
+        )
+
+    return float(unit * math.exp(brentq(lacking, -30.0, 30.0, xtol=1e-13, rtol=1e-13)))
+
+
+@checked_numbers
+def least_cycle(envelope: DrivenEnvelope, swing: Metre, highest: Metre | None = None) -> Second:
+    """Shortest period in which any drive within the limits swings the amplitude by so much (s).
+
+    Rise at the full limit, fall at the lowest command, from the level where the two together are
+    quickest; the amplitude stays between 0 and `highest` (m; the limit without one). No law of
+    command, preview included, does better, so it says what is impossible.
+
+    Raises:
+        InputError: not 0 < swing < limit, or a swing above `highest`.
+    """
+    ceiling = envelope.amplitude_limit if highest is None else highest
+    require("highest", ceiling, Unit("m"), above=0.0, at_most=envelope.amplitude_limit)
+    require("swing", swing, Unit("m"), above=0.0, below=envelope.amplitude_limit, at_most=ceiling)
+    from scipy.optimize import minimize_scalar
+
+    def period(level: float) -> float:
+        up = (envelope.amplitude_limit - level) / max(
+            envelope.amplitude_limit - level - swing, 1e-300
+        )
+        down = (level + swing - envelope.lowest_command) / max(
+            level - envelope.lowest_command, 1e-300
+        )
+        return envelope.rise_time_constant * math.log(up) + envelope.fall_time_constant * math.log(
+            down
+        )
+
+    room = ceiling - swing
+    found = minimize_scalar(period, bounds=(0.0, max(room, 1e-300)), method="bounded",
+                            options={"xatol": 1e-12 * envelope.amplitude_limit})  # fmt: skip
+    return min(float(found.fun), period(0.0), period(room))

@@ -1,0 +1,1 @@
+"""Textures as values: patterns over place, speed and time, and what composes them."""

@@ -1,0 +1,201 @@
+"""Masks of speed and time: gates, attacks, decays, and what comes and goes.
+
+`speed` reads like a sentence: ``texture.when(speed > 0.02)``, ``texture.when(speed < 0.1)``.
+Time is that of the stroke or the contact, whatever the caller passes as `t`.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+
+from squeezefilm.errors import InputError
+from squeezefilm.quantities import (
+    Dimensionless,
+    FloatArray,
+    Hertz,
+    MetrePerSecond,
+    Radian,
+    Second,
+    Unit,
+    checked_numbers,
+    require,
+)
+from squeezefilm.render import opcodes
+from squeezefilm.render.opcodes import Assembler
+from squeezefilm.render.texture.pattern import Pattern
+
+_SECOND = Unit("s")
+_SPEED = Unit("m/s")
+_FASTEST: MetrePerSecond = 1000.0
+_LONGEST: Second = 86_400.0
+
+
+@checked_numbers
+@dataclass(frozen=True, slots=True)
+class SpeedGate(Pattern):
+    """1 while the finger's speed |v| is above `above` and below `below`, else 0.
+
+    Args:
+        above, below: speeds (m/s), `above` the lesser; at least 0, at most 1000 m/s (which no
+            finger reaches: leave it for no upper end). A finger at rest is above no speed: with
+            `above` left out, the gate is open at rest too.
+
+    Raises:
+        InputError: a speed outside its range.
+    """
+
+    above: MetrePerSecond | None = None
+    below: MetrePerSecond | None = None
+    type: Literal["speed_gate"] = field(default="speed_gate", repr=False)
+
+    def __post_init__(self) -> None:
+        if self.above is None and self.below is None:
+            raise InputError("a speed gate needs a speed above or below which it is open")
+        if self.above is not None:
+            require("above", self.above, _SPEED, at_least=0.0, below=_FASTEST)
+        if self.below is not None:
+            least = 0.0 if self.above is None else self.above
+            require("below", self.below, _SPEED, above=least, at_most=_FASTEST)
+
+    @property
+    def _ends(self) -> tuple[float, float]:
+        return (
+            -1.0 if self.above is None else self.above,
+            math.inf if self.below is None else self.below,
+        )
+
+    def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
+        low, high = self._ends
+        return np.where((np.abs(v) > low) & (np.abs(v) < high), 1.0, 0.0)
+
+    def _lower(self, assembler: Assembler) -> None:
+        assembler.emit(opcodes.SPEED)
+        low, high = self._ends
+        # Infinity has no place in a file of numbers; no finite speed is above this one.
+        assembler.emit(opcodes.WITHIN, low, min(high, 1e300))
+
+
+class Speed:
+    """The finger's speed in a comparison: ``speed > 0.02`` is the gate open above 20 mm/s."""
+
+    __slots__ = ()
+
+    def __gt__(self, other: MetrePerSecond) -> SpeedGate:
+        return SpeedGate(above=other)
+
+    def __lt__(self, other: MetrePerSecond) -> SpeedGate:
+        return SpeedGate(below=other)
+
+
+speed = Speed()
+"""The finger's speed, for ``texture.when(speed > 0.02)``; ~ and & join comparisons."""
+
+
+@checked_numbers
+@dataclass(frozen=True, slots=True)
+class Attack(Pattern):
+    """Rises linearly from 0 at `start` to 1 after `duration`, and stays.
+
+    Args:
+        duration: of the rise (s); above 0, at most a day.
+        start: when it begins (s); at least 0, at most a day.
+
+    Raises:
+        InputError: a time outside its range.
+    """
+
+    duration: Second
+    start: Second = 0.0
+    type: Literal["attack"] = field(default="attack", repr=False)
+
+    def __post_init__(self) -> None:
+        require("duration", self.duration, _SECOND, at_least=1e-6, at_most=_LONGEST)
+        require("start", self.start, _SECOND, at_least=0.0, at_most=_LONGEST)
+
+    def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
+        end = self.start + self.duration
+        return np.clip((t - self.start) / (end - self.start), 0.0, 1.0)
+
+    def _lower(self, assembler: Assembler) -> None:
+        assembler.emit(opcodes.TIME)
+        assembler.emit(opcodes.RAMP, self.start, self.start + self.duration)
+
+
+@checked_numbers
+@dataclass(frozen=True, slots=True)
+class Decay(Pattern):
+    """1 until `start`, then exp(−(t − start)/time_constant).
+
+    Args:
+        time_constant: of the fall (s); above 0, at most a day.
+        start: when it begins (s); at least 0, at most a day.
+
+    Raises:
+        InputError: a time outside its range.
+    """
+
+    time_constant: Second
+    start: Second = 0.0
+    type: Literal["decay"] = field(default="decay", repr=False)
+
+    def __post_init__(self) -> None:
+        require("time_constant", self.time_constant, _SECOND, at_least=1e-6, at_most=_LONGEST)
+        require("start", self.start, _SECOND, at_least=0.0, at_most=_LONGEST)
+
+    def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
+        passed = np.maximum(t - self.start, 0.0)
+        return np.asarray(np.exp(-passed / self.time_constant))
+
+    def _lower(self, assembler: Assembler) -> None:
+        assembler.emit(opcodes.TIME)
+        assembler.emit(opcodes.DECAY, self.start, self.time_constant)
+
+
+@checked_numbers
+@dataclass(frozen=True, slots=True)
+class Periodic(Pattern):
+    """A square or a sine of time: what comes and goes `frequency` times a second.
+
+    Args:
+        frequency: above 0, at most 2 kHz (a resonator's envelope follows less; Hz).
+        shape: "square", 1 over the first `duty` of every period, or "sine", ½ + ½ sin.
+        duty: share of the period at 1, square only; above 0, below 1.
+        phase: shifts it earlier by phase/2π of a period (rad).
+
+    Raises:
+        InputError: a value outside its range.
+    """
+
+    frequency: Hertz
+    shape: Literal["square", "sine"] = "square"
+    duty: Dimensionless = 0.5
+    phase: Radian = 0.0
+    type: Literal["periodic"] = field(default="periodic", repr=False)
+
+    def __post_init__(self) -> None:
+        require("frequency", self.frequency, Unit("Hz"), at_least=1e-6, at_most=2000.0)
+        require("duty", self.duty, above=0.0, below=1.0)
+        require("phase", self.phase, Unit("rad"))
+        if self.shape not in ("square", "sine"):
+            raise InputError(
+                f"shape = {self.shape!r} is not known; it must be 'square' or 'sine'",
+                quantity="shape",
+            )
+
+    def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
+        cycles = t / (1.0 / self.frequency) + self.phase / (2 * math.pi)
+        if self.shape == "sine":
+            return 0.5 + 0.5 * np.sin(2 * math.pi * cycles)
+        return np.where(cycles - np.floor(cycles) < self.duty, 1.0, 0.0)
+
+    def _lower(self, assembler: Assembler) -> None:
+        assembler.emit(opcodes.TIME)
+        period, turns = 1.0 / self.frequency, self.phase / (2 * math.pi)
+        if self.shape == "sine":
+            assembler.emit(opcodes.SINE, period, turns)
+        else:
+            assembler.emit(opcodes.SQUARE, period, turns, self.duty)

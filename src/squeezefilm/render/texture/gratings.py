@@ -1,0 +1,178 @@
+"""The seam `Texture`, and the two gratings most asked for: square and sine, in amplitude.
+
+A texture is anything called with position, velocity and time that returns the vibration amplitude
+wanted there. It commands an amplitude in metres, never a bare 0..1, so what a value means cannot
+depend on the display it is played on. `composition` says how textures compose, `levels` makes
+them of any pattern and in other quantities, `program` lowers them for the renderer.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Literal, Protocol
+
+import numpy as np
+
+from squeezefilm.errors import InputError
+from squeezefilm.quantities import (
+    Dimensionless,
+    FloatArray,
+    Metre,
+    MetreArray,
+    MetreLike,
+    MetrePerSecondLike,
+    Radian,
+    SecondLike,
+    Unit,
+    checked_numbers,
+    format_quantity,
+    require,
+)
+from squeezefilm.render.opcodes import ALONG, BETWEEN, SINE, SQUARE, Assembler
+from squeezefilm.render.texture.composition import Composable, Quantity
+from squeezefilm.render.texture.coordinate import FARTHEST, FINEST
+from squeezefilm.render.texture.levels import LARGEST_AMPLITUDE
+
+_METRE = Unit("m")
+
+
+class Texture(Protocol):
+    """The seam between what is to be felt and what renders it.
+
+    Called with the finger's position `x`, `y` (m), its velocity `v` along its path (m/s; |v| is
+    its speed, and v is negative on the way back, which only a `Bump` asks for) and the time `t`
+    since the stroke began (s), it returns the vibration amplitude wanted there (m, zero-to-peak).
+    The four broadcast against each other; the result has the broadcast shape. A `Composable`
+    whose quantity is not the amplitude needs a renderer to become one.
+    """
+
+    def __call__(
+        self, x: MetreLike, y: MetreLike, v: MetrePerSecondLike, t: SecondLike, /
+    ) -> MetreArray:
+        """The vibration amplitude wanted (m, zero-to-peak)."""
+        ...
+
+
+@checked_numbers
+@dataclass(frozen=True, slots=True)
+class Square(Composable):
+    """A square grating along x: amplitude `high` over `duty` of each period, `low` over the rest.
+
+    The amplitude is `high` where ``(x/spatial_period + phase/2π) mod 1 < duty``; a vibrating
+    stretch is slippery, so it plays the groove, and the stretch at `low` plays the ridge.
+
+    `spatial_period` is one whole period, groove plus ridge. The source paper calls 0.4 to 10 mm
+    both the "space period" of its gratings and the width of their grooves *and* of their ridges;
+    if the latter is meant (groove width = ridge width = w), the period is 2w. Build such a
+    grating with `from_groove_and_ridge`, which leaves no doubt.
+
+    Args:
+        spatial_period: groove plus ridge (m); from 1 nm to 10 m.
+        low: vibration amplitude of the ridge (m, zero-to-peak); at least 0.
+        high: vibration amplitude of the groove (m, zero-to-peak); above `low`, at most 1 mm.
+        duty: share of the period at `high` (1); above 0, below 1.
+        phase: shifts the pattern towards -x by phase/2π of a period (rad).
+
+    Raises:
+        InputError: a value outside its range.
+    """
+
+    spatial_period: Metre
+    low: Metre
+    high: Metre
+    duty: Dimensionless = 0.5
+    phase: Radian = 0.0
+    type: Literal["square"] = field(default="square", repr=False)
+
+    def __post_init__(self) -> None:
+        _require_grating(self.spatial_period, self.low, self.high, self.phase)
+        require("duty", self.duty, above=0.0, below=1.0)
+
+    @classmethod
+    @checked_numbers
+    def from_groove_and_ridge(
+        cls, groove: Metre, ridge: Metre, *, low: Metre, high: Metre, phase: Radian = 0.0
+    ) -> Square:
+        """The grating whose grooves (at `high`) and ridges (at `low`) have these widths (m).
+
+        Its spatial period is groove + ridge: 0.8 mm for the paper's "0.4 mm" grating read as
+        groove width = ridge width = 0.4 mm.
+
+        Raises:
+            InputError: a width that is not above 0, or a value outside its range.
+        """
+        require("groove", groove, _METRE, above=0.0)
+        require("ridge", ridge, _METRE, above=0.0)
+        period = groove + ridge
+        return cls(period, low, high, duty=groove / period, phase=phase)
+
+    @property
+    def quantity(self) -> Quantity:
+        """The amplitude."""
+        return "amplitude"
+
+    def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
+        cycles = x / self.spatial_period + self.phase / (2 * math.pi)
+        return np.where(cycles - np.floor(cycles) < self.duty, self.high, self.low)
+
+    def _lower(self, assembler: Assembler) -> None:
+        assembler.emit(ALONG, 1.0, 0.0, 0.0)
+        assembler.emit(SQUARE, self.spatial_period, self.phase / (2 * math.pi), self.duty)
+        assembler.emit(BETWEEN, self.low, self.high)
+
+
+@checked_numbers
+@dataclass(frozen=True, slots=True)
+class Sine(Composable):
+    """A sine grating along x: amplitude between `low` and `high`, once per spatial period.
+
+    ``(low + high)/2 + (high - low)/2 · sin(2πx/spatial_period + phase)``
+
+    Args:
+        spatial_period: one whole period (m); from 1 nm to 10 m.
+        low: least vibration amplitude (m, zero-to-peak); at least 0.
+        high: greatest vibration amplitude (m, zero-to-peak); above `low`, at most 1 mm.
+        phase: shifts the pattern towards -x by phase/2π of a period (rad).
+
+    Raises:
+        InputError: a value outside its range.
+    """
+
+    spatial_period: Metre
+    low: Metre
+    high: Metre
+    phase: Radian = 0.0
+    type: Literal["sine"] = field(default="sine", repr=False)
+
+    def __post_init__(self) -> None:
+        _require_grating(self.spatial_period, self.low, self.high, self.phase)
+
+    @property
+    def quantity(self) -> Quantity:
+        """The amplitude."""
+        return "amplitude"
+
+    def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
+        cycles = x / self.spatial_period + self.phase / (2 * math.pi)
+        high_share = 0.5 + 0.5 * np.sin(2 * math.pi * cycles)
+        # Weighted so, rounding cannot carry the value past either end (a negative amplitude).
+        return np.asarray((1.0 - high_share) * self.low + high_share * self.high)
+
+    def _lower(self, assembler: Assembler) -> None:
+        assembler.emit(ALONG, 1.0, 0.0, 0.0)
+        assembler.emit(SINE, self.spatial_period, self.phase / (2 * math.pi))
+        assembler.emit(BETWEEN, self.low, self.high)
+
+
+def _require_grating(spatial_period: Metre, low: Metre, high: Metre, phase: Radian) -> None:
+    require("spatial_period", spatial_period, _METRE, at_least=FINEST, at_most=FARTHEST)
+    require("low", low, _METRE, at_least=0.0)
+    require("high", high, _METRE, above=0.0, at_most=LARGEST_AMPLITUDE)
+    require("phase", phase, Unit("rad"))
+    if not low < high:
+        raise InputError(
+            f"low = {format_quantity(low, _METRE)} and high = {format_quantity(high, _METRE)} "
+            "make no texture: low must be below high; to exchange grooves and ridges, "
+            "change duty and phase"
+        )

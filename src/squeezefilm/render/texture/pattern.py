@@ -1,0 +1,248 @@
+"""Patterns: dimensionless shapes between 0 and 1 over place, speed and time, and their algebra.
+
+A pattern alone says nothing about friction; `levels` gives it two ends with a quantity, and a
+texture takes it as a mask. Patterns compose: with a, b patterns,
+
+- ``a & b`` is the lesser, ``a | b`` the greater, ``a * b`` the product, ``~a`` is 1 − a;
+- `a.scaled_by_speed(reference_speed)` stretches a with the finger's speed.
+
+& and | form a lattice (commutative, associative, idempotent, absorbing, each distributive over
+the other), * is commutative and associative and distributes over both; ~ swaps & and | (De
+Morgan). There is no +: it would leave 0…1. Add textures, which have a quantity, instead.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+
+from squeezefilm.errors import InputError
+from squeezefilm.quantities import (
+    DimensionlessArray,
+    FloatArray,
+    MetreLike,
+    MetrePerSecond,
+    MetrePerSecondLike,
+    SecondLike,
+    Unit,
+    checked_numbers,
+    require,
+)
+from squeezefilm.render.opcodes import (
+    COMPLEMENT,
+    ENTER_SCALE,
+    GREATEST,
+    LEAST,
+    LEAVE_SCALE,
+    MULTIPLY,
+    Assembler,
+)
+from squeezefilm.render.texture.coordinate import finger_arguments
+
+MOST_PARTS = 64
+"""Parts that one sum, product, sequence or lattice operation may have."""
+
+
+class Pattern:
+    """A dimensionless shape, 0 to 1; the base of every generator and composite.
+
+    Called with the finger's place `x`, `y` (m), its velocity `v` (m/s; negative on the way back)
+    and the time `t` (s), which broadcast; returns values from 0 to 1 in the broadcast shape.
+    Raises `InputError` for an argument that is not finite or shapes that do not broadcast.
+    """
+
+    __slots__ = ()
+
+    def __call__(
+        self, x: MetreLike, y: MetreLike, v: MetrePerSecondLike, t: SecondLike, /
+    ) -> DimensionlessArray:
+        """The pattern at these places, velocities and times (1)."""
+        return np.array(self._values(*finger_arguments(x, y, v, t)))
+
+    def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
+        raise NotImplementedError
+
+    def _lower(self, assembler: Assembler) -> None:
+        raise NotImplementedError
+
+    def __invert__(self) -> Pattern:
+        return self.pattern if isinstance(self, Complement) else Complement(self)
+
+    def __and__(self, other: Pattern) -> Least:
+        return Least(_parts(Least, self, other))
+
+    def __or__(self, other: Pattern) -> Greatest:
+        return Greatest(_parts(Greatest, self, other))
+
+    def __mul__(self, other: Pattern) -> Times:
+        # A texture on the right multiplies by this pattern itself.
+        return Times(_parts(Times, self, other)) if isinstance(other, Pattern) else NotImplemented
+
+    def __add__(self, other: object) -> Pattern:
+        raise InputError(
+            "patterns cannot be added: their sum would leave 0 to 1; take a | b for either and "
+            "a * b for both, or add textures, whose values have a quantity"
+        )
+
+    @checked_numbers
+    def scaled_by_speed(
+        self,
+        reference_speed: MetrePerSecond,
+        slowest: MetrePerSecond = 0.001,
+        fastest: MetrePerSecond = 1.0,
+    ) -> SpeedScaled:
+        """This pattern stretched by speed/`reference_speed`; see `SpeedScaled`."""
+        return SpeedScaled(self, reference_speed, slowest, fastest)
+
+
+def _parts(kind: type, *operands: Pattern) -> tuple[Pattern, ...]:
+    """Operands with nested ones of the same kind flattened, so that brackets make no difference."""
+    found: list[Pattern] = []
+    for one in operands:
+        found += (
+            one.patterns
+            if isinstance(one, Least | Greatest | Times) and isinstance(one, kind)
+            else [one]
+        )
+    return tuple(found)
+
+
+def require_pattern(name: str, value: object) -> None:
+    """Refuse what is no `Pattern`."""
+    if not isinstance(value, Pattern):
+        raise InputError(
+            f"{name} = {value!r} is no pattern; give a dimensionless one like SquareWave, Band or "
+            "Noise (a texture has a quantity of its own and can be no mask)",
+            quantity=name,
+        )
+
+
+def _require_patterns(values: tuple[Pattern, ...]) -> None:
+    if not 1 <= len(values) <= MOST_PARTS:
+        raise InputError(
+            f"{len(values)} patterns cannot be joined; give 1 to {MOST_PARTS}", quantity="patterns"
+        )
+    for value in values:
+        require_pattern("patterns", value)
+
+
+@dataclass(frozen=True, slots=True)
+class Complement(Pattern):
+    """1 − `pattern`: its ends exchanged."""
+
+    pattern: Pattern
+    type: Literal["complement"] = field(default="complement", repr=False)
+
+    def __post_init__(self) -> None:
+        require_pattern("pattern", self.pattern)
+
+    def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
+        return 1.0 - self.pattern._values(x, y, v, t)
+
+    def _lower(self, assembler: Assembler) -> None:
+        self.pattern._lower(assembler)
+        assembler.emit(COMPLEMENT)
+
+
+@dataclass(frozen=True, slots=True)
+class Least(Pattern):
+    """The least of `patterns`: where masks overlap."""
+
+    patterns: tuple[Pattern, ...]
+    type: Literal["least"] = field(default="least", repr=False)
+
+    def __post_init__(self) -> None:
+        _require_patterns(self.patterns)
+
+    def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
+        parts = [one._values(x, y, v, t) for one in self.patterns]
+        return np.asarray(np.minimum.reduce(parts))
+
+    def _lower(self, assembler: Assembler) -> None:
+        _lower_all(self.patterns, LEAST, assembler)
+
+
+@dataclass(frozen=True, slots=True)
+class Greatest(Pattern):
+    """The greatest of `patterns`: masks side by side."""
+
+    patterns: tuple[Pattern, ...]
+    type: Literal["greatest"] = field(default="greatest", repr=False)
+
+    def __post_init__(self) -> None:
+        _require_patterns(self.patterns)
+
+    def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
+        parts = [one._values(x, y, v, t) for one in self.patterns]
+        return np.asarray(np.maximum.reduce(parts))
+
+    def _lower(self, assembler: Assembler) -> None:
+        _lower_all(self.patterns, GREATEST, assembler)
+
+
+@dataclass(frozen=True, slots=True)
+class Times(Pattern):
+    """The product of `patterns`: one fading another."""
+
+    patterns: tuple[Pattern, ...]
+    type: Literal["times"] = field(default="times", repr=False)
+
+    def __post_init__(self) -> None:
+        _require_patterns(self.patterns)
+
+    def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
+        parts = [one._values(x, y, v, t) for one in self.patterns]
+        return np.asarray(np.multiply.reduce(parts))
+
+    def _lower(self, assembler: Assembler) -> None:
+        _lower_all(self.patterns, MULTIPLY, assembler)
+
+
+def _lower_all(patterns: tuple[Pattern, ...], opcode: int, assembler: Assembler) -> None:
+    for index, one in enumerate(patterns):
+        one._lower(assembler)
+        if index:
+            assembler.emit(opcode)
+
+
+@checked_numbers
+@dataclass(frozen=True, slots=True)
+class SpeedScaled(Pattern):
+    """`pattern` stretched about the origin in proportion to the finger's speed.
+
+    At `reference_speed` (m/s) it is itself, at twice that its lengths are doubled: a grating then
+    passes under a finger of steady speed at a frequency that does not depend on that speed. The
+    factor is speed/reference_speed, held at its value for `slowest` below that speed and for
+    `fastest` above it. The pattern slides under a finger that speeds up, the more the farther
+    from the origin it is: this is a function of the present speed, with no memory.
+
+    Raises:
+        InputError: unless 1 µm/s ≤ slowest ≤ fastest ≤ 10 m/s, and for a reference speed
+            outside 1 µm/s to 10 m/s.
+    """
+
+    pattern: Pattern
+    reference_speed: MetrePerSecond
+    slowest: MetrePerSecond = 0.001
+    fastest: MetrePerSecond = 1.0
+    type: Literal["speed_scaled"] = field(default="speed_scaled", repr=False)
+
+    def __post_init__(self) -> None:
+        require_pattern("pattern", self.pattern)
+        unit = Unit("m/s")
+        require("reference_speed", self.reference_speed, unit, at_least=1e-6, at_most=10.0)
+        require("slowest", self.slowest, unit, at_least=1e-6, at_most=10.0)
+        require("fastest", self.fastest, unit, at_least=self.slowest, at_most=10.0)
+
+    def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
+        low, high = self.slowest / self.reference_speed, self.fastest / self.reference_speed
+        factor = np.clip(np.abs(v) / self.reference_speed, low, high)
+        return self.pattern._values(x / factor, y / factor, v, t)
+
+    def _lower(self, assembler: Assembler) -> None:
+        low, high = self.slowest / self.reference_speed, self.fastest / self.reference_speed
+        assembler.emit(ENTER_SCALE, self.reference_speed, low, high)
+        self.pattern._lower(assembler)
+        assembler.emit(LEAVE_SCALE)

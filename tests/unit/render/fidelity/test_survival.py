@@ -1,0 +1,73 @@
+"""The fidelity table: its shape and defaults, and every refusal."""
+
+import math
+
+import numpy as np
+import pytest
+
+from squeezefilm.errors import InputError
+from squeezefilm.render.fidelity.survival import FidelityTable, fidelity_table, swing_kept
+from squeezefilm.render.fidelity.trace import friction_trace
+from squeezefilm.render.motion.stroke import Stroke
+from squeezefilm.render.texture.gratings import Square
+
+TAU = 0.55e-3
+
+
+def falling(amplitude: np.ndarray) -> np.ndarray:
+    return np.exp(-amplitude / 3e-6)
+
+
+def table(**changes: object) -> FidelityTable:
+    arguments = {"time_constant": TAU, "relative_friction": falling, "low": 0.0, "high": 2e-6}
+    return fidelity_table(**(arguments | changes))
+
+
+def test_the_paper_s_periods_by_exploring_speeds() -> None:
+    result = table()
+    assert result.spatial_periods.tolist() == [0.4e-3, 2e-3, 4e-3, 8e-3, 10e-3]
+    assert result.speeds.tolist() == [0.01, 0.02, 0.05, 0.1, 0.2]
+    assert result.amplitude_kept.shape == result.friction_kept.shape == (5, 5)
+    assert result.finest_period.shape == result.lag.shape == (5,)
+    assert result.fastest_speed.shape == (5,)
+    # Only the finest grating fails, and only under the fastest finger.
+    lost = [[0, 4]]
+    assert np.argwhere(~result.amplitude_survives).tolist() == lost
+    assert np.argwhere(~result.friction_survives).tolist() == lost
+
+
+def test_a_sine_loses_more_than_a_square() -> None:
+    square, sine = table(), table(shape="sine")
+    assert np.all(sine.amplitude_kept <= square.amplitude_kept)
+    assert np.argwhere(~sine.amplitude_survives).tolist() == [[0, 3], [0, 4]]
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"time_constant": 0.0}, "time_constant = 0 s"),
+        ({"kept": 1.0}, "kept = 1"),
+        ({"shape": "saw"}, "'square' or 'sine'"),
+        ({"low": 2e-6, "high": 1e-6}, "low must be below high"),
+        ({"spatial_periods": []}, "spatial_periods of shape"),
+        ({"spatial_periods": [0.0]}, "spatial_periods = 0 m"),
+        ({"speeds": 0.1}, "speeds of shape"),
+        ({"speeds": [math.nan]}, "speeds = nan"),
+        ({"speeds": [60.0]}, "at most 5 m/s"),
+        ({"relative_friction": np.ones_like}, "relative friction wanted does not change"),
+    ],
+)
+def test_a_table_that_cannot_be_made_is_refused(changes: dict, said: str) -> None:
+    with pytest.raises(InputError, match=said):
+        table(**changes)
+
+
+def test_a_swing_that_cannot_be_measured_is_refused() -> None:
+    trace = friction_trace(Square(10e-3, 0.0, 2e-6), Stroke(0.1, 8e-3), TAU, falling)
+    with pytest.raises(InputError, match="passes of 8 mm are too short"):
+        swing_kept(trace)
+    with pytest.raises(InputError, match="'amplitude' or 'relative_friction'"):
+        swing_kept(trace, "force")
+    flat = friction_trace(lambda x, y, v, t: 1e-6 + 0 * x, Stroke(0.1), TAU, falling)
+    with pytest.raises(InputError, match="amplitude wanted does not change"):
+        swing_kept(flat)
