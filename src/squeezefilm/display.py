@@ -8,7 +8,7 @@ from pathlib import Path
 
 from squeezefilm.config.provenance import Provenance
 from squeezefilm.contact.finger.fingertip import Finger
-from squeezefilm.device.safety import HIGHEST_VOLTAGE, TOUCH_VOLTAGE, Limits
+from squeezefilm.device.wire.safety import HIGHEST_VOLTAGE, TOUCH_VOLTAGE, Limits
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import ROUGHNESS, require_fields
 from squeezefilm.materials import Gas

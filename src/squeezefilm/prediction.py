@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from squeezefilm.device.safety import HIGHEST_VOLTAGE
+from squeezefilm.device.wire.safety import HIGHEST_VOLTAGE
 from squeezefilm.display import Display, Surface
 from squeezefilm.errors import (
     InputError,

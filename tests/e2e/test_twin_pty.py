@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 import serial
 
-from squeezefilm.device import messages as m
-from squeezefilm.device.frames import Deframer
+from squeezefilm.device.wire import messages as m
+from squeezefilm.device.wire.frames import Deframer
 from squeezefilm.errors import InputError
 from squeezefilm.twin.plant_kernel import COLUMNS
 from squeezefilm.twin.pty_server import main, running_twin

@@ -10,7 +10,7 @@ import sys
 import warnings
 from pathlib import Path
 
-from squeezefilm.device.safety import Limits
+from squeezefilm.device.wire.safety import Limits
 from squeezefilm.render.motion.estimator import MotionEstimator
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ
 from squeezefilm.render.program.lowering import lower

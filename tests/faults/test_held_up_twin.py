@@ -12,8 +12,8 @@ from collections.abc import Iterator
 
 import pytest
 
-from squeezefilm.device import messages as m
-from squeezefilm.device.states import Fault, State
+from squeezefilm.device.wire import messages as m
+from squeezefilm.device.wire.states import Fault, State
 from squeezefilm.display import load_display
 from squeezefilm.twin import pty_server
 from squeezefilm.twin.device import TwinDevice

@@ -19,7 +19,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from squeezefilm.device.machine import Fault
+from squeezefilm.device.machine.device import Fault
 from squeezefilm.session import rows as column
 from squeezefilm.session.trace_reading import read_trace
 

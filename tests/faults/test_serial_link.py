@@ -13,10 +13,10 @@ import numpy as np
 import pytest
 
 from squeezefilm.device.host import DeviceHost
-from squeezefilm.device.link import Link
-from squeezefilm.device.machine import CLOCK, Fault, Machine, State
-from squeezefilm.device.safety import Limits
-from squeezefilm.device.streams import SerialStream, open_stream
+from squeezefilm.device.machine.device import CLOCK, Fault, Machine, State
+from squeezefilm.device.wire.link import Link
+from squeezefilm.device.wire.safety import Limits
+from squeezefilm.device.wire.streams import SerialStream, open_stream
 from squeezefilm.errors import DeviceError, InputError
 
 LIMITS = Limits(40.0, 20e3, 40.0, 0.0, 20e3, 60e3)

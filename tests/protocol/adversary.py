@@ -6,10 +6,10 @@ import random
 import struct
 from dataclasses import dataclass, field
 
-from squeezefilm.device import messages as m
-from squeezefilm.device.frames import Frame
-from squeezefilm.device.machine import Machine
-from squeezefilm.device.safety import Limits
+from squeezefilm.device.machine.device import Machine
+from squeezefilm.device.wire import messages as m
+from squeezefilm.device.wire.frames import Frame
+from squeezefilm.device.wire.safety import Limits
 
 LIMITS = Limits(
     voltage=60.0,

@@ -12,10 +12,10 @@ import struct
 from collections import Counter
 from dataclasses import astuple
 
-from squeezefilm.device import messages as m
-from squeezefilm.device.frames import Deframer
-from squeezefilm.device.machine import TICK_PERIOD, DeviceLimits, Machine
-from squeezefilm.device.playing import Mode
+from squeezefilm.device.machine.device import TICK_PERIOD, DeviceLimits, Machine
+from squeezefilm.device.machine.playing import Mode
+from squeezefilm.device.wire import messages as m
+from squeezefilm.device.wire.frames import Deframer
 
 from .adversary import LIMITS, Adversary
 from .test_frames import FINGER, check_the_session

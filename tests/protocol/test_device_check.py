@@ -7,10 +7,10 @@ from dataclasses import dataclass, field, replace
 
 import pytest
 
-from squeezefilm.device import machine as device
-from squeezefilm.device import messages as m
-from squeezefilm.device.frames import Frame
-from squeezefilm.device.machine import Machine, Reason
+from squeezefilm.device.machine import device
+from squeezefilm.device.machine.device import Machine, Reason
+from squeezefilm.device.wire import messages as m
+from squeezefilm.device.wire.frames import Frame
 from squeezefilm.errors import DeviceError
 from squeezefilm.session.conversation import Conversation
 from squeezefilm.session.device_check import DeviceCheck, check_device, loop_check

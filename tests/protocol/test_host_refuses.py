@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from squeezefilm.device import messages as m
 from squeezefilm.device.host import DeviceHost
-from squeezefilm.device.link import Link
-from squeezefilm.device.machine import Machine
-from squeezefilm.device.safety import Limits
+from squeezefilm.device.machine.device import Machine
 from squeezefilm.device.serial_ports import SerialDrive
-from squeezefilm.device.states import State
+from squeezefilm.device.wire import messages as m
+from squeezefilm.device.wire.link import Link
+from squeezefilm.device.wire.safety import Limits
+from squeezefilm.device.wire.states import State
 from squeezefilm.errors import InputError
 
 from .wire import Wire

@@ -8,13 +8,13 @@ import random
 import numpy as np
 import pytest
 
-from squeezefilm.device import messages as m
 from squeezefilm.device.host import DeviceHost
-from squeezefilm.device.link import Link
-from squeezefilm.device.machine import DeviceLimits, Fault, Machine, State
+from squeezefilm.device.machine.device import DeviceLimits, Fault, Machine, State
 from squeezefilm.device.ports import Drive, Pickup, Sensor
-from squeezefilm.device.safety import Limits
 from squeezefilm.device.serial_ports import DevicePickup, DeviceSensor, SerialDrive
+from squeezefilm.device.wire import messages as m
+from squeezefilm.device.wire.link import Link
+from squeezefilm.device.wire.safety import Limits
 from squeezefilm.errors import DeviceError, InputError
 
 from .adversary import LIMITS

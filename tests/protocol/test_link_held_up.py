@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from squeezefilm.device import messages as m
-from squeezefilm.device.link import Link
-from squeezefilm.device.machine import Machine
+from squeezefilm.device.machine.device import Machine
+from squeezefilm.device.wire import messages as m
+from squeezefilm.device.wire.link import Link
 
 
 @dataclass

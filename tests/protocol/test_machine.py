@@ -5,9 +5,7 @@ import struct
 
 import pytest
 
-from squeezefilm.device import messages as m
-from squeezefilm.device.frames import Frame, frame_from_bytes
-from squeezefilm.device.machine import (
+from squeezefilm.device.machine.device import (
     DeviceLimits,
     Fault,
     Machine,
@@ -16,7 +14,9 @@ from squeezefilm.device.machine import (
     level_of,
     next_token,
 )
-from squeezefilm.device.safety import Limits
+from squeezefilm.device.wire import messages as m
+from squeezefilm.device.wire.frames import Frame, frame_from_bytes
+from squeezefilm.device.wire.safety import Limits
 
 from .adversary import LIMITS
 

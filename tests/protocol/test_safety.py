@@ -6,9 +6,9 @@ from typing import Any
 
 import pytest
 
-from squeezefilm.device.machine import level_of
-from squeezefilm.device.messages import limits_message
-from squeezefilm.device.safety import Limits, require_safe_drive
+from squeezefilm.device.machine.device import level_of
+from squeezefilm.device.wire.messages import limits_message
+from squeezefilm.device.wire.safety import Limits, require_safe_drive
 from squeezefilm.errors import InputError
 
 from .adversary import LIMITS

@@ -5,9 +5,9 @@ from collections.abc import Callable, Iterator
 
 import pytest
 
-from squeezefilm.device import messages as m
-from squeezefilm.device.machine import CLOCK
-from squeezefilm.device.safety import Limits
+from squeezefilm.device.machine.device import CLOCK
+from squeezefilm.device.wire import messages as m
+from squeezefilm.device.wire.safety import Limits
 
 from .builds import Library
 from .recording import Recording

@@ -5,7 +5,7 @@ from __future__ import annotations
 import random
 from dataclasses import dataclass, field
 
-from squeezefilm.device.machine import CLOCK, Machine
+from squeezefilm.device.machine.device import CLOCK, Machine
 from squeezefilm.errors import DeviceError
 
 TICK = 100

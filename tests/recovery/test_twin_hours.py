@@ -10,9 +10,9 @@ import tracemalloc
 import numpy as np
 import pytest
 
-from squeezefilm.device import messages as m
-from squeezefilm.device.machine import CLOCK, State
-from squeezefilm.device.safety import Limits
+from squeezefilm.device.machine.device import CLOCK, State
+from squeezefilm.device.wire import messages as m
+from squeezefilm.device.wire.safety import Limits
 from squeezefilm.display import load_display
 from squeezefilm.twin.device import TwinDevice
 from squeezefilm.twin.hand import hand_from

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from squeezefilm.device.safety import Limits
+from squeezefilm.device.wire.safety import Limits
 from squeezefilm.display import Display, Drive, load_display
 from squeezefilm.errors import InputError
 from squeezefilm.presets import path

@@ -21,7 +21,7 @@ from squeezefilm.analysis.played_texture import FingerMotion, require_on_display
 from squeezefilm.analysis.render_command import sensor_named
 from squeezefilm.config.write import text_of
 from squeezefilm.device.replay import ReplaySensor
-from squeezefilm.device.streams import open_stream
+from squeezefilm.device.wire.streams import open_stream
 from squeezefilm.display import load_display
 from squeezefilm.errors import InputError
 from squeezefilm.formats.trajectories import motion_from, read_trajectory

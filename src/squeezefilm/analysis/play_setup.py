@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from squeezefilm.analysis.render_command import sensor_named
-from squeezefilm.device.messages import LONGEST_TILE
+from squeezefilm.device.wire.messages import LONGEST_TILE
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError
 from squeezefilm.film.compiled import announce

@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from squeezefilm.device.playing import CLOCK
+from squeezefilm.device.machine.playing import CLOCK
 from squeezefilm.quantities import Dimensionless, Second
 
 WORST_DRIFT: Dimensionless = 200e-6

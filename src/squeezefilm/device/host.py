@@ -16,14 +16,14 @@ from typing import Any
 
 import numpy as np
 
-from squeezefilm.device import messages as m
-from squeezefilm.device.arguments import amplitudes, binary32_below, number, whole_number
 from squeezefilm.device.device_clock import DeviceClock
-from squeezefilm.device.link import Link, refusal
-from squeezefilm.device.playing import CLOCK
-from squeezefilm.device.reports import LONGEST_REPORT, SHORTEST_REPORT
-from squeezefilm.device.safety import HIGHEST_VOLTAGE, Limits
-from squeezefilm.device.states import Fault, Reason, State
+from squeezefilm.device.machine.playing import CLOCK
+from squeezefilm.device.machine.reports import LONGEST_REPORT, SHORTEST_REPORT
+from squeezefilm.device.wire import messages as m
+from squeezefilm.device.wire.arguments import amplitudes, binary32_below, number, whole_number
+from squeezefilm.device.wire.link import Link, refusal
+from squeezefilm.device.wire.safety import HIGHEST_VOLTAGE, Limits
+from squeezefilm.device.wire.states import Fault, Reason, State
 from squeezefilm.errors import DeviceError, InputError
 from squeezefilm.quantities import FloatArray, Hertz, Metre, Second, Unit, Volt
 

@@ -9,11 +9,11 @@ import math
 
 import numpy as np
 
-from squeezefilm.device.arguments import number
 from squeezefilm.device.host import DeviceHost
-from squeezefilm.device.messages import MOST_LEVELS, PICKUP_PRESENT, SENSOR_PRESENT
-from squeezefilm.device.playing import LONGEST_QUEUE, MOST_AHEAD
+from squeezefilm.device.machine.playing import LONGEST_QUEUE, MOST_AHEAD
 from squeezefilm.device.ports import FingerSample
+from squeezefilm.device.wire.arguments import number
+from squeezefilm.device.wire.messages import MOST_LEVELS, PICKUP_PRESENT, SENSOR_PRESENT
 from squeezefilm.errors import DeviceError
 from squeezefilm.quantities import Dimensionless, FloatArray, Second, Unit
 

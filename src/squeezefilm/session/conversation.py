@@ -11,12 +11,12 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from squeezefilm.device import messages as m
-from squeezefilm.device.frames import Deframer, Frame
+from squeezefilm.device.wire import messages as m
+from squeezefilm.device.wire.frames import Deframer, Frame
 from squeezefilm.quantities import Second
 
 if TYPE_CHECKING:
-    from squeezefilm.device.streams import ByteStream
+    from squeezefilm.device.wire.streams import ByteStream
 
 _STEP: Second = 0.2e-3
 

@@ -13,10 +13,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from squeezefilm.device import messages as m
-from squeezefilm.device.playing import CLOCK
-from squeezefilm.device.safety import Limits
-from squeezefilm.device.states import Fault, Reason, State
+from squeezefilm.device.machine.playing import CLOCK
+from squeezefilm.device.wire import messages as m
+from squeezefilm.device.wire.safety import Limits
+from squeezefilm.device.wire.states import Fault, Reason, State
 from squeezefilm.errors import DeviceError
 from squeezefilm.quantities import Dimensionless, Hertz, Second, Volt
 from squeezefilm.session.conversation import Conversation

@@ -19,10 +19,10 @@ from typing import Any, Literal, Protocol
 import numpy as np
 
 from squeezefilm.device.host import DeviceHost
-from squeezefilm.device.messages import MOST_LEVELS, PICKUP_PRESENT, SENSOR_PRESENT, Reading
 from squeezefilm.device.ports import Sensor
-from squeezefilm.device.safety import Limits
-from squeezefilm.device.states import Fault, State
+from squeezefilm.device.wire.messages import MOST_LEVELS, PICKUP_PRESENT, SENSOR_PRESENT, Reading
+from squeezefilm.device.wire.safety import Limits
+from squeezefilm.device.wire.states import Fault, State
 from squeezefilm.errors import DeviceError, InputError, LoopError
 from squeezefilm.quantities import (
     FloatArray,

@@ -15,8 +15,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from squeezefilm.device.host import DeviceHost
-from squeezefilm.device.messages import Reading
-from squeezefilm.device.safety import Limits
+from squeezefilm.device.wire.messages import Reading
+from squeezefilm.device.wire.safety import Limits
 from squeezefilm.errors import DeviceError
 from squeezefilm.quantities import (
     Dimensionless,

@@ -21,17 +21,17 @@ from typing import Any
 import numpy as np
 
 from squeezefilm.device.host import DeviceHost
-from squeezefilm.device.link import Link
 from squeezefilm.device.ports import Sensor
 from squeezefilm.device.priority import (
     PLAYERS_PRIORITY,
     collect_garbage_first,
     real_time_granted,
 )
-from squeezefilm.device.safety import require_safe_drive
 from squeezefilm.device.serial_ports import SerialDrive
-from squeezefilm.device.states import Fault
-from squeezefilm.device.streams import open_stream
+from squeezefilm.device.wire.link import Link
+from squeezefilm.device.wire.safety import require_safe_drive
+from squeezefilm.device.wire.states import Fault
+from squeezefilm.device.wire.streams import open_stream
 from squeezefilm.errors import DeviceError, LoopError
 from squeezefilm.quantities import FloatArray, Second
 from squeezefilm.results import to_json

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from squeezefilm.device.messages import LONGEST_TILE
+from squeezefilm.device.wire.messages import LONGEST_TILE
 from squeezefilm.errors import InputError, UnreachableError
 from squeezefilm.quantities import (
     FloatArray,

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from squeezefilm.device.host import DeviceHost
-from squeezefilm.device.link import Link
+from squeezefilm.device.wire.link import Link
 from squeezefilm.errors import DeviceError, LoopError
 from squeezefilm.quantities import Second, Unit, require
 from squeezefilm.results import to_json

@@ -24,11 +24,11 @@ import numpy as np
 from squeezefilm.analysis.play_command import device_stream
 from squeezefilm.analysis.play_setup import PlaySetup, play_setup
 from squeezefilm.device.host import DeviceHost
-from squeezefilm.device.link import Link
-from squeezefilm.device.safety import require_safe_drive
 from squeezefilm.device.serial_ports import SerialDrive
-from squeezefilm.device.states import State
-from squeezefilm.device.streams import open_stream
+from squeezefilm.device.wire.link import Link
+from squeezefilm.device.wire.safety import require_safe_drive
+from squeezefilm.device.wire.states import State
+from squeezefilm.device.wire.streams import open_stream
 from squeezefilm.display import Display, load_display
 from squeezefilm.errors import SqueezefilmError
 from squeezefilm.formats.traces import Table, csv_text

@@ -11,8 +11,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from squeezefilm.device.machine import CLOCK, DeviceLimits, Machine, State
-from squeezefilm.device.playing import Finger, until
+from squeezefilm.device.machine.device import CLOCK, DeviceLimits, Machine, State
+from squeezefilm.device.machine.playing import Finger, until
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError
 from squeezefilm.twin.hand import Hand

@@ -29,12 +29,12 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import IO
 
-from squeezefilm.device import messages as m
 from squeezefilm.device.priority import (
     PLAYERS_PRIORITY,
     collect_garbage_first,
     real_time_granted,
 )
+from squeezefilm.device.wire import messages as m
 from squeezefilm.display import load_display
 from squeezefilm.errors import InputError, SqueezefilmError
 from squeezefilm.quantities import Newton, Second

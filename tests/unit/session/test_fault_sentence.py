@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from squeezefilm.device.states import Fault
+from squeezefilm.device.wire.states import Fault
 from squeezefilm.session.run_play import fault_sentence
 
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from squeezefilm.device.host import DeviceHost
-from squeezefilm.device.link import Link
-from squeezefilm.device.states import State
+from squeezefilm.device.wire.link import Link
+from squeezefilm.device.wire.states import State
 from squeezefilm.display import load_display
 from squeezefilm.errors import DeviceError, InputError
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ

@@ -146,7 +146,7 @@ def test_a_surface_that_is_halted_before_it_plays_is_not_presented(
 def test_a_study_refuses_a_drive_that_does_not_stop_by_itself(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from squeezefilm.device.safety import Limits
+    from squeezefilm.device.wire.safety import Limits
     from squeezefilm.render.motion.estimator import MotionEstimator
     from squeezefilm.render.motion.sensor import LVDT_10_KHZ
     from squeezefilm.render.program.lowering import lower

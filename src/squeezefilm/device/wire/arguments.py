@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from squeezefilm.device.safety import HIGHEST_VOLTAGE
+from squeezefilm.device.wire.safety import HIGHEST_VOLTAGE
 from squeezefilm.errors import InputError
 from squeezefilm.quantities import FloatArray, Unit, Volt, require
 

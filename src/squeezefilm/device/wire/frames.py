@@ -12,7 +12,7 @@ import zlib
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from squeezefilm.device.cobs import cobs_decode, cobs_encode
+from squeezefilm.device.wire.cobs import cobs_decode, cobs_encode
 from squeezefilm.errors import InputError
 
 VERSION = 1

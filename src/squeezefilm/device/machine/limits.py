@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from squeezefilm.device.messages import SetLimits
+from squeezefilm.device.wire.messages import SetLimits
 
 RAMP = 10_000
 """µs in which every stop is at zero."""

@@ -12,9 +12,9 @@ import struct
 from dataclasses import dataclass, fields
 from typing import ClassVar, Self
 
-from squeezefilm.device.arguments import amplitudes, binary32_below
-from squeezefilm.device.frames import Frame
-from squeezefilm.device.safety import Limits
+from squeezefilm.device.wire.arguments import amplitudes, binary32_below
+from squeezefilm.device.wire.frames import Frame
+from squeezefilm.device.wire.safety import Limits
 from squeezefilm.errors import InputError
 from squeezefilm.quantities import Volt
 

@@ -14,12 +14,12 @@ from collections import OrderedDict, deque
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from squeezefilm.device import messages as m
 from squeezefilm.device.device_clock import DeviceClock
-from squeezefilm.device.frames import Deframer, Frame
-from squeezefilm.device.playing import until
-from squeezefilm.device.states import Fault, Reason, State
-from squeezefilm.device.streams import ByteStream
+from squeezefilm.device.machine.playing import until
+from squeezefilm.device.wire import messages as m
+from squeezefilm.device.wire.frames import Deframer, Frame
+from squeezefilm.device.wire.states import Fault, Reason, State
+from squeezefilm.device.wire.streams import ByteStream
 from squeezefilm.errors import DeviceError
 from squeezefilm.quantities import Second
 

@@ -10,8 +10,8 @@ from collections import deque
 from dataclasses import dataclass, field
 from enum import Enum, auto
 
-from squeezefilm.device.states import Reason
-from squeezefilm.device.tile import Tile
+from squeezefilm.device.machine.tile import Tile
+from squeezefilm.device.wire.states import Reason
 
 CLOCK = 0xFFFFFFFF
 LONGEST_QUEUE = 512

@@ -10,14 +10,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from squeezefilm.device import messages as m
-from squeezefilm.device.device_limits import DeviceLimits, level_of
-from squeezefilm.device.frames import VERSION, Deframer, Frame
-from squeezefilm.device.loads import Loads
-from squeezefilm.device.playing import CLOCK, Finger, Mode, Playing
-from squeezefilm.device.reports import Reports
-from squeezefilm.device.states import Fault, Reason, State
-from squeezefilm.device.tile import Tile
+from squeezefilm.device.machine.limits import DeviceLimits, level_of
+from squeezefilm.device.machine.loads import Loads
+from squeezefilm.device.machine.playing import CLOCK, Finger, Mode, Playing
+from squeezefilm.device.machine.reports import Reports
+from squeezefilm.device.machine.tile import Tile
+from squeezefilm.device.wire import messages as m
+from squeezefilm.device.wire.frames import VERSION, Deframer, Frame
+from squeezefilm.device.wire.states import Fault, Reason, State
 
 __all__ = [
     "CLOCK",

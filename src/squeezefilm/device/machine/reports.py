@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from squeezefilm.device.playing import CLOCK, until
-from squeezefilm.device.states import Reason
+from squeezefilm.device.machine.playing import CLOCK, until
+from squeezefilm.device.wire.states import Reason
 
 SHORTEST_REPORT = 200
 """µs; readings more often than this would fill the wire."""
