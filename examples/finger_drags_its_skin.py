@@ -1,9 +1,9 @@
 """A square grating under a finger whose skin has a mass: its force, and how the skin vibrates."""
 
-from squeezefilm.analysis.stroke_force import stroke_force
+from squeezefilm.chain.prediction import predict
+from squeezefilm.chain.stroke_force import stroke_force
 from squeezefilm.contact.finger.fingerpad import EVIDENCE
 from squeezefilm.display import load_display
-from squeezefilm.prediction import predict
 from squeezefilm.render.fidelity.trace import friction_trace
 from squeezefilm.render.motion.stroke import Stroke
 from squeezefilm.render.resonator.envelope import envelope_time_constant

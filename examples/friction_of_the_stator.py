@@ -1,7 +1,7 @@
 """The paper's main numbers: how slippery the stator gets, and why not to believe it blindly."""
 
+from squeezefilm.chain.prediction import predict
 from squeezefilm.display import load_display
-from squeezefilm.prediction import predict
 
 
 def main() -> dict[str, float]:

@@ -1,7 +1,7 @@
 """A 0.4 mm grating under a finger at three speeds: how much of it gets through the resonator."""
 
+from squeezefilm.chain.prediction import predict
 from squeezefilm.display import load_display
-from squeezefilm.prediction import predict
 from squeezefilm.render.fidelity.survival import swing_kept
 from squeezefilm.render.fidelity.trace import friction_trace
 from squeezefilm.render.motion.stroke import Stroke

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from squeezefilm.analysis.render_command import analyze_render
+from squeezefilm.chain.rendered_texture import analyze_render
 from squeezefilm.display import load_display
 from squeezefilm.formats.hjif import ReferenceDevice, hjif_of
 from squeezefilm.formats.hjif_read import texture_of_hjif

@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from squeezefilm.chain.prediction import predict
 from squeezefilm.display import load_display
-from squeezefilm.prediction import predict
 from squeezefilm.render.program.inverse import FrictionInverse
 from squeezefilm.render.program.lowering import lower
 from squeezefilm.render.program.renderer import render

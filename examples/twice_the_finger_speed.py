@@ -1,8 +1,8 @@
 """A 0.4 mm grating at twice the speed its plate can follow, with a sensor that knows the finger."""
 
 from squeezefilm.analysis.compensated_textures import driven_envelope
+from squeezefilm.chain.prediction import predict
 from squeezefilm.display import load_display
-from squeezefilm.prediction import predict
 from squeezefilm.render.fidelity.rendered_stroke import rendered_stroke
 from squeezefilm.render.fidelity.report import FidelityReport, fidelity_report
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ

@@ -24,8 +24,9 @@ from unittest import mock
 
 import numpy as np
 
-from squeezefilm.analysis import render_command
 from squeezefilm.analysis.friction_command import friction_map
+from squeezefilm.chain import rendered_texture as render_command
+from squeezefilm.chain.prediction import predict
 from squeezefilm.display import Display, load_display
 from squeezefilm.errors import SqueezefilmError, SqueezefilmWarning
 from squeezefilm.film.periodic import batch
@@ -34,7 +35,6 @@ from squeezefilm.formats.trajectories import motion_from
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.ring import modes as annular
 from squeezefilm.plate.solid import solve as solve_modes
-from squeezefilm.prediction import predict
 from squeezefilm.study.design import load_design
 from squeezefilm.study.plan import plan_study
 from squeezefilm.texture_file import load_texture

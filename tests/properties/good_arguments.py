@@ -17,6 +17,7 @@ from typing import Any, Literal
 import numpy as np
 from public_calls import PublicCall
 
+from squeezefilm.chain.friction import FrictionLaw
 from squeezefilm.contact.asperities import AsperityLaw
 from squeezefilm.contact.finger.fingerpad import FingerpadDynamics
 from squeezefilm.contact.finger.fingertip import Finger
@@ -33,7 +34,6 @@ from squeezefilm.film.gap import PaperGap
 from squeezefilm.film.periodic.profile import GapProfile, flexural_profile
 from squeezefilm.film.planar.gap import PlanarGap
 from squeezefilm.formats.hjif import ReferenceDevice, hjif_of
-from squeezefilm.friction import FrictionLaw
 from squeezefilm.materials import ElasticMaterial, Gas, Piezoceramic, PiezoConstants
 from squeezefilm.plate.beam.modes import BeamMode
 from squeezefilm.plate.beam.response import BeamResponse, beam_response

@@ -7,9 +7,9 @@ import pytest
 
 from squeezefilm.analysis.analyze import Analysis, analyze
 from squeezefilm.analysis.procedure import Requirements, design_plate, friction_criterion
+from squeezefilm.chain.friction import friction_law
 from squeezefilm.display import load_display
 from squeezefilm.errors import InputError
-from squeezefilm.friction import friction_law
 from squeezefilm.plate.laminate import plate_laminate
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.results import to_json

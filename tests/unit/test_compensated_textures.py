@@ -14,9 +14,9 @@ from squeezefilm.analysis.compensated_textures import (
     sensor_contrast,
     texture_survival,
 )
+from squeezefilm.chain.prediction import Prediction, predict
 from squeezefilm.display import load_display
 from squeezefilm.errors import InputError
-from squeezefilm.prediction import Prediction, predict
 from squeezefilm.render.motion.minimum_jerk import MinimumJerkStroke
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ, TOUCH_PANEL_60_HZ
 from squeezefilm.render.resonator.compensation import DrivenEnvelope

@@ -10,7 +10,7 @@ from squeezefilm import hard_limits as hard
 from squeezefilm.analysis.film_command import FilmRequest
 from squeezefilm.analysis.plate_command import parse_mode
 from squeezefilm.analysis.plate_tracking import TrackRequest
-from squeezefilm.analysis.played_texture import FingerMotion
+from squeezefilm.chain.played_texture import FingerMotion
 from squeezefilm.config.load import load_text
 from squeezefilm.display import Display, load_display
 from squeezefilm.errors import ConfigError, InputError

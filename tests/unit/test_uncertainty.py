@@ -7,11 +7,11 @@ import pytest
 
 from squeezefilm.analysis.parameters import replaced, uncertain_parameters, value_at
 from squeezefilm.analysis.uncertainty import uncertain_friction
+from squeezefilm.chain.prediction import predict
 from squeezefilm.config.provenance import Provenance
 from squeezefilm.display import Display, load_display
 from squeezefilm.distributions import Uniform
 from squeezefilm.errors import InputError, OutOfRangeError
-from squeezefilm.prediction import predict
 
 
 @pytest.fixture(scope="module")

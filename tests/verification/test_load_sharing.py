@@ -10,6 +10,7 @@ import pytest
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
+from squeezefilm.chain.friction import friction_law
 from squeezefilm.contact.asperities import (
     AsperityLaw,
     exponential_mean_pressure,
@@ -27,7 +28,6 @@ from squeezefilm.display import load_display
 from squeezefilm.errors import InputError, OutOfRangeError, UnreachableError
 from squeezefilm.film.gap import PaperGap
 from squeezefilm.film.periodic.film import solve_strip
-from squeezefilm.friction import friction_law
 from squeezefilm.materials import Gas
 
 GAS = Gas(1.85e-5, 1e5, 1.2, 67e-9)

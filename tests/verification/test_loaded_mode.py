@@ -3,19 +3,19 @@
 import numpy as np
 import pytest
 
+from squeezefilm.chain.friction import friction_law
+from squeezefilm.chain.touch import load_ratios, touch
 from squeezefilm.contact.asperities import AsperityLaw
 from squeezefilm.contact.finger.load import finger_stiffness, interface_stiffness
 from squeezefilm.contact.finger.skin import Skin
 from squeezefilm.display import load_display
 from squeezefilm.errors import InputError
-from squeezefilm.friction import friction_law
 from squeezefilm.materials import Gas
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.loaded_mode import LoadedMode, loaded_mode, mean_square_wave
 from squeezefilm.plate.solid.response import SurfaceLoad, harmonic_response
 from squeezefilm.plate.solid.working import solid_mode
 from squeezefilm.plate.working_mode import working_mode
-from squeezefilm.touch import load_ratios, touch
 
 AIR = Gas(1.85e-5, 1e5, 1.2, 67e-9)
 

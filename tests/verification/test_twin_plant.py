@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from squeezefilm.chain.prediction import predict
 from squeezefilm.display import load_display
 from squeezefilm.plate.working_mode import resonance_factor
-from squeezefilm.prediction import predict
 from squeezefilm.render.motion.stroke import Stroke
 from squeezefilm.render.resonator.carrier import carrier_trace
 from squeezefilm.render.resonator.envelope import envelope_time_constant

@@ -30,9 +30,10 @@ from squeezefilm.analysis.film_models import FilmComparison, compare_film_models
 from squeezefilm.analysis.friction_models import ModelCurve, model_curves
 from squeezefilm.analysis.uncertainty import UncertainFriction, uncertain_friction
 from squeezefilm.analysis.verdict import Finding, verdict
+from squeezefilm.chain.friction import FrictionModel
+from squeezefilm.chain.prediction import Prediction, predict
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError, OutOfRangeError
-from squeezefilm.friction import FrictionModel
 from squeezefilm.plate.beam.modes import BeamTheory
 from squeezefilm.plate.beam.response import beam_response
 from squeezefilm.plate.laminate import CrossSection
@@ -40,7 +41,6 @@ from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.shear.modes import shear_mode
 from squeezefilm.plate.solid.working import solid_mode
 from squeezefilm.plate.working_mode import PlateTheory
-from squeezefilm.prediction import Prediction, predict
 from squeezefilm.quantities import Hertz, Metre, Newton, Second, Volt
 from squeezefilm.render.fidelity.survival import FidelityTable, fidelity_table
 from squeezefilm.render.fidelity.trace import FrictionTrace, friction_trace

@@ -23,6 +23,7 @@ from squeezefilm.analysis.procedure import (
     friction_criterion,
 )
 from squeezefilm.analysis.prototype import MODAL_FREQUENCY, paper_points
+from squeezefilm.chain.friction import friction_law
 from squeezefilm.contact.sharing.paper import (
     relative_friction,
     vibration_amplitude_for,
@@ -37,7 +38,6 @@ from squeezefilm.film.gap import (
     squeeze_number_printed,
 )
 from squeezefilm.film.validity import asymptotic_fraction
-from squeezefilm.friction import friction_law
 from squeezefilm.plate.beam.modes import euler_bernoulli_half_wavelength, timoshenko_frequency
 from squeezefilm.plate.beam.response import beam_response
 from squeezefilm.plate.laminate import Laminate, plate_laminate

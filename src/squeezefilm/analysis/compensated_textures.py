@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from squeezefilm.chain.prediction import Prediction
 from squeezefilm.errors import InputError
-from squeezefilm.prediction import Prediction
 from squeezefilm.quantities import (
     Dimensionless,
     DimensionlessArray,

@@ -7,13 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from squeezefilm.analysis.procedure import PAPER_HALF_WAVELENGTHS, friction_criterion
+from squeezefilm.chain.friction import FrictionLaw, FrictionModel, friction_law
+from squeezefilm.chain.prediction import Prediction
 from squeezefilm.contact.sharing.film_load import is_still, line_film
 from squeezefilm.display import Display, Surface
 from squeezefilm.errors import UnreachableError
 from squeezefilm.film.closed.limits import mean_pressure_profile
-from squeezefilm.friction import FrictionLaw, FrictionModel, friction_law
 from squeezefilm.plate.solid.working import response_frequencies
-from squeezefilm.prediction import Prediction
 from squeezefilm.quantities import (
     Dimensionless,
     DimensionlessArray,

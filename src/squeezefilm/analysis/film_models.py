@@ -6,12 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from squeezefilm.chain.friction import FrictionLaw, friction_law
+from squeezefilm.chain.prediction import Prediction
 from squeezefilm.contact.sharing.film_load import DESCRIPTIONS, FILM_MODELS, FilmModel, is_still
 from squeezefilm.display import Display
 from squeezefilm.errors import SqueezefilmError
-from squeezefilm.friction import FrictionLaw, friction_law
 from squeezefilm.plate.layout import AnnularStator
-from squeezefilm.prediction import Prediction
 from squeezefilm.quantities import (
     Dimensionless,
     DimensionlessArray,

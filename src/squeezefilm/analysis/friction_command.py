@@ -11,12 +11,12 @@ import numpy as np
 
 from squeezefilm.analysis.friction_models import ModelCurve, model_curves
 from squeezefilm.analysis.uncertainty import UncertainFriction, uncertain_friction
+from squeezefilm.chain.friction import DEFAULT_MODEL, FrictionModel
+from squeezefilm.chain.prediction import Prediction, predict, voltage_for_friction
 from squeezefilm.contact.sharing.gas_table import film_table
 from squeezefilm.contact.sharing.pad import FrictionRipple, friction_ripple
 from squeezefilm.display import Display
 from squeezefilm.errors import OutOfRangeError
-from squeezefilm.friction import DEFAULT_MODEL, FrictionModel
-from squeezefilm.prediction import Prediction, predict, voltage_for_friction
 from squeezefilm.quantities import (
     Dimensionless,
     DimensionlessArray,

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from squeezefilm.chain.friction import FrictionModel, friction_law, shares_load
+from squeezefilm.chain.prediction import Prediction
 from squeezefilm.display import Display
 from squeezefilm.errors import SqueezefilmError
-from squeezefilm.friction import FrictionModel, friction_law, shares_load
-from squeezefilm.prediction import Prediction
 from squeezefilm.quantities import Dimensionless, DimensionlessArray, Metre, MetreArray
 
 # The paper's model, the films of the paper's gap, and what shares the load; the cheap ones finely.

@@ -17,15 +17,15 @@ import numpy as np
 
 from squeezefilm.analysis.play_setup import play_setup
 from squeezefilm.analysis.played_session import PlayedSession, judge_session
-from squeezefilm.analysis.played_texture import FingerMotion, require_on_display
-from squeezefilm.analysis.render_command import sensor_named
+from squeezefilm.chain.played_texture import FingerMotion, require_on_display
+from squeezefilm.chain.prediction import predict
+from squeezefilm.chain.rendered_texture import sensor_named
 from squeezefilm.config.write import text_of
 from squeezefilm.device.replay import ReplaySensor
 from squeezefilm.device.wire.streams import open_stream
 from squeezefilm.display import load_display
 from squeezefilm.errors import InputError
 from squeezefilm.formats.trajectories import motion_from, read_trajectory
-from squeezefilm.prediction import predict
 from squeezefilm.quantities import FloatArray, Hertz, MetrePerVolt, Second, Unit, Volt, require
 from squeezefilm.render.motion.estimator import MotionEstimator
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ, SensorModel

@@ -6,13 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from squeezefilm.analysis.render_command import sensor_named
+from squeezefilm.chain.friction import FrictionModel
+from squeezefilm.chain.prediction import Prediction, predict
+from squeezefilm.chain.rendered_texture import sensor_named
 from squeezefilm.device.wire.messages import LONGEST_TILE
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError
 from squeezefilm.film.compiled import announce
-from squeezefilm.friction import FrictionModel
-from squeezefilm.prediction import Prediction, predict
 from squeezefilm.quantities import (
     DimensionlessArray,
     Hertz,

@@ -16,13 +16,14 @@ from squeezefilm.analysis.parameters import (
     replaced,
     uncertain_parameters,
 )
+from squeezefilm.chain.friction import FrictionLaw, friction_law
+from squeezefilm.chain.prediction import Prediction
+from squeezefilm.chain.touch import touch
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError, OutOfRangeError, SqueezefilmError
-from squeezefilm.friction import FrictionLaw, friction_law
 from squeezefilm.plate.beam.response import beam_response
 from squeezefilm.plate.layout import AnnularStator, RectangularPlate
 from squeezefilm.plate.working_mode import working_mode
-from squeezefilm.prediction import Prediction
 from squeezefilm.quantities import (
     Dimensionless,
     DimensionlessArray,
@@ -31,7 +32,6 @@ from squeezefilm.quantities import (
     MetreArray,
     format_quantity,
 )
-from squeezefilm.touch import touch
 
 LEVEL: Dimensionless = 0.9
 _MOST_FAILED = 0.05

@@ -9,8 +9,8 @@ import numpy as np
 
 from squeezefilm.analysis.curves import PAPER_CRITERION, FrictionCurve
 from squeezefilm.analysis.film_models import FilmComparison
+from squeezefilm.chain.prediction import Prediction
 from squeezefilm.display import Display
-from squeezefilm.prediction import Prediction
 from squeezefilm.quantities import Dimensionless, Metre
 from squeezefilm.render.fidelity.survival import FidelityTable
 

@@ -65,7 +65,7 @@ def render(
     seed: Annotated[int, typer.Option(help="Of the sensor's noise.")] = 0,
 ) -> None:
     """A texture on a display under a moving finger: what is asked for and what is rendered."""
-    from squeezefilm.analysis.render_command import analyze_render
+    from squeezefilm.chain.rendered_texture import analyze_render
     from squeezefilm.display import load_display
     from squeezefilm.formats.trajectories import motion_from
     from squeezefilm.quantities import Unit

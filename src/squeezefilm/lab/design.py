@@ -14,11 +14,11 @@ from typing import Any
 import numpy as np
 
 from squeezefilm.analysis.uncertainty import friction_band
+from squeezefilm.chain.prediction import Prediction, predict
 from squeezefilm.errors import InputError, SqueezefilmError
 from squeezefilm.lab.description import display_of, edited, form
 from squeezefilm.plate.layout import Actuator, AnnularStator, DiscPlate, RectangularPlate
 from squeezefilm.plate.solid.working import response_frequencies
-from squeezefilm.prediction import Prediction, predict
 from squeezefilm.quantities import FloatArray, Unit, parse_quantity
 from squeezefilm.results import stamp
 

@@ -14,14 +14,14 @@ from typing import Any
 
 import numpy as np
 
-from squeezefilm.analysis.render_command import lowered, resonance_with_finger, wave_factors
+from squeezefilm.chain.prediction import Prediction
+from squeezefilm.chain.rendered_texture import lowered, resonance_with_finger, wave_factors
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError
 from squeezefilm.formats.pictures import picture_from
 from squeezefilm.lab.description import display_of
 from squeezefilm.lab.design import predicted
 from squeezefilm.plate.layout import Actuator, DiscPlate, RectangularPlate
-from squeezefilm.prediction import Prediction
 from squeezefilm.quantities import FloatArray, Metre
 from squeezefilm.render.program.inverse import FrictionInverse
 from squeezefilm.render.program.lowering import Program

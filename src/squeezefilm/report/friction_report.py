@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from squeezefilm.analysis.friction_command import FrictionAnalysis
     from squeezefilm.analysis.friction_models import ModelCurve
     from squeezefilm.analysis.uncertainty import UncertainFriction
-    from squeezefilm.prediction import Prediction
+    from squeezefilm.chain.prediction import Prediction
 
 _STYLES = {
     "paper2008": (ORANGE, (0, (6, 1.6)), "paper's asymptote"),

@@ -14,9 +14,9 @@ from squeezefilm.quantities import Unit, format_quantity, unit_of
 
 if typing.TYPE_CHECKING:
     from squeezefilm.analysis.analyze import Analysis
+    from squeezefilm.chain.prediction import Prediction
     from squeezefilm.display import Display
     from squeezefilm.plate.working_mode import WorkingMode
-    from squeezefilm.prediction import Prediction
 
 M, HZ, S, N, V, ONE = Unit("m"), Unit("Hz"), Unit("s"), Unit("N"), Unit("V"), Unit("1")
 

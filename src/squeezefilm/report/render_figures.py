@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from squeezefilm.analysis.render_command import RenderAnalysis
+    from squeezefilm.chain.rendered_texture import RenderAnalysis
 
 _MOST_POINTS = 3000
 _ZOOM = 0.16

@@ -24,7 +24,7 @@ from squeezefilm.results import to_json, write_whole
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from squeezefilm.analysis.render_command import RenderAnalysis
+    from squeezefilm.chain.rendered_texture import RenderAnalysis
 
 _DAC_RATE = 192_000
 

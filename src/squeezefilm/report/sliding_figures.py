@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from squeezefilm.analysis.stroke_force import StrokeForce
+    from squeezefilm.chain.stroke_force import StrokeForce
     from squeezefilm.contact.sliding.skin_vibration import SkinVibration
 
 _PERIODS_SHOWN = 6

@@ -10,7 +10,7 @@ from squeezefilm.report.numbers import HZ, M, N, S, V, shown
 from squeezefilm.report.terminal import heading, plain_console, table
 
 if TYPE_CHECKING:
-    from squeezefilm.analysis.render_command import RenderAnalysis
+    from squeezefilm.chain.rendered_texture import RenderAnalysis
     from squeezefilm.formats.hjif import HjifExport
 
 

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from squeezefilm import presets
-from squeezefilm.analysis.played_texture import single_period
+from squeezefilm.chain.played_texture import single_period
 from squeezefilm.errors import InputError
 from squeezefilm.report.style import BLUE, INK, MUTED, PAPER, drawn, new_figure, png
 from squeezefilm.texture_file import TextureFile, preset_texture

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from squeezefilm.analysis.render_command import RenderAnalysis
+from squeezefilm.chain.rendered_texture import RenderAnalysis
 from squeezefilm.quantities import Dimensionless, FloatArray, Hertz, Metre
 from squeezefilm.study.observer import FingerClass, Observer
 from squeezefilm.study.percepts import Percept, along_way

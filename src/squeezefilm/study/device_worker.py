@@ -23,6 +23,7 @@ import numpy as np
 
 from squeezefilm.analysis.play_command import device_stream
 from squeezefilm.analysis.play_setup import PlaySetup, play_setup
+from squeezefilm.chain.prediction import predict
 from squeezefilm.device.host import DeviceHost
 from squeezefilm.device.serial_ports import SerialDrive
 from squeezefilm.device.wire.link import Link
@@ -32,7 +33,6 @@ from squeezefilm.device.wire.streams import open_stream
 from squeezefilm.display import Display, load_display
 from squeezefilm.errors import SqueezefilmError
 from squeezefilm.formats.traces import Table, csv_text
-from squeezefilm.prediction import predict
 from squeezefilm.quantities import Dimensionless, FloatArray, Hertz, MetrePerVolt, Second
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ
 from squeezefilm.results import stamp

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from squeezefilm.analysis.render_command import RenderAnalysis, analyze_render
+from squeezefilm.chain.rendered_texture import RenderAnalysis, analyze_render
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError
 from squeezefilm.quantities import (

@@ -11,9 +11,9 @@ import math
 
 import numpy as np
 
+from squeezefilm.chain.friction import friction_law
 from squeezefilm.display import Display
 from squeezefilm.formats.traces import Table, csv_text
-from squeezefilm.friction import friction_law
 from squeezefilm.quantities import FloatArray, Hertz, Second
 from squeezefilm.render.texture.composition import Composable
 from squeezefilm.results import config_hash, to_json

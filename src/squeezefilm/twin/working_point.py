@@ -8,9 +8,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from squeezefilm.chain.friction import FrictionLaw, friction_law
+from squeezefilm.chain.touch import load_ratios
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError, OutOfRangeError
-from squeezefilm.friction import FrictionLaw, friction_law
 from squeezefilm.plate.beam.response import patch_capacitance
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.working_mode import WorkingMode, working_mode
@@ -25,7 +26,6 @@ from squeezefilm.quantities import (
     Unit,
     format_quantity,
 )
-from squeezefilm.touch import load_ratios
 from squeezefilm.twin.settings import TwinSettings
 
 _log = logging.getLogger(__name__)

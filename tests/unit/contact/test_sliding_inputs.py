@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from squeezefilm.analysis.stroke_force import StrokeForce, stroke_force
+from squeezefilm.chain.stroke_force import StrokeForce, stroke_force
 from squeezefilm.contact.finger.fingerpad import FingerpadDynamics
 from squeezefilm.contact.finger.occlusion import Occlusion
 from squeezefilm.contact.sliding.dry_friction import DryFriction, FrictionProfile, sampled_profile

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from squeezefilm.analysis.stroke_force import StrokeForce, stroke_force
+from squeezefilm.chain.stroke_force import StrokeForce, stroke_force
 from squeezefilm.contact.finger.fingerpad import FingerpadDynamics
 from squeezefilm.contact.sliding.dry_friction import DryFriction
 from squeezefilm.render.fidelity.trace import friction_trace

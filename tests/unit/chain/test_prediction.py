@@ -5,6 +5,8 @@ import dataclasses
 import numpy as np
 import pytest
 
+from squeezefilm.chain.friction import FrictionLaw, friction_law
+from squeezefilm.chain.prediction import predict, voltage_for_friction
 from squeezefilm.display import Display, load_display
 from squeezefilm.errors import (
     ContradictionError,
@@ -12,8 +14,6 @@ from squeezefilm.errors import (
     OutOfRangeError,
     UnreachableError,
 )
-from squeezefilm.friction import FrictionLaw, friction_law
-from squeezefilm.prediction import predict, voltage_for_friction
 
 
 @pytest.fixture(scope="module")

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from squeezefilm.chain.friction import FrictionLaw
 from squeezefilm.contact.finger.load import finger_stiffness, interface_stiffness
 from squeezefilm.contact.sharing.pad import Limit, PadFriction
 from squeezefilm.errors import ConvergenceError
-from squeezefilm.friction import FrictionLaw
 from squeezefilm.plate.loaded_mode import LoadedMode, loaded_mode, mean_square_wave
 from squeezefilm.plate.working_mode import WorkingMode
 from squeezefilm.quantities import (

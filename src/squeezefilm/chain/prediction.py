@@ -13,6 +13,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from squeezefilm.chain.friction import (
+    DEFAULT_MODEL,
+    FrictionLaw,
+    FrictionModel,
+    friction_law,
+    shares_load,
+)
+from squeezefilm.chain.touch import Touch, kept_at, touch
 from squeezefilm.device.wire.safety import HIGHEST_VOLTAGE
 from squeezefilm.display import Display, Surface
 from squeezefilm.errors import (
@@ -24,13 +32,6 @@ from squeezefilm.errors import (
 )
 from squeezefilm.film.gap import squeeze_number
 from squeezefilm.film.validity import FilmValidity, film_validity
-from squeezefilm.friction import (
-    DEFAULT_MODEL,
-    FrictionLaw,
-    FrictionModel,
-    friction_law,
-    shares_load,
-)
 from squeezefilm.plate.beam.response import beam_doubt
 from squeezefilm.plate.layout import Actuator, RectangularPlate
 from squeezefilm.plate.working_mode import PlateTheory, WorkingMode, working_mode
@@ -45,7 +46,6 @@ from squeezefilm.quantities import (
     checked_numbers,
     require,
 )
-from squeezefilm.touch import Touch, kept_at, touch
 
 
 @dataclass(frozen=True, eq=False)

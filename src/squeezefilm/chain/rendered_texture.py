@@ -14,22 +14,22 @@ from typing import Any, Literal, get_args
 
 import numpy as np
 
-from squeezefilm.analysis.played_texture import (
+from squeezefilm.chain.friction import FrictionModel, shares_load
+from squeezefilm.chain.played_texture import (
     FingerMotion,
     PlayedTexture,
     require_on_display,
     require_on_image,
     single_period,
 )
+from squeezefilm.chain.prediction import Prediction, predict
 from squeezefilm.contact.sharing.gas_table import film_table
 from squeezefilm.contact.sharing.pad import friction_ripple
 from squeezefilm.contact.sliding.march import Sliding, slide
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError
 from squeezefilm.formats.trajectories import Motion
-from squeezefilm.friction import FrictionModel, shares_load
 from squeezefilm.plate.layout import DiscPlate, RectangularPlate
-from squeezefilm.prediction import Prediction, predict
 from squeezefilm.quantities import (
     Dimensionless,
     DimensionlessArray,
