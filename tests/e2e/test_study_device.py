@@ -16,6 +16,7 @@ import pytest
 
 from squeezefilm.config.write import text_of
 from squeezefilm.errors import DeviceError
+from squeezefilm.perception.stimuli import Grating, Stimulus
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ
 from squeezefilm.session import rows as column
 from squeezefilm.session.trace_reading import read_trace
@@ -27,7 +28,6 @@ from squeezefilm.study.run import Acknowledgement, Presentation, StudyRun
 from squeezefilm.study.session_conditions import SessionConditions
 from squeezefilm.study.session_device import SessionDevice
 from squeezefilm.study.sessions import begin_session, end_session
-from squeezefilm.study.stimuli import Grating, Stimulus
 from squeezefilm.study.store import StudyStore
 from squeezefilm.twin.settings import PickupModel, TwinSettings
 
@@ -195,7 +195,7 @@ KILLED = """
 import os, signal, sys, time
 from pathlib import Path
 from squeezefilm.study.session_device import SessionDevice
-from squeezefilm.study.stimuli import Stimulus
+from squeezefilm.perception.stimuli import Stimulus
 if __name__ == "__main__":
     device = SessionDevice("biet2008-plate", "twin", Path(sys.argv[1]))
     device.present(Stimulus("8 mm", 8e-3, "period", low=0.8), 1)

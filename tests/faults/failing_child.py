@@ -20,6 +20,7 @@ from tests.faults.study_child import Device, Script, begin
 
 from squeezefilm.errors import SqueezefilmError
 from squeezefilm.lab.studies import Studies
+from squeezefilm.perception.stimuli import Grating, Stimulus
 from squeezefilm.session.record import TraceWriter
 from squeezefilm.session.trace_reading import read_trace
 from squeezefilm.study.conduct import conduct
@@ -27,7 +28,6 @@ from squeezefilm.study.deletion import delete_participant
 from squeezefilm.study.design import StudyDesign
 from squeezefilm.study.exports import export_study
 from squeezefilm.study.merge import merge
-from squeezefilm.study.stimuli import Grating, Stimulus
 from squeezefilm.study.store import StudyStore
 
 KINDS = {"write": 1, "sync": 2, "rename": 4, "cut": 8}

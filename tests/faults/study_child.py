@@ -16,12 +16,12 @@ import sys
 from pathlib import Path
 
 from squeezefilm.errors import RecordError
+from squeezefilm.perception.stimuli import Stimulus
 from squeezefilm.study.conduct import conduct
 from squeezefilm.study.device import DeviceIdentity, DeviceVerification, Exploration
 from squeezefilm.study.run import Acknowledgement, Presentation, StudyRun
 from squeezefilm.study.session_conditions import SessionConditions
 from squeezefilm.study.sessions import begin_session
-from squeezefilm.study.stimuli import Stimulus
 from squeezefilm.study.store import StudyStore
 
 TRACE = "time_s,x_m\n" + "".join(f"{i / 100},{i / 1000}\n" for i in range(100))

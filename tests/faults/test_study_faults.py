@@ -12,8 +12,8 @@ from pathlib import Path
 
 import pytest
 
+from squeezefilm.perception.stimuli import Grating, Stimulus
 from squeezefilm.study.design import StudyDesign
-from squeezefilm.study.stimuli import Grating, Stimulus
 from squeezefilm.study.store import StudyStore
 from squeezefilm.study.trials import trials
 

@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 
 from squeezefilm.display import Display, load_display
+from squeezefilm.perception.observer import Observer, load_observer
+from squeezefilm.perception.percepts import Apparatus
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ
 from squeezefilm.study.chain import ChainTables, chain_tables
 from squeezefilm.study.design import StudyDesign, load_design
-from squeezefilm.study.observer import Observer, load_observer
-from squeezefilm.study.percepts import Apparatus
 from squeezefilm.study.simulated import SimulatedStudy, simulate_participants
 
 PEOPLE = 1000

@@ -72,12 +72,12 @@ def simulate(
     as_json: AsJson = False,
 ) -> None:
     """Let simulated participants do a match-to-sample study; every number is simulated."""
+    from squeezefilm.perception.observer import load_observer
     from squeezefilm.report import terminal
     from squeezefilm.report.simulated_report import write_simulated
     from squeezefilm.report.terminal_simulated import show_simulated
     from squeezefilm.study.chain import chain_tables
     from squeezefilm.study.design import load_design
-    from squeezefilm.study.observer import load_observer
     from squeezefilm.study.simulated import simulate_participants
 
     planned, people = load_design(design), load_observer(observer)
@@ -113,10 +113,10 @@ def power(
     as_json: AsJson = False,
 ) -> None:
     """How many people are needed to tell two stimuli apart, by simulated participants."""
+    from squeezefilm.perception.observer import load_observer
     from squeezefilm.report import terminal
     from squeezefilm.report.terminal_identification import show_power
     from squeezefilm.study.design import load_design
-    from squeezefilm.study.observer import load_observer
     from squeezefilm.study.planned_power import planned_power
 
     with terminal.progress(enabled=sys.stderr.isatty() or not as_json) as step:
@@ -150,8 +150,8 @@ def rehearse(
     seed: Seed = 0,
 ) -> None:
     """Let simulated participants do every trial of a study's file, to try analysis and exports."""
+    from squeezefilm.perception.observer import load_observer
     from squeezefilm.report import terminal
-    from squeezefilm.study.observer import load_observer
     from squeezefilm.study.rehearsal import rehearse as run_through
     from squeezefilm.study.terminal_run import open_study
 

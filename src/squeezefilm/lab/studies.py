@@ -13,6 +13,7 @@ from typing import Any
 from squeezefilm import presets
 from squeezefilm.errors import InputError
 from squeezefilm.lab.files import existing, fresh
+from squeezefilm.perception.stimuli import Stimulus
 from squeezefilm.results import to_json
 from squeezefilm.study.deletion import delete_participant
 from squeezefilm.study.design import StudyDesign, load_design
@@ -25,7 +26,6 @@ from squeezefilm.study.run import Response, StudyRun
 from squeezefilm.study.session_conditions import SessionConditions
 from squeezefilm.study.sessions import begin_session, display_wanted, end_session
 from squeezefilm.study.sittings import FILE, Sitting, Sittings
-from squeezefilm.study.stimuli import Stimulus
 from squeezefilm.study.store import StudyStore
 from squeezefilm.study.trials import expected_duration, trial_count
 

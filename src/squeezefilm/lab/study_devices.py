@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 from squeezefilm.errors import DeviceError, InputError, SqueezefilmError
+from squeezefilm.perception.stimuli import Stimulus
 from squeezefilm.study.device import (
     DeviceIdentity,
     DeviceVerification,
@@ -23,7 +24,6 @@ from squeezefilm.study.device import (
     NoDevice,
     StudyDevice,
 )
-from squeezefilm.study.stimuli import Stimulus
 
 if TYPE_CHECKING:
     from squeezefilm.lab.playing import Playing

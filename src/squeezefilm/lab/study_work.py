@@ -47,7 +47,7 @@ def analysis_of(path: Path) -> dict[str, Any]:
 
 def rehearsed(path: Path, participants: int) -> dict[str, Any]:
     """Simulated participants do the study's file."""
-    from squeezefilm.study.observer import load_observer
+    from squeezefilm.perception.observer import load_observer
     from squeezefilm.study.rehearsal import rehearse
 
     with StudyStore.open(path) as store:

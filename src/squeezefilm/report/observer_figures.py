@@ -65,7 +65,7 @@ def channels(tables: ChainTables) -> Figure:
 @drawn
 def percepts(tables: ChainTables) -> Figure:
     """Evidence for a rhythm of each period, before noise: virtual gratings by display, and real."""
-    from squeezefilm.study.senses import line_periods
+    from squeezefilm.perception.senses import line_periods
 
     design, observer = tables.design, tables.observer
     clearest = tables.virtual.d_prime[..., 0]

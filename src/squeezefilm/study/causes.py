@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from squeezefilm.chain.rendered_texture import RenderAnalysis
+from squeezefilm.perception.observer import FingerClass, Observer
+from squeezefilm.perception.percepts import Percept, along_way
+from squeezefilm.perception.senses import line_amplitudes, line_periods
+from squeezefilm.perception.stimuli import Stimulus
 from squeezefilm.quantities import Dimensionless, FloatArray, Hertz, Metre
-from squeezefilm.study.observer import FingerClass, Observer
-from squeezefilm.study.percepts import Percept, along_way
-from squeezefilm.study.senses import line_amplitudes, line_periods
-from squeezefilm.study.stimuli import Stimulus
 
 
 @dataclass(frozen=True, slots=True)

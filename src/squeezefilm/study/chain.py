@@ -15,13 +15,13 @@ import numpy as np
 
 from squeezefilm.display import Display, load_display
 from squeezefilm.errors import InputError
+from squeezefilm.perception.observer import FingerClass, Observer
+from squeezefilm.perception.percepts import Apparatus, Percept, grating_percept, percept
+from squeezefilm.perception.senses import Candidates
+from squeezefilm.perception.stimuli import Grating, Stimulus
 from squeezefilm.quantities import DimensionlessArray, FloatArray
 from squeezefilm.study.causes import Causes, causes
 from squeezefilm.study.design import StudyDesign
-from squeezefilm.study.observer import FingerClass, Observer
-from squeezefilm.study.percepts import Apparatus, Percept, grating_percept, percept
-from squeezefilm.study.senses import Candidates
-from squeezefilm.study.stimuli import Grating, Stimulus
 
 Progress = Callable[[str], None]
 

@@ -6,10 +6,10 @@ import time
 from collections.abc import Callable
 from typing import Protocol
 
+from squeezefilm.perception.stimuli import Stimulus
 from squeezefilm.quantities import Second
 from squeezefilm.study.device import Exploration, StudyDevice
 from squeezefilm.study.run import Acknowledgement, Presentation, Response, StudyRun
-from squeezefilm.study.stimuli import Stimulus
 from squeezefilm.study.store import utc_now
 
 

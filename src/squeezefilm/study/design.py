@@ -22,6 +22,7 @@ from typing import Literal
 from squeezefilm.config.provenance import Provenance
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import PARTICIPANT_TRIALS, require_within
+from squeezefilm.perception.stimuli import Grating, Stimulus, Varied, require_one_of
 from squeezefilm.quantities import Dimensionless, Second, Unit, did_you_mean, require
 from squeezefilm.results import config_hash
 from squeezefilm.study.special_trials import (
@@ -31,7 +32,6 @@ from squeezefilm.study.special_trials import (
     require_different,
     require_name,
 )
-from squeezefilm.study.stimuli import Grating, Stimulus, Varied, require_one_of
 
 __all__ = ["TASKS", "AdaptiveCondition", "CatchTrial", "Condition", "Order", "StudyDesign", "Task",
            "load_design"]  # fmt: skip

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import Protocol
 
+from squeezefilm.perception.stimuli import Stimulus
 from squeezefilm.quantities import (
     Dimensionless,
     Hertz,
@@ -16,7 +17,6 @@ from squeezefilm.quantities import (
     format_quantity,
     require,
 )
-from squeezefilm.study.stimuli import Stimulus
 
 
 @dataclass(frozen=True)

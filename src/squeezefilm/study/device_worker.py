@@ -33,6 +33,7 @@ from squeezefilm.device.wire.streams import open_stream
 from squeezefilm.display import Display, load_display
 from squeezefilm.errors import SqueezefilmError
 from squeezefilm.formats.traces import Table, csv_text
+from squeezefilm.perception.stimuli import Stimulus
 from squeezefilm.quantities import Dimensionless, FloatArray, Hertz, MetrePerVolt, Second
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ
 from squeezefilm.results import stamp
@@ -42,7 +43,6 @@ from squeezefilm.session.resonance_sweep import sweep_resonance
 from squeezefilm.session.run_play import PlayOutcome, run_play
 from squeezefilm.session.trace_reading import Trace, read_trace
 from squeezefilm.study.device import DeviceVerification, Exploration
-from squeezefilm.study.stimuli import Stimulus
 from squeezefilm.texture_file import TextureFile
 from squeezefilm.twin.settings import TwinSettings
 

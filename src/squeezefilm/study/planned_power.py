@@ -8,11 +8,11 @@ from dataclasses import dataclass
 from typing import Any
 
 from squeezefilm.errors import InputError
+from squeezefilm.perception.observer import Observer
 from squeezefilm.quantities import Dimensionless, did_you_mean
 from squeezefilm.results import stamp, to_json
 from squeezefilm.study.chain import chain_tables
 from squeezefilm.study.design import StudyDesign
-from squeezefilm.study.observer import Observer
 from squeezefilm.study.power import PowerCurve, distinction, power_curve
 from squeezefilm.study.simulated import right_answers, simulate_participants
 from squeezefilm.study.simulated_people import SimulatedPeople

@@ -9,9 +9,9 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from squeezefilm.errors import InputError
+from squeezefilm.perception.observer import Observer
 from squeezefilm.study.chain import chain_tables
 from squeezefilm.study.device import NoDevice
-from squeezefilm.study.observer import Observer
 from squeezefilm.study.origin import SIMULATED, SIMULATED_NOTE, origin_of
 from squeezefilm.study.run import Response, StudyRun
 from squeezefilm.study.session_conditions import SessionConditions

@@ -19,11 +19,11 @@ from typing import Any, Literal
 
 from squeezefilm import __version__
 from squeezefilm.errors import InputError
+from squeezefilm.perception.stimuli import Grating, Stimulus
 from squeezefilm.quantities import Second, Unit, require
 from squeezefilm.study.adaptive_series import adaptive_method
 from squeezefilm.study.device import Exploration
 from squeezefilm.study.sessions import display_wanted
-from squeezefilm.study.stimuli import Grating, Stimulus
 from squeezefilm.study.store import Row, StudyStore, insert, utc_now
 from squeezefilm.study.trials import Trial
 

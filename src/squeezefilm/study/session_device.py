@@ -17,12 +17,12 @@ from typing import Any, Self
 
 from squeezefilm.display import load_display
 from squeezefilm.errors import DeviceError, InputError
+from squeezefilm.perception.stimuli import Stimulus
 from squeezefilm.quantities import Hertz, MetrePerVolt, Second
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ
 from squeezefilm.results import config_hash
 from squeezefilm.study.device import DeviceIdentity, DeviceVerification, Exploration
 from squeezefilm.study.device_worker import WorkerOrders, serve
-from squeezefilm.study.stimuli import Stimulus
 from squeezefilm.twin.hand import EXPLORING
 from squeezefilm.twin.settings import PickupModel, TwinSettings
 

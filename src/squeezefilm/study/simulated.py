@@ -19,6 +19,8 @@ from numpy.typing import NDArray
 
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import SIMULATED_TRIALS, require_within
+from squeezefilm.perception.observer import Observer
+from squeezefilm.perception.senses import D_PRIME_OF_75
 from squeezefilm.quantities import (
     Dimensionless,
     DimensionlessArray,
@@ -30,8 +32,6 @@ from squeezefilm.results import stamp, to_json
 from squeezefilm.study.chain import ChainTables, chain_tables
 from squeezefilm.study.confusion import ConfusionMatrix, IntArray
 from squeezefilm.study.design import StudyDesign
-from squeezefilm.study.observer import Observer
-from squeezefilm.study.senses import D_PRIME_OF_75
 from squeezefilm.study.trials import trials
 
 _CHUNK = 60

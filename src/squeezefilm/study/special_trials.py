@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import Literal
 
 from squeezefilm.errors import InputError
+from squeezefilm.perception.stimuli import Stimulus, Varied, require_one_of
 from squeezefilm.quantities import Dimensionless, require
-from squeezefilm.study.stimuli import Stimulus, Varied, require_one_of
 
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,79}")
 

@@ -20,9 +20,9 @@ from squeezefilm.lab.keys import Keys
 from squeezefilm.lab.server import PAGE, Lab
 from squeezefilm.lab.study_area import add_study
 from squeezefilm.lab.study_devices import StudyDevices, require_device
+from squeezefilm.perception.stimuli import Stimulus
 from squeezefilm.study.device import DeviceIdentity, DeviceVerification, Exploration
 from squeezefilm.study.exposure import Exposure
-from squeezefilm.study.stimuli import Stimulus
 from squeezefilm.study.store import StudyStore
 
 SURFACE = (Stimulus("4 mm", 4e-3, "period"), 1)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from squeezefilm.perception.stimuli import Grating, Stimulus
 from squeezefilm.study.conduct import conduct
 from squeezefilm.study.design import AdaptiveCondition, StudyDesign
 from squeezefilm.study.device import (
@@ -17,7 +18,6 @@ from squeezefilm.study.exposure import Exposure
 from squeezefilm.study.run import Acknowledgement, Presentation, StudyRun
 from squeezefilm.study.session_conditions import SessionConditions
 from squeezefilm.study.sessions import begin_session
-from squeezefilm.study.stimuli import Grating, Stimulus
 from squeezefilm.study.store import StudyStore
 
 LOUD = Exposure("biet2008-plate", 33e3, 0.5, 124.0, 1200.0, 100.0, "somebody 1984", "estimated")

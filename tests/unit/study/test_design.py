@@ -10,8 +10,8 @@ import pytest
 
 from squeezefilm import config, presets
 from squeezefilm.errors import ConfigError, InputError
+from squeezefilm.perception.stimuli import Grating, Stimulus
 from squeezefilm.study.design import AdaptiveCondition, CatchTrial, StudyDesign, load_design
-from squeezefilm.study.stimuli import Grating, Stimulus
 from squeezefilm.study.store import StudyStore
 from squeezefilm.study.trials import trials
 

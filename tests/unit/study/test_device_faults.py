@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.errors import DeviceError, InputError
+from squeezefilm.perception.stimuli import Stimulus
 from squeezefilm.session import run_play as playing
 from squeezefilm.session.play import PlayPlan
 from squeezefilm.study.conduct import conduct
@@ -20,7 +21,6 @@ from squeezefilm.study.device import Exploration, NoDevice
 from squeezefilm.study.run import StudyRun
 from squeezefilm.study.session_device import SessionDevice
 from squeezefilm.study.sessions import begin_session
-from squeezefilm.study.stimuli import Stimulus
 from squeezefilm.study.store import StudyStore
 
 from .scripted import CONSENT, Script, gratings

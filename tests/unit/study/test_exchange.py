@@ -207,9 +207,9 @@ def test_a_damaged_mark_is_one_message(store: StudyStore, mark: str) -> None:
 
 
 def test_no_cell_of_any_export_is_a_formula(tmp_path: Path) -> None:
+    from squeezefilm.perception.stimuli import Grating, Stimulus
     from squeezefilm.study.design import StudyDesign
     from squeezefilm.study.exports import FORMATS
-    from squeezefilm.study.stimuli import Grating, Stimulus
 
     evil = "cmd|' /C calc'!A0"
     # Names of stimuli are printable; texts of a sitting are any.

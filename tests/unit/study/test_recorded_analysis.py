@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from squeezefilm.errors import InputError
+from squeezefilm.perception.observer import load_observer
 from squeezefilm.study.conduct import conduct
 from squeezefilm.study.device import NoDevice
-from squeezefilm.study.observer import load_observer
 from squeezefilm.study.origin import SIMULATED, origin_of
 from squeezefilm.study.recorded_analysis import analyze_study
 from squeezefilm.study.rehearsal import rehearse

@@ -11,13 +11,13 @@ from pathlib import Path
 import pytest
 
 from squeezefilm.errors import InputError
+from squeezefilm.perception.stimuli import Stimulus
 from squeezefilm.study.conduct import conduct
 from squeezefilm.study.design import StudyDesign
 from squeezefilm.study.device import Exploration, NoDevice
 from squeezefilm.study.exports import export_study
 from squeezefilm.study.run import Response, StudyRun
 from squeezefilm.study.sessions import display_wanted
-from squeezefilm.study.stimuli import Stimulus
 from squeezefilm.study.store import StudyStore
 from squeezefilm.study.trials import trials
 

@@ -10,12 +10,12 @@ import pytest
 from scipy.special import ndtr
 
 from squeezefilm.errors import InputError
+from squeezefilm.perception.observer import Observer, load_observer
+from squeezefilm.perception.percepts import Apparatus
+from squeezefilm.perception.senses import D_PRIME_OF_75, Candidates
 from squeezefilm.study.causes import Causes
 from squeezefilm.study.chain import ChainTables, chain_tables
 from squeezefilm.study.design import StudyDesign, load_design
-from squeezefilm.study.observer import Observer, load_observer
-from squeezefilm.study.percepts import Apparatus
-from squeezefilm.study.senses import D_PRIME_OF_75, Candidates
 from squeezefilm.study.simulated import right_answers, simulate_participants
 from squeezefilm.study.simulated_people import SimulatedPeople
 

@@ -10,8 +10,8 @@ import pytest
 
 from squeezefilm import config
 from squeezefilm.errors import InputError
+from squeezefilm.perception.stimuli import Stimulus
 from squeezefilm.study.design import AdaptiveCondition, CatchTrial, StudyDesign, load_design
-from squeezefilm.study.stimuli import Stimulus
 from squeezefilm.study.trials import (
     conditions,
     expected_duration,

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.display import load_display
-from squeezefilm.study.stimuli import Stimulus
+from squeezefilm.perception.stimuli import Stimulus
 from squeezefilm.study.twin_device import StudyTwin
 from squeezefilm.twin.settings import PickupModel, PlateDrift, TwinSettings
 from squeezefilm.twin.working_point import WorkingPoint, working_point

@@ -20,6 +20,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from squeezefilm.perception.observer import Observer
 from squeezefilm.quantities import (
     ComplexArray,
     Dimensionless,
@@ -32,7 +33,6 @@ from squeezefilm.quantities import (
     Unit,
     require,
 )
-from squeezefilm.study.observer import Observer
 
 FINEST_PERIOD: Metre = 0.25e-3
 COARSEST_PERIOD: Metre = 20e-3

@@ -16,6 +16,18 @@ import numpy as np
 from squeezefilm.chain.rendered_texture import RenderAnalysis, analyze_render
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError
+from squeezefilm.perception.observer import FingerClass, Observer
+from squeezefilm.perception.senses import (
+    SETTLING,
+    SPACING,
+    Candidates,
+    Evidence,
+    candidates,
+    channel_gains,
+    evidence,
+    line_amplitudes,
+)
+from squeezefilm.perception.stimuli import Grating, Stimulus
 from squeezefilm.quantities import (
     FloatArray,
     Hertz,
@@ -27,18 +39,6 @@ from squeezefilm.quantities import (
 )
 from squeezefilm.render.motion.minimum_jerk import MinimumJerkStroke
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ, SensorModel
-from squeezefilm.study.observer import FingerClass, Observer
-from squeezefilm.study.senses import (
-    SETTLING,
-    SPACING,
-    Candidates,
-    Evidence,
-    candidates,
-    channel_gains,
-    evidence,
-    line_amplitudes,
-)
-from squeezefilm.study.stimuli import Grating, Stimulus
 from squeezefilm.texture_file import TextureFile
 
 CONTROL_RATE: Hertz = 9.6e3

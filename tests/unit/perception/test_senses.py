@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from squeezefilm.errors import ConfigError, InputError
-from squeezefilm.study.observer import SensoryChannel, load_observer
-from squeezefilm.study.percepts import grating_percept, indentation
-from squeezefilm.study.senses import (
+from squeezefilm.perception.observer import SensoryChannel, load_observer
+from squeezefilm.perception.percepts import grating_percept, indentation
+from squeezefilm.perception.senses import (
     D_PRIME_OF_75,
     SPACING,
     candidates,
@@ -21,7 +21,7 @@ from squeezefilm.study.senses import (
     line_periods,
     spatial_sensitivity,
 )
-from squeezefilm.study.stimuli import Grating
+from squeezefilm.perception.stimuli import Grating
 
 OBSERVER = load_observer()
 WAY = np.arange(2e-3, 40e-3, SPACING)
