@@ -34,14 +34,14 @@ from squeezefilm.render.motion.sensor import LVDT_10_KHZ
 from squeezefilm.render.program.lowering import lower
 from squeezefilm.render.resonator.compensation import DrivenEnvelope
 from squeezefilm.render.texture.gratings import Square
-from squeezefilm.session import shared
-from squeezefilm.session.atomics import store_release
-from squeezefilm.session.lateness import Lateness
-from squeezefilm.session.loop import PRIORITY, LoopProcess
-from squeezefilm.session.plan import DriveTable, LoopPlan
-from squeezefilm.session.ring import ring_put_all
-from squeezefilm.session.simulated import lateness_in, run_ticks, taken
-from squeezefilm.session.worker import Orders, run_loop
+from squeezefilm.session.loop import shared
+from squeezefilm.session.loop.atomics import store_release
+from squeezefilm.session.loop.lateness import Lateness
+from squeezefilm.session.loop.plan import DriveTable, LoopPlan
+from squeezefilm.session.loop.process import PRIORITY, LoopProcess
+from squeezefilm.session.loop.ring import ring_put_all
+from squeezefilm.session.loop.simulated import lateness_in, run_ticks, taken
+from squeezefilm.session.loop.worker import Orders, run_loop
 
 RATES = (1e3, 5e3, 10e3)
 SPEED, LIMIT = 0.06, 1e-6

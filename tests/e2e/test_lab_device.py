@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import pytest
 from tests.unit.study.scripted import CONSENT, Script, gratings
 
-from squeezefilm.session.trace_reading import read_trace
+from squeezefilm.session.record.reading import read_trace
 from squeezefilm.study.conduct import conduct
 from squeezefilm.study.device import NoDevice
 from squeezefilm.study.run import StudyRun

@@ -18,8 +18,8 @@ from squeezefilm.config.write import text_of
 from squeezefilm.errors import DeviceError
 from squeezefilm.perception.stimuli import Grating, Stimulus
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ
-from squeezefilm.session import rows as column
-from squeezefilm.session.trace_reading import read_trace
+from squeezefilm.session.loop import rows as column
+from squeezefilm.session.record.reading import read_trace
 from squeezefilm.study.conduct import conduct
 from squeezefilm.study.design import StudyDesign
 from squeezefilm.study.device import NoDevice, StudyDevice

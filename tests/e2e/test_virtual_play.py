@@ -12,11 +12,11 @@ from squeezefilm.analysis.play_setup import PlaySetup, play_setup
 from squeezefilm.analysis.played_session import PlayedSession, judge_session
 from squeezefilm.display import Display, load_display
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ, TOUCH_PANEL_240_HZ, SensorModel
-from squeezefilm.session import virtual_play as bench
-from squeezefilm.session.play import Ending, Player
-from squeezefilm.session.run_play import PlayOutcome
-from squeezefilm.session.trace_reading import read_trace
-from squeezefilm.session.virtual_play import virtual_play
+from squeezefilm.session.play import simulated as bench
+from squeezefilm.session.play.player import Ending, Player
+from squeezefilm.session.play.real_time import PlayOutcome
+from squeezefilm.session.play.simulated import virtual_play
+from squeezefilm.session.record.reading import read_trace
 from squeezefilm.texture_file import preset_texture
 from squeezefilm.twin.device import TwinDevice
 from squeezefilm.twin.hand import hand_from
@@ -168,8 +168,8 @@ def test_a_session_without_a_pickup_is_judged_by_the_envelopes_model(
 def test_a_session_that_broke_at_once_is_told_and_shown(display: Display, tmp_path: Path) -> None:
     from squeezefilm.analysis.play_command import PlayResult
     from squeezefilm.report.play_report import write_play
-    from squeezefilm.session.record import TraceWriter
-    from squeezefilm.session.rows import COLUMNS
+    from squeezefilm.session.loop.rows import COLUMNS
+    from squeezefilm.session.record.trace import TraceWriter
 
     setup = prepared(display)
     with TraceWriter(tmp_path / "trace.sqft", COLUMNS, {"drive": "serial:none"}) as writer:

@@ -21,8 +21,8 @@ from tests.faults.study_child import Device, Script, begin
 from squeezefilm.errors import SqueezefilmError
 from squeezefilm.lab.studies import Studies
 from squeezefilm.perception.stimuli import Grating, Stimulus
-from squeezefilm.session.record import TraceWriter
-from squeezefilm.session.trace_reading import read_trace
+from squeezefilm.session.record.reading import read_trace
+from squeezefilm.session.record.trace import TraceWriter
 from squeezefilm.study.conduct import conduct
 from squeezefilm.study.deletion import delete_participant
 from squeezefilm.study.design import StudyDesign

@@ -16,9 +16,9 @@ from squeezefilm.render.motion.sensor import LVDT_10_KHZ
 from squeezefilm.render.program.lowering import lower
 from squeezefilm.render.resonator.compensation import DrivenEnvelope
 from squeezefilm.render.texture.gratings import Square
-from squeezefilm.session.plan import DriveTable, LoopPlan
-from squeezefilm.session.play import PlayPlan
-from squeezefilm.session.run_play import run_play
+from squeezefilm.session.loop.plan import DriveTable, LoopPlan
+from squeezefilm.session.play.player import PlayPlan
+from squeezefilm.session.play.real_time import run_play
 
 
 def main(port: str, trace: Path, seconds: float) -> None:

@@ -22,11 +22,11 @@ from squeezefilm.render.motion.sensor import LVDT_10_KHZ
 from squeezefilm.render.program.lowering import lower
 from squeezefilm.render.resonator.compensation import DrivenEnvelope
 from squeezefilm.render.texture.gratings import Square
-from squeezefilm.session import rows as column
-from squeezefilm.session.loop import LoopProcess
-from squeezefilm.session.pacing import MARGIN
-from squeezefilm.session.plan import DriveTable, LoopPlan
-from squeezefilm.session.ring import ring_waiting
+from squeezefilm.session.loop import rows as column
+from squeezefilm.session.loop.pacing import MARGIN
+from squeezefilm.session.loop.plan import DriveTable, LoopPlan
+from squeezefilm.session.loop.process import LoopProcess
+from squeezefilm.session.loop.ring import ring_waiting
 
 pytestmark = pytest.mark.realtime
 # Far beyond what any of it takes; a limit for a test that hangs.
@@ -168,7 +168,7 @@ def test_a_killed_loop_is_noticed_and_what_it_wrote_is_kept() -> None:
 
 HOST = """
 import os, sys, time
-from squeezefilm.session.loop import LoopProcess
+from squeezefilm.session.loop.process import LoopProcess
 sys.path.insert(0, sys.argv[1])
 from test_loop_process import PLAN
 loop = LoopProcess(PLAN, priority=None)
@@ -203,7 +203,7 @@ import ctypes, resource, sys, warnings
 # Neither a capability (24: drop from the bounding set, 23: CAP_SYS_NICE) nor a limit allows it.
 ctypes.CDLL(None).prctl(24, 23, 0, 0, 0)
 resource.setrlimit(resource.RLIMIT_RTPRIO, (0, 0))
-from squeezefilm.session.loop import LoopProcess
+from squeezefilm.session.loop.process import LoopProcess
 sys.path.insert(0, sys.argv[1])
 from test_loop_process import PLAN
 with warnings.catch_warnings(record=True) as caught:

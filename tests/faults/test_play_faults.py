@@ -20,8 +20,8 @@ import numpy as np
 import pytest
 
 from squeezefilm.device.machine.device import Fault
-from squeezefilm.session import rows as column
-from squeezefilm.session.trace_reading import read_trace
+from squeezefilm.session.loop import rows as column
+from squeezefilm.session.record.reading import read_trace
 
 pytestmark = [
     pytest.mark.realtime,

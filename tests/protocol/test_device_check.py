@@ -14,7 +14,7 @@ from squeezefilm.device.wire.frames import Frame
 from squeezefilm.errors import DeviceError
 from squeezefilm.session.conversation import Conversation
 from squeezefilm.session.device_check import DeviceCheck, check_device, loop_check
-from squeezefilm.session.lateness import CLASSES, Lateness, lateness_class
+from squeezefilm.session.loop.lateness import CLASSES, Lateness, lateness_class
 
 FREQUENCY = 30_000.0
 

@@ -15,7 +15,7 @@ from squeezefilm.formats.wav import read_wav
 from squeezefilm.hard_limits import HardLimit
 from squeezefilm.quantities import Unit
 from squeezefilm.regular_file import read_regular, read_regular_text
-from squeezefilm.session.record import read_trace
+from squeezefilm.session.record.trace import read_trace
 
 TEN = HardLimit("bytes of a test", 0, 10, Unit("1"), "ten are enough")
 READERS = [

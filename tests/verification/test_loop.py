@@ -31,10 +31,15 @@ from squeezefilm.render.texture.gates import Periodic, SpeedGate
 from squeezefilm.render.texture.gratings import Sine, Square
 from squeezefilm.render.texture.levels import Amplitude
 from squeezefilm.render.texture.noise import Noise
-from squeezefilm.session import rows as column
-from squeezefilm.session.lateness import CLASSES, lateness_class
-from squeezefilm.session.plan import DriveTable, FrictionTable, LoopPlan
-from squeezefilm.session.simulated import SimulatedLoop, SimulatedRun, run_ticks, stream_samples
+from squeezefilm.session.loop import rows as column
+from squeezefilm.session.loop.lateness import CLASSES, lateness_class
+from squeezefilm.session.loop.plan import DriveTable, FrictionTable, LoopPlan
+from squeezefilm.session.loop.simulated import (
+    SimulatedLoop,
+    SimulatedRun,
+    run_ticks,
+    stream_samples,
+)
 
 LIMIT, PER_VOLT = 1e-6, 1e-8
 TEXTURES: dict[str, Composable] = {

@@ -35,12 +35,12 @@ from squeezefilm.render.texture.gratings import Square
 from squeezefilm.results import stamp
 from squeezefilm.session.conversation import Conversation
 from squeezefilm.session.device_check import DeviceCheck, check_device
-from squeezefilm.session.lateness import Lateness
-from squeezefilm.session.loop import LoopProcess
-from squeezefilm.session.plan import DriveTable, LoopPlan
-from squeezefilm.session.play import PlayView
-from squeezefilm.session.run_play import PlayOutcome, run_play
-from squeezefilm.session.trace_reading import read_trace
+from squeezefilm.session.loop.lateness import Lateness
+from squeezefilm.session.loop.plan import DriveTable, LoopPlan
+from squeezefilm.session.loop.process import LoopProcess
+from squeezefilm.session.play.player import PlayView
+from squeezefilm.session.play.real_time import PlayOutcome, run_play
+from squeezefilm.session.record.reading import read_trace
 from squeezefilm.texture_file import TextureFile
 from squeezefilm.twin.pty_server import running_twin
 from squeezefilm.twin.settings import PickupModel, TwinSettings

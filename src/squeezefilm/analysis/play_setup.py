@@ -29,10 +29,10 @@ from squeezefilm.render.program.inverse import FrictionInverse
 from squeezefilm.render.program.lowering import lower
 from squeezefilm.render.resonator.compensation import DrivenEnvelope
 from squeezefilm.render.resonator.envelope import envelope_time_constant
-from squeezefilm.session.plan import DriveTable, FrictionTable, LoopPlan
-from squeezefilm.session.play import REPORT_PERIOD, PlayPlan
-from squeezefilm.session.tick import make_tick
-from squeezefilm.session.tile import TextureTile, tile_of
+from squeezefilm.session.loop.plan import DriveTable, FrictionTable, LoopPlan
+from squeezefilm.session.loop.tick import make_tick
+from squeezefilm.session.play.player import REPORT_PERIOD, PlayPlan
+from squeezefilm.session.play.tile import TextureTile, tile_of
 from squeezefilm.texture_file import TextureFile
 
 OUTPUT_DELAY: Second = 6e-3

@@ -35,8 +35,8 @@ from squeezefilm.render.fidelity.rendered_stroke import RenderedStroke
 from squeezefilm.render.fidelity.report import FidelityReport, fidelity_report
 from squeezefilm.render.program.renderer import render
 from squeezefilm.results import to_json
-from squeezefilm.session import rows as column
-from squeezefilm.session.trace_reading import Trace
+from squeezefilm.session.loop import rows as column
+from squeezefilm.session.record.reading import Trace
 
 _SMOOTHING: Second = 20e-3
 _STILL = 0.15

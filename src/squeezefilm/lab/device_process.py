@@ -122,7 +122,7 @@ class DeviceSession:
 def play(connection: Connection, work: DeviceWork) -> None:
     """Play, and tell of it."""
     from squeezefilm.analysis.play_command import JUDGING, play_texture
-    from squeezefilm.session.rows import COLUMNS
+    from squeezefilm.session.loop.rows import COLUMNS
     from squeezefilm.texture_file import preset_texture
 
     tell = _telling(connection)

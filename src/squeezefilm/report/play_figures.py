@@ -22,8 +22,8 @@ from squeezefilm.report.style import (
     plain,
     plain_log,
 )
-from squeezefilm.session import rows as column
-from squeezefilm.session.lateness import Lateness, class_ends
+from squeezefilm.session.loop import rows as column
+from squeezefilm.session.loop.lateness import Lateness, class_ends
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

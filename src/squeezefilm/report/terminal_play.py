@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from squeezefilm.analysis.play_command import PlayResult
     from squeezefilm.analysis.played_session import Judged, PlayedSession
     from squeezefilm.session.device_check import DeviceCheck
-    from squeezefilm.session.export import TraceExport
-    from squeezefilm.session.play import PlayView
+    from squeezefilm.session.play.player import PlayView
+    from squeezefilm.session.record.export import TraceExport
 
 _BAR = 28
 _LINE_PERIOD = 1.0

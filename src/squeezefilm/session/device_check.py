@@ -20,7 +20,7 @@ from squeezefilm.device.wire.states import Fault, Reason, State
 from squeezefilm.errors import DeviceError
 from squeezefilm.quantities import Dimensionless, Hertz, Second, Volt
 from squeezefilm.session.conversation import Conversation
-from squeezefilm.session.lateness import Lateness
+from squeezefilm.session.loop.lateness import Lateness
 
 TEST_VOLTAGE: Volt = 1.0
 """The most that a check may ask of a device."""

@@ -37,11 +37,11 @@ from squeezefilm.perception.stimuli import Stimulus
 from squeezefilm.quantities import Dimensionless, FloatArray, Hertz, MetrePerVolt, Second
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ
 from squeezefilm.results import stamp
-from squeezefilm.session import rows as column
-from squeezefilm.session.play import Ending, PlayView
+from squeezefilm.session.loop import rows as column
+from squeezefilm.session.play.player import Ending, PlayView
+from squeezefilm.session.play.real_time import PlayOutcome, run_play
+from squeezefilm.session.record.reading import Trace, read_trace
 from squeezefilm.session.resonance_sweep import sweep_resonance
-from squeezefilm.session.run_play import PlayOutcome, run_play
-from squeezefilm.session.trace_reading import Trace, read_trace
 from squeezefilm.study.device import DeviceVerification, Exploration
 from squeezefilm.texture_file import TextureFile
 from squeezefilm.twin.settings import TwinSettings

@@ -13,7 +13,7 @@ from squeezefilm.render.motion.sensor import LVDT_10_KHZ
 from squeezefilm.render.program.lowering import lower
 from squeezefilm.render.resonator.compensation import DrivenEnvelope
 from squeezefilm.render.texture.gratings import Square
-from squeezefilm.session.plan import DriveTable, FrictionTable, LoopPlan
+from squeezefilm.session.loop.plan import DriveTable, FrictionTable, LoopPlan
 
 
 @pytest.fixture

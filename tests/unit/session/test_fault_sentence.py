@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from squeezefilm.device.wire.states import Fault
-from squeezefilm.session.run_play import fault_sentence
+from squeezefilm.session.play.real_time import fault_sentence
 
 
 def player(fault: Fault, held_up: float, twin: bool) -> Any:

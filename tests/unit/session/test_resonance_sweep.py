@@ -13,8 +13,8 @@ from squeezefilm.device.wire.states import State
 from squeezefilm.display import load_display
 from squeezefilm.errors import DeviceError, InputError
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ
+from squeezefilm.session.play.simulated import VirtualStream
 from squeezefilm.session.resonance_sweep import ResonanceSweep, peak, sweep_resonance
-from squeezefilm.session.virtual_play import VirtualStream
 from squeezefilm.twin.device import TwinDevice
 from squeezefilm.twin.hand import hand_from
 from squeezefilm.twin.settings import PickupModel, PlateDrift, TwinSettings

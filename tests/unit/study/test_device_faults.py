@@ -14,8 +14,8 @@ import pytest
 
 from squeezefilm.errors import DeviceError, InputError
 from squeezefilm.perception.stimuli import Stimulus
-from squeezefilm.session import run_play as playing
-from squeezefilm.session.play import PlayPlan
+from squeezefilm.session.play import real_time as playing
+from squeezefilm.session.play.player import PlayPlan
 from squeezefilm.study.conduct import conduct
 from squeezefilm.study.device import Exploration, NoDevice
 from squeezefilm.study.run import StudyRun
@@ -152,7 +152,7 @@ def test_a_study_refuses_a_drive_that_does_not_stop_by_itself(
     from squeezefilm.render.program.lowering import lower
     from squeezefilm.render.resonator.compensation import DrivenEnvelope
     from squeezefilm.render.texture.gratings import Square
-    from squeezefilm.session.plan import DriveTable, LoopPlan
+    from squeezefilm.session.loop.plan import DriveTable, LoopPlan
 
     class Silent:
         sent = b""

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from squeezefilm.errors import InputError
-from squeezefilm.session import rows as column
-from squeezefilm.session.trace_reading import Damage, Trace
+from squeezefilm.session.loop import rows as column
+from squeezefilm.session.record.reading import Damage, Trace
 from squeezefilm.study.deletion import delete_participant
 from squeezefilm.study.device import DeviceVerification, Exploration, NoDevice
 from squeezefilm.study.device_worker import explored

@@ -9,7 +9,13 @@ import numpy as np
 import pytest
 
 from squeezefilm.errors import InputError
-from squeezefilm.session.lateness import CLASSES, Lateness, class_ends, class_shares, lateness_class
+from squeezefilm.session.loop.lateness import (
+    CLASSES,
+    Lateness,
+    class_ends,
+    class_shares,
+    lateness_class,
+)
 
 
 def _of(late_ns: np.ndarray, lost: int = 0) -> Lateness:

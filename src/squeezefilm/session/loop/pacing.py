@@ -21,12 +21,12 @@ import numba
 import numpy as np
 
 from squeezefilm.quantities import Dimensionless, Second
-from squeezefilm.session import clock, shared
-from squeezefilm.session import plan as at
-from squeezefilm.session import rows as column
-from squeezefilm.session.atomics import load_acquire, store_release
-from squeezefilm.session.lateness import lateness_class
-from squeezefilm.session.tick import make_tick
+from squeezefilm.session.loop import clock, shared
+from squeezefilm.session.loop import plan as at
+from squeezefilm.session.loop import rows as column
+from squeezefilm.session.loop.atomics import load_acquire, store_release
+from squeezefilm.session.loop.lateness import lateness_class
+from squeezefilm.session.loop.tick import make_tick
 
 Array = np.ndarray[Any, Any]
 

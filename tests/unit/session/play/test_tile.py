@@ -18,8 +18,8 @@ from squeezefilm.render.texture.levels import Amplitude
 from squeezefilm.render.texture.noise import NoiseField
 from squeezefilm.render.texture.pattern import Pattern
 from squeezefilm.render.texture.shapes import Bump, SineWave, SquareWave
-from squeezefilm.session.plan import DriveTable
-from squeezefilm.session.tile import tile_of
+from squeezefilm.session.loop.plan import DriveTable
+from squeezefilm.session.play.tile import tile_of
 
 
 def _program(texture: Composable) -> Program:

@@ -24,14 +24,14 @@ import numpy as np
 
 from squeezefilm.errors import InputError, LoopError, SqueezefilmWarning
 from squeezefilm.quantities import Dimensionless, FloatArray, Second
-from squeezefilm.session import shared
-from squeezefilm.session.atomics import load_acquire, store_release
-from squeezefilm.session.lateness import Lateness
-from squeezefilm.session.plan import LoopPlan
-from squeezefilm.session.ring import DROPPED, ring_put_all
-from squeezefilm.session.rows import COMMAND_TIME
-from squeezefilm.session.simulated import lateness_in, sample_block, taken
-from squeezefilm.session.worker import Orders
+from squeezefilm.session.loop import shared
+from squeezefilm.session.loop.atomics import load_acquire, store_release
+from squeezefilm.session.loop.lateness import Lateness
+from squeezefilm.session.loop.plan import LoopPlan
+from squeezefilm.session.loop.ring import DROPPED, ring_put_all
+from squeezefilm.session.loop.rows import COMMAND_TIME
+from squeezefilm.session.loop.simulated import lateness_in, sample_block, taken
+from squeezefilm.session.loop.worker import Orders
 
 PRIORITY = 50
 """Of SCHED_FIFO: above all ordinary work, below what the kernel itself runs at 99."""
@@ -131,7 +131,7 @@ class LoopProcess:
             self._memory = shared.shared_views(mmap.mmap(descriptor, shared.shared_size()))
             self._said = tempfile.TemporaryFile()  # noqa: SIM115 - `stop` closes it
             self._process = subprocess.Popen(
-                [sys.executable, "-m", "squeezefilm.session.worker", str(descriptor)],
+                [sys.executable, "-m", "squeezefilm.session.loop.worker", str(descriptor)],
                 stdin=subprocess.PIPE,
                 stdout=subprocess.DEVNULL,
                 stderr=self._said,

@@ -20,10 +20,10 @@ from squeezefilm.render.program import layout
 from squeezefilm.render.program.interpreter import tick as rendered_amplitude
 from squeezefilm.render.resonator import kernel as compensation_kernel
 from squeezefilm.render.resonator.kernel import compensated_step, envelope_step
-from squeezefilm.session import plan as at
-from squeezefilm.session import rows as column
-from squeezefilm.session.ring import DROPPED, ring_put, ring_take
-from squeezefilm.session.shared import SAMPLES
+from squeezefilm.session.loop import plan as at
+from squeezefilm.session.loop import rows as column
+from squeezefilm.session.loop.ring import DROPPED, ring_put, ring_take
+from squeezefilm.session.loop.shared import SAMPLES
 
 Array = np.ndarray[Any, Any]
 

@@ -19,7 +19,7 @@ from squeezefilm.quantities import (
 )
 from squeezefilm.render.program.lowering import Program
 from squeezefilm.render.program.renderer import render
-from squeezefilm.session.plan import DriveTable
+from squeezefilm.session.loop.plan import DriveTable
 
 _METRE = Unit("m")
 _MICROMETRE: Metre = 1e-6

@@ -34,11 +34,11 @@ from squeezefilm.quantities import (
     Volt,
     require,
 )
-from squeezefilm.session import rows as column
-from squeezefilm.session.plan import LoopPlan
-from squeezefilm.session.record import TraceWriter
-from squeezefilm.session.rows import flag_meanings
-from squeezefilm.session.tile import TextureTile
+from squeezefilm.session.loop import rows as column
+from squeezefilm.session.loop.plan import LoopPlan
+from squeezefilm.session.loop.rows import flag_meanings
+from squeezefilm.session.play.tile import TextureTile
+from squeezefilm.session.record.trace import TraceWriter
 
 PlayMode = Literal["stream", "tile"]
 REPORT_PERIOD: Second = 1e-3

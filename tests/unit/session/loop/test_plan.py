@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.errors import InputError
-from squeezefilm.session.plan import DriveTable, FrictionTable, LoopPlan, tick_arrays
+from squeezefilm.session.loop.plan import DriveTable, FrictionTable, LoopPlan, tick_arrays
 
 PlanOf = Callable[..., LoopPlan]
 

@@ -26,7 +26,7 @@ from squeezefilm.render.motion.estimator import MotionEstimator
 from squeezefilm.render.program.lowering import Program
 from squeezefilm.render.program.renderer import new_state
 from squeezefilm.render.resonator.compensation import DrivenEnvelope
-from squeezefilm.session.rows import COLUMNS, COMMAND_COLUMNS, SAMPLE_COLUMNS
+from squeezefilm.session.loop.rows import COLUMNS, COMMAND_COLUMNS, SAMPLE_COLUMNS
 
 Array = np.ndarray[Any, Any]
 LoopCompensation = Literal["none", "inverse"]

@@ -15,7 +15,7 @@ from typing import Any
 import numba
 import numpy as np
 
-from squeezefilm.session.atomics import load_acquire, store_release
+from squeezefilm.session.loop.atomics import load_acquire, store_release
 
 Array = np.ndarray[Any, Any]
 

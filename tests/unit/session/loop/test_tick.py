@@ -14,11 +14,11 @@ from squeezefilm.quantities import FloatArray
 from squeezefilm.render.program import layout
 from squeezefilm.render.resonator import kernel as compensation_kernel
 from squeezefilm.render.resonator.compensation import DrivenEnvelope
-from squeezefilm.session import rows as column
-from squeezefilm.session.plan import DriveTable, LoopPlan
-from squeezefilm.session.shared import COMMANDS, ROWS
-from squeezefilm.session.simulated import SimulatedLoop, run_ticks
-from squeezefilm.session.tick import interpolated
+from squeezefilm.session.loop import rows as column
+from squeezefilm.session.loop.plan import DriveTable, LoopPlan
+from squeezefilm.session.loop.shared import COMMANDS, ROWS
+from squeezefilm.session.loop.simulated import SimulatedLoop, run_ticks
+from squeezefilm.session.loop.tick import interpolated
 
 PlanOf = Callable[..., LoopPlan]
 RATE, SPEED = 5e3, 0.06

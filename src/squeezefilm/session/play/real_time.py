@@ -35,11 +35,11 @@ from squeezefilm.device.wire.streams import open_stream
 from squeezefilm.errors import DeviceError, LoopError
 from squeezefilm.quantities import FloatArray, Second
 from squeezefilm.results import to_json
-from squeezefilm.session.loop import LoopProcess
-from squeezefilm.session.play import FADE, Ending, Player, PlayPlan, PlayView
-from squeezefilm.session.record import TraceWriter
-from squeezefilm.session.rows import COLUMNS, SAMPLE_COLUMNS
-from squeezefilm.session.simulated import SimulatedLoop
+from squeezefilm.session.loop.process import LoopProcess
+from squeezefilm.session.loop.rows import COLUMNS, SAMPLE_COLUMNS
+from squeezefilm.session.loop.simulated import SimulatedLoop
+from squeezefilm.session.play.player import FADE, Ending, Player, PlayPlan, PlayView
+from squeezefilm.session.record.trace import TraceWriter
 
 PAUSE: Second = 1e-3
 """Between two looks of the player at its device."""

@@ -10,8 +10,8 @@ import numba
 import numpy as np
 import pytest
 
-from squeezefilm.session.atomics import load_acquire, store_release
-from squeezefilm.session.ring import COUNTERS_SIZE, ring_put, ring_take
+from squeezefilm.session.loop.atomics import load_acquire, store_release
+from squeezefilm.session.loop.ring import COUNTERS_SIZE, ring_put, ring_take
 
 
 def test_words_come_back() -> None:

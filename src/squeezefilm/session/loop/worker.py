@@ -1,4 +1,4 @@
-"""The loop's own process: `python -m squeezefilm.session.worker FD`, started by `loop.LoopProcess`.
+"""The loop's own process: `python -m squeezefilm.session.loop.worker FD`, started by `loop.LoopProcess`.
 
 Standard input brings the plan; the file descriptor is the shared memory. It compiles, asks for
 real-time priority, says that it is ready, and ticks until the host says stop or dies.
@@ -16,16 +16,16 @@ import time
 from dataclasses import dataclass
 
 from squeezefilm.device.priority import collect_garbage_first, real_time_granted
-from squeezefilm.session import clock, shared
-from squeezefilm.session.atomics import load_acquire, store_release
-from squeezefilm.session.pacing import (
+from squeezefilm.session.loop import clock, shared
+from squeezefilm.session.loop.atomics import load_acquire, store_release
+from squeezefilm.session.loop.pacing import (
     compiled_loop,
     make_due_tick,
     margin_ns,
     portable_loop,
     silence,
 )
-from squeezefilm.session.plan import LoopPlan, tick_arrays
+from squeezefilm.session.loop.plan import LoopPlan, tick_arrays
 
 # Linux: <sys/prctl.h> and <sys/mman.h>.
 _PR_SET_TIMERSLACK = 29

@@ -16,7 +16,7 @@ from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import TRACE_BYTES
 from squeezefilm.quantities import FloatArray
 from squeezefilm.regular_file import opened
-from squeezefilm.session import trace_file as file
+from squeezefilm.session.record import trace_file as file
 
 
 @dataclass(frozen=True, slots=True)

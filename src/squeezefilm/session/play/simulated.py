@@ -17,11 +17,11 @@ from squeezefilm.device.wire.link import Link
 from squeezefilm.errors import DeviceError, LoopError
 from squeezefilm.quantities import Second, Unit, require
 from squeezefilm.results import to_json
-from squeezefilm.session.play import FADE, Ending, Player, PlayPlan
-from squeezefilm.session.record import TraceWriter
-from squeezefilm.session.rows import COLUMNS
-from squeezefilm.session.run_play import PlayOutcome, fault_sentence
-from squeezefilm.session.simulated import SimulatedLoop
+from squeezefilm.session.loop.rows import COLUMNS
+from squeezefilm.session.loop.simulated import SimulatedLoop
+from squeezefilm.session.play.player import FADE, Ending, Player, PlayPlan
+from squeezefilm.session.play.real_time import PlayOutcome, fault_sentence
+from squeezefilm.session.record.trace import TraceWriter
 from squeezefilm.twin.device import TwinDevice
 
 STEP: Second = 1e-3

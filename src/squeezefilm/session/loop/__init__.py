@@ -1,0 +1,1 @@
+"""The loop in real time: one compiled tick, its clock, its rings and its own process."""

@@ -1,0 +1,1 @@
+"""The record of a session: an append-only trace, and its export."""
