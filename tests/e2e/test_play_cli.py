@@ -79,7 +79,7 @@ def test_a_texture_is_played_on_a_twin_and_judged(tmp_path: Path) -> None:
 def test_what_cannot_be_played_is_said(
     words: tuple[str, ...], said: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from squeezefilm.analysis import play_command
+    from squeezefilm.bench import play as play_command
     from squeezefilm.errors import SqueezefilmError
     from squeezefilm.texture_file import preset_texture
 

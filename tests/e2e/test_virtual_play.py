@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from squeezefilm.analysis.play_setup import PlaySetup, play_setup
-from squeezefilm.analysis.played_session import PlayedSession, judge_session
+from squeezefilm.bench.played_session import PlayedSession, judge_session
+from squeezefilm.bench.setup import PlaySetup, play_setup
 from squeezefilm.display import Display, load_display
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ, TOUCH_PANEL_240_HZ, SensorModel
 from squeezefilm.session.play import simulated as bench
@@ -166,7 +166,7 @@ def test_a_session_without_a_pickup_is_judged_by_the_envelopes_model(
 
 
 def test_a_session_that_broke_at_once_is_told_and_shown(display: Display, tmp_path: Path) -> None:
-    from squeezefilm.analysis.play_command import PlayResult
+    from squeezefilm.bench.play import PlayResult
     from squeezefilm.report.play_report import write_play
     from squeezefilm.session.loop.rows import COLUMNS
     from squeezefilm.session.record.trace import TraceWriter

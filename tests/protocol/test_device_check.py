@@ -7,13 +7,13 @@ from dataclasses import dataclass, field, replace
 
 import pytest
 
+from squeezefilm.bench.check import DeviceCheck, check_device, loop_check
+from squeezefilm.bench.conversation import Conversation
 from squeezefilm.device.machine import device
 from squeezefilm.device.machine.device import Machine, Reason
 from squeezefilm.device.wire import messages as m
 from squeezefilm.device.wire.frames import Frame
 from squeezefilm.errors import DeviceError
-from squeezefilm.session.conversation import Conversation
-from squeezefilm.session.device_check import DeviceCheck, check_device, loop_check
 from squeezefilm.session.loop.lateness import CLASSES, Lateness, lateness_class
 
 FREQUENCY = 30_000.0

@@ -71,7 +71,7 @@ def play(
 
     Ctrl-C stops safely. Exit code 1 where the device faulted, the link broke or the loop died.
     """
-    from squeezefilm.analysis.play_command import play_texture
+    from squeezefilm.bench.play import play_texture
     from squeezefilm.quantities import Unit
     from squeezefilm.report.terminal_play import live_view, show_play
     from squeezefilm.texture_file import preset_texture
@@ -153,7 +153,7 @@ def check(
 
     At no more than 1 V. Exit code 1 if a check fails.
     """
-    from squeezefilm.analysis.play_command import check_drive
+    from squeezefilm.bench.play import check_drive
     from squeezefilm.quantities import Unit
     from squeezefilm.report import terminal
     from squeezefilm.report.terminal_play import show_check

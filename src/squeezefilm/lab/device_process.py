@@ -121,7 +121,7 @@ class DeviceSession:
 
 def play(connection: Connection, work: DeviceWork) -> None:
     """Play, and tell of it."""
-    from squeezefilm.analysis.play_command import JUDGING, play_texture
+    from squeezefilm.bench.play import JUDGING, play_texture
     from squeezefilm.session.loop.rows import COLUMNS
     from squeezefilm.texture_file import preset_texture
 
@@ -209,7 +209,7 @@ def play(connection: Connection, work: DeviceWork) -> None:
 
 def check(connection: Connection, drive: str, display: str) -> None:
     """Check a device, and tell of it."""
-    from squeezefilm.analysis.play_command import check_drive
+    from squeezefilm.bench.play import check_drive
 
     tell = _telling(connection)
     try:

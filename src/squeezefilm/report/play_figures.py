@@ -28,7 +28,7 @@ from squeezefilm.session.loop.lateness import Lateness, class_ends
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from squeezefilm.analysis.played_session import PlayedSession, PlayedWay
+    from squeezefilm.bench.played_session import PlayedSession, PlayedWay
 
 _WINDOW = 0.25
 _MOST_POINTS = 4000

@@ -18,7 +18,7 @@ from squeezefilm.results import to_json, write_whole
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from squeezefilm.analysis.play_command import PlayResult
+    from squeezefilm.bench.play import PlayResult
 
 
 def write_play(

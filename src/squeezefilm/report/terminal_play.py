@@ -15,9 +15,9 @@ from squeezefilm.report.terminal import heading, plain_console, table
 if TYPE_CHECKING:
     from rich.console import Group
 
-    from squeezefilm.analysis.play_command import PlayResult
-    from squeezefilm.analysis.played_session import Judged, PlayedSession
-    from squeezefilm.session.device_check import DeviceCheck
+    from squeezefilm.bench.check import DeviceCheck
+    from squeezefilm.bench.play import PlayResult
+    from squeezefilm.bench.played_session import Judged, PlayedSession
     from squeezefilm.session.play.player import PlayView
     from squeezefilm.session.record.export import TraceExport
 

@@ -21,8 +21,9 @@ from typing import Any
 
 import numpy as np
 
-from squeezefilm.analysis.play_command import device_stream
-from squeezefilm.analysis.play_setup import PlaySetup, play_setup
+from squeezefilm.bench.play import device_stream
+from squeezefilm.bench.resonance_sweep import sweep_resonance
+from squeezefilm.bench.setup import PlaySetup, play_setup
 from squeezefilm.chain.prediction import predict
 from squeezefilm.device.host import DeviceHost
 from squeezefilm.device.serial_ports import SerialDrive
@@ -41,7 +42,6 @@ from squeezefilm.session.loop import rows as column
 from squeezefilm.session.play.player import Ending, PlayView
 from squeezefilm.session.play.real_time import PlayOutcome, run_play
 from squeezefilm.session.record.reading import Trace, read_trace
-from squeezefilm.session.resonance_sweep import sweep_resonance
 from squeezefilm.study.device import DeviceVerification, Exploration
 from squeezefilm.texture_file import TextureFile
 from squeezefilm.twin.settings import TwinSettings

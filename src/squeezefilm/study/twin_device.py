@@ -11,6 +11,7 @@ import math
 
 import numpy as np
 
+from squeezefilm.bench.resonance_sweep import peak
 from squeezefilm.chain.friction import friction_law
 from squeezefilm.display import Display
 from squeezefilm.formats.traces import Table, csv_text
@@ -18,7 +19,6 @@ from squeezefilm.perception.stimuli import Stimulus
 from squeezefilm.quantities import FloatArray, Hertz, Second
 from squeezefilm.render.texture.composition import Composable
 from squeezefilm.results import config_hash, to_json
-from squeezefilm.session.resonance_sweep import peak
 from squeezefilm.study.device import DeviceIdentity, DeviceVerification, Exploration
 from squeezefilm.twin.hand import Hand, hand_from
 from squeezefilm.twin.plant import Plant

@@ -7,9 +7,9 @@ import math
 
 import pytest
 
+from squeezefilm.bench.check import CheckResult, DeviceCheck
 from squeezefilm.device.wire.states import Fault, State
 from squeezefilm.report.terminal_play import bar, live_view, show_check, view_line, view_table
-from squeezefilm.session.device_check import CheckResult, DeviceCheck
 from squeezefilm.session.play.player import PlayView
 
 VIEW = PlayView(

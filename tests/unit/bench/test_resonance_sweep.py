@@ -7,6 +7,7 @@ import dataclasses
 import numpy as np
 import pytest
 
+from squeezefilm.bench.resonance_sweep import ResonanceSweep, peak, sweep_resonance
 from squeezefilm.device.host import DeviceHost
 from squeezefilm.device.wire.link import Link
 from squeezefilm.device.wire.states import State
@@ -14,7 +15,6 @@ from squeezefilm.display import load_display
 from squeezefilm.errors import DeviceError, InputError
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ
 from squeezefilm.session.play.simulated import VirtualStream
-from squeezefilm.session.resonance_sweep import ResonanceSweep, peak, sweep_resonance
 from squeezefilm.twin.device import TwinDevice
 from squeezefilm.twin.hand import hand_from
 from squeezefilm.twin.settings import PickupModel, PlateDrift, TwinSettings

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from squeezefilm.analysis.play_setup import PlaySetup
+from squeezefilm.bench.setup import PlaySetup
 from squeezefilm.chain.played_texture import single_period
 from squeezefilm.errors import InputError
 from squeezefilm.formats.traces import table_from_csv

@@ -13,13 +13,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from squeezefilm.bench.conversation import Conversation
 from squeezefilm.device.machine.playing import CLOCK
 from squeezefilm.device.wire import messages as m
 from squeezefilm.device.wire.safety import Limits
 from squeezefilm.device.wire.states import Fault, Reason, State
 from squeezefilm.errors import DeviceError
 from squeezefilm.quantities import Dimensionless, Hertz, Second, Volt
-from squeezefilm.session.conversation import Conversation
 from squeezefilm.session.loop.lateness import Lateness
 
 TEST_VOLTAGE: Volt = 1.0

@@ -15,8 +15,10 @@ from typing import Any
 
 import numpy as np
 
-from squeezefilm.analysis.play_setup import play_setup
-from squeezefilm.analysis.played_session import PlayedSession, judge_session
+from squeezefilm.bench.check import DeviceCheck, check_device
+from squeezefilm.bench.conversation import Conversation
+from squeezefilm.bench.played_session import PlayedSession, judge_session
+from squeezefilm.bench.setup import play_setup
 from squeezefilm.chain.played_texture import FingerMotion, require_on_display
 from squeezefilm.chain.prediction import predict
 from squeezefilm.chain.rendered_texture import sensor_named
@@ -33,8 +35,6 @@ from squeezefilm.render.program.lowering import lower
 from squeezefilm.render.resonator.compensation import DrivenEnvelope
 from squeezefilm.render.texture.gratings import Square
 from squeezefilm.results import stamp
-from squeezefilm.session.conversation import Conversation
-from squeezefilm.session.device_check import DeviceCheck, check_device
 from squeezefilm.session.loop.lateness import Lateness
 from squeezefilm.session.loop.plan import DriveTable, LoopPlan
 from squeezefilm.session.loop.process import LoopProcess
