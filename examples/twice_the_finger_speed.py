@@ -1,6 +1,6 @@
 """A 0.4 mm grating at twice the speed its plate can follow, with a sensor that knows the finger."""
 
-from squeezefilm.analysis.compensated_textures import driven_envelope
+from squeezefilm.analysis.textures import driven_envelope
 from squeezefilm.chain.prediction import predict
 from squeezefilm.display import load_display
 from squeezefilm.render.fidelity.rendered_stroke import rendered_stroke

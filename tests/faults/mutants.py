@@ -24,7 +24,7 @@ from unittest import mock
 
 import numpy as np
 
-from squeezefilm.analysis.friction_command import friction_map
+from squeezefilm.analysis.friction.command import friction_map
 from squeezefilm.chain import rendered_texture as render_command
 from squeezefilm.chain.prediction import predict
 from squeezefilm.display import Display, load_display

@@ -30,7 +30,7 @@ from tests.faults.mutants import (
 )
 from tests.faults.mutations import mutated
 
-from squeezefilm.analysis.friction_command import analyze_friction
+from squeezefilm.analysis.friction.command import analyze_friction
 from squeezefilm.display import load_display
 from squeezefilm.errors import SqueezefilmError
 from squeezefilm.hard_limits import RENDER_STEPS

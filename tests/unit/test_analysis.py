@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.analysis.analyze import Analysis, analyze
-from squeezefilm.analysis.procedure import Requirements, design_plate, friction_criterion
+from squeezefilm.analysis.claims.procedure import Requirements, design_plate, friction_criterion
 from squeezefilm.chain.friction import friction_law
 from squeezefilm.display import load_display
 from squeezefilm.errors import InputError

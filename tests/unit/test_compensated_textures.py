@@ -8,7 +8,7 @@ import math
 import numpy as np
 import pytest
 
-from squeezefilm.analysis.compensated_textures import (
+from squeezefilm.analysis.textures import (
     compensated_grating,
     driven_envelope,
     sensor_contrast,

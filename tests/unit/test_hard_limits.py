@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from squeezefilm import hard_limits as hard
-from squeezefilm.analysis.film_command import FilmRequest
-from squeezefilm.analysis.plate_command import parse_mode
-from squeezefilm.analysis.plate_tracking import TrackRequest
+from squeezefilm.analysis.film.command import FilmRequest
+from squeezefilm.analysis.plate.command import parse_mode
+from squeezefilm.analysis.plate.tracking import TrackRequest
 from squeezefilm.chain.played_texture import FingerMotion
 from squeezefilm.config.load import load_text
 from squeezefilm.display import Display, load_display

@@ -4,8 +4,8 @@ import dataclasses
 
 import pytest
 
-from squeezefilm.analysis.claim_values import CLAIM_VALUES, ClaimValue
-from squeezefilm.analysis.claims import Claim, ClaimResult, judge, read_claims, reproduce
+from squeezefilm.analysis.claims.command import Claim, ClaimResult, judge, read_claims, reproduce
+from squeezefilm.analysis.claims.values import CLAIM_VALUES, ClaimValue
 from squeezefilm.errors import ConfigError
 
 

@@ -4,9 +4,8 @@ import dataclasses
 
 import pytest
 
-from squeezefilm.analysis import prototype
-from squeezefilm.analysis.plate_sensitivity import plate_sensitivity, usual_changes
-from squeezefilm.analysis.prototype import (
+from squeezefilm.analysis.claims import prototype
+from squeezefilm.analysis.claims.prototype import (
     MEASURED_AMPLITUDE,
     MEASURED_FREQUENCY,
     MEASUREMENTS,
@@ -16,6 +15,7 @@ from squeezefilm.analysis.prototype import (
     paper_points,
     prototype_study,
 )
+from squeezefilm.analysis.plate.sensitivity import plate_sensitivity, usual_changes
 from squeezefilm.errors import SqueezefilmError
 from squeezefilm.report.prototype_page import prototype_sections
 from squeezefilm.report.prototype_report import (

@@ -6,7 +6,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from squeezefilm.analysis.plate_sensitivity import (
+from squeezefilm.analysis.plate.sensitivity import (
     SensitivityTable,
     plate_sensitivity,
     usual_changes,
@@ -14,7 +14,7 @@ from squeezefilm.analysis.plate_sensitivity import (
     with_young_modulus,
     working_point,
 )
-from squeezefilm.analysis.plate_tracking import TrackRequest, parse_track, track_modes
+from squeezefilm.analysis.plate.tracking import TrackRequest, parse_track, track_modes
 from squeezefilm.display import load_display
 from squeezefilm.errors import InputError
 from squeezefilm.materials import ElasticMaterial

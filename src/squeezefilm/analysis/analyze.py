@@ -9,13 +9,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from squeezefilm.analysis.compensated_textures import (
-    CompensatedGrating,
-    TextureSurvival,
-    compensated_grating,
-    driven_envelope,
-    texture_survival,
-)
 from squeezefilm.analysis.curves import (
     FrequencyResponse,
     FrictionCurve,
@@ -26,8 +19,15 @@ from squeezefilm.analysis.curves import (
     pressure_profiles,
     wavelength_curves,
 )
-from squeezefilm.analysis.film_models import FilmComparison, compare_film_models
-from squeezefilm.analysis.friction_models import ModelCurve, model_curves
+from squeezefilm.analysis.film.models import FilmComparison, compare_film_models
+from squeezefilm.analysis.friction.models import ModelCurve, model_curves
+from squeezefilm.analysis.textures import (
+    CompensatedGrating,
+    TextureSurvival,
+    compensated_grating,
+    driven_envelope,
+    texture_survival,
+)
 from squeezefilm.analysis.uncertainty import UncertainFriction, uncertain_friction
 from squeezefilm.analysis.verdict import Finding, verdict
 from squeezefilm.chain.friction import FrictionModel

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from squeezefilm.analysis.procedure import PAPER_HALF_WAVELENGTHS, friction_criterion
+from squeezefilm.analysis.claims.procedure import PAPER_HALF_WAVELENGTHS, friction_criterion
 from squeezefilm.chain.friction import FrictionLaw, FrictionModel, friction_law
 from squeezefilm.chain.prediction import Prediction
 from squeezefilm.contact.sharing.film_load import is_still, line_film

@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 
 from squeezefilm.analysis.curves import PAPER_CRITERION, FrictionCurve
-from squeezefilm.analysis.film_models import FilmComparison
+from squeezefilm.analysis.film.models import FilmComparison
 from squeezefilm.chain.prediction import Prediction
 from squeezefilm.display import Display
 from squeezefilm.quantities import Dimensionless, Metre

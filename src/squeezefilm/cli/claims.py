@@ -25,7 +25,7 @@ def reproduce(
 
     Exit code 1 if a verdict differs from the one on record.
     """
-    from squeezefilm.analysis.claims import reproduce as run
+    from squeezefilm.analysis.claims.command import reproduce as run
     from squeezefilm.report import terminal
     from squeezefilm.report.validation import checkout, write_reproduction, write_validation_docs
 

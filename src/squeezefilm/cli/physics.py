@@ -58,7 +58,7 @@ def friction(
     as_json: AsJson = False,
 ) -> None:
     """The friction a finger meets, how the load is shared, and how sure all of it is."""
-    from squeezefilm.analysis.friction_command import analyze_friction
+    from squeezefilm.analysis.friction.command import analyze_friction
     from squeezefilm.display import load_display
     from squeezefilm.quantities import Unit
     from squeezefilm.report import terminal
@@ -118,7 +118,7 @@ def film(
     as_json: AsJson = False,
 ) -> None:
     """Solve the periodic gas film of one shape, or map it over squeeze number and excursion."""
-    from squeezefilm.analysis.film_command import FilmRequest, solve_film, sweep_film
+    from squeezefilm.analysis.film.command import FilmRequest, solve_film, sweep_film
     from squeezefilm.report import terminal
     from squeezefilm.report.terminal_solvers import show_film
 
@@ -180,9 +180,9 @@ def plate(
     as_json: AsJson = False,
 ) -> None:
     """Solve a plate, disc or stator in three dimensions: modes, amplitude per volt, admittance."""
-    from squeezefilm.analysis.plate_command import analyze_plate, parse_band, parse_mode
-    from squeezefilm.analysis.plate_tracking import parse_track
-    from squeezefilm.analysis.ring_command import analyze_ring
+    from squeezefilm.analysis.plate.command import analyze_plate, parse_band, parse_mode
+    from squeezefilm.analysis.plate.ring import analyze_ring
+    from squeezefilm.analysis.plate.tracking import parse_track
     from squeezefilm.display import load_display
     from squeezefilm.report import terminal
     from squeezefilm.report.terminal_ring import show_ring

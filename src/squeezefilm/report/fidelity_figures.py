@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from squeezefilm.analysis.analyze import Analysis
-    from squeezefilm.analysis.compensated_textures import (
+    from squeezefilm.analysis.textures import (
         CompensatedGrating,
         SensorContrast,
         TextureSurvival,

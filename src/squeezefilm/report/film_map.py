@@ -14,7 +14,7 @@ from squeezefilm.results import write_whole
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from squeezefilm.analysis.film_command import FilmMap
+    from squeezefilm.analysis.film.command import FilmMap
 
 
 @drawn

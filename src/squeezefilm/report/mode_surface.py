@@ -11,7 +11,7 @@ from squeezefilm.report.style import INK, PAPER, drawn, new_figure
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from squeezefilm.analysis.plate_command import PlateAnalysis
+    from squeezefilm.analysis.plate.command import PlateAnalysis
     from squeezefilm.quantities import FloatArray
 
 _DRAWN_HEIGHT = 0.16  # peak to peak, of the plate's length

@@ -14,8 +14,8 @@ from squeezefilm.report.page_style import page_head
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from squeezefilm.analysis.plate_command import PlateAnalysis
-    from squeezefilm.analysis.plate_sensitivity import SensitivityTable
+    from squeezefilm.analysis.plate.command import PlateAnalysis
+    from squeezefilm.analysis.plate.sensitivity import SensitivityTable
 
 HZ, PER_VOLT = Unit("Hz"), Unit("m/V")
 

@@ -18,7 +18,7 @@ from squeezefilm.report.sensitivity_figures import tornado
 from squeezefilm.report.style import svg
 
 if TYPE_CHECKING:
-    from squeezefilm.analysis.prototype import PrototypeStudy
+    from squeezefilm.analysis.claims.prototype import PrototypeStudy
 
 
 def prototype_sections(study: PrototypeStudy) -> list[str]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from squeezefilm.analysis.prototype import (
+from squeezefilm.analysis.claims.prototype import (
     AMPLITUDE_ACCURACY,
     DRIVE_VOLTAGE,
     HARMONIC_AMPLITUDE,
@@ -25,7 +25,7 @@ from squeezefilm.report.style import BLUE, INK, MUTED, ORANGE, drawn, new_figure
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from squeezefilm.analysis.prototype import Explanation, PrototypeStudy
+    from squeezefilm.analysis.claims.prototype import Explanation, PrototypeStudy
 
 _TOLD_APART = 2.0
 Table = tuple[tuple[str, ...], Sequence[tuple[str, ...]]]

@@ -21,8 +21,8 @@ from squeezefilm.report.style import (
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from squeezefilm.analysis.plate_sensitivity import SensitivityTable
-    from squeezefilm.analysis.plate_tracking import ModeTracks
+    from squeezefilm.analysis.plate.sensitivity import SensitivityTable
+    from squeezefilm.analysis.plate.tracking import ModeTracks
     from squeezefilm.quantities import FloatArray
 
 # A bar beyond this many times the third largest would hide all others: it is cut, and says so.

@@ -29,7 +29,7 @@ from squeezefilm.results import write_whole
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from squeezefilm.analysis.plate_command import PlateAnalysis
+    from squeezefilm.analysis.plate.command import PlateAnalysis
 
 
 @drawn

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from squeezefilm.analysis.ring_command import RingAnalysis
+    from squeezefilm.analysis.plate.ring import RingAnalysis
 
 _FILL = {1: PLUS, -1: MINUS}
 

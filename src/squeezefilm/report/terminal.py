@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from squeezefilm.analysis.analyze import Analysis
-    from squeezefilm.analysis.claims import Reproduction
+    from squeezefilm.analysis.claims.command import Reproduction
 
 _KINDS = {"good": "good ", "limit": "limit", "doubt": "doubt"}
 _STYLES = {"good": "green", "limit": "cyan", "doubt": "yellow"}

@@ -9,7 +9,7 @@ from squeezefilm.report.numbers import HZ, M, N, V, shown
 from squeezefilm.report.terminal import heading, plain_console, table
 
 if TYPE_CHECKING:
-    from squeezefilm.analysis.friction_command import FrictionAnalysis
+    from squeezefilm.analysis.friction.command import FrictionAnalysis
     from squeezefilm.analysis.uncertainty import UncertainFriction
 
 _RANKED = 6

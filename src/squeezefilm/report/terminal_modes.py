@@ -12,7 +12,7 @@ from squeezefilm.report.terminal import heading, table
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from squeezefilm.analysis.plate_command import ModeRow
+    from squeezefilm.analysis.plate.command import ModeRow
     from squeezefilm.plate.sound import SoundField
 
 # Of the working mode's amplitude per volt: below it a mode is called not driven.

@@ -10,7 +10,7 @@ from squeezefilm.report.terminal import heading, plain_console, table
 from squeezefilm.report.terminal_modes import show_guidance, show_modes, sound_rows
 
 if TYPE_CHECKING:
-    from squeezefilm.analysis.ring_command import RingAnalysis
+    from squeezefilm.analysis.plate.ring import RingAnalysis
     from squeezefilm.plate.ring.stator import StatorFit
 
 _HZ, _M, _PER_VOLT = Unit("Hz"), Unit("m"), Unit("m/V")

@@ -9,8 +9,8 @@ from squeezefilm.report.terminal import heading, plain_console, table
 from squeezefilm.report.terminal_modes import show_guidance, show_modes, sound_rows
 
 if TYPE_CHECKING:
-    from squeezefilm.analysis.film_command import FilmAnswer
-    from squeezefilm.analysis.plate_command import PlateAnalysis
+    from squeezefilm.analysis.film.command import FilmAnswer
+    from squeezefilm.analysis.plate.command import PlateAnalysis
 
 
 def show_film(answer: FilmAnswer) -> None:

@@ -13,7 +13,7 @@ from squeezefilm.report.terminal import heading, table
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from squeezefilm.analysis.plate_tracking import ModeTracks
+    from squeezefilm.analysis.plate.tracking import ModeTracks
 
 
 def show_tracks(console: Console, found: ModeTracks) -> None:

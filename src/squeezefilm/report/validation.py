@@ -7,8 +7,8 @@ import json
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from squeezefilm.analysis.claims import ClaimResult, Reproduction
-from squeezefilm.analysis.procedure import Design
+from squeezefilm.analysis.claims.command import ClaimResult, Reproduction
+from squeezefilm.analysis.claims.procedure import Design
 from squeezefilm.errors import InputError
 from squeezefilm.quantities import Unit, format_quantity
 from squeezefilm.report.page_style import STYLE
@@ -21,7 +21,7 @@ _HEADER = """# Validation
 Written by `squeezefilm reproduce --write-docs`; do not edit. Source of the claims, unless another
 is named: Biet, Giraud, Lemaire-Semail, *The implementation of tactile feedback using squeeze film
 effect devices*. Claims on friction by others were read in abstracts, and are compared at one frozen
-set of assumed parameters (`analysis/contact_claims.py`).
+set of assumed parameters (`analysis/claims/contact.py`).
 
 **Friction against amplitude is not validated against measurements**: no measured curve of an
 ultrasonic display could be read anywhere. What follows compares with what the paper printed, and

@@ -64,8 +64,8 @@ def exposure(
     The plate or ring is solved and its field searched over all directions (`plate.sound`), which
     takes seconds. Raises what `analyze_plate` and `analyze_ring` raise.
     """
-    from squeezefilm.analysis.plate_command import analyze_plate
-    from squeezefilm.analysis.ring_command import analyze_ring
+    from squeezefilm.analysis.plate.command import analyze_plate
+    from squeezefilm.analysis.plate.ring import analyze_ring
     from squeezefilm.plate.layout import RectangularPlate
 
     field: SoundField

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from squeezefilm.analysis.compensated_textures import (
+from squeezefilm.analysis.textures import (
     compensated_grating,
     sensor_contrast,
     texture_survival,

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from scipy.interpolate import RectBivariateSpline
 
-from squeezefilm.analysis.plate_command import PlateAnalysis, analyze_plate
-from squeezefilm.analysis.plate_sensitivity import Sensitivity, SensitivityTable, WorkingPoint
-from squeezefilm.analysis.plate_tracking import ModeTrack, ModeTracks
+from squeezefilm.analysis.plate.command import PlateAnalysis, analyze_plate
+from squeezefilm.analysis.plate.sensitivity import Sensitivity, SensitivityTable, WorkingPoint
+from squeezefilm.analysis.plate.tracking import ModeTrack, ModeTracks
 from squeezefilm.display import load_display
 from squeezefilm.report.mode_surface import driven_shape, mode_surface
 from squeezefilm.report.plate_page import PlateFigure, plate_page

@@ -10,7 +10,7 @@ import pytest
 from scipy import special
 from scipy.optimize import brentq
 
-from squeezefilm.analysis.ring_command import analyze_ring, modes_in_band
+from squeezefilm.analysis.plate.ring import analyze_ring, modes_in_band
 from squeezefilm.display import load_display
 from squeezefilm.errors import GeometryError, InputError, OutOfRangeError
 from squeezefilm.plate.layout import AnnularStator, DiscPlate, RectangularPlate

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from squeezefilm.analysis.plate_sensitivity import (
+from squeezefilm.analysis.plate.sensitivity import (
     SensitivityTable,
     WorkingPoint,
     plate_sensitivity,
@@ -187,7 +187,7 @@ def _explained(
     if above(logarithms[0]) * above(logarithms[1]) > 0:
         raise SqueezefilmError(
             f"{free} between {between[0]:.3g} and {between[1]:.3g} ({unit}) does not bring "
-            f"'{name}' to {MEASURED_FREQUENCY:.0f} Hz; widen the range in analysis/prototype.py"
+            f"'{name}' to {MEASURED_FREQUENCY:.0f} Hz; widen the range in analysis/claims/prototype.py"
         )
     root = float(np.exp(brentq(above, *logarithms, xtol=2e-4, rtol=1e-4)))
     solved = make(plate, root)

@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
 
-from squeezefilm.analysis.claim_values import CLAIM_VALUES, ClaimValue
+from squeezefilm.analysis.claims.values import CLAIM_VALUES, ClaimValue
 from squeezefilm.contact.finger.fingertip import Finger
 from squeezefilm.contact.finger.skin import Skin
 from squeezefilm.contact.sharing.balance import share_load

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from squeezefilm.analysis.friction_models import ModelCurve, model_curves
+from squeezefilm.analysis.friction.models import ModelCurve, model_curves
 from squeezefilm.analysis.uncertainty import UncertainFriction, uncertain_friction
 from squeezefilm.chain.friction import DEFAULT_MODEL, FrictionModel
 from squeezefilm.chain.prediction import Prediction, predict, voltage_for_friction

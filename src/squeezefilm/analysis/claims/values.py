@@ -10,19 +10,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from squeezefilm.analysis.plate_sensitivity import (
-    WorkingPoint,
-    with_glue,
-    with_loss_in_ceramic_alone,
-    working_point,
-)
-from squeezefilm.analysis.procedure import (
+from squeezefilm.analysis.claims.procedure import (
     PAPER_HALF_WAVELENGTHS,
     Design,
     design_plate,
     friction_criterion,
 )
-from squeezefilm.analysis.prototype import MODAL_FREQUENCY, paper_points
+from squeezefilm.analysis.claims.prototype import MODAL_FREQUENCY, paper_points
+from squeezefilm.analysis.plate.sensitivity import (
+    WorkingPoint,
+    with_glue,
+    with_loss_in_ceramic_alone,
+    working_point,
+)
 from squeezefilm.chain.friction import friction_law
 from squeezefilm.contact.sharing.paper import (
     relative_friction,

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from squeezefilm.analysis.plate_command import ModeRow
+from squeezefilm.analysis.plate.command import ModeRow
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError
 from squeezefilm.plate.layout import AnnularStator, DiscPlate

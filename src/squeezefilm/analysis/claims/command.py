@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from squeezefilm import presets
-from squeezefilm.analysis import contact_claims
-from squeezefilm.analysis.claim_values import CLAIM_VALUES, ClaimValue, paper_design
-from squeezefilm.analysis.procedure import Design
-from squeezefilm.analysis.prototype import PrototypeStudy, prototype_study
+from squeezefilm.analysis.claims import contact as contact_claims
+from squeezefilm.analysis.claims.procedure import Design
+from squeezefilm.analysis.claims.prototype import PrototypeStudy, prototype_study
+from squeezefilm.analysis.claims.values import CLAIM_VALUES, ClaimValue, paper_design
 from squeezefilm.config import load
 from squeezefilm.errors import ConfigError
 from squeezefilm.quantities import did_you_mean

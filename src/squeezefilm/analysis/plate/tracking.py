@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from squeezefilm.analysis.plate_sensitivity import (
+from squeezefilm.analysis.plate.sensitivity import (
     with_ceramic_thickness,
     with_density,
     with_glue,

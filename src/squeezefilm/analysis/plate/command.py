@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from squeezefilm.analysis.plate_sensitivity import SensitivityTable, plate_sensitivity
-from squeezefilm.analysis.plate_tracking import ModeTracks, TrackRequest, track_modes
+from squeezefilm.analysis.plate.sensitivity import SensitivityTable, plate_sensitivity
+from squeezefilm.analysis.plate.tracking import ModeTracks, TrackRequest, track_modes
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import NODAL_LINES, require_within

@@ -1,0 +1,1 @@
+"""The paper's claims and other published observations, recomputed with computed verdicts."""

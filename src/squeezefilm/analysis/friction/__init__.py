@@ -1,0 +1,1 @@
+"""Questions about friction: how much, how sure, by which model."""

@@ -1,0 +1,1 @@
+"""Questions about plates, discs and rings: modes, response, sensitivities, tracked modes."""
