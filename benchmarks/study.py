@@ -20,9 +20,9 @@ import time
 import numpy as np
 import pandas
 
-from squeezefilm.study.analysis import analyze_identification
-from squeezefilm.study.information import ordered_observer
-from squeezefilm.study.power import DirichletParticipants
+from squeezefilm.study.identification.analysis import analyze_identification
+from squeezefilm.study.identification.information import ordered_observer
+from squeezefilm.study.identification.power import DirichletParticipants
 
 LABELS = ("0.4 mm", "2 mm", "4 mm", "8 mm", "10 mm")
 PEOPLE, TRIALS_PER_STIMULUS, RESAMPLES = 10_000, 12, 1000

@@ -4,11 +4,11 @@ import json
 
 import numpy as np
 
-from squeezefilm.study.bayesian_adaptive import AdaptiveDesign, BayesianAdaptive
-from squeezefilm.study.discrimination import alternatives_d_prime
-from squeezefilm.study.psychometric import PsychometricFunction
-from squeezefilm.study.psychometric_fit import fit_psychometric
-from squeezefilm.study.psychometric_prior import PsychometricPrior
+from squeezefilm.study.adaptive.bayesian import AdaptiveDesign, BayesianAdaptive
+from squeezefilm.study.psychometric.discrimination import alternatives_d_prime
+from squeezefilm.study.psychometric.fit import fit_psychometric
+from squeezefilm.study.psychometric.function import PsychometricFunction
+from squeezefilm.study.psychometric.prior import PsychometricPrior
 
 
 def main() -> dict[str, float]:

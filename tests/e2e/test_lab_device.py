@@ -10,11 +10,11 @@ import pytest
 from tests.unit.study.scripted import CONSENT, Script, gratings
 
 from squeezefilm.session.record.reading import read_trace
-from squeezefilm.study.conduct import conduct
-from squeezefilm.study.device import NoDevice
-from squeezefilm.study.run import StudyRun
-from squeezefilm.study.sessions import begin_session
-from squeezefilm.study.store import StudyStore
+from squeezefilm.study.conduct.run import StudyRun
+from squeezefilm.study.conduct.sessions import begin_session
+from squeezefilm.study.conduct.study_device import NoDevice
+from squeezefilm.study.conduct.trial_by_trial import conduct
+from squeezefilm.study.record.store import StudyStore
 
 from .test_lab_pages import CONTRAST, keep, opened
 

@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from squeezefilm.quantities import Second
-from squeezefilm.study.design import load_design
-from squeezefilm.study.store import StudyStore
+from squeezefilm.study.design.study_design import load_design
+from squeezefilm.study.record.store import StudyStore
 
 from .test_lab_pages import CONTRAST, SOLVED, keep, opened
 

@@ -20,15 +20,15 @@ from squeezefilm.perception.stimuli import Grating, Stimulus
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ
 from squeezefilm.session.loop import rows as column
 from squeezefilm.session.record.reading import read_trace
-from squeezefilm.study.conduct import conduct
-from squeezefilm.study.design import StudyDesign
-from squeezefilm.study.device import NoDevice, StudyDevice
-from squeezefilm.study.exposure import Exposure
-from squeezefilm.study.run import Acknowledgement, Presentation, StudyRun
-from squeezefilm.study.session_conditions import SessionConditions
-from squeezefilm.study.session_device import SessionDevice
-from squeezefilm.study.sessions import begin_session, end_session
-from squeezefilm.study.store import StudyStore
+from squeezefilm.study.conduct.exposure import Exposure
+from squeezefilm.study.conduct.played_device import SessionDevice
+from squeezefilm.study.conduct.run import Acknowledgement, Presentation, StudyRun
+from squeezefilm.study.conduct.session_conditions import SessionConditions
+from squeezefilm.study.conduct.sessions import begin_session, end_session
+from squeezefilm.study.conduct.study_device import NoDevice, StudyDevice
+from squeezefilm.study.conduct.trial_by_trial import conduct
+from squeezefilm.study.design.study_design import StudyDesign
+from squeezefilm.study.record.store import StudyStore
 from squeezefilm.twin.settings import PickupModel, TwinSettings
 
 pytestmark = [
@@ -194,7 +194,7 @@ def test_a_device_that_dies_in_a_trial_leaves_no_answer_and_the_trial_comes_agai
 KILLED = """
 import os, signal, sys, time
 from pathlib import Path
-from squeezefilm.study.session_device import SessionDevice
+from squeezefilm.study.conduct.played_device import SessionDevice
 from squeezefilm.perception.stimuli import Stimulus
 if __name__ == "__main__":
     device = SessionDevice("biet2008-plate", "twin", Path(sys.argv[1]))

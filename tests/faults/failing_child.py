@@ -23,12 +23,12 @@ from squeezefilm.lab.studies import Studies
 from squeezefilm.perception.stimuli import Grating, Stimulus
 from squeezefilm.session.record.reading import read_trace
 from squeezefilm.session.record.trace import TraceWriter
-from squeezefilm.study.conduct import conduct
-from squeezefilm.study.deletion import delete_participant
-from squeezefilm.study.design import StudyDesign
-from squeezefilm.study.exports import export_study
-from squeezefilm.study.merge import merge
-from squeezefilm.study.store import StudyStore
+from squeezefilm.study.conduct.trial_by_trial import conduct
+from squeezefilm.study.design.study_design import StudyDesign
+from squeezefilm.study.record.deletion import delete_participant
+from squeezefilm.study.record.exports import export_study
+from squeezefilm.study.record.merge import merge
+from squeezefilm.study.record.store import StudyStore
 
 KINDS = {"write": 1, "sync": 2, "rename": 4, "cut": 8}
 DESIGN = StudyDesign(

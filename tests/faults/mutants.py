@@ -35,8 +35,8 @@ from squeezefilm.formats.trajectories import motion_from
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.ring import modes as annular
 from squeezefilm.plate.solid import solve as solve_modes
-from squeezefilm.study.design import load_design
-from squeezefilm.study.plan import plan_study
+from squeezefilm.study.design.plan import plan_study
+from squeezefilm.study.design.study_design import load_design
 from squeezefilm.texture_file import load_texture
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))

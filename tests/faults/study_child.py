@@ -17,12 +17,12 @@ from pathlib import Path
 
 from squeezefilm.errors import RecordError
 from squeezefilm.perception.stimuli import Stimulus
-from squeezefilm.study.conduct import conduct
-from squeezefilm.study.device import DeviceIdentity, DeviceVerification, Exploration
-from squeezefilm.study.run import Acknowledgement, Presentation, StudyRun
-from squeezefilm.study.session_conditions import SessionConditions
-from squeezefilm.study.sessions import begin_session
-from squeezefilm.study.store import StudyStore
+from squeezefilm.study.conduct.run import Acknowledgement, Presentation, StudyRun
+from squeezefilm.study.conduct.session_conditions import SessionConditions
+from squeezefilm.study.conduct.sessions import begin_session
+from squeezefilm.study.conduct.study_device import DeviceIdentity, DeviceVerification, Exploration
+from squeezefilm.study.conduct.trial_by_trial import conduct
+from squeezefilm.study.record.store import StudyStore
 
 TRACE = "time_s,x_m\n" + "".join(f"{i / 100},{i / 1000}\n" for i in range(100))
 

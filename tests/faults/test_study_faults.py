@@ -13,9 +13,9 @@ from pathlib import Path
 import pytest
 
 from squeezefilm.perception.stimuli import Grating, Stimulus
-from squeezefilm.study.design import StudyDesign
-from squeezefilm.study.store import StudyStore
-from squeezefilm.study.trials import trials
+from squeezefilm.study.design.study_design import StudyDesign
+from squeezefilm.study.design.trials import trials
+from squeezefilm.study.record.store import StudyStore
 
 CHILD = Path(__file__).with_name("study_child.py")
 LENGTHS = {"2 mm": 2e-3, "4 mm": 4e-3, "8 mm": 8e-3, "10 mm": 10e-3}
@@ -169,10 +169,10 @@ def test_a_full_disk_acknowledges_nothing_and_the_run_goes_on(tmp_path: Path) ->
 
 def test_a_database_that_may_not_grow_acknowledges_nothing(tmp_path: Path) -> None:
     from squeezefilm.errors import RecordError
-    from squeezefilm.study.device import NoDevice
-    from squeezefilm.study.run import Response, StudyRun
-    from squeezefilm.study.session_conditions import SessionConditions
-    from squeezefilm.study.sessions import begin_session
+    from squeezefilm.study.conduct.run import Response, StudyRun
+    from squeezefilm.study.conduct.session_conditions import SessionConditions
+    from squeezefilm.study.conduct.sessions import begin_session
+    from squeezefilm.study.conduct.study_device import NoDevice
 
     path = tmp_path / "study.sqlite"
     who = _created(path, 60)

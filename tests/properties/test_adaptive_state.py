@@ -8,9 +8,9 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from squeezefilm.study.bayesian_adaptive import AdaptiveDesign, BayesianAdaptive
-from squeezefilm.study.psychometric_prior import PsychometricPrior
-from squeezefilm.study.staircase import Staircase, StaircaseRule
+from squeezefilm.study.adaptive.bayesian import AdaptiveDesign, BayesianAdaptive
+from squeezefilm.study.adaptive.staircase import Staircase, StaircaseRule
+from squeezefilm.study.psychometric.prior import PsychometricPrior
 
 answers = st.lists(st.booleans(), min_size=1, max_size=40)
 

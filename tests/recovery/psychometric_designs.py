@@ -11,11 +11,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from squeezefilm.quantities import FloatArray
-from squeezefilm.study.bayesian_adaptive import AdaptiveDesign, BayesianAdaptive
-from squeezefilm.study.psychometric import PsychometricFunction
-from squeezefilm.study.psychometric_fit import PsychometricFit, fit_psychometric
-from squeezefilm.study.psychometric_prior import PsychometricPrior
-from squeezefilm.study.staircase import Staircase, StaircaseRule
+from squeezefilm.study.adaptive.bayesian import AdaptiveDesign, BayesianAdaptive
+from squeezefilm.study.adaptive.staircase import Staircase, StaircaseRule
+from squeezefilm.study.psychometric.fit import PsychometricFit, fit_psychometric
+from squeezefilm.study.psychometric.function import PsychometricFunction
+from squeezefilm.study.psychometric.prior import PsychometricPrior
 
 PARAMETERS = ("threshold", "width", "lapse_rate")
 Answers = tuple[FloatArray, FloatArray]

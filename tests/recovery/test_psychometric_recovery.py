@@ -11,8 +11,8 @@ import math
 import numpy as np
 import pytest
 
-from squeezefilm.study.psychometric import PsychometricFunction
-from squeezefilm.study.psychometric_fit import fit_psychometric
+from squeezefilm.study.psychometric.fit import fit_psychometric
+from squeezefilm.study.psychometric.function import PsychometricFunction
 
 from .psychometric_designs import RECOVERIES, WIDE_PRIOR, bayesian, coverage
 

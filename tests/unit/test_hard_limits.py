@@ -24,8 +24,8 @@ from squeezefilm.presets import path as preset_path
 from squeezefilm.quantities import Unit
 from squeezefilm.render.motion.minimum_jerk import MinimumJerkStroke
 from squeezefilm.render.motion.stroke import Stroke
-from squeezefilm.study.design import load_design
-from squeezefilm.study.plan import plan_study
+from squeezefilm.study.design.plan import plan_study
+from squeezefilm.study.design.study_design import load_design
 
 ALL = {name: one for name, one in vars(hard).items() if isinstance(one, HardLimit)}
 PLATE = load_display("biet2008-plate").actuator

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from squeezefilm.errors import InputError
-from squeezefilm.study.bayesian_adaptive import AdaptiveDesign, BayesianAdaptive
-from squeezefilm.study.psychometric import PsychometricFunction
-from squeezefilm.study.psychometric_prior import PsychometricPrior
-from squeezefilm.study.staircase import Staircase, StaircaseRule, staircase_target
+from squeezefilm.study.adaptive.bayesian import AdaptiveDesign, BayesianAdaptive
+from squeezefilm.study.adaptive.staircase import Staircase, StaircaseRule, staircase_target
+from squeezefilm.study.psychometric.function import PsychometricFunction
+from squeezefilm.study.psychometric.prior import PsychometricPrior
 
 PRIOR = PsychometricPrior((1.0, 9.0), (0.5, 12.0))
 STIMULI = tuple(np.linspace(0.0, 10.0, 21))

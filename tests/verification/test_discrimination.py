@@ -9,7 +9,7 @@ import pytest
 from scipy.special import ndtr, ndtri
 
 from squeezefilm.errors import InputError
-from squeezefilm.study.discrimination import (
+from squeezefilm.study.psychometric.discrimination import (
     alternatives_d_prime,
     correct_of_alternatives,
     corrected_proportion,
@@ -21,13 +21,13 @@ from squeezefilm.study.discrimination import (
     two_interval_sensitivity,
     yes_no_sensitivity,
 )
-from squeezefilm.study.magnitude_estimation import (
+from squeezefilm.study.psychometric.fit import fit_psychometric
+from squeezefilm.study.psychometric.function import PsychometricFunction
+from squeezefilm.study.psychometric.magnitude_estimation import (
     equalised_estimates,
     fit_power_law,
     geometric_means,
 )
-from squeezefilm.study.psychometric import PsychometricFunction
-from squeezefilm.study.psychometric_fit import fit_psychometric
 
 
 @pytest.mark.parametrize("correct", [0.55, 0.76, 0.95])

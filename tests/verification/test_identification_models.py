@@ -13,20 +13,20 @@ from hypothesis import strategies as st
 from scipy import integrate, stats
 
 from squeezefilm.errors import InputError
-from squeezefilm.study.choice_model import (
+from squeezefilm.study.identification.choice_model import (
     choice_model,
     choice_probabilities,
     exact_choice,
     perceptual_map,
 )
-from squeezefilm.study.information import even_errors, ordered_observer
-from squeezefilm.study.mixed_models import mixed_model
-from squeezefilm.study.response_times import (
+from squeezefilm.study.identification.information import even_errors, ordered_observer
+from squeezefilm.study.identification.mixed_models import mixed_model
+from squeezefilm.study.identification.response_times import (
     ex_gaussian_density,
     fit_ex_gaussian,
     response_time_summary,
 )
-from squeezefilm.study.sensitivity import ordered_sensitivity
+from squeezefilm.study.identification.sensitivity import ordered_sensitivity
 
 
 def _draw(probabilities: np.ndarray, trials: int, random: np.random.Generator) -> np.ndarray:

@@ -14,8 +14,8 @@ from scipy import stats
 from scipy.special import digamma
 
 from squeezefilm.errors import InputError
-from squeezefilm.study import information_estimators as estimators
-from squeezefilm.study.information import (
+from squeezefilm.study.identification import information_estimators as estimators
+from squeezefilm.study.identification.information import (
     ESTIMATORS,
     RECOMMENDED,
     REFERENCE_MATRICES,
@@ -25,8 +25,11 @@ from squeezefilm.study.information import (
     ordered_observer,
     transfer_of,
 )
-from squeezefilm.study.participant_bootstrap import recentred_interval, resampled_counts
-from squeezefilm.study.power import DirichletParticipants
+from squeezefilm.study.identification.participant_bootstrap import (
+    recentred_interval,
+    resampled_counts,
+)
+from squeezefilm.study.identification.power import DirichletParticipants
 
 TABLES = arrays(np.int64, (4, 3), elements=st.integers(0, 9)).filter(
     lambda n: bool(np.all(n.sum(axis=0) > 1))

@@ -13,9 +13,9 @@ from squeezefilm.display import Display, load_display
 from squeezefilm.perception.observer import Observer, load_observer
 from squeezefilm.perception.percepts import Apparatus
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ
-from squeezefilm.study.chain import ChainTables, chain_tables
-from squeezefilm.study.design import StudyDesign, load_design
-from squeezefilm.study.simulated import SimulatedStudy, simulate_participants
+from squeezefilm.study.design.study_design import StudyDesign, load_design
+from squeezefilm.study.simulated.chain_tables import ChainTables, chain_tables
+from squeezefilm.study.simulated.participants import SimulatedStudy, simulate_participants
 
 PEOPLE = 1000
 # Trials of one stimulus: the standard error of a proportion is at most 0.5 % of 100.

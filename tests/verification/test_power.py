@@ -10,8 +10,8 @@ import pytest
 from scipy import stats
 
 from squeezefilm.errors import InputError
-from squeezefilm.study.information import even_errors, ordered_observer
-from squeezefilm.study.power import DirichletParticipants, distinction, power_curve
+from squeezefilm.study.identification.information import even_errors, ordered_observer
+from squeezefilm.study.identification.power import DirichletParticipants, distinction, power_curve
 
 
 def _binomial(counts: np.ndarray) -> float:

@@ -9,12 +9,18 @@ import pytest
 from scipy.optimize import minimize
 from scipy.special import betaincinv, ndtr
 
-from squeezefilm.study import psychometric_kernel as kernel
-from squeezefilm.study.psychometric import SHAPES, Axis, PsychometricFunction, Shape, on_axis
-from squeezefilm.study.psychometric_bootstrap import PenalisedLikelihood, simulate_bootstrap
-from squeezefilm.study.psychometric_fit import fit_psychometric
-from squeezefilm.study.psychometric_posterior import grid_posterior
-from squeezefilm.study.psychometric_prior import PsychometricPrior
+from squeezefilm.study.psychometric import kernel
+from squeezefilm.study.psychometric.bootstrap import PenalisedLikelihood, simulate_bootstrap
+from squeezefilm.study.psychometric.fit import fit_psychometric
+from squeezefilm.study.psychometric.function import (
+    SHAPES,
+    Axis,
+    PsychometricFunction,
+    Shape,
+    on_axis,
+)
+from squeezefilm.study.psychometric.posterior import grid_posterior
+from squeezefilm.study.psychometric.prior import PsychometricPrior
 
 LEVELS = np.arange(1.0, 9.0)
 CORRECT = np.array([21.0, 19.0, 24.0, 25.0, 31.0, 36.0, 38.0, 39.0])

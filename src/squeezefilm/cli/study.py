@@ -33,8 +33,8 @@ def plan(
 ) -> None:
     """Show a design: what is presented, how often, in which orders, and how long it takes."""
     from squeezefilm.report.terminal_study import show_plan
-    from squeezefilm.study.design import load_design
-    from squeezefilm.study.plan import plan_study
+    from squeezefilm.study.design.plan import plan_study
+    from squeezefilm.study.design.study_design import load_design
 
     found = plan_study(load_design(design), participants, seed)
     if as_json:
@@ -47,7 +47,7 @@ def plan(
 def presets(as_json: AsJson = False) -> None:
     """List the studies that come with the package."""
     from squeezefilm.presets import study_names
-    from squeezefilm.study.design import load_design
+    from squeezefilm.study.design.study_design import load_design
 
     listing = [{"name": name, "title": load_design(name).title} for name in study_names()]
     if as_json:
@@ -76,9 +76,9 @@ def simulate(
     from squeezefilm.report import terminal
     from squeezefilm.report.simulated_report import write_simulated
     from squeezefilm.report.terminal_simulated import show_simulated
-    from squeezefilm.study.chain import chain_tables
-    from squeezefilm.study.design import load_design
-    from squeezefilm.study.simulated import simulate_participants
+    from squeezefilm.study.design.study_design import load_design
+    from squeezefilm.study.simulated.chain_tables import chain_tables
+    from squeezefilm.study.simulated.participants import simulate_participants
 
     planned, people = load_design(design), load_observer(observer)
     with terminal.progress(enabled=sys.stderr.isatty() or not as_json) as step:
@@ -116,8 +116,8 @@ def power(
     from squeezefilm.perception.observer import load_observer
     from squeezefilm.report import terminal
     from squeezefilm.report.terminal_identification import show_power
-    from squeezefilm.study.design import load_design
-    from squeezefilm.study.planned_power import planned_power
+    from squeezefilm.study.design.study_design import load_design
+    from squeezefilm.study.simulated.planned_power import planned_power
 
     with terminal.progress(enabled=sys.stderr.isatty() or not as_json) as step:
         found = planned_power(
@@ -152,8 +152,8 @@ def rehearse(
     """Let simulated participants do every trial of a study's file, to try analysis and exports."""
     from squeezefilm.perception.observer import load_observer
     from squeezefilm.report import terminal
-    from squeezefilm.study.rehearsal import rehearse as run_through
-    from squeezefilm.study.terminal_run import open_study
+    from squeezefilm.study.conduct.rehearsal import rehearse as run_through
+    from squeezefilm.study.conduct.terminal_run import open_study
 
     with (
         open_study(store, design, seed, 0, 1) as found,
@@ -202,7 +202,7 @@ def run(
     from squeezefilm.quantities import Unit
     from squeezefilm.report import terminal
     from squeezefilm.report.terminal_study import TerminalExaminer, ask_acknowledgement
-    from squeezefilm.study.terminal_run import open_study, run_session
+    from squeezefilm.study.conduct.terminal_run import open_study, run_session
 
     with open_study(store, design, seed, station, stations) as found:
         planned = found.design
@@ -226,7 +226,7 @@ def run(
 def status(store: Store, as_json: AsJson = False) -> None:
     """Show who is enrolled and how far they are."""
     from squeezefilm.report.terminal_study import show_status
-    from squeezefilm.study.store import StudyStore
+    from squeezefilm.study.record.store import StudyStore
 
     with StudyStore.open(store) as found:
         if as_json:
@@ -245,8 +245,8 @@ def export(
     ] = None,
 ) -> None:
     """Write all answers as CSV, a Psych-DS dataset or a BIDS behavioural dataset."""
-    from squeezefilm.study.exports import export_study
-    from squeezefilm.study.store import StudyStore
+    from squeezefilm.study.record.exports import export_study
+    from squeezefilm.study.record.store import StudyStore
 
     with StudyStore.open(store) as found:
         typer.echo(f"wrote {export_study(found, format, out)}")  # type: ignore[arg-type] # checked there
@@ -259,8 +259,8 @@ def merge(
 ) -> None:
     """Add other stations' files to this one; merging again changes nothing."""
     from squeezefilm.report.terminal_study import show_merge
-    from squeezefilm.study.merge import merge as add
-    from squeezefilm.study.store import StudyStore
+    from squeezefilm.study.record.merge import merge as add
+    from squeezefilm.study.record.store import StudyStore
 
     with StudyStore.open(store) as found:
         for other in others:
@@ -270,7 +270,7 @@ def merge(
 @study.command()
 def backup(store: Store) -> None:
     """Copy the study's file, as it is now, into the folder of backups beside it."""
-    from squeezefilm.study.store import StudyStore
+    from squeezefilm.study.record.store import StudyStore
 
     with StudyStore.open(store) as found:
         typer.echo(f"wrote {found.back_up()}")
@@ -284,8 +284,8 @@ def delete_participant(
 ) -> None:
     """Take a participant out of the file, its traces, backups and exports, without a trace."""
     from squeezefilm.report.terminal_study import show_deletion
-    from squeezefilm.study.deletion import delete_participant as take_out
-    from squeezefilm.study.store import StudyStore
+    from squeezefilm.study.record.deletion import delete_participant as take_out
+    from squeezefilm.study.record.store import StudyStore
 
     with StudyStore.open(store) as found:
         if not yes:
@@ -311,8 +311,8 @@ def analyze(
     """Analyse what was recorded: confusions, intervals, information transfer, sensitivity."""
     from squeezefilm.report import terminal
     from squeezefilm.report.terminal_identification import show_analyses
-    from squeezefilm.study.recorded_analysis import analyze_study
-    from squeezefilm.study.store import StudyStore
+    from squeezefilm.study.identification.recorded import analyze_study
+    from squeezefilm.study.record.store import StudyStore
 
     with (
         StudyStore.open(store) as found,

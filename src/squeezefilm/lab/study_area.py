@@ -16,16 +16,16 @@ from squeezefilm.lab.study_devices import Measured, StudyDevices, require_device
 from squeezefilm.lab.study_work import analysis_of, rehearsed, report_of
 from squeezefilm.lab.wire import Answer, Request
 from squeezefilm.lab.worker import PAGE
-from squeezefilm.study.device import (
+from squeezefilm.study.conduct.exposure import Exposure, exposure
+from squeezefilm.study.conduct.run import Response
+from squeezefilm.study.conduct.sittings import Sitting
+from squeezefilm.study.conduct.study_device import (
     DeviceIdentity,
     DeviceVerification,
     Exploration,
     NoDevice,
     StudyDevice,
 )
-from squeezefilm.study.exposure import Exposure, exposure
-from squeezefilm.study.run import Response
-from squeezefilm.study.sittings import Sitting
 
 if TYPE_CHECKING:
     from starlette.websockets import WebSocket

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 from squeezefilm.errors import DeviceError, InputError, SqueezefilmError
 from squeezefilm.perception.stimuli import Stimulus
-from squeezefilm.study.device import (
+from squeezefilm.study.conduct.study_device import (
     DeviceIdentity,
     DeviceVerification,
     Exploration,
@@ -279,7 +279,7 @@ def require_device(kind: str, display: str | None) -> None:
     Raises `InputError` that says which may.
     """
     from squeezefilm.display import load_display
-    from squeezefilm.study.session_device import require_study_drive
+    from squeezefilm.study.conduct.played_device import require_study_drive
 
     if kind == "none":
         return
@@ -289,6 +289,6 @@ def require_device(kind: str, display: str | None) -> None:
 
 
 def _session_device(display: str, kind: str, traces: Path) -> LabDevice:
-    from squeezefilm.study.session_device import SessionDevice
+    from squeezefilm.study.conduct.played_device import SessionDevice
 
     return SessionDevice(display, kind, traces)

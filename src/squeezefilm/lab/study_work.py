@@ -9,8 +9,8 @@ import base64
 from pathlib import Path
 from typing import Any
 
-from squeezefilm.study.recorded_analysis import analyze_study
-from squeezefilm.study.store import StudyStore
+from squeezefilm.study.identification.recorded import analyze_study
+from squeezefilm.study.record.store import StudyStore
 
 
 def analysis_of(path: Path) -> dict[str, Any]:
@@ -48,7 +48,7 @@ def analysis_of(path: Path) -> dict[str, Any]:
 def rehearsed(path: Path, participants: int) -> dict[str, Any]:
     """Simulated participants do the study's file."""
     from squeezefilm.perception.observer import load_observer
-    from squeezefilm.study.rehearsal import rehearse
+    from squeezefilm.study.conduct.rehearsal import rehearse
 
     with StudyStore.open(path) as store:
         people = rehearse(store, load_observer(), participants)

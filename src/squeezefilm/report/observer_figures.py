@@ -24,7 +24,7 @@ from squeezefilm.report.style import (
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from squeezefilm.study.chain import ChainTables
+    from squeezefilm.study.simulated.chain_tables import ChainTables
 
 _DISPLAYS = (BLUE, ORANGE)
 

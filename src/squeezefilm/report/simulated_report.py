@@ -16,8 +16,8 @@ from squeezefilm.report.numbers import printable
 from squeezefilm.report.page_style import page_head
 from squeezefilm.report.style import png
 from squeezefilm.results import write_whole
-from squeezefilm.study.simulated import SimulatedStudy
-from squeezefilm.study.trial_table import Column, csv_text
+from squeezefilm.study.record.trial_table import Column, csv_text
+from squeezefilm.study.simulated.participants import SimulatedStudy
 
 REMARK = (
     "The one checkable remark of Biet, Giraud and Lemaire-Semail (their tables are empty in the "
@@ -86,8 +86,8 @@ def write_simulated(
 
 def _analyses(study: SimulatedStudy, folder: Path, tell: Callable[[str], None]) -> dict[str, str]:
     from squeezefilm.report.study_report import write_study
-    from squeezefilm.study.analysis import analyze_identification
-    from squeezefilm.study.simulated import right_answers
+    from squeezefilm.study.identification.analysis import analyze_identification
+    from squeezefilm.study.simulated.participants import right_answers
 
     design = study.tables.design
     right, names = right_answers(design), [one.name for one in design.stimuli]

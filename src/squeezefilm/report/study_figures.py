@@ -27,8 +27,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from squeezefilm.study.analysis import IdentificationAnalysis
-    from squeezefilm.study.confusion import ConfusionMatrix
+    from squeezefilm.study.identification.analysis import IdentificationAnalysis
+    from squeezefilm.study.identification.confusion import ConfusionMatrix
 
 
 def data_of(analysis: IdentificationAnalysis) -> str:

@@ -18,9 +18,9 @@ from squeezefilm.results import write_whole
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from squeezefilm.study.analysis import IdentificationAnalysis
-    from squeezefilm.study.participant_bootstrap import Interval
-    from squeezefilm.study.power import PowerCurve
+    from squeezefilm.study.identification.analysis import IdentificationAnalysis
+    from squeezefilm.study.identification.participant_bootstrap import Interval
+    from squeezefilm.study.identification.power import PowerCurve
 
 
 def write_study(

@@ -23,9 +23,9 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from squeezefilm.study.analysis import IdentificationAnalysis
-    from squeezefilm.study.exploration import ConditionMean
-    from squeezefilm.study.power import PowerCurve
+    from squeezefilm.study.identification.analysis import IdentificationAnalysis
+    from squeezefilm.study.identification.exploration import ConditionMean
+    from squeezefilm.study.identification.power import PowerCurve
 
 
 @drawn
@@ -55,7 +55,7 @@ def response_times(analysis: IdentificationAnalysis) -> Figure:
         right.set_axis_off()
         right.text(0, 0.5, "no ex-Gaussian: too few times", transform=right.transAxes)
         return figure
-    from squeezefilm.study.response_times import ex_gaussian_density
+    from squeezefilm.study.identification.response_times import ex_gaussian_density
 
     end = fit.mean + 3 * fit.spread + 5 * fit.tail
     t = np.linspace(0, end, 400)

@@ -9,8 +9,8 @@ from squeezefilm.report.study_report import key_rows
 from squeezefilm.report.terminal import heading, plain_console, table
 
 if TYPE_CHECKING:
-    from squeezefilm.study.analysis import IdentificationAnalysis
-    from squeezefilm.study.planned_power import PlannedPower
+    from squeezefilm.study.identification.analysis import IdentificationAnalysis
+    from squeezefilm.study.simulated.planned_power import PlannedPower
 
 
 def show_analyses(analyses: Mapping[str, IdentificationAnalysis]) -> None:

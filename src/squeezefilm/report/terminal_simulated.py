@@ -14,7 +14,7 @@ from squeezefilm.report.simulated_report import (
 from squeezefilm.report.terminal import heading, plain_console, table
 
 if TYPE_CHECKING:
-    from squeezefilm.study.simulated import SimulatedStudy
+    from squeezefilm.study.simulated.participants import SimulatedStudy
 
 
 def show_simulated(study: SimulatedStudy) -> None:

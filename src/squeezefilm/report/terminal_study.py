@@ -12,11 +12,11 @@ from squeezefilm.report.terminal import heading, plain_console, table
 
 if TYPE_CHECKING:
     from squeezefilm.quantities import Second
-    from squeezefilm.study.deletion import Deletion
-    from squeezefilm.study.merge import Merge
-    from squeezefilm.study.plan import StudyPlan
-    from squeezefilm.study.run import Acknowledgement, Presentation
-    from squeezefilm.study.store import StudyStore
+    from squeezefilm.study.conduct.run import Acknowledgement, Presentation
+    from squeezefilm.study.design.plan import StudyPlan
+    from squeezefilm.study.record.deletion import Deletion
+    from squeezefilm.study.record.merge import Merge
+    from squeezefilm.study.record.store import StudyStore
 
 
 def show_plan(plan: StudyPlan) -> None:

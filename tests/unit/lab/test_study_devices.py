@@ -21,9 +21,9 @@ from squeezefilm.lab.server import PAGE, Lab
 from squeezefilm.lab.study_area import add_study
 from squeezefilm.lab.study_devices import StudyDevices, require_device
 from squeezefilm.perception.stimuli import Stimulus
-from squeezefilm.study.device import DeviceIdentity, DeviceVerification, Exploration
-from squeezefilm.study.exposure import Exposure
-from squeezefilm.study.store import StudyStore
+from squeezefilm.study.conduct.exposure import Exposure
+from squeezefilm.study.conduct.study_device import DeviceIdentity, DeviceVerification, Exploration
+from squeezefilm.study.record.store import StudyStore
 
 SURFACE = (Stimulus("4 mm", 4e-3, "period"), 1)
 EXPOSURE = Exposure("plate", 33e3, 0.5, 120.0, 3600.0, None, "", "made up for this test")

@@ -13,9 +13,9 @@ from squeezefilm.errors import InputError
 from squeezefilm.report import study_figures, study_time_figures
 from squeezefilm.report.study_report import study_figures as figures_of
 from squeezefilm.report.study_report import study_page, write_study
-from squeezefilm.study.analysis import IdentificationAnalysis, analyze_identification
-from squeezefilm.study.information import ordered_observer
-from squeezefilm.study.power import DirichletParticipants, distinction, power_curve
+from squeezefilm.study.identification.analysis import IdentificationAnalysis, analyze_identification
+from squeezefilm.study.identification.information import ordered_observer
+from squeezefilm.study.identification.power import DirichletParticipants, distinction, power_curve
 
 HOSTILE = '<script>alert("x")</script> $\\frac{1}{0}$ 漢字 \x1b[31m\u202e & more'
 

@@ -5,20 +5,20 @@ from __future__ import annotations
 from pathlib import Path
 
 from squeezefilm.perception.stimuli import Grating, Stimulus
-from squeezefilm.study.conduct import conduct
-from squeezefilm.study.design import AdaptiveCondition, StudyDesign
-from squeezefilm.study.device import (
+from squeezefilm.study.conduct.exposure import Exposure
+from squeezefilm.study.conduct.run import Acknowledgement, Presentation, StudyRun
+from squeezefilm.study.conduct.session_conditions import SessionConditions
+from squeezefilm.study.conduct.sessions import begin_session
+from squeezefilm.study.conduct.study_device import (
     DeviceIdentity,
     DeviceVerification,
     Exploration,
     NoDevice,
     StudyDevice,
 )
-from squeezefilm.study.exposure import Exposure
-from squeezefilm.study.run import Acknowledgement, Presentation, StudyRun
-from squeezefilm.study.session_conditions import SessionConditions
-from squeezefilm.study.sessions import begin_session
-from squeezefilm.study.store import StudyStore
+from squeezefilm.study.conduct.trial_by_trial import conduct
+from squeezefilm.study.design.study_design import AdaptiveCondition, StudyDesign
+from squeezefilm.study.record.store import StudyStore
 
 LOUD = Exposure("biet2008-plate", 33e3, 0.5, 124.0, 1200.0, 100.0, "somebody 1984", "estimated")
 CONSENT = SessionConditions(consent=True, room="quiet room")

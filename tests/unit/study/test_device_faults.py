@@ -16,12 +16,12 @@ from squeezefilm.errors import DeviceError, InputError
 from squeezefilm.perception.stimuli import Stimulus
 from squeezefilm.session.play import real_time as playing
 from squeezefilm.session.play.player import PlayPlan
-from squeezefilm.study.conduct import conduct
-from squeezefilm.study.device import Exploration, NoDevice
-from squeezefilm.study.run import StudyRun
-from squeezefilm.study.session_device import SessionDevice
-from squeezefilm.study.sessions import begin_session
-from squeezefilm.study.store import StudyStore
+from squeezefilm.study.conduct.played_device import SessionDevice
+from squeezefilm.study.conduct.run import StudyRun
+from squeezefilm.study.conduct.sessions import begin_session
+from squeezefilm.study.conduct.study_device import Exploration, NoDevice
+from squeezefilm.study.conduct.trial_by_trial import conduct
+from squeezefilm.study.record.store import StudyStore
 
 from .scripted import CONSENT, Script, gratings
 

@@ -15,13 +15,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from squeezefilm.errors import InputError
-from squeezefilm.study.conduct import conduct
-from squeezefilm.study.exports import export_study, exported_folders
-from squeezefilm.study.run import StudyRun
-from squeezefilm.study.session_conditions import SessionConditions
-from squeezefilm.study.sessions import begin_session
-from squeezefilm.study.store import StudyStore
-from squeezefilm.study.trial_table import (
+from squeezefilm.study.conduct.run import StudyRun
+from squeezefilm.study.conduct.session_conditions import SessionConditions
+from squeezefilm.study.conduct.sessions import begin_session
+from squeezefilm.study.conduct.trial_by_trial import conduct
+from squeezefilm.study.record.exports import export_study, exported_folders
+from squeezefilm.study.record.store import StudyStore
+from squeezefilm.study.record.trial_table import (
     COLUMNS,
     Column,
     cell_text,
@@ -208,8 +208,8 @@ def test_a_damaged_mark_is_one_message(store: StudyStore, mark: str) -> None:
 
 def test_no_cell_of_any_export_is_a_formula(tmp_path: Path) -> None:
     from squeezefilm.perception.stimuli import Grating, Stimulus
-    from squeezefilm.study.design import StudyDesign
-    from squeezefilm.study.exports import FORMATS
+    from squeezefilm.study.design.study_design import StudyDesign
+    from squeezefilm.study.record.exports import FORMATS
 
     evil = "cmd|' /C calc'!A0"
     # Names of stimuli are printable; texts of a sitting are any.

@@ -11,8 +11,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from squeezefilm.errors import InputError
-from squeezefilm.study.analysis import analyze_identification
-from squeezefilm.study.information import ordered_observer
+from squeezefilm.study.identification.analysis import analyze_identification
+from squeezefilm.study.identification.information import ordered_observer
 
 LABELS = ("0.4 mm", "2 mm", "4 mm", "8 mm", "10 mm")
 

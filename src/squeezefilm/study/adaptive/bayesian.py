@@ -1,0 +1,239 @@
+"""Bayesian choice of the next stimulus: the one whose answer is expected to tell the most.
+
+The method of Kontsevich & Tyler 1999 (10.1016/S0042-6989(98)00285-5), with the lapse rate as a
+nuisance that may be integrated out before the entropy is taken (Prins 2013, 10.1167/13.7.3) and
+with the mutual information computed as the entropy of the expected answer less the expected
+entropy of the answer, which is the same and needs two products of a matrix and a vector.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+
+from squeezefilm.errors import InputError
+from squeezefilm.quantities import Dimensionless, DimensionlessArray, FloatArray, require
+from squeezefilm.study.psychometric import kernel
+from squeezefilm.study.psychometric.function import Axis, Shape, on_axis, shape_code
+from squeezefilm.study.psychometric.prior import PsychometricPrior
+
+Interest = Literal["threshold and width", "all"]
+
+
+@dataclass(frozen=True, slots=True)
+class AdaptiveDesign:
+    """What a Bayesian choice of stimuli starts from.
+
+    Args:
+        stimuli: intensities to choose from, two or more, in the unit of the stimulus.
+        prior: of the parameters; its grid is of quantiles, so flat where the prior is.
+        shape, axis: of the psychometric function.
+        guess_rate: known, at least 0 and at most 0.5.
+        cells: of the grid of threshold, ln width and lapse rate.
+        interest: "threshold and width", where the lapse rate is integrated out before the
+            entropy is taken, or "all".
+        most_trials: after which it ends, at least 1.
+
+    Raises:
+        InputError: a value outside its range.
+    """
+
+    stimuli: tuple[float, ...]
+    prior: PsychometricPrior
+    shape: Shape = "logistic"
+    axis: Axis = "linear"
+    guess_rate: Dimensionless = 0.5
+    cells: tuple[int, int, int] = (40, 20, 5)
+    interest: Interest = "threshold and width"
+    most_trials: int = 120
+
+    def __post_init__(self) -> None:
+        shape_code(self.shape, self.axis)
+        on_axis(np.array(self.stimuli), self.axis)
+        require("guess_rate", self.guess_rate, at_least=0.0, at_most=0.5)
+        require("cells", self.cells, at_least=1)
+        require("most_trials", self.most_trials, at_least=1)
+        if len(self.stimuli) < 2:
+            raise InputError(f"stimuli = {self.stimuli} leaves nothing to choose; give two or more")
+        if self.interest not in ("threshold and width", "all"):
+            raise InputError(
+                f"interest = {self.interest!r} is not known; it must be 'threshold and width' or "
+                "'all'",
+                quantity="interest",
+            )
+
+
+@dataclass(frozen=True, slots=True)
+class AdaptiveTrial:
+    """One answer: the intensity shown, and whether it was positive (correct, or yes)."""
+
+    intensity: float
+    positive: bool
+
+
+class BayesianAdaptive:
+    """A Bayesian choice of stimuli as it runs. `next_stimulus`, then `update`, until `finished`.
+
+    Nothing in it is random: the same answers lead to the same stimuli. `state` gives the design
+    and the answers for JSON, `from_state` plays them again.
+    """
+
+    def __init__(self, design: AdaptiveDesign) -> None:
+        self.design = design
+        axis, prior = design.axis, design.prior
+        nodes = [
+            prior.quantile(at, (np.arange(size) + 0.5) / size, axis)
+            for at, size in enumerate(design.cells)
+        ]
+        self._nodes = nodes
+        self._places = on_axis(np.array(design.stimuli), axis)
+        self._table = self._probabilities(self._places)
+        q = 1.0 - self._table
+        # Binary entropy; the logarithm is nought where the probability is.
+        self._entropy = -(
+            self._table * np.log(np.maximum(self._table, 1e-300))
+            + q * np.log(np.maximum(q, 1e-300))
+        )
+        self._weights = np.full(self._table.shape[0], 1.0 / self._table.shape[0])
+        self._trials: list[AdaptiveTrial] = []
+
+    def _probabilities(self, places: FloatArray) -> FloatArray:
+        """ψ of every cell at places on the axis: (cells, places)."""
+        code = shape_code(self.design.shape, self.design.axis)
+        m, w, lapse = self._nodes
+        rise = np.stack(
+            [
+                kernel.probabilities(code, np.array([one, width, 0.0, 0.0]), places)
+                for one in m
+                for width in w
+            ]
+        )
+        guess = self.design.guess_rate
+        psi = guess + np.maximum(1.0 - guess - lapse[None, :, None], 0.0) * rise[:, None, :]
+        return np.ascontiguousarray(psi.reshape(-1, places.size))
+
+    @property
+    def trials(self) -> tuple[AdaptiveTrial, ...]:
+        """The answers so far."""
+        return tuple(self._trials)
+
+    @property
+    def finished(self) -> bool:
+        """Whether it has its trials."""
+        return len(self._trials) >= self.design.most_trials
+
+    @property
+    def probability(self) -> DimensionlessArray:
+        """The posterior on the grid, shape `design.cells`; sums to 1."""
+        return self._weights.reshape(self.design.cells).copy()
+
+    @property
+    def entropy(self) -> float:
+        """Entropy of the posterior of what is of interest (nat)."""
+        weights = self.probability
+        if self.design.interest == "threshold and width":
+            weights = weights.sum(axis=2)
+        some = weights[weights > 0]
+        return float(-np.sum(some * np.log(some)))
+
+    def estimate(self) -> tuple[float, float]:
+        """Posterior mean of the threshold (in the stimulus' unit; of ln intensity on a
+        logarithmic axis) and posterior geometric mean of the width. For intervals use a fit."""
+        weights = self.probability
+        place = float(np.sum(weights.sum(axis=(1, 2)) * self._nodes[0]))
+        width = float(np.exp(np.sum(weights.sum(axis=(0, 2)) * self._nodes[1])))
+        return (float(np.exp(place)) if self.design.axis == "log" else place), width
+
+    def expected_information(self) -> FloatArray:
+        """Mutual information of the next answer and what is of interest (nat), shape (stimuli,)."""
+        weights = self._weights
+        positive = weights @ self._table
+        answer = _binary_entropy(positive)
+        if self.design.interest == "all":
+            return np.asarray(answer - weights @ self._entropy)
+        lapses = self.design.cells[2]
+        by_cell = weights.reshape(-1, lapses)
+        share = by_cell.sum(axis=1)
+        joint = np.einsum(
+            "cl,cls->cs", by_cell, self._table.reshape(share.size, lapses, -1), optimize=False
+        )
+        with np.errstate(divide="ignore", invalid="ignore"):
+            given = np.where(share[:, None] > 0, joint / share[:, None], 0.5)
+        return np.asarray(answer - share @ _binary_entropy(given))
+
+    def next_stimulus(self) -> float:
+        """The intensity whose answer tells the most; of equals the first in `design.stimuli`.
+
+        Raises:
+            InputError: all trials have been made.
+        """
+        if self.finished:
+            raise InputError(f"all {self.design.most_trials} trials have been made; start another")
+        return float(self.design.stimuli[int(np.argmax(self.expected_information()))])
+
+    def update(self, intensity: float, positive: bool) -> None:
+        """Take in an answer, to whatever intensity was shown.
+
+        Raises:
+            InputError: an intensity off the axis, or all trials have been made.
+        """
+        if self.finished:
+            raise InputError(f"all {self.design.most_trials} trials have been made; start another")
+        intensity = float(intensity)
+        if intensity in self.design.stimuli:
+            psi = self._table[:, self.design.stimuli.index(intensity)]
+        else:
+            psi = self._probabilities(np.atleast_1d(on_axis(intensity, self.design.axis)))[:, 0]
+        weights = self._weights * (psi if positive else 1.0 - psi)
+        total = float(weights.sum())
+        if not total > 0.0:
+            raise InputError(
+                f"the answer {bool(positive)} at intensity {intensity:g} is impossible under "
+                "every parameter of the prior; widen it",
+                quantity="intensity",
+            )
+        self._weights = weights / total
+        self._trials.append(AdaptiveTrial(intensity, bool(positive)))
+
+    def state(self) -> dict[str, Any]:
+        """Design and answers, as JSON holds them."""
+        design: dict[str, Any] = {
+            name: getattr(self.design, name) for name in self.design.__slots__
+        }
+        design["stimuli"] = list(self.design.stimuli)
+        design["cells"] = list(self.design.cells)
+        design["prior"] = self.design.prior.state()
+        return {
+            "method": "bayesian-adaptive",
+            "design": design,
+            "trials": [[trial.intensity, trial.positive] for trial in self._trials],
+        }
+
+    @classmethod
+    def from_state(cls, state: dict[str, Any]) -> BayesianAdaptive:
+        """The method that `state` was taken of.
+
+        Raises:
+            InputError: a state that is none.
+        """
+        try:
+            design = dict(state["design"])
+            design["prior"] = PsychometricPrior.from_state(design["prior"])
+            design["stimuli"] = tuple(float(one) for one in design["stimuli"])
+            a, b, c = design["cells"]
+            design["cells"] = (int(a), int(b), int(c))
+            method = cls(AdaptiveDesign(**design))
+            for intensity, positive in state["trials"]:
+                method.update(float(intensity), bool(positive))
+        except (KeyError, TypeError) as error:
+            raise InputError(
+                f"this is no Bayesian method's state: {error!r} is at fault"
+            ) from error
+        return method
+
+
+def _binary_entropy(p: FloatArray) -> FloatArray:
+    q = 1.0 - p
+    return np.asarray(-(p * np.log(np.maximum(p, 1e-300)) + q * np.log(np.maximum(q, 1e-300))))

@@ -1,0 +1,220 @@
+"""Staircases: rules that move the intensity up and down with the answers, and where they settle.
+
+Transformed up–down rules (Levitt 1971, 10.1121/1.1912375): down after n correct answers in a row,
+up after one that is not. Weighted ones (Kaernbach 1991, 10.3758/BF03214307) take larger steps up
+than down. Levels move on the axis; on a logarithmic axis a step is a difference of ln intensity.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+from squeezefilm.errors import InputError
+from squeezefilm.quantities import Dimensionless, require
+from squeezefilm.study.psychometric.function import AXES, Axis
+
+
+def staircase_target(
+    down_after: int, step_up: float = 1.0, step_down: float = 1.0
+) -> Dimensionless:
+    """Probability of a correct answer at which a staircase settles: (s₊/(s₊ + s₋))^(1/n).
+
+    There the expected steps up and down cancel: pⁿ s₋ = (1 − pⁿ) s₊. 70.7 % for two down, one up
+    (Levitt 1971), s₊/(s₊ + s₋) for a weighted staircase (Kaernbach 1991). Holds for small steps.
+
+    Raises:
+        InputError: a value outside its range.
+    """
+    require("down_after", down_after, at_least=1)
+    require("step_up", step_up, above=0.0)
+    require("step_down", step_down, above=0.0)
+    return float((step_up / (step_up + step_down)) ** (1.0 / down_after))
+
+
+@dataclass(frozen=True, slots=True)
+class StaircaseRule:
+    """How a staircase moves, and when it ends.
+
+    Args:
+        start: first intensity, in the unit of the stimulus.
+        step: first step down, above 0: in that unit, or a difference of ln intensity.
+        smallest_step: steps are halved at every reversal as long as they stay at least this.
+        down_after: correct answers in a row before a step down, at least 1.
+        up_ratio: step up over step down, above 0.
+        lowest, highest: intensities that are never left.
+        axis: "linear" or "log".
+        reversals: after which it ends, at least 2.
+        most_trials: after which it ends at the latest, at least 1.
+
+    Raises:
+        InputError: a value outside its range, or bounds that contradict each other.
+    """
+
+    start: float
+    step: float
+    smallest_step: float
+    down_after: int = 2
+    up_ratio: Dimensionless = 1.0
+    lowest: float = -math.inf
+    highest: float = math.inf
+    axis: Axis = "linear"
+    reversals: int = 12
+    most_trials: int = 200
+
+    def __post_init__(self) -> None:
+        if self.axis not in AXES:
+            raise InputError(
+                f"axis = {self.axis!r} is not known; it must be one of {', '.join(AXES)}",
+                quantity="axis",
+            )
+        require("start", self.start, above=0.0 if self.axis == "log" else None)
+        require("step", self.step, above=0.0)
+        require("smallest_step", self.smallest_step, above=0.0, at_most=self.step)
+        require("down_after", self.down_after, at_least=1)
+        require("up_ratio", self.up_ratio, above=0.0)
+        require("reversals", self.reversals, at_least=2)
+        require("most_trials", self.most_trials, at_least=1)
+        if not self.lowest <= self.start <= self.highest:
+            raise InputError(
+                f"start = {self.start:g} is not between lowest, {self.lowest:g}, and highest, "
+                f"{self.highest:g}; move it or them",
+                quantity="start",
+            )
+
+    @property
+    def target(self) -> Dimensionless:
+        """Probability of a correct answer at which it settles."""
+        return staircase_target(self.down_after, self.up_ratio, 1.0)
+
+
+@dataclass(frozen=True, slots=True)
+class StaircaseTrial:
+    """One answer: the intensity shown, whether it was correct, and whether it turned the stairs."""
+
+    intensity: float
+    correct: bool
+    reversal: bool
+
+
+class Staircase:
+    """A staircase as it runs. `next_stimulus`, then `update`, until `finished`.
+
+    Its state is its rule and the answers so far: `state` gives them for JSON, `from_state` plays
+    them again and stands where it stood.
+    """
+
+    def __init__(self, rule: StaircaseRule) -> None:
+        self.rule = rule
+        self._level = math.log(rule.start) if rule.axis == "log" else rule.start
+        self._step = rule.step
+        self._streak = 0
+        self._direction = 0
+        self._trials: list[StaircaseTrial] = []
+
+    @property
+    def trials(self) -> tuple[StaircaseTrial, ...]:
+        """The answers so far."""
+        return tuple(self._trials)
+
+    @property
+    def finished(self) -> bool:
+        """Whether it has its reversals or its trials."""
+        reversals = sum(trial.reversal for trial in self._trials)
+        return reversals >= self.rule.reversals or len(self._trials) >= self.rule.most_trials
+
+    def next_stimulus(self) -> float:
+        """The intensity to show next, in the unit of the stimulus.
+
+        Raises:
+            InputError: the staircase has finished.
+        """
+        if self.finished:
+            raise InputError(
+                f"this staircase has finished after {len(self._trials)} trials; start another"
+            )
+        value = math.exp(self._level) if self.rule.axis == "log" else self._level
+        return min(max(value, self.rule.lowest), self.rule.highest)
+
+    def update(self, intensity: float, correct: bool) -> None:
+        """Take in an answer. The stairs move from where they were, whatever was shown.
+
+        Raises:
+            InputError: an intensity that is not finite, or the staircase has finished.
+        """
+        require("intensity", intensity)
+        self.next_stimulus()
+        rule = self.rule
+        self._streak = self._streak + 1 if correct else 0
+        direction = 0
+        if not correct:
+            direction = 1
+        elif self._streak == rule.down_after:
+            direction, self._streak = -1, 0
+        turned = direction != 0 and self._direction not in (0, direction)
+        if turned and 0.5 * self._step >= rule.smallest_step:
+            self._step *= 0.5
+        if direction:
+            self._direction = direction
+            self._level += self._step * (rule.up_ratio if direction > 0 else -1.0)
+            self._hold_within_bounds()
+        self._trials.append(StaircaseTrial(float(intensity), bool(correct), turned))
+
+    def _hold_within_bounds(self) -> None:
+        low, high = self.rule.lowest, self.rule.highest
+        if self.rule.axis == "log":
+            low = math.log(low) if low > 0 else -math.inf
+            high = math.log(high)
+        # Rounded, so that levels reached by different ways are equal and count as one stimulus.
+        self._level = float(f"{min(max(self._level, low), high):.12g}")
+
+    def threshold(self, discard: int = 2) -> float:
+        """Mean of the intensities at the reversals (geometric on a logarithmic axis).
+
+        The first `discard` reversals are left out, and one more where an odd number is left.
+        An estimate of the intensity at `rule.target`; a fit uses the answers better.
+
+        Raises:
+            InputError: fewer than two reversals are left.
+        """
+        require("discard", discard, at_least=0)
+        turns = [trial.intensity for trial in self._trials if trial.reversal][discard:]
+        turns = turns[len(turns) % 2 :]
+        if not turns:
+            raise InputError(
+                f"no two reversals are left after {discard}; run the staircase on, or discard less"
+            )
+        if self.rule.axis == "log":
+            return math.exp(sum(math.log(turn) for turn in turns) / len(turns))
+        return sum(turns) / len(turns)
+
+    def state(self) -> dict[str, Any]:
+        """Rule and answers, as JSON holds them."""
+        rule = {name: getattr(self.rule, name) for name in self.rule.__slots__}
+        for name in ("lowest", "highest"):
+            # JSON has no infinity.
+            rule[name] = rule[name] if math.isfinite(rule[name]) else None
+        return {
+            "method": "staircase",
+            "rule": rule,
+            "trials": [[trial.intensity, trial.correct] for trial in self._trials],
+        }
+
+    @classmethod
+    def from_state(cls, state: dict[str, Any]) -> Staircase:
+        """The staircase that `state` was taken of.
+
+        Raises:
+            InputError: a state that is none.
+        """
+        try:
+            rule = dict(state["rule"])
+            rule["lowest"] = -math.inf if rule["lowest"] is None else rule["lowest"]
+            rule["highest"] = math.inf if rule["highest"] is None else rule["highest"]
+            staircase = cls(StaircaseRule(**rule))
+            for intensity, correct in state["trials"]:
+                staircase.update(float(intensity), bool(correct))
+        except (KeyError, TypeError) as error:
+            raise InputError(f"this is no staircase's state: {error!r} is at fault") from error
+        return staircase

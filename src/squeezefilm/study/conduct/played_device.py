@@ -1,0 +1,256 @@
+"""A study's device that is a real session: a display on a port, or its twin behind one.
+
+Everything goes through the loop, the link and the device's own state machine, as in `squeezefilm
+play`, with a record of every tick; the drive must stop by itself. What fails on the way is told by
+`stop`: the trial has then no answer, and comes again.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+import secrets
+import threading
+from multiprocessing.connection import Connection
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self
+
+from squeezefilm.display import load_display
+from squeezefilm.errors import DeviceError, InputError
+from squeezefilm.perception.stimuli import Stimulus
+from squeezefilm.quantities import Hertz, MetrePerVolt, Second
+from squeezefilm.render.motion.sensor import LVDT_10_KHZ
+from squeezefilm.results import config_hash
+from squeezefilm.study.conduct.playing_process import WorkerOrders, serve
+from squeezefilm.study.conduct.study_device import DeviceIdentity, DeviceVerification, Exploration
+from squeezefilm.twin.hand import EXPLORING
+from squeezefilm.twin.settings import PickupModel, TwinSettings
+
+START_LIMIT: Second = 300.0
+"""A first start solves the plate and compiles, which may take a minute on a busy computer."""
+STOP_LIMIT: Second = 20.0
+_RATE: Hertz = 5e3
+
+
+def require_study_drive(drive: str) -> None:
+    """Refuse what no study may be driven by. Raises `InputError` that says what may."""
+    if drive != "twin" and not (drive.startswith("serial:") and drive[7:].strip()):
+        raise InputError(
+            f"drive = '{drive[:80]}' is not known; it may be none, rehearsal, twin, or "
+            "serial:PORT like serial:/dev/ttyACM0. A drive that does not stop by itself, such as a "
+            "sound card, is not allowed in a study",
+            quantity="drive",
+        )
+
+
+class SessionDevice:
+    """A `StudyDevice` that plays each surface in a session of its own. Close it in the end.
+
+    One thread at a time, except `halt`, which any thread may call at any moment.
+
+    Args:
+        target: the display, a preset's name or a file.
+        drive: "twin", or "serial:PORT".
+        traces: folder for the raw records, the study's own folder of traces.
+        amplitude_per_pickup: vibration amplitude per signal of the device's pickup (m/V); None if
+            it was never calibrated. A twin's is known.
+        settings: of a twin; all are assumed.
+        stroke: of a twin's finger, as `motion_from` reads it, to and fro for ever.
+        rate: of the loop (Hz).
+
+    Raises:
+        InputError: a drive that may not be used in a study, or a display that this drive may not
+            play, `Display.require_insulation`.
+    """
+
+    def __init__(
+        self,
+        target: str | Path,
+        drive: str,
+        traces: Path,
+        *,
+        amplitude_per_pickup: MetrePerVolt | None = None,
+        settings: TwinSettings | None = None,
+        stroke: str = EXPLORING,
+        rate: Hertz = _RATE,
+    ) -> None:
+        require_study_drive(drive)
+        self._display = load_display(target)
+        # Now, and not when the first surface is to be felt.
+        self._display.require_insulation(twin=drive == "twin")
+        own = TwinSettings(sensor=LVDT_10_KHZ, pickup=PickupModel(kind="sensing_patch"))
+        self._orders = WorkerOrders(
+            str(target), drive, str(traces), settings or own, stroke, rate, amplitude_per_pickup
+        )
+        self._process: Any = None
+        self._connection: Connection | None = None
+        self._speaking = threading.Lock()
+        self._presenting = False
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    @property
+    def presenting(self) -> bool:
+        """Whether a surface was presented and not stopped yet."""
+        return self._presenting
+
+    def identity(self) -> DeviceIdentity:
+        """ "twin" or "serial", the display's hash, and that of the pickup's calibration (of the
+        twin's settings); no port, which is this computer's business."""
+        orders = self._orders
+        calibration = ""
+        if orders.drive == "twin":
+            calibration = config_hash(orders.settings)
+        elif orders.amplitude_per_pickup is not None:
+            calibration = config_hash({"amplitude_per_pickup": orders.amplitude_per_pickup})
+        kind = orders.drive.partition(":")[0]
+        return DeviceIdentity(kind, config_hash(self._display), calibration)
+
+    def verify_device(self) -> DeviceVerification:
+        """Sweep the carrier over the resonance at a quarter of the display's voltage, without a
+        finger, read at the device's pickup; one without a pickup is not measurable.
+
+        Takes seconds. A twin is measured without its hand, in a process of its own.
+
+        Raises:
+            DeviceError: a device that is not there, refuses or faults, or a finger that stays.
+        """
+        self._require_silence()
+        found: DeviceVerification = self._asked(("verify",), "verified")[1]
+        return found
+
+    def present(self, stimulus: Stimulus, seed: int) -> None:
+        """Play a surface; returns when it plays, so that a response time runs from its onset.
+
+        Raises:
+            InputError: a surface that the display cannot play.
+            DeviceError: a device that is not there, refuses, or was halted before it played.
+        """
+        self._require_silence()
+        order = ("present", stimulus, seed, f"{secrets.token_hex(16)}.sqft")
+        answer = self._asked(order, "playing")
+        if answer[0] == "ended":
+            why = answer[1] or "it was stopped before it played"
+            raise DeviceError(f"the surface could not be presented: {why}. It comes again")
+        self._presenting = True
+
+    def stop(self) -> Exploration:
+        """Ramp to zero, disarm, close the record; returns how the finger explored.
+
+        Raises:
+            DeviceError: the device, its link or its loop failed since `present`: what was felt
+                is not known, so the trial must not be answered.
+        """
+        if not self._presenting:
+            return Exploration()
+        self._presenting = False
+        self.halt()
+        try:
+            answer = self._heard(STOP_LIMIT)
+        except DeviceError as error:
+            self.close()
+            raise _unanswered(str(error)) from error
+        failure, found = answer[1], answer[-1]
+        if failure:
+            # The next surface begins with a new process, and a new twin.
+            self.close()
+            raise _unanswered(failure)
+        assert isinstance(found, Exploration)
+        return found
+
+    def halt(self) -> None:
+        """Let the output ramp to zero now; returns at once, from any thread.
+
+        `stop` is still to be called. Nothing where nothing plays.
+        """
+        with self._speaking:
+            connection = self._connection
+            if connection is not None:
+                try:
+                    connection.send(("stop",))
+                except OSError:
+                    # The process is gone, and its device stops by its watchdog; `stop` tells it.
+                    return
+
+    def close(self) -> None:
+        """Stop what plays and end the process; more than once is allowed."""
+        with self._speaking:
+            process, connection = self._process, self._connection
+            self._process = self._connection = None
+        self._presenting = False
+        if connection is not None:
+            # The broken pipe ends what plays, safely.
+            connection.close()
+        if process is not None:
+            process.join(STOP_LIMIT)
+            if process.is_alive():
+                process.kill()
+                process.join()
+
+    def _require_silence(self) -> None:
+        if self._presenting:
+            raise InputError("a surface is being presented; stop it first")
+
+    def _asked(self, order: tuple[Any, ...], expected: str) -> tuple[Any, ...]:
+        """The answer to an order: the expected one, or "ended"; what failed is raised."""
+        connection = self._running()
+        try:
+            with self._speaking:
+                connection.send(order)
+            answer = self._heard(START_LIMIT)
+        except (DeviceError, OSError) as error:
+            self.close()
+            if isinstance(error, DeviceError):
+                raise
+            raise DeviceError(f"the process that plays is gone ({error}); try again") from error
+        if answer[0] == "failed":
+            self.close()
+            raise DeviceError(str(answer[1]))
+        assert answer[0] in (expected, "ended"), answer[0]
+        return answer
+
+    def _heard(self, limit: Second) -> tuple[Any, ...]:
+        connection = self._connection
+        if connection is None:
+            raise DeviceError("the process that plays was closed; present the surface again")
+        try:
+            if not connection.poll(limit):
+                raise DeviceError(
+                    f"the process that plays said nothing for {limit:g} s and is ended; the "
+                    "device stops by its own watchdog"
+                )
+            found: tuple[Any, ...] = connection.recv()
+        except (EOFError, OSError) as error:
+            raise DeviceError(
+                "the process that plays ended without a word; the device stops by its own watchdog"
+            ) from error
+        return found
+
+    def _running(self) -> Connection:
+        if self._connection is None or not self._process.is_alive():
+            self.close()
+            context = multiprocessing.get_context("spawn")
+            ours, theirs = context.Pipe()
+            process = context.Process(target=serve, args=(theirs, self._orders), daemon=True)
+            process.start()
+            theirs.close()
+            with self._speaking:
+                self._process, self._connection = process, ours
+        assert self._connection is not None
+        return self._connection
+
+
+def _unanswered(why: str) -> DeviceError:
+    return DeviceError(
+        f"the device failed while the surface was presented: {why.rstrip('.')}. This trial was "
+        "not answered and comes again; look at the device, then go on"
+    )

@@ -1,0 +1,252 @@
+"""The process that plays a study's surfaces on a device, told over a pipe by `session_device`.
+
+It is a process of its own so that nothing the study does can hold up what is played. It plays with
+the safety of `session.run_play`; where the study's program dies, the pipe breaks and the output
+ramps to zero; where this process dies, the device's own watchdog stops it.
+
+Orders in: ("verify",), ("present", stimulus, seed, name), ("stop",). Answers: ("verified",
+verification), ("playing",), ("ended", failure, exploration), ("failed", sentence); after "playing"
+comes one of the last two. A stop while nothing plays has no answer.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import math
+import signal
+from dataclasses import dataclass
+from multiprocessing.connection import Connection
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from squeezefilm.bench.play import device_stream
+from squeezefilm.bench.resonance_sweep import sweep_resonance
+from squeezefilm.bench.setup import PlaySetup, play_setup
+from squeezefilm.chain.prediction import predict
+from squeezefilm.device.host import DeviceHost
+from squeezefilm.device.serial_ports import SerialDrive
+from squeezefilm.device.wire.link import Link
+from squeezefilm.device.wire.safety import require_safe_drive
+from squeezefilm.device.wire.states import State
+from squeezefilm.device.wire.streams import open_stream
+from squeezefilm.display import Display, load_display
+from squeezefilm.errors import SqueezefilmError
+from squeezefilm.formats.traces import Table, csv_text
+from squeezefilm.perception.stimuli import Stimulus
+from squeezefilm.quantities import Dimensionless, FloatArray, Hertz, MetrePerVolt, Second
+from squeezefilm.render.motion.sensor import LVDT_10_KHZ
+from squeezefilm.results import stamp
+from squeezefilm.session.loop import rows as column
+from squeezefilm.session.play.player import Ending, PlayView
+from squeezefilm.session.play.real_time import PlayOutcome, run_play
+from squeezefilm.session.record.reading import Trace, read_trace
+from squeezefilm.study.conduct.study_device import DeviceVerification, Exploration
+from squeezefilm.texture_file import TextureFile
+from squeezefilm.twin.settings import TwinSettings
+
+LONGEST_PRESENTATION: Second = 600.0
+"""A surface that nobody answers plays no longer; the trial then comes again."""
+VERIFICATION_SHARE: Dimensionless = 0.25
+"""Of the display's voltage, at which its resonance is swept."""
+PATH_PERIOD: Second = 10e-3
+"""Between samples of the finger's path (the raw trace has every tick): slow against the sensor's
+noise, fast against a hand."""
+_SPAN = 4.0
+"""The carrier is swept over so many bandwidths to either side of the prediction."""
+_POINTS = 41
+_SETTLE = 10.0
+"""Time constants waited at each carrier: e⁻¹⁰ of the change is left."""
+_PATH = ("time_s", "x_m", "y_m", "speed_m_per_s", "amplitude_m", "relative_friction")
+
+
+@dataclass(frozen=True)
+class WorkerOrders:
+    """What the process is told once: the display's name or file, the drive, the folder of traces,
+    the twin's settings and finger, the loop's rate, and the device's pickup (m/V; None: unknown).
+    """
+
+    target: str
+    drive: str
+    traces: str
+    settings: TwinSettings
+    stroke: str
+    rate: Hertz
+    amplitude_per_pickup: MetrePerVolt | None
+
+
+def serve(connection: Connection, orders: WorkerOrders) -> None:
+    """Take orders until the pipe breaks."""
+    # Ctrl-C goes to the whole group. While something plays it stops that; else it is not for us.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    with contextlib.suppress(EOFError, OSError), Bench(connection, orders) as bench:
+        while True:
+            order = connection.recv()
+            if order[0] == "stop":
+                continue
+            try:
+                connection.send(bench.done(order))
+            except SqueezefilmError as error:
+                connection.send(("failed", str(error)))
+
+
+class Bench:
+    """The display, its drive, and a twin's process while one is needed."""
+
+    def __init__(self, connection: Connection, orders: WorkerOrders) -> None:
+        self._connection, self._orders = connection, orders
+        self._display: Display | None = None
+        self._twin = contextlib.ExitStack()
+        self._finger: str | None = None
+        self._stream = ""
+
+    def __enter__(self) -> Bench:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._twin.close()
+
+    def done(self, order: tuple[Any, ...]) -> tuple[Any, ...]:
+        """Carry out an order; returns the answer. Raises `SqueezefilmError` where it cannot."""
+        if order[0] == "verify":
+            return ("verified", self.verification())
+        return ("ended", *self.presentation(*order[1:]))
+
+    def verification(self) -> DeviceVerification:
+        """The resonance swept on the device, with no finger (a twin's lifts it)."""
+        display, orders = self._loaded(), self._orders
+        predicted = predict(display)
+        mode, volts = predicted.mode, VERIFICATION_SHARE * display.drive.voltage
+        limits = display.limits(mode.resonance_frequency, volts, twin=self._orders.drive == "twin")
+        half = _SPAN * mode.resonance_frequency / (2 * mode.quality_factor)
+        carriers = np.linspace(
+            max(limits.lowest_frequency, mode.resonance_frequency - half),
+            min(limits.highest_frequency, mode.resonance_frequency + half),
+            _POINTS,
+        )
+        settle = _SETTLE * mode.quality_factor / (math.pi * mode.resonance_frequency)
+        with contextlib.closing(open_stream(self._streaming("none"))) as stream:
+            host = DeviceHost(Link(stream))
+            require_safe_drive(SerialDrive(host, 1 / orders.rate), limits, study=True)
+            swept = sweep_resonance(host, limits, carriers, volts, settle=settle)
+        if swept is None:
+            return DeviceVerification(
+                measurable=False, remark="the device has no pickup: nothing was verified"
+            )
+        frequency, signal_at_peak = swept.peak
+        per_volt = self._amplitude_per_pickup
+        said = f"swept at {volts:.3g} V and read at the device's pickup, no finger"
+        if per_volt is None:
+            said += "; the pickup is not calibrated, so its amplitude was not judged"
+        if swept.touched:
+            said += "; the plate was touched meanwhile, so it says nothing: do it again"
+            frequency = signal_at_peak = math.nan
+        return DeviceVerification(
+            amplitude=math.nan if per_volt is None else per_volt * signal_at_peak,
+            expected_amplitude=math.nan if per_volt is None else mode.amplitude_per_volt * volts,
+            resonance_frequency=frequency,
+            expected_resonance_frequency=mode.resonance_frequency,
+            remark=said,
+        )
+
+    def presentation(self, stimulus: Stimulus, seed: int, name: str) -> tuple[str, Exploration]:
+        """Play until an order comes; returns what failed (empty: nothing) and the exploration."""
+        orders, setup = self._orders, self._setup(stimulus)
+        told = False
+
+        def show(view: PlayView) -> None:
+            nonlocal told
+            if not told and view.state is State.PLAYING:
+                told = True
+                # A pipe that broke ends the session by `until`, which is safe.
+                with contextlib.suppress(OSError):
+                    self._connection.send(("playing",))
+
+        metadata = {
+            **stamp((setup.display, stimulus, orders.rate), seed),
+            "display": setup.display.name,
+            "drive": orders.drive.partition(":")[0],
+            "stimulus": stimulus.name,
+            "assumed_limits": list(setup.assumed_limits),
+        }
+        outcome = run_play(
+            setup.plan, self._streaming(orders.stroke), Path(orders.traces) / name, metadata,
+            duration=LONGEST_PRESENTATION, show=show, until=self._connection.poll, study=True,
+        )  # fmt: skip
+        trace = read_trace(outcome.trace)
+        return _failure(outcome, trace), explored(trace, name)
+
+    @property
+    def _amplitude_per_pickup(self) -> MetrePerVolt | None:
+        if self._orders.drive == "twin":
+            return 1 / self._orders.settings.pickup.sensitivity
+        return self._orders.amplitude_per_pickup
+
+    def _loaded(self) -> Display:
+        if self._display is None:
+            self._display = load_display(self._orders.target)
+        return self._display
+
+    def _setup(self, stimulus: Stimulus) -> PlaySetup:
+        return play_setup(
+            self._loaded(),
+            TextureFile(stimulus.surface(), stimulus.name),
+            sensor=LVDT_10_KHZ,
+            rate=self._orders.rate,
+            amplitude_per_pickup=self._amplitude_per_pickup,
+            twin=self._orders.drive == "twin",
+        )
+
+    def _streaming(self, finger: str) -> str:
+        """The drive's stream; a twin with that finger is started unless it is there."""
+        orders = self._orders
+        if not self._stream or (orders.drive == "twin" and self._finger != finger):
+            self._twin.close()
+            found = device_stream(orders.drive, orders.target, orders.settings, finger, None)
+            self._stream = self._twin.enter_context(found)
+            self._finger = finger
+        return self._stream
+
+
+def explored(trace: Trace, name: str) -> Exploration:
+    """How the finger went, from a session's record; `name` is that of its file.
+
+    Path and speed are those of the time in which it touched. No force is known.
+    """
+    table = _path(trace)
+    time, x, y = (table.column(one) for one in ("time_s", "x_m", "y_m"))
+    steps, way = np.diff(time), np.hypot(np.diff(x), np.diff(y))
+    # A longer step is one in which it was lifted.
+    down = steps < 1.5 * PATH_PERIOD
+    length, touched = float(way[down].sum()), float(steps[down].sum())
+    return Exploration(
+        path_length=length if touched else math.nan,
+        mean_speed=length / touched if touched else math.nan,
+        trace=csv_text(table) if len(time) else "",
+        raw_trace=name,
+    )
+
+
+def _path(trace: Trace) -> Table:
+    rows: FloatArray = trace.rows
+    flags = rows[:, column.FLAGS].astype(np.int64)
+    there = (flags & (column.NOT_TOUCHING | column.NO_FRESH_SAMPLE)) == 0
+    there &= np.isfinite(rows[:, column.X]) & np.isfinite(rows[:, column.Y])
+    rows = rows[there]
+    number = np.floor(rows[:, column.TIME] / PATH_PERIOD)
+    first = np.r_[True, np.diff(number) > 0][: len(rows)]
+    columns = {one: rows[first, trace.columns.index(one)] for one in _PATH}
+    about = {key: value for key, value in trace.metadata.items() if key != "columns"}
+    return Table(columns, about)
+
+
+def _failure(outcome: PlayOutcome, trace: Trace) -> str:
+    if outcome.ending is Ending.DURATION:
+        return f"nobody answered for {LONGEST_PRESENTATION:g} s, and the device was stopped"
+    if outcome.failed:
+        return f"{outcome.ending.value}: {outcome.message}"
+    for event in trace.events:
+        if event.kind == "end" and not event.fields["device_at_zero"]:
+            return "the device did not say that its output went to zero"
+    return ""

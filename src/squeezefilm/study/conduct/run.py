@@ -1,0 +1,366 @@
+"""A participant's run through a study, one trial after the other: present, respond, record.
+
+The study's file is the only state. The next trial is the first planned one without an answer,
+so a run that was killed goes on exactly where it stopped, in the same order, in another process
+or on another day. An answer is handed in with its trial's token and is on the disk before
+`respond` returns; handing it in again changes nothing and returns what was recorded.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import time
+import uuid
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from datetime import datetime
+from typing import Any, Literal
+
+from squeezefilm import __version__
+from squeezefilm.errors import InputError
+from squeezefilm.perception.stimuli import Grating, Stimulus
+from squeezefilm.quantities import Second, Unit, require
+from squeezefilm.study.adaptive.series import adaptive_method
+from squeezefilm.study.conduct.sessions import display_wanted
+from squeezefilm.study.conduct.study_device import Exploration
+from squeezefilm.study.design.trials import Trial
+from squeezefilm.study.record.store import Row, StudyStore, insert, utc_now
+
+State = Literal["ready", "presented", "display changes", "finished"]
+_PLANNED = (
+    "SELECT t.*, (SELECT count(*) FROM presentation p WHERE p.trial = t.uuid) AS presentations "
+    "FROM trial t LEFT JOIN response r ON r.trial = t.uuid "
+    "WHERE t.participant = ? AND r.trial IS NULL ORDER BY t.number LIMIT 1"
+)
+
+
+@dataclass(frozen=True)
+class Presentation:
+    """A trial to be presented now.
+
+    Attributes:
+        trial: as planned; an adaptive series has its stimuli filled in.
+        token: to hand the answer in with.
+        surfaces: what is felt, in order; real gratings while people get to know them.
+        intensity: of an adaptive series' comparison (1), else None.
+        times_presented: this one included; above 1 after an interruption.
+        remaining: trials of the participant that are not answered yet, this one included.
+        rest: what is left of the break before it (s), which began with its first presentation.
+    """
+
+    trial: Trial
+    token: str
+    surfaces: tuple[Stimulus | Grating, ...]
+    intensity: float | None
+    times_presented: int
+    remaining: int
+    rest: Second
+
+
+@dataclass(frozen=True)
+class Response:
+    """What a participant answered, and when.
+
+    `choice` is one of the trial's alternatives, `estimate` a number above 0 where magnitudes are
+    estimated; both stay empty while gratings are only felt. Monotonic times (s) are the clock of
+    the station, `response_time` (s) runs from when an answer could be given.
+    """
+
+    choice: str = ""
+    estimate: float | None = None
+    response_time: Second | None = None
+    started_monotonic: Second = 0.0
+    ended_monotonic: Second = 0.0
+    started_utc: str = field(default_factory=utc_now)
+    ended_utc: str = field(default_factory=utc_now)
+    explorations: tuple[Exploration, ...] = ()
+
+
+@dataclass(frozen=True)
+class Acknowledgement:
+    """What is on the disk of an answer. `repeated` says that it was there before this call; what
+    was recorded first stands. `correct` is None where nothing is right or wrong."""
+
+    number: int
+    choice: str
+    estimate: float | None
+    correct: bool | None
+    right_answer: str
+    repeated: bool
+    remaining: int
+
+
+class StudyRun:
+    """One session of a participant: `next_trial`, present it, `respond`, until `state` is
+    "finished" or "display changes" (then begin a session on the other display)."""
+
+    def __init__(
+        self, store: StudyStore, session: str, *, clock: Callable[[], Second] = time.monotonic
+    ) -> None:
+        found = store.rows("SELECT * FROM session WHERE uuid = ?", [session])
+        if not found:
+            raise InputError(f"there is no session {session} in {store.path}; begin one first")
+        self._store = store
+        self._session = found[0]
+        self._presented: str | None = None
+        self._clock = clock
+        self._first_shown: tuple[str, Second] = ("", 0.0)
+
+    @property
+    def session(self) -> Row:
+        """The session's row."""
+        return self._session
+
+    @property
+    def participant(self) -> str:
+        """The pseudonym."""
+        return str(self._session["participant"])
+
+    @property
+    def state(self) -> State:
+        """Where the run stands; "presented" if a trial of this object waits for its answer."""
+        display = display_wanted(self._store, self.participant)
+        if display is None:
+            return "finished"
+        if display != self._session["display"]:
+            return "display changes"
+        return "ready" if self._presented is None else "presented"
+
+    @property
+    def remaining(self) -> int:
+        """Trials without an answer."""
+        found = self._store.rows(
+            "SELECT count(*) - count(r.trial) AS n FROM trial t LEFT JOIN response r "
+            "ON r.trial = t.uuid WHERE t.participant = ?",
+            [self.participant],
+        )
+        return int(found[0]["n"])
+
+    def next_trial(self) -> Presentation | None:
+        """The trial to present now; None if none is left on this display.
+
+        That it is presented is on the disk when this returns. Called again before the answer, it
+        gives the same trial with the same token and counts another presentation.
+        Raises `RecordError` if nothing could be written: then nothing may be presented.
+        """
+        if self.state in ("finished", "display changes"):
+            return None
+        row = self._store.rows(_PLANNED, [self.participant])[0]
+        trial, surfaces, intensity = self._surfaces(row)
+        shown = {
+            "uuid": str(uuid.uuid4()),
+            "trial": row["uuid"],
+            "session": self._session["uuid"],
+            "presented_utc": utc_now(),
+        }
+        self._store.add("presentation", shown)
+        self._presented = row["uuid"]
+        return Presentation(
+            trial,
+            row["uuid"],
+            surfaces,
+            intensity,
+            row["presentations"] + 1,
+            self.remaining,
+            self._rest_left(row, shown["presented_utc"]),
+        )
+
+    def respond(self, token: str, response: Response) -> Acknowledgement:
+        """Record an answer. When this returns, it is on the disk.
+
+        Args:
+            token: of the presentation.
+            response: the answer.
+
+        Raises:
+            InputError: a token of no trial of this participant, or of one that is not its turn; an
+                answer that the trial does not offer.
+            RecordError: nothing was recorded; hand the same answer in again when there is room.
+        """
+        planned = self._planned(token)
+        if (known := self._recorded(planned)) is not None:
+            return known
+        first = self._store.rows(_PLANNED, [self.participant])[0]
+        if first["uuid"] != token:
+            raise InputError(
+                f"trial {planned['number']} is not the one to be answered now, "
+                f"{first['number']} is; present it first"
+            )
+        if not first["presentations"]:
+            raise InputError(f"trial {planned['number']} was not presented yet; call next_trial")
+        trial, surfaces, intensity = self._surfaces(planned)
+        _require_answer(trial, response)
+        names = [self._store.save_trace(e.trace) for e in response.explorations if e.trace]
+        names += [e.raw_trace for e in response.explorations if e.raw_trace]
+        row = self._response_row(planned, trial, response, surfaces, intensity, names)
+        with self._store.transaction() as write:
+            # Another process with the same participant may have been faster.
+            done = write.execute("SELECT 1 FROM response WHERE trial = ?", [token]).fetchone()
+            if done is None:
+                insert(write, "response", row)
+        self._presented = None
+        known = self._recorded(planned)
+        assert known is not None
+        return known if done is not None else _first_time(known)
+
+    def presented(self, token: str) -> tuple[Trial, tuple[Stimulus | Grating, ...]]:
+        """The trial of a token and its surfaces. Raises `InputError` for a token of no trial of
+        this participant, or of one that is answered or was not presented."""
+        planned = self._planned(token)
+        first = self._store.rows(_PLANNED, [self.participant])
+        if not first or first[0]["uuid"] != token or not first[0]["presentations"]:
+            raise InputError(f"trial {planned['number']} is not being presented; call next_trial")
+        trial, surfaces, _ = self._surfaces(planned)
+        return trial, surfaces
+
+    def recorded(self, token: str) -> bool:
+        """Whether this trial's answer is on the disk. Raises `InputError` for a token of no trial
+        of this participant."""
+        return self._recorded(self._planned(token)) is not None
+
+    def _rest_left(self, row: Row, now: str) -> Second:
+        whole = float(row["pause_s"])
+        if not whole:
+            return 0.0
+        if not row["presentations"]:
+            self._first_shown = row["uuid"], self._clock()
+        token, begun = self._first_shown
+        if token == row["uuid"]:
+            # Its beginning was seen here: the wall clock may be set meanwhile, this one is not.
+            return max(whole - (self._clock() - begun), 0.0)
+        first = self._store.rows(
+            "SELECT min(presented_utc) AS at FROM presentation WHERE trial = ?", [row["uuid"]]
+        )[0]["at"]
+        gone = (datetime.fromisoformat(now) - datetime.fromisoformat(first)).total_seconds()
+        # A clock that was set back meanwhile makes no break longer than it was planned.
+        return min(max(whole - gone, 0.0), whole)
+
+    def _planned(self, token: str) -> dict[str, Any]:
+        found = self._store.rows(
+            "SELECT * FROM trial WHERE uuid = ? AND participant = ?", [token, self.participant]
+        )
+        if not found:
+            raise InputError("this token belongs to no trial of this participant")
+        return found[0]
+
+    def _recorded(self, planned: Row) -> Acknowledgement | None:
+        found = self._store.rows("SELECT * FROM response WHERE trial = ?", [planned["uuid"]])
+        if not found:
+            return None
+        row = found[0]
+        return Acknowledgement(
+            number=planned["number"],
+            choice=row["choice"],
+            estimate=row["estimate"],
+            correct=None if row["correct"] is None else bool(row["correct"]),
+            right_answer=planned["answer"],
+            repeated=True,
+            remaining=self.remaining,
+        )
+
+    def _surfaces(self, row: Row) -> tuple[Trial, tuple[Stimulus | Grating, ...], float | None]:
+        """The planned trial, what is felt in it, and an adaptive series' intensity."""
+        design = self._store.design
+        trial = Trial(
+            number=row["number"],
+            display=row["display"],
+            block=row["block"],
+            phase=row["phase"],
+            stimuli=tuple(json.loads(row["stimuli"])),
+            alternatives=tuple(json.loads(row["alternatives"])),
+            answer=row["answer"],
+            adaptive=row["adaptive"],
+            reference_first=bool(row["reference_first"]),
+            pause=row["pause_s"],
+            seed=row["seed"],
+        )
+        if trial.phase == "familiarisation" and design.alternatives:
+            gratings = {one.name: one for one in design.alternatives}
+            return trial, tuple(gratings[name] for name in trial.stimuli), None
+        if not trial.adaptive:
+            return trial, tuple(design.stimulus(name) for name in trial.stimuli), None
+        series = next(one for one in design.adaptive if one.name == trial.adaptive)
+        answers = self._store.rows(
+            "SELECT r.intensity, r.correct FROM response r JOIN trial t ON t.uuid = r.trial WHERE "
+            "t.participant = ? AND t.adaptive = ? AND t.display = ? ORDER BY t.number",
+            [self.participant, series.name, trial.display],
+        )
+        method = adaptive_method(series, ((a["intensity"], bool(a["correct"])) for a in answers))
+        intensity = method.next_stimulus()
+        pair = (design.stimulus(design.reference), design.comparison(series, intensity))
+        return trial, pair if trial.reference_first else pair[::-1], intensity
+
+    def _response_row(
+        self,
+        planned: Row,
+        trial: Trial,
+        response: Response,
+        surfaces: tuple[Stimulus | Grating, ...],
+        intensity: float | None,
+        traces: list[str],
+    ) -> dict[str, Any]:
+        felt = response.explorations
+        correct = None
+        if trial.asks and trial.answer:
+            correct = int(response.choice == trial.answer)
+        return {
+            "trial": planned["uuid"],
+            "session": self._session["uuid"],
+            "stimuli": json.dumps([one.name for one in surfaces]),
+            "intensity": intensity,
+            "choice": response.choice,
+            "estimate": response.estimate,
+            "correct": correct,
+            "response_time_s": response.response_time,
+            "started_monotonic_s": response.started_monotonic,
+            "ended_monotonic_s": response.ended_monotonic,
+            "started_utc": response.started_utc,
+            "ended_utc": response.ended_utc,
+            "path_length_m": _known(sum(one.path_length for one in felt)) if felt else None,
+            "mean_speed_m_per_s": _mean([one.mean_speed for one in felt]),
+            "mean_normal_force_N": _mean([one.mean_normal_force for one in felt]),
+            "traces": json.dumps(traces),
+            "seed": planned["seed"],
+            "squeezefilm_version": __version__,
+            "device_sha256": self._session["device_sha256"],
+            "calibration_sha256": self._session["calibration_sha256"],
+        }
+
+
+def _first_time(known: Acknowledgement) -> Acknowledgement:
+    import dataclasses
+
+    return dataclasses.replace(known, repeated=False)
+
+
+def _known(value: float) -> float | None:
+    return value if math.isfinite(value) else None
+
+
+def _mean(values: list[float]) -> float | None:
+    return _known(sum(values) / len(values)) if values else None
+
+
+def _require_answer(trial: Trial, response: Response) -> None:
+    for name in ("started_monotonic", "ended_monotonic"):
+        require(name, getattr(response, name), Unit("s"))
+    if response.response_time is not None:
+        require("response_time", response.response_time, Unit("s"), at_least=0.0)
+    if not trial.asks:
+        if response.choice or response.estimate is not None:
+            raise InputError(f"trial {trial.number} is only felt; it takes no answer")
+        return
+    if trial.alternatives:
+        if response.choice not in trial.alternatives or response.estimate is not None:
+            raise InputError(
+                f"'{response.choice}' is no answer to trial {trial.number}; answers: "
+                f"{', '.join(trial.alternatives)}",
+                quantity="choice",
+            )
+        return
+    if response.estimate is None or response.choice:
+        raise InputError(
+            f"trial {trial.number} asks for a number above 0, as `estimate`", quantity="estimate"
+        )
+    require("estimate", response.estimate, above=0.0, at_most=1e12)

@@ -1,0 +1,141 @@
+"""A session from the command line: open or create the file, begin, conduct, end."""
+
+from __future__ import annotations
+
+import contextlib
+import dataclasses
+from collections.abc import Callable
+from contextlib import AbstractContextManager
+from pathlib import Path
+
+from squeezefilm import config
+from squeezefilm.errors import InputError
+from squeezefilm.quantities import MetrePerVolt
+from squeezefilm.study.conduct.exposure import Exposure, exposure
+from squeezefilm.study.conduct.run import StudyRun
+from squeezefilm.study.conduct.session_conditions import SessionConditions
+from squeezefilm.study.conduct.sessions import begin_session, display_wanted, end_session
+from squeezefilm.study.conduct.study_device import NoDevice, StudyDevice
+from squeezefilm.study.conduct.trial_by_trial import Examiner, conduct
+from squeezefilm.study.design.study_design import load_design
+from squeezefilm.study.design.trials import expected_duration
+from squeezefilm.study.record.deletion import remove_rows
+from squeezefilm.study.record.store import StudyStore
+
+Progress = Callable[[str], None]
+
+
+def open_study(
+    path: Path, design: str | Path, seed: int, station: int = 0, stations: int = 1
+) -> StudyStore:
+    """The study's file, created if it is not there.
+
+    Raises `InputError` if it is there and of another design or seed.
+    """
+    wanted = load_design(design)
+    if not path.exists():
+        return StudyStore.create(path, wanted, seed, station=station, stations=stations)
+    store = StudyStore.open(path)
+    study = store.study
+    if study["design_sha256"] != wanted.sha256 or study["seed"] != seed:
+        store.close()
+        raise InputError(
+            f"{path} is of design {study['design_sha256'][:12]} with seed {study['seed']}; asked "
+            f"for is {wanted.sha256[:12]} with seed {seed}; give another --store"
+        )
+    return store
+
+
+def run_session(
+    store: StudyStore,
+    participant: str | None,
+    examiner: Examiner,
+    *,
+    drive: str = "none",
+    amplitude_per_pickup: MetrePerVolt | None = None,
+    conditions: Path | None = None,
+    consent: bool = False,
+    acknowledge: Callable[[str], bool],
+    tell: Callable[[str], None] = print,
+    progress: Callable[[], AbstractContextManager[Progress]] | None = None,
+) -> str:
+    """One session on the display that the participant's next trial needs. Returns how it ended.
+
+    `drive` is "none", "rehearsal" (the twin in this process, on a virtual clock), "twin" (behind a
+    port, in real time) or "serial:PORT", whose pickup gives `amplitude_per_pickup` (m/V; None if
+    not calibrated). Without a participant somebody new is enrolled and named by `tell`; not so if
+    the session cannot start.
+    `conditions` is a TOML file of `SessionConditions`; `consent` counts beside what it says.
+    `acknowledge` is shown the statement on airborne ultrasound. `progress` shows what goes on
+    while it is open; it is closed whenever anybody is asked. Raises what `begin_session` and
+    `conduct` raise.
+    """
+    sitting = SessionConditions(consent=consent)
+    if conditions is not None:
+        sitting = config.load(SessionConditions, conditions)
+        sitting = dataclasses.replace(sitting, consent=sitting.consent or consent)
+    sitting.require_consent()
+    shown = progress or (lambda: contextlib.nullcontext(lambda _: None))
+    who = participant or store.enrol()
+    with contextlib.ExitStack() as closing:
+        try:
+            display = display_wanted(store, who)
+            if display is None:
+                return f"participant {who} has answered every trial"
+            with shown() as step:
+                device, exposed = _device(
+                    drive, store, display, amplitude_per_pickup, step, closing
+                )
+            acknowledged = exposed is not None and acknowledge(exposed.statement)
+            with shown() as step:
+                if exposed is not None:
+                    step("the device is verified: keep fingers off")
+                session = begin_session(
+                    store, who, device, sitting, exposed, acknowledged=acknowledged
+                )
+        except BaseException:
+            if participant is None:
+                remove_rows(store, who)
+            raise
+        tell(f"participant {who}: go on with --participant {who}")
+        run = StudyRun(store, session)
+        try:
+            count = conduct(run, device, examiner)
+        except KeyboardInterrupt:
+            # Stopped by a person: what was answered up to here deserves its verification too.
+            end_session(store, session, device)
+            raise
+        after = end_session(store, session, device)
+    said = f"{count} trials on {display} recorded"
+    if after.problems:
+        said += f". CAUTION, the device is off after the session: {'; '.join(after.problems)}"
+    if run.state == "display changes":
+        said += f"; next display: {display_wanted(store, who)}"
+    return said
+
+
+def _device(
+    drive: str,
+    store: StudyStore,
+    display: str,
+    amplitude_per_pickup: MetrePerVolt | None,
+    tell: Progress,
+    closing: contextlib.ExitStack,
+) -> tuple[StudyDevice, Exposure | None]:
+    if drive == "none":
+        return NoDevice(), None
+    # Plates, film and loop take a second to import, which a study by hand need not wait for.
+    from squeezefilm.display import load_display
+    from squeezefilm.study.conduct.played_device import SessionDevice, require_study_drive
+    from squeezefilm.study.conduct.rehearsal_device import StudyTwin
+
+    if drive != "rehearsal":
+        require_study_drive(drive)
+    found = load_display(display)
+    duration = expected_duration(store.design) / len(store.design.displays)
+    exposed = exposure(found, duration, progress=tell)
+    if drive == "rehearsal":
+        tell("the twin's working point")
+        return StudyTwin(found), exposed
+    device = SessionDevice(display, drive, store.traces, amplitude_per_pickup=amplitude_per_pickup)
+    return closing.enter_context(device), exposed

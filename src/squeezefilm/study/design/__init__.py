@@ -1,0 +1,1 @@
+"""What a study asks: its design, its trials and their order, what it takes."""

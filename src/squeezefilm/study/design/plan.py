@@ -1,0 +1,118 @@
+"""What running a design takes: trials, time, orders, and what of it is assumed."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass
+from typing import Any
+
+from squeezefilm.hard_limits import PLANNED_TRIALS, require_within
+from squeezefilm.quantities import Second, require
+from squeezefilm.study.design.study_design import StudyDesign
+from squeezefilm.study.design.trials import Trial, expected_duration, trials, williams_square
+
+
+@dataclass(frozen=True)
+class StudyPlan:
+    """A design seen by who must run it. `schedules` has the trials of each participant;
+    `balanced_participants` is how many give every order equally often (1 where each participant
+    has all of them)."""
+
+    design: StudyDesign
+    participants: int
+    seed: int
+    schedules: tuple[tuple[Trial, ...], ...]
+    duration: Second
+    balanced_participants: int
+
+    @property
+    def phases(self) -> dict[str, int]:
+        """Trials of one participant by phase."""
+        return dict(Counter(trial.phase for trial in self.schedules[0]))
+
+    @property
+    def assumed(self) -> tuple[str, ...]:
+        """Keys of the file whose values it says are assumed."""
+        found = self.design.provenance.items()
+        return tuple(key for key, one in found if one.evidence == "assumed")
+
+    def summary(self) -> dict[str, Any]:
+        """What ``--json`` prints; keys carry units."""
+        design = self.design
+        return {
+            "name": design.name,
+            "title": design.title,
+            "task": design.task,
+            "question": design.spoken_question,
+            "displays": list(design.displays),
+            "stimuli": [
+                {
+                    "name": one.name,
+                    "spatial_period_m": one.period,
+                    "groove_width_m": one.groove_width,
+                    "length_means": one.period_means,
+                    "waveform": one.waveform,
+                    "friction_depth": one.friction_depth,
+                    "right_answer": design.answer_to(one) if not design.two_surfaces else "",
+                }
+                for one in design.stimuli
+            ],
+            "alternatives": [
+                {
+                    "name": one.name,
+                    "spatial_period_m": one.period,
+                    "groove_width_m": one.groove_width,
+                    "length_means": one.period_means,
+                    "ridge_height_m": one.ridge_height,
+                    "material": one.material,
+                }
+                for one in design.alternatives
+            ],
+            "order": design.order,
+            "participants": self.participants,
+            "balanced_participants": self.balanced_participants,
+            "trials_per_participant": len(self.schedules[0]),
+            "trials_by_phase": self.phases,
+            "duration_per_participant_s": self.duration,
+            "duration_s": self.duration * self.participants,
+            "seed": self.seed,
+            "first_trials": [
+                [" / ".join(trial.stimuli) for trial in one if trial.phase == "main"][:10]
+                for one in self.schedules
+            ],
+            "assumed": list(self.assumed),
+            "note": design.note,
+            "design_sha256": design.sha256,
+        }
+
+
+def plan_study(design: StudyDesign, participants: int = 1, seed: int = 0) -> StudyPlan:
+    """The plan of a design for a number of participants.
+
+    Raises `InputError` for less than 1 or more than 1000 participants, or a seed below 0.
+    """
+    require("participants", participants, at_least=1, at_most=1000)
+    require("seed", seed, at_least=0)
+    most = int(PLANNED_TRIALS.most // design.most_trials)
+    enough = f"of {design.most_trials} trials each, at most {most} participants are planned at once"
+    require_within(PLANNED_TRIALS, participants * design.most_trials, enough=enough)
+    schedules = tuple(trials(design, number, seed) for number in range(participants))
+    return StudyPlan(
+        design, participants, seed, schedules, expected_duration(design), _balanced(design)
+    )
+
+
+def _balanced(design: StudyDesign) -> int:
+    """Participants after which every row of every square in use has come equally often."""
+    import math
+
+    from squeezefilm.study.design.trials import conditions
+
+    # Displays are in a Williams square over participants, once each.
+    displays = len(williams_square(len(design.displays)))
+    if design.adaptive or design.order == "shuffled":
+        return displays
+    count = len(conditions(design))
+    rows = len(williams_square(count)) if design.order == "williams" else count
+    alone = (design.blocks * design.repetitions) % rows == 0
+    return displays if alone else math.lcm(rows, displays)

@@ -1,0 +1,344 @@
+"""A study's design: its task, what is presented, how often and in which order; from a TOML file.
+
+Four tasks:
+
+- "match-to-sample": one virtual surface; which of the real gratings (`alternatives`) is it like?
+- "same-different": two surfaces one after the other; the same or different?
+- "two-interval": two surfaces; which is coarser (`judged` = "spatial_period") or has the deeper
+  friction change (`judged` = "friction_depth")? One of them is always `reference`.
+- "magnitude-estimation": one surface; a number for how coarse, rough or strong it is.
+
+`squeezefilm.study.design.trials` makes each participant's trials of a design.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Literal
+
+from squeezefilm.config.provenance import Provenance
+from squeezefilm.errors import InputError
+from squeezefilm.hard_limits import PARTICIPANT_TRIALS, require_within
+from squeezefilm.perception.stimuli import Grating, Stimulus, Varied, require_one_of
+from squeezefilm.quantities import Dimensionless, Second, Unit, did_you_mean, require
+from squeezefilm.results import config_hash
+from squeezefilm.study.design.special_trials import (
+    AdaptiveCondition,
+    CatchTrial,
+    require_count,
+    require_different,
+    require_name,
+)
+
+__all__ = ["TASKS", "AdaptiveCondition", "CatchTrial", "Condition", "Order", "StudyDesign", "Task",
+           "load_design"]  # fmt: skip
+
+Task = Literal["match-to-sample", "same-different", "two-interval", "magnitude-estimation"]
+Order = Literal["williams", "latin-square", "shuffled"]
+Condition = tuple[str, ...]
+"""The names of what one trial presents: one stimulus, or two in their order."""
+
+TASKS: tuple[Task, ...] = (
+    "match-to-sample",
+    "same-different",
+    "two-interval",
+    "magnitude-estimation",
+)
+
+
+@dataclass(frozen=True)
+class StudyDesign:
+    """A whole design. Read one with `load_design`.
+
+    Args:
+        name, title: what it is called, in files and for people.
+        displays: presets or files of displays; every participant does the trials on each, in an
+            order balanced over participants.
+        task: one of the four of this module.
+        stimuli: the conditions.
+        alternatives: real gratings; for match-to-sample only, where they are the answers.
+        reference: name of the stimulus every other is compared with (tasks of two surfaces), or
+            of the one that is worth `modulus` (magnitude estimation).
+        judged: what two-interval answers are right about.
+        modulus: number given to the reference in magnitude estimation (1); 0 for free numbers.
+        question: what the participant is asked.
+        order: "williams" (each condition follows each other equally often), "latin-square"
+            (equally often in each place) or "shuffled".
+        familiarisation: rounds in which each alternative (or stimulus) is felt without an answer.
+        practice: trials with feedback before the first block of each display.
+        blocks: per display.
+        repetitions: of every condition, per block.
+        catch: trials to see whether people attend, spread at random over the blocks.
+        adaptive: series in place of fixed repetitions; stimuli beside the reference are then for
+            practice and familiarisation only.
+        break_between_blocks: rest (s) before every block but the first.
+        trial_duration: expected time of one trial (s), for planning.
+        note: anything a reader must know, such as what of it is assumed.
+
+    Raises:
+        InputError: values outside their range or that do not fit the task.
+    """
+
+    name: str
+    title: str
+    displays: tuple[str, ...]
+    task: Task
+    stimuli: tuple[Stimulus, ...]
+    alternatives: tuple[Grating, ...] = ()
+    reference: str = ""
+    judged: Varied = "spatial_period"
+    modulus: Dimensionless = 0.0
+    question: str = ""
+    order: Order = "williams"
+    familiarisation: int = 0
+    practice: int = 0
+    blocks: int = 1
+    repetitions: int = 1
+    catch: tuple[CatchTrial, ...] = ()
+    adaptive: tuple[AdaptiveCondition, ...] = ()
+    break_between_blocks: Second = 60.0
+    trial_duration: Second = 20.0
+    note: str = ""
+    provenance: Mapping[str, Provenance] = field(
+        default_factory=dict, metadata={"loader": True}, compare=False, repr=False
+    )
+
+    def __post_init__(self) -> None:
+        require_name(self.name)
+        require_one_of("task", self.task, TASKS)
+        require_one_of("order", self.order, ("williams", "latin-square", "shuffled"))
+        if not self.displays:
+            raise InputError("displays is empty; name at least one", quantity="displays")
+        require_different("displays", list(self.displays))
+        if not self.stimuli:
+            raise InputError("stimuli is empty; give at least one", quantity="stimuli")
+        require_count("familiarisation", self.familiarisation, 0, 20)
+        require_count("practice", self.practice, 0, 1000)
+        require_count("blocks", self.blocks, 1, 100)
+        require_count("repetitions", self.repetitions, 1, 1000)
+        require("break_between_blocks", self.break_between_blocks, Unit("s"), at_least=0.0)
+        require("trial_duration", self.trial_duration, Unit("s"), above=0.0, at_most=3600.0)
+        require("modulus", self.modulus, at_least=0.0)
+        presented = [one.name for one in self.stimuli] + [one.stimulus.name for one in self.catch]
+        require_different("stimuli", presented)
+        require_different("alternatives", [one.name for one in self.alternatives])
+        require_different("adaptive", [one.name for one in self.adaptive])
+        if self.reference and self.reference not in [one.name for one in self.stimuli]:
+            known = [one.name for one in self.stimuli]
+            raise InputError(
+                f"reference = '{self.reference}' is no stimulus."
+                f"{did_you_mean(self.reference, known)} Stimuli: {', '.join(known)}",
+                quantity="reference",
+            )
+        self._require_task()
+        self._require_answers()
+        require_within(
+            PARTICIPANT_TRIALS,
+            self.most_trials,
+            enough="give fewer repetitions, blocks, stimuli, series or displays",
+        )
+
+    @property
+    def two_surfaces(self) -> bool:
+        """Whether a trial presents two surfaces, one after the other."""
+        return self.task in ("same-different", "two-interval")
+
+    @property
+    def most_trials(self) -> int:
+        """At least as many trials as a participant has, without making them."""
+        pairs = {"same-different": 4, "two-interval": 2}.get(self.task, 1)
+        main = self.blocks * self.repetitions * len(self.stimuli) * pairs
+        if self.adaptive:
+            main = sum(one.count for one in self.adaptive)
+        felt = self.familiarisation * max(len(self.stimuli), len(self.alternatives))
+        caught = sum(one.count for one in self.catch)
+        return len(self.displays) * (main + felt + caught + self.practice)
+
+    @property
+    def answers(self) -> tuple[str, ...]:
+        """The answers a participant may give; empty where any number may be given."""
+        return {
+            "match-to-sample": tuple(one.name for one in self.alternatives),
+            "same-different": ("same", "different"),
+            "two-interval": ("first", "second"),
+            "magnitude-estimation": (),
+        }[self.task]
+
+    @property
+    def sha256(self) -> str:
+        """Hash of every value of the design, whatever their sources are said to be."""
+        return config_hash(dataclasses.replace(self, provenance={}))
+
+    @property
+    def spoken_question(self) -> str:
+        """`question`, or the task's own."""
+        if self.question:
+            return self.question
+        judged = "coarser" if self.judged == "spatial_period" else "more strongly felt"
+        return {
+            "match-to-sample": "Which of the gratings does the surface feel like?",
+            "same-different": "Were the two surfaces the same or different?",
+            "two-interval": f"Which of the two surfaces was {judged}?",
+            "magnitude-estimation": "Give a number for how coarse the surface feels.",
+        }[self.task]
+
+    def stimulus(self, name: str) -> Stimulus:
+        """The stimulus of that name, catch trials' too. Raises `InputError` if there is none."""
+        every = [*self.stimuli, *(one.stimulus for one in self.catch)]
+        for one in every:
+            if one.name == name:
+                return one
+        known = [one.name for one in every]
+        raise InputError(
+            f"design '{self.name}' has no stimulus '{name}'.{did_you_mean(name, known)} "
+            f"It has: {', '.join(known)}"
+        )
+
+    def answer_to(self, first: Stimulus, second: Stimulus | None = None) -> str:
+        """What is right to answer; an empty text where nothing is.
+
+        For match-to-sample the alternative that the stimulus `matches`, else that of the same
+        period (to 1e-9 m). For two intervals the one with more of what is `judged`.
+        """
+        if self.task == "match-to-sample":
+            if first.matches or first.waveform == "constant":
+                return first.matches
+            near = [one for one in self.alternatives if abs(one.period - first.period) < 1e-9]
+            return near[0].name if len(near) == 1 else ""
+        if second is None:
+            return ""
+        if self.task == "same-different":
+            alike = {(one.texture, one.surface()) for one in (first, second)}
+            return "same" if len(alike) == 1 else "different"
+        a, b = (
+            one.period if self.judged == "spatial_period" else one.amount(self.judged)
+            for one in (first, second)
+        )
+        if a == b:
+            return ""
+        return "first" if a > b else "second"
+
+    def catch_condition(self, catch: CatchTrial) -> Condition:
+        """What a catch trial presents: its stimulus, in tasks of two surfaces with the reference
+        in the order in which its answer is right.
+
+        Raises `InputError` if the answer is right in neither order.
+        """
+        name, here = catch.stimulus.name, self.reference
+        if not self.two_surfaces:
+            return (name,)
+        pairs: list[Condition] = [(name, here), (here, name)]
+        if self.task == "same-different":
+            pairs.append((name, name))
+        for pair in pairs:
+            if self.answer_to(*(self.stimulus(one) for one in pair)) == catch.answer:
+                return pair
+        raise InputError(
+            f"the answer '{catch.answer}' of the catch trial '{name}' is never right beside the "
+            f"reference '{here}'; change one of them",
+            quantity="catch",
+        )
+
+    def _require_task(self) -> None:
+        gratings, pair = self.task == "match-to-sample", self.two_surfaces
+        if gratings and len(self.alternatives) < 2:
+            raise InputError(
+                "match-to-sample needs two or more [[alternatives]], the real gratings; "
+                f"there are {len(self.alternatives)}",
+                quantity="alternatives",
+            )
+        if not gratings and self.alternatives:
+            raise InputError(
+                f"task = '{self.task}' has no alternatives; remove them or take match-to-sample",
+                quantity="alternatives",
+            )
+        if pair and not self.reference:
+            raise InputError(
+                f"task = '{self.task}' compares with a reference; name one of the stimuli",
+                quantity="reference",
+            )
+        if pair and len(self.stimuli) < 2 and not self.adaptive:
+            raise InputError(
+                "only the reference is there; add a stimulus to compare with it, or [[adaptive]]",
+                quantity="stimuli",
+            )
+        if self.adaptive and self.task != "two-interval":
+            raise InputError(
+                f"adaptive series need task = 'two-interval', not '{self.task}'",
+                quantity="adaptive",
+            )
+        if pair and self.practice and len(self.stimuli) < 2:
+            raise InputError(
+                "practice needs a stimulus to compare with the reference; add one (adaptive "
+                "series use it for practice only), or practice = 0",
+                quantity="practice",
+            )
+        for series in self.adaptive:
+            self._require_series(series)
+        if self.modulus and (self.task != "magnitude-estimation" or not self.reference):
+            raise InputError(
+                "a modulus needs magnitude-estimation and a reference that it is given to",
+                quantity="modulus",
+            )
+
+    def comparison(self, series: AdaptiveCondition, intensity: float) -> Stimulus:
+        """What an adaptive series presents beside the reference at an intensity: more of what is
+        varied, by that part of the reference's value. Raises `InputError` if there can't be so
+        much of it."""
+        here = self.stimulus(self.reference)
+        value = here.amount(series.varied) * (1.0 + intensity)
+        return here.varied(f"{here.name} +{100 * intensity:.3g} %", series.varied, value)
+
+    def _require_series(self, series: AdaptiveCondition) -> None:
+        if series.varied != self.judged:
+            raise InputError(
+                f"series '{series.name}' varies {series.varied} while {self.judged} is judged; "
+                "make them the same, or no answer is right",
+                quantity="adaptive",
+            )
+        try:
+            self.comparison(series, series.highest)
+        except InputError as error:
+            raise InputError(
+                f"series '{series.name}' cannot go up to highest = {series.highest:g}: {error}",
+                quantity="adaptive",
+            ) from error
+
+    def _require_answers(self) -> None:
+        names = self.answers
+        for one in self.stimuli:
+            if one.matches and one.matches not in names:
+                raise InputError(
+                    f"stimulus '{one.name}' matches '{one.matches}', which is no alternative."
+                    f"{did_you_mean(one.matches, names)} Alternatives: {', '.join(names)}",
+                    quantity="stimuli",
+                )
+        for trial in self.catch:
+            if names and trial.answer not in names:
+                raise InputError(
+                    f"the answer '{trial.answer}' of a catch trial is none of: {', '.join(names)}",
+                    quantity="catch",
+                )
+            self.catch_condition(trial)
+        if self.task == "two-interval":
+            here = self.stimulus(self.reference)
+            for one in self.stimuli:
+                if one.name != self.reference and not self.answer_to(here, one):
+                    raise InputError(
+                        f"stimulus '{one.name}' has the same {self.judged} as the reference: "
+                        "no answer would be right; change it, or `judged`",
+                        quantity="stimuli",
+                    )
+
+
+def load_design(name_or_path: str | Path) -> StudyDesign:
+    """The design of a preset study's name or of a TOML file. Raises `ConfigError` if it can't be.
+
+    A texture file named in a stimulus is looked for from where the program runs.
+    """
+    from squeezefilm import config, presets
+
+    return config.load(StudyDesign, presets.resolve_study(name_or_path))

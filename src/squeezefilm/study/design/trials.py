@@ -1,0 +1,269 @@
+"""Each participant's trials: seeded, and balanced over participants and repetitions.
+
+A Latin square has every condition once in every place; a Williams square also has every condition
+follow each other one equally often (Williams 1949, 10.1071/CH9490149), with n rows for n even and
+2n for n odd. Repetition k of participant p takes row (p + k) of the square, so that a participant
+who does all rows, and participants who are as many as the rows, are each balanced. The seed gives
+the conditions their places in the square, once per run through its rows.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from squeezefilm.quantities import Second, require
+from squeezefilm.study.design.study_design import CatchTrial, Condition, Order, StudyDesign
+
+Phase = Literal["familiarisation", "practice", "main", "catch"]
+_ORDERS, _MATCHING, _SPREAD, _PRACTICE, _NOISE = range(5)
+
+
+@dataclass(frozen=True, slots=True)
+class Trial:
+    """One trial as planned.
+
+    Attributes:
+        number: from 1, within the participant.
+        display: what it is presented on.
+        block: from 1 within the display; 0 before the first.
+        phase: familiarisation (no answer), practice (feedback), main or catch.
+        stimuli: names presented, in order; empty where an adaptive series chooses them.
+        alternatives: answers that may be given, in the order in which they are offered; empty
+            where any number may be given, or none is asked for.
+        answer: what is right; an empty text where nothing is.
+        adaptive: the series that chooses the stimuli, if any.
+        reference_first: whether an adaptive series presents the reference first.
+        pause: rest before this trial (s).
+        seed: of whatever is random while it is presented.
+    """
+
+    number: int
+    display: str
+    block: int
+    phase: Phase
+    stimuli: Condition
+    alternatives: tuple[str, ...]
+    answer: str
+    adaptive: str
+    reference_first: bool
+    pause: Second
+    seed: int
+
+    @property
+    def asks(self) -> bool:
+        """Whether an answer is wanted."""
+        return self.phase != "familiarisation"
+
+    @property
+    def feedback(self) -> bool:
+        """Whether the participant is told what was right."""
+        return self.phase == "practice"
+
+
+def latin_square(size: int) -> tuple[tuple[int, ...], ...]:
+    """The cyclic Latin square: row r has (r + place) mod size. Raises `InputError` below 1."""
+    require("size", size, at_least=1)
+    return tuple(tuple((row + place) % size for place in range(size)) for row in range(size))
+
+
+def williams_square(size: int) -> tuple[tuple[int, ...], ...]:
+    """Rows in which each condition is once, each place has each condition equally often, and each
+    ordered pair of neighbours comes equally often.
+
+    n rows for n even, 2n for n odd (Williams 1949): the zigzag 0, 1, n−1, 2, n−2, … and its
+    cyclic shifts, for n odd their mirror images too. Raises `InputError` below 1.
+    """
+    require("size", size, at_least=1)
+    zigzag = [
+        (place + 1) // 2 if place % 2 else (size - place // 2) % size for place in range(size)
+    ]
+    rows = [tuple((one + shift) % size for one in zigzag) for shift in range(size)]
+    # One condition has no neighbours: its mirror image is itself.
+    return tuple(rows if size % 2 == 0 or size == 1 else rows + [row[::-1] for row in rows])
+
+
+def orders(
+    count: int, repetitions: int, participant_number: int, seed: int, order: Order = "williams"
+) -> tuple[tuple[int, ...], ...]:
+    """The order of `count` conditions in each of a participant's repetitions; see the module.
+
+    Args:
+        count: conditions; at least 1.
+        repetitions: rows wanted.
+        participant_number: from 0.
+        seed: of the study, the same for all its participants.
+        order: as in `StudyDesign`.
+    """
+    require("participant_number", participant_number, at_least=0)
+    if order == "shuffled":
+        random = _random(seed, _ORDERS, participant_number)
+        return tuple(tuple(random.permutation(count).tolist()) for _ in range(repetitions))
+    square = williams_square(count) if order == "williams" else latin_square(count)
+    found = []
+    for repetition in range(repetitions):
+        cycle, place = divmod(repetition, len(square))
+        random = _random(seed, _ORDERS, cycle)
+        relabelled, rows = random.permutation(count), random.permutation(len(square))
+        row = square[rows[(participant_number + place) % len(square)]]
+        found.append(tuple(int(relabelled[one]) for one in row))
+    return tuple(found)
+
+
+def conditions(design: StudyDesign) -> tuple[Condition, ...]:
+    """What the trials of a repetition present, once each.
+
+    One stimulus each; in tasks of two surfaces each other stimulus with the reference in either
+    order, and for same-different as often (the same, the same), half with each of the two.
+    """
+    if not design.two_surfaces:
+        return tuple((one.name,) for one in design.stimuli)
+    here = design.reference
+    others = [one.name for one in design.stimuli if one.name != here]
+    pairs = [pair for other in others for pair in ((here, other), (other, here))]
+    if design.task == "same-different":
+        pairs += [pair for other in others for pair in ((here, here), (other, other))]
+    return tuple(pairs)
+
+
+def trials(design: StudyDesign, participant_number: int, seed: int) -> tuple[Trial, ...]:
+    """All trials of a participant in the order in which they are presented.
+
+    Args:
+        design: what is planned.
+        participant_number: from 0, in the order of enrolment; it chooses rows of the squares.
+        seed: of the study; the same for all its participants.
+
+    Raises:
+        InputError: a number or seed below 0.
+    """
+    require("participant_number", participant_number, at_least=0)
+    require("seed", seed, at_least=0)
+    found: list[Trial] = []
+    sequence = orders(len(design.displays), 1, participant_number, seed)[0]
+    for place, index in enumerate(sequence):
+        _display_trials(design, design.displays[index], place, participant_number, seed, found)
+    return tuple(found)
+
+
+def trial_count(design: StudyDesign) -> int:
+    """Trials of one participant that ask for an answer."""
+    return sum(trial.asks for trial in trials(design, 0, 0))
+
+
+def expected_duration(design: StudyDesign) -> Second:
+    """How long one participant takes (s): trials at `trial_duration`, and the breaks."""
+    planned = trials(design, 0, 0)
+    return len(planned) * design.trial_duration + sum(trial.pause for trial in planned)
+
+
+def _random(seed: int, purpose: int, *more: int) -> np.random.Generator:
+    return np.random.default_rng([seed, purpose, *more])
+
+
+def _display_trials(
+    design: StudyDesign, display: str, place: int, participant: int, seed: int, found: list[Trial]
+) -> None:
+    matching = _random(seed, _MATCHING, participant, place)
+    names = design.answers
+    # The box of gratings lies in another order for each participant and display.
+    offered = tuple(names[i] for i in matching.permutation(len(names)))
+    if design.task != "match-to-sample":
+        offered = names
+
+    def add(block: int, phase: Phase, one: Condition, pause: float = 0.0, answer: str = "") -> None:
+        if phase in ("practice", "main"):
+            answer = design.answer_to(*(design.stimulus(name) for name in one))
+        found.append(
+            Trial(
+                number=len(found) + 1,
+                display=display,
+                block=block,
+                phase=phase,
+                stimuli=one,
+                alternatives=() if phase == "familiarisation" else offered,
+                answer=answer,
+                adaptive="",
+                reference_first=False,
+                pause=pause,
+                seed=_trial_seed(seed, participant, len(found) + 1),
+            )
+        )
+
+    pause = design.break_between_blocks if place else 0.0
+    felt = names if design.task == "match-to-sample" else [one.name for one in design.stimuli]
+    for _ in range(design.familiarisation):
+        for i in matching.permutation(len(felt)):
+            add(0, "familiarisation", (felt[i],), pause)
+            pause = 0.0
+    every = conditions(design)
+    practice = _random(seed, _PRACTICE, participant, place)
+    rounds = -(-design.practice // len(every)) if every else 0
+    rehearsed = [i for _ in range(rounds) for i in practice.permutation(len(every))]
+    for i in rehearsed[: design.practice]:
+        add(0, "practice", every[i], pause)
+        pause = 0.0
+    if design.adaptive:
+        _adaptive_trials(design, display, place, participant, seed, found)
+        return
+    rows = orders(
+        len(every), design.blocks * design.repetitions, participant, seed + place, design.order
+    )
+    spread = _random(seed, _SPREAD, participant, place)
+    catches = [one for one in design.catch for _ in range(one.count)]
+    where = spread.integers(0, design.blocks, len(catches))
+    for block in range(design.blocks):
+        mine = rows[block * design.repetitions : (block + 1) * design.repetitions]
+        queue: list[tuple[Phase, Condition, str]] = [
+            ("main", every[i], "") for row in mine for i in row
+        ]
+        for one in (c for c, b in zip(catches, where, strict=True) if b == block):
+            # Never the first trial of a block: people are still settling.
+            at = int(spread.integers(1, len(queue) + 1))
+            queue.insert(at, ("catch", design.catch_condition(one), one.answer))
+        for position, (phase, one_condition, answer) in enumerate(queue):
+            rest = design.break_between_blocks if position == 0 and block else 0.0
+            add(block + 1, phase, one_condition, max(rest, pause), answer)
+            pause = 0.0
+
+
+def _adaptive_trials(
+    design: StudyDesign, display: str, place: int, participant: int, seed: int, found: list[Trial]
+) -> None:
+    """The series interleaved at random, catch trials between them, in blocks of equal size; the
+    reference comes first in half of the trials of each series."""
+    random = _random(seed, _SPREAD, participant, place)
+    queue: list[tuple[str, bool, CatchTrial | None]] = []
+    for series in design.adaptive:
+        first = np.arange(series.count) % 2 == 0
+        queue += [(series.name, bool(one), None) for one in random.permutation(first)]
+    queue = [queue[i] for i in random.permutation(len(queue))]
+    for catch in (one for one in design.catch for _ in range(one.count)):
+        queue.insert(int(random.integers(1, len(queue) + 1)), ("", False, catch))
+    size = -(-len(queue) // design.blocks)
+    for position, (name, reference_first, caught) in enumerate(queue):
+        rest = position % size == 0 and (place or position)
+        answer = "second" if reference_first else "first"
+        found.append(
+            Trial(
+                number=len(found) + 1,
+                display=display,
+                block=position // size + 1,
+                phase="main" if caught is None else "catch",
+                stimuli=() if caught is None else design.catch_condition(caught),
+                alternatives=design.answers,
+                answer=answer if caught is None else caught.answer,
+                adaptive=name,
+                reference_first=reference_first,
+                pause=design.break_between_blocks if rest else 0.0,
+                seed=_trial_seed(seed, participant, len(found) + 1),
+            )
+        )
+
+
+def _trial_seed(seed: int, participant: int, number: int) -> int:
+    state = np.random.SeedSequence([seed, _NOISE, participant, number]).generate_state(2, np.uint32)
+    # 53 bits, so that no reader of JSON or CSV rounds it.
+    return int(state[0]) << 21 | int(state[1]) >> 11

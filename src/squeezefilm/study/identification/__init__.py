@@ -1,0 +1,1 @@
+"""Statistics of identification: confusions, information, d′, intervals over participants."""

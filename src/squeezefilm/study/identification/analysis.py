@@ -1,0 +1,303 @@
+"""`analyze_identification`: everything a table of identification trials says, in one result."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from squeezefilm.errors import ConvergenceError, InputError
+from squeezefilm.quantities import Dimensionless, DimensionlessArray
+from squeezefilm.results import stamp, to_json
+from squeezefilm.study.identification.choice_model import (
+    ChoiceModel,
+    PerceptualMap,
+    choice_model,
+    perceptual_map,
+)
+from squeezefilm.study.identification.confusion import ConfusionMatrix, IntArray, participant_counts
+from squeezefilm.study.identification.confusion_posterior import (
+    ConfusionPosterior,
+    confusion_posterior,
+)
+from squeezefilm.study.identification.exploration import ConditionMean, condition_means
+from squeezefilm.study.identification.information import InformationTransfer, information_transfer
+from squeezefilm.study.identification.mixed_models import MixedModel, mixed_model
+from squeezefilm.study.identification.participant_bootstrap import Interval
+from squeezefilm.study.identification.proportions import (
+    chance_test,
+    clopper_pearson_interval,
+    jeffreys_interval,
+    participant_interval,
+    permutation_test,
+    wilson_interval,
+)
+from squeezefilm.study.identification.response_times import (
+    ExGaussian,
+    ResponseTimeSummary,
+    fit_ex_gaussian,
+    response_time_summary,
+)
+from squeezefilm.study.identification.sensitivity import OrderedSensitivity, ordered_sensitivity
+
+
+@dataclass(frozen=True, slots=True)
+class StimulusCorrect:
+    """One stimulus: how often it was named rightly, with Wilson's interval over trials."""
+
+    stimulus: str
+    trials: int
+    correct: int
+    proportion_correct: Dimensionless
+    low: Dimensionless
+    high: Dimensionless
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class IdentificationAnalysis:
+    """What an identification study says.
+
+    Attributes:
+        name: of the study.
+        origin: whose answers these are, e.g. "simulated" or "measured"; every figure repeats it.
+        matrix: all trials, rows answers, columns stimuli.
+        counts: every participant's, shape (participants, k, k).
+        intervals: of the proportion correct: Wilson, Jeffreys, Clopper–Pearson (trials taken as
+            independent), and participant bootstrap where there are two people or more.
+        by_stimulus: proportion correct of each stimulus.
+        participant_correct: proportion correct of each participant, shape (participants,).
+        chance_p: exact binomial test against guessing, one-sided.
+        permutation_p: test against answers unrelated to stimuli, preferences kept.
+        posterior: of every cell.
+        information: transfer by every estimator.
+        sensitivity: d′ of stimuli in the order of the labels; None where it has none.
+        choice: the biased choice model, and `choice_map` its stimuli as points; None likewise.
+        response_times, ex_gaussian: empty and None without response times.
+        exploration: quantity (with unit in its key) → means by stimulus.
+        mixed: mixed models; None if not asked for.
+        notes: what could not be computed, and why.
+        seed: of all resampling.
+    """
+
+    name: str
+    origin: str
+    matrix: ConfusionMatrix
+    counts: IntArray
+    intervals: tuple[Interval, ...]
+    by_stimulus: tuple[StimulusCorrect, ...]
+    participant_correct: DimensionlessArray
+    chance_p: Dimensionless
+    permutation_p: Dimensionless
+    posterior: ConfusionPosterior
+    information: InformationTransfer
+    sensitivity: OrderedSensitivity | None
+    choice: ChoiceModel | None
+    choice_map: PerceptualMap | None
+    response_times: tuple[ResponseTimeSummary, ...]
+    ex_gaussian: ExGaussian | None
+    exploration: Mapping[str, tuple[ConditionMean, ...]]
+    mixed: MixedModel | None
+    notes: tuple[str, ...]
+    seed: int
+
+    @property
+    def participants(self) -> int:
+        """How many people answered."""
+        return int(self.counts.shape[0])
+
+    @property
+    def proportion_correct(self) -> Dimensionless:
+        """Share of right answers of all trials."""
+        return self.matrix.proportion_correct
+
+    @property
+    def interval(self) -> Interval:
+        """The interval to quote: over participants, or Wilson's where there is one."""
+        return self.intervals[-1] if self.participants > 1 else self.intervals[0]
+
+    def summary(self) -> dict[str, Any]:
+        """All numbers as plain JSON values, units in the keys; `confusion` in the paper's layout:
+        rows are answers (gratings), columns what was presented (simulated periods)."""
+        matrix, best = self.matrix, self.information.best
+        person = self.participant_correct
+        values = {
+            "name": self.name,
+            "origin": self.origin,
+            "participants": self.participants,
+            "trials": matrix.trials,
+            "answers": matrix.answers,
+            "stimuli": matrix.stimuli,
+            "confusion": matrix.counts,
+            "confusion_percent": matrix.percent,
+            "proportion_correct": self.proportion_correct,
+            "proportion_correct_intervals": self.intervals,
+            "proportion_correct_by_stimulus": self.by_stimulus,
+            "participant_proportion_correct": {
+                "mean": person.mean(),
+                "standard_deviation": person.std(ddof=1) if person.size > 1 else None,
+                "least": person.min(),
+                "greatest": person.max(),
+            },
+            "chance": matrix.chance,
+            "chance_p": self.chance_p,
+            "permutation_p": self.permutation_p,
+            "posterior": {
+                "prior": self.posterior.prior,
+                "level": self.posterior.level,
+                "mean": self.posterior.mean,
+                "low": self.posterior.low,
+                "high": self.posterior.high,
+                "proportion_correct": self.posterior.proportion_correct,
+            },
+            "information_transfer_bit": best.estimate,
+            "information_transfer_estimator": best.key,
+            "information": self.information,
+            "sensitivity": self.sensitivity,
+            "choice_model": self.choice,
+            "choice_map": self.choice_map,
+            "response_times": self.response_times,
+            "ex_gaussian": self.ex_gaussian,
+            "exploration": self.exploration,
+            "mixed_model": self.mixed,
+            "notes": self.notes,
+            "provenance": stamp(
+                {"name": self.name, "origin": self.origin, "counts": self.counts}, self.seed
+            ),
+        }
+        plain: dict[str, Any] = to_json(values)
+        return plain
+
+
+def analyze_identification(
+    participant: ArrayLike,
+    stimulus: ArrayLike,
+    choice: ArrayLike,
+    labels: Sequence[str],
+    *,
+    name: str = "identification",
+    origin: str = "not stated",
+    response_time: ArrayLike | None = None,
+    exploration: Mapping[str, ArrayLike] | None = None,
+    mixed: bool = False,
+    level: Dimensionless = 0.95,
+    resamples: int = 1000,
+    seed: int = 0,
+    progress: Callable[[str], None] | None = None,
+) -> IdentificationAnalysis:
+    """Analyse identification trials, one row a trial; leave out practice and catch trials before.
+
+    Args:
+        participant: who answered, shape (trials,); numbers or texts.
+        stimulus, choice: numbers of what was presented and answered, 0 to len(labels) − 1.
+        labels: of the stimuli and of their right answers, in the stimuli's order (d′ is along it).
+        name, origin: of the study, and whose answers these are.
+        response_time: in s, shape (trials,); NaN where none was taken.
+        exploration: quantity with its unit, e.g. "mean_speed_m_per_s" → values by trial.
+        mixed: whether to fit mixed models too (needs the extra `models`, at most 50 000 trials).
+        level: of all intervals, between 0 and 1.
+        resamples: of people in bootstraps, and shuffles in the permutation test.
+        seed: of all resampling.
+        progress: called with what is being computed.
+
+    Raises:
+        InputError: fewer than two labels, arrays that do not fit, or no trial. What the data are
+            too few for is None in the result, with the reason in `notes`.
+    """
+    tell = progress or (lambda _: None)
+    k = len(labels)
+    if k < 2:
+        raise InputError(f"{k} labels cannot be confused; at least 2 are wanted")
+    names = tuple(labels)
+    tell("counting")
+    _, counts = participant_counts(participant, stimulus, choice, k, k)
+    people = counts.shape[0]
+    matrix = ConfusionMatrix(counts.sum(axis=0), names, names)
+    notes: list[str] = []
+    tell("intervals and tests")
+    right, trials = matrix.correct, matrix.trials
+    intervals = [
+        made(right, trials, level)
+        for made in (wilson_interval, jeffreys_interval, clopper_pearson_interval)
+    ]
+    if people > 1:
+        intervals.append(participant_interval(counts, level, resamples, seed))
+    else:
+        notes.append("intervals over people: there is one participant; those shown are over trials")
+    tell("information transfer")
+    information = information_transfer(counts, level, resamples, seed)
+    tell("d′ and choice model")
+    sensitivity, choice_fit, points = _models(counts, matrix, level, resamples, seed, notes)
+    tell("response times and exploration")
+    person = np.unique(np.asarray(participant), return_inverse=True)[1]
+    kind = np.asarray(stimulus, dtype=np.int64)
+    times: tuple[ResponseTimeSummary, ...] = ()
+    ex_gaussian = None
+    if response_time is not None:
+        times = response_time_summary(person, kind, response_time, names, level)
+        try:
+            ex_gaussian = fit_ex_gaussian(response_time, seed)
+        except (InputError, ConvergenceError) as error:
+            notes.append(f"ex-Gaussian: {error}")
+    explored = {
+        key: condition_means(person, kind, values, names, level)
+        for key, values in (exploration or {}).items()
+    }
+    fitted = None
+    if mixed:
+        tell("mixed models")
+        fitted = mixed_model(person, kind, kind == np.asarray(choice), names)
+    tell("posterior")
+    return IdentificationAnalysis(
+        name, origin, matrix, counts, tuple(intervals), _by_stimulus(matrix, level),
+        np.trace(counts, axis1=1, axis2=2) / counts.sum(axis=(1, 2)),
+        chance_test(matrix), permutation_test(counts, resamples, seed),
+        confusion_posterior(matrix, level=level, seed=seed), information, sensitivity, choice_fit,
+        points, times, ex_gaussian, explored, fitted, tuple(notes), seed,
+    )  # fmt: skip
+
+
+def _by_stimulus(matrix: ConfusionMatrix, level: float) -> tuple[StimulusCorrect, ...]:
+    found = []
+    for j, name in enumerate(matrix.stimuli):
+        right, trials = int(matrix.counts[j, j]), int(matrix.trials_per_stimulus[j])
+        if trials == 0:
+            continue
+        bounds = wilson_interval(right, trials, level)
+        found.append(StimulusCorrect(name, trials, right, right / trials, bounds.low, bounds.high))
+    return tuple(found)
+
+
+def _models(
+    counts: IntArray,
+    matrix: ConfusionMatrix,
+    level: float,
+    resamples: int,
+    seed: int,
+    notes: list[str],
+) -> tuple[OrderedSensitivity | None, ChoiceModel | None, PerceptualMap | None]:
+    sensitivity, choice, points = None, None, None
+    try:
+        sensitivity = ordered_sensitivity(counts, level, resamples, seed)
+        if sensitivity.corrected:
+            notes.append(
+                "d′: some stimuli were never confused, or an answer never given; one trial per "
+                "stimulus was added, spread over the answers, and d′ is too low"
+            )
+    except InputError as error:
+        notes.append(f"d′: {error}")
+    try:
+        square = matrix.counts
+        # Cells in mirrored pairs that are both empty make infinite distances.
+        empty = np.any(square + square.T == 0) or np.any(np.diag(square) == 0)
+        choice = choice_model(square, 1.0 if empty else 0.0)
+        if empty:
+            notes.append(
+                "choice model: some stimuli were never confused; one trial per stimulus was added"
+            )
+        points = perceptual_map(choice.distance, min(2, square.shape[0] - 1))
+    except (InputError, ConvergenceError) as error:
+        notes.append(f"choice model: {error}")
+    return sensitivity, choice, points

@@ -1,0 +1,223 @@
+"""The biased choice model: answers from similarities of stimuli and biases of answers.
+
+    p(answer i | stimulus j) = b_i η_ij / Σ_m b_m η_mj,   η_ij = η_ji, η_ii = 1, Σ b = 1
+
+(Shepard 1957, 10.1007/BF02288967; Luce 1963). With as many answers as stimuli its expected counts
+are those of a quasi-symmetric table, a_i c_j s_ij, so that maximum likelihood is found by fitting
+margins and sums of mirrored cells in turn (Smith 1982, Perception & Psychophysics 31:183;
+Caussinus 1965). Distances are Shepard's −ln η (1987, 10.1126/science.3629243).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy import stats
+
+from squeezefilm.errors import ConvergenceError, InputError
+from squeezefilm.quantities import Dimensionless, DimensionlessArray, FloatArray, require
+from squeezefilm.study.identification.confusion import column_proportions, whole_counts
+
+_MOST_ROUNDS = 20_000
+_TOLERANCE = 1e-10
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ChoiceModel:
+    """Similarities and biases that describe a confusion matrix best.
+
+    Attributes:
+        similarity: η, shape (k, k), symmetric with ones on the diagonal; may exceed 1 where a
+            wrong answer is more frequent than the right one.
+        bias: b, shape (k,), sums to 1.
+        distance: −ln η, shape (k, k); infinite where two stimuli were never confused.
+        pseudo_trials: added to each column, spread evenly over the answers, before the fit.
+        deviance, degrees_of_freedom, p_value: G² against the saturated model; a small p says that
+            confusions are not symmetric beyond bias. Rough where cells hold fewer than some 5
+            trials; NaN where trials were added.
+        log_likelihood: of the fit, without the multinomial constant.
+        rounds: of the iteration.
+    """
+
+    similarity: DimensionlessArray
+    bias: DimensionlessArray
+    distance: DimensionlessArray
+    pseudo_trials: Dimensionless
+    deviance: Dimensionless
+    degrees_of_freedom: int
+    p_value: Dimensionless
+    log_likelihood: Dimensionless
+    rounds: int
+
+    @property
+    def probabilities(self) -> FloatArray:
+        """Answer probabilities of the model, shape (answers, stimuli)."""
+        return choice_probabilities(self.similarity, self.bias)
+
+
+def choice_probabilities(similarity: ArrayLike, bias: ArrayLike) -> FloatArray:
+    """Answer probabilities, shape (answers, stimuli), of similarities and biases."""
+    strength = np.asarray(bias, dtype=float)[:, None] * np.asarray(similarity, dtype=float)
+    return np.asarray(strength / strength.sum(axis=0, keepdims=True))
+
+
+def exact_choice(probabilities: ArrayLike) -> tuple[FloatArray, FloatArray]:
+    """Similarities and biases in closed form, for probabilities that obey the model.
+
+    η_ij = √(p_ij p_ji / (p_ii p_jj)); b_i/b_j = √(p_ij p_ii / (p_ji p_jj)), here as the geometric
+    mean over j. For probabilities that do not obey it these are an average without the weights
+    that counts have.
+
+    Raises:
+        InputError: probabilities that are not square, or some not above 0.
+    """
+    p = np.asarray(probabilities, dtype=float)
+    if p.ndim != 2 or p.shape[0] != p.shape[1]:
+        raise InputError(f"probabilities of shape {p.shape} are not square; (k, k) is wanted")
+    require("probabilities", p, above=0.0)
+    diagonal = np.diag(p)
+    similarity = np.sqrt(p * p.T / np.outer(diagonal, diagonal))
+    ratio = np.log(p * diagonal[:, None]) - np.log(p.T * diagonal[None, :])
+    bias = np.exp(0.5 * ratio.mean(axis=1))
+    return np.asarray(similarity), np.asarray(bias / bias.sum())
+
+
+def choice_model(counts: ArrayLike, pseudo_trials: Dimensionless = 0.0) -> ChoiceModel:
+    """Fit the choice model by maximum likelihood.
+
+    Args:
+        counts: trials, shape (k, k), rows answers, columns stimuli.
+        pseudo_trials: added to each column, spread evenly over answers; with 1 all distances are
+            finite.
+
+    Raises:
+        InputError: counts that are not square, a stimulus without trials, a stimulus never
+            answered rightly (its similarities are not defined; add pseudo-trials), or
+            pseudo-trials below 0.
+        ConvergenceError: no fixed point within 20 000 rounds.
+    """
+    whole = whole_counts(counts)
+    if whole.ndim != 2 or whole.shape[0] != whole.shape[1]:
+        raise InputError(f"counts of shape {whole.shape} are not square; (k, k) is wanted")
+    require("pseudo_trials", pseudo_trials, at_least=0.0)
+    k = whole.shape[0]
+    n = whole + pseudo_trials / k
+    if np.any(n.sum(axis=0) == 0):
+        raise InputError("the choice model needs trials of every stimulus; leave out the others")
+    if np.any(np.diag(n) == 0):
+        raise InputError(
+            f"stimulus {int(np.flatnonzero(np.diag(n) == 0)[0])} was never answered rightly, so "
+            "its similarities are not defined; pass pseudo_trials=1"
+        )
+    fitted, rounds = _quasi_symmetric(n)
+    diagonal = np.diag(fitted)
+    similarity = np.sqrt(fitted * fitted.T / np.outer(diagonal, diagonal))
+    p = column_proportions(fitted)
+    some = n > 0
+    share = column_proportions(n)
+    log_p = np.log(np.where(some, p, 1.0))
+    deviance = 2 * float((n * (np.log(np.where(some, share, 1.0)) - log_p)).sum())
+    freedom = (k - 1) * (k - 2) // 2
+    fits = freedom > 0 and pseudo_trials == 0
+    with np.errstate(divide="ignore"):
+        distance = np.where(np.eye(k) > 0, 0.0, -np.log(similarity))
+    return ChoiceModel(
+        similarity, _bias(fitted), distance, float(pseudo_trials),
+        max(deviance, 0.0) if fits else float("nan"), freedom,
+        float(stats.chi2.sf(max(deviance, 0.0), freedom)) if fits else float("nan"),
+        float((n * log_p).sum()), rounds,
+    )  # fmt: skip
+
+
+def _bias(fitted: FloatArray) -> FloatArray:
+    """Biases of a quasi-symmetric table: of answers that are linked by confusions."""
+    p = column_proportions(fitted)
+    k = p.shape[0]
+    linked = (p > 0) & (p.T > 0) & ~np.eye(k, dtype=bool)
+    # Answers without a common confusion have no bias against each other; least squares of the
+    # smallest length then gives those groups the same geometric mean.
+    rows, values = [], []
+    for i, j in np.argwhere(np.triu(linked)):
+        row = np.zeros(k)
+        row[i], row[j] = 1.0, -1.0
+        rows.append(row)
+        values.append(0.5 * np.log(p[i, j] * p[i, i] / (p[j, i] * p[j, j])))
+    if not rows:
+        return np.full(k, 1.0 / k)
+    logs = np.linalg.lstsq(np.array(rows), np.array(values), rcond=None)[0]
+    bias = np.exp(logs - logs.max())
+    return np.asarray(bias / bias.sum())
+
+
+def _quasi_symmetric(n: FloatArray) -> tuple[FloatArray, int]:
+    """Expected counts with the margins and the sums of mirrored cells of `n`."""
+    m = np.where(n + n.T > 0, 1.0, 0.0)
+    mirrored = n + n.T
+    for rounds in range(1, _MOST_ROUNDS + 1):
+        before = m
+        m = m * _ratio(n.sum(axis=1), m.sum(axis=1))[:, None]
+        m = m * _ratio(n.sum(axis=0), m.sum(axis=0))[None, :]
+        m = m * _ratio(mirrored, m + m.T)
+        if np.abs(m - before).max() <= _TOLERANCE * n.sum():
+            return m, rounds
+    raise ConvergenceError(
+        f"the choice model found no fixed point in {_MOST_ROUNDS} rounds; pass pseudo_trials=1",
+        partial=m, residual=float(np.abs(m - before).max()), iterations=_MOST_ROUNDS,
+    )  # fmt: skip
+
+
+def _ratio(wanted: FloatArray, have: FloatArray) -> FloatArray:
+    return np.divide(wanted, have, out=np.zeros_like(have), where=have > 0)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PerceptualMap:
+    """Stimuli as points whose distances come near −ln η (classical scaling).
+
+    Attributes:
+        points: shape (k, dimensions); the first axis rises along the stimuli's order. Signs of the
+            other axes mean nothing.
+        explained: share of the sum of positive eigenvalues that the dimensions shown hold.
+        negative: sum of negative eigenvalues over that of positive ones; far from 0 the distances
+            are not those of points in any space.
+    """
+
+    points: DimensionlessArray
+    explained: Dimensionless
+    negative: Dimensionless
+
+
+def perceptual_map(distance: ArrayLike, dimensions: int = 2) -> PerceptualMap:
+    """Points from distances (Torgerson 1952, 10.1007/BF02288916).
+
+    Raises:
+        InputError: distances that are not square, symmetric and finite (add pseudo-trials to the
+            choice model), or dimensions not between 1 and k − 1.
+    """
+    d = np.asarray(distance, dtype=float)
+    if d.ndim != 2 or d.shape[0] != d.shape[1]:
+        raise InputError(f"distances of shape {d.shape} are not square; (k, k) is wanted")
+    if not np.all(np.isfinite(d)):
+        raise InputError(
+            "a distance is infinite (two stimuli never confused); fit the choice model with "
+            "pseudo_trials=1"
+        )
+    k = d.shape[0]
+    if not np.allclose(d, d.T) or not 1 <= dimensions <= k - 1:
+        raise InputError(
+            f"distances must be symmetric, and dimensions = {dimensions} must be 1 to {k - 1}"
+        )
+    centre = np.eye(k) - 1.0 / k
+    values, vectors = np.linalg.eigh(-0.5 * centre @ d**2 @ centre)
+    order = np.argsort(values)[::-1]
+    values, vectors = values[order], vectors[:, order]
+    points = vectors[:, :dimensions] * np.sqrt(np.maximum(values[:dimensions], 0.0))
+    if points[:, 0] @ np.arange(k) < points[:, 0].sum() * (k - 1) / 2:
+        points[:, 0] *= -1
+    positive = float(values[values > 0].sum())
+    if positive == 0.0:
+        return PerceptualMap(points, 1.0, 0.0)
+    shown = float(np.maximum(values[:dimensions], 0.0).sum())
+    return PerceptualMap(points, shown / positive, float(-values[values < 0].sum()) / positive)

@@ -1,0 +1,246 @@
+"""How many people a study needs, by simulating it: the share of studies that find the difference.
+
+The question "8 against 10 mm" is answered by a test over people of how well they tell the two
+stimuli apart (`distinction`). Studies are simulated with a seed of their own for each number of
+people, so a curve can be cut short, resumed and refined, and gives the same numbers.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy import stats
+
+from squeezefilm.errors import InputError
+from squeezefilm.hard_limits import STUDIES, require_within
+from squeezefilm.quantities import Dimensionless, DimensionlessArray, FloatArray, require
+from squeezefilm.results import config_hash, write_whole
+from squeezefilm.study.identification.confusion import IntArray, whole_counts
+from squeezefilm.study.identification.proportions import clopper_pearson_interval
+
+
+class ParticipantSimulator(Protocol):
+    """Draws participants: their counts, shape (participants, answers, stimuli)."""
+
+    def __call__(self, participants: int, random: np.random.Generator) -> IntArray:
+        """Counts of so many people; all randomness from `random`."""
+        ...
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class DirichletParticipants:
+    """People whose answer probabilities vary about a common matrix (Dirichlet-multinomial).
+
+    Args:
+        probabilities: the common matrix, shape (answers, stimuli), columns sum to 1.
+        trials_per_stimulus: of each person; at least 1.
+        concentration: how alike people are: a column's probabilities are Dirichlet with
+            `concentration` times the common ones; above 0. The proportion correct of a stimulus
+            is then beta-binomial with overdispersion 1/(1 + concentration).
+
+    Raises:
+        InputError: columns that do not sum to 1, or values out of range.
+    """
+
+    probabilities: FloatArray
+    trials_per_stimulus: int
+    concentration: Dimensionless
+
+    def __post_init__(self) -> None:
+        p = np.asarray(self.probabilities, dtype=float)
+        require("probabilities", p, at_least=0.0, at_most=1.0)
+        require("concentration", self.concentration, above=0.0)
+        if p.ndim != 2 or not np.allclose(p.sum(axis=0), 1.0):
+            raise InputError("every column of the answer probabilities must sum to 1")
+        if self.trials_per_stimulus < 1:
+            raise InputError(
+                f"trials_per_stimulus = {self.trials_per_stimulus} cannot be used; it must be at "
+                "least 1"
+            )
+        object.__setattr__(self, "probabilities", p)
+
+    def __call__(self, participants: int, random: np.random.Generator) -> IntArray:
+        """Counts of so many people, shape (participants, answers, stimuli)."""
+        answers, stimuli = self.probabilities.shape
+        counts = np.zeros((participants, answers, stimuli), dtype=np.int64)
+        for j, column in enumerate(self.probabilities.T):
+            some = column > 0
+            own = np.zeros((participants, answers))
+            own[:, some] = random.dirichlet(self.concentration * column[some], participants)
+            # Draws underflow to 0 everywhere only at concentrations of no use.
+            own /= own.sum(axis=1, keepdims=True)
+            counts[:, :, j] = random.multinomial(self.trials_per_stimulus, own)
+        return counts
+
+
+@dataclass(frozen=True, slots=True)
+class Distinction:
+    """How well people tell two stimuli apart.
+
+    Attributes:
+        score: mean over people of [p(a|A) − p(a|B)] + [p(b|B) − p(b|A)], p(x|Y) the share of
+            answers x to stimulus Y; 0 if the two are felt alike whatever the preference for an
+            answer, 2 if never confused and always named.
+        t: its mean over its standard error (Student's t, people − 1 degrees of freedom).
+        p_value: one-sided; 1 where all people have the same score 0, 0 where the same above 0.
+        participants: with trials of both.
+    """
+
+    score: Dimensionless
+    t: Dimensionless
+    p_value: Dimensionless
+    participants: int
+
+
+def distinction(counts: ArrayLike, first: int, second: int) -> Distinction:
+    """Test over people whether stimuli `first` and `second` are told apart.
+
+    Args:
+        counts: every participant's matrix, shape (participants, k, k).
+        first, second: numbers of the stimuli, and of their answers.
+
+    Raises:
+        InputError: numbers out of range or equal, or fewer than two people with trials of both.
+    """
+    whole = whole_counts(counts)
+    k = min(whole.shape[1:]) if whole.ndim == 3 else 0
+    if not (0 <= first < k and 0 <= second < k and first != second):
+        raise InputError(f"stimuli {first} and {second} must be two different ones of 0 to {k - 1}")
+    totals = whole.sum(axis=1)
+    there = (totals[:, first] > 0) & (totals[:, second] > 0)
+    if np.count_nonzero(there) < 2:
+        raise InputError("a test over people needs at least 2 with trials of both stimuli")
+    n, totals = whole[there].astype(float), totals[there]
+    one, other = n[:, :, first] / totals[:, [first]], n[:, :, second] / totals[:, [second]]
+    score = one[:, first] - other[:, first] + other[:, second] - one[:, second]
+    people, mean, spread = score.size, float(score.mean()), float(score.std(ddof=1))
+    if spread == 0.0:
+        return Distinction(mean, float("nan"), 0.0 if mean > 0 else 1.0, people)
+    t = mean / spread * np.sqrt(people)
+    return Distinction(mean, float(t), float(stats.t.sf(t, people - 1)), people)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PowerCurve:
+    """Power against the number of people; arrays of shape (numbers,).
+
+    Attributes:
+        participants: numbers of people simulated, rising.
+        power: share of simulated studies with p below `alpha`.
+        low, high: 95 % Clopper–Pearson bounds of it, from the finite number of studies.
+        studies: simulated per number.
+        alpha: of the test.
+        target: power asked for.
+        needed: fewest people from which on every number simulated reaches the target; None if the
+            greatest does not.
+        needed_surely: the same for the lower bounds.
+    """
+
+    participants: IntArray
+    power: DimensionlessArray
+    low: DimensionlessArray
+    high: DimensionlessArray
+    studies: int
+    alpha: Dimensionless
+    target: Dimensionless
+    needed: int | None
+    needed_surely: int | None
+
+
+def power_curve(
+    simulate: ParticipantSimulator,
+    test: Callable[[IntArray], float],
+    participants: tuple[int, ...] = (4, 6, 8, 12, 16, 24, 32, 48),
+    *,
+    studies: int = 1000,
+    alpha: Dimensionless = 0.05,
+    target: Dimensionless = 0.8,
+    seed: int = 0,
+    progress: Callable[[int, int], None] | None = None,
+    cache: Path | None = None,
+    key: str = "",
+) -> PowerCurve:
+    """Simulate studies of several sizes and count those whose test is significant.
+
+    Args:
+        simulate: draws people (`DirichletParticipants`, or a simulated observer's).
+        test: counts of a study, shape (participants, answers, stimuli) → p value.
+        participants: numbers of people, each at least 2.
+        studies: per number; at least 10.
+        alpha: significance of a study.
+        target: power asked for.
+        seed: each number of people n draws from (seed, n), whatever else is simulated.
+        progress: called with the sizes done and their number.
+        cache: folder that keeps each size's result; a later call takes it from there.
+        key: names simulator and test in the cache; wanted with `cache`, since code has no name.
+
+    Raises:
+        InputError: no sizes or one below 2, fewer than 10 studies, a share not between 0 and 1,
+            a cache without a key, or a p value that is not one.
+    """
+    sizes = tuple(sorted(set(participants)))
+    if not sizes or sizes[0] < 2 or studies < 10:
+        raise InputError(
+            f"participants = {sizes} with {studies} studies cannot be simulated; at least one size "
+            "of at least 2, and at least 10 studies, are wanted"
+        )
+    require_within(STUDIES, studies, "studies")
+    require("alpha", alpha, above=0.0, below=1.0)
+    require("target", target, above=0.0, below=1.0)
+    if cache is not None and not key:
+        raise InputError("a cache needs a key that names simulator and test; pass key=...")
+    found = []
+    for done, people in enumerate(sizes):
+        found.append(_significant(simulate, test, people, studies, alpha, seed, cache, key))
+        if progress is not None:
+            progress(done + 1, len(sizes))
+    bounds = [clopper_pearson_interval(number, studies) for number in found]
+    power = np.array(found) / studies
+    low, high = np.array([b.low for b in bounds]), np.array([b.high for b in bounds])
+    return PowerCurve(
+        np.array(sizes), power, low, high, studies, alpha, target,
+        _first_lasting(sizes, power >= target), _first_lasting(sizes, low >= target),
+    )  # fmt: skip
+
+
+def _significant(
+    simulate: ParticipantSimulator,
+    test: Callable[[IntArray], float],
+    people: int,
+    studies: int,
+    alpha: float,
+    seed: int,
+    cache: Path | None,
+    key: str,
+) -> int:
+    file = None
+    if cache is not None:
+        name = {"key": key, "people": people, "studies": studies, "alpha": alpha, "seed": seed}
+        file = Path(cache) / f"power-{config_hash(name)}.json"
+        if file.is_file():
+            return int(json.loads(file.read_text(encoding="utf-8"))["significant"])
+    random = np.random.default_rng([seed, people])
+    number = 0
+    for _ in range(studies):
+        p = float(test(simulate(people, random)))
+        if not 0.0 <= p <= 1.0:
+            raise InputError(f"the test returned p = {p}; it must return a p value of 0 to 1")
+        number += p < alpha
+    if file is not None:
+        write_whole(file, json.dumps({**name, "significant": number}) + "\n")
+    return number
+
+
+def _first_lasting(sizes: tuple[int, ...], reached: NDArray[np.bool_]) -> int | None:
+    found = None
+    for people, good in zip(reversed(sizes), reversed(reached.tolist()), strict=True):
+        if not good:
+            break
+        found = people
+    return found

@@ -1,0 +1,239 @@
+"""d′ of ordered stimuli from a confusion matrix: positions and criteria on one decision axis.
+
+Stimulus j is felt as a normal deviate about x_j of unit spread; the axis is cut by rising criteria
+into as many ranges as there are answers (Thurstone's law of categorical judgement, case of equal
+variances; Braida & Durlach 1972, 10.1121/1.1912868). x_{j+1} − x_j is d′ of neighbours; x_k − x_1
+is the total sensitivity Δ′.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy import stats
+from scipy.special import ndtr
+
+from squeezefilm.errors import InputError
+from squeezefilm.quantities import Dimensionless, DimensionlessArray, FloatArray, require
+from squeezefilm.study.identification.confusion import whole_counts
+from squeezefilm.study.identification.participant_bootstrap import (
+    recentred_interval,
+    resampled_counts,
+)
+
+# Beyond this a position stands for "never confused": its likelihood is flat.
+_FURTHEST = 7.5
+_MOST_STEPS = 200
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class OrderedSensitivity:
+    """Positions, criteria and d′ of ordered stimuli.
+
+    Attributes:
+        positions: x_j on the decision axis in standard deviations, the first 0; shape (stimuli,).
+        criteria: rising, shape (answers − 1,).
+        d_prime: of neighbours, shape (stimuli − 1,).
+        standard_error: of `d_prime`, from the Fisher information; trials taken as independent.
+        low, high: interval of `d_prime`: by participant bootstrap, or the standard error's where
+            there is one participant.
+        total: Δ′, the sum of `d_prime`.
+        level: of the interval.
+        interval_method: which of both.
+        corrected: whether one trial per stimulus, spread evenly over the answers, was added
+            because stimuli were never confused, or an answer never given, and there is no finite
+            estimate otherwise (the log-linear rule, Hautus 1995, 10.3758/BF03203619). d′ is
+            then too low.
+        deviance, degrees_of_freedom, p_value: G² against the saturated model; a small p says that
+            one axis with equal variances does not describe the answers. The p is rough where
+            cells hold fewer than some 5 trials. Both NaN where trials were added.
+        log_likelihood: of the fit, without the multinomial constant.
+    """
+
+    positions: DimensionlessArray
+    criteria: DimensionlessArray
+    d_prime: DimensionlessArray
+    standard_error: DimensionlessArray
+    low: DimensionlessArray
+    high: DimensionlessArray
+    total: Dimensionless
+    level: Dimensionless
+    interval_method: str
+    corrected: bool
+    deviance: Dimensionless
+    degrees_of_freedom: int
+    p_value: Dimensionless
+    log_likelihood: Dimensionless
+
+    @property
+    def probabilities(self) -> FloatArray:
+        """Answer probabilities of the model, shape (answers, stimuli)."""
+        return np.asarray(_probabilities(self.criteria[None], self.positions[None])[0])
+
+
+def ordered_sensitivity(
+    counts: ArrayLike, level: Dimensionless = 0.95, resamples: int = 1000, seed: int = 0
+) -> OrderedSensitivity:
+    """Fit positions and criteria by maximum likelihood (Fisher scoring; the likelihood is concave).
+
+    Args:
+        counts: every participant's matrix, shape (participants, answers, stimuli), or one matrix;
+            rows and columns in the order of the stimuli.
+        level: of the intervals, between 0 and 1.
+        resamples, seed: of the participant bootstrap.
+
+    Raises:
+        InputError: fewer than two stimuli or answers, a stimulus without a trial, one and the
+            same answer to everything, or a level not between 0 and 1.
+    """
+    require("level", level, above=0.0, below=1.0)
+    whole = whole_counts(counts)
+    whole = whole[None] if whole.ndim == 2 else whole
+    pooled = whole.sum(axis=0)
+    answers, stimuli = pooled.shape
+    if answers < 2 or stimuli < 2:
+        raise InputError(f"{answers} answers to {stimuli} stimuli have no d′; 2 are wanted of each")
+    if np.any(pooled.sum(axis=0) == 0):
+        raise InputError("d′ needs trials of every stimulus; leave out those never presented")
+    if np.count_nonzero(pooled.sum(axis=1)) < 2:
+        raise InputError("d′ needs two answers at least; one and the same was given to everything")
+    n = pooled[None].astype(float)
+    criteria, positions, finite = _fit(n)
+    corrected = not bool(finite[0])
+    if corrected:
+        n = n + 1.0 / answers
+        criteria, positions, _ = _fit(n)
+    p = _probabilities(criteria, positions)
+    covariance = np.linalg.inv(_information(criteria, positions, n.sum(axis=1))[0])
+    to_d = np.zeros((stimuli - 1, answers + stimuli - 2))
+    to_d[:, answers - 1 :] = np.eye(stimuli - 1) - np.eye(stimuli - 1, k=-1)
+    error = np.sqrt(np.diag(to_d @ covariance @ to_d.T))
+    d_prime = np.diff(positions[0])
+    if whole.shape[0] > 1:
+        again = resampled_counts(whole, resamples, seed).astype(float)
+        again = again[np.all(again.sum(axis=1) > 0, axis=1)]
+        resampled = _bootstrapped(again, corrected)
+        bounds = [
+            recentred_interval(float(d), column, whole.shape[0], level)
+            for d, column in zip(d_prime, resampled.T, strict=True)
+        ]
+        low, high = np.array([b.low for b in bounds]), np.array([b.high for b in bounds])
+        method = bounds[0].method
+    else:
+        z = float(stats.norm.isf((1 - level) / 2))
+        low, high, method = d_prime - z * error, d_prime + z * error, "Fisher information"
+    share = n / n.sum(axis=1, keepdims=True)
+    some = n > 0
+    log_p = np.log(np.where(some, p, 1.0))
+    likelihood = float((n * log_p).sum())
+    freedom = (answers - 1) * stimuli - (answers + stimuli - 2)
+    deviance = 2 * float((n * (np.log(np.where(some, share, 1.0)) - log_p)).sum())
+    # The trials added are no answers of anybody, and no normal tail describes them.
+    fits = freedom > 0 and not corrected
+    return OrderedSensitivity(
+        positions[0], criteria[0], d_prime, error, low, high, float(d_prime.sum()), level, method,
+        corrected, deviance if fits else float("nan"), freedom,
+        float(stats.chi2.sf(deviance, freedom)) if fits else float("nan"), likelihood,
+    )  # fmt: skip
+
+
+def _bootstrapped(counts: FloatArray, corrected: bool) -> FloatArray:
+    """d′ of every resample; those that have no finite estimate get the correction."""
+    answers = counts.shape[1]
+    if corrected:
+        return np.asarray(np.diff(_fit(counts + 1.0 / answers)[1], axis=1))
+    _, positions, finite = _fit(counts)
+    if not np.all(finite):
+        positions[~finite] = _fit(counts[~finite] + 1.0 / answers)[1]
+    return np.asarray(np.diff(positions, axis=1))
+
+
+def _probabilities(criteria: FloatArray, positions: FloatArray) -> FloatArray:
+    """Shape (batch, answers, stimuli), without loss where both bounds lie far out on one side."""
+    upper = criteria[:, :, None] - positions[:, None, :]
+    flat = np.full((upper.shape[0], 1, upper.shape[2]), np.inf)
+    low, high = np.concatenate([-flat, upper], axis=1), np.concatenate([upper, flat], axis=1)
+    mirrored = low > 0
+    a, b = np.where(mirrored, -high, low), np.where(mirrored, -low, high)
+    return np.asarray(np.maximum(ndtr(b) - ndtr(a), 1e-300))
+
+
+def _slopes(criteria: FloatArray, positions: FloatArray) -> FloatArray:
+    """Derivatives of the probabilities, shape (batch, answers, stimuli, parameters)."""
+    batch, cuts = criteria.shape
+    stimuli = positions.shape[1]
+    upper = criteria[:, :, None] - positions[:, None, :]
+    density = np.exp(-0.5 * upper**2) / np.sqrt(2 * np.pi)
+    out = np.zeros((batch, cuts + 1, stimuli, cuts + stimuli - 1))
+    for c in range(cuts):
+        out[:, c, :, c] += density[:, c]
+        out[:, c + 1, :, c] -= density[:, c]
+    for j in range(1, stimuli):
+        out[:, :-1, j, cuts + j - 1] -= density[:, :, j]
+        out[:, 1:, j, cuts + j - 1] += density[:, :, j]
+    return out
+
+
+def _information(criteria: FloatArray, positions: FloatArray, totals: FloatArray) -> FloatArray:
+    slopes = _slopes(criteria, positions)
+    weight = totals[:, None, :] / _probabilities(criteria, positions)
+    return np.asarray(np.einsum("baj,bajp,bajq->bpq", weight, slopes, slopes, optimize=True))
+
+
+def _fit(n: FloatArray) -> tuple[FloatArray, FloatArray, NDArray[np.bool_]]:
+    """Criteria, positions and whether they are finite, of a batch (batch, answers, stimuli)."""
+    batch, answers, stimuli = n.shape
+    totals = n.sum(axis=1)
+    # Start: criteria from the pooled answers, every stimulus in one place.
+    smooth = n.sum(axis=2) + 0.5
+    cumulative = np.cumsum(smooth, axis=1)[:, :-1] / smooth.sum(axis=1, keepdims=True)
+    theta = np.concatenate([stats.norm.ppf(cumulative), np.zeros((batch, stimuli - 1))], axis=1)
+    cuts = answers - 1
+
+    def likelihood(values: FloatArray, rows: FloatArray) -> FloatArray:
+        c, x = _split(values, cuts)
+        fine = np.all(np.diff(c, axis=1) > 0, axis=1) if cuts > 1 else np.ones(len(c), bool)
+        value = (rows * np.log(_probabilities(c, x))).sum(axis=(1, 2))
+        return np.where(fine, value, -np.inf)
+
+    # Around an answer never given the criteria fall together, and no step is defined.
+    active = np.flatnonzero(np.all(n.sum(axis=2) > 0, axis=1))
+    now = likelihood(theta, n)
+    finite = np.zeros(batch, dtype=bool)
+    for _ in range(_MOST_STEPS):
+        c, x = _split(theta[active], cuts)
+        slopes = _slopes(c, x)
+        p = _probabilities(c, x)
+        gradient = np.einsum("baj,bajp->bp", n[active] / p, slopes)
+        information = np.einsum(
+            "baj,bajp,bajq->bpq", totals[active][:, None, :] / p, slopes, slopes, optimize=True
+        )
+        information += 1e-10 * np.eye(theta.shape[1])
+        step = np.linalg.solve(information, gradient[..., None])[..., 0]
+        step *= np.minimum(1.0, 2.0 / np.maximum(np.abs(step).max(axis=1, keepdims=True), 1e-300))
+        scale = np.ones(active.size)
+        trial = theta[active] + step
+        value = likelihood(trial, n[active])
+        for _ in range(30):
+            worse = value < now[active] - 1e-12 * np.abs(now[active])
+            if not np.any(worse):
+                break
+            scale[worse] *= 0.5
+            trial = theta[active] + scale[:, None] * step
+            value = likelihood(trial, n[active])
+        theta[active], now[active] = trial, value
+        done = np.abs(scale[:, None] * step).max(axis=1) < 1e-8
+        gone = np.abs(np.diff(_split(trial, cuts)[1], axis=1)).max(axis=1) > _FURTHEST
+        finite[active[done & ~gone]] = True
+        active = active[~(done | gone)]
+        if active.size == 0:
+            break
+    criteria, positions = _split(theta, cuts)
+    return criteria, positions, finite
+
+
+def _split(theta: FloatArray, cuts: int) -> tuple[FloatArray, FloatArray]:
+    zero = np.zeros((theta.shape[0], 1))
+    return theta[:, :cuts], np.concatenate([zero, theta[:, cuts:]], axis=1)

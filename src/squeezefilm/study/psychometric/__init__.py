@@ -1,0 +1,1 @@
+"""Psychometric functions and scales: fits, intervals, d′, Stevens' power law."""

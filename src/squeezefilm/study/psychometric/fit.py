@@ -1,0 +1,234 @@
+"""Fitting a psychometric function: its best value, two kinds of interval, goodness of fit."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from squeezefilm.errors import InputError
+from squeezefilm.quantities import Dimensionless, FloatArray, require
+from squeezefilm.study.psychometric import kernel
+from squeezefilm.study.psychometric.bootstrap import (
+    Bootstrap,
+    PenalisedLikelihood,
+    inverted_interval,
+    simulate_bootstrap,
+)
+from squeezefilm.study.psychometric.function import (
+    Axis,
+    PsychometricFunction,
+    Shape,
+    on_axis,
+    shape_code,
+)
+from squeezefilm.study.psychometric.posterior import (
+    PARAMETERS,
+    PsychometricPosterior,
+    coarse_maxima,
+    grid_posterior,
+)
+from squeezefilm.study.psychometric.prior import PsychometricPrior
+
+Interval = tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PsychometricFit:
+    """A psychometric function fitted to answers.
+
+    Attributes:
+        function: of the largest posterior density (in threshold, ln width, lapse and guess
+            rate): maximum likelihood but for the priors of the rates.
+        intensity, positive, trials: the data, one row an intensity, shape (places,).
+        prior: of the parameters.
+        fitted: names of the parameters that were fitted.
+        level: of the intervals (1).
+        posterior: of the parameters, on a grid.
+        posterior_interval: central credible interval by parameter, in the parameter's unit.
+        bootstrap: None without replicates.
+        bootstrap_interval: confidence interval by parameter, in its unit; empty without
+            replicates.
+        deviance: from the saturated model.
+        deviance_p: probability of a deviance as large if the function is the truth, simulated;
+            None without replicates. Without meaning where most places have a trial or two.
+        bounded_by_prior: parameters with an interval that ends at a bound of the prior of
+            threshold or width: the data do not say how far they go.
+    """
+
+    function: PsychometricFunction
+    intensity: FloatArray
+    positive: FloatArray
+    trials: FloatArray
+    prior: PsychometricPrior
+    fitted: tuple[str, ...]
+    level: Dimensionless
+    posterior: PsychometricPosterior
+    posterior_interval: dict[str, Interval]
+    bootstrap: Bootstrap | None
+    bootstrap_interval: dict[str, Interval]
+    deviance: float
+    deviance_p: Dimensionless | None
+    bounded_by_prior: tuple[str, ...]
+
+    def summary(self) -> dict[str, Any]:
+        """The numbers for JSON."""
+        return {
+            "shape": self.function.shape,
+            "axis": self.function.axis,
+            **{name: getattr(self.function, name) for name in PARAMETERS},
+            "fitted": list(self.fitted),
+            "interval_level": self.level,
+            "posterior_interval": {k: list(v) for k, v in self.posterior_interval.items()},
+            "bootstrap_interval": {k: list(v) for k, v in self.bootstrap_interval.items()},
+            "deviance": self.deviance,
+            "deviance_p": self.deviance_p,
+            "trials": int(self.trials.sum()),
+            "bounded_by_prior": list(self.bounded_by_prior),
+            "prior": self.prior.state(),
+        }
+
+
+def fit_psychometric(
+    intensity: ArrayLike,
+    positive: ArrayLike,
+    trials: ArrayLike | None = None,
+    *,
+    shape: Shape = "logistic",
+    axis: Axis = "linear",
+    guess_rate: Dimensionless | None = 0.5,
+    prior: PsychometricPrior | None = None,
+    level: Dimensionless = 0.95,
+    replicates: int = 999,
+    seed: int = 0,
+) -> PsychometricFit:
+    """Fit a psychometric function to answers.
+
+    Args:
+        intensity: of the stimuli, shape (rows,).
+        positive: how many answers were "yes" or correct (rows,): counts, or without `trials`
+            one answer a row (true, false).
+        trials: how many answers there were (rows,).
+        shape, axis: of the function.
+        guess_rate: where it is known, at least 0 and at most 0.5 (1/m for one of m
+            alternatives); None to fit it, as for a yes/no task.
+        prior: without one, `PsychometricPrior.for_stimuli`.
+        level: of the intervals, between 0 and 1.
+        replicates: of the bootstrap; 0 for none.
+        seed: of the bootstrap.
+
+    Raises:
+        InputError: data that are no counts, of unlike shape or empty, or a value outside its
+            range.
+    """
+    code = shape_code(shape, axis)
+    require("level", level, above=0.0, below=1.0)
+    if guess_rate is not None:
+        require("guess_rate", guess_rate, at_least=0.0, at_most=0.5)
+    places, k, n = _by_place(intensity, positive, trials)
+    x = on_axis(places, axis)
+    prior = PsychometricPrior.for_stimuli(places, axis) if prior is None else prior
+    low, high = prior.bounds(axis)
+    free = np.array([True, True, True, guess_rate is None])
+    beta = np.array([*prior.lapse_rate, *prior.guess_rate])
+    if guess_rate is not None:
+        low[kernel.GUESS] = high[kernel.GUESS] = guess_rate
+        # A known rate has no prior; without a bound γ + λ could reach 1.
+        beta[2:] = 1.0
+        high[kernel.LAPSE] = min(high[kernel.LAPSE], 0.99 - guess_rate)
+    likelihood = PenalisedLikelihood(code, free, low, high, beta, x, k, n)
+    starts = coarse_maxima(code, axis, prior, guess_rate, x, k, n)
+    best, _ = max((likelihood.maximum(start) for start in starts), key=lambda found: found[1])
+    posterior = grid_posterior(code, axis, prior, guess_rate, x, k, n, best)
+    fitted = tuple(name for name, is_free in zip(PARAMETERS, free, strict=True) if is_free)
+    likeliest = kernel.log_density(code, best, np.ones(4), x, k, n)
+    deviance = max(2.0 * (kernel.saturated(k, n) - likeliest), 0.0)
+    bootstrap, p, confidence = None, None, {}
+    if replicates:
+        bootstrap = simulate_bootstrap(likelihood, best, replicates, seed)
+        p = bootstrap.goodness_of_fit(deviance)
+        confidence = {
+            name: _in_own_unit(at, inverted_interval(likelihood, bootstrap, at, level), axis)
+            for at, name in enumerate(PARAMETERS)
+            if free[at]
+        }
+    credible = {name: posterior.interval(name, level) for name in fitted}
+    return PsychometricFit(
+        function=PsychometricFunction(
+            shape,
+            float(np.exp(best[0])) if axis == "log" else float(best[0]),
+            float(np.exp(best[1])),
+            float(best[3]),
+            float(best[2]),
+            axis,
+        ),
+        intensity=places,
+        positive=k,
+        trials=n,
+        prior=prior,
+        fitted=fitted,
+        level=level,
+        posterior=posterior,
+        posterior_interval=credible,
+        bootstrap=bootstrap,
+        bootstrap_interval=confidence,
+        deviance=deviance,
+        deviance_p=p,
+        bounded_by_prior=_bounded(prior, posterior, confidence),
+    )
+
+
+def _in_own_unit(parameter: int, interval: Interval, axis: Axis) -> Interval:
+    if parameter == kernel.LOG_WIDTH or (parameter == kernel.THRESHOLD and axis == "log"):
+        return float(np.exp(interval[0])), float(np.exp(interval[1]))
+    return interval
+
+
+def _bounded(
+    prior: PsychometricPrior, posterior: PsychometricPosterior, confidence: dict[str, Interval]
+) -> tuple[str, ...]:
+    names = []
+    for name in ("threshold", "width"):
+        low, high = getattr(prior, name)
+        edges, marginal = posterior.edges[PARAMETERS.index(name)], posterior.marginal(name)
+        # A posterior that has not died away at the bound is cut by it.
+        density = marginal / np.diff(edges)
+        cut = (np.isclose(edges[0], low) and density[0] > 0.05 * density.max()) or (
+            np.isclose(edges[-1], high) and density[-1] > 0.05 * density.max()
+        )
+        at_bound = name in confidence and bool(np.any(np.isclose(confidence[name], (low, high))))
+        if cut or at_bound:
+            names.append(name)
+    return tuple(names)
+
+
+def _by_place(
+    intensity: ArrayLike, positive: ArrayLike, trials: ArrayLike | None
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Rows of the same intensity together, in rising order."""
+    given = np.asarray(intensity, dtype=float)
+    k = np.asarray(positive, dtype=float)
+    n = np.ones_like(k) if trials is None else np.asarray(trials, dtype=float)
+    if given.ndim != 1 or given.shape != k.shape or given.shape != n.shape or given.size == 0:
+        raise InputError(
+            f"intensity, positive and trials have the shapes {given.shape}, {k.shape} and "
+            f"{n.shape}; all must be one-dimensional, of one length, with at least one row"
+        )
+    require("intensity", given)
+    require("positive", k, at_least=0.0)
+    require("trials", n, at_least=0.0)
+    if np.any(k > n) or np.any(k != np.round(k)) or np.any(n != np.round(n)):
+        row = int(np.flatnonzero((k > n) | (k != np.round(k)) | (n != np.round(n)))[0])
+        raise InputError(
+            f"positive = {k[row]:g} of trials = {n[row]:g} at intensity {given[row]:g} is no "
+            "count; both must be whole, and positive no more than trials",
+            quantity="positive",
+        )
+    if not np.any(n > 0):
+        raise InputError("trials = 0 everywhere; there must be at least one answer")
+    places, where = np.unique(given[n > 0], return_inverse=True)
+    counts = (np.bincount(where, one[n > 0], places.size) for one in (k, n))
+    summed_k, summed_n = (np.asarray(one, dtype=float) for one in counts)
+    return places, summed_k, summed_n

@@ -1,0 +1,267 @@
+"""The posterior of a psychometric function on a grid, integrated by the midpoint rule.
+
+The grid is even in the threshold on its axis, in ln width and in arcsin √rate, where a proportion
+is equally sure everywhere. Coarse grids, the first over the whole prior, find where the posterior
+lies; a fine one covers that.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.interpolate import PchipInterpolator
+
+from squeezefilm.errors import InputError
+from squeezefilm.quantities import Dimensionless, FloatArray, FloatLike, require
+from squeezefilm.study.psychometric import kernel
+from squeezefilm.study.psychometric.function import Axis
+from squeezefilm.study.psychometric.prior import LARGEST_RATE, PsychometricPrior
+
+PARAMETERS = ("threshold", "width", "lapse_rate", "guess_rate")
+
+_COARSE = (40, 24, 8, 6)
+_FINE = (48, 40, 20, 1)
+_FINE_WITH_GUESS = (40, 32, 14, 14)
+# Grids narrow until none of their sides shrinks by more than this.
+_SETTLED = 0.8
+_MOST_PASSES = 8
+# Marginal probability outside of the fine grid, on each side.
+_OUTSIDE = 1e-6
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PsychometricPosterior:
+    """Marginal posteriors of a psychometric function.
+
+    Attributes:
+        axis: of the function.
+        edges: for each parameter the bounds of the cells, shape (cells + 1,), in the parameter's
+            own unit (threshold as an intensity, width on the axis).
+        probability: of the cells, shape (thresholds, widths, lapse rates, guess rates); sums to 1.
+        log_evidence: ln of the likelihood's mean over the prior, without binomial coefficients.
+    """
+
+    axis: Axis
+    edges: tuple[FloatArray, FloatArray, FloatArray, FloatArray]
+    probability: FloatArray
+    log_evidence: float
+
+    def marginal(self, parameter: str) -> FloatArray:
+        """Probability of each cell of one parameter, shape (cells,).
+
+        Raises:
+            InputError: an unknown parameter.
+        """
+        at = _index(parameter)
+        return np.asarray(
+            self.probability.sum(axis=tuple(other for other in range(4) if other != at))
+        )
+
+    def quantile(self, parameter: str, share: Dimensionless) -> float:
+        """The value not exceeded with posterior probability `share`, in the parameter's unit.
+
+        Between the edges of cells the cumulative probability is a monotone cubic.
+
+        Raises:
+            InputError: an unknown parameter, or a share not within 0 and 1.
+        """
+        require("share", share, at_least=0.0, at_most=1.0)
+        edges = self.edges[_index(parameter)]
+        if edges[0] == edges[-1]:
+            return float(edges[0])
+        middle = self.marginal(parameter)
+        # The integral over a cell from the values in the middle of it and of its neighbours.
+        bend = np.diff(np.pad(middle, 1, mode="reflect", reflect_type="odd"), 2)
+        cells = np.maximum(middle + bend / 24, 0.0)
+        heights = np.concatenate([[0.0], np.cumsum(cells)])
+        places = np.interp(np.linspace(0, edges.size - 1, 2001), np.arange(edges.size), edges)
+        return float(
+            np.interp(share, PchipInterpolator(edges, heights / heights[-1])(places), places)
+        )
+
+    def interval(self, parameter: str, level: Dimensionless = 0.95) -> tuple[float, float]:
+        """The central credible interval: as much probability below it as above it.
+
+        Raises:
+            InputError: an unknown parameter, or a level not between 0 and 1.
+        """
+        require("level", level, above=0.0, below=1.0)
+        tail = 0.5 * (1.0 - level)
+        return self.quantile(parameter, tail), self.quantile(parameter, 1.0 - tail)
+
+    def mean(self, parameter: str) -> float:
+        """The posterior mean, in the parameter's unit."""
+        edges = self.edges[_index(parameter)]
+        cells = np.arange(edges.size - 1)
+        middles = PchipInterpolator(np.arange(edges.size), edges)(cells + 0.5)
+        return float(np.sum(self.marginal(parameter) * middles))
+
+    def draws(self, count: int, seed: int) -> FloatArray:
+        """Samples of (threshold, width, lapse rate, guess rate), shape (count, 4).
+
+        For whatever is computed from several parameters. Within a cell samples are spread evenly.
+        """
+        random = np.random.default_rng(seed)
+        flat = random.choice(self.probability.size, count, p=self.probability.ravel())
+        cells = np.unravel_index(flat, self.probability.shape)
+        within = random.random((count, 4))
+        return np.stack(
+            [
+                edges[cell] + within[:, at] * (edges[cell + 1] - edges[cell])
+                for at, (edges, cell) in enumerate(zip(self.edges, cells, strict=True))
+            ],
+            axis=1,
+        )
+
+
+def _index(parameter: str) -> int:
+    if parameter not in PARAMETERS:
+        raise InputError(
+            f"parameter = {parameter!r} is not known; it must be one of {', '.join(PARAMETERS)}",
+            quantity="parameter",
+        )
+    return PARAMETERS.index(parameter)
+
+
+def coarse_maxima(
+    code: int,
+    axis: Axis,
+    prior: PsychometricPrior,
+    guess_rate: Dimensionless | None,
+    x: FloatArray,
+    k: FloatArray,
+    n: FloatArray,
+) -> FloatArray:
+    """θ of the likeliest cells of a coarse grid over the whole prior, to start searches from.
+
+    One for each sixth of the widths, shape (6, 4): few answers can have a narrow and a wide
+    function as local maxima.
+    """
+    low, high = _span(prior, guess_rate, axis)
+    cells = _one_guess(_COARSE, guess_rate)
+    nodes, weights, _ = _weigh(code, axis, prior, guess_rate, x, k, n, low, high, cells)
+    starts = []
+    for first in range(0, cells[1], cells[1] // 6):
+        band = weights[:, first : first + cells[1] // 6]
+        i, j, a, b = np.unravel_index(int(np.argmax(band)), band.shape)
+        starts.append([nodes[0][i], nodes[1][first + j], nodes[2][a], nodes[3][b]])
+    return np.array(starts)
+
+
+def grid_posterior(
+    code: int,
+    axis: Axis,
+    prior: PsychometricPrior,
+    guess_rate: Dimensionless | None,
+    x: FloatArray,
+    k: FloatArray,
+    n: FloatArray,
+    mode: FloatArray,
+    *,
+    cells: tuple[int, int, int, int] | None = None,
+) -> PsychometricPosterior:
+    """The posterior of threshold, width, lapse rate and, where it is not known, guess rate.
+
+    Args:
+        code: of the shape.
+        axis, prior: of the function.
+        guess_rate: where it is known (1); None where it is fitted.
+        x: places on the axis; k: answers; n: trials; all of shape (places,).
+        mode: θ of the largest ln density, shape (4,); the grid never loses it.
+        cells: of the last grid along threshold, ln width, lapse rate and guess rate.
+    """
+    low, high = _span(prior, guess_rate, axis)
+    coarse = _one_guess(_COARSE, guess_rate)
+    centre = [_coordinate(at, mode[at]) for at in range(4)]
+    for _ in range(_MOST_PASSES):
+        _, weights, _ = _weigh(code, axis, prior, guess_rate, x, k, n, low, high, coarse)
+        before = high - low
+        for at in range(4):
+            marginal = weights.sum(axis=tuple(other for other in range(4) if other != at))
+            total = np.cumsum(marginal)
+            cell = (high[at] - low[at]) / coarse[at]
+            first = low[at] + cell * (int(np.searchsorted(total, _OUTSIDE)) - 1)
+            last = low[at] + cell * (int(np.searchsorted(total, 1.0 - _OUTSIDE)) + 2)
+            low[at], high[at] = (
+                max(low[at], min(first, centre[at] - cell)),
+                min(high[at], max(last, centre[at] + cell)),
+            )
+        if np.all(high - low >= _SETTLED * before):
+            break
+    fine = (_FINE if guess_rate is not None else _FINE_WITH_GUESS) if cells is None else cells
+    fine = _one_guess(fine, guess_rate)
+    _, weights, log_mean = _weigh(code, axis, prior, guess_rate, x, k, n, low, high, fine)
+    edges = []
+    for at, size in enumerate(fine):
+        theta = _theta(at, np.linspace(low[at], high[at], size + 1))
+        as_logarithm = at == kernel.LOG_WIDTH or (at == kernel.THRESHOLD and axis == "log")
+        edges.append(np.exp(theta) if as_logarithm else theta)
+    return PsychometricPosterior(axis, (edges[0], edges[1], edges[2], edges[3]), weights, log_mean)
+
+
+def _one_guess(
+    cells: tuple[int, int, int, int], guess_rate: float | None
+) -> tuple[int, int, int, int]:
+    return cells if guess_rate is None else (*cells[:3], 1)
+
+
+def _coordinate(at: int, theta: FloatLike) -> FloatArray:
+    """Where a θ stands on the grid."""
+    rate = at in (kernel.LAPSE, kernel.GUESS)
+    return np.asarray(np.arcsin(np.sqrt(theta)) if rate else theta)
+
+
+def _theta(at: int, coordinate: FloatArray) -> FloatArray:
+    rate = at in (kernel.LAPSE, kernel.GUESS)
+    return np.asarray(np.sin(coordinate) ** 2 if rate else coordinate)
+
+
+def _span(
+    prior: PsychometricPrior, guess_rate: float | None, axis: Axis
+) -> tuple[FloatArray, FloatArray]:
+    """Lowest and highest coordinates of the whole prior; equal for a rate that is known."""
+    low, high = prior.bounds(axis)
+    if guess_rate is not None:
+        low[kernel.GUESS] = high[kernel.GUESS] = guess_rate
+    else:
+        high[kernel.GUESS] = LARGEST_RATE
+    return (
+        np.array([_coordinate(at, low[at]) for at in range(4)]),
+        np.array([_coordinate(at, high[at]) for at in range(4)]),
+    )
+
+
+def _weigh(
+    code: int,
+    axis: Axis,
+    prior: PsychometricPrior,
+    guess_rate: float | None,
+    x: FloatArray,
+    k: FloatArray,
+    n: FloatArray,
+    low: FloatArray,
+    high: FloatArray,
+    cells: tuple[int, int, int, int],
+) -> tuple[list[FloatArray], FloatArray, float]:
+    """Nodes (θ), probabilities of the cells, and ln of the mean likelihood over the prior."""
+    nodes, masses = [], []
+    for at, size in enumerate(cells):
+        edges = np.linspace(low[at], high[at], size + 1)
+        known = at == kernel.GUESS and guess_rate is not None
+        middle = 0.5 * (edges[1:] + edges[:-1])
+        theta = _theta(at, middle)
+        nodes.append(theta)
+        # dθ/dφ of θ = sin²φ.
+        stretch = np.sin(2 * middle) if at in (kernel.LAPSE, kernel.GUESS) else 1.0
+        cell = np.diff(edges) * stretch
+        masses.append(np.ones(1) if known else prior.density(at, theta, axis) * cell)
+    m, w, lapse, guess = nodes
+    weights = kernel.grid_log_likelihood(code, m, w, lapse, guess, x, k, n)
+    largest = float(weights.max())
+    np.exp(weights - largest, out=weights)
+    weights *= masses[0][:, None, None, None] * masses[1][:, None, None]
+    weights *= masses[2][:, None] * masses[3]
+    total = float(weights.sum())
+    weights /= total
+    return nodes, weights, largest + float(np.log(total))

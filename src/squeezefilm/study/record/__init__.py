@@ -1,0 +1,1 @@
+"""A study's file: one SQLite database, exports from it, merging, deletion."""

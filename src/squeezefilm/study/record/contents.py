@@ -1,0 +1,242 @@
+"""What a study's file may hold: checked once when it is opened, so that all else may rely on it.
+
+A file may come from elsewhere, or be damaged. Identifiers and the names of traces go into names
+of files and are searched for byte by byte, so nothing but what this program makes is let in.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+import sqlite3
+from collections.abc import Callable, Iterable, Iterator
+from datetime import datetime
+from typing import TYPE_CHECKING, Any
+
+from squeezefilm.errors import InputError
+from squeezefilm.study.record.schema import SCHEMA, TABLES
+
+if TYPE_CHECKING:
+    from squeezefilm.study.design.study_design import StudyDesign
+    from squeezefilm.study.record.store import StudyStore
+
+_IDENTIFIER = re.compile(r"[0-9a-f-]{16,36}")
+_TRACE = re.compile(r"[0-9a-f]{32}\.(csv|sqft)")
+_HALF_WRITTEN = re.compile(rf"\.{_TRACE.pattern}\.[a-z0-9_]+")
+_PHASES = ("familiarisation", "practice", "main", "catch")
+_PLAIN = (str, int, float, bool, type(None))
+_KINDS: dict[str, type] = {"TEXT": str, "INTEGER": int, "REAL": float}
+
+Check = Callable[[Any], bool]
+
+
+def require_identifier(text: str) -> None:
+    """Refuse what is no pseudonym or identifier that this program made. Raises `InputError`."""
+    if not _IDENTIFIER.fullmatch(text):
+        raise InputError(
+            f"'{text[:80]}' is no participant's pseudonym: that is 16 digits and letters from a "
+            "to f; `study status` lists them"
+        )
+
+
+def is_trace(name: str) -> bool:
+    """Whether a file among the traces has a name that this program gave, half-written or not."""
+    return bool(_TRACE.fullmatch(name) or _HALF_WRITTEN.fullmatch(name))
+
+
+def require_contents(store: StudyStore) -> None:
+    """Refuse a file whose tables or rows are not what this program writes.
+
+    Raises `InputError` that names table, row and column, `RecordError` for what cannot be read.
+    """
+    for problem in _problems(store):
+        raise InputError(
+            f"{store.path} is damaged or was not written by this program: {problem}. Nothing of it "
+            f"was used; open the last good backup (in {store.backups.name}), or mend that row"
+        )
+
+
+def _problems(store: StudyStore) -> Iterator[str]:
+    with sqlite3.connect(":memory:") as reference:
+        reference.executescript(SCHEMA)
+        wanted = {name: _shape(reference.execute, name) for name in ("study", *TABLES)}
+    reference.close()
+    for name in wanted:
+        if _shape(store.values, name) != wanted[name]:
+            yield f"the table {name} has other columns"
+            return
+    for row in store.rows("SELECT name FROM sqlite_schema WHERE type IN ('trigger', 'view')"):
+        yield f"{row['name']} is a trigger or a view, and a study has none"
+    for row in store.rows("PRAGMA foreign_key_check"):
+        yield f"a row of {row['table']} belongs to one of {row['parent']} that is gone"
+    studies = store.rows("SELECT * FROM study")
+    if len(studies) != 1:
+        yield f"it holds {len(studies)} studies instead of one"
+        return
+    yield from _row_problems("study", wanted["study"], studies, _STUDY)
+    checks = _checks(store.design)
+    for table in TABLES:
+        rows = store.rows(f"SELECT * FROM {table}")
+        yield from _row_problems(table, wanted[table], rows, checks[table])
+    yield from _trial_problems(store)
+
+
+Shape = dict[str, tuple[type, bool]]
+
+
+def _shape(execute: Callable[[str], Iterable[Any]], table: str) -> Shape:
+    """Columns of a table: the type of their values, and whether they may be NULL."""
+    columns = execute(f"PRAGMA table_info({table})")
+    return {one[1]: (_KINDS.get(one[2], bytes), not (one[3] or one[5])) for one in columns}
+
+
+def _row_problems(
+    table: str, shape: Shape, rows: list[dict[str, Any]], checks: dict[str, Check]
+) -> Iterator[str]:
+    key = next(iter(shape))
+    for row in rows:
+        for column, (kind, may_be_empty) in shape.items():
+            value = row[column]
+            if value is None and may_be_empty:
+                continue
+            holds = isinstance(value, kind) and (
+                not isinstance(value, float) or math.isfinite(value)
+            )
+            if not holds or (column in checks and not checks[column](value)):
+                yield f"{table} {row[key]!r:.40} has {column} = {value!r:.60}"
+
+
+def _trial_problems(store: StudyStore) -> Iterator[str]:
+    """What no column shows alone: whether answers fit their trials, and trials their design."""
+    design = store.design
+    gratings = [one.name for one in design.alternatives]
+    stimuli = [one.name for one in design.stimuli]
+    catches = [one.stimulus.name for one in design.catch]
+    for row in store.rows(
+        "SELECT t.*, r.trial AS answered, r.stimuli AS felt, r.choice, r.intensity, r.estimate "
+        "FROM trial t LEFT JOIN response r ON r.trial = t.uuid"
+    ):
+        names, offered = json.loads(row["stimuli"]), json.loads(row["alternatives"])
+        known = {
+            "familiarisation": gratings or stimuli,
+            "catch": stimuli + catches,
+        }.get(row["phase"], stimuli)
+        place = f"trial {row['uuid']}"
+        if bool(names) == bool(row["adaptive"]) or not set(names) <= set(known):
+            yield f"{place} presents {names!r:.60}, which its design does not"
+        if not set(offered) <= set(design.answers):
+            yield f"{place} offers {offered!r:.60}, which its design does not"
+        if row["answered"] is None:
+            continue
+        felt = json.loads(row["felt"])
+        if not felt or (names and felt != names):
+            yield f"the answer to {place} is to {felt!r:.60} instead of {names!r:.60}"
+        if row["adaptive"] and row["intensity"] is None:
+            yield f"the answer to {place} has no intensity"
+        if offered and row["choice"] not in offered:
+            yield f"the answer to {place} is {row['choice']!r:.60}, which was not offered"
+
+
+def _json(text: str) -> Any:
+    try:
+        return json.loads(text)
+    except (ValueError, RecursionError):
+        # No JSON has this type, so that no check holds for it.
+        return ...
+
+
+def _texts(text: str) -> bool:
+    found = _json(text)
+    return isinstance(found, list) and all(isinstance(one, str) for one in found)
+
+
+def _traces(text: str) -> bool:
+    return _texts(text) and all(_TRACE.fullmatch(one) for one in json.loads(text))
+
+
+def _fields(text: str) -> bool:
+    """Whether a text is an object of plain values."""
+    found = _json(text)
+    return isinstance(found, dict) and all(isinstance(one, _PLAIN) for one in found.values())
+
+
+def _fields_or_none(text: str) -> bool:
+    return _json(text) is None or _fields(text)
+
+
+def _verification(text: str) -> bool:
+    found = _json(text)
+    wanted = {"measurable", "amplitude_m", "resonance_frequency_Hz"}
+    return (
+        isinstance(found, dict)
+        and wanted <= found.keys()
+        and all(isinstance(found[one], _PLAIN) for one in wanted)
+    )
+
+
+def _moment(text: str) -> bool:
+    try:
+        return datetime.fromisoformat(text).utcoffset() is not None
+    except ValueError:
+        return False
+
+
+def _not_negative(value: float) -> bool:
+    return value >= 0
+
+
+def _identifier(text: str) -> bool:
+    return bool(_IDENTIFIER.fullmatch(text))
+
+
+_STUDY: dict[str, Check] = {
+    "uuid": _identifier,
+    "seed": lambda one: 0 <= one <= 2**53,
+    "stations": lambda one: one >= 1,
+    "station": _not_negative,
+    "created_utc": _moment,
+}
+
+
+def _checks(design: StudyDesign) -> dict[str, dict[str, Check]]:
+    """What the columns of each table must hold."""
+    displays, series = design.displays, [one.name for one in design.adaptive]
+    return {
+        "participant": {"uuid": _identifier, "number": _not_negative, "enrolled_utc": _moment},
+        "trial": {
+            "uuid": _identifier,
+            "participant": _identifier,
+            "number": _not_negative,
+            "display": lambda one: one in displays,
+            "phase": lambda one: one in _PHASES,
+            "stimuli": _texts,
+            "alternatives": _texts,
+            "adaptive": lambda one: not one or one in series,
+            "pause_s": _not_negative,
+            "seed": _not_negative,
+        },
+        "session": {
+            "uuid": _identifier,
+            "participant": _identifier,
+            "display": lambda one: one in displays,
+            "conditions": _fields,
+            "exposure": _fields_or_none,
+            "started_utc": _moment,
+        },
+        "verification": {
+            "uuid": _identifier,
+            "moment": lambda one: one in ("before", "after"),
+            "result": _verification,
+            "made_utc": _moment,
+        },
+        "presentation": {"uuid": _identifier, "presented_utc": _moment},
+        "response": {
+            "stimuli": _texts,
+            "traces": _traces,
+            "correct": lambda one: one in (0, 1),
+            "response_time_s": _not_negative,
+            "started_utc": _moment,
+            "ended_utc": _moment,
+        },
+    }

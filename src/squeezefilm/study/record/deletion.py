@@ -1,0 +1,228 @@
+"""Taking a participant out of a study without a trace.
+
+All that this program wrote is gone through: rows, traces, backups, exports, the lab's sittings. It
+is then searched, byte by byte, for every identifier that belonged to the participant. Whatever
+could keep this from being complete is looked for first, and refused with nothing deleted. Files
+that this program did not write are a person's own: they are searched, told, and left. What was
+copied elsewhere by hand, a file system's snapshots and the spare blocks of a solid-state disk are
+out of reach.
+"""
+
+from __future__ import annotations
+
+import glob
+import json
+import os
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from squeezefilm.errors import InputError, RecordError
+from squeezefilm.study.conduct.sittings import FILE, Sittings
+from squeezefilm.study.record.contents import is_trace, require_identifier
+from squeezefilm.study.record.database import same_folders
+from squeezefilm.study.record.erasure import erase_file, require_plain
+from squeezefilm.study.record.exports import LIST, export_again, exported_folders, own_files
+from squeezefilm.study.record.store import StudyStore
+
+_PIECE = 1 << 20
+
+
+@dataclass(frozen=True)
+class Deletion:
+    """What was taken out. `searched` counts the files in which nothing was found afterwards;
+    `left` are files and folders of other origin among them, which are as they were."""
+
+    enrolled: bool
+    answers: int
+    traces: int
+    backups: int
+    exports: int
+    sittings: int
+    searched: int
+    left: tuple[str, ...]
+
+
+def delete_participant(store: StudyStore, pseudonym: str) -> Deletion:
+    """Take a participant out of the file, its traces, backups, exports and sittings; verify it.
+
+    Exports are made anew without them. May be repeated: a pseudonym that is not there (any more)
+    is searched for all the same. Other stations' files must be gone through one by one, before
+    they are merged again.
+
+    Raises:
+        InputError: what is no pseudonym; or nothing was deleted, since the deletion would not be
+            complete: an export's folder or a file of other origin holds the participant, a file
+            to be erased is a link, another study keeps its traces in the same folder.
+        RecordError: another program has the file open (nothing was deleted); or the disk refused
+            on the way, or something is left, with the file it is in: repeat it.
+    """
+    require_identifier(pseudonym)
+    sittings = Sittings(store.path.with_name(FILE))
+    # First, while nothing is deleted yet, all that could fail on the way.
+    backups, erased, identifiers = _surveyed(store, sittings, pseudonym)
+    left = _own(store)
+    if held := _found_in(left, identifiers):
+        raise InputError(
+            f"nothing was deleted: {', '.join(held)} was not written by this program and holds "
+            f"what belongs to {pseudonym}; take it out of there, or move the file away, then repeat"
+        )
+    store.compact()
+    for path in backups:
+        with StudyStore.open(path) as backup:
+            remove_rows(backup, pseudonym)
+            backup.compact()
+    traces = _traces(store, pseudonym)
+    enrolled, answers = remove_rows(store, pseudonym)
+    store.compact()
+    # Those of programs that were killed could be anybody's.
+    for path in (*store.unreferenced_traces(), *erased):
+        erase_file(path)
+    sat = sittings.forget(pseudonym)
+    folders = export_again(store)
+    searched = _require_gone(store, sittings, identifiers)
+    return Deletion(
+        enrolled, answers, len(traces), len(backups), folders, sat, searched,
+        tuple(str(path) for path in left),
+    )  # fmt: skip
+
+
+def _surveyed(
+    store: StudyStore, sittings: Sittings, pseudonym: str
+) -> tuple[list[Path], list[Path], set[str]]:
+    """The backups to go through, the unfinished ones to erase, and what to search for.
+
+    Raises what keeps a deletion from being complete.
+    """
+    if others := same_folders(store.path):
+        raise InputError(
+            f"nothing was deleted: {others[0]} keeps its traces in the same folder as {store.path},"
+            f" {store.traces.name}; move one of the studies to another folder, with its traces"
+        )
+    for _, folder in exported_folders(store):
+        own_files(folder)
+    sittings.require_erasable()
+    store.require_alone()
+    store.require_whole()
+    backups, unfinished = store.backup_files()
+    identifiers = {pseudonym} | _identifiers(store, pseudonym)
+    for path in backups:
+        with StudyStore.open(path) as backup:
+            identifiers |= _identifiers(backup, pseudonym)
+    traces = [store.traces / name for name in _traces(store, pseudonym)]
+    for path in (*unfinished, *store.unreferenced_traces(), *traces):
+        if os.path.lexists(path):
+            require_plain(path)
+    for folder in {path.parent for path in (*backups, *traces)}:
+        if folder.is_dir() and not os.access(folder, os.W_OK | os.X_OK):
+            raise InputError(f"nothing was deleted: {folder} cannot be written to; allow it first")
+    return backups, unfinished, identifiers
+
+
+def _identifiers(store: StudyStore, pseudonym: str) -> set[str]:
+    """Everything random that only this participant's rows hold."""
+    found: set[str] = set()
+    sessions = "SELECT uuid FROM session WHERE participant = ?"
+    trials = "SELECT uuid FROM trial WHERE participant = ?"
+    for query in (
+        sessions,
+        trials,
+        f"SELECT uuid FROM verification WHERE session IN ({sessions})",
+        f"SELECT uuid FROM presentation WHERE trial IN ({trials})",
+    ):
+        found |= {row["uuid"] for row in store.rows(query, [pseudonym])}
+    return found | set(_traces(store, pseudonym))
+
+
+def _traces(store: StudyStore, pseudonym: str) -> list[str]:
+    found = store.rows(
+        "SELECT r.traces FROM response r JOIN trial t ON t.uuid = r.trial WHERE t.participant = ?",
+        [pseudonym],
+    )
+    return [name for row in found for name in json.loads(row["traces"])]
+
+
+def remove_rows(store: StudyStore, pseudonym: str) -> tuple[bool, int]:
+    """Delete a participant's rows, and nothing else. Whether they were enrolled, and how many
+    answers went. Raises `RecordError` with nothing deleted."""
+    sessions = "SELECT uuid FROM session WHERE participant = ?"
+    trials = "SELECT uuid FROM trial WHERE participant = ?"
+    with store.transaction() as write:
+        gone = write.execute(f"DELETE FROM response WHERE trial IN ({trials})", [pseudonym])
+        answers = gone.rowcount
+        for statement in (
+            f"DELETE FROM presentation WHERE trial IN ({trials})",
+            f"DELETE FROM verification WHERE session IN ({sessions})",
+            "DELETE FROM session WHERE participant = ?",
+            "DELETE FROM trial WHERE participant = ?",
+        ):
+            write.execute(statement, [pseudonym])
+        gone = write.execute("DELETE FROM participant WHERE uuid = ?", [pseudonym])
+        return gone.rowcount > 0, answers
+
+
+def _require_gone(store: StudyStore, sittings: Sittings, identifiers: set[str]) -> int:
+    """Search every file for every identifier. Raises `RecordError` naming where one is left."""
+    # Closing a file that SQLite has open would drop SQLite's locks on it.
+    with store.closed_meanwhile():
+        beside = store.path.parent.glob(f"{glob.escape(store.path.name)}*")
+        every = _placed({sittings.file, *beside, *_in_folders(_folders(store))})
+        if left := _found_in(every, identifiers):
+            raise RecordError(
+                f"the participant's rows are deleted, but traces are left in {', '.join(left)}; "
+                "delete these files by hand, or repeat with every other program closed"
+            )
+    return sum(path.is_file() for path in every)
+
+
+def _own(store: StudyStore) -> list[Path]:
+    """What lies among a study's files and was not written by this program, sorted."""
+    exports = exported_folders(store)
+    backups = {path for some in store.backup_files() for path in some}
+    ours = backups | {store.exports / LIST, *(folder for _, folder in exports)}
+    ours |= {path for _, folder in exports for path in folder.rglob("*")}
+    ours |= {store.path.with_name(f"{store.path.name}{part}") for part in ("", "-wal", "-shm")}
+    ours |= {path for path in _in_folders([store.traces]) if is_trace(path.name)}
+    beside = store.path.parent.glob(f"{glob.escape(store.path.name)}*")
+    return sorted(_placed({*beside, *_in_folders(_folders(store))}) - _placed(ours))
+
+
+def _folders(store: StudyStore) -> list[Path]:
+    exports = [folder for _, folder in exported_folders(store)]
+    return [store.traces, store.backups, store.exports, *exports]
+
+
+def _in_folders(folders: Iterable[Path]) -> Iterator[Path]:
+    for folder in folders:
+        yield from folder.rglob("*")
+
+
+def _placed(paths: Iterable[Path]) -> set[Path]:
+    """Paths by which the same file is the same, however it was asked for; links stay links."""
+    return {path.parent.resolve() / path.name for path in paths}
+
+
+def _found_in(paths: Iterable[Path], identifiers: set[str]) -> list[str]:
+    """Those whose name or content has one of the identifiers in it; links lead out of here."""
+    wanted = [one.encode() for one in identifiers]
+    return sorted(
+        str(path)
+        for path in paths
+        if any(one in os.fsencode(path.name) for one in wanted)
+        or (path.is_file() and not path.is_symlink() and _holds(path, wanted))
+    )
+
+
+def _holds(path: Path, wanted: list[bytes]) -> bool:
+    longest = max(len(one) for one in wanted)
+    tail = b""
+    try:
+        with path.open("rb") as file:
+            while piece := file.read(_PIECE):
+                whole = tail + piece
+                if any(one in whole for one in wanted):
+                    return True
+                tail = whole[-longest:]
+    except OSError as error:
+        raise RecordError(f"{path} cannot be searched: {error.strerror}") from error
+    return False

@@ -1,0 +1,147 @@
+"""Exports of a study, and the list of where they are, so that a deletion reaches them.
+
+The list lies beside the study (``study.exports/exports.json``), never in it: places on one
+machine's disk are nobody else's business.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Literal
+
+from squeezefilm.errors import InputError
+from squeezefilm.results import write_whole
+from squeezefilm.study.record import bids, psych_ds
+from squeezefilm.study.record.erasure import erase_file, require_plain
+from squeezefilm.study.record.session_table import SESSION_COLUMNS, session_table
+from squeezefilm.study.record.store import StudyStore
+from squeezefilm.study.record.trial_table import csv_text, trial_table
+
+Format = Literal["csv", "psych-ds", "bids"]
+FORMATS: tuple[Format, ...] = ("csv", "psych-ds", "bids")
+LIST = "exports.json"
+"""The list's name in the folder of exports."""
+_MARK = ".squeezefilm-export.json"
+
+
+def export_study(store: StudyStore, format: Format, folder: str | Path | None = None) -> Path:
+    """Write all answers into a folder, and remember it. Returns the folder.
+
+    Args:
+        store: the study.
+        format: "csv" (trials and sessions), "psych-ds" or "bids".
+        folder: new, empty, or an earlier export, whose files are replaced; by default the
+            format's own beside the study.
+
+    Raises:
+        InputError: an unknown format, a folder with other files in it (links are always
+            somebody's own), or one that cannot be written to.
+        RecordError: the study's file is damaged.
+    """
+    if format not in FORMATS:
+        raise InputError(f"format '{format}' is not known; allowed: {', '.join(FORMATS)}")
+    asked = Path(folder) if folder is not None else store.exports / format
+    target = asked.resolve()
+    store.require_whole()
+    files = _FILES[format](store)
+    _remove_export(target)
+    # The mark comes first: a half-written export is known for one, and can be replaced.
+    write_whole(target / _MARK, json.dumps({"format": format, "files": sorted(files)}, indent=2))
+    for name, text in files.items():
+        write_whole(target / name, text)
+    _remember(store, format, target)
+    return asked
+
+
+def exported_folders(store: StudyStore) -> list[tuple[Format, Path]]:
+    """Format and folder of every export that is still there."""
+    listed = store.exports / LIST
+    if not listed.is_file():
+        return []
+    try:
+        found = [(one["format"], Path(one["folder"])) for one in json.loads(listed.read_text())]
+    except (OSError, ValueError, KeyError, TypeError, RecursionError) as error:
+        raise InputError(
+            f"{listed} cannot be read ({error!r}); remove it and export again, and delete old "
+            "exports by hand"
+        ) from error
+    return [(format, folder) for format, folder in found if (folder / _MARK).is_file()]
+
+
+def export_again(store: StudyStore) -> int:
+    """Make every export anew, its old files erased. Returns how many there are."""
+    folders = exported_folders(store)
+    for format, folder in folders:
+        export_study(store, format, folder)
+    return len(folders)
+
+
+def own_files(folder: Path) -> set[Path]:
+    """The files of an earlier export in a folder; none for a folder that is empty or not there.
+
+    Raises `InputError` where there are others, which an export must not replace.
+    """
+    if folder.exists() and not folder.is_dir():
+        raise InputError(f"{folder} is a file; give a folder")
+    mark = folder / _MARK
+    # A link is never ours, whatever it leads to.
+    present = {path for path in folder.rglob("*") if path.is_symlink() or not path.is_dir()}
+    ours: set[Path] = set()
+    if mark.is_file() and not mark.is_symlink():
+        ours = {folder / name for name in _marked(mark)} | {mark}
+        # A file that was being written when a program was killed.
+        ours |= {p for p in present if any(p.name.startswith(f".{one.name}.") for one in ours)}
+        ours = {path for path in ours if not path.is_symlink()}
+    if others := sorted(str(path.relative_to(folder)) for path in present - ours):
+        raise InputError(
+            f"{folder} has files of its own ({', '.join(others[:3])}), which an export would "
+            "replace; move them, or give a new or empty folder"
+        )
+    for path in present:
+        require_plain(path)
+    return present
+
+
+def _marked(mark: Path) -> list[str]:
+    """The names of the files that an export's mark lists."""
+    try:
+        return [str(name) for name in json.loads(mark.read_text())["files"]]
+    except (OSError, ValueError, KeyError, TypeError, RecursionError) as error:
+        raise InputError(
+            f"{mark} cannot be read ({error!r:.100}); remove this export by hand, or give another "
+            "folder"
+        ) from error
+
+
+def _remove_export(folder: Path) -> None:
+    """Erase an earlier export. The mark goes last, so that an interrupted removal can be
+    repeated. Raises what `own_files` raises."""
+    mark = folder / _MARK
+    for path in sorted(own_files(folder), key=lambda one: one == mark):
+        erase_file(path)
+    for path in sorted((p for p in folder.rglob("*") if p.is_dir()), reverse=True):
+        path.rmdir()
+
+
+def _remember(store: StudyStore, format: Format, folder: Path) -> None:
+    known = {str(path): one for one, path in exported_folders(store)}
+    known[str(folder)] = format
+    listing = [{"format": one, "folder": path} for path, one in sorted(known.items())]
+    write_whole(store.exports / LIST, json.dumps(listing, indent=2))
+
+
+def _csv_files(store: StudyStore) -> dict[str, str]:
+    name = store.design.name
+    return {
+        f"{name}_trials.csv": csv_text(trial_table(store)),
+        f"{name}_sessions.csv": csv_text(session_table(store), SESSION_COLUMNS),
+    }
+
+
+_FILES: dict[Format, Callable[[StudyStore], dict[str, str]]] = {
+    "csv": _csv_files,
+    "psych-ds": psych_ds.dataset,
+    "bids": bids.dataset,
+}

@@ -1,0 +1,400 @@
+"""One file per study: SQLite with a write-ahead log, in which what is acknowledged stays.
+
+Every write is one transaction with ``synchronous=FULL``: when a call returns, its rows have been
+handed to the disk and synced, and survive a crash of program or machine as far as the disk keeps
+its word. A call that raises has written nothing. Traces of the finger lie beside the file in a
+folder of the same name with ``.traces``; their names are random.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import re
+import secrets
+import sqlite3
+import uuid
+from collections.abc import Iterable, Iterator, Mapping
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+from squeezefilm import __version__
+from squeezefilm.errors import InputError, RecordError
+from squeezefilm.quantities import require
+from squeezefilm.results import sync_folder, write_whole
+from squeezefilm.study.design.study_design import StudyDesign
+from squeezefilm.study.design.trials import Trial, trials
+from squeezefilm.study.record.contents import is_trace, require_contents
+from squeezefilm.study.record.database import (
+    FAILURES,
+    Database,
+    claim,
+    discard,
+    is_study,
+    require_alone,
+    require_study,
+    same_folders,
+)
+from squeezefilm.study.record.erasure import require_plain
+from squeezefilm.study.record.schema import APPLICATION_ID, SCHEMA, VERSION
+
+_HIGHEST_SEED = 2**53
+_UNFINISHED = ".unfinished"
+"""Ends the name of a backup that is being written."""
+Row = Mapping[str, Any]
+
+
+def utc_now() -> str:
+    """The wall clock as text (UTC, milliseconds)."""
+    return datetime.now(UTC).isoformat(timespec="milliseconds")
+
+
+class StudyStore:
+    """A study's file, open. Make one with `create`, open it again with `open`; a context manager.
+
+    Reads return plain rows; `StudyRun` and the functions of this room are what writes trials.
+    """
+
+    def __init__(self, path: Path, database: Database) -> None:
+        self.path = path
+        self._database = database
+        self._design: StudyDesign | None = None
+
+    @classmethod
+    def create(
+        cls,
+        path: str | Path,
+        design: StudyDesign,
+        seed: int,
+        *,
+        station: int = 0,
+        stations: int = 1,
+    ) -> StudyStore:
+        """A new file for a design.
+
+        Args:
+            path: of the file, which must not exist.
+            design: kept whole in the file.
+            seed: of all orders; from 0 to 2⁵³.
+            station, stations: where several stations gather data, which of how many this is; it
+                numbers its participants station, station + stations, … so that orders stay
+                balanced over all. Their files merge.
+
+        Raises:
+            InputError: a file that exists, or numbers outside their range.
+            RecordError: a file that cannot be written.
+        """
+        path = Path(path)
+        require("seed", seed, at_least=0, at_most=_HIGHEST_SEED)
+        require("stations", stations, at_least=1, at_most=10_000)
+        require("station", station, at_least=0, below=stations)
+        if path.suffix in ("", ".traces", ".backups", ".exports"):
+            raise InputError(f"{path}: give the file a suffix of its own, like study.sqlite")
+        claimed = claim(path)
+        try:
+            if others := same_folders(path):
+                raise InputError(
+                    f"{others[0]} keeps its traces, backups and exports in the folders that {path} "
+                    "would use; give a name that differs in more than the suffix"
+                )
+            database = Database(path, new=True)
+        except BaseException:
+            discard(path, claimed)
+            raise
+        store = cls(path, database)
+        try:
+            store._fill(design, seed, station, stations)
+        except BaseException:
+            # Nothing half-made stays, and nothing goes that somebody else put there.
+            store.close()
+            discard(path, claimed)
+            raise
+        return store
+
+    def _fill(self, design: StudyDesign, seed: int, station: int, stations: int) -> None:
+        from squeezefilm.config.write import text_of
+
+        row = {
+            "uuid": str(uuid.uuid4()),
+            "name": design.name,
+            "design": text_of(design),
+            "design_sha256": design.sha256,
+            "seed": seed,
+            "station": station,
+            "stations": stations,
+            "squeezefilm_version": __version__,
+            "created_utc": utc_now(),
+        }
+        with self.transaction() as write:
+            # Not executescript, which commits: the tables are there with their study, or not.
+            for statement in SCHEMA.split(";"):
+                if statement.strip():
+                    write.execute(statement)
+            write.execute(f"PRAGMA application_id = {APPLICATION_ID}")
+            write.execute(f"PRAGMA user_version = {VERSION}")
+            insert(write, "study", row)
+
+    @classmethod
+    def open(cls, path: str | Path) -> StudyStore:
+        """A study's file, opened to go on. What is no study's file is not changed.
+
+        Raises:
+            InputError: no study's file, one of another version, or one with contents that this
+                program does not write.
+            RecordError: it cannot be opened or read.
+        """
+        path = Path(path)
+        require_study(path)
+        store = cls(path, Database(path))
+        try:
+            require_contents(store)
+        except BaseException:
+            store.close()
+            raise
+        return store
+
+    def close(self) -> None:
+        """Close the file; its write-ahead log is folded in where nobody else has it open."""
+        self._database.close()
+
+    @contextlib.contextmanager
+    def closed_meanwhile(self) -> Iterator[None]:
+        """Let go of the file, and open it again at the end: for who reads its bytes.
+
+        Raises `RecordError` if it was replaced meanwhile.
+        """
+        self._database.close()
+        try:
+            yield
+        finally:
+            self._database = Database(self.path)
+
+    def require_alone(self) -> None:
+        """Refuse while any other connection has the file open. Raises `RecordError`."""
+        with self.closed_meanwhile():
+            require_alone(self.path)
+
+    def require_whole(self) -> None:
+        """Refuse a damaged file: numbers of it are not to be trusted. Raises `RecordError`."""
+        found = self.rows("PRAGMA integrity_check(3)")
+        said = [str(row["integrity_check"]) for row in found]
+        if said != ["ok"]:
+            raise RecordError(
+                f"{self.path} is damaged ({'; '.join(said)[:300]}), so that nothing of it is given "
+                f"out. Copy it, and go on with the last good backup in {self.backups}; what else "
+                "can be read of the copy, `sqlite3 COPY .recover` shows"
+            )
+
+    def __enter__(self) -> StudyStore:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    @property
+    def traces(self) -> Path:
+        """The folder of the finger's traces."""
+        return self.path.with_suffix(".traces")
+
+    @property
+    def backups(self) -> Path:
+        """The folder of backups."""
+        return self.path.with_suffix(".backups")
+
+    @property
+    def exports(self) -> Path:
+        """The folder of exports, where no other is asked for, and of the list of those."""
+        return self.path.with_suffix(".exports")
+
+    @property
+    def study(self) -> Row:
+        """The row about the study itself."""
+        return self.rows("SELECT * FROM study")[0]
+
+    @property
+    def design(self) -> StudyDesign:
+        """The design the file was made with."""
+        if self._design is None:
+            from squeezefilm import config
+
+            self._design = config.load_text(StudyDesign, self.study["design"], file=self.path)
+        return self._design
+
+    def rows(self, query: str, values: Iterable[Any] = ()) -> list[dict[str, Any]]:
+        """What a query finds, as dictionaries. Raises `RecordError` if the file cannot be read."""
+        self._database.require_in_place()
+        try:
+            cursor = self._database.connection.execute(query, tuple(values))
+            names = [one[0] for one in cursor.description]
+            return [dict(zip(names, row, strict=True)) for row in cursor]
+        except FAILURES as error:
+            raise RecordError(f"{self.path} cannot be read: {error}") from error
+
+    def values(self, query: str) -> list[tuple[Any, ...]]:
+        """As `rows`, without the columns' names."""
+        return [tuple(row.values()) for row in self.rows(query)]
+
+    @contextlib.contextmanager
+    def transaction(self) -> Iterator[sqlite3.Connection]:
+        """One transaction: all of it is on the disk when it ends, or nothing is and it raises."""
+        connection = self._database.connection
+        try:
+            connection.execute("BEGIN IMMEDIATE")
+            self._database.require_in_place()
+            yield connection
+            connection.execute("COMMIT")
+            # What was removed or replaced meanwhile holds this row no more.
+            self._database.require_in_place()
+        except FAILURES as error:
+            _roll_back(connection)
+            raise RecordError(
+                f"{self.path} could not take the row: {error}; nothing was acknowledged. "
+                "Make room on the disk (or close what locks the file) and go on: the same trial "
+                "comes again"
+            ) from error
+        except BaseException:
+            _roll_back(connection)
+            raise
+
+    def add(self, table: str, row: Row) -> None:
+        """Add a row and sync it. Raises `RecordError`, with nothing written."""
+        with self.transaction() as write:
+            insert(write, table, row)
+
+    def enrol(self) -> str:
+        """A new participant: a random pseudonym, with all trials planned. Returns the pseudonym.
+
+        The lowest free number of this station is taken, so that somebody deleted leaves no gap
+        in the balance. Raises `RecordError`, with nobody enrolled.
+        """
+        design, study = self.design, self.study
+        pseudonym = secrets.token_hex(8)
+        with self.transaction() as write:
+            taken = {one[0] for one in write.execute("SELECT number FROM participant")}
+            number = study["station"]
+            while number in taken:
+                number += study["stations"]
+            row = {
+                "uuid": pseudonym,
+                "number": number,
+                "squeezefilm_version": __version__,
+                "enrolled_utc": utc_now(),
+            }
+            insert(write, "participant", row)
+            for trial in trials(design, number, study["seed"]):
+                insert(write, "trial", _planned(trial, pseudonym))
+        return pseudonym
+
+    def participants(self) -> list[dict[str, Any]]:
+        """Everyone enrolled, by number: uuid, number, trials planned and answered."""
+        return self.rows(
+            "SELECT p.uuid, p.number, p.enrolled_utc, count(t.uuid) AS planned, "
+            "count(r.trial) AS answered FROM participant p JOIN trial t ON t.participant = p.uuid "
+            "LEFT JOIN response r ON r.trial = t.uuid GROUP BY p.uuid ORDER BY p.number, p.uuid"
+        )
+
+    def require_participant(self, pseudonym: str) -> Row:
+        """A participant's row. Raises `InputError` that lists those there are."""
+        known = self.rows("SELECT * FROM participant")
+        for row in known:
+            if row["uuid"] == pseudonym:
+                return row
+        names = ", ".join(row["uuid"] for row in known) or "nobody yet"
+        raise InputError(f"there is no participant '{pseudonym}'; enrolled: {names}")
+
+    def save_trace(self, text: str) -> str:
+        """Write a trace beside the study, synced, under a random name. Returns the name.
+
+        A trace whose trial is never acknowledged is nobody's; `unreferenced_traces` finds it.
+        Raises `RecordError` with nothing left behind.
+        """
+        name = f"{secrets.token_hex(16)}.csv"
+        try:
+            write_whole(self.traces / name, text)
+        except InputError as error:
+            raise RecordError(f"{error}; nothing was acknowledged") from error
+        return name
+
+    def unreferenced_traces(self) -> list[Path]:
+        """Traces that this program wrote and no answer names: of programs that were killed.
+
+        Raises `InputError` where one of them is a link, or has a second name.
+        """
+        if not self.traces.is_dir():
+            return []
+        found = self.rows("SELECT traces FROM response")
+        named = {name for row in found for name in json.loads(row["traces"])}
+        stray = sorted(
+            path for path in self.traces.iterdir() if is_trace(path.name) and path.name not in named
+        )
+        for path in stray:
+            require_plain(path)
+        return stray
+
+    def compact(self) -> None:
+        """Rewrite the file without anything deleted, and empty its write-ahead log.
+
+        Raises `RecordError` while another program reads or writes it.
+        """
+        self._database.compact()
+
+    def back_up(self) -> Path:
+        """A copy of the file as it is now, in `backups`; there whole or not at all. Raises
+        `RecordError`, also for a damaged file."""
+        self.require_whole()
+        stamp = datetime.now(UTC).strftime("%Y%m%dT%H%M%S%fZ")
+        target = self.backups / f"{self.path.stem}-{stamp}-{secrets.token_hex(3)}{self.path.suffix}"
+        unfinished = target.with_name(f".{target.name}{_UNFINISHED}")
+        try:
+            target.parent.mkdir(exist_ok=True)
+            self._database.copy_to(unfinished)
+            unfinished.replace(target)
+            sync_folder(target.parent)
+        except (*FAILURES, OSError) as error:
+            with contextlib.suppress(OSError):
+                unfinished.unlink(missing_ok=True)
+            raise RecordError(f"no backup could be written to {target}: {error}") from error
+        return target
+
+    def backup_files(self) -> tuple[list[Path], list[Path]]:
+        """Backups, and what is left of those that were never finished."""
+        if not self.backups.is_dir():
+            return [], []
+        every = sorted(self.backups.iterdir())
+        name = re.compile(
+            rf"\.{re.escape(self.path.stem)}-\w+-\w+{re.escape(self.path.suffix + _UNFINISHED)}"
+            r"(-journal)?"
+        )
+        whole = [path for path in every if path.suffix == self.path.suffix and is_study(path)]
+        return whole, [path for path in every if name.fullmatch(path.name)]
+
+
+def insert(write: sqlite3.Connection, table: str, row: Row) -> None:
+    """Add a row to one of this room's tables, in a transaction that is open."""
+    columns, marks = ", ".join(row), ", ".join("?" * len(row))
+    write.execute(f"INSERT INTO {table} ({columns}) VALUES ({marks})", tuple(row.values()))
+
+
+def _planned(trial: Trial, participant: str) -> Row:
+    return {
+        "uuid": str(uuid.uuid4()),
+        "participant": participant,
+        "number": trial.number,
+        "display": trial.display,
+        "block": trial.block,
+        "phase": trial.phase,
+        "stimuli": json.dumps(trial.stimuli),
+        "alternatives": json.dumps(trial.alternatives),
+        "answer": trial.answer,
+        "adaptive": trial.adaptive,
+        "reference_first": int(trial.reference_first),
+        "pause_s": trial.pause,
+        "seed": trial.seed,
+    }
+
+
+def _roll_back(connection: sqlite3.Connection) -> None:
+    # SQLite rolls back by itself after some errors (a full disk); then there is nothing to do.
+    if connection.in_transaction:
+        connection.execute("ROLLBACK")

@@ -1,0 +1,153 @@
+"""What every finger class gets of every surface of a study: the slow part, computed once.
+
+Noise and decisions (`simulated`) need only these tables, so ten thousand people cost seconds.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from squeezefilm.display import Display, load_display
+from squeezefilm.errors import InputError
+from squeezefilm.perception.observer import FingerClass, Observer
+from squeezefilm.perception.percepts import Apparatus, Percept, grating_percept, percept
+from squeezefilm.perception.senses import Candidates
+from squeezefilm.perception.stimuli import Grating, Stimulus
+from squeezefilm.quantities import DimensionlessArray, FloatArray
+from squeezefilm.study.design.study_design import StudyDesign
+from squeezefilm.study.simulated.causes import Causes, causes
+
+Progress = Callable[[str], None]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ChainTables:
+    """Percepts of a match-to-sample study before any noise.
+
+    Attributes:
+        design, observer: the inputs.
+        fingers: the finger classes.
+        apparatus: how each display was run, by the design's displays.
+        virtual: candidates of shape (displays, fingers, stimuli, candidates).
+        real: candidates of shape (fingers, alternatives, candidates).
+        virtual_rhythm: evidence (d′) by period, shape (displays, fingers, stimuli, periods).
+        real_rhythm: likewise, shape (fingers, alternatives, periods).
+        causes: of each display and stimulus, one per finger.
+    """
+
+    design: StudyDesign
+    observer: Observer
+    fingers: tuple[FingerClass, ...]
+    apparatus: tuple[Apparatus, ...]
+    virtual: Candidates
+    real: Candidates
+    virtual_rhythm: DimensionlessArray
+    real_rhythm: DimensionlessArray
+    causes: tuple[tuple[tuple[Causes, ...], ...], ...]
+
+    def explain(self, display: int = 0) -> dict[str, Causes]:
+        """The reasons by stimulus on one of the displays: medians over fingers."""
+        return {
+            one.name: _median(found)
+            for one, found in zip(self.design.stimuli, self.causes[display], strict=True)
+        }
+
+
+def chain_tables(
+    design: StudyDesign,
+    observer: Observer,
+    apparatus: Apparatus | tuple[Apparatus, ...] | None = None,
+    displays: tuple[Display, ...] | None = None,
+    progress: Progress | None = None,
+) -> ChainTables:
+    """The chain for every display, finger class and surface; cached within the process.
+
+    Args:
+        design: a match-to-sample study.
+        observer: whose senses and fingers.
+        apparatus: how displays are run: one for all, or one for each.
+        displays: in place of those the design names, in its order.
+        progress: is told each step.
+
+    Raises:
+        InputError: another task, or as many displays or apparatus as the design has not.
+    """
+    tell = progress or (lambda _: None)
+    if design.task != "match-to-sample":
+        raise InputError(
+            f"task = '{design.task}' has no simulated participants yet; simulate a match-to-sample "
+            "design",
+            quantity="task",
+        )
+    plates = tuple(load_display(one) for one in design.displays) if displays is None else displays
+    runs = apparatus if isinstance(apparatus, tuple) else (apparatus or Apparatus(),) * len(plates)
+    if len(plates) != len(design.displays) or len(runs) != len(plates):
+        raise InputError(
+            f"the design has {len(design.displays)} displays; {len(plates)} displays and "
+            f"{len(runs)} apparatus were given"
+        )
+    fingers = observer.fingers()
+    real = [[_real(one, observer, finger) for one in design.alternatives] for finger in fingers]
+    virtual, why = [], []
+    for plate, run in zip(plates, runs, strict=True):
+        by_finger = []
+        for number, finger in enumerate(fingers):
+            tell(f"{plate.name}: finger {number + 1} of {len(fingers)}")
+            by_finger.append([_virtual(plate, s, observer, finger, run) for s in design.stimuli])
+        virtual.append([[found for found, _ in row] for row in by_finger])
+        why.append(tuple(tuple(row[s][1] for row in by_finger) for s in range(len(design.stimuli))))
+    return ChainTables(
+        design=design,
+        observer=observer,
+        fingers=fingers,
+        apparatus=tuple(runs),
+        virtual=_competing(virtual),
+        real=_competing(real),
+        virtual_rhythm=_gathered(virtual, lambda one: one.evidence.rhythm),
+        real_rhythm=_gathered(real, lambda one: one.evidence.rhythm),
+        causes=tuple(why),
+    )
+
+
+@functools.lru_cache(maxsize=4096)
+def _virtual(
+    display: Display, stimulus: Stimulus, observer: Observer, finger: FingerClass, run: Apparatus
+) -> tuple[Percept, Causes]:
+    found, played = percept(display, stimulus, observer, finger, run)
+    return found, causes(stimulus, found, played, observer, finger)
+
+
+@functools.lru_cache(maxsize=4096)
+def _real(grating: Grating, observer: Observer, finger: FingerClass) -> Percept:
+    return grating_percept(grating, observer, finger)
+
+
+def _competing(tree: Any) -> Candidates:
+    return Candidates(
+        _gathered(tree, lambda one: one.candidates.period),
+        _gathered(tree, lambda one: one.candidates.d_prime),
+    )
+
+
+def _gathered(tree: Any, part: Callable[[Percept], FloatArray]) -> FloatArray:
+    """One array of every percept in nested lists, which become its first axes."""
+
+    def gather(one: Any) -> Any:
+        return [gather(i) for i in one] if isinstance(one, list) else part(one)
+
+    return np.array(gather(tree), dtype=float)
+
+
+def _median(found: tuple[Causes, ...]) -> Causes:
+    return Causes(
+        **{
+            field.name: float(np.median([getattr(one, field.name) for one in found]))
+            for field in dataclasses.fields(Causes)
+        }
+    )

@@ -1,0 +1,278 @@
+"""Simulated participants of a match-to-sample study: noise, decisions and times, in arrays.
+
+On a trial each candidate rhythm of the virtual surface has its evidence plus noise of standard
+deviation 1; the strongest is perceived if it passes the criterion. Its period is perceived with
+σ √(1 + 1/d′²) in the logarithm, σ from the person's Weber fraction (75 % of two intervals). Each
+real grating is felt again on each trial, with noise of its own. The answer is the grating whose
+perceived period is nearest; a person who feels nothing, or lapses, guesses. All noise falls with
+practice. **Every number that comes out is simulated.**
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from squeezefilm.errors import InputError
+from squeezefilm.hard_limits import SIMULATED_TRIALS, require_within
+from squeezefilm.perception.observer import Observer
+from squeezefilm.perception.senses import D_PRIME_OF_75
+from squeezefilm.quantities import (
+    Dimensionless,
+    DimensionlessArray,
+    FloatArray,
+    SecondArray,
+    require,
+)
+from squeezefilm.results import stamp, to_json
+from squeezefilm.study.design.study_design import StudyDesign
+from squeezefilm.study.design.trials import trials
+from squeezefilm.study.identification.confusion import ConfusionMatrix, IntArray
+from squeezefilm.study.simulated.chain_tables import ChainTables, chain_tables
+
+_CHUNK = 60
+"""Orders of more people repeat those of the first so many: a multiple of all rows for 5 stimuli."""
+_MOST_PEOPLE = 1_000_000
+_STREAM = 29
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SimulatedStudy:
+    """Answers of simulated participants; arrays of shape (participants, trials).
+
+    Attributes:
+        tables: the chain behind them.
+        seed: of orders, people and noise.
+        display, stimulus: numbers of what was presented, in the design's order.
+        choice: number of the alternative answered.
+        number: of the trial within the participant.
+        felt: whether anything was felt.
+        response_time: (s); assumed.
+        finger: class of each participant, shape (participants,).
+        origin: what to label results with.
+    """
+
+    tables: ChainTables
+    seed: int
+    display: IntArray
+    stimulus: IntArray
+    choice: IntArray
+    number: IntArray
+    felt: NDArray[np.bool_]
+    response_time: SecondArray
+    finger: IntArray
+    origin: str = "simulated"
+
+    @property
+    def participants(self) -> int:
+        """How many people."""
+        return int(self.choice.shape[0])
+
+    def participant_counts(self, display: int = 0) -> IntArray:
+        """Counts of each person on a display, shape (participants, answers, stimuli)."""
+        design = self.tables.design
+        answers, stimuli = len(design.alternatives), len(design.stimuli)
+        here = self.display == display
+        who = np.broadcast_to(np.arange(self.participants)[:, None], self.choice.shape)[here]
+        flat = (who * answers + self.choice[here]) * stimuli + self.stimulus[here]
+        counts = np.bincount(flat, minlength=self.participants * answers * stimuli)
+        return counts.reshape(self.participants, answers, stimuli).astype(np.int64)
+
+    def confusion(self, display: int = 0) -> ConfusionMatrix:
+        """The confusion matrix on a display: rows gratings, columns simulated periods."""
+        design = self.tables.design
+        return ConfusionMatrix(
+            self.participant_counts(display).sum(axis=0),
+            tuple(one.name for one in design.alternatives),
+            tuple(one.name for one in design.stimuli),
+        )
+
+    def proportion_correct(self, display: int = 0) -> Dimensionless:
+        """Share of right answers on a display (1)."""
+        right = right_answers(self.tables.design)
+        here = self.display == display
+        return float(np.mean(self.choice[here] == right[self.stimulus[here]]))
+
+    def summary(self) -> dict[str, Any]:
+        """What ``squeezefilm study simulate --json`` prints; keys carry units."""
+        tables, design = self.tables, self.tables.design
+        found: dict[str, Any] = {}
+        for index, name in enumerate(design.displays):
+            matrix = self.confusion(index)
+            found[name] = {
+                "rows": list(matrix.answers),
+                "columns": list(matrix.stimuli),
+                "confusion": matrix.counts.tolist(),
+                "confusion_percent": np.round(matrix.percent, 3).tolist(),
+                "proportion_correct": self.proportion_correct(index),
+                "nothing_felt": float(np.mean(~self.felt[self.display == index])),
+                "reasons": {
+                    one: to_json(why) for one, why in tables.explain(index).items()
+                },
+            }  # fmt: skip
+        first = next(iter(found.values()))
+        return {
+            "study": design.name,
+            "origin": self.origin,
+            "observer": tables.observer.name,
+            "participants": self.participants,
+            "seed": self.seed,
+            "layout": "rows: gratings answered; columns: periods simulated; counts",
+            "confusion": {name: one["confusion"] for name, one in found.items()},
+            "proportion_correct": {name: one["proportion_correct"] for name, one in found.items()},
+            "rows": first["rows"],
+            "columns": first["columns"],
+            "displays": found,
+            "provenance": stamp((design, tables.observer, tables.apparatus), self.seed),
+        }
+
+
+def simulate_participants(
+    design: StudyDesign,
+    observer: Observer,
+    participants: int,
+    seed: int,
+    tables: ChainTables | None = None,
+) -> SimulatedStudy:
+    """Answers of simulated participants to the main trials of a match-to-sample design.
+
+    A participant's answers depend on the seed and their number alone, not on how many there are.
+    Orders are those of `trials`; from the sixty-first person on they repeat. Practice and catch
+    trials count for learning only.
+
+    Args:
+        design: the study.
+        observer: what people are made of.
+        participants: how many; 1 to a million.
+        seed: the same seed gives the same answers.
+        tables: of `chain_tables` for the same design and observer, where they are known already.
+
+    Raises:
+        InputError: a number out of range, another task, or tables of another design or observer.
+    """
+    require("participants", participants, at_least=1, at_most=_MOST_PEOPLE)
+    require("seed", seed, at_least=0)
+    most = int(SIMULATED_TRIALS.most // design.most_trials)
+    enough = f"of {design.most_trials} trials each, at most {most} people are simulated"
+    require_within(SIMULATED_TRIALS, participants * design.most_trials, enough=enough)
+    found = chain_tables(design, observer) if tables is None else tables
+    if found.design != design or found.observer != observer:
+        raise InputError("the tables are of another design or observer; leave them out")
+    display, stimulus, number = _orders(design, min(participants, _CHUNK), seed)
+    rows = np.arange(participants) % _CHUNK
+    chunks = []
+    for first in range(0, participants, _CHUNK):
+        count = min(_CHUNK, participants - first)
+        random = np.random.default_rng([seed, _STREAM, first // _CHUNK])
+        chunks.append(_answers(found, display, stimulus, number, random, count))
+    choice, felt, times, finger = (
+        np.concatenate([one[i] for one in chunks]) for i in range(4)
+    )  # fmt: skip
+    return SimulatedStudy(
+        found, seed, display[rows], stimulus[rows], choice, number[rows], felt, times, finger
+    )
+
+
+def right_answers(design: StudyDesign) -> IntArray:
+    """Number of the right alternative of each stimulus, −1 where none is right."""
+    names = [one.name for one in design.alternatives]
+    right = [design.answer_to(one) for one in design.stimuli]
+    return np.array([names.index(one) if one else -1 for one in right], dtype=np.int64)
+
+
+def _orders(design: StudyDesign, people: int, seed: int) -> tuple[IntArray, IntArray, IntArray]:
+    places = {one.name: i for i, one in enumerate(design.stimuli)}
+    displays = {name: i for i, name in enumerate(design.displays)}
+    rows = []
+    for person in range(people):
+        asked = [one for one in trials(design, person, seed) if one.asks]
+        rows.append(
+            [
+                (displays[one.display], places[one.stimuli[0]], number)
+                for number, one in enumerate(asked)
+                if one.phase == "main"
+            ]
+        )
+    table = np.array(rows, dtype=np.int64)
+    return table[:, :, 0], table[:, :, 1], table[:, :, 2]
+
+
+def _answers(
+    tables: ChainTables,
+    display: IntArray,
+    stimulus: IntArray,
+    number: IntArray,
+    random: np.random.Generator,
+    count: int,
+) -> tuple[IntArray, NDArray[np.bool_], SecondArray, IntArray]:
+    """Choice, whether felt, response time (people, trials) and finger class (people,).
+
+    Noise is drawn for a whole chunk whatever `count` is, so that people do not depend on it.
+    """
+    observer, asked = tables.observer, display.shape[1]
+    finger = random.integers(0, len(tables.fingers), _CHUNK)[:count]
+    weber = math.log1p(observer.period_weber_fraction) / D_PRIME_OF_75
+    sigma = weber * np.exp(observer.period_spread * random.standard_normal(_CHUNK)[:count])
+    lapse = observer.lapse_rate * np.exp(
+        observer.lapse_spread * random.standard_normal(_CHUNK)[:count]
+    )
+    display, stimulus, number = display[:count], stimulus[:count], number[:count]
+    skill = 1.0 + observer.learning_excess * np.exp(-number / observer.learning_trials)
+    shown, touched = tables.virtual, tables.real
+    u, d = (
+        table[display, finger[:, None], stimulus] for table in (shown.period, shown.d_prime)
+    )  # fmt: skip
+    virtual, felt = _perceived(u, d, skill, sigma[:, None], observer, random, (_CHUNK, asked))
+    ru, rd = (table[finger][:, None] for table in (touched.period, touched.d_prime))
+    gratings = touched.period.shape[1]
+    shape = (_CHUNK, asked, gratings)
+    within = (count, asked, gratings, ru.shape[-1])
+    real, real_felt = _perceived(
+        np.broadcast_to(ru, within), np.broadcast_to(rd, within),
+        skill[:, :, None], sigma[:, None, None], observer, random, shape,
+    )  # fmt: skip
+    away = np.where(real_felt, np.abs(virtual[:, :, None] - real), np.inf)
+    guess = random.integers(0, gratings, (_CHUNK, asked))[:count]
+    blind = random.random((_CHUNK, asked))[:count] < lapse[:, None]
+    decides = felt & ~blind & np.isfinite(away).any(axis=2)
+    choice = np.where(decides, np.argmin(away, axis=2), guess)
+    doubt = np.where(decides, _doubt(away, sigma[:, None] * skill), 1.0)
+    spread = random.standard_normal((_CHUNK, asked))[:count]
+    times = (observer.response_time + observer.doubt_time * doubt) * np.exp(
+        observer.response_time_spread * spread
+    )
+    return choice.astype(np.int64), felt, times, finger
+
+
+def _perceived(
+    period: FloatArray,
+    d_prime: FloatArray,
+    skill: DimensionlessArray,
+    sigma: DimensionlessArray,
+    observer: Observer,
+    random: np.random.Generator,
+    shape: tuple[int, ...],
+) -> tuple[FloatArray, NDArray[np.bool_]]:
+    """Logarithm of the period perceived and whether anything was, over the last axis."""
+    count = period.shape[0]
+    noise = random.standard_normal((*shape, period.shape[-1]))[:count]
+    strength = d_prime + skill[..., None] * noise
+    best = np.argmax(strength, axis=-1)[..., None]
+    pick = [np.take_along_axis(one, best, -1)[..., 0] for one in (strength, period, d_prime)]
+    felt = pick[0] > observer.detection_criterion
+    clear = np.where(felt, np.maximum(pick[2], 0.05), np.inf)
+    blur = sigma * skill * np.sqrt(1.0 + 1.0 / clear**2)
+    return np.log(pick[1]) + blur * random.standard_normal(shape)[:count], felt
+
+
+def _doubt(away: FloatArray, sigma: DimensionlessArray) -> DimensionlessArray:
+    """1 where two gratings are equally near, falling by e for each σ that the second is further."""
+    if away.shape[2] < 2:
+        return np.zeros(away.shape[:2])
+    two = np.sort(away, axis=2)[:, :, :2]
+    gap = np.where(np.isfinite(two[:, :, 1]), two[:, :, 1] - two[:, :, 0], 0.0)
+    return np.asarray(np.exp(-gap / sigma))

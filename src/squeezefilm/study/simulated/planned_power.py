@@ -1,0 +1,113 @@
+"""How many people a planned match-to-sample study needs, by simulated participants."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from squeezefilm.errors import InputError
+from squeezefilm.perception.observer import Observer
+from squeezefilm.quantities import Dimensionless, did_you_mean
+from squeezefilm.results import stamp, to_json
+from squeezefilm.study.design.study_design import StudyDesign
+from squeezefilm.study.identification.power import PowerCurve, distinction, power_curve
+from squeezefilm.study.simulated.chain_tables import chain_tables
+from squeezefilm.study.simulated.participants import right_answers, simulate_participants
+from squeezefilm.study.simulated.pool import SimulatedPeople
+
+SIZES = (2, 3, 4, 5, 6, 8, 10, 12, 16, 24, 32, 48)
+POOL = 4000
+"""Simulated people that studies are drawn from: two of one study are hardly ever the same."""
+
+
+@dataclass(frozen=True, eq=False)
+class PlannedPower:
+    """Power to tell two stimuli of a design apart on one display, by simulated participants.
+
+    `curve` is over the number of people; `difference` the mean score of the whole pool (1).
+    """
+
+    design: str
+    display: str
+    first: str
+    second: str
+    observer: str
+    curve: PowerCurve
+    difference: Dimensionless
+    seed: int
+    origin: str = "simulated"
+
+    def summary(self) -> dict[str, Any]:
+        """What ``--json`` prints."""
+        return {**to_json(self), "provenance": stamp((self.design, self.observer), self.seed)}
+
+
+def planned_power(
+    design: StudyDesign,
+    observer: Observer,
+    first: str,
+    second: str,
+    *,
+    display: str | None = None,
+    participants: tuple[int, ...] = SIZES,
+    studies: int = 400,
+    alpha: Dimensionless = 0.05,
+    target: Dimensionless = 0.8,
+    seed: int = 0,
+    progress: Callable[[str], None] | None = None,
+) -> PlannedPower:
+    """The power of a design to tell two of its stimuli apart, against the number of people.
+
+    Studies are drawn from `POOL` simulated participants who do the whole design; the test is
+    `distinction`, one-sided over people. What the observer assumes, this assumes: see its file.
+
+    Args:
+        design: of match-to-sample.
+        observer: whose people they are.
+        first, second: names of the stimuli.
+        display: one of the design's; the first without it.
+        participants, studies, alpha, target: as in `power_curve`.
+        seed: of people, their answers and the studies.
+        progress: is told each step.
+
+    Raises:
+        InputError: names that are not in the design, or what the simulation refuses.
+    """
+    names = [one.name for one in design.stimuli]
+    for name in (first, second):
+        if name not in names:
+            raise InputError(
+                f"design '{design.name}' has no stimulus '{name}'.{did_you_mean(name, names)} "
+                f"It has: {', '.join(names)}"
+            )
+    where = design.displays[0] if display is None else display
+    if where not in design.displays:
+        raise InputError(
+            f"design '{design.name}' is not on '{where}'; it is on {', '.join(design.displays)}"
+        )
+    tell = progress or (lambda _: None)
+    alone = dataclasses.replace(design, displays=(where,))
+    if right_answers(alone).tolist() != list(range(len(names))):
+        raise InputError(
+            f"power needs each stimulus of '{design.name}' to have its own right answer, in the "
+            "order of the stimuli"
+        )
+    tables = chain_tables(alone, observer, progress=tell)
+    tell(f"{POOL} simulated participants")
+    pool = simulate_participants(alone, observer, POOL, seed, tables)
+    people = SimulatedPeople.of(pool)
+    a, b = names.index(first), names.index(second)
+    curve = power_curve(
+        people,
+        lambda counts: distinction(counts, a, b).p_value,
+        participants,
+        studies=studies,
+        alpha=alpha,
+        target=target,
+        seed=seed,
+        progress=lambda done, all_: tell(f"studies of size {done} of {all_}"),
+    )
+    whole = distinction(people.counts, a, b).score
+    return PlannedPower(design.name, where, first, second, observer.name, curve, whole, seed)

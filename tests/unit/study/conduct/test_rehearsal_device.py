@@ -1,0 +1,77 @@
+"""The twin as a study's device: it measures, it can be off, and its hand explores."""
+
+from __future__ import annotations
+
+import dataclasses
+import io
+
+import numpy as np
+import pytest
+
+from squeezefilm.display import load_display
+from squeezefilm.perception.stimuli import Stimulus
+from squeezefilm.study.conduct.rehearsal_device import StudyTwin
+from squeezefilm.twin.settings import PickupModel, PlateDrift, TwinSettings
+from squeezefilm.twin.working_point import WorkingPoint, working_point
+
+DISPLAY = load_display("biet2008-plate")
+
+
+@pytest.fixture(scope="module")
+def point() -> WorkingPoint:
+    """The plate solved once."""
+    return working_point(DISPLAY, TwinSettings())
+
+
+def _twin(point: WorkingPoint, **changed: object) -> StudyTwin:
+    settings = dataclasses.replace(TwinSettings(truth_rows=20_000), **changed)  # type: ignore[arg-type]
+    return StudyTwin(DISPLAY, settings, point=point)
+
+
+def test_a_twin_as_described_is_in_order(point: WorkingPoint) -> None:
+    found = _twin(point).verify_device()
+    assert found.passed
+    # The plate drifts by 1e-4 per kelvin, and the parabola errs by little.
+    assert found.resonance_frequency == pytest.approx(found.expected_resonance_frequency, rel=5e-4)
+    assert found.amplitude == pytest.approx(found.expected_amplitude, rel=5e-3)
+
+
+def test_a_weak_and_a_detuned_twin_are_off(point: WorkingPoint) -> None:
+    weak = _twin(point, drift=PlateDrift(quality_factor_ratio=0.7)).verify_device()
+    assert "amplitude" in weak.problems[0]
+    assert weak.amplitude == pytest.approx(0.7 * weak.expected_amplitude, rel=0.01)
+    off = _twin(point, drift=PlateDrift(offset=0.02)).verify_device()
+    assert [one.split()[0] for one in off.problems] == ["resonance"]
+    far = _twin(point, drift=PlateDrift(offset=0.2)).verify_device()
+    assert len(far.problems) == 2
+    blind = _twin(point, pickup=PickupModel(kind="none")).verify_device()
+    assert not blind.measurable
+
+
+def test_the_hand_feels_the_grating_that_is_presented(point: WorkingPoint) -> None:
+    twin = _twin(point)
+    assert twin.stop().trace == ""
+    found = {}
+    for name, stimulus in (
+        ("square", Stimulus("10 mm", 10e-3, "period", low=0.8)),
+        ("flat", Stimulus("flat", 10e-3, "period", waveform="constant")),
+    ):
+        twin.present(stimulus, seed=1)
+        felt = twin.stop()
+        # There and back over 60 mm.
+        assert felt.path_length == pytest.approx(0.12, rel=0.05)
+        assert felt.mean_speed == pytest.approx(0.08, rel=0.05)
+        assert felt.mean_normal_force == 0.5
+        names = felt.trace.splitlines()[1].split(",")
+        rows = np.genfromtxt(io.StringIO(felt.trace), delimiter=",", skip_header=2)
+        found[name] = dict(zip(names, rows.T, strict=True))
+    assert np.nanmin(found["flat"]["relative_friction"]) > 0.99
+    x, friction = found["square"]["x_m"], found["square"]["relative_friction"]
+    known = np.isfinite(friction)
+    assert np.nanmin(friction) == pytest.approx(0.8, abs=0.05)
+    assert np.nanmax(friction) > 0.98
+    # The place in the period that is slippery: the second half.
+    inside = (x / 10e-3) % 1.0
+    groove = known & (inside > 0.6) & (inside < 0.9)
+    ridge = known & (inside > 0.1) & (inside < 0.4)
+    assert np.median(friction[groove]) < np.median(friction[ridge]) - 0.1

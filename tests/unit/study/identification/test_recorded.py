@@ -1,0 +1,77 @@
+"""A study's file analysed: the answers that stand in it, and nothing else."""
+
+from __future__ import annotations
+
+import dataclasses
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from squeezefilm.errors import InputError
+from squeezefilm.perception.observer import load_observer
+from squeezefilm.study.conduct.rehearsal import rehearse
+from squeezefilm.study.conduct.run import StudyRun
+from squeezefilm.study.conduct.sessions import begin_session
+from squeezefilm.study.conduct.study_device import NoDevice
+from squeezefilm.study.conduct.trial_by_trial import conduct
+from squeezefilm.study.identification.recorded import analyze_study
+from squeezefilm.study.record.origin import SIMULATED, origin_of
+from squeezefilm.study.record.store import StudyStore
+from squeezefilm.study.record.trial_table import trial_table
+from squeezefilm.study.simulated.participants import simulate_participants
+
+from ..scripted import CONSENT, Script, gratings, staircase
+
+
+def run_through(store: StudyStore, people: int) -> None:
+    for _ in range(people):
+        who = store.enrol()
+        session = begin_session(store, who, NoDevice(), CONSENT, None, acknowledged=False)
+        conduct(StudyRun(store, session), NoDevice(), Script())
+
+
+def test_counts_are_those_of_the_main_trials(tmp_path: Path) -> None:
+    with StudyStore.create(tmp_path / "s.sqlite", gratings(repetitions=3), 4) as store:
+        run_through(store, 3)
+        (found,) = analyze_study(store, resamples=50).values()
+        rows = [row for row in trial_table(store) if row["phase"] == "main"]
+    names = ["2 mm", "4 mm", "8 mm"]
+    counts = np.zeros((3, 3), dtype=int)
+    for row in rows:
+        counts[names.index(str(row["choice"])), names.index(str(row["stimulus"]))] += 1
+    assert counts.sum() == 27
+    assert np.array_equal(found.matrix.counts, counts)
+    assert found.participants == 3
+    assert found.origin == "people"
+
+
+def test_a_rehearsal_answers_everything_and_says_that_nobody_did(tmp_path: Path) -> None:
+    design = gratings(repetitions=2, displays=("biet2008-stator",))
+    observer = dataclasses.replace(load_observer(), finger_classes=1)
+    with StudyStore.create(tmp_path / "r.sqlite", design, 4) as store:
+        people = rehearse(store, observer, 2)
+        assert origin_of(store) == SIMULATED
+        assert all(one["planned"] == one["answered"] for one in store.participants())
+        assert {one["uuid"] for one in store.participants()} == set(people)
+        (found,) = analyze_study(store, resamples=50).values()
+        expected = simulate_participants(design, observer, 2, 4).confusion(0)
+    assert found.origin == SIMULATED
+    assert np.array_equal(found.matrix.counts, expected.counts)
+    with StudyStore.create(tmp_path / "p.sqlite", design, 4) as store:
+        run_through(store, 1)
+        with pytest.raises(InputError, match="people took part"):
+            rehearse(store, observer, 1)
+
+
+def test_what_is_no_identification_is_refused(tmp_path: Path) -> None:
+    with (
+        StudyStore.create(tmp_path / "j.sqlite", staircase(), 4) as store,
+        pytest.raises(InputError, match="two-interval"),
+    ):
+        analyze_study(store)
+    with (
+        StudyStore.create(tmp_path / "e.sqlite", gratings(), 4) as store,
+        pytest.raises(InputError, match="no answered main trial"),
+    ):
+        analyze_study(store)
