@@ -57,7 +57,7 @@ layers: $(VENV)/test.stamp  ## who may import whom
 	@$(BIN)/lint-imports
 
 gallery: $(VENV)/run.stamp  ## draw the preset textures for the documentation
-	@$(BIN)/python -m squeezefilm.report.texture_gallery
+	@$(BIN)/python -m squeezefilm.report.textures.gallery
 
 docs: $(VENV)/test.stamp  ## build the documentation, strictly
 	@NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --quiet

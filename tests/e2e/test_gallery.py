@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from squeezefilm.report import texture_gallery
+from squeezefilm.report.textures import gallery as texture_gallery
 
 
 def test_the_gallery_is_current(capsys: pytest.CaptureFixture[str]) -> None:

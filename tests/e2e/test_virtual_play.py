@@ -167,7 +167,7 @@ def test_a_session_without_a_pickup_is_judged_by_the_envelopes_model(
 
 def test_a_session_that_broke_at_once_is_told_and_shown(display: Display, tmp_path: Path) -> None:
     from squeezefilm.bench.play import PlayResult
-    from squeezefilm.report.play_report import write_play
+    from squeezefilm.report.played.page import write_play
     from squeezefilm.session.loop.rows import COLUMNS
     from squeezefilm.session.record.trace import TraceWriter
 

@@ -16,7 +16,7 @@ from squeezefilm.plate.solid.modes import PlateModes
 from squeezefilm.plate.solid.response import HarmonicResponse, harmonic_response
 from squeezefilm.plate.solid.solve import solve_modes
 from squeezefilm.plate.solid.volume import harmonic_fields, mode_fields, plate_volume
-from squeezefilm.report.vtu import LARGEST_DISPLACEMENT, write_vtu
+from squeezefilm.report.plate.vtu import LARGEST_DISPLACEMENT, write_vtu
 
 Solved = tuple[PlateModes, HarmonicResponse]
 

@@ -26,8 +26,8 @@ def reproduce(
     Exit code 1 if a verdict differs from the one on record.
     """
     from squeezefilm.analysis.claims.command import reproduce as run
-    from squeezefilm.report import terminal
-    from squeezefilm.report.validation import checkout, write_reproduction, write_validation_docs
+    from squeezefilm.report.claims.page import checkout, write_reproduction, write_validation_docs
+    from squeezefilm.report.kit import terminal
 
     if write_docs:
         # Minutes of work lie before the writing.

@@ -27,7 +27,7 @@ from squeezefilm.cli.app import (
 @app.command()
 def presets(as_json: AsJson = False) -> None:
     """List the displays that come with the package."""
-    from squeezefilm.report.terminal import preset_list, show_presets
+    from squeezefilm.report.kit.terminal import preset_list, show_presets
 
     listing = preset_list()
     if as_json:
@@ -39,7 +39,7 @@ def presets(as_json: AsJson = False) -> None:
 @app.command()
 def show(target: Target, as_json: AsJson = False) -> None:
     """Show every value of a display, with its source and what is assumed."""
-    from squeezefilm.report import terminal
+    from squeezefilm.report.kit import terminal
 
     values = terminal.display_values(target)
     if as_json:
@@ -94,7 +94,7 @@ def analyze(
     from squeezefilm.analysis.analyze import analyze as run
     from squeezefilm.display import load_display
     from squeezefilm.quantities import Unit
-    from squeezefilm.report import terminal
+    from squeezefilm.report.kit import terminal
 
     display = load_display(target)
     with terminal.progress(enabled=sys.stderr.isatty() or not as_json) as step:
@@ -113,7 +113,7 @@ def analyze(
         )
         written = None
         if out is not None:
-            from squeezefilm.report.page import write_report
+            from squeezefilm.report.display.page import write_report
 
             written = write_report(result, out, progress=step)
     if as_json:

@@ -73,7 +73,7 @@ def play(
     """
     from squeezefilm.bench.play import play_texture
     from squeezefilm.quantities import Unit
-    from squeezefilm.report.terminal_play import live_view, show_play
+    from squeezefilm.report.played.terminal import live_view, show_play
     from squeezefilm.texture_file import preset_texture
 
     what = preset_texture(texture)
@@ -106,7 +106,7 @@ def play(
         )
     page = None
     if out is not None:
-        from squeezefilm.report.play_report import write_play
+        from squeezefilm.report.played.page import write_play
 
         page = write_play(result, out)
     if as_json:
@@ -129,7 +129,7 @@ def export(
     as_json: AsJson = False,
 ) -> None:
     """Write a recorded trace as CSV or Parquet, with its metadata, and say what it had lost."""
-    from squeezefilm.report.terminal_play import show_export
+    from squeezefilm.report.played.terminal import show_export
     from squeezefilm.results import to_json
     from squeezefilm.session.record.export import export_trace
 
@@ -155,8 +155,8 @@ def check(
     """
     from squeezefilm.bench.play import check_drive
     from squeezefilm.quantities import Unit
-    from squeezefilm.report import terminal
-    from squeezefilm.report.terminal_play import show_check
+    from squeezefilm.report.kit import terminal
+    from squeezefilm.report.played.terminal import show_check
     from squeezefilm.results import to_json
 
     hertz = quantity(rate, "--rate", Unit("Hz")) or 0.0

@@ -61,8 +61,8 @@ def friction(
     from squeezefilm.analysis.friction.command import analyze_friction
     from squeezefilm.display import load_display
     from squeezefilm.quantities import Unit
-    from squeezefilm.report import terminal
-    from squeezefilm.report.terminal_friction import show_friction
+    from squeezefilm.report.friction.terminal import show_friction
+    from squeezefilm.report.kit import terminal
 
     display = load_display(target)
     with terminal.progress(enabled=sys.stderr.isatty() or not as_json) as step:
@@ -84,7 +84,7 @@ def friction(
         )
         written = None
         if out is not None:
-            from squeezefilm.report.friction_report import write_friction
+            from squeezefilm.report.friction.figures import write_friction
 
             written = write_friction(result, out)
     if as_json:
@@ -119,8 +119,8 @@ def film(
 ) -> None:
     """Solve the periodic gas film of one shape, or map it over squeeze number and excursion."""
     from squeezefilm.analysis.film.command import FilmRequest, solve_film, sweep_film
-    from squeezefilm.report import terminal
-    from squeezefilm.report.terminal_solvers import show_film
+    from squeezefilm.report.kit import terminal
+    from squeezefilm.report.plate.terminal import show_film
 
     request = FilmRequest(shape, aspect, polytropic, knudsen, slip, tolerance)
     with terminal.progress(enabled=sys.stderr.isatty() or not as_json) as step:
@@ -184,9 +184,9 @@ def plate(
     from squeezefilm.analysis.plate.ring import analyze_ring
     from squeezefilm.analysis.plate.tracking import parse_track
     from squeezefilm.display import load_display
-    from squeezefilm.report import terminal
-    from squeezefilm.report.terminal_ring import show_ring
-    from squeezefilm.report.terminal_solvers import show_plate
+    from squeezefilm.report.kit import terminal
+    from squeezefilm.report.plate.terminal import show_plate
+    from squeezefilm.report.plate.terminal_ring import show_ring
 
     display = load_display(target)
     wanted = None if mode is None else parse_mode(mode)
@@ -206,7 +206,7 @@ def plate(
                 progress=step,
             )  # fmt: skip
             if out is not None or vtu is not None:
-                from squeezefilm.report.solved_plate import write_mode, write_plate
+                from squeezefilm.report.plate.plate import write_mode, write_plate
 
                 step("figures")
                 written += [] if out is None else [write_plate(result, out)]
@@ -214,7 +214,7 @@ def plate(
         else:
             ring = analyze_ring(display, mode=wanted, band=limits, progress=step)
             if out is not None:
-                from squeezefilm.report.solved_ring import write_ring
+                from squeezefilm.report.plate.ring import write_ring
 
                 step("figures")
                 written.append(write_ring(ring, out))

@@ -32,7 +32,7 @@ def plan(
     as_json: AsJson = False,
 ) -> None:
     """Show a design: what is presented, how often, in which orders, and how long it takes."""
-    from squeezefilm.report.terminal_study import show_plan
+    from squeezefilm.report.study.terminal import show_plan
     from squeezefilm.study.design.plan import plan_study
     from squeezefilm.study.design.study_design import load_design
 
@@ -73,9 +73,9 @@ def simulate(
 ) -> None:
     """Let simulated participants do a match-to-sample study; every number is simulated."""
     from squeezefilm.perception.observer import load_observer
-    from squeezefilm.report import terminal
-    from squeezefilm.report.simulated_report import write_simulated
-    from squeezefilm.report.terminal_simulated import show_simulated
+    from squeezefilm.report.kit import terminal
+    from squeezefilm.report.study.simulated_page import write_simulated
+    from squeezefilm.report.study.terminal_simulated import show_simulated
     from squeezefilm.study.design.study_design import load_design
     from squeezefilm.study.simulated.chain_tables import chain_tables
     from squeezefilm.study.simulated.participants import simulate_participants
@@ -114,8 +114,8 @@ def power(
 ) -> None:
     """How many people are needed to tell two stimuli apart, by simulated participants."""
     from squeezefilm.perception.observer import load_observer
-    from squeezefilm.report import terminal
-    from squeezefilm.report.terminal_identification import show_power
+    from squeezefilm.report.kit import terminal
+    from squeezefilm.report.study.terminal_identification import show_power
     from squeezefilm.study.design.study_design import load_design
     from squeezefilm.study.simulated.planned_power import planned_power
 
@@ -125,8 +125,8 @@ def power(
             target=target, studies=studies, seed=seed, progress=step,
         )  # fmt: skip
     if out is not None:
-        from squeezefilm.report.study_time_figures import power as drawn
-        from squeezefilm.report.style import png
+        from squeezefilm.report.kit.style import png
+        from squeezefilm.report.study.time_figures import power as drawn
         from squeezefilm.results import write_whole
 
         write_whole(out, png(drawn(found.curve)))
@@ -151,7 +151,7 @@ def rehearse(
 ) -> None:
     """Let simulated participants do every trial of a study's file, to try analysis and exports."""
     from squeezefilm.perception.observer import load_observer
-    from squeezefilm.report import terminal
+    from squeezefilm.report.kit import terminal
     from squeezefilm.study.conduct.rehearsal import rehearse as run_through
     from squeezefilm.study.conduct.terminal_run import open_study
 
@@ -200,8 +200,8 @@ def run(
 ) -> None:
     """Run a session at the terminal; stop with Ctrl-C, and go on later where it stopped."""
     from squeezefilm.quantities import Unit
-    from squeezefilm.report import terminal
-    from squeezefilm.report.terminal_study import TerminalExaminer, ask_acknowledgement
+    from squeezefilm.report.kit import terminal
+    from squeezefilm.report.study.terminal import TerminalExaminer, ask_acknowledgement
     from squeezefilm.study.conduct.terminal_run import open_study, run_session
 
     with open_study(store, design, seed, station, stations) as found:
@@ -225,7 +225,7 @@ def run(
 @study.command()
 def status(store: Store, as_json: AsJson = False) -> None:
     """Show who is enrolled and how far they are."""
-    from squeezefilm.report.terminal_study import show_status
+    from squeezefilm.report.study.terminal import show_status
     from squeezefilm.study.record.store import StudyStore
 
     with StudyStore.open(store) as found:
@@ -258,7 +258,7 @@ def merge(
     others: Annotated[list[Path], typer.Argument(metavar="OTHER.sqlite …", help="To add.")],
 ) -> None:
     """Add other stations' files to this one; merging again changes nothing."""
-    from squeezefilm.report.terminal_study import show_merge
+    from squeezefilm.report.study.terminal import show_merge
     from squeezefilm.study.record.merge import merge as add
     from squeezefilm.study.record.store import StudyStore
 
@@ -283,7 +283,7 @@ def delete_participant(
     yes: Annotated[bool, typer.Option("--yes", help="Do not ask.")] = False,
 ) -> None:
     """Take a participant out of the file, its traces, backups and exports, without a trace."""
-    from squeezefilm.report.terminal_study import show_deletion
+    from squeezefilm.report.study.terminal import show_deletion
     from squeezefilm.study.record.deletion import delete_participant as take_out
     from squeezefilm.study.record.store import StudyStore
 
@@ -309,8 +309,8 @@ def analyze(
     as_json: AsJson = False,
 ) -> None:
     """Analyse what was recorded: confusions, intervals, information transfer, sensitivity."""
-    from squeezefilm.report import terminal
-    from squeezefilm.report.terminal_identification import show_analyses
+    from squeezefilm.report.kit import terminal
+    from squeezefilm.report.study.terminal_identification import show_analyses
     from squeezefilm.study.identification.recorded import analyze_study
     from squeezefilm.study.record.store import StudyStore
 
@@ -321,7 +321,7 @@ def analyze(
         analyses = analyze_study(found, mixed=mixed, seed=seed, progress=step)
         pages = []
         if out is not None:
-            from squeezefilm.report.study_report import write_study
+            from squeezefilm.report.study.page import write_study
 
             pages = [
                 write_study(one, out / display, progress=step) for display, one in analyses.items()

@@ -69,8 +69,8 @@ def render(
     from squeezefilm.display import load_display
     from squeezefilm.formats.trajectories import motion_from
     from squeezefilm.quantities import Unit
-    from squeezefilm.report import terminal
-    from squeezefilm.report.terminal_render import show_lost, show_render
+    from squeezefilm.report.kit import terminal
+    from squeezefilm.report.textures.terminal import show_lost, show_render
     from squeezefilm.texture_file import preset_texture
 
     if out is None and (drive or hjif or table != "csv"):
@@ -94,7 +94,7 @@ def render(
         )
         written = None
         if out is not None:
-            from squeezefilm.report.render_report import hjif_export, write_render
+            from squeezefilm.report.textures.page import hjif_export, write_render
 
             written = write_render(
                 result, out, table=table, drive=drive, hjif=hjif, progress=step
@@ -113,7 +113,7 @@ def render(
 def textures(as_json: AsJson = False) -> None:
     """List the textures that come with the package, for `render`."""
     from squeezefilm.presets import texture_names
-    from squeezefilm.report.terminal_render import show_textures
+    from squeezefilm.report.textures.terminal import show_textures
     from squeezefilm.texture_file import preset_texture
 
     listing = []

@@ -17,7 +17,7 @@ from squeezefilm import config, presets
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError
 from squeezefilm.quantities import Unit, format_quantity, unit_of
-from squeezefilm.report.numbers import leaves
+from squeezefilm.report.kit.numbers import leaves
 
 LONGEST_VALUE = 2000
 """Characters of one value in the form."""

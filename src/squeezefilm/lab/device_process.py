@@ -182,7 +182,7 @@ def play(connection: Connection, work: DeviceWork) -> None:
         )
         # The device is at zero and disarmed; what is left to be written is not to be cut short.
         signal.signal(signal.SIGINT, signal.SIG_IGN)
-        from squeezefilm.report.play_report import write_play
+        from squeezefilm.report.played.page import write_play
 
         write_play(result, Path(work.out))
         tell(

@@ -15,7 +15,7 @@ from squeezefilm.display import Display
 from squeezefilm.errors import InputError, SqueezefilmError
 from squeezefilm.lab.description import choices, display_of, stated
 from squeezefilm.quantities import Unit, format_quantity, unit_of
-from squeezefilm.report.numbers import leaves
+from squeezefilm.report.kit.numbers import leaves
 
 _FAR = 1e9
 """Times the value up to which a limit is looked for."""

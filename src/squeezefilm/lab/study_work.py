@@ -15,8 +15,8 @@ from squeezefilm.study.record.store import StudyStore
 
 def analysis_of(path: Path) -> dict[str, Any]:
     """The analysis of what was answered so far, by display: tables, numbers, figures."""
-    from squeezefilm.report.study_report import key_rows, study_figures
-    from squeezefilm.report.style import png
+    from squeezefilm.report.kit.style import png
+    from squeezefilm.report.study.page import key_rows, study_figures
 
     with StudyStore.open(path) as store:
         answers = sum(one["answered"] for one in store.participants())
@@ -57,7 +57,7 @@ def rehearsed(path: Path, participants: int) -> dict[str, Any]:
 
 def report_of(path: Path) -> dict[str, Any]:
     """The analysis written as pages beside the study's file."""
-    from squeezefilm.report.study_report import write_study
+    from squeezefilm.report.study.page import write_study
 
     with StudyStore.open(path) as store:
         found = analyze_study(store)

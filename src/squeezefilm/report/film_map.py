@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from squeezefilm.report.style import INK, MUTED, drawn, new_figure, plain_log, png
+from squeezefilm.report.kit.style import INK, MUTED, drawn, new_figure, plain_log, png
 from squeezefilm.results import write_whole
 
 if TYPE_CHECKING:

@@ -10,10 +10,10 @@ from squeezefilm.analysis.plate.command import PlateAnalysis, analyze_plate
 from squeezefilm.analysis.plate.sensitivity import Sensitivity, SensitivityTable, WorkingPoint
 from squeezefilm.analysis.plate.tracking import ModeTrack, ModeTracks
 from squeezefilm.display import load_display
-from squeezefilm.report.mode_surface import driven_shape, mode_surface
-from squeezefilm.report.plate_page import PlateFigure, plate_page
-from squeezefilm.report.sensitivity_figures import tornado, tracks
-from squeezefilm.report.solved_plate import admittance, frequency_response, line_scan, plan_view
+from squeezefilm.report.plate.mode_surface import driven_shape, mode_surface
+from squeezefilm.report.plate.page import PlateFigure, plate_page
+from squeezefilm.report.plate.plate import admittance, frequency_response, line_scan, plan_view
+from squeezefilm.report.plate.sensitivity_figures import tornado, tracks
 
 
 @pytest.fixture(scope="module")

@@ -1,0 +1,1 @@
+"""The report of `analyze`: its page and its figures."""

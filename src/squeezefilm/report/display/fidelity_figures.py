@@ -1,0 +1,194 @@
+"""Figures of compensation: a grating at twice the speed, what survives, what a sensor costs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from squeezefilm.render.fidelity.survival import PAPER_PERIODS
+from squeezefilm.render.motion.minimum_jerk import MinimumJerkStroke
+from squeezefilm.report.kit.numbers import M, S, shown
+from squeezefilm.report.kit.style import (
+    INK,
+    LINES,
+    METAL,
+    MUTED,
+    drawn,
+    message_figure,
+    new_figure,
+    plain,
+    plain_log,
+)
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from squeezefilm.analysis.analyze import Analysis
+    from squeezefilm.analysis.textures import (
+        CompensatedGrating,
+        SensorContrast,
+        TextureSurvival,
+    )
+    from squeezefilm.quantities import FloatArray
+
+_PERIODS_SHOWN = 2
+
+
+@drawn
+def compensated_grating(grating: CompensatedGrating) -> Figure:
+    """One grating by each drive: the amplitude over the way, and the command that makes it."""
+    kept = [f"{100 * share:.0f} %" for share in grating.swing_kept]
+    figure = new_figure(
+        f"At {1e3 * grating.speed:.0f} mm/s a grating of {shown(grating.spatial_period, M, 3)} "
+        f"keeps {kept[0]} of its swing without compensation, {kept[1]} with it, and {kept[-1]} "
+        "where the drive may also invert the phase",
+        f"{grating.drives[-1].model}, τ = {shown(grating.envelope.rise_time_constant, S, 3)}; "
+        f"wanted: 0 to {100 * grating.level:g} % of what the full voltage holds",
+        6.0,
+    )
+    top, bottom = figure.subplots(2, 1, height_ratios=[1.3, 1])
+    way = 1e3 * grating.speed * grating.time
+    last = way >= way[-1] - 1e3 * _PERIODS_SHOWN * grating.spatial_period
+    x = way[last] - way[last][0]
+    limit = grating.envelope.amplitude_limit
+    (wanted,) = top.plot(x, grating.drives[0].wanted[last] / limit, color=MUTED, lw=1.2)
+    handles, labels = [wanted], ["wanted"]
+    for law, share, drive, (color, dashes) in zip(
+        grating.laws, kept, grating.drives, LINES, strict=False
+    ):
+        (line,) = top.plot(x, drive.amplitude[last] / limit, color=color, ls=dashes)
+        bottom.plot(x, drive.command[last] / limit, color=color, ls=dashes, drawstyle="steps-post")
+        handles.append(line)
+        labels.append(f"{law.name}: {share} kept")
+    for level in (1, -1):
+        bottom.axhline(level, color=INK, lw=0.8, ls=(0, (1.4, 1.2)))
+    bottom.text(0.02 * x[-1], 1.06, "limit of the voltage", color=MUTED, fontsize=9, va="bottom")
+    top.set(ylabel="amplitude, relative to the limit", ylim=(0, 1.02))
+    bottom.set(xlabel="finger's way (mm)", ylabel="command, relative", ylim=(-1.15, 1.4))
+    bottom.set_yticks([-1, 0, 1])
+    for axes in (top, bottom):
+        axes.set_xlim(0, float(x[-1]))
+    top.tick_params(labelbottom=False)
+    bottom.legend(
+        handles, labels, loc="upper center", bbox_to_anchor=(0.5, -0.22), ncols=2, frameon=False
+    )
+    return figure
+
+
+@drawn
+def compensation(analysis: Analysis) -> Figure:
+    """`compensated_grating` of an analysis."""
+    if analysis.compensated is None:
+        return message_figure("Nothing to compensate", "No voltage makes an amplitude here.")
+    return compensated_grating(analysis.compensated)
+
+
+@drawn
+def survival(analysis: Analysis) -> Figure:
+    """`texture_survival` of an analysis."""
+    if analysis.survival is None:
+        return message_figure("Nothing to compensate", "No voltage makes an amplitude here.")
+    return texture_survival([analysis.survival])
+
+
+@drawn
+def texture_survival(tables: Sequence[TextureSurvival]) -> Figure:
+    """Which spatial period survives at which speed, one panel per display, one line per drive."""
+    first = tables[0]
+    figure = new_figure(
+        f"Compensation with phase inversion keeps a grating up to {first.gain[-1]:.2g} times the "
+        f"finger speed, without inversion up to {first.gain[1]:.2g} times",
+        f"{first.model}; swing from 0 to {100 * first.level:g} % of what the full voltage holds, "
+        f"{100 * first.kept:g} % of it kept; Q as the display states it",
+        5.0,
+    )
+    grid = figure.add_gridspec(2, len(tables), height_ratios=[1, 0.1])
+    strip = figure.add_subplot(grid[1, :])
+    strip.set_axis_off()
+    axes = None
+    for column, table in enumerate(tables):
+        axes = figure.add_subplot(grid[0, column], sharey=axes)
+        for law, row, (color, dashes) in zip(table.laws, table.finest_period, LINES, strict=False):
+            axes.loglog(1e3 * table.speeds, 1e3 * row, color=color, ls=dashes, label=law.name)
+        for period in PAPER_PERIODS:
+            axes.axhline(1e3 * period, color=MUTED, lw=0.8, ls=(0, (1.4, 1.2)))
+        axes.set_title(f"{plain(table.name)}, τ = {shown(table.time_constant, S, 3)}")
+        axes.set(xlabel="finger speed (mm/s)", xlim=(10, 400), ylim=(0.02, 12))
+        axes.set_xticks([10, 20, 50, 100, 200, 400])
+        axes.set_yticks([0.02, 0.05, 0.1, 0.2, 0.4, 1, 2, 4, 10])
+        plain_log(axes.xaxis)
+        plain_log(axes.yaxis)
+        if column == 0:
+            axes.set_ylabel("finest period that survives (mm)")
+            handles, labels = axes.get_legend_handles_labels()
+        else:
+            axes.tick_params(labelleft=False)
+    from matplotlib.lines import Line2D
+
+    handles.append(Line2D([], [], color=MUTED, lw=0.8, ls=(0, (1.4, 1.2))))
+    labels.append("the paper's gratings")
+    strip.legend(handles, labels, loc="center", ncols=2, frameon=False)
+    return figure
+
+
+@drawn
+def sensor_contrast(contrast: SensorContrast) -> Figure:
+    """Contrast rendered in its place against the period, one line per sensor."""
+    half = [_finest(contrast.spatial_periods, row) for row in contrast.contrast_kept]
+    names = ["position known" if one is None else one.name for one in contrast.sensors]
+    figure = new_figure(
+        f"Half of the contrast is rendered in its place {half[0]} with a {names[0]}, "
+        f"{half[-1]} with the {names[-1]}",
+        f"{contrast.reports[0][0].model.split(';')[0]}; sensors are assumed, not measured; "
+        f"{_hand(contrast)}",
+        4.9,
+    )
+    grid = figure.add_gridspec(2, 1, height_ratios=[1, 0.12])
+    axes, strip = figure.add_subplot(grid[0]), figure.add_subplot(grid[1])
+    strip.set_axis_off()
+    for k, (name, row) in enumerate(zip(names, contrast.contrast_kept, strict=True)):
+        error = contrast.reports[k][0].position_error
+        label = name if error is None else f"{name} (error {shown(error, M, 2)})"
+        # Wide and behind: a good sensor's line lies on it.
+        color, dashes = LINES[k % len(LINES)]
+        look = (
+            {"color": METAL, "lw": 5, "zorder": 1}
+            if error is None
+            else {"color": color, "ls": dashes}
+        )
+        axes.semilogx(1e3 * contrast.spatial_periods, row, label=label, **look)
+    axes.set(
+        xlabel="spatial period (mm)", ylabel="contrast kept in its place", ylim=(0, 1.05),
+        xlim=(1e3 * contrast.spatial_periods[0], 1e3 * contrast.spatial_periods[-1]),
+    )  # fmt: skip
+    rungs = np.array([0.25, 0.5, 1, 2, 4, 8])
+    low, high = axes.get_xlim()
+    axes.set_xticks(rungs[(rungs >= low) & (rungs <= high)])
+    plain_log(axes.xaxis)
+    strip.legend(*axes.get_legend_handles_labels(), loc="center", ncols=2, frameon=False)
+    return figure
+
+
+def _hand(contrast: SensorContrast) -> str:
+    hand = contrast.trajectory
+    if isinstance(hand, MinimumJerkStroke):
+        return (
+            f"{hand.passes} minimum-jerk passes of {shown(hand.length, M, 3)} in "
+            f"{shown(hand.pass_duration, S, 3)}"
+        )
+    return plain(repr(hand), 80)
+
+
+def _finest(periods: FloatArray, row: FloatArray) -> str:
+    """From which period on at least half of the contrast is kept, in words."""
+    lacking = np.flatnonzero(row < 0.5)
+    if lacking.size == 0:
+        return "at every period shown"
+    k = int(lacking[-1])
+    if k == periods.size - 1:
+        return "at no period shown"
+    share = (0.5 - row[k]) / (row[k + 1] - row[k])
+    finest = periods[k] * (periods[k + 1] / periods[k]) ** share
+    return f"from {shown(float(finest), M, 2)} up"

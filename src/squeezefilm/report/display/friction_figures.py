@@ -1,0 +1,233 @@
+"""Figures of film and friction: the paper's Figs 4, 5 and 11 for the display at hand."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from squeezefilm.analysis.curves import PAPER_CRITERION
+from squeezefilm.report.kit.numbers import HZ, M, N, shown
+from squeezefilm.report.kit.style import (
+    BLUE,
+    GREEN,
+    INK,
+    LINES,
+    MUTED,
+    ORANGE,
+    PAPER,
+    SKIN,
+    drawn,
+    legend_below,
+    message_figure,
+    new_figure,
+    pairs_of_axes,
+    plain,
+    plain_log,
+)
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from squeezefilm.analysis.analyze import Analysis
+
+_RIDGES_IN_ZOOM = 2.6
+_FIVE = (*LINES, (INK, (0, (3, 1, 1, 1, 1, 1))))
+
+
+_NAMES = {
+    "partial-levitation": "partial levitation",
+    "partial-levitation-one-gap": "partial levitation, one mean gap",
+    "paper2008": "paper's asymptote",
+    "film-sealed": "solved film, grooves sealed",
+    "film-open": "solved film, grooves open at the ends",
+    "film-plateau": "solved film, ridges pressed flat",
+    "film-smooth": "solved film, no ridges",
+}
+
+
+@drawn
+def pressure(analysis: Analysis) -> Figure:
+    """Gap and mean pressure along the contact, whole and enlarged: the paper's Fig 4."""
+    profiles, p, display = analysis.pressure, analysis.prediction, analysis.display
+    profile = profiles[0]
+    x, gap = 1e3 * profile.position, 1e6 * profile.thickness
+    tops = [float(np.max(item.mean_pressure)) for item in profiles]
+    carried = 1 + p.normal_force / display.finger.contact_length**2 / display.gas.ambient_pressure
+    where = (
+        "over the ridge crests only" if display.finger.ridge_amplitude > 0 else "at the antinode"
+    )
+    title = f"The film's pressure rises {where}: to {tops[0]:.3g} times ambient by the paper"
+    if len(tops) > 1:
+        title += f", to {tops[1]:.3g} in the solved film"
+    if max(tops) < 1.0005:
+        title = (
+            f"The film adds no pressure here; {carried:.3f} times ambient would carry the finger"
+        )
+    names = ", ".join(f"{item.model}" for item in profiles)
+    figure = new_figure(title, f"{names} (grooves sealed at their ends)", 5.8)
+    grid, strip = pairs_of_axes(figure)
+    span = 0.5 * _RIDGES_IN_ZOOM * 1e3 * display.finger.ridge_period
+    span = min(span, float(x[-1]))
+    for column, (low, high) in enumerate(((float(x[0]), float(x[-1])), (-span, span))):
+        above, below = grid[0][column], grid[1][column]
+        above.fill_between(x, gap, 1.12 * float(np.max(gap)), color=SKIN, lw=0)
+        above.plot(x, gap, color=INK, lw=1.2)
+        above.set(ylim=(0, 1.12 * float(np.max(gap))))
+        for item, color in zip(profiles, (BLUE, GREEN), strict=False):
+            mean = float(np.trapezoid(item.mean_pressure, x) / (x[-1] - x[0]))
+            below.plot(
+                x, item.mean_pressure, color=color, lw=1.4,
+                label=f"{_NAMES[item.model]}, mean {mean:.4f}",
+            )  # fmt: skip
+        below.axhline(
+            carried, color=ORANGE, lw=1.6, ls=(0, (6, 1.6)),
+            label=f"would carry the finger: {carried:.4f}",
+        )  # fmt: skip
+        below.set(xlim=(low, high), xlabel="position under the finger (mm)")
+    grid[0][0].set(ylabel="mean gap (µm)")
+    grid[1][0].set(ylabel="pressure over ambient")
+    grid[0][0].set_title("the whole contact: the finger's ridges, and the plate at 0")
+    grid[0][1].set_title("enlarged")
+    handles, labels = grid[1][0].get_legend_handles_labels()
+    strip.legend(handles, labels, loc="center", ncols=3, frameon=False)
+    return figure
+
+
+@drawn
+def friction(analysis: Analysis) -> Figure:
+    """Relative friction against amplitude on each surface: the paper's Fig 5, and solved."""
+    p, curves = analysis.prediction, analysis.friction_curves
+    here = next(c for c in curves if c.surface == p.surface.name and c.model == p.model)
+    at = shown(p.vibration_amplitude, M, 3)
+    needed = here.amplitude_for_criterion
+    title = (
+        f"At {at} the friction on {plain(here.surface, 20)} is {p.relative_friction:.3g} of what "
+        "it is without vibration; 0.7 takes "
+        + ("more than 50 µm" if needed is None else shown(needed, M, 3))
+    )
+    models = ", ".join(dict.fromkeys(curve.model for curve in curves))
+    figure = new_figure(
+        title, f"{models}; {shown(p.normal_force, N)}", 4.4 + 0.24 * (len(curves) + 2)
+    )
+    axes = figure.subplots()
+    for number, curve in enumerate(curves):
+        color, dashes = LINES[number % len(LINES)]
+        reached = curve.amplitude_for_criterion
+        zero = curve.zero_friction_amplitude
+        words = "0.7 out of reach" if reached is None else f"0.7 at {shown(reached, M, 3)}"
+        words += "" if zero is None else f", zero at {shown(zero, M, 3)}"
+        axes.plot(
+            1e6 * curve.amplitude, curve.relative_friction, color=color, ls=dashes,
+            label=f"{_NAMES.get(curve.model, curve.model)}, {plain(curve.surface, 20)} "
+            f"({shown(curve.roughness, M, 3)}): {words}",
+        )  # fmt: skip
+        if reached is not None:
+            _drop(axes, reached, color)
+        if zero is not None and zero <= curve.amplitude[-1]:
+            axes.plot([1e6 * zero], [0], "s", color=color, ms=6, clip_on=False, zorder=4)
+    _criterion(axes)
+    _working_point(axes, analysis)
+    axes.set(xlim=(0, 1e6 * max(float(c.amplitude[-1]) for c in curves)))
+    axes.set(ylim=(0, 1.06), xlabel="vibration amplitude, zero-to-peak (µm)")
+    axes.set(ylabel="relative friction µ′/µ")
+    legend_below(axes, columns=1)
+    return figure
+
+
+@drawn
+def film_models(analysis: Analysis) -> Figure:
+    """The share of the finger's load that each reading of the film carries, against amplitude."""
+    films, p = analysis.film_models, analysis.prediction
+    if films is None:
+        return message_figure("Nothing vibrates", "Without vibration no film carries anything.")
+    shares = [100 * r.load_share for r in films.results if np.isfinite(r.load_share)]
+    title = (
+        f"At {shown(p.vibration_amplitude, M, 3)} the film carries from {min(shares):.2g} to "
+        f"{max(shares):.3g} % of the finger: how ridges are drawn decides"
+    )
+    figure = new_figure(
+        title, f"all at {shown(p.frequency, HZ, 3)}, with slip but for the asymptote", 5.4
+    )
+    axes = figure.subplots()
+    for number, curve in enumerate(films.curves):
+        color, dashes = _FIVE[number % len(_FIVE)]
+        axes.semilogy(
+            1e6 * curve.amplitude, curve.load_share, color=color, ls=dashes,
+            label=_NAMES[curve.model],
+        )  # fmt: skip
+        axes.plot(
+            [1e6 * p.vibration_amplitude], [films.results[number].load_share], "o", color=color,
+            ms=6, zorder=3,
+        )  # fmt: skip
+    axes.axhline(1, color=MUTED, lw=1.2, ls=(0, (2, 2)), label="carries the whole finger")
+    right = 1e6 * max(float(curve.amplitude[-1]) for curve in films.curves)
+    axes.set(xlim=(0, right), ylim=(1e-4, 30), xlabel="vibration amplitude, zero-to-peak (µm)")
+    axes.set(ylabel="film's pressure over the finger's")
+    plain_log(axes.yaxis)
+    legend_below(axes)
+    return figure
+
+
+@drawn
+def wavelength(analysis: Analysis) -> Figure:
+    """Relative friction against amplitude for four half wavelengths: the paper's Fig 11."""
+    p, curves = analysis.prediction, analysis.wavelength_curves
+    at = [shown(c.amplitude_for_criterion, M, 3) for c in curves]
+    short = min(curves, key=lambda c: c.half_wavelength)
+    long = max(curves, key=lambda c: c.half_wavelength)
+    title = (
+        f"A shorter wave needs more amplitude for µ′/µ = 0.7: "
+        f"{at[curves.index(short)]} at λ/2 = {shown(short.half_wavelength, M, 3)}, "
+        f"{at[curves.index(long)]} at {shown(long.half_wavelength, M, 3)}"
+    )
+    model = f"{curves[0].model}, {plain(p.surface.name, 20)}, {shown(p.normal_force, N)}"
+    figure = new_figure(title, model, 4.8)
+    axes = figure.subplots()
+    right = 1e6 * float(max(c.amplitude[-1] for c in curves))
+    for number, curve in enumerate(curves):
+        color, dashes = LINES[number % len(LINES)]
+        axes.plot(
+            1e6 * curve.amplitude, curve.relative_friction, color=color, ls=dashes,
+            label=f"λ/2 = {shown(curve.half_wavelength, M, 3)}: 0.7 at {at[number]}",
+        )  # fmt: skip
+        if 1e6 * curve.amplitude_for_criterion <= right:
+            _drop(axes, curve.amplitude_for_criterion, color)
+    _criterion(axes)
+    if 1e6 * p.vibration_amplitude <= right:
+        # On the paper's curves stands what the paper's model says of this display.
+        films = analysis.film_models
+        friction = None if films is None else films.result("paper2008").relative_friction
+        more = f" at λ/2 = {shown(p.mode.half_wavelength, M, 3)}"
+        _working_point(axes, analysis, more, friction)
+    axes.set(xlim=(0, right), ylim=(0, 1.06), xlabel="vibration amplitude, zero-to-peak (µm)")
+    axes.set(ylabel="relative friction µ′/µ")
+    legend_below(axes)
+    return figure
+
+
+def _criterion(axes: Axes) -> None:
+    axes.axhline(
+        PAPER_CRITERION, color=MUTED, lw=1.2, ls=(0, (2, 2)),
+        label="0.7: what the paper asks for",
+    )  # fmt: skip
+
+
+def _drop(axes: Axes, amplitude: float, color: str) -> None:
+    """A line from the criterion down to the amplitude that reaches it."""
+    axes.plot([1e6 * amplitude] * 2, [0, PAPER_CRITERION], color=color, lw=0.9, ls=(0, (1, 2)))
+    axes.plot([1e6 * amplitude], [PAPER_CRITERION], "o", color=color, ms=5, zorder=3)
+
+
+def _working_point(
+    axes: Axes, analysis: Analysis, more: str = "", friction: float | None = None
+) -> None:
+    """Mark this display, at its own friction or at that of the model the curves are of."""
+    p = analysis.prediction
+    height = p.relative_friction if friction is None else friction
+    axes.plot(
+        [1e6 * p.vibration_amplitude], [height], "D", color=INK, ms=9, mec=PAPER,
+        mew=1.4, zorder=5, clip_on=False,
+        label=f"this display: {height:.2f} at {shown(p.vibration_amplitude, M, 3)}{more}",
+    )  # fmt: skip

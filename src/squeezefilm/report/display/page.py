@@ -1,0 +1,324 @@
+"""`write_report`: result.json and report.html, one file that needs nothing from anywhere."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+from collections.abc import Callable, Iterable
+from html import escape
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from squeezefilm.errors import InputError
+from squeezefilm.quantities import Unit
+from squeezefilm.report.kit.numbers import (
+    display_values,
+    film_rows,
+    key_numbers,
+    models,
+    printable,
+    shown,
+    unsaid_warnings,
+)
+from squeezefilm.results import to_json, write_whole
+
+if TYPE_CHECKING:
+    from squeezefilm.analysis.analyze import Analysis
+    from squeezefilm.render.fidelity.trace import FrictionTrace
+
+# More samples of a trace than a reader can use would make megabytes of text.
+_MOST_SAMPLES = 4000
+_KINDS = {"good": "✓ Good", "limit": "△ Limit", "doubt": "? Doubt"}
+
+
+def write_report(
+    analysis: Analysis, folder: Path, progress: Callable[[str], None] | None = None
+) -> Path:
+    """Write result.json and report.html into `folder`; the path of the page.
+
+    Both are made in memory first; if the second cannot be written, the first is put back as it
+    was. Raises `InputError` where the folder cannot be written to.
+    """
+    folder = Path(folder)
+    if folder.exists() and not folder.is_dir():
+        raise InputError(f"{folder} is a file, not a folder; choose another folder")
+    summary = analysis.summary()
+    page = report_page(analysis, summary, progress)
+    if progress is not None:
+        progress("writing the report")
+    data = json.dumps(result_data(analysis, summary), indent=1, ensure_ascii=False, allow_nan=False)
+    result, report = folder / "result.json", folder / "report.html"
+    before = result.read_bytes() if result.is_file() else None
+    write_whole(result, data + "\n")
+    try:
+        write_whole(report, page)
+    except InputError:
+        if before is None:
+            result.unlink(missing_ok=True)
+        else:
+            write_whole(result, before)
+        raise
+    return report
+
+
+def result_data(analysis: Analysis, summary: dict[str, Any]) -> dict[str, Any]:
+    """What result.json holds: the summary, the curves behind the figures, the display itself."""
+    return {
+        **summary,
+        "curves": {
+            "response": to_json(analysis.response),
+            "pressure": to_json(analysis.pressure),
+            "friction": to_json(analysis.friction_curves),
+            "chain": to_json(analysis.model_curves),
+            "films": None if analysis.film_models is None else to_json(analysis.film_models.curves),
+            "wavelength": to_json(analysis.wavelength_curves),
+            "texture": None if analysis.texture is None else _trace(analysis.texture),
+            "fidelity": to_json(analysis.fidelity),
+        },
+        "display_description": to_json(analysis.display),
+    }
+
+
+def _trace(trace: FrictionTrace) -> dict[str, Any]:
+    """A trace with every so many samples only, and its sample rate changed to match."""
+    every = -(-trace.time.size // _MOST_SAMPLES)
+    arrays = {
+        name: getattr(trace, name)[::every]
+        for name in (
+            "time",
+            "position",
+            "command",
+            "amplitude",
+            "relative_friction_wanted",
+            "relative_friction_rendered",
+        )
+    }
+    thin = dataclasses.replace(trace, sample_rate=trace.sample_rate / every, **arrays)
+    data: dict[str, Any] = to_json(thin)
+    return {**data, "kept_one_sample_in": every, "lag_m": trace.lag}
+
+
+def report_page(
+    analysis: Analysis,
+    summary: dict[str, Any] | None = None,
+    progress: Callable[[str], None] | None = None,
+) -> str:
+    """The report as the text of one self-contained HTML page."""
+    from squeezefilm.report.kit.page_style import STYLE
+
+    summary = summary or analysis.summary()
+    display = analysis.display
+    title, name = escape(printable(display.title)), escape(printable(display.name))
+    parts = [
+        _section("Verdict", _verdict(analysis)),
+        _section("Key numbers", _key_numbers(analysis)),
+        *_figures(analysis, progress),
+        _section("How far the film's model is from where it holds", _validity(analysis)),
+        _section("Warnings", _warnings(analysis)),
+        _section("Models", _models(analysis)),
+        _section("Where the values come from", _provenance(analysis)),
+    ]
+    stamp = summary["provenance"]
+    return f"""<!DOCTYPE html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'; img-src data:">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<title>{name}: squeezefilm report</title>
+<style>{STYLE}</style>
+</head>
+<body>
+<header>
+<h1>{title}</h1>
+<p class="name"><code>{name}</code>, analysed by squeezefilm</p>
+</header>
+<main>
+{"".join(parts)}
+</main>
+<footer>
+<p>squeezefilm {escape(str(stamp["squeezefilm_version"]))} ·
+made <time datetime="{escape(str(stamp["created_utc"]))}">{escape(str(stamp["created_utc"]))}</time> (UTC) ·
+description SHA-256 <code>{escape(str(stamp["config_sha256"]))}</code> ·
+{"no random numbers" if stamp["seed"] is None else f"seed {escape(str(stamp['seed']))}"}.
+The numbers and curves are in <code>result.json</code> beside this page.</p>
+</footer>
+</body>
+</html>
+"""  # noqa: E501
+
+
+def _section(heading: str, body: str, kind: str = "") -> str:
+    attribute = f' class="{kind}"' if kind else ""
+    return f"<section{attribute}>\n<h2>{heading}</h2>\n{body}\n</section>\n"
+
+
+def _table(caption: str, head: Iterable[str], rows: Iterable[tuple[str, list[str]]]) -> str:
+    """A table of escaped cells in HTML; each row comes with its class. The first cell heads it."""
+    columns = "".join(f'<th scope="col">{cell}</th>' for cell in head)
+    lines = "\n".join(
+        f'<tr{f" class={kind!r}" if kind else ""}><th scope="row">{cells[0]}</th>'
+        + "".join(f"<td>{cell}</td>" for cell in cells[1:])
+        + "</tr>"
+        for kind, cells in rows
+    )
+    return (
+        f'<div class="scroll" tabindex="0" role="region" aria-label="{caption}"><table>'
+        f"<caption>{caption}</caption>"
+        f"<thead><tr>{columns}</tr></thead>\n<tbody>\n{lines}\n</tbody></table></div>"
+    )
+
+
+def _verdict(analysis: Analysis) -> str:
+    items = "\n".join(
+        f'<li class="{finding.kind}"><b>{_KINDS[finding.kind]}</b>'
+        f"<span>{escape(printable(finding.text))}</span></li>"
+        for finding in analysis.verdict
+    )
+    return f'<ul class="verdict">\n{items}\n</ul>'
+
+
+def _key_numbers(analysis: Analysis) -> str:
+    rows = [
+        (
+            "",
+            [
+                escape(row.label),
+                f'<span class="mark">{escape(row.text)}</span>',
+                escape(row.remark),
+            ],
+        )
+        for row in key_numbers(analysis)
+    ]
+    return _table("At the working point", ("Quantity", "Value", "Remark"), rows)
+
+
+def _figures(analysis: Analysis, progress: Callable[[str], None] | None) -> list[str]:
+    from squeezefilm.report.display.figures import FIGURES
+    from squeezefilm.report.kit.style import svg
+
+    sections = []
+    for number, item in enumerate(FIGURES, 1):
+        if progress is not None:
+            progress(f"figure {number} of {len(FIGURES)}: {item.heading.lower()}")
+        figure = item.draw(analysis)
+        message = " ".join(figure.get_suptitle().split())
+        drawing = svg(figure, item.key, f"{item.heading}. {message}. {item.reading}")
+        body = (
+            f'<figure id="figure-{item.key}">\n<div class="scroll" tabindex="0" role="region" '
+            f'aria-label="{escape(item.heading)}">{drawing}</div>\n'
+            f"<figcaption>{escape(item.reading)}</figcaption>\n</figure>"
+        )
+        sections.append(_section(f"{number}. {escape(item.heading)}", body, "figure"))
+    return sections
+
+
+def _validity(analysis: Analysis) -> str:
+    def limits(low: float | None, high: float | None) -> str:
+        parts = [] if low is None else [f"at least {low:g}"]
+        parts += [] if high is None else [f"at most {high:g}"]
+        return " and ".join(parts)
+
+    rows = []
+    for check in analysis.prediction.validity.checks:
+        holds = check not in analysis.prediction.validity.failed
+        rows.append(
+            (
+                "",
+                [
+                    escape(check.name),
+                    f"{check.value:.3g}",
+                    limits(check.low, check.high),
+                    f'<span class="mark">{"✓ holds" if holds else "✗ does not hold"}</span>',
+                    escape(printable(check.sentence)),
+                ],
+            )
+        )
+    head = ("Assumption", "Number", "Wanted", "Here", "In words")
+    return _table("Assumptions of the film's model", head, rows)
+
+
+def _warnings(analysis: Analysis) -> str:
+    texts = unsaid_warnings(analysis)
+    if not texts:
+        return "<p>None beyond the doubts of the verdict.</p>"
+    items = "".join(f"<li>{escape(printable(text))}</li>\n" for text in texts)
+    return f"<ul>\n{items}</ul>"
+
+
+def _models(analysis: Analysis) -> str:
+    used = _table(
+        "What made the numbers",
+        ("Link of the chain", "Model"),
+        [("", [escape(what), f"<code>{escape(model)}</code>"]) for what, model in models(analysis)],
+    )
+    films = analysis.film_models
+    if films is not None:
+        means: dict[str, str] = {item.model: item.description for item in films.results}
+        used += "\n<br>\n" + _table(
+            "The film under the finger, drawn in five ways",
+            ("Model", "Over-pressure over ambient", "Carries", "µ′/µ", "What it is"),
+            [
+                (
+                    "used" if row[0] == analysis.prediction.model else "",
+                    [f"<code>{escape(row[0])}</code>", *row[1:], escape(means[row[0]])],
+                )
+                for row in film_rows(analysis)
+            ],
+        )
+    if not analysis.other_models:
+        return used
+    p = analysis.prediction
+    made: list[tuple[str, float, float | None, float | None]] = [
+        (
+            p.mode.model + " (used)",
+            p.mode.resonance_frequency,
+            p.mode.half_wavelength,
+            p.vibration_amplitude,
+        )
+    ]
+    made += [
+        (other.model, other.resonance_frequency, other.half_wavelength, other.vibration_amplitude)
+        for other in analysis.other_models
+    ]
+    rows = [
+        (
+            "",
+            [
+                f"<code>{escape(model)}</code>",
+                shown(frequency, Unit("Hz")),
+                "–" if half is None else shown(half, Unit("m")),
+                "–" if amplitude is None else shown(amplitude, Unit("m"), 3),
+            ],
+        )
+        for model, frequency, half, amplitude in made
+    ]
+    others = _table(
+        "The same plate by other theories, each driven at its own resonance",
+        ("Model", "Resonance", "Half wavelength", "Amplitude"),
+        rows,
+    )
+    return f"{used}\n<br>\n{others}"
+
+
+def _provenance(analysis: Analysis) -> str:
+    rows = []
+    for value in display_values(analysis.display):
+        assumed = value.evidence == "assumed"
+        evidence = escape(value.evidence) or "not stated"
+        rows.append(
+            (
+                "assumed" if assumed else "",
+                [
+                    f"<code>{escape(value.path)}</code>",
+                    escape(printable(value.text)),
+                    escape(printable(value.source)) or "–",
+                    f'<span class="mark">⚠\u00a0{evidence}</span>' if assumed else evidence,
+                ],
+            )
+        )
+    return _table(
+        "Every value of the description; ⚠ marks what is assumed",
+        ("Key", "Value", "Source", "Evidence"),
+        rows,
+    )

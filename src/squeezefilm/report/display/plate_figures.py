@@ -1,0 +1,427 @@
+"""Figures of the vibrating body: how it is built, its mode, its frequency response."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from squeezefilm.plate.laminate import plate_laminate
+from squeezefilm.plate.layout import AnnularStator, DiscPlate, RectangularPlate
+from squeezefilm.report.kit.numbers import HZ, M, V, shown
+from squeezefilm.report.kit.style import (
+    BAND,
+    BLUE,
+    INK,
+    METAL,
+    MINUS,
+    MUTED,
+    ORANGE,
+    PAPER,
+    PLUS,
+    drawn,
+    legend_below,
+    new_figure,
+    plain,
+)
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from squeezefilm.analysis.analyze import Analysis
+    from squeezefilm.plate.laminate import Laminate
+    from squeezefilm.quantities import FloatArray
+
+_SIGN = {1: "+", -1: "−"}
+_FILL = {1: PLUS, -1: MINUS}
+# More labels than this cannot be told apart on one axis.
+_MOST_LABELS = 26
+
+
+@drawn
+def layout(analysis: Analysis) -> Figure:
+    """The body to scale: plate with ceramics, or ring with waves."""
+    actuator = analysis.display.actuator
+    if isinstance(actuator, AnnularStator):
+        return _ring(actuator, analysis)
+    if isinstance(actuator, DiscPlate):
+        return _disc(actuator, analysis)
+    return _plate(actuator, plate_laminate(actuator))
+
+
+def _plate(plate: RectangularPlate, section: Laminate) -> Figure:
+    from matplotlib.patches import Rectangle
+
+    count = len(plate.patches)
+    neutral = section.neutral_axis
+    noun = "ceramic covers" if count == 1 else "ceramics cover"
+    title = (
+        f"{count} {noun} {100 * plate.coverage:.0f} % of the lower face; the plate bends about an "
+        f"axis {shown(neutral, M, 3)} below the touched face"
+    )
+    plan_height = float(np.clip(6.9 * plate.width / plate.length, 1.0, 5.2))
+    figure = new_figure(
+        title,
+        "neutral axis of a section with ceramic; thicknesses and positions as described",
+        plan_height + 2.6,
+    )
+    grid = figure.add_gridspec(2, 2, width_ratios=[4.6, 1.2], height_ratios=[plan_height, 0.55])
+    plan, side = figure.add_subplot(grid[0, 0]), figure.add_subplot(grid[1, 0])
+    detail = figure.add_subplot(grid[:, 1])
+    length, width = 1e3 * plate.length, 1e3 * plate.width
+
+    plan.set_title("lower face, seen through the plate; + and − say how it follows the drive")
+    plan.add_patch(Rectangle((0, 0), length, width, facecolor=METAL, edgecolor=INK, lw=1))
+    side.set_title("side view, to scale")
+    thick, ceramic = 1e3 * plate.thickness, 1e3 * plate.ceramic_thickness
+    side.add_patch(Rectangle((0, -thick), length, thick, facecolor=METAL, edgecolor=INK, lw=0.8))
+    for patch in plate.patches:
+        x, y, dx, dy = (1e3 * v for v in (patch.x, patch.y, patch.length, patch.width))
+        fill = _FILL[patch.polarity]
+        plan.add_patch(Rectangle((x, y), dx, dy, facecolor=fill, edgecolor=INK, lw=0.8))
+        side.add_patch(
+            Rectangle((x, -thick - ceramic), dx, ceramic, facecolor=fill, edgecolor=INK, lw=0.8)
+        )
+        # A sign needs some two percent of the picture to be read.
+        if min(dx, dy) > 0.02 * length:
+            plan.text(
+                x + dx / 2, y + dy / 2, _SIGN[patch.polarity], ha="center", va="center", fontsize=15
+            )
+    side.axhline(-1e3 * neutral, color=ORANGE, lw=1.2, ls=(0, (5, 2)))
+    pad = 0.015 * length
+    plan.set(xlim=(-pad, length + pad), ylim=(-pad, width + pad), aspect="equal")
+    plan.set(xlabel="x along the plate (mm)", ylabel="y (mm)")
+    deep = thick + ceramic
+    side.set(xlim=(-pad, length + pad), ylim=(-1.5 * deep, 0.5 * deep), aspect="equal")
+    side.set(xlabel="x along the plate (mm)")
+    side.set_yticks([])
+    for axes in (plan, side):
+        axes.grid(visible=False)
+    side.spines["left"].set_visible(False)
+    _section(detail, plate, neutral)
+    return figure
+
+
+def _disc(disc: DiscPlate, analysis: Analysis) -> Figure:
+    from matplotlib.patches import Circle, Rectangle
+
+    radius, thick = 500 * disc.diameter, 1e3 * disc.thickness
+    outer, inner = 500 * disc.ceramic_outer_diameter, 500 * disc.ceramic_inner_diameter
+    ceramic, hole = 1e3 * disc.ceramic_thickness, 500 * disc.inner_diameter
+    contact = 1e3 * analysis.display.finger.contact_length
+    share = (outer**2 - inner**2) / (radius**2 - hole**2)
+    figure = new_figure(
+        f"A ceramic below covers {100 * share:.0f} % of the disc; a finger pad {contact:.3g} mm "
+        f"wide touches {contact / (2 * radius):.0%} of its diameter",
+        "thicknesses and diameters as described",
+        5.6,
+    )
+    plan, side = figure.subplots(2, 1, height_ratios=[5, 1], sharex=True)
+    plan.set_title("seen from above, the ceramic through the disc")
+    plan.add_patch(Circle((0, 0), radius, facecolor=METAL, edgecolor=INK, lw=1))
+    plan.add_patch(Circle((0, 0), outer, facecolor=PLUS, edgecolor=INK, lw=0.8))
+    for size, fill in ((inner, METAL), (hole, PAPER)):
+        if size > 0:
+            plan.add_patch(Circle((0, 0), size, facecolor=fill, edgecolor=INK, lw=0.8))
+    plan.add_patch(
+        Rectangle(
+            (-contact / 2, -contact / 2), contact, contact,
+            facecolor="none", edgecolor=ORANGE, lw=2.2, zorder=3,
+            label=f"finger contact, {contact:.3g} mm × {contact:.3g} mm",
+        )
+    )  # fmt: skip
+    side.set_title("section, to scale")
+    side.add_patch(Rectangle((-radius, -thick), 2 * radius, thick, facecolor=METAL, edgecolor=INK))
+    parts = ((-outer, -inner), (inner, outer)) if inner > 0 else ((-outer, outer),)
+    for left, right in parts:
+        side.add_patch(
+            Rectangle(
+                (left, -thick - ceramic), right - left, ceramic, facecolor=PLUS, edgecolor=INK
+            )
+        )
+    reach = 1.06 * max(radius, contact / 2)
+    deep = thick + ceramic
+    plan.set(xlim=(-reach, reach), ylim=(-reach, reach), aspect="equal", ylabel="y (mm)")
+    side.set(xlim=(-reach, reach), ylim=(-1.6 * deep, 0.6 * deep), aspect="equal")
+    side.set(xlabel="x (mm)")
+    side.set_yticks([])
+    side.spines["left"].set_visible(False)
+    for axes in (plan, side):
+        axes.grid(visible=False)
+    legend_below(plan, gap=0.02)
+    return figure
+
+
+def _section(axes: Axes, plate: RectangularPlate, neutral: float) -> None:
+    """The layers through the thickness, with the neutral axis."""
+    from matplotlib.patches import Rectangle
+
+    thick, ceramic = 1e3 * plate.thickness, 1e3 * plate.ceramic_thickness
+    axes.set_title("section, enlarged")
+    for top, height, fill, name in (
+        (0.0, thick, METAL, plate.substrate.name),
+        (thick, ceramic, PLUS, plate.ceramic.name),
+    ):
+        axes.add_patch(Rectangle((0, top), 1, height, facecolor=fill, edgecolor=INK, lw=1))
+        # Named at the edge that the neutral axis is further from, so that it crosses no name.
+        middle = top + height / 2
+        at = middle - 0.22 * height if 1e3 * neutral > middle else middle + 0.22 * height
+        axes.text(
+            0.5,
+            at,
+            f"{plain(name, 16)}\n{height:.3g} mm",
+            ha="center",
+            va="center",
+            fontsize=8.5,
+            linespacing=1.1,
+        )
+    axes.axhline(1e3 * neutral, color=ORANGE, lw=1.6, ls=(0, (5, 2)), label="neutral axis")
+    axes.set(xlim=(0, 1), ylim=(1.04 * (thick + ceramic), -0.04 * (thick + ceramic)))
+    axes.set(ylabel="depth below the touched face (mm)")
+    axes.set_xticks([])
+    axes.grid(visible=False)
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.02), frameon=False, handlelength=1.6)
+
+
+def _ring(ring: AnnularStator, analysis: Analysis) -> Figure:
+    from matplotlib.patches import Circle, Patch, Rectangle, Wedge
+
+    waves = round(ring.wavelengths_around)
+    radius, width = 500 * ring.mean_diameter, 1e3 * ring.radial_width
+    contact = 1e3 * analysis.display.finger.contact_length
+    figure = new_figure(
+        f"{waves} waves of {shown(ring.wavelength, M)} stand on the ring; a finger pad covers "
+        f"{contact / (500 * ring.wavelength):.2g} half waves",
+        f"{analysis.prediction.mode.model}, the ring taken as smooth (its teeth are left out)",
+        5.6,
+    )
+    axes = figure.subplots()
+    outer, half = radius + width / 2, 180 / (2 * waves)
+    for number in range(2 * waves):
+        angle = 90 - number * 2 * half
+        sign = 1 if number % 2 == 0 else -1
+        axes.add_patch(
+            Wedge(
+                (0, 0), outer, angle - half, angle + half, width=width,
+                facecolor=_FILL[sign], edgecolor=INK, lw=0.8,
+            )
+        )  # fmt: skip
+        if 2 * waves <= 60 and number:
+            axes.text(
+                (radius + width / 4) * math.cos(math.radians(angle)),
+                (radius + width / 4) * math.sin(math.radians(angle)),
+                _SIGN[sign],
+                ha="center",
+                va="center",
+                fontsize=float(np.clip(220 / (2 * waves), 7, 14)),
+            )
+    axes.add_patch(Circle((0, 0), radius, fill=False, ls=(0, (5, 3)), ec=MUTED, lw=1))
+    axes.add_patch(
+        Rectangle(
+            (-contact / 2, radius - contact / 2), contact, contact,
+            facecolor="none", edgecolor=ORANGE, lw=2.2, zorder=3,
+        )
+    )  # fmt: skip
+    axes.annotate(
+        "", (-radius, 0), (radius, 0), arrowprops={"arrowstyle": "<->", "color": INK, "lw": 1}
+    )
+    axes.text(
+        0, 0.03 * outer, f"mean diameter\n{2 * radius:.4g} mm",
+        ha="center", va="bottom", fontsize=9.5,
+    )  # fmt: skip
+    axes.legend(
+        handles=[
+            Patch(facecolor=PLUS, edgecolor=INK, label="+  half wave going up"),
+            Patch(facecolor=MINUS, edgecolor=INK, label="−  half wave going down"),
+            Patch(facecolor=PAPER, edgecolor=INK, label="lines between: nodal lines"),
+            Patch(
+                facecolor="none", edgecolor=ORANGE, lw=2,
+                label=f"finger contact, {contact:.3g} mm × {contact:.3g} mm",
+            ),
+        ],
+        loc="center left",
+        bbox_to_anchor=(1.04, 0.5),
+        frameon=False,
+    )  # fmt: skip
+    reach = 1.06 * max(outer, radius + contact / 2)
+    axes.set(xlim=(-reach, reach), ylim=(-1.06 * outer, reach), aspect="equal")
+    axes.set(xlabel="x (mm)", ylabel="y (mm)")
+    axes.grid(visible=False)
+    return figure
+
+
+@drawn
+def mode_shape(analysis: Analysis) -> Figure:
+    """The working mode at the working amplitude, with its nodal lines."""
+    mode = analysis.prediction.mode
+    size = 1e6 * analysis.prediction.vibration_amplitude
+    if mode.line is not None:
+        x, w = 1e3 * mode.line.position, mode.line.deflection
+        nodes = 1e3 * mode.line.nodal_positions
+        ends = float(np.max(np.abs([w[0], w[-1]])))
+        title = (
+            f"{mode.label}: {len(nodes)} nodal lines, λ/2 = "
+            f"{shown(mode.half_wavelength, M)}; the free ends move {ends:.2f} times as far as "
+            "the lobes between"
+        )
+        along = "position across the nodal lines (mm)"
+    else:
+        waves = round(2 * math.pi * _mean_radius(analysis) / (2 * mode.half_wavelength))
+        seen = min(3, waves)
+        x = np.linspace(0, 2e3 * mode.half_wavelength * seen, 1201)
+        w = np.sin(np.pi * x / (1e3 * mode.half_wavelength))
+        nodes = 1e3 * mode.half_wavelength * np.arange(2 * seen + 1, dtype=float)
+        title = (
+            f"{seen} of the {waves} waves around the ring: a nodal line every "
+            f"{shown(mode.half_wavelength, M)}, where the surface stands still"
+        )
+        along = f"position along the mean circumference (mm), {seen} of {waves} waves"
+    figure = new_figure(title, mode.model, 4.4)
+    axes = figure.subplots()
+    unit = f"deflection at {shown(analysis.prediction.vibration_amplitude, M, 3)} (µm)"
+    # A drive that cancels out leaves rounding errors, no picometre of motion.
+    if size < 1e-6:
+        size, unit = 1.0, "relative deflection"
+    y = size * w
+    reach = float(np.max(np.abs(y)))
+    for node in nodes:
+        axes.axvline(float(node), color=MUTED, lw=0.9, ls=(0, (2, 2)))
+    axes.fill_between(x, y, -y, color=BAND, lw=0)
+    axes.plot(x, y, color=BLUE, label="one extreme of the vibration")
+    axes.plot(x, -y, color=BLUE, lw=1.1, ls=(0, (4, 2)), label="half a period later")
+    axes.axhline(0, color=INK, lw=0.8)
+    bottom = -1.2 * reach
+    plate = analysis.display.actuator
+    if isinstance(plate, RectangularPlate) and plate.lines_across == "length":
+        bottom = _drive_strip(axes, plate, reach)
+    if len(nodes) >= 4:
+        _half_wave_arrow(axes, nodes, 1.14 * reach, mode.half_wavelength)
+    margin = 0.01 * float(x[-1])
+    axes.set(xlim=(float(x[0]) - margin, float(x[-1]) + margin), ylim=(bottom, 1.45 * reach))
+    axes.set(xlabel=along, ylabel=unit)
+    axes.grid(visible=False)
+    # The strip of ceramics has no deflection to read.
+    axes.set_yticks([tick for tick in axes.get_yticks() if abs(tick) <= reach])
+    above = axes.secondary_xaxis("top")
+    every = math.ceil(len(nodes) / _MOST_LABELS)
+    marked = nodes[::every]
+    above.set_xticks(
+        marked, [f"{node:.1f}" for node in marked], rotation=90 if len(marked) > 14 else 0
+    )
+    above.set_xlabel(
+        "nodal lines at (mm)" if every == 1 else f"nodal lines at (mm), one in {every}"
+    )
+    legend_below(axes)
+    return figure
+
+
+def _mean_radius(analysis: Analysis) -> float:
+    actuator = analysis.display.actuator
+    assert isinstance(actuator, AnnularStator), "only a stator has no line along a plate"
+    return actuator.mean_diameter / 2
+
+
+def _drive_strip(axes: Axes, plate: RectangularPlate, reach: float) -> float:
+    """The ceramics under the mode that they drive; the new bottom of the axes."""
+    from matplotlib.patches import Rectangle
+
+    low, high = -1.62 * reach, -1.28 * reach
+    for patch in plate.patches:
+        x, dx = 1e3 * patch.x, 1e3 * patch.length
+        axes.add_patch(
+            Rectangle(
+                (x, low), dx, high - low, facecolor=_FILL[patch.polarity], edgecolor=INK, lw=0.8
+            )
+        )
+        if patch.length > 0.02 * plate.length:
+            axes.text(x + dx / 2, (low + high) / 2, _SIGN[patch.polarity], ha="center", va="center")
+    return -1.75 * reach
+
+
+def _half_wave_arrow(axes: Axes, nodes: FloatArray, height: float, half: float) -> None:
+    middle = len(nodes) // 2
+    left, right = float(nodes[middle - 1]), float(nodes[middle])
+    axes.annotate(
+        "", (left, height), (right, height),
+        arrowprops={"arrowstyle": "<->", "color": INK, "lw": 1, "shrinkA": 0, "shrinkB": 0},
+    )  # fmt: skip
+    axes.annotate(
+        f"λ/2 = {shown(half, M, 4)}", ((left + right) / 2, height), (0, 4),
+        textcoords="offset points", ha="center", va="bottom", fontsize=9.5,
+        bbox={"facecolor": PAPER, "edgecolor": "none", "pad": 1.2},
+    )  # fmt: skip
+
+
+@drawn
+def frequency_response(analysis: Analysis) -> Figure:
+    """Amplitude per volt against frequency, with resonance, half-power band and drive."""
+    response, p = analysis.response, analysis.prediction
+    f, per_volt = 1e-3 * response.frequency, 1e9 * response.amplitude_per_volt
+    top = int(np.argmax(per_volt))
+    peak = float(per_volt[top])
+    solid = p.mode.solid
+    own = p.mode.amplitude_per_volt if solid is None else solid.modal_amplitude_per_volt
+    driven = own > 0.1e-9 * peak
+    band = half_power(f, per_volt) if driven else None
+    at = shown(p.mode.resonance_frequency, HZ)
+    if driven:
+        wide = "" if band is None else f" is {shown(1e3 * (band[1] - band[0]), HZ, 3)} wide"
+        title = f"The resonance at {at}{wide}: the drive must stay on it"
+        share = 1.0
+        if p.voltage:
+            share = p.vibration_amplitude / (p.voltage * p.mode.amplitude_per_volt)
+        if share < 0.99:
+            title += f", but at {shown(p.frequency, HZ)} it gets {100 * share:.0f} % of the motion"
+    else:
+        title = f"The ceramics cancel out: they do not drive the mode at {at}"
+    figure = new_figure(title, response.model, 4.3)
+    axes = figure.subplots()
+    if band is not None:
+        axes.axvspan(
+            *band, color=BAND, lw=0,
+            label=f"half-power band, {band[0]:.2f} to {band[1]:.2f} kHz (above 71 % of the peak)",
+        )  # fmt: skip
+    axes.plot(
+        f, per_volt, color=BLUE,
+        label=f"amplitude per volt, quality factor Q = {p.mode.quality_factor:.3g}",
+    )  # fmt: skip
+    axes.axvline(
+        1e-3 * p.mode.resonance_frequency, color=INK, lw=1, ls=(0, (4, 2)),
+        label=f"resonance, {shown(p.mode.resonance_frequency, HZ)}",
+    )  # fmt: skip
+    drive = 1e-3 * p.frequency
+    if p.voltage is not None and f[0] <= drive <= f[-1]:
+        axes.plot(
+            [drive], [1e9 * p.vibration_amplitude / p.voltage if p.voltage else peak], "o",
+            color=ORANGE, ms=8, mec=PAPER, mew=1.2, zorder=4,
+            label=f"drive: {shown(p.voltage, V)} at {shown(p.frequency, HZ)}, "
+            f"{shown(p.vibration_amplitude, M, 3)}",
+        )  # fmt: skip
+    axes.set(xlim=(float(f[0]), float(f[-1])), ylim=(0, 1.08 * peak if peak > 0 else 1))
+    axes.set(xlabel="frequency (kHz)", ylabel="amplitude per volt (nm/V)")
+    if p.voltage:
+        micro = 1e-3 * p.voltage  # nm/V to µm
+        right = axes.secondary_yaxis(
+            "right", functions=(lambda v: np.multiply(v, micro), lambda v: np.divide(v, micro))
+        )
+        right.set_ylabel(f"amplitude at {shown(p.voltage, V)} (µm)")
+    legend_below(axes)
+    return figure
+
+
+def half_power(frequency: FloatArray, amplitude: FloatArray) -> tuple[float, float] | None:
+    """The two frequencies beside the peak where the amplitude falls to 1/√2 of it, in the unit of
+    `frequency`; None where the curve does not fall so far."""
+    top = int(np.argmax(amplitude))
+    level = float(amplitude[top]) / math.sqrt(2)
+    below = np.flatnonzero(amplitude < level)
+    left, right = below[below < top], below[below > top]
+    if not left.size or not right.size:
+        return None
+    edges = []
+    for low, high in ((left[-1], left[-1] + 1), (right[0], right[0] - 1)):
+        share = (level - amplitude[low]) / (amplitude[high] - amplitude[low])
+        edges.append(float(frequency[low] + share * (frequency[high] - frequency[low])))
+    return edges[0], edges[1]

@@ -1,0 +1,186 @@
+"""Figures of rendering: one texture under a moving finger, and which textures survive."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from squeezefilm.render.texture.gratings import Sine, Square
+from squeezefilm.report.kit.numbers import M, S, shown
+from squeezefilm.report.kit.style import (
+    BLUE,
+    INK,
+    ORANGE,
+    SKIN,
+    drawn,
+    message_figure,
+    new_figure,
+    pairs_of_axes,
+)
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from squeezefilm.analysis.analyze import Analysis
+    from squeezefilm.quantities import FloatArray
+    from squeezefilm.render.fidelity.trace import FrictionTrace
+
+_NOTHING = (
+    "The amplitude at the working point changes no friction, so there is no texture to draw: raise "
+    "the voltage, drive at the resonance, or give an amplitude."
+)
+_PERIODS_SHOWN = 3.5
+_MOST_POINTS = 1500
+
+
+@drawn
+def texture(analysis: Analysis) -> Figure:
+    """A grating under the finger: what is wanted and what the resonator makes of it."""
+    trace = analysis.texture
+    if trace is None:
+        return message_figure("No texture can be rendered here", _NOTHING)
+    period = (
+        trace.texture.spatial_period
+        if isinstance(trace.texture, Square | Sine)
+        else trace.stroke.length / 20
+    )
+    figure = new_figure(
+        f"A grating of {shown(period, M, 3)} at {1e3 * trace.stroke.speed:g} mm/s comes "
+        f"{shown(trace.lag, M, 2)} late: the resonator needs {shown(trace.time_constant, S, 3)} "
+        "to follow",
+        f"{trace.model}; friction by {analysis.prediction.model}, following the amplitude at once",
+        5.8,
+    )
+    grid, strip = pairs_of_axes(figure)
+    # A rise in the middle of the stroke, where nothing remembers the start.
+    middle = trace.position.searchsorted(trace.stroke.start + trace.stroke.length / 2)
+    rises = middle + np.flatnonzero(np.diff(trace.command[middle:]) > 0)
+    edge = float(trace.position[rises[0]] if rises.size else trace.position[middle])
+    wide = (edge - 0.25 * period, edge + (_PERIODS_SHOWN - 0.25) * period)
+    near = 0.5 * min(period, max(10 * trace.lag, 0.2 * period))
+    close = (edge - 0.35 * near, edge + 1.65 * near)
+    for column, (low, high) in enumerate((wide, close)):
+        _draw(grid[0][column], trace, 1e6 * trace.command, 1e6 * trace.amplitude, low, high)
+        _draw(
+            grid[1][column],
+            trace,
+            trace.relative_friction_wanted,
+            trace.relative_friction_rendered,
+            low,
+            high,
+        )
+        grid[1][column].set(xlim=(1e3 * low, 1e3 * high), xlabel="finger position (mm)")
+    for axes in (grid[0][1], grid[1][1]):
+        axes.axvspan(
+            1e3 * edge, 1e3 * (edge + trace.lag), color=SKIN, lw=0,
+            label=f"lag τ·v = {shown(trace.lag, M, 2)}",
+        )  # fmt: skip
+    grid[0][0].set(ylabel="amplitude (µm)", ylim=(0, None))
+    grid[1][0].set(ylabel="relative friction µ′/µ")
+    if np.ptp(trace.relative_friction_wanted) < 0.01:
+        # What nobody feels must not look like a swing because the axis stretches it.
+        grid[1][0].set(ylim=(0, 1.05))
+    grid[0][0].set_title(f"{_PERIODS_SHOWN:g} periods from the middle of the stroke")
+    grid[0][1].set_title("one edge, enlarged")
+    handles, labels = grid[0][1].get_legend_handles_labels()
+    strip.legend(handles, labels, loc="center", ncols=3, frameon=False)
+    return figure
+
+
+def _draw(
+    axes: Axes,
+    trace: FrictionTrace,
+    wanted: FloatArray,
+    rendered: FloatArray,
+    low: float,
+    high: float,
+) -> None:
+    inside = np.flatnonzero((trace.position >= low) & (trace.position <= high))
+    inside = inside[:: max(1, inside.size // _MOST_POINTS)]
+    x = 1e3 * trace.position[inside]
+    axes.plot(x, wanted[inside], color=ORANGE, lw=1.5, ls=(0, (6, 1.6)), label="wanted")
+    axes.plot(x, rendered[inside], color=BLUE, lw=1.9, label="rendered")
+
+
+@drawn
+def fidelity(analysis: Analysis) -> Figure:
+    """Which spatial period keeps its swing at which finger speed."""
+    from matplotlib.colors import LinearSegmentedColormap
+    from matplotlib.patches import Patch, Rectangle
+
+    table = analysis.fidelity
+    if table is None:
+        return message_figure("No texture survives here", _NOTHING)
+    fastest = 1e3 * float(table.speeds[-1])
+    title = (
+        f"At {fastest:g} mm/s the finest {table.shape} grating that keeps {100 * table.kept:.0f} % "
+        f"of its swing has a period of {shown(float(table.finest_period[-1]), M, 3)}"
+    )
+    rows, columns = table.amplitude_kept.shape
+    figure = new_figure(
+        title, f"{table.model}; friction by {analysis.prediction.model}", 2.5 + 0.62 * rows
+    )
+    axes, strip = figure.subplots(2, 1, height_ratios=[rows, 0.35])
+    strip.set_axis_off()
+    # The same colours on a light and a dark page: the text on each cell is chosen for the cell.
+    colors = LinearSegmentedColormap.from_list("kept", ["#f6efe2", "#8fc1c7", "#0d4f6b"])
+    for row in range(rows):
+        for column in range(columns):
+            share = float(table.amplitude_kept[row, column])
+            survives = bool(table.amplitude_survives[row, column])
+            fill = colors(share**3)
+            axes.add_patch(
+                Rectangle(
+                    (column - 0.48, row - 0.46), 0.96, 0.92, facecolor=fill,
+                    edgecolor=INK, lw=1.2 if survives else 0.8,
+                    ls="-" if survives else (0, (3, 2)),
+                )
+            )  # fmt: skip
+            ink = "#ffffff" if _luminance(fill[:3]) < 0.2 else "#101820"
+            words = f"{_percent(share, table.kept)}  {'✓' if survives else '✗'}"
+            axes.text(column, row - 0.12, words, ha="center", va="center", color=ink, fontsize=12)
+            axes.text(
+                column, row + 0.24,
+                f"friction {_percent(float(table.friction_kept[row, column]), table.kept)}",
+                ha="center", va="center", color=ink, fontsize=8.5,
+            )  # fmt: skip
+    axes.set(xlim=(-0.52, columns - 0.48), ylim=(rows - 0.5, -0.5))
+    axes.set_yticks(range(rows), [f"{1e3 * period:g}" for period in table.spatial_periods])
+    axes.set_xticks(
+        range(columns),
+        [
+            f"{1e3 * speed:g}\nfinest {shown(float(finest), M, 2)}\nlag {shown(float(lag), M, 2)}"
+            for speed, finest, lag in zip(table.speeds, table.finest_period, table.lag, strict=True)
+        ],
+    )
+    axes.set(xlabel="finger speed (mm/s)", ylabel="spatial period (mm)")
+    axes.grid(visible=False)
+    axes.tick_params(length=0)
+    for side in ("left", "bottom"):
+        axes.spines[side].set_visible(False)
+    strip.legend(
+        handles=[
+            Patch(facecolor="none", edgecolor=INK, lw=1.2,
+                  label=f"✓ keeps {100 * table.kept:.0f} % of the amplitude's swing"),
+            Patch(facecolor="none", edgecolor=INK, lw=0.8, ls="--",
+                  label="✗ loses more"),
+        ],
+        loc="center", ncols=2, frameon=False,
+    )  # fmt: skip
+    return figure
+
+
+def _percent(share: float, kept: float) -> str:
+    """A share in whole percent, never rounded up to the share that had to be kept."""
+    rounded = round(100 * share)
+    if share < kept and rounded >= 100 * kept:
+        rounded -= 1
+    return f"{rounded} %"
+
+
+def _luminance(color: tuple[float, ...]) -> float:
+    """Relative luminance of an sRGB colour, as WCAG defines contrast by it."""
+    r, g, b = (c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in color)
+    return 0.2126 * r + 0.7152 * g + 0.0722 * b

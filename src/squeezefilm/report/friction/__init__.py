@@ -1,0 +1,1 @@
+"""What `friction` shows: its figures and its terminal output."""

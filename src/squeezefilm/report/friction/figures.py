@@ -1,0 +1,253 @@
+"""The figures of a friction: models side by side, map, what to measure next, ripple."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from squeezefilm.report.kit.numbers import M, N, shown
+from squeezefilm.report.kit.style import (
+    BAND,
+    BLUE,
+    GREEN,
+    INK,
+    MUTED,
+    ORANGE,
+    PAPER,
+    PURPLE,
+    drawn,
+    legend_below,
+    new_figure,
+    plain,
+    plain_log,
+    png,
+)
+from squeezefilm.results import write_whole
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from squeezefilm.analysis.analyze import Analysis
+    from squeezefilm.analysis.friction.command import FrictionAnalysis
+    from squeezefilm.analysis.friction.models import ModelCurve
+    from squeezefilm.analysis.uncertainty import UncertainFriction
+    from squeezefilm.chain.prediction import Prediction
+
+_STYLES = {
+    "paper2008": (ORANGE, (0, (6, 1.6)), "paper's asymptote"),
+    "film-smooth": (GREEN, (0, (5, 1.5, 1, 1.5)), "smooth film, no ridges"),
+    "film-sealed": (PURPLE, (0, (1.4, 1.2)), "film under the paper's ridges, solved"),
+}
+_NAMES_OF_PARAMETERS = {
+    "finger.asperities.reference_gap": "gap of the asperities",
+    "finger.asperities.decay_length": "decay length of the asperities",
+    "finger.plateau_width": "width of a ridge's plateau",
+    "finger.contact_length": "length of the contact",
+    "actuator.quality_factor": "quality factor",
+    "skin_compliance": "softness of the pad",
+}
+
+
+def draw_models(
+    axes: Axes,
+    curves: tuple[ModelCurve, ...],
+    prediction: Prediction,
+    unsure: UncertainFriction | None,
+) -> None:
+    """Every model's µ′/µ against amplitude; partial levitation as a band between its limits."""
+    p = prediction
+    for curve in curves:
+        if curve.model not in _STYLES:
+            continue
+        color, dashes, name = _STYLES[curve.model]
+        axes.plot(
+            1e6 * curve.amplitude, curve.relative_friction, color=color, ls=dashes, label=name
+        )
+    own = next(c for c in curves if c.model == "partial-levitation")
+    tied = next(c for c in curves if c.model == "partial-levitation-one-gap")
+    stiff = np.interp(own.amplitude, tied.amplitude, tied.relative_friction)
+    axes.fill_between(
+        1e6 * own.amplitude, stiff, own.relative_friction, color=BAND, lw=0,
+        label="between a stiff pad (one mean gap) and a soft one",
+    )  # fmt: skip
+    axes.plot(
+        1e6 * own.amplitude, own.relative_friction, color=BLUE, lw=2.4,
+        label="partial levitation, each ridge at its own balance",
+    )  # fmt: skip
+    at = 1e6 * p.vibration_amplitude
+    if unsure is not None:
+        low, high = unsure.interval
+        axes.plot([at, at], [low, high], color=INK, lw=1.6, zorder=4)
+        for end in (low, high):
+            axes.plot([at], [end], "_", color=INK, ms=11, mew=1.6, zorder=4)
+    words = f"{p.relative_friction:.2f}"
+    if unsure is not None:
+        words += f" ({unsure.interval[0]:.2f}–{unsure.interval[1]:.2f}, {unsure.level:.0%})"
+    axes.plot(
+        [at], [p.relative_friction], "D", color=INK, ms=8, mec=PAPER, mew=1.3, zorder=5,
+        clip_on=False, label=f"this display, {p.model}: {words}",
+    )  # fmt: skip
+    axes.set(xlim=(0, 1e6 * float(own.amplitude[-1])), ylim=(0, 1.04))
+    axes.set(xlabel="vibration amplitude, zero-to-peak (µm)", ylabel="relative friction µ′/µ")
+
+
+@drawn
+def models(result: FrictionAnalysis) -> Figure:
+    """The paper's model, the smooth film, the ridge film and partial levitation on one plot."""
+    return _models(result.curves, result.prediction, result.uncertainty)
+
+
+@drawn
+def chain(analysis: Analysis) -> Figure:
+    """The same plot for a whole analysis."""
+    return _models(analysis.model_curves, analysis.prediction, analysis.uncertainty)
+
+
+def _models(
+    curves: tuple[ModelCurve, ...], p: Prediction, unsure: UncertainFriction | None
+) -> Figure:
+    said = f"µ′/µ = {p.relative_friction:.2f}" if unsure is None else unsure.sentence
+    figure = new_figure(
+        f"At {shown(p.vibration_amplitude, M, 3)} on {plain(p.surface.name, 20)} {said}: the model "
+        "decides, and no measured curve has settled it",
+        f"as in the legend; {shown(p.normal_force, N)}",
+        5.4,
+    )
+    axes = figure.subplots()
+    draw_models(axes, curves, p, unsure)
+    legend_below(axes, columns=2)
+    return figure
+
+
+@drawn
+def friction_map(result: FrictionAnalysis) -> Figure:
+    """µ′/µ over amplitude and force, the working point marked."""
+    found, p = result.map, result.prediction
+    figure = new_figure(
+        f"µ′/µ is {p.relative_friction:.2f} at {shown(p.vibration_amplitude, M, 3)} and "
+        f"{shown(p.normal_force, N, 3)}; over these ranges it goes from "
+        f"{np.nanmin(found.relative_friction):.2f} to {np.nanmax(found.relative_friction):.2f}",
+        found.model,
+        4.8,
+    )
+    axes = figure.subplots()
+    levels = np.linspace(0, 1, 11)
+    filled = axes.contourf(
+        1e6 * found.amplitude, found.normal_force, found.relative_friction,
+        levels=levels, cmap="cividis",
+    )  # fmt: skip
+    lines = axes.contour(
+        1e6 * found.amplitude, found.normal_force, found.relative_friction,
+        levels=levels[1:-1:2], colors=PAPER, linewidths=1.0,
+    )  # fmt: skip
+    axes.clabel(lines, fmt=lambda v: f"{v:.1f}", fontsize=9)
+    axes.plot(
+        [1e6 * p.vibration_amplitude], [p.normal_force], "D", color=ORANGE, ms=9, mec=PAPER,
+        mew=1.4, zorder=5, label="this display",
+    )  # fmt: skip
+    bar = figure.colorbar(filled, ax=axes, label="relative friction µ′/µ")
+    bar.outline.set_edgecolor(MUTED)
+    axes.set(yscale="log", xlabel="vibration amplitude, zero-to-peak (µm)")
+    axes.set(ylabel="normal force (N)")
+    plain_log(axes.yaxis)
+    legend_below(axes)
+    return figure
+
+
+@drawn
+def uncertainty(result: FrictionAnalysis) -> Figure:
+    """Left: how µ′/µ is distributed. Right: which parameter makes it so."""
+    unsure = result.uncertainty
+    assert unsure is not None, "asked without samples"
+    low, high = unsure.interval
+    first = _name(unsure.influences[0].parameter.path)
+    figure = new_figure(
+        f"{unsure.sentence}; to know it better, measure the {first}",
+        f"{unsure.model}, {unsure.evaluations} load balances",
+        4.6,
+    )
+    left, right = figure.subplots(1, 2, width_ratios=[1, 1.15])
+    left.hist(unsure.samples, bins=24, range=(0, 1), color=BLUE, alpha=0.85)
+    left.axvspan(low, high, color=BAND, zorder=0, label=f"{unsure.level:.0%} interval")
+    left.axvline(unsure.nominal, color=INK, lw=1.6, label=f"as described: {unsure.nominal:.2f}")
+    left.set(xlabel="relative friction µ′/µ", ylabel="samples", xlim=(0, 1))
+    legend_below(left, columns=1)
+    ranked = unsure.influences[:8][::-1]
+    rows = np.arange(len(ranked))
+    right.barh(
+        rows, [100 * max(i.total, 0) for i in ranked], color=BAND, edgecolor=MUTED,
+        xerr=[100 * i.total_error for i in ranked], ecolor=MUTED, label="with all its company",
+    )  # fmt: skip
+    right.barh(
+        rows, [100 * max(i.first_order, 0) for i in ranked], height=0.4, color=ORANGE, label="alone"
+    )
+    right.set_yticks(rows, [_name(i.parameter.path) for i in ranked])
+    right.set(xlabel="share of the variance of µ′/µ (%)", xlim=(0, None))
+    right.grid(visible=False, axis="y")
+    legend_below(right, columns=2)
+    return figure
+
+
+@drawn
+def ripple(result: FrictionAnalysis) -> Figure:
+    """The friction as the pad moves along the standing wave, at constant amplitude."""
+    found = result.ripple
+    assert found is not None, "nothing vibrates"
+    half = found.half_wavelength
+    x = np.concatenate([found.position, found.position + half, [2 * half]])
+    y = np.concatenate([found.relative_friction] * 2 + [found.relative_friction[:1]])
+    figure = new_figure(
+        f"The wave itself is felt: {100 * found.ripple:.2g} % of ripple every "
+        f"{shown(half, M, 3)} under a contact of {shown(found.contact_length, M, 3)}",
+        "partial-levitation, each ridge at its own balance",
+        4.0,
+    )
+    axes = figure.subplots()
+    axes.plot(1e3 * x, y, color=BLUE, label="relative friction of the whole pad")
+    axes.axhline(found.mean, color=MUTED, ls=(0, (4, 2)), lw=1.2, label=f"mean {found.mean:.2f}")
+    for node in (0.5 * half, 1.5 * half):
+        axes.axvline(
+            1e3 * node, color=INK, lw=0.9, ls=(0, (1, 2)),
+            label="nodal lines" if node < half else None,
+        )  # fmt: skip
+    axes.set(xlabel="centre of the pad, from an antinode (mm)", ylabel="relative friction µ′/µ")
+    axes.set(xlim=(0, 2e3 * half), ylim=(0, 1.04))
+    legend_below(axes)
+    return figure
+
+
+def _name(path: str) -> str:
+    if path.startswith("surfaces."):
+        return "roughness of the surface"
+    return _NAMES_OF_PARAMETERS.get(path, path.split(".", 1)[-1].replace("_", " "))
+
+
+def write_friction(result: FrictionAnalysis, folder: Path) -> Path:
+    """Write friction.json, and the figures as PNG, into `folder`; the folder."""
+    summary = result.summary()
+    found = result.map
+    summary["map"] = {
+        "vibration_amplitude_m": found.amplitude.tolist(),
+        "normal_force_N": found.normal_force.tolist(),
+        "relative_friction": [
+            [None if np.isnan(value) else float(value) for value in row]
+            for row in found.relative_friction
+        ],
+    }
+    data = json.dumps(summary, indent=1, ensure_ascii=False, allow_nan=False)
+    pictures = {
+        "friction-models.png": png(models(result)),
+        "friction-map.png": png(friction_map(result)),
+    }
+    if result.uncertainty is not None:
+        pictures["friction-uncertainty.png"] = png(uncertainty(result))
+    if result.ripple is not None:
+        pictures["friction-ripple.png"] = png(ripple(result))
+    write_whole(folder / "friction.json", data + "\n")
+    for name, picture in pictures.items():
+        write_whole(folder / name, picture)
+    return folder

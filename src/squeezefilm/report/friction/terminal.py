@@ -1,0 +1,136 @@
+"""What the terminal shows of a friction: the number with its interval first, then why."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from squeezefilm.quantities import Unit
+from squeezefilm.report.kit.numbers import HZ, M, N, V, shown
+from squeezefilm.report.kit.terminal import heading, plain_console, table
+
+if TYPE_CHECKING:
+    from squeezefilm.analysis.friction.command import FrictionAnalysis
+    from squeezefilm.analysis.uncertainty import UncertainFriction
+
+_RANKED = 6
+
+
+def show_friction(result: FrictionAnalysis) -> None:
+    """Print a friction analysis."""
+    console, p = plain_console(), result.prediction
+    heading(console, f"{result.display.title} [{result.display.name}]")
+    unsure = result.uncertainty
+    headline = (
+        f"µ′/µ = {p.relative_friction:.2f}"
+        if unsure is None
+        else f"{unsure.sentence}, {unsure.level:.0%} interval"
+    )
+    console.print(headline)
+    drive = "amplitude given" if p.voltage is None else f"at {shown(p.voltage, V)}"
+    rows = [
+        ("Vibration amplitude", shown(p.vibration_amplitude, M), f"with the finger, {drive}"),
+        ("Drive frequency", shown(p.frequency, HZ), ""),
+    ]
+    if p.voltage is not None and p.touch.mode is not None:
+        rows.append(
+            (
+                "The finger leaves",
+                f"{100 * p.touch.kept:.3g} %",
+                f"of {shown(p.touch.free_amplitude, M)}; it moves the resonance by "
+                f"{p.touch.mode.resonance_frequency - p.touch.mode.free_frequency:+.1f} Hz",
+            )
+        )
+    rows += [
+        ("Surface", p.surface.name, f"roughness {shown(p.surface.roughness, M)}"),
+        ("Normal force", shown(p.normal_force, N), ""),
+        (
+            "Ambient pressure",
+            shown(result.display.gas.ambient_pressure, Unit("Pa")),
+            "",
+        ),
+    ]
+    sharing = p.touch.sharing
+    if sharing is not None:
+        rows += [
+            ("Film carries", f"{100 * float(sharing.film_share[0]):.3g} %", "of the load"),
+            (
+                "Asperities carry",
+                f"{100 * float(sharing.relative_friction[0]):.3g} %",
+                f"mean gap {shown(float(sharing.mean_gap[0]), M, 3)}",
+            ),
+        ]
+    rows += [
+        ("Relative friction µ′/µ", f"{p.relative_friction:.3f}", p.model),
+        (
+            "Friction reduction µ − µ′",
+            f"{p.friction_reduction:.3f}",
+            f"of µ = {p.friction_coefficient:.3g}",
+        ),
+        ("Tangential force", shown(p.tangential_force, N, 3), "sliding steadily"),
+    ]
+    if p.relative_friction_limits is not None:
+        own, tied = p.relative_friction_limits
+        rows.append(
+            (
+                "A softer, a stiffer pad",
+                f"{own:.3f}, {tied:.3f}",
+                "each ridge at its own balance, all at one mean gap",
+            )
+        )
+    if result.ripple is not None:
+        rows.append(
+            (
+                "Ripple of the wave",
+                f"{100 * result.ripple.ripple:.2g} %",
+                f"every {shown(result.ripple.half_wavelength, M, 3)}, at constant amplitude",
+            )
+        )
+    if result.wanted is not None:
+        rows.append(
+            (
+                f"For µ′/µ = {result.wanted.relative_friction:.3g}",
+                shown(result.wanted.voltage, V, 3),
+                shown(result.wanted.vibration_amplitude, M, 3),
+            )
+        )
+    table(console, ("", "", ""), rows, fixed=(0,))
+    heading(console, "The same finger by other models")
+    others: list[tuple[str, str]] = [
+        (curve.model, "–" if (at := curve.at(p.vibration_amplitude)) is None else f"{at:.3f}")
+        for curve in result.curves
+    ]
+    tapping = result.tapping
+    others.append(
+        (
+            f"intermittent contact at {shown(tapping.speed, Unit('m/s'))}, no gas",
+            f"{tapping.relative_friction:.3f}",
+        )
+    )
+    table(console, ("model", "µ′/µ"), others)
+    if unsure is not None:
+        _ranking(result, unsure)
+    for text in p.warnings:
+        console.print(f"! {text}")
+
+
+def _ranking(result: FrictionAnalysis, unsure: UncertainFriction) -> None:
+    console = plain_console()
+    heading(console, "What to measure next (share of the variance, alone and in all)")
+    table(
+        console,
+        ("parameter", "from", "to", "alone", "in all", ""),
+        [
+            (
+                item.parameter.path,
+                *(shown(v, item.parameter.unit, 3) for v in item.parameter.distribution.support),
+                f"{max(item.first_order, 0):.0%}",
+                f"{item.total:.0%} ± {item.total_error:.0%}",
+                "assumed range" if item.parameter.origin == "assumed" else "as described",
+            )
+            for item in unsure.influences[:_RANKED]
+        ],
+        fixed=(0,),
+    )
+    console.print(
+        f"{unsure.evaluations} load balances, {unsure.failed} without one; seed {unsure.seed}"
+    )

@@ -1,0 +1,76 @@
+"""The style sheet of the report: light, dark and print, with no file or font from elsewhere."""
+
+from __future__ import annotations
+
+from squeezefilm.report.kit.style import PALETTE
+
+
+def _variables(which: int) -> str:
+    return " ".join(f"--{role}: {colors[which]};" for role, colors in PALETTE.items())
+
+
+STYLE = f"""
+:root {{ color-scheme: light dark; {_variables(0)} --page: #f3f6f8; }}
+@media (prefers-color-scheme: dark) {{ :root {{ {_variables(1)} --page: #0d1319; }} }}
+@media print {{ :root {{ color-scheme: light; {_variables(0)} --page: #ffffff; }} }}
+* {{ box-sizing: border-box; }}
+body {{ margin: 0; background: var(--page); color: var(--ink);
+  font: 16px/1.5 system-ui, "Segoe UI", Roboto, "DejaVu Sans", sans-serif;
+  overflow-wrap: anywhere; }}
+main, header, footer {{ max-width: 70rem; margin: 0 auto; padding: 0 1.25rem; }}
+h1 {{ font-size: 1.75rem; line-height: 1.25; margin: 1.5rem 0 .25rem; }}
+h2 {{ font-size: 1.25rem; margin: 0 0 .6rem; }}
+.name, figcaption, footer, caption {{ color: var(--muted); }}
+section {{ background: var(--paper); border: 1px solid var(--grid); border-radius: .5rem;
+  padding: 1.1rem 1.25rem; margin: 1rem 0; }}
+figure {{ margin: 0; }}
+figcaption {{ font-size: .92rem; margin-top: .5rem; max-width: 52rem; }}
+.scroll {{ overflow-x: auto; }}
+.scroll:focus-visible, summary:focus-visible {{ outline: 3px solid var(--blue); }}
+svg {{ display: block; width: 100%; min-width: 36rem; height: auto; }}
+ul.verdict {{ list-style: none; margin: 0; padding: 0; }}
+ul.verdict li {{ display: flex; gap: .9rem; padding: .55rem .8rem; margin: .5rem 0;
+  border-left: .4rem solid; }}
+ul.verdict b {{ flex: 0 0 5.2rem; }}
+ul.verdict li span {{ min-width: 0; }}
+.good {{ border-color: var(--green) !important; }} .good b {{ color: var(--green); }}
+.limit {{ border-left-style: dashed !important; border-color: var(--blue) !important; }}
+.limit b {{ color: var(--blue); }}
+.doubt {{ border-left-style: double !important; border-color: var(--orange) !important; }}
+.doubt b {{ color: var(--orange); }}
+table {{ border-collapse: collapse; width: 100%; font-size: .95rem; }}
+caption {{ text-align: left; padding-bottom: .4rem; }}
+th, td {{ text-align: left; vertical-align: top; padding: .32rem .8rem .32rem 0;
+  border-bottom: 1px solid var(--grid); overflow-wrap: break-word; }}
+th {{ font-weight: 600; }}
+.assumed > * {{ background: var(--band); }}
+.mark {{ font-weight: 700; }}
+code {{ font-family: ui-monospace, "DejaVu Sans Mono", monospace; font-size: .9em; }}
+footer {{ font-size: .9rem; padding-bottom: 2rem; }}
+@media (max-width: 48rem) {{ ul.verdict li {{ display: block; }} }}
+@media print {{
+  body {{ font-size: 10.5pt; }}
+  section {{ border: 0; padding: 0; margin: 0 0 1.2rem; }}
+  section.figure, ul.verdict li, tr {{ break-inside: avoid; }}
+  svg {{ min-width: 0; }}
+}}
+"""
+
+
+def page_head(title: str) -> str:
+    """A page with pictures beside it, from its first line to the opening of its body.
+
+    `title` is HTML already. Scripts and anything from elsewhere are refused by its policy.
+    """
+    policy = "default-src 'none'; style-src 'unsafe-inline'; img-src 'self' file:"
+    return f"""<!DOCTYPE html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta http-equiv="Content-Security-Policy" content="{policy}">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<title>{title}</title>
+<style>{STYLE}
+figure img {{ display: block; width: 100%; height: auto; background: #fff; }}</style>
+</head>
+<body>"""

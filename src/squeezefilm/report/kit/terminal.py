@@ -1,0 +1,341 @@
+"""What the command line prints: progress while it works, tables of what came out."""
+
+from __future__ import annotations
+
+import sys
+import tomllib
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+from squeezefilm.report.kit.numbers import (
+    dotted,
+    film_rows,
+    key_numbers,
+    micro,
+    models,
+    printable,
+    shown,
+    unsaid_warnings,
+)
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from squeezefilm.analysis.analyze import Analysis
+    from squeezefilm.analysis.claims.command import Reproduction
+
+_KINDS = {"good": "good ", "limit": "limit", "doubt": "doubt"}
+_STYLES = {"good": "green", "limit": "cyan", "doubt": "yellow"}
+_VERDICT_STYLES = {
+    "reproduces": "green",
+    "holds": "green",
+    "misprint": "cyan",
+    "does not reproduce": "yellow",
+    "does not hold": "yellow",
+}
+
+
+@contextmanager
+def progress(enabled: bool) -> Iterator[Callable[[str], None]]:
+    """Show on stderr what is going on: a line that vanishes at a terminal, plain lines elsewhere.
+
+    Yields the function to tell each step to.
+    """
+    if not enabled:
+        yield lambda _: None
+        return
+    if not sys.stderr.isatty():
+
+        def line(text: str) -> None:
+            print(f"  {printable(text)} …", file=sys.stderr, flush=True)
+
+        yield line
+        return
+    from rich.console import Console
+    from rich.text import Text
+
+    with Console(stderr=True).status("starting") as status:
+        yield lambda text: status.update(Text(f"{printable(text)} …"))
+
+
+def plain_console() -> Console:
+    """A console on standard output, without colour where that is no terminal."""
+    from rich.console import Console
+
+    # A terminal of another encoding shows a question mark for σ; it must not end the run.
+    reconfigure = getattr(sys.stdout, "reconfigure", None)
+    if reconfigure is not None:
+        reconfigure(errors="replace")
+    return Console(highlight=False, markup=False, emoji=False)
+
+
+def table(
+    console: Console,
+    head: Sequence[str],
+    rows: Iterable[Sequence[str]],
+    *,
+    fixed: Iterable[int] = (),
+    styles: Callable[[Sequence[str]], str] | None = None,
+) -> None:
+    """Print a table; the columns `fixed` are not wrapped. Cells are user's text: no markup."""
+    from rich import box
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False, show_header=any(head))
+    whole = set(fixed)
+    for number, name in enumerate(head):
+        table.add_column(name, no_wrap=number in whole, overflow="fold")
+    for row in rows:
+        cells = ["\n".join(_kept(line) for line in cell.split("\n")) for cell in row]
+        table.add_row(*(Text(cell) for cell in cells), style=styles(row) if styles else None)
+    console.print(table)
+
+
+def _kept(line: str) -> str:
+    """A printable line with its indent."""
+    return " " * (len(line) - len(line.lstrip(" "))) + printable(line)
+
+
+def heading(console: Console, text: str) -> None:
+    """Print a heading."""
+    from rich.text import Text
+
+    console.print()
+    console.print(Text(printable(text), style="bold"))
+
+
+def _bullets(console: Console, items: Iterable[tuple[str, str, str]]) -> None:
+    """Wrapped sentences, each behind a word that says what kind it is."""
+    from rich.table import Table
+    from rich.text import Text
+
+    grid = Table.grid(padding=(0, 2))
+    grid.add_column(no_wrap=True)
+    grid.add_column(overflow="fold")
+    for word, text, style in items:
+        grid.add_row(Text(printable(word), style=style), Text(printable(text)))
+    console.print(grid)
+
+
+def show_analysis(analysis: Analysis) -> None:
+    """Print an analysis: verdict last, where the eye rests, after numbers, models and warnings."""
+    console = plain_console()
+    heading(console, f"{analysis.display.title} [{analysis.display.name}]")
+    table(
+        console,
+        ("", "", ""),
+        [(row.label, row.text, row.remark) for row in key_numbers(analysis)],
+        fixed=(0,),
+    )
+    heading(console, "Models")
+    table(console, ("", ""), models(analysis), fixed=(0,))
+    if analysis.other_models:
+        from squeezefilm.quantities import Unit
+
+        heading(console, "The same plate by other theories")
+        table(
+            console,
+            ("model", "resonance", "amplitude"),
+            [
+                (
+                    other.model,
+                    shown(other.resonance_frequency, Unit("Hz")),
+                    "–"
+                    if other.vibration_amplitude is None
+                    else shown(other.vibration_amplitude, Unit("m"), 3),
+                )
+                for other in analysis.other_models
+            ],
+        )
+    if films := film_rows(analysis):
+        heading(console, "The film under the finger, drawn in five ways")
+        table(console, ("model", "over-pressure", "carries", "µ′/µ"), films)
+    warned = unsaid_warnings(analysis)
+    if warned:
+        heading(console, "Warnings")
+        _bullets(console, [("!", text, "yellow") for text in warned])
+    heading(console, "Verdict")
+    _bullets(
+        console,
+        [(_KINDS[item.kind], item.text, _STYLES[item.kind]) for item in analysis.verdict],
+    )
+    console.print()
+
+
+def show_claims(result: Reproduction) -> None:
+    """Print every published claim: printed, recomputed, verdict; then where and why, claim by
+    claim; then the errata."""
+    console = plain_console()
+    rows = []
+    for item in result.results:
+        claim, formula = item.claim, item.printed_formula_value
+        sign = {"above": "> ", "at_least": "≥ ", "at_most": "≤ "}.get(claim.relation, "")
+        rows.append(
+            (
+                claim.id,
+                _values(claim.printed, claim.unit, sign),
+                "–" if formula is None else _values(formula, claim.unit),
+                _values(item.value, claim.unit),
+                item.verdict,
+            )
+        )
+    table(
+        console,
+        ("claim", "printed", "as printed", "recomputed", "verdict"),
+        rows,
+        fixed=(0,),
+        styles=lambda row: _VERDICT_STYLES.get(row[4], ""),
+    )
+    heading(console, "Where and why")
+    for item in result.results:
+        heading(console, f"{item.claim.id}: {item.verdict}")
+        _bullets(
+            console,
+            [
+                ("", f"{item.claim.where}: {item.claim.statement}", ""),
+                ("", f"why: {item.why}", ""),
+                *([("", item.note, "")] if item.note else []),
+            ],
+        )
+    if result.errata:
+        heading(console, "Errata of the paper")
+        _bullets(
+            console,
+            [
+                (one.equation, f"{one.printed}  must be  {one.corrected}: {one.why}", "")
+                for one in result.errata
+            ],
+        )
+    counts: dict[str, int] = {}
+    for item in result.results:
+        counts[item.verdict] = counts.get(item.verdict, 0) + 1
+    total = ", ".join(f"{count} {verdict}" for verdict, count in counts.items())
+    heading(console, f"{len(result.results)} claims: {total}")
+
+
+def _values(values: Iterable[float], unit: str, sign: str = "") -> str:
+    from squeezefilm.quantities import Unit
+
+    return "\n".join(sign + shown(value, Unit(unit)) for value in values)
+
+
+def preset_list() -> list[dict[str, Any]]:
+    """The displays that come with the package: name, title, kind of actuator, values assumed."""
+    from squeezefilm import presets
+    from squeezefilm.display import load_display
+
+    listing = []
+    for name in presets.names():
+        display = load_display(name)
+        evidence = [item.evidence for item in display.provenance.values()]
+        listing.append(
+            {
+                "name": display.name,
+                "title": display.title,
+                "type": display.actuator.type,
+                "values_with_source": len(evidence),
+                "values_assumed": evidence.count("assumed"),
+            }
+        )
+    return listing
+
+
+def show_presets(listing: Sequence[dict[str, Any]]) -> None:
+    """Print the list of presets."""
+    console = plain_console()
+    table(
+        console,
+        ("preset", "what it is", "assumed"),
+        [
+            (
+                str(item["name"]),
+                str(item["title"]),
+                f"{item['values_assumed']} of {item['values_with_source']}",
+            )
+            for item in listing
+        ],
+        fixed=(0, 2),
+    )
+    console.print("squeezefilm show NAME lists the values; squeezefilm analyze NAME works them out")
+
+
+def display_values(target: str) -> list[dict[str, Any]]:
+    """Every value that a display's file states: path, text as written, source, evidence.
+
+    Members of lists are counted from 1. `source` and `evidence` are None where the file gives
+    none. Raises `ConfigError` for a file that is not right.
+    """
+    from squeezefilm import presets
+    from squeezefilm.display import load_display
+    from squeezefilm.hard_limits import DESCRIPTION_BYTES
+    from squeezefilm.regular_file import read_regular_text
+
+    load_display(target)  # for its messages: what is listed below can be analysed
+    text = read_regular_text(presets.resolve(target), DESCRIPTION_BYTES, "a TOML file")
+    # Numbers are kept as they were typed: 0.30 does not become 0.3.
+    return list(_written(tomllib.loads(text, parse_float=_Typed), ()))
+
+
+class _Typed(str):
+    """A number of a TOML file as it was typed."""
+
+    __slots__ = ()
+
+
+def _written(node: Any, path: tuple[str | int, ...]) -> Iterator[dict[str, Any]]:
+    if isinstance(node, dict) and not ("value" in node and set(node) <= _KEYS):
+        for key, item in node.items():
+            yield from _written(item, (*path, key))
+    elif isinstance(node, list):
+        for index, item in enumerate(node):
+            yield from _written(item, (*path, index))
+    else:
+        table = node if isinstance(node, dict) else {"value": node}
+        stated = "source" in table or "evidence" in table
+        yield {
+            "path": dotted(path),
+            "text": str(table["value"]),
+            "source": table.get("source"),
+            # What `split_provenance` takes a source without a kind of evidence for.
+            "evidence": table.get("evidence", "published") if stated else None,
+        }
+
+
+_KEYS = {"value", "source", "evidence"}
+
+
+def show_values(values: Sequence[dict[str, Any]]) -> None:
+    """Print the values of a display by table of its file, with their sources; a star marks what is
+    assumed."""
+    console = plain_console()
+    groups: dict[str, list[dict[str, Any]]] = {}
+    for item in values:
+        groups.setdefault(str(item["path"]).rpartition(".")[0], []).append(item)
+    for group, items in groups.items():
+        if group:
+            heading(console, group)
+        table(
+            console,
+            ("", "", ""),
+            [
+                (
+                    ("* " if item["evidence"] == "assumed" else "  ")
+                    + str(item["path"]).rpartition(".")[2],
+                    micro(str(item["text"])),
+                    _origin(item),
+                )
+                for item in items
+            ],
+            fixed=(0,),
+            styles=lambda row: "yellow" if row[0].startswith("*") else "",
+        )
+    assumed = sum(item["evidence"] == "assumed" for item in values)
+    console.print(f"\n* assumed: {assumed} of {len(values)} values")
+
+
+def _origin(item: dict[str, Any]) -> str:
+    if item["evidence"] is None:
+        return ""
+    return f"{item['evidence']}: {item['source']}" if item["source"] else str(item["evidence"])

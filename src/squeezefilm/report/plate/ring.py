@@ -1,0 +1,228 @@
+"""The figures of a solved disc or stator: shape in plan, scan, frequency response, admittance."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from squeezefilm.quantities import Unit
+from squeezefilm.report.kit.numbers import HZ, M, shown
+from squeezefilm.report.kit.style import (
+    BLUE,
+    INK,
+    MINUS,
+    MUTED,
+    ORANGE,
+    PLUS,
+    drawn,
+    legend_below,
+    new_figure,
+    plain_log,
+    png,
+)
+from squeezefilm.results import write_whole
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from squeezefilm.analysis.plate.ring import RingAnalysis
+
+_FILL = {1: PLUS, -1: MINUS}
+
+
+@drawn
+def shape(result: RingAnalysis) -> Figure:
+    """The mode from above with its nodal lines and circles, beside the poling of the sectors."""
+    from matplotlib.ticker import MaxNLocator
+
+    mode, at = result.mode, result.response.resonance
+    size = 1e9 * result.amplitude_per_volt
+    where = f"nodal lines {shown(mode.half_wavelength or 0.0, M)} apart on the mean circumference"
+    if not mode.harmonic:
+        radii = ", ".join(shown(float(r), M, 3) for r in result.circles)
+        where = f"nodal circle at a radius of {radii}" if radii else "no nodal line"
+    figure = new_figure(
+        f"Mode {result.working.label} at {result.working.frequency / 1e3:.2f} kHz moves up to "
+        f"{size:.0f} nm per volt; {where}",
+        f"{result.model}, channel driven at resonance",
+        5.4,
+    )
+    left, right = figure.subplots(1, 2, sharex=True, sharey=True)
+    r = result.response.radius
+    theta = np.linspace(0, 2 * np.pi, max(181, 24 * mode.harmonic) | 1)
+    radial = _standing(result.response.motion[at])
+    # Turned to where the channel moves it most: cos m(θ − θ0).
+    w = 1e9 * radial[:, None] * np.cos(mode.harmonic * theta - _turn(result))[None, :]
+    x, y = 1e3 * r[:, None] * np.cos(theta), 1e3 * r[:, None] * np.sin(theta)
+    reach = float(np.max(np.abs(w)))
+    levels = np.linspace(-reach, reach, 21)
+    field = left.contourf(x, y, w, levels=levels, cmap="RdBu_r")
+    left.contour(x, y, w, levels=[0.0], colors=INK, linewidths=0.9)
+    figure.colorbar(
+        field, ax=left, label="per volt (nm/V)", ticks=MaxNLocator(nbins=6, symmetric=True),
+        location="bottom", shrink=0.75,
+    )  # fmt: skip
+    left.set_title("touched face; nodal lines in black")
+    _sectors(right, result)
+    outer = 1e3 * max(layer.outer_radius for layer in result.body.section.layers)
+    for axes in (left, right):
+        axes.set(xlim=(-1.05 * outer, 1.05 * outer), ylim=(-1.05 * outer, 1.05 * outer))
+        axes.set(aspect="equal", xlabel="x (mm)")
+        axes.grid(visible=False)
+    left.set(ylabel="y (mm)")
+    return figure
+
+
+def _standing(motion: np.ndarray) -> np.ndarray:
+    """Complex motion turned to the phase of its largest point: what stands there moves along."""
+    peak = motion[int(np.argmax(np.abs(motion)))]
+    return np.asarray((motion * np.conj(peak) / np.abs(peak)).real)
+
+
+def _turn(result: RingAnalysis) -> float:
+    """mθ0 of the mode that the channel moves."""
+    coefficient = result.body.drive.coefficient(result.mode.harmonic)
+    return -math.atan2(coefficient.imag, coefficient.real)
+
+
+def _sectors(axes: Axes, result: RingAnalysis) -> None:
+    """The ceramic from above with its poled sectors, over the outline of the body."""
+    from matplotlib.patches import Circle, Patch, Wedge
+
+    layers = result.body.section.layers
+    outer = 1e3 * max(layer.outer_radius for layer in layers)
+    inner = 1e3 * min(layer.inner_radius for layer in layers)
+    ceramic = next(layer for layer in layers if layer.is_piezoelectric)
+    edge, width = 1e3 * ceramic.outer_radius, 1e3 * (ceramic.outer_radius - ceramic.inner_radius)
+    whole = result.body.drive.angle > 2 * np.pi - 1e-9 and len(result.body.drive.sectors) == 1
+    if not whole:
+        axes.add_patch(
+            Wedge((0, 0), edge, 0, 360, width=width, facecolor="none", edgecolor=MUTED, lw=0.8)
+        )
+    for start, end, sign in result.body.drive.sectors:
+        axes.add_patch(
+            Wedge(
+                (0, 0), edge, math.degrees(start), math.degrees(end), width=width,
+                facecolor=_FILL[sign], edgecolor=INK, lw=0.8,
+            )
+        )  # fmt: skip
+        middle, place = (start + end) / 2, edge - width / 2
+        axes.text(
+            0.0 if whole and inner == 0 else place * math.cos(middle),
+            0.0 if whole and inner == 0 else place * math.sin(middle),
+            "+" if sign > 0 else "−", ha="center", va="center", fontsize=11,
+        )  # fmt: skip
+    for radius in {outer, inner} - {0.0}:
+        axes.add_patch(Circle((0, 0), radius, fill=False, ec=INK, lw=1))
+    axes.set_title("ceramic below, seen through the body")
+    handles = [
+        Patch(facecolor=PLUS, edgecolor=INK, label="driven, poled up"),
+        Patch(facecolor=MINUS, edgecolor=INK, label="driven, poled down"),
+        Patch(facecolor="none", edgecolor=MUTED, label="not on this channel"),
+    ]
+    axes.legend(
+        handles=handles[:1] if whole else handles, loc="upper center",
+        bbox_to_anchor=(0.5, -0.16), ncols=3, frameon=False, fontsize=8.5, handlelength=1.2,
+    )  # fmt: skip
+
+
+@drawn
+def scan(result: RingAnalysis) -> Figure:
+    """The driven shape around the mean circumference and along a radius; without nodal diameters
+    along a diameter."""
+    m = result.mode.harmonic
+    radial = 1e9 * _standing(result.response.motion[result.response.resonance])
+    mean = result.scan_radius
+    if m:
+        title = (
+            f"{m} waves stand around the mean circumference of {shown(2 * math.pi * mean, M)}: "
+            f"{1e9 * result.centreline_per_volt:.0f} nm per volt at their antinodes"
+        )
+        figure = new_figure(title, f"{result.model}, channel driven at resonance", 5.6)
+        above, below = figure.subplots(2, 1)
+        _around(above, result, float(np.interp(mean, result.response.radius, radial)))
+    else:
+        title = (
+            f"Along a diameter {result.working.label} moves {abs(radial[0]):.0f} nm per volt in "
+            f"the middle and {abs(radial[-1]):.0f} at the rim"
+        )
+        figure = new_figure(title, f"{result.model}, channel driven at resonance", 4.2)
+        below = figure.subplots()
+    r = 1e3 * result.response.radius
+    below.plot(r, radial, color=BLUE, label="at the angle of an antinode" if m else None)
+    if not m:
+        below.plot(-r, radial, color=BLUE)
+    below.axhline(0, color=MUTED, lw=0.8)
+    for number, circle in enumerate(result.circles):
+        for side in (1,) if m else (1, -1):
+            below.axvline(
+                side * 1e3 * float(circle), color=ORANGE, lw=1.2, ls=(0, (4, 2)),
+                label="nodal circle" if number == 0 and side == 1 else None,
+            )  # fmt: skip
+    below.set(xlabel="radius (mm)" if m else "along a diameter (mm)", ylabel="per volt (nm/V)")
+    below.set_xlim(r[0] if m else -r[-1], r[-1])
+    if below.get_legend_handles_labels()[0]:
+        legend_below(below, gap=0.3 if m else 0.2)
+    return figure
+
+
+def _around(axes: Axes, result: RingAnalysis, here: float) -> None:
+    """The scan around the mean circumference, with the sectors of the channel at its foot."""
+    m, mean = result.mode.harmonic, result.scan_radius
+    angle = np.linspace(0, 2 * np.pi, max(361, 40 * m) | 1)
+    length = 1e3 * mean * angle
+    axes.plot(length, here * np.cos(m * angle - _turn(result)), color=BLUE)
+    axes.axhline(0, color=MUTED, lw=0.8)
+    axes.set(xlabel=f"along the circumference at a radius of {shown(mean, M)} (mm)")
+    axes.set(ylabel="per volt (nm/V)", xlim=(0, float(length[-1])))
+    for start, end, sign in result.body.drive.sectors:
+        axes.axvspan(1e3 * mean * start, 1e3 * mean * end, ymax=0.06, color=_FILL[sign], lw=0.0)
+
+
+@drawn
+def response(result: RingAnalysis) -> Figure:
+    """Amplitude per volt and admittance around the working mode, with its equivalent circuit."""
+    swept = result.response
+    f = swept.frequencies / 1e3
+    figure = new_figure(
+        f"Resonance at {shown(float(swept.frequencies[swept.resonance]), HZ)}: "
+        f"{np.abs(swept.admittance[swept.resonance]) * 1e3:.3g} mS",
+        f"{result.model}; {swept.terms} modes of its harmonic, "
+        f"{len(swept.harmonics)} harmonics in the admittance",
+        6.0,
+    )
+    above, below = figure.subplots(2, 1, sharex=True)
+    above.plot(f, 1e9 * swept.maximum, color=BLUE)
+    above.set(ylabel="largest amplitude (nm/V)", ylim=(0, None))
+    below.semilogy(f, 1e3 * np.abs(swept.admittance), color=BLUE, label="|Y|")
+    below.semilogy(f, 1e3 * swept.admittance.real, color=ORANGE, ls="--", label="Re Y")
+    if result.circuit is not None:
+        circuit = 1e3 * np.abs(result.circuit.admittance(swept.frequencies))
+        resistance = shown(result.circuit.motional_resistance, Unit("ohm"), 3)
+        below.semilogy(
+            f, circuit, color=INK, lw=1.0, ls=(0, (1, 2)),
+            label=f"equivalent circuit, R1 = {resistance}",
+        )  # fmt: skip
+    plain_log(below.yaxis)
+    below.set(xlabel="frequency (kHz)", ylabel="admittance (mS)")
+    legend_below(below, columns=3, gap=0.28)
+    return figure
+
+
+def write_ring(result: RingAnalysis, folder: Path) -> Path:
+    """Write plate.json and the figures plate-shape, plate-scan and plate-response; the folder."""
+    data = json.dumps(result.summary(), indent=1, ensure_ascii=False, allow_nan=False)
+    pictures = {
+        "plate-shape.png": png(shape(result)),
+        "plate-scan.png": png(scan(result)),
+        "plate-response.png": png(response(result)),
+    }
+    write_whole(folder / "plate.json", data + "\n")
+    for name, picture in pictures.items():
+        write_whole(folder / name, picture)
+    return folder

@@ -1,0 +1,145 @@
+"""Figures of what changes a plate: a tornado of sensitivities, and modes against a parameter."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from squeezefilm.quantities import Unit, format_quantity
+from squeezefilm.report.kit.style import (
+    BLUE,
+    INK,
+    LINES,
+    MUTED,
+    ORANGE,
+    drawn,
+    legend_below,
+    new_figure,
+)
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from squeezefilm.analysis.plate.sensitivity import SensitivityTable
+    from squeezefilm.analysis.plate.tracking import ModeTracks
+    from squeezefilm.quantities import FloatArray
+
+# A bar beyond this many times the third largest would hide all others: it is cut, and says so.
+_CUT = 2.6
+
+
+@drawn
+def tornado(table: SensitivityTable) -> Figure:
+    """Shift of frequency and of amplitude per volt under each change, largest shift first."""
+    rows = sorted(table.rows, key=lambda row: -abs(row.frequency_shift))
+    moving = [row for row in rows if abs(row.frequency_shift) >= 5e-5 or row.amplitude_shift]
+    largest = moving[0]
+    label = f"({table.reference.label[0]},{table.reference.label[1]})"
+    figure = new_figure(
+        f"Mode {label} at {table.reference.frequency / 1e3:.2f} kHz: {largest.name}, "
+        f"{largest.change}, shifts it most: {_signed(100 * largest.frequency_shift)} %",
+        "piezoelectric_solid_3d, every changed plate solved anew; the amplitude is the largest of "
+        "the upper face at its own resonance",
+        1.7 + 0.27 * len(moving),
+    )
+    left, right = figure.subplots(1, 2, sharey=True)
+    at = np.arange(len(moving))[::-1]
+    frequency = np.array([100 * row.frequency_shift for row in moving])
+    amplitude = np.array(
+        [np.nan if row.amplitude_shift is None else 100 * row.amplitude_shift for row in moving]
+    )
+    for axes, values, name in ((left, frequency, "frequency"), (right, amplitude, "amplitude")):
+        known = np.sort(np.abs(values[np.isfinite(values)]))
+        limit = _CUT * known[-3] if known.size >= 3 else known[-1]
+        limit = float(min(limit, known[-1])) or 1.0
+        shown = np.clip(np.nan_to_num(values), -limit, limit)
+        colors = [BLUE if v < 0 else ORANGE for v in shown]
+        axes.barh(at, shown, color=colors, height=0.66)
+        axes.axvline(0, color=INK, lw=0.8)
+        axes.set_xlim(-1.6 * limit, 1.6 * limit)
+        for y, value, width in zip(at, values, shown, strict=True):
+            cut = "" if abs(value) <= limit * 1.0001 else " (cut)"
+            text = "no drive" if np.isnan(value) else f"{_signed(value)} %{cut}"
+            axes.annotate(
+                text, (width, y), (3 if width >= 0 else -3, 0), textcoords="offset points",
+                ha="left" if width >= 0 else "right", va="center", fontsize=8.5,
+            )  # fmt: skip
+        axes.set_xlabel(f"shift of {name} (%)" if name == "frequency" else f"{name} per volt (%)")
+        axes.grid(visible=False, axis="y")
+    right.tick_params(left=False)
+    left.set_yticks(at, [f"{row.name}: {row.change}" for row in moving])
+    left.set_ylim(-0.7, len(moving) - 0.3)
+    return figure
+
+
+@drawn
+def tracks(found: ModeTracks) -> Figure:
+    """Frequencies of the tracked modes against the parameter, each line named at its end."""
+    unit = Unit(found.unit)
+    name = found.parameter.replace("_", " ")
+    scale, symbol = _scale(found.values, unit)
+    lost = sum(bool(np.isnan(t.frequency).any()) for t in found.tracks)
+    gone = "" if lost == 0 else f"; {lost} of them only in part, where they can be recognised"
+    figure = new_figure(
+        f"{len(found.tracks)} modes followed by their shapes over the {name}{gone}",
+        f"piezoelectric_solid_3d; labels read at {_text(found.begun, unit)}; least likeness from "
+        f"one value to the next {found.least_likeness:.2f}",
+        6.0,
+    )
+    axes = figure.subplots()
+    x = scale * found.values
+    plain = [t for t in found.tracks if not t.driven]
+    driven = [t for t in found.tracks if t.driven]
+    for number, track in enumerate(plain):
+        axes.plot(x, track.frequency / 1e3, color=MUTED, lw=1.0,
+                  label="not driven (symmetry)" if number == 0 else None)  # fmt: skip
+    for number, track in enumerate(driven):
+        color, dashes = LINES[number % len(LINES)]
+        axes.plot(x, track.frequency / 1e3, color=color, ls=dashes, lw=2.2,
+                  label=f"{track.label}, driven")  # fmt: skip
+    axes.axvline(scale * found.own, color=INK, lw=0.8, ls=(0, (2, 2)), label="this plate")
+    ends: list[tuple[float, str]] = []
+    for track in found.tracks:
+        known = np.flatnonzero(np.isfinite(track.frequency))
+        if known[-1] == found.values.size - 1:
+            ends.append((float(track.frequency[-1]) / 1e3, track.label))
+    low, high = axes.get_ylim()
+    # Names may not lie on each other: each is pushed above the one below it.
+    height = low
+    for value, text in sorted(ends):
+        height = max(value, height + 0.034 * (high - low))
+        axes.annotate(
+            text, (x[-1], value), (x[-1] + 0.03 * (x[-1] - x[0]), height), fontsize=8.5,
+            va="center", annotation_clip=False,
+            arrowprops={"arrowstyle": "-", "color": MUTED, "lw": 0.5, "shrinkA": 0, "shrinkB": 0},
+        )  # fmt: skip
+    axes.set(xlim=(x[0], x[-1]), xlabel=f"{name} ({symbol})" if symbol != "1" else name)
+    axes.set(ylabel="frequency (kHz)")
+    legend_below(axes, columns=4, gap=0.12)
+    return figure
+
+
+def _signed(percent: float) -> str:
+    """A percentage with its sign and two digits; what shows none of them is 0."""
+    if abs(percent) < 0.005:
+        return "0"
+    digits = (
+        f"{percent:+.0f}" if abs(percent) >= 10
+        else f"{percent:+.1f}" if abs(percent) >= 1
+        else f"{percent:+.2g}"
+    )  # fmt: skip
+    return digits.replace("-", "−")
+
+
+def _text(value: float, unit: Unit) -> str:
+    return f"{value:.4g}" if unit.symbol == "1" else format_quantity(value, unit)
+
+
+def _scale(values: FloatArray, unit: Unit) -> tuple[float, str]:
+    """A factor and a unit in which the values are read easily."""
+    text = _text(float(values[-1]), unit)
+    number, _, symbol = text.partition(" ")
+    if not symbol:
+        return 1.0, "1"
+    return float(number) / float(values[-1]), symbol.replace("um", "µm")

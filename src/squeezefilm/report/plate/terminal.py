@@ -1,0 +1,106 @@
+"""What the terminal shows of a solved film and of a solved plate."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from squeezefilm.report.kit.numbers import shown
+from squeezefilm.report.kit.terminal import heading, plain_console, table
+from squeezefilm.report.plate.terminal_modes import show_guidance, show_modes, sound_rows
+
+if TYPE_CHECKING:
+    from squeezefilm.analysis.film.command import FilmAnswer
+    from squeezefilm.analysis.plate.command import PlateAnalysis
+
+
+def show_film(answer: FilmAnswer) -> None:
+    """Print one solved film."""
+    console = plain_console()
+    request = answer.request
+    heading(
+        console,
+        f"{request.shape}, σ = {answer.squeeze_number:.4g}, ε = {answer.excursion_ratio:.4g}",
+    )
+    table(
+        console,
+        ("", "", ""),
+        [
+            ("Mean load W", f"{answer.mean_load:.8g}", "over ambient pressure × area"),
+            (
+                "Over-pressure W − 1",
+                f"{answer.over_pressure:.6g}",
+                f"± {answer.over_pressure_error:.1g} (estimated)",
+            ),
+            ("Stiffness", f"{answer.stiffness_relative:.6g}", "of p0·A·ε, first harmonic"),
+            ("Damping", f"{answer.damping_relative:.6g}", "of p0·A·ε, first harmonic"),
+        ],
+        fixed=(0,),
+    )
+    console.print(answer.status)
+
+
+def show_plate(result: PlateAnalysis) -> None:
+    """Print a solved plate: the working mode, then every mode of the band."""
+    from squeezefilm.quantities import Unit
+
+    hertz, per_volt = Unit("Hz"), Unit("m/V")
+    console, mode = plain_console(), result.working
+    heading(console, f"{result.display.title} [{result.display.name}]")
+    rows = [
+        (
+            f"Mode {mode.label}",
+            shown(mode.frequency, hertz, 5),
+            f"± {shown(mode.frequency_error, hertz, 2)} (estimated)",
+        ),
+        ("Amplitude per volt", shown(result.amplitude_per_volt, per_volt), "largest, upper face"),
+        ("", shown(result.centreline_per_volt, per_volt), "centreline, between outer nodes"),
+        ("Quality factor", f"{mode.quality_factor:.4g}", "from the losses of its materials"),
+        ("Effective coupling", f"{mode.coupling:.3g}", ""),
+        (
+            "As a Timoshenko beam",
+            shown(result.beam_frequency, hertz, 5),
+            f"{result.beam_frequency / mode.frequency - 1:+.1%}",
+        ),
+    ]
+    if result.shear_frequency is not None:
+        rows.append(
+            (
+                "As a shear plate",
+                shown(result.shear_frequency, hertz, 5),
+                f"{result.shear_frequency / mode.frequency - 1:+.1%}",
+            )
+        )
+    volts = result.display.drive.voltage
+    at = result.response.resonance
+    rows.append(
+        (
+            f"At {shown(volts, Unit('V'))}",
+            shown(float(result.response.current(volts)[at]), Unit("A"), 3),
+            f"{result.response.apparent_power(volts)[at]:.3g} VA, "
+            f"{result.response.input_power(volts)[at]:.3g} W",
+        )
+    )
+    rows += sound_rows(result.sound, "loudest direction")
+    table(console, ("", "", ""), rows, fixed=(0,))
+    show_guidance(console, result.sound)
+    show_modes(console, result.rows, result.amplitude_per_volt)
+    console.print(f"{result.modes.model}; {result.modes.status}")
+    if result.sensitivities is not None:
+        heading(console, "Sensitivities of the working mode")
+        table(
+            console,
+            ("what is different", "", "frequency", "per volt"),
+            [
+                (
+                    row.name,
+                    row.change,
+                    f"{row.frequency_shift:+.2%}",
+                    "–" if row.amplitude_shift is None else f"{row.amplitude_shift:+.1%}",
+                )
+                for row in result.sensitivities.rows
+            ],
+        )
+    if result.tracks is not None:
+        from squeezefilm.report.plate.terminal_tracks import show_tracks
+
+        show_tracks(console, result.tracks)

@@ -1,0 +1,93 @@
+"""`write_play`: numbers, figures and a page of a session, beside its record."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from html import escape
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from squeezefilm.report.kit.numbers import printable
+from squeezefilm.report.kit.page_style import page_head
+from squeezefilm.report.kit.style import png
+from squeezefilm.report.played import figures as draw
+from squeezefilm.report.played.terminal import play_rows, play_warnings
+from squeezefilm.results import to_json, write_whole
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from squeezefilm.bench.play import PlayResult
+
+
+def write_play(
+    result: PlayResult, folder: Path, progress: Callable[[str], None] | None = None
+) -> Path:
+    """Write summary.json, figures and play.html into `folder`, where the record is.
+
+    Returns the path of the page. Raises `InputError` for a folder that cannot be written to.
+    """
+    tell = progress or (lambda _: None)
+    tell("figures")
+    session = result.session
+    figures = {
+        "play-friction": ("Friction along the finger's way", draw.friction(session)),
+        "play-amplitude": ("Amplitude", draw.amplitude(session)),
+        "play-lateness": ("Lateness and lag", draw.lateness(session)),
+    }
+    for name, (_, figure) in figures.items():
+        write_whole(folder / f"{name}.png", png(figure))
+    data = json.dumps(to_json(result.summary()), indent=1, ensure_ascii=False, allow_nan=False)
+    write_whole(folder / "summary.json", f"{data}\n")
+    page = folder / "play.html"
+    beside = sorted(
+        one.name for one in folder.iterdir() if one.suffix in (".sqft", ".csv", ".json")
+    )
+    write_whole(page, _page(result, figures, beside))
+    return page
+
+
+def _page(result: PlayResult, figures: dict[str, tuple[str, Figure]], files: list[str]) -> str:
+    session = result.session
+    title = escape(printable(session.setup.name))
+    stamp = session.trace.metadata
+    rows = "\n".join(
+        f'<tr><th scope="row">{escape(a)}</th><td>{escape(b)}</td><td>{escape(printable(c))}</td>'
+        "</tr>"
+        for a, b, c in play_rows(result)
+    )
+    pictures = "".join(
+        f"<section>\n<h2>{escape(heading)}</h2>\n"
+        f'<figure><img src="{name}.png" alt="'
+        f'{escape(" ".join(figure.get_suptitle().split()))}"></figure>\n</section>\n'
+        for name, (heading, figure) in figures.items()
+    )
+    warned = "".join(f"<li>{escape(text)}</li>" for text in play_warnings(session))
+    links = ", ".join(f'<a href="{escape(name)}">{escape(name)}</a>' for name in files)
+    return f"""{page_head(f"{title}: a session")}
+<header><h1>{title}</h1>
+<p class="name">played on <code>{escape(printable(session.setup.display.name))}</code>,
+drive <code>{escape(printable(str(stamp.get("drive", ""))))}</code>, by squeezefilm</p></header>
+<main>
+<section>
+<h2>Numbers</h2>
+<div class="scroll" tabindex="0" role="region" aria-label="Numbers"><table>
+<caption>What the finger met, how late the loop was, what the link lost</caption><thead><tr>
+<th scope="col">Quantity</th><th scope="col">Value</th><th scope="col">Remark</th></tr></thead>
+<tbody>
+{rows}
+</tbody></table></div>
+</section>
+{pictures}<section>
+<h2>Warnings</h2>
+<ul>{warned or "<li>None.</li>"}</ul>
+</section>
+</main>
+<footer><p>squeezefilm {escape(str(stamp.get("squeezefilm_version", "")))} ·
+begun {escape(str(stamp.get("created_utc", "")))} (UTC) ·
+SHA-256 of display, texture and settings <code>{escape(str(stamp.get("config_sha256", "")))}</code> ·
+seed {escape(str(stamp.get("seed", "")))}. Beside this page: {links}.</p></footer>
+</body>
+</html>
+"""  # noqa: E501

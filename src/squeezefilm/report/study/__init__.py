@@ -1,0 +1,1 @@
+"""What studies show, of people and of simulated ones: pages, figures, the terminal."""

@@ -1,0 +1,266 @@
+"""`write_study`: identification.json, figures and a page of an identification study."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterable
+from html import escape
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from squeezefilm.errors import InputError
+from squeezefilm.quantities import Unit
+from squeezefilm.report.kit.numbers import printable, shown
+from squeezefilm.report.kit.page_style import page_head
+from squeezefilm.report.kit.style import png
+from squeezefilm.results import write_whole
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from squeezefilm.study.identification.analysis import IdentificationAnalysis
+    from squeezefilm.study.identification.participant_bootstrap import Interval
+    from squeezefilm.study.identification.power import PowerCurve
+
+
+def write_study(
+    analysis: IdentificationAnalysis,
+    folder: Path,
+    *,
+    power: PowerCurve | None = None,
+    progress: Callable[[str], None] | None = None,
+) -> Path:
+    """Write numbers, figures and the page of a study into `folder`; the path of index.html.
+
+    All is made in memory before the first file is written.
+
+    Raises:
+        InputError: a folder that cannot be written to.
+    """
+    tell = progress or (lambda _: None)
+    folder = Path(folder)
+    if folder.exists() and not folder.is_dir():
+        raise InputError(f"{folder} is a file, not a folder; choose another folder")
+    tell("figures")
+    figures = study_figures(analysis, power)
+    files = {f"study-{key}.png": png(figure) for key, (_, figure) in figures.items()}
+    summary = analysis.summary()
+    if power is not None:
+        summary["power"] = _power_data(power)
+    data = json.dumps(summary, indent=1, ensure_ascii=False, allow_nan=False)
+    files["identification.json"] = f"{data}\n".encode()
+    files["index.html"] = study_page(analysis, figures, summary["provenance"]).encode()
+    tell("writing the report")
+    for name, content in files.items():
+        write_whole(folder / name, content)
+    return folder / "index.html"
+
+
+def _power_data(power: PowerCurve) -> Any:
+    from squeezefilm.results import to_json
+
+    return to_json(power)
+
+
+def study_figures(
+    analysis: IdentificationAnalysis, power: PowerCurve | None = None
+) -> dict[str, tuple[str, Figure]]:
+    """The figures by key: heading and drawing. What was not measured has none."""
+    from squeezefilm.report.study import figures as draw
+    from squeezefilm.report.study import time_figures as later
+
+    found = {
+        "confusion": ("Confusion matrix", draw.confusion(analysis)),
+        "correct": ("Right answers", draw.proportion_correct(analysis)),
+        "information": ("Information transfer", draw.information(analysis)),
+        "sensitivity": ("Sensitivity along the stimuli", draw.sensitivity(analysis)),
+        "similarity": ("Similarities and biases", draw.similarities(analysis)),
+    }
+    if analysis.response_times:
+        found["times"] = ("Response times", later.response_times(analysis))
+    if analysis.exploration:
+        found["exploration"] = ("Exploration", later.exploration(analysis))
+    if power is not None:
+        found["power"] = ("How many people a study needs", later.power(power))
+    return found
+
+
+def study_page(
+    analysis: IdentificationAnalysis,
+    figures: dict[str, tuple[str, Figure]],
+    provenance: dict[str, Any],
+) -> str:
+    """The page as text; its figures lie beside it as study-KEY.png."""
+    title = escape(printable(analysis.name))
+    pictures = "".join(
+        _section(
+            escape(heading),
+            f'<figure><img src="study-{key}.png" '
+            f'alt="{escape(" ".join(figure.get_suptitle().split()))}"></figure>',
+        )
+        for key, (heading, figure) in figures.items()
+    )
+    notes = "".join(f"<li>{escape(printable(note))}</li>" for note in analysis.notes)
+    sections = (
+        _section("Numbers", _numbers(analysis))
+        + pictures
+        + _section("Confusions in numbers", _confusion(analysis))
+        + _section("Information transfer by every estimator", _information(analysis))
+        + (_section("Mixed models", _mixed(analysis)) if analysis.mixed is not None else "")
+        + _section("What could not be computed", f"<ul>{notes or '<li>Nothing.</li>'}</ul>")
+    )
+    return f"""{page_head(f"{title}: identification study")}
+<header><h1>{title}</h1>
+<p class="name"><b>{escape(printable(analysis.origin))}</b> answers, analysed by squeezefilm</p></header>
+<main>
+{sections}</main>
+<footer><p>squeezefilm {escape(str(provenance["squeezefilm_version"]))} ·
+made {escape(str(provenance["created_utc"]))} (UTC) ·
+SHA-256 of the answers <code>{escape(str(provenance["config_sha256"]))}</code> ·
+seed of the resampling {escape(str(provenance["seed"]))}.
+All numbers: <a href="identification.json">identification.json</a>.</p></footer>
+</body>
+</html>
+"""  # noqa: E501
+
+
+def _section(heading: str, body: str) -> str:
+    return f"<section>\n<h2>{heading}</h2>\n{body}\n</section>\n"
+
+
+def _table(caption: str, head: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
+    """A table of plain texts; the first cell of a row heads it."""
+    caption = printable(caption)
+    columns = "".join(f'<th scope="col">{escape(printable(cell))}</th>' for cell in head)
+    lines = []
+    for row in rows:
+        first, *others = (escape(printable(cell)) for cell in row)
+        cells = "".join(f"<td>{cell}</td>" for cell in others)
+        lines.append(f'<tr><th scope="row">{first}</th>{cells}</tr>')
+    return (
+        f'<div class="scroll" tabindex="0" role="region" aria-label="{escape(caption)}"><table>'
+        f"<caption>{escape(caption)}</caption><thead><tr>{columns}</tr></thead>\n<tbody>\n"
+        + "\n".join(lines)
+        + "\n</tbody></table></div>"
+    )
+
+
+def _between(interval: Interval | None, scale: float = 1.0, unit: str = "") -> str:
+    if interval is None:
+        return "–"
+    low, high = scale * interval.low, scale * interval.high
+    return f"{low:.3g} to {high:.3g}{unit} ({interval.method}, {100 * interval.level:g} %)"
+
+
+def key_rows(analysis: IdentificationAnalysis) -> list[tuple[str, str, str]]:
+    """The main numbers: what, value, remark; for the page and for a terminal."""
+    best, fit = analysis.information.best, analysis.sensitivity
+    posterior = analysis.posterior.proportion_correct
+    rows = [
+        ("Participants", f"{analysis.participants}", f"{analysis.matrix.trials} trials"),
+        *(
+            (
+                "Proportion correct",
+                f"{100 * analysis.proportion_correct:.3g} %",
+                _between(interval, 100, " %"),
+            )
+            for interval in (*analysis.intervals, posterior)
+            if interval is not None
+        ),
+        ("Guessing", f"{100 * analysis.matrix.chance:.3g} %", ""),
+        ("p against guessing", f"{analysis.chance_p:.2g}", "exact binomial, one-sided"),
+        (
+            "p against unrelated answers",
+            f"{analysis.permutation_p:.2g}",
+            "permutation within participants, one-sided",
+        ),
+        (
+            "Information transfer",
+            f"{best.estimate:.3g} bit of {analysis.information.greatest:.3g}",
+            f"{best.name}; {_between(best.interval)}",
+        ),
+    ]
+    if fit is not None:
+        rows.append(("Total sensitivity Δ′", f"{fit.total:.3g}", "equal-variance Thurstone model"))
+        rows += [
+            (
+                f"d′ {one} – {other}", f"{d:.2f}",
+                f"{low:.2f} to {high:.2f} ({fit.interval_method}, {100 * fit.level:g} %)",
+            )
+            for one, other, d, low, high in zip(
+                analysis.matrix.stimuli[:-1], analysis.matrix.stimuli[1:], fit.d_prime, fit.low,
+                fit.high, strict=True,
+            )
+        ]  # fmt: skip
+    if analysis.ex_gaussian is not None:
+        g = analysis.ex_gaussian
+        texts = [shown(value, Unit("s"), 3) for value in (g.mean, g.spread, g.tail)]
+        rows.append(("Response time μ, σ, τ", ", ".join(texts), "ex-Gaussian, all trials"))
+    return rows
+
+
+def _numbers(analysis: IdentificationAnalysis) -> str:
+    return _table(f"{analysis.origin} answers", ("Quantity", "Value", "Remark"), key_rows(analysis))
+
+
+def _confusion(analysis: IdentificationAnalysis) -> str:
+    matrix, posterior = analysis.matrix, analysis.posterior
+    rows = [
+        [answer, *(_cell(analysis, i, j) for j in range(len(matrix.stimuli)))]
+        for i, answer in enumerate(matrix.answers)
+    ]
+    return _table(
+        f"Per cent of each column; in brackets trials, and the {100 * posterior.level:g} % "
+        f"interval of the Dirichlet posterior (prior {posterior.prior:g}, trials taken as "
+        "independent)",
+        ("Answered \\ simulated", *matrix.stimuli),
+        rows,
+    )
+
+
+def _cell(analysis: IdentificationAnalysis, i: int, j: int) -> str:
+    count = int(analysis.matrix.counts[i, j])
+    percent = analysis.matrix.percent[i, j]
+    low, high = 100 * analysis.posterior.low[i, j], 100 * analysis.posterior.high[i, j]
+    share = "–" if percent != percent else f"{percent:.0f} %"
+    return f"{share} ({count}; {low:.0f} to {high:.0f})"
+
+
+def _information(analysis: IdentificationAnalysis) -> str:
+    rows = [
+        (
+            item.name + (" (to quote)" if item.key == analysis.information.recommended else ""),
+            f"{item.estimate:.3f}" if item.estimate == item.estimate else "none",
+            "–" if item.interval is None else
+            f"{item.interval.low:.3f} to {item.interval.high:.3f}",
+            item.fails,
+        )
+        for item in analysis.information.estimates
+    ]  # fmt: skip
+    return _table(
+        "The pooled matrix; intervals over participants",
+        ("Estimator", "Transfer (bit)", "Interval (bit)", "Where it fails"),
+        rows,
+    )
+
+
+def _mixed(analysis: IdentificationAnalysis) -> str:
+    fit = analysis.mixed
+    assert fit is not None
+    rows = [
+        (
+            name, f"{100 * one:.0f} %", f"{odds:.2f} ± {error:.2f}",
+            "none (always or never right)" if mean != mean else f"{100 * mean:.0f} %",
+        )
+        for name, one, odds, error, mean in zip(
+            fit.names, fit.proportion_correct, fit.log_odds, fit.log_odds_error,
+            fit.average_proportion_correct, strict=True,
+        )
+    ]  # fmt: skip
+    spread = f"{fit.participant_spread:.2f}"
+    bounds = f"{fit.participant_spread_low:.2f} to {fit.participant_spread_high:.2f}"
+    return _table(
+        f"{fit.model}. Participants spread by {spread} in log-odds ({bounds})",
+        ("Stimulus", "A typical person", "Log-odds", "Mean over people"),
+        rows,
+    )

@@ -1,0 +1,220 @@
+"""`write_simulated`: answers, confusions, reasons and figures of simulated participants."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from html import escape
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from squeezefilm.errors import InputError
+from squeezefilm.report.kit.numbers import printable
+from squeezefilm.report.kit.page_style import page_head
+from squeezefilm.report.kit.style import png
+from squeezefilm.report.study import observer_figures
+from squeezefilm.results import write_whole
+from squeezefilm.study.record.trial_table import Column, csv_text
+from squeezefilm.study.simulated.participants import SimulatedStudy
+
+REMARK = (
+    "The one checkable remark of Biet, Giraud and Lemaire-Semail (their tables are empty in the "
+    "copy read) is of device 1: “Difference of the displayed sensation was clear except for the "
+    "last case (0.4 mm).”"
+)
+
+COLUMNS = (
+    Column("origin", "Always simulated"),
+    Column("participant", "Number of the simulated participant, from 0", kind="whole"),
+    Column("finger_class", "Number of their finger class, from 0", kind="whole"),
+    Column("trial", "Number among the trials asked, from 0", kind="whole"),
+    Column("display", "Display that presented the stimulus"),
+    Column("stimulus", "Name of the stimulus"),
+    Column("choice", "Name of the grating answered"),
+    Column("felt", "Whether anything was felt", kind="truth"),
+    Column("response_time_s", "Of a model with assumed numbers", "s", "number"),
+)
+REASONS = (
+    "Simulated",
+    "Hz",
+    "Bandwidth",
+    "Kept",
+    "Lag",
+    "Contact",
+    "Ripple",
+    "d′",
+    "Clearest",
+)
+LEGEND = (
+    "Hz: frequency at which the texture passes the finger. Bandwidth: of the display's envelope "
+    "(Hz). Kept: line of the friction rendered over that asked for; the wave's ripple is in it. "
+    "Lag, Contact: over the period. Ripple: share of the friction's variation that the standing "
+    "wave adds. d′: evidence at the period. Clearest: period of the strongest rhythm (mm). All are "
+    "medians over finger classes."
+)
+
+
+def write_simulated(
+    study: SimulatedStudy, folder: Path, progress: Callable[[str], None] | None = None
+) -> Path:
+    """Write simulated.json, trials.csv, two figures and a page; the path of index.html.
+
+    For each display whose gratings and stimuli pair up, its folder holds the full analysis.
+    Raises `InputError` for a folder that cannot be written to.
+    """
+    tell = progress or (lambda _: None)
+    folder = Path(folder)
+    if folder.exists() and not folder.is_dir():
+        raise InputError(f"{folder} is a file, not a folder; choose another folder")
+    summary = study.summary()
+    tell("figures")
+    files = {
+        "channels.png": png(observer_figures.channels(study.tables)),
+        "percepts.png": png(observer_figures.percepts(study.tables)),
+    }
+    analysed = _analyses(study, folder, tell)
+    files["simulated.json"] = f"{_json(summary)}\n".encode()
+    files["trials.csv"] = csv_text(_rows(study), COLUMNS).encode()
+    files["index.html"] = _page(study, summary, analysed).encode()
+    tell("writing the report")
+    for name, content in files.items():
+        write_whole(folder / name, content)
+    return folder / "index.html"
+
+
+def _analyses(study: SimulatedStudy, folder: Path, tell: Callable[[str], None]) -> dict[str, str]:
+    from squeezefilm.report.study.page import write_study
+    from squeezefilm.study.identification.analysis import analyze_identification
+    from squeezefilm.study.simulated.participants import right_answers
+
+    design = study.tables.design
+    right, names = right_answers(design), [one.name for one in design.stimuli]
+    if len(design.alternatives) != len(names) or sorted(right) != list(range(len(names))):
+        return {}
+    place = {int(answer): stimulus for stimulus, answer in enumerate(right)}
+    found = {}
+    for index, name in enumerate(design.displays):
+        tell(f"analysis of {name}")
+        here = study.display == index
+        who = np.nonzero(here)[0]
+        analysis = analyze_identification(
+            who,
+            study.stimulus[here],
+            [place[int(one)] for one in study.choice[here]],
+            names,
+            name=f"{design.name}, {name}",
+            origin=study.origin,
+            response_time=study.response_time[here],
+            seed=study.seed,
+        )
+        page = write_study(analysis, folder / f"display-{index + 1}")
+        found[name] = f"{page.parent.name}/{page.name}"
+    return found
+
+
+def _rows(study: SimulatedStudy) -> list[dict[str, Any]]:
+    design = study.tables.design
+    answers = [one.name for one in design.alternatives]
+    stimuli = [one.name for one in design.stimuli]
+    people, trials = study.choice.shape
+    return [
+        {
+            "origin": study.origin,
+            "participant": person,
+            "finger_class": int(study.finger[person]),
+            "trial": int(study.number[person, trial]),
+            "display": design.displays[study.display[person, trial]],
+            "stimulus": stimuli[study.stimulus[person, trial]],
+            "choice": answers[study.choice[person, trial]],
+            "felt": bool(study.felt[person, trial]),
+            "response_time_s": float(study.response_time[person, trial]),
+        }
+        for person in range(people)
+        for trial in range(trials)
+    ]
+
+
+def confusion_rows(study: SimulatedStudy, index: int) -> tuple[list[str], list[list[str]]]:
+    """Head and rows of a display's confusion matrix, as texts."""
+    matrix = study.confusion(index)
+    rows = [
+        [name, *(f"{share:.0f} % ({count})" for share, count in zip(percent, counts, strict=True))]
+        for name, percent, counts in zip(
+            matrix.answers, matrix.percent, matrix.counts, strict=True
+        )
+    ]  # fmt: skip
+    return ["Answered \\ simulated", *matrix.stimuli], rows
+
+
+def reason_rows(study: SimulatedStudy, index: int) -> list[list[str]]:
+    """What the model sees of each stimulus on a display, as texts."""
+    return [
+        [
+            name,
+            f"{why.texture_frequency:.3g}",
+            f"{why.envelope_bandwidth:.3g}",
+            f"{why.contrast_kept:.2f}" if why.contrast_kept == why.contrast_kept else "–",
+            f"{why.lag_over_period:.2f}",
+            f"{why.contact_over_period:.1f}",
+            f"{why.ripple_share:.2f}" if why.ripple_share == why.ripple_share else "–",
+            f"{why.d_prime:.2f}",
+            f"{1e3 * why.clearest_period:.3g}",
+        ]
+        for name, why in study.tables.explain(index).items()
+    ]
+
+
+def _json(value: Any) -> str:
+    return json.dumps(value, indent=1, ensure_ascii=False, allow_nan=False)
+
+
+def _table(caption: str, head: list[str] | tuple[str, ...], rows: list[list[str]]) -> str:
+    columns = "".join(f'<th scope="col">{escape(printable(cell))}</th>' for cell in head)
+    lines = "\n".join(
+        f'<tr><th scope="row">{escape(printable(row[0]))}</th>'
+        + "".join(f"<td>{escape(printable(cell))}</td>" for cell in row[1:])
+        + "</tr>"
+        for row in rows
+    )
+    label = escape(printable(caption))
+    return (
+        f'<div class="scroll" tabindex="0" role="region" aria-label="{label}"><table>'
+        f"<caption>{label}</caption><thead><tr>{columns}</tr></thead>\n<tbody>\n{lines}\n"
+        "</tbody></table></div>"
+    )
+
+
+def _page(study: SimulatedStudy, summary: dict[str, Any], analysed: dict[str, str]) -> str:
+    design, provenance = study.tables.design, summary["provenance"]
+    parts = []
+    for index, name in enumerate(design.displays):
+        head, rows = confusion_rows(study, index)
+        right = 100 * study.proportion_correct(index)
+        link = f'<p><a href="{analysed[name]}">Full analysis</a></p>' if name in analysed else ""
+        parts.append(
+            f"<section>\n<h2>{escape(printable(name))}, simulated: {right:.1f} % right</h2>\n"
+            + _table("Simulated answers, per cent of each column; in brackets trials", head, rows)
+            + _table(f"Reasons the model sees. {LEGEND}", REASONS, reason_rows(study, index))
+            + f"{link}\n</section>\n"
+        )
+    title = escape(printable(f"{design.name}: simulated participants"))
+    return f"""{page_head(f"{title}")}
+<header><h1>{title}</h1>
+<p class="name">{study.participants} <b>simulated</b> participants, observer
+{escape(printable(study.tables.observer.name))}, seed {study.seed}; no person answered</p></header>
+<main>
+<section><h2>What can be compared</h2><p>{escape(REMARK)}</p></section>
+{"".join(parts)}<section><h2>Evidence before noise</h2>
+<figure><img src="percepts.png" alt="Evidence for rhythms by period"></figure></section>
+<section><h2>Channels</h2>
+<figure><img src="channels.png" alt="Gains of the sensory channels"></figure></section>
+</main>
+<footer><p>squeezefilm {escape(str(provenance["squeezefilm_version"]))} ·
+made {escape(str(provenance["created_utc"]))} (UTC) ·
+SHA-256 of design and observer <code>{escape(str(provenance["config_sha256"]))}</code>.
+<a href="simulated.json">simulated.json</a>, <a href="trials.csv">trials.csv</a>.</p></footer>
+</body>
+</html>
+"""

@@ -1,0 +1,60 @@
+"""What the terminal shows of an analysed identification study."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+from squeezefilm.report.kit.terminal import heading, plain_console, table
+from squeezefilm.report.study.page import key_rows
+
+if TYPE_CHECKING:
+    from squeezefilm.study.identification.analysis import IdentificationAnalysis
+    from squeezefilm.study.simulated.planned_power import PlannedPower
+
+
+def show_analyses(analyses: Mapping[str, IdentificationAnalysis]) -> None:
+    """Print confusion table and main numbers of each display."""
+    console = plain_console()
+    for display, one in analyses.items():
+        matrix = one.matrix
+        heading(console, f"{display}: answers of {one.origin}")
+        percent = matrix.percent
+        table(
+            console,
+            ("grating chosen", *matrix.stimuli),
+            [
+                (answer, *(f"{percent[i, j]:.0f} %" for j in range(len(matrix.stimuli))))
+                for i, answer in enumerate(matrix.answers)
+            ],
+            fixed=(0,),
+        )
+        table(console, ("", "", ""), key_rows(one), fixed=(0,))
+        for note in one.notes:
+            console.print(f"  {note}", style="dim", highlight=False)
+
+
+def show_power(found: PlannedPower) -> None:
+    """Print how many people tell two stimuli apart, by simulation."""
+    console, curve = plain_console(), found.curve
+    heading(console, f"{found.first} against {found.second} on {found.display}, SIMULATED")
+    table(
+        console,
+        ("people", "studies that find it", "95 % bounds of the simulation"),
+        [
+            (f"{n}", f"{100 * power:.0f} %", f"{100 * low:.0f} to {100 * high:.0f} %")
+            for n, power, low, high in zip(
+                curve.participants, curve.power, curve.low, curve.high, strict=True
+            )
+        ],
+        fixed=(0,),
+    )
+    if curve.needed is None:
+        console.print(f"{curve.participants[-1]} people do not reach {100 * curve.target:.0f} %.")
+    else:
+        console.print(f"{curve.needed} people reach {100 * curve.target:.0f} % power.")
+    console.print(
+        f"One-sided test over people at {curve.alpha:g}; {curve.studies} studies a size, of "
+        f"simulated participants '{found.observer}': what they assume, this assumes.",
+        highlight=False,
+    )

@@ -1,0 +1,1 @@
+"""What `render` shows: page, figures, tables, and the gallery of textures."""

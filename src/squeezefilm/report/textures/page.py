@@ -1,0 +1,244 @@
+"""`write_render`: trace, envelope, numbers, figures and a page of a rendered texture."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from html import escape
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from squeezefilm.errors import InputError
+from squeezefilm.formats.hjif import HjifExport, ReferenceDevice, hjif_of
+from squeezefilm.formats.traces import Table, csv_text, parquet_bytes
+from squeezefilm.formats.wav import Waveform, wav_bytes
+from squeezefilm.quantities import FloatArray
+from squeezefilm.report.kit.numbers import printable
+from squeezefilm.report.kit.page_style import page_head
+from squeezefilm.report.kit.style import png
+from squeezefilm.report.textures.terminal import render_rows
+from squeezefilm.results import to_json, write_whole
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from squeezefilm.chain.rendered_texture import RenderAnalysis
+
+_DAC_RATE = 192_000
+
+
+def trace_table(result: RenderAnalysis) -> Table:
+    """Every step of the loop as a table, with the origin in its metadata."""
+    stroke, finger, force = result.stroke, result.finger, result.force
+    columns: dict[str, FloatArray] = {
+        "time_s": stroke.time,
+        "position_x_m": finger.x,
+        "position_y_m": finger.y,
+        "speed_m_per_s": finger.speed,
+        "relative_friction_asked": result.asked,
+        "relative_friction_rendered": stroke.relative_friction_rendered,
+        "amplitude_wanted_m": stroke.wanted,
+        "amplitude_commanded_m": stroke.command,
+        "amplitude_m": stroke.amplitude,
+        "wave_factor": result.factor,
+        "tangential_force_N": force.friction_force,
+        "sticking": force.sticking.astype(float),
+    }
+    if stroke.estimate is not None:
+        columns["estimated_way_m"] = stroke.estimate.position
+        columns["estimated_speed_m_per_s"] = stroke.estimate.speed
+    return Table(columns, {**result.provenance(), "texture": result.played.name,
+                           "display": result.display.name})  # fmt: skip
+
+
+def envelope_waveform(result: RenderAnalysis) -> Waveform:
+    """The amplitude commanded over time, full scale being the display's largest amplitude."""
+    stroke = result.stroke
+    return Waveform(
+        stroke.command, stroke.control_rate, "m", stroke.envelope.amplitude_limit,
+        {**result.provenance(), "quantity": "amplitude commanded, zero-to-peak"},
+    )  # fmt: skip
+
+
+def drive_waveform(result: RenderAnalysis) -> Waveform:
+    """The drive's voltage at 192 kHz: the commands on a carrier at the drive frequency.
+
+    Full scale is the voltage limit.
+
+    Raises:
+        InputError: a display without a voltage, a control rate that does not divide 192 kHz, or a
+            carrier above what that rate can carry.
+    """
+    from squeezefilm.render.resonator.carrier import carrier_block, samples_per_command
+
+    p, stroke = result.prediction, result.stroke
+    if p.voltage is None:
+        raise InputError("a drive in volts needs a display with a voltage")
+    samples = samples_per_command(stroke.control_rate, _DAC_RATE)
+    if p.frequency >= 0.5 * _DAC_RATE:
+        raise InputError(f"{p.frequency:.6g} Hz cannot be carried at {_DAC_RATE} samples a second")
+    volts = p.voltage * stroke.command / stroke.envelope.amplitude_limit
+    out = np.empty(stroke.command.size * samples)
+    carrier_block(0.0, 2 * np.pi * p.frequency / _DAC_RATE, volts, samples, 1.0, out)
+    return Waveform(
+        out, float(_DAC_RATE), "V", p.voltage,
+        {**result.provenance(), "carrier_frequency_Hz": p.frequency},
+    )  # fmt: skip
+
+
+def hjif_export(result: RenderAnalysis) -> HjifExport:
+    """The texture under the stroke as MPEG haptics. Raises `InputError` as `hjif_of` does."""
+    p, played = result.prediction, result.played
+
+    def to_friction(values: FloatArray) -> FloatArray:
+        if result.texture.texture.quantity == "amplitude":
+            return np.interp(
+                played.amplitude(values), played.inverse.amplitude, played.inverse.relative_friction
+            )
+        return played.friction(values)
+
+    frictional = result.texture.texture.quantity == "relative_friction"
+    return hjif_of(
+        result.texture.texture,
+        float(np.floor(1e6 * result.finger.x.min()) * 1e-6),
+        float(np.ceil(1e6 * result.finger.x.max()) * 1e-6),
+        device=ReferenceDevice(
+            result.display.name,
+            p.frequency,
+            p.voltage or 0.0,
+            result.stroke.envelope.amplitude_limit,
+        ),
+        title=played.name,
+        to_friction=None if frictional else to_friction,
+        speed=float(np.mean(np.abs(result.finger.speed))),
+    )
+
+
+def write_render(
+    result: RenderAnalysis,
+    folder: Path,
+    *,
+    table: str = "csv",
+    drive: bool = False,
+    hjif: bool = False,
+    progress: Callable[[str], None] | None = None,
+) -> Path:
+    """Write everything of a rendering into `folder`; the path of index.html.
+
+    All is made in memory first; if a file cannot be written, those before it are taken away again.
+
+    Raises:
+        InputError: an unknown kind of table, what `drive_waveform` and `hjif_export` refuse, or a
+            folder that cannot be written to.
+    """
+    tell = progress or (lambda _: None)
+    if table not in ("csv", "parquet"):
+        raise InputError(f"a table cannot be '{table}'; it may be csv or parquet")
+    folder = Path(folder)
+    if folder.exists() and not folder.is_dir():
+        raise InputError(f"{folder} is a file, not a folder; choose another folder")
+    tell("figures")
+    figures = render_figures(result)
+    files: dict[str, bytes] = {f"{name}.png": png(figure) for name, (_, figure) in figures.items()}
+    tell("trace")
+    trace = trace_table(result)
+    name = f"trace.{table}"
+    files[name] = csv_text(trace).encode() if table == "csv" else parquet_bytes(trace)
+    files["envelope.wav"] = wav_bytes(envelope_waveform(result))
+    if drive:
+        files["drive.wav"] = wav_bytes(drive_waveform(result), "int24")
+    summary = result.summary()
+    if hjif:
+        export = hjif_export(result)
+        files["texture.hjif"] = (json.dumps(export.document, indent=1) + "\n").encode()
+        summary["hjif"] = {
+            "lost": list(export.lost),
+            "rms_error": export.rms_error,
+            "largest_error": export.largest_error,
+        }
+    data = json.dumps(to_json(summary), indent=1, ensure_ascii=False, allow_nan=False)
+    files["fidelity.json"] = f"{data}\n".encode()
+    files["index.html"] = _page(result, figures, sorted({*files, "index.html"})).encode()
+    _write_all(folder, files)
+    return folder / "index.html"
+
+
+def _write_all(folder: Path, files: dict[str, bytes]) -> None:
+    before = {
+        name: (folder / name).read_bytes() if (folder / name).is_file() else None for name in files
+    }
+    done: list[str] = []
+    try:
+        for name, data in files.items():
+            write_whole(folder / name, data)
+            done.append(name)
+    except InputError:
+        for name in done:
+            old = before[name]
+            if old is None:
+                (folder / name).unlink(missing_ok=True)
+            else:
+                write_whole(folder / name, old)
+        raise
+
+
+def render_figures(result: RenderAnalysis) -> dict[str, tuple[str, Figure]]:
+    """The figures by the name of their file: heading and drawing."""
+    from squeezefilm.report.textures import figures as draw
+
+    found = {
+        "render-friction": ("Friction along the stroke", draw.friction(result)),
+        "render-drive": ("Drive and tangential force", draw.drive(result)),
+        "render-contrast": ("Contrast by spatial period", draw.contrast(result)),
+        "render-way": ("The finger's way over the texture", draw.way(result)),
+    }
+    if result.wave != "ignored":
+        found["render-wave"] = ("The standing wave", draw.ripple(result))
+    return found
+
+
+def _page(result: RenderAnalysis, figures: dict[str, tuple[str, Figure]], files: list[str]) -> str:
+    title = escape(printable(result.played.name))
+    stamp = result.provenance()
+    rows = "\n".join(
+        f'<tr><th scope="row">{escape(a)}</th><td>{escape(b)}</td><td>{escape(c)}</td></tr>'
+        for a, b, c in render_rows(result)
+    )
+    numbers = (
+        '<div class="scroll" tabindex="0" role="region" aria-label="Numbers"><table>'
+        "<caption>What was asked for and what the finger meets</caption><thead><tr>"
+        '<th scope="col">Quantity</th><th scope="col">Value</th><th scope="col">Remark</th>'
+        f"</tr></thead><tbody>\n{rows}\n</tbody></table></div>"
+    )
+    pictures = "".join(
+        f"<section>\n<h2>{escape(heading)}</h2>\n"
+        f'<figure><img src="{name}.png" alt="'
+        f'{escape(" ".join(figure.get_suptitle().split()))}"></figure>\n</section>\n'
+        for name, (heading, figure) in figures.items()
+    )
+    warned = "".join(f"<li>{escape(printable(text))}</li>" for text in result.prediction.warnings)
+    links = ", ".join(f'<a href="{name}">{name}</a>' for name in files if not name.endswith(
+        (".png", ".html")))  # fmt: skip
+    return f"""{page_head(f"{title}: rendered texture")}
+<header><h1>{title}</h1>
+<p class="name">rendered on <code>{escape(printable(result.display.name))}</code> by squeezefilm
+</p></header>
+<main>
+<section>
+<h2>Numbers</h2>
+{numbers}
+</section>
+{pictures}<section>
+<h2>Warnings</h2>
+<ul>{warned or "<li>None.</li>"}</ul>
+</section>
+</main>
+<footer><p>squeezefilm {escape(str(stamp["squeezefilm_version"]))} ·
+made {escape(str(stamp["created_utc"]))} (UTC) ·
+SHA-256 of display, texture and motion <code>{escape(str(stamp["config_sha256"]))}</code> ·
+seed {escape(str(stamp["seed"]))}. Beside this page: {links}.</p></footer>
+</body>
+</html>
+"""

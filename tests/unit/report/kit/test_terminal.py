@@ -1,0 +1,180 @@
+"""What the command line prints: readable at 80 columns, plain where nobody looks."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import pytest
+
+from squeezefilm.analysis.analyze import Analysis
+from squeezefilm.errors import ConfigError
+from squeezefilm.quantities import Unit
+from squeezefilm.report.kit import terminal
+from squeezefilm.report.kit.numbers import display_values, micro, printable, shown
+
+
+@pytest.fixture(autouse=True)
+def plain_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("FORCE_COLOR", "COLUMNS", "TTY_COMPATIBLE", "TTY_INTERACTIVE"):
+        monkeypatch.delenv(name, raising=False)
+
+
+def printed(capsys: pytest.CaptureFixture[str]) -> str:
+    captured = capsys.readouterr()
+    assert captured.err == ""
+    assert "\x1b" not in captured.out
+    assert all(len(line) <= 80 for line in captured.out.splitlines())
+    return captured.out
+
+
+def test_analysis_at_80_columns(
+    plate_analysis: Analysis, capsys: pytest.CaptureFixture[str]
+) -> None:
+    terminal.show_analysis(plate_analysis)
+    text = printed(capsys)
+    for part in (
+        "33.58 kHz",
+        "(8,0), solved to ± ",
+        shown(plate_analysis.prediction.vibration_amplitude, Unit("m")),
+        f"{plate_analysis.prediction.relative_friction:.3f}",
+        "piezoelectric_solid_3d",
+        "timoshenko_beam_plane_strain",
+        "shear_plate",
+        "paper2008",
+        "film-open",
+    ):
+        assert part in text
+    words = " ".join(text.split())
+    for finding in plate_analysis.verdict:
+        assert f"{finding.kind} {finding.text[:40]}" in words
+    assert "contradict each other" in words
+    assert words.count("carries the finger at a mean gap") == 1
+
+
+def test_hostile_names_are_printed_and_not_obeyed(
+    hostile_analysis: Analysis, capsys: pytest.CaptureFixture[str]
+) -> None:
+    terminal.show_analysis(hostile_analysis)
+    text = printed(capsys)
+    assert "[bold]" in text
+    assert "\u202e" not in text
+
+
+def test_a_display_without_texture(analysis_of: Any, capsys: pytest.CaptureFixture[str]) -> None:
+    terminal.show_analysis(analysis_of("no-voltage"))
+    assert "Finest grating" not in printed(capsys)
+
+
+def test_presets_are_listed_with_what_is_assumed(capsys: pytest.CaptureFixture[str]) -> None:
+    listing = terminal.preset_list()
+    by_name = {item["name"]: item for item in listing}
+    assert {"biet2008-plate", "biet2008-stator", "touchpad-glass"} <= set(by_name)
+    assert by_name["biet2008-plate"]["values_assumed"] == 13
+    terminal.show_presets(listing)
+    text = printed(capsys)
+    assert "biet2008-stator" in text
+    assert "13 of 37" in text
+
+
+def test_values_are_shown_as_written(capsys: pytest.CaptureFixture[str]) -> None:
+    values = terminal.display_values("biet2008-plate")
+    by_path = {item["path"]: item for item in values}
+    assert by_path["actuator.thickness"] == {
+        "path": "actuator.thickness",
+        "text": "2 mm",
+        "source": "paper, section 3.1",
+        "evidence": "published",
+    }
+    assert by_path["actuator.substrate.poisson_ratio"]["text"] == "0.30"
+    assert by_path["actuator.substrate.poisson_ratio"]["evidence"] == "assumed"
+    assert by_path["actuator.patches.7.polarity"]["text"] == "1"
+    assert by_path["name"]["evidence"] is None
+    terminal.show_values(values)
+    text = printed(capsys)
+    assert "* poisson_ratio" in text
+    assert "* assumed: 13 of" in text
+
+
+def test_values_of_what_cannot_be_loaded_are_refused() -> None:
+    with pytest.raises(ConfigError, match="Did you mean"):
+        terminal.display_values("biet2008-plat")
+
+
+def test_paths_of_the_report_are_those_of_the_listing(plate_analysis: Analysis) -> None:
+    written = {item["path"] for item in terminal.display_values("biet2008-plate")}
+    assert written <= {value.path for value in display_values(plate_analysis.display)}
+
+
+@dataclass(frozen=True)
+class FakeClaim:
+    id: str = "two-micrometres"
+    where: str = "section 2.3.1"
+    statement: str = "2 µm [give] 0.7"
+    printed: tuple[float, ...] = (1.4e-6, 1.55e-6)
+    unit: str = "m"
+    relation: str = "at_least"
+
+
+@dataclass(frozen=True)
+class FakeResult:
+    claim: FakeClaim = FakeClaim()
+    printed_formula_value: tuple[float, ...] | None = None
+    value: tuple[float, ...] = (2e-6, 3e-6)
+    verdict: str = "does not hold"
+    why: str = "because " * 30
+    note: str = ""
+
+
+@dataclass(frozen=True)
+class FakeReproduction:
+    results: tuple[FakeResult, ...] = (FakeResult(), FakeResult(verdict="holds"))
+    errata: tuple[Any, ...] = ()
+
+
+def test_claims_at_80_columns(capsys: pytest.CaptureFixture[str]) -> None:
+    terminal.show_claims(FakeReproduction())  # type: ignore[arg-type]
+    text = printed(capsys)
+    for part in ("two-micrometres", "≥ 1.4 µm", "3 µm", "2 µm [give] 0.7", "why: because"):
+        assert part in text
+    assert "2 claims: 1 does not hold, 1 holds" in text
+
+
+def test_progress_is_plain_lines_where_no_terminal_is(capsys: pytest.CaptureFixture[str]) -> None:
+    with terminal.progress(enabled=True) as step:
+        step("film\x1b[2J")
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert captured.err == "  film [2J …\n"
+
+
+def test_progress_can_be_silent(capsys: pytest.CaptureFixture[str]) -> None:
+    with terminal.progress(enabled=False) as step:
+        step("film")
+    captured = capsys.readouterr()
+    assert captured.out == captured.err == ""
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "text"),
+    [
+        (0.6e-6, "m", "0.6 µm"),
+        (2e-6, "m", "2 µm"),
+        (67e-9, "m", "67 nm"),
+        (0.083, "m", "83 mm"),
+        (0.5, "N", "0.5 N"),
+        (5.51085e-4, "s", "0.5511 ms"),
+        (34656.3, "Hz", "34.66 kHz"),
+        (1.0302e-7, "m/V", "103 nm/V"),
+        (0.0, "m", "0 m"),
+        (1900, "1", "1900"),
+    ],
+)
+def test_quantities_read_as_the_field_says_them(value: float, unit: str, text: str) -> None:
+    assert shown(value, Unit(unit)) == text
+
+
+def test_micro_sign_and_printable() -> None:
+    assert micro("50 um") == "50 µm"
+    assert micro("copper") == "copper"
+    assert printable("a\x1b[31m\n b\u202e") == "a [31m b"
