@@ -19,7 +19,7 @@ import numpy as np
 from tests.faults.study_child import Device, Script, begin
 
 from squeezefilm.errors import SqueezefilmError
-from squeezefilm.lab.studies import Studies
+from squeezefilm.lab.studying.studies import Studies
 from squeezefilm.perception.stimuli import Grating, Stimulus
 from squeezefilm.session.record.reading import read_trace
 from squeezefilm.session.record.trace import TraceWriter

@@ -11,14 +11,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from squeezefilm.errors import InputError
-from squeezefilm.lab.design_area import add_design
-from squeezefilm.lab.device_area import add_device
+from squeezefilm.lab.areas.design import add_design
+from squeezefilm.lab.areas.device import add_device
+from squeezefilm.lab.areas.feel import add_feel
+from squeezefilm.lab.areas.study import add_study
 from squeezefilm.lab.door import room_for
-from squeezefilm.lab.feel_area import add_feel
 from squeezefilm.lab.guard import Places
 from squeezefilm.lab.keys import Keys
 from squeezefilm.lab.server import PORT, Lab, listening_socket, server_of
-from squeezefilm.lab.study_area import add_study
 
 if TYPE_CHECKING:
     import socket

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from squeezefilm import lab, presets
-from squeezefilm.lab.description import form, preset_text
+from squeezefilm.lab.designing.form import form, preset_text
 
 STATIC = Path(lab.__file__).parent / "static"
 ENTRIES = {

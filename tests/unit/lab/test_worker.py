@@ -15,7 +15,7 @@ import pytest
 
 from squeezefilm.errors import ConfigError, SqueezefilmError
 from squeezefilm.lab import worker
-from squeezefilm.lab.description import name_of
+from squeezefilm.lab.designing.form import name_of
 from squeezefilm.lab.worker import PAGE, Busy, SupersededError
 
 LONG = 600.0

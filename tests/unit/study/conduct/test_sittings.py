@@ -12,7 +12,7 @@ from typing import NoReturn
 import pytest
 
 from squeezefilm.errors import InputError, RecordError
-from squeezefilm.lab.studies import Studies
+from squeezefilm.lab.studying.studies import Studies
 from squeezefilm.study.conduct import sittings as sittings_module
 from squeezefilm.study.conduct.sittings import FILE, MOST_SITTINGS, Sittings
 

@@ -11,9 +11,9 @@ from pydantic import Field
 
 from squeezefilm.errors import DeviceError, InputError
 from squeezefilm.lab.keys import CODE_LIFE
-from squeezefilm.lab.studies import Studies
-from squeezefilm.lab.study_devices import Measured, StudyDevices, require_device
-from squeezefilm.lab.study_work import analysis_of, rehearsed, report_of
+from squeezefilm.lab.studying.devices import Measured, StudyDevices, require_device
+from squeezefilm.lab.studying.jobs import analysis_of, rehearsed, report_of
+from squeezefilm.lab.studying.studies import Studies
 from squeezefilm.lab.wire import Answer, Request
 from squeezefilm.lab.worker import PAGE
 from squeezefilm.study.conduct.exposure import Exposure, exposure

@@ -9,8 +9,9 @@ from pydantic import Field
 
 from squeezefilm import presets
 from squeezefilm.errors import InputError
-from squeezefilm.lab import description, design
-from squeezefilm.lab.field_limits import allowed
+from squeezefilm.lab.designing import form as description
+from squeezefilm.lab.designing import numbers as design
+from squeezefilm.lab.designing.field_limits import allowed
 from squeezefilm.lab.files import existing, fresh
 from squeezefilm.lab.wire import LONGEST_TEXT, Answer, Request
 from squeezefilm.lab.worker import PAGE

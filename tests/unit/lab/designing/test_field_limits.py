@@ -6,9 +6,9 @@ import pytest
 
 from squeezefilm import presets
 from squeezefilm.errors import InputError, SqueezefilmError
-from squeezefilm.lab.description import edited, form, preset_text
-from squeezefilm.lab.design import design
-from squeezefilm.lab.field_limits import allowed
+from squeezefilm.lab.designing.field_limits import allowed
+from squeezefilm.lab.designing.form import edited, form, preset_text
+from squeezefilm.lab.designing.numbers import design
 
 PLATE = preset_text("biet2008-plate")
 

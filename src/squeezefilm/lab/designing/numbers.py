@@ -16,7 +16,7 @@ import numpy as np
 from squeezefilm.analysis.uncertainty import friction_band
 from squeezefilm.chain.prediction import Prediction, predict
 from squeezefilm.errors import InputError, SqueezefilmError
-from squeezefilm.lab.description import display_of, edited, form
+from squeezefilm.lab.designing.form import display_of, edited, form
 from squeezefilm.plate.layout import Actuator, AnnularStator, DiscPlate, RectangularPlate
 from squeezefilm.plate.solid.working import response_frequencies
 from squeezefilm.quantities import FloatArray, Unit, parse_quantity

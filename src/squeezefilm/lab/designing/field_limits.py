@@ -13,7 +13,7 @@ from typing import Any
 
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError, SqueezefilmError
-from squeezefilm.lab.description import choices, display_of, stated
+from squeezefilm.lab.designing.form import choices, display_of, stated
 from squeezefilm.quantities import Unit, format_quantity, unit_of
 from squeezefilm.report.kit.numbers import leaves
 

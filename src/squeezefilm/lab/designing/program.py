@@ -19,8 +19,8 @@ from squeezefilm.chain.rendered_texture import lowered, resonance_with_finger, w
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError
 from squeezefilm.formats.pictures import picture_from
-from squeezefilm.lab.description import display_of
-from squeezefilm.lab.design import predicted
+from squeezefilm.lab.designing.form import display_of
+from squeezefilm.lab.designing.numbers import predicted
 from squeezefilm.plate.layout import Actuator, DiscPlate, RectangularPlate
 from squeezefilm.quantities import FloatArray, Metre
 from squeezefilm.render.program.inverse import FrictionInverse

@@ -11,11 +11,11 @@ from pydantic import Field
 
 from squeezefilm import presets
 from squeezefilm.errors import InputError
-from squeezefilm.lab import device_process
-from squeezefilm.lab.description import name_of
-from squeezefilm.lab.device_process import DeviceSession, DeviceWork
-from squeezefilm.lab.feel import title_of
+from squeezefilm.lab import playing_process as device_process
+from squeezefilm.lab.designing.form import name_of
+from squeezefilm.lab.designing.program import title_of
 from squeezefilm.lab.files import existing
+from squeezefilm.lab.playing_process import DeviceSession, DeviceWork
 from squeezefilm.lab.wire import LONGEST_TEXT, Answer, Request
 from squeezefilm.quantities import Unit, parse_quantity
 from squeezefilm.results import write_whole

@@ -13,13 +13,13 @@ from typing import Any
 import pytest
 
 from squeezefilm.errors import DeviceError, InputError
-from squeezefilm.lab import study_area
-from squeezefilm.lab.device_area import add_device
+from squeezefilm.lab.areas import study as study_area
+from squeezefilm.lab.areas.device import add_device
+from squeezefilm.lab.areas.study import add_study
 from squeezefilm.lab.guard import Places
 from squeezefilm.lab.keys import Keys
 from squeezefilm.lab.server import PAGE, Lab
-from squeezefilm.lab.study_area import add_study
-from squeezefilm.lab.study_devices import StudyDevices, require_device
+from squeezefilm.lab.studying.devices import StudyDevices, require_device
 from squeezefilm.perception.stimuli import Stimulus
 from squeezefilm.study.conduct.exposure import Exposure
 from squeezefilm.study.conduct.study_device import DeviceIdentity, DeviceVerification, Exploration

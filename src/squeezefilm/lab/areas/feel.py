@@ -13,7 +13,7 @@ from pydantic import Field
 
 from squeezefilm import presets
 from squeezefilm.errors import InputError
-from squeezefilm.lab import feel
+from squeezefilm.lab.designing import program as feel
 from squeezefilm.lab.files import existing, fresh
 from squeezefilm.lab.wire import LONGEST_TEXT, Answer, Request
 from squeezefilm.quantities import Unit, parse_quantity

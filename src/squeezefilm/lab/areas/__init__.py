@@ -1,0 +1,1 @@
+"""The areas of the lab, one class each: the messages it answers."""

@@ -1,0 +1,1 @@
+"""Studies as the lab runs them: files, sittings, their devices, long work."""
