@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from squeezefilm.errors import InputError
-from squeezefilm.film.slip import SLIP_LAWS, flow_factor
+from squeezefilm.film.closed.flow_factor import flow_factor
+from squeezefilm.film.slip import SLIP_LAWS
 from squeezefilm.film.slip_kernel import slip_factor
 
 
