@@ -41,7 +41,12 @@ endef
 test: $(VENV)/test.stamp  ## run every test (slow ones: make nightly)
 	$(call run_tests,and not nightly)
 
-nightly: $(VENV)/test.stamp  ## run every test, the slow ones too
+# Properties are explored from a seed of the day; a failure is repeated with the one printed here.
+SEED ?= $(shell date +%Y%m%d)
+nightly: export SQUEEZEFILM_EXPLORE = 1
+nightly: PYTEST += --hypothesis-seed=$(SEED)
+nightly: $(VENV)/test.stamp  ## run every test, the slow ones too, and explore properties (SEED=N)
+	@echo "nightly: seed $(SEED)"
 	$(call run_tests,)
 
 check: lint types layers docs  ## everything that is read and not run

@@ -33,7 +33,6 @@ def rules(draw: st.DrawFn) -> StaircaseRule:
 
 
 @given(rules(), answers, st.integers(0, 40), st.booleans())
-@settings(max_examples=150, deadline=None)
 def test_a_staircase_resumes_where_it_stopped(
     rule: StaircaseRule, given_answers: list[bool], stop: int, rounded: bool
 ) -> None:
@@ -61,7 +60,7 @@ def test_a_staircase_resumes_where_it_stopped(
     st.sampled_from(["threshold and width", "all"]),
     st.sampled_from([("logistic", "linear"), ("weibull", "log"), ("gumbel", "linear")]),
 )
-@settings(max_examples=40, deadline=None)
+@settings(settings.get_profile("dear"))
 def test_a_bayesian_choice_resumes_where_it_stopped(
     given_answers: list[bool], stop: int, interest: str, kind: tuple[str, str]
 ) -> None:

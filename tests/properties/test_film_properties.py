@@ -17,7 +17,7 @@ exponents = st.floats(1.0, 1.4)
 knudsens = st.floats(0.0, 0.3)
 slips = st.sampled_from(sorted(SLIP_LAWS))
 # The first call compiles or loads compiled code.
-calm = settings(deadline=None, max_examples=30)
+calm = settings(settings.get_profile("dear"))
 
 
 @calm

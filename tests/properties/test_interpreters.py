@@ -68,7 +68,6 @@ def program_of(texture: Composable, compensated: bool = False) -> Program:
 
 
 @given(any_textures, st.integers(0, 2**32 - 1))
-@settings(max_examples=200, deadline=None)
 def test_the_compiled_interpreter_is_the_texture_itself(texture: Composable, seed: int) -> None:
     where = samples(seed)
     wanted = texture(*where)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from squeezefilm.quantities import FloatArray
@@ -23,7 +23,6 @@ steps = st.floats(1e-5, 1e-2)
 
 
 @given(wishes, envelopes, steps, st.sampled_from(["none", "inverse", "preview"]))
-@settings(deadline=None)
 def test_neither_command_nor_envelope_ever_leaves_the_limits(
     wanted: FloatArray, envelope: DrivenEnvelope, step: float, compensation: str
 ) -> None:
@@ -37,7 +36,6 @@ def test_neither_command_nor_envelope_ever_leaves_the_limits(
 
 
 @given(wishes, envelopes, steps)
-@settings(deadline=None)
 def test_compensation_then_envelope_is_identity_where_nothing_saturates(
     wanted: FloatArray, envelope: DrivenEnvelope, step: float
 ) -> None:
@@ -69,7 +67,6 @@ times = st.one_of(st.floats(0.0, 2.0), anything)
 
 
 @given(st.lists(st.tuples(times, anything), max_size=40), times)
-@settings(deadline=None)
 def test_no_stream_of_samples_makes_the_estimate_infinite(
     samples: list[tuple[float, float]], asked: float
 ) -> None:
@@ -89,7 +86,6 @@ def test_no_stream_of_samples_makes_the_estimate_infinite(
 
 
 @given(st.floats(-0.5, 0.5), st.floats(-0.1, 0.1), st.floats(0.0, 0.09))
-@settings(deadline=None)
 def test_a_steady_finger_is_predicted_exactly(speed: float, start: float, ahead: float) -> None:
     random = np.random.default_rng(9)
     stamps = np.cumsum(random.uniform(1e-3, 9e-3, 800))

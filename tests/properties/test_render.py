@@ -3,7 +3,7 @@
 import math
 
 import numpy as np
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from squeezefilm.render.motion.stroke import Stroke
@@ -108,7 +108,6 @@ commands = st.lists(st.floats(0, 1e-5), min_size=1, max_size=40)
 
 
 # The first call imports scipy.signal, which no clock should judge.
-@settings(deadline=None)
 @given(commands, st.floats(0, 1e-5), st.floats(1e-6, 1e-1), taus)
 def test_a_response_never_leaves_the_range_of_what_drives_it(
     command: list[float], initial: float, step: float, tau: float

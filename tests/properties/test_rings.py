@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import deque
 
 import numpy as np
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from squeezefilm.session.loop.ring import (
@@ -24,7 +24,6 @@ moves = st.lists(
 
 
 @given(moves, st.integers(0, 2**40))
-@settings(deadline=None)
 def test_a_ring_is_a_bounded_queue_that_counts_what_it_drops(
     script: list[tuple[str, int]], begun: int
 ) -> None:

@@ -32,7 +32,7 @@ WHERE = (
 )
 NOTHING, ALL = Constant(0.0), Constant(1.0)
 
-laws = settings(max_examples=50, deadline=None)
+laws = settings(settings.get_profile("properties"))
 
 
 def same(a: Pattern | Composable, b: Pattern | Composable) -> bool:

@@ -1,6 +1,6 @@
 """Every texture survives being written and read, and every class of the algebra is met."""
 
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from squeezefilm.config.schema import family
@@ -15,7 +15,6 @@ titles = st.text(st.characters(exclude_categories=["Cs"]), max_size=20)
 
 
 @given(any_textures, titles)
-@settings(max_examples=300, deadline=None)
 def test_writing_and_reading_changes_nothing(texture: Composable, title: str) -> None:
     text = texture_text(TextureFile(texture, title))
     read = texture_from_text(text)

@@ -160,7 +160,7 @@ def test_closed_form_and_fit_agree_on_exact_data() -> None:
     assert found.degrees_of_freedom == 1
 
 
-@settings(max_examples=30, deadline=None)
+@settings(settings.get_profile("dear"))
 @given(st.integers(0, 2**32 - 1))
 def test_fit_meets_margins_and_no_other_is_likelier(seed: int) -> None:
     random = np.random.default_rng(seed)

@@ -63,7 +63,7 @@ def test_every_estimator_is_right_with_many_trials() -> None:
             assert float(item.estimate(counts)) == pytest.approx(true, abs=1e-4), item.key
 
 
-@settings(max_examples=60)
+@settings(settings.get_profile("dear"))
 @given(TABLES, st.permutations(range(4)), st.permutations(range(3)))
 def test_names_do_not_matter(n: np.ndarray, rows: list[int], columns: list[int]) -> None:
     for item in ESTIMATORS.values():
@@ -71,7 +71,7 @@ def test_names_do_not_matter(n: np.ndarray, rows: list[int], columns: list[int])
         assert float(one) == pytest.approx(float(other), abs=1e-9), item.key
 
 
-@settings(max_examples=60)
+@settings(settings.get_profile("dear"))
 @given(TABLES)
 def test_plug_in_lies_between_nothing_and_the_entropies(n: np.ndarray) -> None:
     found = float(estimators.plug_in(n))
@@ -80,7 +80,7 @@ def test_plug_in_lies_between_nothing_and_the_entropies(n: np.ndarray) -> None:
         assert -1e-12 <= found <= -(share * np.log2(share)).sum() + 1e-12
 
 
-@settings(max_examples=40)
+@settings(settings.get_profile("dear"))
 @given(TABLES)
 def test_jackknife_is_the_one_by_hand(n: np.ndarray) -> None:
     """Leave out each trial in turn, the stimuli's shares kept."""

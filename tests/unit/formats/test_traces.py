@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from squeezefilm.errors import ConfigError, InputError
@@ -26,7 +26,6 @@ def same(a: Table, b: Table) -> bool:
     )  # fmt: skip
 
 
-@settings(deadline=None)
 @given(st.lists(st.floats(allow_infinity=False), min_size=1, max_size=30))
 def test_every_float_comes_back(values: list[float]) -> None:
     import tempfile

@@ -88,7 +88,7 @@ def test_the_papers_own_size_has_one_answer_a_person() -> None:
     json.dumps(found.summary(), allow_nan=False)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(settings.get_profile("dear"))
 @given(
     st.lists(st.tuples(st.integers(0, 3), st.integers(0, 2), st.integers(0, 2)), min_size=1,
              max_size=12),

@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
 
@@ -98,7 +98,6 @@ def test_intervals_against_published_values() -> None:
     assert (zero.low, zero.high) == pytest.approx((0.0, 0.1611), abs=5e-5)
 
 
-@settings(max_examples=50)
 @given(st.integers(1, 80), st.floats(0, 1), st.floats(0.5, 0.999))
 def test_intervals_hold_the_share_and_mirror(trials: int, share: float, level: float) -> None:
     successes = round(share * trials)
