@@ -35,7 +35,9 @@ pint_units: Any = pint.UnitRegistry()
 
 MISPRINTS = {
     "squeezefilm.film.gap.squeeze_number_printed": "eq 4 has l0 where l0² belongs",
-    "squeezefilm.contact.sharing.paper.relative_friction_from_pressure_printed": "eq 14 has P_f in Pa",
+    "squeezefilm.contact.sharing.paper.relative_friction_from_pressure_printed": (
+        "eq 14 has P_f in Pa"
+    ),
 }
 
 # A number small enough for every formula's range (ε, δ, Kn, Poisson's ratio …).

@@ -187,7 +187,8 @@ def _explained(
     if above(logarithms[0]) * above(logarithms[1]) > 0:
         raise SqueezefilmError(
             f"{free} between {between[0]:.3g} and {between[1]:.3g} ({unit}) does not bring "
-            f"'{name}' to {MEASURED_FREQUENCY:.0f} Hz; widen the range in analysis/claims/prototype.py"
+            f"'{name}' to {MEASURED_FREQUENCY:.0f} Hz; widen the range in "
+            "analysis/claims/prototype.py"
         )
     root = float(np.exp(brentq(above, *logarithms, xtol=2e-4, rtol=1e-4)))
     solved = make(plate, root)

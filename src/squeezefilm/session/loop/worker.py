@@ -1,4 +1,4 @@
-"""The loop's own process: `python -m squeezefilm.session.loop.worker FD`, started by `loop.LoopProcess`.
+"""The loop's own process, `python -m squeezefilm.session.loop.worker FD`, of `LoopProcess`.
 
 Standard input brings the plan; the file descriptor is the shared memory. It compiles, asks for
 real-time priority, says that it is ready, and ticks until the host says stop or dies.
