@@ -106,3 +106,19 @@ def test_levels_outside_the_limits_are_refused(level: float) -> None:
         texture_survival("tested", PLATE, level)
     with pytest.raises(InputError, match="level"):
         compensated_grating(PLATE, level=level)
+
+
+@pytest.mark.parametrize("speed", [0.1, 0.276, 2.0])
+def test_a_grating_is_played_until_it_has_settled(speed: float) -> None:
+    grating = compensated_grating(PLATE, 0.4e-3, speed)
+    period = grating.spatial_period / speed
+    step = grating.time[1] - grating.time[0]
+    per_period = round(period / step)
+    assert period / step == pytest.approx(per_period)
+    # Whole periods, and at least twenty time constants of them.
+    assert grating.time.size % per_period == 0
+    assert grating.time.size * step >= 20 * PLATE.fall_time_constant
+    for drive, kept in zip(grating.drives, grating.swing_kept, strict=True):
+        last, before = drive.amplitude[-per_period:], drive.amplitude[-2 * per_period : -per_period]
+        assert np.allclose(last, before, rtol=1e-6, atol=1e-9 * PLATE.amplitude_limit)
+        assert kept == pytest.approx(np.ptp(last) / (0.8 * PLATE.amplitude_limit), rel=1e-6)

@@ -234,3 +234,47 @@ def test_trials_that_do_not_spread_are_refused() -> None:
         estimator_bias(None, 61)
     with pytest.raises(InputError, match="no matrix"):
         information_transfer(np.zeros((2, 2), dtype=int))
+
+
+def entropy_of(shares: list[float]) -> float:
+    return -sum(p * math.log2(p) for p in shares if p > 0)
+
+
+# Four answers (rows) to three stimuli: cells seen once, cells never seen, columns of unequal size.
+UNEVEN = np.array([[5, 1, 0], [1, 3, 1], [0, 1, 2], [0, 0, 1]])
+
+
+def test_first_order_takes_off_the_bias_of_all_cells() -> None:
+    # (4 − 1)(3 − 1)/(2 · 15 ln 2), whatever cells were seen; Miller and Madow count those that were.
+    plug_in = float(estimators.plug_in(UNEVEN))
+    assert float(estimators.first_order(UNEVEN)) == pytest.approx(plug_in - 6 / (30 * math.log(2)))
+    assert float(estimators.miller_madow(UNEVEN)) == pytest.approx(
+        plug_in - (8 - 4 - 3 + 1) / (30 * math.log(2))
+    )
+    # A stimulus that was never presented is no column.
+    padded = np.hstack([UNEVEN, np.zeros((4, 1), dtype=int)])
+    assert float(estimators.first_order(padded)) == pytest.approx(
+        float(estimators.first_order(UNEVEN))
+    )
+
+
+def test_chao_and_shen_count_by_count() -> None:
+    def adjusted(counts: list[int]) -> float:
+        total, single = sum(counts), sum(one == 1 for one in counts)
+        shares = [(1 - single / total) * one / total for one in counts if one]
+        return -sum(p * math.log2(p) / (1 - (1 - p) ** total) for p in shares)
+
+    presented = UNEVEN.sum(axis=0) / UNEVEN.sum()
+    expected = (
+        adjusted(UNEVEN.sum(axis=1).tolist())
+        + entropy_of(presented.tolist())
+        - adjusted(UNEVEN.ravel().tolist())
+    )
+    assert float(estimators.chao_shen(UNEVEN)) == pytest.approx(expected)
+    # Every trial a kind of its own: the coverage would be 0, and one trial is left out of the count.
+    assert np.isfinite(estimators.chao_shen(np.eye(3, dtype=int)))
+
+
+def test_each_estimator_stands_under_its_own_key() -> None:
+    for key, estimator in ESTIMATORS.items():
+        assert estimator.estimate is getattr(estimators, key.replace("-", "_"))

@@ -75,3 +75,14 @@ def test_what_is_no_identification_is_refused(tmp_path: Path) -> None:
         pytest.raises(InputError, match="no answered main trial"),
     ):
         analyze_study(store)
+
+
+def test_response_times_of_the_file_are_those_of_the_analysis(tmp_path: Path) -> None:
+    with StudyStore.create(tmp_path / "t.sqlite", gratings(repetitions=3), 4) as store:
+        run_through(store, 2)
+        (found,) = analyze_study(store, resamples=50).values()
+        times = [
+            float(row["response_time_s"]) for row in trial_table(store) if row["phase"] == "main"
+        ]
+    assert len(times) == 18
+    assert sum(summary.trials for summary in found.response_times) >= len(times)
