@@ -245,7 +245,7 @@ UNEVEN = np.array([[5, 1, 0], [1, 3, 1], [0, 1, 2], [0, 0, 1]])
 
 
 def test_first_order_takes_off_the_bias_of_all_cells() -> None:
-    # (4 − 1)(3 − 1)/(2 · 15 ln 2), whatever cells were seen; Miller and Madow count those that were.
+    # (4 − 1)(3 − 1)/(2 · 15 ln 2), whatever was seen; Miller and Madow count what was.
     plug_in = float(estimators.plug_in(UNEVEN))
     assert float(estimators.first_order(UNEVEN)) == pytest.approx(plug_in - 6 / (30 * math.log(2)))
     assert float(estimators.miller_madow(UNEVEN)) == pytest.approx(
@@ -271,7 +271,7 @@ def test_chao_and_shen_count_by_count() -> None:
         - adjusted(UNEVEN.ravel().tolist())
     )
     assert float(estimators.chao_shen(UNEVEN)) == pytest.approx(expected)
-    # Every trial a kind of its own: the coverage would be 0, and one trial is left out of the count.
+    # Every trial a kind of its own: the coverage would be 0, so one is left out.
     assert np.isfinite(estimators.chao_shen(np.eye(3, dtype=int)))
 
 
