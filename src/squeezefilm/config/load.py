@@ -13,7 +13,12 @@ from typing import Any, TypeVar, Union
 from pydantic import BaseModel, ValidationError
 
 from squeezefilm.config.lines import locate
-from squeezefilm.config.provenance import Spread, distribution_of, split_provenance
+from squeezefilm.config.provenance import (
+    Spread,
+    distribution_of,
+    read_only,
+    split_provenance,
+)
 from squeezefilm.config.scan import DEEPEST, require_quick_toml
 from squeezefilm.config.schema import family, model_of, reads_from_file
 from squeezefilm.distributions import Distribution
@@ -67,7 +72,7 @@ def load_text(cls: type[T], text: str, *, file: str | Path | None = None) -> T:
         for key, spread in spreads.items():
             found = _distribution(built, key, spread, text, file)
             sources[key] = dataclasses.replace(sources[key], distribution=found)
-        built = dataclasses.replace(built, provenance=types.MappingProxyType(sources))
+        built = dataclasses.replace(built, provenance=read_only(sources))
     return typing.cast(T, built)
 
 

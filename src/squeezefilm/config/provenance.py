@@ -8,6 +8,8 @@ it is may stand beside it: ``uncertainty = "0.05 mm"`` or ``"5 %"`` (a standard 
 
 from __future__ import annotations
 
+import copyreg
+import types
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -15,6 +17,14 @@ from typing import Any
 from squeezefilm.distributions import Distribution, Normal, Uniform
 from squeezefilm.errors import ConfigError, InputError
 from squeezefilm.quantities import Unit, format_quantity, parse_quantity
+
+
+def read_only(values: Mapping[str, Any]) -> types.MappingProxyType[str, Any]:
+    """A mapping that nobody can change, and that can be pickled with what holds it."""
+    return types.MappingProxyType(dict(values))
+
+
+copyreg.pickle(types.MappingProxyType, lambda mapping: (read_only, (dict(mapping),)))
 
 EVIDENCE = ("measured", "published", "derived", "assumed")
 _SPREADS = ("uncertainty", "range")

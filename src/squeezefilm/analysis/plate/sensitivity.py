@@ -91,7 +91,7 @@ class SensitivityTable:
 @functools.lru_cache(maxsize=256)
 def _solved(plate: RectangularPlate, label: Label) -> PlateModes:
     # Without what fields are evaluated on: megabytes each, and not asked for here.
-    return dataclasses.replace(solve_modes(plate, mode=label), _fields=())
+    return dataclasses.replace(solve_modes(plate, mode=label), _fields=(), _again=None)
 
 
 @functools.lru_cache(maxsize=256)

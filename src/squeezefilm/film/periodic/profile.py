@@ -17,6 +17,8 @@ _MOST_ORDERS = 40
 _NEGLIGIBLE = 1e-12
 
 Harmonics = Callable[[FloatArray], ComplexArray]
+GapFunction = Callable[[FloatArray, FloatArray], ArrayLike]
+"""H(X, T) at places and times that broadcast."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,6 +139,57 @@ def _extrema(values: FloatArray) -> int:
     return int(np.count_nonzero(rise[1:] * rise[:-1] < 0.0))
 
 
+# What a gap's harmonics are computed from: values and not closures, so that a film can be pickled.
+
+
+@dataclass(frozen=True, slots=True)
+class _Flexural:
+    """H = 1 + τ·2X + δ cos k2X + ε cos k1X cos T."""
+
+    excursion_ratio: float
+    wavenumber: float
+    ridge_depth: float
+    ridge_wavenumber: float
+    tilt: float
+
+    def __call__(self, x: FloatArray) -> ComplexArray:
+        ridges = self.ridge_depth * np.cos(self.ridge_wavenumber * x)
+        wave = self.excursion_ratio * np.cos(self.wavenumber * x)
+        return np.array([1.0 + 2.0 * self.tilt * x + ridges, wave], dtype=complex)
+
+
+@dataclass(frozen=True, slots=True)
+class _Given:
+    """A function H(X, T), sampled over a period."""
+
+    gap: GapFunction
+    orders: int
+
+    def __call__(self, x: FloatArray) -> ComplexArray:
+        times = 2.0 * np.pi * np.arange(_TIMES) / _TIMES
+        h = np.fft.rfft(_sampled(self.gap, x, times), axis=1)[:, : self.orders].T / _TIMES
+        h[1:] *= 2.0
+        return np.asarray(h)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Splined:
+    """Harmonics at places X, cubic splines between them."""
+
+    position: FloatArray
+    spectrum: ComplexArray
+
+    def __call__(self, x: FloatArray) -> ComplexArray:
+        from scipy.interpolate import CubicSpline
+
+        return np.asarray(CubicSpline(self.position, self.spectrum, axis=1)(x), dtype=complex)
+
+
+def _sampled(gap: GapFunction, x: FloatArray, times: FloatArray) -> FloatArray:
+    given = np.asarray(gap(x[:, None], times[None, :]), dtype=float)
+    return np.array(np.broadcast_to(given, (len(x), len(times))))
+
+
 @checked_numbers
 def flexural_profile(
     excursion_ratio: float,
@@ -160,10 +213,7 @@ def flexural_profile(
     ):  # fmt: skip
         require(name, value)
 
-    def harmonics(x: FloatArray) -> ComplexArray:
-        mean = 1.0 + 2.0 * tilt * x + ridge_depth * np.cos(ridge_wavenumber * x)
-        return np.array([mean, excursion_ratio * np.cos(wavenumber * x)], dtype=complex)
-
+    harmonics = _Flexural(excursion_ratio, wavenumber, ridge_depth, ridge_wavenumber, tilt)
     text = f"flexural profile ε = {excursion_ratio:.4g}, k1 = {wavenumber:.4g}"
     if ridge_depth:
         text += f", δ = {ridge_depth:.4g}, k2 = {ridge_wavenumber:.4g}"
@@ -172,22 +222,16 @@ def flexural_profile(
     return GapProfile(harmonics, text)
 
 
-def profile_from_function(
-    gap: Callable[[FloatArray, FloatArray], ArrayLike], description: str = "given function"
-) -> GapProfile:
+def profile_from_function(gap: GapFunction, description: str = "given function") -> GapProfile:
     """A gap H(X, T) given as a function that broadcasts, T in radians.
 
     Raises `InputError` for a gap that is not periodic in T with period 2π, not finite or with
     more than 40 harmonics, and `GeometryError` for one that closes.
     """
 
-    def sampled(x: FloatArray, times: FloatArray) -> FloatArray:
-        given = np.asarray(gap(x[:, None], times[None, :]), dtype=float)
-        return np.array(np.broadcast_to(given, (len(x), len(times))))
-
     x = np.linspace(-0.5, 0.5, 101)
     times = 2.0 * np.pi * np.arange(_TIMES) / _TIMES
-    now, later = sampled(x, times), sampled(x, times + 2.0 * np.pi)
+    now, later = _sampled(gap, x, times), _sampled(gap, x, times + 2.0 * np.pi)
     _check_periodic(now, later, x, times, description)
     spectrum = np.abs(np.fft.rfft(now, axis=1)).max(axis=0)
     significant = np.flatnonzero(spectrum > _NEGLIGIBLE * spectrum.max())
@@ -198,12 +242,7 @@ def profile_from_function(
             f"be used: smooth its motion"
         )
 
-    def harmonics(x: FloatArray) -> ComplexArray:
-        h = np.fft.rfft(sampled(x, times), axis=1)[:, :orders].T / _TIMES
-        h[1:] *= 2.0
-        return np.asarray(h)
-
-    return GapProfile(harmonics, description)
+    return GapProfile(_Given(gap, orders), description)
 
 
 def profile_from_samples(
@@ -253,10 +292,7 @@ def profile_from_samples(
             f"the gap of {description} has {len(spectrum)} harmonics in time; at most "
             f"{_MOST_ORDERS} can be used: smooth its motion"
         )
-    from scipy.interpolate import CubicSpline
-
-    spline = CubicSpline(x, spectrum, axis=1)
-    return GapProfile(lambda where: np.asarray(spline(where), dtype=complex), description)
+    return GapProfile(_Splined(x, spectrum), description)
 
 
 def _check_periodic(

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import functools
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import ClassVar
 
 import numpy as np
 
@@ -11,6 +13,7 @@ from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import FREQUENCY, require_within
 from squeezefilm.plate.elements.slabs import Slabs
 from squeezefilm.plate.layout import RectangularPlate
+from squeezefilm.plate.solid.again import SolvedAgain
 from squeezefilm.plate.solid.mesh import PlateModel
 from squeezefilm.plate.solid.symmetry import Parity
 from squeezefilm.quantities import (
@@ -91,7 +94,7 @@ class SolvedModel:
 
 
 @dataclass(frozen=True, eq=False)
-class PlateModes:
+class PlateModes(SolvedAgain):
     """Modes of a plate in ascending order, electrodes as the plate describes them.
 
     `frequencies` are extrapolated to the converged value from two meshes, `errors` the estimated
@@ -124,7 +127,9 @@ class PlateModes:
     model: str
     status: str
     unknowns: int
-    _fields: tuple[tuple[SolvedModel, FloatArray], ...] = field(repr=False, default=())
+    _fields: tuple[tuple[SolvedModel, FloatArray], ...] = field(repr=False)
+    _again: Callable[[], PlateModes] | None = field(repr=False, default=None)
+    _bulk: ClassVar[tuple[str, ...]] = ("_fields",)
 
     @property
     def count(self) -> int:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from typing import ClassVar
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from squeezefilm.errors import GeometryError, InputError
 from squeezefilm.plate.elements.blas_threads import one_blas_thread
 from squeezefilm.plate.elements.box_model import IntArray
 from squeezefilm.plate.layout import RectangularPlate
+from squeezefilm.plate.solid.again import SolvedAgain
 from squeezefilm.plate.solid.extrapolated import extrapolated_class
 from squeezefilm.plate.solid.mesh import NORMAL, Resolution
 from squeezefilm.plate.solid.modes import MODEL
@@ -91,7 +93,7 @@ class EquivalentCircuit:
 
 
 @dataclass(frozen=True, eq=False)
-class HarmonicResponse:
+class HarmonicResponse(SolvedAgain):
     """The response of a plate to one volt (zero to peak) on its drive, at `frequencies` (Hz).
 
     `admittance` in siemens, time factor e^{iωt}. `method` says how it was made and
@@ -109,6 +111,8 @@ class HarmonicResponse:
     _coordinates: ComplexArray = field(repr=False)
     _potentials: list[ComplexArray] = field(repr=False)
     _loads: tuple[SurfaceLoad, ...] = field(repr=False, default=())
+    _again: Callable[[], HarmonicResponse] | None = field(repr=False, default=None)
+    _bulk: ClassVar[tuple[str, ...]] = ("_parts", "_coordinates", "_potentials")
 
     @property
     def impedance(self) -> ComplexArray:
@@ -315,6 +319,10 @@ def harmonic_response(
     return HarmonicResponse(
         plate, f, admittance, f"reduced to {q.shape[1]} coordinates", error, MODEL,
         parts, q, potentials, tuple(loads),
+        functools.partial(
+            harmonic_response, plate, f, loads=tuple(loads), steps=steps, resolution=resolution,
+            extrapolate=extrapolate,
+        ),
     )  # fmt: skip
 
 

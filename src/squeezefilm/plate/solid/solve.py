@@ -7,6 +7,8 @@ the difference between the two give the extrapolated frequency and its estimated
 
 from __future__ import annotations
 
+import dataclasses
+import functools
 from collections.abc import Callable
 
 from squeezefilm.errors import InputError
@@ -71,7 +73,12 @@ def solve_modes(
         mode = plate.working_label
     tell = progress or (lambda text, fraction: None)
     with one_blas_thread():
-        return _solved(plate, near, band, mode, count, tolerance, driven_only, tell)
+        found = _solved(plate, near, band, mode, count, tolerance, driven_only, tell)
+    again = functools.partial(
+        solve_modes, plate, near=near, band=band, mode=mode, count=count, tolerance=tolerance,
+        driven_only=driven_only,
+    )  # fmt: skip
+    return dataclasses.replace(found, _again=again)
 
 
 def _solved(
