@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from squeezefilm.chain.rendered_texture import analyze_render
+from squeezefilm.chain.rendered_texture import render_texture
 from squeezefilm.display import load_display
 from squeezefilm.formats.hjif import ReferenceDevice, hjif_of
 from squeezefilm.formats.hjif_read import texture_of_hjif
@@ -36,7 +36,7 @@ def main() -> dict[str, float]:
     stroke = motion_from("40 mm/s over 20 mm, 2 passes, from 2 mm, y 5 mm, at 30 deg")
     found = {}
     for compensation in ("none", "inverse"):
-        result = analyze_render(display, texture, stroke, compensation=compensation)
+        result = render_texture(display, texture, stroke, compensation=compensation)
         found[compensation] = result.rms_error
         print(f"{compensation:8}: friction within {result.rms_error:.4f} RMS of what was asked for")
 

@@ -5,20 +5,23 @@ from __future__ import annotations
 import contextlib
 import dataclasses
 import hashlib
+import html
+import inspect
 import json
 import math
 import os
 import tempfile
 import typing
+from collections.abc import Iterator
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
 from squeezefilm import __version__
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import unit_of
+from squeezefilm.quantities import Unit, format_quantity, unit_of
 
 
 def to_json(value: Any) -> Any:
@@ -55,6 +58,84 @@ def to_json(value: Any) -> Any:
     if isinstance(value, Path):
         return str(value)
     raise TypeError(f"{type(value).__name__} has no JSON form")
+
+
+class Result:
+    """What results have in common: a short `repr`, a table for notebooks, and ways out of Python.
+
+    `_shown` names the attributes that a person looks for first (dotted ones of what is inside), and
+    `summary` is what the command line's ``--json`` prints, where there is such a verb.
+    """
+
+    __slots__ = ()
+    _shown: ClassVar[tuple[str, ...]] = ()
+
+    def summary(self) -> dict[str, Any]:
+        """The numbers as plain JSON values, with units in the keys."""
+        values: dict[str, Any] = to_json(self)
+        return values
+
+    def to_dict(self) -> dict[str, Any]:
+        """The numbers as plain JSON values, with units in the keys: what ``--json`` prints."""
+        values: dict[str, Any] = to_json(self.summary())
+        return values
+
+    def to_pandas(self) -> Any:
+        """A `pandas.DataFrame`, units in the names of its columns: the result's own table, or one
+        row with the single numbers of `to_dict`.
+
+        Raises `InputError` where pandas is not installed.
+        """
+        try:
+            import pandas
+        except ImportError as error:
+            raise InputError(
+                "a data frame needs pandas, which is not installed; install it, or take to_dict()"
+            ) from error
+        return pandas.DataFrame(self._table())
+
+    def _table(self) -> Any:
+        """Rows or columns, as a data frame is made of them."""
+        single = (str, int, float, bool, type(None))
+        return [{k: v for k, v in self.to_dict().items() if isinstance(v, single)}]
+
+    def __repr__(self) -> str:
+        told = ", ".join(f"{name}={text}" for name, text in self._told())
+        return f"<{type(self).__name__} {told}>"
+
+    def _repr_html_(self) -> str:
+        rows = "".join(
+            f"<tr><td>{html.escape(name)}</td><td>{html.escape(text)}</td></tr>"
+            for name, text in self._told()
+        )
+        return f"<table><caption>{type(self).__name__}</caption>{rows}</table>"
+
+    def _told(self) -> Iterator[tuple[str, str]]:
+        for path in self._shown:
+            *owners, name = path.split(".")
+            owner: Any = self
+            for one in owners:
+                owner = getattr(owner, one, None)
+            value = getattr(owner, name, None)
+            if value is not None:
+                yield path, _in_words(value, _unit_of_attribute(type(owner), name))
+
+
+def _unit_of_attribute(owner: type, name: str) -> Unit | None:
+    """The unit in the annotation of a field, or of what a property returns."""
+    found = inspect.getattr_static(owner, name, None)
+    function = found.fget if isinstance(found, property) else getattr(found, "func", None)
+    if function is not None:
+        return unit_of(typing.get_type_hints(function, include_extras=True).get("return"))
+    return unit_of(typing.get_type_hints(owner, include_extras=True).get(name))
+
+
+def _in_words(value: Any, unit: Unit | None) -> str:
+    if isinstance(value, list | tuple):
+        return ", ".join(_in_words(one, unit) for one in value)
+    if isinstance(value, float | np.floating):
+        return format_quantity(float(value), unit or Unit("1"))
+    return str(value)
 
 
 def config_hash(config: Any) -> str:

@@ -49,16 +49,15 @@ class TextureFile:
         require_texture("texture", self.texture)
 
 
-def load_texture(path: str | Path) -> TextureFile:
-    """The texture in a TOML file, its pictures read. Raises `ConfigError` with file, line, key."""
-    return _with_images(load(TextureFile, path), Path(path))
+def load_texture(name_or_path: str | Path) -> TextureFile:
+    """The texture of a preset's name or of a TOML file, its pictures read.
 
-
-def preset_texture(name_or_path: str | Path) -> TextureFile:
-    """The texture of a preset's name or of a TOML file. Raises `ConfigError` if it can't be."""
+    Raises `ConfigError` with file, line and key if it can't be.
+    """
     from squeezefilm import presets
 
-    return load_texture(presets.resolve_texture(name_or_path))
+    path = presets.resolve_texture(name_or_path)
+    return _with_images(load(TextureFile, path), path)
 
 
 def _with_images(found: TextureFile, path: Path | None) -> TextureFile:

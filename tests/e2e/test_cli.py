@@ -251,7 +251,7 @@ def test_new_show_and_analyze_a_file_of_ones_own(tmp_path: Path) -> None:
 def test_presets_are_listed() -> None:
     done = run("presets")
     assert done.returncode == 0
-    for name in presets.names():
+    for name in presets.display_names():
         assert name in done.stdout
 
 

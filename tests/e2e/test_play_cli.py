@@ -81,7 +81,7 @@ def test_what_cannot_be_played_is_said(
 ) -> None:
     from squeezefilm.bench import play as play_command
     from squeezefilm.errors import SqueezefilmError
-    from squeezefilm.texture_file import preset_texture
+    from squeezefilm.texture_file import load_texture
 
     names = {"--drive": "drive", "--compensate": "compensation", "--sensor": "sensor",
              "--mode": "mode"}  # fmt: skip
@@ -96,7 +96,7 @@ def test_what_cannot_be_played_is_said(
     with pytest.raises(SqueezefilmError, match=said):
         play_command.play_texture(
             "biet2008-plate",
-            preset_texture("biet2008-square-4mm"),
+            load_texture("biet2008-square-4mm"),
             **how,  # type: ignore[arg-type]
         )
 

@@ -17,7 +17,7 @@ from squeezefilm.session.play.player import Ending, Player
 from squeezefilm.session.play.real_time import PlayOutcome
 from squeezefilm.session.play.simulated import virtual_play
 from squeezefilm.session.record.reading import read_trace
-from squeezefilm.texture_file import preset_texture
+from squeezefilm.texture_file import load_texture
 from squeezefilm.twin.device import TwinDevice
 from squeezefilm.twin.hand import hand_from
 from squeezefilm.twin.settings import PickupModel, TwinSettings
@@ -42,7 +42,7 @@ def prepared(display: Display, texture: str = "biet2008-square-4mm", **how: obje
     per_volt = 1 / settings().pickup.sensitivity
     return play_setup(
         display,
-        preset_texture(texture),
+        load_texture(texture),
         amplitude_per_pickup=per_volt,
         **how,  # type: ignore[arg-type]
     )
@@ -157,7 +157,7 @@ def test_a_host_that_is_held_up_ends_with_the_devices_watchdog(
 def test_a_session_without_a_pickup_is_judged_by_the_envelopes_model(
     display: Display, point: WorkingPoint, tmp_path: Path
 ) -> None:
-    setup = play_setup(display, preset_texture("biet2008-square-4mm"))
+    setup = play_setup(display, load_texture("biet2008-square-4mm"))
     _, session = played(setup, point, tmp_path)
     assert "no pickup" in session.by_record.way.source
     found = session.by_record.fidelity

@@ -7,7 +7,7 @@ import dataclasses
 import itertools
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 from squeezefilm.analysis.curves import (
     FrequencyResponse,
@@ -45,9 +45,9 @@ from squeezefilm.quantities import Hertz, Metre, Newton, Second, Volt
 from squeezefilm.render.fidelity.survival import FidelityTable, fidelity_table
 from squeezefilm.render.fidelity.trace import FrictionTrace, friction_trace
 from squeezefilm.render.motion.stroke import Stroke
-from squeezefilm.render.resonator.envelope import envelope_bandwidth, envelope_time_constant
+from squeezefilm.render.resonator.envelope import envelope_bandwidth
 from squeezefilm.render.texture.gratings import Square
-from squeezefilm.results import stamp, to_json
+from squeezefilm.results import Result, stamp, to_json
 
 Progress = Callable[[str], None]
 """Told in words what begins now."""
@@ -64,8 +64,8 @@ class OtherModel:
     vibration_amplitude: Metre | None
 
 
-@dataclass(frozen=True, eq=False)
-class Analysis:
+@dataclass(frozen=True, eq=False, repr=False)
+class Analysis(Result):
     """Everything `squeezefilm analyze` knows of a display at one working point."""
 
     display: Display
@@ -85,6 +85,11 @@ class Analysis:
     compensated: CompensatedGrating | None
     survival: TextureSurvival | None
     verdict: tuple[Finding, ...]
+    _shown: ClassVar[tuple[str, ...]] = (
+        "display.name", "prediction.model", "prediction.voltage", "prediction.frequency",
+        "prediction.vibration_amplitude", "prediction.relative_friction", "uncertainty.interval",
+        "envelope_time_constant",
+    )  # fmt: skip
 
     def finest_period(self) -> dict[str, float]:
         """The finest square grating (m) that keeps 90 % of its amplitude swing, by finger speed."""
@@ -99,32 +104,10 @@ class Analysis:
         """The numbers, with units in the keys: what ``--json`` prints."""
         p = self.prediction
         return {
-            "display": self.display.name,
-            "surface": p.surface.name,
-            "mode": p.mode.label,
-            "voltage_V": p.voltage,
-            "frequency_Hz": p.frequency,
-            "normal_force_N": p.normal_force,
-            "resonance_frequency_Hz": p.mode.resonance_frequency,
-            "resonance_frequency_error_Hz": p.mode.frequency_error,
-            "half_wavelength_m": p.mode.half_wavelength,
-            "amplitude_per_volt_m_per_V": p.mode.amplitude_per_volt,
-            "vibration_amplitude_m": p.vibration_amplitude,
-            "amplitude_model": p.amplitude_model,
-            "squeeze_number": p.squeeze_number,
-            "mean_pressure": p.mean_pressure,
-            "mean_pressure_error": p.mean_pressure_error,
-            "relative_friction": p.relative_friction,
+            **p.summary(),
             "relative_friction_interval": None
             if self.uncertainty is None
             else list(self.uncertainty.interval),
-            "amplitude_kept_under_finger": p.touch.kept,
-            "tangential_force_N": p.tangential_force,
-            "friction_coefficient": p.friction_coefficient,
-            "friction_reduction": p.friction_reduction,
-            "model": p.model,
-            "quality_factor": p.mode.quality_factor,
-            "envelope_time_constant_s": self.envelope_time_constant,
             "envelope_bandwidth_Hz": self.envelope_bandwidth,
             "finest_period_m": self.finest_period(),
             "compensation_speed_gain": None
@@ -150,9 +133,7 @@ class Analysis:
                 "plateau_balance": to_json(self.film_models.balance),
             },
             "other_models": to_json(self.other_models),
-            "validity": to_json(p.validity),
             "verdict": to_json(self.verdict),
-            "warnings": list(p.warnings),
             "provenance": stamp(self.display),
         }
 
@@ -190,7 +171,7 @@ def analyze(
         strict=strict,
     )
     mode = prediction.mode
-    tau = float(envelope_time_constant(mode.quality_factor, mode.resonance_frequency))
+    tau = prediction.envelope_time_constant
     tell("frequency response")
     response = frequency_response(prediction)
     tell("pressure under the finger")
@@ -291,7 +272,7 @@ def _textures(
     high = prediction.vibration_amplitude
     if prediction.relative_friction == 1:
         return None, None
-    friction = prediction.law.table(high)
+    friction = prediction.friction
     trace = friction_trace(
         Square(spatial_period=2e-3, low=0.0, high=high), Stroke(speed=0.1), tau, friction
     )

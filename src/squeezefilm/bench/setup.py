@@ -121,7 +121,7 @@ def play_setup(
             "plays no texture; give it a voltage"
         )
     limits = display.limits(p.frequency, p.voltage, twin=twin)
-    inverse = FrictionInverse.from_function(p.law.table(largest), largest)
+    inverse = p.inverse
     quantity = texture.texture.quantity
     program = lower(
         texture.texture,

@@ -6,7 +6,6 @@ curves, textures. Each law names its model.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal, cast, get_args
 
@@ -90,6 +89,29 @@ class FrictionLimits:
     def spread(self) -> DimensionlessArray:
         """Their difference (dimensionless), which belongs in the uncertainty of µ′/µ."""
         return np.abs(self.own - self.one_gap)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FrictionTable:
+    """A friction law as a table: called with amplitudes (m), it gives µ′/µ (1) in their shape.
+
+    Linear between `amplitude`, rising from 0 (m), and `relative_friction` there (1).
+    """
+
+    amplitude: MetreArray
+    relative_friction: DimensionlessArray
+
+    def __call__(self, amplitude: MetreArray) -> DimensionlessArray:
+        """µ′/µ at amplitudes (m). Raises `OutOfRangeError` outside of the table."""
+        values, highest = np.asarray(amplitude, dtype=float), float(self.amplitude[-1])
+        # A hair of slack: an exponential envelope may overshoot its target by rounding.
+        slack = 1e-9 * highest
+        if values.size and (values.min() < -slack or values.max() > highest + slack):
+            raise OutOfRangeError(
+                f"the friction law was tabulated for amplitudes from 0 to {highest:.4g} m and "
+                f"asked at {values.min():.4g} to {values.max():.4g} m; tabulate it higher"
+            )
+        return np.asarray(np.interp(values, self.amplitude, self.relative_friction))
 
 
 @checked_numbers
@@ -335,9 +357,7 @@ class FrictionLaw:
         )
 
     @checked_numbers
-    def table(
-        self, highest_amplitude: Metre, points: int | None = None
-    ) -> Callable[[MetreArray], DimensionlessArray]:
+    def table(self, highest_amplitude: Metre, points: int | None = None) -> FrictionTable:
         """The law as a fast function: a table, linear between its points, for many samples.
 
         Holds from 0 to `highest_amplitude`, raises `OutOfRangeError` outside. With the default
@@ -355,19 +375,7 @@ class FrictionLaw:
             at = int(np.searchsorted(grid, kink))
             grid, law = np.insert(grid, at, kink), np.insert(law, at, 0.0)
 
-        def friction(amplitude: MetreArray) -> DimensionlessArray:
-            values = np.asarray(amplitude, dtype=float)
-            # A hair of slack: an exponential envelope may overshoot its target by rounding.
-            slack = 1e-9 * highest_amplitude
-            if values.size and (values.min() < -slack or values.max() > highest_amplitude + slack):
-                raise OutOfRangeError(
-                    f"the friction law was tabulated for amplitudes from 0 to "
-                    f"{highest_amplitude:.4g} m and asked at {values.min():.4g} to "
-                    f"{values.max():.4g} m; tabulate it higher"
-                )
-            return np.asarray(np.interp(values, grid, law))
-
-        return friction
+        return FrictionTable(grid, law)
 
 
 @checked_numbers

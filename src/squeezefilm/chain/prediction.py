@@ -8,8 +8,10 @@ solved film the friction.
 from __future__ import annotations
 
 import dataclasses
+import functools
 import warnings
 from dataclasses import dataclass
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -17,6 +19,7 @@ from squeezefilm.chain.friction import (
     DEFAULT_MODEL,
     FrictionLaw,
     FrictionModel,
+    FrictionTable,
     friction_law,
     shares_load,
 )
@@ -41,15 +44,19 @@ from squeezefilm.quantities import (
     Metre,
     MetrePerVolt,
     Newton,
+    Second,
     Unit,
     Volt,
     checked_numbers,
     require,
 )
+from squeezefilm.render.program.inverse import FrictionInverse
+from squeezefilm.render.resonator.envelope import envelope_time_constant
+from squeezefilm.results import Result, to_json
 
 
-@dataclass(frozen=True, eq=False)
-class Prediction:
+@dataclass(frozen=True, eq=False, repr=False)
+class Prediction(Result):
     """What a display does at one voltage, frequency and force on one surface.
 
     `amplitude_model` made the vibration amplitude (zero-to-peak, at an antinode, with the finger
@@ -83,6 +90,59 @@ class Prediction:
     tangential_force: Newton
     validity: FilmValidity
     warnings: tuple[str, ...]
+    _shown: ClassVar[tuple[str, ...]] = (
+        "display", "model", "voltage", "frequency", "normal_force", "vibration_amplitude",
+        "relative_friction", "tangential_force",
+    )  # fmt: skip
+
+    @functools.cached_property
+    def friction(self) -> FrictionTable:
+        """µ′/µ against the amplitude, up to this one, as a fast table: see `FrictionLaw.table`."""
+        return self.law.table(self.vibration_amplitude)
+
+    @functools.cached_property
+    def inverse(self) -> FrictionInverse:
+        """The amplitude for a wanted µ′/µ, up to this amplitude: what a renderer needs.
+
+        Raises `InputError` where nothing vibrates or the friction does not fall.
+        """
+        return FrictionInverse.from_function(self.friction, self.vibration_amplitude)
+
+    @property
+    def envelope_time_constant(self) -> Second:
+        """Of the resonator's envelope without a finger (s)."""
+        mode = self.mode
+        return float(envelope_time_constant(mode.quality_factor, mode.resonance_frequency))
+
+    def summary(self) -> dict[str, Any]:
+        """The numbers, with units in their keys."""
+        return {
+            "display": self.display,
+            "surface": self.surface.name,
+            "mode": self.mode.label,
+            "voltage_V": self.voltage,
+            "frequency_Hz": self.frequency,
+            "normal_force_N": self.normal_force,
+            "resonance_frequency_Hz": self.mode.resonance_frequency,
+            "resonance_frequency_error_Hz": self.mode.frequency_error,
+            "half_wavelength_m": self.mode.half_wavelength,
+            "amplitude_per_volt_m_per_V": self.mode.amplitude_per_volt,
+            "vibration_amplitude_m": self.vibration_amplitude,
+            "amplitude_model": self.amplitude_model,
+            "squeeze_number": self.squeeze_number,
+            "mean_pressure": self.mean_pressure,
+            "mean_pressure_error": self.mean_pressure_error,
+            "relative_friction": self.relative_friction,
+            "amplitude_kept_under_finger": self.touch.kept,
+            "tangential_force_N": self.tangential_force,
+            "friction_coefficient": self.friction_coefficient,
+            "friction_reduction": self.friction_reduction,
+            "model": self.model,
+            "quality_factor": self.mode.quality_factor,
+            "envelope_time_constant_s": self.envelope_time_constant,
+            "validity": to_json(self.validity),
+            "warnings": list(self.warnings),
+        }
 
 
 @checked_numbers

@@ -180,7 +180,7 @@ class RenderAnalysis:
         }
 
 
-def analyze_render(
+def render_texture(
     display: Display,
     texture: TextureFile,
     motion: Motion,
@@ -235,8 +235,7 @@ def analyze_render(
             f"display '{display.name}' changes no friction at {p.voltage or 0.0:g} V, so it "
             "renders no texture; give it a voltage"
         )
-    friction = p.law.table(largest)
-    inverse = FrictionInverse.from_function(friction, largest)
+    friction, inverse = p.friction, p.inverse
     factors = None if what == "ignored" else wave_factors(display, p)
     centred, felt = 1.0, friction
     if factors is not None:

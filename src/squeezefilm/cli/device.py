@@ -74,9 +74,9 @@ def play(
     from squeezefilm.bench.play import play_texture
     from squeezefilm.quantities import Unit
     from squeezefilm.report.played.terminal import live_view, show_play
-    from squeezefilm.texture_file import preset_texture
+    from squeezefilm.texture_file import load_texture
 
-    what = preset_texture(texture)
+    what = load_texture(texture)
     hertz, second = Unit("Hz"), Unit("s")
 
     def step(text: str) -> None:

@@ -65,19 +65,19 @@ def render(
     seed: Annotated[int, typer.Option(help="Of the sensor's noise.")] = 0,
 ) -> None:
     """A texture on a display under a moving finger: what is asked for and what is rendered."""
-    from squeezefilm.chain.rendered_texture import analyze_render
+    from squeezefilm.chain.rendered_texture import render_texture
     from squeezefilm.display import load_display
     from squeezefilm.formats.trajectories import motion_from
     from squeezefilm.quantities import Unit
     from squeezefilm.report.kit import terminal
     from squeezefilm.report.textures.terminal import show_lost, show_render
-    from squeezefilm.texture_file import preset_texture
+    from squeezefilm.texture_file import load_texture
 
     if out is None and (drive or hjif or table != "csv"):
         raise InputError("--drive, --hjif and --table write files; say where with --out DIR")
-    what, motion, where = preset_texture(texture), motion_from(stroke), load_display(display)
+    what, motion, where = load_texture(texture), motion_from(stroke), load_display(display)
     with terminal.progress(enabled=sys.stderr.isatty() or not as_json) as step:
-        result = analyze_render(
+        result = render_texture(
             where,
             what,
             motion,
@@ -114,11 +114,11 @@ def textures(as_json: AsJson = False) -> None:
     """List the textures that come with the package, for `render`."""
     from squeezefilm.presets import texture_names
     from squeezefilm.report.textures.terminal import show_textures
-    from squeezefilm.texture_file import preset_texture
+    from squeezefilm.texture_file import load_texture
 
     listing = []
     for name in texture_names():
-        one = preset_texture(name)
+        one = load_texture(name)
         listing.append({"name": name, "title": one.title, "quantity": one.texture.quantity})
     if as_json:
         print_json(listing)

@@ -123,7 +123,7 @@ def play(connection: Connection, work: DeviceWork) -> None:
     """Play, and tell of it."""
     from squeezefilm.bench.play import JUDGING, play_texture
     from squeezefilm.session.loop.rows import COLUMNS
-    from squeezefilm.texture_file import preset_texture
+    from squeezefilm.texture_file import load_texture
 
     tell = _telling(connection)
     last = -math.inf
@@ -166,7 +166,7 @@ def play(connection: Connection, work: DeviceWork) -> None:
     try:
         result = play_texture(
             work.display,
-            preset_texture(work.texture),
+            load_texture(work.texture),
             drive=work.drive,
             sensor=work.sensor,
             mode=work.mode,

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from squeezefilm.chain.rendered_texture import RenderAnalysis, analyze_render
+from squeezefilm.chain.rendered_texture import RenderAnalysis, render_texture
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError
 from squeezefilm.perception.observer import FingerClass, Observer
@@ -86,10 +86,10 @@ def percept(
     """What a finger gets of a virtual grating on a display, and how it was rendered.
 
     The lateral stretch of the skin over the way, from 2 mm after each turn on. The sensor's noise
-    has a fixed seed. Raises as `analyze_render` does.
+    has a fixed seed. Raises as `render_texture` does.
     """
     run = apparatus or Apparatus()
-    played = analyze_render(
+    played = render_texture(
         _with_finger(display, finger),
         TextureFile(stimulus.surface(), stimulus.name),
         exploration(observer, finger),

@@ -98,9 +98,9 @@ class Stimulus:
         Raises `ConfigError` if `texture` names a file that cannot be read.
         """
         if self.texture:
-            from squeezefilm.texture_file import preset_texture
+            from squeezefilm.texture_file import load_texture
 
-            return preset_texture(self.texture).texture
+            return load_texture(self.texture).texture
         if self.waveform == "constant":
             return RelativeFriction.constant(self.high)
         along = AlongDirection(self.orientation)

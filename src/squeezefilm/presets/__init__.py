@@ -15,7 +15,7 @@ _FOLDER = Path(__file__).parent
 _NOT_DISPLAYS = {"claims"}
 
 
-def names() -> tuple[str, ...]:
+def display_names() -> tuple[str, ...]:
     """The names of all preset displays, sorted."""
     return tuple(
         sorted(path.stem for path in _FOLDER.glob("*.toml") if path.stem not in _NOT_DISPLAYS)
@@ -24,10 +24,10 @@ def names() -> tuple[str, ...]:
 
 def path(name: str) -> Path:
     """The TOML file of a preset display. Raises `ConfigError` for a name that is not known."""
-    if name not in names():
+    if name not in display_names():
         raise ConfigError(
-            f"there is no preset '{name}'.{did_you_mean(name, names())} "
-            f"Presets: {', '.join(names())}"
+            f"there is no preset '{name}'.{did_you_mean(name, display_names())} "
+            f"Presets: {', '.join(display_names())}"
         )
     return _FOLDER / f"{name}.toml"
 
@@ -72,7 +72,7 @@ def resolve(name_or_path: str | Path) -> Path:
 
     A text without a separator and without ``.toml`` is a preset's name unless such a file exists.
     """
-    return _resolved(name_or_path, "preset", names(), _FOLDER)
+    return _resolved(name_or_path, "preset", display_names(), _FOLDER)
 
 
 def _resolved(name_or_path: str | Path, kind: str, known: tuple[str, ...], folder: Path) -> Path:

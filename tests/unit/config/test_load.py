@@ -26,7 +26,7 @@ def test_presets_load_with_the_paper_s_values_and_sources() -> None:
     assert stator.actuator.wavelengths_around == pytest.approx(9, abs=0.001)
 
 
-@pytest.mark.parametrize("name", presets.names())
+@pytest.mark.parametrize("name", presets.display_names())
 def test_every_number_of_a_preset_has_a_source(name: str) -> None:
     display = load_display(name)
     text = presets.path(name).read_text(encoding="utf-8")

@@ -19,7 +19,7 @@ ENTRIES = {
 }
 
 
-@pytest.mark.parametrize("name", presets.names())
+@pytest.mark.parametrize("name", presets.display_names())
 def test_every_field_of_a_display_is_explained(name: str) -> None:
     rows = [row for row in form(preset_text(name)) if row["name"] != "type"]
     assert {row["path"] for row in rows if row["name"] not in ENTRIES} == set()

@@ -70,7 +70,7 @@ def add_design(lab: Lab) -> None:
 
     async def listing(_: Request) -> Answer:
         saved = sorted(path.stem for path in lab.folder.glob("*.toml"))
-        return {"type": "displays", "presets": list(presets.names()), "saved": saved}
+        return {"type": "displays", "presets": list(presets.display_names()), "saved": saved}
 
     async def open_display(asked: OpenDisplay) -> Answer:
         given = [one for one in (asked.preset, asked.file, asked.text) if one is not None]

@@ -18,7 +18,7 @@ from squeezefilm.lab.files import existing, fresh
 from squeezefilm.lab.wire import LONGEST_TEXT, Answer, Request
 from squeezefilm.quantities import Unit, parse_quantity
 from squeezefilm.results import write_whole
-from squeezefilm.texture_file import preset_texture
+from squeezefilm.texture_file import load_texture, texture_from_text
 
 if TYPE_CHECKING:
     from squeezefilm.lab.server import Lab
@@ -77,7 +77,7 @@ def add_feel(lab: Lab) -> None:
 
     async def listing(_: Request) -> Answer:
         kept = [
-            {"name": name, "title": preset_texture(name).title} for name in presets.texture_names()
+            {"name": name, "title": load_texture(name).title} for name in presets.texture_names()
         ]
         saved = sorted(path.stem for path in folder.glob("*.toml"))
         return {"type": "textures", "presets": kept, "saved": saved}

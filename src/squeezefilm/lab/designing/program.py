@@ -23,11 +23,10 @@ from squeezefilm.lab.designing.form import display_of
 from squeezefilm.lab.designing.numbers import predicted
 from squeezefilm.plate.layout import Actuator, DiscPlate, RectangularPlate
 from squeezefilm.quantities import FloatArray, Metre
-from squeezefilm.render.program.inverse import FrictionInverse
 from squeezefilm.render.program.lowering import Program
 from squeezefilm.render.program.renderer import render
 from squeezefilm.results import stamp
-from squeezefilm.texture_file import TextureFile, preset_texture, texture_from_text
+from squeezefilm.texture_file import TextureFile, load_texture, texture_from_text
 
 _KNOTS = 257
 _SKIN = ("mass", "stiffness", "damping")
@@ -50,7 +49,7 @@ def _ready(
     if (texture_text is None) == (preset is None):
         raise InputError("say which texture: a preset or a text, one of them")
     if preset is not None:
-        texture = preset_texture(preset)
+        texture = load_texture(preset)
     else:
         texture = texture_from_text(str(texture_text), file=folder / "texture.toml")
     display = display_of(display_text)
@@ -60,9 +59,7 @@ def _ready(
             f"display '{display.name}' changes no friction at {p.voltage or 0.0:g} V, so it "
             "renders no texture; give it a voltage in the Design area"
         )
-    friction = p.law.table(p.vibration_amplitude)
-    inverse = FrictionInverse.from_function(friction, p.vibration_amplitude)
-    return _Ready(display, texture, p, friction, lowered(texture, p, inverse))
+    return _Ready(display, texture, p, p.friction, lowered(texture, p, p.inverse))
 
 
 def title_of(text: str, file: Path) -> str:

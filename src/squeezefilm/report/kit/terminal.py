@@ -227,7 +227,7 @@ def preset_list() -> list[dict[str, Any]]:
     from squeezefilm.display import load_display
 
     listing = []
-    for name in presets.names():
+    for name in presets.display_names():
         display = load_display(name)
         evidence = [item.evidence for item in display.provenance.values()]
         listing.append(

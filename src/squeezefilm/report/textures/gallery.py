@@ -18,7 +18,7 @@ from squeezefilm import presets
 from squeezefilm.chain.played_texture import single_period
 from squeezefilm.errors import InputError
 from squeezefilm.report.kit.style import BLUE, INK, MUTED, PAPER, drawn, new_figure, png
-from squeezefilm.texture_file import TextureFile, preset_texture
+from squeezefilm.texture_file import TextureFile, load_texture
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -75,7 +75,7 @@ def gallery_files() -> dict[str, bytes]:
         "[Describe](describe.md) how to write your own. Page and pictures: `make gallery`.\n",
     ]
     for name in presets.texture_names():
-        texture = preset_texture(name)
+        texture = load_texture(name)
         files[f"gallery/{name}.png"] = png(picture(texture), dots_per_inch=80)
         text = presets.resolve_texture(name).read_text(encoding="utf-8").strip()
         body = re.sub(r'\Atitle = ".*"\n+', "", text)

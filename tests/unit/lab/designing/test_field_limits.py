@@ -54,7 +54,7 @@ SHORT = "biet2008-stator"
     "name",
     [
         pytest.param(one, marks=() if one == SHORT else pytest.mark.nightly)
-        for one in presets.names()
+        for one in presets.display_names()
     ],
 )
 def test_what_is_said_is_what_the_file_takes(name: str) -> None:
