@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Annotated, ClassVar
 
 from squeezefilm.config.provenance import Provenance
 from squeezefilm.contact.finger.fingertip import Finger
 from squeezefilm.device.wire.safety import HIGHEST_VOLTAGE, TOUCH_VOLTAGE, Limits
 from squeezefilm.errors import InputError
+from squeezefilm.from_text import ReadBy
 from squeezefilm.hard_limits import ROUGHNESS, require_fields
 from squeezefilm.materials import Gas
 from squeezefilm.plate.layout import Actuator
@@ -25,6 +27,7 @@ from squeezefilm.quantities import (
     did_you_mean,
     require,
 )
+from squeezefilm.results import Result, write_whole
 
 
 @dataclass(frozen=True)
@@ -132,8 +135,8 @@ class Drive:
         return tuple(name for name, value in given.items() if value is None)
 
 
-@dataclass(frozen=True)
-class Display:
+@dataclass(frozen=True, repr=False)
+class Display(Result):
     """A friction-modulation display, complete enough to be analysed.
 
     Read one with `load_display`. The first of `surfaces` is the default. `provenance` says where
@@ -150,6 +153,9 @@ class Display:
     provenance: Mapping[str, Provenance] = field(
         default_factory=dict, metadata={"loader": True}, compare=False, repr=False
     )
+    _shown: ClassVar[tuple[str, ...]] = (
+        "name", "title", "actuator.type", "drive.voltage", "finger.normal_force",
+    )  # fmt: skip
 
     def __post_init__(self) -> None:
         if not self.surfaces:
@@ -217,6 +223,10 @@ def load_display(name_or_path: str | Path) -> Display:
     return config.load(Display, presets.resolve(name_or_path))
 
 
+NamedDisplay = Annotated[Display, ReadBy(load_display)]
+"""A display, or in its place the name of a preset or the path of a file (see `reads_text`)."""
+
+
 def new_display_file(file: Path, preset: str, *, replace: bool = False) -> None:
     """Write a commented TOML file that starts from a preset, named for the file.
 
@@ -226,7 +236,6 @@ def new_display_file(file: Path, preset: str, *, replace: bool = False) -> None:
     import re
 
     from squeezefilm import presets
-    from squeezefilm.results import write_whole
 
     text = presets.path(preset).read_text(encoding="utf-8")
     if file.is_dir():

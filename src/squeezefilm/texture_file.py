@@ -19,14 +19,17 @@ a misspelt key or type is refused with file, line and key. A picture in a file o
 
 from __future__ import annotations
 
+import typing
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Annotated
 
 # Read for their classes: what a file may name is what is below Composable, Pattern, Coordinate.
 from squeezefilm.config.load import load, load_text
 from squeezefilm.config.write import text_of
 from squeezefilm.errors import ConfigError, InputError
 from squeezefilm.formats import image_file
+from squeezefilm.from_text import ReadBy
 from squeezefilm.render.texture import gates as pattern_gates
 from squeezefilm.render.texture import gratings as texture
 from squeezefilm.render.texture import image as pattern_image
@@ -48,6 +51,11 @@ class TextureFile:
     def __post_init__(self) -> None:
         require_texture("texture", self.texture)
 
+    @classmethod
+    def of(cls, texture: TextureFile | Composable) -> TextureFile:
+        """The texture with what it is called, which is nothing yet for a bare one."""
+        return texture if isinstance(texture, cls) else cls(typing.cast(Composable, texture))
+
 
 def load_texture(name_or_path: str | Path) -> TextureFile:
     """The texture of a preset's name or of a TOML file, its pictures read.
@@ -58,6 +66,10 @@ def load_texture(name_or_path: str | Path) -> TextureFile:
 
     path = presets.resolve_texture(name_or_path)
     return _with_images(load(TextureFile, path), path)
+
+
+NamedTexture = Annotated[TextureFile | Composable, ReadBy(load_texture)]
+"""A texture, or in its place the name of a preset or the path of a file (see `reads_text`)."""
 
 
 def _with_images(found: TextureFile, path: Path | None) -> TextureFile:
@@ -83,8 +95,7 @@ def texture_text(texture: TextureFile | Composable) -> str:
 
     Raises `InputError` for a texture whose text is longer than a file may be.
     """
-    given = TextureFile(texture) if isinstance(texture, Composable) else texture
-    return text_of(given)
+    return text_of(TextureFile.of(texture))
 
 
 def save_texture(texture: TextureFile | Composable, path: str | Path) -> None:

@@ -32,8 +32,9 @@ from squeezefilm.analysis.uncertainty import UncertainFriction, uncertain_fricti
 from squeezefilm.analysis.verdict import Finding, verdict
 from squeezefilm.chain.friction import FrictionModel
 from squeezefilm.chain.prediction import Prediction, predict
-from squeezefilm.display import Display
+from squeezefilm.display import Display, NamedDisplay
 from squeezefilm.errors import InputError, OutOfRangeError
+from squeezefilm.from_text import reads_text
 from squeezefilm.plate.beam.modes import BeamTheory
 from squeezefilm.plate.beam.response import beam_response
 from squeezefilm.plate.laminate import CrossSection
@@ -138,8 +139,9 @@ class Analysis(Result):
         }
 
 
+@reads_text
 def analyze(
-    display: Display,
+    display: NamedDisplay,
     *,
     voltage: Volt | None = None,
     frequency: Hertz | None = None,

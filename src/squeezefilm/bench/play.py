@@ -11,7 +11,7 @@ import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -28,20 +28,21 @@ from squeezefilm.device.wire.streams import open_stream
 from squeezefilm.display import load_display
 from squeezefilm.errors import InputError
 from squeezefilm.formats.trajectories import motion_from, read_trajectory
+from squeezefilm.from_text import reads_text
 from squeezefilm.quantities import FloatArray, Hertz, MetrePerVolt, Second, Unit, Volt, require
 from squeezefilm.render.motion.estimator import MotionEstimator
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ, SensorModel
 from squeezefilm.render.program.lowering import lower
 from squeezefilm.render.resonator.compensation import DrivenEnvelope
 from squeezefilm.render.texture.gratings import Square
-from squeezefilm.results import stamp
+from squeezefilm.results import Result, stamp
 from squeezefilm.session.loop.lateness import Lateness
 from squeezefilm.session.loop.plan import DriveTable, LoopPlan
 from squeezefilm.session.loop.process import LoopProcess
 from squeezefilm.session.play.player import PlayView
 from squeezefilm.session.play.real_time import PlayOutcome, run_play
 from squeezefilm.session.record.reading import read_trace
-from squeezefilm.texture_file import TextureFile
+from squeezefilm.texture_file import NamedTexture, TextureFile
 from squeezefilm.twin.pty_server import running_twin
 from squeezefilm.twin.settings import PickupModel, TwinSettings
 
@@ -59,13 +60,20 @@ _REPLAY_PERIOD: Second = 1e-3
 Progress = Callable[[str], None]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class PlayResult:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class PlayResult(Result):
     """A session: how it ended, its record judged, and the folder that keeps it (None: none)."""
 
     outcome: PlayOutcome
     session: PlayedSession
     folder: Path | None
+    _shown: ClassVar[tuple[str, ...]] = (
+        "session.setup.display.name",
+        "session.setup.name",
+        "outcome.ending.value",
+        "outcome.message",
+        "folder",
+    )
 
     def summary(self) -> dict[str, Any]:
         """What ``--json`` prints and summary.json holds."""
@@ -77,11 +85,12 @@ class PlayResult:
         }
 
 
+@reads_text
 def play_texture(
     target: str | Path,
-    texture: TextureFile,
+    texture: NamedTexture,
     *,
-    drive: str,
+    drive: str = "twin",
     sensor: str = "device",
     mode: str = "stream",
     stroke: str = STROKE,
@@ -92,7 +101,7 @@ def play_texture(
     compensation: str = "none",
     amplitude_per_pickup: MetrePerVolt | None = None,
     bench_only: bool = False,
-    out: Path | None = None,
+    out: str | Path | None = None,
     seed: int = 0,
     show: Callable[[PlayView], None] | None = None,
     tap: Callable[[FloatArray], None] | None = None,
@@ -126,6 +135,7 @@ def play_texture(
         DeviceError, LoopError, RecordError: what failed before anything was played.
     """
     tell = progress or (lambda _: None)
+    texture = TextureFile.of(texture)
     require("duration", duration, Unit("s"), above=0.0, at_most=86_400.0)
     display = load_display(target)
     eyes = _eyes(sensor)
@@ -153,7 +163,8 @@ def play_texture(
         "mode": mode,
         "assumed_limits": list(setup.assumed_limits),
     }
-    with _folder(out) as folder:
+    kept = None if out is None else Path(out)
+    with _folder(kept) as folder:
         truth = folder / TRUTH_NAME if drive == "twin" else None
         if drive == "twin":
             tell("the twin, a process of its own")
@@ -165,7 +176,7 @@ def play_texture(
             )  # fmt: skip
         tell(JUDGING)
         judged = judge_session(setup, read_trace(outcome.trace), truth)
-    return PlayResult(outcome, judged, out)
+    return PlayResult(outcome, judged, kept)
 
 
 def check_drive(

@@ -11,7 +11,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -34,7 +34,7 @@ from squeezefilm.quantities import (
 from squeezefilm.render.fidelity.rendered_stroke import RenderedStroke
 from squeezefilm.render.fidelity.report import FidelityReport, fidelity_report
 from squeezefilm.render.program.renderer import render
-from squeezefilm.results import to_json
+from squeezefilm.results import Result, to_json
 from squeezefilm.session.loop import rows as column
 from squeezefilm.session.record.reading import Trace
 
@@ -79,8 +79,8 @@ class LagSummary:
     p99: Metre
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class PlayedSession:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class PlayedSession(Result):
     """A session's record, judged.
 
     Attributes:
@@ -104,6 +104,11 @@ class PlayedSession:
     lag: LagSummary | None
     flags: Mapping[str, int]
     device_events: tuple[Mapping[str, Any], ...]
+    _shown: ClassVar[tuple[str, ...]] = (
+        "setup.display.name",
+        "setup.name",
+        "position_error",
+    )
 
     def end(self) -> Mapping[str, Any]:
         """The fields of the session's last event; empty where it had no end."""

@@ -25,7 +25,7 @@ from squeezefilm.chain.friction import (
 )
 from squeezefilm.chain.touch import Touch, kept_at, touch
 from squeezefilm.device.wire.safety import HIGHEST_VOLTAGE
-from squeezefilm.display import Display, Surface
+from squeezefilm.display import NamedDisplay, Surface
 from squeezefilm.errors import (
     InputError,
     OutOfRangeError,
@@ -35,6 +35,7 @@ from squeezefilm.errors import (
 )
 from squeezefilm.film.gap import squeeze_number
 from squeezefilm.film.validity import FilmValidity, film_validity
+from squeezefilm.from_text import reads_text
 from squeezefilm.plate.beam.response import beam_doubt
 from squeezefilm.plate.layout import Actuator, RectangularPlate
 from squeezefilm.plate.working_mode import PlateTheory, WorkingMode, working_mode
@@ -145,9 +146,10 @@ class Prediction(Result):
         }
 
 
+@reads_text
 @checked_numbers
 def predict(
-    display: Display,
+    display: NamedDisplay,
     *,
     voltage: Volt | None = None,
     frequency: Hertz | None = None,
@@ -287,9 +289,10 @@ def _limits(law: FrictionLaw, amplitude: Metre) -> tuple[Dimensionless, Dimensio
     return float(found.own[0]), float(found.one_gap[0])
 
 
+@reads_text
 @checked_numbers
 def voltage_for_friction(
-    display: Display,
+    display: NamedDisplay,
     relative_friction: Dimensionless,
     *,
     frequency: Hertz | None = None,

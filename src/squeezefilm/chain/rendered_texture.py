@@ -10,7 +10,7 @@ import dataclasses
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Literal, get_args
+from typing import Any, ClassVar, Literal, get_args
 
 import numpy as np
 
@@ -26,9 +26,10 @@ from squeezefilm.chain.prediction import Prediction, predict
 from squeezefilm.contact.sharing.gas_table import film_table
 from squeezefilm.contact.sharing.pad import friction_ripple
 from squeezefilm.contact.sliding.march import Sliding, slide
-from squeezefilm.display import Display
+from squeezefilm.display import Display, NamedDisplay
 from squeezefilm.errors import InputError
-from squeezefilm.formats.trajectories import Motion
+from squeezefilm.formats.trajectories import Motion, NamedMotion
+from squeezefilm.from_text import reads_text
 from squeezefilm.plate.layout import DiscPlate, RectangularPlate
 from squeezefilm.quantities import (
     Dimensionless,
@@ -52,8 +53,8 @@ from squeezefilm.render.program.wave import WaveCompensation
 from squeezefilm.render.resonator.compensation import COMPENSATIONS, Compensation, DrivenEnvelope
 from squeezefilm.render.resonator.envelope import envelope_time_constant
 from squeezefilm.render.texture.coordinate import AlongX, AlongY
-from squeezefilm.results import stamp, to_json
-from squeezefilm.texture_file import TextureFile
+from squeezefilm.results import Result, stamp, to_json
+from squeezefilm.texture_file import NamedTexture, TextureFile
 
 Progress = Callable[[str], None]
 
@@ -70,8 +71,8 @@ CONTROL_RATE: Hertz = 19.2e3
 """Of the loop (Hz): commands to which a converter of 192 kHz gives ten samples each."""
 
 
-@dataclass(frozen=True, eq=False)
-class RenderAnalysis:
+@dataclass(frozen=True, eq=False, repr=False)
+class RenderAnalysis(Result):
     """A texture rendered on a display under a finger; arrays of shape (steps,).
 
     Attributes:
@@ -103,6 +104,14 @@ class RenderAnalysis:
     fidelity: FidelityReport | None
     unjudged: str | None
     seed: int
+    _shown: ClassVar[tuple[str, ...]] = (
+        "display.name",
+        "texture.title",
+        "stroke.compensation",
+        "rms_error",
+        "time_constant",
+        "unjudged",
+    )
 
     @property
     def rms_error(self) -> Dimensionless:
@@ -180,10 +189,11 @@ class RenderAnalysis:
         }
 
 
+@reads_text
 def render_texture(
-    display: Display,
-    texture: TextureFile,
-    motion: Motion,
+    display: NamedDisplay,
+    texture: NamedTexture,
+    motion: NamedMotion,
     *,
     voltage: Volt | None = None,
     normal_force: Newton | None = None,
@@ -219,6 +229,7 @@ def render_texture(
             display that does not vibrate at its voltage, or what the links of the chain refuse.
     """
     tell = progress or (lambda _: None)
+    texture = TextureFile.of(texture)
     way: Compensation = _one_of("compensation", compensation, COMPENSATIONS)
     what: Wave = _one_of("wave", wave, WAVES)
     eyes = sensor if sensor is None or isinstance(sensor, SensorModel) else sensor_named(sensor)

@@ -15,11 +15,13 @@ from __future__ import annotations
 import math
 import re
 from pathlib import Path
+from typing import Annotated
 
 import numpy as np
 
 from squeezefilm.errors import ConfigError, InputError
 from squeezefilm.formats.traces import Table, table_from_csv, text_of_file
+from squeezefilm.from_text import ReadBy
 from squeezefilm.hard_limits import FINGER_SPEED
 from squeezefilm.quantities import (
     Metre,
@@ -51,6 +53,10 @@ def motion_from(text_or_path: str | Path) -> Motion:
     if isinstance(text_or_path, Path) or text.lower().endswith(".csv"):
         return read_trajectory(text)
     return stroke_from_text(text)
+
+
+NamedMotion = Annotated[Motion, ReadBy(motion_from)]
+"""A motion, or in its place words for it or the path of a CSV file (see `reads_text`)."""
 
 
 def read_trajectory(path: str | Path) -> FingerPath:

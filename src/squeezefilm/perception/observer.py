@@ -9,12 +9,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Annotated
 
 import numpy as np
 
 from squeezefilm.config.provenance import Provenance
 from squeezefilm.contact.finger.fingertip import Moisture
 from squeezefilm.errors import InputError
+from squeezefilm.from_text import ReadBy
 from squeezefilm.quantities import (
     Dimensionless,
     DimensionlessLike,
@@ -217,3 +219,7 @@ def load_observer(name_or_path: str | Path = "fingertip") -> Observer:
     from squeezefilm import config, presets
 
     return config.load(Observer, presets.resolve_observer(name_or_path))
+
+
+NamedObserver = Annotated[Observer, ReadBy(load_observer)]
+"""An observer, or in its place the name of a preset or the path of a file (see `reads_text`)."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -15,8 +15,9 @@ from squeezefilm.chain.friction import DEFAULT_MODEL, FrictionModel
 from squeezefilm.chain.prediction import Prediction, predict, voltage_for_friction
 from squeezefilm.contact.sharing.gas_table import film_table
 from squeezefilm.contact.sharing.pad import FrictionRipple, friction_ripple
-from squeezefilm.display import Display
+from squeezefilm.display import Display, NamedDisplay
 from squeezefilm.errors import OutOfRangeError
+from squeezefilm.from_text import reads_text
 from squeezefilm.quantities import (
     Dimensionless,
     DimensionlessArray,
@@ -29,7 +30,7 @@ from squeezefilm.quantities import (
     Pascal,
     Volt,
 )
-from squeezefilm.results import stamp, to_json
+from squeezefilm.results import Result, stamp, to_json
 
 Progress = Callable[[str], None]
 
@@ -68,8 +69,8 @@ class Tapping:
     relative_friction: Dimensionless
 
 
-@dataclass(frozen=True, eq=False)
-class FrictionAnalysis:
+@dataclass(frozen=True, eq=False, repr=False)
+class FrictionAnalysis(Result):
     """The friction at a working point: models side by side, uncertainty, map and ripple.
 
     `ripple` is what the pad feels of the standing wave itself as it moves along it.
@@ -83,6 +84,15 @@ class FrictionAnalysis:
     ripple: FrictionRipple | None
     wanted: Wanted | None
     tapping: Tapping
+    _shown: ClassVar[tuple[str, ...]] = (
+        "display.name",
+        "prediction.model",
+        "prediction.voltage",
+        "prediction.vibration_amplitude",
+        "prediction.relative_friction",
+        "uncertainty.interval",
+        "wanted.voltage",
+    )
 
     def summary(self) -> dict[str, Any]:
         """What ``--json`` prints; keys carry units."""
@@ -138,8 +148,9 @@ class FrictionAnalysis:
         }
 
 
+@reads_text
 def analyze_friction(
-    display: Display,
+    display: NamedDisplay,
     *,
     voltage: Volt | None = None,
     frequency: Hertz | None = None,

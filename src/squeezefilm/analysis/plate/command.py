@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -32,7 +32,7 @@ from squeezefilm.quantities import (
     Unit,
     format_quantity,
 )
-from squeezefilm.results import stamp, to_json
+from squeezefilm.results import Result, stamp, to_json
 
 Progress = Callable[[str], None]
 
@@ -53,8 +53,8 @@ class ModeRow:
     half_wavelength: Metre | None
 
 
-@dataclass(frozen=True, eq=False)
-class PlateAnalysis:
+@dataclass(frozen=True, eq=False, repr=False)
+class PlateAnalysis(Result):
     """The solved plate: table of modes, the working mode, its response and equivalent circuit."""
 
     display: Display
@@ -74,6 +74,14 @@ class PlateAnalysis:
     sound: SoundField
     sensitivities: SensitivityTable | None = None
     tracks: ModeTracks | None = None
+    _shown: ClassVar[tuple[str, ...]] = (
+        "display.name",
+        "working.label",
+        "working.frequency",
+        "working.quality_factor",
+        "amplitude_per_volt",
+        "modes.model",
+    )
 
     def summary(self) -> dict[str, Any]:
         """What ``--json`` prints; keys carry units."""
@@ -120,6 +128,9 @@ class PlateAnalysis:
             "status": self.modes.status,
             "provenance": stamp(self.display),
         }
+
+    def _table(self) -> Any:
+        return to_json(self.rows)
 
 
 def parse_mode(text: str) -> tuple[int, int]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -38,14 +38,14 @@ from squeezefilm.quantities import (
     Unit,
     format_quantity,
 )
-from squeezefilm.results import stamp, to_json
+from squeezefilm.results import Result, stamp, to_json
 
 Progress = Callable[[str], None]
 _MOST_HARMONICS = 60
 
 
-@dataclass(frozen=True, eq=False)
-class RingAnalysis:
+@dataclass(frozen=True, eq=False, repr=False)
+class RingAnalysis(Result):
     """A solved disc or stator: table of modes, the working mode, its response and circuit.
 
     Modes are B(nodal circles, nodal diameters), or R and T in the plane.
@@ -65,6 +65,14 @@ class RingAnalysis:
     circuit: EquivalentCircuit | None
     sound: SoundField
     described_amplitude_per_volt: MetrePerVolt | None
+    _shown: ClassVar[tuple[str, ...]] = (
+        "display.name",
+        "working.label",
+        "working.frequency",
+        "working.quality_factor",
+        "amplitude_per_volt",
+        "model",
+    )
 
     @property
     def amplitude_per_volt(self) -> MetrePerVolt:
@@ -146,6 +154,9 @@ class RingAnalysis:
             "thickness_with_stiff_and_soft_teeth_m": list(fit.thickness_bounds),
             "assumed": to_json(fit.assumptions),
         }
+
+    def _table(self) -> Any:
+        return to_json(self.rows)
 
 
 def analyze_ring(

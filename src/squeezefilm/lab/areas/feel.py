@@ -18,7 +18,7 @@ from squeezefilm.lab.files import existing, fresh
 from squeezefilm.lab.wire import LONGEST_TEXT, Answer, Request
 from squeezefilm.quantities import Unit, parse_quantity
 from squeezefilm.results import write_whole
-from squeezefilm.texture_file import load_texture, texture_from_text
+from squeezefilm.texture_file import load_texture
 
 if TYPE_CHECKING:
     from squeezefilm.lab.server import Lab

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import functools
 import math
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import ClassVar
 
 import numpy as np
 
 from squeezefilm.errors import InputError, OutOfRangeError
 from squeezefilm.materials import VACUUM_PERMITTIVITY
 from squeezefilm.plate.beam.modes import BeamMode, BeamTheory, free_beam_mode
+from squeezefilm.plate.elements.again import SolvedAgain
 from squeezefilm.plate.laminate import (
     CrossSection,
     Laminate,
@@ -51,7 +55,7 @@ def resonant_amplitude_per_volt(
 
 
 @dataclass(frozen=True, eq=False)
-class BeamResponse:
+class BeamResponse(SolvedAgain):
     """A plate driven as a beam: its modes and how strongly the ceramics drive each.
 
     `mode` is the working mode, `modes` all that enter the superposition, `modal_force_per_width`
@@ -66,6 +70,8 @@ class BeamResponse:
     mode: BeamMode
     modes: tuple[BeamMode, ...]
     modal_force_per_width: tuple[float, ...]
+    _again: Callable[[], BeamResponse] | None = field(repr=False, default=None)
+    _bulk: ClassVar[tuple[str, ...]] = ("mode", "modes")
 
     @property
     def model(self) -> str:
@@ -157,7 +163,10 @@ def beam_response(
                 for patch in plate.patches
             )
         )
-    return BeamResponse(plate, section, theory, cross_section, working, tuple(modes), tuple(forces))
+    return BeamResponse(
+        plate, section, theory, cross_section, working, tuple(modes), tuple(forces),
+        functools.partial(beam_response, plate, theory, cross_section),
+    )  # fmt: skip
 
 
 LEAST_COVERAGE: Dimensionless = 0.8

@@ -11,9 +11,9 @@ import numpy as np
 
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import FREQUENCY, require_within
+from squeezefilm.plate.elements.again import SolvedAgain
 from squeezefilm.plate.elements.slabs import Slabs
 from squeezefilm.plate.layout import RectangularPlate
-from squeezefilm.plate.solid.again import SolvedAgain
 from squeezefilm.plate.solid.mesh import PlateModel
 from squeezefilm.plate.solid.symmetry import Parity
 from squeezefilm.quantities import (

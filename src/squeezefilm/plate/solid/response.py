@@ -10,10 +10,10 @@ from typing import ClassVar
 import numpy as np
 
 from squeezefilm.errors import GeometryError, InputError
+from squeezefilm.plate.elements.again import SolvedAgain
 from squeezefilm.plate.elements.blas_threads import one_blas_thread
 from squeezefilm.plate.elements.box_model import IntArray
 from squeezefilm.plate.layout import RectangularPlate
-from squeezefilm.plate.solid.again import SolvedAgain
 from squeezefilm.plate.solid.extrapolated import extrapolated_class
 from squeezefilm.plate.solid.mesh import NORMAL, Resolution
 from squeezefilm.plate.solid.modes import MODEL

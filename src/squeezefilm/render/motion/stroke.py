@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from squeezefilm.errors import InputError
+from squeezefilm.from_text import reads_text
 from squeezefilm.hard_limits import (
     FINGER_SPEED,
     MOTION_SAMPLES,
@@ -35,6 +36,7 @@ from squeezefilm.quantities import (
 _ROUNDING = 1e-12
 
 
+@reads_text
 @checked_numbers
 @dataclass(frozen=True, slots=True)
 class Stroke:

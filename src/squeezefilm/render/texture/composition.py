@@ -31,6 +31,7 @@ from typing import Any, Literal
 import numpy as np
 
 from squeezefilm.errors import InputError
+from squeezefilm.from_text import reads_text
 from squeezefilm.quantities import (
     Dimensionless,
     FloatArray,
@@ -132,6 +133,7 @@ class Composable:
         """The same as `mask`, for conditions: ``texture.when(speed > 0.02)``."""
         return Masked(self, condition)
 
+    @reads_text
     @checked_numbers
     def then(
         self, other: Composable, at: Metre, *, fade: Metre = 0.0, along: Coordinate | None = None

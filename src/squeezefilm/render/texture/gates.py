@@ -13,6 +13,7 @@ from typing import Literal
 import numpy as np
 
 from squeezefilm.errors import InputError
+from squeezefilm.from_text import reads_text
 from squeezefilm.quantities import (
     Dimensionless,
     FloatArray,
@@ -34,6 +35,7 @@ _FASTEST: MetrePerSecond = 1000.0
 _LONGEST: Second = 86_400.0
 
 
+@reads_text
 @checked_numbers
 @dataclass(frozen=True, slots=True)
 class SpeedGate(Pattern):

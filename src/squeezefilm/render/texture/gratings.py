@@ -15,6 +15,7 @@ from typing import Literal, Protocol
 import numpy as np
 
 from squeezefilm.errors import InputError
+from squeezefilm.from_text import reads_text
 from squeezefilm.quantities import (
     Dimensionless,
     FloatArray,
@@ -54,6 +55,7 @@ class Texture(Protocol):
         ...
 
 
+@reads_text
 @checked_numbers
 @dataclass(frozen=True, slots=True)
 class Square(Composable):
@@ -90,6 +92,7 @@ class Square(Composable):
         require("duty", self.duty, above=0.0, below=1.0)
 
     @classmethod
+    @reads_text
     @checked_numbers
     def from_groove_and_ridge(
         cls, groove: Metre, ridge: Metre, *, low: Metre, high: Metre, phase: Radian = 0.0
@@ -122,6 +125,7 @@ class Square(Composable):
         assembler.emit(BETWEEN, self.low, self.high)
 
 
+@reads_text
 @checked_numbers
 @dataclass(frozen=True, slots=True)
 class Sine(Composable):

@@ -8,6 +8,7 @@ from typing import Any, Literal
 import numpy as np
 
 from squeezefilm.errors import InputError
+from squeezefilm.from_text import reads_text
 from squeezefilm.hard_limits import PIXELS
 from squeezefilm.quantities import (
     Dimensionless,
@@ -28,6 +29,7 @@ OUTSIDE = ("hold", "repeat", "zero")
 """What an image does beyond its frame, in the order of the opcode's operand."""
 
 
+@reads_text
 @checked_numbers
 @dataclass(frozen=True, slots=True)
 class Image(Pattern):
@@ -84,6 +86,7 @@ class Image(Pattern):
             )
 
     @classmethod
+    @reads_text
     def from_array(
         cls,
         values: DimensionlessArray,

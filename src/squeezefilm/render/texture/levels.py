@@ -8,6 +8,7 @@ from typing import Any, Literal
 import numpy as np
 
 from squeezefilm.errors import InputError
+from squeezefilm.from_text import reads_text
 from squeezefilm.quantities import (
     Dimensionless,
     FloatArray,
@@ -58,6 +59,7 @@ class _Level(Composable):
             )
 
 
+@reads_text
 @checked_numbers
 @dataclass(frozen=True, slots=True)
 class Amplitude(_Level):
@@ -75,6 +77,7 @@ class Amplitude(_Level):
         self._require(Unit("m"), LARGEST_AMPLITUDE)
 
     @classmethod
+    @reads_text
     @checked_numbers
     def constant(cls, value: Metre) -> Amplitude:
         """The same amplitude (m, zero-to-peak) everywhere."""
@@ -86,6 +89,7 @@ class Amplitude(_Level):
         return "amplitude"
 
 
+@reads_text
 @checked_numbers
 @dataclass(frozen=True, slots=True)
 class RelativeFriction(_Level):
@@ -104,6 +108,7 @@ class RelativeFriction(_Level):
         self._require(Unit("1"), 1.0)
 
     @classmethod
+    @reads_text
     @checked_numbers
     def constant(cls, value: Dimensionless) -> RelativeFriction:
         """The same relative friction (1) everywhere."""
@@ -115,6 +120,7 @@ class RelativeFriction(_Level):
         return "relative_friction"
 
 
+@reads_text
 @checked_numbers
 @dataclass(frozen=True, slots=True)
 class FrictionReduction(_Level):
@@ -133,6 +139,7 @@ class FrictionReduction(_Level):
         self._require(Unit("1"), _LARGEST_REDUCTION)
 
     @classmethod
+    @reads_text
     @checked_numbers
     def constant(cls, value: Dimensionless) -> FrictionReduction:
         """The same reduction (1) everywhere."""

@@ -18,6 +18,7 @@ from typing import Any, Literal
 import numpy as np
 
 from squeezefilm.errors import InputError
+from squeezefilm.from_text import reads_text
 from squeezefilm.quantities import (
     Dimensionless,
     FloatArray,
@@ -121,6 +122,7 @@ def _require_noise(finest: Metre, seed: int, octaves: int, persistence: Dimensio
     require("persistence", persistence, above=0.0, at_most=1.0)
 
 
+@reads_text
 @checked_numbers
 @dataclass(frozen=True, slots=True)
 class Noise(Pattern):

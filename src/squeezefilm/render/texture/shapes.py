@@ -9,6 +9,7 @@ from typing import Literal
 import numpy as np
 
 from squeezefilm.errors import InputError
+from squeezefilm.from_text import reads_text
 from squeezefilm.quantities import (
     Dimensionless,
     FloatArray,
@@ -65,6 +66,7 @@ class Constant(Pattern):
         assembler.emit(CONSTANT, self.share)
 
 
+@reads_text
 @checked_numbers
 @dataclass(frozen=True, slots=True)
 class SquareWave(Pattern):
@@ -101,6 +103,7 @@ class SquareWave(Pattern):
         assembler.emit(SQUARE, self.spatial_period, self.phase / (2 * math.pi), self.duty)
 
 
+@reads_text
 @checked_numbers
 @dataclass(frozen=True, slots=True)
 class SineWave(Pattern):
@@ -126,6 +129,7 @@ class SineWave(Pattern):
         assembler.emit(SINE, self.spatial_period, self.phase / (2 * math.pi))
 
 
+@reads_text
 @checked_numbers
 @dataclass(frozen=True, slots=True)
 class Pulse(Pattern):
@@ -172,6 +176,7 @@ class Pulse(Pattern):
             assembler.emit(HANN, self.centre, self.width)
 
 
+@reads_text
 @checked_numbers
 @dataclass(frozen=True, slots=True)
 class Ramp(Pattern):
@@ -219,6 +224,7 @@ class Ramp(Pattern):
             assembler.emit(SMOOTH)
 
 
+@reads_text
 @checked_numbers
 @dataclass(frozen=True, slots=True)
 class Band(Pattern):
@@ -250,6 +256,7 @@ class Band(Pattern):
         require_coordinate(self.along)
 
     @classmethod
+    @reads_text
     @checked_numbers
     def disc(cls, x: Metre, y: Metre, radius: Metre, fade: Metre = 0.0) -> Band:
         """1 within `radius` (m) of the point (`x`, `y`) (m)."""
@@ -268,6 +275,7 @@ class Band(Pattern):
         assembler.emit(BAND, self.start, self.end, self.fade)
 
 
+@reads_text
 @checked_numbers
 @dataclass(frozen=True, slots=True)
 class Bump(Pattern):

@@ -8,14 +8,15 @@ import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import TRACE_BYTES
-from squeezefilm.quantities import FloatArray
+from squeezefilm.quantities import FloatArray, Second
 from squeezefilm.regular_file import opened
+from squeezefilm.results import Result
 from squeezefilm.session.record import trace_file as file
 
 
@@ -47,8 +48,8 @@ class Damage:
         return self.closed and not self.lost_bytes and not self.lost_blocks
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Trace:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Trace(Result):
     """A recorded session: `rows` of shape (n, columns) with NaN for none, events, metadata.
 
     The columns' names carry their units.
@@ -59,12 +60,55 @@ class Trace:
     events: tuple[TraceEvent, ...]
     metadata: Mapping[str, Any]
     damage: Damage
+    _shown: ClassVar[tuple[str, ...]] = (
+        "display",
+        "texture",
+        "row_count",
+        "duration",
+        "damage.sentences",
+    )
 
     def column(self, name: str) -> FloatArray:
         """The column of that name, shape (n,). Raises `InputError` if there is none."""
         if name not in self.columns:
             raise InputError(f"there is no column '{name}'; there are {', '.join(self.columns)}")
         return self.rows[:, self.columns.index(name)]
+
+    @property
+    def display(self) -> str:
+        """Of the display, by the record's own word; empty where it says nothing."""
+        return str(self.metadata.get("display", ""))
+
+    @property
+    def texture(self) -> str:
+        """What was played, by the record's own word; empty where it says nothing."""
+        return str(self.metadata.get("texture", ""))
+
+    @property
+    def row_count(self) -> int:
+        """How many rows there are."""
+        return len(self.rows)
+
+    @property
+    def duration(self) -> Second:
+        """From the first row to the last (s); 0 without a column of times."""
+        if "time_s" not in self.columns or not len(self.rows):
+            return 0.0
+        return float(np.ptp(self.column("time_s")))
+
+    def summary(self) -> dict[str, Any]:
+        """Where it is from, how much there is, and what is missing."""
+        return {
+            "columns": list(self.columns),
+            "rows": len(self.rows),
+            "duration_s": self.duration,
+            "events": [{"kind": one.kind, "row": one.row, **one.fields} for one in self.events],
+            "damage": list(self.damage.sentences),
+            "metadata": dict(self.metadata),
+        }
+
+    def _table(self) -> Any:
+        return {name: self.rows[:, at] for at, name in enumerate(self.columns)}
 
 
 def read_trace(path: str | Path) -> Trace:

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
+from squeezefilm.from_text import reads_text
 from squeezefilm.hard_limits import PLANNED_TRIALS, require_within
 from squeezefilm.quantities import Second, require
-from squeezefilm.study.design.study_design import StudyDesign
+from squeezefilm.results import Result
+from squeezefilm.study.design.study_design import NamedDesign, StudyDesign
 from squeezefilm.study.design.trials import Trial, expected_duration, trials, williams_square
 
 
-@dataclass(frozen=True)
-class StudyPlan:
+@dataclass(frozen=True, repr=False)
+class StudyPlan(Result):
     """A design seen by who must run it. `schedules` has the trials of each participant;
     `balanced_participants` is how many give every order equally often (1 where each participant
     has all of them)."""
@@ -24,6 +26,13 @@ class StudyPlan:
     schedules: tuple[tuple[Trial, ...], ...]
     duration: Second
     balanced_participants: int
+    _shown: ClassVar[tuple[str, ...]] = (
+        "design.name",
+        "participants",
+        "duration",
+        "balanced_participants",
+        "seed",
+    )
 
     @property
     def phases(self) -> dict[str, int]:
@@ -85,8 +94,17 @@ class StudyPlan:
             "design_sha256": design.sha256,
         }
 
+    def _table(self) -> Any:
+        return [
+            {"participant": who, "trial": trial.number, "phase": trial.phase,
+             "display": trial.display, "stimuli": " / ".join(trial.stimuli)}
+            for who, schedule in enumerate(self.schedules)
+            for trial in schedule
+        ]  # fmt: skip
 
-def plan_study(design: StudyDesign, participants: int = 1, seed: int = 0) -> StudyPlan:
+
+@reads_text
+def plan_study(design: NamedDesign, participants: int = 1, seed: int = 0) -> StudyPlan:
     """The plan of a design for a number of participants.
 
     Raises `InputError` for less than 1 or more than 1000 participants, or a seed below 0.

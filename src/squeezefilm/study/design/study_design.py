@@ -17,10 +17,11 @@ import dataclasses
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Literal
+from typing import Annotated, Literal
 
 from squeezefilm.config.provenance import Provenance
 from squeezefilm.errors import InputError
+from squeezefilm.from_text import ReadBy
 from squeezefilm.hard_limits import PARTICIPANT_TRIALS, require_within
 from squeezefilm.perception.stimuli import Grating, Stimulus, Varied, require_one_of
 from squeezefilm.quantities import Dimensionless, Second, Unit, did_you_mean, require
@@ -33,8 +34,17 @@ from squeezefilm.study.design.special_trials import (
     require_name,
 )
 
-__all__ = ["TASKS", "AdaptiveCondition", "CatchTrial", "Condition", "Order", "StudyDesign", "Task",
-           "load_design"]  # fmt: skip
+__all__ = [
+    "TASKS",
+    "AdaptiveCondition",
+    "CatchTrial",
+    "Condition",
+    "NamedDesign",
+    "Order",
+    "StudyDesign",
+    "Task",
+    "load_design",
+]  # fmt: skip
 
 Task = Literal["match-to-sample", "same-different", "two-interval", "magnitude-estimation"]
 Order = Literal["williams", "latin-square", "shuffled"]
@@ -342,3 +352,7 @@ def load_design(name_or_path: str | Path) -> StudyDesign:
     from squeezefilm import config, presets
 
     return config.load(StudyDesign, presets.resolve_study(name_or_path))
+
+
+NamedDesign = Annotated[StudyDesign, ReadBy(load_design)]
+"""A design, or in its place the name of a preset or the path of a file (see `reads_text`)."""

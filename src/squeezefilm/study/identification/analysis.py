@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from squeezefilm.errors import ConvergenceError, InputError
 from squeezefilm.quantities import Dimensionless, DimensionlessArray
-from squeezefilm.results import stamp, to_json
+from squeezefilm.results import Result, stamp, to_json
 from squeezefilm.study.identification.choice_model import (
     ChoiceModel,
     PerceptualMap,
@@ -56,8 +56,8 @@ class StimulusCorrect:
     high: Dimensionless
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class IdentificationAnalysis:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class IdentificationAnalysis(Result):
     """What an identification study says.
 
     Attributes:
@@ -102,6 +102,12 @@ class IdentificationAnalysis:
     mixed: MixedModel | None
     notes: tuple[str, ...]
     seed: int
+    _shown: ClassVar[tuple[str, ...]] = (
+        "name",
+        "origin",
+        "participants",
+        "proportion_correct",
+    )
 
     @property
     def participants(self) -> int:
@@ -169,6 +175,15 @@ class IdentificationAnalysis:
         }
         plain: dict[str, Any] = to_json(values)
         return plain
+
+    def _table(self) -> Any:
+        """The confusions: one row a pair of stimulus and answer."""
+        counts = self.matrix.counts
+        return [
+            {"stimulus": stimulus, "answer": answer, "count": int(counts[row, column])}
+            for column, stimulus in enumerate(self.matrix.stimuli)
+            for row, answer in enumerate(self.matrix.answers)
+        ]
 
 
 def analyze_identification(

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from squeezefilm.errors import InputError
+from squeezefilm.from_text import reads_text
 from squeezefilm.quantities import Dimensionless, FloatArray, require
+from squeezefilm.results import Result
 from squeezefilm.study.psychometric import kernel
 from squeezefilm.study.psychometric.bootstrap import (
     Bootstrap,
@@ -35,8 +37,8 @@ from squeezefilm.study.psychometric.prior import PsychometricPrior
 Interval = tuple[float, float]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class PsychometricFit:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class PsychometricFit(Result):
     """A psychometric function fitted to answers.
 
     Attributes:
@@ -72,6 +74,13 @@ class PsychometricFit:
     deviance: float
     deviance_p: Dimensionless | None
     bounded_by_prior: tuple[str, ...]
+    _shown: ClassVar[tuple[str, ...]] = (
+        "function.shape",
+        "function.threshold",
+        "function.width",
+        "function.lapse_rate",
+        "posterior_interval",
+    )
 
     def summary(self) -> dict[str, Any]:
         """The numbers for JSON."""
@@ -90,7 +99,11 @@ class PsychometricFit:
             "prior": self.prior.state(),
         }
 
+    def _table(self) -> Any:
+        return {"intensity": self.intensity, "positive": self.positive, "trials": self.trials}
 
+
+@reads_text
 def fit_psychometric(
     intensity: ArrayLike,
     positive: ArrayLike,

@@ -12,14 +12,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from squeezefilm.errors import InputError
+from squeezefilm.from_text import reads_text
 from squeezefilm.hard_limits import SIMULATED_TRIALS, require_within
-from squeezefilm.perception.observer import Observer
+from squeezefilm.perception.observer import NamedObserver, Observer
 from squeezefilm.perception.senses import D_PRIME_OF_75
 from squeezefilm.quantities import (
     Dimensionless,
@@ -28,8 +29,8 @@ from squeezefilm.quantities import (
     SecondArray,
     require,
 )
-from squeezefilm.results import stamp, to_json
-from squeezefilm.study.design.study_design import StudyDesign
+from squeezefilm.results import Result, stamp, to_json
+from squeezefilm.study.design.study_design import NamedDesign, StudyDesign
 from squeezefilm.study.design.trials import trials
 from squeezefilm.study.identification.confusion import ConfusionMatrix, IntArray
 from squeezefilm.study.simulated.chain_tables import ChainTables, chain_tables
@@ -40,8 +41,8 @@ _MOST_PEOPLE = 1_000_000
 _STREAM = 29
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class SimulatedStudy:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class SimulatedStudy(Result):
     """Answers of simulated participants; arrays of shape (participants, trials).
 
     Attributes:
@@ -66,6 +67,13 @@ class SimulatedStudy:
     response_time: SecondArray
     finger: IntArray
     origin: str = "simulated"
+    _shown: ClassVar[tuple[str, ...]] = (
+        "tables.design.name",
+        "tables.observer.name",
+        "participants",
+        "seed",
+        "origin",
+    )
 
     @property
     def participants(self) -> int:
@@ -130,10 +138,27 @@ class SimulatedStudy:
             "provenance": stamp((design, tables.observer, tables.apparatus), self.seed),
         }
 
+    def _table(self) -> Any:
+        """One row a trial."""
+        design = self.tables.design
+        names = [one.name for one in design.stimuli]
+        answers = [one.name for one in design.alternatives]
+        return [
+            {
+                "participant": who, "trial": int(self.number[who, at]),
+                "display": design.displays[self.display[who, at]],
+                "stimulus": names[self.stimulus[who, at]],
+                "choice": answers[self.choice[who, at]], "felt": bool(self.felt[who, at]),
+                "response_time_s": float(self.response_time[who, at]),
+            }
+            for who, at in np.ndindex(self.choice.shape)
+        ]  # fmt: skip
 
+
+@reads_text
 def simulate_participants(
-    design: StudyDesign,
-    observer: Observer,
+    design: NamedDesign,
+    observer: NamedObserver,
     participants: int,
     seed: int,
     tables: ChainTables | None = None,
