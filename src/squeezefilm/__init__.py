@@ -1,3 +1,80 @@
-"""squeezefilm: tactile displays that change the friction of a surface by ultrasonic vibration."""
+"""squeezefilm: tactile displays that change the friction of a surface by ultrasonic vibration.
+
+    import squeezefilm as sf
+
+    sf.predict("biet2008-plate", voltage="15 V").relative_friction
+
+The names below are all that most work needs; each is imported when it is first asked for, so that
+importing the package costs next to nothing. Quantities may be written as text with a unit, and a
+display, a texture or a study by its name. See ``docs/front-door.md``.
+"""
 
 __version__ = "0.1.0"
+
+# Where each name lives. The stub beside this file says the same to type checkers; a test compares.
+_NAMES = {
+    # Displays, textures and studies by name
+    "display_names": "presets",
+    "study_names": "presets",
+    "texture_names": "presets",
+    "load_display": "display",
+    "load_texture": "texture_file",
+    "save_texture": "texture_file",
+    "load_design": "study.design.study_design",
+    "replaced": "analysis.parameters",
+    # What a display does
+    "predict": "chain.prediction",
+    "voltage_for_friction": "chain.prediction",
+    "analyze": "analysis.analyze",
+    "analyze_friction": "analysis.friction.command",
+    "solve_plate": "analysis.plate.solve",
+    "solve_film": "analysis.film.command",
+    # Textures, composed
+    "Amplitude": "render.texture.levels",
+    "RelativeFriction": "render.texture.levels",
+    "Band": "render.texture.shapes",
+    "Bump": "render.texture.shapes",
+    "SineWave": "render.texture.shapes",
+    "SquareWave": "render.texture.shapes",
+    "Noise": "render.texture.noise",
+    "Image": "render.texture.image",
+    "speed": "render.texture.gates",
+    "Stroke": "render.motion.stroke",
+    # Rendered, played, recorded
+    "render_texture": "chain.rendered_texture",
+    "play_texture": "bench.play",
+    "read_trace": "session.record.trace",
+    # Studies
+    "plan_study": "study.design.plan",
+    "run_study": "report.study.session",
+    "simulate_participants": "study.simulated.participants",
+    "analyze_study": "study.identification.recorded",
+    "AdaptiveDesign": "study.adaptive.bayesian",
+    "BayesianAdaptive": "study.adaptive.bayesian",
+    "fit_psychometric": "study.psychometric.fit",
+    "PsychometricFunction": "study.psychometric.function",
+    "PsychometricPrior": "study.psychometric.prior",
+    # What came out
+    "plot": "report.subjects",
+    "write_mode": "report.subjects",
+    "write_report": "report.subjects",
+    # What it raises on purpose
+    "SqueezefilmError": "errors",
+}
+
+__all__ = sorted(_NAMES)
+
+
+def __getattr__(name: str) -> object:
+    if name not in _NAMES:
+        raise AttributeError(
+            f"squeezefilm has no '{name}'; it has: {', '.join(__all__)}", name=name, obj=None
+        )
+    from importlib import import_module
+
+    value = globals()[name] = getattr(import_module(f"squeezefilm.{_NAMES[name]}"), name)
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted([*globals(), *__all__])

@@ -132,7 +132,9 @@ def _unit_of_attribute(owner: type, name: str) -> Unit | None:
 
 def _in_words(value: Any, unit: Unit | None) -> str:
     if isinstance(value, list | tuple):
-        return ", ".join(_in_words(one, unit) for one in value)
+        return " to ".join(_in_words(one, unit) for one in value)
+    if isinstance(value, typing.Mapping):
+        return ", ".join(f"{key} {_in_words(one, unit)}" for key, one in value.items())
     if isinstance(value, float | np.floating):
         return format_quantity(float(value), unit or Unit("1"))
     return str(value)

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from squeezefilm.formats.traces import table_from_csv
-from squeezefilm.session.record.reading import read_trace
+from squeezefilm.session.record.trace import read_trace
 
 pytestmark = pytest.mark.skipif(
     sys.platform == "win32", reason="a twin's port is a pseudo-terminal, which needs POSIX"

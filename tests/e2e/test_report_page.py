@@ -28,10 +28,10 @@ FIGURES = (
 def report(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
     from squeezefilm.analysis.analyze import analyze
     from squeezefilm.display import load_display
-    from squeezefilm.report.display.page import write_report
+    from squeezefilm.report.display.page import write_analysis
 
     folder = tmp_path_factory.mktemp(str(request.param))
-    return write_report(analyze(load_display(request.param)), folder)
+    return write_analysis(analyze(load_display(request.param)), folder)
 
 
 @pytest.fixture(scope="module")

@@ -19,7 +19,7 @@ from squeezefilm.errors import DeviceError
 from squeezefilm.perception.stimuli import Grating, Stimulus
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ
 from squeezefilm.session.loop import rows as column
-from squeezefilm.session.record.reading import read_trace
+from squeezefilm.session.record.trace import read_trace
 from squeezefilm.study.conduct.exposure import Exposure
 from squeezefilm.study.conduct.played_device import SessionDevice
 from squeezefilm.study.conduct.run import Acknowledgement, Presentation, StudyRun

@@ -16,7 +16,7 @@ from squeezefilm.session.play import simulated as bench
 from squeezefilm.session.play.player import Ending, Player
 from squeezefilm.session.play.real_time import PlayOutcome
 from squeezefilm.session.play.simulated import virtual_play
-from squeezefilm.session.record.reading import read_trace
+from squeezefilm.session.record.trace import read_trace
 from squeezefilm.texture_file import load_texture
 from squeezefilm.twin.device import TwinDevice
 from squeezefilm.twin.hand import hand_from
@@ -169,7 +169,7 @@ def test_a_session_that_broke_at_once_is_told_and_shown(display: Display, tmp_pa
     from squeezefilm.bench.play import PlayResult
     from squeezefilm.report.played.page import write_play
     from squeezefilm.session.loop.rows import COLUMNS
-    from squeezefilm.session.record.trace import TraceWriter
+    from squeezefilm.session.record.trace_writer import TraceWriter
 
     setup = prepared(display)
     with TraceWriter(tmp_path / "trace.sqft", COLUMNS, {"drive": "serial:none"}) as writer:

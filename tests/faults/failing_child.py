@@ -21,8 +21,8 @@ from tests.faults.study_child import Device, Script, begin
 from squeezefilm.errors import SqueezefilmError
 from squeezefilm.lab.studying.studies import Studies
 from squeezefilm.perception.stimuli import Grating, Stimulus
-from squeezefilm.session.record.reading import read_trace
-from squeezefilm.session.record.trace import TraceWriter
+from squeezefilm.session.record.trace import read_trace
+from squeezefilm.session.record.trace_writer import TraceWriter
 from squeezefilm.study.conduct.trial_by_trial import conduct
 from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.record.deletion import delete_participant

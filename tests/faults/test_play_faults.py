@@ -21,7 +21,7 @@ import pytest
 
 from squeezefilm.device.machine.device import Fault
 from squeezefilm.session.loop import rows as column
-from squeezefilm.session.record.reading import read_trace
+from squeezefilm.session.record.trace import read_trace
 
 pytestmark = [
     pytest.mark.realtime,

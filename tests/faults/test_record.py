@@ -14,15 +14,15 @@ import pytest
 
 from squeezefilm.errors import InputError, RecordError
 from squeezefilm.session.record import trace_file
-from squeezefilm.session.record.reading import Trace, read_trace
-from squeezefilm.session.record.trace import TraceWriter
+from squeezefilm.session.record.trace import Trace, read_trace
+from squeezefilm.session.record.trace_writer import TraceWriter
 
 COLUMNS = ("tick", "x_m", "level_V")
 
 WRITER = """
 import os, sys
 import numpy as np
-from squeezefilm.session.record.trace import TraceWriter
+from squeezefilm.session.record.trace_writer import TraceWriter
 
 path, seed = sys.argv[1], int(sys.argv[2])
 random = np.random.default_rng(seed)
@@ -179,7 +179,7 @@ LIMITED = """
 import resource, sys
 import numpy as np
 from squeezefilm.errors import RecordError
-from squeezefilm.session.record.trace import TraceWriter
+from squeezefilm.session.record.trace_writer import TraceWriter
 
 resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, resource.RLIM_INFINITY))
 writer = TraceWriter(sys.argv[1], ("tick", "x_m", "level_V"), {})

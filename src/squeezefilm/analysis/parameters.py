@@ -8,9 +8,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from squeezefilm.display import Display
+from squeezefilm.display import Display, NamedDisplay
 from squeezefilm.distributions import Distribution, Uniform
-from squeezefilm.quantities import Unit, unit_of
+from squeezefilm.errors import InputError
+from squeezefilm.from_text import reads_text
+from squeezefilm.quantities import Unit, did_you_mean, parse_quantity, unit_of
 
 Origin = Literal["given", "assumed"]
 
@@ -92,19 +94,48 @@ def _matters(path: str, surface: int, driven: bool) -> bool:
 
 
 def value_at(display: Display, path: str) -> tuple[float, Unit]:
-    """The value at a dotted path of a display, such as ``surfaces.0.roughness``, and its unit."""
+    """The value at a dotted path of a display, such as ``surfaces.0.roughness``, and its unit.
+
+    Raises `InputError` for a path that leads to no number.
+    """
     owner: Any = display
     parts = path.split(".")
     for part in parts[:-1]:
-        owner = owner[int(part)] if isinstance(owner, tuple) else getattr(owner, part)
+        owner = _inside(owner, part, path)
+    found = _inside(owner, parts[-1], path)
+    if isinstance(found, bool) or not isinstance(found, int | float):
+        raise InputError(f"'{path}' of a display is no number; go on with one of its parts")
     hints = typing.get_type_hints(type(owner), include_extras=True)
-    return float(getattr(owner, parts[-1])), unit_of(hints[parts[-1]]) or Unit("1")
+    return float(found), unit_of(hints[parts[-1]]) or Unit("1")
 
 
-def replaced(display: Display, values: Mapping[str, float]) -> Display:
-    """The display with other values at dotted paths. Raises `InputError` where they cannot be."""
+def _inside(owner: Any, part: str, path: str) -> Any:
+    known = (
+        [str(number) for number in range(len(owner))]
+        if isinstance(owner, tuple)
+        else [one.name for one in dataclasses.fields(owner)]
+        if dataclasses.is_dataclass(owner)
+        else []
+    )
+    if part not in known:
+        raise InputError(
+            f"a display has no '{path}': there is no '{part}'.{did_you_mean(part, known)} "
+            f"There are: {', '.join(known) or 'no parts'}"
+        )
+    return owner[int(part)] if isinstance(owner, tuple) else getattr(owner, part)
+
+
+@reads_text
+def replaced(display: NamedDisplay, values: Mapping[str, float | str]) -> Display:
+    """The display with other values at dotted paths: ``{"actuator.thickness": "1.5 mm"}``.
+
+    Raises `InputError` for a path that leads to no number, and for what cannot be there.
+    """
     tree: dict[str, Any] = {}
-    for path, value in values.items():
+    for path, given in values.items():
+        value = given
+        if isinstance(given, str):
+            value = parse_quantity(given, value_at(display, path)[1])
         node = tree
         *heads, last = path.split(".")
         for part in heads:

@@ -21,7 +21,6 @@ from squeezefilm.bench.played_session import PlayedSession, judge_session
 from squeezefilm.bench.setup import play_setup
 from squeezefilm.chain.played_texture import FingerMotion, require_on_display
 from squeezefilm.chain.prediction import predict
-from squeezefilm.chain.rendered_texture import sensor_named
 from squeezefilm.config.write import text_of
 from squeezefilm.device.replay import ReplaySensor
 from squeezefilm.device.wire.streams import open_stream
@@ -31,7 +30,7 @@ from squeezefilm.formats.trajectories import motion_from, read_trajectory
 from squeezefilm.from_text import reads_text
 from squeezefilm.quantities import FloatArray, Hertz, MetrePerVolt, Second, Unit, Volt, require
 from squeezefilm.render.motion.estimator import MotionEstimator
-from squeezefilm.render.motion.sensor import LVDT_10_KHZ, SensorModel
+from squeezefilm.render.motion.sensor import LVDT_10_KHZ, SensorModel, sensor_named
 from squeezefilm.render.program.lowering import lower
 from squeezefilm.render.resonator.compensation import DrivenEnvelope
 from squeezefilm.render.texture.gratings import Square
@@ -41,7 +40,7 @@ from squeezefilm.session.loop.plan import DriveTable, LoopPlan
 from squeezefilm.session.loop.process import LoopProcess
 from squeezefilm.session.play.player import PlayView
 from squeezefilm.session.play.real_time import PlayOutcome, run_play
-from squeezefilm.session.record.reading import read_trace
+from squeezefilm.session.record.trace import read_trace
 from squeezefilm.texture_file import NamedTexture, TextureFile
 from squeezefilm.twin.pty_server import running_twin
 from squeezefilm.twin.settings import PickupModel, TwinSettings

@@ -36,7 +36,7 @@ from squeezefilm.render.fidelity.report import FidelityReport, fidelity_report
 from squeezefilm.render.program.renderer import render
 from squeezefilm.results import Result, to_json
 from squeezefilm.session.loop import rows as column
-from squeezefilm.session.record.reading import Trace
+from squeezefilm.session.record.trace import Trace
 
 _SMOOTHING: Second = 20e-3
 _STILL = 0.15

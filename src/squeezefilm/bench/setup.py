@@ -8,7 +8,6 @@ import numpy as np
 
 from squeezefilm.chain.friction import FrictionModel
 from squeezefilm.chain.prediction import Prediction, predict
-from squeezefilm.chain.rendered_texture import sensor_named
 from squeezefilm.device.wire.messages import LONGEST_TILE
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError
@@ -24,7 +23,7 @@ from squeezefilm.quantities import (
     Volt,
 )
 from squeezefilm.render.motion.estimator import MotionEstimator
-from squeezefilm.render.motion.sensor import SensorModel
+from squeezefilm.render.motion.sensor import SensorModel, sensor_named
 from squeezefilm.render.program.inverse import FrictionInverse
 from squeezefilm.render.program.lowering import lower
 from squeezefilm.render.resonator.compensation import DrivenEnvelope

@@ -14,7 +14,7 @@ from typing import Any, ClassVar, Literal, get_args
 
 import numpy as np
 
-from squeezefilm.chain.friction import FrictionModel, shares_load
+from squeezefilm.chain.friction import FrictionModel
 from squeezefilm.chain.played_texture import (
     FingerMotion,
     PlayedTexture,
@@ -23,14 +23,12 @@ from squeezefilm.chain.played_texture import (
     single_period,
 )
 from squeezefilm.chain.prediction import Prediction, predict
-from squeezefilm.contact.sharing.gas_table import film_table
-from squeezefilm.contact.sharing.pad import friction_ripple
+from squeezefilm.chain.standing_wave import resonance_with_finger, wave_factors
 from squeezefilm.contact.sliding.march import Sliding, slide
 from squeezefilm.display import Display, NamedDisplay
 from squeezefilm.errors import InputError
 from squeezefilm.formats.trajectories import Motion, NamedMotion
 from squeezefilm.from_text import reads_text
-from squeezefilm.plate.layout import DiscPlate, RectangularPlate
 from squeezefilm.quantities import (
     Dimensionless,
     DimensionlessArray,
@@ -44,7 +42,7 @@ from squeezefilm.quantities import (
 )
 from squeezefilm.render.fidelity.rendered_stroke import RenderedStroke, rendered_stroke
 from squeezefilm.render.fidelity.report import FidelityReport, fidelity_report
-from squeezefilm.render.motion.sensor import SENSORS, SensorModel
+from squeezefilm.render.motion.sensor import SensorModel, sensor_named
 from squeezefilm.render.motion.stroke import Stroke
 from squeezefilm.render.program.inverse import FrictionInverse
 from squeezefilm.render.program.lowering import Program, lower
@@ -52,7 +50,6 @@ from squeezefilm.render.program.renderer import Counters, render
 from squeezefilm.render.program.wave import WaveCompensation
 from squeezefilm.render.resonator.compensation import COMPENSATIONS, Compensation, DrivenEnvelope
 from squeezefilm.render.resonator.envelope import envelope_time_constant
-from squeezefilm.render.texture.coordinate import AlongX, AlongY
 from squeezefilm.results import Result, stamp, to_json
 from squeezefilm.texture_file import NamedTexture, TextureFile
 
@@ -64,9 +61,6 @@ WAVES: tuple[Wave, ...] = get_args(Wave)
 
 _MOST_LINES = 6
 _FAINT = 0.01
-# How much more amplitude a pad may seem to meet off an antinode than on it.
-_BETTER = 1.5
-
 CONTROL_RATE: Hertz = 19.2e3
 """Of the loop (Hz): commands to which a converter of 192 kHz gives ten samples each."""
 
@@ -131,6 +125,31 @@ class RenderAnalysis(Result):
     def motion_values(self) -> Any:
         """The motion as JSON can have it."""
         return to_json(self.motion)
+
+    def columns(self) -> dict[str, FloatArray]:
+        """Every step of the loop, units in the names."""
+        stroke, finger, force = self.stroke, self.finger, self.force
+        columns: dict[str, FloatArray] = {
+            "time_s": stroke.time,
+            "position_x_m": finger.x,
+            "position_y_m": finger.y,
+            "speed_m_per_s": finger.speed,
+            "relative_friction_asked": self.asked,
+            "relative_friction_rendered": stroke.relative_friction_rendered,
+            "amplitude_wanted_m": stroke.wanted,
+            "amplitude_commanded_m": stroke.command,
+            "amplitude_m": stroke.amplitude,
+            "wave_factor": self.factor,
+            "tangential_force_N": force.friction_force,
+            "sticking": force.sticking.astype(float),
+        }
+        if stroke.estimate is not None:
+            columns["estimated_way_m"] = stroke.estimate.position
+            columns["estimated_speed_m_per_s"] = stroke.estimate.speed
+        return columns
+
+    def _table(self) -> Any:
+        return self.columns()
 
     def summary(self) -> dict[str, Any]:
         """What ``--json`` prints and fidelity.json holds; keys carry units."""
@@ -366,61 +385,6 @@ def _strongest(stroke: RenderedStroke, period: Metre | None) -> FloatArray | Non
     strong = peaks[power[peaks] > _FAINT * power[least:].max(initial=0.0)]
     best = np.sort(strong[np.argsort(power[strong])[::-1][:_MOST_LINES]])
     return np.asarray(best / length, dtype=float) if best.size else None
-
-
-def resonance_with_finger(p: Prediction) -> tuple[Dimensionless, Hertz]:
-    """Quality factor and resonance (Hz) with the finger on the mode, where that is known."""
-    if p.touch.mode is None:
-        return p.mode.quality_factor, p.mode.resonance_frequency
-    return p.touch.mode.quality_factor, p.touch.mode.resonance_frequency
-
-
-def wave_factors(display: Display, p: Prediction) -> WaveCompensation:
-    """The amplitude that the pad meets along the wave, over that at the best place.
-
-    Raises `InputError` for a disc, whose wave is none along a line.
-    """
-    plate = display.actuator
-    if isinstance(plate, DiscPlate):
-        raise InputError(
-            "the wave of a disc is no standing wave along a line; leave --wave out for a disc"
-        )
-    across = isinstance(plate, RectangularPlate) and plate.lines_across == "width"
-    along = AlongY() if across else AlongX()
-    half, law = p.mode.half_wavelength, p.law
-    if not shares_load(p.model):
-        return WaveCompensation.over_contact(half, law.finger.contact_length, along=along)
-    found = friction_ripple(
-        film_table(law.frequency, law.finger.plateau_width, law.gas),
-        law.finger.asperity_law(law.surface.roughness),
-        p.vibration_amplitude,
-        half,
-        law.finger,
-        normal_force=law.normal_force,
-    )
-    # Off the antinode friction may be less than the display makes centred on it.
-    wide = _BETTER * p.vibration_amplitude
-    inverse = FrictionInverse.from_function(law.table(wide), wide)
-    reached = np.clip(found.relative_friction, inverse.least_friction, 1.0)
-    return WaveCompensation.from_ripple(found.position, reached, inverse, half, along=along)
-
-
-def sensor_named(name: str) -> SensorModel:
-    """The sensor of a name such as "touch-panel-60-hz" or "LVDT 10 kHz".
-
-    Raises `InputError` for a name that is not known.
-    """
-    known = {_slug(one): sensor for one, sensor in SENSORS.items()}
-    if _slug(name) not in known:
-        raise InputError(
-            f"the sensor '{name}' is not known.{did_you_mean(_slug(name), known)} Sensors: "
-            f"{', '.join(known)}"
-        )
-    return known[_slug(name)]
-
-
-def _slug(name: str) -> str:
-    return "-".join(name.lower().replace("_", " ").replace("-", " ").split())
 
 
 def _one_of(name: str, value: str, allowed: tuple[Any, ...]) -> Any:

@@ -47,10 +47,7 @@ class StrokeForce:
         The pad has been stretched until it slides, and five of its slower time constants have
         passed; the end of the first pass if that comes earlier.
         """
-        free = np.flatnonzero(~self.motion.sticking)
-        first = float(self.motion.time[free[0]]) if free.size else 0.0
-        settling = _SETTLING * self.motion.fingerpad.settling_time_constant
-        return min(first + settling, self.trace.stroke.pass_duration)
+        return min(settled_after(self.motion), self.trace.stroke.pass_duration)
 
     def vibration(self, harmonics: int = 5) -> SkinVibration:
         """Spectra of the skin in the settled part of the first pass, with the texture's lines.
@@ -72,6 +69,14 @@ class StrokeForce:
             start=self.settled,
             end=min(stroke.pass_duration, float(self.motion.time[-1])),
         )
+
+
+def settled_after(motion: Sliding) -> Second:
+    """When a pad that began relaxed has been stretched until it slides, and five of its slower time
+    constants have passed (s)."""
+    free = np.flatnonzero(~motion.sticking)
+    first = float(motion.time[free[0]]) if free.size else 0.0
+    return first + _SETTLING * motion.fingerpad.settling_time_constant
 
 
 def stroke_force(

@@ -113,9 +113,9 @@ def analyze(
         )
         written = None
         if out is not None:
-            from squeezefilm.report.display.page import write_report
+            from squeezefilm.report.display.page import write_analysis
 
-            written = write_report(result, out, progress=step)
+            written = write_analysis(result, out, progress=step)
     if as_json:
         print_json(result.summary())
         return

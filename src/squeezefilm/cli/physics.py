@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import sys
 from pathlib import Path
 from typing import Annotated
@@ -137,7 +138,7 @@ def film(
                     "film needs --squeeze-number and --excursion, or --sweep --out DIR for a map"
                 )
             step("solving the film")
-            answer = solve_film(squeeze_number, excursion, request)
+            answer = solve_film(squeeze_number, excursion, **dataclasses.asdict(request))
     if sweep:
         if as_json:
             print_json(found.summary())
@@ -180,8 +181,8 @@ def plate(
     as_json: AsJson = False,
 ) -> None:
     """Solve a plate, disc or stator in three dimensions: modes, amplitude per volt, admittance."""
-    from squeezefilm.analysis.plate.command import analyze_plate, parse_band, parse_mode
-    from squeezefilm.analysis.plate.ring import analyze_ring
+    from squeezefilm.analysis.plate.command import PlateAnalysis, parse_band, parse_mode
+    from squeezefilm.analysis.plate.solve import solve_plate
     from squeezefilm.analysis.plate.tracking import parse_track
     from squeezefilm.display import load_display
     from squeezefilm.report.kit import terminal
@@ -192,38 +193,28 @@ def plate(
     wanted = None if mode is None else parse_mode(mode)
     limits = None if band is None else parse_band(band)
     over = None if track is None else parse_track(track, start, stop, values)
-    rectangle = display.actuator.type == "rectangular_plate"
-    if not rectangle and (vtu is not None or sensitivity or over is not None):
+    if vtu is not None and display.actuator.type != "rectangular_plate":
         raise InputError(
-            f"--vtu, --sensitivity and --track are for rectangular plates; '{display.name}' is a "
+            f"--vtu is for rectangular plates; '{display.name}' is a "
             f"{display.actuator.type.replace('_', ' ')}"
         )
     with terminal.progress(enabled=sys.stderr.isatty() or not as_json) as step:
         written = []
-        if rectangle:
-            result = analyze_plate(
-                display, mode=wanted, band=limits, sensitivity=sensitivity, track=over,
-                progress=step,
-            )  # fmt: skip
-            if out is not None or vtu is not None:
-                from squeezefilm.report.plate.plate import write_mode, write_plate
+        result = solve_plate(
+            display, mode=wanted, band=limits, sensitivity=sensitivity, track=over, progress=step
+        )
+        if out is not None or vtu is not None:
+            from squeezefilm.report.subjects import write_mode, write_report
 
-                step("figures")
-                written += [] if out is None else [write_plate(result, out)]
-                written += [] if vtu is None else [write_mode(result, vtu)]
-        else:
-            ring = analyze_ring(display, mode=wanted, band=limits, progress=step)
-            if out is not None:
-                from squeezefilm.report.plate.ring import write_ring
-
-                step("figures")
-                written.append(write_ring(ring, out))
+            step("figures")
+            written += [] if out is None else [write_report(result, out)]
+            written += [] if vtu is None else [write_mode(result, vtu)]
     if as_json:
-        print_json((result if rectangle else ring).summary())
+        print_json(result.summary())
         return
-    if rectangle:
+    if isinstance(result, PlateAnalysis):
         show_plate(result)
     else:
-        show_ring(ring)
+        show_ring(result)
     for path in written:
         typer.echo(f"wrote {path}")

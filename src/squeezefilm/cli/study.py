@@ -201,24 +201,24 @@ def run(
     """Run a session at the terminal; stop with Ctrl-C, and go on later where it stopped."""
     from squeezefilm.quantities import Unit
     from squeezefilm.report.kit import terminal
-    from squeezefilm.report.study.terminal import TerminalExaminer, ask_acknowledgement
-    from squeezefilm.study.conduct.terminal_run import open_study, run_session
+    from squeezefilm.report.study.session import run_study
+    from squeezefilm.report.study.terminal import ask_acknowledgement
 
-    with open_study(store, design, seed, station, stations) as found:
-        planned = found.design
-        examiner = TerminalExaminer(planned.spoken_question, modulus=planned.modulus)
-        ended = run_session(
-            found,
-            participant,
-            examiner,
-            drive=drive,
-            amplitude_per_pickup=quantity(pickup, "--pickup", Unit("m/V")),
-            conditions=conditions,
-            consent=consent,
-            acknowledge=(lambda _: True) if acknowledge else ask_acknowledgement,
-            tell=typer.echo,
-            progress=lambda: terminal.progress(enabled=sys.stderr.isatty()),
-        )
+    ended = run_study(
+        design,
+        store,
+        participant,
+        drive=drive,
+        amplitude_per_pickup=quantity(pickup, "--pickup", Unit("m/V")),
+        conditions=conditions,
+        consent=consent,
+        acknowledge=(lambda _: True) if acknowledge else ask_acknowledgement,
+        seed=seed,
+        station=station,
+        stations=stations,
+        tell=typer.echo,
+        progress=lambda: terminal.progress(enabled=sys.stderr.isatty()),
+    )
     typer.echo(ended)
 
 

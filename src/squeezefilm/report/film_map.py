@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from squeezefilm.report.kit.style import INK, MUTED, drawn, new_figure, plain_log, png
+from squeezefilm.film.planar.film import FilmPlanar
+from squeezefilm.report.kit.style import BAND, BLUE, INK, MUTED, drawn, new_figure, plain_log, png
 from squeezefilm.results import write_whole
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from squeezefilm.analysis.film.command import FilmMap
+    from squeezefilm.analysis.film.command import FilmAnswer, FilmMap
 
 
 @drawn
@@ -49,6 +50,34 @@ def film_map(found: FilmMap) -> Figure:
         axes.set(xscale="log", xlabel="squeeze number σ")
         plain_log(axes.xaxis)
     left.set(ylabel="excursion ε = amplitude over mean gap")
+    return figure
+
+
+@drawn
+def film_pressure(answer: FilmAnswer) -> Figure:
+    """The mean pressure of one film along it (in the plane: near Y = 0), and the gap it has."""
+    film = answer.film
+    figure = new_figure(
+        f"The film's over-pressure is {answer.over_pressure:.3g} of the ambient pressure, within "
+        f"{answer.over_pressure_error:.1g}",
+        f"{answer.model}, σ = {answer.squeeze_number:.4g}, ε = {answer.excursion_ratio:.3g}",
+        4.4,
+    )
+    if isinstance(film, FilmPlanar):
+        axes = figure.subplots()
+        middle = np.abs(film.Y) <= np.abs(film.Y).min() + 1e-9
+        order = np.argsort(film.X[middle])
+        axes.plot(film.X[middle][order], film.mean_pressure[middle][order], color=BLUE)
+        axes.set(xlabel="X over the reference length", ylabel="mean pressure over ambient")
+        return figure
+    top, axes = figure.subplots(2, 1, sharex=True, height_ratios=[1, 1.4])
+    top.fill_between(film.position, film.gap.min(1), film.gap.max(1), color=BAND, lw=0)
+    top.plot(film.position, film.gap.mean(1), color=MUTED, lw=1.2)
+    top.set(ylabel="gap over H0", ylim=(0, None))
+    axes.plot(film.position, film.mean_pressure, color=BLUE)
+    axes.set(
+        xlabel="r / R" if film.shape == "disc" else "x / l0", ylabel="mean pressure over ambient"
+    )
     return figure
 
 

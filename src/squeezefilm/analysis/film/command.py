@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
 from squeezefilm.errors import InputError
+from squeezefilm.film.periodic.film import FilmSolution, solve_disc, solve_profile, solve_strip
+from squeezefilm.film.periodic.profile import GapFunction, GapProfile
+from squeezefilm.film.planar.film import FilmPlanar, solve_ellipse, solve_rectangle
+from squeezefilm.from_text import reads_text
 from squeezefilm.hard_limits import ASPECT, require_within
 from squeezefilm.quantities import (
     Dimensionless,
     DimensionlessArray,
     did_you_mean,
 )
-from squeezefilm.results import stamp, to_json
+from squeezefilm.results import Result, stamp, to_json
 
 SHAPES = ("strip", "disc", "rectangle", "ellipse")
 _LINES = ("strip", "disc")
@@ -41,10 +46,12 @@ class FilmRequest:
         require_within(ASPECT, self.aspect_ratio, "aspect_ratio")
 
 
-@dataclass(frozen=True)
-class FilmAnswer:
+@dataclass(frozen=True, eq=False, repr=False)
+class FilmAnswer(Result):
     """The mean load W over p0 A of one film, its over-pressure W − 1 with the estimated absolute
-    error, and the first harmonic of its force: stiffness and damping over p0 A ε."""
+    error, and the first harmonic of its force: stiffness and damping over p0 A ε.
+
+    `film` has its pressure at every place and time."""
 
     squeeze_number: Dimensionless
     excursion_ratio: Dimensionless
@@ -58,10 +65,26 @@ class FilmAnswer:
     residual: float
     status: str
     model: str
+    film: FilmSolution | FilmPlanar
+    _shown: ClassVar[tuple[str, ...]] = (
+        "request.shape", "squeeze_number", "excursion_ratio", "over_pressure",
+        "over_pressure_error", "status",
+    )  # fmt: skip
 
     def summary(self) -> dict[str, Any]:
         """What ``--json`` prints."""
-        return {**to_json(self), "provenance": stamp(self.request)}
+        values = {
+            one.name: to_json(getattr(self, one.name))
+            for one in dataclasses.fields(self)
+            if one.name != "film"
+        }
+        return {**values, "provenance": stamp(self.request)}
+
+    def _table(self) -> Any:
+        film = self.film
+        if isinstance(film, FilmSolution):
+            return {"position": film.position, "mean_pressure": film.mean_pressure}
+        return {"X": film.X, "Y": film.Y, "mean_pressure": film.mean_pressure}
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,39 +105,56 @@ class FilmMap:
         return {**to_json(self), "provenance": stamp(self.request)}
 
 
+@reads_text
 def solve_film(
-    squeeze_number: Dimensionless, excursion_ratio: Dimensionless, request: FilmRequest
+    squeeze_number: Dimensionless,
+    gap: Dimensionless | GapProfile | GapFunction,
+    *,
+    shape: str = "strip",
+    aspect_ratio: Dimensionless = 1.0,
+    polytropic_exponent: Dimensionless = 1.0,
+    knudsen_number: Dimensionless = 0.0,
+    slip: str = "first",
+    tolerance: Dimensionless = 1e-3,
 ) -> FilmAnswer:
     """One film. σ is on the width of a strip, the radius of a disc, the X side of a rectangle or
-    the X semi-axis of an ellipse. Raises what the film solvers raise."""
-    from squeezefilm.film.periodic.film import solve_disc, solve_strip
-    from squeezefilm.film.planar.film import solve_ellipse, solve_rectangle
+    the X semi-axis of an ellipse.
 
-    gas = {
-        "polytropic_exponent": request.polytropic_exponent,
-        "knudsen_number": request.knudsen_number,
-    }
-    if request.shape in _LINES:
-        solve = solve_strip if request.shape == "strip" else solve_disc
-        line = solve(
-            squeeze_number, excursion_ratio, slip=request.slip, tolerance=request.tolerance, **gas
-        )
-        return _answer(squeeze_number, excursion_ratio, request, line)
-    planar = solve_rectangle if request.shape == "rectangle" else solve_ellipse
-    plane = planar(
-        squeeze_number,
-        excursion_ratio,
-        request.aspect_ratio,
-        slip=request.slip,
-        tolerance=request.tolerance,
-        **gas,
-    )
-    return _answer(squeeze_number, excursion_ratio, request, plane)
+    `gap` is the excursion ratio ε of H = 1 + ε cos T, or one's own gap under a strip: a function
+    H(X, T) that broadcasts over −1/2 ≤ X ≤ 1/2 and a period of 2π, or a `GapProfile`. The rest as
+    `FilmRequest`. Raises what the film solvers raise, and `InputError` for a gap of one's own under
+    another shape.
+    """
+    request = FilmRequest(shape, aspect_ratio, polytropic_exponent, knudsen_number, slip, tolerance)
+    gas: dict[str, Any] = {
+        "polytropic_exponent": polytropic_exponent, "knudsen_number": knudsen_number,
+        "slip": slip, "tolerance": tolerance,
+    }  # fmt: skip
+    film: FilmSolution | FilmPlanar
+    if not isinstance(gap, float | int):
+        if shape != "strip":
+            raise InputError(
+                f"a gap of one's own is solved under a strip, not under a {shape}; leave the shape "
+                "out, or give an excursion ratio"
+            )
+        found = solve_profile(squeeze_number, gap, **gas)
+        # The gap is in the answer by its values; a function could not be pickled.
+        film = dataclasses.replace(found, profile=None)
+        return _answer(film, found.excursion_ratio, request, ", a gap of one's own")
+    if shape in _LINES:
+        solve = solve_strip if shape == "strip" else solve_disc
+        film = solve(squeeze_number, gap, **gas)
+    else:
+        planar = solve_rectangle if shape == "rectangle" else solve_ellipse
+        film = planar(squeeze_number, gap, aspect_ratio, **gas)
+    return _answer(film, gap, request)
 
 
-def _answer(sigma: float, excursion: float, request: FilmRequest, film: Any) -> FilmAnswer:
+def _answer(
+    film: FilmSolution | FilmPlanar, excursion: Dimensionless, request: FilmRequest, own: str = ""
+) -> FilmAnswer:
     return FilmAnswer(
-        squeeze_number=sigma,
+        squeeze_number=film.squeeze_number,
         excursion_ratio=excursion,
         request=request,
         mean_load=film.mean_load,
@@ -125,7 +165,8 @@ def _answer(sigma: float, excursion: float, request: FilmRequest, film: Any) -> 
         iterations=film.iterations,
         residual=film.residual,
         status=film.status,
-        model=f"periodic compressible Reynolds, {request.shape}",
+        model=f"periodic compressible Reynolds, {request.shape}{own}",
+        film=film,
     )
 
 

@@ -15,7 +15,8 @@ from typing import Any
 import numpy as np
 
 from squeezefilm.chain.prediction import Prediction
-from squeezefilm.chain.rendered_texture import lowered, resonance_with_finger, wave_factors
+from squeezefilm.chain.rendered_texture import lowered
+from squeezefilm.chain.standing_wave import resonance_with_finger, wave_factors
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError
 from squeezefilm.formats.pictures import picture_from

@@ -25,6 +25,7 @@ from squeezefilm.quantities import (
     SecondArray,
     Unit,
     checked_numbers,
+    did_you_mean,
     require,
 )
 
@@ -179,3 +180,21 @@ def sensor_stream(
     return SensorStream(
         sensor, seed, taken[there], stamp[there].copy(), arrival[there], seen[there]
     )
+
+
+def sensor_named(name: str) -> SensorModel:
+    """The sensor of a name such as "touch-panel-60-hz" or "LVDT 10 kHz".
+
+    Raises `InputError` for a name that is not known.
+    """
+    known = {_slug(one): sensor for one, sensor in SENSORS.items()}
+    if _slug(name) not in known:
+        raise InputError(
+            f"the sensor '{name}' is not known.{did_you_mean(_slug(name), known)} Sensors: "
+            f"{', '.join(known)}"
+        )
+    return known[_slug(name)]
+
+
+def _slug(name: str) -> str:
+    return "-".join(name.lower().replace("_", " ").replace("-", " ").split())

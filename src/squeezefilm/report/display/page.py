@@ -1,4 +1,4 @@
-"""`write_report`: result.json and report.html, one file that needs nothing from anywhere."""
+"""`write_analysis`: result.json and report.html, one file that needs nothing from anywhere."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _MOST_SAMPLES = 4000
 _KINDS = {"good": "✓ Good", "limit": "△ Limit", "doubt": "? Doubt"}
 
 
-def write_report(
+def write_analysis(
     analysis: Analysis, folder: Path, progress: Callable[[str], None] | None = None
 ) -> Path:
     """Write result.json and report.html into `folder`; the path of the page.

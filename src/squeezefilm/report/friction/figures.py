@@ -14,6 +14,7 @@ from squeezefilm.report.kit.style import (
     BLUE,
     GREEN,
     INK,
+    LINES,
     MUTED,
     ORANGE,
     PAPER,
@@ -28,6 +29,8 @@ from squeezefilm.report.kit.style import (
 from squeezefilm.results import write_whole
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
@@ -35,6 +38,7 @@ if TYPE_CHECKING:
     from squeezefilm.analysis.friction.command import FrictionAnalysis
     from squeezefilm.analysis.friction.models import ModelCurve
     from squeezefilm.analysis.uncertainty import UncertainFriction
+    from squeezefilm.chain.friction import FrictionLaw
     from squeezefilm.chain.prediction import Prediction
 
 _STYLES = {
@@ -120,6 +124,37 @@ def _models(
     axes = figure.subplots()
     draw_models(axes, curves, p, unsure)
     legend_below(axes, columns=2)
+    return figure
+
+
+@drawn
+def predictions(found: Sequence[Prediction]) -> Figure:
+    """Predicted friction against amplitude: each law up to twice its working point, which is
+    marked."""
+    first = found[0]
+    said = (
+        f"µ′/µ = {first.relative_friction:.2f} at {shown(first.vibration_amplitude, M, 3)}"
+        if len(found) == 1
+        else f"{len(found)} predictions: µ′/µ from "
+        f"{min(one.relative_friction for one in found):.2f} to "
+        f"{max(one.relative_friction for one in found):.2f}"
+    )
+    figure = new_figure(said, ", ".join(dict.fromkeys(one.model for one in found)), 4.4)
+    axes = figure.subplots()
+    reach: dict[FrictionLaw, float] = {}
+    for one in found:
+        reach[one.law] = max(reach.get(one.law, 0.5e-6), one.vibration_amplitude)
+    for number, (law, highest) in enumerate(reach.items()):
+        color, dashes = LINES[number % len(LINES)]
+        table = law.table(highest)
+        axes.plot(1e6 * table.amplitude, table.relative_friction, color=color, ls=dashes)
+    for one in found:
+        axes.plot(
+            [1e6 * one.vibration_amplitude], [one.relative_friction], "D", color=INK, ms=7,
+            mec=PAPER, mew=1.2, zorder=5, clip_on=False,
+        )  # fmt: skip
+    axes.set(xlim=(0, None), ylim=(0, 1.04))
+    axes.set(xlabel="vibration amplitude, zero-to-peak (µm)", ylabel="relative friction µ′/µ")
     return figure
 
 

@@ -31,25 +31,7 @@ _DAC_RATE = 192_000
 
 def trace_table(result: RenderAnalysis) -> Table:
     """Every step of the loop as a table, with the origin in its metadata."""
-    stroke, finger, force = result.stroke, result.finger, result.force
-    columns: dict[str, FloatArray] = {
-        "time_s": stroke.time,
-        "position_x_m": finger.x,
-        "position_y_m": finger.y,
-        "speed_m_per_s": finger.speed,
-        "relative_friction_asked": result.asked,
-        "relative_friction_rendered": stroke.relative_friction_rendered,
-        "amplitude_wanted_m": stroke.wanted,
-        "amplitude_commanded_m": stroke.command,
-        "amplitude_m": stroke.amplitude,
-        "wave_factor": result.factor,
-        "tangential_force_N": force.friction_force,
-        "sticking": force.sticking.astype(float),
-    }
-    if stroke.estimate is not None:
-        columns["estimated_way_m"] = stroke.estimate.position
-        columns["estimated_speed_m_per_s"] = stroke.estimate.speed
-    return Table(columns, {**result.provenance(), "texture": result.played.name,
+    return Table(result.columns(), {**result.provenance(), "texture": result.played.name,
                            "display": result.display.name})  # fmt: skip
 
 

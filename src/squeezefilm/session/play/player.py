@@ -38,7 +38,7 @@ from squeezefilm.session.loop import rows as column
 from squeezefilm.session.loop.plan import LoopPlan
 from squeezefilm.session.loop.rows import flag_meanings
 from squeezefilm.session.play.tile import TextureTile
-from squeezefilm.session.record.trace import TraceWriter
+from squeezefilm.session.record.trace_writer import TraceWriter
 
 PlayMode = Literal["stream", "tile"]
 REPORT_PERIOD: Second = 1e-3

@@ -39,7 +39,7 @@ from squeezefilm.session.loop.process import LoopProcess
 from squeezefilm.session.loop.rows import COLUMNS, SAMPLE_COLUMNS
 from squeezefilm.session.loop.simulated import SimulatedLoop
 from squeezefilm.session.play.player import FADE, Ending, Player, PlayPlan, PlayView
-from squeezefilm.session.record.trace import TraceWriter
+from squeezefilm.session.record.trace_writer import TraceWriter
 
 PAUSE: Second = 1e-3
 """Between two looks of the player at its device."""

@@ -21,7 +21,7 @@ from squeezefilm.session.loop.rows import COLUMNS
 from squeezefilm.session.loop.simulated import SimulatedLoop
 from squeezefilm.session.play.player import FADE, Ending, Player, PlayPlan
 from squeezefilm.session.play.real_time import PlayOutcome, fault_sentence
-from squeezefilm.session.record.trace import TraceWriter
+from squeezefilm.session.record.trace_writer import TraceWriter
 from squeezefilm.twin.device import TwinDevice
 
 STEP: Second = 1e-3

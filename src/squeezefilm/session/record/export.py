@@ -10,7 +10,7 @@ import numpy as np
 from squeezefilm.errors import InputError
 from squeezefilm.formats.traces import Table, csv_text, parquet_bytes
 from squeezefilm.results import write_whole
-from squeezefilm.session.record.reading import Trace, read_trace
+from squeezefilm.session.record.trace import Trace, read_trace
 
 FORMATS = {".csv": "csv", ".parquet": "parquet"}
 

@@ -62,17 +62,11 @@ def exposure(
     """The exposure of a session of `duration` (s) on a display at its own voltage.
 
     The plate or ring is solved and its field searched over all directions (`plate.sound`), which
-    takes seconds. Raises what `analyze_plate` and `analyze_ring` raise.
+    takes seconds. Raises what `solve_plate` raises.
     """
-    from squeezefilm.analysis.plate.command import analyze_plate
-    from squeezefilm.analysis.plate.ring import analyze_ring
-    from squeezefilm.plate.layout import RectangularPlate
+    from squeezefilm.analysis.plate.solve import solve_plate
 
-    field: SoundField
-    if isinstance(display.actuator, RectangularPlate):
-        field = analyze_plate(display, points=41, progress=progress).sound
-    else:
-        field = analyze_ring(display, points=41, progress=progress).sound
+    field = solve_plate(display, points=41, progress=progress).sound
     return exposure_of(display.name, field, duration, distance)
 
 

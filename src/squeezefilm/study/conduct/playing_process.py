@@ -41,7 +41,7 @@ from squeezefilm.results import stamp
 from squeezefilm.session.loop import rows as column
 from squeezefilm.session.play.player import Ending, PlayView
 from squeezefilm.session.play.real_time import PlayOutcome, run_play
-from squeezefilm.session.record.reading import Trace, read_trace
+from squeezefilm.session.record.trace import Trace, read_trace
 from squeezefilm.study.conduct.study_device import DeviceVerification, Exploration
 from squeezefilm.texture_file import TextureFile
 from squeezefilm.twin.settings import TwinSettings

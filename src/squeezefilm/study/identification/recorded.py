@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 
@@ -16,7 +17,7 @@ _EXPLORED = ("mean_speed_m_per_s", "mean_normal_force_N", "path_length_m")
 
 
 def analyze_study(
-    store: StudyStore,
+    store: StudyStore | str | Path,
     *,
     mixed: bool = False,
     resamples: int = 1000,
@@ -25,6 +26,7 @@ def analyze_study(
 ) -> dict[str, IdentificationAnalysis]:
     """The analysis of a match-to-sample study's main trials, by display.
 
+    `store` is the study, or the path of its file.
     Practice, familiarisation and catch trials are left out. Stimuli and gratings are taken in the
     design's order; each stimulus must have the grating of its own period among the answers.
     Results say whose answers they are (`origin_of`). See `analyze_identification` for the rest.
@@ -33,6 +35,11 @@ def analyze_study(
         InputError: another task, stimuli that have no right answer, or no answer yet.
         RecordError: the file is damaged.
     """
+    if not isinstance(store, StudyStore):
+        with StudyStore.open(store) as opened:
+            return analyze_study(
+                opened, mixed=mixed, resamples=resamples, seed=seed, progress=progress
+            )
     design = store.design
     if design.task != "match-to-sample":
         raise InputError(

@@ -14,7 +14,7 @@ from squeezefilm.analysis.analyze import Analysis
 from squeezefilm.errors import InputError
 from squeezefilm.quantities import Unit
 from squeezefilm.report.display import page
-from squeezefilm.report.display.page import report_page, write_report
+from squeezefilm.report.display.page import report_page, write_analysis
 from squeezefilm.report.kit.numbers import shown
 
 FIGURE_KEYS = (
@@ -64,7 +64,7 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Analysis]:
 
     analysis = analyze(load_display("biet2008-plate"))
     steps: list[str] = []
-    path = write_report(analysis, tmp_path_factory.mktemp("out") / "new", steps.append)
+    path = write_analysis(analysis, tmp_path_factory.mktemp("out") / "new", steps.append)
     assert len(steps) == len(FIGURE_KEYS) + 1
     return path, analysis
 
@@ -151,7 +151,7 @@ def test_json_is_strict_and_carries_curves_and_description(
 
 
 def test_names_are_text_and_nothing_else(hostile_analysis: Analysis, folder: Path) -> None:
-    path = write_report(hostile_analysis, folder)
+    path = write_analysis(hostile_analysis, folder)
     text = path.read_text(encoding="utf-8")
     reader = read(text)
     assert "script" not in {tag for tag, _ in reader.elements}
@@ -161,7 +161,7 @@ def test_names_are_text_and_nothing_else(hostile_analysis: Analysis, folder: Pat
 
 
 def test_a_display_that_renders_nothing_still_has_a_report(analysis_of: Any, folder: Path) -> None:
-    path = write_report(analysis_of("no-voltage"), folder)
+    path = write_analysis(analysis_of("no-voltage"), folder)
     assert "No texture can be rendered here" in path.read_text(encoding="utf-8")
     data = json.loads((folder / "result.json").read_text("utf-8"))
     assert data["curves"]["texture"] is None
@@ -185,7 +185,7 @@ def quick(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_a_file_in_place_of_the_folder_is_refused(plate_analysis: Analysis, tmp_path: Path) -> None:
     (tmp_path / "taken").write_text("mine")
     with pytest.raises(InputError, match="is a file, not a folder"):
-        write_report(plate_analysis, tmp_path / "taken")
+        write_analysis(plate_analysis, tmp_path / "taken")
     assert (tmp_path / "taken").read_text() == "mine"
     assert everything_in(tmp_path) == ["taken"]
 
@@ -196,7 +196,7 @@ def test_a_file_further_up_is_refused(
     quick(monkeypatch)
     (tmp_path / "taken").write_text("mine")
     with pytest.raises(InputError, match="cannot write"):
-        write_report(plate_analysis, tmp_path / "taken" / "below")
+        write_analysis(plate_analysis, tmp_path / "taken" / "below")
     assert everything_in(tmp_path) == ["taken"]
 
 
@@ -206,7 +206,7 @@ def test_if_the_page_cannot_be_written_the_numbers_are_not_left_alone(
     quick(monkeypatch)
     (tmp_path / "report.html").mkdir()
     with pytest.raises(InputError, match=r"report\.html"):
-        write_report(plate_analysis, tmp_path)
+        write_analysis(plate_analysis, tmp_path)
     assert everything_in(tmp_path) == ["report.html"]
 
 
@@ -217,7 +217,7 @@ def test_if_the_page_cannot_be_written_the_old_numbers_come_back(
     (tmp_path / "report.html").mkdir()
     (tmp_path / "result.json").write_text("old")
     with pytest.raises(InputError):
-        write_report(plate_analysis, tmp_path)
+        write_analysis(plate_analysis, tmp_path)
     assert (tmp_path / "result.json").read_text() == "old"
 
 
@@ -227,7 +227,7 @@ def test_if_the_numbers_cannot_be_written_neither_is_the_page(
     quick(monkeypatch)
     (tmp_path / "result.json").mkdir()
     with pytest.raises(InputError, match=r"result\.json"):
-        write_report(plate_analysis, tmp_path)
+        write_analysis(plate_analysis, tmp_path)
     assert everything_in(tmp_path) == ["result.json"]
 
 
@@ -239,5 +239,5 @@ def test_a_figure_that_fails_leaves_nothing(
 
     monkeypatch.setattr(page, "report_page", fail)
     with pytest.raises(RuntimeError):
-        write_report(plate_analysis, folder)
+        write_analysis(plate_analysis, folder)
     assert not folder.exists()

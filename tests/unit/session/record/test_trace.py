@@ -15,8 +15,8 @@ from squeezefilm.formats.traces import table_from_csv, table_from_parquet
 from squeezefilm.results import stamp
 from squeezefilm.session.record import trace_file
 from squeezefilm.session.record.export import export_trace
-from squeezefilm.session.record.reading import read_trace
-from squeezefilm.session.record.trace import TraceWriter
+from squeezefilm.session.record.trace import read_trace
+from squeezefilm.session.record.trace_writer import TraceWriter
 
 COLUMNS = ("time_s", "x_m")
 

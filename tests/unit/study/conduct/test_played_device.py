@@ -11,7 +11,7 @@ import pytest
 
 from squeezefilm.errors import InputError
 from squeezefilm.session.loop import rows as column
-from squeezefilm.session.record.reading import Damage, Trace
+from squeezefilm.session.record.trace import Damage, Trace
 from squeezefilm.study.conduct.played_device import SessionDevice, require_study_drive
 from squeezefilm.study.conduct.playing_process import explored
 from squeezefilm.study.conduct.run import Response, StudyRun

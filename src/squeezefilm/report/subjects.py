@@ -1,0 +1,205 @@
+"""Whatever came out, drawn and written: which figures and which report a result has, by its type.
+
+`plot` and `write_report` are the front door's; each draws and writes by what the folders beside
+this file have.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from squeezefilm.analysis.analyze import Analysis
+from squeezefilm.analysis.film.command import FilmAnswer, FilmMap
+from squeezefilm.analysis.friction.command import FrictionAnalysis
+from squeezefilm.analysis.plate.command import PlateAnalysis
+from squeezefilm.analysis.plate.ring import RingAnalysis
+from squeezefilm.analysis.plate.sensitivity import SensitivityTable
+from squeezefilm.analysis.plate.tracking import ModeTracks
+from squeezefilm.bench.play import PlayResult
+from squeezefilm.bench.played_session import PlayedSession
+from squeezefilm.chain.prediction import Prediction
+from squeezefilm.chain.rendered_texture import RenderAnalysis
+from squeezefilm.chain.stroke_force import StrokeForce
+from squeezefilm.errors import InputError
+from squeezefilm.quantities import did_you_mean
+from squeezefilm.render.texture.composition import Composable
+from squeezefilm.report import film_map
+from squeezefilm.report.display.figures import FIGURES
+from squeezefilm.report.display.page import write_analysis
+from squeezefilm.report.friction import figures as friction
+from squeezefilm.report.plate import mode_surface, plate, ring, sensitivity_figures
+from squeezefilm.report.played import figures as played
+from squeezefilm.report.played.page import write_play
+from squeezefilm.report.study import figures as study
+from squeezefilm.report.study import observer_figures, psychometric_figure, time_figures
+from squeezefilm.report.study.page import write_study
+from squeezefilm.report.study.simulated_page import write_simulated
+from squeezefilm.report.textures import figures as textures
+from squeezefilm.report.textures import gallery, sliding_figures
+from squeezefilm.report.textures.page import write_render
+from squeezefilm.study.identification.analysis import IdentificationAnalysis
+from squeezefilm.study.psychometric.fit import PsychometricFit
+from squeezefilm.study.simulated.participants import SimulatedStudy
+from squeezefilm.study.simulated.planned_power import PlannedPower
+from squeezefilm.texture_file import TextureFile
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_Draw = Callable[[Any], "Figure"]
+
+
+@dataclass(frozen=True)
+class _Subject:
+    """What one type of result has: its figures by name, the first one shown unless another is asked
+    for, and what writes its report into a folder."""
+
+    figures: Mapping[str, _Draw]
+    write: Callable[..., Path] | None = None
+
+
+def _of_session(draw: _Draw) -> _Draw:
+    return lambda result: draw(result.session)
+
+
+def _of_tables(draw: _Draw) -> _Draw:
+    return lambda result: draw(result.tables)
+
+
+_PLAYED: Mapping[str, _Draw] = {
+    "friction": played.friction, "amplitude": played.amplitude, "lateness": played.lateness,
+}  # fmt: skip
+
+SUBJECTS: Mapping[type, _Subject] = {
+    Prediction: _Subject({"friction": lambda one: friction.predictions([one])}),
+    Analysis: _Subject(
+        {"chain": friction.chain, **{one.key: one.draw for one in FIGURES}}, write_analysis
+    ),
+    FrictionAnalysis: _Subject(
+        {
+            "models": friction.models, "map": friction.friction_map,
+            "uncertainty": friction.uncertainty, "ripple": friction.ripple,
+        },
+        friction.write_friction,
+    ),
+    FilmAnswer: _Subject({"pressure": film_map.film_pressure}),
+    FilmMap: _Subject({"map": film_map.film_map}, film_map.write_film_map),
+    PlateAnalysis: _Subject(
+        {
+            "surface": mode_surface.mode_surface, "plan": plate.plan_view,
+            "scan": plate.line_scan, "response": plate.frequency_response,
+            "admittance": plate.admittance,
+        },
+        plate.write_plate,
+    ),
+    RingAnalysis: _Subject(
+        {"shape": ring.shape, "scan": ring.scan, "response": ring.response}, ring.write_ring
+    ),
+    SensitivityTable: _Subject({"tornado": sensitivity_figures.tornado}),
+    ModeTracks: _Subject({"tracks": sensitivity_figures.tracks}),
+    TextureFile: _Subject({"texture": gallery.picture}),
+    Composable: _Subject({"texture": lambda one: gallery.picture(TextureFile.of(one))}),
+    RenderAnalysis: _Subject(
+        {
+            "friction": textures.friction, "drive": textures.drive, "contrast": textures.contrast,
+            "way": textures.way, "wave": textures.ripple,
+        },
+        write_render,
+    ),
+    StrokeForce: _Subject({"force": sliding_figures.tangential_force}),
+    PlayedSession: _Subject(_PLAYED),
+    PlayResult: _Subject({key: _of_session(draw) for key, draw in _PLAYED.items()}, write_play),
+    IdentificationAnalysis: _Subject(
+        {
+            "confusion": study.confusion, "correct": study.proportion_correct,
+            "information": study.information, "sensitivity": study.sensitivity,
+            "similarities": study.similarities, "times": time_figures.response_times,
+            "exploration": time_figures.exploration,
+        },
+        write_study,
+    ),
+    SimulatedStudy: _Subject(
+        {
+            "percepts": _of_tables(observer_figures.percepts),
+            "channels": _of_tables(observer_figures.channels),
+        },
+        write_simulated,
+    ),
+    PlannedPower: _Subject({"power": lambda one: time_figures.power(one.curve)}),
+    PsychometricFit: _Subject({"function": psychometric_figure.psychometric_function}),
+}  # fmt: skip
+"""Figures and report of every type of result."""
+
+
+def plot(result: Any, figure: str | None = None) -> Figure:
+    """A matplotlib figure of a result, or of a list of predictions: a sweep.
+
+    `figure` names another than the one shown without it; a wrong name is answered with those there
+    are. Show it in a notebook, or `savefig` it.
+
+    Raises `InputError` for what has no figure, or not this one.
+    """
+    if isinstance(result, Sequence) and result and isinstance(result[0], Prediction):
+        drawn = friction.predictions(result)
+    else:
+        figures = _subject(result, "figure").figures
+        name = next(iter(figures)) if figure is None else figure
+        if name not in figures:
+            raise InputError(
+                f"a {type(result).__name__} has no figure '{name}'.{did_you_mean(name, figures)} "
+                f"It has: {', '.join(figures)}"
+            )
+        drawn = figures[name](result)
+    # Reports put figures on a ground of their own; alone, a figure brings one.
+    drawn.set_facecolor("white")
+    return drawn
+
+
+def write_report(result: Any, folder: str | Path, **options: Any) -> Path:
+    """Write the numbers and figures of a result, for most also a page, into a folder.
+
+    `options` go to the writer of its type (for a rendering `drive=True`, `hjif=True`,
+    `table="parquet"`). A study's analyses by display get a folder each. Returns the path of the
+    page, or the folder where there is none.
+
+    Raises `InputError` for what has no report, and where nothing can be written.
+    """
+    folder = Path(folder)
+    if isinstance(result, Mapping):
+        for name, one in result.items():
+            write_report(one, folder / str(name), **options)
+        return folder
+    write = _subject(result, "report").write
+    if write is None:
+        raise InputError(
+            f"a {type(result).__name__} has no report; take plot(result), or to_dict() and "
+            "to_pandas() for its numbers"
+        )
+    return write(result, folder, **options)
+
+
+def write_mode(result: PlateAnalysis | RingAnalysis, file: str | Path) -> Path:
+    """Write a plate's working mode and its response at the display's voltage as .vtu, for ParaView.
+
+    Raises `InputError` for a disc or stator, which is solved by Fourier harmonics and has no
+    volume.
+    """
+    if not isinstance(result, PlateAnalysis):
+        raise InputError(
+            f"'{result.display.name}' is no rectangular plate: it was solved by Fourier harmonics, "
+            "and there is no volume to write"
+        )
+    return plate.write_mode(result, Path(file))
+
+
+def _subject(result: Any, wanted: str) -> _Subject:
+    for kind in type(result).__mro__:
+        if kind in SUBJECTS:
+            return SUBJECTS[kind]
+    raise InputError(
+        f"a {type(result).__name__} has no {wanted}; these have: "
+        f"{', '.join(kind.__name__ for kind in SUBJECTS)}"
+    )
