@@ -1,26 +1,16 @@
 """A square grating under a finger whose skin has a mass: its force, and how the skin vibrates."""
 
-from squeezefilm.chain.prediction import predict
-from squeezefilm.chain.stroke_force import stroke_force
-from squeezefilm.contact.finger.fingerpad import EVIDENCE
-from squeezefilm.display import load_display
-from squeezefilm.render.fidelity.trace import friction_trace
-from squeezefilm.render.motion.stroke import Stroke
-from squeezefilm.render.resonator.envelope import envelope_time_constant
-from squeezefilm.render.texture.gratings import Square
+import squeezefilm as sf
 
 
 def main() -> dict[str, float]:
-    display = load_display("biet2008-plate")
-    p = predict(display, model="paper2008")
-    tau = float(envelope_time_constant(p.mode.quality_factor, p.mode.resonance_frequency))
-    grating = Square(spatial_period=1e-3, low=0.0, high=p.vibration_amplitude)
-    friction = p.law.table(p.vibration_amplitude)
-    trace = friction_trace(grating, Stroke(speed=0.08, length=0.04), tau, friction)
-    force = stroke_force(trace, display.surface().friction_coefficient, 0.5)
-    lines = force.vibration()
-    motion = force.motion
-    sliding = motion.bone_force[motion.time >= force.settled]
+    high = sf.predict("biet2008-plate", model="paper2008").vibration_amplitude
+    grating = sf.Amplitude(sf.SquareWave("1 mm"), 0.0, high)
+    rendered = sf.render_texture(
+        "biet2008-plate", grating, "80 mm/s over 4 cm", model="paper2008", normal_force="0.5 N"
+    )
+    motion, lines = rendered.force, rendered.skin_vibration()
+    sliding = motion.bone_force[motion.time >= lines.start]
     result = {
         "sticks_until_s": float(motion.time[motion.sticking][-1]),
         "least_force_N": float(sliding.min()),
@@ -31,7 +21,6 @@ def main() -> dict[str, float]:
     }
     for name, value in result.items():
         print(f"{name}: {value:.4g}")
-    print("The pad's mechanics are unverified defaults:", *EVIDENCE.values(), sep="\n  ")
     return result
 
 

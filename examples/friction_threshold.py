@@ -1,39 +1,35 @@
 """The least drop of friction that a (simulated) person tells from none, in two intervals."""
 
 import json
+from statistics import NormalDist
 
 import numpy as np
 
-from squeezefilm.study.adaptive.bayesian import AdaptiveDesign, BayesianAdaptive
-from squeezefilm.study.psychometric.discrimination import alternatives_d_prime
-from squeezefilm.study.psychometric.fit import fit_psychometric
-from squeezefilm.study.psychometric.function import PsychometricFunction
-from squeezefilm.study.psychometric.prior import PsychometricPrior
+import squeezefilm as sf
 
 
 def main() -> dict[str, float]:
     # Relative drops of friction from 1 to 60 %; the axis is logarithmic.
     drops = tuple(np.geomspace(0.01, 0.6, 25))
-    prior = PsychometricPrior(threshold=(0.01, 0.5), width=(0.2, 4.0))
-    design = AdaptiveDesign(drops, prior, shape="weibull", axis="log", most_trials=150)
+    prior = sf.PsychometricPrior(threshold=(0.01, 0.5), width=(0.2, 4.0))
+    design = sf.AdaptiveDesign(drops, prior, shape="weibull", axis="log", most_trials=150)
 
     # Who answers: half way from chance to the best at a drop of 11 %, 2 % lapses (assumed).
-    person = PsychometricFunction("weibull", 0.11, 1.2, 0.5, 0.02, "log")
+    person = sf.PsychometricFunction("weibull", 0.11, 1.2, 0.5, 0.02, "log")
     chance = np.random.default_rng(7)
 
-    method = BayesianAdaptive(design)
+    method = sf.BayesianAdaptive(design)
     while not method.finished:
         drop = method.next_stimulus()
         method.update(drop, bool(chance.random() < person(drop)))
         if len(method.trials) == 75:  # stopped and resumed: the same as if it had not been
-            method = BayesianAdaptive.from_state(json.loads(json.dumps(method.state())))
+            method = sf.BayesianAdaptive.from_state(json.loads(json.dumps(method.state())))
 
-    fit = fit_psychometric(
+    fit = sf.fit_psychometric(
         [trial.intensity for trial in method.trials],
         [trial.positive for trial in method.trials],
         shape="weibull",
         axis="log",
-        guess_rate=0.5,
         prior=prior,
         replicates=199,
     )
@@ -42,7 +38,7 @@ def main() -> dict[str, float]:
         low, high = getattr(fit, f"{kind}_interval")["threshold"]
         print(f"threshold {threshold:.3f} ({low:.3f} to {high:.3f} by {kind})")
     low, high = fit.posterior_interval["threshold"]
-    d_prime = alternatives_d_prime(float(fit.function(threshold)), alternatives=2)
+    d_prime = 2**0.5 * NormalDist().inv_cdf(float(fit.function(threshold)))
     print(f"d' at the threshold is {d_prime:.2f}")
     return {"threshold": threshold, "low": low, "high": high, "d_prime": d_prime}
 

@@ -1,55 +1,41 @@
-"""A texture of friction, composed, written to a file, and played on the paper's plate."""
+"""A texture of friction, composed, written to a file, and rendered on the paper's plate."""
 
-import numpy as np
+import tempfile
+from pathlib import Path
 
-from squeezefilm.chain.prediction import predict
-from squeezefilm.display import load_display
-from squeezefilm.render.program.inverse import FrictionInverse
-from squeezefilm.render.program.lowering import lower
-from squeezefilm.render.program.renderer import render
-from squeezefilm.render.program.wave import WaveCompensation
-from squeezefilm.render.texture.gates import speed
-from squeezefilm.render.texture.levels import RelativeFriction
-from squeezefilm.render.texture.noise import Noise
-from squeezefilm.render.texture.shapes import Band, Bump, SquareWave
-from squeezefilm.texture_file import texture_from_text, texture_text
+import squeezefilm as sf
 
 
 def main() -> dict[str, float]:
-    p = predict(load_display("biet2008-plate"))
-    inverse = FrictionInverse.from_function(
-        p.law.table(p.vibration_amplitude), p.vibration_amplitude
-    )
-    least = inverse.least_friction
-    print(f"friction from {least:.2f} to 1, met within {inverse.max_error:.1e}")
+    p = sf.predict("biet2008-plate")
+    least = p.inverse.least_friction
+    print(f"friction from {least:.2f} to 1, met within {p.inverse.max_error:.1e}")
 
     # A grating of 2 mm, then a rough stretch with a bump in it; at rest unless the finger moves.
-    fine = RelativeFriction(SquareWave(2e-3), least, 1.0)
-    rough = RelativeFriction(Noise(1e-3, seed=7) | Bump(0.03, 2e-3), least, 1.0)
-    texture = (fine.then(rough, at=0.02) & Band(0.0, 0.04, fade=1e-3)).when(speed > 0.005)
-    text = texture_text(texture)
-    assert texture_from_text(text).texture == texture
-    print(text)
+    fine = sf.RelativeFriction(sf.SquareWave("2 mm"), least, 1.0)
+    rough = sf.RelativeFriction(sf.Noise("1 mm", seed=7) | sf.Bump("30 mm", "2 mm"), least, 1.0)
+    whole = fine.then(rough, at="20 mm") & sf.Band("1 mm", "40 mm", fade="1 mm")
+    texture = whole.when(sf.speed > "5 mm/s")
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "texture.toml"
+        sf.save_texture(texture, file)
+        print(file.read_text())
+        assert sf.load_texture(file).texture == texture
 
-    # A finger at 80 mm/s; the sensor loses it for 15 ms.
-    t = np.arange(0.0, 0.5, 1e-3)
-    x = 0.08 * t
-    x[100:115] = np.nan
-    played = render(lower(texture, inverse=inverse), x, 0.0, 0.08, t)
+    played = sf.render_texture("biet2008-plate", texture, "80 mm/s over 4 cm")
     print(f"{played.counters}")
 
-    # The plate's wave is weaker off its antinodes; dividing by it costs amplitude.
-    wave = WaveCompensation.over_contact(p.mode.half_wavelength, contact_length=6e-3)
-    evened = render(lower(texture, inverse=inverse, compensation=wave), x, 0.0, 0.08, t)
+    # The plate's wave is weaker off its antinodes; making up for it costs amplitude.
+    evened = sf.render_texture("biet2008-plate", texture, "80 mm/s over 4 cm", wave="compensated")
     print(f"with the wave made up for, {evened.counters.saturated} ticks want more than there is")
     return {
         "least_friction": least,
-        "inverse_error": inverse.max_error,
-        "largest_amplitude_m": float(played.amplitude.max()),
+        "inverse_error": p.inverse.max_error,
+        "largest_amplitude_m": float(played.stroke.wanted.max()),
         "available_amplitude_m": p.vibration_amplitude,
-        "lost": played.counters.bad_place,
         "unreachable": played.counters.unreachable,
         "saturated": evened.counters.saturated,
+        "ticks": evened.counters.ticks,
     }
 
 

@@ -24,7 +24,9 @@ from squeezefilm.chain.played_texture import (
 )
 from squeezefilm.chain.prediction import Prediction, predict
 from squeezefilm.chain.standing_wave import resonance_with_finger, wave_factors
+from squeezefilm.chain.stroke_force import first_pass_vibration
 from squeezefilm.contact.sliding.march import Sliding, slide
+from squeezefilm.contact.sliding.skin_vibration import SkinVibration
 from squeezefilm.display import Display, NamedDisplay
 from squeezefilm.errors import InputError
 from squeezefilm.formats.trajectories import Motion, NamedMotion
@@ -148,8 +150,15 @@ class RenderAnalysis(Result):
             columns["estimated_speed_m_per_s"] = stroke.estimate.speed
         return columns
 
-    def _table(self) -> Any:
-        return self.columns()
+    _table = columns
+
+    def skin_vibration(self, harmonics: int = 5) -> SkinVibration:
+        """Spectra of the skin as `StrokeForce.vibration`. Raises `InputError` for another motion
+        than a stroke, or a texture without a single period along it."""
+        period = self.played.spatial_period
+        if period is None or not isinstance(self.motion, Stroke):
+            raise InputError("a spectrum needs a grating of one period under a stroke along x")
+        return first_pass_vibration(self.force, self.motion, period, harmonics)
 
     def summary(self) -> dict[str, Any]:
         """What ``--json`` prints and fidelity.json holds; keys carry units."""

@@ -16,8 +16,9 @@ from squeezefilm.contact.sliding.skin_vibration import (
     texture_frequency,
 )
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import Dimensionless, Newton, NewtonLike, Second, Unit, require
+from squeezefilm.quantities import Dimensionless, Metre, Newton, NewtonLike, Second, Unit, require
 from squeezefilm.render.fidelity.trace import FrictionTrace
+from squeezefilm.render.motion.stroke import Stroke
 from squeezefilm.render.texture.gratings import Sine, Square
 
 # Of the skin's slower time constant: what is left of a start by then is 1 %.
@@ -62,13 +63,7 @@ class StrokeForce:
                 f"a {type(texture).__name__} has no spatial period to look for; call "
                 "skin_vibration on `motion` with a frequency of your choice"
             )
-        return skin_vibration(
-            self.motion,
-            float(texture_frequency(stroke.speed, texture.spatial_period)),
-            harmonics,
-            start=self.settled,
-            end=min(stroke.pass_duration, float(self.motion.time[-1])),
-        )
+        return first_pass_vibration(self.motion, stroke, texture.spatial_period, harmonics)
 
 
 def settled_after(motion: Sliding) -> Second:
@@ -77,6 +72,22 @@ def settled_after(motion: Sliding) -> Second:
     free = np.flatnonzero(~motion.sticking)
     first = float(motion.time[free[0]]) if free.size else 0.0
     return first + _SETTLING * motion.fingerpad.settling_time_constant
+
+
+def first_pass_vibration(
+    motion: Sliding, stroke: Stroke, spatial_period: Metre, harmonics: int
+) -> SkinVibration:
+    """Spectra of the skin in the settled part of a stroke's first pass, with the lines of a period.
+
+    Raises `InputError` for a pass with fewer than two periods after the start has settled.
+    """
+    return skin_vibration(
+        motion,
+        float(texture_frequency(stroke.speed, spatial_period)),
+        harmonics,
+        start=min(settled_after(motion), stroke.pass_duration),
+        end=min(stroke.pass_duration, float(motion.time[-1])),
+    )
 
 
 def stroke_force(

@@ -1,0 +1,67 @@
+"""Every Python snippet of the README and of the docs runs; those of one page share their names."""
+
+import re
+import textwrap
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
+FENCED = re.compile(
+    r"^(?P<heavy><!-- nightly -->\n)?```python\n(?P<code>.*?)^```", re.MULTILINE | re.DOTALL
+)
+
+
+def _snippets(page: Path) -> list[tuple[int, bool, str]]:
+    """Line, whether it is heavy, and code of every fenced Python block of a page."""
+    text = page.read_text(encoding="utf-8")
+    return [
+        (text[: found.start("code")].count("\n"), found["heavy"] is not None, found["code"])
+        for found in FENCED.finditer(text)
+    ]
+
+
+WITH_SNIPPETS = [page for page in PAGES if _snippets(page)]
+
+
+def _run(page: Path, folder: Path, monkeypatch: pytest.MonkeyPatch, *, heavy: bool) -> None:
+    monkeypatch.chdir(folder)
+    names: dict[str, Any] = {"__name__": "snippet"}
+    for line, nightly, code in _snippets(page):
+        if nightly and not heavy:
+            continue
+        # Blank lines before it, so that an error names the page's own line.
+        exec(compile("\n" * line + code, page.name, "exec"), names)
+
+
+@pytest.mark.parametrize("page", WITH_SNIPPETS, ids=lambda page: page.name)
+def test_the_snippets_of_a_page_run(
+    page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    _run(page, tmp_path, monkeypatch, heavy=False)
+
+
+@pytest.mark.nightly
+@pytest.mark.realtime
+@pytest.mark.parametrize(
+    "page",
+    [page for page in WITH_SNIPPETS if any(heavy for _, heavy, _ in _snippets(page))],
+    ids=lambda page: page.name,
+)
+def test_the_heavy_snippets_run_too(
+    page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    _run(page, tmp_path, monkeypatch, heavy=True)
+
+
+def test_the_ten_tasks_are_ten_each_under_ten_lines_and_with_one_import_of_ours() -> None:
+    page = ROOT / "docs" / "front-door.md"
+    codes = [code for _, _, code in _snippets(page)]
+    assert len(codes) == 10
+    for code in codes:
+        assert len(code.strip().splitlines()) < 10, textwrap.shorten(code, 80)
+    ours = [line for code in codes for line in code.splitlines() if "import squeezefilm" in line]
+    assert ours == ["import squeezefilm as sf"]
+    assert not any("from squeezefilm" in code for code in codes)
