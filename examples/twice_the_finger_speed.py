@@ -9,9 +9,14 @@ def main() -> dict[str, object]:
     reports = {}
     for compensation in ("none", "inverse", "preview"):
         r = reports[compensation] = sf.render_texture(
-            "biet2008-plate", grating, "239 mm/s over 5 cm, 4 passes", compensation=compensation,
-            braking=True, sensor="LVDT 10 kHz", control_rate="40 kHz",
-        ).fidelity  # fmt: skip
+            "biet2008-plate",
+            grating,
+            "239 mm/s over 5 cm, 4 passes",
+            compensation=compensation,
+            braking=True,
+            sensor="LVDT 10 kHz",
+            control_rate="40 kHz",
+        ).fidelity
         print(
             f"{compensation:>8}: friction errs by {r.rms_error:.3f}, "
             f"keeps {r.contrast_kept[0]:.0%} of its contrast, trails {1e6 * r.lag:.0f} µm"

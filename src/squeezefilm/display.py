@@ -153,9 +153,7 @@ class Display(Result):
     provenance: Mapping[str, Provenance] = field(
         default_factory=dict, metadata={"loader": True}, compare=False, repr=False
     )
-    _shown: ClassVar[tuple[str, ...]] = (
-        "name", "title", "actuator.type", "drive.voltage", "finger.normal_force",
-    )  # fmt: skip
+    _shown: ClassVar[str] = "name title actuator.type drive.voltage finger.normal_force"
 
     def __post_init__(self) -> None:
         if not self.surfaces:

@@ -63,12 +63,12 @@ def to_json(value: Any) -> Any:
 class Result:
     """What results have in common: a short `repr`, a table for notebooks, and ways out of Python.
 
-    `_shown` names the attributes that a person looks for first (dotted ones of what is inside), and
+    `_shown` names, between blanks, what a person looks for first (dotted: inside of it), and
     `summary` is what the command line's ``--json`` prints, where there is such a verb.
     """
 
     __slots__ = ()
-    _shown: ClassVar[tuple[str, ...]] = ()
+    _shown: ClassVar[str] = ""
 
     def summary(self) -> dict[str, Any]:
         """The numbers as plain JSON values, with units in the keys."""
@@ -111,7 +111,7 @@ class Result:
         return f"<table><caption>{type(self).__name__}</caption>{rows}</table>"
 
     def _told(self) -> Iterator[tuple[str, str]]:
-        for path in self._shown:
+        for path in self._shown.split():
             *owners, name = path.split(".")
             owner: Any = self
             for one in owners:

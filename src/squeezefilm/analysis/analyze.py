@@ -86,11 +86,11 @@ class Analysis(Result):
     compensated: CompensatedGrating | None
     survival: TextureSurvival | None
     verdict: tuple[Finding, ...]
-    _shown: ClassVar[tuple[str, ...]] = (
-        "display.name", "prediction.model", "prediction.voltage", "prediction.frequency",
-        "prediction.vibration_amplitude", "prediction.relative_friction", "uncertainty.interval",
-        "envelope_time_constant",
-    )  # fmt: skip
+    _shown: ClassVar[str] = (
+        "display.name prediction.model prediction.voltage prediction.frequency "
+        "prediction.vibration_amplitude prediction.relative_friction uncertainty.interval "
+        "envelope_time_constant"
+    )
 
     def finest_period(self) -> dict[str, float]:
         """The finest square grating (m) that keeps 90 % of its amplitude swing, by finger speed."""

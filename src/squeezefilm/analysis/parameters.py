@@ -98,15 +98,22 @@ def value_at(display: Display, path: str) -> tuple[float, Unit]:
 
     Raises `InputError` for a path that leads to no number.
     """
-    owner: Any = display
-    parts = path.split(".")
-    for part in parts[:-1]:
-        owner = _inside(owner, part, path)
-    found = _inside(owner, parts[-1], path)
-    if isinstance(found, bool) or not isinstance(found, int | float):
-        raise InputError(f"'{path}' of a display is no number; go on with one of its parts")
+    owner, name = _place(display, path)
     hints = typing.get_type_hints(type(owner), include_extras=True)
-    return float(found), unit_of(hints[parts[-1]]) or Unit("1")
+    return float(getattr(owner, name)), unit_of(hints[name]) or Unit("1")
+
+
+def _place(display: Display, path: str) -> tuple[Any, str]:
+    """What holds the number at a dotted path, and its name there."""
+    owner: Any = display
+    *heads, name = path.split(".")
+    for part in heads:
+        owner = _inside(owner, part, path)
+    found = _inside(owner, name, path)
+    # An optional number that the description leaves out may be given.
+    if isinstance(found, bool | str | tuple) or dataclasses.is_dataclass(found):
+        raise InputError(f"'{path}' of a display is no number; write the path of one")
+    return owner, name
 
 
 def _inside(owner: Any, part: str, path: str) -> Any:
@@ -133,9 +140,11 @@ def replaced(display: NamedDisplay, values: Mapping[str, float | str]) -> Displa
     """
     tree: dict[str, Any] = {}
     for path, given in values.items():
+        owner, name = _place(display, path)
         value = given
         if isinstance(given, str):
-            value = parse_quantity(given, value_at(display, path)[1])
+            hints = typing.get_type_hints(type(owner), include_extras=True)
+            value = parse_quantity(given, unit_of(hints[name]) or Unit("1"))
         node = tree
         *heads, last = path.split(".")
         for part in heads:

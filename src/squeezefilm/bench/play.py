@@ -66,12 +66,8 @@ class PlayResult(Result):
     outcome: PlayOutcome
     session: PlayedSession
     folder: Path | None
-    _shown: ClassVar[tuple[str, ...]] = (
-        "session.setup.display.name",
-        "session.setup.name",
-        "outcome.ending.value",
-        "outcome.message",
-        "folder",
+    _shown: ClassVar[str] = (
+        "session.setup.display.name session.setup.name outcome.ending.value outcome.message folder"
     )
 
     def summary(self) -> dict[str, Any]:

@@ -104,11 +104,7 @@ class PlayedSession(Result):
     lag: LagSummary | None
     flags: Mapping[str, int]
     device_events: tuple[Mapping[str, Any], ...]
-    _shown: ClassVar[tuple[str, ...]] = (
-        "setup.display.name",
-        "setup.name",
-        "position_error",
-    )
+    _shown: ClassVar[str] = "setup.display.name setup.name position_error"
 
     def end(self) -> Mapping[str, Any]:
         """The fields of the session's last event; empty where it had no end."""

@@ -91,10 +91,10 @@ class Prediction(Result):
     tangential_force: Newton
     validity: FilmValidity
     warnings: tuple[str, ...]
-    _shown: ClassVar[tuple[str, ...]] = (
-        "display", "model", "voltage", "frequency", "normal_force", "vibration_amplitude",
-        "relative_friction", "tangential_force",
-    )  # fmt: skip
+    _shown: ClassVar[str] = (
+        "display model voltage frequency normal_force vibration_amplitude relative_friction "
+        "tangential_force"
+    )
 
     @functools.cached_property
     def friction(self) -> FrictionTable:

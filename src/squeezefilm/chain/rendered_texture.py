@@ -100,13 +100,8 @@ class RenderAnalysis(Result):
     fidelity: FidelityReport | None
     unjudged: str | None
     seed: int
-    _shown: ClassVar[tuple[str, ...]] = (
-        "display.name",
-        "texture.title",
-        "stroke.compensation",
-        "rms_error",
-        "time_constant",
-        "unjudged",
+    _shown: ClassVar[str] = (
+        "display.name texture.title stroke.compensation rms_error time_constant unjudged"
     )
 
     @property

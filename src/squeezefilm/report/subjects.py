@@ -70,8 +70,10 @@ def _of_tables(draw: _Draw) -> _Draw:
 
 
 _PLAYED: Mapping[str, _Draw] = {
-    "friction": played.friction, "amplitude": played.amplitude, "lateness": played.lateness,
-}  # fmt: skip
+    "friction": played.friction,
+    "amplitude": played.amplitude,
+    "lateness": played.lateness,
+}
 
 SUBJECTS: Mapping[type, _Subject] = {
     Prediction: _Subject({"friction": lambda one: friction.predictions([one])}),
@@ -80,8 +82,10 @@ SUBJECTS: Mapping[type, _Subject] = {
     ),
     FrictionAnalysis: _Subject(
         {
-            "models": friction.models, "map": friction.friction_map,
-            "uncertainty": friction.uncertainty, "ripple": friction.ripple,
+            "models": friction.models,
+            "map": friction.friction_map,
+            "uncertainty": friction.uncertainty,
+            "ripple": friction.ripple,
         },
         friction.write_friction,
     ),
@@ -89,8 +93,10 @@ SUBJECTS: Mapping[type, _Subject] = {
     FilmMap: _Subject({"map": film_map.film_map}, film_map.write_film_map),
     PlateAnalysis: _Subject(
         {
-            "surface": mode_surface.mode_surface, "plan": plate.plan_view,
-            "scan": plate.line_scan, "response": plate.frequency_response,
+            "surface": mode_surface.mode_surface,
+            "plan": plate.plan_view,
+            "scan": plate.line_scan,
+            "response": plate.frequency_response,
             "admittance": plate.admittance,
         },
         plate.write_plate,
@@ -104,8 +110,11 @@ SUBJECTS: Mapping[type, _Subject] = {
     Composable: _Subject({"texture": lambda one: gallery.picture(TextureFile.of(one))}),
     RenderAnalysis: _Subject(
         {
-            "friction": textures.friction, "drive": textures.drive, "contrast": textures.contrast,
-            "way": textures.way, "wave": textures.ripple,
+            "friction": textures.friction,
+            "drive": textures.drive,
+            "contrast": textures.contrast,
+            "way": textures.way,
+            "wave": textures.ripple,
         },
         write_render,
     ),
@@ -114,9 +123,12 @@ SUBJECTS: Mapping[type, _Subject] = {
     PlayResult: _Subject({key: _of_session(draw) for key, draw in _PLAYED.items()}, write_play),
     IdentificationAnalysis: _Subject(
         {
-            "confusion": study.confusion, "correct": study.proportion_correct,
-            "information": study.information, "sensitivity": study.sensitivity,
-            "similarities": study.similarities, "times": time_figures.response_times,
+            "confusion": study.confusion,
+            "correct": study.proportion_correct,
+            "information": study.information,
+            "sensitivity": study.sensitivity,
+            "similarities": study.similarities,
+            "times": time_figures.response_times,
             "exploration": time_figures.exploration,
         },
         write_study,
@@ -130,7 +142,7 @@ SUBJECTS: Mapping[type, _Subject] = {
     ),
     PlannedPower: _Subject({"power": lambda one: time_figures.power(one.curve)}),
     PsychometricFit: _Subject({"function": psychometric_figure.psychometric_function}),
-}  # fmt: skip
+}
 """Figures and report of every type of result."""
 
 

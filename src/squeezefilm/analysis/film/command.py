@@ -66,10 +66,9 @@ class FilmAnswer(Result):
     status: str
     model: str
     film: FilmSolution | FilmPlanar
-    _shown: ClassVar[tuple[str, ...]] = (
-        "request.shape", "squeeze_number", "excursion_ratio", "over_pressure",
-        "over_pressure_error", "status",
-    )  # fmt: skip
+    _shown: ClassVar[str] = (
+        "request.shape squeeze_number excursion_ratio over_pressure over_pressure_error status"
+    )
 
     def summary(self) -> dict[str, Any]:
         """What ``--json`` prints."""
@@ -127,9 +126,11 @@ def solve_film(
     """
     request = FilmRequest(shape, aspect_ratio, polytropic_exponent, knudsen_number, slip, tolerance)
     gas: dict[str, Any] = {
-        "polytropic_exponent": polytropic_exponent, "knudsen_number": knudsen_number,
-        "slip": slip, "tolerance": tolerance,
-    }  # fmt: skip
+        "polytropic_exponent": polytropic_exponent,
+        "knudsen_number": knudsen_number,
+        "slip": slip,
+        "tolerance": tolerance,
+    }
     film: FilmSolution | FilmPlanar
     if not isinstance(gap, float | int):
         if shape != "strip":

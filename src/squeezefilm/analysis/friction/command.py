@@ -84,14 +84,9 @@ class FrictionAnalysis(Result):
     ripple: FrictionRipple | None
     wanted: Wanted | None
     tapping: Tapping
-    _shown: ClassVar[tuple[str, ...]] = (
-        "display.name",
-        "prediction.model",
-        "prediction.voltage",
-        "prediction.vibration_amplitude",
-        "prediction.relative_friction",
-        "uncertainty.interval",
-        "wanted.voltage",
+    _shown: ClassVar[str] = (
+        "display.name prediction.model prediction.voltage prediction.vibration_amplitude "
+        "prediction.relative_friction uncertainty.interval wanted.voltage"
     )
 
     def summary(self) -> dict[str, Any]:

@@ -74,13 +74,9 @@ class PlateAnalysis(Result):
     sound: SoundField
     sensitivities: SensitivityTable | None = None
     tracks: ModeTracks | None = None
-    _shown: ClassVar[tuple[str, ...]] = (
-        "display.name",
-        "working.label",
-        "working.frequency",
-        "working.quality_factor",
-        "amplitude_per_volt",
-        "modes.model",
+    _shown: ClassVar[str] = (
+        "display.name working.label working.frequency working.quality_factor amplitude_per_volt "
+        "modes.model"
     )
 
     def summary(self) -> dict[str, Any]:

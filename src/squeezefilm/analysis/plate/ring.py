@@ -65,13 +65,9 @@ class RingAnalysis(Result):
     circuit: EquivalentCircuit | None
     sound: SoundField
     described_amplitude_per_volt: MetrePerVolt | None
-    _shown: ClassVar[tuple[str, ...]] = (
-        "display.name",
-        "working.label",
-        "working.frequency",
-        "working.quality_factor",
-        "amplitude_per_volt",
-        "model",
+    _shown: ClassVar[str] = (
+        "display.name working.label working.frequency working.quality_factor amplitude_per_volt "
+        "model"
     )
 
     @property

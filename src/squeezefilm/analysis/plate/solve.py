@@ -34,9 +34,14 @@ def solve_plate(
     actuator = display.actuator
     if isinstance(actuator, RectangularPlate):
         return analyze_plate(
-            display, mode=mode, band=band, points=points, sensitivity=sensitivity, track=track,
+            display,
+            mode=mode,
+            band=band,
+            points=points,
+            sensitivity=sensitivity,
+            track=track,
             progress=progress,
-        )  # fmt: skip
+        )
     if sensitivity or track is not None:
         raise InputError(
             f"sensitivity and track are for rectangular plates; '{display.name}' is a "

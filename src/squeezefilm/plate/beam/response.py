@@ -164,9 +164,15 @@ def beam_response(
             )
         )
     return BeamResponse(
-        plate, section, theory, cross_section, working, tuple(modes), tuple(forces),
+        plate,
+        section,
+        theory,
+        cross_section,
+        working,
+        tuple(modes),
+        tuple(forces),
         functools.partial(beam_response, plate, theory, cross_section),
-    )  # fmt: skip
+    )
 
 
 LEAST_COVERAGE: Dimensionless = 0.8

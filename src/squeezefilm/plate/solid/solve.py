@@ -75,9 +75,15 @@ def solve_modes(
     with one_blas_thread():
         found = _solved(plate, near, band, mode, count, tolerance, driven_only, tell)
     again = functools.partial(
-        solve_modes, plate, near=near, band=band, mode=mode, count=count, tolerance=tolerance,
+        solve_modes,
+        plate,
+        near=near,
+        band=band,
+        mode=mode,
+        count=count,
+        tolerance=tolerance,
         driven_only=driven_only,
-    )  # fmt: skip
+    )
     return dataclasses.replace(found, _again=again)
 
 

@@ -150,9 +150,16 @@ def predictions(found: Sequence[Prediction]) -> Figure:
         axes.plot(1e6 * table.amplitude, table.relative_friction, color=color, ls=dashes)
     for one in found:
         axes.plot(
-            [1e6 * one.vibration_amplitude], [one.relative_friction], "D", color=INK, ms=7,
-            mec=PAPER, mew=1.2, zorder=5, clip_on=False,
-        )  # fmt: skip
+            [1e6 * one.vibration_amplitude],
+            [one.relative_friction],
+            "D",
+            color=INK,
+            ms=7,
+            mec=PAPER,
+            mew=1.2,
+            zorder=5,
+            clip_on=False,
+        )
     axes.set(xlim=(0, None), ylim=(0, 1.04))
     axes.set(xlabel="vibration amplitude, zero-to-peak (µm)", ylabel="relative friction µ′/µ")
     return figure

@@ -60,13 +60,7 @@ class Trace(Result):
     events: tuple[TraceEvent, ...]
     metadata: Mapping[str, Any]
     damage: Damage
-    _shown: ClassVar[tuple[str, ...]] = (
-        "display",
-        "texture",
-        "row_count",
-        "duration",
-        "damage.sentences",
-    )
+    _shown: ClassVar[str] = "display texture row_count duration damage.sentences"
 
     def column(self, name: str) -> FloatArray:
         """The column of that name, shape (n,). Raises `InputError` if there is none."""

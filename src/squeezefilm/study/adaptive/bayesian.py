@@ -14,6 +14,7 @@ from typing import Any, Literal
 import numpy as np
 
 from squeezefilm.errors import InputError
+from squeezefilm.from_text import reads_text
 from squeezefilm.quantities import Dimensionless, DimensionlessArray, FloatArray, require
 from squeezefilm.study.psychometric import kernel
 from squeezefilm.study.psychometric.function import Axis, Shape, on_axis, shape_code
@@ -22,6 +23,7 @@ from squeezefilm.study.psychometric.prior import PsychometricPrior
 Interest = Literal["threshold and width", "all"]
 
 
+@reads_text
 @dataclass(frozen=True, slots=True)
 class AdaptiveDesign:
     """What a Bayesian choice of stimuli starts from.

@@ -26,13 +26,7 @@ class StudyPlan(Result):
     schedules: tuple[tuple[Trial, ...], ...]
     duration: Second
     balanced_participants: int
-    _shown: ClassVar[tuple[str, ...]] = (
-        "design.name",
-        "participants",
-        "duration",
-        "balanced_participants",
-        "seed",
-    )
+    _shown: ClassVar[str] = "design.name participants duration balanced_participants seed"
 
     @property
     def phases(self) -> dict[str, int]:
@@ -96,11 +90,16 @@ class StudyPlan(Result):
 
     def _table(self) -> Any:
         return [
-            {"participant": who, "trial": trial.number, "phase": trial.phase,
-             "display": trial.display, "stimuli": " / ".join(trial.stimuli)}
+            {
+                "participant": who,
+                "trial": trial.number,
+                "phase": trial.phase,
+                "display": trial.display,
+                "stimuli": " / ".join(trial.stimuli),
+            }
             for who, schedule in enumerate(self.schedules)
             for trial in schedule
-        ]  # fmt: skip
+        ]
 
 
 @reads_text

@@ -44,7 +44,7 @@ __all__ = [
     "StudyDesign",
     "Task",
     "load_design",
-]  # fmt: skip
+]
 
 Task = Literal["match-to-sample", "same-different", "two-interval", "magnitude-estimation"]
 Order = Literal["williams", "latin-square", "shuffled"]

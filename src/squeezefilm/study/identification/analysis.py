@@ -102,12 +102,7 @@ class IdentificationAnalysis(Result):
     mixed: MixedModel | None
     notes: tuple[str, ...]
     seed: int
-    _shown: ClassVar[tuple[str, ...]] = (
-        "name",
-        "origin",
-        "participants",
-        "proportion_correct",
-    )
+    _shown: ClassVar[str] = "name origin participants proportion_correct"
 
     @property
     def participants(self) -> int:

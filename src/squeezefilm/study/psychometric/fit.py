@@ -74,12 +74,8 @@ class PsychometricFit(Result):
     deviance: float
     deviance_p: Dimensionless | None
     bounded_by_prior: tuple[str, ...]
-    _shown: ClassVar[tuple[str, ...]] = (
-        "function.shape",
-        "function.threshold",
-        "function.width",
-        "function.lapse_rate",
-        "posterior_interval",
+    _shown: ClassVar[str] = (
+        "function.shape function.threshold function.width function.lapse_rate posterior_interval"
     )
 
     def summary(self) -> dict[str, Any]:

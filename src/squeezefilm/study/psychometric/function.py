@@ -15,6 +15,7 @@ import numpy as np
 from scipy.special import ndtri
 
 from squeezefilm.errors import InputError
+from squeezefilm.from_text import reads_text
 from squeezefilm.quantities import (
     Dimensionless,
     DimensionlessLike,
@@ -82,6 +83,7 @@ def on_axis(intensity: FloatLike, axis: Axis) -> FloatArray:
     return np.log(array) if axis == "log" else array
 
 
+@reads_text
 @dataclass(frozen=True, slots=True)
 class PsychometricFunction:
     """A psychometric function: ψ(x) = γ + (1 − γ − λ) S((x − threshold)/width).

@@ -67,13 +67,7 @@ class SimulatedStudy(Result):
     response_time: SecondArray
     finger: IntArray
     origin: str = "simulated"
-    _shown: ClassVar[tuple[str, ...]] = (
-        "tables.design.name",
-        "tables.observer.name",
-        "participants",
-        "seed",
-        "origin",
-    )
+    _shown: ClassVar[str] = "tables.design.name tables.observer.name participants seed origin"
 
     @property
     def participants(self) -> int:
@@ -145,14 +139,16 @@ class SimulatedStudy(Result):
         answers = [one.name for one in design.alternatives]
         return [
             {
-                "participant": who, "trial": int(self.number[who, at]),
+                "participant": who,
+                "trial": int(self.number[who, at]),
                 "display": design.displays[self.display[who, at]],
                 "stimulus": names[self.stimulus[who, at]],
-                "choice": answers[self.choice[who, at]], "felt": bool(self.felt[who, at]),
+                "choice": answers[self.choice[who, at]],
+                "felt": bool(self.felt[who, at]),
                 "response_time_s": float(self.response_time[who, at]),
             }
             for who, at in np.ndindex(self.choice.shape)
-        ]  # fmt: skip
+        ]
 
 
 @reads_text
