@@ -117,7 +117,7 @@ class Result:
             for one in owners:
                 owner = getattr(owner, one, None)
             value = getattr(owner, name, None)
-            if value is not None:
+            if value is not None and not (isinstance(value, str | tuple) and not value):
                 yield path, _in_words(value, _unit_of_attribute(type(owner), name))
 
 
