@@ -81,7 +81,6 @@ def test_without_pyarrow_the_message_says_what_to_do(monkeypatch: pytest.MonkeyP
         parquet_bytes(Table({"x_m": np.zeros(1)}))
 
 
-@settings(deadline=None)
 @given(st.text(alphabet="=+-@,;\t\r\n\"'\\\\ab# {}[]:", max_size=30))
 def test_no_text_of_the_metadata_becomes_a_formulas_cell(text: str) -> None:
     import csv
