@@ -1,0 +1,138 @@
+"""Who imports whom, read from the source without running it: modules, tests, circles, distances.
+
+Imports inside functions and under ``if TYPE_CHECKING`` count; relative imports are not used here.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections import deque
+from collections.abc import Collection, Iterable, Mapping
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+PACKAGE = "squeezefilm"
+Graph = Mapping[str, frozenset[str]]
+_DOTTED = re.compile(rf"{PACKAGE}(?:\.\w+)+")
+
+
+@dataclass(frozen=True)
+class Imports:
+    """What one file takes from our package, as dotted names: modules, or names in them."""
+
+    names: frozenset[str]
+    private: frozenset[str]  # underscored ones, imported or reached by way of an imported module
+
+    def modules(self, known: Collection[str]) -> frozenset[str]:
+        """The modules among `known` that are imported, or from which a name is imported."""
+        owners = (name if name in known else name.rpartition(".")[0] for name in self.names)
+        return frozenset(owner for owner in owners if owner in known)
+
+
+@cache
+def imports_of(path: Path) -> Imports:
+    """The imports of a file, read once."""
+    return read_imports(path.read_text(encoding="utf-8"))
+
+
+def read_imports(source: str) -> Imports:
+    """The imports of a module's source text."""
+    names: set[str] = set()
+    bound: dict[str, str] = {}
+    reached: set[tuple[str, str]] = set()
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Import):
+            names |= {alias.name for alias in node.names}
+            bound |= {alias.asname: alias.name for alias in node.names if alias.asname}
+        elif isinstance(node, ast.ImportFrom):
+            members = {
+                item.asname or item.name: f"{node.module}.{item.name}" for item in node.names
+            }
+            names |= set(members.values())
+            bound |= members
+        elif isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
+            reached.add((node.value.id, node.attr))
+    names = {name for name in names if name.split(".")[0] == PACKAGE}
+    attributes = {f"{bound[owner]}.{attribute}" for owner, attribute in reached if owner in bound}
+    private = {name for name in names | attributes if _is_private(name)}
+    return Imports(frozenset(names), frozenset(private))
+
+
+def _is_private(name: str) -> bool:
+    first, *parts = name.split(".")
+    return first == PACKAGE and any(part[0] == "_" and part[:2] != "__" for part in parts)
+
+
+def module_paths(source: Path) -> dict[str, Path]:
+    """The dotted name of every module below `source` (the folder that holds the package)."""
+    found = {}
+    for path in sorted((source / PACKAGE).rglob("*.py")):
+        parts = path.relative_to(source).with_suffix("").parts
+        found[".".join(parts).removesuffix(".__init__")] = path
+    return found
+
+
+def import_graph(source: Path) -> dict[str, frozenset[str]]:
+    """For every module below `source`, the modules that it imports by name."""
+    paths = module_paths(source)
+    return {name: imports_of(path).modules(paths) - {name} for name, path in paths.items()}
+
+
+def distances(start: Iterable[str], graph: Graph) -> dict[str, int]:
+    """How many imports lie between `start` (at 0) and each module that can be reached from it."""
+    found = dict.fromkeys(start, 0)
+    todo = deque(found)
+    while todo:
+        name = todo.popleft()
+        for following in sorted(graph.get(name, frozenset())):
+            if following not in found:
+                found[following] = found[name] + 1
+                todo.append(following)
+    return found
+
+
+def users(name: str, graph: Graph) -> set[str]:
+    """The module itself and every module that imports it, directly or through others."""
+    importers: dict[str, set[str]] = {}
+    for module, imports in graph.items():
+        for imported in imports:
+            importers.setdefault(imported, set()).add(module)
+    return set(distances([name], {key: frozenset(value) for key, value in importers.items()}))
+
+
+def circles(graph: Graph) -> list[frozenset[str]]:
+    """Groups of modules each of which reaches every other by imports."""
+    reached = {name: set(distances(graph[name], graph)) for name in graph}
+    groups = {
+        frozenset(other for other in reached[name] if name in reached[other])
+        for name in graph
+        if name in reached[name]
+    }
+    return sorted(groups, key=sorted)
+
+
+def test_files(tests: Path) -> list[Path]:
+    """Every file of tests below a folder, sorted."""
+    return sorted(tests.rglob("test_*.py"))
+
+
+def modules_in_the_name_of(test: Path, tests: Path, modules: Iterable[str]) -> frozenset[str]:
+    """The module that a file of tests is named after, if there is one.
+
+    ``test_name.py`` below ``tests/<kind>/`` belongs to the module ``name`` of the same folders, or
+    to the only one of that name.
+    """
+    name = test.stem.removeprefix("test_")
+    namesakes = [module for module in modules if module.rpartition(".")[2] == name]
+    mirrored = ".".join([PACKAGE, *test.relative_to(tests).parts[1:-1], name])
+    if mirrored in namesakes:
+        return frozenset([mirrored])
+    return frozenset(namesakes if len(namesakes) == 1 else [])
+
+
+def modules_named_by(test: Path, modules: Collection[str]) -> frozenset[str]:
+    """The modules that a test's file imports, or whose dotted name stands in it as text."""
+    texts = _DOTTED.findall(test.read_text(encoding="utf-8"))
+    return imports_of(test).modules(modules) | (frozenset(texts) & frozenset(modules))
