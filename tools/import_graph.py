@@ -106,7 +106,7 @@ def circles(graph: Graph) -> list[frozenset[str]]:
     """Groups of modules each of which reaches every other by imports."""
     reached = {name: set(distances(graph[name], graph)) for name in graph}
     groups = {
-        frozenset(other for other in reached[name] if name in reached[other])
+        frozenset(o for o in reached[name] if name in reached.get(o, ()))
         for name in graph
         if name in reached[name]
     }

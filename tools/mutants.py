@@ -1,0 +1,342 @@
+"""Put small faults into the source, one at a time, and see which the tests notice.
+
+    python tools/mutants.py --seed 1 --count 150 --minutes 240       # or --rooms study,lab
+    python tools/mutants.py --report
+
+A sample is drawn by seed over all kinds of faults in turn. Each mutant is tried in a private copy
+of the working tree, never in the checkout, with compiled code cached apart: first by the tests named
+after its module or naming it, then by those nearest to it by imports, until one fails. What passes
+them all survived. The answers are appended to a file of JSON lines; a run that was cut off goes on
+where it stopped. Mutants that change nothing anybody could notice are named in
+``tools/equivalent_mutants.toml`` with the reason, and do not count.
+"""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import hashlib
+import json
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import tomllib
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import import_graph
+from mutant_report import print_report
+from mutations import Mutant, all_mutants, sample
+
+ROOT = Path(__file__).parents[1]
+EQUIVALENT = Path(__file__).with_name("equivalent_mutants.toml")
+# What `make test` runs, in its two parts, and what `make nightly` adds.
+QUICK, REALTIME, NIGHTLY = "not realtime and not nightly", "realtime and not nightly", "nightly"
+_FAILED = re.compile(r"^(?:FAILED|ERROR) (\S+)", re.MULTILINE)
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What one file of tests said: passed, failed, empty (nothing to run), or slow (cut off)."""
+
+    said: str
+    test: str
+    seconds: float
+
+
+class Copy:
+    """A private copy of the working tree, in which mutants live and tests run."""
+
+    def __init__(self, folder: Path) -> None:
+        self.tree, self._cache, self._tried = folder / "tree", folder / "cache", folder / "tried"
+        self._temporary = folder / "tmp"
+        for part in (self.tree, self._cache):
+            part.mkdir(parents=True, exist_ok=True)
+        self.state = self._copy()
+
+    def _copy(self) -> str:
+        """Make the copy equal to the working tree; a digest of what can change an answer."""
+        command = ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"]
+        listed = subprocess.run(command, cwd=ROOT, capture_output=True, check=True).stdout
+        names = sorted(name for name in listed.decode().split("\0") if (ROOT / name).is_file())
+        kept = set(names)
+        for path in list(self.tree.rglob("*")):
+            name = path.relative_to(self.tree).as_posix()
+            if path.is_file() and name not in kept and "__pycache__" not in name:
+                path.unlink()
+        digest = hashlib.sha256()
+        for name in names:
+            content = (ROOT / name).read_bytes()
+            if name.startswith(("src/", "tests/", "pyproject")):
+                digest.update(name.encode() + b"\0" + content)
+            target = self.tree / name
+            if not target.exists() or target.read_bytes() != content:
+                target.parent.mkdir(parents=True, exist_ok=True)
+                shutil.copy2(ROOT / name, target)
+        return digest.hexdigest()[:12]
+
+    @contextlib.contextmanager
+    def mutated(self, mutant: Mutant, graph: import_graph.Graph) -> Iterator[int]:
+        """The tree with one mutant in it; the number of compiled functions that must be made anew.
+
+        numba notices an edit of a function's own file only: what uses the mutated module loses its
+        compiled code too, in a copy of the cache that lasts as long as the mutant.
+        """
+        path = self.tree / "src" / mutant.path
+        source, times = path.read_bytes(), path.stat()
+        shutil.rmtree(self._tried, ignore_errors=True)
+        shutil.copytree(self._cache, self._tried, copy_function=os.link)
+        lost = 0
+        for module in import_graph.users(mutant.module, graph):
+            file = (self.tree / "src" / module.replace(".", "/")).with_suffix(".py")
+            folder = hashlib.sha1(str(file.parent).encode()).hexdigest()
+            for compiled in (self._tried / f"{file.parent.name}_{folder}").glob(f"{file.stem}.*"):
+                compiled.unlink()
+                lost += compiled.suffix == ".nbi"
+        path.write_bytes(mutant.applied(source))
+        try:
+            yield lost
+        finally:
+            path.write_bytes(source)
+            os.utime(path, ns=(times.st_atime_ns, times.st_mtime_ns))
+            shutil.rmtree(self._tried, ignore_errors=True)
+
+    def ask(self, test: str, marks: str, limit: float, *, mutated: bool) -> Answer:
+        """Run one file of tests until the first failure, or for `limit` seconds."""
+        shutil.rmtree(self._temporary, ignore_errors=True)
+        self._temporary.mkdir()
+        environment = {
+            **os.environ,
+            "PYTHONPATH": str(self.tree / "src"),
+            "PYTHONDONTWRITEBYTECODE": "1" if mutated else "",
+            "NUMBA_CACHE_DIR": str(self._tried if mutated else self._cache),
+            "MPLCONFIGDIR": str(self._cache / "matplotlib"),  # its list of fonts takes seconds
+            "TMPDIR": str(self._temporary),
+            "HOME": str(self._temporary),
+        }
+        command = [sys.executable, "-m", "pytest", "-x", "-q", "-rfE", "-p", "no:cacheprovider"]
+        started = time.monotonic()
+        with tempfile.TemporaryFile() as output:
+            process = subprocess.Popen(
+                [*command, "-m", marks, test],
+                cwd=self.tree,
+                env=environment,
+                stdout=output,
+                stderr=subprocess.STDOUT,
+                stdin=subprocess.DEVNULL,
+                start_new_session=True,
+            )
+            try:
+                process.wait(timeout=limit)
+            except subprocess.TimeoutExpired:
+                return Answer("slow", test, time.monotonic() - started)
+            finally:
+                with contextlib.suppress(ProcessLookupError):
+                    os.killpg(process.pid, signal.SIGKILL)
+                process.wait()
+            output.seek(0)
+            failed = _FAILED.search(output.read().decode(errors="replace"))
+        said = {0: "passed", 5: "empty"}.get(process.returncode, "failed")
+        name = failed[1] if failed else test
+        return Answer(said, test if said == "passed" else name, time.monotonic() - started)
+
+
+class Nearness:
+    """Which tests could notice a change of a module, nearest first."""
+
+    def __init__(self, tree: Path) -> None:
+        self.graph = import_graph.import_graph(tree / "src")
+        self.texts: dict[str, str] = {}
+        self._after: dict[str, frozenset[str]] = {}
+        self._steps: dict[str, dict[str, int]] = {}
+        tests = tree / "tests"
+        for test in import_graph.test_files(tests):
+            name = test.relative_to(tree).as_posix()
+            self.texts[name] = test.read_text(encoding="utf-8")
+            named = set(import_graph.modules_named_by(test, self.graph))
+            if "/e2e/" in name:
+                named.add("squeezefilm.cli")
+            for folder in [parent for parent in test.parents if tests in [parent, *parent.parents]]:
+                for helper in folder.glob("*.py"):
+                    if helper.stem == "conftest" or f"{helper.stem} import" in self.texts[name]:
+                        named |= import_graph.modules_named_by(helper, self.graph)
+            self._after[name] = import_graph.modules_in_the_name_of(test, tests, self.graph)
+            self._steps[name] = import_graph.distances(named, self.graph)
+
+    def tests(self, module: str) -> list[str]:
+        """The files of tests that reach a module: its own first, then by steps of import."""
+        ranked = [
+            (module not in self._after[name], steps[module], len(steps), name)
+            for name, steps in self._steps.items()
+            if module in steps or module in self._after[name]
+        ]
+        return [name for *_, name in sorted(ranked)]
+
+
+class Report:
+    """The file of answers: JSON lines, to which everything is appended at once."""
+
+    def __init__(self, path: Path, run: dict[str, Any]) -> None:
+        self._path = path
+        path.parent.mkdir(parents=True, exist_ok=True)
+        lines = read_lines(path)
+        if lines and {key: lines[0].get(key) for key in run} != run:
+            sys.exit(f"{path} was begun with {lines[0]}, not with {run}: name another file")
+        self.done = {line["id"] for line in lines if line["type"] == "mutant"}
+        self.baselines = {
+            (line["asked"], line["marks"]): Answer(line["said"], line["test"], line["seconds"])
+            for line in lines
+            if line["type"] == "baseline"
+        }
+        if not lines:
+            self.write({"type": "run", **run})
+
+    def write(self, line: dict[str, Any]) -> None:
+        """Append one line."""
+        with self._path.open("a", encoding="utf-8") as file:
+            file.write(json.dumps(line, ensure_ascii=False) + "\n")
+
+
+def read_lines(path: Path) -> list[dict[str, Any]]:
+    """The lines of a report; one that was cut off in writing is left out."""
+    lines = path.read_text(encoding="utf-8").splitlines() if path.exists() else []
+    return [json.loads(line) for line in lines if line.endswith("}")]
+
+
+class Trial:
+    """Tries mutants in a copy, with so much time and so many files of tests for each."""
+
+    def __init__(self, copy: Copy, report: Report, arguments: argparse.Namespace) -> None:
+        self._copy, self._report, self._arguments = copy, report, arguments
+        self._nearness = Nearness(copy.tree)
+        self._parts = [QUICK, REALTIME, *([NIGHTLY] if arguments.nightly else [])]
+
+    def _baseline(self, test: str, marks: str) -> Answer:
+        """What a file says of the source as it is, asked once."""
+        if (test, marks) not in self._report.baselines:
+            limit = self._arguments.file_seconds
+            answer = self._copy.ask(test, marks, limit, mutated=False)
+            self._report.baselines[test, marks] = answer
+            line = {"type": "baseline", "asked": test, "marks": marks, **asdict(answer)}
+            self._report.write(line)
+        return self._report.baselines[test, marks]
+
+    def _notices(self, test: str, marks: str, lost: int) -> Answer | None:
+        """How a file of tests notices the mutant in the tree, if it does."""
+        healthy = self._baseline(test, marks)
+        if healthy.said != "passed":
+            return None
+        limit = 4 * healthy.seconds + 30 + 20 * min(lost, 30)
+        answer = self._copy.ask(test, marks, limit, mutated=True)
+        return answer if answer.said in ("failed", "slow") else None
+
+    def run(self, mutant: Mutant) -> dict[str, Any]:
+        """The line of the report for one mutant."""
+        started, asked, files = time.monotonic(), 0, self._nearness.tests(mutant.module)
+        line: dict[str, Any] = {"type": "mutant", "id": mutant.id, "at": where(mutant)}
+        line |= {"room": mutant.room, "kind": mutant.site.kind, "function": mutant.site.function}
+        line |= {"before": mutant.before, "after": mutant.site.after}
+        line |= {"noticed": False, "marks": "", "said": "passed", "test": ""}
+        with self._copy.mutated(mutant, self._nearness.graph) as lost:
+            for marks in self._parts:
+                word = marks.split()[0]
+                with_mark = [f for f in files if word == "not" or word in self._nearness.texts[f]]
+                for test in with_mark[: self._arguments.budget]:
+                    asked += 1
+                    answer = self._notices(test, marks, lost)
+                    if answer is not None:
+                        line |= {"noticed": True, "marks": marks, **asdict(answer)}
+                        break
+                if line["noticed"]:
+                    break
+        if line["noticed"] and (line["said"] == "slow" or line["marks"] == REALTIME):
+            self._confirm(line, test)
+        return line | {"files": asked, "seconds": round(time.monotonic() - started, 1)}
+
+    def _confirm(self, line: dict[str, Any], test: str) -> None:
+        """What hangs on time was noticed only if the healthy source still passes in time."""
+        limit = max(line["seconds"], self._arguments.file_seconds)
+        healthy = self._copy.ask(test, line["marks"], limit, mutated=False)
+        if healthy.said != "passed":
+            line |= {"noticed": False, "said": "unclear", "test": test}
+
+
+def where(mutant: Mutant) -> str:
+    """The file and line of a mutant, from the root."""
+    return f"src/{mutant.path}:{mutant.line}"
+
+
+def equivalent_mutants() -> dict[str, str]:
+    """The mutants that nobody could notice: their identity and the reason."""
+    entries = tomllib.loads(EQUIVALENT.read_text(encoding="utf-8")).get("mutant", [])
+    return {entry["id"]: entry["reason"] for entry in entries}
+
+
+def _arguments() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawTextHelpFormatter
+    )
+    parser.add_argument("--seed", type=int, default=1, help="of the sample")
+    parser.add_argument("--count", type=int, default=70, help="mutants in the sample")
+    parser.add_argument("--rooms", default="", help="only these, separated by commas")
+    parser.add_argument("--budget", type=int, default=12, help="files of tests asked per mutant")
+    parser.add_argument("--minutes", type=float, default=60, help="after which none is begun")
+    parser.add_argument(
+        "--file-seconds", type=float, default=600, help="files that need more are left"
+    )
+    parser.add_argument("--nightly", action="store_true", help="ask the slow tests too, last")
+    parser.add_argument("--file", type=Path, default=ROOT / "out" / "mutants.jsonl")
+    parser.add_argument("--work", type=Path, default=Path(tempfile.gettempdir()) / "sf-mutants")
+    parser.add_argument("--list", action="store_true", help="only show the sample")
+    parser.add_argument("--report", action="store_true", help="only show what was found")
+    return parser.parse_args()
+
+
+def main() -> None:
+    """Try the sample, or show what was found."""
+    arguments = _arguments()
+    if arguments.report:
+        print_report(read_lines(arguments.file), equivalent_mutants())
+        return
+    rooms = sorted(filter(None, arguments.rooms.split(",")))
+    drawn = sample(all_mutants(ROOT / "src", rooms), arguments.seed)
+    chosen: list[Mutant] = []
+    while len(chosen) < arguments.count and (mutant := next(drawn, None)):
+        if mutant.is_valid((ROOT / "src" / mutant.path).read_bytes()):
+            chosen.append(mutant)
+    if arguments.list:
+        for mutant in chosen:
+            print(mutant.id, mutant.site.kind, where(mutant), repr(mutant.site.after))
+        return
+    copy = Copy(arguments.work.resolve())
+    run = {"seed": arguments.seed, "rooms": rooms, "state": copy.state}
+    report = Report(
+        arguments.file, {**run, "budget": arguments.budget, "nightly": arguments.nightly}
+    )
+    trial = Trial(copy, report, arguments)
+    stop = time.monotonic() + 60 * arguments.minutes
+    for number, mutant in enumerate(chosen, 1):
+        if mutant.id in report.done:
+            continue
+        if time.monotonic() > stop:
+            print(f"time is up before mutant {number} of {len(chosen)}: run again to go on")
+            break
+        line = trial.run(mutant)
+        report.write(line)
+        end = f"noticed by {line['test']}" if line["noticed"] else f"SURVIVED ({line['said']})"
+        print(
+            f"{number}/{len(chosen)} {mutant.id} {where(mutant)} {mutant.site.kind}: {end}",
+            flush=True,
+        )
+    print_report(read_lines(arguments.file), equivalent_mutants())
+
+
+if __name__ == "__main__":
+    main()
