@@ -1,7 +1,7 @@
 """A conversation with a device frame by frame, for checks that must send what no host would send.
 
-`device.link` is what plays; this sends damaged, stale and refused frames on purpose and looks at
-each answer. Time is passed in, so that it also runs on a simulated clock.
+`device.wire.link` is what plays; this sends damaged, stale and refused frames on purpose and looks
+at each answer. Time is passed in, so that it also runs on a simulated clock.
 """
 
 from __future__ import annotations

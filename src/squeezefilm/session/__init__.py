@@ -1,7 +1,7 @@
 """The real-time loop from sensor to drive, and its append-only record.
 
-The loop: `plan` (what it shall do), `tick` (one compiled step, no Python), `pacing` (when it is
-made), `clock`, `atomics`, `ring` and `shared` (memory that two processes share), `loop` and
-`worker` (its own process), `simulated` (the same tick on a simulated clock), `lateness`, `rows`
-(what a session writes down). `tile` samples a texture for a device that looks it up itself.
+`loop`: one compiled tick without Python, what it shall do, when it is made, its memory and its
+own process, and the same tick on a simulated clock. `record`: what a session writes down, and
+its export. `play`: the player that joins loop, link and record, in real time and on a simulated
+clock, and the texture as a tile for a device that looks it up itself.
 """

@@ -106,7 +106,8 @@ def friction_criterion(
 ) -> MetreArray:
     """The amplitude (m, zero-to-peak) that reaches a relative friction at each half wavelength (m).
 
-    The paper's Fig 11; NaN where it is out of reach (see `contact.paper.vibration_amplitude_for`).
+    The paper's Fig 11; NaN where it is out of reach, see
+    `contact.sharing.paper.vibration_amplitude_for`.
     """
     amplitudes = []
     for half in half_wavelengths:

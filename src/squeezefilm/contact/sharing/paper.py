@@ -81,8 +81,8 @@ def relative_friction_from_pressure_printed(
 def mean_pressure(gap: PaperGap, model: PaperModel = "paper2008") -> DimensionlessLike:
     """⟨P̄⟩ over contact and period, over ambient (dimensionless): the paper's P_moy.
 
-    Scalar, or one value for each amplitude; see `film.limits.contact_mean_pressure`. The printed
-    model gives less than 1 on the paper's own stator (0.9959 at 2 µm), against its Fig 4.
+    Scalar, or one value for each amplitude; see `film.closed.limits.contact_mean_pressure`. The
+    printed model gives less than 1 on the paper's own stator (0.9959 at 2 µm), against its Fig 4.
     """
     return contact_mean_pressure(gap, model)
 

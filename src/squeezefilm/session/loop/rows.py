@@ -41,7 +41,7 @@ COLUMNS = (
     LATENESS, FLAGS,
 ) = range(14)  # fmt: skip
 
-# The first ten are the renderer's own (`render.layout`): 1 bad place … 512 saturated.
+# The first ten are the renderer's own (`render.program.layout`): 1 bad place … 512 saturated.
 NEW_SAMPLE = 1 << 10
 REJECTED_SAMPLE = 1 << 11
 NO_FRESH_SAMPLE = 1 << 12

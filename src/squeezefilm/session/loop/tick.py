@@ -1,7 +1,7 @@
 """One compiled tick of the loop: samples in, one command and one row out; no Python, no memory.
 
-The steps are those of `render.rendered_stroke`, by the same compiled functions: the estimator takes
-what has arrived, the finger is predicted to the moment the command is meant for, the texture asked
+The steps are those of `render.fidelity.rendered_stroke`, by the same compiled functions: the estimator
+takes what has arrived, the finger is predicted to the moment the command is meant for, the texture asked
 there, its amplitude compensated and turned into volts. Nothing raises; what is wrong becomes a flag
 and a command of zero.
 """

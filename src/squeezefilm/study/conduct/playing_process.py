@@ -1,8 +1,8 @@
 """The process that plays a study's surfaces on a device, told over a pipe by `session_device`.
 
 It is a process of its own so that nothing the study does can hold up what is played. It plays with
-the safety of `session.run_play`; where the study's program dies, the pipe breaks and the output
-ramps to zero; where this process dies, the device's own watchdog stops it.
+the safety of `session.play.real_time`; where the study's program dies, the pipe breaks and the
+output ramps to zero; where this process dies, the device's own watchdog stops it.
 
 Orders in: ("verify",), ("present", stimulus, seed, name), ("stop",). Answers: ("verified",
 verification), ("playing",), ("ended", failure, exploration), ("failed", sentence); after "playing"
