@@ -5,7 +5,7 @@ BIN := $(VENV)/bin
 OUT ?= out/demo
 WORKERS ?= auto
 
-.PHONY: help demo lab test check lint types layers gallery docs bench nightly wheel clean
+.PHONY: help demo lab test check lint types layers gallery docs bench nightly release clean
 
 help:  ## show this list
 	@grep -E '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 12
@@ -70,8 +70,8 @@ docs: $(VENV)/test.stamp  ## build the documentation, strictly
 bench: $(VENV)/test.stamp  ## measure speed against peers, as ratios
 	@for file in benchmarks/*.py; do $(BIN)/python $$file || exit 1; done
 
-wheel: $(VENV)/test.stamp  ## build a wheel into dist/
-	@$(BIN)/python -m build --wheel --no-isolation
+release: $(VENV)/test.stamp  ## sdist and wheel into dist/, checked, tried in a clean environment
+	@$(BIN)/python tools/release.py dist
 
 clean:  ## remove what was built
 	rm -rf $(VENV) dist build site out .mypy_cache .ruff_cache .pytest_cache .import_linter_cache

@@ -9,7 +9,7 @@ importing the package costs next to nothing. Quantities may be written as text w
 display, a texture or a study by its name. See ``docs/front-door.md``.
 """
 
-__version__ = "0.1.0"
+__version__ = "0.2.0.dev0"
 
 # Where each name lives. The stub beside this file says the same to type checkers; a test compares.
 _NAMES = {
