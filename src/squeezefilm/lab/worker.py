@@ -202,7 +202,8 @@ class Workers:
     """Two lines of work: one for what a drag asks for, one for what takes seconds."""
 
     def __init__(self) -> None:
-        self.quick = Busy(30.0)
+        # Long enough for what is compiled when it is asked for the first time.
+        self.quick = Busy(120.0)
         self.slow = Busy(600.0)
 
     def cancel(self, page: WebSocket | None) -> None:
