@@ -25,8 +25,8 @@ from squeezefilm.twin.settings import PickupModel, TwinSettings
 
 
 class Observed(Machine):
-    """A device that remembers each fault: when it came, when a frame was last accepted, and when the
-    output was at zero."""
+    """A device that remembers each fault: when it came, when a frame was last accepted before it,
+    and when the output was at zero."""
 
     faults: list[dict[str, int]]
 
