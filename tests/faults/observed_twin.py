@@ -25,7 +25,8 @@ from squeezefilm.twin.settings import PickupModel, TwinSettings
 
 
 class Observed(Machine):
-    """A device that remembers each fault: when it came, and when a frame was last accepted."""
+    """A device that remembers each fault: when it came, when a frame was last accepted before it,
+    and when the output was at zero."""
 
     faults: list[dict[str, int]]
 
@@ -35,6 +36,12 @@ class Observed(Machine):
         if before != self.fault:
             seen = {"fault": int(fault), "at_us": self._now, "heard_us": self._heard}
             self.faults.append(seen)
+
+    def tick(self, now: int) -> int:
+        level = super().tick(now)
+        if level == 0 and self.faults and "zero_us" not in self.faults[-1]:
+            self.faults[-1]["zero_us"] = self._now
+        return level
 
 
 def main(said: Path, levels: Path) -> None:
