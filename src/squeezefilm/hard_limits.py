@@ -29,8 +29,10 @@ class HardLimit:
 
     @property
     def range(self) -> str:
-        """What is allowed, in words: ``"from 1 um to 10 m"``."""
-        return f"from {_shown(self.least, self.unit)} to {_shown(self.most, self.unit)}"
+        """What is allowed, in words: ``"at least 1 um and at most 10 m"``."""
+        return (
+            f"at least {_shown(self.least, self.unit)} and at most {_shown(self.most, self.unit)}"
+        )
 
 
 def require_within(

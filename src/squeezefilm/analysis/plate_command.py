@@ -15,7 +15,13 @@ from squeezefilm.display import Display
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import NODAL_LINES, require_within
 from squeezefilm.plate.layout import RectangularPlate
-from squeezefilm.plate.plate_modes import Label, PlateModes, profiles, zero_crossings
+from squeezefilm.plate.plate_modes import (
+    Label,
+    PlateModes,
+    check_band,
+    profiles,
+    zero_crossings,
+)
 from squeezefilm.plate.plate_response import EquivalentCircuit, HarmonicResponse, harmonic_response
 from squeezefilm.plate.response import beam_response
 from squeezefilm.plate.shear_plate import shear_mode
@@ -162,6 +168,8 @@ def analyze_plate(
             "no electrode is driven; give at least one patch electrode = 'driven'",
             quantity="patches",
         )
+    if band is not None:
+        check_band(band)
     tell = progress or (lambda _: None)
     label = mode or plate.working_label
     tell(f"mode ({label[0]},{label[1]})")
