@@ -157,6 +157,9 @@ RING_ELEMENTS = HardLimit(
 BAND_MODES = HardLimit(
     "modes in a band", 0, 500, _ONE, "each is a field over the whole plate, refined by itself"
 )
+RING_MODES = HardLimit(
+    "modes of one harmonic in a band", 0, 100, _ONE, "a section's elements do not tell more apart"
+)
 TRACKED_VALUES = HardLimit(
     "values of a tracked parameter", 2, 200, _ONE, "each is a solved plate, at seconds to minutes"
 )

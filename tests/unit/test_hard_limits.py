@@ -9,7 +9,7 @@ import pytest
 from squeezefilm import hard_limits as hard
 from squeezefilm.analysis.film_command import FilmRequest
 from squeezefilm.analysis.plate_command import parse_mode
-from squeezefilm.analysis.plate_tracking import TrackRequest
+from squeezefilm.analysis.plate_tracking import TrackRequest, check_track
 from squeezefilm.analysis.played_texture import FingerMotion
 from squeezefilm.config.load import load_text
 from squeezefilm.display import Display, load_display
@@ -132,6 +132,7 @@ def test_other_sizes_of_work() -> None:
         lambda: parse_mode("99999,0"),
         lambda: TrackRequest("thickness", 1e-3, 2e-3, 10**9),
         lambda: FilmRequest("rectangle", 1e300),
+        lambda: check_track(PLATE, TrackRequest("thickness", -1e-3, 1e-3)),
     ):
         with pytest.raises(InputError, match="it must be at least"):
             refused()

@@ -10,7 +10,12 @@ from typing import Any
 import numpy as np
 
 from squeezefilm.analysis.plate_sensitivity import SensitivityTable, plate_sensitivity
-from squeezefilm.analysis.plate_tracking import ModeTracks, TrackRequest, track_modes
+from squeezefilm.analysis.plate_tracking import (
+    ModeTracks,
+    TrackRequest,
+    check_track,
+    track_modes,
+)
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import NODAL_LINES, require_within
@@ -170,6 +175,8 @@ def analyze_plate(
         )
     if band is not None:
         check_band(band)
+    if track is not None:
+        check_track(plate, track)
     tell = progress or (lambda _: None)
     label = mode or plate.working_label
     tell(f"mode ({label[0]},{label[1]})")
