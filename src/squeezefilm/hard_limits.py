@@ -29,8 +29,10 @@ class HardLimit:
 
     @property
     def range(self) -> str:
-        """What is allowed, in words: ``"from 1 um to 10 m"``."""
-        return f"from {_shown(self.least, self.unit)} to {_shown(self.most, self.unit)}"
+        """What is allowed, in words: ``"at least 1 um and at most 10 m"``."""
+        return (
+            f"at least {_shown(self.least, self.unit)} and at most {_shown(self.most, self.unit)}"
+        )
 
 
 def require_within(
@@ -154,6 +156,9 @@ RING_ELEMENTS = HardLimit(
 )
 BAND_MODES = HardLimit(
     "modes in a band", 0, 500, _ONE, "each is a field over the whole plate, refined by itself"
+)
+RING_MODES = HardLimit(
+    "modes of one harmonic in a band", 0, 100, _ONE, "a section's elements do not tell more apart"
 )
 TRACKED_VALUES = HardLimit(
     "values of a tracked parameter", 2, 200, _ONE, "each is a solved plate, at seconds to minutes"

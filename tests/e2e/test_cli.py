@@ -121,7 +121,7 @@ def test_a_friction_has_its_interval_its_shares_and_what_to_measure_next(tmp_pat
         (("--samples", "10"), "power of two"),
         (("--wanted", "1.5"), "at most 1"),
         (("--wanted", "0.01"), "at the least"),
-        (("--ambient-pressure", "0 Pa"), "above 0"),
+        (("--ambient-pressure", "0 Pa"), "at least"),
         (("--force", "500 N"), "pressed through"),
     ],
 )
@@ -321,7 +321,7 @@ TEXT = presets.path("biet2008-plate").read_text(encoding="utf-8")
     [
         ("", "is empty"),
         (TEXT.replace('"83 mm"', "83"), "line 9: actuator.length"),
-        (TEXT.replace('"2 mm"', '"-2 mm"'), "above 0 m"),
+        (TEXT.replace('"2 mm"', '"-2 mm"'), "at least 10 nm"),
         (TEXT.replace('"2 mm"', '"nan mm"'), "finite"),
         (TEXT.replace('value = "12 mm"', 'value = "5 mm"'), "overlap"),
         (TEXT.replace('value = "72 mm"', 'value = "80 mm"'), "overhangs"),

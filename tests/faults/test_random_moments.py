@@ -18,8 +18,8 @@ from pathlib import Path
 
 import pytest
 
-from squeezefilm.device.machine import CLOCK, Fault
-from squeezefilm.session.record import read_trace
+from squeezefilm.device.machine.device import CLOCK, Fault
+from squeezefilm.session.record.trace import read_trace
 
 from .test_play_faults import HERE, observed_twin
 

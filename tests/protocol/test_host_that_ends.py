@@ -12,9 +12,9 @@ from dataclasses import dataclass, field
 import pytest
 
 from squeezefilm.device.host import DeviceHost
-from squeezefilm.device.link import Link
-from squeezefilm.device.machine import Fault, Machine, State
-from squeezefilm.device.safety import Limits
+from squeezefilm.device.machine.device import Fault, Machine, State
+from squeezefilm.device.wire.link import Link
+from squeezefilm.device.wire.safety import Limits
 from squeezefilm.errors import DeviceError
 
 from .wire import TICK, Wire

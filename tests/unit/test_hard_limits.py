@@ -9,7 +9,7 @@ import pytest
 from squeezefilm import hard_limits as hard
 from squeezefilm.analysis.film.command import FilmRequest
 from squeezefilm.analysis.plate.command import parse_mode
-from squeezefilm.analysis.plate.tracking import TrackRequest
+from squeezefilm.analysis.plate.tracking import TrackRequest, check_track
 from squeezefilm.chain.played_texture import FingerMotion
 from squeezefilm.config.load import load_text
 from squeezefilm.display import Display, load_display
@@ -39,7 +39,7 @@ def test_every_limit_is_one_and_says_what_was_asked_what_is_allowed_and_why(name
     require_within(limit, limit.most)
     beyond = max(2 * limit.most, limit.most + 1)
     for wrong in (beyond, np.array([limit.least, beyond]), float("nan"), float("inf")):
-        with pytest.raises(InputError, match="cannot be used: it must be from") as caught:
+        with pytest.raises(InputError, match="cannot be used: it must be at least") as caught:
             require_within(limit, wrong, "the_field", enough="half would do")
         said = str(caught.value)
         assert said.startswith("the_field = ")
@@ -63,13 +63,21 @@ def test_fields_are_checked_by_name_and_none_is_left_alone() -> None:
 @pytest.mark.parametrize(
     ("key", "value", "says"),
     [
-        ("nodal_lines", "1000000", "1 000 000 cannot be used: it must be from 2 to 300"),
-        ("contact_length", '"1000000 cm"', "10 km cannot be used: it must be from 1 um to 1 m"),
+        (
+            "nodal_lines",
+            "1000000",
+            "1 000 000 cannot be used: it must be at least 2 and at most 300",
+        ),
+        (
+            "contact_length",
+            '"1000000 cm"',
+            "10 km cannot be used: it must be at least 1 um and at most 1 m",
+        ),
         ("contact_length", '"99 cm"', "ridges under a contact = 2 828"),
-        ("thickness", '"1e308 m"', "must be from 10 nm to 1 m"),
-        ("thickness", '"1e-12 mm"', "must be from 10 nm to 1 m"),
-        ("viscosity", '"1e300 Pa*s"', "must be from"),
-        ("young_modulus", '"1e-30 Pa"', "must be from"),
+        ("thickness", '"1e308 m"', "must be at least 10 nm and at most 1 m"),
+        ("thickness", '"1e-12 mm"', "must be at least 10 nm and at most 1 m"),
+        ("viscosity", '"1e300 Pa*s"', "must be at least"),
+        ("young_modulus", '"1e-30 Pa"', "must be at least"),
     ],
 )
 def test_a_display_out_of_all_proportion_is_refused_with_its_line(
@@ -124,8 +132,9 @@ def test_other_sizes_of_work() -> None:
         lambda: parse_mode("99999,0"),
         lambda: TrackRequest("thickness", 1e-3, 2e-3, 10**9),
         lambda: FilmRequest("rectangle", 1e300),
+        lambda: check_track(PLATE, TrackRequest("thickness", -1e-3, 1e-3)),
     ):
-        with pytest.raises(InputError, match="it must be from"):
+        with pytest.raises(InputError, match="it must be at least"):
             refused()
     design = load_design("period-jnd")
     with pytest.raises(InputError, match="trials of one participant = "):
@@ -145,5 +154,5 @@ def test_every_preset_design_has_no_more_trials_than_it_says() -> None:
 
 def test_limits_are_shown_with_units_and_counts_in_full() -> None:
     limit = HardLimit("a size", 1e-6, 2.0, Unit("m"), "a reason")
-    assert limit.range == "from 1 um to 2 m"
-    assert hard.RENDER_STEPS.range == "from 2 to 3 000 000"
+    assert limit.range == "at least 1 um and at most 2 m"
+    assert hard.RENDER_STEPS.range == "at least 2 and at most 3 000 000"

@@ -10,14 +10,25 @@ from typing import Any, ClassVar
 import numpy as np
 
 from squeezefilm.analysis.plate.sensitivity import SensitivityTable, plate_sensitivity
-from squeezefilm.analysis.plate.tracking import ModeTracks, TrackRequest, track_modes
+from squeezefilm.analysis.plate.tracking import (
+    ModeTracks,
+    TrackRequest,
+    check_track,
+    track_modes,
+)
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import NODAL_LINES, require_within
 from squeezefilm.plate.beam.response import beam_response
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.shear.modes import shear_mode
-from squeezefilm.plate.solid.modes import Label, PlateModes, profiles, zero_crossings
+from squeezefilm.plate.solid.modes import (
+    Label,
+    PlateModes,
+    check_band,
+    profiles,
+    zero_crossings,
+)
 from squeezefilm.plate.solid.response import EquivalentCircuit, HarmonicResponse, harmonic_response
 from squeezefilm.plate.solid.solve import solve_modes
 from squeezefilm.plate.sound import SoundField, rectangular_surface, sound_field
@@ -169,6 +180,10 @@ def analyze_plate(
             "no electrode is driven; give at least one patch electrode = 'driven'",
             quantity="patches",
         )
+    if band is not None:
+        check_band(band)
+    if track is not None:
+        check_track(plate, track)
     tell = progress or (lambda _: None)
     label = mode or plate.working_label
     tell(f"mode ({label[0]},{label[1]})")

@@ -11,6 +11,7 @@ import numpy as np
 from squeezefilm.analysis.plate.command import ModeRow
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError
+from squeezefilm.hard_limits import RING_MODES, require_within
 from squeezefilm.plate.layout import AnnularStator, DiscPlate
 from squeezefilm.plate.ring.body import (
     Direction,
@@ -254,6 +255,7 @@ def modes_in_band(
             # The nearest modes are all there are in the band once one of them lies outside.
             if len(inside) < len(modes):
                 break
+            require_within(RING_MODES, len(inside), "band", enough="ask for a narrower band")
             count *= 2
         found += inside
         if m > body.label[1] and all(x.frequency > high for x in modes):

@@ -151,11 +151,8 @@ def track_modes(
     alike, it is lost from there on. Raises
     `InputError` for a plate without the glue that is to be varied and what `solve_modes` raises.
     """
+    check_track(plate, request)
     unit, get, _ = PARAMETERS[request.parameter]
-    if request.parameter.startswith("glue") and plate.glue is None:
-        raise InputError(
-            f"--track {request.parameter}: the plate has no glue; add [actuator.glue] to its file"
-        )
     tell = progress or (lambda _: None)
     values = np.linspace(request.start, request.stop, request.values)
     own = get(plate)
@@ -197,6 +194,17 @@ def track_modes(
         ),
         float(np.nanmin(likeness)),
     )  # fmt: skip
+
+
+def check_track(plate: RectangularPlate, request: TrackRequest) -> None:
+    """Refuse, before anything is solved, a parameter that the plate has not or an end it cannot
+    have. Raises `InputError`."""
+    if request.parameter.startswith("glue") and plate.glue is None:
+        raise InputError(
+            f"--track {request.parameter}: the plate has no glue; add [actuator.glue] to its file"
+        )
+    for end in (request.start, request.stop):
+        PARAMETERS[request.parameter][2](plate, end)
 
 
 def likeness(before: PlateModes, after: PlateModes) -> FloatArray:

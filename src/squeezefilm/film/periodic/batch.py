@@ -77,7 +77,7 @@ class FilmBatch:
 @lru_cache(maxsize=1)
 def compiled() -> Any:
     """The compiled solver; says on the log when this processor has to compile it first."""
-    from squeezefilm.film.periodic import uniform
+    from squeezefilm.film.periodic.film import uniform
 
     announce(uniform.solve_rows, "film solver", 20)
     return uniform

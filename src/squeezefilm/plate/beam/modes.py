@@ -34,7 +34,6 @@ from squeezefilm.quantities import (
 )
 
 BeamTheory = Literal["euler_bernoulli", "timoshenko"]
-_LEAST_POINTS = 2001
 
 
 @closed_form(positive="half_wavelength bending_stiffness mass_per_area")
@@ -151,6 +150,7 @@ def free_beam_mode(
     length: Metre,
     nodal_lines: int,
     theory: BeamTheory = "timoshenko",
+    points: int = 2001,
 ) -> BeamMode:
     """The bending mode of a free–free beam with a given number of nodal lines (≥ 2).
 
@@ -199,7 +199,8 @@ def free_beam_mode(
             rtol=1e-14,
         )
     )
-    points = max(_LEAST_POINTS, 40 * nodal_lines + 1)
+    # A lobe of many is still drawn with some forty points.
+    points = max(points, 40 * nodal_lines + 1)
     return _mode(omega, symmetric, length, constants, theory, nodal_lines, points)
 
 

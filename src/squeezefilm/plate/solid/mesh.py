@@ -266,10 +266,8 @@ def plate_model(
               resolution.order_x, wave, resolution.extra_y, cut=False)  # fmt: skip
     z, layers, ceramics = _through_thickness(plate, resolution)
     require_memory(x, y, z, resolution.trunk)
-    shape = (x.elements, y.elements, z.elements)
-    medium, ceramic = np.full(shape, -1), np.full(shape, -1)
-    centre_x = (np.array(x.edges[1:]) + np.array(x.edges[:-1])) / 2
-    centre_y = (np.array(y.edges[1:]) + np.array(y.edges[:-1])) / 2
+    medium, ceramic = np.full((2, x.elements, y.elements, z.elements), -1)
+    centre_x, centre_y = ((np.array(m.edges[1:]) + np.array(m.edges[:-1])) / 2 for m in (x, y))
 
     def cells(part: CeramicPatch | FoamSupport) -> tuple[IntArray, IntArray]:
         spans = [(part.x, part.x + part.length), (part.y, part.y + part.width)]

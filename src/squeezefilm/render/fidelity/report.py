@@ -238,8 +238,11 @@ def _contrast(
         weight = np.gradient(way) * np.sin(np.pi * (way - way[0]) / length) ** 2
         weight /= weight.sum()
         w, r = wanted - weight @ wanted, rendered - weight @ rendered
-        waves = np.exp(-2j * math.pi * np.outer(frequencies, way)) * weight
-        W, R = waves @ w, waves @ r
+        W, R = np.zeros((2, frequencies.size), dtype=complex)
+        # One at a time: all of them together would be the largest array of a rendered stroke.
+        for k, frequency in enumerate(frequencies):
+            wave = np.exp(-2j * math.pi * frequency * way) * weight
+            W[k], R[k] = wave @ w, wave @ r
         cross += np.where(enough, R * W.conj(), 0)
         wanted_power += np.where(enough, np.abs(W) ** 2, 0)
         rendered_power += np.where(enough, np.abs(R) ** 2, 0)

@@ -20,11 +20,11 @@ PLATE = preset_text("biet2008-plate")
         ("drive.voltage", "from 0 V up to 2 kV"),
         ("drive.duty", "from 0.001 up to 1"),
         # Patches of 12 mm raster on a plate of 83 × 49 mm.
-        ("actuator.patches.0.length", "above 0 m up to 12 mm"),
-        ("actuator.patches.0.width", "above 0 m up to 49 mm"),
+        ("actuator.patches.0.length", "from 1 um up to 12 mm"),
+        ("actuator.patches.0.width", "from 1 um up to 49 mm"),
         ("actuator.patches.0.x", "from 0 m up to 1 mm"),
-        ("actuator.length", "from 83 mm"),
-        ("actuator.ceramic.charge_coefficient", "any number"),
+        ("actuator.length", "from 83 mm up to 10 m"),
+        ("actuator.ceramic.charge_coefficient", "from -1 um/V up to 1 um/V"),
         ("name", ""),
     ],
 )
@@ -35,11 +35,11 @@ def test_limits_in_words(path: str, words: str) -> None:
 def test_whole_numbers_are_counted() -> None:
     text = preset_text("touchpad-glass")
     assert next(row for row in form(text) if row["path"] == "actuator.nodal_lines")["whole"]
-    assert allowed(text, "actuator.nodal_lines") == "from 2"
+    assert allowed(text, "actuator.nodal_lines") == "from 2 up to 300"
     # Sectors would need diameters, diameters sectors.
     assert allowed(preset_text("winfield2007-tpad"), "actuator.nodal_diameters") == "only 0"
     assert allowed(text, "actuator.patches.0.poling") == ""
-    assert allowed(preset_text("winfield2007-tpad"), "actuator.nodal_circles") == "from 1"
+    assert allowed(preset_text("winfield2007-tpad"), "actuator.nodal_circles") == "from 1 up to 100"
 
 
 def test_a_path_that_is_not_there() -> None:

@@ -98,7 +98,7 @@ def rendered(**changed):  # type: ignore[no-untyped-def]
 
 @pytest.mark.parametrize(("ask", "word"), [
     (lambda: rendered(control_rate=0.0), "control_rate"),
-    (lambda: rendered(control_rate=1e-3), "makes 0 steps"),
+    (lambda: rendered(control_rate=1e-3), "longer or slower"),
     (lambda: rendered(control_rate=1e9), "steps of"),
     (lambda: rendered(compensation="?"), "compensation"),  # type: ignore[arg-type]
     (lambda: rendered(estimator=MotionEstimator(MotionModel(), 1e-5)), "sensor"),

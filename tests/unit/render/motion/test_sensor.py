@@ -88,5 +88,5 @@ def test_what_no_motion_can_be_is_refused() -> None:
         sensor_stream(LVDT_10_KHZ, lambda t: t * np.nan, 0.1, 0)
     with pytest.raises(InputError, match="duration"):
         sensor_stream(LVDT_10_KHZ, still, 0.0, 0)
-    with pytest.raises(InputError, match="shorten"):
+    with pytest.raises(InputError, match="shorter"):
         sensor_stream(LVDT_10_KHZ, still, 1e5, 0)

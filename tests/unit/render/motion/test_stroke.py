@@ -37,7 +37,7 @@ def test_samples_lie_within_the_stroke() -> None:
     ("arguments", "said"),
     [
         ({"speed": 0.0}, "speed = 0 m/s"),
-        ({"speed": -0.1}, "above 0 m/s"),
+        ({"speed": -0.1}, "at least 1 nm/s"),
         ({"speed": 60.0}, "at most 5 m/s"),
         ({"speed": math.nan}, "speed = nan"),
         ({"speed": 0.1, "length": 0.0}, "length = 0 m"),
