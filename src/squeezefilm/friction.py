@@ -203,6 +203,8 @@ class FrictionLaw:
         """µ′/µ by the competing mechanism, intermittent contact without gas, at amplitudes (m) and
         a finger speed (m/s), whatever the model: the mean over the ridges. See `contact.tapping`.
         """
+        swings = np.atleast_1d(amplitude)
+        require("amplitude", swings, Unit("m"), at_least=0, axes=1)
         finger = self.finger
         pressure = finger.plateau_pressure(self.normal_force)
         decay = finger.asperity_law(self.surface.roughness).decay_length
@@ -220,7 +222,7 @@ class FrictionLaw:
                 normal_stiffness=pressure / decay,
             ).relative_friction
 
-        each = np.array([[tap(float(a * k)) for k in kinds] for a in np.atleast_1d(amplitude)])
+        each = np.array([[tap(float(a * k)) for k in kinds] for a in swings])
         return np.asarray(each @ (counts / points.size))
 
     def _shared_load(self, amplitude: Metre) -> FilmLoad:

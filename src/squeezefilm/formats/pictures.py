@@ -16,7 +16,7 @@ from typing import Literal
 import numpy as np
 
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import DimensionlessArray, require
+from squeezefilm.quantities import DimensionlessArray, real_numbers, require
 from squeezefilm.render.pattern_image import MOST_PIXELS
 
 _SIGNATURE = b"\x89PNG\r\n\x1a\n"
@@ -81,7 +81,7 @@ def picture_bytes(values: DimensionlessArray, bits: Literal[8, 16] = 8) -> bytes
     """
     from PIL import Image as Pillow
 
-    array = np.asarray(values, dtype=float)
+    array = real_numbers("values", values)
     if array.ndim != 2 or not 1 <= array.size <= MOST_PIXELS:
         raise InputError(
             f"values of shape {array.shape} are no picture; give rows and columns, at most "

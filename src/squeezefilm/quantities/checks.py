@@ -22,14 +22,22 @@ from typing import Any, Literal, ParamSpec, TypeVar
 import numpy as np
 
 from squeezefilm.errors import InputError, OutOfRangeError, OutOfRangeWarning
-from squeezefilm.quantities.units import Unit, format_quantity, unit_of
+from squeezefilm.quantities.units import FloatArray, Unit, format_quantity, unit_of
 
-__all__ = ["CLOSED_FORMS", "checked_numbers", "closed_form", "require", "require_valid"]
+__all__ = [
+    "CLOSED_FORMS",
+    "checked_numbers",
+    "closed_form",
+    "real_numbers",
+    "require",
+    "require_valid",
+]
 
 _PURE = Unit("1")
+_MOST_BITS = 64
 
 
-def _real(name: str, value: Any) -> Any:
+def real_numbers(name: str, value: Any) -> FloatArray:
     """A value as an array of floats. Raises `InputError` for what is no real number or array."""
     try:
         array = np.asarray(getattr(value, "magnitude", value))
@@ -65,12 +73,18 @@ def require(
     at_least: float | None = None,
     below: float | None = None,
     at_most: float | None = None,
+    axes: int | None = None,
 ) -> None:
-    """Refuse a value (scalar or array) that is no number, not finite or not within the bounds (SI).
+    """Refuse a value (scalar or array) that is no number, not finite or not within the bounds (SI),
+    or an array of another number of axes.
 
     Raises `InputError` that names the quantity, the offending value with its unit and the bound.
     """
-    array = _real(name, value)
+    array = real_numbers(name, value)
+    if axes is not None and array.ndim != axes:
+        raise InputError(
+            f"{name} has the shape {array.shape}; an array of {axes} axes is wanted", quantity=name
+        )
     wanted: list[str] = []
     good = np.isfinite(array)
     for bound, word, holds in (
@@ -98,7 +112,7 @@ def require_valid(
 
     Raises `OutOfRangeError`, or warns `OutOfRangeWarning` if not `strict`.
     """
-    array = np.atleast_1d(_real(name, value))
+    array = np.ravel(real_numbers(name, value))
     outside = ~((array >= low) & (array <= high))
     if not np.any(outside):
         return
@@ -152,7 +166,9 @@ def _rule(hint: Any, above: float | None, at_least: float | None) -> _Rule | Non
         kind = "array"
     elif kinds == {np.ndarray} and "complex128" in str(plain[0]):
         kind = "complex"
-    elif unit is not None and collections.abc.Callable not in kinds:
+    elif collections.abc.Callable in kinds:
+        return None
+    elif unit is not None or any(set(typing.get_args(part)) & {int, float} for part in plain):
         kind = "container"
     else:
         return None
@@ -169,24 +185,29 @@ def _checked_value(name: str, value: Any, rule: _Rule) -> Any:
     elif value is None and rule.optional:
         return value
     if rule.kind == "count":
-        if not _is_whole(value):
+        if not _is_whole(value) or int(value).bit_length() > _MOST_BITS:
             raise InputError(
-                f"{name} = {_shortened(value)} cannot be used: it must be a whole number",
+                f"{name} = {_shortened(value)} cannot be used: it must be a whole number of at "
+                f"most {_MOST_BITS} bits",
                 quantity=name,
             )
         return value
     if rule.kind == "complex":
         return _complex_value(name, value)
     require(name, value, rule.unit, above=rule.above, at_least=rule.at_least)
-    if hasattr(value, "magnitude") or rule.kind == "container":
+    if hasattr(value, "magnitude"):
         return value
     array = np.asarray(value, dtype=float)
     if rule.kind == "number" and array.ndim:
         raise InputError(f"{name} has the shape {array.shape}; one number is wanted", quantity=name)
-    if rule.kind == "array" and not array.ndim:
+    if rule.kind in ("array", "container") and not array.ndim:
         raise InputError(
             f"{name} is one number; an array of at least one sample is wanted", quantity=name
         )
+    if rule.kind == "container":
+        return value
+    if not array.size:
+        raise InputError(f"{name} is empty; at least one sample is wanted", quantity=name)
     return array if array.ndim else float(array)
 
 

@@ -30,9 +30,8 @@ import numpy as np
 from squeezefilm.errors import InputError
 from squeezefilm.quantities import (
     Dimensionless,
-    DimensionlessLike,
     FloatArray,
-    HertzLike,
+    Hertz,
     Metre,
     MetreArray,
     MetreLike,
@@ -101,8 +100,8 @@ class DrivenEnvelope:
     @checked_numbers
     def of_resonator(
         cls,
-        quality_factor: DimensionlessLike,
-        frequency: HertzLike,
+        quality_factor: Dimensionless,
+        frequency: Hertz,
         amplitude_per_volt: MetrePerVolt,
         voltage_limit: Volt,
         braking: bool = False,

@@ -98,6 +98,7 @@ class Image(Pattern):
             InputError: an array that is not of floats (8-bit grey must be divided by 255), has
                 not two axes, or cannot be an image.
         """
+        require("values", values)
         array: Any = np.asarray(values)
         if array.ndim != 2 or not np.issubdtype(array.dtype, np.floating):
             raise InputError(
