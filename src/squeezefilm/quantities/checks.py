@@ -123,19 +123,20 @@ def require_valid(
     warnings.warn(message, OutOfRangeWarning, stacklevel=3)
 
 
-_Kind = Literal["number", "array", "either", "complex", "count", "container"]
+_Kind = Literal["number", "array", "either", "complex", "count", "row", "container"]
 
 
 @dataclass(frozen=True, slots=True)
 class _Rule:
-    """What an annotation says of an argument: one number, an array, either, a count, or numbers in
-    a container of another kind, which is left as it is."""
+    """What an annotation says of an argument: one number, an array, either, a count, a row (a
+    tuple or list of numbers), or numbers in another container, which is left as it is."""
 
     kind: _Kind
     unit: Unit
     optional: bool
     above: float | None = None
     at_least: float | None = None
+    length: int | None = None
 
 
 def _members(hint: Any) -> list[Any]:
@@ -168,11 +169,23 @@ def _rule(hint: Any, above: float | None, at_least: float | None) -> _Rule | Non
         kind = "complex"
     elif collections.abc.Callable in kinds:
         return None
-    elif unit is not None or any(set(typing.get_args(part)) & {int, float} for part in plain):
+    elif len(plain) == 1 and _is_row(plain[0]):
+        kind = "row"
+    elif unit is not None:
         kind = "container"
     else:
         return None
-    return _Rule(kind, unit or _PURE, len(plain) < len(members), above, at_least)
+    parts = typing.get_args(plain[0]) if kind == "row" and kinds == {tuple} else (Ellipsis,)
+    length = None if Ellipsis in parts else len(parts)
+    return _Rule(kind, unit or _PURE, len(plain) < len(members), above, at_least, length)
+
+
+def _is_row(hint: Any) -> bool:
+    """Whether an annotation is a tuple, a list or a sequence of plain numbers."""
+    parts = [part for part in typing.get_args(hint) if part is not Ellipsis]
+    inner = {member for part in parts for member in _members(part)}
+    rows = (tuple, list, collections.abc.Sequence)
+    return typing.get_origin(hint) in rows and bool(inner) and inner <= {int, float}
 
 
 def _checked_value(name: str, value: Any, rule: _Rule) -> Any:
@@ -194,7 +207,8 @@ def _checked_value(name: str, value: Any, rule: _Rule) -> Any:
         return value
     if rule.kind == "complex":
         return _complex_value(name, value)
-    require(name, value, rule.unit, above=rule.above, at_least=rule.at_least)
+    axes = 1 if rule.kind == "row" else None
+    require(name, value, rule.unit, above=rule.above, at_least=rule.at_least, axes=axes)
     if hasattr(value, "magnitude"):
         return value
     array = np.asarray(value, dtype=float)
@@ -204,6 +218,10 @@ def _checked_value(name: str, value: Any, rule: _Rule) -> Any:
         raise InputError(
             f"{name} is one number; an array of at least one sample is wanted", quantity=name
         )
+    if rule.length not in (None, array.size):
+        raise InputError(f"{name} holds {array.size} numbers; give {rule.length}", quantity=name)
+    if rule.kind == "row":
+        return tuple(value.tolist()) if isinstance(value, np.ndarray) else value
     if rule.kind == "container":
         return value
     if not array.size:

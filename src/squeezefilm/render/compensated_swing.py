@@ -132,9 +132,8 @@ def least_cycle(envelope: DrivenEnvelope, swing: Metre, highest: Metre | None = 
         down = (level + swing - envelope.lowest_command) / max(
             level - envelope.lowest_command, 1e-300
         )
-        return envelope.rise_time_constant * float(
-            np.log(up)
-        ) + envelope.fall_time_constant * float(np.log(down))
+        rising = envelope.rise_time_constant * float(np.log(up))
+        return rising + envelope.fall_time_constant * float(np.log(down))
 
     room = ceiling - swing
     found = minimize_scalar(period, bounds=(0.0, max(room, 1e-300)), method="bounded",
