@@ -341,6 +341,8 @@ class FrictionLaw:
         paper's devices.
         """
         require("highest_amplitude", highest_amplitude, Unit("m"), above=0)
+        if points is not None:
+            require("points", points, at_least=2)
         count = points or (65 if is_solved(self.model) else 257)
         # Denser at small amplitudes, where the law bends within the roughness.
         grid = highest_amplitude * np.linspace(0.0, 1.0, count) ** 2

@@ -111,7 +111,7 @@ NOT_CALLED = {
     "the real-time tick: it takes any floats, flags what it cannot use and never raises": """
     render.renderer.Renderer.tick
     """,
-    "the check of numbers itself, whose bounds are the code's own, and what writes its messages": """
+    "the check of numbers itself, whose bounds are the code's own, and its messages' text": """
     quantities.checks.require quantities.checks.require_valid quantities.units.format_quantity
     """,
 }

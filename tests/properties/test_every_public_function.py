@@ -28,19 +28,20 @@ LEFT_OUT = {
     "inside a solver: meshes, matrices and indices, made by calls that are checked": 120,
     "no number but the index of what its other arguments hold, or an array the package made": 15,
     "the real-time tick: it takes any floats, flags what it cannot use and never raises": 1,
-    "the check of numbers itself, whose bounds are the code's own, and what writes its messages": 3,
+    "the check of numbers itself, whose bounds are the code's own, and its messages' text": 3,
 }
 
 # Calls that neither solve nor need something solved: what the default run draws from.
 QUICK = (
     "contact.asperities.AsperityLaw", "contact.dry_friction", "contact.finger.",
-    "contact.fingerpad", "contact.occlusion", "contact.paper.finger_pressure", "contact.skin.", "contact.wedge",
-    "contact.tapping.tapping_number", "distributions", "film.gap", "film.limits", "film.linear",
-    "film.planar_gap", "film.validity.knudsen_number", "formats.wav", "formats.pictures",
-    "materials", "plate.beam.euler", "plate.laminate", "plate.layout", "plate.loaded_mode",
-    "plate.sound.exposure_guidance", "plate.working_mode.resonance_factor", "render.envelope.e", "render.envelope.f", "render.levels", "render.minimum_jerk",
-    "render.motion.MotionModel", "render.pattern", "render.sensor.SensorModel", "render.stroke",
-    "render.texture", "render.wave.wave_factor",
+    "contact.fingerpad", "contact.occlusion", "contact.paper.finger_pressure", "contact.skin.",
+    "contact.wedge", "contact.tapping.tapping_number", "distributions", "film.gap",
+    "film.limits", "film.linear", "film.planar_gap", "film.validity.knudsen_number",
+    "formats.wav", "formats.pictures", "materials", "plate.beam.euler", "plate.laminate",
+    "plate.layout", "plate.loaded_mode", "plate.sound.exposure_guidance",
+    "plate.working_mode.resonance_factor", "render.envelope.e", "render.envelope.f",
+    "render.levels", "render.minimum_jerk", "render.motion.MotionModel", "render.pattern",
+    "render.sensor.SensorModel", "render.stroke", "render.texture", "render.wave.wave_factor",
 )  # fmt: skip
 
 
@@ -49,7 +50,7 @@ def test_every_public_call_is_attacked_or_left_out_by_name_for_a_reason() -> Non
     listed = [name for names in NOT_CALLED.values() for name in names.split()]
     assert len(listed) == len(NAMES_NOT_CALLED), "one is listed twice"
     assert {reason: len(names.split()) for reason, names in NOT_CALLED.items()} == LEFT_OUT
-    assert len(CALLS) - len(NAMES_NOT_CALLED) >= 350
+    assert len(CALLS) - len(NAMES_NOT_CALLED) >= 340
 
 
 def test_a_sample_of_hostile_calls_ends_in_a_typed_error_or_finite_numbers() -> None:
@@ -57,7 +58,7 @@ def test_a_sample_of_hostile_calls_ends_in_a_typed_error_or_finite_numbers() -> 
     names = [name for name in sorted(CALLS) if name.startswith(QUICK)]
     quick = [name for name in names if name not in NAMES_NOT_CALLED]
     faults = []
-    for name in generator.sample(quick, 40):
+    for name in generator.sample(quick, 60):
         good = good_arguments(CALLS[name])
         assert fault(CALLS[name], good) is None, f"{name} as it should be called"
         for what in generator.sample(sorted(HOSTILE), 6):

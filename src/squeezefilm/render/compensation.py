@@ -273,6 +273,7 @@ def preview_samples(
 @checked_numbers
 def preview_work(samples: int) -> FloatArray:
     """Working memory of `previewed_step` for so many samples ahead, shape (5, 2·samples + 2)."""
+    require("samples", samples, at_least=0)
     return np.empty((5, 2 * samples + 2))
 
 

@@ -8,14 +8,7 @@ from typing import Any, Literal
 import numpy as np
 
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import (
-    Dimensionless,
-    DimensionlessArray,
-    FloatArray,
-    Metre,
-    checked_numbers,
-    require,
-)
+from squeezefilm.quantities import (Dimensionless, DimensionlessArray, FloatArray, Metre, checked_numbers, real_numbers, require)
 from squeezefilm.render.coordinate import METRE, require_place
 from squeezefilm.render.opcodes import IMAGE, Assembler
 from squeezefilm.render.pattern import Pattern
@@ -55,6 +48,13 @@ class Image(Pattern):
     _grid: FloatArray = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
+        if not isinstance(self.values, tuple | list) or not all(
+            isinstance(row, tuple | list) for row in self.values
+        ):
+            raise InputError(
+                "values are no image; give rows of values, or an array to Image.from_array",
+                quantity="values",
+            )
         rows = len(self.values)
         columns = len(self.values[0]) if rows else 0
         if columns == 0 or any(len(row) != columns for row in self.values):
@@ -69,7 +69,7 @@ class Image(Pattern):
                 f"{MOST_PIXELS} together; make its pixels larger",
                 quantity="values",
             )
-        grid = np.array(self.values, dtype=float)
+        grid = np.array(real_numbers("values", self.values))
         require("values", grid, at_least=0.0, at_most=1.0)
         grid.setflags(write=False)
         object.__setattr__(self, "_grid", grid)

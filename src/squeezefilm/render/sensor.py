@@ -160,6 +160,7 @@ def sensor_stream(
     """
     require("duration", duration, Unit("s"), above=0.0)
     require("start", start, Unit("s"))
+    require("seed", seed, at_least=0)
     count = math.floor(duration * sensor.rate * (1 + 1e-12)) + 1
     if count > _MOST_SAMPLES:
         raise InputError(
