@@ -5,212 +5,37 @@ Where one value will not do for a call, `FOR_ONE_CALL` says which does.
 
 from __future__ import annotations
 
-import dataclasses
-import functools
 import inspect
 import typing
 from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
-from public_calls import PublicCall
 
-from squeezefilm.chain.friction import FrictionLaw
-from squeezefilm.contact.asperities import AsperityLaw
-from squeezefilm.contact.finger.fingerpad import FingerpadDynamics
-from squeezefilm.contact.finger.fingertip import Finger
-from squeezefilm.contact.finger.occlusion import Occlusion
-from squeezefilm.contact.finger.skin import Skin
-from squeezefilm.contact.sharing.film_load import FilmLoad, film_load
-from squeezefilm.contact.sharing.gas_table import FilmTable, film_table
-from squeezefilm.contact.sharing.pad import FrictionRipple, PadPosture
-from squeezefilm.contact.sliding.dry_friction import DryFriction, FrictionProfile
-from squeezefilm.contact.sliding.march import Sliding, slide
-from squeezefilm.display import Display, Surface, load_display
-from squeezefilm.distributions import Normal, Uniform
-from squeezefilm.film.gap import PaperGap
-from squeezefilm.film.periodic.profile import GapProfile, flexural_profile
-from squeezefilm.film.planar.gap import PlanarGap
-from squeezefilm.formats.hjif import ReferenceDevice, hjif_of
-from squeezefilm.materials import ElasticMaterial, Gas, Piezoceramic, PiezoConstants
-from squeezefilm.plate.beam.modes import BeamMode
-from squeezefilm.plate.beam.response import BeamResponse, beam_response
-from squeezefilm.plate.laminate import Laminate, Layer, plate_laminate
-from squeezefilm.plate.layout import CeramicPatch, RectangularPlate
-from squeezefilm.plate.loaded_mode import LoadedMode
-from squeezefilm.plate.ring.body import RingBody
-from squeezefilm.plate.ring.materials import RingSolid, isotropic_solid
-from squeezefilm.plate.ring.modes import AnnularMode, bending_mode
-from squeezefilm.plate.ring.response import RingResponse, ring_response
-from squeezefilm.plate.ring.section import (
-    AnnularSection,
-    RingLayer,
-    SectorDrive,
-    bonded_disc,
-    full_drive,
+from squeezefilm.plate.annular_materials import isotropic_solid
+from squeezefilm.plate.plate_modes import PlateModes
+from squeezefilm.plate.shear_section import ShearLayout, ShearSection
+from squeezefilm.plate.sound import RadiatingSurface
+from squeezefilm.quantities import unit_of
+from squeezefilm.render.levels import Amplitude, RelativeFriction
+from squeezefilm.render.program import Program
+from squeezefilm.render.texture import Texture
+
+from .made_objects import (
+    BRASS,
+    MADE,
+    PLATE,
+    PZT,
+    SINE,
+    WAYS,
+    disc_section,
+    falling_friction,
+    fields_of,
+    hjif_document,
+    made,
 )
-from squeezefilm.plate.ring.stator import StatorAssumptions
-from squeezefilm.plate.shear.modes import ShearMode, shear_modes
-from squeezefilm.plate.shear.section import (
-    ShearLayout,
-    ShearSection,
-    isotropic_section,
-    shear_layout,
-)
-from squeezefilm.plate.solid.modes import PlateModes
-from squeezefilm.plate.solid.response import (
-    EquivalentCircuit,
-    HarmonicResponse,
-    SurfaceLoad,
-    harmonic_response,
-)
-from squeezefilm.plate.solid.solve import solve_modes
-from squeezefilm.plate.solid.working import SolidMode, solid_mode
-from squeezefilm.plate.sound import RadiatingSurface, rectangular_surface
-from squeezefilm.plate.working_mode import WorkingMode, working_mode
-from squeezefilm.quantities import Unit, unit_of
-from squeezefilm.render.motion.estimator import MotionEstimator, MotionModel
-from squeezefilm.render.motion.finger_path import FingerPath, OverPath
-from squeezefilm.render.motion.minimum_jerk import MinimumJerkStroke, Trajectory
-from squeezefilm.render.motion.sensor import LVDT_10_KHZ, SensorModel, SensorStream, sensor_stream
-from squeezefilm.render.motion.stroke import Stroke
-from squeezefilm.render.program.inverse import FrictionInverse
-from squeezefilm.render.program.lowering import Program, lower
-from squeezefilm.render.program.renderer import Played, Renderer
-from squeezefilm.render.program.wave import WaveCompensation
-from squeezefilm.render.resonator.compensation import (
-    CompensatedDrive,
-    DrivenEnvelope,
-    compensated_drive,
-)
-from squeezefilm.render.texture.composition import Composable
-from squeezefilm.render.texture.coordinate import AlongX, AlongY, Coordinate
-from squeezefilm.render.texture.gratings import Square, Texture
-from squeezefilm.render.texture.levels import Amplitude, RelativeFriction
-from squeezefilm.render.texture.pattern import Pattern
-from squeezefilm.render.texture.shapes import SineWave
-
-BRASS = ElasticMaterial("brass", 100e9, 0.35, 8500.0, 200.0)
-PZT = Piezoceramic("PZT", 67.9e9, 0.29, 23e9, 7700.0, -247e-12, 1900.0, 60.0)
-PLATE = RectangularPlate(
-    30e-3, 10e-3, 2e-3, 4, 60.0, BRASS, PZT, (CeramicPatch(12e-3, 0.0, 6e-3, 10e-3, 1e-3),)
-)
-SINE = SineWave(2e-3)
-ENVELOPE = DrivenEnvelope(0.5e-3, 0.5e-3, 2e-6)
-FINGER = Finger(10e-3, 50e-6, 350e-6, 0.5)
-AIR = Gas(1.81e-5, 101325.0, 1.2, 68e-9)
-WAYS = np.linspace(0.0, 1e-3, 9)
-
-
-def falling_friction(amplitude: Any) -> Any:
-    return 1 - np.asarray(amplitude) / 4e-6
-
-
-def _law() -> FrictionLaw:
-    return FrictionLaw(
-        Surface("bare", 1e-6, 0.6), FINGER, AIR, 8e-3, 30e3, 0.5, "partial-levitation"
-    )
-
-
-def _disc() -> AnnularSection:
-    return bonded_disc(
-        diameter=25e-3, thickness=1e-3, plate=BRASS, ceramic=PZT,
-        ceramic_outer_diameter=15e-3, ceramic_thickness=0.5e-3,
-    )  # fmt: skip
-
-
-def _hjif() -> Any:
-    return hjif_of(made(RelativeFriction), 0.0, 20e-3, device=made(ReferenceDevice)).document
-
-
-def _fields_of(value: Any) -> dict[str, Any]:
-    return {field.name: getattr(value, field.name) for field in dataclasses.fields(value)}
-
-
-# Objects of the domain, made when first asked for.
-MADE: dict[Any, Callable[[], Any]] = {
-    AsperityLaw: AsperityLaw,
-    DryFriction: lambda: DryFriction(1.2, 0.01),
-    FrictionProfile: lambda: FrictionProfile(0.0, 1e-3, np.ones(4)),
-    Finger: lambda: FINGER,
-    FingerpadDynamics: FingerpadDynamics,
-    FilmTable: lambda: film_table(30e3, 250e-6, AIR),
-    FilmLoad: lambda: film_load(MADE[PaperGap](), 30e3, AIR, "paper2008"),
-    Occlusion: Occlusion,
-    PadPosture: PadPosture,
-    FrictionRipple: lambda: FrictionRipple(WAYS, np.linspace(0.5, 1, 9), 1e-2, 8e-3),
-    Skin: Skin,
-    Sliding: lambda: slide(np.linspace(0, 1e-2, 200), 1e-3, 0.6, 0.5),
-    Display: lambda: load_display("biet2008-plate"),
-    Surface: lambda: Surface("bare", 1e-6, 0.6),
-    Normal: lambda: Normal(1.0, 0.1),
-    Uniform: lambda: Uniform(0.5, 1.0),
-    PaperGap: lambda: PaperGap(1e-6, 0.5e-6, 50e-6, 350e-6, 16e-3, 10e-3),
-    PlanarGap: lambda: PlanarGap(0.2),
-    GapProfile: lambda: flexural_profile(0.2),
-    ReferenceDevice: lambda: ReferenceDevice("mine", 200.0, 5.0, 1e-4),
-    FrictionLaw: _law,
-    ElasticMaterial: lambda: BRASS,
-    Gas: lambda: AIR,
-    Piezoceramic: lambda: PZT,
-    PiezoConstants: lambda: PZT.full_constants,
-    AnnularMode: lambda: bending_mode(_disc(), 0, 1, degree=3),
-    AnnularSection: _disc,
-    SectorDrive: full_drive,
-    RingLayer: lambda: _disc().layers[0],
-    RingSolid: lambda: isotropic_solid(BRASS),
-    BeamMode: lambda: beam_response(PLATE).mode,
-    Laminate: lambda: plate_laminate(PLATE),
-    Layer: lambda: Layer(1e-3, 100e9, 40e9, 8500.0),
-    RectangularPlate: lambda: PLATE,
-    CeramicPatch: lambda: PLATE.patches[0],
-    LoadedMode: lambda: LoadedMode(30e3, 60.0, 0.01 + 0.01j),
-    SurfaceLoad: lambda: SurfaceLoad(10e-3, 2e-3, 5e-3, 5e-3, 1.0),
-    EquivalentCircuit: lambda: EquivalentCircuit(30e3, 60.0, 1e-9, 100.0, 0.03, 1e-9),
-    BeamResponse: lambda: beam_response(PLATE),
-    ShearLayout: lambda: shear_layout(PLATE),
-    ShearSection: lambda: isotropic_section(BRASS, 2e-3),
-    RadiatingSurface: lambda: rectangular_surface(
-        np.linspace(0, 0.02, 9), np.linspace(0, 0.01, 5), np.ones((9, 5)) + 0j, 30e3
-    ),
-    StatorAssumptions: StatorAssumptions,
-    WorkingMode: lambda: working_mode(PLATE, "timoshenko"),
-    Unit: lambda: Unit("m"),
-    CompensatedDrive: lambda: compensated_drive(np.full(50, 1e-6), 1e-4, ENVELOPE),
-    DrivenEnvelope: lambda: ENVELOPE,
-    Composable: lambda: RelativeFriction(SINE, 0.5, 0.9),
-    RelativeFriction: lambda: RelativeFriction(SINE, 0.5, 0.9),
-    Coordinate: AlongX,
-    FingerPath: lambda: FingerPath(np.linspace(0, 1, 9), np.linspace(0, 0.02, 9), np.zeros(9)),
-    FrictionInverse: lambda: FrictionInverse.from_function(falling_friction, 2e-6),
-    MotionEstimator: lambda: MotionEstimator.for_sensor(LVDT_10_KHZ),
-    MotionModel: MotionModel,
-    Pattern: lambda: SINE,
-    Program: lambda: lower(Amplitude(SINE, 0.0, 1e-6), largest_amplitude=2e-6),
-    Renderer: lambda: Renderer(MADE[Program]()),
-    SensorModel: lambda: LVDT_10_KHZ,
-    SensorStream: lambda: sensor_stream(LVDT_10_KHZ, lambda t: 0.1 * t, 0.05, 1),
-    Stroke: lambda: Stroke(0.1, 0.02),
-    Texture: lambda: Square(2e-3, 0.0, 1e-6),
-    Trajectory: lambda: Stroke(0.1, 0.02),
-    MinimumJerkStroke: lambda: MinimumJerkStroke(0.02, 0.1),
-    WaveCompensation: lambda: WaveCompensation.over_contact(8e-3, 2e-3, count=32),
-    Path: lambda: Path("missing"),
-    PlateModes: lambda: solve_modes(PLATE, near=60e3, count=1),
-    SolidMode: lambda: solid_mode(PLATE),
-    HarmonicResponse: lambda: harmonic_response(PLATE, np.array([30e3, 31e3])),
-    ShearMode: lambda: shear_modes(PLATE, 30e3, 1, degree=3)[0],
-    RingBody: lambda: RingBody(_disc(), full_drive(), (0, 1), None),
-    RingResponse: lambda: ring_response(
-        made(RingBody), made(AnnularMode), np.array([30e3]), (0,), 2
-    ),
-    OverPath: lambda: OverPath(made(FingerPath)),
-    Played: lambda: Played(made(Program)),
-    AlongX: AlongX,
-    AlongY: AlongY,
-}  # fmt: skip
+from .public_calls import PublicCall, public_calls
 
 _BY_UNIT = {
     "m": 1e-3, "m2": 1e-4, "s": 1e-3, "Hz": 30e3, "1": 0.5, "rad": 0.3, "N": 0.5, "N/m": 1e3,
@@ -237,10 +62,10 @@ _BY_NAME: dict[str, Any] = {
     "spatial_period": 2e-3, "voltage": 10.0, "surface_roughness": 1e-6, "sensor_rate": 1e3,
     "reference_speed": 0.1, "command": np.full(64, 1e-6), "wanted": np.full(64, 1e-6),
     "initial": 0.0, "start": 0.0, "end": 20e-3, "time_step": 1e-4, "time_constant": 0.5e-3,
-    "relative_friction": 0.7, "X": 0.25, "speed": 0.1, "frequency_error": 1.0, "voltage_limit": 20.0,
+    "relative_friction": 0.7, "X": 0.25, "speed": 0.1, "voltage_limit": 20.0, "digits": 4,
     "amplitude_per_volt": 1e-7, "name": "some", "title": "some", "text": "2 um", "path": "none",
     "display": "biet2008-plate", "insulation": "glass", "slip": "first", "samples_per_command": 192,
-    "poisson_ratio": 0.3, "samples": 4, "digits": 4, "value": 0.5, "bits": 8,
+    "poisson_ratio": 0.3, "samples": 4, "value": 0.5, "bits": 8,
 }  # fmt: skip
 
 
@@ -276,7 +101,11 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
     "contact.dry_friction.sampled_profile": {"relative_friction": np.cos},
     "contact.finger_load.finger_stiffness": {"interface": 1e5 + 1e3j},
     "contact.skin_vibration.skin_vibration": {"fundamental": 50.0, "start": 0.02},
-    "contact.skin_vibration.line_amplitudes": {"signals": np.cos(np.arange(640.0)), "time_step": 1e-3, "lines": np.array([100.0])},
+    "contact.skin_vibration.line_amplitudes": {
+        "signals": np.cos(np.arange(640.0)),
+        "time_step": 1e-3,
+        "lines": np.array([100.0]),
+    },
     "contact.tapping.contact_angle": {"rest_penetration": 1e-6},
     "film.line_grid.gap_table": {"gap": still_gap, "X": _GRID, "T": _GRID},
     "film.settling.settle_to_periodic": {"gap": still_gap},
@@ -289,29 +118,53 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
     "film.planar_gap.PlanarGap.__call__": {"X": _GRID, "Y": _GRID, "T": _GRID},
     "film.teeth.compare_teeth": {"tooth_width": 0.2, "tooth_pitch": 0.25, "squeeze_number": 10.0},
     "film.transient.check_film": {"shape": "strip", "sigma": 10.0, "n": 1.0, "knudsen": 0.0},
-    "formats.hjif_read.friction_along": {"document": Later(_hjif)},
+    "formats.hjif_read.friction_along": {"document": Later(hjif_document)},
     "formats.hjif.hjif_of": {"texture": Later(lambda: made(RelativeFriction))},
     "formats.image_file.ImageFile": {"file": "picture.png"},
     "formats.pictures.picture_bytes": {"values": np.full((4, 4), 0.5)},
     "formats.traces.Table": {"columns": {"time_s": _GRID}},
     "formats.wav.Waveform": {"samples": _GRID * 1e-7, "unit": "m", "full_scale": 1e-6},
-    "materials.PiezoConstants": Later(lambda: _fields_of(PZT.full_constants)),
-    "materials.Piezoceramic": {"in_plane_poisson_ratio": 0.29, "in_plane_stiffness": 68e9, "charge_coefficient": -247e-12},
+    "materials.PiezoConstants": Later(lambda: fields_of(PZT.full_constants)),
+    "materials.Piezoceramic": {
+        "in_plane_poisson_ratio": 0.29,
+        "in_plane_stiffness": 68e9,
+        "charge_coefficient": -247e-12,
+    },
     "plate.annular.bending_mode": {"diameters": 0, "circles": 1},
     "plate.annular.annular_modes": {"harmonic": 1, "degree": 3, "count": 1},
     "plate.annular.annular_admittance": {"harmonics": (0,), "degree": 3, "modes": 2},
-    "plate.annular_layout.RingLayer": {"inner_radius": 1e-3, "outer_radius": 10e-3, "bottom": 0.0, "top": 1e-3},
-    "plate.annular_layout.AnnularSection": {"layers": Later(lambda: _disc().layers)},
+    "plate.annular_layout.RingLayer": {
+        "inner_radius": 1e-3,
+        "outer_radius": 10e-3,
+        "bottom": 0.0,
+        "top": 1e-3,
+    },
+    "plate.annular_layout.AnnularSection": {"layers": Later(lambda: disc_section().layers)},
     "plate.annular_layout.SectorDrive": {"sectors": ((0.0, 1.0, 1),)},
     "plate.annular_layout.motor_stator": _STATOR,
-    "plate.annular_layout.bonded_disc": {"diameter": 25e-3, "thickness": 1e-3, "ceramic_outer_diameter": 15e-3, "ceramic_thickness": 0.5e-3},
-    "plate.annular_materials.RingSolid": {"stiffness": Later(lambda: isotropic_solid(BRASS).stiffness)},
+    "plate.annular_layout.bonded_disc": {
+        "diameter": 25e-3,
+        "thickness": 1e-3,
+        "ceramic_outer_diameter": 15e-3,
+        "ceramic_thickness": 0.5e-3,
+    },
+    "plate.annular_materials.RingSolid": {
+        "stiffness": Later(lambda: isotropic_solid(BRASS).stiffness)
+    },
     "plate.beam.BeamMode.deflection_at": {"x": WAYS},
     "plate.beam.BeamMode.rotation_at": {"x": WAYS},
     "plate.laminate.Laminate.moment_arm": {"layer": 0},
     "plate.layout.RectangularPlate": {"width": 10e-3, "thickness": 2e-3, "patches": PLATE.patches},
-    "plate.layout.AnnularStator": {"mean_diameter": 53.6e-3, "radial_width": 12e-3, "wavelength": 18.7e-3},
-    "plate.layout.DiscPlate": {"diameter": 25e-3, "ceramic_outer_diameter": 15e-3, "ceramic_thickness": 0.5e-3},
+    "plate.layout.AnnularStator": {
+        "mean_diameter": 53.6e-3,
+        "radial_width": 12e-3,
+        "wavelength": 18.7e-3,
+    },
+    "plate.layout.DiscPlate": {
+        "diameter": 25e-3,
+        "ceramic_outer_diameter": 15e-3,
+        "ceramic_thickness": 0.5e-3,
+    },
     "plate.loaded_mode.LoadedMode": {"load_ratio": 0.01 + 0.01j},
     "plate.loaded_mode.loaded_mode": {"stiffness_per_area": 1e6 + 1e5j},
     "plate.plate_modes.check_band": _BAND,
@@ -329,29 +182,35 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
     "plate.ring_response.ring_response": {"frequencies": np.array([30e3]), "harmonics": (0,)},
     "plate.shear_plate.shear_modes": {"near": 30e3, "count": 1, "degree": 3},
     "plate.shear_plate.shear_mode": {"near": 60e3, "degree": 3, "nodal_lines": (4, 0)},
-    "plate.shear_section.ShearSection": Later(lambda: _fields_of(made(ShearSection))),
-    "plate.shear_section.ShearLayout": Later(lambda: _fields_of(made(ShearLayout))),
+    "plate.shear_section.ShearSection": Later(lambda: fields_of(made(ShearSection))),
+    "plate.shear_section.ShearLayout": Later(lambda: fields_of(made(ShearLayout))),
     "plate.sound.rectangular_surface": _RADIATOR,
     "plate.sound.ring_surface": {"radius": np.linspace(0, 0.02, 9), "velocity": np.ones(9) + 0j},
-    "plate.sound.RadiatingSurface": Later(lambda: _fields_of(made(RadiatingSurface))),
+    "plate.sound.RadiatingSurface": Later(lambda: fields_of(made(RadiatingSurface))),
     "plate.sound.sound_pressure": {"points": np.array([[0.0, 0.0, 0.3]])},
     "plate.sound.pressure_level": {"pressure": np.array([1.0 + 1j])},
     "plate.solve_modes.solve_modes": {"count": 1, "near": 60e3},
     "plate.stator.stator_section": {"mean_diameter": 53.6e-3, "ring_thickness": 3e-3},
     "plate.stator.fit_stator": {"degree": 3},
-    "quantities.require": {"name": "length", "value": 1.0},
-    "quantities.require_valid": {"name": "length", "value": 1.0, "low": 0.0, "high": 2.0, "because": "so"},
+    "prediction.predict": {"theory": "timoshenko", "model": "paper2008"},
+    "prediction.voltage_for_friction": {"theory": "timoshenko", "model": "paper2008"},
     "render.carrier.carrier_trace": {"frequency": 30e3},
     "render.compensated_swing.least_cycle": {"swing": 1e-6},
     "render.compensation.slew_time": {"start": 0.0, "target": 1e-6, "limit": 2e-6},
-    "render.composition.Sequence": {"textures": Later(lambda: (made(RelativeFriction),) * 2), "edges": (1e-3,)},
+    "render.composition.Sequence": {
+        "textures": Later(lambda: (made(RelativeFriction),) * 2),
+        "edges": (1e-3,),
+    },
     "render.composition.Sum": {"textures": Later(lambda: (made(RelativeFriction),) * 2)},
     "render.composition.Composable.then": {"other": Later(lambda: made(RelativeFriction))},
     "render.coordinate.require_fade": {"value": 1e-4, "at_most": 1e-3},
-    "render.fidelity.fidelity_table": {**_FALL, "spatial_periods": (2e-3,), "speeds": (0.1,)},
+    "render.fidelity.fidelity_table": {**_FALL, "spatial_periods": (2e-3,), "speeds": (1.0,)},
     "render.finger_path.FingerPath": {"time": _GRID, "x": WAYS, "y": WAYS},
     "render.inverse.FrictionInverse.from_function": _FALL,
-    "render.inverse.FrictionInverse.from_arrays": {"amplitude": WAYS * 1e-3, "relative_friction": falling_friction(WAYS * 1e-3)},
+    "render.inverse.FrictionInverse.from_arrays": {
+        "amplitude": WAYS * 1e-3,
+        "relative_friction": falling_friction(WAYS * 1e-3),
+    },
     "render.levels.Amplitude.constant": {"value": 1e-6},
     "render.levels.RelativeFriction": {"low": 0.4, "high": 0.8},
     "render.levels.FrictionReduction": {"low": 0.4, "high": 0.8},
@@ -364,7 +223,10 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
     "render.pattern_noise.field_noise": {"u": _GRID, "w": _GRID, "state": 1},
     "render.program.Program": {"array": Later(lambda: made(Program).array)},
     "render.program.checked": {"array": Later(lambda: made(Program).array)},
-    "render.program.lower": {"texture": Later(lambda: Amplitude(SINE, 0.0, 1e-6)), "largest_amplitude": 2e-6},
+    "render.program.lower": {
+        "texture": Later(lambda: Amplitude(SINE, 0.0, 1e-6)),
+        "largest_amplitude": 2e-6,
+    },
     "render.rendered_stroke.rendered_stroke": {**_FALL, "texture": Later(lambda: made(Texture))},
     "render.renderer.render": _SERIES,
     "render.renderer.evaluate": _SERIES,
@@ -373,15 +235,12 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
     "render.sensor.sensor_stream": {"position": np.cos, "duration": 0.02},
     "render.trace.friction_trace": _FALL,
     "render.wave.WaveCompensation": {"factors": (1.0, 1.0, 1.0, 1.0)},
-    "render.wave.WaveCompensation.from_ripple": {"position": _WAVE, "relative_friction": np.full(8, 0.7)},
-}  # fmt: skip
+    "render.wave.WaveCompensation.from_ripple": {
+        "position": _WAVE,
+        "relative_friction": np.full(8, 0.7),
+    },
+}
 """What a call needs besides, or in place of, what its arguments' names say."""
-
-
-@functools.cache
-def made(kind: Any) -> Any:
-    """The object of the domain of this type."""
-    return MADE[kind]()
 
 
 def _choices(hint: Any) -> tuple[Any, ...]:
@@ -443,8 +302,6 @@ def _now(value: Any) -> Any:
 
 
 def constructor_of(owner: type[Any]) -> PublicCall:
-    from public_calls import public_calls
-
     return public_calls()[f"{owner.__module__}.{owner.__qualname__}".removeprefix("squeezefilm.")]
 
 
@@ -456,6 +313,3 @@ def invoke(call: PublicCall, arguments: dict[str, Any]) -> Any:
         if parameter.kind is parameter.POSITIONAL_ONLY and name in rest:
             positional.append(rest.pop(name))
     return call.function(*positional, **rest)
-
-
-__all__ = ["FOR_ONE_CALL", "dataclasses", "good_arguments", "invoke"]

@@ -1,12 +1,12 @@
-"""Every public call of the physics and rendering rooms that takes numbers, found by its annotations.
+"""Every public call of the physics and rendering rooms that takes numbers, by its annotations.
 
-`public_calls` walks the rooms; `good_arguments` makes a call that works from units, names and the
-tables of `good_arguments.py`.
+`public_calls` walks the rooms; `good_arguments` makes a call of each that works.
 """
 
 from __future__ import annotations
 
 import collections.abc
+import functools
 import importlib
 import inspect
 import pkgutil
@@ -20,21 +20,10 @@ import numpy as np
 import squeezefilm
 from squeezefilm.quantities import unit_of
 
-ROOMS = frozenset(
-    [
-        "film",
-        "plate",
-        "contact",
-        "render",
-        "friction",
-        "prediction",
-        "touch",
-        "materials",
-        "quantities",
-        "distributions",
-        "formats",
-    ]
-)
+ROOMS = {
+    "film", "plate", "contact", "render", "friction", "prediction", "touch", "materials",
+    "quantities", "distributions", "formats",
+}  # fmt: skip
 _REAL_ARRAY = np.ndarray[tuple[Any, ...], np.dtype[np.float64]]
 _NUMBERS = (int, float, _REAL_ARRAY)
 
@@ -106,15 +95,24 @@ NOT_CALLED = {
     plate.slab_factor.SlabFactor plate.slabs.Slabs.grid plate.slabs.Slabs.mass_times
     plate.slabs.Slabs.places plate.slabs.Slabs.stiffness_times
     plate.slabs.Slabs.weighted_sections render.opcodes.Assembler.emit
-    render.opcodes.Assembler.table render.pattern_noise.mixed
+    render.opcodes.Assembler.table render.pattern_noise.mixed render.coordinate.require_fade
+    render.coordinate.require_place render.pattern_noise.field_noise
+    render.pattern_noise.line_noise
     """,
     "no number but the index of what its other arguments hold, or an array the package made": """
     contact.gas_table.FilmTable.build film.compiled.announce
     plate.plate_volume.PlateVolume.displacement plate.plate_volume.PlateVolume.potential
     plate.plate_volume.harmonic_fields plate.plate_volume.mode_fields
-    plate.plate_volume.plate_volume render.coordinate.Coordinate.at render.coordinate.FromPoint.at render.coordinate.AlongY.at render.coordinate.AlongX.at render.coordinate.AlongDirection.at
-    render.fidelity_report.fidelity_report render.motion.MotionCounts.of
-    render.renderer.counters_of
+    plate.plate_volume.plate_volume render.coordinate.Coordinate.at
+    render.coordinate.FromPoint.at render.coordinate.AlongY.at render.coordinate.AlongX.at
+    render.coordinate.AlongDirection.at render.fidelity_report.fidelity_report
+    render.motion.MotionCounts.of render.renderer.counters_of
+    """,
+    "the real-time tick: it takes any floats, flags what it cannot use and never raises": """
+    render.renderer.Renderer.tick
+    """,
+    "the check of numbers itself, whose bounds are the code's own, and its messages' text": """
+    quantities.checks.require quantities.checks.require_valid quantities.units.format_quantity
     """,
 }
 """The public calls for which no good call is made here, by the reason. A new one must be named."""
@@ -142,14 +140,12 @@ class PublicCall:
 
 def is_number(hint: Any) -> bool:
     """Whether an annotation stands for a number or an array of numbers, alone or beside None."""
-    if any(
-        typing.get_origin(part) is collections.abc.Callable
-        for part in (hint, *typing.get_args(hint))
-    ):
+    origin = typing.get_origin(hint)
+    if origin in (collections.abc.Callable, collections.abc.Mapping, dict):
         return False
-    return unit_of(hint) is not None or any(
-        part in _NUMBERS for part in (hint, *typing.get_args(hint))
-    )
+    if unit_of(hint) is not None or hint in _NUMBERS:
+        return True
+    return origin is not None and any(is_number(part) for part in typing.get_args(hint))
 
 
 def is_kernel(item: Any) -> bool:
@@ -188,6 +184,7 @@ def _calls_of_class(cls: type[Any], home: object) -> Iterator[PublicCall]:
             yield PublicCall(f"{name}.{key}", member, cls, _hints(member, home))
 
 
+@functools.cache
 def public_calls() -> dict[str, PublicCall]:
     """Every public call with numbers among its arguments, by its dotted name below the package."""
     found = {}

@@ -231,6 +231,8 @@ class FrictionLaw:
         """µ′/µ by the competing mechanism, intermittent contact without gas, at amplitudes (m) and
         a finger speed (m/s), whatever the model: the mean over the ridges. See `contact.tapping`.
         """
+        swings = np.atleast_1d(amplitude)
+        require("amplitude", swings, Unit("m"), at_least=0, axes=1)
         finger = self.finger
         pressure = finger.plateau_pressure(self.normal_force)
         decay = finger.asperity_law(self.surface.roughness).decay_length
@@ -248,7 +250,7 @@ class FrictionLaw:
                 normal_stiffness=pressure / decay,
             ).relative_friction
 
-        each = np.array([[tap(float(a * k)) for k in kinds] for a in np.atleast_1d(amplitude)])
+        each = np.array([[tap(float(a * k)) for k in kinds] for a in swings])
         return np.asarray(each @ (counts / points.size))
 
     def _shared_load(self, amplitude: Metre) -> FilmLoad:
@@ -365,6 +367,8 @@ class FrictionLaw:
         paper's devices.
         """
         require("highest_amplitude", highest_amplitude, Unit("m"), above=0)
+        if points is not None:
+            require("points", points, at_least=2)
         count = points or (65 if is_solved(self.model) else 257)
         # Denser at small amplitudes, where the law bends within the roughness.
         grid = highest_amplitude * np.linspace(0.0, 1.0, count) ** 2

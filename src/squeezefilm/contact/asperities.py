@@ -173,13 +173,13 @@ class AsperityLaw:
         """
         require("pressure", pressure, Unit("Pa"), above=0)
         if self.heights == "exponential":
-            return self.reference_gap - self.decay_length * math.log(
-                pressure / self.reference_pressure
+            return self.reference_gap - self.decay_length * float(
+                np.log(pressure / self.reference_pressure)
             )
         from scipy.optimize import brentq
 
         reference = float(gaussian_overlap(self.reference_gap / self.decay_length))
-        wanted = math.log(pressure / self.reference_pressure * reference)
+        wanted = float(np.log(pressure / self.reference_pressure * reference))
 
         def excess(t: float) -> float:
             return math.log(float(gaussian_overlap(t))) - wanted

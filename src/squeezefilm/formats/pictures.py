@@ -17,7 +17,7 @@ import numpy as np
 
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import PICTURE_BYTES
-from squeezefilm.quantities import DimensionlessArray, require
+from squeezefilm.quantities import DimensionlessArray, real_numbers, require
 from squeezefilm.regular_file import read_regular
 from squeezefilm.render.texture.image import MOST_PIXELS
 
@@ -73,7 +73,7 @@ def picture_bytes(values: DimensionlessArray, bits: Literal[8, 16] = 8) -> bytes
     """
     from PIL import Image as Pillow
 
-    array = np.asarray(values, dtype=float)
+    array = real_numbers("values", values)
     if array.ndim != 2 or not 1 <= array.size <= MOST_PIXELS:
         raise InputError(
             f"values of shape {array.shape} are no picture; give rows and columns, at most "

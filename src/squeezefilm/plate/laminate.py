@@ -67,6 +67,7 @@ class Laminate:
     @checked_numbers
     def moment_arm(self, layer: int) -> Metre:
         """The distance of a layer's mid-plane from the neutral axis, positive upwards."""
+        require("layer", layer, at_least=0, at_most=len(self.layers) - 1)
         below = sum(other.thickness for other in self.layers[:layer])
         return below + self.layers[layer].thickness / 2 - self.neutral_axis
 

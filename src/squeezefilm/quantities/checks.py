@@ -22,14 +22,22 @@ from typing import Any, Literal, ParamSpec, TypeVar
 import numpy as np
 
 from squeezefilm.errors import InputError, OutOfRangeError, OutOfRangeWarning
-from squeezefilm.quantities.units import Unit, format_quantity, unit_of
+from squeezefilm.quantities.units import FloatArray, Unit, format_quantity, unit_of
 
-__all__ = ["CLOSED_FORMS", "checked_numbers", "closed_form", "require", "require_valid"]
+__all__ = [
+    "CLOSED_FORMS",
+    "checked_numbers",
+    "closed_form",
+    "real_numbers",
+    "require",
+    "require_valid",
+]
 
 _PURE = Unit("1")
+_MOST_BITS = 64
 
 
-def _real(name: str, value: Any) -> Any:
+def real_numbers(name: str, value: Any) -> FloatArray:
     """A value as an array of floats. Raises `InputError` for what is no real number or array."""
     try:
         array = np.asarray(getattr(value, "magnitude", value))
@@ -65,12 +73,18 @@ def require(
     at_least: float | None = None,
     below: float | None = None,
     at_most: float | None = None,
+    axes: int | None = None,
 ) -> None:
-    """Refuse a value (scalar or array) that is no number, not finite or not within the bounds (SI).
+    """Refuse a value (scalar or array) that is no number, not finite or not within the bounds (SI),
+    or an array of another number of axes.
 
     Raises `InputError` that names the quantity, the offending value with its unit and the bound.
     """
-    array = _real(name, value)
+    array = real_numbers(name, value)
+    if axes is not None and array.ndim != axes:
+        raise InputError(
+            f"{name} has the shape {array.shape}; an array of {axes} axes is wanted", quantity=name
+        )
     wanted: list[str] = []
     good = np.isfinite(array)
     for bound, word, holds in (
@@ -98,7 +112,7 @@ def require_valid(
 
     Raises `OutOfRangeError`, or warns `OutOfRangeWarning` if not `strict`.
     """
-    array = np.atleast_1d(_real(name, value))
+    array = np.ravel(real_numbers(name, value))
     outside = ~((array >= low) & (array <= high))
     if not np.any(outside):
         return
@@ -109,19 +123,20 @@ def require_valid(
     warnings.warn(message, OutOfRangeWarning, stacklevel=3)
 
 
-_Kind = Literal["number", "array", "either", "complex", "count", "container"]
+_Kind = Literal["number", "array", "either", "complex", "count", "row", "container"]
 
 
 @dataclass(frozen=True, slots=True)
 class _Rule:
-    """What an annotation says of an argument: one number, an array, either, a count, or numbers in
-    a container of another kind, which is left as it is."""
+    """What an annotation says of an argument: one number, an array, either, a count, a row (a
+    tuple or list of numbers), or numbers in another container, which is left as it is."""
 
     kind: _Kind
     unit: Unit
     optional: bool
     above: float | None = None
     at_least: float | None = None
+    length: int | None = None
 
 
 def _members(hint: Any) -> list[Any]:
@@ -152,11 +167,25 @@ def _rule(hint: Any, above: float | None, at_least: float | None) -> _Rule | Non
         kind = "array"
     elif kinds == {np.ndarray} and "complex128" in str(plain[0]):
         kind = "complex"
-    elif unit is not None and collections.abc.Callable not in kinds:
+    elif collections.abc.Callable in kinds:
+        return None
+    elif len(plain) == 1 and _is_row(plain[0]):
+        kind = "row"
+    elif unit is not None:
         kind = "container"
     else:
         return None
-    return _Rule(kind, unit or _PURE, len(plain) < len(members), above, at_least)
+    parts = typing.get_args(plain[0]) if kind == "row" and kinds == {tuple} else (Ellipsis,)
+    length = None if Ellipsis in parts else len(parts)
+    return _Rule(kind, unit or _PURE, len(plain) < len(members), above, at_least, length)
+
+
+def _is_row(hint: Any) -> bool:
+    """Whether an annotation is a tuple, a list or a sequence of plain numbers."""
+    parts = [part for part in typing.get_args(hint) if part is not Ellipsis]
+    inner = {member for part in parts for member in _members(part)}
+    rows = (tuple, list, collections.abc.Sequence)
+    return typing.get_origin(hint) in rows and bool(inner) and inner <= {int, float}
 
 
 def _checked_value(name: str, value: Any, rule: _Rule) -> Any:
@@ -169,24 +198,34 @@ def _checked_value(name: str, value: Any, rule: _Rule) -> Any:
     elif value is None and rule.optional:
         return value
     if rule.kind == "count":
-        if not _is_whole(value):
+        if not _is_whole(value) or int(value).bit_length() > _MOST_BITS:
             raise InputError(
-                f"{name} = {_shortened(value)} cannot be used: it must be a whole number",
+                f"{name} = {_shortened(value)} cannot be used: it must be a whole number of at "
+                f"most {_MOST_BITS} bits",
                 quantity=name,
             )
         return value
     if rule.kind == "complex":
         return _complex_value(name, value)
-    require(name, value, rule.unit, above=rule.above, at_least=rule.at_least)
-    if hasattr(value, "magnitude") or rule.kind == "container":
+    axes = 1 if rule.kind == "row" else None
+    require(name, value, rule.unit, above=rule.above, at_least=rule.at_least, axes=axes)
+    if hasattr(value, "magnitude"):
         return value
     array = np.asarray(value, dtype=float)
     if rule.kind == "number" and array.ndim:
         raise InputError(f"{name} has the shape {array.shape}; one number is wanted", quantity=name)
-    if rule.kind == "array" and not array.ndim:
+    if rule.kind in ("array", "container") and not array.ndim:
         raise InputError(
             f"{name} is one number; an array of at least one sample is wanted", quantity=name
         )
+    if rule.length not in (None, array.size):
+        raise InputError(f"{name} holds {array.size} numbers; give {rule.length}", quantity=name)
+    if rule.kind == "row":
+        return tuple(value.tolist()) if isinstance(value, np.ndarray) else value
+    if rule.kind == "container":
+        return value
+    if not array.size:
+        raise InputError(f"{name} is empty; at least one sample is wanted", quantity=name)
     return array if array.ndim else float(array)
 
 

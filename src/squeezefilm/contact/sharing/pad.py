@@ -38,6 +38,8 @@ from squeezefilm.quantities import (
 
 Limit = Literal["own", "one-gap"]
 
+_MOST_RIDGES = 100_000
+
 
 @checked_numbers
 @dataclass(frozen=True, eq=False)
@@ -100,6 +102,7 @@ def ridge_points(finger: Finger, contact_length: Metre | None = None) -> FloatAr
     """
     side = finger.contact_length if contact_length is None else contact_length
     require("contact_length", side, Unit("m"), above=0)
+    require("ridges in the contact", side / finger.ridge_period, at_most=_MOST_RIDGES)
     half, period, angle = side / 2, finger.ridge_period, finger.ridge_angle
     reach = half * (abs(np.cos(angle)) + abs(np.sin(angle)))
     count = int(np.floor(reach / period + 0.5))

@@ -137,7 +137,7 @@ def vibration_amplitude_for(
     require("relative_friction", relative_friction, at_least=0, at_most=1)
     require("normal_force", normal_force, Unit("N"), above=0)
     require("ambient_pressure", ambient_pressure, Unit("Pa"), above=0)
-    require("highest", highest, Unit("m"), above=0)
+    require("highest", highest, Unit("m"), at_least=1e-12)
     if model not in PAPER_MODELS:
         raise InputError(f"model = '{model}' is unknown; allowed are {', '.join(PAPER_MODELS)}")
 

@@ -241,6 +241,8 @@ def interval_speeds(
     to the right, and 0 where they differ in sign: second order on smooth motion, and a motion in
     straight pieces that meet at samples keeps its corners.
     """
+    require("time_step", time_step, Unit("s"), above=0)
+    require("bone", bone, Unit("m"), axes=1)
     mean = np.diff(bone) / time_step
     change = np.diff(mean)
     if not change.size:

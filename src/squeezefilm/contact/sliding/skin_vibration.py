@@ -157,7 +157,16 @@ def line_amplitudes(signals: FloatArray, time_step: Second, lines: HertzArray) -
     first line as fit, so that neither a drift nor the window's ends leak into them. The result has
     shape (…, lines) and the unit of the signals.
     """
-    whole = math.floor(signals.shape[-1] * time_step * lines[0] + 1e-9) / lines[0]
+    require("time_step", time_step, Unit("s"), above=0)
+    require("lines", lines, Unit("Hz"), above=0, axes=1)
+    periods = signals.shape[-1] * time_step * lines[0]
+    if not 1 <= periods + 1e-9 <= signals.shape[-1] / 2:
+        raise InputError(
+            f"{signals.shape[-1]} samples hold {periods:.4g} periods of the first line; at least "
+            "one whole period is needed, of two samples or more",
+            quantity="lines",
+        )
+    whole = math.floor(periods + 1e-9) / lines[0]
     count = min(signals.shape[-1], round(whole / time_step))
     t = np.arange(count) * time_step
     phase = 2 * math.pi * np.outer(t, lines)

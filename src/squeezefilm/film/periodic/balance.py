@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from squeezefilm.errors import ConvergenceError, InputError, UnreachableError
+from squeezefilm.errors import ConvergenceError, InputError, OutOfRangeError, UnreachableError
 from squeezefilm.film.periodic.batch import FilmBatch, solve_discs, solve_strips
 from squeezefilm.quantities import (
     Dimensionless,
@@ -159,6 +159,11 @@ def mean_gap_for_load(
     # At the faint end of the grid the over-pressure can drown in round-off: leave that out.
     first = film.solve(grid, 0.02, strict=False)
     usable = first.over_pressure_error <= 0.05 * first.over_pressure
+    if np.count_nonzero(usable) < 2:
+        raise OutOfRangeError(
+            "the film carries so little that its load is lost in rounding; take a larger "
+            "amplitude, frequency or length, or a shorter mean free path"
+        )
     solves = len(grid)
     grid, rough = grid[usable], first.over_pressure[usable]
     ends = rough[[0, -1]].copy()

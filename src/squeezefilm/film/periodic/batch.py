@@ -28,6 +28,7 @@ from squeezefilm.film.periodic.resolution import (
     tables,
 )
 from squeezefilm.film.slip import slip_law
+from squeezefilm.film.solved_range import require_film
 from squeezefilm.quantities import (
     DimensionlessArray,
     DimensionlessLike,
@@ -134,12 +135,12 @@ def check_film(
     squeeze_number: DimensionlessLike,
     excursion_ratio: DimensionlessLike,
     polytropic_exponent: DimensionlessLike,
+    knudsen_number: DimensionlessLike,
     tolerance: float,
 ) -> None:
     """Refuse inputs that no film has; raises `InputError` with the offending value."""
-    require("squeeze_number", squeeze_number, above=0.0)
+    require_film(squeeze_number, polytropic_exponent, knudsen_number)
     require("excursion_ratio", excursion_ratio, above=-1.0, below=1.0)
-    require("polytropic_exponent", polytropic_exponent, at_least=1.0, at_most=5.0 / 3.0)
     require("tolerance", tolerance, at_least=1e-9, at_most=0.05)
 
 
@@ -155,8 +156,7 @@ def _solve(
     progress: Progress | None,
     strict: bool,
 ) -> FilmBatch:
-    check_film(squeeze_number, excursion_ratio, polytropic_exponent, tolerance)
-    require("knudsen_number", knudsen_number, at_least=0.0)
+    check_film(squeeze_number, excursion_ratio, polytropic_exponent, knudsen_number, tolerance)
     law = slip_law(slip, float(np.max(knudsen_number)))
     if workers is not None and workers < 1:
         raise InputError(f"workers = {workers} cannot be used: at least 1, or None for all cores")

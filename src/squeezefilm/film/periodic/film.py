@@ -32,7 +32,6 @@ from squeezefilm.quantities import (
     DimensionlessArray,
     FloatArray,
     checked_numbers,
-    require,
 )
 
 _FIELD_TIMES = 64
@@ -133,7 +132,7 @@ def _solve_uniform(
     shape: str, squeeze_number: float, excursion_ratio: float, polytropic_exponent: float,
     knudsen_number: float, slip: str, tolerance: float,
 ) -> FilmSolution:  # fmt: skip
-    check_film(squeeze_number, excursion_ratio, polytropic_exponent, tolerance)
+    check_film(squeeze_number, excursion_ratio, polytropic_exponent, knudsen_number, tolerance)
     law = slip_law(slip, knudsen_number)
     u = compiled()
     # ε and −ε are half a period apart; zero is solved as nearly zero, which gives the limits of
@@ -203,8 +202,7 @@ def solve_profile(
                 f"function H(X, T); for arrays use profile_from_samples"
             )
         profile = profile_from_function(profile)
-    require("squeeze_number", squeeze_number, above=0.0)
-    check_film(squeeze_number, 0.0, polytropic_exponent, tolerance)
+    check_film(squeeze_number, 0.0, polytropic_exponent, knudsen_number, tolerance)
     law = slip_law(slip, knudsen_number)
     from squeezefilm.film.periodic.film import uniform as u
     from squeezefilm.film.periodic.varying import solve_varying

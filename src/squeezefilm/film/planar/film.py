@@ -17,6 +17,7 @@ from squeezefilm.film.planar.gap import GapFunction, PlanarGap, require_periodic
 from squeezefilm.film.planar.kernel import row_block
 from squeezefilm.film.planar.ladder import RUNGS, Ladder, PlanarShape, climb_to
 from squeezefilm.film.slip import slip_law
+from squeezefilm.film.solved_range import require_film
 from squeezefilm.quantities import (
     ComplexArray,
     Dimensionless,
@@ -149,10 +150,8 @@ def solve_planar(
     viscous flow; slip by the local Knudsen number Kn/(PH). The tolerance is on the over-pressure,
     down to 1e-5 of it. Sources: Gross (1962); Blech, 10.1115/1.3254692 for the linear limit.
     """
-    require("squeeze_number", squeeze_number, above=0.0)
+    require_film(squeeze_number, polytropic_exponent, knudsen_number)
     require("aspect_ratio", aspect_ratio, above=0.0)
-    require("polytropic_exponent", polytropic_exponent, at_least=1.0, at_most=5 / 3)
-    require("knudsen_number", knudsen_number, at_least=0.0)
     require("tolerance", tolerance, at_least=1e-5, at_most=0.5)
     if shape not in ("rectangle", "disc", "ellipse"):
         raise InputError(f"shape = '{shape}' is not known; allowed: rectangle, disc, ellipse")

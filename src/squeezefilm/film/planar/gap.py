@@ -8,7 +8,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from squeezefilm.errors import GeometryError, InputError
-from squeezefilm.quantities import Dimensionless, FloatArray, checked_numbers, require
+from squeezefilm.quantities import (
+    Dimensionless,
+    DimensionlessLike,
+    FloatArray,
+    checked_numbers,
+    require,
+)
+
+# A thousand waves on the surface; some twenty cells a wave make a grid of it.
+_HIGHEST_WAVE_NUMBER = 2000 * np.pi
 
 GapFunction = Callable[[FloatArray, FloatArray, FloatArray], FloatArray]
 """H(X, Y, T): takes X and Y (places, 1) and T (1, times), returns what broadcasts with them."""
@@ -32,12 +41,19 @@ class PlanarGap:
 
     def __post_init__(self) -> None:
         require("excursion_ratio", self.excursion_ratio, above=0.0, below=1.0)
-        require("wave_number", self.wave_number, at_least=0.0)
+        require("wave_number", self.wave_number, at_least=0.0, at_most=_HIGHEST_WAVE_NUMBER)
         require("ridge_height", self.ridge_height, at_least=0.0, below=1.0)
-        require("ridge_wave_number", self.ridge_wave_number, at_least=0.0)
+        require(
+            "ridge_wave_number",
+            self.ridge_wave_number,
+            at_least=0.0,
+            at_most=_HIGHEST_WAVE_NUMBER,
+        )
 
     @checked_numbers
-    def __call__(self, X: FloatArray, Y: FloatArray, T: FloatArray) -> FloatArray:
+    def __call__(
+        self, X: DimensionlessLike, Y: DimensionlessLike, T: DimensionlessLike
+    ) -> FloatArray:
         """H at places X, Y and times T, broadcast."""
         wave = np.cos(self.wave_number * X) * np.cos(T)
         ridges = np.cos(self.ridge_wave_number * X)

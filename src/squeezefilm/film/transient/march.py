@@ -17,10 +17,12 @@ from squeezefilm.errors import ConvergenceError, InputError
 from squeezefilm.film.compiled import announce
 from squeezefilm.film.line_grid import Gap, Shape, gap_table, line_grid, mean_over
 from squeezefilm.film.slip import slip_law
+from squeezefilm.film.solved_range import require_film
 from squeezefilm.film.transient.kernel import BACKWARD_EULER, BDF2, SDIRK2, march
 from squeezefilm.quantities import (
     Dimensionless,
     DimensionlessArray,
+    DimensionlessLike,
     FloatArray,
     checked_numbers,
     require,
@@ -70,9 +72,7 @@ def stage_times(scheme: str) -> FloatArray:
 
 def check_film(shape: str, sigma: float, n: float, knudsen: float) -> None:
     """Refuse a shape that is not known and numbers out of range."""
-    require("squeeze_number", sigma, above=0.0)
-    require("polytropic_exponent", n, at_least=1.0, at_most=5 / 3)
-    require("knudsen_number", knudsen, at_least=0.0)
+    require_film(sigma, n, knudsen)
     if shape not in ("strip", "disc"):
         raise InputError(f"shape = '{shape}' is not known; allowed: strip, disc")
 
@@ -95,7 +95,7 @@ def solve_transient(
     polytropic_exponent: Dimensionless = 1.0,
     knudsen_number: Dimensionless = 0.0,
     slip: str = "first",
-    initial_pressure: DimensionlessArray | float = 1.0,
+    initial_pressure: DimensionlessLike = 1.0,
     snapshots: int = 11,
     scheme: Scheme = "bdf2",
 ) -> FilmTransient:
@@ -122,6 +122,12 @@ def solve_transient(
     require("cells", cells, at_least=4)
     require("snapshots", snapshots, at_least=0, at_most=steps + 1)
     require("initial_pressure", initial_pressure, above=0.0)
+    if np.shape(initial_pressure) not in ((), (cells,)):
+        raise InputError(
+            f"initial_pressure has the shape {np.shape(initial_pressure)}; give one number, or one "
+            f"for each of {cells} cells",
+            quantity="initial_pressure",
+        )
     code = slip_law(slip, knudsen_number)
     stage_times(scheme)
     grid = line_grid(shape, cells, squeeze_number, mean_over(gap, np.linspace(start, end, 9)))

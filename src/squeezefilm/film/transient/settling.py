@@ -130,8 +130,10 @@ def settle_to_periodic(
     require("cells", cells, at_least=4)
     require("steps", steps, at_least=4)
     require("max_periods", max_periods, at_least=1)
+    # Less than rounding leaves no march reaches.
+    require("settled", settled, at_least=1e-14)
     if tolerance is not None:
-        require("tolerance", tolerance, above=0.0)
+        require("tolerance", tolerance, at_least=1e-9)
     history: list[FilmSettled] = []
     guess: tuple[FloatArray, FloatArray] | None = None
     while True:

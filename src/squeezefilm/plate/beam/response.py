@@ -104,8 +104,8 @@ class BeamResponse(SolvedAgain):
         the working mode's frequency (or the cut-off), so static parts off resonance are
         underestimated.
         """
-        frequency = np.asarray(frequency, dtype=float)
-        require("frequency", frequency, Unit("Hz"), at_least=0)
+        require("frequency", frequency, Unit("Hz"), at_least=0, axes=1)
+        require("position", position, Unit("m"), axes=1)
         omega2 = (2 * np.pi * frequency[:, None]) ** 2
         total = np.zeros((frequency.size, np.size(position)), dtype=complex)
         for mode, force in zip(self.modes, self.modal_force_per_width, strict=True):

@@ -92,6 +92,7 @@ class AnnularMode:
     @checked_numbers
     def coupling_coefficient(self, drive: SectorDrive, capacitance: Farad) -> Dimensionless:
         """Effective coupling k of the mode on `drive`: k² = F²/(F² + ω² M C), with C clamped."""
+        require("capacitance", capacitance, Unit("F"), above=0)
         stiffness = (2 * math.pi * self.frequency) ** 2 * self.modal_mass
         force = self.modal_force(drive)
         return force / math.sqrt(force**2 + stiffness * capacitance)
@@ -202,9 +203,8 @@ def annular_admittance(
     Damping is structural; the ceramic's dielectric loss is left out.
     Raises `InputError` for an empty list of harmonics or frequencies that are not positive.
     """
-    frequency = np.asarray(frequency, dtype=float)
     require("frequency", frequency, Unit("Hz"), above=0)
-    if not harmonics:
+    if not len(harmonics):
         raise InputError("harmonics is empty; name at least the one of the mode wanted")
     omega = 2 * np.pi * frequency
     charge = np.full(frequency.shape, clamped_capacitance(section, drive), dtype=complex)

@@ -91,8 +91,7 @@ def ring_response(
     all of `harmonics`. Structural damping. Linear; sectors' fringes and the ceramic's dielectric
     loss are left out. Raises `InputError` for frequencies that are not positive.
     """
-    frequencies = np.asarray(frequencies, dtype=float)
-    require("frequencies", frequencies, Unit("Hz"), above=0)
+    require("frequencies", frequencies, Unit("Hz"), above=0, axes=1)
     m, quality = mode.harmonic, body.quality_factor
     near = annular_modes(body.section, m, near=mode.frequency, count=terms, quality_factor=quality)
     omega2 = (2 * np.pi * frequencies) ** 2

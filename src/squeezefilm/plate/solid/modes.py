@@ -23,8 +23,10 @@ from squeezefilm.quantities import (
     HertzArray,
     Metre,
     MetreArray,
+    Unit,
     checked_numbers,
     did_you_mean,
+    require,
 )
 
 Label = tuple[int, int]
@@ -136,13 +138,17 @@ class PlateModes(SolvedAgain):
         """How many modes there are."""
         return self.frequencies.size
 
+    def _known(self, mode: int) -> int:
+        require("mode", mode, at_least=-self.count, at_most=self.count - 1)
+        return mode
+
     @checked_numbers
     def index(self, label: Label) -> int:
         """The position of the mode with these nodal lines.
 
         Of several the most strongly driven one is taken. Raises `InputError` where there is none.
         """
-        found = [i for i, own in enumerate(self.labels) if own == label]
+        found = [i for i, own in enumerate(self.labels) if own == tuple(label)]
         if not found:
             known = [str(own) for own in self.labels if own is not None]
             raise InputError(
@@ -156,15 +162,17 @@ class PlateModes(SolvedAgain):
     def field(self, mode: int, x: FloatArray, y: FloatArray, z: Metre) -> FloatArray:
         """Displacement (u, v, w) of a mode on the grid of `x` × `y` at height `z` above the
         plate's lower face, shape (x, y, 3), in 1/√kg."""
-        solved, vector = self._fields[mode]
-        values: FloatArray = solved.field(vector[:, None], np.asarray(x), np.asarray(y), z)[0]
+        solved, vector = self._fields[self._known(mode)]
+        require("x", x, Unit("m"), axes=1)
+        require("y", y, Unit("m"), axes=1)
+        values: FloatArray = solved.field(vector[:, None], x, y, z)[0]
         return values
 
     @checked_numbers
     def nodal_positions(self, mode: int) -> MetreArray:
         """Where w vanishes along the side that more nodal lines cross, of the shape's dominant
         part (m): along the length, or along the width of a mode such as (0,7)."""
-        along, across, _ = profiles(self.shapes[mode])
+        along, across, _ = profiles(self.shapes[self._known(mode)])
         lines = zero_crossings(self.x, along), zero_crossings(self.y, across)
         return lines[0] if lines[0].size >= lines[1].size else lines[1]
 
@@ -241,7 +249,7 @@ def tracked(before: PlateModes, after: PlateModes) -> list[tuple[int, float]]:
 @checked_numbers
 def check_band(band: tuple[Hertz, Hertz]) -> None:
     """Refuse a band that is none."""
-    if not 0 <= band[0] < band[1] or not np.isfinite(band[1]):
+    if not 0 <= band[0] < band[1]:
         raise InputError(
             f"band = {band[0]:.6g} Hz to {band[1]:.6g} Hz is none; give a lower and a higher "
             "frequency",

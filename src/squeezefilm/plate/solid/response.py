@@ -123,7 +123,9 @@ class HarmonicResponse(SolvedAgain):
     def displacement(self, x: MetreArray, y: MetreArray) -> ComplexArray:
         """Complex w per volt (m/V) on the grid of `x` × `y` of the upper face, shape (frequencies,
         x, y)."""
-        values = surface_values(self._parts, np.atleast_1d(x), np.atleast_1d(y), self._top)
+        require("x", x, Unit("m"), axes=1)
+        require("y", y, Unit("m"), axes=1)
+        values = surface_values(self._parts, x, y, self._top)
         return np.asarray(np.tensordot(self._coordinates, values, 1))
 
     @property
@@ -141,6 +143,8 @@ class HarmonicResponse(SolvedAgain):
     ) -> tuple[MetreArray, ComplexArray]:
         """w per volt (m/V) along the plate's length at frequency number `at`; by default on the
         centreline."""
+        require("at", at, at_least=-self.frequencies.size, at_most=self.frequencies.size - 1)
+        require("points", points, at_least=1)
         x = np.linspace(0, self.plate.length, points)
         across = self.plate.width / 2 if y is None else y
         values = surface_values(self._parts, x, np.array([across]), self._top)[:, :, 0]

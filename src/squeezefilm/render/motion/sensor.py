@@ -158,6 +158,7 @@ def sensor_stream(
     """
     require("duration", duration, Unit("s"), above=0.0)
     require("start", start, Unit("s"))
+    require("seed", seed, at_least=0)
     steps = duration * sensor.rate * (1 + 1e-12)
     require_motion(MOTION_SAMPLES, steps + 2, duration, sensor.rate)
     count = math.floor(steps) + 1

@@ -19,6 +19,7 @@ from squeezefilm.quantities import (
     Second,
     SecondLike,
     Unit,
+    real_numbers,
 )
 from squeezefilm.render.program.interpreter import amplitude_march, tick, tick_march, value_march
 from squeezefilm.render.program.lowering import Program
@@ -183,7 +184,7 @@ class Played:
 
 
 def _series(*arguments: Any) -> list[FloatArray]:
-    arrays = [np.asarray(one, dtype=float) for one in arguments]
+    arrays = [real_numbers(*one) for one in zip("xyvt", arguments, strict=True)]
     try:
         joint = np.broadcast_arrays(*arrays)
     except ValueError as error:

@@ -121,7 +121,8 @@ def resonator_response(
     turn = 2 * math.pi * frequency / sample_rate
     loss = 0.5 / quality_factor
     ring = math.sqrt(1 - loss**2)
-    decay, cos, sin = math.exp(-loss * turn), math.cos(ring * turn), math.sin(ring * turn)
+    decay = math.exp(-loss * turn)
+    cos, sin = float(np.cos(ring * turn)), float(np.sin(ring * turn))
     m00, m01 = decay * (cos + loss / ring * sin), decay * sin / ring
     m10, m11 = -decay * sin / ring, decay * (cos - loss / ring * sin)
     # A constant u moves the rest position to u/Q.

@@ -30,9 +30,8 @@ import numpy as np
 from squeezefilm.errors import InputError
 from squeezefilm.quantities import (
     Dimensionless,
-    DimensionlessLike,
     FloatArray,
-    HertzLike,
+    Hertz,
     Metre,
     MetreArray,
     MetreLike,
@@ -101,8 +100,8 @@ class DrivenEnvelope:
     @checked_numbers
     def of_resonator(
         cls,
-        quality_factor: DimensionlessLike,
-        frequency: HertzLike,
+        quality_factor: Dimensionless,
+        frequency: Hertz,
         amplitude_per_volt: MetrePerVolt,
         voltage_limit: Volt,
         braking: bool = False,
@@ -274,6 +273,7 @@ def preview_samples(
 @checked_numbers
 def preview_work(samples: int) -> FloatArray:
     """Working memory of `previewed_step` for so many samples ahead, shape (5, 2·samples + 2)."""
+    require("samples", samples, at_least=0)
     return np.empty((5, 2 * samples + 2))
 
 

@@ -7,7 +7,7 @@ from typing import Literal
 
 import numpy as np
 
-from squeezefilm.errors import InputError
+from squeezefilm.errors import InputError, OutOfRangeError
 from squeezefilm.quantities import (
     Dimensionless,
     DimensionlessLike,
@@ -101,6 +101,11 @@ def fastest_compensated_speed(
             - kept
         )
 
+    if lacking(30.0) > 0.0:
+        raise OutOfRangeError(
+            f"kept = {kept:.4g} of the swing is left at any speed; ask for a larger share",
+            quantity="kept",
+        )
     return float(unit * math.exp(brentq(lacking, -30.0, 30.0, xtol=1e-13, rtol=1e-13)))
 
 
@@ -127,9 +132,8 @@ def least_cycle(envelope: DrivenEnvelope, swing: Metre, highest: Metre | None = 
         down = (level + swing - envelope.lowest_command) / max(
             level - envelope.lowest_command, 1e-300
         )
-        return envelope.rise_time_constant * math.log(up) + envelope.fall_time_constant * math.log(
-            down
-        )
+        rising = envelope.rise_time_constant * float(np.log(up))
+        return rising + envelope.fall_time_constant * float(np.log(down))
 
     room = ceiling - swing
     found = minimize_scalar(period, bounds=(0.0, max(room, 1e-300)), method="bounded",

@@ -16,6 +16,7 @@ from squeezefilm.quantities import (
     FloatArray,
     Metre,
     checked_numbers,
+    real_numbers,
     require,
 )
 from squeezefilm.render.opcodes import IMAGE, Assembler
@@ -58,6 +59,13 @@ class Image(Pattern):
     _grid: FloatArray = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
+        if not isinstance(self.values, tuple | list) or not all(
+            isinstance(row, tuple | list) for row in self.values
+        ):
+            raise InputError(
+                "values are no image; give rows of values, or an array to Image.from_array",
+                quantity="values",
+            )
         rows = len(self.values)
         columns = len(self.values[0]) if rows else 0
         if columns == 0 or any(len(row) != columns for row in self.values):
@@ -72,7 +80,7 @@ class Image(Pattern):
                 f"{MOST_PIXELS} together; make its pixels larger",
                 quantity="values",
             )
-        grid = np.array(self.values, dtype=float)
+        grid = np.array(real_numbers("values", self.values))
         require("values", grid, at_least=0.0, at_most=1.0)
         grid.setflags(write=False)
         object.__setattr__(self, "_grid", grid)
@@ -102,6 +110,7 @@ class Image(Pattern):
             InputError: an array that is not of floats (8-bit grey must be divided by 255), has
                 not two axes, or cannot be an image.
         """
+        require("values", values)
         array: Any = np.asarray(values)
         if array.ndim != 2 or not np.issubdtype(array.dtype, np.floating):
             raise InputError(

@@ -1,0 +1,23 @@
+"""The range of film numbers that every solver of this room takes, stated once."""
+
+from __future__ import annotations
+
+from squeezefilm.quantities import Dimensionless, DimensionlessLike, require
+
+LEAST_SQUEEZE_NUMBER: Dimensionless = 1e-10
+"""Below, the over-pressure, which goes with σ², drowns in rounding and a solver would refine for
+ever; `film.linear` has it in closed form. (A strip at ε = 0.2 is solved at 1e-10, not at 1e-12.)"""
+
+MOST_KNUDSEN: Dimensionless = 1e6
+"""Above, a gap far narrower than any surface is flat: molecules fly freely from about 10."""
+
+
+def require_film(
+    squeeze_number: DimensionlessLike,
+    polytropic_exponent: DimensionlessLike,
+    knudsen_number: DimensionlessLike,
+) -> None:
+    """Refuse a gas film that no solver here has: raises `InputError` with the offending value."""
+    require("squeeze_number", squeeze_number, at_least=LEAST_SQUEEZE_NUMBER)
+    require("polytropic_exponent", polytropic_exponent, at_least=1.0, at_most=5.0 / 3.0)
+    require("knudsen_number", knudsen_number, at_least=0.0, at_most=MOST_KNUDSEN)

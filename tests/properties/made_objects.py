@@ -1,0 +1,208 @@
+"""Objects of the domain, small and quick to solve, for calls that need one."""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from squeezefilm.contact.asperities import AsperityLaw
+from squeezefilm.contact.dry_friction import DryFriction, FrictionProfile
+from squeezefilm.contact.film_load import FilmLoad, film_load
+from squeezefilm.contact.finger import Finger
+from squeezefilm.contact.fingerpad import FingerpadDynamics
+from squeezefilm.contact.gas_table import FilmTable, film_table
+from squeezefilm.contact.occlusion import Occlusion
+from squeezefilm.contact.pad import FrictionRipple, PadPosture
+from squeezefilm.contact.skin import Skin
+from squeezefilm.contact.sliding import Sliding, slide
+from squeezefilm.display import Display, Surface, load_display
+from squeezefilm.distributions import Normal, Uniform
+from squeezefilm.film.gap import PaperGap
+from squeezefilm.film.planar_gap import PlanarGap
+from squeezefilm.film.profile import GapProfile, flexural_profile
+from squeezefilm.formats.hjif import ReferenceDevice, hjif_of
+from squeezefilm.friction import FrictionLaw
+from squeezefilm.materials import ElasticMaterial, Gas, Piezoceramic, PiezoConstants
+from squeezefilm.plate.annular import AnnularMode, bending_mode
+from squeezefilm.plate.annular_layout import (
+    AnnularSection,
+    RingLayer,
+    SectorDrive,
+    bonded_disc,
+    full_drive,
+)
+from squeezefilm.plate.annular_materials import RingSolid, isotropic_solid
+from squeezefilm.plate.beam import BeamMode
+from squeezefilm.plate.laminate import Laminate, Layer, plate_laminate
+from squeezefilm.plate.layout import CeramicPatch, RectangularPlate
+from squeezefilm.plate.loaded_mode import LoadedMode
+from squeezefilm.plate.plate_modes import PlateModes
+from squeezefilm.plate.plate_response import (
+    EquivalentCircuit,
+    HarmonicResponse,
+    SurfaceLoad,
+    harmonic_response,
+)
+from squeezefilm.plate.response import BeamResponse, beam_response
+from squeezefilm.plate.ring_body import RingBody
+from squeezefilm.plate.ring_response import RingResponse, ring_response
+from squeezefilm.plate.shear_plate import ShearMode, shear_modes
+from squeezefilm.plate.shear_section import (
+    ShearLayout,
+    ShearSection,
+    isotropic_section,
+    shear_layout,
+)
+from squeezefilm.plate.solid_mode import SolidMode, solid_mode
+from squeezefilm.plate.solve_modes import solve_modes
+from squeezefilm.plate.sound import RadiatingSurface, rectangular_surface
+from squeezefilm.plate.stator import StatorAssumptions
+from squeezefilm.plate.working_mode import WorkingMode, working_mode
+from squeezefilm.quantities import Unit
+from squeezefilm.render.compensation import CompensatedDrive, DrivenEnvelope, compensated_drive
+from squeezefilm.render.composition import Composable
+from squeezefilm.render.coordinate import AlongX, AlongY, Coordinate
+from squeezefilm.render.finger_path import FingerPath, OverPath
+from squeezefilm.render.inverse import FrictionInverse
+from squeezefilm.render.levels import Amplitude, RelativeFriction
+from squeezefilm.render.minimum_jerk import MinimumJerkStroke, Trajectory
+from squeezefilm.render.motion import MotionEstimator, MotionModel
+from squeezefilm.render.pattern import Pattern
+from squeezefilm.render.pattern_shapes import SineWave
+from squeezefilm.render.program import Program, lower
+from squeezefilm.render.renderer import Played, Renderer
+from squeezefilm.render.sensor import LVDT_10_KHZ, SensorModel, SensorStream, sensor_stream
+from squeezefilm.render.stroke import Stroke
+from squeezefilm.render.texture import Square, Texture
+from squeezefilm.render.wave import WaveCompensation
+
+BRASS = ElasticMaterial("brass", 100e9, 0.35, 8500.0, 200.0)
+PZT = Piezoceramic("PZT", 67.9e9, 0.29, 23e9, 7700.0, -247e-12, 1900.0, 60.0)
+PLATE = RectangularPlate(
+    30e-3, 10e-3, 2e-3, 4, 60.0, BRASS, PZT, (CeramicPatch(12e-3, 0.0, 6e-3, 10e-3, 1e-3),)
+)
+SINE = SineWave(2e-3)
+ENVELOPE = DrivenEnvelope(0.5e-3, 0.5e-3, 2e-6)
+FINGER = Finger(10e-3, 50e-6, 350e-6, 0.5)
+AIR = Gas(1.81e-5, 101325.0, 1.2, 68e-9)
+WAYS = np.linspace(0.0, 1e-3, 9)
+
+
+def falling_friction(amplitude: Any) -> Any:
+    return 1 - np.asarray(amplitude) / 4e-6
+
+
+def _law() -> FrictionLaw:
+    return FrictionLaw(
+        Surface("bare", 1e-6, 0.6), FINGER, AIR, 8e-3, 30e3, 0.5, "partial-levitation"
+    )
+
+
+def disc_section() -> AnnularSection:
+    return bonded_disc(
+        diameter=25e-3, thickness=1e-3, plate=BRASS, ceramic=PZT,
+        ceramic_outer_diameter=15e-3, ceramic_thickness=0.5e-3,
+    )  # fmt: skip
+
+
+def hjif_document() -> Any:
+    return hjif_of(made(RelativeFriction), 0.0, 20e-3, device=made(ReferenceDevice)).document
+
+
+def fields_of(value: Any) -> dict[str, Any]:
+    return {field.name: getattr(value, field.name) for field in dataclasses.fields(value)}
+
+
+# By their type, made when first asked for.
+MADE: dict[Any, Callable[[], Any]] = {
+    AsperityLaw: AsperityLaw,
+    DryFriction: lambda: DryFriction(1.2, 0.01),
+    FrictionProfile: lambda: FrictionProfile(0.0, 1e-3, np.ones(4)),
+    Finger: lambda: FINGER,
+    FingerpadDynamics: FingerpadDynamics,
+    FilmTable: lambda: film_table(30e3, 250e-6, AIR),
+    FilmLoad: lambda: film_load(MADE[PaperGap](), 30e3, AIR, "paper2008"),
+    Occlusion: Occlusion,
+    PadPosture: PadPosture,
+    FrictionRipple: lambda: FrictionRipple(WAYS, np.linspace(0.5, 1, 9), 1e-2, 8e-3),
+    Skin: Skin,
+    Sliding: lambda: slide(np.linspace(0, 1e-2, 200), 1e-3, 0.6, 0.5),
+    Display: lambda: load_display("biet2008-plate"),
+    Surface: lambda: Surface("bare", 1e-6, 0.6),
+    Normal: lambda: Normal(1.0, 0.1),
+    Uniform: lambda: Uniform(0.5, 1.0),
+    PaperGap: lambda: PaperGap(1e-6, 0.5e-6, 50e-6, 350e-6, 16e-3, 10e-3),
+    PlanarGap: lambda: PlanarGap(0.2),
+    GapProfile: lambda: flexural_profile(0.2),
+    ReferenceDevice: lambda: ReferenceDevice("mine", 200.0, 5.0, 1e-4),
+    FrictionLaw: _law,
+    ElasticMaterial: lambda: BRASS,
+    Gas: lambda: AIR,
+    Piezoceramic: lambda: PZT,
+    PiezoConstants: lambda: PZT.full_constants,
+    AnnularMode: lambda: bending_mode(disc_section(), 0, 1, degree=3),
+    AnnularSection: disc_section,
+    SectorDrive: full_drive,
+    RingLayer: lambda: disc_section().layers[0],
+    RingSolid: lambda: isotropic_solid(BRASS),
+    BeamMode: lambda: beam_response(PLATE).mode,
+    Laminate: lambda: plate_laminate(PLATE),
+    Layer: lambda: Layer(1e-3, 100e9, 40e9, 8500.0),
+    RectangularPlate: lambda: PLATE,
+    CeramicPatch: lambda: PLATE.patches[0],
+    LoadedMode: lambda: LoadedMode(30e3, 60.0, 0.01 + 0.01j),
+    SurfaceLoad: lambda: SurfaceLoad(10e-3, 2e-3, 5e-3, 5e-3, 1.0),
+    EquivalentCircuit: lambda: EquivalentCircuit(30e3, 60.0, 1e-9, 100.0, 0.03, 1e-9),
+    BeamResponse: lambda: beam_response(PLATE),
+    ShearLayout: lambda: shear_layout(PLATE),
+    ShearSection: lambda: isotropic_section(BRASS, 2e-3),
+    RadiatingSurface: lambda: rectangular_surface(
+        np.linspace(0, 0.02, 9), np.linspace(0, 0.01, 5), np.ones((9, 5)) + 0j, 30e3
+    ),
+    StatorAssumptions: StatorAssumptions,
+    WorkingMode: lambda: working_mode(PLATE, "timoshenko"),
+    Unit: lambda: Unit("m"),
+    CompensatedDrive: lambda: compensated_drive(np.full(50, 1e-6), 1e-4, ENVELOPE),
+    DrivenEnvelope: lambda: ENVELOPE,
+    Composable: lambda: RelativeFriction(SINE, 0.5, 0.9),
+    RelativeFriction: lambda: RelativeFriction(SINE, 0.5, 0.9),
+    Coordinate: AlongX,
+    FingerPath: lambda: FingerPath(np.linspace(0, 1, 9), np.linspace(0, 0.02, 9), np.zeros(9)),
+    FrictionInverse: lambda: FrictionInverse.from_function(falling_friction, 2e-6),
+    MotionEstimator: lambda: MotionEstimator.for_sensor(LVDT_10_KHZ),
+    MotionModel: MotionModel,
+    Pattern: lambda: SINE,
+    Program: lambda: lower(Amplitude(SINE, 0.0, 1e-6), largest_amplitude=2e-6),
+    Renderer: lambda: Renderer(MADE[Program]()),
+    SensorModel: lambda: LVDT_10_KHZ,
+    SensorStream: lambda: sensor_stream(LVDT_10_KHZ, lambda t: 0.1 * t, 0.05, 1),
+    Stroke: lambda: Stroke(0.1, 0.02),
+    Texture: lambda: Square(2e-3, 0.0, 1e-6),
+    Trajectory: lambda: Stroke(0.1, 0.02),
+    MinimumJerkStroke: lambda: MinimumJerkStroke(0.02, 0.1),
+    WaveCompensation: lambda: WaveCompensation.over_contact(8e-3, 2e-3, count=32),
+    Path: lambda: Path("missing"),
+    PlateModes: lambda: solve_modes(PLATE, near=60e3, count=1),
+    SolidMode: lambda: solid_mode(PLATE),
+    HarmonicResponse: lambda: harmonic_response(PLATE, np.array([30e3, 31e3])),
+    ShearMode: lambda: shear_modes(PLATE, 30e3, 1, degree=3)[0],
+    RingBody: lambda: RingBody(disc_section(), full_drive(), (0, 1), None),
+    RingResponse: lambda: ring_response(
+        made(RingBody), made(AnnularMode), np.array([30e3]), (0,), 2
+    ),
+    OverPath: lambda: OverPath(made(FingerPath)),
+    Played: lambda: Played(made(Program)),
+    AlongX: AlongX,
+    AlongY: AlongY,
+}  # fmt: skip
+
+
+@functools.cache
+def made(kind: Any) -> Any:
+    """The object of the domain of this type."""
+    return MADE[kind]()
