@@ -20,7 +20,7 @@ from collections.abc import Callable
 import numpy as np
 from scipy.optimize import lsq_linear
 
-from squeezefilm.render.motion.estimator import kernel as motion_kernel
+from squeezefilm.render.motion import kernel as motion_kernel
 from squeezefilm.render.motion.estimator import MotionEstimator, MotionModel
 from squeezefilm.render.motion.minimum_jerk import MinimumJerkStroke
 from squeezefilm.render.resonator import kernel as compensation_kernel

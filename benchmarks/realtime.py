@@ -34,7 +34,7 @@ from squeezefilm.render.motion.sensor import LVDT_10_KHZ
 from squeezefilm.render.program.lowering import lower
 from squeezefilm.render.resonator.compensation import DrivenEnvelope
 from squeezefilm.render.texture.gratings import Square
-from squeezefilm.session.loop.process import shared
+from squeezefilm.session.loop import shared
 from squeezefilm.session.loop.atomics import store_release
 from squeezefilm.session.loop.lateness import Lateness
 from squeezefilm.session.loop.plan import DriveTable, LoopPlan

@@ -20,7 +20,7 @@ from collections.abc import Callable
 import numpy as np
 
 from squeezefilm.render import opcodes
-from squeezefilm.render.program.lowering import interpreter
+from squeezefilm.render.program import interpreter
 from squeezefilm.render.program.inverse import FrictionInverse
 from squeezefilm.render.program.lowering import Program, lower
 from squeezefilm.render.program.renderer import Renderer, evaluate, new_state
@@ -136,7 +136,7 @@ def table(count: int) -> None:
 def opcode_costs(count: int) -> None:
     """What one further instruction adds: the slope between programs with 1 and 33 of it."""
     print("\nWhat one instruction takes, ns (the slope between 8 and 40 in a row)")
-    from squeezefilm.render.program.lowering import layout as at
+    from squeezefilm.render.program import layout as at
 
     arrays = samples(count)
     head = program_of(Amplitude(SineWave(1e-3), 0.0, 1e-6)).array[: at.HEADER]

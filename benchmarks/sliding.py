@@ -22,8 +22,8 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from squeezefilm.contact.finger.fingerpad import FingerpadDynamics
-from squeezefilm.contact.sliding.march import kernel as sliding_kernel
-from squeezefilm.contact.sliding.march import march as sliding
+from squeezefilm.contact.sliding import kernel as sliding_kernel
+from squeezefilm.contact.sliding import march as sliding
 from squeezefilm.contact.sliding.dry_friction import DryFriction
 
 PAD = FingerpadDynamics(damping=0.1)

@@ -3,9 +3,9 @@
     python tools/freeze_outputs.py freeze FOLDER     # before a change that must not change a number
     python tools/freeze_outputs.py compare FOLDER    # after it: equal to the last digit, or listed
 
-Each case is one command line, run in this process, with its JSON as the answer. A refusal is an answer
-too: its message is kept. What differs between two runs of the same code (the time of day, how long
-something took) is left out.
+Each case is one command line, run in this process, with its JSON as the answer. A refusal is an
+answer too: its message is kept. What differs between two runs of the same code (the time of day,
+how long something took) is left out.
 """
 
 from __future__ import annotations
@@ -61,8 +61,9 @@ def cases() -> Iterator[str]:
     for display in DISPLAYS:
         for texture in TEXTURES:
             yield f"render {texture} --display {display} --stroke '60 mm/s over 1 cm' --json"
-    yield "render sine-3mm --display biet2008-plate --stroke '60 mm/s over 2 cm' --compensate inverse --braking --json"
-    yield "render biet2008-square-2mm --display biet2008-plate --stroke '60 mm/s over 2 cm' --wave compensated --json"
+    on_plate = "--display biet2008-plate --stroke '60 mm/s over 2 cm' --json"
+    yield f"render sine-3mm --compensate inverse --braking {on_plate}"
+    yield f"render biet2008-square-2mm --wave compensated {on_plate}"
     for display in DISPLAYS:
         yield f"friction {display} --samples 64 --wanted 0.7 --json"
         yield f"friction {display} --samples 0 --speed '50 mm/s' --force '1 N' --json"
@@ -112,7 +113,7 @@ def differences(case: str, before: Any, now: Any) -> list[str]:
     old, new = dict(leaves(before)), dict(leaves(now))
     missing = object()
     return [
-        f"{case}: {path or 'text'}: {old.get(path, '(nothing)')!r} became {new.get(path, '(nothing)')!r}"
+        f"{case}: {path or 'text'}: {old.get(path, 'nothing')!r} is now {new.get(path, 'nothing')!r}"
         for path in {**old, **new}
         if old.get(path, missing) != new.get(path, missing)
         and not (old.get(path) != old.get(path) and new.get(path) != new.get(path))
@@ -143,7 +144,9 @@ def main() -> int:
         before = json.loads((folder / name).read_text(encoding="utf-8"))
         found = differences(case, before, now)
         changed += len(found)
-        print(f"{took:6.1f} s  {'equal' if not found else f'{len(found)} differ'}  {case}", flush=True)
+        print(
+            f"{took:6.1f} s  {'equal' if not found else f'{len(found)} differ'}  {case}", flush=True
+        )
         for line in found[:8]:
             print(f"    {line[:400]}")
     return 1 if changed else 0

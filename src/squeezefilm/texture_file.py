@@ -30,12 +30,12 @@ from squeezefilm.config.write import text_of
 from squeezefilm.errors import ConfigError, InputError
 from squeezefilm.formats import image_file
 from squeezefilm.from_text import ReadBy
+from squeezefilm.render.texture import gates as pattern_gates
+from squeezefilm.render.texture import gratings as texture
+from squeezefilm.render.texture import image as pattern_image
+from squeezefilm.render.texture import levels
+from squeezefilm.render.texture import noise as pattern_noise
 from squeezefilm.render.texture.composition import Composable, require_texture
-from squeezefilm.render.texture.gratings import gates as pattern_gates
-from squeezefilm.render.texture.gratings import gratings as texture
-from squeezefilm.render.texture.gratings import image as pattern_image
-from squeezefilm.render.texture.gratings import levels
-from squeezefilm.render.texture.gratings import noise as pattern_noise
 
 MODULES = (image_file, levels, pattern_gates, pattern_image, pattern_noise, texture)
 """The modules whose classes a file may name, beside those these import."""

@@ -18,7 +18,7 @@ from squeezefilm.config.write import text_of
 from squeezefilm.errors import DeviceError
 from squeezefilm.perception.stimuli import Grating, Stimulus
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ
-from squeezefilm.session.loop.process import rows as column
+from squeezefilm.session.loop import rows as column
 from squeezefilm.session.record.trace import read_trace
 from squeezefilm.study.conduct.exposure import Exposure
 from squeezefilm.study.conduct.played_device import SessionDevice

@@ -29,8 +29,8 @@ from squeezefilm.chain import rendered_texture as render_command
 from squeezefilm.chain.prediction import predict
 from squeezefilm.display import Display, load_display
 from squeezefilm.errors import SqueezefilmError, SqueezefilmWarning
-from squeezefilm.film.periodic.film import batch
-from squeezefilm.film.periodic.film import film as periodic
+from squeezefilm.film.periodic import batch
+from squeezefilm.film.periodic import film as periodic
 from squeezefilm.formats.trajectories import motion_from
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.ring import modes as annular

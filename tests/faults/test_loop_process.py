@@ -22,10 +22,10 @@ from squeezefilm.render.motion.sensor import LVDT_10_KHZ
 from squeezefilm.render.program.lowering import lower
 from squeezefilm.render.resonator.compensation import DrivenEnvelope
 from squeezefilm.render.texture.gratings import Square
+from squeezefilm.session.loop import rows as column
 from squeezefilm.session.loop.pacing import MARGIN
 from squeezefilm.session.loop.plan import DriveTable, LoopPlan
 from squeezefilm.session.loop.process import LoopProcess
-from squeezefilm.session.loop.process import rows as column
 from squeezefilm.session.loop.ring import ring_waiting
 
 pytestmark = pytest.mark.realtime

@@ -20,7 +20,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.device.machine.device import Fault
-from squeezefilm.session.loop.process import rows as column
+from squeezefilm.session.loop import rows as column
 from squeezefilm.session.record.trace import read_trace
 
 pytestmark = [

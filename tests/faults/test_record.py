@@ -13,7 +13,8 @@ import numpy as np
 import pytest
 
 from squeezefilm.errors import InputError, RecordError
-from squeezefilm.session.record.trace import Trace, read_trace, trace_file
+from squeezefilm.session.record import trace_file
+from squeezefilm.session.record.trace import Trace, read_trace
 from squeezefilm.session.record.trace_writer import TraceWriter
 
 COLUMNS = ("tick", "x_m", "level_V")

@@ -10,13 +10,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from squeezefilm.session.loop.process import shared
+from squeezefilm.session.loop import shared
 from squeezefilm.session.loop.ring import ring_take
 
 WRITER = """
 import mmap, sys
 import numpy as np
-from squeezefilm.session.loop.process import shared
+from squeezefilm.session.loop import shared
 from squeezefilm.session.loop.ring import ring_put_all
 
 total = int(sys.argv[2])

@@ -10,76 +10,80 @@ from typing import Any
 
 import numpy as np
 
+from squeezefilm.chain.friction import FrictionLaw
 from squeezefilm.contact.asperities import AsperityLaw
-from squeezefilm.contact.dry_friction import DryFriction, FrictionProfile
-from squeezefilm.contact.film_load import FilmLoad, film_load
-from squeezefilm.contact.finger import Finger
-from squeezefilm.contact.fingerpad import FingerpadDynamics
-from squeezefilm.contact.gas_table import FilmTable, film_table
-from squeezefilm.contact.occlusion import Occlusion
-from squeezefilm.contact.pad import FrictionRipple, PadPosture
-from squeezefilm.contact.skin import Skin
-from squeezefilm.contact.sliding import Sliding, slide
+from squeezefilm.contact.finger.fingerpad import FingerpadDynamics
+from squeezefilm.contact.finger.fingertip import Finger
+from squeezefilm.contact.finger.occlusion import Occlusion
+from squeezefilm.contact.finger.skin import Skin
+from squeezefilm.contact.sharing.film_load import FilmLoad, film_load
+from squeezefilm.contact.sharing.gas_table import FilmTable, film_table
+from squeezefilm.contact.sharing.pad import FrictionRipple, PadPosture
+from squeezefilm.contact.sliding.dry_friction import DryFriction, FrictionProfile
+from squeezefilm.contact.sliding.march import Sliding, slide
 from squeezefilm.display import Display, Surface, load_display
 from squeezefilm.distributions import Normal, Uniform
 from squeezefilm.film.gap import PaperGap
-from squeezefilm.film.planar_gap import PlanarGap
-from squeezefilm.film.profile import GapProfile, flexural_profile
+from squeezefilm.film.periodic.profile import GapProfile, flexural_profile
+from squeezefilm.film.planar.gap import PlanarGap
 from squeezefilm.formats.hjif import ReferenceDevice, hjif_of
-from squeezefilm.friction import FrictionLaw
 from squeezefilm.materials import ElasticMaterial, Gas, Piezoceramic, PiezoConstants
-from squeezefilm.plate.annular import AnnularMode, bending_mode
-from squeezefilm.plate.annular_layout import (
+from squeezefilm.plate.beam.modes import BeamMode
+from squeezefilm.plate.beam.response import BeamResponse, beam_response
+from squeezefilm.plate.laminate import Laminate, Layer, plate_laminate
+from squeezefilm.plate.layout import CeramicPatch, RectangularPlate
+from squeezefilm.plate.loaded_mode import LoadedMode
+from squeezefilm.plate.ring.body import RingBody
+from squeezefilm.plate.ring.materials import RingSolid, isotropic_solid
+from squeezefilm.plate.ring.modes import AnnularMode, bending_mode
+from squeezefilm.plate.ring.response import RingResponse, ring_response
+from squeezefilm.plate.ring.section import (
     AnnularSection,
     RingLayer,
     SectorDrive,
     bonded_disc,
     full_drive,
 )
-from squeezefilm.plate.annular_materials import RingSolid, isotropic_solid
-from squeezefilm.plate.beam import BeamMode
-from squeezefilm.plate.laminate import Laminate, Layer, plate_laminate
-from squeezefilm.plate.layout import CeramicPatch, RectangularPlate
-from squeezefilm.plate.loaded_mode import LoadedMode
-from squeezefilm.plate.plate_modes import PlateModes
-from squeezefilm.plate.plate_response import (
-    EquivalentCircuit,
-    HarmonicResponse,
-    SurfaceLoad,
-    harmonic_response,
-)
-from squeezefilm.plate.response import BeamResponse, beam_response
-from squeezefilm.plate.ring_body import RingBody
-from squeezefilm.plate.ring_response import RingResponse, ring_response
-from squeezefilm.plate.shear_plate import ShearMode, shear_modes
-from squeezefilm.plate.shear_section import (
+from squeezefilm.plate.ring.stator import StatorAssumptions
+from squeezefilm.plate.shear.modes import ShearMode, shear_modes
+from squeezefilm.plate.shear.section import (
     ShearLayout,
     ShearSection,
     isotropic_section,
     shear_layout,
 )
-from squeezefilm.plate.solid_mode import SolidMode, solid_mode
-from squeezefilm.plate.solve_modes import solve_modes
+from squeezefilm.plate.solid.modes import PlateModes
+from squeezefilm.plate.solid.response import (
+    EquivalentCircuit,
+    HarmonicResponse,
+    SurfaceLoad,
+    harmonic_response,
+)
+from squeezefilm.plate.solid.solve import solve_modes
+from squeezefilm.plate.solid.working import SolidMode, solid_mode
 from squeezefilm.plate.sound import RadiatingSurface, rectangular_surface
-from squeezefilm.plate.stator import StatorAssumptions
 from squeezefilm.plate.working_mode import WorkingMode, working_mode
 from squeezefilm.quantities import Unit
-from squeezefilm.render.compensation import CompensatedDrive, DrivenEnvelope, compensated_drive
-from squeezefilm.render.composition import Composable
-from squeezefilm.render.coordinate import AlongX, AlongY, Coordinate
-from squeezefilm.render.finger_path import FingerPath, OverPath
-from squeezefilm.render.inverse import FrictionInverse
-from squeezefilm.render.levels import Amplitude, RelativeFriction
-from squeezefilm.render.minimum_jerk import MinimumJerkStroke, Trajectory
-from squeezefilm.render.motion import MotionEstimator, MotionModel
-from squeezefilm.render.pattern import Pattern
-from squeezefilm.render.pattern_shapes import SineWave
-from squeezefilm.render.program import Program, lower
-from squeezefilm.render.renderer import Played, Renderer
-from squeezefilm.render.sensor import LVDT_10_KHZ, SensorModel, SensorStream, sensor_stream
-from squeezefilm.render.stroke import Stroke
-from squeezefilm.render.texture import Square, Texture
-from squeezefilm.render.wave import WaveCompensation
+from squeezefilm.render.motion.estimator import MotionEstimator, MotionModel
+from squeezefilm.render.motion.finger_path import FingerPath, OverPath
+from squeezefilm.render.motion.minimum_jerk import MinimumJerkStroke, Trajectory
+from squeezefilm.render.motion.sensor import LVDT_10_KHZ, SensorModel, SensorStream, sensor_stream
+from squeezefilm.render.motion.stroke import Stroke
+from squeezefilm.render.program.inverse import FrictionInverse
+from squeezefilm.render.program.lowering import Program, lower
+from squeezefilm.render.program.renderer import Played, Renderer
+from squeezefilm.render.program.wave import WaveCompensation
+from squeezefilm.render.resonator.compensation import (
+    CompensatedDrive,
+    DrivenEnvelope,
+    compensated_drive,
+)
+from squeezefilm.render.texture.composition import Composable
+from squeezefilm.render.texture.coordinate import AlongX, AlongY, Coordinate
+from squeezefilm.render.texture.gratings import Square, Texture
+from squeezefilm.render.texture.levels import Amplitude, RelativeFriction
+from squeezefilm.render.texture.pattern import Pattern
+from squeezefilm.render.texture.shapes import SineWave
 
 BRASS = ElasticMaterial("brass", 100e9, 0.35, 8500.0, 200.0)
 PZT = Piezoceramic("PZT", 67.9e9, 0.29, 23e9, 7700.0, -247e-12, 1900.0, 60.0)

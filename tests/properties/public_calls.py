@@ -21,7 +21,8 @@ import squeezefilm
 from squeezefilm.quantities import unit_of
 
 ROOMS = {
-    "film", "plate", "contact", "render", "friction", "prediction", "touch", "materials",
+    "film", "plate", "contact", "render", "chain.friction", "chain.prediction", "chain.touch",
+    "materials",
     "quantities", "distributions", "formats",
 }  # fmt: skip
 _REAL_ARRAY = np.ndarray[tuple[Any, ...], np.dtype[np.float64]]
@@ -30,86 +31,98 @@ _NUMBERS = (int, float, _REAL_ARRAY)
 
 NOT_CALLED = {
     "a record of what was computed, which only the package makes": """
-    contact.film_load.FilmLoad contact.pad.PadFriction contact.sharing.LoadSharing
-    contact.sharing.TiedSharing contact.skin_vibration.SkinVibration contact.sliding.Sliding
-    contact.tapping.Tapping film.balance.LevitationLimit film.balance.LoadBalance
-    film.batch.FilmBatch film.edge.EdgeLayer film.periodic.FilmSolution
-    film.planar.FilmPlanar film.settling.FilmSettled film.teeth.ToothedFilm
-    film.transient.FilmTransient film.validity.FilmValidity film.validity.ValidityCheck
-    formats.hjif.HjifExport formats.hjif_read.HjifImport plate.annular.AnnularMode
-    plate.beam.BeamMode plate.plate_modes.PlateModes plate.plate_response.HarmonicResponse
-    plate.plate_volume.PlateVolume plate.response.BeamResponse plate.ring_body.RingBody
-    plate.ring_body.RingWorkingMode plate.ring_response.RingResponse
-    plate.shear_plate.ShearMode plate.solid_mode.SolidMode plate.sound.ExposureGuidance
+    contact.sharing.film_load.FilmLoad contact.sharing.pad.PadFriction
+    contact.sharing.balance.LoadSharing
+    contact.sharing.balance.TiedSharing contact.sliding.skin_vibration.SkinVibration
+    contact.sliding.march.Sliding
+    contact.sharing.tapping.Tapping film.periodic.balance.LevitationLimit
+    film.periodic.balance.LoadBalance
+    film.periodic.batch.FilmBatch film.periodic.edge.EdgeLayer film.periodic.film.FilmSolution
+    film.planar.film.FilmPlanar film.transient.settling.FilmSettled film.planar.teeth.ToothedFilm
+    film.transient.march.FilmTransient film.validity.FilmValidity film.validity.ValidityCheck
+    formats.hjif.HjifExport formats.hjif_read.HjifImport plate.ring.modes.AnnularMode
+    plate.beam.modes.BeamMode plate.solid.modes.PlateModes plate.solid.response.HarmonicResponse
+    plate.solid.volume.PlateVolume plate.beam.response.BeamResponse plate.ring.body.RingBody
+    plate.ring.body.RingWorkingMode plate.ring.response.RingResponse
+    plate.shear.modes.ShearMode plate.solid.working.SolidMode plate.sound.ExposureGuidance
     plate.sound.SoundField plate.working_mode.ModeLine plate.working_mode.WorkingMode
-    prediction.Prediction render.compensation.CompensatedDrive
-    render.fidelity_report.FidelityReport render.motion.MotionCounts
-    render.motion.MotionEstimate render.rendered_stroke.RenderedStroke
-    render.renderer.Counters render.renderer.Rendered touch.Touch
+    chain.prediction.Prediction render.resonator.compensation.CompensatedDrive
+    render.fidelity.report.FidelityReport render.motion.estimator.MotionCounts
+    render.motion.estimator.MotionEstimate render.fidelity.rendered_stroke.RenderedStroke
+    render.program.renderer.Counters render.program.renderer.Rendered chain.touch.Touch
     """,
     "inside a solver: meshes, matrices and indices, made by calls that are checked": """
-    film.batch.check_film film.batch.solve_all film.line_grid.LineGrid
+    film.periodic.batch.check_film film.periodic.batch.solve_all film.line_grid.LineGrid
     film.line_grid.edge_graded film.line_grid.edge_layer film.line_grid.gap_table
     film.line_grid.line_grid film.line_grid.mean_over film.line_grid.refined_line
-    film.line_grid.uniform_gap film.periodic.load_times film.planar_balance.Balance
-    film.planar_balance.Balancer film.planar_balance.Balancer.solve film.planar_balance.Film
-    film.planar_balance.derivative film.planar_balance.resampled film.planar_balance.times
-    film.planar_cut.cut_ellipse_grid film.planar_gap.gap_values
-    film.planar_gap.require_periodic film.planar_grid.PlanarGrid film.planar_grid.disc_grid
-    film.planar_grid.ellipse_grid film.planar_grid.graded_line
-    film.planar_grid.rectangle_grid film.planar_ladder.Climb film.planar_ladder.Extrapolated
-    film.planar_ladder.Ladder film.planar_ladder.Ladder.grid film.planar_ladder.climb_to
-    film.profile.GapProfile.grid film.profile.sampled_grid film.resolution.first_guess
-    film.resolution.refined film.resolution.tables film.slip.slip_law
-    film.transient.check_film plate.annular_elements.HarmonicSystem
-    plate.annular_elements.HarmonicSystem.field plate.annular_elements.RingMesh
-    plate.annular_elements.harmonic_system plate.block_ldl.PartialLDL
-    plate.block_ldl.partial_ldl plate.box_model.BoxModel plate.box_model.Electrode
-    plate.box_model.Foundation plate.box_model.Medium plate.box_model.Medium.gradient_matrix
-    plate.coarse_modes.CoarseModes plate.coarse_modes.chosen_modes
-    plate.coarse_modes.class_fits plate.coarse_modes.coarse_modes
-    plate.coarse_modes.estimated_frequency plate.cross_section.CrossSection
-    plate.cross_section.cross_section plate.electrode_circuits.open_values
-    plate.electrode_circuits.shunted_frequencies plate.extrapolated_plate.extrapolated_class
-    plate.krylov.Pairs plate.krylov.modes_below plate.krylov.modes_near
-    plate.krylov.prolonged plate.krylov.with_open_electrodes plate.lobatto.LineMesh
-    plate.lobatto.LineMesh.hierarchic_interpolation plate.lobatto.LineMesh.interpolation
-    plate.lobatto.hierarchic_line_matrices plate.lobatto.hierarchic_values
-    plate.lobatto.lagrange_basis plate.lobatto.line_matrices plate.lobatto.lobatto_nodes
-    plate.mode_table.collected_modes plate.mode_table.energy_shares_of
-    plate.nodal_basis.gauss_points plate.nodal_basis.graded_edges plate.nodal_basis.lagrange
-    plate.nodal_basis.node_coordinates plate.plate_mesh.PlateModel
-    plate.plate_mesh.Resolution plate.plate_mesh.plate_model plate.plate_mesh.wave_number
-    plate.plate_modes.SolvedModel.field plate.plate_modes.SolvedModel.force
-    plate.plate_modes.label_of plate.plate_modes.profiles plate.plate_modes.surface_shapes
-    plate.plate_modes.zero_crossings plate.plate_symmetry.mirror_map
-    plate.reduced_plate.ReducedClass plate.reduced_plate.harmonic_solution
-    plate.reduced_plate.reduced_class plate.reduced_plate.resolved_frequency
-    plate.reduced_plate.surface_values plate.refined_modes.RefinedModes
-    plate.refined_modes.extrapolated plate.refined_modes.refined_modes
-    plate.refined_modes.with_label plate.shear_elements.Axis
-    plate.shear_elements.ShearSystem plate.shear_elements.ShearSystem.deflection
-    plate.shear_elements.make_axis plate.shear_elements.shear_system
-    plate.shear_guess.bare_frequency plate.shear_guess.screened_frequency
-    plate.shear_guess.straightness plate.shear_section.ShearLayout.mirrored
-    plate.slab_factor.SlabFactor plate.slabs.Slabs.grid plate.slabs.Slabs.mass_times
-    plate.slabs.Slabs.places plate.slabs.Slabs.stiffness_times
-    plate.slabs.Slabs.weighted_sections render.opcodes.Assembler.emit
-    render.opcodes.Assembler.table render.pattern_noise.mixed render.coordinate.require_fade
-    render.coordinate.require_place render.pattern_noise.field_noise
-    render.pattern_noise.line_noise
+    film.line_grid.uniform_gap film.periodic.film.load_times film.planar.balance.Balance
+    film.planar.balance.Balancer film.planar.balance.Balancer.solve film.planar.balance.Film
+    film.planar.balance.derivative film.planar.balance.resampled film.planar.balance.times
+    film.planar.cut.cut_ellipse_grid film.planar.gap.gap_values
+    film.planar.gap.require_periodic film.planar.grid.PlanarGrid film.planar.grid.disc_grid
+    film.planar.grid.ellipse_grid film.planar.grid.graded_line
+    film.planar.grid.rectangle_grid film.planar.ladder.Climb film.planar.ladder.Extrapolated
+    film.planar.ladder.Ladder film.planar.ladder.Ladder.grid film.planar.ladder.climb_to
+    film.periodic.profile.GapProfile.grid film.periodic.profile.sampled_grid
+    film.periodic.resolution.first_guess
+    film.periodic.resolution.refined film.periodic.resolution.tables film.slip.slip_law
+    film.transient.march.check_film plate.ring.elements.HarmonicSystem
+    plate.ring.elements.HarmonicSystem.field plate.ring.elements.RingMesh
+    plate.ring.elements.harmonic_system plate.elements.block_ldl.PartialLDL
+    plate.elements.block_ldl.partial_ldl plate.elements.box_model.BoxModel
+    plate.elements.box_model.Electrode
+    plate.elements.box_model.Foundation plate.elements.box_model.Medium
+    plate.elements.box_model.Medium.gradient_matrix
+    plate.solid.coarse_modes.CoarseModes plate.solid.coarse_modes.chosen_modes
+    plate.solid.coarse_modes.class_fits plate.solid.coarse_modes.coarse_modes
+    plate.solid.coarse_modes.estimated_frequency plate.elements.cross_section.CrossSection
+    plate.elements.cross_section.cross_section plate.solid.electrode_circuits.open_values
+    plate.solid.electrode_circuits.shunted_frequencies plate.solid.extrapolated.extrapolated_class
+    plate.elements.krylov.Pairs plate.elements.krylov.modes_below plate.elements.krylov.modes_near
+    plate.elements.krylov.prolonged plate.elements.krylov.with_open_electrodes
+    plate.elements.lobatto.LineMesh
+    plate.elements.lobatto.LineMesh.hierarchic_interpolation
+    plate.elements.lobatto.LineMesh.interpolation
+    plate.elements.lobatto.hierarchic_line_matrices plate.elements.lobatto.hierarchic_values
+    plate.elements.lobatto.lagrange_basis plate.elements.lobatto.line_matrices
+    plate.elements.lobatto.lobatto_nodes
+    plate.solid.mode_table.collected_modes plate.solid.mode_table.energy_shares_of
+    plate.elements.nodal_basis.gauss_points plate.elements.nodal_basis.graded_edges
+    plate.elements.nodal_basis.lagrange
+    plate.elements.nodal_basis.node_coordinates plate.solid.mesh.PlateModel
+    plate.solid.mesh.Resolution plate.solid.mesh.plate_model plate.solid.mesh.wave_number
+    plate.solid.modes.SolvedModel.field plate.solid.modes.SolvedModel.force
+    plate.solid.modes.label_of plate.solid.modes.profiles plate.solid.modes.surface_shapes
+    plate.solid.modes.zero_crossings plate.solid.symmetry.mirror_map
+    plate.solid.reduced.ReducedClass plate.solid.reduced.harmonic_solution
+    plate.solid.reduced.reduced_class plate.solid.reduced.resolved_frequency
+    plate.solid.reduced.surface_values plate.solid.refined_modes.RefinedModes
+    plate.solid.refined_modes.extrapolated plate.solid.refined_modes.refined_modes
+    plate.solid.refined_modes.with_label plate.shear.elements.Axis
+    plate.shear.elements.ShearSystem plate.shear.elements.ShearSystem.deflection
+    plate.shear.elements.make_axis plate.shear.elements.shear_system
+    plate.solid.shear_guess.bare_frequency plate.solid.shear_guess.screened_frequency
+    plate.solid.shear_guess.straightness plate.shear.section.ShearLayout.mirrored
+    plate.elements.slab_factor.SlabFactor plate.elements.slabs.Slabs.grid
+    plate.elements.slabs.Slabs.mass_times
+    plate.elements.slabs.Slabs.places plate.elements.slabs.Slabs.stiffness_times
+    plate.elements.slabs.Slabs.weighted_sections render.opcodes.Assembler.emit
+    render.opcodes.Assembler.table render.texture.noise.mixed render.texture.coordinate.require_fade
+    render.texture.coordinate.require_place render.texture.noise.field_noise
+    render.texture.noise.line_noise
     """,
     "no number but the index of what its other arguments hold, or an array the package made": """
-    contact.gas_table.FilmTable.build film.compiled.announce
-    plate.plate_volume.PlateVolume.displacement plate.plate_volume.PlateVolume.potential
-    plate.plate_volume.harmonic_fields plate.plate_volume.mode_fields
-    plate.plate_volume.plate_volume render.coordinate.Coordinate.at
-    render.coordinate.FromPoint.at render.coordinate.AlongY.at render.coordinate.AlongX.at
-    render.coordinate.AlongDirection.at render.fidelity_report.fidelity_report
-    render.motion.MotionCounts.of render.renderer.counters_of
+    contact.sharing.gas_table.FilmTable.build film.compiled.announce
+    plate.solid.volume.PlateVolume.displacement plate.solid.volume.PlateVolume.potential
+    plate.solid.volume.harmonic_fields plate.solid.volume.mode_fields
+    plate.solid.volume.plate_volume render.texture.coordinate.Coordinate.at
+    render.texture.coordinate.FromPoint.at render.texture.coordinate.AlongY.at
+    render.texture.coordinate.AlongX.at
+    render.texture.coordinate.AlongDirection.at render.fidelity.report.fidelity_report
+    render.motion.estimator.MotionCounts.of render.program.renderer.counters_of
     """,
     "the real-time tick: it takes any floats, flags what it cannot use and never raises": """
-    render.renderer.Renderer.tick
+    render.program.renderer.Renderer.tick
     """,
     "the check of numbers itself, whose bounds are the code's own, and its messages' text": """
     quantities.checks.require quantities.checks.require_valid quantities.units.format_quantity

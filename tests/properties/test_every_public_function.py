@@ -33,15 +33,19 @@ LEFT_OUT = {
 
 # Calls that neither solve nor need something solved: what the default run draws from.
 QUICK = (
-    "contact.asperities.AsperityLaw", "contact.dry_friction", "contact.finger.",
-    "contact.fingerpad", "contact.occlusion", "contact.paper.finger_pressure", "contact.skin.",
-    "contact.wedge", "contact.tapping.tapping_number", "distributions", "film.gap",
-    "film.limits", "film.linear", "film.planar_gap", "film.validity.knudsen_number",
-    "formats.wav", "formats.pictures", "materials", "plate.beam.euler", "plate.laminate",
+    "contact.asperities.AsperityLaw", "contact.sliding.dry_friction", "contact.finger.",
+    "contact.finger.fingerpad", "contact.finger.occlusion",
+    "contact.sharing.paper.finger_pressure", "contact.skin.",
+    "contact.sharing.wedge", "contact.sharing.tapping.tapping_number", "distributions", "film.gap",
+    "film.closed.limits", "film.closed.linear", "film.planar.gap", "film.validity.knudsen_number",
+    "formats.wav", "formats.pictures", "materials", "plate.beam.modes.euler", "plate.laminate",
     "plate.layout", "plate.loaded_mode", "plate.sound.exposure_guidance",
-    "plate.working_mode.resonance_factor", "render.envelope.e", "render.envelope.f",
-    "render.levels", "render.minimum_jerk", "render.motion.MotionModel", "render.pattern",
-    "render.sensor.SensorModel", "render.stroke", "render.texture", "render.wave.wave_factor",
+    "plate.working_mode.resonance_factor", "render.resonator.envelope.e",
+    "render.resonator.envelope.f",
+    "render.texture.levels", "render.motion.minimum_jerk", "render.motion.estimator.MotionModel",
+    "render.texture.pattern",
+    "render.motion.sensor.SensorModel", "render.motion.stroke", "render.texture.gratings",
+    "render.program.wave.wave_factor",
 )  # fmt: skip
 
 
@@ -71,8 +75,9 @@ def test_a_sample_of_hostile_calls_ends_in_a_typed_error_or_finite_numbers() -> 
 @pytest.mark.nightly
 @pytest.mark.parametrize(
     "prefix",
-    ["contact", "distributions", "film", "formats", "friction", "materials", "plate", "prediction",
-     "render", "touch"],
+    ["contact", "distributions", "film", "formats", "chain.friction", "materials", "plate",
+     "chain.prediction",
+     "render", "chain.touch"],
 )  # fmt: skip
 def test_every_hostile_call_ends_in_a_typed_error_or_finite_numbers(prefix: str) -> None:
     seed = secrets.randbits(32)

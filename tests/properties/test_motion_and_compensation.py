@@ -9,7 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from squeezefilm.quantities import FloatArray
-from squeezefilm.render.motion.estimator import MotionEstimator, MotionModel, kernel
+from squeezefilm.render.motion import kernel
+from squeezefilm.render.motion.estimator import MotionEstimator, MotionModel
 from squeezefilm.render.resonator.compensation import DrivenEnvelope, compensated_drive
 from squeezefilm.render.resonator.square_swing import square_swing_compensated
 

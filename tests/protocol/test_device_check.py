@@ -9,7 +9,8 @@ import pytest
 
 from squeezefilm.bench.check import DeviceCheck, check_device, loop_check
 from squeezefilm.bench.conversation import Conversation
-from squeezefilm.device.machine.device import Machine, Reason, device
+from squeezefilm.device.machine import device
+from squeezefilm.device.machine.device import Machine, Reason
 from squeezefilm.device.wire import messages as m
 from squeezefilm.device.wire.frames import Frame
 from squeezefilm.errors import DeviceError

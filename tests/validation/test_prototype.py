@@ -4,7 +4,7 @@ import dataclasses
 
 import pytest
 
-from squeezefilm.analysis.claims.command import prototype
+from squeezefilm.analysis.claims import prototype
 from squeezefilm.analysis.claims.prototype import (
     MEASURED_AMPLITUDE,
     MEASURED_FREQUENCY,

@@ -169,7 +169,7 @@ def test_infinite_sigma_under_a_wavy_gap():
 
 def load_on_one_grid(cells, nt, sigma=30.0, eps=0.6):
     """The over-pressure on one grid, without extrapolation."""
-    from squeezefilm.film.periodic.film import uniform as u
+    from squeezefilm.film.periodic import uniform as u
 
     ntp, DT, mask = tables(nt)
     H, H3, w, c, s = (np.empty(ntp) for _ in range(5))

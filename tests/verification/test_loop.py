@@ -31,9 +31,9 @@ from squeezefilm.render.texture.gates import Periodic, SpeedGate
 from squeezefilm.render.texture.gratings import Sine, Square
 from squeezefilm.render.texture.levels import Amplitude
 from squeezefilm.render.texture.noise import Noise
+from squeezefilm.session.loop import rows as column
 from squeezefilm.session.loop.lateness import CLASSES, lateness_class
 from squeezefilm.session.loop.plan import DriveTable, FrictionTable, LoopPlan
-from squeezefilm.session.loop.process import rows as column
 from squeezefilm.session.loop.simulated import (
     SimulatedLoop,
     SimulatedRun,

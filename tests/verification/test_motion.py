@@ -10,11 +10,11 @@ import pytest
 import scipy.linalg
 
 from squeezefilm.quantities import FloatArray
+from squeezefilm.render.motion import kernel
 from squeezefilm.render.motion.estimator import (
     MotionEstimator,
     MotionModel,
     estimate_motion,
-    kernel,
     prediction_deviation,
 )
 from squeezefilm.render.motion.minimum_jerk import MinimumJerkStroke

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from squeezefilm.contact.sharing.balance import paper
+from squeezefilm.contact.sharing import paper
 from squeezefilm.errors import InputError, UnreachableError
 from squeezefilm.film.closed.limits import contact_mean_pressure, mean_pressure_profile
 from squeezefilm.film.gap import (

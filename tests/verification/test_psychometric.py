@@ -9,6 +9,7 @@ import pytest
 from scipy.optimize import minimize
 from scipy.special import betaincinv, ndtr
 
+from squeezefilm.study.psychometric import kernel
 from squeezefilm.study.psychometric.bootstrap import PenalisedLikelihood, simulate_bootstrap
 from squeezefilm.study.psychometric.fit import fit_psychometric
 from squeezefilm.study.psychometric.function import (
@@ -16,7 +17,6 @@ from squeezefilm.study.psychometric.function import (
     Axis,
     PsychometricFunction,
     Shape,
-    kernel,
     on_axis,
 )
 from squeezefilm.study.psychometric.posterior import grid_posterior

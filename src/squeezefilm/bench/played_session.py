@@ -35,7 +35,7 @@ from squeezefilm.render.fidelity.rendered_stroke import RenderedStroke
 from squeezefilm.render.fidelity.report import FidelityReport, fidelity_report
 from squeezefilm.render.program.renderer import render
 from squeezefilm.results import Result, to_json
-from squeezefilm.session.loop.process import rows as column
+from squeezefilm.session.loop import rows as column
 from squeezefilm.session.record.trace import Trace
 
 _SMOOTHING: Second = 20e-3

@@ -12,7 +12,7 @@ from typing import Literal, cast, get_args
 import numpy as np
 
 from squeezefilm.contact.finger.fingertip import Finger
-from squeezefilm.contact.sharing.balance import paper
+from squeezefilm.contact.sharing import paper
 from squeezefilm.contact.sharing.film_load import FilmLoad, FilmModel, film_load
 from squeezefilm.contact.sharing.gas_table import film_table
 from squeezefilm.contact.sharing.pad import (

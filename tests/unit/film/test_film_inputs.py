@@ -13,10 +13,11 @@ import pytest
 
 from squeezefilm.errors import ConvergenceError, GeometryError, InputError, UnreachableError
 from squeezefilm.film import compiled
+from squeezefilm.film.periodic import batch
 from squeezefilm.film.periodic.balance import mean_gap_for_load
 from squeezefilm.film.periodic.batch import solve_strips
 from squeezefilm.film.periodic.edge import edge_layer
-from squeezefilm.film.periodic.film import batch, solve_disc, solve_profile, solve_strip
+from squeezefilm.film.periodic.film import solve_disc, solve_profile, solve_strip
 from squeezefilm.film.periodic.profile import (
     flexural_profile,
     profile_from_function,

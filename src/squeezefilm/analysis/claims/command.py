@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from squeezefilm import presets
-from squeezefilm.analysis.claims.command import contact as contact_claims
+from squeezefilm.analysis.claims import contact as contact_claims
 from squeezefilm.analysis.claims.procedure import Design
 from squeezefilm.analysis.claims.prototype import PrototypeStudy, prototype_study
 from squeezefilm.analysis.claims.values import CLAIM_VALUES, ClaimValue, paper_design

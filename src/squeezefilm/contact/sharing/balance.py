@@ -85,7 +85,7 @@ def share_load(
     would close beyond 98.5 % of its mean, or below nothing), `ConvergenceError` where no balance
     is found.
     """
-    from squeezefilm.contact.sharing.balance import kernel
+    from squeezefilm.contact.sharing import kernel
 
     announce(kernel.balance_rows, "load balance", 20)
     require("amplitude", amplitude, Unit("m"), at_least=0, at_most=1e-4)
@@ -165,7 +165,7 @@ def share_load_tied(
 
     `amplitude` (m) is one-dimensional, one value for each ridge. Raises as `share_load` does.
     """
-    from squeezefilm.contact.sharing.balance import kernel
+    from squeezefilm.contact.sharing import kernel
 
     announce(kernel.balance, "load balance", 20)
     require("amplitude", amplitude, Unit("m"), at_least=0, at_most=1e-4)
@@ -210,7 +210,7 @@ def _model(table: FilmTable, asperities: AsperityLaw, skin: Skin | None, tie: st
 
 
 def _refuse(rows: FloatArray, amplitude: FloatArray, pressure: FloatArray) -> None:
-    from squeezefilm.contact.sharing.balance import kernel
+    from squeezefilm.contact.sharing import kernel
 
     bad = np.flatnonzero(rows[:, kernel.STATUS] != kernel.BALANCED)
     if bad.size == 0:

@@ -78,7 +78,7 @@ class FilmBatch:
 @lru_cache(maxsize=1)
 def compiled() -> Any:
     """The compiled solver; says on the log when this processor has to compile it first."""
-    from squeezefilm.film.periodic.film import uniform
+    from squeezefilm.film.periodic import uniform
 
     announce(uniform.solve_rows, "film solver", 20)
     return uniform

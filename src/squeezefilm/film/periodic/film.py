@@ -204,7 +204,7 @@ def solve_profile(
         profile = profile_from_function(profile)
     check_film(squeeze_number, 0.0, polytropic_exponent, knudsen_number, tolerance)
     law = slip_law(slip, knudsen_number)
-    from squeezefilm.film.periodic.film import uniform as u
+    from squeezefilm.film.periodic import uniform as u
     from squeezefilm.film.periodic.varying import solve_varying
 
     announce(solve_varying, "solver of film profiles", 20)

@@ -18,7 +18,6 @@ from squeezefilm.lab.wire import Answer, Request
 from squeezefilm.lab.worker import PAGE
 from squeezefilm.study.conduct.exposure import Exposure, exposure
 from squeezefilm.study.conduct.run import Response
-from squeezefilm.study.conduct.sittings import Sitting
 from squeezefilm.study.conduct.study_device import (
     DeviceIdentity,
     DeviceVerification,
@@ -26,6 +25,7 @@ from squeezefilm.study.conduct.study_device import (
     NoDevice,
     StudyDevice,
 )
+from squeezefilm.study.record.sittings import Sitting
 
 if TYPE_CHECKING:
     from starlette.websockets import WebSocket

@@ -19,7 +19,6 @@ from squeezefilm.study.conduct.exposure import Exposure
 from squeezefilm.study.conduct.run import Response, StudyRun
 from squeezefilm.study.conduct.session_conditions import SessionConditions
 from squeezefilm.study.conduct.sessions import begin_session, display_wanted, end_session
-from squeezefilm.study.conduct.sittings import FILE, Sitting, Sittings
 from squeezefilm.study.conduct.study_device import StudyDevice
 from squeezefilm.study.design.study_design import StudyDesign, load_design
 from squeezefilm.study.design.trials import expected_duration, trial_count
@@ -27,6 +26,7 @@ from squeezefilm.study.record.deletion import delete_participant
 from squeezefilm.study.record.exports import export_study
 from squeezefilm.study.record.merge import merge
 from squeezefilm.study.record.origin import origin_of
+from squeezefilm.study.record.sittings import FILE, Sitting, Sittings
 from squeezefilm.study.record.store import StudyStore
 
 SUFFIX = ".sqlite"

@@ -38,7 +38,7 @@ from squeezefilm.quantities import (
     checked_numbers,
     require,
 )
-from squeezefilm.render.motion.estimator import kernel
+from squeezefilm.render.motion import kernel
 from squeezefilm.render.motion.sensor import SensorModel, SensorStream
 
 MetrePerSecondSquared = Annotated[float, Unit("m/s2")]

@@ -15,7 +15,7 @@ import numba
 import numpy as np
 
 from squeezefilm.render import opcodes as op
-from squeezefilm.render.program.lowering import layout as at
+from squeezefilm.render.program import layout as at
 from squeezefilm.render.texture.noise import STEP_ACROSS, STEP_ALONG
 
 Array = np.ndarray[Any, Any]

@@ -17,8 +17,8 @@ from squeezefilm.quantities import (
 )
 from squeezefilm.render import opcodes as op
 from squeezefilm.render.opcodes import Assembler
+from squeezefilm.render.program import layout as at
 from squeezefilm.render.program.inverse import FrictionInverse
-from squeezefilm.render.program.lowering import layout as at
 from squeezefilm.render.program.wave import WaveCompensation
 from squeezefilm.render.texture.composition import Composable, Quantity, require_texture
 from squeezefilm.render.texture.coordinate import FARTHEST, METRE

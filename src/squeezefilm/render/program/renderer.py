@@ -21,9 +21,9 @@ from squeezefilm.quantities import (
     Unit,
     real_numbers,
 )
+from squeezefilm.render.program import layout as at
 from squeezefilm.render.program.interpreter import amplitude_march, tick, tick_march, value_march
 from squeezefilm.render.program.lowering import Program
-from squeezefilm.render.program.lowering import layout as at
 from squeezefilm.render.texture.coordinate import finger_arguments
 
 

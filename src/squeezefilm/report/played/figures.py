@@ -22,8 +22,8 @@ from squeezefilm.report.kit.style import (
     plain,
     plain_log,
 )
+from squeezefilm.session.loop import rows as column
 from squeezefilm.session.loop.lateness import Lateness, class_ends
-from squeezefilm.session.loop.process import rows as column
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -21,11 +21,11 @@ import numba
 import numpy as np
 
 from squeezefilm.quantities import Dimensionless, Second
+from squeezefilm.session.loop import clock, shared
+from squeezefilm.session.loop import plan as at
+from squeezefilm.session.loop import rows as column
 from squeezefilm.session.loop.atomics import load_acquire, store_release
 from squeezefilm.session.loop.lateness import lateness_class
-from squeezefilm.session.loop.process import clock, shared
-from squeezefilm.session.loop.process import plan as at
-from squeezefilm.session.loop.process import rows as column
 from squeezefilm.session.loop.tick import make_tick
 
 Array = np.ndarray[Any, Any]

@@ -21,8 +21,8 @@ from squeezefilm.quantities import (
     VoltArray,
     require,
 )
+from squeezefilm.render.motion import kernel as motion_kernel
 from squeezefilm.render.motion.estimator import MotionEstimator
-from squeezefilm.render.motion.estimator import kernel as motion_kernel
 from squeezefilm.render.program.lowering import Program
 from squeezefilm.render.program.renderer import new_state
 from squeezefilm.render.resonator.compensation import DrivenEnvelope

@@ -24,10 +24,10 @@ import numpy as np
 
 from squeezefilm.errors import InputError, LoopError, SqueezefilmWarning
 from squeezefilm.quantities import Dimensionless, FloatArray, Second
+from squeezefilm.session.loop import shared
 from squeezefilm.session.loop.atomics import load_acquire, store_release
 from squeezefilm.session.loop.lateness import Lateness
 from squeezefilm.session.loop.plan import LoopPlan
-from squeezefilm.session.loop.process import shared
 from squeezefilm.session.loop.ring import DROPPED, ring_put_all
 from squeezefilm.session.loop.rows import COMMAND_TIME
 from squeezefilm.session.loop.simulated import lateness_in, sample_block, taken

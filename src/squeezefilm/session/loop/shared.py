@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from squeezefilm.session.loop.process import lateness, ring, rows
+from squeezefilm.session.loop import lateness, ring, rows
 
 Array = np.ndarray[Any, Any]
 

@@ -20,11 +20,11 @@ from squeezefilm.quantities import (
     require,
 )
 from squeezefilm.render.motion.sensor import SensorStream
+from squeezefilm.session.loop import plan as at
+from squeezefilm.session.loop import shared
 from squeezefilm.session.loop.lateness import Lateness
 from squeezefilm.session.loop.pacing import due_ns, make_due_tick
 from squeezefilm.session.loop.plan import LoopPlan, tick_arrays
-from squeezefilm.session.loop.process import plan as at
-from squeezefilm.session.loop.process import shared
 from squeezefilm.session.loop.ring import ring_put, ring_put_all, ring_take, ring_waiting
 from squeezefilm.session.loop.rows import COLUMNS, COMMAND_COLUMNS, MUTED, SAMPLE_COLUMNS
 from squeezefilm.session.loop.shared import private_views

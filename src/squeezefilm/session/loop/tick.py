@@ -1,9 +1,9 @@
 """One compiled tick of the loop: samples in, one command and one row out; no Python, no memory.
 
-The steps are those of `render.fidelity.rendered_stroke`, by the same compiled functions: the estimator
-takes what has arrived, the finger is predicted to the moment the command is meant for, the texture asked
-there, its amplitude compensated and turned into volts. Nothing raises; what is wrong becomes a flag
-and a command of zero.
+The steps are those of `render.fidelity.rendered_stroke`, by the same compiled functions: the
+estimator takes what has arrived, the finger is predicted to the moment the command is meant for,
+the texture asked there, its amplitude compensated and turned into volts. Nothing raises; what is
+wrong becomes a flag and a command of zero.
 """
 
 from __future__ import annotations
@@ -14,14 +14,14 @@ from typing import Any
 import numba
 import numpy as np
 
-from squeezefilm.render.motion.estimator import kernel as motion_kernel
+from squeezefilm.render.motion import kernel as motion_kernel
 from squeezefilm.render.motion.kernel import motion_at, motion_step
+from squeezefilm.render.program import layout
 from squeezefilm.render.program.interpreter import tick as rendered_amplitude
-from squeezefilm.render.program.lowering import layout
 from squeezefilm.render.resonator import kernel as compensation_kernel
 from squeezefilm.render.resonator.kernel import compensated_step, envelope_step
-from squeezefilm.session.loop.process import plan as at
-from squeezefilm.session.loop.process import rows as column
+from squeezefilm.session.loop import plan as at
+from squeezefilm.session.loop import rows as column
 from squeezefilm.session.loop.ring import DROPPED, ring_put, ring_take
 from squeezefilm.session.loop.shared import SAMPLES
 

@@ -16,6 +16,7 @@ import time
 from dataclasses import dataclass
 
 from squeezefilm.device.priority import collect_garbage_first, real_time_granted
+from squeezefilm.session.loop import clock, shared
 from squeezefilm.session.loop.atomics import load_acquire, store_release
 from squeezefilm.session.loop.pacing import (
     compiled_loop,
@@ -25,7 +26,6 @@ from squeezefilm.session.loop.pacing import (
     silence,
 )
 from squeezefilm.session.loop.plan import LoopPlan, tick_arrays
-from squeezefilm.session.loop.process import clock, shared
 
 # Linux: <sys/prctl.h> and <sys/mman.h>.
 _PR_SET_TIMERSLACK = 29

@@ -34,8 +34,8 @@ from squeezefilm.quantities import (
     Volt,
     require,
 )
+from squeezefilm.session.loop import rows as column
 from squeezefilm.session.loop.plan import LoopPlan
-from squeezefilm.session.loop.process import rows as column
 from squeezefilm.session.loop.rows import flag_meanings
 from squeezefilm.session.play.tile import TextureTile
 from squeezefilm.session.record.trace_writer import TraceWriter

@@ -17,7 +17,7 @@ from squeezefilm.hard_limits import TRACE_BYTES
 from squeezefilm.quantities import FloatArray, Second
 from squeezefilm.regular_file import opened
 from squeezefilm.results import Result
-from squeezefilm.session.record.trace import trace_file as file
+from squeezefilm.session.record import trace_file as file
 
 
 @dataclass(frozen=True, slots=True)

@@ -24,7 +24,7 @@ import numpy as np
 from squeezefilm.errors import InputError, RecordError
 from squeezefilm.quantities import FloatArray, Second, Unit, require
 from squeezefilm.results import sync_folder, to_json
-from squeezefilm.session.record.trace import trace_file as file
+from squeezefilm.session.record import trace_file as file
 
 SYNC_PERIOD: Second = 1.0
 """How often the trace is forced onto the disk unless asked otherwise."""

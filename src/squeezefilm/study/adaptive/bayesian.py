@@ -16,7 +16,8 @@ import numpy as np
 from squeezefilm.errors import InputError
 from squeezefilm.from_text import reads_text
 from squeezefilm.quantities import Dimensionless, DimensionlessArray, FloatArray, require
-from squeezefilm.study.psychometric.function import Axis, Shape, kernel, on_axis, shape_code
+from squeezefilm.study.psychometric import kernel
+from squeezefilm.study.psychometric.function import Axis, Shape, on_axis, shape_code
 from squeezefilm.study.psychometric.prior import PsychometricPrior
 
 Interest = Literal["threshold and width", "all"]

@@ -38,7 +38,7 @@ from squeezefilm.perception.stimuli import Stimulus
 from squeezefilm.quantities import Dimensionless, FloatArray, Hertz, MetrePerVolt, Second
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ
 from squeezefilm.results import stamp
-from squeezefilm.session.loop.process import rows as column
+from squeezefilm.session.loop import rows as column
 from squeezefilm.session.play.player import Ending, PlayView
 from squeezefilm.session.play.real_time import PlayOutcome, run_play
 from squeezefilm.session.record.trace import Trace, read_trace

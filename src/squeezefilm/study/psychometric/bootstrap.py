@@ -18,7 +18,7 @@ import numpy as np
 from scipy.special import chdtri
 
 from squeezefilm.quantities import Dimensionless, DimensionlessArray, FloatArray, require
-from squeezefilm.study.psychometric.function import kernel
+from squeezefilm.study.psychometric import kernel
 from squeezefilm.study.psychometric.kernel import BoolArray
 
 # How near to the end of an interval: for a given quantile of the deviance as a share of the

@@ -12,6 +12,7 @@ from squeezefilm.errors import InputError
 from squeezefilm.from_text import reads_text
 from squeezefilm.quantities import Dimensionless, FloatArray, require
 from squeezefilm.results import Result
+from squeezefilm.study.psychometric import kernel
 from squeezefilm.study.psychometric.bootstrap import (
     Bootstrap,
     PenalisedLikelihood,
@@ -22,7 +23,6 @@ from squeezefilm.study.psychometric.function import (
     Axis,
     PsychometricFunction,
     Shape,
-    kernel,
     on_axis,
     shape_code,
 )

@@ -24,7 +24,7 @@ from squeezefilm.quantities import (
     did_you_mean,
     require,
 )
-from squeezefilm.study.psychometric.function import kernel
+from squeezefilm.study.psychometric import kernel
 
 Shape = Literal[
     "logistic", "gaussian", "gumbel", "reversed-gumbel", "hyperbolic-secant", "weibull", "quick"

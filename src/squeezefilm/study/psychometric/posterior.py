@@ -14,7 +14,8 @@ from scipy.interpolate import PchipInterpolator
 
 from squeezefilm.errors import InputError
 from squeezefilm.quantities import Dimensionless, FloatArray, FloatLike, require
-from squeezefilm.study.psychometric.function import Axis, kernel
+from squeezefilm.study.psychometric import kernel
+from squeezefilm.study.psychometric.function import Axis
 from squeezefilm.study.psychometric.prior import LARGEST_RATE, PsychometricPrior
 
 PARAMETERS = ("threshold", "width", "lapse_rate", "guess_rate")

@@ -18,11 +18,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from squeezefilm.errors import InputError, RecordError
-from squeezefilm.study.conduct.sittings import FILE, Sittings
 from squeezefilm.study.record.contents import is_trace, require_identifier
 from squeezefilm.study.record.database import same_folders
 from squeezefilm.study.record.erasure import erase_file, require_plain
 from squeezefilm.study.record.exports import LIST, export_again, exported_folders, own_files
+from squeezefilm.study.record.sittings import FILE, Sittings
 from squeezefilm.study.record.store import StudyStore
 
 _PIECE = 1 << 20

@@ -12,12 +12,12 @@ import pytest
 
 from squeezefilm.errors import InputError
 from squeezefilm.quantities import FloatArray
+from squeezefilm.render.motion import kernel
 from squeezefilm.render.motion.estimator import (
     MotionCounts,
     MotionEstimator,
     MotionModel,
     estimate_motion,
-    kernel,
     prediction_deviation,
 )
 from squeezefilm.render.motion.minimum_jerk import MinimumJerkStroke

@@ -12,8 +12,9 @@ from squeezefilm.errors import InputError, UnreachableError
 from squeezefilm.render import opcodes
 from squeezefilm.render.fidelity.trace import friction_trace
 from squeezefilm.render.motion.stroke import Stroke
+from squeezefilm.render.program import interpreter, layout
 from squeezefilm.render.program.inverse import FrictionInverse
-from squeezefilm.render.program.lowering import Program, checked, interpreter, layout, lower
+from squeezefilm.render.program.lowering import Program, checked, lower
 from squeezefilm.render.program.renderer import Played, Renderer, evaluate, render
 from squeezefilm.render.texture.coordinate import FromPoint
 from squeezefilm.render.texture.gratings import Square

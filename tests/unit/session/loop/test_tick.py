@@ -11,11 +11,11 @@ from numba.core.runtime import _nrt_python, rtsys
 
 from squeezefilm.errors import InputError
 from squeezefilm.quantities import FloatArray
-from squeezefilm.render.program.lowering import layout
+from squeezefilm.render.program import layout
 from squeezefilm.render.resonator import kernel as compensation_kernel
 from squeezefilm.render.resonator.compensation import DrivenEnvelope
+from squeezefilm.session.loop import rows as column
 from squeezefilm.session.loop.plan import DriveTable, LoopPlan
-from squeezefilm.session.loop.process import rows as column
 from squeezefilm.session.loop.shared import COMMANDS, ROWS
 from squeezefilm.session.loop.simulated import SimulatedLoop, run_ticks
 from squeezefilm.session.loop.tick import interpolated

@@ -13,8 +13,9 @@ from squeezefilm.cli import app
 from squeezefilm.errors import InputError
 from squeezefilm.formats.traces import table_from_csv, table_from_parquet
 from squeezefilm.results import stamp
+from squeezefilm.session.record import trace_file
 from squeezefilm.session.record.export import export_trace
-from squeezefilm.session.record.trace import read_trace, trace_file
+from squeezefilm.session.record.trace import read_trace
 from squeezefilm.session.record.trace_writer import TraceWriter
 
 COLUMNS = ("time_s", "x_m")
@@ -149,7 +150,7 @@ def test_what_the_disk_refuses_later_is_told_at_the_next_call(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     from squeezefilm.errors import RecordError
-    from squeezefilm.session.record.trace import trace as record
+    from squeezefilm.session.record import trace as record
 
     writer = TraceWriter(tmp_path / "one.sqft", COLUMNS, {}, sync_period=1e6)
 
@@ -170,7 +171,7 @@ def test_what_a_sync_failed_on_no_later_one_answers_for(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     from squeezefilm.errors import RecordError
-    from squeezefilm.session.record.trace import trace as record
+    from squeezefilm.session.record import trace as record
 
     def refuse(_: int) -> None:
         raise OSError(5, "Input/output error")
@@ -193,7 +194,7 @@ def test_a_record_that_could_not_begin_leaves_its_name_free(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     from squeezefilm.errors import RecordError
-    from squeezefilm.session.record.trace import trace as record
+    from squeezefilm.session.record import trace as record
 
     def refuse(_: int) -> None:
         raise OSError(28, "No space left on device")

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.errors import InputError
-from squeezefilm.session.loop.process import rows as column
+from squeezefilm.session.loop import rows as column
 from squeezefilm.session.record.trace import Damage, Trace
 from squeezefilm.study.conduct.played_device import SessionDevice, require_study_drive
 from squeezefilm.study.conduct.playing_process import explored

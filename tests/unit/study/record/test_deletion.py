@@ -13,10 +13,10 @@ from squeezefilm.errors import InputError, RecordError, SqueezefilmError
 from squeezefilm.study.conduct.run import StudyRun
 from squeezefilm.study.conduct.session_conditions import SessionConditions
 from squeezefilm.study.conduct.sessions import begin_session, end_session
-from squeezefilm.study.conduct.sittings import FILE, Sittings
 from squeezefilm.study.conduct.trial_by_trial import conduct
 from squeezefilm.study.record.deletion import delete_participant
 from squeezefilm.study.record.exports import export_study
+from squeezefilm.study.record.sittings import FILE, Sittings
 from squeezefilm.study.record.store import StudyStore
 
 from ..scripted import LOUD, TRACE, Bench, Script, gratings

@@ -13,8 +13,8 @@ import pytest
 
 from squeezefilm.errors import InputError, RecordError
 from squeezefilm.lab.studying.studies import Studies
-from squeezefilm.study.conduct.sittings import FILE, MOST_SITTINGS, Sittings
-from squeezefilm.study.conduct.trial_by_trial import sittings as sittings_module
+from squeezefilm.study.conduct import sittings as sittings_module
+from squeezefilm.study.record.sittings import FILE, MOST_SITTINGS, Sittings
 
 WHO = "0123456789abcdef"
 
