@@ -113,7 +113,7 @@ def differences(case: str, before: Any, now: Any) -> list[str]:
     old, new = dict(leaves(before)), dict(leaves(now))
     missing = object()
     return [
-        f"{case}: {path or 'text'}: {old.get(path, 'nothing')!r} is now {new.get(path, 'nothing')!r}"
+        f"{case}: {path or 'text'}: {old.get(path, 'nothing')!r} → {new.get(path, 'nothing')!r}"
         for path in {**old, **new}
         if old.get(path, missing) != new.get(path, missing)
         and not (old.get(path) != old.get(path) and new.get(path) != new.get(path))

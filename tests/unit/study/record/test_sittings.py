@@ -13,7 +13,7 @@ import pytest
 
 from squeezefilm.errors import InputError, RecordError
 from squeezefilm.lab.studying.studies import Studies
-from squeezefilm.study.conduct import sittings as sittings_module
+from squeezefilm.study.record import sittings as sittings_module
 from squeezefilm.study.record.sittings import FILE, MOST_SITTINGS, Sittings
 
 WHO = "0123456789abcdef"
