@@ -204,11 +204,15 @@ def plate(
             display, mode=wanted, band=limits, sensitivity=sensitivity, track=over, progress=step
         )
         if out is not None or vtu is not None:
-            from squeezefilm.report.subjects import write_mode, write_report
+            from squeezefilm.report.plate.plate import write_mode, write_plate
+            from squeezefilm.report.plate.ring import write_ring
 
             step("figures")
-            written += [] if out is None else [write_report(result, out)]
-            written += [] if vtu is None else [write_mode(result, vtu)]
+            if isinstance(result, PlateAnalysis):
+                written += [] if out is None else [write_plate(result, out)]
+                written += [] if vtu is None else [write_mode(result, vtu)]
+            elif out is not None:
+                written.append(write_ring(result, out))
     if as_json:
         print_json(result.summary())
         return

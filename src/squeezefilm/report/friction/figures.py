@@ -129,8 +129,7 @@ def _models(
 
 @drawn
 def predictions(found: Sequence[Prediction]) -> Figure:
-    """Predicted friction against amplitude: each law up to twice its working point, which is
-    marked."""
+    """Predicted friction against amplitude: each law, and on it the working points."""
     first = found[0]
     said = (
         f"µ′/µ = {first.relative_friction:.2f} at {shown(first.vibration_amplitude, M, 3)}"
