@@ -4,8 +4,11 @@ VENV := .venv
 BIN := $(VENV)/bin
 OUT ?= out/demo
 WORKERS ?= auto
+SEED ?= 1
+COUNT ?= 150
+MINUTES ?= 480
 
-.PHONY: help demo lab test check lint types layers gallery docs bench nightly release clean
+.PHONY: help demo lab test check lint types layers gallery docs bench nightly campaign release clean
 
 help:  ## show this list
 	@grep -E '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 12
@@ -48,6 +51,10 @@ nightly: PYTEST += --hypothesis-seed=$(SEED)
 nightly: $(VENV)/test.stamp  ## run every test, the slow ones too, and explore properties (SEED=N)
 	@echo "nightly: seed $(SEED)"
 	$(call run_tests,)
+
+campaign: $(VENV)/test.stamp  ## what takes hours, and goes on where it stopped: mutants of a seed
+	@nice $(BIN)/python tools/mutants.py --nightly --seed $(SEED) --count $(COUNT) \
+	  --minutes $(MINUTES) --file campaigns/mutants-$(SEED).jsonl
 
 check: lint types layers docs  ## everything that is read and not run
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 import ast
 import re
 from collections import deque
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -16,6 +16,7 @@ from pathlib import Path
 PACKAGE = "squeezefilm"
 Graph = Mapping[str, frozenset[str]]
 _DOTTED = re.compile(rf"{PACKAGE}(?:\.\w+)+")
+_PRIVATE = re.compile(r"\b(\w+)\.(_[a-zA-Z]\w*)")
 
 
 @dataclass(frozen=True)
@@ -41,23 +42,26 @@ def read_imports(source: str) -> Imports:
     """The imports of a module's source text."""
     names: set[str] = set()
     bound: dict[str, str] = {}
-    reached: set[tuple[str, str]] = set()
-    for node in ast.walk(ast.parse(source)):
+    for node in _statements(ast.parse(source).body):
         if isinstance(node, ast.Import):
             names |= {alias.name for alias in node.names}
             bound |= {alias.asname: alias.name for alias in node.names if alias.asname}
         elif isinstance(node, ast.ImportFrom):
-            members = {
-                item.asname or item.name: f"{node.module}.{item.name}" for item in node.names
-            }
-            names |= set(members.values())
-            bound |= members
-        elif isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
-            reached.add((node.value.id, node.attr))
+            full = {item.asname or item.name: f"{node.module}.{item.name}" for item in node.names}
+            names |= set(full.values())
+            bound |= full
     names = {name for name in names if name.split(".")[0] == PACKAGE}
-    attributes = {f"{bound[owner]}.{attribute}" for owner, attribute in reached if owner in bound}
-    private = {name for name in names | attributes if _is_private(name)}
+    reached = {f"{bound.get(owner)}.{name}" for owner, name in _PRIVATE.findall(source)}
+    private = {name for name in names | reached if _is_private(name)}
     return Imports(frozenset(names), frozenset(private))
+
+
+def _statements(body: Iterable[ast.AST]) -> Iterator[ast.AST]:
+    """Statements and those inside them; expressions, which are most of a tree, hold none."""
+    for node in body:
+        yield node
+        for field in ("body", "orelse", "finalbody", "handlers", "cases"):
+            yield from _statements(getattr(node, field, ()))
 
 
 def _is_private(name: str) -> bool:

@@ -212,7 +212,10 @@ class Report:
             if line["type"] == "baseline"
         }
         if not lines:
-            self.write({"type": "run", **run})
+            commit = subprocess.run(
+                ["git", "rev-parse", "HEAD"], cwd=ROOT, capture_output=True, text=True, check=True
+            )
+            self.write({"type": "run", **run, "commit": commit.stdout.strip()})
 
     def write(self, line: dict[str, Any]) -> None:
         """Append one line."""

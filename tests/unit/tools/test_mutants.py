@@ -1,0 +1,84 @@
+"""The runner of mutants: nearest tests first, answers outlast a cut, the source is not changed."""
+
+import itertools
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import mutants
+
+ROOT = Path(__file__).parents[3]
+
+
+def test_the_tests_of_a_module_come_first_then_those_that_name_it() -> None:
+    nearness = mutants.Nearness(ROOT)
+    files = nearness.tests("squeezefilm.film.gap")
+    assert files[0] == "tests/unit/film/test_gap.py"
+    named = ["squeezefilm.film.gap" in nearness.texts[name] for name in files]
+    assert named == sorted(named, reverse=True)
+    assert 0 < len(files) < len(nearness.texts)
+    assert "tests/e2e/test_plate_cli.py" in nearness.tests("squeezefilm.plate.ring.stator")
+
+
+def test_a_line_that_was_cut_off_is_asked_again(tmp_path: Path) -> None:
+    path = tmp_path / "mutants.jsonl"
+    path.write_text('{"type": "run", "seed": 1}\n{"type": "mutant", "id": "a"}\n{"type": "mut')
+    assert [line.get("id") for line in mutants.read_lines(path)] == [None, "a"]
+    with pytest.raises(SystemExit, match="name another file"):
+        mutants.Report(path, {"seed": 2})
+
+
+def test_every_equivalent_mutant_has_a_reason() -> None:
+    assert all(len(reason) > 20 for reason in mutants.equivalent_mutants().values())
+
+
+@pytest.mark.nightly
+def test_a_run_finds_what_survives_and_leaves_the_source_as_it_was(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    root = tmp_path / "project"
+    files = {
+        "src/squeezefilm/__init__.py": '"""A package."""\n',
+        "src/squeezefilm/quantities.py": "",
+        "src/squeezefilm/gap.py": "def half(a: int) -> float:\n    b = a + 0\n    return b / 2\n",
+        "tests/unit/test_gap.py": "from squeezefilm.gap import half\n\n\n"
+        "def test_half():\n    assert half(0) == 0\n    assert half(4) == 2\n",
+    }
+    for name, text in files.items():
+        (root / name).parent.mkdir(parents=True, exist_ok=True)
+        (root / name).write_text(text)
+    for command in (["init", "-q"], ["add", "-A"], ["commit", "-qm", "a"]):
+        who = ["-c", "user.name=a", "-c", "user.email=a@example.org"]
+        subprocess.run(["git", *who, *command], cwd=root, check=True)
+    answers, work = tmp_path / "answers.jsonl", tmp_path / "work"
+    monkeypatch.setattr(mutants, "ROOT", root)
+    monkeypatch.setattr(
+        sys, "argv", ["mutants.py", "--file", str(answers), "--work", str(work), "--count", "9"]
+    )
+    mutants.main()
+    lines = [json.loads(line) for line in answers.read_text().splitlines()]
+    found = {(line["before"], line["after"]): line for line in lines if line["type"] == "mutant"}
+    assert found["/", "*"]["noticed"]
+    assert found["/", "*"]["test"] == "tests/unit/test_gap.py::test_half"
+    assert found["2", "3"]["noticed"]
+    assert found["0", "1"]["noticed"]
+    assert not found["+", "-"]["noticed"]  # a + 0 is a - 0
+    assert "noticed: 4 of 5" in capsys.readouterr().out
+    assert (work / "tree/src/squeezefilm/gap.py").read_text() == files["src/squeezefilm/gap.py"]
+    # A second run has nothing left to ask.
+    before = answers.read_text()
+    mutants.main()
+    assert answers.read_text() == before
+
+
+def test_only_marked_files_are_asked_a_second_time() -> None:
+    trial = mutants.Trial.__new__(mutants.Trial)
+    trial._parts = [mutants.QUICK, mutants.REALTIME]
+    trial._nearness = mutants.Nearness.__new__(mutants.Nearness)
+    trial._nearness.texts = {"a.py": "", "b.py": "@pytest.mark.realtime", "c.py": ""}
+    trial._arguments = mutants.argparse.Namespace(budget=2)
+    asked = list(itertools.islice(trial._questions(["a.py", "b.py", "c.py"]), 9))
+    assert asked == [("a.py", mutants.QUICK), ("b.py", mutants.QUICK), ("b.py", mutants.REALTIME)]
