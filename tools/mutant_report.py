@@ -55,6 +55,14 @@ def print_report(lines: Sequence[Line], equivalent: Mapping[str, str]) -> None:
         print(
             f"\nnoticed: {total['noticed']} of {total['counted']} (95 %: {low:.0%} to {high:.0%})"
         )
+    left_out = [
+        f"{line['asked']} ({line['said']}: {line['test']}, {line['seconds']:.0f} s)"
+        for line in lines
+        if line["type"] == "baseline" and line["said"] in ("failed", "slow")
+    ]
+    if left_out:
+        print("\nasked nothing, because they do not pass on the source as it is:")
+        print("  " + "\n  ".join(left_out))
     print("\nsurvived:")
     for line in mutants:
         if not line["noticed"] and line["id"] not in equivalent:
