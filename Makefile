@@ -4,7 +4,9 @@ VENV := .venv
 BIN := $(VENV)/bin
 OUT ?= out/demo
 WORKERS ?= auto
-SEED ?= 1
+# A seed of the day, printed; a failure is repeated with the one that was.
+SEED ?= $(shell date +%Y%m%d)
+MUTANTS_SEED ?= 1
 COUNT ?= 150
 MINUTES ?= 480
 
@@ -44,8 +46,6 @@ endef
 test: $(VENV)/test.stamp  ## run every test (slow ones: make nightly)
 	$(call run_tests,and not nightly)
 
-# Properties are explored from a seed of the day; a failure is repeated with the one printed here.
-SEED ?= $(shell date +%Y%m%d)
 nightly: export SQUEEZEFILM_EXPLORE = 1
 nightly: PYTEST += --hypothesis-seed=$(SEED)
 nightly: $(VENV)/test.stamp  ## run every test, the slow ones too, and explore properties (SEED=N)
@@ -53,8 +53,8 @@ nightly: $(VENV)/test.stamp  ## run every test, the slow ones too, and explore p
 	$(call run_tests,)
 
 campaign: $(VENV)/test.stamp  ## what takes hours, and goes on where it stopped: mutants of a seed
-	@nice $(BIN)/python tools/mutants.py --nightly --seed $(SEED) --count $(COUNT) \
-	  --minutes $(MINUTES) --file campaigns/mutants-$(SEED).jsonl
+	@nice $(BIN)/python tools/mutants.py --nightly --seed $(MUTANTS_SEED) --count $(COUNT) \
+	  --minutes $(MINUTES) --file campaigns/mutants-$(MUTANTS_SEED).jsonl
 
 check: lint types layers docs  ## everything that is read and not run
 
