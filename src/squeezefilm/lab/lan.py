@@ -13,7 +13,6 @@ import hashlib
 import ipaddress
 import os
 import ssl
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -28,6 +27,7 @@ from squeezefilm.lab.guard import Guard, Places
 from squeezefilm.lab.server import (
     STATIC,
     Lab,
+    LanPlace,
     UnheardServer,
     converse,
     listening_socket,
@@ -42,14 +42,6 @@ if TYPE_CHECKING:
 PORT = 8632
 _LIFE = datetime.timedelta(days=30)
 _LONGEST_CODE = 32
-
-
-@dataclass(frozen=True, slots=True)
-class LanPlace:
-    """Where tablets reach the lab: its address as a link, its certificate's fingerprint."""
-
-    link: str
-    fingerprint: str
 
 
 def lan_listener(address: str, port: int = PORT) -> socket.socket:

@@ -33,7 +33,6 @@ from squeezefilm.lab.worker import PAGE, SupersededError, Workers
 if TYPE_CHECKING:
     from starlette.types import ASGIApp
 
-    from squeezefilm.lab.lan import LanPlace
 
 STATIC = Path(__file__).parent / "static"
 RENDERER = Path(render.__file__).parent / "static" / "renderer.js"
@@ -48,6 +47,14 @@ _KINDS = {
 }
 MOST_WAITING = 64
 """Messages of one page being answered at once; more is no page of ours."""
+
+
+@dataclass(frozen=True, slots=True)
+class LanPlace:
+    """Where tablets reach the lab: its address as a link, its certificate's fingerprint."""
+
+    link: str
+    fingerprint: str
 
 
 @dataclass(slots=True)

@@ -12,14 +12,14 @@ import re
 import sqlite3
 from collections.abc import Callable, Iterable, Iterator
 from datetime import datetime
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Protocol
 
 from squeezefilm.errors import InputError
 from squeezefilm.study.record.schema import SCHEMA, TABLES
 
 if TYPE_CHECKING:
     from squeezefilm.study.design.study_design import StudyDesign
-    from squeezefilm.study.record.store import StudyStore
 
 _IDENTIFIER = re.compile(r"[0-9a-f-]{16,36}")
 _TRACE = re.compile(r"[0-9a-f]{32}\.(csv|sqft)")
@@ -40,12 +40,36 @@ def require_identifier(text: str) -> None:
         )
 
 
+class ReadableStudy(Protocol):
+    """What a study's file is looked at through: `StudyStore`, which asks for the look."""
+
+    path: Path
+
+    @property
+    def backups(self) -> Path:
+        """The folder of backups."""
+        ...
+
+    @property
+    def design(self) -> StudyDesign:
+        """The design that the file was made for."""
+        ...
+
+    def rows(self, query: str, values: Iterable[Any] = ()) -> list[dict[str, Any]]:
+        """Rows by the names of their columns."""
+        ...
+
+    def values(self, query: str) -> list[tuple[Any, ...]]:
+        """Rows as they stand."""
+        ...
+
+
 def is_trace(name: str) -> bool:
     """Whether a file among the traces has a name that this program gave, half-written or not."""
     return bool(_TRACE.fullmatch(name) or _HALF_WRITTEN.fullmatch(name))
 
 
-def require_contents(store: StudyStore) -> None:
+def require_contents(store: ReadableStudy) -> None:
     """Refuse a file whose tables or rows are not what this program writes.
 
     Raises `InputError` that names table, row and column, `RecordError` for what cannot be read.
@@ -57,7 +81,7 @@ def require_contents(store: StudyStore) -> None:
         )
 
 
-def _problems(store: StudyStore) -> Iterator[str]:
+def _problems(store: ReadableStudy) -> Iterator[str]:
     with sqlite3.connect(":memory:") as reference:
         reference.executescript(SCHEMA)
         wanted = {name: _shape(reference.execute, name) for name in ("study", *TABLES)}
@@ -107,7 +131,7 @@ def _row_problems(
                 yield f"{table} {row[key]!r:.40} has {column} = {value!r:.60}"
 
 
-def _trial_problems(store: StudyStore) -> Iterator[str]:
+def _trial_problems(store: ReadableStudy) -> Iterator[str]:
     """What no column shows alone: whether answers fit their trials, and trials their design."""
     design = store.design
     gratings = [one.name for one in design.alternatives]
