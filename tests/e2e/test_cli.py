@@ -287,7 +287,7 @@ def test_output_that_does_not_fit_is_one_message_and_exit_code_two() -> None:
         (("analyze", "biet2008-stator", "--strict", "--model", "paper2008"), "σ → ∞"),
         (("analyze", "biet2008-stator", "--model", "film-opne"), "Did you mean 'film-open'"),
         (("film", "--squeeze-number", "10", "--excursion", "1"), "below 1"),
-        (("film", "--squeeze-number", "0", "--excursion", "0.5"), "above 0"),
+        (("film", "--squeeze-number", "0", "--excursion", "0.5"), "at least 1e-10"),
         (("film", "--squeeze-number", "nan", "--excursion", "0.5"), "nan"),
         (("film", "--squeeze-number", "10"), "--excursion"),
         (("film", "--sweep"), "--out DIR"),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 from typing import Any
 
 from squeezefilm.lab.playing import Playing
@@ -12,11 +11,11 @@ def test_pages_are_told_of_every_change_and_a_stop_stops_all() -> None:
     told: list[list[tuple[str, bool]]] = []
     stopped: list[str] = []
 
-    async def tell(message: dict[str, Any]) -> None:
+    def tell(message: dict[str, Any]) -> None:
         assert message["type"] == "playing"
         told.append([(one["key"], one["plays"]) for one in message["now"]])
 
-    async def work() -> None:
+    def work() -> None:
         playing = Playing(tell)
         playing.note("a", "a texture", lambda: stopped.append("a"), plays=False)
         playing.note("a", "a texture", lambda: stopped.append("a"), plays=False)
@@ -25,9 +24,8 @@ def test_pages_are_told_of_every_change_and_a_stop_stops_all() -> None:
         playing.stop()
         playing.forget("b")
         assert [one["text"] for one in playing.message()["now"]] == ["a texture"]
-        await asyncio.sleep(0)
 
-    asyncio.run(work())
+    work()
     assert stopped == ["a"]
     # The same is not said twice.
     assert len(told) == 4

@@ -274,7 +274,7 @@ def preview_samples(
 def preview_work(samples: int) -> FloatArray:
     """Working memory of `previewed_step` for so many samples ahead, shape (5, 2·samples + 2)."""
     require("samples", samples, at_least=0)
-    return np.empty((5, 2 * samples + 2))
+    return np.zeros((5, 2 * samples + 2))
 
 
 def _samples(name: str, values: MetreArray) -> FloatArray:

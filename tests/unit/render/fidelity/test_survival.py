@@ -51,7 +51,7 @@ def test_a_sine_loses_more_than_a_square() -> None:
         ({"low": 2e-6, "high": 1e-6}, "low must be below high"),
         ({"spatial_periods": []}, "spatial_periods of shape"),
         ({"spatial_periods": [0.0]}, "spatial_periods = 0 m"),
-        ({"speeds": 0.1}, "speeds of shape"),
+        ({"speeds": 0.1}, "speeds is one number"),
         ({"speeds": [math.nan]}, "speeds = nan"),
         ({"speeds": [60.0]}, "at most 5 m/s"),
         ({"relative_friction": np.ones_like}, "relative friction wanted does not change"),

@@ -112,7 +112,7 @@ def test_rates_that_divide_give_a_number_of_samples() -> None:
     (lambda: DrivenEnvelope.of_resonator(60.0, 3e4, 1e-7, 0.0), "voltage_limit"),
     (lambda: ENVELOPE.new_state(2e-6), "amplitude"),
     (lambda: ENVELOPE.parameters(0.0), "time_step"),
-    (lambda: ENVELOPE.response(np.array([]), 1e-4), "command of shape"),
+    (lambda: ENVELOPE.response(np.array([]), 1e-4), "command is empty"),
     (lambda: compensated_drive(np.array([-1e-9]), 1e-4, ENVELOPE), "wanted"),
     (lambda: compensated_drive(np.array([[1e-9]]), 1e-4, ENVELOPE), "wanted of shape"),
     (lambda: compensated_drive(np.array([0.0]), 1e-4, ENVELOPE, "magic"), "magic"),  # type: ignore[arg-type]
