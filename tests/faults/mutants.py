@@ -122,7 +122,7 @@ def _screened(display: Display) -> None:
 def _rendered(texture: Path | None, stroke: str) -> None:
     where = Path(texture) if texture is not None else None
     what = load_texture(preset_files()["texture"][0] if where is None else where)
-    render_command.analyze_render(load_display(STATOR), what, motion_from(stroke))
+    render_command.render_texture(load_display(STATOR), what, motion_from(stroke))
 
 
 KINDS = ("display", "display", "display", "texture", "study", "stroke")

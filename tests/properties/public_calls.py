@@ -29,6 +29,8 @@ _REAL_ARRAY = np.ndarray[tuple[Any, ...], np.dtype[np.float64]]
 _NUMBERS = (int, float, _REAL_ARRAY)
 
 
+_ROOMS = tuple(f"{room}." for room in ROOMS)
+
 NOT_CALLED = {
     "a record of what was computed, which only the package makes": """
     contact.sharing.film_load.FilmLoad contact.sharing.pad.PadFriction
@@ -202,7 +204,7 @@ def public_calls() -> dict[str, PublicCall]:
     """Every public call with numbers among its arguments, by its dotted name below the package."""
     found = {}
     for module in pkgutil.walk_packages(squeezefilm.__path__, "squeezefilm."):
-        if module.name.split(".")[1] not in ROOMS:
+        if not f"{module.name.removeprefix('squeezefilm.')}.".startswith(_ROOMS):
             continue
         home = importlib.import_module(module.name)
         for key, item in vars(home).items():

@@ -72,9 +72,9 @@ def test_a_json_text_of_too_many_values_or_too_deep_is_refused_before_it(tmp_pat
             read_hjif(file)
 
 
-@pytest.mark.parametrize("name", [*presets.names(), *presets.texture_names()])
+@pytest.mark.parametrize("name", [*presets.display_names(), *presets.texture_names()])
 def test_presets_are_far_below_the_limits(name: str) -> None:
-    file = presets.path(name) if name in presets.names() else presets.resolve_texture(name)
+    file = presets.path(name) if name in presets.display_names() else presets.resolve_texture(name)
     text = file.read_text(encoding="utf-8")
     require_quick_toml(text)
     with pytest.MonkeyPatch.context() as patch:

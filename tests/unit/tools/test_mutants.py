@@ -42,7 +42,7 @@ def test_a_run_finds_what_survives_and_leaves_the_source_as_it_was(
     root = tmp_path / "project"
     files = {
         "src/squeezefilm/__init__.py": '"""A package."""\n',
-        "src/squeezefilm/quantities.py": "",
+        "src/squeezefilm/quantities/units.py": "",
         "src/squeezefilm/gap.py": "def half(a: int) -> float:\n    b = a + 0\n    return b / 2\n",
         "tests/unit/test_gap.py": "from squeezefilm.gap import half\n\n\n"
         "def test_half():\n    assert half(0) == 0\n    assert half(4) == 2\n",

@@ -221,5 +221,5 @@ def test_a_pipe_is_not_waited_for(tmp_path: Path) -> None:
     if not hasattr(os, "mkfifo"):
         pytest.skip("there are no pipes in folders here")
     os.mkfifo(tmp_path / "pipe.sqft")
-    with pytest.raises(InputError, match="it is no file"):
+    with pytest.raises(InputError, match="no regular file"):
         read_trace(tmp_path / "pipe.sqft")

@@ -281,7 +281,7 @@ def test_a_clock_that_is_set_changes_no_answer_and_no_break(
         ticks[0] += 1.0
         return ticks[0]
 
-    for room in ("run", "conduct", "sessions", "store"):
+    for room in ("conduct.run", "conduct.trial_by_trial", "conduct.sessions", "record.store"):
         monkeypatch.setattr(f"squeezefilm.study.{room}.utc_now", now)
     design = dataclasses.replace(gratings(1), blocks=2, break_between_blocks=60.0)
     with StudyStore.create(tmp_path / "a.sqlite", design, 7) as store:
