@@ -63,6 +63,9 @@ class PlanarGap:
 def gap_values(gap: GapFunction, X: FloatArray, Y: FloatArray, T: FloatArray) -> FloatArray:
     """H at every place and time, (places, times), checked: finite and open."""
     shape = (X.size, T.size)
+    if not X.size:
+        # A grid may have no faces of a kind, and no gap is asked for at no place.
+        return np.empty(shape)
     try:
         given = np.asarray(gap(X[:, None], Y[:, None], T[None, :]), dtype=float)
         H = np.ascontiguousarray(np.broadcast_to(given, shape))
@@ -72,7 +75,7 @@ def gap_values(gap: GapFunction, X: FloatArray, Y: FloatArray, T: FloatArray) ->
             f"T (1, {T.size}): {error}"
         ) from error
     # One pass on the way through; the place is looked for only where something is wrong.
-    if not H.size or (H.min() > 0.0 and H.max() < np.inf):
+    if H.min() > 0.0 and H.max() < np.inf:
         return H
     finite = np.isfinite(H)
     worst = int(np.argmin(np.where(finite, H, -np.inf)))
