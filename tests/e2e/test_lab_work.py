@@ -71,7 +71,7 @@ def test_numbers_of_an_older_design_are_grey_until_replaced(
     thickness.press("Enter")
     page.locator(".results.older[aria-busy=true]").wait_for()
     page.wait_for_function(
-        "Number(getComputedStyle(document.querySelector('.results .numbers')).opacity) < 0.5"
+        "() => Number(getComputedStyle(document.querySelector('.results .numbers')).opacity) < 0.5"
     )
     assert page.locator(".number b").first.inner_text() == before
     keep(page, "lab-design-computing")

@@ -33,7 +33,8 @@ def serve(tmp_path: Path) -> Iterator[Callable[..., Served]]:
 
 
 def _stormed(served: Served, count: int, seed: int, tablets: bool = False) -> None:
-    warm = max(count // 4, 100)
+    # By TLS the memory levels off after some 6000 connections, 100 MB up: handshakes leave gaps.
+    warm = count // 2 if tablets else count // 4
     hung, slowest = asyncio.run(storm(served, warm, seed, tablets))
     before = served.memory
     more, later = asyncio.run(storm(served, count - warm, seed + 1, tablets))

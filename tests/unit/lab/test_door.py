@@ -262,6 +262,17 @@ class Served:
         return page.close_code, str(page.close_reason)
 
 
+def test_an_accepted_connection_is_told_so_itself() -> None:
+    # On Linux asyncio finds the protocol out for itself, elsewhere it does not.
+    gone: list[Connection] = []
+    with listening_socket(8920) as listener, socket.create_connection(listener.getsockname()):
+        accepted, (address, _) = listener.accept()
+        connection = Connection(accepted, address, gone.append)
+        assert connection.getsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY)
+        connection.close()
+    assert gone == [connection]
+
+
 def test_what_is_written_goes_out_at_once(tmp_path: Path) -> None:
     async def work() -> None:
         async with Served(tmp_path) as served, served.page():
@@ -282,7 +293,9 @@ def test_what_is_written_goes_out_at_once(tmp_path: Path) -> None:
 def test_a_page_that_does_not_read_is_dropped_and_delays_nobody(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, kind: str
 ) -> None:
-    monkeypatch.setattr(pages, "SLOWEST_PAGE", 0.2)
+    # Each by one of the two reasons for which a page is dropped.
+    monkeypatch.setattr(pages, "SLOWEST_PAGE", 0.2 if kind == "asks" else 600.0)
+    monkeypatch.setattr(pages, "MOST_UNREAD", 10**6 if kind == "asks" else 64)
     large = "x" * 200_000
 
     async def work() -> None:
