@@ -95,7 +95,7 @@ STATOR = presets.path("biet2008-stator").read_text(encoding="utf-8")
          "overhangs the disc"),
         (DISC.replace('type = "disc"', 'type = "disk"'), "Did you mean 'disc'"),
         (DISC.replace('type = "disc"', 'type = "disc"\nsectors = 2'), "without nodal diameters"),
-        (DISC.replace('"1.6 mm"', '"1.6 nm"'), "aspect ratio"),
+        (DISC.replace('"1.6 mm"', '"1.6 nm"'), "at least 10 nm"),
         (STATOR.replace("40.5 kHz", "400 kHz"), "no ring thickness"),
     ],
 )  # fmt: skip
