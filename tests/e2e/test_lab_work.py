@@ -63,6 +63,9 @@ def test_numbers_of_an_older_design_are_grey_until_replaced(
     work = page.locator(".work")
     page.locator(".results:not(.older) .quality", has_text="screening:").wait_for(timeout=SOLVED)
     work.filter(has_text="solving the plate in three dimensions").wait_for(timeout=SOLVED)
+    page.wait_for_function(
+        "() => document.querySelector('.work progress:not([hidden])')?.value > 0"
+    )
     before = page.locator(".number b").first.inner_text()
 
     held.qualities = {"screening", "solved"}

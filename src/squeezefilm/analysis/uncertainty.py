@@ -215,12 +215,14 @@ def friction_band(
     *,
     samples: int = 64,
     seed: int = 1,
+    progress: Callable[[str, float], None] | None = None,
 ) -> FrictionBand:
     """The band in which µ′/µ lies at each amplitude (m, zero-to-peak, shape (n,)).
 
     What is uncertain of finger, gas and surface is varied at once, as in `uncertain_friction`, by
     `samples` Sobol' points (a power of two); drive and actuator stand still, since the amplitude is
-    the abscissa. Raises `InputError` for amplitudes below 0.
+    the abscissa. `progress` is called with a text and a fraction. Raises `InputError` for
+    amplitudes below 0.
     """
     from scipy.stats import qmc
 
@@ -231,6 +233,8 @@ def friction_band(
     )
     rows = np.full((samples, amplitude.size), np.nan)
     for number, (changes, share) in enumerate(_changes(parameters, values)):
+        if progress is not None:
+            progress(f"sample {number + 1} of {samples}", number / samples)
         try:
             limits = _law(replaced(display, changes), prediction).limits(amplitude)
         except SqueezefilmError:

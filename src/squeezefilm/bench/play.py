@@ -142,6 +142,11 @@ def play_texture(
         # The arm swings a little beyond where it turns.
         way = (float(np.min(finger.x)) - _MARGIN, float(np.max(finger.x)) + _MARGIN)
         amplitude_per_pickup = 1 / settings.pickup.sensitivity
+    kept = None if out is None else Path(out)
+    if kept is not None and (kept / TRACE_NAME).exists():
+        raise InputError(
+            f"{kept / TRACE_NAME} exists; a record is never written over: give another folder"
+        )
     tell("the display at its largest amplitude")
     setup = play_setup(
         display, texture, sensor=eyes, voltage=voltage, surface=surface, rate=rate,
@@ -158,7 +163,6 @@ def play_texture(
         "mode": mode,
         "assumed_limits": list(setup.assumed_limits),
     }
-    kept = None if out is None else Path(out)
     with _folder(kept) as folder:
         truth = folder / TRUTH_NAME if drive == "twin" else None
         if drive == "twin":

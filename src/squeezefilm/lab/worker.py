@@ -38,10 +38,23 @@ PAGE: ContextVar[WebSocket] = ContextVar("page")
 _SPAWN = multiprocessing.get_context("spawn")
 
 
+Told = Callable[[str, float], None]
+"""Hears how far a piece of work is: a text and the share that is done (0 to 1)."""
+_TELL_EVERY: Second = 0.1
+
+
 class SupersededError(Exception):
     """Work whose answer nobody waits for, because newer work came; of which request, if known."""
 
     number: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class _HowFar:
+    """What a process says of its work before the answer."""
+
+    text: str
+    share: float
 
 
 @dataclass(eq=False, slots=True)
@@ -51,6 +64,7 @@ class _Job:
     page: WebSocket | None
     slot: str | None
     gives_way: bool
+    told: Told | None
     began: float = 0.0
     ended_because: Exception | None = None
 
@@ -70,13 +84,21 @@ class _Process:
         theirs.close()
         return cls(process, ours)
 
-    def ask(self, work: Callable[..., T], arguments: tuple[Any, ...]) -> tuple[bool, Any]:
-        """Whether it worked, and the result or the error. Raises `EOFError` if the process dies."""
+    def ask(
+        self, work: Callable[..., T], arguments: tuple[Any, ...], told: Told | None
+    ) -> tuple[bool, Any]:
+        """Whether it worked, and the result or the error; how far it is is told meanwhile.
+
+        Raises `EOFError` if the process dies.
+        """
         try:
             self.line.send((work, arguments))
-            answer: tuple[bool, Any] = self.line.recv()
+            while isinstance(said := self.line.recv(), _HowFar):
+                if told is not None:
+                    told(said.text, said.share)
         except OSError as error:
             raise EOFError from error
+        answer: tuple[bool, Any] = said
         return answer
 
     def end(self) -> None:
@@ -98,7 +120,12 @@ class Busy:
         self._running: _Job | None = None
 
     async def do(
-        self, slot: str | None, work: Callable[..., T], *arguments: Any, gives_way: bool = False
+        self,
+        slot: str | None,
+        work: Callable[..., T],
+        *arguments: Any,
+        gives_way: bool = False,
+        told: Told | None = None,
     ) -> T:
         """The result of `work(*arguments)` in the process.
 
@@ -106,13 +133,14 @@ class Busy:
             slot: newer work of the same page and slot takes this one's place; None if none does.
             gives_way: whether it is ended for newer work, for `cancel` and with its page also
                 when it has begun.
+            told: is called with what the work says by `tell`.
 
         Raises:
             SupersededError: newer work of the same slot came.
             SqueezefilmError: what the work raised, that it took too long or too much memory, was
                 cancelled, or that its process died.
         """
-        job = _Job(PAGE.get(None), slot, gives_way)
+        job = _Job(PAGE.get(None), slot, gives_way, told)
         if slot is not None:
             for older in self._jobs:
                 if (older.page, older.slot) == (job.page, slot):
@@ -164,13 +192,18 @@ class Busy:
         process = self._process
         assert process is not None
         loop = asyncio.get_running_loop()
+
+        def told(text: str, share: float) -> None:
+            if job.told is not None and job.ended_because is None:
+                loop.call_soon_threadsafe(job.told, text, share)
+
         late = SqueezefilmError(
             f"this took more than {self._longest:g} s and was ended; ask for less: fewer nodal "
             "lines, samples or participants, or a coarser quality"
         )
         alarm = loop.call_later(self._longest, self._end, job, late)
         try:
-            worked, found = await loop.run_in_executor(None, process.ask, work, arguments)
+            worked, found = await loop.run_in_executor(None, process.ask, work, arguments, told)
         except EOFError as error:
             self._process = None if self._process is process else self._process
             raise job.ended_because or SqueezefilmError(
@@ -217,6 +250,19 @@ class Workers:
         self.slow.close()
 
 
+_line: Connection | None = None
+_told_last = 0.0
+
+
+def tell(text: str, share: float) -> None:
+    """Say how far the work is that runs in this process; without effect outside such a process."""
+    global _told_last
+    now = time.monotonic()
+    if _line is not None and now - _told_last >= _TELL_EVERY:
+        _told_last = now
+        _line.send(_HowFar(text, share))
+
+
 def _newer() -> SupersededError:
     return SupersededError("newer work took its place")
 
@@ -231,7 +277,9 @@ def _end_with_parent() -> None:
 
 def _work(line: Connection) -> None:
     """Answer one piece of work after the other, until the line is closed."""
+    global _line
     _prepare()
+    _line = line
     with contextlib.suppress(EOFError, OSError):
         while True:
             work, arguments = line.recv()

@@ -51,6 +51,14 @@ def forgets_itself(size: int) -> int:
     return len(bytearray(size))
 
 
+def goes_on() -> str:
+    """Work that says how far it is."""
+    for share in (0.0, 0.5):
+        worker.tell(f"step {share}", share)
+        time.sleep(0.15)
+    return "done"
+
+
 def where() -> int:
     """The process it runs in."""
     return os.getpid()
@@ -59,6 +67,20 @@ def where() -> int:
 def ends_itself() -> None:
     """Work that its process does not outlive."""
     os._exit(3)
+
+
+def test_work_says_how_far_it_is_to_whom_it_was_asked_for(busy: Busy) -> None:
+    heard: list[tuple[str, float]] = []
+
+    async def asked() -> None:
+        assert await busy.do(None, goes_on, told=lambda *said: heard.append(said)) == "done"
+        assert heard == [("step 0.0", 0.0), ("step 0.5", 0.5)]
+        # Nobody listens to the next one.
+        assert await busy.do(None, goes_on) == "done"
+        assert len(heard) == 2
+
+    play(asked())
+    worker.tell("outside such a process nothing is said", 0.5)
 
 
 def test_work_that_takes_too_long_is_ended_and_the_next_is_done(tmp_path: Path) -> None:

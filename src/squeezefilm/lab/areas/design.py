@@ -13,7 +13,7 @@ from squeezefilm.lab.designing import form as description
 from squeezefilm.lab.designing import numbers as design
 from squeezefilm.lab.designing.field_limits import allowed
 from squeezefilm.lab.files import existing, fresh
-from squeezefilm.lab.wire import LONGEST_TEXT, Answer, Request
+from squeezefilm.lab.wire import LONGEST_TEXT, Answer, Request, as_text
 from squeezefilm.lab.worker import PAGE
 from squeezefilm.results import write_whole
 
@@ -98,13 +98,21 @@ def add_design(lab: Lab) -> None:
         point = design.WorkingPoint(
             asked.text, asked.voltage, asked.surface, asked.force, asked.path, asked.value
         )
-        quick, slow = lab.workers.quick, lab.workers.slow
+        quick, slow, page = lab.workers.quick, lab.workers.slow, PAGE.get(None)
+
+        def told(text: str, share: float) -> None:
+            if page in lab.pages:
+                line = {"type": "computing", "quality": asked.quality, "text": text, "share": share}
+                lab.pages[page].say(as_text(line))
+
         if asked.quality == "screening":
             found = await quick.do("screening", design.designed, point, "screening", gives_way=True)
         elif asked.quality == "solved":
-            found = await slow.do("solved", design.designed, point, "solved", gives_way=True)
+            found = await slow.do(
+                "solved", design.designed, point, "solved", gives_way=True, told=told
+            )
         else:
-            found = await slow.do("band", design.banded, point, asked.of, gives_way=True)
+            found = await slow.do("band", design.banded, point, asked.of, gives_way=True, told=told)
             return {"type": "band", **found}
         return {"type": "design", **found}
 

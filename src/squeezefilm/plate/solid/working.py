@@ -7,14 +7,14 @@ kept.
 from __future__ import annotations
 
 import functools
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.solid.modes import MODEL, PlateModes
 from squeezefilm.plate.solid.response import HarmonicResponse, harmonic_response
-from squeezefilm.plate.solid.solve import solve_modes
+from squeezefilm.plate.solid.solve import Progress, solve_modes
 from squeezefilm.quantities import (
     Dimensionless,
     FloatArray,
@@ -35,6 +35,8 @@ _LINE_POINTS = 401
 # A plate with strips on a part of it takes half a minute to a part in a thousand; this is enough
 # for a display, and the estimate stands beside the frequency.
 _TOLERANCE = 3e-3
+# The part of the time that the modes take; the response takes the rest.
+_MODES = 0.5
 
 
 @checked_numbers
@@ -109,19 +111,49 @@ class SolidMode:
         return np.asarray(amplitude[np.searchsorted(band, ascending)][back])
 
 
-@functools.lru_cache(maxsize=32)
-def solid_mode(plate: RectangularPlate, label: tuple[int, int] | None = None) -> SolidMode:
+@dataclass(frozen=True, slots=True)
+class _Listener:
+    """Who is told how far a solve is: no part of what was asked, so that a cache sees one key."""
+
+    tell: Progress | None = field(default=None, compare=False)
+
+    def share(self, first: float, last: float) -> Progress | None:
+        """Whom a part of the work tells, which goes from one fraction of the whole to another."""
+        tell = self.tell
+        if tell is None:
+            return None
+        return lambda text, fraction: tell(text, first + (last - first) * fraction)
+
+
+def solid_mode(
+    plate: RectangularPlate,
+    label: tuple[int, int] | None = None,
+    *,
+    progress: Progress | None = None,
+) -> SolidMode:
     """A plate's mode with the nodal lines of `label` by three-dimensional piezoelectric elements.
 
-    Without a label the plate's working mode. Raises what `solve_modes` and
-    `harmonic_response` raise: `InputError` where there is no such mode or nothing drives the
-    plate, `GeometryError` for a plate that the elements cannot carry.
+    Without a label the plate's working mode. `progress` is called with a text and a fraction; the
+    last plates that were solved are kept. Raises what `solve_modes` and `harmonic_response` raise:
+    `InputError` where there is no such mode or nothing drives the plate, `GeometryError` for a
+    plate that the elements cannot carry.
     """
+    return _solid_mode(plate, label, _Listener(progress))
+
+
+@functools.lru_cache(maxsize=32)
+def _solid_mode(
+    plate: RectangularPlate, label: tuple[int, int] | None, listener: _Listener
+) -> SolidMode:
     wanted = label or plate.working_label
-    modes = solve_modes(plate, mode=wanted, tolerance=_TOLERANCE)
+    modes = solve_modes(
+        plate, mode=wanted, tolerance=_TOLERANCE, progress=listener.share(0.0, _MODES)
+    )
     index = modes.index(wanted)
     frequency, quality = float(modes.frequencies[index]), float(modes.quality_factors[index])
-    response = harmonic_response(plate, response_frequencies(frequency, quality))
+    response = harmonic_response(
+        plate, response_frequencies(frequency, quality), progress=listener.share(_MODES, 1.0)
+    )
     lengthwise = wanted[0] >= wanted[1]
     span, across = (plate.length, plate.width)[:: 1 if lengthwise else -1]
     x, middle = np.linspace(0, span, _LINE_POINTS), np.array([across / 2])

@@ -22,6 +22,7 @@ class DesignView {
     this.build();
     this.lab.keep(this.store.on(() => this.refresh()));
     this.lab.socket.on("connection", ({ open }) => open && this.begin());
+    this.lab.socket.on("computing", ({ quality, share, text }) => quality === this.computing && this.work.far(share, text));
     if (this.lab.socket.open) await this.begin();
   }
 
@@ -154,6 +155,7 @@ class DesignView {
     clearTimeout(this.settled);
     this.next = change;
     this.older(true);
+    this.computing = "screening";
     this.work.begin(SCREENING);
     this.pump();
     const mine = this.asked;
@@ -191,6 +193,7 @@ class DesignView {
     try {
       let of = "screening";
       if (plate) {
+        this.computing = "solved";
         this.work.begin("solving the plate in three dimensions…");
         const answer = await this.lab.socket.ask("compute design", { text, quality: "solved", ...change });
         if (!current()) return;
@@ -199,6 +202,7 @@ class DesignView {
         this.present(answer);
         this.older(false);
       }
+      this.computing = "band";
       this.work.begin("computing the band of what is uncertain…");
       const band = await this.lab.socket.ask("compute design", { text, quality: "band", of, ...change });
       if (current()) {
