@@ -6,9 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from squeezefilm.bench.play import play_texture
+from squeezefilm.bench.play import TRACE_NAME, play_texture
 from squeezefilm.errors import InputError
-from squeezefilm.bench.play import TRACE_NAME
 
 
 def test_a_record_that_is_there_is_refused_before_anything_is_computed(tmp_path: Path) -> None:

@@ -206,6 +206,18 @@ def test_a_damaged_mark_is_one_message(store: StudyStore, mark: str) -> None:
         export_study(store, "csv")
 
 
+def test_an_export_whose_mark_a_full_disk_left_half_erased_is_made_again(store: StudyStore) -> None:
+    folder = export_study(store, "csv")
+    mark = folder / ".squeezefilm-export.json"
+    content = mark.read_text()
+    for path in folder.iterdir():
+        if path != mark:
+            path.unlink()
+    mark.write_text("\0" * 8 + content[8:])
+    export_study(store, "csv")
+    assert mark.read_text() == content
+
+
 def test_no_cell_of_any_export_is_a_formula(tmp_path: Path) -> None:
     from squeezefilm.perception.stimuli import Grating, Stimulus
     from squeezefilm.study.design.study_design import StudyDesign

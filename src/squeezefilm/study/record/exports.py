@@ -105,9 +105,14 @@ def own_files(folder: Path) -> set[Path]:
 
 
 def _marked(mark: Path) -> list[str]:
-    """The names of the files that an export's mark lists."""
+    """The names of the files that an export's mark lists.
+
+    None for a mark of zeros: it was being erased, as the last of its files.
+    """
     try:
-        return [str(name) for name in json.loads(mark.read_text())["files"]]
+        if (text := mark.read_text()).startswith("\0"):
+            return []
+        return [str(name) for name in json.loads(text)["files"]]
     except (OSError, ValueError, KeyError, TypeError, RecursionError) as error:
         raise InputError(
             f"{mark} cannot be read ({error!r:.100}); remove this export by hand, or give another "
