@@ -18,8 +18,8 @@ from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed
 from websockets.typing import Origin
 
+from squeezefilm.lab import connections, pages
 from squeezefilm.lab import door as doors
-from squeezefilm.lab import pages
 from squeezefilm.lab.door import Connection, Door, room_for
 from squeezefilm.lab.guard import Places
 from squeezefilm.lab.keys import Keys
@@ -285,6 +285,30 @@ def test_what_is_written_goes_out_at_once(tmp_path: Path) -> None:
             with socket.create_connection(("127.0.0.1", served.port)):
                 await until(lambda: len(door.open) == 2)
                 assert door.open[1].is_stranger
+
+    play(work())
+
+
+def test_a_page_may_be_silent_for_longer_than_a_request_may_take(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(connections, "SLOWEST_REQUEST", 0.15)
+
+    async def work() -> None:
+        async with Served(tmp_path) as served, served.page() as page:
+
+            async def answer(_: Request) -> dict[str, Any]:
+                return {"type": "here"}
+
+            served.lab.experimenter.add("ask", Request, answer)
+            await asyncio.sleep(0.5)
+            await page.send(json.dumps({"id": 1, "type": "ask"}))
+            assert json.loads(await page.recv())["type"] == "here"
+            # Who has not asked for anything by then is cut off.
+            with socket.create_connection(("127.0.0.1", served.port)) as silent:
+                silent.setblocking(False)
+                end = await asyncio.get_running_loop().sock_recv(silent, 10)
+                assert end == b""
 
     play(work())
 

@@ -13,11 +13,13 @@ from typing import Any
 import pytest
 
 from squeezefilm.errors import DeviceError, InputError
+from squeezefilm.lab import playing_process
 from squeezefilm.lab.areas import study as study_area
 from squeezefilm.lab.areas.device import add_device
 from squeezefilm.lab.areas.study import add_study
 from squeezefilm.lab.guard import Places
 from squeezefilm.lab.keys import Keys
+from squeezefilm.lab.playing_process import DeviceSession
 from squeezefilm.lab.server import PAGE, Lab
 from squeezefilm.lab.studying.devices import StudyDevices, require_device
 from squeezefilm.perception.stimuli import Stimulus
@@ -293,6 +295,58 @@ def test_a_trial_is_recorded_only_with_what_its_device_presented(
         passed = [one["passed"] for one in store.rows("SELECT passed FROM verification")]
         assert sorted(passed) == [0, 1, 1]
         assert math.isclose(row["mean_speed_m_per_s"], 0.08)
+
+
+def test_consent_given_twice_begins_one_session(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    fake = Fake()
+    talk = Talk(tmp_path, fake, monkeypatch)
+
+    async def work() -> None:
+        PAGE.set(None)  # type: ignore[arg-type]
+        sitting = await talk.prepared()
+        first = await talk.say("consent", sitting=sitting)
+        asked = list(fake.asked)
+        # A double click, or a page that did not hear the answer.
+        assert await talk.say("consent", sitting=sitting) == first
+        assert fake.asked == asked
+        await talk.say("end sitting", sitting=sitting)
+        after = await talk.say("consent", sitting=sitting)
+        assert after["state"] != "ready"
+
+    play(work())
+    talk.lab.close()
+    with StudyStore.open(talk.store) as store:
+        (count,) = store.rows("SELECT count(*) AS n FROM session")
+        assert count["n"] == 1
+
+
+def test_a_check_is_asked_of_the_drive_with_the_display_on_the_page(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    talk = Talk(tmp_path, Fake(), monkeypatch)
+    begun: list[tuple[Any, ...]] = []
+    monkeypatch.setattr(DeviceSession, "start", lambda _, *work: begun.append(work))
+
+    async def named(*_: object) -> str:
+        return "mine"
+
+    monkeypatch.setattr(talk.lab.workers.quick, "do", named)
+
+    async def work() -> None:
+        text = 'name = "mine"'
+        refused = await talk.say("check device", display=text, drive="sound")
+        assert "may be twin or serial" in refused["message"]
+        assert begun == []
+        assert (await talk.say("check device", display=text, drive="twin"))["type"] == "checking"
+        (now,) = (await talk.say("what plays"))["now"]
+        assert (now["text"], now["plays"]) == ("the check of twin", True)
+
+    play(work())
+    ((what, drive, display),) = begun
+    assert (what, drive) == (playing_process.check, "twin")
+    assert Path(display).read_text() == 'name = "mine"'
 
 
 def test_the_experimenter_is_told_what_a_device_may_not_play() -> None:
