@@ -1,33 +1,18 @@
-"""The command line as a person uses it: through the installed program, in a process of its own."""
+"""The command line as a person uses it."""
 
 import json
-import os
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+from tests.e2e.program import PROGRAM, run, run_program
 
 from squeezefilm import presets
 
-PROGRAM = [sys.executable, "-c", "from squeezefilm.cli import main; main()"]
-
-
-def run(*arguments: str | Path, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
-    environment = {**os.environ, "NO_COLOR": "1", "COLUMNS": "100"}
-    return subprocess.run(
-        [*PROGRAM, *map(str, arguments)],
-        capture_output=True,
-        text=True,
-        cwd=cwd,
-        env=environment,
-        timeout=300,
-        check=False,
-    )
-
 
 def test_help_names_the_verbs() -> None:
-    done = run("--help")
+    done = run_program("--help")
     assert done.returncode == 0
     for verb in ("analyze", "reproduce", "presets", "show", "new"):
         assert verb in done.stdout
@@ -202,7 +187,7 @@ def test_a_film_map_is_drawn(tmp_path: Path) -> None:
 
 
 def test_analyze_writes_a_report_and_a_result(tmp_path: Path) -> None:
-    done = run("analyze", "biet2008-plate", "--out", tmp_path / "out")
+    done = run_program("analyze", "biet2008-plate", "--out", tmp_path / "out")
     assert done.returncode == 0, done.stderr
     assert str(tmp_path / "out" / "report.html") in done.stdout.replace("\n", "")
     result = json.loads((tmp_path / "out" / "result.json").read_text())

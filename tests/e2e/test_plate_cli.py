@@ -5,7 +5,7 @@ import json
 from pathlib import Path
 
 import pytest
-from tests.e2e.test_cli import run
+from tests.e2e.program import run
 
 from squeezefilm import presets
 

@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from tests.e2e.program import PROGRAM
 
 from squeezefilm.formats.traces import table_from_csv
 from squeezefilm.session.record.trace import read_trace
@@ -15,7 +16,6 @@ from squeezefilm.session.record.trace import read_trace
 pytestmark = pytest.mark.skipif(
     sys.platform == "win32", reason="a twin's port is a pseudo-terminal, which needs POSIX"
 )
-PROGRAM = [sys.executable, "-c", "from squeezefilm.cli import main; main()"]
 
 
 def run(*words: str, code: int = 0) -> subprocess.CompletedProcess[str]:

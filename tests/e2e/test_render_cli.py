@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tests.e2e.test_cli import run
+from tests.e2e.program import run
 
 from squeezefilm import presets
 from squeezefilm.formats.hjif_read import read_hjif

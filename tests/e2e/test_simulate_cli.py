@@ -7,7 +7,7 @@ import json
 from pathlib import Path
 
 import numpy as np
-from tests.e2e.test_cli import run
+from tests.e2e.program import run
 
 from squeezefilm import presets
 

@@ -5,14 +5,12 @@ from __future__ import annotations
 import csv
 import io
 import json
-import os
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+from tests.e2e import program
+from tests.e2e.program import Done, run_program
 
-PROGRAM = [sys.executable, "-c", "from squeezefilm.cli import main; main()"]
 DESIGN = """
 name = "tiny"
 title = "Two gratings"
@@ -45,18 +43,9 @@ period_means = "period"
 """
 
 
-def run(*arguments: str | Path, cwd: Path, keys: str = "") -> subprocess.CompletedProcess[str]:
-    environment = {**os.environ, "NO_COLOR": "1", "COLUMNS": "100"}
-    return subprocess.run(
-        [*PROGRAM, "study", *map(str, arguments)],
-        capture_output=True,
-        text=True,
-        input=keys,
-        cwd=cwd,
-        env=environment,
-        timeout=300,
-        check=False,
-    )
+def run(*arguments: str | Path, cwd: Path, keys: str = "") -> Done:
+    """A verb of `study`; who types keys has a program of their own."""
+    return (run_program if keys else program.run)("study", *arguments, cwd=cwd, keys=keys)
 
 
 def test_a_plan_says_what_it_takes(tmp_path: Path) -> None:

@@ -44,7 +44,7 @@ from squeezefilm.plate.ring.section import (
     bonded_disc,
     full_drive,
 )
-from squeezefilm.plate.ring.stator import StatorAssumptions
+from squeezefilm.plate.ring.stator import StatorAssumptions, StatorFit, fit_stator
 from squeezefilm.plate.shear.modes import ShearMode, shear_modes
 from squeezefilm.plate.shear.section import (
     ShearLayout,
@@ -169,6 +169,7 @@ MADE: dict[Any, Callable[[], Any]] = {
         np.linspace(0, 0.02, 9), np.linspace(0, 0.01, 5), np.ones((9, 5)) + 0j, 30e3
     ),
     StatorAssumptions: StatorAssumptions,
+    StatorFit: lambda: fit_stator(degree=3),
     WorkingMode: lambda: working_mode(PLATE, "timoshenko"),
     Unit: lambda: Unit("m"),
     CompensatedDrive: lambda: compensated_drive(np.full(50, 1e-6), 1e-4, ENVELOPE),

@@ -48,6 +48,7 @@ NOT_CALLED = {
     plate.ring.body.RingWorkingMode plate.ring.response.RingResponse
     plate.shear.modes.ShearMode plate.solid.working.SolidMode plate.sound.ExposureGuidance
     plate.sound.SoundField plate.working_mode.ModeLine plate.working_mode.WorkingMode
+    plate.ring.stator.StatorFit
     chain.prediction.Prediction render.resonator.compensation.CompensatedDrive
     render.fidelity.report.FidelityReport render.motion.estimator.MotionCounts
     render.motion.estimator.MotionEstimate render.fidelity.rendered_stroke.RenderedStroke
@@ -74,7 +75,8 @@ NOT_CALLED = {
     plate.elements.block_ldl.partial_ldl plate.elements.box_model.BoxModel
     plate.elements.box_model.Electrode
     plate.elements.box_model.Foundation plate.elements.box_model.Medium
-    plate.elements.box_model.Medium.gradient_matrix
+    plate.elements.box_model.Medium.gradient_matrix plate.elements.box_model.kept_products
+    plate.elements.box_model.require_memory plate.solid.electrode_circuits.tied_electrodes
     plate.solid.coarse_modes.CoarseModes plate.solid.coarse_modes.chosen_modes
     plate.solid.coarse_modes.class_fits plate.solid.coarse_modes.coarse_modes
     plate.solid.coarse_modes.estimated_frequency plate.elements.cross_section.CrossSection

@@ -101,6 +101,7 @@ class FrictionTable:
     amplitude: MetreArray
     relative_friction: DimensionlessArray
 
+    @checked_numbers
     def __call__(self, amplitude: MetreArray) -> DimensionlessArray:
         """µ′/µ at amplitudes (m). Raises `OutOfRangeError` outside of the table."""
         values, highest = np.asarray(amplitude, dtype=float), float(self.amplitude[-1])

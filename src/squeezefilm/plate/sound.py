@@ -16,6 +16,7 @@ from typing import Literal
 import numpy as np
 
 from squeezefilm.errors import InputError
+from squeezefilm.hard_limits import SOUND_SPEED, require_within
 from squeezefilm.quantities import (
     ComplexArray,
     Dimensionless,
@@ -203,8 +204,10 @@ def sound_pressure(
     p = iωρ/2π ∫ v exp(−ikR)/R dS, lossless. Raises `InputError` for a point not above the plane.
     """
     require("density", density, Unit("kg/m3"), above=0)
-    require("sound_speed", sound_speed, Unit("m/s"), above=0)
+    require_within(SOUND_SPEED, sound_speed, "sound_speed")
     points = np.asarray(points, dtype=float)
+    if points.shape[-1:] != (3,):
+        raise InputError(f"points has the shape {points.shape}; its last axis must be x, y and z")
     require("height of the point", points[..., 2], Unit("m"), at_least=0)
     flat = points.reshape(-1, 3)
     omega = 2 * math.pi * surface.frequency
@@ -278,6 +281,7 @@ def sound_field(
     which errs on the loud side. Raises `InputError` for a distance within the surface's extent.
     """
     require("absorption_dB_per_m", absorption_dB_per_m, at_least=0)
+    require_within(SOUND_SPEED, sound_speed, "sound_speed")
     if not distances:
         raise InputError("distances is empty; name at least one", quantity="distances")
     require("distances", distances, Unit("m"), above=surface.extent)

@@ -123,13 +123,14 @@ def require_valid(
     warnings.warn(message, OutOfRangeWarning, stacklevel=3)
 
 
-_Kind = Literal["number", "array", "either", "complex", "count", "row", "container"]
+_Kind = Literal["number", "array", "either", "complex", "count", "row", "table", "container"]
 
 
 @dataclass(frozen=True, slots=True)
 class _Rule:
     """What an annotation says of an argument: one number, an array, either, a count, a row (a
-    tuple or list of numbers), or numbers in another container, which is left as it is."""
+    tuple or list of numbers), a table (a tuple of rows), or numbers in another container, which is
+    left as it is. `length` is of a row."""
 
     kind: _Kind
     unit: Unit
@@ -171,11 +172,15 @@ def _rule(hint: Any, above: float | None, at_least: float | None) -> _Rule | Non
         return None
     elif len(plain) == 1 and _is_row(plain[0]):
         kind = "row"
+    elif len(plain) == 1 and (rows := _rows_of(plain[0])) is not None:
+        kind = "table"
+        plain = [rows]
     elif unit is not None:
         kind = "container"
     else:
         return None
-    parts = typing.get_args(plain[0]) if kind == "row" and kinds == {tuple} else (Ellipsis,)
+    is_tuple = typing.get_origin(plain[0]) is tuple
+    parts = typing.get_args(plain[0]) if kind in ("row", "table") and is_tuple else (Ellipsis,)
     length = None if Ellipsis in parts else len(parts)
     return _Rule(kind, unit or _PURE, len(plain) < len(members), above, at_least, length)
 
@@ -186,6 +191,13 @@ def _is_row(hint: Any) -> bool:
     inner = {member for part in parts for member in _members(part)}
     rows = (tuple, list, collections.abc.Sequence)
     return typing.get_origin(hint) in rows and bool(inner) and inner <= {int, float}
+
+
+def _rows_of(hint: Any) -> Any:
+    """The annotation of the rows of a tuple of any number of rows; None for anything else."""
+    parts = typing.get_args(hint)
+    is_table = typing.get_origin(hint) is tuple and len(parts) == 2 and parts[1] is Ellipsis
+    return parts[0] if is_table and _is_row(parts[0]) else None
 
 
 def _checked_value(name: str, value: Any, rule: _Rule) -> Any:
@@ -207,7 +219,9 @@ def _checked_value(name: str, value: Any, rule: _Rule) -> Any:
         return value
     if rule.kind == "complex":
         return _complex_value(name, value)
-    axes = 1 if rule.kind == "row" else None
+    if rule.kind == "table" and not isinstance(value, np.ndarray) and value == ():
+        return value
+    axes = {"row": 1, "table": 2}.get(rule.kind)
     require(name, value, rule.unit, above=rule.above, at_least=rule.at_least, axes=axes)
     if hasattr(value, "magnitude"):
         return value
@@ -218,6 +232,13 @@ def _checked_value(name: str, value: Any, rule: _Rule) -> Any:
         raise InputError(
             f"{name} is one number; an array of at least one sample is wanted", quantity=name
         )
+    if rule.kind == "table":
+        if rule.length not in (None, array.shape[1]):
+            raise InputError(
+                f"{name} has rows of {array.shape[1]} numbers; give {rule.length} in each",
+                quantity=name,
+            )
+        return tuple(map(tuple, value.tolist())) if isinstance(value, np.ndarray) else value
     if rule.length not in (None, array.size):
         raise InputError(f"{name} holds {array.size} numbers; give {rule.length}", quantity=name)
     if rule.kind == "row":

@@ -51,6 +51,7 @@ class RingBody:
     quality_factor: Dimensionless | None
     fit: StatorFit | None = None
 
+    @checked_numbers
     def mode(self, label: tuple[int, int] | None = None) -> AnnularMode:
         """The mode B(circles, diameters), by default the working mode. Raises `InputError`."""
         circles, diameters = label or self.label

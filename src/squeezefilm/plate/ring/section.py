@@ -143,6 +143,7 @@ class AnnularSection:
         return self.wave_diameter or sum(self.surface_radii)
 
 
+@checked_numbers
 @dataclass(frozen=True)
 class SectorDrive:
     """Which sectors of the ceramic ring one channel drives: (start, end, polarity) in radians.

@@ -10,6 +10,7 @@ from typing import ClassVar
 import numpy as np
 
 from squeezefilm.errors import GeometryError, InputError
+from squeezefilm.hard_limits import FREQUENCY, require_within
 from squeezefilm.plate.elements.again import SolvedAgain
 from squeezefilm.plate.elements.blas_threads import one_blas_thread
 from squeezefilm.plate.elements.box_model import IntArray
@@ -305,7 +306,9 @@ def harmonic_response(
     # A load breaks the symmetry of the drive: then every class answers.
     classes = all_classes(plate) if loads else drive_classes(plate)
     band = float(f[0]), float(f[-1])
-    if steps is None:
+    if steps is not None:
+        require("steps", steps, at_least=1)
+    else:
         steps = int(np.clip(14 + 40 * (band[1] - band[0]) / band[1], 14, 60))
     pressures = [load.points() for load in loads]
     with one_blas_thread():
@@ -383,7 +386,11 @@ def direct_admittance(
     plate: RectangularPlate, frequency: Hertz, resolution: Resolution = NORMAL
 ) -> tuple[complex, list[ComplexArray]]:
     """Y (S) by a direct solve with complex constants at one frequency, and the solution of each
-    driven class: the check of the reduced response. Electrodes driven or shorted only."""
+    driven class: the check of the reduced response. Electrodes driven or shorted only.
+
+    Raises `InputError` for a frequency outside its hard limit.
+    """
+    require_within(FREQUENCY, frequency, "frequency")
     from squeezefilm.plate.elements.cross_section import CrossSection
     from squeezefilm.plate.elements.slab_factor import SlabFactor
     from squeezefilm.plate.elements.slabs import Slabs

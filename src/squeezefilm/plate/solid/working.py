@@ -43,7 +43,11 @@ _MODES = 0.5
 def response_frequencies(
     frequency: Hertz, quality_factor: Dimensionless, points: int = RESPONSE_POINTS
 ) -> FloatArray:
-    """Frequencies (Hz) around a resonance, ±8/Q, dense where the curve turns within f/Q."""
+    """Frequencies (Hz) around a resonance, ±8/Q, dense where the curve turns within f/Q.
+
+    Raises `InputError` for fewer than 2 points.
+    """
+    require("points", points, at_least=2)
     span = min(max(8 / quality_factor, 0.02), 0.5)
     near = np.sinh(np.linspace(-4, 4, points)) / np.sinh(4)
     return np.asarray(frequency * (1 + span * near))
@@ -125,6 +129,7 @@ class _Listener:
         return lambda text, fraction: tell(text, first + (last - first) * fraction)
 
 
+@checked_numbers
 def solid_mode(
     plate: RectangularPlate,
     label: tuple[int, int] | None = None,
@@ -141,7 +146,8 @@ def solid_mode(
     return _solid_mode(plate, label, _Listener(progress))
 
 
-@functools.lru_cache(maxsize=32)
+# A plate keeps 10 to 100 MB.
+@functools.lru_cache(maxsize=8)
 def _solid_mode(
     plate: RectangularPlate, label: tuple[int, int] | None, listener: _Listener
 ) -> SolidMode:
