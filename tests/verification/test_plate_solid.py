@@ -2,6 +2,7 @@
 what must hold for any plate: short ≤ open, reciprocity, energy balance, symmetry classes."""
 
 import dataclasses
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -28,6 +29,7 @@ from squeezefilm.plate.solid.response import (
 )
 from squeezefilm.plate.solid.solve import solve_modes
 from squeezefilm.plate.solid.symmetry import all_classes, drive_classes
+from squeezefilm.presets import path as preset_path
 
 # Raw on a graded grid of a prototype, about 0.03 % above the converged values (PLATES.md); the
 # modal force of the alternating drive in N/(V √kg), zero where symmetry makes it so.
@@ -280,7 +282,7 @@ def test_modes_are_tracked_through_a_change_of_thickness() -> None:
     assert after.frequencies[match] / before.frequencies[at] - 1 == pytest.approx(0.016, abs=0.003)
 
 
-def test_what_cannot_be_solved_is_refused() -> None:
+def test_what_cannot_be_solved_is_refused(tmp_path: Path) -> None:
     plate = small()
     with pytest.raises(InputError, match="no mode lies between"):
         solve_modes(plate, band=(1000.0, 1100.0))
@@ -311,3 +313,7 @@ def test_what_cannot_be_solved_is_refused() -> None:
             small(patches=(CeramicPatch(2e-3, 0, 8e-3, 14e-3, 0.5e-3, electrode="shorted"),)),
             np.array([1e4]),
         )
+    inert = preset_path("biet2008-plate").read_text().replace('"-247 pm/V"', '"0 pm/V"')
+    (tmp_path / "inert.toml").write_text(inert)
+    with pytest.raises(InputError, match="exert no force on the plate"):
+        harmonic_response(load_display(tmp_path / "inert.toml").actuator, np.array([3e4]))

@@ -317,6 +317,12 @@ def harmonic_response(
             if progress is not None:
                 progress(f"reducing class {number + 1} of {len(classes)}", number / len(classes))
             part = reduced_class(plate, parity, band, steps, pressures, resolution)
+            if not part.basis.shape[1]:
+                raise InputError(
+                    "the driven ceramics exert no force on the plate, so no resonance answers to "
+                    "the voltage; give them a charge_coefficient (d31) other than 0",
+                    quantity="charge_coefficient",
+                )
             parts.append(extrapolated_class(part, band) if extrapolate else part)
         omega = 2 * np.pi * f
         added = _load_stiffness(plate, parts, loads, omega) if loads else None
