@@ -10,7 +10,7 @@ MUTANTS_SEED ?= 1
 COUNT ?= 150
 MINUTES ?= 480
 
-.PHONY: help demo lab test check lint types layers gallery docs bench nightly campaign release clean
+.PHONY: help demo lab test slow check lint types layers gallery docs bench nightly campaign release clean
 
 help:  ## show this list
 	@grep -E '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 12
@@ -38,21 +38,25 @@ lab: $(VENV)/run.stamp  ## open the lab in the browser
 PYTEST := $(BIN)/python -m pytest
 define run_tests
 @failed=0; \
-$(PYTEST) -n $(WORKERS) --dist loadgroup -m "not realtime $(1)" || failed=1; \
-$(PYTEST) -m "realtime $(1)" || failed=1; \
+$(PYTEST) -n $(WORKERS) --dist loadgroup -m "not campaign and not realtime $(1)" || failed=1; \
+$(PYTEST) -m "not campaign and realtime $(1)" || failed=1; \
 exit $$failed
 endef
 
-test: $(VENV)/test.stamp  ## run every test (slow ones: make nightly)
-	$(call run_tests,and not nightly)
+test: $(VENV)/test.stamp  ## run the quick tests, in some five minutes
+	$(call run_tests,and not slow and not nightly)
+
+slow: $(VENV)/test.stamp  ## run the tests that take seconds each, as CI does after the quick ones
+	$(call run_tests,and slow and not nightly)
 
 nightly: export SQUEEZEFILM_EXPLORE = 1
 nightly: PYTEST += --hypothesis-seed=$(SEED)
-nightly: $(VENV)/test.stamp  ## run every test, the slow ones too, and explore properties (SEED=N)
+nightly: $(VENV)/test.stamp  ## run every test but a campaign's, and explore properties (SEED=N)
 	@echo "nightly: seed $(SEED)"
 	$(call run_tests,)
 
-campaign: $(VENV)/test.stamp  ## what takes hours, and goes on where it stopped: mutants of a seed
+campaign: $(VENV)/test.stamp  ## what takes hours and goes on where it stopped: statistics, mutants
+	@nice $(PYTEST) -n $(WORKERS) -p tests.campaign --answers campaigns/statistics.jsonl -m campaign
 	@nice $(BIN)/python tools/mutants.py --nightly --seed $(MUTANTS_SEED) --count $(COUNT) \
 	  --minutes $(MINUTES) --file campaigns/mutants-$(MUTANTS_SEED).jsonl
 

@@ -37,8 +37,10 @@ from mutations import Mutant, all_mutants, sample
 
 ROOT = Path(__file__).parents[1]
 EQUIVALENT = Path(__file__).with_name("equivalent_mutants.toml")
-# What `make test` runs, in its two parts, and what `make nightly` adds.
-QUICK, REALTIME, NIGHTLY = "not realtime and not nightly", "realtime and not nightly", "nightly"
+# What `make test` runs, in its two parts, and what `make slow` and `make nightly` add.
+QUICK = "not realtime and not slow and not nightly and not campaign"
+REALTIME = "realtime and not slow and not nightly"
+SLOW, NIGHTLY = "slow and not nightly", "nightly"
 _FAILED = re.compile(r"^(?:FAILED|ERROR) (\S+)", re.MULTILINE)
 
 
@@ -235,7 +237,7 @@ class Trial:
     def __init__(self, copy: Copy, report: Report, arguments: argparse.Namespace) -> None:
         self._copy, self._report, self._arguments = copy, report, arguments
         self._nearness = Nearness(copy.tree)
-        self._parts = [QUICK, REALTIME, *([NIGHTLY] if arguments.nightly else [])]
+        self._parts = [QUICK, REALTIME, *([SLOW, NIGHTLY] if arguments.nightly else [])]
 
     def _baseline(self, test: str, marks: str) -> Answer:
         """What a file says of the source as it is, asked once."""
