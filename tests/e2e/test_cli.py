@@ -61,6 +61,7 @@ def test_analyze_prints_one_object_with_units_in_its_keys() -> None:
     assert result["film_models"]["teeth"]["ratio"] > 0
 
 
+@pytest.mark.slow
 def test_the_papers_model_is_there_on_request_and_warns() -> None:
     result = json.loads(
         run("analyze", "biet2008-stator", "--json", "--samples", "0", "--model", "paper2008").stdout
@@ -70,6 +71,7 @@ def test_the_papers_model_is_there_on_request_and_warns() -> None:
     assert any("σ → ∞" in warning for warning in result["warnings"])
 
 
+@pytest.mark.slow
 def test_a_friction_has_its_interval_its_shares_and_what_to_measure_next(tmp_path: Path) -> None:
     done = run(
         "friction", "biet2008-stator", "--amplitude", "2 um", "--force", "0.5 N",
@@ -125,6 +127,7 @@ def test_a_film_is_solved_with_its_error() -> None:
     assert {"stiffness_relative", "damping_relative", "status", "model"} <= set(result)
 
 
+@pytest.mark.slow
 def test_a_plate_is_solved_with_its_error(tmp_path: Path) -> None:
     out, vtu = tmp_path / "out", tmp_path / "own.vtu"
     done = run("plate", "biet2008-plate", "--json", "--out", out, "--vtu", vtu)
@@ -186,6 +189,7 @@ def test_a_film_map_is_drawn(tmp_path: Path) -> None:
     assert len(numbers["over_pressure"]) == len(numbers["squeeze_number"])
 
 
+@pytest.mark.slow
 def test_analyze_writes_a_report_and_a_result(tmp_path: Path) -> None:
     done = run_program("analyze", "biet2008-plate", "--out", tmp_path / "out")
     assert done.returncode == 0, done.stderr
@@ -195,6 +199,7 @@ def test_analyze_writes_a_report_and_a_result(tmp_path: Path) -> None:
     assert sorted(p.name for p in (tmp_path / "out").iterdir()) == ["report.html", "result.json"]
 
 
+@pytest.mark.slow
 def test_working_point_options_change_the_result() -> None:
     half = json.loads(
         run("analyze", "biet2008-plate", "--json", "--samples", "0", "--voltage", "7.5 V").stdout
@@ -210,6 +215,7 @@ def test_working_point_options_change_the_result() -> None:
     assert bare["voltage_V"] is None
 
 
+@pytest.mark.slow
 def test_new_show_and_analyze_a_file_of_ones_own(tmp_path: Path) -> None:
     file = tmp_path / "mine.toml"
     assert run("new", file, "--from", "biet2008-plate").returncode == 0
@@ -324,6 +330,7 @@ def test_bad_files_leave_no_output(content: str, says: str, tmp_path: Path) -> N
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.slow
 def test_an_output_folder_that_is_a_file_is_refused_and_kept(tmp_path: Path) -> None:
     taken = tmp_path / "out"
     taken.write_text("mine")
@@ -333,6 +340,7 @@ def test_an_output_folder_that_is_a_file_is_refused_and_kept(tmp_path: Path) -> 
     assert taken.read_text() == "mine"
 
 
+@pytest.mark.slow
 def test_reproduce_gives_every_claim_a_verdict() -> None:
     done = run("reproduce", "--json")
     assert done.returncode == 0, done.stderr

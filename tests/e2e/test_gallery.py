@@ -7,10 +7,12 @@ import pytest
 from squeezefilm.report.textures import gallery as texture_gallery
 
 
+@pytest.mark.slow
 def test_the_gallery_is_current(capsys: pytest.CaptureFixture[str]) -> None:
     assert texture_gallery.main(["--check"]) == 0, capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_a_stale_picture_is_noticed(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -16,7 +16,7 @@ from .test_lab_pages import CONTRAST, SOLVED
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page, WebSocketRoute
 
-pytestmark = pytest.mark.chromium
+pytestmark = [pytest.mark.chromium, pytest.mark.slow]
 
 AREAS = ("design", "feel", "device", "study", "results", "help")
 SIZES = ((360, 740), (412, 915), (640, 450), (768, 1024), (960, 700), (1280, 900), (1920, 1080))

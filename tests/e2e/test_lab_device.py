@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from .conftest import RunningLab
 
-pytestmark = pytest.mark.chromium
+pytestmark = [pytest.mark.chromium, pytest.mark.slow]
 
 COMPILED = 180_000
 """ms in which a twin is there, its kernels compiled."""

@@ -15,7 +15,10 @@ import pytest
 from .conftest import RunningLab
 from .test_lab_lan import experimenters_page
 
-pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="signals to groups need POSIX")
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(sys.platform == "win32", reason="signals to groups need POSIX"),
+]
 
 
 def ended(process: subprocess.Popen[str]) -> str:

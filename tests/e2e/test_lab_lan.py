@@ -85,6 +85,7 @@ def experimenters_page(lab: RunningLab) -> ClientConnection:
     )
 
 
+@pytest.mark.slow
 def test_nobody_is_an_experimenter_there(start_lab: Start, tmp_path: Path) -> None:
     lab = start_lab(tmp_path, None, "--lan", ADDRESS)
     tablet = Tablet(lab)
@@ -114,6 +115,7 @@ def test_nobody_is_an_experimenter_there(start_lab: Start, tmp_path: Path) -> No
     plain.close()
 
 
+@pytest.mark.slow
 def test_a_paired_tablet_says_a_participants_messages_only(
     start_lab: Start, tmp_path: Path
 ) -> None:
@@ -166,6 +168,7 @@ def test_a_paired_tablet_says_a_participants_messages_only(
     asyncio.run(station())
 
 
+@pytest.mark.slow
 def test_the_certificate_is_the_one_that_was_printed(start_lab: Start, tmp_path: Path) -> None:
     lab = start_lab(tmp_path, None, "--lan", ADDRESS)
     tablet = Tablet(lab)

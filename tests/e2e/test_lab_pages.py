@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from .conftest import RunningLab
 
-pytestmark = pytest.mark.chromium
+pytestmark = [pytest.mark.chromium, pytest.mark.slow]
 
 SOLVED = 60_000
 CONTRAST = """() => {

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from .conftest import RunningLab, Start
 
-pytestmark = pytest.mark.chromium
+pytestmark = [pytest.mark.chromium, pytest.mark.slow]
 
 HOSTILE = '<img src=x onerror="document.title=1">'
 DONE = 15_000

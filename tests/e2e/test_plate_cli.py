@@ -53,6 +53,7 @@ def test_a_stator_is_solved_and_says_what_was_fitted(tmp_path: Path) -> None:
     assert frequencies == sorted(frequencies)
 
 
+@pytest.mark.slow
 def test_a_disc_is_solved() -> None:
     result = solved("winfield2007-tpad")
     assert set(result) >= SHARED_KEYS

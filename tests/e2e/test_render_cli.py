@@ -29,6 +29,7 @@ def rendered(*arguments: str) -> dict[str, Any]:
     return dict(json.loads(done.stdout))
 
 
+@pytest.mark.slow
 def test_everything_is_written_and_belongs_together(tmp_path: Path) -> None:
     out = tmp_path / "out"
     done = run("render", GRATING, *STATOR, "--out", out, "--drive", "--hjif")
@@ -127,6 +128,7 @@ def loop_over_the_map(path: Path) -> Path:
     return path
 
 
+@pytest.mark.slow
 def test_a_map_under_a_free_stroke(tmp_path: Path) -> None:
     stroke = loop_over_the_map(tmp_path / "s.csv")
     done = run(

@@ -7,6 +7,7 @@ import json
 from pathlib import Path
 
 import numpy as np
+import pytest
 from tests.e2e.program import run
 
 from squeezefilm import presets
@@ -51,6 +52,7 @@ def files(folder: Path) -> tuple[Path, Path]:
     return design, observer
 
 
+@pytest.mark.slow
 def test_tables_are_written_labelled_and_come_back_from_the_seed(tmp_path: Path) -> None:
     design, observer = files(tmp_path)
     arguments = ("study", "simulate", design, "--observer", observer, "--participants", "5")

@@ -61,6 +61,7 @@ def test_a_plan_says_what_it_takes(tmp_path: Path) -> None:
     assert "20 mm" in shown.stdout
 
 
+@pytest.mark.slow
 def test_a_study_is_run_interrupted_resumed_exported_merged_and_forgotten(tmp_path: Path) -> None:
     (tmp_path / "tiny.toml").write_text(DESIGN, encoding="utf-8")
     start = ("run", "tiny.toml", "--store", "a.sqlite", "--consent", "--drive", "none")

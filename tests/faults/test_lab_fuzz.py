@@ -60,12 +60,14 @@ def _stormed(served: Served, count: int, seed: int, tablets: bool = False) -> No
     assert b" 303 " in served.comes_in()
 
 
+@pytest.mark.slow
 def test_fuzzed_connections_neither_hang_nor_fill_the_memory(
     serve: Callable[..., Served],
 ) -> None:
     _stormed(serve(), 600, 1)
 
 
+@pytest.mark.slow
 def test_fuzzed_connections_by_tls(serve: Callable[..., Served]) -> None:
     _stormed(serve(lan=ADDRESS), 200, 1, tablets=True)
 
@@ -82,6 +84,7 @@ def _few_descriptors() -> None:
     resource.setrlimit(resource.RLIMIT_NOFILE, (256, 256))
 
 
+@pytest.mark.slow
 def test_silent_connections_from_the_network_keep_nobody_out(
     serve: Callable[..., Served],
 ) -> None:

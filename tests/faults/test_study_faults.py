@@ -114,6 +114,7 @@ def _survives(path: Path, kills: int, repetitions: int) -> None:
     )
 
 
+@pytest.mark.slow
 def test_kill_9_loses_no_acknowledged_trial(tmp_path: Path) -> None:
     _survives(tmp_path / "study.sqlite", kills=12, repetitions=60)
 

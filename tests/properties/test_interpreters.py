@@ -145,6 +145,7 @@ def test_golden_programs_mean_the_same_on_a_page(node: str) -> None:
         assert answer["flags"] == case["flags"]
 
 
+@pytest.mark.slow
 def test_the_page_says_what_the_compiled_interpreter_says(node: str) -> None:
     cases: list[tuple[Composable, Program, np.ndarray]] = []
 

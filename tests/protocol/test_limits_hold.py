@@ -136,6 +136,7 @@ def run(examples: int, steps: int) -> None:
     )
 
 
+@pytest.mark.slow
 def test_the_limits_hold_over_adversarial_commands() -> None:
     run(250, 60)
     assert TOTAL["steps"] >= 10_000

@@ -1,7 +1,7 @@
 """Known thresholds, widths and lapse rates are recovered, and intervals hold them as often as said.
 
-The nightly tests are those of the requirement: at least 2 000 runs, 93.5 to 96.5 %. They print
-the coverage and the median length of every interval (`pytest -rP`).
+The tests of the campaign are those of the requirement: at least 2 000 runs, 93.5 to 96.5 %. They
+print the coverage and the median length of every interval, which the campaign keeps.
 """
 
 from __future__ import annotations
@@ -26,6 +26,7 @@ def test_posterior_intervals_hold_the_truth(name: str) -> None:
         assert share == pytest.approx(0.95, abs=4 * math.sqrt(0.95 * 0.05 / runs)), parameter
 
 
+@pytest.mark.slow
 def test_bootstrap_intervals_hold_the_truth() -> None:
     runs = 60
     found = coverage(RECOVERIES["yes/no, 160 constant stimuli"], runs, replicates=99)
@@ -56,13 +57,14 @@ def _drawn_from_the_prior(runs: int, trials: int) -> dict[str, float]:
     return {name: count / runs for name, count in held.items()}
 
 
+@pytest.mark.slow
 def test_posteriors_are_calibrated_after_an_adaptive_run() -> None:
     runs = 100
     for name, share in _drawn_from_the_prior(runs, trials=40).items():
         assert share == pytest.approx(0.95, abs=4 * math.sqrt(0.95 * 0.05 / runs)), name
 
 
-@pytest.mark.nightly
+@pytest.mark.campaign
 def test_posteriors_of_2000_adaptive_runs_are_calibrated() -> None:
     shares = _drawn_from_the_prior(2000, trials=120)
     print(shares)
@@ -84,7 +86,7 @@ MISSES = {
 }
 
 
-@pytest.mark.nightly
+@pytest.mark.campaign
 @pytest.mark.parametrize("name", sorted(RECOVERIES))
 def test_intervals_of_2000_runs_cover_as_often_as_they_say(name: str) -> None:
     found = coverage(RECOVERIES[name], 2000, replicates=0 if "staircases" in name else 199)

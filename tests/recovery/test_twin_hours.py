@@ -75,6 +75,7 @@ def assert_same(one: np.ndarray, other: np.ndarray) -> None:
     np.testing.assert_allclose(one, other, rtol=1e-9, atol=1e-12)
 
 
+@pytest.mark.slow
 def test_a_session_across_the_wrap_of_the_clock_is_like_any_other() -> None:
     device = twin(1e-3)
     sessions = Sessions(device)

@@ -2,6 +2,7 @@
 
 import math
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -11,6 +12,7 @@ from squeezefilm.quantities import (
     CLOSED_FORMS,
     Metre,
     Unit,
+    checked_numbers,
     closed_form,
     format_quantity,
     parse_quantity,
@@ -130,3 +132,30 @@ def test_closed_form_checks_its_arguments() -> None:
 def test_texts_that_no_number_can_hold_are_refused_at_once(text: str) -> None:
     with pytest.raises(QuantityError):
         parse_quantity(text, Unit("N"))
+
+
+@checked_numbers
+def _angles(rows: tuple[tuple[float, float], ...] = ()) -> tuple[tuple[float, float], ...]:
+    return rows
+
+
+def test_rows_of_numbers_are_taken_and_made_tuples() -> None:
+    rows = ((0.0, 1.0), (1.0, 2.0))
+    assert _angles() == ()
+    assert _angles(rows) == _angles(np.array(rows)) == rows
+
+
+@pytest.mark.parametrize(
+    ("rows", "says"),
+    [
+        (((0.0, 1.0), (1.0,)), "rows of 1, 2 numbers"),
+        (((0.0, 1.0, 2.0),), "rows of 3 numbers; give 2"),
+        ((0.0, 1.0), "an array of 2 axes"),
+        (1.0, "an array of 2 axes"),
+        ("ab", "real number"),
+        (((0.0, math.nan),), "finite"),
+    ],
+)
+def test_what_is_no_rows_of_numbers_is_refused(rows: object, says: str) -> None:
+    with pytest.raises(InputError, match=says):
+        _angles(rows)  # type: ignore[arg-type]

@@ -117,7 +117,7 @@ def test_intervals_of_d_prime_cover() -> None:
     assert 0.92 < _coverage(1.5, 60, 300) < 0.975
 
 
-@pytest.mark.nightly
+@pytest.mark.campaign
 @pytest.mark.parametrize(("spacing", "trials"), [(1.0, 24), (1.0, 60), (1.5, 24), (1.5, 60),
                                                  (2.0, 60), (2.0, 120)])  # fmt: skip
 def test_intervals_of_d_prime_cover_nightly(spacing: float, trials: int) -> None:
@@ -125,7 +125,7 @@ def test_intervals_of_d_prime_cover_nightly(spacing: float, trials: int) -> None
     assert 0.935 < _coverage(spacing, trials, 2000) < 0.965
 
 
-@pytest.mark.nightly
+@pytest.mark.campaign
 @pytest.mark.parametrize(("people", "spacing"), [(12, 1.0), (24, 1.5)])
 def test_participant_intervals_of_d_prime_cover(people: int, spacing: float) -> None:
     """People alike with 25 trials each: 93 to 97 % of the bootstrap intervals hold."""

@@ -177,14 +177,14 @@ def test_bias_of_the_recommended_estimator_is_small() -> None:
     assert max(_bias(1000).values()) <= 0.05
 
 
-@pytest.mark.nightly
+@pytest.mark.campaign
 def test_bias_of_the_recommended_estimator_is_small_beyond_doubt() -> None:
     found = estimator_bias(None, 60, 40_000, 3, (RECOMMENDED,))
     assert {f.matrix: abs(f.bias) + 2 * f.bias_error for f in found if
             abs(f.bias) + 2 * f.bias_error > 0.05} == {}  # fmt: skip
 
 
-@pytest.mark.nightly
+@pytest.mark.campaign
 def test_where_estimators_fail_is_as_said() -> None:
     """The verdicts in `ESTIMATORS`, measured: least and greatest bias on the five matrices, and on
     even errors of 60 to 95 %."""
@@ -204,7 +204,7 @@ def test_where_estimators_fail_is_as_said() -> None:
         assert worst == pytest.approx(hardest, abs=0.012), key
 
 
-@pytest.mark.nightly
+@pytest.mark.campaign
 @pytest.mark.parametrize("spacing", [1.0, 2.0, 3.0])
 def test_participant_intervals_cover(spacing: float) -> None:
     """24 people with 20 trials each, who differ: between 92 and 97 % of 1000 intervals hold."""

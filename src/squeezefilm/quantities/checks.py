@@ -219,8 +219,16 @@ def _checked_value(name: str, value: Any, rule: _Rule) -> Any:
         return value
     if rule.kind == "complex":
         return _complex_value(name, value)
-    if rule.kind == "table" and not isinstance(value, np.ndarray) and value == ():
-        return value
+    if rule.kind == "table" and isinstance(value, tuple | list):
+        if not value:
+            return value
+        lengths = sorted({len(row) for row in value if isinstance(row, tuple | list)})
+        if len(lengths) > 1:
+            raise InputError(
+                f"{name} has rows of {', '.join(map(str, lengths))} numbers; give rows of one "
+                "length",
+                quantity=name,
+            )
     axes = {"row": 1, "table": 2}.get(rule.kind)
     require(name, value, rule.unit, above=rule.above, at_least=rule.at_least, axes=axes)
     if hasattr(value, "magnitude"):

@@ -9,14 +9,16 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
 import tests.campaign
 
-TESTS = '''
+TESTS = """
 def test_a(): print("0.95 of 2000")
 def test_b(): assert False
-'''
+"""
 
 
+@pytest.mark.slow
 def test_an_answer_is_kept_and_asked_for_again_only_of_another_source(tmp_path: Path) -> None:
     folder = tmp_path / "tests"
     folder.mkdir()
