@@ -109,6 +109,7 @@ def test_an_example_has_one_import_of_ours(name: str) -> None:
     assert ours == ["import squeezefilm as sf"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", sorted(CHECKS))
 def test_example(name: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert len((EXAMPLES / f"{name}.py").read_text().splitlines()) <= 60

@@ -229,6 +229,7 @@ def test_a_certificate_that_does_not_fit_is_made_anew(tmp_path: Path) -> None:
     assert target.read_bytes() == kept
 
 
+@pytest.mark.slow
 def test_a_missing_package_is_said(tmp_path: Path) -> None:
     program = (
         "import sys; sys.modules['cryptography'] = None; from squeezefilm.cli import main; main()"

@@ -108,6 +108,7 @@ def without_posix(folder: Path, *programs: str) -> None:
     assert done.returncode == 0, done.stdout + done.stderr
 
 
+@pytest.mark.slow
 def test_every_module_is_imported_and_the_lab_runs_without_posix(tmp_path: Path) -> None:
     without_posix(tmp_path, IMPORTS, LAB)
 

@@ -68,6 +68,7 @@ def played(
     return outcome, judge_session(setup, read_trace(outcome.trace), folder / "truth.csv")
 
 
+@pytest.mark.slow
 def test_a_grating_is_felt_where_it_is(
     display: Display, point: WorkingPoint, tmp_path: Path
 ) -> None:

@@ -55,6 +55,7 @@ def _every(folder: Path, step: int, *jobs: str) -> None:
         assert tried[job, "sync"]["refused"] > 0
 
 
+@pytest.mark.slow
 def test_a_disk_that_fails_at_some_of_its_calls(tmp_path: Path) -> None:
     _every(tmp_path, 41, "Answering", "Sitting", "Recording")
 

@@ -17,6 +17,7 @@ from squeezefilm.study.psychometric.function import PsychometricFunction
 from .psychometric_designs import RECOVERIES, WIDE_PRIOR, bayesian, coverage
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [key for key in RECOVERIES if "constant" in key])
 def test_posterior_intervals_hold_the_truth(name: str) -> None:
     runs = 200

@@ -23,6 +23,7 @@ def plate() -> Analysis:
     return analysis
 
 
+@pytest.mark.slow
 def test_the_result_is_strict_json_with_units_in_its_keys(plate: Analysis) -> None:
     text = json.dumps(plate.summary(), allow_nan=False)
     result = json.loads(text)
@@ -46,6 +47,7 @@ def test_response_peaks_at_the_resonance_with_the_stated_amplitude(plate: Analys
     assert np.ptp(half_power) == pytest.approx(p.mode.resonance_frequency / 60, rel=0.05)
 
 
+@pytest.mark.slow
 def test_the_pressure_s_mean_is_the_predicted_one(plate: Analysis) -> None:
     assert plate.film_models is not None
     for profile in plate.pressure:

@@ -58,6 +58,7 @@ def test_what_is_given_stands_before_what_is_assumed(stator: Display) -> None:
     assert "drive.voltage" not in {p.path for p in uncertain_parameters(known, driven=False)}
 
 
+@pytest.mark.slow
 def test_a_range_that_is_known_better_narrows_the_interval(stator: Display) -> None:
     p = predict(stator, vibration_amplitude=2e-6)
     wide = uncertain_friction(stator, p, samples=32)
@@ -76,6 +77,7 @@ def test_a_range_that_is_known_better_narrows_the_interval(stator: Display) -> N
     assert again.interval == wide.interval
 
 
+@pytest.mark.slow
 def test_a_linear_model_has_the_indices_of_its_variances(
     stator: Display, monkeypatch: pytest.MonkeyPatch
 ) -> None:

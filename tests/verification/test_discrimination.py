@@ -96,6 +96,7 @@ def test_counts_of_all_or_none_have_a_finite_d_prime() -> None:
         yes_no_sensitivity(1.0, 0.2)
 
 
+@pytest.mark.slow
 def test_intervals_of_d_prime_cover() -> None:
     random, held = np.random.default_rng(2), 0
     hit, false = float(ndtr(0.9)), float(ndtr(-0.5))

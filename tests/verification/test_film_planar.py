@@ -234,6 +234,7 @@ def test_grooves_sealed_at_their_ends_are_the_line_s():
     assert state.over_pressure == pytest.approx(7.246e-3, rel=5e-3)
 
 
+@pytest.mark.slow
 def test_ridges_across_a_finger_pad():
     pad = PlanarGap(RIDGED.excursion_ratio, 0.0, RIDGED.ridge_height, 2 * np.pi * 5.0 / 0.35)
     coarse = solve_planar("ellipse", pad, 20.418 / 4, aspect_ratio=1.4, tolerance=2e-2)

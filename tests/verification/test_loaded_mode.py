@@ -40,6 +40,7 @@ def test_without_a_load_the_mode_is_what_it_was() -> None:
         loaded_mode(30e3, 60, 0.01, -1j, 1e-4, 0.7)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("stiffness", "share"), [(2e10j, 1 / 6), (6e10 + 0j, 0.4), (-3e10 + 1e10j, 0.4)]
 )

@@ -92,6 +92,7 @@ def test_half_the_bandwidth_takes_from_the_finest_grating() -> None:
     assert right(answers(base()))[0] - right(answers(tables))[0] > FOUR_SIGMA * math.sqrt(2)
 
 
+@pytest.mark.slow
 def test_the_standing_wave_moves_the_rows_of_8_and_10_mm() -> None:
     still = chain_tables(design_on(PLATE), one_finger(), Apparatus(wave="ignored"))
     felt, ignored = base(PLATE), still
@@ -114,6 +115,7 @@ def test_a_grating_along_the_stroke_is_not_felt() -> None:
     assert answers(along).proportion_correct() == pytest.approx(0.2, abs=FOUR_SIGMA / math.sqrt(5))
 
 
+@pytest.mark.slow
 def test_a_finger_across_the_stroke_meets_more_of_the_wave() -> None:
     across = chain_tables(design_on(PLATE), one_finger(finger_orientation=math.pi / 2))
     assert across.fingers[0].contact_length == pytest.approx(0.8 * base().fingers[0].contact_length)

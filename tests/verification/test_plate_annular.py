@@ -184,6 +184,7 @@ def test_p_convergence_of_a_plain_ring_is_exponential() -> None:
     assert errors[4] < 5e-6
 
 
+@pytest.mark.slow
 def test_error_estimate_is_honest(stator: AnnularSection) -> None:
     best = annular_modes(stator, 9, count=4, degree=9)
     for degree in (4, 5, 6):
@@ -312,6 +313,7 @@ def test_bad_rings_are_refused() -> None:
 # --- the two devices ------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_stator_fitted_to_what_the_paper_gives() -> None:
     fit = fit_stator(degree=4)
     assert fit.mode.label == "B(0,9)"
@@ -569,6 +571,7 @@ def _filled(section: AnnularSection) -> Callable[[float, float, float], RingSoli
     return solid_at
 
 
+@pytest.mark.slow
 def test_ring_with_ceramic_against_scikit_fem() -> None:
     _skfem()
     section = _with_ceramic(0.0)

@@ -125,6 +125,7 @@ def test_ceramics_of_two_thicknesses_are_those_of_scikit_fem() -> None:
     assert frequencies(model, 20e3, 3)[:2] == pytest.approx(wanted, rel=1e-8)
 
 
+@pytest.mark.slow
 def test_thicknesses_that_hardly_differ_solve_like_equal_ones() -> None:
     plate = small()
     other = dataclasses.replace(plate.patches[1], thickness=0.5e-3 + 20e-6)

@@ -66,6 +66,7 @@ def judged(seed: int, levels: int = 2) -> tuple[tuple[int, float, float, float],
     return tuple(rows)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", QUICK)
 def test_estimates_of_quick_random_plates_hold(seed: int) -> None:
     for _, frequency, error, refined in judged(seed):

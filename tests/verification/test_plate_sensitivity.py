@@ -60,6 +60,7 @@ def frequencies() -> SensitivityTable:
     return plate_sensitivity(_paper(), amplitude=False)
 
 
+@pytest.mark.slow
 def test_frequencies_shift_as_the_specification_lists(frequencies: SensitivityTable) -> None:
     found = {(row.name, row.change): 100 * row.frequency_shift for row in frequencies.rows}
     for key, (listed, tolerance) in _PER_CENT.items():
@@ -68,6 +69,7 @@ def test_frequencies_shift_as_the_specification_lists(frequencies: SensitivityTa
     assert found["losses", "in the ceramic alone"] == pytest.approx(0.0, abs=1e-9)
 
 
+@pytest.mark.slow
 def test_open_ceramics_stiffen_like_open_terminals(frequencies: SensitivityTable) -> None:
     """Ceramics that are each open are held by at least as many conditions as those whose common
     terminals are open, so the mode lies at least as high. (The specification lists +4.1 %.)"""
@@ -77,6 +79,7 @@ def test_open_ceramics_stiffen_like_open_terminals(frequencies: SensitivityTable
     assert row.amplitude_per_volt is None
 
 
+@pytest.mark.slow
 def test_amplitude_per_volt_follows_theory() -> None:
     """At resonance a mode moves by Q F/k: in proportion to Q, whatever its mass; and the quality
     factor is the ceramic's over its share of the elastic energy where it alone loses."""
@@ -120,6 +123,7 @@ def test_a_ceramic_with_all_constants_gets_softer_too() -> None:
     assert "ceramic data set" not in names
 
 
+@pytest.mark.slow
 def test_modes_rise_with_youngs_modulus_and_keep_their_labels() -> None:
     """Rayleigh: a stiffer material lowers no frequency."""
     plate = _small()

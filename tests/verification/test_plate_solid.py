@@ -253,6 +253,7 @@ def test_loss_in_the_ceramic_alone_raises_the_quality_factor() -> None:
     assert np.sum(modes.energy_shares[0]) == pytest.approx(1)
 
 
+@pytest.mark.slow
 def test_foam_along_the_rim_damps_and_stiffens_a_glass_plate() -> None:
     plate = RectangularPlate(
         60e-3, 30e-3, 0.9e-3, 6, 100, GLASS, CERAMIC,

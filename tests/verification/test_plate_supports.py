@@ -56,6 +56,7 @@ def _first_order(modes: PlateModes, supports: tuple[FoamSupport, ...]) -> float:
     return rise
 
 
+@pytest.mark.slow
 def test_foam_at_the_rim_shifts_and_damps_as_perturbation_theory_says() -> None:
     # Foam of nothing: the same mesh, a bare plate.
     bare = solve_modes(glass_plate(supports=rim(1.0)))
@@ -79,6 +80,7 @@ def test_foam_at_the_rim_shifts_and_damps_as_perturbation_theory_says() -> None:
     assert gaps[0] / gaps[1] == pytest.approx(2, rel=0.05)
 
 
+@pytest.mark.slow
 def test_q_from_energies_is_the_width_of_the_driven_resonance() -> None:
     plate = glass_plate(supports=rim(2e6))
     modes = solve_modes(plate)
@@ -92,6 +94,7 @@ def test_q_from_energies_is_the_width_of_the_driven_resonance() -> None:
     assert response.frequencies[peak] == pytest.approx(f, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_a_turned_plate_is_the_same_plate() -> None:
     plate = glass_plate(supports=rim(2e6)[:1])
     other = turned(plate)
@@ -125,6 +128,7 @@ def test_straight_lines_are_one_product() -> None:
     assert straightness(straight + 0.5 * np.cos(4 * x) * np.cos(7 * y)) < 0.95
 
 
+@pytest.mark.slow
 def test_modes_that_change_places_between_meshes_keep_their_energies() -> None:
     """A plate of the size of basdogan2020-glass has modes a percent apart: what is taken from the
     coarse mesh (energy shares, Q) must be the same mode's as the frequency from the fine one."""

@@ -76,6 +76,7 @@ def test_volumes_per_material_add_up_to_the_plate(read_back: meshio.Mesh) -> Non
     assert len(volumes) == 2
 
 
+@pytest.mark.slow
 def test_surface_moves_as_the_solver_says(read_back: meshio.Mesh, paper: Solved) -> None:
     modes, response = paper
     top = np.isclose(read_back.points[:, 2], 2e-3)
@@ -155,6 +156,7 @@ def test_open_electrode_carries_one_potential_and_no_charge() -> None:
         assert abs(face[0]) > 0.01 * np.abs(potential).max()
 
 
+@pytest.mark.slow
 def test_glue_and_a_plate_longer_across(tmp_path: Path) -> None:
     small = _small(glue=GlueLayer(50e-6, 3e9))
     turned = dataclasses.replace(
@@ -182,6 +184,7 @@ def test_glue_and_a_plate_longer_across(tmp_path: Path) -> None:
     assert shapes[0][2] != pytest.approx(shapes[1][2], rel=0.1)
 
 
+@pytest.mark.slow
 def test_several_modes_each_in_its_file(tmp_path: Path) -> None:
     modes = solve_modes(_small(), band=(3e3, 30e3))
     assert modes.count >= 3

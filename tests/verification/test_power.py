@@ -19,6 +19,7 @@ def _binomial(counts: np.ndarray) -> float:
     return float(stats.binom.sf(right - 1, trials, 0.2))
 
 
+@pytest.mark.slow
 def test_power_of_the_binomial_test_is_exact() -> None:
     """With people all alike the right answers are binomial, and power is a sum."""
     people = DirichletParticipants(even_errors(0.35), 1, 1e9)

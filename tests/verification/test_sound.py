@@ -86,6 +86,7 @@ def test_simple_source() -> None:
     assert p == pytest.approx(1j * RHO * F * volume / 0.5 * np.exp(-1j * K * 0.5), rel=1e-3)
 
 
+@pytest.mark.slow
 def test_a_supersonic_wave_on_a_plate_radiates_at_its_coincidence_angle() -> None:
     """A standing wave cos k_B x beams to sin θ = k_B/k; a subsonic one hardly radiates."""
     x, y = np.linspace(-0.11, 0.11, 101), np.linspace(-0.03, 0.03, 25)
@@ -114,6 +115,7 @@ def test_rectangle_and_ring_agree_on_a_disc_mode() -> None:
     )
 
 
+@pytest.mark.slow
 def test_the_papers_plate_is_loud() -> None:
     """83 × 49 mm, 2 µm, 33 kHz in (8,0): 127 dB at 0.5 m in a lobe near 30°."""
     x, y = np.linspace(0, 83e-3, 85), np.linspace(0, 49e-3, 51)

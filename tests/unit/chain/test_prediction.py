@@ -161,6 +161,7 @@ def test_contradicting_data_warn_or_are_refused(plate: Display) -> None:
         predict(plate, strict=True)
 
 
+@pytest.mark.slow
 def test_a_beam_of_a_plate_with_few_ceramics_warns_or_is_refused(plate: Display) -> None:
     ceramic = dataclasses.replace(plate.actuator.ceramic, stress_coefficient=None)  # type: ignore[union-attr]
     few = dataclasses.replace(
@@ -226,6 +227,7 @@ def test_the_tabulated_law_is_within_its_stated_error(
         table(np.array([6.1e-6]))
 
 
+@pytest.mark.slow
 def test_amplitude_for_a_friction_gives_that_friction(stator: Display) -> None:
     for model in ("paper2008", "film-sealed", "film-smooth"):
         law = _law(stator, model=model)

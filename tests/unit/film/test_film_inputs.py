@@ -163,6 +163,7 @@ def test_load_balance_refuses_what_the_film_cannot_carry():
         mean_gap_for_load(100.0, 1e-6, 40e3, 10e-3, shape="square")
 
 
+@pytest.mark.slow
 def test_load_balance_of_a_narrow_ridge():
     # At σ far below 1 the over-pressure is of second order and tiny over most of the search.
     balance = mean_gap_for_load(1e3, 2e-6, 40e3, 250e-6, polytropic_exponent=1.2)

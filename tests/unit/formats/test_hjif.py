@@ -186,6 +186,7 @@ def test_files_that_are_no_json(tmp_path: Path) -> None:
         read_hjif(tmp_path / "b.hjif")
 
 
+@pytest.mark.slow
 def test_too_rough_a_line_is_refused() -> None:
     with pytest.raises(InputError, match="keyframes"):
         hjif_of(friction(Noise(5e-6, 1)), 0.0, 0.5, device=DEVICE, tolerance=1e-6)

@@ -25,6 +25,7 @@ def _words(figure: object) -> str:
     return str(figure.get_suptitle()).replace("\u00a0", " ").replace("\n", " ")  # type: ignore[attr-defined]
 
 
+@pytest.mark.slow
 def test_the_surface_says_its_exaggeration_and_draws_the_nodal_lines(
     result: PlateAnalysis,
 ) -> None:
@@ -58,6 +59,7 @@ def test_the_line_scan_has_the_modes_nodes(result: PlateAnalysis) -> None:
     assert nodes == pytest.approx(beam, abs=0.4)
 
 
+@pytest.mark.slow
 def test_each_figure_has_its_message(result: PlateAnalysis) -> None:
     for draw, words in (
         (plan_view, "from above"),

@@ -106,6 +106,7 @@ def test_response_circuit_and_mode_agree(disc: DiscPlate) -> None:
     assert response.input_power(1.0) == pytest.approx(lost, rel=0.03)
 
 
+@pytest.mark.slow
 def test_the_table_of_modes_misses_none(disc: DiscPlate) -> None:
     wide = dataclasses.replace(disc, nodal_circles=0, nodal_diameters=3, sectors=6)
     body = ring_body(wide)

@@ -91,6 +91,7 @@ def drawn_texts(figure: Any) -> list[tuple[str, Any]]:
         ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "key"), CASES)
 def test_texts_are_inside_the_figure_and_apart_and_axes_labelled(
     name: str, key: str, analysis_of: Callable[[str], Analysis]
@@ -144,6 +145,7 @@ def test_messages_tell_the_numbers_of_the_analysis(plate_analysis: Analysis) -> 
     assert "0.67 mm" in titles["fidelity"]
 
 
+@pytest.mark.slow
 def test_the_response_says_when_the_drive_is_beside_it_or_in_vain(
     analysis_of: Callable[[str], Analysis],
 ) -> None:
@@ -156,6 +158,7 @@ def test_the_response_says_when_the_drive_is_beside_it_or_in_vain(
     assert "do not drive the mode" in draw(analysis_of("not-driven")).get_suptitle()
 
 
+@pytest.mark.slow
 def test_svg_is_the_same_every_time(plate_analysis: Analysis) -> None:
     first, second = (
         style.svg(FIGURES[2].draw(plate_analysis), "response", "label") for _ in range(2)
@@ -212,6 +215,7 @@ def test_drawing_leaves_the_users_matplotlib_alone(plate_analysis: Analysis) -> 
     assert dict(matplotlib.rcParams) == before
 
 
+@pytest.mark.slow
 def test_importing_the_report_room_loads_no_matplotlib() -> None:
     code = (
         "import sys, squeezefilm.cli, squeezefilm.report.display.page; "

@@ -96,6 +96,7 @@ def test_page_refers_to_nothing_outside(written: tuple[Path, Analysis]) -> None:
     assert policy[0]["content"] == "default-src 'none'; style-src 'unsafe-inline'; img-src data:"
 
 
+@pytest.mark.slow
 def test_ids_are_unique_and_references_resolve(written: tuple[Path, Analysis]) -> None:
     text = written[0].read_text(encoding="utf-8")
     ids = re.findall(r'\bid="([^"]*)"', text)
@@ -150,6 +151,7 @@ def test_json_is_strict_and_carries_curves_and_description(
     assert data["display_description"]["actuator"]["length_m"] == 0.083
 
 
+@pytest.mark.slow
 def test_names_are_text_and_nothing_else(hostile_analysis: Analysis, folder: Path) -> None:
     path = write_analysis(hostile_analysis, folder)
     text = path.read_text(encoding="utf-8")
@@ -160,6 +162,7 @@ def test_names_are_text_and_nothing_else(hostile_analysis: Analysis, folder: Pat
     assert "\u202e" not in text
 
 
+@pytest.mark.slow
 def test_a_display_that_renders_nothing_still_has_a_report(analysis_of: Any, folder: Path) -> None:
     path = write_analysis(analysis_of("no-voltage"), folder)
     assert "No texture can be rendered here" in path.read_text(encoding="utf-8")
@@ -168,6 +171,7 @@ def test_a_display_that_renders_nothing_still_has_a_report(analysis_of: Any, fol
     assert data["curves"]["fidelity"] is None
 
 
+@pytest.mark.slow
 def test_page_is_the_same_for_the_same_analysis(plate_analysis: Analysis) -> None:
     summary = plate_analysis.summary()
     assert report_page(plate_analysis, summary) == report_page(plate_analysis, summary)

@@ -108,6 +108,7 @@ def test_too_few_data_make_a_message() -> None:
     assert study_figures.sensitivity(found).get_suptitle() == "No d′"
 
 
+@pytest.mark.slow
 def test_the_page_is_whole_and_escaped(tmp_path: Path) -> None:
     hostile = study(HOSTILE)
     page = write_study(hostile, tmp_path / "deep" / "study").read_text(encoding="utf-8")
