@@ -112,6 +112,7 @@ def test_bad_descriptions_are_one_message_and_exit_code_two(
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [

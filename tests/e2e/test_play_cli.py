@@ -24,6 +24,7 @@ def run(*words: str, code: int = 0) -> subprocess.CompletedProcess[str]:
     return done
 
 
+@pytest.mark.slow
 @pytest.mark.realtime
 def test_a_texture_is_played_on_a_twin_and_judged(tmp_path: Path) -> None:
     for attempt in range(3):

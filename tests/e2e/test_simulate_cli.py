@@ -94,6 +94,7 @@ def test_a_design_without_gratings_is_refused(tmp_path: Path) -> None:
     assert "biet2008-gratings" in done.stderr
 
 
+@pytest.mark.slow
 def test_power_grows_with_people_and_names_its_assumptions(tmp_path: Path) -> None:
     design, observer = files(tmp_path)
     arguments = ("study", "power", design, "2 mm", "4 mm", "--observer", observer)

@@ -114,6 +114,7 @@ def conducted(run: StudyRun, device: StudyDevice) -> int:
     return before - run.remaining
 
 
+@pytest.mark.slow
 def test_a_session_on_a_twin_behind_a_port(store: StudyStore) -> None:
     with SessionDevice(DISPLAY, "twin", store.traces) as device:
         run = begun(store, device)

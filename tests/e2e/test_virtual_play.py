@@ -131,6 +131,7 @@ def test_a_slow_sensor_costs_contrast_or_place_and_it_shows(
     assert session.position_error < 0.5e-3
 
 
+@pytest.mark.slow
 def test_a_host_that_is_held_up_ends_with_the_devices_watchdog(
     display: Display, point: WorkingPoint, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -155,6 +156,7 @@ def test_a_host_that_is_held_up_ends_with_the_devices_watchdog(
     assert truth is not None
 
 
+@pytest.mark.slow
 def test_a_session_without_a_pickup_is_judged_by_the_envelopes_model(
     display: Display, point: WorkingPoint, tmp_path: Path
 ) -> None:

@@ -104,6 +104,7 @@ def require_zero_in_time(faults: list[dict[str, int]], levels: np.ndarray) -> No
     assert not np.any(after[(after[:, 0] >= zero) & (after[:, 0] < zero + 0.2), 1])
 
 
+@pytest.mark.slow
 def test_a_host_that_is_interrupted_and_one_that_is_killed(tmp_path: Path) -> None:
     with observed_twin(tmp_path) as twin:
         with playing_host(twin, tmp_path / "interrupted.sqft") as host:
@@ -128,6 +129,7 @@ def test_a_host_that_is_interrupted_and_one_that_is_killed(tmp_path: Path) -> No
     assert len(trace.rows) >= before
 
 
+@pytest.mark.slow
 def test_a_host_that_is_stopped_for_5_s_and_one_that_is_unplugged(tmp_path: Path) -> None:
     with observed_twin(tmp_path) as twin:
         with playing_host(twin, tmp_path / "stopped.sqft") as host:

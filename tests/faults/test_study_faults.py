@@ -146,6 +146,7 @@ def _full(command: list[str], path: Path, who: str, how: str) -> None:
     print(f"\n{how}: full after {count} trials ({found['message'][-90:]}), then on to {len(every)}")
 
 
+@pytest.mark.slow
 def test_a_write_beyond_the_limit_acknowledges_nothing_and_the_run_goes_on(tmp_path: Path) -> None:
     path = tmp_path / "study.sqlite"
     _full([], path, _created(path, 60), "limit")

@@ -76,6 +76,7 @@ def session(seed: int) -> list[tuple[int, bytes]]:
     return script
 
 
+@pytest.mark.slow
 @settings(settings.get_profile("dear"))
 @given(st.integers(0, 2**32), st.lists(st.integers(1, 30_000), max_size=40))
 def test_the_same_bytes_give_the_same_truth_in_whatever_pieces(seed: int, cuts: list[int]) -> None:
@@ -98,6 +99,7 @@ def test_the_same_bytes_give_the_same_truth_in_whatever_pieces(seed: int, cuts: 
     assert one.plant.pickup_level() == other.plant.pickup_level()
 
 
+@pytest.mark.slow
 @settings(settings.get_profile("dear"))
 @given(st.integers(0, 2**32))
 def test_amplitude_friction_and_force_stay_where_physics_lets_them(seed: int) -> None:

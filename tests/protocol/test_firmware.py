@@ -137,6 +137,7 @@ def test_noise(firmware: Library | Sanitized) -> None:
     assert recording.twin.damaged > 200
 
 
+@pytest.mark.slow
 def test_mauled_sessions(firmware: Library | Sanitized) -> None:
     recording = mauled(10, 520_000)
     assert firmware.record(recording) == recording.record

@@ -190,6 +190,7 @@ def check_the_bad_line(frames: int, seed: int) -> None:
     assert damaged > 0.2 * sent
 
 
+@pytest.mark.slow
 def test_no_corrupt_frame_of_a_hundred_thousand_is_accepted() -> None:
     check_the_bad_line(100_000, seed=1)
 

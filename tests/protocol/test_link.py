@@ -242,6 +242,7 @@ def whole_session(seed: int) -> tuple[Wire, Link]:
     return wire, link
 
 
+@pytest.mark.slow
 def test_sessions_over_a_bad_line_both_ways() -> None:
     total: dict[str, int] = {}
     for seed in range(12):

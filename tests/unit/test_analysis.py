@@ -103,6 +103,7 @@ def test_the_verdict_speaks_of_validation_and_of_assumptions(plate: Analysis) ->
     assert any(finding.kind == "doubt" for finding in plate.verdict)
 
 
+@pytest.mark.slow
 def test_a_display_that_does_not_vibrate_has_no_texture() -> None:
     still = analyze(load_display("biet2008-stator"), voltage=0.0)
     assert still.texture is None

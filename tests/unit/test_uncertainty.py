@@ -113,6 +113,7 @@ def test_a_linear_model_has_the_indices_of_its_variances(
     assert found.interval == pytest.approx(np.quantile(total, [0.05, 0.95]), rel=0.01)
 
 
+@pytest.mark.slow
 def test_impossible_designs_are_refused(stator: Display) -> None:
     p = predict(stator, vibration_amplitude=2e-6)
     with pytest.raises(InputError, match="power of two"):

@@ -84,6 +84,7 @@ def test_a_pair_alike_in_everything_is_told_apart_by_nothing(study: PrototypeStu
     assert not any("its twin" in s for s in sentences(study))
 
 
+@pytest.mark.slow
 def test_a_parameter_that_cannot_explain_is_refused() -> None:
     _, free, unit, _, _, make = prototype._CASES[0]
     with pytest.raises(SqueezefilmError, match="does not bring"):

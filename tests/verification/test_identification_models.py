@@ -112,6 +112,7 @@ def _coverage(spacing: float, trials: int, runs: int) -> float:
     return inside / runs
 
 
+@pytest.mark.slow
 def test_intervals_of_d_prime_cover() -> None:
     # Four d′ a run that are little correlated: a binomial error of 0.6 % at 300 runs.
     assert 0.92 < _coverage(1.5, 60, 300) < 0.975

@@ -75,6 +75,7 @@ def test_a_constant_vibration_is_guessed_too_though_the_wave_is_felt() -> None:
     assert study.proportion_correct() == pytest.approx(0.2, abs=FOUR_SIGMA / math.sqrt(5))
 
 
+@pytest.mark.slow
 def test_thirty_milliseconds_more_lag_take_the_finest_grating() -> None:
     late = dataclasses.replace(LVDT_10_KHZ, latency=LVDT_10_KHZ.latency + 30e-3)
     with_lag = right(answers(chain_tables(design_on(STATOR), one_finger(), Apparatus(sensor=late))))

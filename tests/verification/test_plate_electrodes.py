@@ -64,6 +64,7 @@ def shunted(resistance: float | None, quality: float = 1e4) -> RectangularPlate:
     )
 
 
+@pytest.mark.slow
 def test_shunts_reach_from_short_to_open_and_damp_in_between() -> None:
     def solved(plate: RectangularPlate) -> tuple[float, float]:
         modes = solve_modes(plate, near=19e3, count=1, driven_only=True)
@@ -103,6 +104,7 @@ def test_a_shunted_mode_is_the_peak_of_the_harmonic_response() -> None:
     assert circuit.quality_factor == pytest.approx(q, rel=0.03)
 
 
+@pytest.mark.slow
 def test_ceramics_of_two_thicknesses_are_those_of_scikit_fem() -> None:
     pytest.importorskip("skfem", reason="scikit-fem is a test extra; install squeezefilm[test]")
     from .skfem_plate import skfem_frequencies

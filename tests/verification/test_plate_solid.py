@@ -102,6 +102,7 @@ def test_working_mode_of_the_paper_s_plate_is_within_a_thousandth(data_set: str)
     assert modes.half_wavelength(0) == pytest.approx(11.07e-3, rel=0.05)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("data_set", ["from_d31", "printed_e31"])
 def test_all_neighbours_are_found_with_their_modal_forces(data_set: str) -> None:
     centre = CONVERGED[data_set]

@@ -66,6 +66,7 @@ def _volumes(mesh: meshio.Mesh) -> dict[int, float]:
     return {int(k): float(volume[material == k].sum()) for k in np.unique(material)}
 
 
+@pytest.mark.slow
 def test_volumes_per_material_add_up_to_the_plate(read_back: meshio.Mesh) -> None:
     volumes = _volumes(read_back)
     names = {n: int(v[0]) for n, v in read_back.field_data.items() if n.startswith("material_")}

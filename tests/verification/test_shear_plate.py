@@ -104,6 +104,7 @@ def test_symmetry_classes_hold_all_modes(plate: RectangularPlate) -> None:
     assert max(forces) < 1e-9 * abs(even.modal_force)
 
 
+@pytest.mark.slow
 def test_p_convergence_and_its_estimate(plate: RectangularPlate) -> None:
     layout = shear_layout(plate)
     best = shear_mode(layout, (8, 0), 34e3, degree=10).frequency

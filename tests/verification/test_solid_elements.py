@@ -265,6 +265,7 @@ def test_quadratic_meshes_give_what_three_other_codes_give(
     assert found[0] == pytest.approx(wanted, abs=0.05)
 
 
+@pytest.mark.slow
 def test_p_convergence_is_exponential_on_a_smooth_problem() -> None:
     def lowest(order: int) -> float:
         model = solid(

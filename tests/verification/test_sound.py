@@ -59,6 +59,7 @@ def test_piston_in_the_far_field() -> None:
     assert got == pytest.approx(np.abs(exact), rel=2e-3)
 
 
+@pytest.mark.slow
 def test_power_and_directivity_of_a_piston() -> None:
     """W = ½ρc π a² v² (1 − J1(2ka)/(ka)) (Kinsler, eq 7.5.11)."""
     a, v = 12e-3, 0.4

@@ -45,6 +45,7 @@ def pressed(force: float = 0.5) -> Hand:
     return Hand(Stroke(0.08, 0.5), normal_force=force, begin=0.0, press=10e-3)
 
 
+@pytest.mark.slow
 def test_the_amplitude_closes_in_exponentially_and_rings_down() -> None:
     mode = point().mode
     tau = float(envelope_time_constant(mode.quality_factor, carrier() * 1e-3))
@@ -58,6 +59,7 @@ def test_the_amplitude_closes_in_exponentially_and_rings_down() -> None:
     np.testing.assert_allclose(plant.amplitude, a[-1] * math.exp(-2e-3 / tau), rtol=1e-7)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ratio", [0.97, 0.995, 1.0, 1.003, 1.04])
 def test_a_detuned_carrier_has_the_amplitude_and_phase_of_the_mode(ratio: float) -> None:
     mode = point().mode

@@ -83,6 +83,7 @@ def test_work_says_how_far_it_is_to_whom_it_was_asked_for(busy: Busy) -> None:
     worker.tell("outside such a process nothing is said", 0.5)
 
 
+@pytest.mark.slow
 def test_work_that_takes_too_long_is_ended_and_the_next_is_done(tmp_path: Path) -> None:
     async def work() -> None:
         busy = Busy(1.0)

@@ -150,6 +150,7 @@ def test_nothing_is_given_out_before_the_first_good_sample() -> None:
     assert renderer.tick(0.5e-3, 0.0, 0.1, -5.0) == 2e-6
 
 
+@pytest.mark.slow
 def test_a_texture_of_friction_is_traced_as_it_is_played() -> None:
     wanted = RelativeFriction(Bump(0.02, 3e-3), 0.6, 1.0)
     played = Played(lower(wanted, inverse=INVERSE))

@@ -104,6 +104,7 @@ def test_an_interrupted_run_goes_on_where_it_stopped_in_the_same_order(tmp_path:
         assert presented > len(expected)
 
 
+@pytest.mark.slow
 def test_a_resumed_adaptive_series_is_the_one_that_was_interrupted(tmp_path: Path) -> None:
     whole = run_through(tmp_path / "whole.sqlite", staircase(), people=1)
     expected = [(r["stimuli"], r["intensity"], r["correct"]) for r in whole.rows(WHERE)]
