@@ -259,7 +259,6 @@ def test_output_that_does_not_fit_is_one_message_and_exit_code_two() -> None:
     )
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [
