@@ -29,8 +29,8 @@ COMPILED = 180_000
 """ms in which a twin is there, its kernels compiled."""
 
 
-# Plays for many seconds with a browser beside it: where the kernel throttles real-time processes
-# (50 ms in a second), the twin's watchdog ends it, and this cannot pass.
+# Plays for many seconds with a browser beside it: where a computer's host takes the processor away
+# for 50 ms (/proc/stat counts it as stolen), the twin's watchdog ends it, and this cannot pass.
 @pytest.mark.nightly
 @pytest.mark.realtime
 def test_a_twin_is_played_watched_and_stopped_by_the_space_bar(

@@ -121,7 +121,7 @@ def test_intervals_of_d_prime_cover() -> None:
 @pytest.mark.campaign
 @pytest.mark.parametrize(("spacing", "trials"), [(1.0, 24), (1.0, 60), (1.5, 24), (1.5, 60),
                                                  (2.0, 60), (2.0, 120)])  # fmt: skip
-def test_intervals_of_d_prime_cover_nightly(spacing: float, trials: int) -> None:
+def test_intervals_of_d_prime_of_2000_observers_cover(spacing: float, trials: int) -> None:
     """Of 2000 observers with so many trials a stimulus, 93.5 to 96.5 % of the intervals hold."""
     assert 0.935 < _coverage(spacing, trials, 2000) < 0.965
 
