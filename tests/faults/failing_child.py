@@ -102,7 +102,7 @@ class Answering(Job):
 
     def work(self) -> None:
         """Go through all that is left."""
-        script = Script(loud=False)
+        script = Script()
         with StudyStore.open(self.folder / "study.sqlite") as store:
             (who,) = store.participants()
             if who["answered"] == who["planned"]:
@@ -133,7 +133,7 @@ class Giving(Answering):
         super().prepare()
         super().work()
         other = self.study("other", station=1)
-        conduct(begin(other, other.participants()[0]["uuid"]), Device(), Script(loud=False))
+        conduct(begin(other, other.participants()[0]["uuid"]), Device(), Script())
         other.close()
 
     def work(self) -> None:

@@ -8,9 +8,11 @@ from __future__ import annotations
 import json
 import sys
 import warnings
+from multiprocessing.connection import Connection
 from pathlib import Path
 
 from squeezefilm.device.wire.safety import Limits
+from squeezefilm.errors import DeviceError
 from squeezefilm.render.motion.estimator import MotionEstimator
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ
 from squeezefilm.render.program.lowering import lower
@@ -21,7 +23,8 @@ from squeezefilm.session.play.player import PlayPlan
 from squeezefilm.session.play.real_time import run_play
 
 
-def main(port: str, trace: Path, seconds: float) -> None:
+def own_plan() -> PlayPlan:
+    """What it plays."""
     # Never silent, so that an output at zero is the device's doing.
     square = Square(spatial_period=2e-3, low=0.5e-6, high=1e-6)
     loop = LoopPlan(
@@ -32,13 +35,25 @@ def main(port: str, trace: Path, seconds: float) -> None:
         estimator=MotionEstimator.for_sensor(LVDT_10_KHZ),
         output_delay=8e-3,
     )
-    plan = PlayPlan(loop, Limits(15.0, 15e3, 15.0, 2e4, 30e3, 36e3), 33.5e3)
+    return PlayPlan(loop, Limits(15.0, 15e3, 15.0, 2e4, 30e3, 36e3), 33.5e3)
+
+
+def played(port: str, trace: Path, seconds: float) -> dict[str, object]:
+    """Play; how it ended, why, and how many rows were recorded."""
     with warnings.catch_warnings():
         # Real-time priority may not be granted where tests run.
         warnings.simplefilter("ignore")
-        done = run_play(plan, f"serial:{port}", trace, {}, duration=seconds)
-    print(json.dumps({"ending": done.ending.name, "message": done.message, "rows": done.rows}))
+        done = run_play(own_plan(), f"serial:{port}", trace, {}, duration=seconds)
+    return {"ending": done.ending.name, "message": done.message, "rows": done.rows}
+
+
+def tell_ending(tells: Connection, port: str, trace: Path, seconds: float) -> None:
+    """Play, and tell how it ended; LINK where the port was lost before it could play."""
+    try:
+        tells.send(played(port, trace, seconds)["ending"])
+    except DeviceError:
+        tells.send("LINK")
 
 
 if __name__ == "__main__":
-    main(sys.argv[1], Path(sys.argv[2]), float(sys.argv[3]))
+    print(json.dumps(played(sys.argv[1], Path(sys.argv[2]), float(sys.argv[3]))))

@@ -1,8 +1,8 @@
 """Runs a scripted study in a process of its own, to be killed or starved of disk.
 
-study_child.py run STUDY.sqlite PARTICIPANT
-    answers every trial; writes "ready", then each trial's number once it is acknowledged.
-study_child.py full STUDY.sqlite PARTICIPANT limit|disk
+`run` answers every trial; it tells each trial's number once it is acknowledged.
+
+study_child.py STUDY.sqlite PARTICIPANT limit|disk
     runs until nothing more can be written, makes room, goes on; writes one JSON object.
 """
 
@@ -13,6 +13,7 @@ import os
 import resource
 import signal
 import sys
+from multiprocessing.connection import Connection
 from pathlib import Path
 
 from squeezefilm.errors import RecordError
@@ -47,10 +48,10 @@ class Device:
 
 
 class Script:
-    """Answers by the trial's seed, and tells which trials were acknowledged."""
+    """Answers by the trial's seed; knows, and tells, which trials were acknowledged."""
 
-    def __init__(self, loud: bool) -> None:
-        self.loud = loud
+    def __init__(self, tells: Connection | None = None) -> None:
+        self.tells = tells
         self.acknowledged: list[int] = []
 
     def rest(self, duration: float) -> None:
@@ -67,8 +68,8 @@ class Script:
     def acknowledge(self, presentation: Presentation, told: Acknowledgement) -> None:
         """Tell the number."""
         self.acknowledged.append(told.number)
-        if self.loud:
-            os.write(1, f"{told.number}\n".encode())
+        if self.tells is not None:
+            self.tells.send(told.number)
 
 
 def begin(store: StudyStore, participant: str) -> StudyRun:
@@ -78,18 +79,18 @@ def begin(store: StudyStore, participant: str) -> StudyRun:
     return StudyRun(store, found)
 
 
-def run(path: Path, participant: str) -> None:
-    """Answer every trial."""
+def run(tells: Connection, path: Path, participant: str) -> None:
+    """Answer every trial, telling that it is ready and each trial's number."""
     with StudyStore.open(path) as store:
-        os.write(1, b"ready\n")
-        conduct(begin(store, participant), Device(), Script(loud=True))
-    os.write(1, b"finished\n")
+        tells.send("ready")
+        conduct(begin(store, participant), Device(), Script(tells))
+    tells.send("finished")
 
 
 def full(path: Path, participant: str, how: str) -> None:
     """Run into a full disk, and on when there is room."""
     ballast = path.with_name("ballast")
-    script = Script(loud=False)
+    script = Script()
     with StudyStore.open(path) as store:
         study = begin(store, participant)
         if how == "limit":
@@ -141,7 +142,4 @@ def _numbers(store: StudyStore) -> list[int]:
 
 
 if __name__ == "__main__":
-    if sys.argv[1] == "run":
-        run(Path(sys.argv[2]), sys.argv[3])
-    else:
-        full(Path(sys.argv[2]), sys.argv[3], sys.argv[4])
+    full(Path(sys.argv[1]), sys.argv[2], sys.argv[3])

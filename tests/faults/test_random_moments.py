@@ -6,22 +6,22 @@ tests/protocol/test_host_that_ends.py does it on a simulated clock, in the defau
 
 from __future__ import annotations
 
-import json
 import os
 import random
 import signal
-import subprocess
 import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from tests.faults.forked import Forked
+from tests.faults.playing_host import tell_ending
 
 from squeezefilm.device.machine.device import CLOCK, Fault
 from squeezefilm.session.record.trace import read_trace
 
-from .test_play_faults import HERE, observed_twin
+from .test_play_faults import observed_twin
 
 pytestmark = [
     pytest.mark.nightly,
@@ -46,52 +46,49 @@ def rows(trace: Path) -> int:
     return len(read_trace(trace).rows) if trace.exists() else -1
 
 
-def ended(host: subprocess.Popen[str]) -> str:
-    """How a host ended that was left to: in words, or by the error of one that never played."""
-    out, error = host.communicate(timeout=_PATIENCE)
-    if host.returncode == 1 and error.splitlines()[-1].startswith("squeezefilm.errors.DeviceError"):
-        return "LINK"
-    assert host.returncode == 0, error
-    found: str = json.loads(out)["ending"]
-    return found
+def ended(host: Forked) -> str:
+    """How a host ended that was left to."""
+    found = host.hear(_PATIENCE)
+    host.process.join(_PATIENCE)
+    assert host.process.exitcode == 0
+    return str(found)
 
 
-def hit(host: subprocess.Popen[str], trace: Path, pick: random.Random) -> str:
+def hit(host: Forked, trace: Path, pick: random.Random) -> str:
     """Kill or stop a host at a random moment from its opening the port on; returns how it ended."""
     least = pick.choice((0, 0, 1, 100))  # rows of the record: before it plays, and while it does
-    until(lambda: rows(trace) >= least or host.poll() is not None, "the record")
+    until(lambda: rows(trace) >= least or host.has_ended(), "the record")
     time.sleep(pick.uniform(0.0, 1.0))
-    if host.poll() is not None:  # a computer that is too busy ends it before
+    if host.has_ended():  # a computer that is too busy ends it before
         return ended(host)
     if pick.random() < 0.95:
         before = len(read_trace(trace).rows)
-        os.kill(host.pid, signal.SIGKILL)
-        host.wait()
+        host.kill()
         after = read_trace(trace)
         assert len(after.rows) >= before
         assert not after.damage.lost_blocks
         return "killed"
-    os.kill(host.pid, signal.SIGSTOP)
+    send(host, signal.SIGSTOP)
     time.sleep(10.0)
-    os.kill(host.pid, signal.SIGCONT)
+    send(host, signal.SIGCONT)
     time.sleep(1.0)
-    if host.poll() is None:  # it had not armed the device yet, and plays now
-        host.send_signal(signal.SIGINT)
+    if not host.has_ended():  # it had not armed the device yet, and plays now
+        send(host, signal.SIGINT)
     found = ended(host)
     assert found in ("FAULT", "LINK", "LOOP", "INTERRUPTED")
     assert read_trace(trace).damage.whole
     return found
 
 
-def started(port: str, trace: Path) -> subprocess.Popen[str]:
-    command = [sys.executable, str(HERE / "playing_host.py"), port, str(trace), "60"]
-    return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+def send(host: Forked, number: int) -> None:
+    assert host.process.pid is not None
+    os.kill(host.process.pid, number)
 
 
-def plays(host: subprocess.Popen[str], trace: Path) -> bool:
+def plays(host: Forked, trace: Path) -> bool:
     """Whether a host that is let alone plays; a computer that is too busy may end it before."""
-    until(lambda: rows(trace) > 100 or host.poll() is not None, "rows")
-    host.send_signal(signal.SIGINT)
+    until(lambda: rows(trace) > 100 or host.has_ended(), "rows")
+    send(host, signal.SIGINT)
     return ended(host) == "INTERRUPTED"
 
 
@@ -104,7 +101,7 @@ def test_hosts_killed_and_stopped_at_200_moments(tmp_path: Path) -> None:
     with observed_twin(tmp_path) as twin:
         for number in range(MOMENTS + 10):
             trace = tmp_path / f"{number}.sqft"
-            host = started(twin.port, trace)
+            host = Forked(tell_ending, twin.port, trace, 60.0)
             try:
                 if number < MOMENTS:
                     endings.append(hit(host, trace, pick))
@@ -113,7 +110,6 @@ def test_hosts_killed_and_stopped_at_200_moments(tmp_path: Path) -> None:
                     break
             finally:
                 host.kill()
-                host.communicate()
         faults, _ = twin.observed()
     counts = {name: endings.count(name) for name in sorted(set(endings))}
     print(f"{counts}, {len(faults)} of them while the device was armed")

@@ -5,12 +5,15 @@ from __future__ import annotations
 import json
 import random
 import shutil
+import signal
 import subprocess
 import sys
 import time
 from pathlib import Path
 
 import pytest
+from tests.faults.forked import Forked
+from tests.faults.study_child import run
 
 from squeezefilm.perception.stimuli import Grating, Stimulus
 from squeezefilm.study.design.study_design import StudyDesign
@@ -41,19 +44,15 @@ def _created(path: Path, repetitions: int) -> str:
 
 def _killed(path: Path, who: str, heard_first: int, delay: float) -> list[int]:
     """Kill the child `delay` seconds after so many acknowledgements. All it was acknowledged."""
-    command = [sys.executable, str(CHILD), "run", str(path), who]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as child:
-        assert child.stdout is not None
-        assert child.stderr is not None
-        assert child.stdout.readline() == b"ready\n", child.stderr.read().decode()
-        said = [child.stdout.readline().decode() for _ in range(heard_first)]
-        time.sleep(delay)
-        child.kill()
-        said += child.stdout.read().decode().split()
-        # A killed child says nothing more; anything on stderr is a failure of its own.
-        assert child.stderr.read() == b""
+    child = Forked(run, path, who)
+    assert child.hear() == "ready"
+    said = [child.hear() for _ in range(heard_first)]
+    time.sleep(delay)
+    child.kill()
+    assert child.process.exitcode == -signal.SIGKILL
+    said += iter(child.hear, None)
     assert "finished" not in said, "it finished first: give it more trials"
-    return [int(one) for one in said]
+    return said
 
 
 def _rows(path: Path) -> list[tuple[int, str, str, str]]:
@@ -79,15 +78,10 @@ def _survives(path: Path, kills: int, repetitions: int) -> None:
         if kill < kills:
             heard = _killed(path, who, seed.randrange(12), seed.uniform(0.0, 0.004))
         else:
-            child = subprocess.run(
-                [sys.executable, str(CHILD), "run", str(path), who],
-                capture_output=True,
-                text=True,
-                check=True,
-            )
-            words = child.stdout.split()
+            child = Forked(run, path, who)
+            words = list(iter(child.hear, None))
             assert (words[0], words[-1]) == ("ready", "finished")
-            heard = [int(one) for one in words[1:-1]]
+            heard = words[1:-1]
         acknowledged += heard
         rows = _rows(path)
         # What was recorded before stands, and nothing acknowledged is missing.
@@ -121,12 +115,12 @@ def test_kill_9_loses_no_acknowledged_trial(tmp_path: Path) -> None:
 
 @pytest.mark.nightly
 def test_kill_9_at_200_moments_loses_no_acknowledged_trial(tmp_path: Path) -> None:
-    _survives(tmp_path / "study.sqlite", kills=200, repetitions=900)
+    _survives(tmp_path / "study.sqlite", kills=200, repetitions=500)
 
 
 def _full(command: list[str], path: Path, who: str, how: str) -> None:
     done = subprocess.run(
-        [*command, sys.executable, str(CHILD), "full", str(path), who, how],
+        [*command, sys.executable, str(CHILD), str(path), who, how],
         capture_output=True,
         text=True,
         check=False,

@@ -8,6 +8,10 @@ LEAST_SQUEEZE_NUMBER: Dimensionless = 1e-10
 """Below, the over-pressure, which goes with σ², drowns in rounding and a solver would refine for
 ever; `film.linear` has it in closed form. (A strip at ε = 0.2 is solved at 1e-10, not at 1e-12.)"""
 
+MOST_SQUEEZE_NUMBER: Dimensionless = 1e9
+"""Above, the layer at the edge is thinner than 1e-4 of the film and a solve takes minutes, or for
+ever; the load there is that of an infinite squeeze number to four digits."""
+
 MOST_KNUDSEN: Dimensionless = 1e6
 """Above, a gap far narrower than any surface is flat: molecules fly freely from about 10."""
 
@@ -18,6 +22,9 @@ def require_film(
     knudsen_number: DimensionlessLike,
 ) -> None:
     """Refuse a gas film that no solver here has: raises `InputError` with the offending value."""
-    require("squeeze_number", squeeze_number, at_least=LEAST_SQUEEZE_NUMBER)
+    require(
+        "squeeze_number", squeeze_number,
+        at_least=LEAST_SQUEEZE_NUMBER, at_most=MOST_SQUEEZE_NUMBER,
+    )  # fmt: skip
     require("polytropic_exponent", polytropic_exponent, at_least=1.0, at_most=5.0 / 3.0)
     require("knudsen_number", knudsen_number, at_least=0.0, at_most=MOST_KNUDSEN)

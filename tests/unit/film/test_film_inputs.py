@@ -23,6 +23,7 @@ from squeezefilm.film.periodic.profile import (
     profile_from_function,
     profile_from_samples,
 )
+from squeezefilm.film.solved_range import MOST_SQUEEZE_NUMBER
 
 
 @pytest.mark.parametrize("solve", [solve_strip, solve_disc, solve_strips])
@@ -32,6 +33,7 @@ from squeezefilm.film.periodic.profile import (
         ({"squeeze_number": 0.0}, "squeeze_number = 0"),
         ({"squeeze_number": -3.0}, "squeeze_number = -3"),
         ({"squeeze_number": float("nan")}, "squeeze_number = nan"),
+        ({"squeeze_number": 2.0 * MOST_SQUEEZE_NUMBER}, "squeeze_number = 2e+09"),
         ({"excursion_ratio": 1.0}, "excursion_ratio = 1"),
         ({"excursion_ratio": float("inf")}, "excursion_ratio = inf"),
         ({"polytropic_exponent": 0.9}, "polytropic_exponent = 0.9"),
@@ -201,3 +203,14 @@ def test_importing_the_film_imports_neither_scipy_nor_numba():
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
+
+
+def test_a_gas_of_tar_is_refused_before_a_solve_that_would_not_end():
+    with pytest.raises(InputError, match="squeeze_number"):
+        mean_gap_for_load(1e4, 1e-6, 30e3, 0.03, viscosity=4e8)
+
+
+def test_the_largest_squeeze_number_is_nearly_an_infinite_one():
+    at = solve_strips(MOST_SQUEEZE_NUMBER, 0.3, tolerance=1e-3).mean_load
+    infinite = np.sqrt((1.0 + 1.5 * 0.3**2) / (1.0 - 0.3**2))  # Salbu's
+    assert at == pytest.approx(infinite, rel=2e-4)
