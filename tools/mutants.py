@@ -1,19 +1,22 @@
 """Put small faults into the source, one at a time, and see which the tests notice.
 
+    make coverage                                 # which quick test runs which line
     python tools/mutants.py --seed 1 --count 150 --minutes 240       # or --rooms study,lab
     python tools/mutants.py --report
 
 A sample is drawn by seed over all kinds of faults in turn. Each mutant is tried in a private copy
-of the working tree, never in the checkout, with compiled code cached apart: first by the tests
-named after its module or naming it, then by those nearest to it by imports, until one fails. What
-passes them all survived. The answers are appended to a file of JSON lines; a run that was cut off
-goes on where it stopped. Mutants that change nothing anybody could notice are named in
-``tools/equivalent_mutants.toml`` with the reason, and do not count.
+of the working tree, never in the checkout, with compiled code cached apart, until a test fails. By
+the quick tests that run its lines, those of its module first; where none is known to (compiled
+code, other processes) by the files of tests nearest to it by imports. Slow tests are asked by
+nearness too. What passes them all survived. The answers are appended to a file of JSON lines; a
+run that was cut off goes on where it stopped. Mutants that change nothing anybody could notice are
+named in ``tools/equivalent_mutants.toml`` with the reason, and do not count.
 """
 
 from __future__ import annotations
 
 import argparse
+import ast
 import contextlib
 import hashlib
 import json
@@ -26,10 +29,12 @@ import sys
 import tempfile
 import time
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
+
+from coverage import CoverageData
 
 import import_graph
 from mutant_report import print_report
@@ -41,6 +46,7 @@ EQUIVALENT = Path(__file__).with_name("equivalent_mutants.toml")
 QUICK = "not realtime and not slow and not nightly and not campaign"
 REALTIME = "realtime and not slow and not nightly"
 SLOW, NIGHTLY = "slow and not nightly", "nightly"
+_MOST_TESTS = 400  # that run a mutant's lines and are asked; the nearest
 _FAILED = re.compile(r"^(?:FAILED|ERROR) (\S+)", re.MULTILINE)
 
 
@@ -115,12 +121,14 @@ class Copy:
             path.write_bytes(source)
             os.utime(path, ns=(times.st_atime_ns, times.st_mtime_ns))
 
-    def ask(self, test: str, marks: str, limit: float, mutant: Mutant | None = None) -> Answer:
-        """Run one file of tests until the first failure, or for `limit` seconds."""
+    def ask(
+        self, tests: Sequence[str], marks: str, limit: float, mutant: Mutant | None = None
+    ) -> Answer:
+        """Run tests, or files of them, until the first failure, or for `limit` seconds."""
         with self._mutated(mutant):
-            return self._asked(test, marks, limit, healthy=mutant is None)
+            return self._asked(tests, marks, limit, healthy=mutant is None)
 
-    def _asked(self, test: str, marks: str, limit: float, *, healthy: bool) -> Answer:
+    def _asked(self, tests: Sequence[str], marks: str, limit: float, *, healthy: bool) -> Answer:
         shutil.rmtree(self._temporary, ignore_errors=True)
         self._temporary.mkdir()
         environment = {
@@ -133,10 +141,13 @@ class Copy:
             "HOME": str(self._temporary),
         }
         command = [sys.executable, "-m", "pytest", "-x", "-q", "-rfE", "-p", "no:cacheprovider"]
+        asked = self._temporary / "asked.txt"
+        asked.write_text("\n".join(tests), encoding="utf-8")
+        test = tests[0] if len(tests) == 1 else f"{tests[0]} and {len(tests) - 1} others"
         started = time.monotonic()
         with tempfile.TemporaryFile() as output:
             process = subprocess.Popen(
-                [*command, "-m", marks, test],
+                [*command, "-m", marks, f"@{asked}"],
                 cwd=self.tree,
                 env=environment,
                 stdout=output,
@@ -198,6 +209,38 @@ class Nearness:
         return [name for *_, name in sorted(ranked)]
 
 
+class Reached:
+    """Which quick tests run a line of the source, by what `make coverage` found."""
+
+    def __init__(self, file: Path) -> None:
+        self._data = CoverageData(str(file))
+        self._data.read()
+        package = f"{os.sep}src{os.sep}"
+        self._files = {
+            Path(name.rpartition(package)[2]).as_posix(): name
+            for name in self._data.measured_files()
+        }
+
+    def tests(self, mutant: Mutant, source: bytes) -> set[str]:
+        """The tests that run any line of what a mutant changes; none where no test is known to."""
+        name = self._files.get(mutant.path)
+        if name is None:
+            return set()
+        contexts = self._data.contexts_by_lineno(name)
+        ran = {test for line in lines_of(mutant, source) for test in contexts.get(line, ())}
+        return {test.rpartition("|")[0] for test in ran if "|" in test}
+
+
+def lines_of(mutant: Mutant, source: bytes) -> range:
+    """The lines of a mutant, from the first of the innermost statement that holds it."""
+    first = max(
+        node.lineno
+        for node in ast.walk(ast.parse(source))
+        if isinstance(node, ast.stmt) and node.lineno <= mutant.line <= (node.end_lineno or 0)
+    )
+    return range(first, mutant.line + mutant.before.count("\n") + 1)
+
+
 class Report:
     """The file of answers: JSON lines, to which everything is appended at once."""
 
@@ -237,13 +280,14 @@ class Trial:
     def __init__(self, copy: Copy, report: Report, arguments: argparse.Namespace) -> None:
         self._copy, self._report, self._arguments = copy, report, arguments
         self._nearness = Nearness(copy.tree)
+        self._reached = Reached(arguments.coverage) if arguments.coverage.exists() else None
         self._parts = [QUICK, REALTIME, *([SLOW, NIGHTLY] if arguments.nightly else [])]
 
     def _baseline(self, test: str, marks: str) -> Answer:
         """What a file says of the source as it is, asked once."""
         if (test, marks) not in self._report.baselines:
             limit = self._arguments.file_seconds
-            answer = self._copy.ask(test, marks, limit)
+            answer = self._copy.ask([test], marks, limit)
             self._report.baselines[test, marks] = answer
             line = {"type": "baseline", "asked": test, "marks": marks, **asdict(answer)}
             self._report.write(line)
@@ -254,30 +298,60 @@ class Trial:
         healthy = self._baseline(test, marks)
         if healthy.said != "passed":
             return None
-        answer = self._copy.ask(test, marks, 4 * healthy.seconds + 30 + 20 * min(lost, 30), mutant)
+        limit = 4 * healthy.seconds + 30 + 20 * min(lost, 30)
+        answer = self._copy.ask([test], marks, limit, mutant)
         if answer.said not in ("failed", "slow"):
             return None
         if answer.said == "slow" or marks == REALTIME:
             # What hangs on time counts only if the healthy source passes now as it did before.
-            again = self._copy.ask(test, marks, max(answer.seconds, self._arguments.file_seconds))
+            again = self._copy.ask([test], marks, max(answer.seconds, self._arguments.file_seconds))
             return answer if again.said == "passed" else None
         return answer
 
+    def _noticed_by_reach(
+        self, mutant: Mutant, files: list[str], lost: int
+    ) -> tuple[int, Answer | None]:
+        """How many quick tests run a mutant's lines, and how one of them notices it, if it does."""
+        if self._reached is None:
+            return 0, None
+        source = (self._copy.tree / "src" / mutant.path).read_bytes()
+        rank = {name: place for place, name in enumerate(files)}
+        known = sorted(
+            self._reached.tests(mutant, source),
+            key=lambda test: (rank.get(test.split("::")[0], len(rank)), test),
+        )[:_MOST_TESTS]
+        if not known:
+            return 0, None
+        limit = 60 + 1.5 * len(known) + 20 * min(lost, 30)
+        answer = self._copy.ask(known, QUICK, limit, mutant)
+        if answer.said not in ("failed", "slow"):
+            return len(known), None
+        # It counts only if the healthy source passes what failed, or all in that time.
+        suspect = [answer.test] if answer.said == "failed" else known
+        again = self._copy.ask(suspect, QUICK, limit)
+        return len(known), answer if again.said == "passed" else None
+
     def run(self, mutant: Mutant) -> dict[str, Any]:
         """The line of the report for one mutant."""
-        started, asked, files = time.monotonic(), 0, self._nearness.tests(mutant.module)
+        started, files = time.monotonic(), self._nearness.tests(mutant.module)
         line: dict[str, Any] = {"type": "mutant", "id": mutant.id, "at": where(mutant)}
         line |= {"room": mutant.room, "kind": mutant.site.kind, "function": mutant.site.function}
         line |= {"before": mutant.before, "after": mutant.site.after}
         line |= {"noticed": False, "marks": "", "said": "passed", "test": ""}
         lost = self._copy.forget(mutant, self._nearness.graph)
-        for test, marks in self._questions(files):
+        reached, answer = self._noticed_by_reach(mutant, files, lost)
+        marks, asked = QUICK, 0
+        for test, part in self._questions(files) if answer is None else ():
+            if part == QUICK and reached:
+                continue
             asked += 1
-            answer = self._notices(mutant, test, marks, lost)
+            answer, marks = self._notices(mutant, test, part, lost), part
             if answer is not None:
-                line |= {"noticed": True, "marks": marks, **asdict(answer)}
                 break
-        return line | {"files": asked, "seconds": round(time.monotonic() - started, 1)}
+        if answer is not None:
+            line |= {"noticed": True, "marks": marks, **asdict(answer)}
+        spent = round(time.monotonic() - started, 1)
+        return line | {"reached": reached, "files": asked, "seconds": spent}
 
     def _questions(self, files: list[str]) -> Iterator[tuple[str, str]]:
         """Files of tests and which of their tests: quick ones, those in real time, slow ones."""
@@ -311,6 +385,9 @@ def _arguments() -> argparse.Namespace:
     parser.add_argument("--minutes", type=float, default=60, help="after which none is begun")
     parser.add_argument(
         "--file-seconds", type=float, default=600, help="files that need more are left"
+    )
+    parser.add_argument(
+        "--coverage", type=Path, default=ROOT / "out" / "coverage", help="made by `make coverage`"
     )
     parser.add_argument("--nightly", action="store_true", help="ask the slow tests too, last")
     parser.add_argument("--file", type=Path, default=ROOT / "out" / "mutants.jsonl")

@@ -7,8 +7,11 @@ import sys
 from pathlib import Path
 
 import pytest
+from coverage import CoverageData
 
 import mutants
+from mutation_sites import Site
+from mutations import Mutant
 
 ROOT = Path(__file__).parents[3]
 
@@ -33,6 +36,46 @@ def test_a_line_that_was_cut_off_is_asked_again(tmp_path: Path) -> None:
 
 def test_every_equivalent_mutant_has_a_reason() -> None:
     assert all(len(reason) > 20 for reason in mutants.equivalent_mutants().values())
+
+
+SOURCE = b"""def least(
+    values,
+):
+    found = min(
+        values,
+        default=1,
+    )
+    if found > 2:
+        return found
+"""
+
+
+def mutant_at(line: int, before: str) -> Mutant:
+    return Mutant("a", "squeezefilm/gap.py", line, before, Site("constant", "", 0, 0, ""))
+
+
+def test_the_lines_of_a_mutant_begin_with_its_statement() -> None:
+    assert mutants.lines_of(mutant_at(6, "1"), SOURCE) == range(4, 7)
+    assert mutants.lines_of(mutant_at(8, "2"), SOURCE) == range(8, 9)
+    assert mutants.lines_of(mutant_at(8, "if found > 2:\n        return found"), SOURCE) == range(
+        8, 10
+    )
+
+
+def test_the_tests_that_run_a_line_are_told_from_a_file_of_coverage(tmp_path: Path) -> None:
+    data = CoverageData(str(tmp_path / "coverage"))
+    for context, lines in (
+        ("", [1]),
+        ("tests/a.py::test_b[x|y]|run", [4, 8]),
+        ("tests/a.py::test_c|run", [9]),
+    ):
+        data.set_context(context)
+        data.add_lines({"/anywhere/src/squeezefilm/gap.py": lines})
+    data.write()
+    reached = mutants.Reached(tmp_path / "coverage")
+    assert reached.tests(mutant_at(6, "1"), SOURCE) == {"tests/a.py::test_b[x|y]"}
+    assert reached.tests(mutant_at(9, "found"), SOURCE) == {"tests/a.py::test_c"}
+    assert reached.tests(mutant_at(1, "least"), SOURCE) == set()
 
 
 @pytest.mark.nightly
