@@ -10,7 +10,7 @@ MUTANTS_SEED ?= 1
 COUNT ?= 150
 MINUTES ?= 480
 
-.PHONY: help demo lab test slow check lint types layers gallery docs bench nightly campaign release clean
+.PHONY: help demo lab test slow check lint types layers gallery docs bench coverage nightly campaign release clean
 
 help:  ## show this list
 	@grep -E '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 12
@@ -43,11 +43,17 @@ $(PYTEST) -m "not campaign and realtime $(1)" || failed=1; \
 exit $$failed
 endef
 
+QUICK := not campaign and not realtime and not slow and not nightly
+
 test: $(VENV)/test.stamp  ## run the quick tests, in some five minutes
 	$(call run_tests,and not slow and not nightly)
 
 slow: $(VENV)/test.stamp  ## run the tests that take seconds each, as CI does after the quick ones
 	$(call run_tests,and slow and not nightly)
+
+coverage: $(VENV)/test.stamp  ## branches that the quick tests take, and which test runs which line
+	@$(PYTEST) -n $(WORKERS) --dist loadgroup -m "$(QUICK)" --cov --cov-context=test --cov-report=
+	@$(BIN)/coverage report --skip-covered --sort=-cover
 
 nightly: export SQUEEZEFILM_EXPLORE = 1
 nightly: PYTEST += --hypothesis-seed=$(SEED)
@@ -55,7 +61,7 @@ nightly: $(VENV)/test.stamp  ## run every test but a campaign's, and explore pro
 	@echo "nightly: seed $(SEED)"
 	$(call run_tests,)
 
-campaign: $(VENV)/test.stamp  ## what takes hours and goes on where it stopped: statistics, mutants
+campaign: coverage  ## what takes hours and goes on where it stopped: statistics, mutants
 	@nice $(PYTEST) -n $(WORKERS) -p tests.campaign --answers campaigns/statistics.jsonl -m campaign
 	@nice $(BIN)/python tools/mutants.py --nightly --seed $(MUTANTS_SEED) --count $(COUNT) \
 	  --minutes $(MINUTES) --file campaigns/mutants-$(MUTANTS_SEED).jsonl
