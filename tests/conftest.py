@@ -19,7 +19,7 @@ _HOW = {
     "print_blob": _EXPLORES,
     "database": None,
 }
-settings.register_profile("properties", max_examples=300 if _EXPLORES else 25, **_HOW)
+settings.register_profile("properties", max_examples=120 if _EXPLORES else 25, **_HOW)
 # For properties whose every example is a solve, a process or a session.
-settings.register_profile("dear", max_examples=60 if _EXPLORES else 8, **_HOW)
+settings.register_profile("dear", max_examples=24 if _EXPLORES else 8, **_HOW)
 settings.load_profile("properties")

@@ -93,8 +93,14 @@ def test_a_session_across_the_wrap_of_the_clock_is_like_any_other() -> None:
     assert device.plant.counts.failed == 0
 
 
-@pytest.mark.nightly
-def test_eight_hours_end_as_they_began() -> None:
+@pytest.mark.parametrize(
+    "hours",
+    [
+        pytest.param(3, marks=pytest.mark.nightly),  # over two wraps of the clock
+        pytest.param(8, marks=pytest.mark.campaign),
+    ],
+)
+def test_hours_end_as_they_began(hours: int) -> None:
     device = twin(1e-3)
     sessions = Sessions(device)
     hour, ticks = 3600 * SECOND, 30 * CYCLE
@@ -104,13 +110,13 @@ def test_eight_hours_end_as_they_began() -> None:
     gc.collect()
     tracemalloc.start()
     before, _ = tracemalloc.get_traced_memory()
-    for k in range(2, 9):
+    for k in range(2, hours + 1):
         assert_same(first, sessions.play(CYCLE + k * hour))
     gc.collect()
     after, _ = tracemalloc.get_traced_memory()
     tracemalloc.stop()
     assert after - before < 200_000
-    assert device.now > 8 * hour
+    assert device.now > hours * hour
     assert device.plant.counts.failed == 0
     # The carrier's frequency and the plate's are what they were, to the last bit.
     fresh = twin(1e-3)
