@@ -3,7 +3,10 @@ looked at, exported, and somebody taken out of it."""
 
 from __future__ import annotations
 
+import contextlib
+import os
 import re
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
@@ -29,8 +32,13 @@ COMPILED = 180_000
 """ms in which a twin is there, its kernels compiled."""
 
 
-# Plays for many seconds with a browser beside it: where a computer's host takes the processor away
-# for 50 ms (/proc/stat counts it as stolen), the twin's watchdog ends it, and this cannot pass.
+def stolen() -> float:
+    """Seconds for which this computer's host has taken its processors away; 0 where none tells."""
+    with contextlib.suppress(OSError):
+        return int(Path("/proc/stat").read_text().split(maxsplit=9)[8]) / os.sysconf("SC_CLK_TCK")
+    return 0.0
+
+
 @pytest.mark.nightly
 @pytest.mark.realtime
 def test_a_twin_is_played_watched_and_stopped_by_the_space_bar(
@@ -61,16 +69,19 @@ def test_a_twin_is_played_watched_and_stopped_by_the_space_bar(
             seen.add(position.inner_text())
             if len(seen) > 3:
                 break
+        shown = state.inner_text()
+        keep(page, "lab-device-light-1280")
+        contrast = page.evaluate(CONTRAST)
+        # From another area as well; and what was shown while it played is not shown after it.
+        page.goto(f"{running_lab.address}#help")
         # A machine that holds a process up for 50 ms is stopped by the device, as it must be.
-        if "heard nothing for 50 ms" not in said.inner_text():
+        if "playing," in said.inner_text():
             break
-    assert "playing," in said.inner_text()
-    assert state.inner_text() == "PLAYING"
+        page.goto(f"{running_lab.address}#device")
+        page.locator(".stopbar", has_text="heard nothing for 50 ms").wait_for()
+    assert shown == "PLAYING"
     assert len(seen) > 3
-    keep(page, "lab-device-light-1280")
-    assert page.evaluate(CONTRAST) == []
-    # From another area as well; and what was shown while it played is not shown after it.
-    page.goto(f"{running_lab.address}#help")
+    assert contrast == []
     said.filter(has_text="playing,").wait_for()
     page.keyboard.press("Space")
     said.wait_for(state="hidden", timeout=60_000)
@@ -88,11 +99,17 @@ def test_a_twin_is_played_watched_and_stopped_by_the_space_bar(
 @pytest.mark.nightly
 @pytest.mark.realtime
 def test_a_twin_passes_every_check(chromium: Browser, running_lab: RunningLab) -> None:
-    page, complaints = opened(chromium, running_lab, "device", color_scheme="dark")
-    page.get_by_role("button", name="Check the device").click()
-    page.locator("h2", has_text="check").wait_for(timeout=COMPILED)
+    for _ in range(5):
+        before = stolen()
+        page, complaints = opened(chromium, running_lab, "device", color_scheme="dark")
+        page.get_by_role("button", name="Check the device").click()
+        page.locator("h2", has_text="check").wait_for(timeout=COMPILED)
+        failed = page.locator(".failed").all_inner_texts()
+        # Timing that the computer's host disturbed says nothing of the twin's.
+        if not failed or stolen() - before < 0.05:
+            break
+    assert failed == []
     keep(page, "lab-device-checked-dark-1280")
-    assert page.locator(".failed").all_inner_texts() == []
     assert page.locator(".passed").count() == 18
     assert page.evaluate(CONTRAST) == []
     assert complaints == []
