@@ -70,7 +70,7 @@ _PREFIXES = {
 
 # A text past it is no quantity, and would be searched for one in vain for minutes.
 _LONGEST_TEXT = 200
-_FACTOR = re.compile(r"([^\s*/^·\d]+|1)\s*(?:\^|\*\*)?\s*(-?\d{1,2})?")
+_FACTOR = re.compile(r"([^\s*/^·\d]+?|1)\s*(?:\^|\*\*)?\s*(-?\d{1,2})?")
 _QUANTITY = re.compile(
     r"\s*(?P<number>[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?|[+-]?(?:nan|inf(?:inity)?))"
     r"\s*(?P<unit>\S.*?)?\s*",

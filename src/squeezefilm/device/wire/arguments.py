@@ -17,7 +17,7 @@ from squeezefilm.quantities import FloatArray, Unit, Volt, require
 
 def number(name: str, value: Any, unit: Unit, at_least: float, at_most: float) -> float:
     """One finite number between two bounds in SI. Raises `InputError` for anything else."""
-    array = _numbers(name, value, 0, f"one number in {unit}")
+    array = _numbers(name, value, 0, f"one number in {unit.symbol}")
     # Every command of a loop in real time comes here: what is in order costs no more than this.
     if not at_least <= array <= at_most:
         require(name, array, unit, at_least=at_least, at_most=at_most)

@@ -96,8 +96,8 @@ def implicit_stage(
                 scale = -0.8 / relative
         for i in range(N):
             m[i] += scale * rest[i]
-        if not np.isfinite(change):
-            return change, iteration
+        if not np.isfinite(change + np.sum(rest)):  # `max` passes over what is no number
+            return np.inf, iteration
         # Quadratic convergence: a change below sqrt(tolerance) leaves an error below tolerance,
         # but only rounding stops a change that no longer falls.
         if change <= tolerance or (change < 1e-10 and change >= 0.5 * last):

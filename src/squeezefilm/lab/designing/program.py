@@ -30,6 +30,7 @@ from squeezefilm.results import stamp
 from squeezefilm.texture_file import TextureFile, load_texture, texture_from_text
 
 _KNOTS = 257
+_LEAST_REDUCTION = 1e-6  # of friction, far below what anybody feels
 _SKIN = ("mass", "stiffness", "damping")
 
 
@@ -55,7 +56,7 @@ def _ready(
         texture = texture_from_text(str(texture_text), file=folder / "texture.toml")
     display = display_of(display_text)
     p = predicted(display_text, quality)
-    if p.vibration_amplitude <= 0.0 or p.relative_friction >= 1.0:
+    if p.vibration_amplitude <= 0.0 or p.relative_friction > 1.0 - _LEAST_REDUCTION:
         raise InputError(
             f"display '{display.name}' changes no friction at {p.voltage or 0.0:g} V, so it "
             "renders no texture; give it a voltage in the Design area"

@@ -126,7 +126,7 @@ def fidelity_report(
     wanted = stroke.relative_friction_wanted
     error = (stroke.relative_friction_rendered - wanted)[judged]
     spread = float(np.std(wanted[judged]))
-    if spread == 0.0:
+    if np.ptp(wanted[judged]) <= 1e-12:  # the deviation of equal numbers is rounding, not zero
         raise InputError(
             "the friction wanted does not change along the stroke, so there is no fidelity to "
             "judge; choose a texture, or amplitudes, that change it"

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from squeezefilm.quantities import Unit, format_quantity
+from squeezefilm.report.kit.numbers import M, shown
 from squeezefilm.report.kit.style import (
     BLUE,
     INK,
@@ -35,8 +35,7 @@ def channels(tables: ChainTables) -> Figure:
     observer = tables.observer
     frequency = np.geomspace(1.0, 1000.0, 400)
     bands = [
-        f"{plain(one.name, 12)} from {format_quantity(one.threshold, Unit('m'), 2)}"
-        for one in observer.channels
+        f"{plain(one.name, 12)} from {shown(one.threshold, M, 2)}" for one in observer.channels
     ]
     figure = new_figure(
         f"Channels of '{plain(observer.name)}': {', '.join(bands)}",

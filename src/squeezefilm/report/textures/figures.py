@@ -216,7 +216,9 @@ def ripple(result: RenderAnalysis) -> Figure:
         4.6,
     )
     above, below = figure.subplots(2, 1, sharex=True)
-    first = slice(0, int(np.argmax(np.abs(np.diff(np.sign(finger.speed))) > 1)) or None)
+    moving = np.flatnonzero(finger.speed)
+    turns = moving[1:][np.diff(np.sign(finger.speed[moving])) != 0]
+    first = slice(0, int(turns[0]) if turns.size else None)
     x = 1e3 * finger.x[first]
     thin = _thin(x.size)
     above.plot(x[thin], 1e6 * stroke.amplitude[first][thin], color=ORANGE, lw=1.4,

@@ -1,0 +1,64 @@
+"""Which solver a plate, a disc or a stator goes to, with which arguments, and what is refused."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from squeezefilm.analysis.plate import solve
+from squeezefilm.analysis.plate.solve import solve_plate
+from squeezefilm.display import load_display
+from squeezefilm.errors import InputError
+
+# The solvers themselves take seconds and have tests of their own.
+DEFAULTS = {"mode": None, "band": None, "points": 200, "progress": None}
+
+
+@pytest.fixture
+def asked(monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, str, dict[str, Any]]]:
+    calls: list[tuple[str, str, dict[str, Any]]] = []
+    for name in ("analyze_plate", "analyze_ring"):
+
+        def solver(display: Any, *, _name: str = name, **arguments: Any) -> str:
+            calls.append((_name, display.name, arguments))
+            return f"solved by {_name}"
+
+        monkeypatch.setattr(solve, name, solver)
+    return calls
+
+
+def test_a_rectangle_is_solved_with_all_that_is_asked(asked: list[Any]) -> None:
+    assert solve_plate("biet2008-plate") == "solved by analyze_plate"
+    given: dict[str, Any] = {
+        "mode": (7, 0), "band": (30e3, 40e3), "points": 50, "sensitivity": True, "track": object(),
+        "progress": print,
+    }  # fmt: skip
+    solve_plate(load_display("biet2008-plate"), **given)
+    assert asked == [
+        ("analyze_plate", "biet2008-plate", {**DEFAULTS, "sensitivity": False, "track": None}),
+        ("analyze_plate", "biet2008-plate", given),
+    ]
+
+
+@pytest.mark.parametrize("name", ["biet2008-stator", "winfield2007-tpad"])
+def test_discs_and_stators_are_solved_as_rings(asked: list[Any], name: str) -> None:
+    assert solve_plate(name) == "solved by analyze_ring"
+    given: dict[str, Any] = {
+        "mode": (0, 1), "band": (30e3, 40e3), "points": 50, "progress": print,
+    }  # fmt: skip
+    solve_plate(name, **given)
+    assert asked == [("analyze_ring", name, DEFAULTS), ("analyze_ring", name, given)]
+
+
+@pytest.mark.parametrize("more", [{"sensitivity": True}, {"track": object()}])
+def test_what_is_for_rectangles_is_refused_of_others(
+    asked: list[Any], more: dict[str, Any]
+) -> None:
+    for name, kind in (("biet2008-stator", "annular stator"), ("winfield2007-tpad", "disc")):
+        with pytest.raises(InputError) as caught:
+            solve_plate(name, **more)
+        assert str(caught.value) == (
+            f"sensitivity and track are for rectangular plates; '{name}' is a {kind}"
+        )
+    assert not asked

@@ -1,0 +1,193 @@
+"""The verdict's sentences, word for word, and on which side of each bound they stand."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import Any
+
+import numpy as np
+import pytest
+
+from squeezefilm.analysis.curves import FrictionCurve
+from squeezefilm.analysis.film.models import (
+    FilmComparison,
+    FilmResult,
+    PlateauBalance,
+    ToothResult,
+)
+from squeezefilm.analysis.verdict import Finding, verdict
+from squeezefilm.chain.prediction import Prediction, predict
+from squeezefilm.config.provenance import Provenance
+from squeezefilm.display import load_display
+from squeezefilm.render.fidelity.survival import FidelityTable
+
+STATOR = dataclasses.replace(load_display("biet2008-stator"), provenance={})
+SHARED = "partial-levitation"
+
+
+@pytest.fixture(scope="module")
+def point() -> Prediction:
+    return predict(STATOR)
+
+
+def curve(needed: float | None, surface: str = "adhesive", model: str = SHARED) -> FrictionCurve:
+    one = np.array([0.0, 1e-6])
+    return FrictionCurve(surface, 1e-6, one, one, needed, None, model)
+
+
+def said(p: Prediction, needed: float | None = 2.5e-6, **changes: Any) -> tuple[Finding, ...]:
+    """The verdict of a point changed, with other surfaces and models beside it."""
+    p = dataclasses.replace(p, **changes)
+    curves = (
+        curve(9e-6, surface="bare", model=p.model),
+        curve(8e-6, model="another"),
+        curve(needed, model=p.model),
+    )
+    return verdict(STATOR, p, curves, None, None)
+
+
+def test_friction_low_enough_is_good(point: Prediction) -> None:
+    first, *_ = said(point, relative_friction=0.7, vibration_amplitude=2e-6)
+    assert first == Finding(
+        "good",
+        "By the model 'partial-levitation' 2 µm lower the friction to 70 % of what it is without "
+        "vibration, below the 70 % that the paper asks for.",
+    )
+    paper, *_ = said(point, relative_friction=0.1234, model="paper2008")
+    assert paper.kind == "good"
+    assert paper.text.startswith("By the paper's model 2 µm lower the friction to 12.3 % of what")
+
+
+def test_friction_too_high_is_a_limit_or_not_noticed(point: Prediction) -> None:
+    first, *_ = said(point, relative_friction=0.75, vibration_amplitude=1.234567e-6)
+    assert first == Finding(
+        "limit",
+        "By the model 'partial-levitation' 1.23 µm lower the friction to 75 % of what it is "
+        "without vibration; the paper asks for 70 %, which 2.5 µm reach.",
+    )
+    assert said(point, relative_friction=0.79)[0].kind == "limit"
+    doubt = said(point, needed=None, relative_friction=0.81)[0]
+    assert doubt.kind == "doubt"
+    assert doubt.text.endswith("the paper asks for 70 %, which no amplitude reaches.")
+
+
+def test_an_amplitude_beyond_belief_is_doubted(point: Prediction) -> None:
+    told = Finding(
+        "doubt",
+        "10.1 µm is more than any bonded plate of this kind is known to do; ceramics turn "
+        "nonlinear and bonds fail long before, and nothing here sees that.",
+    )
+    assert told in said(point, vibration_amplitude=10.1e-6)
+    assert not any("bonded plate" in one.text for one in said(point, vibration_amplitude=10e-6))
+
+
+def table(kept: list[list[float]]) -> FidelityTable:
+    return FidelityTable(
+        shape="square", low=0.0, high=1e-6, time_constant=1e-3, kept=0.9,
+        spatial_periods=np.array([2e-3, 0.4e-3, 8e-3]), speeds=np.array([0.05, 0.15]),
+        amplitude_kept=np.array(kept), friction_kept=np.array(kept),
+        finest_period=np.array([1e-3, 1e-3]), fastest_speed=np.array([0.2, 0.0404, 0.8]),
+        lag=np.array([1e-4, 1e-4]),
+    )  # fmt: skip
+
+
+def test_gratings_that_survive_the_fastest_finger_are_named(point: Prediction) -> None:
+    curves = (curve(1e-6),)
+    some = verdict(STATOR, point, curves, table([[1.0, 0.9], [1.0, 0.5], [1.0, 1.0]]), None)
+    assert (
+        Finding(
+            "good",
+            "Square gratings of 2, 8 mm keep 90 % of their swing up to 150 mm/s; 0.4 mm up to 40 "
+            "mm/s.",
+        )
+        in some
+    )
+    none = verdict(STATOR, point, curves, table([[1.0, 0.8], [1.0, 0.5], [1.0, 0.2]]), None)
+    assert Finding(
+        "limit",
+        "Square gratings of no listed mm keep 90 % of their swing up to 150 mm/s; 0.4 mm up to 40 "
+        "mm/s.",
+    ) in none  # fmt: skip
+
+
+def test_only_the_papers_model_answers_for_its_assumptions(point: Prediction) -> None:
+    failed = [Finding("doubt", check.sentence) for check in point.validity.failed]
+    assert failed
+    assert not set(failed) & set(said(point))
+    assert set(failed) <= set(said(point, model="paper2008"))
+
+
+def test_assumed_values_are_counted(point: Prediction) -> None:
+    sources = {
+        "a": Provenance("here", "assumed"),
+        "b": Provenance("there", "published"),
+        "c": Provenance("nowhere", "assumed"),
+    }
+    display = dataclasses.replace(STATOR, provenance=sources)
+    found = verdict(display, point, (curve(1e-6),), None, None)
+    assert Finding(
+        "doubt",
+        "2 of 3 sourced values of this display are assumed, not measured or published: "
+        "squeezefilm show biet2008-stator lists them.",
+    ) in found  # fmt: skip
+    assert not any("sourced values" in one.text for one in said(point))
+
+
+def test_the_last_word_is_that_nothing_is_validated(point: Prediction) -> None:
+    last = said(point)[-1]
+    assert last == Finding(
+        "doubt",
+        "Friction against amplitude is not validated against measurements: no measured curve of an "
+        "ultrasonic display could be read anywhere.",
+    )
+    assert len(said(point, relative_friction=0.5)) == 2
+
+
+def films(sealed: float, opened: float, plateau: float, **others: Any) -> FilmComparison:
+    results = tuple(
+        FilmResult(model, "", over, 0.0, over / 0.05, 0.5, "")  # type: ignore[arg-type]
+        for model, over in (
+            ("paper2008", 0.03), ("film-sealed", sealed), ("film-open", opened),
+            ("film-plateau", plateau),
+        )
+    )  # fmt: skip
+    return FilmComparison(results, (), **{"teeth": None, "balance": None, **others})
+
+
+def test_films_are_compared_by_their_over_pressure(point: Prediction) -> None:
+    p = dataclasses.replace(point, squeeze_number=20.42)
+    found = verdict(STATOR, p, (curve(1e-6),), None, films(0.012, 0.0005, 0.04))
+    assert Finding(
+        "doubt",
+        "The paper's asymptote promises 2.5 times the over-pressure of the solved film with sealed "
+        "grooves (squeeze number 20.4), and 60 times that with grooves open at the edge of the "
+        "contact.",
+    ) in found  # fmt: skip
+    assert Finding(
+        "doubt",
+        "How ridges are drawn decides: sinusoidal ridges with open grooves carry 1.0% of the "
+        "finger, ridges pressed flat 80% of it. Partial levitation, where film and asperities "
+        "share the load of a flattened ridge, lies between.",
+    ) in found  # fmt: skip
+
+
+@pytest.mark.parametrize(("sealed", "opened"), [(0.0, 1.0), (1.0, 0.0), (-1.0, 1.0), (1.0, -1.0)])
+def test_a_film_without_over_pressure_is_in_no_ratio(
+    point: Prediction, sealed: float, opened: float
+) -> None:
+    found = verdict(STATOR, point, (curve(1e-6),), None, films(sealed, opened, 0.05))
+    assert not any("promises" in one.text for one in found)
+    assert any("ridges pressed flat all of it. Partial" in one.text for one in found)
+
+
+def test_plateaus_and_teeth_add_their_own_sentences(point: Prediction) -> None:
+    before = len(verdict(STATOR, point, (curve(1e-6),), None, films(0.01, 0.01, 0.1)))
+    both = films(
+        0.01, 0.01, 0.1,
+        balance=PlateauBalance(1e-6, 1e-9, 1e-6, 7e3, "It floats."),
+        teeth=ToothResult(2e-3, 1e-3, 0.1, 0.1, 1.0, "Teeth do not matter."),
+    )  # fmt: skip
+    found = verdict(STATOR, point, (curve(1e-6),), None, both)
+    assert len(found) == before + 2
+    assert Finding("limit", "It floats.") in found
+    assert Finding("limit", "Teeth do not matter.") in found

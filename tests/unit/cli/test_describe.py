@@ -1,0 +1,120 @@
+"""The verbs about a display's description, and `analyze` with its defaults and units."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+from tests.e2e.program import run
+
+from squeezefilm.cli.describe import analyze, new, presets, show
+from squeezefilm.display import load_display
+from squeezefilm.presets import display_names
+
+DISPLAY = "biet2008-plate"
+StandsIn = Callable[..., Any]
+ANSWER = SimpleNamespace(summary=lambda: {"found": 1})
+
+
+def test_the_verbs_are_those_of_the_program() -> None:
+    said = run("--help").stdout
+    for verb in (presets, show, new, analyze):
+        assert verb.__name__ in said
+
+
+def test_presets_are_listed() -> None:
+    listing = json.loads(run("presets", "--json").stdout)
+    assert [one["name"] for one in listing] == list(display_names())
+    said = run("presets").stdout
+    assert not said.startswith("[")
+    assert all(name in said for name in display_names())
+    assert "what it is" in said
+
+
+def test_values_are_shown_with_their_sources() -> None:
+    values = json.loads(run("show", DISPLAY, "--json").stdout)
+    assert {one["path"]: one["text"] for one in values}["actuator.thickness"] == "2 mm"
+    said = run("show", DISPLAY).stdout
+    assert f"of {len(values)} values" in said
+    refused = run("show", "biet2008-plat")
+    assert refused.returncode == 2
+    assert f"Did you mean '{DISPLAY}'" in refused.stderr
+
+
+def test_a_new_file_is_a_display_and_is_kept_unless_forced(tmp_path: Path) -> None:
+    file = tmp_path / "mine.toml"
+    done = run("new", file, "--from", DISPLAY)
+    assert done.stdout == f"wrote {file}; edit it, then: squeezefilm analyze {file}\n"
+    assert load_display(file).actuator == load_display(DISPLAY).actuator
+    file.write_text("mine", encoding="utf-8")
+    refused = run("new", file, "--from", DISPLAY)
+    assert refused.returncode == 2
+    assert file.read_text(encoding="utf-8") == "mine"
+    assert run("new", file, "--from", DISPLAY, "--force").returncode == 0
+    assert load_display(file).actuator == load_display(DISPLAY).actuator
+
+
+@pytest.fixture
+def analysis(stands_in: StandsIn, tmp_path: Path) -> SimpleNamespace:
+    """What `analyze` calls."""
+    return SimpleNamespace(
+        asked=stands_in("analysis.analyze:analyze", ANSWER),
+        shown=stands_in("report.kit.terminal:show_analysis"),
+        written=stands_in("report.display.page:write_analysis", tmp_path / "report.html"),
+    )
+
+
+def test_an_analysis_is_the_displays_own_unless_asked(analysis: SimpleNamespace) -> None:
+    done = run("analyze", DISPLAY)
+    assert done.returncode == 0, done.stderr
+    assert analysis.asked.given == (load_display(DISPLAY),)
+    assert analysis.asked.named == {
+        "voltage": None, "frequency": None, "vibration_amplitude": None, "normal_force": None,
+        "surface": None, "samples": 32, "theory": None, "model": None, "strict": False,
+    }  # fmt: skip
+    assert analysis.shown.given == (ANSWER,)
+    assert done.stdout == "add --out DIR to write result.json and a report with figures\n"
+    assert done.stderr == "  a step …\n"
+    assert analysis.written.calls == []
+
+
+def test_every_option_of_an_analysis_arrives(analysis: SimpleNamespace, tmp_path: Path) -> None:
+    options = (
+        "--voltage", "15 V", "--frequency", "34 kHz", "--amplitude", "2 um", "--force", "0.3 N",
+        "--surface", "copper", "--samples", "8", "--theory", "timoshenko", "--model", "film-open",
+        "--strict", "--out", tmp_path,
+    )  # fmt: skip
+    done = run("analyze", DISPLAY, *options)
+    assert analysis.asked.named == {
+        "voltage": 15.0, "frequency": 34e3, "vibration_amplitude": pytest.approx(2e-6),
+        "normal_force": 0.3, "surface": "copper", "samples": 8, "theory": "timoshenko",
+        "model": "film-open", "strict": True,
+    }  # fmt: skip
+    assert analysis.written.given == (ANSWER, tmp_path)
+    assert done.stdout == f"report: {tmp_path / 'report.html'}\n"
+    done = run("analyze", DISPLAY, "--json")
+    assert json.loads(done.stdout) == {"found": 1}
+    assert done.stderr == ""
+    assert len(analysis.shown.calls) == 1
+
+
+@pytest.mark.parametrize("option", ["voltage", "frequency", "amplitude", "force"])
+def test_a_wrong_unit_is_refused_with_its_option(option: str, analysis: SimpleNamespace) -> None:
+    done = run("analyze", DISPLAY, f"--{option}", "3 kg")
+    assert done.returncode == 2
+    assert f"error: --{option}: " in done.stderr
+    assert analysis.asked.calls == []
+
+
+def test_a_place_nobody_can_write_to_is_refused_first(
+    analysis: SimpleNamespace, tmp_path: Path
+) -> None:
+    (tmp_path / "file").write_text("", encoding="utf-8")
+    done = run("analyze", DISPLAY, "--out", tmp_path / "file" / "out")
+    assert done.returncode == 2
+    assert "nothing can be written there" in done.stderr
+    assert analysis.asked.calls == []

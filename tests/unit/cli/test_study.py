@@ -1,0 +1,265 @@
+"""The verbs of a study: what each calls with which values, what it says, what it leaves behind."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+import typer
+from tests.e2e.program import Done
+from tests.e2e.program import run as program
+
+from squeezefilm.cli.study import study
+from squeezefilm.perception.observer import load_observer
+from squeezefilm.presets import study_names
+from squeezefilm.report.study.terminal import ask_acknowledgement
+from squeezefilm.study.design.study_design import load_design
+from squeezefilm.study.record.store import StudyStore
+
+from ..study.scripted import gratings
+
+PRESET = "biet2008-gratings"
+StandsIn = Callable[..., Any]
+ANSWER = SimpleNamespace(summary=lambda: {"found": 1}, curve="the curve")
+
+
+def run(*arguments: str | Path, keys: str = "", cwd: Path | None = None) -> Done:
+    """A verb of `study`."""
+    return program("study", *arguments, keys=keys, cwd=cwd)
+
+
+@pytest.fixture
+def store(tmp_path: Path) -> Path:
+    """A study's file with two people enrolled."""
+    path = tmp_path / "a.sqlite"
+    with StudyStore.create(path, gratings(), 7) as found:
+        found.enrol()
+        found.enrol()
+    return path
+
+
+def people(path: Path) -> list[str]:
+    with StudyStore.open(path) as found:
+        return [str(one["uuid"]) for one in found.participants()]
+
+
+def test_without_a_verb_the_verbs_are_listed() -> None:
+    done = run()
+    said = done.stdout + done.stderr
+    assert "Missing command" not in said
+    for command in study.registered_commands:
+        assert (command.name or command.callback.__name__).replace("_", "-") in said  # type: ignore[union-attr]
+
+
+def test_a_plan_is_for_twelve_people_and_seed_0_unless_asked() -> None:
+    found = json.loads(run("plan", PRESET, "--json").stdout)
+    assert (found["participants"], found["seed"]) == (12, 0)
+    found = json.loads(run("plan", PRESET, "--participants", "3", "--seed", "5", "--json").stdout)
+    assert (found["participants"], found["seed"]) == (3, 5)
+    said = run("plan", PRESET).stdout
+    assert "for 12 participants" in said
+    assert not said.startswith("{")
+
+
+def test_presets_are_named_with_their_titles() -> None:
+    listing = json.loads(run("presets", "--json").stdout)
+    assert [one["name"] for one in listing] == list(study_names())
+    assert {"name": PRESET, "title": load_design(PRESET).title} in listing
+    said = run("presets").stdout.splitlines()
+    assert said == [f"{one['name']}: {one['title']}" for one in listing]
+
+
+def test_simulated_people_are_shown_and_written_where_asked(
+    stands_in: StandsIn, tmp_path: Path
+) -> None:
+    tables = stands_in("study.simulated.chain_tables:chain_tables", "the tables")
+    people = stands_in("study.simulated.participants:simulate_participants", ANSWER)
+    shown = stands_in("report.study.terminal_simulated:show_simulated")
+    written = stands_in("report.study.simulated_page:write_simulated", tmp_path / "index.html")
+    done = run("simulate", PRESET)
+    assert done.returncode == 0, done.stderr
+    design, observer = load_design(PRESET), load_observer("fingertip")
+    assert tables.given == (design, observer)
+    assert people.given == (design, observer, 12, 0, "the tables")
+    assert shown.given == (ANSWER,)
+    assert done.stdout == ""
+    assert "  a step …" in done.stderr
+    assert written.calls == []
+
+    asked = ("--participants", "2", "--seed", "3", "--out", tmp_path)
+    done = run("simulate", PRESET, *asked)
+    assert people.calls[-1][0][2:4] == (2, 3)
+    assert written.given[:2] == (ANSWER, tmp_path)
+    assert done.stdout == f"page: {tmp_path / 'index.html'}\n"
+    done = run("simulate", PRESET, *asked, "--json")
+    assert json.loads(done.stdout) == {"found": 1}
+    assert done.stderr == ""
+    assert len(shown.calls) == 2
+
+
+def test_power_takes_its_question_from_the_options(stands_in: StandsIn, tmp_path: Path) -> None:
+    asked = stands_in("study.simulated.planned_power:planned_power", ANSWER)
+    shown = stands_in("report.study.terminal_identification:show_power")
+    drawn = stands_in("report.study.time_figures:power", "the figure")
+    stands_in("report.kit.style:png", b"a picture")
+    done = run("power", PRESET, "8 mm", "10 mm")
+    assert asked.given == (load_design(PRESET), load_observer("fingertip"), "8 mm", "10 mm")
+    assert asked.named == {"display": None, "target": 0.8, "studies": 400, "seed": 0}
+    assert shown.given == (ANSWER,)
+    assert "  a step …" in done.stderr
+    assert drawn.calls == []
+
+    picture = tmp_path / "power.png"
+    done = run(
+        "power", PRESET, "8 mm", "10 mm", "--display", "biet2008-stator", "--target", "0.9",
+        "--studies", "50", "--seed", "4", "--out", picture, "--json",
+    )  # fmt: skip
+    assert asked.calls[-1][1] == {
+        "display": "biet2008-stator", "target": 0.9, "studies": 50, "seed": 4,
+    }  # fmt: skip
+    assert picture.read_bytes() == b"a picture"
+    assert drawn.given == ("the curve",)
+    assert json.loads(done.stdout) == {"found": 1}
+    assert done.stderr == ""
+    assert len(shown.calls) == 1
+
+
+def test_a_rehearsal_makes_the_file_and_says_what_comes_next(
+    stands_in: StandsIn, tmp_path: Path
+) -> None:
+    asked = stands_in("study.conduct.rehearsal:rehearse", ("a", "b", "c"))
+    path = tmp_path / "tried.sqlite"
+    done = run("rehearse", PRESET, "--store", path)
+    assert asked.given[1:] == (load_observer("fingertip"), 3)
+    assert done.stderr == ""
+    assert done.stdout.splitlines() == [
+        "3 simulated participants answered everything; look at it with:",
+        f"squeezefilm study analyze {path}",
+    ]
+    with StudyStore.open(path) as found:
+        assert [found.study[key] for key in ("seed", "station", "stations")] == [0, 0, 1]
+        assert found.design.name == load_design(PRESET).name
+    run("rehearse", PRESET, "--store", path, "--participants", "1")
+    assert asked.calls[-1][0][2] == 1
+    refused = run("rehearse", PRESET, "--store", path, "--seed", "1")
+    assert refused.returncode == 2
+    assert "give another --store" in refused.stderr
+
+
+def test_a_session_is_given_every_option(
+    stands_in: StandsIn, capsys: pytest.CaptureFixture[str]
+) -> None:
+    asked = stands_in("report.study.session:run_study", "how it ended", tells=False)
+    done = run("run", PRESET, "--store", "a.sqlite")
+    assert done.stdout == "how it ended\n"
+    assert asked.given == (PRESET, Path("a.sqlite"), None)
+    named = dict(asked.named)
+    with named.pop("progress")() as step:
+        step("nobody is at a terminal")
+    assert capsys.readouterr().err == ""
+    assert named == {
+        "drive": "none", "amplitude_per_pickup": None, "conditions": None, "consent": False,
+        "acknowledge": ask_acknowledgement, "seed": 0, "station": 0, "stations": 1,
+        "tell": typer.echo,
+    }  # fmt: skip
+
+    run(
+        "run", PRESET, "--store", "a.sqlite", "--participant", "abc", "--conditions", "c.toml",
+        "--consent", "--drive", "twin", "--pickup", "2 um/V", "--acknowledge-ultrasound",
+        "--seed", "5", "--station", "1", "--stations", "3",
+    )  # fmt: skip
+    (_, _, participant), named = asked.calls[-1]
+    assert named.pop("acknowledge")("any statement") is True
+    assert named.pop("progress") is not None
+    assert participant == "abc"
+    assert named.pop("amplitude_per_pickup") == pytest.approx(2e-6)
+    assert named == {
+        "drive": "twin", "conditions": Path("c.toml"), "consent": True, "seed": 5, "station": 1,
+        "stations": 3, "tell": typer.echo,
+    }  # fmt: skip
+    refused = run("run", PRESET, "--store", "a.sqlite", "--pickup", "2 um")
+    assert refused.returncode == 2
+    assert "error: --pickup: " in refused.stderr
+
+
+def test_the_status_lists_who_is_enrolled(store: Path) -> None:
+    found = json.loads(run("status", store, "--json").stdout)
+    assert found["study"] == "small"
+    assert [one["uuid"] for one in found["participants"]] == people(store)
+    said = run("status", store).stdout
+    assert f"small: {store}" in " ".join(said.split())
+    assert not said.startswith("{")
+
+
+def test_an_export_is_csv_beside_the_file_unless_asked(store: Path, tmp_path: Path) -> None:
+    done = run("export", store)
+    assert done.stdout == f"wrote {tmp_path / 'a.exports' / 'csv'}\n"
+    assert (tmp_path / "a.exports" / "csv" / "small_trials.csv").exists()
+    assert run("export", store, "--format", "bids", "--out", tmp_path / "b").returncode == 0
+    assert (tmp_path / "b" / "dataset_description.json").exists()
+    refused = run("export", store, "--format", "xml")
+    assert refused.returncode == 2
+    assert "csv, psych-ds, bids" in refused.stderr
+
+
+def test_a_merge_adds_every_file_named(store: Path, tmp_path: Path) -> None:
+    for name in ("b", "c"):
+        with StudyStore.create(tmp_path / f"{name}.sqlite", gratings(), 7) as found:
+            found.enrol()
+            found.enrol()
+    done = run("merge", store, "b.sqlite", "c.sqlite", cwd=tmp_path)
+    lines = done.stdout.splitlines()
+    assert lines[0].startswith("b.sqlite: 2 participants and 0 answers added")
+    assert any(line.startswith("c.sqlite: 2 participants") for line in lines)
+    assert len(people(store)) == 6
+
+
+def test_a_backup_is_a_copy(store: Path) -> None:
+    done = run("backup", store)
+    assert done.stdout.startswith("wrote ")
+    assert people(Path(done.stdout.removeprefix("wrote ").strip())) == people(store)
+
+
+def test_somebody_is_deleted_only_after_a_yes(store: Path) -> None:
+    first, second = people(store)
+    kept = run("delete-participant", store, first, keys="n\n")
+    assert kept.returncode == 1
+    assert f"Delete every answer and trace of {first} for good?" in kept.stdout
+    assert people(store) == [first, second]
+    gone = run("delete-participant", store, first, keys="y\n")
+    assert gone.returncode == 0
+    assert f"{first}: 0 answers" in gone.stdout
+    unasked = run("delete-participant", store, second, "--yes")
+    assert unasked.returncode == 0
+    assert "for good" not in unasked.stdout
+    assert people(store) == []
+
+
+def test_an_analysis_is_shown_and_written_a_page_per_display(
+    stands_in: StandsIn, store: Path, tmp_path: Path
+) -> None:
+    found = {"one": ANSWER, "two": ANSWER}
+    asked = stands_in("study.identification.recorded:analyze_study", found)
+    shown = stands_in("report.study.terminal_identification:show_analyses")
+    written = stands_in("report.study.page:write_study", tmp_path / "index.html")
+    done = run("analyze", store)
+    assert asked.given[0].path == store
+    assert asked.named == {"mixed": False, "seed": 0}
+    assert shown.given == (found,)
+    assert "  a step …" in done.stderr
+    assert done.stdout == ""
+    assert written.calls == []
+
+    out = tmp_path / "pages"
+    done = run("analyze", store, "--out", out, "--mixed", "--seed", "6")
+    assert asked.calls[-1][1] == {"mixed": True, "seed": 6}
+    assert [given for given, _ in written.calls] == [(ANSWER, out / "one"), (ANSWER, out / "two")]
+    assert done.stdout == 2 * f"page: {tmp_path / 'index.html'}\n"
+    done = run("analyze", store, "--json")
+    assert json.loads(done.stdout) == {"one": {"found": 1}, "two": {"found": 1}}
+    assert done.stderr == ""
+    assert len(shown.calls) == 2

@@ -1,0 +1,464 @@
+"""What the Study area answers beside its devices: files, links, codes, exposure, jobs, endings."""
+
+from __future__ import annotations
+
+import contextvars
+import shutil
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from pydantic import ValidationError
+
+from squeezefilm import presets
+from squeezefilm.errors import DeviceError
+from squeezefilm.lab.areas import study as study_area
+from squeezefilm.lab.areas.study import (
+    CreateStudy,
+    DeleteParticipant,
+    ExportStudy,
+    FeelSurface,
+    MergeStudy,
+    NamedStudy,
+    OfParticipant,
+    OfSitting,
+    PlanStudy,
+    PrepareSitting,
+    RehearseStudy,
+    Respond,
+    SurfacesFelt,
+    add_study,
+)
+from squeezefilm.lab.keys import CODE_LIFE
+from squeezefilm.lab.server import LanPlace
+from squeezefilm.lab.studying.devices import StudyDevices
+from squeezefilm.lab.worker import PAGE
+from squeezefilm.study.conduct.exposure import Exposure
+from squeezefilm.study.conduct.study_device import DeviceIdentity, DeviceVerification, Exploration
+from squeezefilm.study.record.store import StudyStore
+
+from ...study.scripted import gratings, run_through
+
+if TYPE_CHECKING:
+    from .conftest import Talk
+
+EXPOSURE = Exposure("stator", 40.5e3, 0.5, 120.0, 3600.0, None, "", "made up for this test")
+AGREED = "I agree to take part in this."
+
+
+class Device:
+    """A device that says what it was asked, and may be gone."""
+
+    def __init__(self) -> None:
+        self.asked: list[str] = []
+        self.gone = False
+
+    def identity(self) -> DeviceIdentity:
+        return DeviceIdentity("bench")
+
+    def verify_device(self) -> DeviceVerification:
+        if self.gone:
+            raise DeviceError("nothing answers")
+        return DeviceVerification(resonance_frequency=40.5e3, expected_resonance_frequency=40.5e3)
+
+    def present(self, stimulus: object, seed: int) -> None:
+        self.asked.append("present")
+
+    def stop(self) -> Exploration:
+        self.asked.append("stop")
+        return Exploration()
+
+    def halt(self) -> None:
+        self.asked.append("halt")
+
+    def close(self) -> None:
+        self.asked.append("close")
+
+
+@pytest.fixture
+def device() -> Device:
+    return Device()
+
+
+@pytest.fixture
+def lab(talk: Talk, device: Device, monkeypatch: pytest.MonkeyPatch) -> Any:
+    """A lab with a study on one display, and a participant of it."""
+
+    def exposed(display: str) -> Exposure:
+        assert display == "biet2008-stator"
+        return EXPOSURE
+
+    monkeypatch.setattr(study_area, "_exposure", exposed)
+    add_study(talk.lab, StudyDevices(lambda *_: device))
+    file = talk.folder / "studies" / "one.sqlite"
+    file.parent.mkdir()
+    StudyStore.create(file, gratings(displays=("biet2008-stator",)), 4).close()
+    yield talk
+    talk.lab.close()
+
+
+def enrolled(lab: Talk) -> dict[str, str]:
+    """One more participant, as requests name them."""
+    who = lab.say("enrol", study="one")["participants"][-1]["pseudonym"]
+    return {"study": "one", "participant": who}
+
+
+def prepared(lab: Talk, device: str = "none", **of: str) -> str:
+    """A sitting for a new participant, or the one that is named."""
+    made = lab.say(
+        "prepare sitting", **(of or enrolled(lab)), device=device, consent=AGREED, acknowledged=True
+    )
+    assert made["type"] == "study"
+    return str(made["sitting"])
+
+
+def test_designs_and_studies_are_listed_and_whether_tablets_may_come(lab: Talk) -> None:
+    found = lab.say("studies")
+    assert found["type"] == "studies"
+    assert [one["name"] for one in found["designs"]] == list(presets.study_names())
+    assert (found["studies"], found["tablets"]) == (["one"], False)
+    lab.lab.lan = LanPlace("https://10.0.0.1:8632/pair", "AB:CD")
+    assert lab.say("studies")["tablets"] is True
+
+
+def test_a_design_is_planned_before_a_study_is_made_of_it(lab: Talk) -> None:
+    plan = lab.say("plan study", design="friction-jnd")
+    assert plan["type"] == "plan"
+    assert f"about {round(plan['duration_s'] / 60)} minutes" in plan["consent"]
+    made = lab.say("create study", design="friction-jnd", study="two", seed=11)
+    assert (made["type"], made["name"], made["seed"]) == ("study", "two", 11)
+    assert made["consent"] == plan["consent"]
+    assert "two.sqlite exists" in lab.refused("create study", design="bump", study="two", seed=1)
+    assert lab.say("studies")["studies"] == ["one", "two"]
+
+
+def test_every_experimenter_hears_of_a_change(lab: Talk) -> None:
+    page, tablet = lab.opened(), lab.opened(is_participant=True)
+    found = lab.say("enrol", study="one")
+    assert lab.say("study", study="one") == found
+    assert page.heard == [{"type": "study changed", "study": "one"}]
+    assert tablet.heard == []
+
+
+def test_exposure_is_computed_once_for_a_display(lab: Talk) -> None:
+    of = enrolled(lab)
+    for _ in range(2):
+        found = lab.say("exposure", **of)
+        assert found == {
+            "type": "exposure", "display": "biet2008-stator", "statement": EXPOSURE.statement,
+        }  # fmt: skip
+    assert lab.asked == [("slow", None, "exposed", False)]
+
+
+def test_who_has_answered_everything_is_exposed_to_nothing(lab: Talk) -> None:
+    design = gratings(1, displays=("biet2008-stator",))
+    run_through(lab.folder / "studies" / "done.sqlite", design, people=1).close()
+    (one,) = lab.say("study", study="done")["participants"]
+    who = one["pseudonym"]
+    said = lab.refused("exposure", study="done", participant=who)
+    assert said == f"participant {who} has answered every trial"
+
+
+def test_a_link_leads_a_station_to_its_sitting(lab: Talk) -> None:
+    sitting = prepared(lab)
+    found = lab.say("station link", sitting=sitting)
+    assert found["type"] == "link"
+    path, token = found["path"].split("=")
+    assert path == "/?token"
+    entered = lab.lab.keys.use_link(token)
+    assert entered is not None
+    assert (entered[0].role, entered[1]) == ("participant", f"/participant#{sitting}")
+    assert "error" in lab.say("station link", sitting="no such")["type"]
+
+
+def test_a_code_pairs_a_tablet_where_the_lab_has_an_address_for_them(lab: Talk) -> None:
+    sitting = prepared(lab)
+    assert "--lan ADDRESS" in lab.refused("pairing code", sitting=sitting)
+    lab.lab.lan = LanPlace("https://10.0.0.1:8632/pair", "AB:CD")
+    found = lab.say("pairing code", sitting=sitting)
+    code = found.pop("code")
+    assert found == {
+        "type": "code", "link": "https://10.0.0.1:8632/pair", "fingerprint": "AB:CD",
+        "life_s": CODE_LIFE,
+    }  # fmt: skip
+    entered = lab.lab.keys.use_code(code)
+    assert entered is not None
+    assert (entered[0].role, entered[1]) == ("participant", f"/participant#{sitting}")
+    assert "error" in lab.say("pairing code", sitting="no such")["type"]
+
+
+def test_a_sitting_by_hand_from_consent_to_its_end(lab: Talk) -> None:
+    of = enrolled(lab)
+    sitting = prepared(lab, **of)
+    page, tablet = lab.opened(), lab.opened(is_participant=True)
+    assert lab.say("where", sitting=sitting) == {
+        "type": "where", "state": "consent", "consent": AGREED,
+    }  # fmt: skip
+    # Nothing is shown before the consent.
+    assert lab.say("next", sitting=sitting)["state"] == "consent"
+    assert page.heard == []
+    assert lab.say("consent", sitting=sitting)["state"] == "ready"
+    changed = {"type": "study changed", "study": "one"}
+    assert page.heard == [changed]
+    assert lab.asked == []  # Without a device there is no sound to compute.
+    for number in range(1, 100):
+        trial = lab.say("next", sitting=sitting)
+        assert trial["type"] == "where"
+        if trial["state"] != "trial":
+            break
+        # Which study it is, and what is felt, is the experimenter's to know.
+        assert "study" not in trial
+        (shown,) = lab.say("study", study="one")["sittings"]
+        assert len(shown["by_hand"]) == trial["surfaces"] == 1
+        assert not trial["plays"]
+        assert lab.refused("feel", sitting=sitting, token=trial["token"], place=0) == (
+            "this sitting has no device"
+        )
+        choice = trial["alternatives"][0] if trial["alternatives"] else ""
+        told = lab.say("respond", sitting=sitting, token=trial["token"], choice=choice)
+        assert (told["type"], told["number"], told["repeated"]) == ("acknowledged", number, False)
+        assert "study" not in told
+    assert (trial["state"], number - 1) == ("finished", 3 + 3 * 2)
+    # Each trial was told when it was shown and when it was answered.
+    assert page.heard == [changed] * (1 + 2 * 9)
+    ended = lab.say("end sitting", sitting=sitting)
+    assert (ended["type"], ended["problems"]) == ("study", [])
+    assert tablet.heard == [{"type": "sitting ended", "sitting": sitting}]
+    assert lab.say("where", sitting=sitting)["state"] == "ended"
+    said = lab.refused("prepare sitting", **of, device="none", consent=AGREED, acknowledged=True)
+    assert "has answered every trial" in said
+
+
+@pytest.mark.parametrize(
+    ("design", "answer"), [("one", {"choice": "4 mm"}), ("coarseness-magnitude", {"estimate": 42})]
+)
+def test_what_was_measured_of_an_answer_is_recorded(
+    lab: Talk, design: str, answer: dict[str, Any]
+) -> None:
+    if design != "one":
+        lab.say("create study", design=design, study=design, seed=1)
+    who = lab.say("enrol", study=design)["participants"][0]["pseudonym"]
+    sitting = prepared(lab, study=design, participant=who)
+    lab.say("consent", sitting=sitting)
+    while (trial := lab.say("next", sitting=sitting))["named"]:
+        lab.say("respond", sitting=sitting, token=trial["token"])
+    assert trial["numeric"] is ("estimate" in answer)
+    how = {"response_time": 1.25, "started_monotonic": 10.5, "ended_monotonic": 11.5, **answer}
+    lab.say("respond", sitting=sitting, token=trial["token"], **how)
+    with StudyStore.open(lab.folder / "studies" / f"{design}.sqlite") as store:
+        (row,) = store.rows("SELECT * FROM response WHERE response_time_s IS NOT NULL")
+    assert row["response_time_s"] == 1.25
+    assert (row["started_monotonic_s"], row["ended_monotonic_s"]) == (10.5, 11.5)
+    for field, value in answer.items():
+        assert row[field] == value
+
+
+def test_a_device_that_is_gone_is_said_and_its_sitting_ends(lab: Talk, device: Device) -> None:
+    sitting = prepared(lab, "twin")
+    assert lab.say("consent", sitting=sitting)["state"] == "ready"
+    device.gone = True
+    ended = lab.say("end sitting", sitting=sitting)
+    assert "the device could not be verified: nothing answers" in ended["problems"]
+    assert device.asked[-1] == "close"
+    assert lab.say("where", sitting=sitting)["state"] == "ended"
+    with StudyStore.open(lab.folder / "studies" / "one.sqlite") as store:
+        # As the consent measured it, and that nothing could be in the end.
+        assert store.rows("SELECT count(*) AS n FROM verification")[0]["n"] == 2
+    # Again it is only said that it has ended.
+    device.asked.clear()
+    assert lab.say("end sitting", sitting=sitting)["problems"] == []
+    assert device.asked == []
+
+
+def test_a_sitting_that_was_not_consented_to_ends_without_its_device(
+    lab: Talk, device: Device
+) -> None:
+    assert lab.say("end sitting", sitting=prepared(lab, "twin"))["problems"] == []
+    assert device.asked == []
+
+
+def test_a_surface_plays_until_it_is_felt_or_stopped(lab: Talk, device: Device) -> None:
+    sitting = prepared(lab, "twin")
+    lab.say("consent", sitting=sitting)
+    while not (trial := lab.say("next", sitting=sitting))["plays"]:
+        lab.say("respond", sitting=sitting, token=trial["token"])
+    here = {"sitting": sitting, "token": trial["token"]}
+    page, other = lab.opened(is_participant=True), lab.opened(is_participant=True)
+    context = contextvars.copy_context()
+    context.run(PAGE.set, page)  # type: ignore[arg-type]
+    played = context.run(lab.say, "feel", **here, place=0)
+    assert played == {"type": "playing", "place": 0}
+    assert device.asked[-1] == "present"
+    assert lab.say("felt", **here) == {"type": "silent"}
+    assert device.asked[-1] == "stop"
+    assert lab.say("stop surface", sitting=sitting) == {"type": "silent"}
+    assert device.asked[-1] == "halt"
+    context.run(lab.say, "feel", **here, place=0)
+    (left,) = lab.lab.left
+    left(other)  # type: ignore[arg-type]
+    assert device.asked[-1] == "present"
+    left(page)  # type: ignore[arg-type]
+    assert device.asked[-1] == "halt"
+    device.asked.clear()
+    left(page)  # type: ignore[arg-type]
+    assert device.asked == []
+
+
+def test_a_device_is_free_once_its_sitting_has_ended(lab: Talk, device: Device) -> None:
+    of = enrolled(lab)
+    first = prepared(lab, "twin", **of)
+    lab.say("consent", sitting=first)
+    second = prepared(lab, "twin")
+    assert "in use by another sitting" in lab.refused("consent", sitting=second)
+    lab.say("end sitting", sitting=first)
+    assert lab.say("consent", sitting=second)["state"] == "ready"
+
+
+def test_deleting_asks_for_the_name_twice_and_lets_the_device_go(lab: Talk, device: Device) -> None:
+    of, other = enrolled(lab), enrolled(lab)
+    lab.say("consent", sitting=prepared(lab, "twin", **other))
+    page = lab.opened()
+    said = lab.refused("delete participant", **of, confirm=of["participant"] + " ")
+    assert said == f"to delete {of['participant']}, type exactly that; nothing was done"
+    assert len(lab.say("study", study="one")["participants"]) == 2
+    assert page.heard == []
+    found = lab.say("delete participant", **of, confirm=of["participant"])
+    assert [one["pseudonym"] for one in found["participants"]] == [other["participant"]]
+    assert page.heard == [{"type": "study changed", "study": "one"}]
+    assert "close" not in device.asked
+    found = lab.say("delete participant", **other, confirm=other["participant"])
+    assert (found["type"], found["participants"]) == ("study", [])
+    assert device.asked[-1] == "close"
+
+
+def test_a_study_is_exported_below_the_labs_folder(lab: Talk) -> None:
+    enrolled(lab)
+    found = lab.say("export study", study="one", format="csv")
+    assert found["type"] == "exported"
+    assert (lab.folder / found["folder"]).exists()
+    assert found["folder"].startswith("studies/")
+    said = lab.refused("export study", study="one", format="xlsx")
+    assert said == "format = 'xlsx' is not known; allowed: csv, psych-ds, bids"
+
+
+def test_two_stations_are_merged(lab: Talk) -> None:
+    folder = lab.folder / "studies"
+    shutil.copy(folder / "one.sqlite", folder / "two.sqlite")
+    lab.say("enrol", study="one")
+    lab.say("enrol", study="two")
+    found = lab.say("merge study", study="one", other="two")
+    assert (found["type"], found["name"]) == ("study", "one")
+    assert len(found["participants"]) == 2
+    assert "is this file itself" in lab.refused("merge study", study="one", other="one")
+
+
+def test_exposure_is_that_of_an_hour(monkeypatch: pytest.MonkeyPatch) -> None:
+    # Solving the plate's sound takes a minute; for how long is what is asked here.
+    monkeypatch.setattr(study_area, "exposure", lambda display, time: (display.name, time))
+    assert study_area._exposure("biet2008-plate") == ("biet2008-plate", 3600.0)
+
+
+def test_jobs_run_on_the_slow_line_with_the_studys_file(
+    lab: Talk, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    given: list[tuple[Any, ...]] = []
+
+    # Each takes seconds, and is tested in test_jobs.
+    def rehearsed(path: Path, participants: int) -> dict[str, Any]:
+        given.append((path, participants))
+        return {"people": participants}
+
+    def analysed(path: Path) -> dict[str, Any]:
+        given.append((path,))
+        return {"answers": 5}
+
+    def reported(path: Path) -> dict[str, Any]:
+        given.append((path,))
+        return {"pages": []}
+
+    for name, job in (("rehearsed", rehearsed), ("analysis_of", analysed), ("report_of", reported)):
+        monkeypatch.setattr(study_area, name, job)
+    page = lab.opened()
+    assert lab.say("analyze study", study="one") == {"type": "analysis", "answers": 5}
+    assert lab.say("report study", study="one") == {"type": "report", "pages": []}
+    assert page.heard == []
+    assert lab.say("rehearse study", study="one", participants=3) == {
+        "type": "rehearsed", "people": 3,
+    }  # fmt: skip
+    assert page.heard == [{"type": "study changed", "study": "one"}]
+    file = lab.folder / "studies" / "one.sqlite"
+    assert given == [(file,), (file,), (file, 3)]
+    assert lab.asked == [
+        ("slow", "analysis", "analysed", False),
+        ("slow", "report", "reported", False),
+        ("slow", None, "rehearsed", False),
+    ]
+    for kind in ("analyze study", "report study"):
+        assert "there is no file two.sqlite" in lab.refused(kind, study="two")
+
+
+def test_a_lab_without_studies_closes(talk: Talk) -> None:
+    add_study(talk.lab)
+    talk.lab.close()
+
+
+BY_STUDY = {"study": ""}
+BY_SITTING = {"sitting": ""}
+BY_PERSON = {"study": "", "participant": ""}
+
+
+@pytest.mark.parametrize(
+    ("model", "field", "most", "others"),
+    [
+        (NamedStudy, "study", 100, {}),
+        (PlanStudy, "design", 100, {}),
+        (CreateStudy, "study", 64, {"design": "", "seed": 0}),
+        (OfParticipant, "participant", 100, BY_STUDY),
+        (DeleteParticipant, "confirm", 100, BY_PERSON),
+        (PrepareSitting, "device", 100, {**BY_PERSON, "consent": AGREED}),
+        (PrepareSitting, "consent", 20_000, {**BY_PERSON, "device": ""}),
+        (OfSitting, "sitting", 100, {}),
+        (FeelSurface, "token", 100, {**BY_SITTING, "place": 0}),
+        (SurfacesFelt, "token", 100, BY_SITTING),
+        (Respond, "token", 100, BY_SITTING),
+        (Respond, "choice", 200, {**BY_SITTING, "token": ""}),
+        (ExportStudy, "format", 20, BY_STUDY),
+        (MergeStudy, "other", 100, BY_STUDY),
+    ],
+)
+def test_texts_that_are_too_long_are_refused(
+    model: Any, field: str, most: int, others: dict[str, Any]
+) -> None:
+    model(id=1, type="t", **others, **{field: "x" * most})
+    with pytest.raises(ValidationError, match=f"at most {most} characters"):
+        model(id=1, type="t", **others, **{field: "x" * (most + 1)})
+
+
+@pytest.mark.parametrize(
+    ("model", "field", "least", "most", "others"),
+    [
+        (CreateStudy, "seed", 0, 2**53, {"design": "", "study": ""}),
+        (FeelSurface, "place", 0, 9, {**BY_SITTING, "token": ""}),
+        (RehearseStudy, "participants", 1, 200, BY_STUDY),
+        (Respond, "response_time", 0, 86400, {**BY_SITTING, "token": ""}),
+        (Respond, "started_monotonic", 0, 10**12, {**BY_SITTING, "token": ""}),
+        (Respond, "ended_monotonic", 0, 10**12, {**BY_SITTING, "token": ""}),
+    ],
+)
+def test_numbers_outside_their_range_are_refused(
+    model: Any, field: str, least: int, most: int, others: dict[str, Any]
+) -> None:
+    for inside in (least, most):
+        assert getattr(model(id=1, type="t", **others, **{field: inside}), field) == inside
+    for outside in (least - 1, most + 1):
+        with pytest.raises(ValidationError):
+            model(id=1, type="t", **others, **{field: outside})
+
+
+def test_a_consent_is_a_sentence_at_least() -> None:
+    how: dict[str, Any] = {"id": 1, "type": "t", **BY_PERSON, "device": "none"}
+    assert PrepareSitting(**how, consent="x" * 20).acknowledged is False
+    with pytest.raises(ValidationError):
+        PrepareSitting(**how, consent="x" * 19)
+    with pytest.raises(ValidationError):
+        PrepareSitting(**how, consent=AGREED, conditions={str(k): "" for k in range(21)})

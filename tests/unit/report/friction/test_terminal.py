@@ -1,0 +1,158 @@
+"""What the terminal says of a friction: every number with its unit, and what is not there."""
+
+from __future__ import annotations
+
+import dataclasses
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+from tests.unit.report.printed import printed
+
+from squeezefilm.analysis.friction.command import Tapping, Wanted
+from squeezefilm.analysis.friction.models import ModelCurve
+from squeezefilm.analysis.parameters import Parameter
+from squeezefilm.analysis.uncertainty import Influence, UncertainFriction
+from squeezefilm.chain.touch import Touch
+from squeezefilm.distributions import Uniform
+from squeezefilm.quantities import Unit
+from squeezefilm.report.friction.terminal import show_friction
+
+SHARING = SimpleNamespace(
+    film_share=np.array([0.5678, 0.1]),
+    relative_friction=np.array([0.4322, 0.2]),
+    mean_gap=np.array([1.2345e-6, 9e-6]),
+)
+LOADED = SimpleNamespace(resonance_frequency=33581.25, free_frequency=33578.0)
+
+
+def touched(mode: Any = LOADED, sharing: Any = SHARING) -> Touch:
+    """A finger that leaves three quarters of 2 µm."""
+    return Touch(2e-6, 1.5e-6, mode, sharing)
+
+
+def prediction(**changes: Any) -> SimpleNamespace:
+    """A plate at 15 V under a finger, with all that there can be to say."""
+    values = {
+        "relative_friction": 0.43216, "voltage": 15.0, "vibration_amplitude": 1.5e-6,
+        "frequency": 33580.0, "touch": touched(), "normal_force": 0.5, "model": "a-model",
+        "surface": SimpleNamespace(name="copper", roughness=0.7e-6), "friction_reduction": 0.11357,
+        "friction_coefficient": 0.2, "tangential_force": 0.043216,
+        "relative_friction_limits": (0.41, 0.49), "warnings": ("mind this", "and that"),
+    }  # fmt: skip
+    return SimpleNamespace(**{**values, **changes})
+
+
+def influence(number: int, origin: str, first: float, total: float, error: float) -> Influence:
+    """One of several parameters, between 150 and 350.25 µm."""
+    spread = Uniform(150e-6, 350.25e-6)
+    parameter = Parameter(f"finger.p{number}", 2e-4, Unit("m"), spread, origin, "")  # type: ignore[arg-type]
+    return Influence(parameter, first, 0.0, total, error)
+
+
+SURE = UncertainFriction(
+    nominal=0.432, median=0.44, interval=(0.283, 0.551), level=0.9, samples=np.zeros(3),
+    amplitudes=np.zeros(3),
+    influences=(
+        influence(0, "assumed", 0.25, 0.4, 0.05),
+        influence(1, "given", -0.02, 0.1, 0.012),
+        *(influence(number, "given", 0.0, 0.0, 0.0) for number in range(2, 8)),
+    ),
+    failed=2, evaluations=640, seed=5, model="a-model",
+)  # fmt: skip
+
+
+def analysis(**changes: Any) -> Any:
+    """All of a friction's analysis."""
+    axis = np.array([0.0, 2e-6])
+    values = {
+        "display": SimpleNamespace(
+            title="A plate", name="plate", gas=SimpleNamespace(ambient_pressure=101325.0)
+        ),
+        "prediction": prediction(),
+        "curves": (
+            ModelCurve("film-open", axis, np.array([1.0, 0.2])),
+            ModelCurve("paper2008", 0.5 * axis, np.array([1.0, 0.2])),
+        ),
+        "uncertainty": SURE,
+        "ripple": SimpleNamespace(ripple=0.0123, half_wavelength=9.8765e-3),
+        "wanted": Wanted(0.7, 1.2345e-6, 12.345),
+        "tapping": Tapping(0.08, 0.91234),
+    }
+    return SimpleNamespace(**{**values, **changes})
+
+
+def said(columns: int = 220, **changes: Any) -> list[str]:
+    return printed(lambda: show_friction(analysis(**changes)), columns)
+
+
+def test_a_friction_is_said_with_why_and_what_to_measure_next() -> None:
+    ranks = [f"finger.p{n} 0.15 mm 0.35 mm 0% 0% ± 0% as described" for n in range(2, 6)]
+    assert said() == [
+        "A plate [plate]",
+        "µ′/µ = 0.43 (0.28–0.55), 90% interval",
+        "Vibration amplitude 1.5 µm with the finger, at 15 V",
+        "Drive frequency 33.58 kHz",
+        "The finger leaves 75 % of 2 µm; it moves the resonance by +3.2 Hz",
+        "Surface copper roughness 0.7 µm",
+        "Normal force 0.5 N",
+        "Ambient pressure 101.3 kPa",
+        "Film carries 56.8 % of the load",
+        "Asperities carry 43.2 % mean gap 1.23 µm",
+        "Relative friction µ′/µ 0.432 a-model",
+        "Friction reduction µ − µ′ 0.114 of µ = 0.2",
+        "Tangential force 43.2 mN sliding steadily",
+        "A softer, a stiffer pad 0.410, 0.490 each ridge at its own balance, all at one mean gap",
+        "Ripple of the wave 1.2 % every 9.88 mm, at constant amplitude",
+        "For µ′/µ = 0.7 12.3 V 1.23 µm",
+        "The same finger by other models",
+        "model µ′/µ",
+        # Half way down the first curve lies 1 − 0.8 · 0.75; the other ends before.
+        "film-open 0.400",
+        "paper2008 –",
+        "intermittent contact at 80 mm/s, no gas 0.912",
+        "What to measure next (share of the variance, alone and in all)",
+        "parameter from to alone in all",
+        "finger.p0 0.15 mm 0.35 mm 25% 40% ± 5% assumed range",
+        "finger.p1 0.15 mm 0.35 mm 0% 10% ± 1% as described",
+        *ranks,
+        "640 load balances, 2 without one; seed 5",
+        "! mind this",
+        "! and that",
+    ]
+
+
+def test_without_samples_a_friction_is_one_number() -> None:
+    lines = said(uncertainty=None, ripple=None, wanted=None)
+    assert lines[1] == "µ′/µ = 0.43"
+    assert not [line for line in lines if "measure next" in line or "seed" in line]
+    assert not [line for line in lines if line.startswith(("Ripple", "For µ′"))]
+
+
+def test_an_amplitude_that_was_given_needs_no_voltage_and_no_plate() -> None:
+    lines = said(prediction=prediction(voltage=None))
+    assert lines[2] == "Vibration amplitude 1.5 µm with the finger, amplitude given"
+    assert not [line for line in lines if line.startswith("The finger leaves")]
+    lines = said(prediction=prediction(touch=touched(mode=None)))
+    assert lines[2].endswith("at 15 V")
+    assert not [line for line in lines if line.startswith("The finger leaves")]
+
+
+def test_a_model_that_shares_no_load_has_no_shares_and_no_limits() -> None:
+    lines = said(
+        prediction=prediction(
+            touch=touched(sharing=None), relative_friction_limits=None, warnings=()
+        )
+    )
+    assert not [line for line in lines if "carr" in line or "stiffer" in line]
+    assert lines[-1].endswith("seed 5")
+
+
+def test_labels_and_parameters_are_not_broken_on_a_narrow_terminal() -> None:
+    first = dataclasses.replace(SURE.influences[0].parameter, path="finger.asperities.decay_length")
+    unsure = dataclasses.replace(
+        SURE, influences=(dataclasses.replace(SURE.influences[0], parameter=first),)
+    )
+    lines = said(56, uncertainty=unsure)
+    assert any(line.startswith("Friction reduction µ − µ′ 0.114") for line in lines)
+    assert any(line.startswith("finger.asperities.decay_length") for line in lines)

@@ -1,0 +1,134 @@
+"""What the terminal says of a solved film and of a solved plate."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+from tests.unit.report.printed import printed
+
+from squeezefilm.analysis.film.command import FilmAnswer, FilmRequest
+from squeezefilm.analysis.plate.command import ModeRow
+from squeezefilm.analysis.plate.tracking import ModeTrack, ModeTracks
+from squeezefilm.report.plate.terminal import show_film, show_plate
+
+FILM = FilmAnswer(
+    squeeze_number=12.3456, excursion_ratio=0.56789, request=FilmRequest("disc"),
+    mean_load=1.23456789123, over_pressure=0.23456789, over_pressure_error=1.23e-4,
+    stiffness_relative=0.98765432, damping_relative=0.12345678, iterations=3, residual=0.0,
+    status="converged", model="a-model", film=None,  # type: ignore[arg-type]
+)  # fmt: skip
+WORKING = ModeRow("(8,0)", 33581.26, 12.345, 212.34, 1.2e-7, 0.1234, 1.0, 10e-3)
+ASIDE = ModeRow("(7,1)", 30000.0, 12.0, 200.0, 1e-13, 0.0, 0.0, None)
+TRACKS = ModeTracks(
+    "thickness", "m", np.array([1e-3, 2e-3]), 1e-3, 1e-3,
+    (ModeTrack("(8,0)", np.array([33e3, 34e3]), np.ones(2), True),), 0.9,
+)  # fmt: skip
+
+
+class Response:
+    """A sweep whose second frequency is the resonance: 10, 20 and 30 at 15 V, and the rest."""
+
+    resonance = 1
+
+    def current(self, voltage: float) -> Any:
+        """In A."""
+        return voltage / 15 * np.array([10e-3, 12.345e-3, 30e-3])
+
+    def apparent_power(self, voltage: float) -> Any:
+        """In VA."""
+        return voltage / 15 * np.array([1.0, 0.092588, 3.0])
+
+    def input_power(self, voltage: float) -> Any:
+        """In W."""
+        return voltage / 15 * np.array([1.0, 0.043211, 3.0])
+
+
+def plate(**changes: Any) -> Any:
+    """A solved plate, with all that there can be to say."""
+    values = {
+        "display": SimpleNamespace(
+            title="A plate", name="plate", drive=SimpleNamespace(voltage=15.0)
+        ),
+        "working": WORKING,
+        "rows": (WORKING, ASIDE),
+        "amplitude_per_volt": 1.2346e-7,
+        "centreline_per_volt": 1.1e-7,
+        "beam_frequency": 1.021 * 33581.26,
+        "shear_frequency": 0.9 * 33581.26,
+        "response": Response(),
+        "sound": SimpleNamespace(
+            guidance=SimpleNamespace(level_dB=100.0, source="somebody 1984", evidence="doubtful"),
+            distances=(0.3,),
+            sound_pressure_level_dB=np.array([120.4]),
+        ),
+        "modes": SimpleNamespace(model="piezoelectric_solid_3d", status="12 modes"),
+        "sensitivities": SimpleNamespace(
+            rows=(
+                SimpleNamespace(
+                    name="glue", change="twice", frequency_shift=-0.01234, amplitude_shift=0.1234
+                ),
+                SimpleNamespace(
+                    name="losses", change="0", frequency_shift=0.0, amplitude_shift=None
+                ),
+            )
+        ),
+        "tracks": TRACKS,
+    }
+    return SimpleNamespace(**{**values, **changes})
+
+
+def said(columns: int = 220, **changes: Any) -> list[str]:
+    return printed(lambda: show_plate(plate(**changes)), columns)
+
+
+def test_a_film_is_said_with_its_error_and_what_numbers_are_relative_to() -> None:
+    assert printed(lambda: show_film(FILM)) == [
+        "disc, σ = 12.35, ε = 0.5679",
+        "Mean load W 1.2345679 over ambient pressure × area",
+        "Over-pressure W − 1 0.234568 ± 0.0001 (estimated)",
+        "Stiffness 0.987654 of p0·A·ε, first harmonic",
+        "Damping 0.123457 of p0·A·ε, first harmonic",
+        "converged",
+    ]
+
+
+def test_a_plate_is_said_with_all_that_there_is() -> None:
+    assert said() == [
+        "A plate [plate]",
+        "Mode (8,0) 33.581 kHz ± 12 Hz (estimated)",
+        "Amplitude per volt 123.5 nm/V largest, upper face",
+        "110 nm/V centreline, between outer nodes",
+        "Quality factor 212.3 from the losses of its materials",
+        "Effective coupling 0.123",
+        "As a Timoshenko beam 34.286 kHz +2.1%",
+        "As a shear plate 30.223 kHz -10.0%",
+        "At 15 V 12.3 mA 0.0926 VA, 0.0432 W",
+        "Sound at 0.3 m 120 dB loudest direction; guidance 100 dB",
+        "Guidance (doubtful): somebody 1984",
+        "Modes in the band",
+        "mode frequency ± Q per volt coupling",
+        "(8,0) 33.581 kHz 12 Hz 212 120 nm/V 0.12",
+        "(7,1) 30 kHz 12 Hz 200 not driven 0",
+        "piezoelectric_solid_3d; 12 modes",
+        "Sensitivities of the working mode",
+        "what is different frequency per volt",
+        "glue twice -1.23% +12.3%",
+        "losses 0 +0.00% –",
+        "Modes against thickness",
+        "mode 1 mm 1 mm 2 mm",
+        "(8,0) 33 kHz 33 kHz 34 kHz driven",
+    ]
+
+
+def test_what_was_not_asked_for_is_not_there() -> None:
+    lines = said(shear_frequency=None, sensitivities=None, tracks=None)
+    assert lines[-1] == "piezoelectric_solid_3d; 12 modes"
+    assert not [line for line in lines if "shear" in line]
+
+
+def test_labels_are_not_broken_on_a_narrow_terminal() -> None:
+    assert any(line.startswith("As a Timoshenko beam 34.286") for line in said(42))
+    film = printed(lambda: show_film(FILM), 42)
+    assert any(line.startswith("Over-pressure W − 1 0.234568") for line in film)

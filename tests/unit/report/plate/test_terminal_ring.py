@@ -1,0 +1,147 @@
+"""What the terminal says of a solved disc or stator, and of a stator whose metal was fitted."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+from tests.unit.report.printed import printed
+
+from squeezefilm.analysis.plate.command import ModeRow
+from squeezefilm.plate.ring.stator import StatorAssumptions
+from squeezefilm.plate.solid.response import EquivalentCircuit
+from squeezefilm.report.plate.terminal_ring import fit_sentences, show_ring
+
+WORKING = ModeRow("B(0,9)", 40523.4, 12.345, 212.34, 1.2e-7, 0.1234, 1.0, 9.3456e-3)
+ASIDE = ModeRow("T(0,2)", 41001.2, 12.0, 200.0, 1e-13, 0.0, 0.0, None)
+GUIDANCE = SimpleNamespace(level_dB=100.0, source="somebody 1984", evidence="to be checked")
+CIRCUIT = EquivalentCircuit(40e3, 200.0, 5.4321e-9, 123.45, 0.098765, 1.2345e-10)
+
+
+def fitted(**assumed: Any) -> Any:
+    """A stator whose metal was fitted to 40.5 kHz."""
+    return SimpleNamespace(
+        ring_thickness=2.34567e-3,
+        mode=SimpleNamespace(label="B(0,9)", frequency=40.5e3),
+        derived={"mean_diameter": 53.571e-3},
+        assumptions=StatorAssumptions(**assumed),
+        frequency_bounds=(40.5e3, 44.12e3),
+    )
+
+
+def response() -> SimpleNamespace:
+    """10 mA, 0.06 VA and 0.02 W at 12 V."""
+    return SimpleNamespace(
+        current=lambda volts: 0.012345 * volts / 12,
+        apparent_power=lambda volts: 0.074071 * volts / 12,
+        input_power=lambda volts: 0.021234 * volts / 12,
+    )
+
+
+def ring(**changes: Any) -> Any:
+    """A solved stator, with all that there can be to say."""
+    values = {
+        "display": SimpleNamespace(
+            title="A stator", name="stator", drive=SimpleNamespace(voltage=12.0)
+        ),
+        "working": WORKING,
+        "rows": (WORKING, ASIDE),
+        "body": SimpleNamespace(fit=None, quality_factor=None),
+        "amplitude_per_volt": 1.2346e-7,
+        "centreline_per_volt": 1.1e-7,
+        "described_amplitude_per_volt": 2e-7,
+        "mode": SimpleNamespace(harmonic=9),
+        "half_wavelength_along": "mean circumference",
+        "circles": np.array([10.123e-3, 20e-3]),
+        "response": response(),
+        "circuit": CIRCUIT,
+        "sound": SimpleNamespace(
+            guidance=GUIDANCE,
+            distances=(0.3, 0.5),
+            sound_pressure_level_dB=np.array([120.4, 116.6]),
+        ),
+        "model": "annular_3d",
+        "status": "2 modes in the band, within 1e-3 (estimated)",
+    }  # fmt: skip
+    return SimpleNamespace(**{**values, **changes})
+
+
+def said(columns: int = 250, **changes: Any) -> list[str]:
+    return printed(lambda: show_ring(ring(**changes)), columns)
+
+
+def test_a_ring_is_said_with_all_that_there_is() -> None:
+    assert said() == [
+        "A stator [stator]",
+        "Mode B(0,9) 40.523 kHz ± 12 Hz (estimated)",
+        "Amplitude per volt 123.5 nm/V largest, touched face",
+        "110 nm/V antinodes of the mean circumference",
+        "200 nm/V described as measured",
+        "Half wavelength 9.346 mm along the mean circumference",
+        "Nodal circles 10.1 mm, 20 mm radius",
+        "Quality factor 212.3 from the losses of its materials",
+        "Effective coupling 0.123",
+        "At 12 V 12.3 mA 0.0741 VA, 0.0212 W",
+        "Equivalent circuit C0 5.43 nF R1 123 ohm, L1 0.0988 H, C1 123 pF",
+        "Sound at 0.3 m 120 dB loudest direction, touched face only; guidance 100 dB",
+        "Sound at 0.5 m 117 dB",
+        "Guidance (to be checked): somebody 1984",
+        "Modes in the band",
+        "mode frequency ± Q per volt coupling",
+        "B(0,9) 40.523 kHz 12 Hz 212 120 nm/V 0.12",
+        "T(0,2) 41.001 kHz 12 Hz 200 not driven 0",
+        "B(circles, diameters) bends; R and T move in the plane, radially and around.",
+        "annular_3d; 2 modes in the band, within 1e-3 (estimated)",
+    ]
+
+
+def test_a_disc_without_diameters_has_an_inner_lobe_and_no_more_than_there_is() -> None:
+    lines = said(
+        mode=SimpleNamespace(harmonic=0),
+        described_amplitude_per_volt=None,
+        circles=np.array([]),
+        circuit=None,
+        working=ModeRow("B(1,0)", 40523.4, 12.0, 212.0, 1.2e-7, 0.1, 1.0, None),
+        body=SimpleNamespace(fit=None, quality_factor=200.0),
+        sound=SimpleNamespace(guidance=None, distances=(), sound_pressure_level_dB=np.array([])),
+    )
+    assert "110 nm/V inner lobe" in lines
+    assert "Quality factor 212 of the assembly, as described" in lines
+    absent = ("described", "Half wave", "Nodal", "Equivalent", "Sound", "Guidance", "Fitted")
+    assert not [line for line in lines if line.startswith(absent)]
+    assert not [line for line in lines if "as measured" in line]
+
+
+def test_a_fitted_stator_says_that_it_predicts_nothing() -> None:
+    lines = said(body=SimpleNamespace(fit=fitted(), quality_factor=200.0))
+    assert lines[1].endswith("± 12 Hz (estimated); fitted, not predicted")
+    # A sentence may take two lines: the terminal is not endless.
+    text = " ".join(lines)
+    assert all(sentence in text for sentence in fit_sentences(fitted()))
+    assert text.index("Fitted:") < text.index("Teeth:") < text.index("Assumed:")
+
+
+def test_labels_are_not_broken_on_a_narrow_terminal() -> None:
+    assert any(line.startswith("Effective coupling 0.123") for line in said(40))
+
+
+def test_a_fit_says_what_is_fitted_bounded_and_assumed() -> None:
+    first, teeth, assumed = fit_sentences(fitted())
+    assert first.startswith(
+        "Fitted: 2.346 mm of metal under the teeth, so that B(0,9) falls on 40.5 kHz, with the "
+        "mean diameter of 53.57 mm from the wavelength."
+    )
+    assert "80% metal (soft)" in teeth
+    assert "between 40.5 kHz and 44.12 kHz;" in teeth
+    assert assumed == (
+        "Assumed: phosphor bronze, hard PZT (assumed) of 0.5 mm, teeth of 1.5 mm, 8 half-wave "
+        "sectors on the channel."
+    )
+
+
+def test_a_stator_without_teeth_has_no_sentence_about_them() -> None:
+    assert [one.partition(":")[0] for one in fit_sentences(fitted(tooth_height=0.0))] == [
+        "Fitted",
+        "Assumed",
+    ]

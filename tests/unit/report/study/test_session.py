@@ -1,0 +1,99 @@
+"""A session held here: the study's file it makes, whom it asks, and how it goes on."""
+
+from __future__ import annotations
+
+import io
+import sys
+from pathlib import Path
+
+import pytest
+
+from squeezefilm.config.write import text_of
+from squeezefilm.errors import InputError
+from squeezefilm.perception.stimuli import Stimulus
+from squeezefilm.report.study.session import run_study
+from squeezefilm.study.design.study_design import StudyDesign
+from squeezefilm.study.record.store import StudyStore
+
+from ...study.scripted import Script, gratings
+
+MAGNITUDE = StudyDesign(
+    name="magnitude",
+    title="",
+    displays=("biet2008-plate",),
+    task="magnitude-estimation",
+    stimuli=(Stimulus("4 mm", 4e-3, "period"), Stimulus("8 mm", 8e-3, "period")),
+    reference="4 mm",
+    modulus=10.0,
+)
+
+
+def saved(folder: Path, design: StudyDesign) -> Path:
+    """The design's file."""
+    path = folder / f"{design.name}.toml"
+    path.write_text(text_of(design), encoding="utf-8")
+    return path
+
+
+def test_somebody_new_is_asked_everything(tmp_path: Path) -> None:
+    script, told = Script(), list[str]()
+    store = tmp_path / "a.sqlite"
+    ended = run_study(
+        saved(tmp_path, gratings()), store, examiner=script, consent=True, tell=told.append
+    )
+    # One round of three to feel, and two of each of three to answer.
+    assert ended == "9 trials on biet2008-plate recorded"
+    assert len(script.told) == 9
+    with StudyStore.open(store) as found:
+        (person,) = found.participants()
+        assert (person["answered"], person["planned"]) == (9, 9)
+        assert [found.study[key] for key in ("seed", "station", "stations")] == [0, 0, 1]
+    assert told == [f"participant {person['uuid']}: go on with --participant {person['uuid']}"]
+
+
+def test_a_session_that_was_stopped_goes_on_where_it_was(tmp_path: Path) -> None:
+    store, design = tmp_path / "a.sqlite", saved(tmp_path, gratings())
+    with pytest.raises(KeyboardInterrupt):
+        run_study(design, store, examiner=Script(5), consent=True, seed=3, station=1, stations=2)
+    with StudyStore.open(store) as found:
+        (person,) = found.participants()
+        # The second station numbers its people 1, 3, …
+        assert (person["answered"], person["number"]) == (5, 1)
+    again = Script()
+    ended = run_study(design, store, str(person["uuid"]), examiner=again, consent=True, seed=3)
+    assert ended == "4 trials on biet2008-plate recorded"
+    with pytest.raises(InputError, match="give another --store"):
+        run_study(design, store, examiner=Script(), consent=True)
+
+
+def test_nobody_is_enrolled_without_consent(tmp_path: Path) -> None:
+    store, design = tmp_path / "a.sqlite", saved(tmp_path, gratings())
+    with pytest.raises(InputError, match="consent"):
+        run_study(design, store, examiner=Script())
+    with StudyStore.open(store) as found:
+        assert found.participants() == []
+    conditions = tmp_path / "room.toml"
+    conditions.write_text('consent = true\nroom = "quiet"\n', encoding="utf-8")
+    run_study(design, store, examiner=Script(), conditions=conditions)
+    with StudyStore.open(store) as found:
+        assert "quiet" in str(dict(found.rows("SELECT * FROM session")[0]))
+
+
+def test_a_drive_that_is_not_known_is_refused(tmp_path: Path) -> None:
+    design = saved(tmp_path, gratings())
+    with pytest.raises(InputError, match="drive = 'x' is not known"):
+        run_study(design, tmp_path / "a.sqlite", examiner=Script(), consent=True, drive="x")
+
+
+def test_without_an_examiner_this_terminal_asks(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(sys, "stdin", io.StringIO("12\n"))
+    with pytest.raises(KeyboardInterrupt):
+        run_study(saved(tmp_path, MAGNITUDE), tmp_path / "a.sqlite", consent=True)
+    said = capsys.readouterr().out
+    assert said.startswith("participant ")
+    assert f"[2 left] {MAGNITUDE.spoken_question}\nThe reference is 10.\n> " in said
+    with StudyStore.open(tmp_path / "a.sqlite") as found:
+        (answer,) = found.rows("SELECT * FROM response")
+        assert answer["estimate"] == 12.0

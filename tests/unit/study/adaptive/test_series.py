@@ -1,0 +1,73 @@
+"""The method of an adaptive series: its rule, and where answers leave it."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from squeezefilm.study.adaptive.bayesian import BayesianAdaptive
+from squeezefilm.study.adaptive.series import adaptive_method
+from squeezefilm.study.adaptive.staircase import Staircase
+from squeezefilm.study.design.special_trials import AdaptiveCondition
+
+STAIRS = AdaptiveCondition("s", "staircase", start=0.4, step=0.08, lowest=0.01, down=3, count=9)
+BAYES = AdaptiveCondition("b", "bayesian", lowest=0.01, highest=0.8, count=9)
+
+
+def test_a_staircase_goes_down_after_so_many_right_and_halves_its_step_twice() -> None:
+    method = adaptive_method(STAIRS)
+    assert isinstance(method, Staircase)
+    asked = []
+    # Down after three right, up after one wrong; a turn halves the step, to a quarter at least.
+    for right in (True, True, True, False, True, True, True, False, True):
+        asked.append(method.next_stimulus())
+        method.update(asked[-1], right)
+    expected = [0.4, 0.4, 0.4, 0.32, 0.36, 0.36, 0.36, 0.34, 0.36]
+    assert asked == pytest.approx(expected)
+    assert method.finished
+
+
+def test_a_staircase_stays_within_its_bounds_and_ends_with_its_trials_alone() -> None:
+    low = dataclasses.replace(STAIRS, lowest=0.35, highest=0.45, count=6)
+    method = adaptive_method(low, [(0.4, True)] * 3)
+    assert method.next_stimulus() == 0.35
+    method = adaptive_method(low, [(0.4, False)])
+    assert method.next_stimulus() == 0.45
+    # Turns at nearly each answer do not end it before its trials do.
+    turning = adaptive_method(dataclasses.replace(STAIRS, down=1, count=30))
+    assert isinstance(turning, Staircase)
+    for number in range(30):
+        assert not turning.finished
+        turning.update(turning.next_stimulus(), number % 2 == 0)
+    assert turning.finished
+
+
+def test_the_bayesian_choice_is_of_40_even_ratios() -> None:
+    method = adaptive_method(BAYES)
+    assert isinstance(method, BayesianAdaptive)
+    design = method.design
+    assert design.stimuli == pytest.approx(0.01 * 80 ** (np.arange(40) / 39))
+    assert (design.axis, design.guess_rate, design.most_trials) == ("log", 0.5, 9)
+    assert method.next_stimulus() in design.stimuli
+    # Right answers ask for harder comparisons, wrong ones for easier.
+    right = adaptive_method(BAYES, [(0.1, True)] * 4).next_stimulus()
+    wrong = adaptive_method(BAYES, [(0.1, False)] * 4).next_stimulus()
+    assert right < wrong
+
+
+@pytest.mark.parametrize("series", [STAIRS, BAYES], ids=["staircase", "bayesian"])
+def test_answers_played_again_give_the_method_that_was_interrupted(
+    series: AdaptiveCondition,
+) -> None:
+    answers = [(0.4, True), (0.35, False), (0.5, True), (0.2, True)]
+    whole = adaptive_method(series)
+    for place, answer in enumerate(answers):
+        assert adaptive_method(series, iter(answers[:place])).next_stimulus() == (
+            whole.next_stimulus()
+        )
+        whole.update(*answer)
+    again = adaptive_method(series, answers)
+    assert again.next_stimulus() == whole.next_stimulus()
+    assert len(again.trials) == 4  # type: ignore[attr-defined]
