@@ -195,7 +195,7 @@ def plate(
     over = None if track is None else parse_track(track, start, stop, values)
     if vtu is not None and display.actuator.type != "rectangular_plate":
         raise InputError(
-            f"--vtu is for rectangular plates; '{display.name}' is a "
+            f"--vtu is for rectangular plates; the actuator of '{display.name}' is of the type "
             f"{display.actuator.type.replace('_', ' ')}"
         )
     with terminal.progress(enabled=sys.stderr.isatty() or not as_json) as step:
