@@ -195,7 +195,7 @@ def test_a_stator_is_shown_as_a_ring(plates: SimpleNamespace, tmp_path: Path) ->
     assert done.stdout == "wrote ring.html\n"
     refused = run("plate", STATOR, "--vtu", tmp_path / "a.vtu")
     assert refused.returncode == 2
-    assert f"for rectangular plates; '{STATOR}' is" in refused.stderr
+    assert f"actuator of '{STATOR}' is of the type annular stator" in refused.stderr
     assert "annular stator" in refused.stderr
     assert len(plates.solve.calls) == 2
     assert plates.show_plate.calls == plates.page.calls == plates.volume.calls == []
