@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import dataclasses
 import itertools
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -42,6 +41,7 @@ from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.shear.modes import shear_mode
 from squeezefilm.plate.solid.working import solid_mode
 from squeezefilm.plate.working_mode import PlateTheory
+from squeezefilm.progress import SayProgress
 from squeezefilm.quantities import Hertz, Metre, Newton, Second, Volt
 from squeezefilm.render.fidelity.survival import FidelityTable, fidelity_table
 from squeezefilm.render.fidelity.trace import FrictionTrace, friction_trace
@@ -50,7 +50,6 @@ from squeezefilm.render.resonator.envelope import envelope_bandwidth
 from squeezefilm.render.texture.gratings import Square
 from squeezefilm.results import Result, stamp, to_json
 
-Progress = Callable[[str], None]
 """Told in words what begins now."""
 
 
@@ -152,7 +151,7 @@ def analyze(
     model: FrictionModel | None = None,
     strict: bool = False,
     samples: int = 32,
-    progress: Progress | None = None,
+    progress: SayProgress | None = None,
 ) -> Analysis:
     """The whole analysis of a display at one working point.
 

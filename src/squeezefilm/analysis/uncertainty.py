@@ -24,6 +24,7 @@ from squeezefilm.errors import InputError, OutOfRangeError, SqueezefilmError
 from squeezefilm.plate.beam.response import beam_response
 from squeezefilm.plate.layout import AnnularStator, RectangularPlate
 from squeezefilm.plate.working_mode import working_mode
+from squeezefilm.progress import SayProgress
 from squeezefilm.quantities import (
     Dimensionless,
     DimensionlessArray,
@@ -35,8 +36,6 @@ from squeezefilm.quantities import (
 
 LEVEL: Dimensionless = 0.9
 _MOST_FAILED = 0.05
-
-Progress = Callable[[str], None]
 
 
 @dataclass(frozen=True)
@@ -115,7 +114,7 @@ def uncertain_friction(
     *,
     samples: int = 128,
     seed: int = 1,
-    progress: Progress | None = None,
+    progress: SayProgress | None = None,
 ) -> UncertainFriction:
     """A prediction's friction, by partial levitation, with all that is uncertain varied at once.
 
@@ -258,7 +257,7 @@ def _evaluate(
     prediction: Prediction,
     parameters: tuple[Parameter, ...],
     values: FloatArray,
-    tell: Progress,
+    tell: SayProgress,
 ) -> tuple[DimensionlessArray, MetreArray]:
     friction = np.full(len(values), np.nan)
     amplitude = np.full(len(values), np.nan)

@@ -28,6 +28,7 @@ from squeezefilm.display import load_display
 from squeezefilm.errors import InputError
 from squeezefilm.formats.trajectories import motion_from, read_trajectory
 from squeezefilm.from_text import reads_text
+from squeezefilm.progress import SayProgress
 from squeezefilm.quantities import FloatArray, Hertz, MetrePerVolt, Second, Unit, Volt, require
 from squeezefilm.render.motion.estimator import MotionEstimator
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ, SensorModel, sensor_named
@@ -55,8 +56,6 @@ LOOP_SECONDS: Second = 3.0
 """For which `device check` runs this computer's loop."""
 _MARGIN = 2e-3
 _REPLAY_PERIOD: Second = 1e-3
-
-Progress = Callable[[str], None]
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -100,7 +99,7 @@ def play_texture(
     seed: int = 0,
     show: Callable[[PlayView], None] | None = None,
     tap: Callable[[FloatArray], None] | None = None,
-    progress: Progress | None = None,
+    progress: SayProgress | None = None,
 ) -> PlayResult:
     """Play a texture on a device or on a twin of the display, in real time, and judge the record.
 
@@ -183,7 +182,7 @@ def check_drive(
     target: str | Path,
     *,
     rate: Hertz = 5e3,
-    progress: Progress | None = None,
+    progress: SayProgress | None = None,
 ) -> DeviceCheck:
     """Check a device, or a twin of a display, and this computer's loop at a rate (Hz).
 

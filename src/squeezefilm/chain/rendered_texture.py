@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, ClassVar, Literal, get_args
 
@@ -31,6 +30,7 @@ from squeezefilm.display import Display, NamedDisplay
 from squeezefilm.errors import InputError
 from squeezefilm.formats.trajectories import Motion, NamedMotion
 from squeezefilm.from_text import reads_text
+from squeezefilm.progress import SayProgress
 from squeezefilm.quantities import (
     Dimensionless,
     DimensionlessArray,
@@ -54,8 +54,6 @@ from squeezefilm.render.resonator.compensation import COMPENSATIONS, Compensatio
 from squeezefilm.render.resonator.envelope import envelope_time_constant
 from squeezefilm.results import Result, stamp, to_json
 from squeezefilm.texture_file import NamedTexture, TextureFile
-
-Progress = Callable[[str], None]
 
 Wave = Literal["ignored", "felt", "compensated"]
 WAVES: tuple[Wave, ...] = get_args(Wave)
@@ -228,7 +226,7 @@ def render_texture(
     wave: str = "ignored",
     control_rate: Hertz = CONTROL_RATE,
     seed: int = 0,
-    progress: Progress | None = None,
+    progress: SayProgress | None = None,
 ) -> RenderAnalysis:
     """Render a texture on a display under a finger.
 

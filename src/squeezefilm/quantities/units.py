@@ -26,6 +26,8 @@ from squeezefilm.errors import QuantityError
 
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
+IntArray = NDArray[np.int64]
+Array = NDArray[Any]
 FloatLike = float | FloatArray
 
 # kg, m, s, A, K, rad. The radian is counted, so that "100 rad/s" is not taken for 100 Hz.

@@ -17,9 +17,8 @@ import math
 from typing import Any
 
 import numba
-import numpy as np
 
-Array = np.ndarray[Any, Any]
+from squeezefilm.quantities import Array
 
 # What keeps the amplifier from giving the voltage wanted.
 WITHIN, RAIL, SLEW, CURRENT = range(4)

@@ -17,10 +17,8 @@ from numpy.typing import NDArray
 
 from squeezefilm.errors import InputError
 from squeezefilm.formats.trajectories import Motion, motion_from
-from squeezefilm.quantities import FloatArray, Newton, Second, Unit, require
+from squeezefilm.quantities import Array, FloatArray, Newton, Second, Unit, require
 from squeezefilm.render.motion.finger_path import FingerPath
-
-Array = np.ndarray[Any, Any]
 
 EXPLORING = "60 mm in 0.75 s"
 """A pass of least jerk with a mean speed of 80 mm/s: people explore at 77 to 86 mm/s with 0.5 to

@@ -16,13 +16,13 @@ Motion is along x for the skin; along y the arm leads without friction.
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numba
 import numpy as np
 
 from squeezefilm.contact.sliding.kernel import slide_march
 from squeezefilm.contact.sliding.skin_motion import slide_by, transition
+from squeezefilm.quantities import Array
 from squeezefilm.twin.chance import gaussian, uniform
 from squeezefilm.twin.envelope_step import (
     CURRENT,
@@ -35,8 +35,6 @@ from squeezefilm.twin.envelope_step import (
     voltage_given,
 )
 from squeezefilm.twin.hand import wanted
-
-Array = np.ndarray[Any, Any]
 
 # The state, float64.
 (

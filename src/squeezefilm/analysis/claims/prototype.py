@@ -28,9 +28,8 @@ from squeezefilm.analysis.plate.sensitivity import (
 from squeezefilm.display import load_display
 from squeezefilm.errors import SqueezefilmError
 from squeezefilm.plate.layout import RectangularPlate
+from squeezefilm.progress import SayProgress
 from squeezefilm.quantities import Dimensionless, Hertz, Metre, Unit, Volt, format_quantity
-
-Progress = Callable[[str], None]
 
 MODAL_FREQUENCY: Hertz = 35.6e3  # section 3.1.3, Fig 13
 HARMONIC_FREQUENCY: Hertz = 34.77e3  # section 3.1.3, Fig 14
@@ -150,7 +149,7 @@ _CASES: tuple[tuple[str, str, str, float, float, _Make], ...] = (
 )  # fmt: skip
 
 
-def prototype_study(progress: Progress | None = None) -> PrototypeStudy:
+def prototype_study(progress: SayProgress | None = None) -> PrototypeStudy:
     """Solve it all: some eighty plates, a minute or two; solved plates are kept for the next call.
 
     Raises what `solve_modes` raises.

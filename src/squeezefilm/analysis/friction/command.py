@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -18,6 +17,7 @@ from squeezefilm.contact.sharing.pad import FrictionRipple, friction_ripple
 from squeezefilm.display import Display, NamedDisplay
 from squeezefilm.errors import OutOfRangeError
 from squeezefilm.from_text import reads_text
+from squeezefilm.progress import SayProgress
 from squeezefilm.quantities import (
     Dimensionless,
     DimensionlessArray,
@@ -31,8 +31,6 @@ from squeezefilm.quantities import (
     Volt,
 )
 from squeezefilm.results import Result, stamp, to_json
-
-Progress = Callable[[str], None]
 
 EXPLORING_SPEED: MetrePerSecond = 0.08
 """Between 77 and 86 mm/s: Smith, Gosselin and Houde 2002, 10.1007/s00221-002-1240-4."""
@@ -160,7 +158,7 @@ def analyze_friction(
     samples: int = 64,
     seed: int = 1,
     points: int = 40,
-    progress: Progress | None = None,
+    progress: SayProgress | None = None,
 ) -> FrictionAnalysis:
     """The friction of a display at a working point, with everything around it.
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -32,6 +31,7 @@ from squeezefilm.plate.solid.modes import (
 from squeezefilm.plate.solid.response import EquivalentCircuit, HarmonicResponse, harmonic_response
 from squeezefilm.plate.solid.solve import solve_modes
 from squeezefilm.plate.sound import SoundField, rectangular_surface, sound_field
+from squeezefilm.progress import SayProgress
 from squeezefilm.quantities import (
     ComplexArray,
     Dimensionless,
@@ -44,8 +44,6 @@ from squeezefilm.quantities import (
     format_quantity,
 )
 from squeezefilm.results import Result, stamp, to_json
-
-Progress = Callable[[str], None]
 
 
 @dataclass(frozen=True)
@@ -159,7 +157,7 @@ def analyze_plate(
     points: int = 200,
     sensitivity: bool = False,
     track: TrackRequest | None = None,
-    progress: Progress | None = None,
+    progress: SayProgress | None = None,
 ) -> PlateAnalysis:
     """The modes of a display's plate in a band, and the response around the working mode.
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -30,6 +29,7 @@ from squeezefilm.plate.ring.response import (
 from squeezefilm.plate.solid.modes import check_band
 from squeezefilm.plate.solid.response import EquivalentCircuit
 from squeezefilm.plate.sound import SoundField, ring_surface, sound_field
+from squeezefilm.progress import SayProgress
 from squeezefilm.quantities import (
     Farad,
     Hertz,
@@ -41,7 +41,6 @@ from squeezefilm.quantities import (
 )
 from squeezefilm.results import Result, stamp, to_json
 
-Progress = Callable[[str], None]
 _MOST_HARMONICS = 60
 
 
@@ -162,7 +161,7 @@ def analyze_ring(
     mode: tuple[int, int] | None = None,
     band: tuple[Hertz, Hertz] | None = None,
     points: int = 200,
-    progress: Progress | None = None,
+    progress: SayProgress | None = None,
 ) -> RingAnalysis:
     """The modes of a disc or stator in a band, and the response around the working mode.
 
@@ -233,7 +232,7 @@ def mode_row(body: RingBody, mode: AnnularMode, capacitance: Farad) -> ModeRow:
 
 
 def modes_in_band(
-    body: RingBody, band: tuple[Hertz, Hertz], progress: Progress | None = None
+    body: RingBody, band: tuple[Hertz, Hertz], progress: SayProgress | None = None
 ) -> tuple[AnnularMode, ...]:
     """All elastic modes of a body in a band (Hz), rising; each stands for its two orientations.
 

@@ -21,6 +21,7 @@ from squeezefilm.plate.solid.modes import Label, PlateModes, tracked
 from squeezefilm.plate.solid.response import harmonic_response
 from squeezefilm.plate.solid.solve import solve_modes
 from squeezefilm.plate.solid.symmetry import drive_signs
+from squeezefilm.progress import SayProgress
 from squeezefilm.quantities import (
     Dimensionless,
     Hertz,
@@ -31,7 +32,6 @@ from squeezefilm.quantities import (
     format_quantity,
 )
 
-Progress = Callable[[str], None]
 Quantity = Literal["frequency", "amplitude"]
 
 # Less alike than this (modal assurance criterion) is another mode under the same label.
@@ -132,7 +132,7 @@ def plate_sensitivity(
     *,
     label: Label | None = None,
     amplitude: bool = True,
-    progress: Progress | None = None,
+    progress: SayProgress | None = None,
 ) -> SensitivityTable:
     """The shift of the working mode's frequency and amplitude per volt under each change.
 

@@ -26,6 +26,7 @@ from squeezefilm.hard_limits import TRACKED_VALUES, require_within
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.solid.modes import Label, PlateModes
 from squeezefilm.plate.solid.solve import solve_modes
+from squeezefilm.progress import SayProgress
 from squeezefilm.quantities import (
     Dimensionless,
     FloatArray,
@@ -35,8 +36,6 @@ from squeezefilm.quantities import (
     format_quantity,
     parse_quantity,
 )
-
-Progress = Callable[[str], None]
 
 _ALIKE = 0.6  # below it the step is halved
 _LOST = 0.4  # below it, at the smallest step, the mode is given up
@@ -140,7 +139,7 @@ def track_modes(
     request: TrackRequest,
     *,
     label: Label | None = None,
-    progress: Progress | None = None,
+    progress: SayProgress | None = None,
 ) -> ModeTracks:
     """Follow the modes within 8 % of the working mode's frequency (or of the one with `label`)
     over a parameter's values.
@@ -262,7 +261,7 @@ def _advance(
     value: float,
     steps: dict[float, tuple[PlateModes, list[int | None], list[float]]],
     halvings: int,
-    tell: Progress,
+    tell: SayProgress,
 ) -> None:
     """Follow the modes from one value to the next, with values in between where needed."""
     tell(f"{request.parameter} = {_shown(value, PARAMETERS[request.parameter][0])}")

@@ -17,13 +17,13 @@ import numpy as np
 
 from squeezefilm.errors import ConvergenceError
 from squeezefilm.film.periodic.batch import solve_strips
-from squeezefilm.film.periodic.resolution import IntArray
 from squeezefilm.film.slip import slip_law
 from squeezefilm.materials import Gas
 from squeezefilm.quantities import (
     Dimensionless,
     FloatArray,
     Hertz,
+    IntArray,
     Metre,
     MetreLike,
     PascalLike,

@@ -11,8 +11,7 @@ import math
 import numpy as np
 from numba import njit
 
-from squeezefilm.film.periodic.resolution import IntArray
-from squeezefilm.quantities import FloatArray
+from squeezefilm.quantities import FloatArray, IntArray
 
 BALANCED, NEEDS_PANEL, PRESSED_THROUGH, OUT_OF_TABLE, UNSETTLED = range(5)
 """What became of a balance."""

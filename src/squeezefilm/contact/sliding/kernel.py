@@ -9,7 +9,6 @@ and a stuck skin does not move at all.
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numba
 import numpy as np
@@ -22,8 +21,7 @@ from squeezefilm.contact.sliding.skin_motion import (
     slide_by,
     transition,
 )
-
-Array = np.ndarray[Any, Any]
+from squeezefilm.quantities import Array
 
 # Slip starts and ends that one sample interval may hold before the march gives up.
 MOST_EVENTS = 200

@@ -6,9 +6,8 @@ import math
 from typing import Any
 
 import numba
-import numpy as np
 
-Array = np.ndarray[Any, Any]
+from squeezefilm.quantities import Array
 
 _ROOT_STEPS = 80
 # Slips shorter than this power of ½ of a substep are not looked for.

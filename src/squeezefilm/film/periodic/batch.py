@@ -8,7 +8,6 @@ tolerance come back in the next round with more cells or more times.
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import lru_cache
@@ -18,26 +17,18 @@ import numpy as np
 
 from squeezefilm.errors import ConvergenceError, InputError
 from squeezefilm.film.compiled import announce
-from squeezefilm.film.periodic.resolution import (
-    CELLS,
-    CHECKS,
-    TIMES,
-    IntArray,
-    first_guess,
-    refined,
-    tables,
-)
+from squeezefilm.film.periodic.resolution import CELLS, CHECKS, TIMES, first_guess, refined, tables
 from squeezefilm.film.slip import slip_law
 from squeezefilm.film.solved_range import require_film
+from squeezefilm.progress import CountProgress
 from squeezefilm.quantities import (
     DimensionlessArray,
     DimensionlessLike,
     FloatArray,
+    IntArray,
     checked_numbers,
     require,
 )
-
-Progress = Callable[[int, int], None]
 
 MAX_EXCURSION = 0.99
 """Above this excursion the gap all but closes, and the error is no longer measured."""
@@ -94,7 +85,7 @@ def solve_strips(
     slip: str = "first",
     tolerance: float = 5e-3,
     workers: int | None = None,
-    progress: Progress | None = None,
+    progress: CountProgress | None = None,
     strict: bool = True,
 ) -> FilmBatch:
     """Mean load and first force harmonic of many strip films, H = 1 + ε cos T; inputs broadcast.
@@ -121,7 +112,7 @@ def solve_discs(
     slip: str = "first",
     tolerance: float = 5e-3,
     workers: int | None = None,
-    progress: Progress | None = None,
+    progress: CountProgress | None = None,
     strict: bool = True,
 ) -> FilmBatch:
     """`solve_strips` for circular films; the squeeze number is on the radius."""
@@ -153,7 +144,7 @@ def _solve(
     slip: str,
     tolerance: float,
     workers: int | None,
-    progress: Progress | None,
+    progress: CountProgress | None,
     strict: bool,
 ) -> FilmBatch:
     check_film(squeeze_number, excursion_ratio, polytropic_exponent, knudsen_number, tolerance)
@@ -228,7 +219,7 @@ def solve_all(
     law: int,
     tolerance: float,
     workers: int,
-    progress: Progress | None = None,
+    progress: CountProgress | None = None,
     least_cells: int = 4,
     least_times: int = 5,
     keep: FloatArray | None = None,

@@ -10,11 +10,8 @@ import math
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
-from squeezefilm.quantities import FloatArray
-
-IntArray = NDArray[np.int64]
+from squeezefilm.quantities import FloatArray, IntArray
 
 CELLS = np.array([4, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512, 768])
 TIMES = np.array([5, 7, 9, 11, 13, 15, 19, 23, 27, 31, 39, 47, 63, 79, 95, 127, 159])

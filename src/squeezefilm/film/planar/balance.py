@@ -14,9 +14,9 @@ import numpy as np
 from scipy.linalg import lapack
 
 from squeezefilm.film.planar.gap import GapFunction, gap_values
-from squeezefilm.film.planar.grid import IntArray, PlanarGrid
+from squeezefilm.film.planar.grid import PlanarGrid
 from squeezefilm.film.planar.kernel import assemble, row_block, take_off
-from squeezefilm.quantities import ComplexArray, FloatArray
+from squeezefilm.quantities import ComplexArray, FloatArray, IntArray
 
 _OVERSAMPLE = 6
 

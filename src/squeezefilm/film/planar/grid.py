@@ -15,9 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from squeezefilm.film.line_grid import edge_graded, edge_layer
-from squeezefilm.quantities import FloatArray, require
-
-IntArray = np.ndarray[tuple[int, ...], np.dtype[np.int64]]
+from squeezefilm.quantities import FloatArray, IntArray, require
 
 
 @dataclass(frozen=True)

@@ -7,14 +7,11 @@ is therefore diagonal, which is what makes the elimination row by row cheap.
 
 from __future__ import annotations
 
-from typing import Any
-
 import numba
 import numpy as np
 
 from squeezefilm.film.mobility import mobility
-
-Array = np.ndarray[Any, Any]
+from squeezefilm.quantities import Array
 
 
 @numba.njit(cache=True, nogil=True)

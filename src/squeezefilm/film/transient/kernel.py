@@ -13,8 +13,7 @@ import numba
 import numpy as np
 
 from squeezefilm.film.mobility import mobility
-
-Array = np.ndarray[Any, Any]
+from squeezefilm.quantities import Array
 
 
 @numba.njit(cache=True, nogil=True)

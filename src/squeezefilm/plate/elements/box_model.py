@@ -16,9 +16,8 @@ from numpy.typing import NDArray
 from squeezefilm.errors import GeometryError, InputError
 from squeezefilm.hard_limits import SOLID_MEMORY, require_within
 from squeezefilm.plate.elements.lobatto import LineMesh
-from squeezefilm.quantities import Dimensionless, FloatArray, KilogramPerCubicMetre
+from squeezefilm.quantities import Dimensionless, FloatArray, IntArray, KilogramPerCubicMetre
 
-IntArray = NDArray[np.int64]
 EndCondition = Literal["free", "symmetric", "antisymmetric", "clamped"]
 
 # The Voigt row of each displacement gradient (component, direction).

@@ -13,9 +13,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from squeezefilm.plate.elements.box_model import POTENTIAL_UNIT, BoxModel, IntArray, Medium
+from squeezefilm.plate.elements.box_model import POTENTIAL_UNIT, BoxModel, Medium
 from squeezefilm.plate.elements.lobatto import LineMesh, hierarchic_line_matrices
-from squeezefilm.quantities import FloatArray
+from squeezefilm.quantities import FloatArray, IntArray
 
 # (mechanical, electrical) factors of a medium's constants; None leaves the medium out.
 Weight = Callable[[Medium], tuple[float, float]]

@@ -10,11 +10,10 @@ from scipy.linalg import eigh
 from scipy.optimize import linear_sum_assignment
 
 from squeezefilm.errors import ConvergenceError
-from squeezefilm.plate.elements.box_model import IntArray
 from squeezefilm.plate.elements.lobatto import LineMesh
 from squeezefilm.plate.elements.slab_factor import SlabFactor
 from squeezefilm.plate.elements.slabs import Slabs
-from squeezefilm.quantities import FloatArray
+from squeezefilm.quantities import FloatArray, IntArray
 
 Solve = Callable[[FloatArray], FloatArray]
 

@@ -11,12 +11,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.polynomial import legendre
-from numpy.typing import NDArray
 
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import FloatArray, Metre
+from squeezefilm.quantities import FloatArray, IntArray, Metre
 
-IntArray = NDArray[np.int64]
 MAX_ORDER = 16
 
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from squeezefilm.plate.elements.box_model import BoxModel, EndCondition, IntArray
+from squeezefilm.plate.elements.box_model import BoxModel, EndCondition
 from squeezefilm.plate.elements.cross_section import (
     CrossSection,
     Springs,
@@ -20,7 +20,7 @@ from squeezefilm.plate.elements.cross_section import (
     cross_section,
 )
 from squeezefilm.plate.elements.lobatto import line_matrices
-from squeezefilm.quantities import FloatArray
+from squeezefilm.quantities import FloatArray, IntArray
 
 
 def _held(condition: EndCondition) -> tuple[int, ...]:

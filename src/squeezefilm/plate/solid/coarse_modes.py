@@ -10,7 +10,6 @@ from squeezefilm.errors import InputError, OutOfRangeError, SqueezefilmError
 from squeezefilm.hard_limits import BAND_MODES, require_within
 from squeezefilm.plate.beam.modes import free_beam_mode, timoshenko_frequency
 from squeezefilm.plate.beam.response import LEAST_COVERAGE
-from squeezefilm.plate.elements.box_model import IntArray
 from squeezefilm.plate.elements.krylov import modes_below, modes_near
 from squeezefilm.plate.elements.slab_factor import SlabFactor
 from squeezefilm.plate.elements.slabs import Slabs
@@ -21,7 +20,7 @@ from squeezefilm.plate.solid.mesh import COARSE, plate_model
 from squeezefilm.plate.solid.modes import Label, SolvedModel, label_of, surface_shapes
 from squeezefilm.plate.solid.shear_guess import screened_frequency
 from squeezefilm.plate.solid.symmetry import Parity
-from squeezefilm.quantities import FloatArray
+from squeezefilm.quantities import FloatArray, IntArray
 
 
 @dataclass(frozen=True, eq=False)

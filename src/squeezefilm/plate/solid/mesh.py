@@ -21,7 +21,6 @@ from squeezefilm.plate.elements.box_model import (
     Electrode,
     EndCondition,
     Foundation,
-    IntArray,
     Medium,
     require_memory,
 )
@@ -33,7 +32,7 @@ from squeezefilm.plate.solid.symmetry import (
     mirror_map,
     symmetric_axes,
 )
-from squeezefilm.quantities import Dimensionless, Metre, Unit, format_quantity
+from squeezefilm.quantities import Dimensionless, IntArray, Metre, Unit, format_quantity
 
 # Largest side of the plate over its thinnest layer. Measured on the paper's plate: a layer of glue
 # with the plate's own constants moves (8,0) in proportion to its thickness, to 2e-6, up to a

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from squeezefilm.plate.elements.box_model import IntArray
 from squeezefilm.plate.elements.krylov import modes_near, prolonged
 from squeezefilm.plate.elements.slab_factor import SlabFactor
 from squeezefilm.plate.elements.slabs import Slabs
@@ -16,7 +15,7 @@ from squeezefilm.plate.solid.coarse_modes import CoarseModes
 from squeezefilm.plate.solid.electrode_circuits import inverse_with_open
 from squeezefilm.plate.solid.mesh import FINE, NORMAL, plate_model
 from squeezefilm.plate.solid.modes import Label, SolvedModel, label_of, surface_shapes
-from squeezefilm.quantities import FloatArray
+from squeezefilm.quantities import FloatArray, IntArray
 
 LEVELS = (NORMAL, FINE)
 # Share of the difference between two meshes that is still missing on the finer one, and the

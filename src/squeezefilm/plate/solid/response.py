@@ -13,7 +13,6 @@ from squeezefilm.errors import GeometryError, InputError
 from squeezefilm.hard_limits import FREQUENCY, require_within
 from squeezefilm.plate.elements.again import SolvedAgain
 from squeezefilm.plate.elements.blas_threads import one_blas_thread
-from squeezefilm.plate.elements.box_model import IntArray
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.solid.extrapolated import extrapolated_class
 from squeezefilm.plate.solid.mesh import NORMAL, Resolution
@@ -33,6 +32,7 @@ from squeezefilm.quantities import (
     Henry,
     Hertz,
     HertzArray,
+    IntArray,
     KilogramPerSquareMetre,
     Metre,
     MetreArray,

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import dataclasses
 import functools
-from collections.abc import Callable
 
 from squeezefilm.errors import InputError
 from squeezefilm.plate.elements.blas_threads import one_blas_thread
@@ -24,9 +23,8 @@ from squeezefilm.plate.solid.mode_table import collected_modes
 from squeezefilm.plate.solid.modes import Label, PlateModes, check_band
 from squeezefilm.plate.solid.refined_modes import RefinedModes, refined_modes, with_label
 from squeezefilm.plate.solid.symmetry import Parity, all_classes, drive_classes
+from squeezefilm.progress import ShareProgress
 from squeezefilm.quantities import Dimensionless, Hertz, Unit, checked_numbers, require
-
-Progress = Callable[[str, float], None]
 
 # So many modes of a class are looked at around the guess of a mode that is asked for by its lines.
 _WIDTHS = (8, 24)
@@ -42,7 +40,7 @@ def solve_modes(
     count: int = 6,
     tolerance: Dimensionless = 1e-3,
     driven_only: bool = False,
-    progress: Progress | None = None,
+    progress: ShareProgress | None = None,
 ) -> PlateModes:
     """Modes of a plate by three-dimensional piezoelectric finite elements.
 
@@ -95,7 +93,7 @@ def _solved(
     count: int,
     tolerance: float,
     driven_only: bool,
-    tell: Progress,
+    tell: ShareProgress,
 ) -> PlateModes:
     classes = drive_classes(plate) if driven_only else all_classes(plate)
     if mode is not None:

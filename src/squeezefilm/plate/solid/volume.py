@@ -13,13 +13,13 @@ from typing import Any
 
 import numpy as np
 
-from squeezefilm.plate.elements.box_model import POTENTIAL_UNIT, IntArray
+from squeezefilm.plate.elements.box_model import POTENTIAL_UNIT
 from squeezefilm.plate.elements.cross_section import potential_base
 from squeezefilm.plate.elements.lobatto import LineMesh
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.solid.modes import PlateModes, SolvedModel
 from squeezefilm.plate.solid.response import HarmonicResponse
-from squeezefilm.quantities import ComplexArray, FloatArray, MetreArray
+from squeezefilm.quantities import ComplexArray, FloatArray, IntArray, MetreArray
 
 _CORNERS = np.array(
     [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]

@@ -14,7 +14,8 @@ import numpy as np
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.solid.modes import MODEL, PlateModes
 from squeezefilm.plate.solid.response import HarmonicResponse, harmonic_response
-from squeezefilm.plate.solid.solve import Progress, solve_modes
+from squeezefilm.plate.solid.solve import solve_modes
+from squeezefilm.progress import ShareProgress
 from squeezefilm.quantities import (
     Dimensionless,
     FloatArray,
@@ -119,9 +120,9 @@ class SolidMode:
 class _Listener:
     """Who is told how far a solve is: no part of what was asked, so that a cache sees one key."""
 
-    tell: Progress | None = field(default=None, compare=False)
+    tell: ShareProgress | None = field(default=None, compare=False)
 
-    def share(self, first: float, last: float) -> Progress | None:
+    def share(self, first: float, last: float) -> ShareProgress | None:
         """Whom a part of the work tells, which goes from one fraction of the whole to another."""
         tell = self.tell
         if tell is None:
@@ -134,7 +135,7 @@ def solid_mode(
     plate: RectangularPlate,
     label: tuple[int, int] | None = None,
     *,
-    progress: Progress | None = None,
+    progress: ShareProgress | None = None,
 ) -> SolidMode:
     """A plate's mode with the nodal lines of `label` by three-dimensional piezoelectric elements.
 

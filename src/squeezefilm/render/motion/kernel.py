@@ -7,12 +7,10 @@ whole by another process; `STATE` indices name its places. See `motion` for the 
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numba
-import numpy as np
 
-Array = np.ndarray[Any, Any]
+from squeezefilm.quantities import Array
 
 # Places in the state: the estimate at the last sample used, its covariance, then counters.
 X, V, A = 0, 1, 2

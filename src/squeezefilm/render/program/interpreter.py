@@ -9,16 +9,13 @@ numbers of program and state in `layout`.
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numba
-import numpy as np
 
+from squeezefilm.quantities import Array
 from squeezefilm.render import opcodes as op
 from squeezefilm.render.program import layout as at
 from squeezefilm.render.texture.noise import STEP_ACROSS, STEP_ALONG
-
-Array = np.ndarray[Any, Any]
 
 _MASK = 0xFFFFFFFF
 _WHOLE = 2.0**-32

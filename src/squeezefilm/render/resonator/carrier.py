@@ -18,13 +18,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
 
 import numba
 import numpy as np
 
 from squeezefilm.errors import InputError
 from squeezefilm.quantities import (
+    Array,
     Dimensionless,
     DimensionlessLike,
     Hertz,
@@ -40,8 +40,6 @@ from squeezefilm.quantities import (
     require,
 )
 from squeezefilm.render.resonator.envelope import envelope_response, envelope_time_constant
-
-Array = np.ndarray[Any, Any]
 
 DAC_RATE: Hertz = 192e3
 """Rate of common sound converters that reach an ultrasonic carrier (Hz)."""

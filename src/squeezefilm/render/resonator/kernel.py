@@ -8,12 +8,11 @@ it rises and another while it falls; over a step with c held it keeps `keep_rise
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numba
 import numpy as np
 
-Array = np.ndarray[Any, Any]
+from squeezefilm.quantities import Array
 
 # Places in a compensator's state: the amplitude it takes the resonator to have, then counters.
 AMPLITUDE, SAMPLES, AT_TOP, AT_BOTTOM, NOT_FINITE = range(5)

@@ -12,12 +12,11 @@ from __future__ import annotations
 from typing import Any
 
 import numba
-import numpy as np
 from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
-Array = np.ndarray[Any, Any]
+from squeezefilm.quantities import Array
 
 _INT64_BYTES = 8
 _item_pointer: Any = cgutils.get_item_pointer

@@ -17,7 +17,7 @@ import numba
 import numpy as np
 from numba import types
 
-Array = np.ndarray[Any, Any]
+from squeezefilm.quantities import Array
 
 _MONOTONIC, _THREAD_CPU_TIME, _ABSOLUTE = 1, 3, 1
 _SECOND_NS = 1_000_000_000

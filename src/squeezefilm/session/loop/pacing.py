@@ -18,17 +18,14 @@ import time
 from typing import Any
 
 import numba
-import numpy as np
 
-from squeezefilm.quantities import Dimensionless, Second
+from squeezefilm.quantities import Array, Dimensionless, Second
 from squeezefilm.session.loop import clock, shared
 from squeezefilm.session.loop import plan as at
 from squeezefilm.session.loop import rows as column
 from squeezefilm.session.loop.atomics import load_acquire, store_release
 from squeezefilm.session.loop.lateness import lateness_class
 from squeezefilm.session.loop.tick import make_tick
-
-Array = np.ndarray[Any, Any]
 
 MARGIN: Second = 50e-6
 """How long before a deadline the loop wakes, where half a period allows it."""

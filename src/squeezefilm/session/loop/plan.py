@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Literal, NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 
 from squeezefilm.errors import InputError
 from squeezefilm.quantities import (
+    Array,
     DimensionlessArray,
     FloatArray,
     Hertz,
@@ -28,7 +29,6 @@ from squeezefilm.render.program.renderer import new_state
 from squeezefilm.render.resonator.compensation import DrivenEnvelope
 from squeezefilm.session.loop.rows import COLUMNS, COMMAND_COLUMNS, SAMPLE_COLUMNS
 
-Array = np.ndarray[Any, Any]
 LoopCompensation = Literal["none", "inverse"]
 
 LEAST_RATE: Hertz = 10.0

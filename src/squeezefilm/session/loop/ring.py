@@ -10,14 +10,10 @@ wrap within the life of anything (2^63 rows).
 
 from __future__ import annotations
 
-from typing import Any
-
 import numba
-import numpy as np
 
+from squeezefilm.quantities import Array
 from squeezefilm.session.loop.atomics import load_acquire, store_release
-
-Array = np.ndarray[Any, Any]
 
 # Written by the writer (HEAD, DROPPED) and by the reader (TAIL), on cache lines of their own.
 HEAD, DROPPED, TAIL = 0, 1, 16

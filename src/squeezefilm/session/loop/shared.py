@@ -12,9 +12,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from squeezefilm.quantities import Array
 from squeezefilm.session.loop import lateness, ring, rows
-
-Array = np.ndarray[Any, Any]
 
 _LINE = 8
 # Written by the host.

@@ -12,6 +12,7 @@ import numpy as np
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import SIMULATED_TICKS, require_within
 from squeezefilm.quantities import (
+    Array,
     FloatArray,
     MetreArray,
     Second,
@@ -28,8 +29,6 @@ from squeezefilm.session.loop.plan import LoopPlan, tick_arrays
 from squeezefilm.session.loop.ring import ring_put, ring_put_all, ring_take, ring_waiting
 from squeezefilm.session.loop.rows import COLUMNS, COMMAND_COLUMNS, MUTED, SAMPLE_COLUMNS
 from squeezefilm.session.loop.shared import private_views
-
-Array = np.ndarray[Any, Any]
 
 
 @numba.njit(cache=True, nogil=True)

@@ -12,8 +12,8 @@ import math
 from typing import Any
 
 import numba
-import numpy as np
 
+from squeezefilm.quantities import Array
 from squeezefilm.render.motion import kernel as motion_kernel
 from squeezefilm.render.motion.kernel import motion_at, motion_step
 from squeezefilm.render.program import layout
@@ -24,8 +24,6 @@ from squeezefilm.session.loop import plan as at
 from squeezefilm.session.loop import rows as column
 from squeezefilm.session.loop.ring import DROPPED, ring_put, ring_take
 from squeezefilm.session.loop.shared import SAMPLES
-
-Array = np.ndarray[Any, Any]
 
 
 @numba.njit(cache=True, nogil=True, error_model="numpy")

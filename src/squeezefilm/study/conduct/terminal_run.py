@@ -10,6 +10,7 @@ from pathlib import Path
 
 from squeezefilm import config
 from squeezefilm.errors import InputError
+from squeezefilm.progress import SayProgress
 from squeezefilm.quantities import MetrePerVolt
 from squeezefilm.study.conduct.exposure import Exposure, exposure
 from squeezefilm.study.conduct.run import StudyRun
@@ -21,8 +22,6 @@ from squeezefilm.study.design.study_design import load_design
 from squeezefilm.study.design.trials import expected_duration
 from squeezefilm.study.record.deletion import remove_rows
 from squeezefilm.study.record.store import StudyStore
-
-Progress = Callable[[str], None]
 
 
 def open_study(
@@ -57,7 +56,7 @@ def run_session(
     consent: bool = False,
     acknowledge: Callable[[str], bool],
     tell: Callable[[str], None] = print,
-    progress: Callable[[], AbstractContextManager[Progress]] | None = None,
+    progress: Callable[[], AbstractContextManager[SayProgress]] | None = None,
 ) -> str:
     """One session on the display that the participant's next trial needs. Returns how it ended.
 
@@ -119,7 +118,7 @@ def _device(
     store: StudyStore,
     display: str,
     amplitude_per_pickup: MetrePerVolt | None,
-    tell: Progress,
+    tell: SayProgress,
     closing: contextlib.ExitStack,
 ) -> tuple[StudyDevice, Exposure | None]:
     if drive == "none":

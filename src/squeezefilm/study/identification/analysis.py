@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from squeezefilm.errors import ConvergenceError, InputError
-from squeezefilm.quantities import Dimensionless, DimensionlessArray
+from squeezefilm.quantities import Dimensionless, DimensionlessArray, IntArray
 from squeezefilm.results import Result, stamp, to_json
 from squeezefilm.study.identification.choice_model import (
     ChoiceModel,
@@ -18,7 +18,7 @@ from squeezefilm.study.identification.choice_model import (
     choice_model,
     perceptual_map,
 )
-from squeezefilm.study.identification.confusion import ConfusionMatrix, IntArray, participant_counts
+from squeezefilm.study.identification.confusion import ConfusionMatrix, participant_counts
 from squeezefilm.study.identification.confusion_posterior import (
     ConfusionPosterior,
     confusion_posterior,

@@ -13,9 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import DimensionlessArray, FloatArray
-
-IntArray = NDArray[np.int64]
+from squeezefilm.quantities import DimensionlessArray, FloatArray, IntArray
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import digamma, gammaln, polygamma
 
-from squeezefilm.quantities import FloatArray
-from squeezefilm.study.identification.confusion import IntArray, whole_counts
+from squeezefilm.quantities import FloatArray, IntArray
+from squeezefilm.study.identification.confusion import whole_counts
 
 _LN2 = float(np.log(2.0))
 # log β of the mixture of Dirichlet priors; 1e-4 to 1e3 spans certainty to near uniformity.

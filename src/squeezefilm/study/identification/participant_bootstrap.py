@@ -14,8 +14,8 @@ from numpy.typing import ArrayLike
 from scipy import stats
 
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import Dimensionless, FloatArray, require
-from squeezefilm.study.identification.confusion import IntArray, whole_counts
+from squeezefilm.quantities import Dimensionless, FloatArray, IntArray, require
+from squeezefilm.study.identification.confusion import whole_counts
 
 
 @dataclass(frozen=True, slots=True)

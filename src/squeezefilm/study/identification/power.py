@@ -19,9 +19,9 @@ from scipy import stats
 
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import STUDIES, require_within
-from squeezefilm.quantities import Dimensionless, DimensionlessArray, FloatArray, require
+from squeezefilm.quantities import Dimensionless, DimensionlessArray, FloatArray, IntArray, require
 from squeezefilm.results import config_hash, write_whole
-from squeezefilm.study.identification.confusion import IntArray, whole_counts
+from squeezefilm.study.identification.confusion import whole_counts
 from squeezefilm.study.identification.proportions import clopper_pearson_interval
 
 

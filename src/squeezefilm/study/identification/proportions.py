@@ -9,8 +9,8 @@ from numpy.typing import ArrayLike
 from scipy import stats
 
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import Dimensionless, require
-from squeezefilm.study.identification.confusion import ConfusionMatrix, IntArray, whole_counts
+from squeezefilm.quantities import Dimensionless, IntArray, require
+from squeezefilm.study.identification.confusion import ConfusionMatrix, whole_counts
 from squeezefilm.study.identification.participant_bootstrap import (
     Interval,
     expansion,

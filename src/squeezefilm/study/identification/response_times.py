@@ -10,8 +10,7 @@ from scipy import optimize, stats
 from scipy.special import erfcx, log_ndtr
 
 from squeezefilm.errors import ConvergenceError, InputError
-from squeezefilm.quantities import Dimensionless, FloatArray, Second, Unit, require
-from squeezefilm.study.identification.confusion import IntArray
+from squeezefilm.quantities import Dimensionless, FloatArray, IntArray, Second, Unit, require
 
 _MOST_VALUES = 20_000
 

@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 
 from squeezefilm.quantities import FloatArray
 
-IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 
 LOGISTIC, GAUSSIAN, GUMBEL, REVERSED_GUMBEL, HYPERBOLIC_SECANT = range(5)

@@ -19,11 +19,10 @@ from squeezefilm.perception.observer import FingerClass, Observer
 from squeezefilm.perception.percepts import Apparatus, Percept, grating_percept, percept
 from squeezefilm.perception.senses import Candidates
 from squeezefilm.perception.stimuli import Grating, Stimulus
+from squeezefilm.progress import SayProgress
 from squeezefilm.quantities import DimensionlessArray, FloatArray
 from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.simulated.causes import Causes, causes
-
-Progress = Callable[[str], None]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -64,7 +63,7 @@ def chain_tables(
     observer: Observer,
     apparatus: Apparatus | tuple[Apparatus, ...] | None = None,
     displays: tuple[Display, ...] | None = None,
-    progress: Progress | None = None,
+    progress: SayProgress | None = None,
 ) -> ChainTables:
     """The chain for every display, finger class and surface; cached within the process.
 

@@ -26,13 +26,14 @@ from squeezefilm.quantities import (
     Dimensionless,
     DimensionlessArray,
     FloatArray,
+    IntArray,
     SecondArray,
     require,
 )
 from squeezefilm.results import Result, stamp, to_json
 from squeezefilm.study.design.study_design import NamedDesign, StudyDesign
 from squeezefilm.study.design.trials import trials
-from squeezefilm.study.identification.confusion import ConfusionMatrix, IntArray
+from squeezefilm.study.identification.confusion import ConfusionMatrix
 from squeezefilm.study.simulated.chain_tables import ChainTables, chain_tables
 
 _CHUNK = 60

@@ -7,8 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import require
-from squeezefilm.study.identification.confusion import IntArray
+from squeezefilm.quantities import IntArray, require
 from squeezefilm.study.simulated.participants import SimulatedStudy
 
 

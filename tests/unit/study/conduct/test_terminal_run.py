@@ -8,8 +8,9 @@ from pathlib import Path
 
 import pytest
 
+from squeezefilm.progress import SayProgress
 from squeezefilm.study.conduct.run import Presentation
-from squeezefilm.study.conduct.terminal_run import Progress, run_session
+from squeezefilm.study.conduct.terminal_run import run_session
 from squeezefilm.study.record.store import StudyStore
 
 from ..scripted import Script, gratings
@@ -19,7 +20,7 @@ def test_what_goes_on_is_shown_only_while_nobody_is_asked(tmp_path: Path) -> Non
     shown, asked, told = [0], [0], [0]
 
     @contextlib.contextmanager
-    def progress() -> Iterator[Progress]:
+    def progress() -> Iterator[SayProgress]:
         shown[0] += 1
         yield lambda _: None
         shown[0] -= 1
