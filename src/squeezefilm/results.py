@@ -10,7 +10,7 @@ import inspect
 import json
 import math
 import os
-import tempfile
+import secrets
 import typing
 from collections.abc import Iterator
 from datetime import UTC, datetime
@@ -22,6 +22,8 @@ import numpy as np
 from squeezefilm import __version__
 from squeezefilm.errors import InputError
 from squeezefilm.quantities import Unit, format_quantity, unit_of
+
+_BINARY = getattr(os, "O_BINARY", 0)  # Windows would turn line ends into its own
 
 
 def to_json(value: Any) -> Any:
@@ -165,7 +167,8 @@ def write_whole(path: Path, content: str | bytes) -> None:
     data = content.encode() if isinstance(content, str) else content
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+        temporary = path.parent / f".{path.name}.{secrets.token_hex(4)}"
+        handle = os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL | _BINARY, 0o666)
     except OSError as error:
         raise InputError(
             f"cannot write to {path.parent}: {error.strerror}; choose another folder"
@@ -175,12 +178,10 @@ def write_whole(path: Path, content: str | bytes) -> None:
             file.write(data)
             file.flush()
             os.fsync(file.fileno())
-        # mkstemp makes files private; a report is meant to be read like any other file.
-        os.chmod(temporary, 0o666 & ~_umask())  # noqa: PTH101
-        os.replace(temporary, path)  # noqa: PTH105
+        temporary.replace(path)
     except OSError as error:
         with contextlib.suppress(OSError):
-            Path(temporary).unlink(missing_ok=True)
+            temporary.unlink(missing_ok=True)
         raise InputError(
             f"cannot write {path}: {error.strerror}; nothing was left behind"
         ) from error
@@ -204,9 +205,3 @@ def sync_folder(folder: Path) -> None:
         os.fsync(handle)
     finally:
         os.close(handle)
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask

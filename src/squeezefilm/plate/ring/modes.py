@@ -268,7 +268,7 @@ def _eigenpairs(system: HarmonicSystem, near: Hertz, count: int) -> tuple[FloatA
             v0=start,
             tol=1e-11,
         )
-    except Exception as error:
+    except (RuntimeError, ValueError) as error:  # ARPACK's and SuperLU's
         raise ConvergenceError(
             f"the modes of harmonic {system.harmonic} near {near:.6g} Hz did not converge "
             f"({error}); ask for fewer modes or another degree"

@@ -228,7 +228,7 @@ def _eigenpairs(
             v0=np.random.default_rng(1).standard_normal(n),
             tol=1e-11,
         )
-    except Exception as error:
+    except (RuntimeError, ValueError) as error:  # ARPACK's and SuperLU's
         raise ConvergenceError(
             f"the plate's modes near {near:.6g} Hz did not converge ({error}); ask for fewer"
         ) from error
