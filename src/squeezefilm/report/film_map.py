@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from squeezefilm.film.planar.film import FilmPlanar
+from squeezefilm.report.kit.folder import json_text, write_folder
 from squeezefilm.report.kit.style import BAND, BLUE, INK, MUTED, drawn, new_figure, plain_log, png
-from squeezefilm.results import write_whole
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -83,8 +82,6 @@ def film_pressure(answer: FilmAnswer) -> Figure:
 
 def write_film_map(found: FilmMap, folder: Path) -> Path:
     """Write film-map.json and film-map.png into `folder`; the picture's path."""
-    data = json.dumps(found.summary(), ensure_ascii=False, allow_nan=False)
-    picture = png(film_map(found))
-    write_whole(folder / "film-map.json", data + "\n")
-    write_whole(folder / "film-map.png", picture)
+    data, picture = json_text(found.summary()), png(film_map(found))
+    write_folder(folder, {"film-map.json": data, "film-map.png": picture})
     return folder / "film-map.png"

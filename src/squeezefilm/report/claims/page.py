@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import html
-import json
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
@@ -13,6 +12,7 @@ from squeezefilm.errors import InputError
 from squeezefilm.quantities import Unit, format_quantity
 from squeezefilm.report.claims.prototype import prototype_markdown
 from squeezefilm.report.claims.prototype_page import prototype_sections
+from squeezefilm.report.kit.folder import json_text, write_folder
 from squeezefilm.report.kit.page_style import STYLE
 from squeezefilm.results import write_whole
 
@@ -150,11 +150,9 @@ def write_reproduction(
         tell("the prototype")
         figures += prototype_sections(result.prototype)
     page = _page(result, figures)
-    data = json.dumps(result.summary(), indent=2, ensure_ascii=False, allow_nan=False)
-    write_whole(folder / "claims.json", data)
-    path = folder / "reproduction.html"
-    write_whole(path, page)
-    return path
+    files = {"claims.json": json_text(result.summary()), "reproduction.html": page}
+    write_folder(folder, files)
+    return folder / "reproduction.html"
 
 
 def _page(result: Reproduction, figures: list[str]) -> str:

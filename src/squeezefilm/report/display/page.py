@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import dataclasses
-import json
 from collections.abc import Callable, Iterable
 from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from squeezefilm.errors import InputError
 from squeezefilm.quantities import Unit
+from squeezefilm.report.kit.folder import json_text, require_folder, write_folder
 from squeezefilm.report.kit.numbers import (
     display_values,
     film_rows,
@@ -20,7 +19,7 @@ from squeezefilm.report.kit.numbers import (
     shown,
     unsaid_warnings,
 )
-from squeezefilm.results import to_json, write_whole
+from squeezefilm.results import to_json
 
 if TYPE_CHECKING:
     from squeezefilm.analysis.analyze import Analysis
@@ -36,29 +35,16 @@ def write_analysis(
 ) -> Path:
     """Write result.json and report.html into `folder`; the path of the page.
 
-    Both are made in memory first; if the second cannot be written, the first is put back as it
-    was. Raises `InputError` where the folder cannot be written to.
+    Raises `InputError` where the folder cannot be written to.
     """
-    folder = Path(folder)
-    if folder.exists() and not folder.is_dir():
-        raise InputError(f"{folder} is a file, not a folder; choose another folder")
+    folder = require_folder(folder)
     summary = analysis.summary()
     page = report_page(analysis, summary, progress)
     if progress is not None:
         progress("writing the report")
-    data = json.dumps(result_data(analysis, summary), indent=1, ensure_ascii=False, allow_nan=False)
-    result, report = folder / "result.json", folder / "report.html"
-    before = result.read_bytes() if result.is_file() else None
-    write_whole(result, data + "\n")
-    try:
-        write_whole(report, page)
-    except InputError:
-        if before is None:
-            result.unlink(missing_ok=True)
-        else:
-            write_whole(result, before)
-        raise
-    return report
+    data = json_text(result_data(analysis, summary))
+    write_folder(folder, {"result.json": data, "report.html": page})
+    return folder / "report.html"
 
 
 def result_data(analysis: Analysis, summary: dict[str, Any]) -> dict[str, Any]:
@@ -66,16 +52,16 @@ def result_data(analysis: Analysis, summary: dict[str, Any]) -> dict[str, Any]:
     return {
         **summary,
         "curves": {
-            "response": to_json(analysis.response),
-            "pressure": to_json(analysis.pressure),
-            "friction": to_json(analysis.friction_curves),
-            "chain": to_json(analysis.model_curves),
-            "films": None if analysis.film_models is None else to_json(analysis.film_models.curves),
-            "wavelength": to_json(analysis.wavelength_curves),
+            "response": analysis.response,
+            "pressure": analysis.pressure,
+            "friction": analysis.friction_curves,
+            "chain": analysis.model_curves,
+            "films": None if analysis.film_models is None else analysis.film_models.curves,
+            "wavelength": analysis.wavelength_curves,
             "texture": None if analysis.texture is None else _trace(analysis.texture),
-            "fidelity": to_json(analysis.fidelity),
+            "fidelity": analysis.fidelity,
         },
-        "display_description": to_json(analysis.display),
+        "display_description": analysis.display,
     }
 
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from squeezefilm.report.kit.folder import json_text, write_folder
 from squeezefilm.report.kit.numbers import M, N, shown
 from squeezefilm.report.kit.style import (
     BAND,
@@ -26,7 +26,6 @@ from squeezefilm.report.kit.style import (
     plain_log,
     png,
 )
-from squeezefilm.results import write_whole
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -272,23 +271,18 @@ def write_friction(result: FrictionAnalysis, folder: Path) -> Path:
     summary = result.summary()
     found = result.map
     summary["map"] = {
-        "vibration_amplitude_m": found.amplitude.tolist(),
-        "normal_force_N": found.normal_force.tolist(),
-        "relative_friction": [
-            [None if np.isnan(value) else float(value) for value in row]
-            for row in found.relative_friction
-        ],
+        "vibration_amplitude_m": found.amplitude,
+        "normal_force_N": found.normal_force,
+        "relative_friction": found.relative_friction,
     }
-    data = json.dumps(summary, indent=1, ensure_ascii=False, allow_nan=False)
-    pictures = {
+    files: dict[str, str | bytes] = {
+        "friction.json": json_text(summary),
         "friction-models.png": png(models(result)),
         "friction-map.png": png(friction_map(result)),
     }
     if result.uncertainty is not None:
-        pictures["friction-uncertainty.png"] = png(uncertainty(result))
+        files["friction-uncertainty.png"] = png(uncertainty(result))
     if result.ripple is not None:
-        pictures["friction-ripple.png"] = png(ripple(result))
-    write_whole(folder / "friction.json", data + "\n")
-    for name, picture in pictures.items():
-        write_whole(folder / name, picture)
+        files["friction-ripple.png"] = png(ripple(result))
+    write_folder(folder, files)
     return folder

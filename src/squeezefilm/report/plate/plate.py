@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,6 +9,7 @@ import numpy as np
 
 from squeezefilm.plate.solid.modes import zero_crossings
 from squeezefilm.report.display.plate_figures import half_power
+from squeezefilm.report.kit.folder import json_text, write_folder
 from squeezefilm.report.kit.style import (
     BAND,
     BLUE,
@@ -24,7 +24,6 @@ from squeezefilm.report.kit.style import (
 )
 from squeezefilm.report.plate.mode_surface import driven_shape, mode_surface
 from squeezefilm.report.plate.vtu import write_vtu
-from squeezefilm.results import write_whole
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -157,7 +156,6 @@ def write_plate(result: PlateAnalysis, folder: Path) -> Path:
     from squeezefilm.report.plate.page import PlateFigure, plate_page
     from squeezefilm.report.plate.sensitivity_figures import tornado, tracks
 
-    data = json.dumps(result.summary(), indent=1, ensure_ascii=False, allow_nan=False)
     figures = [
         PlateFigure("mode-surface", "Mode shape", mode_surface(result)),
         PlateFigure("mode-plan", "Mode shape from above", plan_view(result)),
@@ -169,13 +167,11 @@ def write_plate(result: PlateAnalysis, folder: Path) -> Path:
         figures.append(PlateFigure("sensitivity", "Sensitivities", tornado(result.sensitivities)))
     if result.tracks is not None:
         figures.append(PlateFigure("tracking", "Modes against a parameter", tracks(result.tracks)))
-    pictures = {f"{one.name}.png": png(one.figure) for one in figures}
-    page = plate_page(result, figures)
+    files: dict[str, str | bytes] = {f"{one.name}.png": png(one.figure) for one in figures}
+    files["plate.json"] = json_text(result.summary())
+    files["index.html"] = plate_page(result, figures)
     write_mode(result, folder / "mode.vtu")
-    write_whole(folder / "plate.json", data + "\n")
-    for name, picture in pictures.items():
-        write_whole(folder / name, picture)
-    write_whole(folder / "index.html", page)
+    write_folder(folder, files)
     return folder / "index.html"
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -10,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from squeezefilm.quantities import Unit
+from squeezefilm.report.kit.folder import json_text, write_folder
 from squeezefilm.report.kit.numbers import HZ, M, shown
 from squeezefilm.report.kit.style import (
     BLUE,
@@ -24,7 +24,6 @@ from squeezefilm.report.kit.style import (
     plain_log,
     png,
 )
-from squeezefilm.results import write_whole
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -216,13 +215,11 @@ def response(result: RingAnalysis) -> Figure:
 
 def write_ring(result: RingAnalysis, folder: Path) -> Path:
     """Write plate.json and the figures plate-shape, plate-scan and plate-response; the folder."""
-    data = json.dumps(result.summary(), indent=1, ensure_ascii=False, allow_nan=False)
-    pictures = {
+    files: dict[str, str | bytes] = {
+        "plate.json": json_text(result.summary()),
         "plate-shape.png": png(shape(result)),
         "plate-scan.png": png(scan(result)),
         "plate-response.png": png(response(result)),
     }
-    write_whole(folder / "plate.json", data + "\n")
-    for name, picture in pictures.items():
-        write_whole(folder / name, picture)
+    write_folder(folder, files)
     return folder

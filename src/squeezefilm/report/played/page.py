@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable
 from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from squeezefilm.report.kit.folder import json_text, write_folder
 from squeezefilm.report.kit.numbers import printable
 from squeezefilm.report.kit.page_style import page_head
 from squeezefilm.report.kit.style import png
 from squeezefilm.report.played import figures as draw
 from squeezefilm.report.played.terminal import play_rows, play_warnings
-from squeezefilm.results import to_json, write_whole
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -36,16 +35,15 @@ def write_play(
         "play-amplitude": ("Amplitude", draw.amplitude(session)),
         "play-lateness": ("Lateness and lag", draw.lateness(session)),
     }
-    for name, (_, figure) in figures.items():
-        write_whole(folder / f"{name}.png", png(figure))
-    data = json.dumps(to_json(result.summary()), indent=1, ensure_ascii=False, allow_nan=False)
-    write_whole(folder / "summary.json", f"{data}\n")
-    page = folder / "play.html"
-    beside = sorted(
-        one.name for one in folder.iterdir() if one.suffix in (".sqft", ".csv", ".json")
-    )
-    write_whole(page, _page(result, figures, beside))
-    return page
+    files: dict[str, str | bytes] = {
+        f"{name}.png": png(figure) for name, (_, figure) in figures.items()
+    }
+    files["summary.json"] = json_text(result.summary())
+    there = {*files, *(one.name for one in folder.glob("*"))}
+    beside = sorted(one for one in there if Path(one).suffix in (".sqft", ".csv", ".json"))
+    files["play.html"] = _page(result, figures, beside)
+    write_folder(folder, files)
+    return folder / "play.html"
 
 
 def _page(result: PlayResult, figures: dict[str, tuple[str, Figure]], files: list[str]) -> str:

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Iterable
 from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from squeezefilm.errors import InputError
 from squeezefilm.quantities import Unit
+from squeezefilm.report.kit.folder import json_text, require_folder, write_folder
 from squeezefilm.report.kit.numbers import printable, shown
 from squeezefilm.report.kit.page_style import page_head
 from squeezefilm.report.kit.style import png
-from squeezefilm.results import write_whole
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -38,28 +36,20 @@ def write_study(
         InputError: a folder that cannot be written to.
     """
     tell = progress or (lambda _: None)
-    folder = Path(folder)
-    if folder.exists() and not folder.is_dir():
-        raise InputError(f"{folder} is a file, not a folder; choose another folder")
+    folder = require_folder(folder)
     tell("figures")
     figures = study_figures(analysis, power)
-    files = {f"study-{key}.png": png(figure) for key, (_, figure) in figures.items()}
+    files: dict[str, str | bytes] = {
+        f"study-{key}.png": png(figure) for key, (_, figure) in figures.items()
+    }
     summary = analysis.summary()
     if power is not None:
-        summary["power"] = _power_data(power)
-    data = json.dumps(summary, indent=1, ensure_ascii=False, allow_nan=False)
-    files["identification.json"] = f"{data}\n".encode()
-    files["index.html"] = study_page(analysis, figures, summary["provenance"]).encode()
+        summary["power"] = power
+    files["identification.json"] = json_text(summary)
+    files["index.html"] = study_page(analysis, figures, summary["provenance"])
     tell("writing the report")
-    for name, content in files.items():
-        write_whole(folder / name, content)
+    write_folder(folder, files)
     return folder / "index.html"
-
-
-def _power_data(power: PowerCurve) -> Any:
-    from squeezefilm.results import to_json
-
-    return to_json(power)
 
 
 def study_figures(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable
 from html import escape
 from pathlib import Path
@@ -10,12 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from squeezefilm.errors import InputError
+from squeezefilm.report.kit.folder import json_text, require_folder, write_folder
 from squeezefilm.report.kit.numbers import printable
 from squeezefilm.report.kit.page_style import page_head
 from squeezefilm.report.kit.style import png
 from squeezefilm.report.study import observer_figures
-from squeezefilm.results import write_whole
 from squeezefilm.study.record.trial_table import Column, csv_text
 from squeezefilm.study.simulated.participants import SimulatedStudy
 
@@ -65,22 +63,19 @@ def write_simulated(
     Raises `InputError` for a folder that cannot be written to.
     """
     tell = progress or (lambda _: None)
-    folder = Path(folder)
-    if folder.exists() and not folder.is_dir():
-        raise InputError(f"{folder} is a file, not a folder; choose another folder")
+    folder = require_folder(folder)
     summary = study.summary()
     tell("figures")
-    files = {
+    files: dict[str, str | bytes] = {
         "channels.png": png(observer_figures.channels(study.tables)),
         "percepts.png": png(observer_figures.percepts(study.tables)),
     }
     analysed = _analyses(study, folder, tell)
-    files["simulated.json"] = f"{_json(summary)}\n".encode()
-    files["trials.csv"] = csv_text(_rows(study), COLUMNS).encode()
-    files["index.html"] = _page(study, summary, analysed).encode()
+    files["simulated.json"] = json_text(summary)
+    files["trials.csv"] = csv_text(_rows(study), COLUMNS)
+    files["index.html"] = _page(study, summary, analysed)
     tell("writing the report")
-    for name, content in files.items():
-        write_whole(folder / name, content)
+    write_folder(folder, files)
     return folder / "index.html"
 
 
@@ -164,10 +159,6 @@ def reason_rows(study: SimulatedStudy, index: int) -> list[list[str]]:
         ]
         for name, why in study.tables.explain(index).items()
     ]
-
-
-def _json(value: Any) -> str:
-    return json.dumps(value, indent=1, ensure_ascii=False, allow_nan=False)
 
 
 def _table(caption: str, head: list[str] | tuple[str, ...], rows: list[list[str]]) -> str:

@@ -15,11 +15,11 @@ from squeezefilm.formats.hjif import HjifExport, ReferenceDevice, hjif_of
 from squeezefilm.formats.traces import Table, csv_text, parquet_bytes
 from squeezefilm.formats.wav import Waveform, wav_bytes
 from squeezefilm.quantities import FloatArray
+from squeezefilm.report.kit.folder import json_text, require_folder, write_folder
 from squeezefilm.report.kit.numbers import printable
 from squeezefilm.report.kit.page_style import page_head
 from squeezefilm.report.kit.style import png
 from squeezefilm.report.textures.terminal import render_rows
-from squeezefilm.results import to_json, write_whole
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -118,16 +118,16 @@ def write_render(
     tell = progress or (lambda _: None)
     if table not in ("csv", "parquet"):
         raise InputError(f"a table cannot be '{table}'; it may be csv or parquet")
-    folder = Path(folder)
-    if folder.exists() and not folder.is_dir():
-        raise InputError(f"{folder} is a file, not a folder; choose another folder")
+    folder = require_folder(folder)
     tell("figures")
     figures = render_figures(result)
-    files: dict[str, bytes] = {f"{name}.png": png(figure) for name, (_, figure) in figures.items()}
+    files: dict[str, str | bytes] = {
+        f"{name}.png": png(figure) for name, (_, figure) in figures.items()
+    }
     tell("trace")
     trace = trace_table(result)
     name = f"trace.{table}"
-    files[name] = csv_text(trace).encode() if table == "csv" else parquet_bytes(trace)
+    files[name] = csv_text(trace) if table == "csv" else parquet_bytes(trace)
     files["envelope.wav"] = wav_bytes(envelope_waveform(result))
     if drive:
         files["drive.wav"] = wav_bytes(drive_waveform(result), "int24")
@@ -140,30 +140,10 @@ def write_render(
             "rms_error": export.rms_error,
             "largest_error": export.largest_error,
         }
-    data = json.dumps(to_json(summary), indent=1, ensure_ascii=False, allow_nan=False)
-    files["fidelity.json"] = f"{data}\n".encode()
-    files["index.html"] = _page(result, figures, sorted({*files, "index.html"})).encode()
-    _write_all(folder, files)
+    files["fidelity.json"] = json_text(summary)
+    files["index.html"] = _page(result, figures, sorted({*files, "index.html"}))
+    write_folder(folder, files)
     return folder / "index.html"
-
-
-def _write_all(folder: Path, files: dict[str, bytes]) -> None:
-    before = {
-        name: (folder / name).read_bytes() if (folder / name).is_file() else None for name in files
-    }
-    done: list[str] = []
-    try:
-        for name, data in files.items():
-            write_whole(folder / name, data)
-            done.append(name)
-    except InputError:
-        for name in done:
-            old = before[name]
-            if old is None:
-                (folder / name).unlink(missing_ok=True)
-            else:
-                write_whole(folder / name, old)
-        raise
 
 
 def render_figures(result: RenderAnalysis) -> dict[str, tuple[str, Figure]]:

@@ -1,0 +1,48 @@
+"""A report's files, put into its folder together: all of them, or what was there before."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from squeezefilm.errors import InputError
+from squeezefilm.results import to_json, write_whole
+
+
+def require_folder(folder: str | Path) -> Path:
+    """The path of a folder that is there or can be made; asked before long work is done for it.
+
+    Raises `InputError` for a file.
+    """
+    path = Path(folder)
+    if path.exists() and not path.is_dir():
+        raise InputError(f"{path} is a file, not a folder; choose another folder")
+    return path
+
+
+def json_text(values: Any) -> str:
+    """Values as the text of a JSON file; what JSON cannot carry is as in `to_json`."""
+    return json.dumps(to_json(values), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def write_folder(folder: Path, files: Mapping[str, str | bytes]) -> None:
+    """Write files by name, each whole. If one cannot be, those before it are as they were.
+
+    Raises `InputError` where the folder cannot be written to.
+    """
+    before: dict[Path, bytes | None] = {}
+    try:
+        for name, content in files.items():
+            file = folder / name
+            old = file.read_bytes() if file.is_file() else None
+            write_whole(file, content)
+            before[file] = old
+    except InputError:
+        for file, old in before.items():
+            if old is None:
+                file.unlink(missing_ok=True)
+            else:
+                write_whole(file, old)
+        raise
