@@ -14,7 +14,7 @@ from squeezefilm.errors import InputError
 from squeezefilm.lab.areas.design import add_design
 from squeezefilm.lab.areas.device import add_device
 from squeezefilm.lab.areas.feel import add_feel
-from squeezefilm.lab.areas.study import add_study
+from squeezefilm.lab.areas.study import StudyArea
 from squeezefilm.lab.door import room_for
 from squeezefilm.lab.guard import Places
 from squeezefilm.lab.keys import Keys
@@ -69,7 +69,7 @@ def _serve(
     lab = Lab(folder, keys, Places(hosts, cookie=f"squeezefilm-{found}"))
     add_design(lab)
     add_feel(lab)
-    add_study(lab)
+    StudyArea(lab)
     add_device(lab)
     link = f"http://127.0.0.1:{found}/?token={keys.new_link()}"
     secret = folder / f".lab-{found}.pem"

@@ -152,198 +152,232 @@ class StudyThread:
         self._pool.shutdown(wait=True)
 
 
-def add_study(lab: Lab, devices: StudyDevices | None = None) -> StudyThread:
-    """Let the lab answer the Study area's and the participants' messages.
+class StudyArea:
+    """What the Study area's and the participants' messages do; `thread` has the studies' files.
 
     `devices` present the surfaces; real sessions on real devices and twins if None.
     """
-    devices = devices or StudyDevices()
-    devices.playing = lab.playing
-    lab.closing.append(devices.close)
-    thread = StudyThread(lab)
-    pages: dict[str, WebSocket] = {}
 
-    def left(page: WebSocket) -> None:
+    def __init__(self, lab: Lab, devices: StudyDevices | None = None) -> None:
+        self._lab, self.thread = lab, StudyThread(lab)
+        self._devices = devices or StudyDevices()
+        self._devices.playing = lab.playing
+        self._pages: dict[str, WebSocket] = {}
+        self._exposures: dict[str, Exposure] = {}
+        lab.closing.append(self._devices.close)
+        lab.left.append(self._left)
+        add = lab.experimenter.add
+        add("studies", Request, self._listing)
+        add("plan study", PlanStudy, self._plan)
+        add("create study", CreateStudy, self._create)
+        add("study", NamedStudy, self._status)
+        add("enrol", NamedStudy, self._enrol)
+        add("exposure", OfParticipant, self._ultrasound)
+        add("prepare sitting", PrepareSitting, self._prepare)
+        add("station link", OfSitting, self._station)
+        add("pairing code", OfSitting, self._code)
+        add("end sitting", OfSitting, self._end)
+        add("delete participant", DeleteParticipant, self._delete)
+        add("export study", ExportStudy, self._export)
+        add("merge study", MergeStudy, self._merged)
+        add("rehearse study", RehearseStudy, self._rehearse)
+        add("analyze study", NamedStudy, self._analyze)
+        add("report study", NamedStudy, self._report)
+        add = lab.participant.add
+        add("where", OfSitting, self._where)
+        add("consent", OfSitting, self._consent)
+        add("next", OfSitting, self._present)
+        add("feel", FeelSurface, self._feel)
+        add("felt", SurfacesFelt, self._felt)
+        add("stop surface", OfSitting, self._stop)
+        add("respond", Respond, self._respond)
+
+    def _left(self, page: WebSocket) -> None:
         # Nobody is there to feel it, or to stop it.
-        for sitting in [sitting for sitting, one in pages.items() if one is page]:
-            del pages[sitting]
-            devices.halt(sitting)
+        for sitting in [sitting for sitting, one in self._pages.items() if one is page]:
+            del self._pages[sitting]
+            self._devices.halt(sitting)
 
-    lab.left.append(left)
-    exposures: dict[str, Exposure] = {}
+    async def _exposed(self, display: str) -> Exposure:
+        if display not in self._exposures:
+            self._exposures[display] = await self._lab.workers.slow.do(None, _exposure, display)
+        return self._exposures[display]
 
-    async def exposed(display: str) -> Exposure:
-        if display not in exposures:
-            exposures[display] = await lab.workers.slow.do(None, _exposure, display)
-        return exposures[display]
+    def _changed(self, study: str) -> None:
+        self._lab.tell({"type": "study changed", "study": study})
 
-    def changed(study: str) -> None:
-        lab.tell({"type": "study changed", "study": study})
+    async def _listing(self, _: Request) -> Answer:
+        found = await self.thread.do(Studies.listing)
+        return {"type": "studies", **found, "tablets": self._lab.lan is not None}
 
-    async def listing(_: Request) -> Answer:
-        found = await thread.do(Studies.listing)
-        return {"type": "studies", **found, "tablets": lab.lan is not None}
+    async def _plan(self, asked: PlanStudy) -> Answer:
+        return {"type": "plan", **await self.thread.do(Studies.plan, asked.design)}
 
-    async def plan(asked: PlanStudy) -> Answer:
-        return {"type": "plan", **await thread.do(Studies.plan, asked.design)}
-
-    async def create(asked: CreateStudy) -> Answer:
-        found = await thread.do(Studies.create, asked.design, asked.study, asked.seed)
+    async def _create(self, asked: CreateStudy) -> Answer:
+        found = await self.thread.do(Studies.create, asked.design, asked.study, asked.seed)
         return {"type": "study", **found}
 
-    async def status(asked: NamedStudy) -> Answer:
-        return {"type": "study", **await thread.do(Studies.status, asked.study)}
+    async def _status(self, asked: NamedStudy) -> Answer:
+        return {"type": "study", **await self.thread.do(Studies.status, asked.study)}
 
-    async def enrol(asked: NamedStudy) -> Answer:
-        found = await thread.do(Studies.enrol, asked.study)
-        changed(asked.study)
+    async def _enrol(self, asked: NamedStudy) -> Answer:
+        found = await self.thread.do(Studies.enrol, asked.study)
+        self._changed(asked.study)
         return {"type": "study", **found}
 
-    async def ultrasound(asked: OfParticipant) -> Answer:
-        display = await thread.do(Studies.display_of, asked.study, asked.participant)
+    async def _ultrasound(self, asked: OfParticipant) -> Answer:
+        display = await self.thread.do(Studies.display_of, asked.study, asked.participant)
         if display is None:
             raise InputError(f"participant {asked.participant} has answered every trial")
-        found = await exposed(display)
+        found = await self._exposed(display)
         return {"type": "exposure", "display": display, "statement": found.statement}
 
-    async def prepare(asked: PrepareSitting) -> Answer:
-        display = await thread.do(Studies.display_of, asked.study, asked.participant)
+    async def _prepare(self, asked: PrepareSitting) -> Answer:
+        display = await self.thread.do(Studies.display_of, asked.study, asked.participant)
         require_device(asked.device, display)
-        found = await thread.do(
+        found = await self.thread.do(
             Studies.prepare, asked.study, asked.participant, asked.device, asked.consent,
             asked.conditions, asked.acknowledged,
         )  # fmt: skip
-        await release_ended()
+        await self._release_ended()
         return {"type": "study", **found}
 
-    async def station(asked: OfSitting) -> Answer:
-        await thread.do(lambda studies: studies.sittings.get(asked.sitting))
-        token = lab.keys.new_link("participant", f"/participant#{asked.sitting}")
+    async def _station(self, asked: OfSitting) -> Answer:
+        await self.thread.do(lambda studies: studies.sittings.get(asked.sitting))
+        token = self._lab.keys.new_link("participant", f"/participant#{asked.sitting}")
         return {"type": "link", "path": f"/?token={token}"}
 
-    async def code(asked: OfSitting) -> Answer:
-        if lab.lan is None:
+    async def _code(self, asked: OfSitting) -> Answer:
+        if self._lab.lan is None:
             raise InputError("tablets are paired where the lab was started with --lan ADDRESS")
-        await thread.do(lambda studies: studies.sittings.get(asked.sitting))
+        await self.thread.do(lambda studies: studies.sittings.get(asked.sitting))
         return {
             "type": "code",
-            "code": lab.keys.new_code(f"/participant#{asked.sitting}"),
-            "link": lab.lan.link,
-            "fingerprint": lab.lan.fingerprint,
+            "code": self._lab.keys.new_code(f"/participant#{asked.sitting}"),
+            "link": self._lab.lan.link,
+            "fingerprint": self._lab.lan.fingerprint,
             "life_s": CODE_LIFE,
         }
 
-    async def end(asked: OfSitting) -> Answer:
-        sitting = await thread.do(lambda studies: studies.sittings.get(asked.sitting))
-        device, lost = await measured_last(sitting)
-        found = await thread.do(Studies.end, asked.sitting, device)
+    async def _end(self, asked: OfSitting) -> Answer:
+        sitting = await self.thread.do(lambda studies: studies.sittings.get(asked.sitting))
+        device, lost = await self._measured_last(sitting)
+        found = await self.thread.do(Studies.end, asked.sitting, device)
         found["problems"] += [lost] if lost else []
-        await release_ended()
-        lab.tell({"type": "sitting ended", "sitting": asked.sitting}, participants=True)
+        await self._release_ended()
+        self._lab.tell({"type": "sitting ended", "sitting": asked.sitting}, participants=True)
         return {"type": "study", **found}
 
-    async def delete(asked: DeleteParticipant) -> Answer:
+    async def _delete(self, asked: DeleteParticipant) -> Answer:
         if asked.confirm != asked.participant:
             raise InputError(f"to delete {asked.participant}, type exactly that; nothing was done")
-        for one in await thread.do(lambda studies: studies.sittings.of_study(asked.study)):
+        for one in await self.thread.do(lambda studies: studies.sittings.of_study(asked.study)):
             if one.participant == asked.participant:
-                await devices.release(one.id)
-        found = await thread.do(Studies.delete, asked.study, asked.participant)
-        changed(asked.study)
+                await self._devices.release(one.id)
+        found = await self.thread.do(Studies.delete, asked.study, asked.participant)
+        self._changed(asked.study)
         return {"type": "study", **found}
 
-    async def export(asked: ExportStudy) -> Answer:
-        return {"type": "exported", **await thread.do(Studies.export, asked.study, asked.format)}
+    async def _export(self, asked: ExportStudy) -> Answer:
+        return {
+            "type": "exported",
+            **await self.thread.do(Studies.export, asked.study, asked.format),
+        }
 
-    async def rehearse(asked: RehearseStudy) -> Answer:
-        path = await thread.do(Studies.path, asked.study)
-        found = await lab.workers.slow.do(None, rehearsed, path, asked.participants)
-        changed(asked.study)
+    async def _rehearse(self, asked: RehearseStudy) -> Answer:
+        path = await self.thread.do(Studies.path, asked.study)
+        found = await self._lab.workers.slow.do(None, rehearsed, path, asked.participants)
+        self._changed(asked.study)
         return {"type": "rehearsed", **found}
 
-    async def analyze(asked: NamedStudy) -> Answer:
-        path = await thread.do(Studies.path, asked.study)
-        return {"type": "analysis", **await lab.workers.slow.do("analysis", analysis_of, path)}
+    async def _analyze(self, asked: NamedStudy) -> Answer:
+        path = await self.thread.do(Studies.path, asked.study)
+        return {
+            "type": "analysis",
+            **await self._lab.workers.slow.do("analysis", analysis_of, path),
+        }
 
-    async def report(asked: NamedStudy) -> Answer:
-        path = await thread.do(Studies.path, asked.study)
-        return {"type": "report", **await lab.workers.slow.do("report", report_of, path)}
+    async def _report(self, asked: NamedStudy) -> Answer:
+        path = await self.thread.do(Studies.path, asked.study)
+        return {"type": "report", **await self._lab.workers.slow.do("report", report_of, path)}
 
-    async def merged(asked: MergeStudy) -> Answer:
-        return {"type": "study", **await thread.do(Studies.merge, asked.study, asked.other)}
+    async def _merged(self, asked: MergeStudy) -> Answer:
+        return {"type": "study", **await self.thread.do(Studies.merge, asked.study, asked.other)}
 
-    async def measured(sitting: Sitting) -> StudyDevice:
-        display = await thread.do(Studies.display_of_sitting, sitting.id)
-        traces = await thread.do(Studies.traces, sitting.study)
-        return await devices.measure(sitting.id, sitting.device, display, traces)
+    async def _measured(self, sitting: Sitting) -> StudyDevice:
+        display = await self.thread.do(Studies.display_of_sitting, sitting.id)
+        traces = await self.thread.do(Studies.traces, sitting.study)
+        return await self._devices.measure(sitting.id, sitting.device, display, traces)
 
-    async def measured_last(sitting: Sitting) -> tuple[StudyDevice, str]:
+    async def _measured_last(self, sitting: Sitting) -> tuple[StudyDevice, str]:
         """The device after a sitting, which ends also where its device is gone: that is said."""
         if sitting.session is None or sitting.ended:
             return NoDevice(), ""
         try:
-            return await measured(sitting), ""
+            return await self._measured(sitting), ""
         except (DeviceError, InputError) as error:
             lost = f"the device could not be verified: {error}"
             found = DeviceVerification(measurable=False, remark=lost)
             return Measured(DeviceIdentity(sitting.device.partition(":")[0]), found), lost
 
-    async def release_ended() -> None:
-        for held in devices.holders():
-            if await thread.do(Studies.has_ended, held):
-                await devices.release(held)
+    async def _release_ended(self) -> None:
+        for held in self._devices.holders():
+            if await self.thread.do(Studies.has_ended, held):
+                await self._devices.release(held)
 
-    async def where(asked: OfSitting) -> Answer:
-        return {"type": "where", **await thread.do(Studies.where, asked.sitting)}
+    async def _where(self, asked: OfSitting) -> Answer:
+        return {"type": "where", **await self.thread.do(Studies.where, asked.sitting)}
 
-    async def consent(asked: OfSitting) -> Answer:
-        sitting = await thread.do(lambda studies: studies.sittings.get(asked.sitting))
+    async def _consent(self, asked: OfSitting) -> Answer:
+        sitting = await self.thread.do(lambda studies: studies.sittings.get(asked.sitting))
         if sitting.session is not None or sitting.ended:
-            return await where(asked)
-        device, seen = await measured(sitting), None
+            return await self._where(asked)
+        device, seen = await self._measured(sitting), None
         try:
             if sitting.device != "none":
-                seen = await exposed(await thread.do(Studies.display_of_sitting, sitting.id))
-            found = await thread.do(Studies.consent, asked.sitting, seen, device)
+                seen = await self._exposed(
+                    await self.thread.do(Studies.display_of_sitting, sitting.id)
+                )
+            found = await self.thread.do(Studies.consent, asked.sitting, seen, device)
         except BaseException:
-            await devices.release(sitting.id)
+            await self._devices.release(sitting.id)
             raise
-        changed(sitting.study)
+        self._changed(sitting.study)
         return {"type": "where", **found}
 
-    async def present(asked: OfSitting) -> Answer:
-        found = await thread.do(Studies.present, asked.sitting)
+    async def _present(self, asked: OfSitting) -> Answer:
+        found = await self.thread.do(Studies.present, asked.sitting)
         study = found.pop("study", None)
         if study is not None:
             # Who presents by hand is told what; the participant's page is not.
-            changed(study)
+            self._changed(study)
         return {"type": "where", **found}
 
-    async def feel(asked: FeelSurface) -> Answer:
-        sitting = await thread.do(lambda studies: studies.sittings.get(asked.sitting))
+    async def _feel(self, asked: FeelSurface) -> Answer:
+        sitting = await self.thread.do(lambda studies: studies.sittings.get(asked.sitting))
         if sitting.device == "none":
             raise InputError("this sitting has no device")
-        surface = await thread.do(Studies.surface, sitting.id, asked.token, asked.place)
-        display = await thread.do(Studies.display_of_sitting, sitting.id)
-        traces = await thread.do(Studies.traces, sitting.study)
-        pages[sitting.id] = PAGE.get()
-        await devices.present(
+        surface = await self.thread.do(Studies.surface, sitting.id, asked.token, asked.place)
+        display = await self.thread.do(Studies.display_of_sitting, sitting.id)
+        traces = await self.thread.do(Studies.traces, sitting.study)
+        self._pages[sitting.id] = PAGE.get()
+        await self._devices.present(
             sitting.id, sitting.device, display, traces, surface, asked.token, asked.place
         )
         return {"type": "playing", "place": asked.place}
 
-    async def felt(asked: SurfacesFelt) -> Answer:
-        await devices.felt(asked.sitting, asked.token)
+    async def _felt(self, asked: SurfacesFelt) -> Answer:
+        await self._devices.felt(asked.sitting, asked.token)
         return {"type": "silent"}
 
-    async def stop(asked: OfSitting) -> Answer:
-        devices.halt(asked.sitting)
+    async def _stop(self, asked: OfSitting) -> Answer:
+        self._devices.halt(asked.sitting)
         return {"type": "silent"}
 
-    async def respond(asked: Respond) -> Answer:
+    async def _respond(self, asked: Respond) -> Answer:
         felt: tuple[Exploration, ...] = ()
-        if await thread.do(Studies.needs_device, asked.sitting, asked.token):
-            felt = await devices.felt(asked.sitting, asked.token)
+        if await self.thread.do(Studies.needs_device, asked.sitting, asked.token):
+            felt = await self._devices.felt(asked.sitting, asked.token)
         response = Response(
             choice=asked.choice,
             estimate=asked.estimate,
@@ -352,37 +386,10 @@ def add_study(lab: Lab, devices: StudyDevices | None = None) -> StudyThread:
             ended_monotonic=asked.ended_monotonic,
             explorations=felt,
         )
-        found = await thread.do(Studies.respond, asked.sitting, asked.token, response)
-        devices.answered(asked.sitting, asked.token)
-        changed(found.pop("study"))
+        found = await self.thread.do(Studies.respond, asked.sitting, asked.token, response)
+        self._devices.answered(asked.sitting, asked.token)
+        self._changed(found.pop("study"))
         return {"type": "acknowledged", **found}
-
-    add = lab.experimenter.add
-    add("studies", Request, listing)
-    add("plan study", PlanStudy, plan)
-    add("create study", CreateStudy, create)
-    add("study", NamedStudy, status)
-    add("enrol", NamedStudy, enrol)
-    add("exposure", OfParticipant, ultrasound)
-    add("prepare sitting", PrepareSitting, prepare)
-    add("station link", OfSitting, station)
-    add("pairing code", OfSitting, code)
-    add("end sitting", OfSitting, end)
-    add("delete participant", DeleteParticipant, delete)
-    add("export study", ExportStudy, export)
-    add("merge study", MergeStudy, merged)
-    add("rehearse study", RehearseStudy, rehearse)
-    add("analyze study", NamedStudy, analyze)
-    add("report study", NamedStudy, report)
-    add = lab.participant.add
-    add("where", OfSitting, where)
-    add("consent", OfSitting, consent)
-    add("next", OfSitting, present)
-    add("feel", FeelSurface, feel)
-    add("felt", SurfacesFelt, felt)
-    add("stop surface", OfSitting, stop)
-    add("respond", Respond, respond)
-    return thread
 
 
 def _exposure(display: str) -> Exposure:

@@ -26,8 +26,8 @@ from squeezefilm.lab.areas.study import (
     PrepareSitting,
     RehearseStudy,
     Respond,
+    StudyArea,
     SurfacesFelt,
-    add_study,
 )
 from squeezefilm.lab.keys import CODE_LIFE
 from squeezefilm.lab.server import LanPlace
@@ -89,7 +89,7 @@ def lab(talk: Talk, device: Device, monkeypatch: pytest.MonkeyPatch) -> Any:
         return EXPOSURE
 
     monkeypatch.setattr(study_area, "_exposure", exposed)
-    add_study(talk.lab, StudyDevices(lambda *_: device))
+    StudyArea(talk.lab, StudyDevices(lambda *_: device))
     file = talk.folder / "studies" / "one.sqlite"
     file.parent.mkdir()
     StudyStore.create(file, gratings(displays=("biet2008-stator",)), 4).close()
@@ -398,7 +398,7 @@ def test_jobs_run_on_the_slow_line_with_the_studys_file(
 
 
 def test_a_lab_without_studies_closes(talk: Talk) -> None:
-    add_study(talk.lab)
+    StudyArea(talk.lab)
     talk.lab.close()
 
 

@@ -16,7 +16,7 @@ from squeezefilm.errors import DeviceError, InputError
 from squeezefilm.lab import playing_process
 from squeezefilm.lab.areas import study as study_area
 from squeezefilm.lab.areas.device import add_device
-from squeezefilm.lab.areas.study import add_study
+from squeezefilm.lab.areas.study import StudyArea
 from squeezefilm.lab.guard import Places
 from squeezefilm.lab.keys import Keys
 from squeezefilm.lab.playing_process import DeviceSession
@@ -189,7 +189,7 @@ class Talk:
             return EXPOSURE
 
         monkeypatch.setattr(self.lab.workers.slow, "do", exposed)
-        add_study(self.lab, StudyDevices(lambda *_: fake))
+        StudyArea(self.lab, StudyDevices(lambda *_: fake))
         add_device(self.lab)
         self.store = folder / "studies" / "one.sqlite"
 
