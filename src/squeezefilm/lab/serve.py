@@ -11,9 +11,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from squeezefilm.errors import InputError
-from squeezefilm.lab.areas.design import add_design
-from squeezefilm.lab.areas.device import add_device
-from squeezefilm.lab.areas.feel import add_feel
+from squeezefilm.lab.areas.design import DesignArea
+from squeezefilm.lab.areas.device import DeviceArea
+from squeezefilm.lab.areas.feel import FeelArea
 from squeezefilm.lab.areas.study import StudyArea
 from squeezefilm.lab.door import room_for
 from squeezefilm.lab.guard import Places
@@ -67,10 +67,10 @@ def _serve(
     hosts = frozenset({f"127.0.0.1:{found}", f"localhost:{found}"})
     keys = Keys(folder / f".lab-{found}.keys")
     lab = Lab(folder, keys, Places(hosts, cookie=f"squeezefilm-{found}"))
-    add_design(lab)
-    add_feel(lab)
+    DesignArea(lab)
+    FeelArea(lab)
     StudyArea(lab)
-    add_device(lab)
+    DeviceArea(lab)
     link = f"http://127.0.0.1:{found}/?token={keys.new_link()}"
     secret = folder / f".lab-{found}.pem"
     most = room_for(1 if lan is None else 2)

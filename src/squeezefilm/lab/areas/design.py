@@ -65,45 +65,57 @@ class SaveDisplay(Request):
     replace: bool = False
 
 
-def add_design(lab: Lab) -> None:
-    """Let the lab answer the Design area's messages."""
+class DesignArea:
+    """Answers the Design area's messages."""
 
-    async def listing(_: Request) -> Answer:
-        saved = sorted(path.stem for path in lab.folder.glob("*.toml"))
+    def __init__(self, lab: Lab) -> None:
+        self._lab = lab
+        add = lab.experimenter.add
+        add("ping", Request, self._ping)
+        add("displays", Request, self._listing)
+        add("open display", OpenDisplay, self._open_display)
+        add("edit display", EditDisplay, self._edit)
+        add("field limits", FieldLimits, self._limits)
+        add("compute design", ComputeDesign, self._compute)
+        add("cancel design", Request, self._cancel)
+        add("save display", SaveDisplay, self._save)
+
+    async def _listing(self, _: Request) -> Answer:
+        saved = sorted(path.stem for path in self._lab.folder.glob("*.toml"))
         return {"type": "displays", "presets": list(presets.display_names()), "saved": saved}
 
-    async def open_display(asked: OpenDisplay) -> Answer:
+    async def _open_display(self, asked: OpenDisplay) -> Answer:
         given = [one for one in (asked.preset, asked.file, asked.text) if one is not None]
         if len(given) != 1:
             raise InputError("say which display: a preset, a file or a text, one of them")
         if asked.preset is not None:
             text = description.preset_text(asked.preset)
         elif asked.file is not None:
-            text = existing(lab.folder, asked.file, ".toml").read_text(encoding="utf-8")
+            text = existing(self._lab.folder, asked.file, ".toml").read_text(encoding="utf-8")
         else:
             text = str(asked.text)
-        return await display(design.opened, text)
+        return await self._display(design.opened, text)
 
-    async def display(work: Callable[..., Answer], *arguments: str) -> Answer:
-        return {"type": "display", **await lab.workers.quick.do(None, work, *arguments)}
+    async def _display(self, work: Callable[..., Answer], *arguments: str) -> Answer:
+        return {"type": "display", **await self._lab.workers.quick.do(None, work, *arguments)}
 
-    async def edit(asked: EditDisplay) -> Answer:
-        return await display(design.changed, asked.text, asked.path, asked.value)
+    async def _edit(self, asked: EditDisplay) -> Answer:
+        return await self._display(design.changed, asked.text, asked.path, asked.value)
 
-    async def limits(asked: FieldLimits) -> Answer:
-        found = await lab.workers.quick.do("limits", allowed, asked.text, asked.path)
+    async def _limits(self, asked: FieldLimits) -> Answer:
+        found = await self._lab.workers.quick.do("limits", allowed, asked.text, asked.path)
         return {"type": "field limits", "path": asked.path, "allowed": found}
 
-    async def compute(asked: ComputeDesign) -> Answer:
+    async def _compute(self, asked: ComputeDesign) -> Answer:
         point = design.WorkingPoint(
             asked.text, asked.voltage, asked.surface, asked.force, asked.path, asked.value
         )
-        quick, slow, page = lab.workers.quick, lab.workers.slow, PAGE.get(None)
+        quick, slow, page = self._lab.workers.quick, self._lab.workers.slow, PAGE.get(None)
 
         def told(text: str, share: float) -> None:
-            if page in lab.pages:
+            if page in self._lab.pages:
                 line = {"type": "computing", "quality": asked.quality, "text": text, "share": share}
-                lab.pages[page].say(as_text(line))
+                self._lab.pages[page].say(as_text(line))
 
         if asked.quality == "screening":
             found = await quick.do("screening", design.designed, point, "screening", gives_way=True)
@@ -116,25 +128,15 @@ def add_design(lab: Lab) -> None:
             return {"type": "band", **found}
         return {"type": "design", **found}
 
-    async def cancel(_: Request) -> Answer:
-        lab.workers.cancel(PAGE.get(None))
+    async def _cancel(self, _: Request) -> Answer:
+        self._lab.workers.cancel(PAGE.get(None))
         return {"type": "cancelled"}
 
-    async def save(asked: SaveDisplay) -> Answer:
-        await lab.workers.quick.do(None, description.name_of, asked.text)
-        file = fresh(lab.folder, asked.name, ".toml", replace=asked.replace)
+    async def _save(self, asked: SaveDisplay) -> Answer:
+        await self._lab.workers.quick.do(None, description.name_of, asked.text)
+        file = fresh(self._lab.folder, asked.name, ".toml", replace=asked.replace)
         write_whole(file, asked.text)
         return {"type": "saved", "file": file.name}
 
-    async def ping(_: Request) -> Answer:
+    async def _ping(self, _: Request) -> Answer:
         return {"type": "pong"}
-
-    add = lab.experimenter.add
-    add("ping", Request, ping)
-    add("displays", Request, listing)
-    add("open display", OpenDisplay, open_display)
-    add("edit display", EditDisplay, edit)
-    add("field limits", FieldLimits, limits)
-    add("compute design", ComputeDesign, compute)
-    add("cancel design", Request, cancel)
-    add("save display", SaveDisplay, save)

@@ -52,28 +52,36 @@ class PlayDevice(OnDrive):
     seed: int = Field(0, ge=0, le=2**53)
 
 
-def add_device(lab: Lab) -> DeviceSession:
-    """Let the lab answer the Device area's messages."""
-    loop: list[asyncio.AbstractEventLoop] = []
+class DeviceArea:
+    """Answers the Device area's messages; `session` has the process that plays."""
 
-    def told(message: dict[str, Any]) -> None:
-        if message["type"] == "device ended" and not session.running:
-            lab.playing.forget(DEVICE)
-        lab.tell(message)
+    def __init__(self, lab: Lab) -> None:
+        self._lab = lab
+        self._loop: asyncio.AbstractEventLoop | None = None
+        self.session = DeviceSession(self._tell)
+        lab.closing.append(self.session.close)
+        add = lab.experimenter.add
+        add("drives", Request, self._listing)
+        add("play device", PlayDevice, self._play)
+        add("check device", OnDrive, self._check)
+        add("what plays", Request, self._playing)
+        add("stop everything", Request, self._stop)
 
-    def tell(message: dict[str, Any]) -> None:
-        if loop and not loop[0].is_closed():
-            loop[0].call_soon_threadsafe(told, message)
+    def _told(self, message: dict[str, Any]) -> None:
+        if message["type"] == "device ended" and not self.session.running:
+            self._lab.playing.forget(DEVICE)
+        self._lab.tell(message)
 
-    session = DeviceSession(tell)
-    lab.closing.append(session.close)
+    def _tell(self, message: dict[str, Any]) -> None:
+        if self._loop is not None and not self._loop.is_closed():
+            self._loop.call_soon_threadsafe(self._told, message)
 
-    def start(what: str, work: Callable[..., None], *arguments: Any) -> None:
-        loop[:] = [asyncio.get_running_loop()]
-        session.start(work, *arguments)
-        lab.playing.note(DEVICE, what, session.stop, plays=True)
+    def _start(self, what: str, work: Callable[..., None], *arguments: Any) -> None:
+        self._loop = asyncio.get_running_loop()
+        self.session.start(work, *arguments)
+        self._lab.playing.note(DEVICE, what, self.session.stop, plays=True)
 
-    async def listing(_: Request) -> Answer:
+    async def _listing(self, _: Request) -> Answer:
         from serial.tools import list_ports
 
         ports = [
@@ -82,15 +90,15 @@ def add_device(lab: Lab) -> DeviceSession:
         ]
         return {"type": "drives", "ports": ports}
 
-    async def play(asked: PlayDevice) -> Answer:
+    async def _play(self, asked: PlayDevice) -> Answer:
         if not asked.armed:
             raise InputError("the device is not armed; arm it on the page first")
         duration = parse_quantity(asked.duration, Unit("s"))
         voltage = None if asked.voltage is None else parse_quantity(asked.voltage, Unit("V"))
         name = datetime.now(UTC).strftime("%Y%m%dT%H%M%S")
         work = DeviceWork(
-            display=str(await _display(lab, asked.display)),
-            texture=str(await _texture(lab, asked)),
+            display=str(await _display(self._lab, asked.display)),
+            texture=str(await _texture(self._lab, asked)),
             drive=_drive(asked.drive),
             mode=asked.mode,
             stroke=asked.stroke,
@@ -98,31 +106,23 @@ def add_device(lab: Lab) -> DeviceSession:
             duration=duration,
             voltage=voltage,
             compensation=asked.compensation,
-            out=str(lab.folder / "sessions" / name),
+            out=str(self._lab.folder / "sessions" / name),
             seed=asked.seed,
         )
-        start(f"a texture on {work.drive}", device_process.play, work)
+        self._start(f"a texture on {work.drive}", device_process.play, work)
         return {"type": "playing", "folder": f"sessions/{name}"}
 
-    async def check(asked: OnDrive) -> Answer:
-        display, drive = await _display(lab, asked.display), _drive(asked.drive)
-        start(f"the check of {drive}", device_process.check, drive, str(display))
+    async def _check(self, asked: OnDrive) -> Answer:
+        display, drive = await _display(self._lab, asked.display), _drive(asked.drive)
+        self._start(f"the check of {drive}", device_process.check, drive, str(display))
         return {"type": "checking"}
 
-    async def playing(_: Request) -> Answer:
-        return lab.playing.message()
+    async def _playing(self, _: Request) -> Answer:
+        return self._lab.playing.message()
 
-    async def stop(_: Request) -> Answer:
-        lab.playing.stop()
+    async def _stop(self, _: Request) -> Answer:
+        self._lab.playing.stop()
         return {"type": "stopping"}
-
-    add = lab.experimenter.add
-    add("drives", Request, listing)
-    add("play device", PlayDevice, play)
-    add("check device", OnDrive, check)
-    add("what plays", Request, playing)
-    add("stop everything", Request, stop)
-    return session
 
 
 def _drive(text: str) -> str:

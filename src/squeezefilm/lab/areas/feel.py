@@ -71,18 +71,28 @@ class SaveStroke(Request):
     )
 
 
-def add_feel(lab: Lab) -> None:
-    """Let the lab answer the Feel area's messages."""
-    folder, quick = lab.folder / "textures", lab.workers.quick
+class FeelArea:
+    """Answers the Feel area's messages."""
 
-    async def listing(_: Request) -> Answer:
+    def __init__(self, lab: Lab) -> None:
+        self._lab, self._folder, self._quick = lab, lab.folder / "textures", lab.workers.quick
+        add = lab.experimenter.add
+        add("textures", Request, self._listing)
+        add("texture text", TextureText, self._text_of)
+        add("load texture", OnDisplay, self._load)
+        add("parity", OnDisplay, self._parity)
+        add("add picture", AddPicture, self._add_picture)
+        add("save texture", SaveTexture, self._save_texture)
+        add("save stroke", SaveStroke, self._save_stroke)
+
+    async def _listing(self, _: Request) -> Answer:
         kept = [
             {"name": name, "title": load_texture(name).title} for name in presets.texture_names()
         ]
-        saved = sorted(path.stem for path in folder.glob("*.toml"))
+        saved = sorted(path.stem for path in self._folder.glob("*.toml"))
         return {"type": "textures", "presets": kept, "saved": saved}
 
-    async def text_of(asked: TextureText) -> Answer:
+    async def _text_of(self, asked: TextureText) -> Answer:
         if (asked.preset is None) == (asked.file is None):
             raise InputError("say which texture: a preset or a saved file, one of them")
         if asked.preset is not None:
@@ -90,32 +100,32 @@ def add_feel(lab: Lab) -> None:
             if asked.preset not in presets.texture_names():
                 raise InputError(f"'{asked.preset}' is no preset texture")
         else:
-            file = existing(folder, str(asked.file), ".toml")
+            file = existing(self._folder, str(asked.file), ".toml")
         return {"type": "texture text", "text": file.read_text(encoding="utf-8")}
 
-    async def on_display(work: Callable[..., Answer], asked: OnDisplay) -> Answer:
+    async def _on_display(self, work: Callable[..., Answer], asked: OnDisplay) -> Answer:
         # What takes seconds stays out of a drag's way.
-        line = quick if asked.quality == "screening" else lab.workers.slow
-        texture = asked.texture, asked.preset, asked.quality, folder
+        line = self._quick if asked.quality == "screening" else self._lab.workers.slow
+        texture = asked.texture, asked.preset, asked.quality, self._folder
         return await line.do(work.__name__, work, asked.display, *texture, gives_way=True)
 
-    async def load(asked: OnDisplay) -> Answer:
-        return {"type": "feel", **await on_display(feel.feel, asked)}
+    async def _load(self, asked: OnDisplay) -> Answer:
+        return {"type": "feel", **await self._on_display(feel.feel, asked)}
 
-    async def parity(asked: OnDisplay) -> Answer:
-        return {"type": "parity", **await on_display(feel.parity, asked)}
+    async def _parity(self, asked: OnDisplay) -> Answer:
+        return {"type": "parity", **await self._on_display(feel.parity, asked)}
 
-    async def add_picture(asked: AddPicture) -> Answer:
-        file = fresh(folder, asked.name, ".png")
+    async def _add_picture(self, asked: AddPicture) -> Answer:
+        file = fresh(self._folder, asked.name, ".png")
         try:
             data = base64.b64decode(asked.data, validate=True)
         except binascii.Error as error:
             raise InputError("the picture's data are no base64; drop it again") from error
-        rows, columns = await quick.do(None, feel.pixels_of, data, asked.name)
+        rows, columns = await self._quick.do(None, feel.pixels_of, data, asked.name)
         pixel = parse_quantity(asked.pixel, Unit("m"))
         if not 1e-6 <= pixel <= 0.1:
             raise InputError(f"a pixel of {asked.pixel}: it may have 1 um to 10 cm")
-        folder.mkdir(exist_ok=True)
+        self._folder.mkdir(exist_ok=True)
         file.write_bytes(data)
         text = (
             f'title = "{file.stem}, {columns} × {rows} pixels of {asked.pixel}"\n\n[texture]\n'
@@ -123,33 +133,24 @@ def add_feel(lab: Lab) -> None:
             f'type = "image_file"\nfile = "{file.name}"\npixel = "{asked.pixel}"\n'
             'outside = "zero"\n'
         )
-        await quick.do(None, feel.title_of, text, folder / "texture.toml")
+        await self._quick.do(None, feel.title_of, text, self._folder / "texture.toml")
         return {"type": "texture text", "text": text}
 
-    async def save_texture(asked: SaveTexture) -> Answer:
-        await quick.do(None, feel.title_of, asked.text, folder / "texture.toml")
-        file = fresh(folder, asked.name, ".toml")
-        folder.mkdir(exist_ok=True)
+    async def _save_texture(self, asked: SaveTexture) -> Answer:
+        await self._quick.do(None, feel.title_of, asked.text, self._folder / "texture.toml")
+        file = fresh(self._folder, asked.name, ".toml")
+        self._folder.mkdir(exist_ok=True)
         write_whole(file, asked.text)
         return {"type": "saved", "file": f"textures/{file.name}"}
 
-    async def save_stroke(asked: SaveStroke) -> Answer:
-        file = fresh(lab.folder / "strokes", asked.name, ".csv")
-        felt = fresh(lab.folder / "strokes", f"{file.stem}.felt", ".csv")
+    async def _save_stroke(self, asked: SaveStroke) -> Answer:
+        file = fresh(self._lab.folder / "strokes", asked.name, ".csv")
+        felt = fresh(self._lab.folder / "strokes", f"{file.stem}.felt", ".csv")
         file.parent.mkdir(exist_ok=True)
         # The motion alone is what a stroke's file has elsewhere; what was felt lies beside it.
         write_whole(felt, _csv(COLUMNS, asked.rows))
         write_whole(file, _csv(COLUMNS[:3], [row[:3] for row in asked.rows]))
         return {"type": "saved", "file": f"strokes/{file.name}"}
-
-    add = lab.experimenter.add
-    add("textures", Request, listing)
-    add("texture text", TextureText, text_of)
-    add("load texture", OnDisplay, load)
-    add("parity", OnDisplay, parity)
-    add("add picture", AddPicture, add_picture)
-    add("save texture", SaveTexture, save_texture)
-    add("save stroke", SaveStroke, save_stroke)
 
 
 def _csv(columns: Sequence[str], rows: Iterable[Sequence[float]]) -> str:

@@ -13,11 +13,11 @@ from pydantic import ValidationError
 from squeezefilm import presets
 from squeezefilm.lab.areas.design import (
     ComputeDesign,
+    DesignArea,
     EditDisplay,
     FieldLimits,
     OpenDisplay,
     SaveDisplay,
-    add_design,
 )
 from squeezefilm.lab.designing import numbers
 from squeezefilm.lab.designing.form import preset_text
@@ -31,7 +31,7 @@ STATOR = preset_text("biet2008-stator")
 
 @pytest.fixture
 def lab(talk: Talk) -> Talk:
-    add_design(talk.lab)
+    DesignArea(talk.lab)
     return talk
 
 

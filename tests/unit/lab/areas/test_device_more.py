@@ -15,7 +15,7 @@ from serial.tools import list_ports
 
 from squeezefilm import presets
 from squeezefilm.lab import playing_process
-from squeezefilm.lab.areas.device import DEVICE, OnDrive, PlayDevice, add_device
+from squeezefilm.lab.areas.device import DEVICE, DeviceArea, OnDrive, PlayDevice
 from squeezefilm.lab.designing.form import preset_text
 from squeezefilm.lab.playing_process import DeviceSession, DeviceWork
 
@@ -55,7 +55,7 @@ def session(monkeypatch: pytest.MonkeyPatch) -> Session:
 
 @pytest.fixture
 def lab(talk: Talk, session: Session) -> Talk:
-    talk.session = add_device(talk.lab)  # type: ignore[attr-defined]
+    talk.session = DeviceArea(talk.lab).session  # type: ignore[attr-defined]
     return talk
 
 

@@ -15,11 +15,11 @@ from squeezefilm.formats.pictures import picture_bytes
 from squeezefilm.lab.areas.feel import (
     COLUMNS,
     AddPicture,
+    FeelArea,
     OnDisplay,
     SaveStroke,
     SaveTexture,
     TextureText,
-    add_feel,
 )
 from squeezefilm.lab.designing.form import preset_text
 from squeezefilm.texture_file import load_texture, texture_from_text
@@ -35,7 +35,7 @@ PICTURE = base64.b64encode(picture_bytes(np.eye(15)[7].reshape(3, 5))).decode()
 
 @pytest.fixture
 def lab(talk: Talk) -> Talk:
-    add_feel(talk.lab)
+    FeelArea(talk.lab)
     return talk
 
 

@@ -15,7 +15,7 @@ import pytest
 from squeezefilm.errors import DeviceError, InputError
 from squeezefilm.lab import playing_process
 from squeezefilm.lab.areas import study as study_area
-from squeezefilm.lab.areas.device import add_device
+from squeezefilm.lab.areas.device import DeviceArea
 from squeezefilm.lab.areas.study import StudyArea
 from squeezefilm.lab.guard import Places
 from squeezefilm.lab.keys import Keys
@@ -190,7 +190,7 @@ class Talk:
 
         monkeypatch.setattr(self.lab.workers.slow, "do", exposed)
         StudyArea(self.lab, StudyDevices(lambda *_: fake))
-        add_device(self.lab)
+        DeviceArea(self.lab)
         self.store = folder / "studies" / "one.sqlite"
 
     async def say(self, type: str, **fields: Any) -> dict[str, Any]:
