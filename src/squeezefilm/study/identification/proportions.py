@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -23,16 +24,7 @@ def wilson_interval(successes: int, trials: int, level: Dimensionless = 0.95) ->
 
     Raises `InputError` for counts that do not fit or a level not between 0 and 1.
     """
-    _check(successes, trials, level)
-    z = float(stats.norm.isf((1 - level) / 2))
-    share = successes / trials
-    centre = (share + z**2 / (2 * trials)) / (1 + z**2 / trials)
-    half = (
-        z * math.sqrt(share * (1 - share) / trials + z**2 / (4 * trials**2)) / (1 + z**2 / trials)
-    )
-    low = 0.0 if successes == 0 else centre - half
-    high = 1.0 if successes == trials else centre + half
-    return Interval(low, high, level, "Wilson")
+    return _by_scipy(successes, trials, level, "wilson", "Wilson")
 
 
 def jeffreys_interval(successes: int, trials: int, level: Dimensionless = 0.95) -> Interval:
@@ -54,11 +46,7 @@ def clopper_pearson_interval(successes: int, trials: int, level: Dimensionless =
 
     Raises as `wilson_interval`.
     """
-    _check(successes, trials, level)
-    tail = (1 - level) / 2
-    low = 0.0 if successes == 0 else stats.beta.ppf(tail, successes, trials - successes + 1)
-    high = 1.0 if successes == trials else stats.beta.isf(tail, successes + 1, trials - successes)
-    return Interval(float(low), float(high), level, "Clopper–Pearson")
+    return _by_scipy(successes, trials, level, "exact", "Clopper–Pearson")
 
 
 def participant_interval(
@@ -153,6 +141,14 @@ def _normal_permutation(answers: IntArray, presented: IntArray, observed: int) -
         return 1.0
     z = (observed - 0.5 - float(mean.sum())) / spread
     return float(stats.norm.sf(z))
+
+
+def _by_scipy(
+    successes: int, trials: int, level: float, method: Literal["exact", "wilson"], name: str
+) -> Interval:
+    _check(successes, trials, level)
+    found = stats.binomtest(successes, trials).proportion_ci(level, method)
+    return Interval(float(found.low), float(found.high), level, name)
 
 
 def _square(counts: ArrayLike) -> IntArray:
