@@ -152,6 +152,12 @@ RIDGES = HardLimit(
 SOLID_MEMORY = HardLimit(
     "bytes of a three-dimensional solve", 0, 8e9, _ONE, "it would take hours and all memory"
 )
+PLANAR_MEMORY = HardLimit(
+    "bytes of a film in the plane", 0, 2e9, _ONE, "every row of cells keeps a dense block"
+)
+SHEAR_UNKNOWNS = HardLimit(
+    "unknowns of a shear plate", 1, 100_000, _ONE, "it would take all memory"
+)
 RING_ELEMENTS = HardLimit(
     "elements of a ring's section", 1, 4000, _ONE, "it would take hours and all memory"
 )

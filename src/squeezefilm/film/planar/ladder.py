@@ -24,13 +24,13 @@ from squeezefilm.film.planar.grid import (
     graded_line,
     rectangle_grid,
 )
+from squeezefilm.hard_limits import PLANAR_MEMORY, require_within
 from squeezefilm.quantities import ComplexArray, FloatArray, require
 
 PlanarShape = Literal["rectangle", "disc", "ellipse"]
 RUNGS = (2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64)
 _MOST_HARMONICS = 24
-_MEMORY = 2.0e9
-"""Bytes the eliminated rows may take."""
+_LEAST_TIMES = 9  # of the two counts that a climb begins with, the larger
 
 
 class Ladder:
@@ -72,6 +72,11 @@ class Ladder:
             out = max(2, int(np.ceil(2 * waves)))
             around = max(1, int(np.ceil(2 * waves)))
             self._base = (out, around) if quarter else (out, 4 * around)
+        rows, columns = sorted((part * RUNGS[0] for part in self._base), reverse=True)
+        require_within(
+            PLANAR_MEMORY, _memory(rows, columns, _LEAST_TIMES),
+            enough="take fewer waves, ridges or cells",
+        )  # fmt: skip
         self.excursion = self._excursion()
 
     def _excursion(self) -> float:
@@ -147,6 +152,11 @@ class Climb:
     status: str
 
 
+def _memory(rows: float, columns: float, count: int) -> float:
+    """Bytes of the eliminated rows: a dense block each."""
+    return rows * 8.0 * (columns * count) ** 2
+
+
 def climb_to(ladder: Ladder, tolerance: float) -> Climb:
     """Climb until the over-pressure is known to `tolerance` of itself, or to the last rung."""
     accuracy = 1e-7
@@ -160,6 +170,11 @@ def climb_to(ladder: Ladder, tolerance: float) -> Climb:
 
     excursion = ladder.relative_excursion()
     count = 2 * int(np.ceil(1.5 + 2.5 * excursion + 3.0 * excursion**6)) + 1
+    coarsest = ladder.grid(RUNGS[0])
+    require_within(
+        PLANAR_MEMORY, _memory(coarsest.rows, coarsest.columns, count + 4),
+        enough="take fewer waves, ridges or cells",
+    )  # fmt: skip
     low = solved(RUNGS[0], count, None)
     if low.converged:
         # Newton's error must stay well below what the extrapolation looks at.
@@ -187,7 +202,7 @@ def climb_to(ladder: Ladder, tolerance: float) -> Climb:
     best = Extrapolated(high.over_pressure, float("inf"), high.harmonics)
     for place, rung in enumerate(RUNGS[1:], start=1):
         grid = ladder.grid(rung)
-        if grid.rows * (8.0 * grid.columns * count) * (grid.columns * count) > _MEMORY:
+        if _memory(grid.rows, grid.columns, count) > PLANAR_MEMORY.most:
             return Climb(
                 best, states[-1], iterations, False,
                 f"known to {best.error / abs(best.over_pressure):.2g} of the over-pressure; "

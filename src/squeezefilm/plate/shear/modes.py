@@ -13,6 +13,7 @@ import numpy as np
 from scipy.sparse.linalg import LinearOperator, eigsh, splu
 
 from squeezefilm.errors import ConvergenceError, InputError
+from squeezefilm.hard_limits import FREQUENCY, SHEAR_UNKNOWNS, require_within
 from squeezefilm.plate.elements.nodal_basis import lagrange
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.shear.elements import Axis, ShearSystem, shear_system
@@ -122,7 +123,7 @@ def shear_modes(
     bonded. Raises `InputError` for bad numbers or a parity the plate does not have,
     `ConvergenceError` if the eigenvalues do not converge.
     """
-    require("near", near, Unit("Hz"), at_least=0)
+    require("near", near, Unit("Hz"), at_least=0, at_most=FREQUENCY.most)
     require("count", count, at_least=1)
     require("degree", degree, at_least=3, at_most=14)
     layout = (
@@ -131,6 +132,12 @@ def shear_modes(
         else shear_layout(plate, induced_potential=induced_potential)
     )
     longest = _longest_element(layout, near)
+    parts = [
+        float(np.ceil(np.diff(edges) / longest).sum()) for edges in (layout.x_edges, layout.y_edges)
+    ]
+    require_within(
+        SHEAR_UNKNOWNS, 3 * parts[0] * parts[1] * degree**2, enough="search at a lower frequency"
+    )
     found: list[ShearMode] = []
     for parity in parities if parities is not None else _parities(layout):
         for axis in (0, 1):

@@ -23,6 +23,7 @@ from squeezefilm.film.planar.ladder import (
     _stretched,
     climb_to,
 )
+from squeezefilm.hard_limits import PLANAR_MEMORY
 
 HALF = PlanarGap(0.5)
 
@@ -215,9 +216,12 @@ def test_a_climb_stops_where_memory_or_rungs_end(monkeypatch: pytest.MonkeyPatch
     def rows_held(rung: int, times: int) -> float:
         return 2 * rung * 8.0 * (2 * rung * times) ** 2
 
-    monkeypatch.setattr(module, "_MEMORY", 0.0)
+    def allow(most: float) -> None:
+        monkeypatch.setattr(module, "PLANAR_MEMORY", dataclasses.replace(PLANAR_MEMORY, most=most))
+
+    allow(rows_held(2, 30))
     times = climb_to(made, 1e-9).fine.gas.shape[1]
-    monkeypatch.setattr(module, "_MEMORY", rows_held(4, times))
+    allow(rows_held(4, times))
     stopped = climb_to(made, 1e-9)
     assert not stopped.reached
     assert stopped.fine.grid.rows == 8
@@ -226,9 +230,9 @@ def test_a_climb_stops_where_memory_or_rungs_end(monkeypatch: pytest.MonkeyPatch
     known = stopped.best.error / stopped.best.over_pressure
     assert f"known to {known:.2g} of" in stopped.status
     assert 1e-9 < known < 0.1
-    monkeypatch.setattr(module, "_MEMORY", rows_held(4, times) - 1)
+    allow(rows_held(4, times) - 1)
     assert climb_to(made, 1e-9).fine.grid.rows == 6
-    monkeypatch.setattr(module, "_MEMORY", np.inf)
+    allow(np.inf)
     monkeypatch.setattr(module, "RUNGS", (2, 3, 4))
     ended = climb_to(made, 1e-9)
     assert not ended.reached
@@ -364,3 +368,28 @@ def test_newton_that_fails_is_led_there_through_smaller_motions(
     assert found.converged
     assert found.gas == pytest.approx(direct.gas, rel=1e-8)
     assert len(seen) == len(parts) + 1
+
+
+@pytest.mark.parametrize("shape", ["ellipse", "disc"])
+@pytest.mark.parametrize("wave_number", [1500.0, 6000.0])
+def test_waves_that_no_memory_holds_are_refused_before_a_grid_is_made(
+    shape: str, wave_number: float
+) -> None:
+    with pytest.raises(InputError, match=r"bytes of a film in the plane.*take fewer waves"):
+        ladder(PlanarGap(0.5, wave_number), shape, cells=None)
+
+
+def test_cells_that_no_memory_holds_are_refused() -> None:
+    with pytest.raises(InputError, match="bytes of a film in the plane"):
+        ladder(cells=(2000, 2000))
+
+
+def test_more_times_than_memory_holds_are_refused_before_the_first_solve(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    made = ladder(PlanarGap(0.9))
+    most = 4 * 8.0 * (4 * 9) ** 2
+    monkeypatch.setattr(module, "PLANAR_MEMORY", dataclasses.replace(PLANAR_MEMORY, most=most))
+    monkeypatch.setattr(module, "Balancer", None)
+    with pytest.raises(InputError, match="bytes of a film in the plane"):
+        climb_to(made, 1e-3)
