@@ -74,19 +74,19 @@ def test_a_twin_is_played_watched_and_stopped_by_the_space_bar(
         contrast = page.evaluate(CONTRAST)
         # From another area as well; and what was shown while it played is not shown after it.
         page.goto(f"{running_lab.address}#help")
-        # A machine that holds a process up for 50 ms is stopped by the device, as it must be.
         if "playing," in said.inner_text():
-            break
+            page.keyboard.press("Space")
+        said.wait_for(state="hidden", timeout=60_000)
         page.goto(f"{running_lab.address}#device")
-        page.locator(".stopbar", has_text="heard nothing for 50 ms").wait_for()
+        over = re.compile("it was interrupted|heard nothing for 50 ms")
+        said.filter(has_text=over).wait_for(timeout=60_000)
+        # A machine that holds a process up for 50 ms is stopped by the device, as it must be.
+        if "it was interrupted" in said.inner_text():
+            break
+    assert "it was interrupted" in said.inner_text()
     assert shown == "PLAYING"
     assert len(seen) > 3
     assert contrast == []
-    said.filter(has_text="playing,").wait_for()
-    page.keyboard.press("Space")
-    said.wait_for(state="hidden", timeout=60_000)
-    page.goto(f"{running_lab.address}#device")
-    page.locator(".stopbar", has_text="it was interrupted").wait_for(timeout=60_000)
     assert play.is_disabled()
     assert state.inner_text() == "–"
     folder = max(one for one in (running_lab.folder / "sessions").iterdir() if one.is_dir())
