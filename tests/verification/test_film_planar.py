@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from dataclasses import replace
 
 import numpy as np
@@ -16,6 +17,7 @@ from squeezefilm.film.planar.gap import PlanarGap
 from squeezefilm.film.planar.grid import disc_grid, ellipse_grid, graded_line, rectangle_grid
 from squeezefilm.film.planar.teeth import compare_teeth
 from squeezefilm.film.transient.settling import settle_to_periodic
+from squeezefilm.hard_limits import PLANAR_MEMORY
 
 
 def blech(squeeze_number: float, aspect: float, terms: int = 4001) -> tuple[float, float]:
@@ -352,7 +354,8 @@ def test_ridges_that_reach_the_surface_are_refused():
 
 
 def test_a_tolerance_out_of_reach_raises_with_the_best_state(monkeypatch):
-    monkeypatch.setattr("squeezefilm.film.planar.ladder._MEMORY", 2e6)
+    lower = dataclasses.replace(PLANAR_MEMORY, most=2e6)
+    monkeypatch.setattr("squeezefilm.film.planar.ladder.PLANAR_MEMORY", lower)
     with pytest.raises(ConvergenceError, match="memory") as caught:
         solve_ellipse(10.0, 0.5, 1.5, tolerance=1e-5)
     assert caught.value.partial.over_pressure == pytest.approx(0.22470, rel=5e-3)
