@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 from dataclasses import replace
 
 import numpy as np
@@ -354,7 +353,7 @@ def test_ridges_that_reach_the_surface_are_refused():
 
 
 def test_a_tolerance_out_of_reach_raises_with_the_best_state(monkeypatch):
-    lower = dataclasses.replace(PLANAR_MEMORY, most=2e6)
+    lower = replace(PLANAR_MEMORY, most=2e6)
     monkeypatch.setattr("squeezefilm.film.planar.ladder.PLANAR_MEMORY", lower)
     with pytest.raises(ConvergenceError, match="memory") as caught:
         solve_ellipse(10.0, 0.5, 1.5, tolerance=1e-5)
