@@ -30,7 +30,7 @@ pytestmark = [
         sys.platform == "win32", reason="pseudo-terminals and SIGSTOP need a POSIX system"
     ),
 ]
-MOMENTS = 200
+MOMENTS = 160  # and forty of the lab and its worker, in test_lab_killed.py
 _PATIENCE = 120.0
 
 
@@ -92,7 +92,7 @@ def plays(host: Forked, trace: Path) -> bool:
     return ended(host) == "INTERRUPTED"
 
 
-def test_hosts_killed_and_stopped_at_200_moments(tmp_path: Path) -> None:
+def test_hosts_killed_and_stopped_at_random_moments(tmp_path: Path) -> None:
     seed = random.SystemRandom().randrange(2**31)
     print(f"seed {seed}")
     pick = random.Random(seed)
