@@ -43,16 +43,16 @@ $(PYTEST) -m "not campaign and realtime $(1)" || failed=1; \
 exit $$failed
 endef
 
-QUICK := not campaign and not realtime and not slow and not nightly
+QUICK := and not slow and not nightly
 
 test: $(VENV)/test.stamp  ## run the quick tests, in some five minutes
-	$(call run_tests,and not slow and not nightly)
+	$(call run_tests,$(QUICK))
 
 slow: $(VENV)/test.stamp  ## run the tests that take seconds each, as CI does after the quick ones
 	$(call run_tests,and slow and not nightly)
 
 coverage: $(VENV)/test.stamp  ## branches that the quick tests take, and which test runs which line
-	@$(PYTEST) -n $(WORKERS) --dist loadgroup -m "$(QUICK)" --cov --cov-context=test --cov-report=
+	@$(PYTEST) -n $(WORKERS) --dist loadgroup -m "not campaign and not realtime $(QUICK)" --cov --cov-context=test --cov-report=
 	@$(BIN)/coverage report --skip-covered --sort=-cover
 
 nightly: export SQUEEZEFILM_EXPLORE = 1

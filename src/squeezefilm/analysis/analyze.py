@@ -50,8 +50,6 @@ from squeezefilm.render.resonator.envelope import envelope_bandwidth
 from squeezefilm.render.texture.gratings import Square
 from squeezefilm.results import Result, stamp, to_json
 
-"""Told in words what begins now."""
-
 
 @dataclass(frozen=True)
 class OtherModel:

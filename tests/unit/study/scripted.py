@@ -40,6 +40,19 @@ def gratings(repetitions: int = 2, displays: tuple[str, ...] = ("biet2008-plate"
     )
 
 
+def magnitudes() -> StudyDesign:
+    """A small magnitude estimation: two gratings, the shorter being 10."""
+    return StudyDesign(
+        name="magnitude",
+        title="",
+        displays=("biet2008-plate",),
+        task="magnitude-estimation",
+        stimuli=(Stimulus("4 mm", 4e-3, "period"), Stimulus("8 mm", 8e-3, "period")),
+        reference="4 mm",
+        modulus=10.0,
+    )
+
+
 def staircase(count: int = 30) -> StudyDesign:
     """A small two-interval study with one staircase and one Bayesian series."""
     return StudyDesign(

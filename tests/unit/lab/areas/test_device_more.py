@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from pydantic import ValidationError
 from serial.tools import list_ports
+from tests.unit.lab.areas.too_long import require_refused_if_longer
 
 from squeezefilm import presets
 from squeezefilm.lab import playing_process
@@ -201,9 +202,7 @@ def test_pages_hear_from_the_sessions_thread_and_its_end_frees_the_bar(
 def test_texts_that_are_too_long_are_refused(
     model: Any, field: str, most: int, others: dict[str, Any]
 ) -> None:
-    model(id=1, type="t", **others, **{field: "x" * most})
-    with pytest.raises(ValidationError, match=f"at most {most} characters"):
-        model(id=1, type="t", **others, **{field: "x" * (most + 1)})
+    require_refused_if_longer(model, field, most, others)
 
 
 def test_a_seed_is_a_number_that_a_page_can_say() -> None:

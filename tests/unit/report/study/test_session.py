@@ -10,22 +10,11 @@ import pytest
 
 from squeezefilm.config.write import text_of
 from squeezefilm.errors import InputError
-from squeezefilm.perception.stimuli import Stimulus
 from squeezefilm.report.study.session import run_study
 from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.record.store import StudyStore
 
-from ...study.scripted import Script, gratings
-
-MAGNITUDE = StudyDesign(
-    name="magnitude",
-    title="",
-    displays=("biet2008-plate",),
-    task="magnitude-estimation",
-    stimuli=(Stimulus("4 mm", 4e-3, "period"), Stimulus("8 mm", 8e-3, "period")),
-    reference="4 mm",
-    modulus=10.0,
-)
+from ...study.scripted import Script, gratings, magnitudes
 
 
 def saved(folder: Path, design: StudyDesign) -> Path:
@@ -90,10 +79,10 @@ def test_without_an_examiner_this_terminal_asks(
 ) -> None:
     monkeypatch.setattr(sys, "stdin", io.StringIO("12\n"))
     with pytest.raises(KeyboardInterrupt):
-        run_study(saved(tmp_path, MAGNITUDE), tmp_path / "a.sqlite", consent=True)
+        run_study(saved(tmp_path, magnitudes()), tmp_path / "a.sqlite", consent=True)
     said = capsys.readouterr().out
     assert said.startswith("participant ")
-    assert f"[2 left] {MAGNITUDE.spoken_question}\nThe reference is 10.\n> " in said
+    assert f"[2 left] {magnitudes().spoken_question}\nThe reference is 10.\n> " in said
     with StudyStore.open(tmp_path / "a.sqlite") as found:
         (answer,) = found.rows("SELECT * FROM response")
         assert answer["estimate"] == 12.0

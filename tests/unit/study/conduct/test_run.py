@@ -11,17 +11,15 @@ from pathlib import Path
 import pytest
 
 from squeezefilm.errors import InputError
-from squeezefilm.perception.stimuli import Stimulus
 from squeezefilm.study.conduct.run import Response, StudyRun
 from squeezefilm.study.conduct.sessions import display_wanted
 from squeezefilm.study.conduct.study_device import Exploration, NoDevice
 from squeezefilm.study.conduct.trial_by_trial import conduct
-from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.design.trials import trials
 from squeezefilm.study.record.exports import export_study
 from squeezefilm.study.record.store import StudyStore
 
-from ..scripted import TRACE, Bench, Script, gratings, run_through, session, staircase
+from ..scripted import TRACE, Bench, Script, gratings, magnitudes, run_through, session, staircase
 
 WHERE = "SELECT t.number, r.* FROM response r JOIN trial t ON t.uuid = r.trial ORDER BY t.number"
 
@@ -159,16 +157,7 @@ def test_traces_and_exploration_are_kept_and_no_name_is_in_the_files(tmp_path: P
 
 
 def test_magnitudes_are_numbers_above_nought(tmp_path: Path) -> None:
-    design = StudyDesign(
-        name="m",
-        title="",
-        displays=("biet2008-plate",),
-        task="magnitude-estimation",
-        stimuli=(Stimulus("4 mm", 4e-3, "period"), Stimulus("8 mm", 8e-3, "period")),
-        reference="4 mm",
-        modulus=10.0,
-    )
-    with StudyStore.create(tmp_path / "a.sqlite", design, 7) as store:
+    with StudyStore.create(tmp_path / "a.sqlite", magnitudes(), 7) as store:
         run = session(store, store.enrol())
         shown = run.next_trial()
         assert shown is not None
