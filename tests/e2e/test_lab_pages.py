@@ -68,6 +68,29 @@ def keep(page: Page, name: str) -> None:
     page.screenshot(path=folder / f"{name}.png", full_page=True)
 
 
+AREAS = ("design", "feel", "device", "study", "results", "help")
+
+
+def test_what_is_pressed_before_the_lab_has_answered_breaks_nothing(
+    chromium: Browser, running_lab: RunningLab
+) -> None:
+    page, complaints = opened(chromium, running_lab, "help")
+    page.get_by_role("button", name="No tour").click()
+    page.on("dialog", lambda dialog: dialog.accept("mine"))
+    # A connection that opens and never answers.
+    page.route_web_socket(re.compile("."), lambda _: None)
+    for area in AREAS:
+        page.goto(f"{running_lab.address}#{area}")
+        page.reload()
+        page.locator("main > *").first.wait_for()
+        for button in page.get_by_role("button").all():
+            if button.is_visible() and button.is_enabled():
+                button.click(force=True, no_wait_after=True)
+        said = " ".join(page.locator(".error, #notice").all_inner_texts())
+        assert not re.search("null|undefined|not a function", said), f"{area}: {said}"
+    assert complaints == []
+
+
 def test_a_display_is_changed_undone_saved_and_opened_again(
     chromium: Browser, running_lab: RunningLab
 ) -> None:

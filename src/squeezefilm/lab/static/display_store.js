@@ -26,14 +26,21 @@ export class DisplayStore {
     this.changed();
   }
 
+  /** A place whose buttons need a display: nothing in it can be pressed until there is one. */
+  holdBack(place) {
+    place.inert = !this.current;
+  }
+
   /** The display of the last visit, or the paper's plate. */
-  async start() {
-    if (this.current) return;
-    // Areas that are entered one after the other wait for the same.
-    this.starting ??= this.restore().finally(() => {
-      this.starting = null;
-    });
-    await this.starting;
+  async start(place) {
+    if (!this.current) {
+      // Areas that are entered one after the other wait for the same.
+      this.starting ??= this.restore().finally(() => {
+        this.starting = null;
+      });
+      await this.starting;
+    }
+    place.inert = false;
   }
 
   async restore() {

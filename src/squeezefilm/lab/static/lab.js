@@ -43,6 +43,7 @@ async function showArea() {
     else link.removeAttribute("aria-current");
   }
   place.replaceChildren();
+  place.inert = false;
   place.dataset.area = name;
   document.title = `${name} – squeezefilm lab`;
   const area = await import(`./areas/${name}.js`);

@@ -19,6 +19,7 @@ class DesignView {
   }
 
   async start() {
+    this.store.holdBack(this.place);
     this.build();
     this.lab.keep(this.store.on(() => this.refresh()));
     this.lab.socket.on("connection", ({ open }) => open && this.begin());
@@ -29,7 +30,7 @@ class DesignView {
   async begin() {
     try {
       await this.listDisplays();
-      await this.lab.during(this.store.start());
+      await this.lab.during(this.store.start(this.place));
       this.refresh();
     } catch (error) {
       this.lab.notify(error.message);

@@ -18,6 +18,7 @@ class DeviceView {
   }
 
   async start() {
+    this.store.holdBack(this.place);
     this.build();
     const hear = this.lab.socket.on;
     hear("connection", ({ open }) => (open ? this.begin() : this.lost()));
@@ -84,7 +85,7 @@ class DeviceView {
 
   async begin() {
     await this.tried(async () => {
-      await this.lab.during(this.store.start());
+      await this.lab.during(this.store.start(this.place));
       this.display.textContent = `Display: ${this.store.current.name}, as the Design area has it.`;
       this.take((await this.lab.socket.ask("what plays")).now);
       const { ports } = await this.lab.socket.ask("drives"), [twin] = this.drive.options, chosen = this.drive.value;

@@ -21,6 +21,7 @@ class FeelView {
   }
 
   async start() {
+    this.store.holdBack(this.place);
     this.build();
     this.lab.frames((now) => this.animate(now));
     this.lab.socket.on("connection", ({ open }) => open && this.begin());
@@ -29,7 +30,7 @@ class FeelView {
 
   async begin() {
     try {
-      await this.lab.during(this.store.start());
+      await this.lab.during(this.store.start(this.place));
       await this.listTextures();
       if (!this.ready) await this.goOn();
     } catch (error) {
