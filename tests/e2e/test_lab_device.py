@@ -78,8 +78,7 @@ def test_a_twin_is_played_watched_and_stopped_by_the_space_bar(
             page.keyboard.press("Space")
         said.wait_for(state="hidden", timeout=60_000)
         page.goto(f"{running_lab.address}#device")
-        over = re.compile("it was interrupted|heard nothing for 50 ms|stopped during")
-        said.filter(has_text=over).wait_for(timeout=60_000)
+        said.filter(has_text=re.compile("done|ended|stopped")).wait_for(timeout=60_000)
         # A machine that holds a process up for 50 ms is stopped by the device, as it must be; the
         # key then stops the judging of what was played until then.
         if "it was interrupted" in said.inner_text():

@@ -187,6 +187,50 @@ def test_a_twins_watchdog_waits_for_a_host_that_is_held_up(
     assert earliest <= clock.faulted <= latest
 
 
+@pytest.mark.parametrize(
+    ("carried", "patient", "latest"),
+    [(range(5000), True, 53), (range(200, 5000), True, 270), (range(200, 5000), False, 53)],
+    ids=["carries", "carries again", "strict"],
+)
+def test_a_twins_watchdog_waits_for_a_system_that_carries_nothing(
+    carried: range,
+    patient: bool,
+    latest: int,
+    host: list[int],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    device = playing_twin()
+    server = PtyServer(device, patient=patient)
+    host.append(os.open(server.port, os.O_RDWR | os.O_NOCTTY))
+    clock = Seconds(server, device, range(0))
+    read = os.read
+
+    def arrives(fd: int, count: int) -> bytes:
+        if fd != server._way._near:
+            return read(fd, count)
+        if (clock.now - clock.began) // 1000 not in carried:
+            raise BlockingIOError
+        return bytes(1)
+
+    monkeypatch.setattr(pty_server.os, "read", arrives)
+    monkeypatch.setattr(pty_server, "_PAUSE", 0.0)
+    monkeypatch.setattr(pty_server.time, "monotonic_ns", clock)
+    server.serve()
+    server.close()
+    assert device.machine.fault is Fault.WATCHDOG
+    assert latest - 25 <= clock.faulted <= latest
+
+
+def test_a_byte_goes_to_and_fro_through_the_system() -> None:
+    server = PtyServer(Told(), patient=True)  # type: ignore[arg-type] # as above
+    assert server._way.held_up_since(1000) == 1000
+    end = time.monotonic() + 30.0
+    while server._way.held_up_since(2000) != 2000 and time.monotonic() < end:
+        time.sleep(1e-3)
+    assert time.monotonic() < end
+    server.close()
+
+
 def test_how_much_a_host_has_not_read_is_known(host: list[int]) -> None:
     server = PtyServer(Told(), patient=True)  # type: ignore[arg-type] # as above
     assert server._unread() == 0

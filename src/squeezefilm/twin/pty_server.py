@@ -10,7 +10,8 @@ nobody knows when: it is heard evenly over it, as a device that was not held up 
 
 A computer that is busy holds up programs for longer than a device waits for its host. Its twin's
 watchdog therefore counts the twin's own time: neither that for which this process was held up, nor
-that for which the host leaves unread what it was told, up to a second. A real device waits 50 ms.
+that for which the host leaves unread what it was told, nor that for which the system does not carry
+what was said, up to a second. A real device waits 50 ms.
 """
 
 from __future__ import annotations
@@ -79,7 +80,8 @@ class PtyServer:
         self._running = True
         self._connected = False
         self.longest_behind = 0
-        self._said = self._read = self._read_at = self._heard_at = 0
+        self._said = self._read = self._read_at = self._heard_at = self._excused_to = 0
+        self._way = _Way()
 
     def stop(self) -> None:
         """End `serve` soon; may be called from a signal handler."""
@@ -96,20 +98,15 @@ class PtyServer:
                 self._connected = not self._flags(0.0) & select.POLLHUP
                 self._catch_up(wall)
                 continue
-            now = wall
-            if (
-                self._patient
-                and wall - self._heard_at > _READS_WITHIN
-                and self._host_is_held_up(wall)
-            ):
-                self._device.excuse(behind)
-            self._say(self._device.advance(now))
+            if self._patient and wall - self._heard_at > _READS_WITHIN:
+                self._excuse_silence(wall)
+            self._say(self._device.advance(wall))
             flags = self._flags(_PAUSE)
             self._connected = not flags & select.POLLHUP
             heard = self._hear() if flags & select.POLLIN else b""
             if heard:
-                self._heard_at = now
-                self._device.receive(heard, max(now, (time.monotonic_ns() - began) // 1000))
+                self._heard_at = self._excused_to = wall
+                self._device.receive(heard, max(wall, (time.monotonic_ns() - began) // 1000))
                 self._say(self._device.advance(self._device.now))
             elif not self._connected:
                 time.sleep(_UNCONNECTED_PAUSE * 1e-3)
@@ -132,20 +129,30 @@ class PtyServer:
     def close(self) -> None:
         """Hang up and write the truth out."""
         os.close(self._master)
+        self._way.close()
         self._device.close()
 
     def _flags(self, wait: float) -> int:
         """What the port has to say, within `wait` (ms)."""
         return dict(self._poll.poll(wait)).get(self._master, 0)
 
-    def _host_is_held_up(self, wall: int) -> bool:
-        """Whether it leaves unread what it was told: one that is silent on purpose reads on."""
+    def _excuse_silence(self, wall: int) -> None:
+        """Leave out the time since the host reads no more, or since nothing is carried to it."""
+        since = min(self._unread_since(wall), self._way.held_up_since(wall))
+        if wall - since > _READS_WITHIN:
+            since = max(since, self._excused_to)
+            self._device.excuse(wall - since)
+            self._excused_to = wall
+
+    def _unread_since(self, wall: int) -> int:
+        """Since when the host leaves unread what it was told, or now: one that is silent on purpose
+        reads on."""
         if not self._connected:
-            return False
+            return wall
         unread = self._unread()
         if unread == 0 or self._said - unread != self._read:
             self._read, self._read_at = self._said - unread, wall
-        return wall - self._read_at > _READS_WITHIN
+        return self._read_at
 
     def _unread(self) -> int:
         """Bytes that the host has not read yet; 0 where the system does not tell."""
@@ -179,6 +186,36 @@ class PtyServer:
             self._said += os.write(self._master, data)
 
 
+class _Way:
+    """How long the system takes to carry a byte through a pseudo-terminal: one is sent again and
+    again. Linux carries them in a worker of ordinary priority, which a busy machine holds up for
+    hundreds of milliseconds while both programs run before ordinary work.
+    """
+
+    def __init__(self) -> None:
+        import tty
+
+        self._near, self._far = os.openpty()
+        tty.setraw(self._far)
+        os.set_blocking(self._near, False)
+        self._sent_at: int | None = None
+
+    def held_up_since(self, wall: int) -> int:
+        """When the byte was sent that is still on its way, or now."""
+        if self._sent_at is not None:
+            try:
+                os.read(self._near, 1)
+            except BlockingIOError:
+                return self._sent_at
+        os.write(self._far, bytes(1))
+        self._sent_at = wall
+        return wall
+
+    def close(self) -> None:
+        os.close(self._near)
+        os.close(self._far)
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
     """Serve a twin; see the module. Returns the exit code."""
     parser = argparse.ArgumentParser(prog="python -m squeezefilm.twin.pty_server")
@@ -209,11 +246,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
         signal.signal(number, lambda *_: server.stop())
     try:
         with _linked(options.link, server.port):
-            # A device does not stand still while a solver's garbage is collected, and has its
-            # processor for itself; as near to that as the system allows.
+            # A device does not stand still while a solver's garbage is collected, and a strict one
+            # has its processor for itself; as near to that as the system allows. Another waits for
+            # a busy computer, and leaves it to those who play.
             collect_garbage_first()
             print(server.port, flush=True)
-            real_time_granted(PLAYERS_PRIORITY)
+            if options.strict:
+                real_time_granted(PLAYERS_PRIORITY)
             server.serve(options.with_parent)
     except InputError as error:
         print(f"error: {error}", file=sys.stderr)

@@ -116,7 +116,7 @@ def run_play(
         with _collected():
             loop.start()
             try:
-                with _preferred():
+                with contextlib.nullcontext() if plan.twin else _preferred():
                     try:
                         ending, message = _played(player, loop, duration, interrupted, show)
                     except BaseException:
@@ -220,7 +220,9 @@ def _preferred() -> Iterator[None]:
     """Before ordinary work, where the system grants it, and after the loop.
 
     The player works a quarter of the time and sleeps in every millisecond; held up for 50 ms it
-    would cost the session. The loop has said already where priority is not granted.
+    would cost the session. The loop has said already where priority is not granted. Not with a
+    twin, which needs as much again: on two processors both would leave nothing to the kernel's
+    worker that carries what they say to each other, nor to the browser that shows it.
     """
     ordinary = hasattr(os, "sched_getscheduler") and os.sched_getscheduler(0) == os.SCHED_OTHER
     granted = ordinary and real_time_granted(PLAYERS_PRIORITY)
