@@ -90,14 +90,6 @@ def test_default_pad_is_overdamped_and_settles_with_its_slow_root() -> None:
     assert FingerpadDynamics(damping=0.0).settling_time_constant == math.inf
 
 
-def test_law_over_speed() -> None:
-    law = DryFriction(1.5, 0.02)
-    assert law.over_kinetic(np.array([0.0, 0.02, -0.02, 10.0])) == pytest.approx(
-        [1.5, 1 + 0.5 / math.e, 1 + 0.5 / math.e, 1.0]
-    )
-    assert DryFriction(1.5).over_kinetic(np.array([0.0, 1e-9])).tolist() == [1.5, 1.0]  # type: ignore[union-attr]
-
-
 def test_lines_are_found_between_bins_and_beside_a_drift() -> None:
     t = np.arange(5003) * 1e-4
     signal = 3.0 + 20.0 * t + 2.0 * np.sin(2 * np.pi * 37.3 * t + 0.3)

@@ -12,7 +12,7 @@ from squeezefilm.errors import (
     InputError,
     OutOfRangeError,
 )
-from squeezefilm.plate.beam.response import beam_response, half_power_band, patch_capacitance
+from squeezefilm.plate.beam.response import beam_response, patch_capacitance
 from squeezefilm.plate.layout import AnnularStator, CeramicPatch, RectangularPlate
 
 
@@ -102,14 +102,6 @@ def test_capacitance_is_within_what_the_paper_s_ceramics_can_have(plate: Rectang
         assert patch_capacitance(one) == pytest.approx(
             permittivity * 8.8541878128e-12 * area / 1e-3, rel=1e-12
         )
-
-
-def test_half_power_band_needs_a_resonance(plate: RectangularPlate) -> None:
-    low, high = half_power_band(beam_response(plate))
-    centre = beam_response(plate).mode.frequency
-    assert (high - low) == pytest.approx(centre / plate.quality_factor, rel=1e-3)
-    with pytest.raises(InputError, match="Q > 1"):
-        half_power_band(beam_response(dataclasses.replace(plate, quality_factor=0.9)))
 
 
 def test_modes_beyond_the_cut_off_are_refused(plate: RectangularPlate) -> None:

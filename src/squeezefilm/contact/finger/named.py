@@ -12,8 +12,6 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 from squeezefilm.contact.finger.fingertip import Finger
-from squeezefilm.errors import InputError
-from squeezefilm.quantities import did_you_mean
 
 _PAPER = "published: Biet, Giraud and Lemaire-Semail, Table 1"
 
@@ -93,13 +91,3 @@ _ALL = (
 )  # fmt: skip
 
 FINGERS: Mapping[str, FingerPreset] = MappingProxyType({item.name: item for item in _ALL})
-
-
-def finger_preset(name: str) -> FingerPreset:
-    """The preset of a name. Raises `InputError` for a name that is not known."""
-    if name not in FINGERS:
-        raise InputError(
-            f"there is no finger '{name}'.{did_you_mean(name, FINGERS)} "
-            f"Fingers: {', '.join(FINGERS)}"
-        )
-    return FINGERS[name]

@@ -16,7 +16,6 @@ from squeezefilm.quantities import (
     Metre,
     MetreArray,
     MetrePerSecond,
-    MetrePerSecondLike,
     Newton,
     NewtonLike,
     Unit,
@@ -80,15 +79,6 @@ class DryFriction:
             friction_coefficient * self.reference_force * relative**self.load_exponent
         )
         return force
-
-    @checked_numbers
-    def over_kinetic(self, speed: MetrePerSecondLike) -> DimensionlessLike:
-        """Friction at a speed over that of fast sliding (1); at rest, the limit of what holds."""
-        require("speed", speed, Unit("m/s"))
-        w = np.abs(np.asarray(speed, dtype=float))
-        if self.stribeck_speed == 0:
-            return np.where(w == 0, self.static_ratio, 1.0)
-        return np.asarray(1 + (self.static_ratio - 1) * np.exp(-w / self.stribeck_speed))
 
 
 @checked_numbers

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import ClassVar
@@ -197,11 +196,3 @@ def patch_capacitance(plate: RectangularPlate) -> Farad:
     """The capacitance of all ceramics in parallel (F): ε A / h_p, fringes neglected."""
     permittivity = plate.ceramic.relative_permittivity * VACUUM_PERMITTIVITY
     return permittivity * sum(p.length * p.width / p.thickness for p in plate.patches)
-
-
-def half_power_band(response: BeamResponse) -> tuple[Hertz, Hertz]:
-    """The two frequencies (Hz) at which the working mode falls to 1/√2 of its peak."""
-    frequency, quality = response.mode.frequency, response.plate.quality_factor
-    if quality <= 1:
-        raise InputError(f"quality_factor = {quality:.3g} has no half-power band; it needs Q > 1")
-    return frequency * math.sqrt(1 - 1 / quality), frequency * math.sqrt(1 + 1 / quality)

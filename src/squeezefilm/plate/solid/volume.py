@@ -82,11 +82,6 @@ class PlateVolume:
             out[mine] = patch.poling * values.reshape(-1)[self.place[mine]]
         return out
 
-    def cell_volumes(self) -> FloatArray:
-        """The volume of each cell (m³); cells are boxes."""
-        low, high = self.points[self.cells[:, 0]], self.points[self.cells[:, 6]]
-        return np.asarray(np.prod(high - low, axis=1))
-
 
 def plate_volume(modes: PlateModes, mode: int) -> PlateVolume:
     """The volume of a solved plate, on the mesh that a mode was solved on."""

@@ -134,11 +134,6 @@ class FidelityTable:
         """Whether each period keeps its swing of amplitude at each speed, shape (p, v)."""
         return self.amplitude_kept >= self.kept
 
-    @property
-    def friction_survives(self) -> Annotated[NDArray[np.bool_], Unit("1")]:
-        """Whether each period keeps its swing of relative friction at each speed, shape (p, v)."""
-        return self.friction_kept >= self.kept
-
 
 @checked_numbers
 def fidelity_table(

@@ -254,11 +254,6 @@ def estimate_motion(
     )
 
 
-def horizon(sensor: SensorModel) -> Second:
-    """How far a render time lies past the newest sample on average (s): latency + 1/(2 rate)."""
-    return sensor.latency + 0.5 / sensor.rate
-
-
 @checked_numbers
 def prediction_deviation(
     estimator: MotionEstimator, interval: Second, lookahead: Second

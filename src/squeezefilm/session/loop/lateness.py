@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 from squeezefilm.errors import InputError
 from squeezefilm.quantities import (
     Dimensionless,
-    FloatArray,
     Hertz,
     Second,
     SecondArray,
@@ -138,8 +137,3 @@ class Lateness:
             )
         except (KeyError, TypeError, ValueError) as error:
             raise InputError(f"this is no lateness as a session writes it: {error!r}") from error
-
-
-def class_shares(lateness: Lateness) -> FloatArray:
-    """Share of the ticks made in each class (1), for a figure; zeros if none was made."""
-    return np.asarray(lateness.counts / max(lateness.made, 1))

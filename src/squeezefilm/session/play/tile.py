@@ -48,16 +48,6 @@ class TextureTile:
     largest_error: Metre
     mean_error: Metre
 
-    @property
-    def origin_um(self) -> int:
-        """The origin as the device takes it (µm)."""
-        return round(self.origin / _MICROMETRE)
-
-    @property
-    def pitch_um(self) -> int:
-        """The pitch as the device takes it (µm)."""
-        return round(self.pitch / _MICROMETRE)
-
     def voltage(self, drive: DriveTable) -> VoltArray:
         """The tile's levels (V, zero-to-peak), shape (size,).
 

@@ -11,7 +11,7 @@ from squeezefilm import presets
 from squeezefilm.config import load
 from squeezefilm.contact.asperities import AsperityLaw
 from squeezefilm.contact.finger.fingertip import Finger
-from squeezefilm.contact.finger.named import FINGERS, finger_preset
+from squeezefilm.contact.finger.named import FINGERS
 from squeezefilm.contact.finger.skin import Skin
 from squeezefilm.contact.sharing.pad import ridge_points
 from squeezefilm.display import Display, load_display
@@ -59,8 +59,6 @@ def test_every_preset_says_what_is_known_of_its_values() -> None:
         default = Finger(10e-3, 50e-6, 350e-6, 0.5)
         changed = {f for f in fields if getattr(preset.finger, f) != getattr(default, f)}
         assert changed - {"contact_area_force"} <= set(preset.evidence)
-    with pytest.raises(InputError, match="Did you mean 'moist'"):
-        finger_preset("moistt")
 
 
 def test_ridge_points_stand_half_a_period_from_the_centre() -> None:

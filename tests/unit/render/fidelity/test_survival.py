@@ -33,7 +33,6 @@ def test_the_paper_s_periods_by_exploring_speeds() -> None:
     # Only the finest grating fails, and only under the fastest finger.
     lost = [[0, 4]]
     assert np.argwhere(~result.amplitude_survives).tolist() == lost
-    assert np.argwhere(~result.friction_survives).tolist() == lost
 
 
 def test_a_sine_loses_more_than_a_square() -> None:
