@@ -39,7 +39,7 @@ NOT_CALLED = {
     contact.sliding.march.Sliding
     contact.sharing.tapping.Tapping film.periodic.balance.LevitationLimit
     film.periodic.balance.LoadBalance
-    film.periodic.batch.FilmBatch film.periodic.edge.EdgeLayer film.periodic.film.FilmSolution
+    film.periodic.batch.FilmBatch film.periodic.edge.EdgeLayer film.periodic.solution.FilmSolution
     film.planar.film.FilmPlanar film.transient.settling.FilmSettled film.planar.teeth.ToothedFilm
     film.transient.march.FilmTransient film.validity.FilmValidity film.validity.ValidityCheck
     formats.hjif.HjifExport formats.hjif_read.HjifImport plate.ring.modes.AnnularMode

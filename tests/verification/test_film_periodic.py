@@ -11,7 +11,8 @@ from squeezefilm.film.periodic.edge import edge_layer
 from squeezefilm.film.periodic.film import solve_disc, solve_profile, solve_strip
 from squeezefilm.film.periodic.kernel import newton
 from squeezefilm.film.periodic.profile import flexural_profile
-from squeezefilm.film.periodic.resolution import tables
+from squeezefilm.film.periodic.records import Aim, Cells, Gap, Gas, Room
+from squeezefilm.film.periodic.resolution import collocation_times
 
 STRIP_LOADS = {
     (0.1, 1.0): 1.000108, (0.1, 10.0): 1.005188, (0.1, 100.0): 1.010778,
@@ -171,7 +172,8 @@ def load_on_one_grid(cells, nt, sigma=30.0, eps=0.6):
     """The over-pressure on one grid, without extrapolation."""
     from squeezefilm.film.periodic import uniform as u
 
-    ntp, DT, mask = tables(nt)
+    times = collocation_times(nt)
+    ntp = times.row
     H, H3, w, c, s = (np.empty(ntp) for _ in range(5))
     g, vol, share = np.zeros(cells + 1), np.zeros(cells + 1), np.zeros(cells + 1)
     u.gap(nt, ntp, eps, H, H3)
@@ -179,8 +181,8 @@ def load_on_one_grid(cells, nt, sigma=30.0, eps=0.6):
     u.grid(cells, 0, sigma, 0.3, g, vol, share)
     p, work = np.zeros(cells * ntp), np.zeros(10 * (cells + 1) * ntp)
     over, _, left = newton(
-        cells, nt, ntp, 0, 0, g, vol, H, H3, H, 1.0, 0.0, 0, DT, mask, share, 0, w, p, work,
-        np.empty(cells * nt * ntp), 1e-12, 40,
+        cells, times, Cells(g, vol, share), Gap(H, H, H3, w, 0), Gas(1.0, 0.0, 0), p,
+        Room(work, np.empty(cells * nt * ntp)), Aim(1e-12, 40),
     )  # fmt: skip
     assert left < 1e-9
     return over

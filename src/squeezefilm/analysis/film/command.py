@@ -10,8 +10,9 @@ from typing import Any, ClassVar
 import numpy as np
 
 from squeezefilm.errors import InputError
-from squeezefilm.film.periodic.film import FilmSolution, solve_disc, solve_profile, solve_strip
+from squeezefilm.film.periodic.film import solve_disc, solve_profile, solve_strip
 from squeezefilm.film.periodic.profile import GapFunction, GapProfile
+from squeezefilm.film.periodic.solution import FilmSolution
 from squeezefilm.film.planar.film import FilmPlanar, solve_ellipse, solve_rectangle
 from squeezefilm.from_text import reads_text
 from squeezefilm.hard_limits import ASPECT, require_within

@@ -28,7 +28,7 @@ from squeezefilm.quantities import (
 )
 
 if TYPE_CHECKING:
-    from squeezefilm.film.periodic.film import FilmSolution
+    from squeezefilm.film.periodic.solution import FilmSolution
 
 FilmModel = Literal["paper2008", "film-sealed", "film-open", "film-plateau", "film-smooth"]
 FILM_MODELS: tuple[FilmModel, ...] = (

@@ -17,7 +17,15 @@ import numpy as np
 
 from squeezefilm.errors import ConvergenceError, InputError
 from squeezefilm.film.compiled import announce
-from squeezefilm.film.periodic.resolution import CELLS, CHECKS, TIMES, first_guess, refined, tables
+from squeezefilm.film.periodic.records import Aim, Resolution
+from squeezefilm.film.periodic.resolution import (
+    CELLS,
+    CHECKS,
+    TIMES,
+    collocation_times,
+    first_guess,
+    refined,
+)
 from squeezefilm.film.slip import slip_law
 from squeezefilm.film.solved_range import require_film
 from squeezefilm.progress import CountProgress
@@ -233,6 +241,7 @@ def solve_all(
     total = len(sigma)
     form = u.STRIP if shape == "strip" else u.DISC
     keep = np.empty(0) if keep is None else keep
+    aim = Aim(tolerance, _MOST_NEWTON)
     out = np.full((total, u.COLUMNS), np.nan)
     spent = np.zeros(total)
     met = np.zeros(total, dtype=bool)
@@ -248,21 +257,19 @@ def solve_all(
             for group in np.split(pending[order], bounds):
                 c, t = int(cells[group[0]]), int(times[group[0]])
                 rows = np.full((len(group), u.COLUMNS), np.nan)
-                resolution = (
-                    int(CELLS[c]), tolerance, int(TIMES[t]), *tables(int(TIMES[t])),
-                    int(CHECKS[t]), *tables(int(CHECKS[t])), _MOST_NEWTON,
-                )  # fmt: skip
-                data = (sigma[group], eps[group], n[group], kn[group], law, form)
+                both = (collocation_times(int(one[t])) for one in (TIMES, CHECKS))
+                resolution = Resolution(int(CELLS[c]), *both)
+                films = u.Films(sigma[group], eps[group], n[group], kn[group], law, form)
                 portion = min(_CHUNK, -(-len(group) // workers))
                 spans = [(a, min(a + portion, len(group))) for a in range(0, len(group), portion)]
 
                 def part(
                     span: tuple[int, int],
-                    data: Any = data,
-                    resolution: Any = resolution,
+                    films: Any = films,
+                    resolution: Resolution = resolution,
                     rows: FloatArray = rows,
                 ) -> int:
-                    u.solve_rows(*span, *data, *resolution, rows, keep)
+                    u.solve_rows(*span, films, resolution, aim, rows, keep)
                     return span[1] - span[0]
 
                 done = map(part, spans) if pool is None else pool.map(part, spans)

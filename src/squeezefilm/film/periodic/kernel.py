@@ -14,6 +14,7 @@ needs one small dense inverse a node and no other product of matrices.
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 from numba import njit
 
@@ -30,12 +31,24 @@ from squeezefilm.film.periodic.lanes import (
     sub,
     total,
 )
+from squeezefilm.film.periodic.records import Aim, Cells, Gap, Gas, Room, Times
 from squeezefilm.film.slip import NO_SLIP
 from squeezefilm.film.slip_kernel import slip_factor
 from squeezefilm.quantities import FloatArray
 
 # `reassoc` and `contract` only: NaN must stay visible, so `nnan` and `ninf` stay off.
 _FAST = {"reassoc", "contract", "arcp", "nsz"}
+
+
+class _Flow(NamedTuple):
+    """Storage R = P^{1/n}, q = dp/dM, potential Φ at nodes; fluxes at faces and their slopes."""
+
+    storage: FloatArray
+    q: FloatArray
+    potential: FloatArray
+    flux: FloatArray
+    left: FloatArray
+    right: FloatArray
 
 
 @njit(nogil=True, cache=True, fastmath=_FAST, error_model="numpy")
@@ -85,14 +98,12 @@ def _apply(S: FloatArray, start: int, nt: int, ntp: int, y: FloatArray, at: int,
 
 @njit(nogil=True, cache=True, fastmath=_FAST, error_model="numpy")
 def _coefficients(
-    m: int, ntp: int, hs: int, fs: int, g: FloatArray, H: FloatArray, Hf3: FloatArray,
-    Hf: FloatArray, n: float, kn: float, law: int, p: FloatArray,
-    R: FloatArray, q: FloatArray, Phi: FloatArray, cl: FloatArray, cr: FloatArray, F: FloatArray,
-) -> None:  # fmt: skip
-    """Storage R = P^{1/n}, q = dp/dM, potential Φ, face fluxes F and their derivatives in M.
-
-    cl = −∂F/∂M left of the face, cr = ∂F/∂M right of it.
-    """
+    m: int, ntp: int, g: FloatArray, gap: Gap, gas: Gas, p: FloatArray, flow: _Flow
+) -> None:
+    """Fill `flow` at p: the slope of the flux F is −∂F/∂M left of the face, ∂F/∂M right of it."""
+    H, Hf, Hf3, _, stride = gap
+    n, kn, law = gas
+    R, q, Phi, F, cl, cr = flow
     one = broadcast(1.0)
     if n == 1.0:
         half = broadcast(0.5)
@@ -102,7 +113,7 @@ def _coefficients(
                 dev = load(p, at)
                 P = add(one, dev)
                 store(R, at, P)
-                store(q, at, div(one, load(H, i * hs + v)))
+                store(q, at, div(one, load(H, i * stride + v)))
                 # p + p²/2 keeps its digits where p is small; (P² − 1)/2 would not.
                 store(Phi, at, mul(dev, fma(half, dev, one)))
     else:
@@ -113,14 +124,14 @@ def _coefficients(
                 P = 1.0 + p[at]
                 root = math.exp(inverse * math.log(P))
                 R[at] = root
-                q[at] = n * P / (H[i * hs + t] * root)
+                q[at] = n * P / (H[i * stride + t] * root)
                 Phi[at] = share * (P * root - 1.0)
     zero = broadcast(0.0)
     if law == NO_SLIP:
         for f in range(m + 1):
             geometry = broadcast(g[f])
             for v in range(0, ntp, 8):
-                c = mul(geometry, load(Hf3, f * fs + v))
+                c = mul(geometry, load(Hf3, f * stride + v))
                 left, right = (f - 1) * ntp + v, f * ntp + v
                 a = load(Phi, left) if f > 0 else zero
                 b = load(Phi, right) if f < m else zero
@@ -145,11 +156,10 @@ def _coefficients(
                 Phi_a, R_a, q_a, p_a = Phi[left], R[left], q[left], p[left]
             if f < m:
                 Phi_b, R_b, q_b, p_b = Phi[right], R[right], q[right], p[right]
-            gap = Hf[f * fs + t]
             mean = 1.0 + 0.5 * (p_a + p_b)
-            local = kn / (mean * gap)
+            local = kn / (mean * Hf[f * stride + t])
             factor, slope = slip_factor(law, local)
-            c = g[f] * Hf3[f * fs + t]
+            c = g[f] * Hf3[f * stride + t]
             rise = Phi_b - Phi_a
             bend = -0.5 * slope * local / mean * rise
             F[right] = c * factor * rise
@@ -159,20 +169,18 @@ def _coefficients(
 
 @njit(nogil=True, cache=True, fastmath=_FAST, error_model="numpy")
 def newton(
-    m: int, nt: int, ntp: int, hs: int, fs: int, g: FloatArray, vol: FloatArray,
-    H: FloatArray, Hf3: FloatArray, Hf: FloatArray, n: float, kn: float, law: int,
-    DT: FloatArray, mask: FloatArray, share: FloatArray, ws: int, weight: FloatArray,
-    p: FloatArray, work: FloatArray, S: FloatArray,
-    tolerance: float, most: int,
-) -> tuple[float, int, float]:  # fmt: skip
-    """Improve p (m rows of ntp) in place; return the over-pressure, iterations and last residual.
+    m: int, times: Times, cells: Cells, gap: Gap, gas: Gas, p: FloatArray, room: Room, aim: Aim
+) -> tuple[float, int, float]:
+    """Improve p (m rows of times) in place; return the over-pressure, iterations, last residual.
 
-    `hs`, `fs` and `ws` are the strides of H, of the face gaps and of the load weights from one
-    node to the next: 0 where the gap does not depend on position. `share` is the part of the
-    area each node stands for. `tolerance` is relative, on the over-pressure. The residual
-    returned is the estimated relative error that the iteration leaves in the over-pressure;
-    above `tolerance` means not converged.
+    The residual returned is the estimated relative error that the iteration leaves in the
+    over-pressure; above the tolerance aimed at means not converged.
     """
+    nt, ntp, DT, mask = times
+    g, vol, share = cells
+    H, _, _, weight, stride = gap
+    n = gas.polytropic_exponent
+    work, S = room
     size = m * ntp
     R = work[0:size]
     q = work[size : 2 * size]
@@ -193,9 +201,9 @@ def newton(
     remaining = 1e300
     fresh = True
     iteration = 0
-    while iteration < most:
+    while iteration < aim.most:
         iteration += 1
-        _coefficients(m, ntp, hs, fs, g, H, Hf3, Hf, n, kn, law, p, R, q, Phi, cl, cr, F)
+        _coefficients(m, ntp, g, gap, gas, p, _Flow(R, q, Phi, F, cl, cr))
         if fresh:
             our, cr = cr, our
             ol, cl = cl, ol
@@ -205,7 +213,7 @@ def newton(
                 at = i * ntp + v
                 change = broadcast(0.0)
                 for j in range(nt):
-                    M = broadcast(R[i * ntp + j] * H[i * hs + j])
+                    M = broadcast(R[i * ntp + j] * H[i * stride + j])
                     change = fma(M, load(DT, j * ntp + v), change)
                 flow = sub(load(F, at + ntp), load(F, at))
                 store(r, at, fma(amount, change, flow))
@@ -240,8 +248,8 @@ def newton(
         for i in range(m):
             for v in range(0, ntp, 8):
                 at = i * ntp + v
-                gas = mul(load(H, i * hs + v), load(R, at))
-                size_of_step = largest_magnitude(size_of_step, div(load(z, at), gas))
+                held = mul(load(H, i * stride + v), load(R, at))
+                size_of_step = largest_magnitude(size_of_step, div(load(z, at), held))
         largest = peak(size_of_step)
         # A full step must leave gas everywhere; 0.8 keeps a margin for the logarithm.
         scale = 1.0
@@ -250,7 +258,7 @@ def newton(
             for i in range(m):
                 for t in range(nt):
                     at = i * ntp + t
-                    deepest = max(deepest, -z[at] / (H[i * hs + t] * R[at]))
+                    deepest = max(deepest, -z[at] / (H[i * stride + t] * R[at]))
             if deepest > 0.8:
                 scale = 0.8 / deepest
         over = 0.0
@@ -258,20 +266,20 @@ def newton(
             part = broadcast(0.0)
             for v in range(0, ntp, 8):
                 at = i * ntp + v
-                rise = mul(broadcast(scale), div(load(z, at), load(H, i * hs + v)))
+                rise = mul(broadcast(scale), div(load(z, at), load(H, i * stride + v)))
                 if n == 1.0:
                     store(p, at, add(rise, load(p, at)))
                 else:
                     store(R, at, add(rise, load(R, at)))
                     for t in range(at, at + 8):
                         p[t] = math.exp(n * math.log(R[t])) - 1.0
-                part = fma(load(weight, i * ws + v), load(p, at), part)
+                part = fma(load(weight, i * stride + v), load(p, at), part)
             over += share[i] * total(part)
         if not abs(over) < 1e300:
             return math.nan, iteration, math.inf
         # What remains after a Newton step is about its square; after a chord step, the
         # geometric tail of the steps so far.
-        goal = tolerance * abs(over) / (1.0 + abs(over))
+        goal = aim.tolerance * abs(over) / (1.0 + abs(over))
         if scale < 1.0:
             left = 1.0
         elif fresh:

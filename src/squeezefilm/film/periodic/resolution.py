@@ -11,6 +11,7 @@ from functools import lru_cache
 
 import numpy as np
 
+from squeezefilm.film.periodic.records import Times
 from squeezefilm.quantities import FloatArray, IntArray
 
 CELLS = np.array([4, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512, 768])
@@ -20,8 +21,8 @@ CHECKS = np.array([7, 9, 13, 15, 19, 19, 23, 31, 31, 39, 47, 63, 79, 95, 127, 15
 
 
 @lru_cache(maxsize=64)
-def tables(nt: int) -> tuple[int, FloatArray, FloatArray]:
-    """Padded row length, transposed Fourier differentiation matrix and pivot mask, flattened.
+def collocation_times(nt: int) -> Times:
+    """So many times of a period, with what is computed with them.
 
     `nt` is odd: an even number leaves the highest harmonic without a derivative.
     """
@@ -35,7 +36,7 @@ def tables(nt: int) -> tuple[int, FloatArray, FloatArray]:
     DT[:, :nt] = D[:, :nt].T
     mask = np.ones((nt, ntp))
     mask[:, :nt] -= np.eye(nt)
-    return ntp, DT.ravel(), mask.ravel()
+    return Times(nt, ntp, DT.ravel(), mask.ravel())
 
 
 def first_guess(

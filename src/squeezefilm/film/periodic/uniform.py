@@ -8,11 +8,13 @@ times gives the error of the time discretisation.
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 
 from squeezefilm.film.periodic.kernel import newton, prolong
+from squeezefilm.film.periodic.records import Aim, Cells, Gap, Gas, Resolution, Room
 from squeezefilm.quantities import FloatArray
 
 STRIP, DISC = 0, 1
@@ -163,28 +165,41 @@ def rounding(sigma: float, n: float, over: float) -> float:
     return 4e-18 * sigma + 1e-13 * abs(over) + (0.0 if n == 1.0 else 4e-17)
 
 
+class Films(NamedTuple):
+    """Many films of one shape and law of slip: squeeze number, excursion ratio, polytropic exponent
+    and Knudsen number of each."""
+
+    squeeze_number: FloatArray
+    excursion_ratio: FloatArray
+    polytropic_exponent: FloatArray
+    knudsen_number: FloatArray
+    law: int
+    shape: int
+
+
 @njit(nogil=True, cache=True, error_model="numpy")
 def solve_rows(
-    start: int, stop: int, sigma: FloatArray, eps: FloatArray, n: FloatArray, kn: FloatArray,
-    law: int, shape: int, cells: int, tolerance: float,
-    nt: int, ntp: int, DT: FloatArray, mask: FloatArray,
-    nt2: int, ntp2: int, DT2: FloatArray, mask2: FloatArray,
-    most: int, out: FloatArray, keep: FloatArray,
+    start: int, stop: int, films: Films, resolution: Resolution, aim: Aim, out: FloatArray,
+    keep: FloatArray,
 ) -> None:  # fmt: skip
-    """Fill rows start:stop of `out` for the cases of those rows, all with the same resolution.
+    """Fill rows start:stop of `out` for the films of those rows, all with the same resolution.
 
-    `cells` (a multiple of 4) is N on the finest grid, `nt` its number of times, `nt2` > nt the
-    number for the check of the time error. NaN marks a case that did not converge. `keep`, if
-    not empty, receives p of the last case on the two finer grids, one after the other.
+    The number of cells is a multiple of 4. NaN marks a film that did not converge. `keep`, if
+    not empty, receives p of the last film on the two finer grids, one after the other.
     """
-    wide = max(ntp, ntp2)
+    sigma, eps, n, kn, law, shape = films
+    cells, times, fuller = resolution
+    nt, ntp = times.count, times.row
+    wide = max(ntp, fuller.row)
     rows = cells + 1
     H, H3 = np.empty(wide), np.empty(wide)
     w, c, s = np.empty(wide), np.empty(wide), np.empty(wide)
     g, vol, share = np.empty(rows), np.empty(rows), np.empty(rows)
     p, other = np.empty(rows * wide), np.empty(rows * wide)
-    work = np.zeros(10 * rows * wide)
-    S = np.empty(max(cells * nt * ntp, max(cells // 4, 2) * nt2 * ntp2))
+    blocks = max(cells * nt * ntp, max(cells // 4, 2) * fuller.count * fuller.row)
+    room = Room(np.zeros(10 * rows * wide), np.empty(blocks))
+    nodes, gaps = Cells(g, vol, share), Gap(H, H, H3, w, 0)
+    close = Aim(0.03 * aim.tolerance, aim.most)
     level = np.empty((3, 3))
     coarsest = cells // 4
     # A single node does not see how the time error varies over the film.
@@ -194,15 +209,12 @@ def solve_rows(
         # A disc of radius R films like a strip about 1.5 R wide.
         wide_sigma = sig if shape == STRIP else 2.25 * sig
         a = edge_grading(wide_sigma, e)
-        aim = 0.03 * tolerance
-        gap(nt2, ntp2, e, H, H3)
-        load_weights(nt2, ntp2, e, poly, H, w, c, s)
+        gas = Gas(poly, rare, law)
+        gap(fuller.count, fuller.row, e, H, H3)
+        load_weights(fuller.count, fuller.row, e, poly, H, w, c, s)
         grid(checked, shape, sig, a, g, vol, share)
-        p[: checked * ntp2] = 0.0
-        check, its, left = newton(
-            checked, nt2, ntp2, 0, 0, g, vol, H, H3, H, poly, rare, law, DT2, mask2, share, 0, w,
-            p, work, S, aim, most,
-        )  # fmt: skip
+        p[: checked * fuller.row] = 0.0
+        check, its, left = newton(checked, fuller, nodes, gaps, gas, p, room, close)
         gap(nt, ntp, e, H, H3)
         load_weights(nt, ntp, e, poly, H, w, c, s)
         p[: coarsest * ntp] = 0.0
@@ -214,10 +226,7 @@ def solve_rows(
                 p, other = other, p
                 m *= 2
                 grid(m, shape, sig, a, g, vol, share)
-            over, more, remains = newton(
-                m, nt, ntp, 0, 0, g, vol, H, H3, H, poly, rare, law, DT, mask, share, 0, w,
-                p, work, S, aim, most,
-            )  # fmt: skip
+            over, more, remains = newton(m, times, nodes, gaps, gas, p, room, close)
             its += more
             left = max(left, remains)
             real, imag = 0.0, 0.0

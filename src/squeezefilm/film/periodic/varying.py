@@ -8,11 +8,13 @@ of the coarser grids are among them.
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 
 from squeezefilm.film.periodic.kernel import newton, prolong
+from squeezefilm.film.periodic.records import Aim, Cells, Gap, Gas, Resolution, Room
 from squeezefilm.film.periodic.uniform import (
     CHECK,
     COARSE,
@@ -94,23 +96,34 @@ def _weights(
                 out[i * ntp + t] = 0.0
 
 
+class Profile(NamedTuple):
+    """A gap that varies, at the nodes and faces of the finest grid, ξ from 0 (closed) or −1 to 1.
+
+    dX/dξ and the Fourier coefficients in time of cosines and sines there; the deepest relative
+    excursion; and whether it is half the domain, from a plane of symmetry at X = 0 to the edge.
+    """
+
+    slope: FloatArray
+    even: FloatArray
+    odd: FloatArray
+    depth: float
+    closed: bool
+
+
 @njit(nogil=True, cache=True, error_model="numpy")
 def solve_varying(
-    sigma: float, depth: float, n: float, kn: float, law: int, closed: bool, cells: int,
-    slope: FloatArray,
-    even: FloatArray, odd: FloatArray, tolerance: float,
-    nt: int, ntp: int, DT: FloatArray, mask: FloatArray, fine: int,
-    nt2: int, ntp2: int, DT2: FloatArray, mask2: FloatArray, fine2: int,
-    most: int, out: FloatArray, keep: FloatArray,
+    sigma: float, gas: Gas, profile: Profile, resolution: Resolution, fine: tuple[int, int],
+    aim: Aim, out: FloatArray, keep: FloatArray,
 ) -> None:  # fmt: skip
     """Fill one result row and `keep` (p on the two finer grids, one after the other).
 
-    `even` and `odd` hold the gap's Fourier coefficients at the 2·cells + 1 nodes and faces of
-    the finest grid, `slope` dX/dξ there, for ξ from 0 (closed) or −1 to 1. `closed`: half the
-    domain, from a plane of symmetry at X = 0 to the edge; otherwise all of it. `depth` is the
-    deepest relative excursion, `fine` and `fine2` the numbers of times of the load integral.
+    The profile has 2·cells + 1 points; `fine` are the numbers of times of the load integral for
+    the times of the resolution and for those that check them.
     """
-    wide = max(ntp, ntp2)
+    slope, even, odd, depth, closed = profile
+    cells, times, fuller = resolution
+    n, kn = gas.polytropic_exponent, gas.knudsen_number
+    wide = max(times.row, fuller.row)
     rows = cells + 1
     points = 2 * cells + 1
     width = 1.0 if closed else 2.0
@@ -119,16 +132,16 @@ def solve_varying(
     weight = np.empty(rows * wide)
     g, vol, share = np.zeros(rows), np.zeros(rows), np.zeros(rows)
     p, other = np.zeros(rows * wide), np.zeros(rows * wide)
-    work = np.zeros(10 * rows * wide)
-    S = np.empty(max(rows * nt * ntp, (cells // 4 + 1) * nt2 * ntp2))
+    blocks = max(rows * times.count * times.row, (cells // 4 + 1) * fuller.count * fuller.row)
+    room = Room(np.zeros(10 * rows * wide), np.empty(blocks))
+    close = Aim(0.03 * aim.tolerance, aim.most)
     level = np.zeros(3)
     check, left, its = 0.0, 0.0, 0
     for run in range(2):
-        times, row, D, pivots, oversampled = nt2, ntp2, DT2, mask2, fine2
-        if run == 1:
-            times, row, D, pivots, oversampled = nt, ntp, DT, mask, fine
-        _gaps(even, odd, times, row, HJ)
-        _weights(even, odd, n, times, row, oversampled, HJ, WJ)
+        now = times if run == 1 else fuller
+        row = now.row
+        _gaps(even, odd, now.count, row, HJ)
+        _weights(even, odd, n, now.count, row, fine[1 - run], HJ, WJ)
         m = cells // 4
         for stage in range(3 if run == 1 else 1):
             stride = cells // m
@@ -163,8 +176,8 @@ def solve_varying(
                     H[k * row + t] = HJ[2 * stride * i * row + t]
                     weight[k * row + t] = WJ[stride * i * row + t]
             over, more, remains = newton(
-                unknowns, times, row, row, row, g, vol, H, Hf3, Hf, n, kn, law, D, pivots,
-                share, row, weight, p, work, S, 0.03 * tolerance, most,
+                unknowns, now, Cells(g, vol, share), Gap(H, Hf, Hf3, weight, row), gas, p, room,
+                close,
             )  # fmt: skip
             its += more
             left = max(left, remains)

@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from squeezefilm.film.periodic.resolution import tables
+from squeezefilm.film.periodic.records import Aim, Gas, Resolution
+from squeezefilm.film.periodic.resolution import collocation_times
 from squeezefilm.film.periodic.uniform import (
     CHECK,
     COARSE,
@@ -27,7 +28,7 @@ from squeezefilm.film.periodic.uniform import (
     rounding,
     space_error,
 )
-from squeezefilm.film.periodic.varying import _gaps, _weights, solve_varying
+from squeezefilm.film.periodic.varying import Profile, _gaps, _weights, solve_varying
 
 # Two harmonics in time at five points.
 EVEN = np.array([[1.0, 1.1, 1.2, 1.3, 1.4], [0.3, 0.2, 0.1, 0.0, -0.2], [0.05] * 5])
@@ -85,11 +86,12 @@ def solved(
     slope = 0.5 * (1 + stretch - 3 * stretch * xi**2)
     even, odd = (np.ascontiguousarray(np.array(part) + 0.0 * x) for part in gap(x))
     out = np.full(COLUMNS, np.nan)
-    ntp = tables(times[0])[0]
+    resolution = Resolution(cells, *(collocation_times(one) for one in times))
+    ntp = resolution.times.row
     keep = np.full((cells + 1 + cells // 2 + 1) * ntp, np.nan)
     solve_varying.py_func(
-        sigma, 0.5, n, kn, law, closed, cells, slope, even, odd, tolerance,
-        times[0], *tables(times[0]), 60, times[1], *tables(times[1]), 70, most, out, keep,
+        sigma, Gas(n, kn, law), Profile(slope, even, odd, 0.5, closed), resolution, (60, 70),
+        Aim(tolerance, most), out, keep,
     )  # fmt: skip
     return out, keep.reshape(-1, ntp), x
 

@@ -1,0 +1,66 @@
+"""What the compiled film solvers are given, in records."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from squeezefilm.quantities import FloatArray
+
+
+class Times(NamedTuple):
+    """The collocation times of a period: how many, the length of their padded row, the transposed
+    Fourier differentiation matrix, and one minus the unit matrix, both flattened."""
+
+    count: int
+    row: int
+    derivative: FloatArray
+    mask: FloatArray
+
+
+class Gas(NamedTuple):
+    """Polytropic exponent, Knudsen number at ambient pressure and reference gap, law of slip."""
+
+    polytropic_exponent: float
+    knudsen_number: float
+    law: int
+
+
+class Cells(NamedTuple):
+    """Conductance of the faces, σ × volume of the cells, and the share of the area of each node."""
+
+    conductance: FloatArray
+    volume: FloatArray
+    share: FloatArray
+
+
+class Gap(NamedTuple):
+    """The gap at nodes and faces, its cube there, and the weights of p in the mean load; rows of
+    times with `stride` from one node to the next, 0 where the gap does not depend on position."""
+
+    node: FloatArray
+    face: FloatArray
+    face_cubed: FloatArray
+    weight: FloatArray
+    stride: int
+
+
+class Room(NamedTuple):
+    """Memory for a solve: rows of times, and the inverses of the diagonal blocks."""
+
+    rows: FloatArray
+    blocks: FloatArray
+
+
+class Aim(NamedTuple):
+    """The relative tolerance on the over-pressure, and the most Newton steps."""
+
+    tolerance: float
+    most: int
+
+
+class Resolution(NamedTuple):
+    """Cells of the finest grid, its times, and the times that check them on the coarsest grid."""
+
+    cells: int
+    times: Times
+    check: Times

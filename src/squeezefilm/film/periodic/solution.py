@@ -1,0 +1,198 @@
+"""The solution of a periodic film, and how it is put together from the pressure on two grids."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from squeezefilm.errors import ConvergenceError
+from squeezefilm.film.periodic.profile import GapProfile, evaluate
+from squeezefilm.quantities import ComplexArray, Dimensionless, DimensionlessArray, FloatArray
+
+_FIELD_TIMES = 64
+_HARMONICS = 8
+
+
+@dataclass(frozen=True)
+class FilmSolution:
+    """One period of a gas film, with the inputs and the model that made it.
+
+    Pressures are relative to ambient, gaps to the reference gap, T = ωt in radians. `position`
+    is X = x/l0 from −1/2 to 1/2 for a strip or a profile, r/R from 0 to 1 for a disc.
+    `pressure[i, j]` and `gap[i, j]` are at position i and time j; `mean_pressure[i]` is the mean
+    over the period. `force_harmonics[k]` are complex: the area mean of P − 1 is
+    Re Σ F_k e^{ikT}. F_1 = −(stiffness_relative + i damping_relative)·excursion, so that the
+    film pushes back with stiffness and damping of that many p0·A per unit of H0.
+    `profile` is None where H = 1 + ε cos T.
+    `over_pressure_error` estimates the absolute error of `over_pressure` = W − 1.
+    """
+
+    mean_load: Dimensionless
+    over_pressure: Dimensionless
+    over_pressure_error: Dimensionless
+    stiffness_relative: Dimensionless
+    damping_relative: Dimensionless
+    force_harmonics: ComplexArray
+    position: DimensionlessArray
+    time: DimensionlessArray
+    gap: DimensionlessArray
+    pressure: DimensionlessArray
+    mean_pressure: DimensionlessArray
+    iterations: int
+    residual: float
+    cells: int
+    times: int
+    status: str
+    model: str
+    shape: str
+    squeeze_number: Dimensionless
+    excursion_ratio: Dimensionless
+    polytropic_exponent: Dimensionless
+    knudsen_number: Dimensionless
+    slip: str
+    tolerance: float
+    profile: GapProfile | None
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What a film is asked for."""
+
+    shape: str
+    squeeze_number: float
+    excursion_ratio: float
+    polytropic_exponent: float
+    knudsen_number: float
+    slip: str
+    tolerance: float
+    profile: GapProfile | None = None
+
+
+@dataclass(frozen=True)
+class Found:
+    """What a solve came to."""
+
+    over: float
+    error: float
+    met: bool
+    iterations: int
+    residual: float
+    cells: int
+    times: int
+
+
+def assembled(
+    asked: Asked,
+    found: Found,
+    levels: list[tuple[FloatArray, FloatArray]],
+    harmonics: ComplexArray,
+    x: FloatArray,
+    shift: float,
+    mirrored: bool,
+    excursion: float,
+) -> FilmSolution:
+    """Assemble the result from p on the two finer grids, extrapolated like the load."""
+    n, over, error = asked.polytropic_exponent, found.over, found.error
+    if levels:
+        T, gap, fine, spectrum = _field(levels, harmonics, found.times, n)
+    else:
+        x, T, gap, fine = np.empty(0), np.empty(0), np.empty((0, 0)), np.empty((0, 0))
+        spectrum = np.full(_HARMONICS + 1, complex(np.nan, np.nan))
+        mirrored = False
+    count = len(T)
+    turn = np.exp(1j * np.arange(_HARMONICS + 1) * shift)
+    force_harmonics = np.zeros(_HARMONICS + 1, dtype=complex)
+    available = min(_HARMONICS + 1, len(spectrum))
+    force_harmonics[:available] = spectrum[:available]
+    force_harmonics *= turn
+    force_harmonics[0] = over
+    if shift:
+        fine = np.roll(fine, -count // 2, axis=1)
+        gap = np.roll(gap, -count // 2, axis=1)
+    if mirrored:
+        x = np.concatenate([-x[:0:-1], x])
+        fine = np.concatenate([fine[:0:-1], fine])
+        gap = np.concatenate([gap[:0:-1], gap])
+    first = spectrum[1] / excursion if excursion > 0.0 else complex(np.nan, np.nan)
+    if asked.excursion_ratio == 0.0 and asked.profile is None:
+        force_harmonics[:] = 0.0
+        fine[:] = 0.0
+        gap[:] = 1.0
+    name = "isothermal" if n == 1.0 else f"polytropic (n = {n:g})"
+    law = f"slip {asked.slip} at local Kn" if asked.knudsen_number > 0.0 else "no slip"
+    effort = f"{found.cells} cells and {found.times} times in {found.iterations} Newton steps"
+    if found.met:
+        status = f"converged: over-pressure {over:.4g} within {error:.1g} with {effort}"
+    else:
+        status = (
+            f"not converged: over-pressure {over:.4g} is only known within {error:.1g}, asked was "
+            f"{asked.tolerance:g} of it, with {effort}"
+        )
+    solution = FilmSolution(
+        mean_load=1.0 + over,
+        over_pressure=over,
+        over_pressure_error=error,
+        stiffness_relative=float(-first.real),
+        damping_relative=float(-first.imag),
+        force_harmonics=force_harmonics,
+        position=x,
+        time=T,
+        gap=gap,
+        pressure=1.0 + fine,
+        mean_pressure=1.0 + (fine.mean(axis=1) if levels else x),
+        iterations=found.iterations,
+        residual=found.residual,
+        cells=found.cells,
+        times=found.times,
+        status=status,
+        model=f"periodic compressible Reynolds film, {name}, {law}",
+        shape=asked.shape,
+        squeeze_number=float(asked.squeeze_number),
+        excursion_ratio=float(asked.excursion_ratio),
+        polytropic_exponent=float(n),
+        knudsen_number=float(asked.knudsen_number),
+        slip=asked.slip,
+        tolerance=asked.tolerance,
+        profile=asked.profile,
+    )
+    if not found.met:
+        raise ConvergenceError(
+            f"the film with squeeze_number {asked.squeeze_number:.4g} and excursion_ratio "
+            f"{asked.excursion_ratio:.4g} did not converge: {status}. Ask a larger tolerance",
+            partial=solution,
+            residual=found.residual,
+            iterations=found.iterations,
+        )
+    return solution
+
+
+def _field(
+    levels: list[tuple[FloatArray, FloatArray]], harmonics: ComplexArray, times: int, n: float
+) -> tuple[FloatArray, FloatArray, FloatArray, ComplexArray]:
+    """Times, gap, P − 1 on the finest grid, and the harmonics of the area mean of P − 1."""
+    count = max(_FIELD_TIMES, 2 * times)
+    T = 2.0 * np.pi * np.arange(count) / count
+    nodes = 2.0 * np.pi * np.arange(times) / times
+    gap_nodes, gap = evaluate(harmonics, nodes), evaluate(harmonics, T)
+    coarse, share_coarse = levels[0]
+    p, share = levels[1]
+    powered = gap**n
+
+    def resampled(values: FloatArray, every: int) -> FloatArray:
+        psi = values * gap_nodes[::every] ** n
+        spectrum = np.zeros((len(psi), count // 2 + 1), dtype=complex)
+        spectrum[:, : times // 2 + 1] = np.fft.rfft(psi, axis=1) * (count / times)
+        return np.asarray(np.fft.irfft(spectrum, count, axis=1)) / powered[::every]
+
+    fine, rough = resampled(p, 1), resampled(coarse, 2)
+    force = share @ fine
+    force += (force - share_coarse @ rough) / 3.0
+    spectrum = np.fft.rfft(force) / count
+    spectrum[1:] *= 2.0
+    correction = (fine[::2] - rough) / 3.0
+    index = np.arange(len(fine)) / 2.0
+    lower = np.floor(index).astype(int)
+    upper = np.minimum(lower + 1, len(correction) - 1)
+    fine = fine + 0.5 * (correction[lower] + correction[np.where(index > lower, upper, lower)])
+    return T, gap, fine, spectrum
