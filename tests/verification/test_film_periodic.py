@@ -11,8 +11,9 @@ from squeezefilm.film.periodic.edge import edge_layer
 from squeezefilm.film.periodic.film import solve_disc, solve_profile, solve_strip
 from squeezefilm.film.periodic.kernel import newton
 from squeezefilm.film.periodic.profile import flexural_profile
-from squeezefilm.film.periodic.records import Aim, Cells, Gap, Gas, Room
+from squeezefilm.film.periodic.records import Cells, Gap, Room
 from squeezefilm.film.periodic.resolution import collocation_times
+from squeezefilm.film.records import Aim, Gas
 
 STRIP_LOADS = {
     (0.1, 1.0): 1.000108, (0.1, 10.0): 1.005188, (0.1, 100.0): 1.010778,

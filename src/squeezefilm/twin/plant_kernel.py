@@ -20,8 +20,8 @@ import math
 import numba
 import numpy as np
 
-from squeezefilm.contact.sliding.kernel import slide_march
-from squeezefilm.contact.sliding.skin_motion import slide_by, transition
+from squeezefilm.contact.sliding.kernel import Drive, Ground, Law, Track, slide_march
+from squeezefilm.contact.sliding.skin_motion import Forces, Skin, slide_by, transition
 from squeezefilm.quantities import Array
 from squeezefilm.twin.chance import gaussian, uniform
 from squeezefilm.twin.envelope_step import (
@@ -117,19 +117,20 @@ def _sense(t0: int, h_us: int, x0: float, y0: float, s: Array, n: Array, c: Arra
 @numba.njit(cache=True, nogil=True)
 def _follow(h: float, x0: float, x1: float, y0: float, y1: float, s: Array, c: Array) -> None:
     """The finger's bone after a step in which the arm's wanted place goes from 0 to 1."""
-    m, d, k = c[C_MASS], c[C_DAMPING], c[C_STIFFNESS]
+    d, k = c[C_DAMPING], c[C_STIFFNESS]
+    arm = Skin(c[C_MASS], d, k)
     pull = np.empty(3)
-    by = transition(h, d, k, m)
+    by = transition(h, arm)
     pull[2] = 0.0
     pull[1] = k * (x1 - x0) / h
     pull[0] = k * x0 + d * (x1 - x0) / h
     ahead = s[PULL]
     if s[BEFORE] > 0.0:
         ahead += 0.5 * (s[PULL] - s[PULL_BEFORE]) * h / s[BEFORE]
-    s[X], s[VX], _ = slide_by(by, h, s[X], s[VX], pull, ahead, 0.0, m, d, k)
+    s[X], s[VX], _ = slide_by(by, h, s[X], s[VX], Forces(pull, ahead, 0.0), arm)
     pull[1] = k * (y1 - y0) / h
     pull[0] = k * y0 + d * (y1 - y0) / h
-    s[Y], s[VY], _ = slide_by(by, h, s[Y], s[VY], pull, 0.0, 0.0, m, d, k)
+    s[Y], s[VY], _ = slide_by(by, h, s[Y], s[VY], Forces(pull, 0.0, 0.0), arm)
 
 
 @numba.njit(cache=True, nogil=True)
@@ -142,10 +143,12 @@ def _drag(h: float, x0: float, v0: float, start: float, end: float, s: Array, n:
     place, speed = np.array([s[SKIN_X], 0.0]), np.array([s[SKIN_V], 0.0])
     friction, pull, stuck = np.zeros(2), np.zeros(2), np.zeros(2, dtype=np.bool_)
     done = slide_march(
-        bone, v_in, v_out, limit, h, int(c[C_SUBSTEPS]),
-        c[C_PAD_MASS], c[C_PAD_DAMPING], c[C_PAD_STIFFNESS], c[C_STATIC], c[C_STRIBECK],
-        0.0, 1.0, one, place, speed, friction, pull, stuck, np.zeros((3, 2)), np.zeros(3),
-    )  # fmt: skip
+        Drive(bone, v_in, v_out, limit, h, int(c[C_SUBSTEPS])),
+        Skin(c[C_PAD_MASS], c[C_PAD_DAMPING], c[C_PAD_STIFFNESS]),
+        Law(c[C_STATIC], c[C_STRIBECK]),
+        Ground(0.0, 1.0, one),
+        Track(place, speed, friction, pull, stuck, np.zeros((3, 2)), np.zeros(3)),
+    )
     s[PULL_BEFORE], s[BEFORE] = s[PULL], h
     if done < 2:
         # Chattering without end: let the skin go with the bone, and say so in the counts.

@@ -9,12 +9,15 @@ and a stuck skin does not move at all.
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numba
 import numpy as np
 
 from squeezefilm.contact.sliding.skin_motion import (
     HALVINGS,
+    Forces,
+    Skin,
     end_of_slip,
     first_rise,
     slide_along,
@@ -30,9 +33,55 @@ _NODES = (0.5 - math.sqrt(0.15), 0.5, 0.5 + math.sqrt(0.15))
 _WEIGHTS = (5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0)
 
 
+class Drive(NamedTuple):
+    """The bone's places (n,), its speeds at the start and the end of each interval (n−1,), the
+    kinetic friction force before the ground's factor (n,), the time between samples (s), and the
+    parts in which an interval is marched."""
+
+    bone: Array
+    speed_in: Array
+    speed_out: Array
+    limit: Array
+    time_step: float
+    substeps: int
+
+
+class Law(NamedTuple):
+    """Static over kinetic friction, and the speed (m/s) over which it falls; 0: at once."""
+
+    static_ratio: float
+    stribeck_speed: float
+
+
+class Ground(NamedTuple):
+    """Factors of friction that belong to places: those from `start` on, `spacing` apart (m)."""
+
+    start: float
+    spacing: float
+    factor: Array
+
+
+class Track(NamedTuple):
+    """What a march writes; `position[0]` and `speed[0]` hold the start.
+
+    `work` (3, n) is the work done by the bone, lost to friction and to damping. `account` is the
+    time stuck (s), slips begun, and the largest departure of the friction used from the friction
+    law at the middle of a substep (over the limit there).
+    """
+
+    position: Array
+    speed: Array
+    friction: Array
+    bone_force: Array
+    stuck: Array
+    work: Array
+    account: Array
+
+
 @numba.njit(cache=True, nogil=True)
-def at_place(place: float, start: float, spacing: float, profile: Array) -> float:
-    """The profile (linear between its points, held beyond its ends) at a place (m)."""
+def at_place(place: float, ground: Ground) -> float:
+    """The ground's factor (linear between its points, held beyond its ends) at a place (m)."""
+    start, spacing, profile = ground
     if profile.size == 1:
         return float(profile[0])
     along = (place - start) / spacing
@@ -42,35 +91,27 @@ def at_place(place: float, start: float, spacing: float, profile: Array) -> floa
 
 
 @numba.njit(cache=True, nogil=True)
-def slide_march(
-    bone: Array, speed_in: Array, speed_out: Array, limit: Array, time_step: float, substeps: int,
-    mass: float, damping: float, stiffness: float, static_ratio: float, stribeck_speed: float,
-    profile_start: float, profile_spacing: float, profile: Array,
-    position: Array, speed: Array, friction: Array, bone_force: Array, stuck: Array,
-    work: Array, account: Array,
-) -> int:  # fmt: skip
-    """March the skin over all samples; the arrays of the last two lines take the answer.
+def slide_march(drive: Drive, skin: Skin, law: Law, ground: Ground, track: Track) -> int:
+    """March the skin over all n samples.
 
-    `bone` (n,) are the bone's places, `speed_in`, `speed_out` (n−1,) its speeds at the start and
-    the end of each interval, `limit` (n,) the kinetic friction force (N) before the profile.
-    `position[0]`, `speed[0]` hold the start. `work` (3, n) takes the work done by the bone, lost
-    to friction and to damping. `account` takes: time stuck (s), slips begun, and the largest
-    departure of the friction used from the friction law at the middle of a substep (over the
-    limit there). Returns n, or the interval in which slip started and ended too often.
+    Returns n, or the interval in which slip started and ended too often.
     """
+    bone, speed_in, speed_out, limit, time_step, substeps = drive
+    static_ratio, stribeck_speed = law
+    position, speed, friction, bone_force, stuck, work, account = track
     pull = np.empty(3)
     x = position[0]
     v = speed[0]
-    k, c = stiffness, damping
+    k, c = skin.stiffness, skin.damping
     drops = stribeck_speed > 0.0 and static_ratio > 1.0
-    bent = drops or profile.size > 1
+    bent = drops or ground.factor.size > 1
     h = time_step / substeps
     # Whole substeps are alike: their exponentials are taken once.
-    whole = transition(h, c, k, mass)
-    first = transition(_NODES[0] * h, c, k, mass)
-    second = transition(_NODES[1] * h, c, k, mass)
-    third = transition(_NODES[2] * h, c, k, mass)
-    here = at_place(x, profile_start, profile_spacing, profile)
+    whole = transition(h, skin)
+    first = transition(_NODES[0] * h, skin)
+    second = transition(_NODES[1] * h, skin)
+    third = transition(_NODES[2] * h, skin)
+    here = at_place(x, ground)
     load = k * (bone[0] - x) + c * (speed_in[0] - v)
     sign = 0.0
     if v != 0.0:
@@ -105,7 +146,7 @@ def slide_march(
                 pull[1] = k * vb + c * rate
                 pull[2] = 0.5 * k * rate
                 L = L0 + dL * s
-                here = at_place(x, profile_start, profile_spacing, profile)
+                here = at_place(x, ground)
                 if sign == 0.0:
                     hold = static_ratio * here
                     f = pull[0] - k * x
@@ -135,22 +176,22 @@ def slide_march(
                 # Slip. The friction force is a line over the substep; where it depends on speed
                 # or place, its end is found by prediction and two corrections.
                 even = abs(span - h) <= 1e-12 * h
-                passed = whole if even else transition(span, c, k, mass)
+                passed = whole if even else transition(span, skin)
                 F0 = here * L
                 if drops:
                     F0 *= 1.0 + (static_ratio - 1.0) * math.exp(-abs(v) / stribeck_speed)
                 dF = here * dL
                 if bent:
                     for _ in range(3):
-                        x1, v1, _ = slide_by(
-                            passed, span, x, v, pull, sign * F0, sign * dF, mass, c, k
-                        )
-                        F1 = (L + dL * span) * at_place(x1, profile_start, profile_spacing, profile)
+                        forces = Forces(pull, sign * F0, sign * dF)
+                        x1, v1, _ = slide_by(passed, span, x, v, forces, skin)
+                        F1 = (L + dL * span) * at_place(x1, ground)
                         if drops:
                             v1 = max(sign * v1, 0.0)
                             F1 *= 1.0 + (static_ratio - 1.0) * math.exp(-v1 / stribeck_speed)
                         dF = (F1 - F0) / span
-                part = end_of_slip(passed, span, x, v, sign, pull, sign * F0, sign * dF, mass, c, k)
+                forces = Forces(pull, sign * F0, sign * dF)
+                part = end_of_slip(passed, span, x, v, sign, forces, skin)
                 if part == 0.0:
                     # A slip too short to be found: the skin stays, for longer each time.
                     part = min(span * 0.5**HALVINGS * 4.0**tries, span)
@@ -170,29 +211,30 @@ def slide_march(
                 if bent and ends:
                     # The friction's line must end where the slip does, not where the substep does.
                     for _ in range(4):
-                        x1, _, _ = slide_along(part, x, v, pull, sign * F0, sign * dF, mass, c, k)
-                        F1 = (L + dL * part) * at_place(x1, profile_start, profile_spacing, profile)
+                        forces = Forces(pull, sign * F0, sign * dF)
+                        x1, _, _ = slide_along(part, x, v, forces, skin)
+                        F1 = (L + dL * part) * at_place(x1, ground)
                         if drops:
                             F1 *= static_ratio
                         steeper = (F1 - F0) / part
-                        sooner = end_of_slip(
-                            passed, span, x, v, sign, pull, sign * F0, sign * steeper, mass, c, k
-                        )
+                        forces = Forces(pull, sign * F0, sign * steeper)
+                        sooner = end_of_slip(passed, span, x, v, sign, forces, skin)
                         if sooner <= 0.0:
                             break
                         dF = steeper
                         part = sooner
                 even = even and not ends
                 if ends:
-                    passed = transition(part, c, k, mass)
+                    passed = transition(part, skin)
                 else:
                     part = span
+                forces = Forces(pull, sign * F0, sign * dF)
                 for q in range(3):
                     t = _NODES[q] * part
                     by = first if q == 0 else second if q == 1 else third
                     if not even:
-                        by = transition(t, c, k, mass)
-                    x_t, v_t, _ = slide_by(by, t, x, v, pull, sign * F0, sign * dF, mass, c, k)
+                        by = transition(t, skin)
+                    x_t, v_t, _ = slide_by(by, t, x, v, forces, skin)
                     vb_t = vb + rate * t
                     xb_t = xb + t * (vb + 0.5 * rate * t)
                     F_t = F0 + dF * t
@@ -200,13 +242,15 @@ def slide_march(
                     done[1] += _WEIGHTS[q] * part * F_t * abs(v_t)
                     done[2] += _WEIGHTS[q] * part * c * (vb_t - v_t) ** 2
                     if bent and q == 1:
-                        top = (L + dL * t) * at_place(x_t, profile_start, profile_spacing, profile)
-                        law = top
+                        top = (L + dL * t) * at_place(x_t, ground)
+                        lawful = top
                         if drops:
-                            law *= 1.0 + (static_ratio - 1.0) * math.exp(-abs(v_t) / stribeck_speed)
-                        if law > 0.0:
-                            account[2] = max(account[2], abs(F_t / law - 1.0))
-                x, v, _ = slide_by(passed, part, x, v, pull, sign * F0, sign * dF, mass, c, k)
+                            lawful *= 1.0 + (static_ratio - 1.0) * math.exp(
+                                -abs(v_t) / stribeck_speed
+                            )
+                        if lawful > 0.0:
+                            account[2] = max(account[2], abs(F_t / lawful - 1.0))
+                x, v, _ = slide_by(passed, part, x, v, forces, skin)
                 force_end = F0 + dF * part
                 if not ends:
                     s = goal
@@ -215,7 +259,7 @@ def slide_march(
                 v = 0.0
                 vb = v_in + rate * s
                 f = k * (bone[i] + s * (v_in + 0.5 * rate * s) - x) + c * vb
-                here = at_place(x, profile_start, profile_spacing, profile)
+                here = at_place(x, ground)
                 hold = static_ratio * here * (L0 + dL * s)
                 sign = 0.0
                 if abs(f) > hold:

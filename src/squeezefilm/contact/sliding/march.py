@@ -24,7 +24,15 @@ from numpy.typing import NDArray
 from squeezefilm.contact.finger.fingerpad import FingerpadDynamics
 from squeezefilm.contact.finger.occlusion import Occlusion
 from squeezefilm.contact.sliding.dry_friction import DryFriction, FrictionProfile
-from squeezefilm.contact.sliding.kernel import MOST_EVENTS, slide_march
+from squeezefilm.contact.sliding.kernel import (
+    MOST_EVENTS,
+    Drive,
+    Ground,
+    Law,
+    Track,
+    slide_march,
+)
+from squeezefilm.contact.sliding.skin_motion import Skin
 from squeezefilm.errors import ConvergenceError, InputError, OutOfRangeError
 from squeezefilm.quantities import (
     Dimensionless,
@@ -191,13 +199,14 @@ def slide(
     sticking, work, account = np.zeros(n, dtype=bool), np.zeros((3, n)), np.zeros(3)
     position[0], speed[0] = bone[0] + initial_stretch, initial_speed
     speed_in, speed_out = interval_speeds(bone, time_step)
+    parts = substeps(time_step, pad, law, strongest)
     done = slide_march(
-        bone, speed_in, speed_out, np.ascontiguousarray(limit), float(time_step),
-        substeps(time_step, pad, law, strongest),
-        pad.mass, pad.damping, pad.stiffness, law.static_ratio, law.stribeck_speed,
-        start, spacing, values,
-        position, speed, friction, bone_force, sticking, work, account,
-    )  # fmt: skip
+        Drive(bone, speed_in, speed_out, np.ascontiguousarray(limit), float(time_step), parts),
+        Skin(pad.mass, pad.damping, pad.stiffness),
+        Law(law.static_ratio, law.stribeck_speed),
+        Ground(start, spacing, values),
+        Track(position, speed, friction, bone_force, sticking, work, account),
+    )
     if done < n:
         raise ConvergenceError(
             f"the skin started and stopped more than {MOST_EVENTS} times within the time step "

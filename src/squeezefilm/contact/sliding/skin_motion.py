@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numba
 
@@ -14,9 +14,27 @@ _ROOT_STEPS = 80
 HALVINGS = 20
 
 
+class Skin(NamedTuple):
+    """A mass on a spring and a damper that hang on the bone."""
+
+    mass: float
+    damping: float
+    stiffness: float
+
+
+class Forces(NamedTuple):
+    """On a skin that slides, over time: the coefficients (3,) of k x_bone + c v_bone, and the
+    friction force against it with its slope."""
+
+    pull: Array
+    friction: float
+    slope: float
+
+
 @numba.njit(cache=True, nogil=True)
-def transition(s: float, damping: float, stiffness: float, mass: float) -> Any:
+def transition(s: float, skin: Skin) -> Any:
     """What takes (y, ẏ) of the free skin to a time s later: y ← a y + b ẏ, ẏ ← c y + d ẏ."""
+    mass, damping, stiffness = skin
     decay = damping / (2.0 * mass)
     omega2 = stiffness / mass
     split = decay * decay - omega2
@@ -59,16 +77,14 @@ def first_rise(a: float, b: float, c: float, span: float) -> float:
 
 
 @numba.njit(cache=True, nogil=True)
-def slide_by(
-    passed: Any, s: float, x: float, v: float, pull: Array, force: float, slope: float,
-    mass: float, damping: float, stiffness: float,
-) -> Any:  # fmt: skip
-    """Position, speed and acceleration a time s into sliding against a friction force + slope·s.
+def slide_by(passed: Any, s: float, x: float, v: float, forces: Forces, skin: Skin) -> Any:
+    """Position, speed and acceleration a time s into sliding from x at the speed v.
 
-    `passed` is the `transition` of s, which a march at a fixed step knows beforehand. `pull` (3,)
-    are the coefficients of k x_bone + c v_bone in time. The particular solution is the parabola
-    A + B s + C s².
+    `passed` is the `transition` of s, which a march at a fixed step knows beforehand. The
+    particular solution is the parabola A + B s + C s².
     """
+    pull, force, slope = forces
+    mass, damping, stiffness = skin
     C = pull[2] / stiffness
     B = (pull[1] - slope - 2.0 * damping * C) / stiffness
     A = (pull[0] - force - damping * B - 2.0 * mass * C) / stiffness
@@ -82,29 +98,25 @@ def slide_by(
 
 
 @numba.njit(cache=True, nogil=True)
-def slide_along(
-    s: float, x: float, v: float, pull: Array, force: float, slope: float,
-    mass: float, damping: float, stiffness: float,
-) -> Any:  # fmt: skip
+def slide_along(s: float, x: float, v: float, forces: Forces, skin: Skin) -> Any:
     """`slide_by` for any time s."""
-    passed = transition(s, damping, stiffness, mass)
-    return slide_by(passed, s, x, v, pull, force, slope, mass, damping, stiffness)
+    return slide_by(transition(s, skin), s, x, v, forces, skin)
 
 
 @numba.njit(cache=True, nogil=True)
 def end_of_slip(
-    passed: Any, span: float, x: float, v: float, sign: float, pull: Array, force: float,
-    slope: float, mass: float, damping: float, stiffness: float,
-) -> float:  # fmt: skip
+    passed: Any, span: float, x: float, v: float, sign: float, forces: Forces, skin: Skin
+) -> float:
     """When in (0, span] the skin comes to rest, or −1 while it slides on; 0 if it never started.
 
     `passed` is the `transition` of span.
     """
-    _, v_end, a_end = slide_by(passed, span, x, v, pull, force, slope, mass, damping, stiffness)
+    _, v_end, a_end = slide_by(passed, span, x, v, forces, skin)
     high = span
     low = 0.0
     if sign * v_end > 0.0:
-        a = (pull[0] - stiffness * x - damping * v - force) / mass
+        pulled = forces.pull[0] - skin.stiffness * x - skin.damping * v
+        a = (pulled - forces.friction) / skin.mass
         # A slip that has just begun speeds up, whatever rounding says of its first acceleration.
         if v == 0.0 or not (sign * a < 0.0 and sign * a_end > 0.0):
             return -1.0
@@ -113,7 +125,7 @@ def end_of_slip(
             middle = 0.5 * (low + high)
             if middle <= low or middle >= high:
                 break
-            _, v_m, a_m = slide_along(middle, x, v, pull, force, slope, mass, damping, stiffness)
+            _, v_m, a_m = slide_along(middle, x, v, forces, skin)
             if sign * v_m <= 0.0:
                 high = middle
                 break
@@ -121,7 +133,7 @@ def end_of_slip(
                 low = middle
             else:
                 high = middle
-        _, v_m, _ = slide_along(high, x, v, pull, force, slope, mass, damping, stiffness)
+        _, v_m, _ = slide_along(high, x, v, forces, skin)
         if sign * v_m > 0.0:
             return -1.0
         low = 0.0
@@ -129,7 +141,7 @@ def end_of_slip(
         # It began and ended within: look ever earlier for an instant at which it moved.
         low = 0.5 * span
         for _ in range(HALVINGS):
-            _, v_m, _ = slide_along(low, x, v, pull, force, slope, mass, damping, stiffness)
+            _, v_m, _ = slide_along(low, x, v, forces, skin)
             if sign * v_m > 0.0:
                 break
             high = low
@@ -139,7 +151,7 @@ def end_of_slip(
     root = 0.5 * (low + high)
     for _ in range(_ROOT_STEPS):
         # Newton, and a halving wherever it would leave the bracket.
-        _, v_r, a_r = slide_along(root, x, v, pull, force, slope, mass, damping, stiffness)
+        _, v_r, a_r = slide_along(root, x, v, forces, skin)
         if sign * v_r > 0.0:
             low = root
         else:

@@ -17,7 +17,7 @@ import numpy as np
 
 from squeezefilm.errors import ConvergenceError, InputError
 from squeezefilm.film.compiled import announce
-from squeezefilm.film.periodic.records import Aim, Resolution
+from squeezefilm.film.periodic.records import Resolution
 from squeezefilm.film.periodic.resolution import (
     CELLS,
     CHECKS,
@@ -26,6 +26,7 @@ from squeezefilm.film.periodic.resolution import (
     first_guess,
     refined,
 )
+from squeezefilm.film.records import Aim
 from squeezefilm.film.slip import slip_law
 from squeezefilm.film.solved_range import require_film
 from squeezefilm.progress import CountProgress

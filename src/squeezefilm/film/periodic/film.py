@@ -22,7 +22,7 @@ from squeezefilm.film.periodic.profile import (
     profile_from_function,
     sampled_grid,
 )
-from squeezefilm.film.periodic.records import Aim, Gas, Resolution
+from squeezefilm.film.periodic.records import Resolution
 from squeezefilm.film.periodic.resolution import (
     CELLS,
     CHECKS,
@@ -32,6 +32,7 @@ from squeezefilm.film.periodic.resolution import (
     refined,
 )
 from squeezefilm.film.periodic.solution import Asked, FilmSolution, Found, assembled
+from squeezefilm.film.records import Aim, Gas
 from squeezefilm.film.slip import slip_law
 from squeezefilm.quantities import (
     Dimensionless,

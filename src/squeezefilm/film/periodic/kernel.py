@@ -31,7 +31,8 @@ from squeezefilm.film.periodic.lanes import (
     sub,
     total,
 )
-from squeezefilm.film.periodic.records import Aim, Cells, Gap, Gas, Room, Times
+from squeezefilm.film.periodic.records import Cells, Gap, Room, Times
+from squeezefilm.film.records import Aim, Gas
 from squeezefilm.film.slip import NO_SLIP
 from squeezefilm.film.slip_kernel import slip_factor
 from squeezefilm.quantities import FloatArray

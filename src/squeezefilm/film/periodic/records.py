@@ -1,4 +1,4 @@
-"""What the compiled film solvers are given, in records."""
+"""What the compiled solvers of periodic films are given, in records."""
 
 from __future__ import annotations
 
@@ -15,14 +15,6 @@ class Times(NamedTuple):
     row: int
     derivative: FloatArray
     mask: FloatArray
-
-
-class Gas(NamedTuple):
-    """Polytropic exponent, Knudsen number at ambient pressure and reference gap, law of slip."""
-
-    polytropic_exponent: float
-    knudsen_number: float
-    law: int
 
 
 class Cells(NamedTuple):
@@ -49,13 +41,6 @@ class Room(NamedTuple):
 
     rows: FloatArray
     blocks: FloatArray
-
-
-class Aim(NamedTuple):
-    """The relative tolerance on the over-pressure, and the most Newton steps."""
-
-    tolerance: float
-    most: int
 
 
 class Resolution(NamedTuple):

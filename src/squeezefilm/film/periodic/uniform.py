@@ -14,7 +14,8 @@ import numpy as np
 from numba import njit
 
 from squeezefilm.film.periodic.kernel import newton, prolong
-from squeezefilm.film.periodic.records import Aim, Cells, Gap, Gas, Resolution, Room
+from squeezefilm.film.periodic.records import Cells, Gap, Resolution, Room
+from squeezefilm.film.records import Aim, Gas
 from squeezefilm.quantities import FloatArray
 
 STRIP, DISC = 0, 1

@@ -14,7 +14,7 @@ import numpy as np
 from numba import njit
 
 from squeezefilm.film.periodic.kernel import newton, prolong
-from squeezefilm.film.periodic.records import Aim, Cells, Gap, Gas, Resolution, Room
+from squeezefilm.film.periodic.records import Cells, Gap, Resolution, Room
 from squeezefilm.film.periodic.uniform import (
     CHECK,
     COARSE,
@@ -30,6 +30,7 @@ from squeezefilm.film.periodic.uniform import (
     rounding,
     space_error,
 )
+from squeezefilm.film.records import Aim, Gas
 from squeezefilm.quantities import FloatArray
 
 

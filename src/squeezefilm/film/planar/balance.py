@@ -15,7 +15,16 @@ from scipy.linalg import lapack
 
 from squeezefilm.film.planar.gap import GapFunction, gap_values
 from squeezefilm.film.planar.grid import PlanarGrid
-from squeezefilm.film.planar.kernel import assemble, row_block, take_off
+from squeezefilm.film.planar.kernel import (
+    Balances,
+    Faces,
+    Gaps,
+    Storage,
+    assemble,
+    row_block,
+    take_off,
+)
+from squeezefilm.film.records import Gas
 from squeezefilm.quantities import ComplexArray, FloatArray, IntArray
 
 _OVERSAMPLE = 6
@@ -73,26 +82,17 @@ def resampled(values: FloatArray, count: int) -> FloatArray:
 class _Factors:
     """The Jacobian eliminated row by row; keeps the inverse of every pivot block."""
 
-    def __init__(self, rows: int, size: int, faces: Sequence[IntArray]) -> None:
+    def __init__(self, rows: int, size: int, within: Sequence[IntArray]) -> None:
         self.inverse = np.empty((rows, size, size))
-        self.faces = faces
+        self.within = within
 
-    def factor(
-        self,
-        grid: PlanarGrid,
-        weight: FloatArray,
-        D: FloatArray,
-        parts: tuple[FloatArray, ...],
-    ) -> None:
-        _, diagonal, row_up, row_down, column_up, column_down = parts
+    def factor(self, faces: Faces, storage: Storage, parts: Balances) -> None:
         rows, size = self.inverse.shape[:2]
-        self.up, self.down = row_up.reshape(rows - 1, size), row_down.reshape(rows - 1, size)
+        self.up = parts.row_up.reshape(rows - 1, size)
+        self.down = parts.row_down.reshape(rows - 1, size)
         block = np.empty((size, size), order="F")
         for i in range(rows):
-            row_block(
-                i * grid.columns, grid.columns, diagonal, weight, D, self.faces[i],
-                grid.column_from, grid.column_to, column_up, column_down, block,
-            )  # fmt: skip
+            row_block(i * faces.columns, self.within[i], faces, storage, parts, block)
             if i:
                 take_off(block, self.down[i - 1], self.inverse[i - 1], self.up[i - 1])
             lu, pivots, bad = lapack.dgetrf(block, overwrite_a=1)
@@ -120,36 +120,36 @@ class Balancer:
         self.film, self.grid, self.count = film, grid, count
         T = times(count)
         self.T = T
-        self.H = gap_values(film.gap, grid.X, grid.Y, T)
-        self.H_row = gap_values(film.gap, grid.row_X, grid.row_Y, T)
-        self.H_column = gap_values(film.gap, grid.column_X, grid.column_Y, T)
-        self.H_edge = gap_values(film.gap, grid.edge_X, grid.edge_Y, T)
-        self.D = derivative(count)
-        self.weight = film.squeeze_number * grid.area
+        self.gaps = Gaps(
+            gap_values(film.gap, grid.X, grid.Y, T),
+            gap_values(film.gap, grid.row_X, grid.row_Y, T),
+            gap_values(film.gap, grid.column_X, grid.column_Y, T),
+            gap_values(film.gap, grid.edge_X, grid.edge_Y, T),
+        )
+        self.storage = Storage(film.squeeze_number * grid.area, derivative(count))
+        self.gas = Gas(film.polytropic_exponent, film.knudsen_number, film.slip)
+        self.faces = Faces(
+            grid.columns, grid.row_conductance, grid.column_from, grid.column_to,
+            grid.column_conductance, grid.edge_node, grid.edge_conductance,
+        )  # fmt: skip
         row_of = grid.column_from // grid.columns
-        faces = [np.flatnonzero(row_of == i).astype(np.int64) for i in range(grid.rows)]
-        self._factors = _Factors(grid.rows, grid.columns * count, faces)
+        within = [np.flatnonzero(row_of == i).astype(np.int64) for i in range(grid.rows)]
+        self._factors = _Factors(grid.rows, grid.columns * count, within)
         self._fresh = False
 
-    def _assemble(self, m: FloatArray) -> tuple[FloatArray, ...]:
-        grid, M = self.grid, self.count
-        out = (
-            np.empty_like(m), np.empty_like(m),
-            np.empty((grid.row_conductance.size, M)), np.empty((grid.row_conductance.size, M)),
-            np.empty((grid.column_from.size, M)), np.empty((grid.column_from.size, M)),
-        )  # fmt: skip
-        assemble(
-            m, self.H, self.H_row, self.H_column, self.H_edge, grid.columns,
-            grid.row_conductance, grid.column_from, grid.column_to, grid.column_conductance,
-            grid.edge_node, grid.edge_conductance, self.weight, self.D,
-            self.film.polytropic_exponent, self.film.knudsen_number, self.film.slip,
-            out[0], out[1], out[2], out[3], out[4], out[5],
-        )  # fmt: skip
+    def _assemble(self, m: FloatArray) -> Balances:
+        rows, columns = (
+            (size, self.count)
+            for size in (self.grid.row_conductance.size, self.grid.column_from.size)
+        )
+        shapes = (m.shape, m.shape, rows, rows, columns, columns)
+        out = Balances(*(np.empty(shape) for shape in shapes))
+        assemble(m, self.gaps, self.faces, self.storage, self.gas, out)
         return out
 
     def starts(self) -> list[FloatArray]:
         """Two guesses: gas at rest (P = 1), and gas that cannot follow at all (m constant)."""
-        n, H = self.film.polytropic_exponent, self.H
+        n, H = self.film.polytropic_exponent, self.gaps.node
         fine = gap_values(self.film.gap, self.grid.X, self.grid.Y, times(32))
         still = (np.mean(fine**3, axis=1) / np.mean(fine ** (2 - n), axis=1)) ** (1 / (n + 1))
         return [H.copy(), np.ascontiguousarray(np.broadcast_to(still[:, None], H.shape))]
@@ -158,7 +158,7 @@ class Balancer:
         """Newton from `start` (or the better of `starts`) until a step changes no m by more than
         `tolerance` (relative). Not converged is reported, not raised."""
         if start is None:
-            tries = [(float(np.abs(self._assemble(m)[0]).max()), m) for m in self.starts()]
+            tries = [(float(np.abs(self._assemble(m).residual).max()), m) for m in self.starts()]
             m = min(tries, key=lambda pair: pair[0])[1]
         else:
             m = start.copy()
@@ -171,11 +171,11 @@ class Balancer:
             made += 1
             if not self._fresh:
                 try:
-                    self._factors.factor(self.grid, self.weight, self.D, parts)
+                    self._factors.factor(self.faces, self.storage, parts)
                 except np.linalg.LinAlgError:
                     break
                 factored += 1
-            step = self._factors.solve(-parts[0])
+            step = self._factors.solve(-parts.residual)
             relative = step / m
             change = float(np.abs(relative).max())
             if not np.isfinite(change):

@@ -7,45 +7,70 @@ is therefore diagonal, which is what makes the elimination row by row cheap.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numba
 import numpy as np
 
 from squeezefilm.film.mobility import mobility
+from squeezefilm.film.records import Gas
 from squeezefilm.quantities import Array
+
+
+class Gaps(NamedTuple):
+    """The gap at nodes, at faces between rows and within a row, and on the edge; (…, times)."""
+
+    node: Array
+    row: Array
+    column: Array
+    edge: Array
+
+
+class Faces(NamedTuple):
+    """Nodes in a row; the faces between rows, within a row and on the edge, with the nodes they
+    join and their conductances, as `PlanarGrid` has them."""
+
+    columns: int
+    row_conductance: Array
+    column_from: Array
+    column_to: Array
+    column_conductance: Array
+    edge_node: Array
+    edge_conductance: Array
+
+
+class Storage(NamedTuple):
+    """σ · area of the nodes, and the derivative in time (times, times)."""
+
+    weight: Array
+    derivative: Array
+
+
+class Balances(NamedTuple):
+    """Residual (inflow − weight · dm/dT) and the flow's part of its Jacobian.
+
+    `diagonal` (nodes, times) is ∂residual/∂m of the node itself without the derivative in time;
+    `*_up` (faces, times) is ∂(from)/∂m(to), `*_down` ∂(to)/∂m(from).
+    """
+
+    residual: Array
+    diagonal: Array
+    row_up: Array
+    row_down: Array
+    column_up: Array
+    column_down: Array
 
 
 @numba.njit(cache=True, nogil=True)
 def assemble(
-    m: Array,
-    H: Array,
-    H_row: Array,
-    H_column: Array,
-    H_edge: Array,
-    columns: int,
-    row_G: Array,
-    column_from: Array,
-    column_to: Array,
-    column_G: Array,
-    edge_node: Array,
-    edge_G: Array,
-    weight: Array,
-    D: Array,
-    n: float,
-    knudsen: float,
-    model: int,
-    residual: Array,
-    diagonal: Array,
-    row_up: Array,
-    row_down: Array,
-    column_up: Array,
-    column_down: Array,
+    m: Array, gaps: Gaps, faces: Faces, storage: Storage, gas: Gas, balance: Balances
 ) -> None:
-    """Residual (inflow − weight · dm/dT) and the flow's part of its Jacobian.
-
-    `weight` = σ · area, `D` (times, times) the derivative. `diagonal` (nodes, times) is
-    ∂residual/∂m of the node itself without `D`; `*_up` (faces, times) is ∂(from)/∂m(to),
-    `*_down` ∂(to)/∂m(from).
-    """
+    """Fill `balance` at the gas m, shape (nodes, times)."""
+    H, H_row, H_column, H_edge = gaps
+    columns, row_G, column_from, column_to, column_G, edge_node, edge_G = faces
+    weight, D = storage
+    n, knudsen, model = gas
+    residual, diagonal, row_up, row_down, column_up, column_down = balance
     N, M = m.shape
     P = np.empty((N, M))
     dP = np.empty((N, M))
@@ -93,22 +118,14 @@ def assemble(
 
 @numba.njit(cache=True, nogil=True)
 def row_block(
-    first: int,
-    columns: int,
-    diagonal: Array,
-    weight: Array,
-    D: Array,
-    faces: Array,
-    column_from: Array,
-    column_to: Array,
-    column_up: Array,
-    column_down: Array,
-    block: Array,
+    first: int, within: Array, faces: Faces, storage: Storage, balance: Balances, block: Array
 ) -> None:
-    """The dense Jacobian block of one row: `columns` nodes from `first`, all their times.
+    """The dense Jacobian block of one row: its nodes from `first`, all their times.
 
-    `faces` are the faces within this row. `block` (columns·times)² is overwritten.
+    `within` are the faces within this row. `block` (columns·times)² is overwritten.
     """
+    columns, column_from, column_to = faces.columns, faces.column_from, faces.column_to
+    weight, D = storage
     M = D.shape[0]
     block[:, :] = 0.0
     for j in range(columns):
@@ -116,14 +133,14 @@ def row_block(
         for k in range(M):
             for q in range(M):
                 block[j * M + k, j * M + q] = -weight[i] * D[k, q]
-            block[j * M + k, j * M + k] += diagonal[i, k]
-    for g in faces:
+            block[j * M + k, j * M + k] += balance.diagonal[i, k]
+    for g in within:
         a = column_from[g] - first
         b = column_to[g] - first
         for k in range(M):
             # += because on a full ring of two columns both faces join the same nodes.
-            block[a * M + k, b * M + k] += column_up[g, k]
-            block[b * M + k, a * M + k] += column_down[g, k]
+            block[a * M + k, b * M + k] += balance.column_up[g, k]
+            block[b * M + k, a * M + k] += balance.column_down[g, k]
 
 
 @numba.njit(cache=True, nogil=True)

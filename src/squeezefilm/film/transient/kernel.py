@@ -7,37 +7,60 @@ large squeeze numbers; this form does not.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numba
 import numpy as np
 
 from squeezefilm.film.mobility import mobility
+from squeezefilm.film.records import Aim, Gas
 from squeezefilm.quantities import Array
+
+
+class Line(NamedTuple):
+    """Volume of the cells (N,) and conductance of the faces (N+1,): 0 at a wall or a line of
+    symmetry."""
+
+    volume: Array
+    conductance: Array
+
+
+class Gaps(NamedTuple):
+    """The gap in cells (N,) and at faces (N+1,), or with a row of them for every stage."""
+
+    cell: Array
+    face: Array
+
+
+class Pace(NamedTuple):
+    """The step in time (rad), the squeeze number, and the scheme's code."""
+
+    time_step: float
+    squeeze_number: float
+    scheme: int
+
+
+class Track(NamedTuple):
+    """What a march writes: the load after each step, and into row `keep[k]` of `field` the pressure
+    after step k, nowhere for −1."""
+
+    load: Array
+    field: Array
+    keep: Array
 
 
 @numba.njit(cache=True, nogil=True)
 def implicit_stage(
-    m: Array,
-    held: Array,
-    H: Array,
-    H_face: Array,
-    volume: Array,
-    conductance: Array,
-    step: float,
-    n: float,
-    knudsen: float,
-    model: int,
-    tolerance: float,
-    limit: int,
-    outflow: Array,
+    m: Array, held: Array, gap: Gaps, line: Line, step: float, gas: Gas, aim: Aim, outflow: Array
 ) -> Any:
     """Solve volume (m − held) = step · (net inflow at m) for m, by Newton with one sweep a step.
 
-    `m` (start and answer), `held`, `H`, `volume` have shape (N,); `H_face`, `conductance` (N+1,).
-    `conductance` is 0 at a wall or a line of symmetry. `step` is γΔT/σ. `outflow[0]`, `[1]` take
+    `m` (start and answer) and `held` have shape (N,). `step` is γΔT/σ. `outflow[0]`, `[1]` take
     the flow through the left and the right end. Returns (largest relative change, iterations).
     """
+    H, H_face = gap
+    volume, conductance = line
+    n, knudsen, model = gas
     N = m.size
     P = np.empty(N)
     slope_P = np.empty(N)
@@ -48,7 +71,7 @@ def implicit_stage(
     change = np.inf
     iteration = 0
     last = np.inf
-    for iteration in range(1, limit + 1):
+    for iteration in range(1, aim.most + 1):
         for i in range(N):
             ratio = m[i] / H[i]
             P[i] = ratio if n == 1.0 else ratio**n
@@ -99,7 +122,7 @@ def implicit_stage(
             return np.inf, iteration
         # Quadratic convergence: a change below sqrt(tolerance) leaves an error below tolerance,
         # but only rounding stops a change that no longer falls.
-        if change <= tolerance or (change < 1e-10 and change >= 0.5 * last):
+        if change <= aim.tolerance or (change < 1e-10 and change >= 0.5 * last):
             break
         last = change
     for side in range(2):
@@ -118,39 +141,25 @@ BACKWARD_EULER, SDIRK2, BDF2 = 1, 2, 3
 
 @numba.njit(cache=True, nogil=True)
 def march(
-    m: Array,
-    before: Array,
-    H: Array,
-    H_face: Array,
-    volume: Array,
-    conductance: Array,
-    time_step: float,
-    squeeze_number: float,
-    scheme: int,
-    n: float,
-    knudsen: float,
-    model: int,
-    tolerance: float,
-    limit: int,
-    load: Array,
-    field: Array,
-    keep: Array,
+    m: Array, before: Array, gaps: Gaps, line: Line, pace: Pace, gas: Gas, aim: Aim, track: Track
 ) -> Any:
-    """March `m` in place over as many steps as `load` is long.
+    """March `m` in place over as many steps as the track's load is long.
 
-    `H` (stages, N) and `H_face` (stages, N+1) hold the gap at every stage in order: two stages a
-    step for SDIRK2 (Alexander: L-stable, its last stage is the new value), one for the others.
-    `before` (N,) is the gas one step before `m`; BDF2 reads it, all keep it up to date.
-    `keep[k]` is the row of `field` that takes the pressure after step k, or −1. Returns (gas lost
-    through the ends, largest change of the last Newton step, Newton steps made, steps done);
-    steps done is short where one failed.
+    `gaps` are those of every stage in order: two stages a step for SDIRK2 (Alexander: L-stable,
+    its last stage is the new value), one for the others. `before` (N,) is the gas one step before
+    `m`; BDF2 reads it, all keep it up to date. Returns (gas lost through the ends, largest change
+    of the last Newton step, Newton steps made, steps done); steps done is short where one failed.
     """
+    H, H_face = gaps
+    volume = line.volume
+    scheme, n = pace.scheme, gas.polytropic_exponent
+    load, field, keep = track
     gamma = 1.0
     if scheme == SDIRK2:
         gamma = 1.0 - np.sqrt(0.5)
     elif scheme == BDF2:
         gamma = 2.0 / 3.0
-    step = gamma * time_step / squeeze_number
+    step = gamma * pace.time_step / pace.squeeze_number
     N = m.size
     held = np.empty(N)
     outflow = np.zeros(2)
@@ -170,10 +179,8 @@ def march(
         weight = 1.0
         if scheme == SDIRK2:
             stage = 2 * k
-            change, count = implicit_stage(
-                m, held, H[stage], H_face[stage], volume, conductance, step, n, knudsen, model,
-                tolerance, limit, outflow,
-            )  # fmt: skip
+            gap = Gaps(H[stage], H_face[stage])
+            change, count = implicit_stage(m, held, gap, line, step, gas, aim, outflow)
             made += count
             if not change < 1e-6:
                 return lost, change, made, k
@@ -184,10 +191,8 @@ def march(
             stage += 1
         elif scheme == BDF2:
             weight = 1.5
-        change, count = implicit_stage(
-            m, held, H[stage], H_face[stage], volume, conductance, step, n, knudsen, model,
-            tolerance, limit, outflow,
-        )  # fmt: skip
+        gap = Gaps(H[stage], H_face[stage])
+        change, count = implicit_stage(m, held, gap, line, step, gas, aim, outflow)
         made += count
         if not change < 1e-6:
             return lost, change, made, k

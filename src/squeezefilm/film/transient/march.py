@@ -16,9 +16,19 @@ import numpy as np
 from squeezefilm.errors import ConvergenceError, InputError
 from squeezefilm.film.compiled import announce
 from squeezefilm.film.line_grid import Gap, Shape, gap_table, line_grid, mean_over
+from squeezefilm.film.records import Aim, Gas
 from squeezefilm.film.slip import slip_law
 from squeezefilm.film.solved_range import require_film
-from squeezefilm.film.transient.kernel import BACKWARD_EULER, BDF2, SDIRK2, march
+from squeezefilm.film.transient.kernel import (
+    BACKWARD_EULER,
+    BDF2,
+    SDIRK2,
+    Gaps,
+    Line,
+    Pace,
+    Track,
+    march,
+)
 from squeezefilm.quantities import (
     Dimensionless,
     DimensionlessArray,
@@ -30,8 +40,7 @@ from squeezefilm.quantities import (
 
 Scheme = Literal["bdf2", "sdirk2", "backward_euler"]
 SCHEMES: dict[str, int] = {"bdf2": BDF2, "sdirk2": SDIRK2, "backward_euler": BACKWARD_EULER}
-NEWTON_TOLERANCE = 1e-13
-NEWTON_LIMIT = 40
+NEWTON = Aim(1e-13, 40)
 _CHUNK = 1 << 21
 """Gap values tabulated at once (16 MB)."""
 
@@ -128,7 +137,7 @@ def solve_transient(
             f"for each of {cells} cells",
             quantity="initial_pressure",
         )
-    code = slip_law(slip, knudsen_number)
+    law = slip_law(slip, knudsen_number)
     stage_times(scheme)
     grid = line_grid(shape, cells, squeeze_number, mean_over(gap, np.linspace(start, end, 9)))
     dt = (end - start) / steps
@@ -157,11 +166,12 @@ def solve_transient(
         count = 1 if how != scheme else min(chunk, steps - done)
         at: FloatArray = (time[done : done + count, None] + dt * stage_times(how)).ravel()
         held = _gas_balanced(grid.volume, m, before, how)
+        now = slice(done + 1, done + count + 1)
         lost, change, made, reached = march(
-            m, before, gap_table(gap, grid.centre, at), gap_table(gap, grid.face, at),
-            grid.volume, grid.conductance, dt, float(squeeze_number), SCHEMES[how], n,
-            float(knudsen_number), code, NEWTON_TOLERANCE, NEWTON_LIMIT,
-            load[done + 1 : done + count + 1], field, keep[done + 1 : done + count + 1],
+            m, before, Gaps(gap_table(gap, grid.centre, at), gap_table(gap, grid.face, at)),
+            Line(grid.volume, grid.conductance), Pace(dt, float(squeeze_number), SCHEMES[how]),
+            Gas(n, float(knudsen_number), law), NEWTON,
+            Track(load[now], field, keep[now]),
         )  # fmt: skip
         closure += abs(_gas_balanced(grid.volume, m, before, how) - held + lost)
         worst = max(worst, change) if np.isfinite(change) else float("nan")

@@ -13,11 +13,11 @@ import numpy as np
 from squeezefilm.errors import ConvergenceError
 from squeezefilm.film.compiled import announce
 from squeezefilm.film.line_grid import Gap, Shape, gap_table, line_grid, mean_over
+from squeezefilm.film.records import Gas
 from squeezefilm.film.slip import slip_law
-from squeezefilm.film.transient.kernel import march
+from squeezefilm.film.transient.kernel import Gaps, Line, Pace, Track, march
 from squeezefilm.film.transient.march import (
-    NEWTON_LIMIT,
-    NEWTON_TOLERANCE,
+    NEWTON,
     SCHEMES,
     Scheme,
     check_film,
@@ -134,13 +134,14 @@ def settle_to_periodic(
     require("settled", settled, at_least=1e-14)
     if tolerance is not None:
         require("tolerance", tolerance, at_least=1e-9)
+    asked = _Asked(
+        gap, squeeze_number, shape, polytropic_exponent, knudsen_number, slip, scheme, accelerate,
+        settled, max_periods,
+    )  # fmt: skip
     history: list[FilmSettled] = []
     guess: tuple[FloatArray, FloatArray] | None = None
     while True:
-        result, guess = _settle(
-            gap, squeeze_number, shape, cells, steps, polytropic_exponent, knudsen_number,
-            slip, scheme, accelerate, settled, max_periods, guess,
-        )  # fmt: skip
+        result, guess = _settle(asked, cells, steps, guess)
         if result.residual > settled:
             raise ConvergenceError(
                 f"the film {result.status}; allow more periods (now {max_periods})",
@@ -182,29 +183,36 @@ def _extrapolated(history: list[FilmSettled]) -> FilmSettled:
     return replace(history[-1], mean_load=W, over_pressure=W - 1.0, over_pressure_error=error)
 
 
+@dataclass(frozen=True)
+class _Asked:
+    """What is to settle, and how."""
+
+    gap: Gap
+    squeeze_number: float
+    shape: Shape
+    polytropic_exponent: float
+    knudsen_number: float
+    slip: str
+    scheme: Scheme
+    accelerate: bool
+    settled: float
+    max_periods: int
+
+
 def _settle(
-    gap: Gap,
-    sigma: float,
-    shape: Shape,
-    cells: int,
-    steps: int,
-    n: float,
-    knudsen: float,
-    slip: str,
-    scheme: Scheme,
-    accelerate: bool,
-    settled: float,
-    max_periods: int,
-    guess: tuple[FloatArray, FloatArray] | None,
+    asked: _Asked, cells: int, steps: int, guess: tuple[FloatArray, FloatArray] | None
 ) -> tuple[FilmSettled, tuple[FloatArray, FloatArray]]:
+    gap, sigma, shape, scheme = asked.gap, asked.squeeze_number, asked.shape, asked.scheme
+    n, knudsen = asked.polytropic_exponent, asked.knudsen_number
     grid = line_grid(shape, cells, sigma, mean_over(gap, np.pi / 4 * np.arange(8.0)))
     stages = stage_times(scheme)
     dt = 2 * np.pi / steps
     at = ((np.arange(steps)[:, None] + stages) * dt).ravel()
-    H, H_face = gap_table(gap, grid.centre, at), gap_table(gap, grid.face, at)
-    code = slip_law(slip, knudsen)
+    gaps = Gaps(gap_table(gap, grid.centre, at), gap_table(gap, grid.face, at))
+    gas = Gas(float(n), float(knudsen), slip_law(asked.slip, knudsen))
     if guess is None:
         # Gas that cannot follow: m is constant in time, and ⟨H³ P^{1/n} ∂P⟩ = 0 gives its value.
+        H = gaps.cell
         mean = (np.mean(H**3, axis=0) / np.mean(H ** (2 - n), axis=0)) ** (1 / (n + 1))
         still = H[-1]
         part = min(1.0, sigma / 30.0)
@@ -215,17 +223,16 @@ def _settle(
         x = np.stack([np.interp(grid.centre, guess[0], row) for row in guess[1]])
     if scheme != "bdf2":
         x = x[:1]
-    load = np.empty(steps)
-    field = np.empty((steps, cells))
-    keep = np.arange(steps)
+    track = Track(np.empty(steps), np.empty((steps, cells)), np.arange(steps))
     mixer = _Mixer()
     change, lost, iterations, periods = np.inf, 0.0, 0, 0
-    while periods < max_periods:
+    while periods < asked.max_periods:
         periods += 1
         m, before = x[0].copy(), x[-1].copy()
         lost, _, made, done = march(
-            m, before, H, H_face, grid.volume, grid.conductance, dt, float(sigma), SCHEMES[scheme],
-            float(n), float(knudsen), code, NEWTON_TOLERANCE, NEWTON_LIMIT, load, field, keep,
+            m, before, gaps, Line(grid.volume, grid.conductance),
+            Pace(dt, float(sigma), SCHEMES[scheme]), gas, NEWTON,
+            track,
         )  # fmt: skip
         iterations += made
         if done < steps:
@@ -233,20 +240,20 @@ def _settle(
             break
         image = np.stack([m, before])[: x.shape[0]]
         change = float(np.max(np.abs(image / x - 1.0)))
-        if change <= settled:
+        if change <= asked.settled:
             x = image
             break
-        x = mixer.next(x, image) if accelerate else image
-    W = float(load.mean())
-    good = change <= settled
+        x = mixer.next(x, image) if asked.accelerate else image
+    W = float(track.load.mean())
+    good = change <= asked.settled
     result = FilmSettled(
         mean_load=W,
         over_pressure=W - 1.0,
         over_pressure_error=float("inf"),
         time=dt * np.arange(1.0, steps + 1),
-        load=load,
+        load=track.load,
         position=grid.centre,
-        pressure=field.mean(axis=0),
+        pressure=track.field.mean(axis=0),
         residual=change,
         mass_residual=abs(lost) / float(grid.volume @ x[0]),
         periods=periods,
@@ -261,7 +268,7 @@ def _settle(
         squeeze_number=sigma,
         polytropic_exponent=n,
         knudsen_number=knudsen,
-        slip=slip,
+        slip=asked.slip,
         shape=shape,
         scheme=scheme,
     )

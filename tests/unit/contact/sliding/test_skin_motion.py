@@ -9,6 +9,8 @@ import pytest
 from scipy.linalg import expm
 
 from squeezefilm.contact.sliding.skin_motion import (
+    Forces,
+    Skin,
     end_of_slip,
     first_rise,
     slide_along,
@@ -20,6 +22,7 @@ MASS, STIFFNESS = 2e-4, 900.0
 W = math.sqrt(STIFFNESS / MASS)
 CRITICAL = 2 * math.sqrt(MASS * STIFFNESS)
 NONE = np.zeros(3)
+FREE = Skin(MASS, 0.0, STIFFNESS)
 
 
 @pytest.mark.parametrize("ratio", [0.0, 0.05, 0.7, 1 - 1e-7, 1.0, 1 + 1e-7, 1.3, 30.0])
@@ -28,7 +31,7 @@ def test_the_free_skin_moves_as_its_matrix_says(ratio: float, phase: float) -> N
     damping = ratio * CRITICAL
     matrix = np.array([[0.0, 1.0], [-STIFFNESS / MASS, -damping / MASS]])
     exact = expm(matrix * phase / W)
-    found = np.array(transition(phase / W, damping, STIFFNESS, MASS)).reshape(2, 2)
+    found = np.array(transition(phase / W, Skin(MASS, damping, STIFFNESS))).reshape(2, 2)
     # In units in which places and speeds are alike.
     scale = np.array([[1.0, W], [1 / W, 1.0]])
     assert found * scale == pytest.approx(exact * scale, rel=1e-11, abs=1e-13)
@@ -42,7 +45,7 @@ def test_near_critical_damping_the_series_meets_the_functions(sign: int) -> None
         fade = math.exp(-decay)
         r = math.sqrt(z)
         even, odd = (math.cosh(r), math.sinh(r) / r) if sign > 0 else (math.cos(r), math.sin(r) / r)
-        found = transition(1.0, 2 * decay, 1.0, 1.0)
+        found = transition(1.0, Skin(1.0, 2 * decay, 1.0))
         expected = (even + decay * odd, odd, -odd, even - decay * odd)
         assert found == pytest.approx([fade * e for e in expected], rel=1e-12, abs=1e-12)
 
@@ -83,7 +86,7 @@ def test_like_numbers_are_not_subtracted() -> None:
 
 def test_sliding_obeys_newton_against_a_rising_friction() -> None:
     pull, force, slope, damping = np.array([0.7, 300.0, -2e4]), 0.4, 150.0, 0.3
-    law = (pull, force, slope, MASS, damping, STIFFNESS)
+    law = (Forces(pull, force, slope), Skin(MASS, damping, STIFFNESS))
     x0, v0 = 2e-4, 0.05
     start = slide_along(0.0, x0, v0, *law)
     assert start[:2] == pytest.approx((x0, v0))
@@ -95,15 +98,15 @@ def test_sliding_obeys_newton_against_a_rising_friction() -> None:
         before, after = (slide_along(s + d, x0, v0, *law) for d in (-h, h))
         assert (after[0] - before[0]) / (2 * h) == pytest.approx(v, rel=1e-5, abs=1e-6)
         assert (after[1] - before[1]) / (2 * h) == pytest.approx(a, rel=1e-5, abs=1e-3)
-        passed = transition(s, damping, STIFFNESS, MASS)
+        passed = transition(s, law[1])
         assert slide_by(passed, s, x0, v0, *law) == (x, v, a)
 
 
 def stop(
     span: float, x: float, v: float, sign: float, pull: np.ndarray, force: float, slope: float = 0.0
 ) -> float:
-    passed = transition(span, 0.0, STIFFNESS, MASS)
-    return float(end_of_slip(passed, span, x, v, sign, pull, force, slope, MASS, 0.0, STIFFNESS))
+    passed = transition(span, FREE)
+    return float(end_of_slip(passed, span, x, v, sign, Forces(pull, force, slope), FREE))
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
@@ -151,8 +154,8 @@ def test_a_slip_from_rest_ends_half_a_swing_later(sign: float) -> None:
 
 def test_friction_that_rises_in_time_stops_the_skin_sooner() -> None:
     # With a spring too soft to count: m v = m v0 − F s − slope s²/2.
-    soft, force, slope, v0 = 1e-9, 0.2, 400.0, 0.3
+    soft, force, slope, v0 = Skin(MASS, 0.0, 1e-9), 0.2, 400.0, 0.3
     expected = (math.sqrt(force**2 + 2 * slope * MASS * v0) - force) / slope
-    passed = transition(1e-3, 0.0, soft, MASS)
-    found = end_of_slip(passed, 1e-3, 0.0, v0, 1.0, NONE, force, slope, MASS, 0.0, soft)
+    passed = transition(1e-3, soft)
+    found = end_of_slip(passed, 1e-3, 0.0, v0, 1.0, Forces(NONE, force, slope), soft)
     assert found == pytest.approx(expected, rel=1e-4)

@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import pytest
 
 from squeezefilm.film.mobility import mobility
-from squeezefilm.film.planar.kernel import assemble, row_block, take_off
+from squeezefilm.film.planar.kernel import (
+    Balances,
+    Faces,
+    Gaps,
+    Storage,
+    assemble,
+    row_block,
+    take_off,
+)
+from squeezefilm.film.records import Gas
 
 RNG = np.random.default_rng(5)
 ROWS, COLUMNS, M = 3, 2, 3
@@ -27,16 +34,14 @@ H, H_ROW, H_COLUMN, H_EDGE = some(NODES, M), some(NODES - COLUMNS, M), some(6, M
 ROW_G, COLUMN_G, EDGE_G, WEIGHT = some(NODES - COLUMNS), some(6), some(3), some(NODES)
 D = RNG.normal(size=(M, M))
 GAS = some(NODES, M)
+FACES, STORAGE = Faces(COLUMNS, ROW_G, FROM, TO, COLUMN_G, EDGES, EDGE_G), Storage(WEIGHT, D)
 LAWS = [(1.0, 0.0, 0), (1.4, 0.0, 0), (1.2, 0.1, 2)]
 
 
-def assembled(m: np.ndarray, law: tuple[float, float, int]) -> tuple[np.ndarray, ...]:
-    out: list[Any] = [np.full((size, M), np.nan) for size in (NODES, NODES, 4, 4, 6, 6)]
-    assemble(
-        m, H, H_ROW, H_COLUMN, H_EDGE, COLUMNS, ROW_G, FROM, TO, COLUMN_G, EDGES, EDGE_G,
-        WEIGHT, D, *law, *out,
-    )  # fmt: skip
-    return tuple(out)
+def assembled(m: np.ndarray, law: tuple[float, float, int]) -> Balances:
+    out = Balances(*(np.full((size, M), np.nan) for size in (NODES, NODES, 4, 4, 6, 6)))
+    assemble(m, Gaps(H, H_ROW, H_COLUMN, H_EDGE), FACES, STORAGE, Gas(*law), out)
+    return out
 
 
 def balance(m: np.ndarray, law: tuple[float, float, int]) -> np.ndarray:
@@ -64,23 +69,20 @@ def test_the_residual_is_what_flows_in_less_what_is_stored(law: tuple[float, flo
 
 @pytest.mark.parametrize("law", LAWS)
 def test_the_jacobian_is_the_derivative_of_the_residual(law: tuple[float, float, int]) -> None:
-    _, diagonal, row_up, row_down, column_up, column_down = assembled(GAS, law)
+    slopes = assembled(GAS, law)
     size, block_size = NODES * M, COLUMNS * M
     found = np.zeros((size, size))
     for row in range(ROWS):
         block = np.full((block_size, block_size), np.nan)
         faces = np.flatnonzero(np.isin(FROM // COLUMNS, row))
-        row_block(
-            row * COLUMNS, COLUMNS, diagonal, WEIGHT, D, faces, FROM, TO, column_up, column_down,
-            block,
-        )  # fmt: skip
+        row_block(row * COLUMNS, faces, FACES, STORAGE, slopes, block)
         at = slice(row * block_size, (row + 1) * block_size)
         found[at, at] = block
     for face in range(NODES - COLUMNS):
         for k in range(M):
             lower, upper = face * M + k, (face + COLUMNS) * M + k
-            found[lower, upper] = row_up[face, k]
-            found[upper, lower] = row_down[face, k]
+            found[lower, upper] = slopes.row_up[face, k]
+            found[upper, lower] = slopes.row_down[face, k]
     step = 1e-6
     for column in range(size):
         shift = np.zeros(size)

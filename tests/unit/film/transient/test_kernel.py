@@ -8,13 +8,25 @@ import numpy as np
 import pytest
 
 from squeezefilm.film.mobility import mobility
-from squeezefilm.film.transient.kernel import BACKWARD_EULER, BDF2, SDIRK2, implicit_stage, march
+from squeezefilm.film.records import Aim, Gas
+from squeezefilm.film.transient.kernel import (
+    BACKWARD_EULER,
+    BDF2,
+    SDIRK2,
+    Gaps,
+    Line,
+    Pace,
+    Track,
+    implicit_stage,
+    march,
+)
 
 RNG = np.random.default_rng(3)
 N = 5
 H, H_FACE = 1 + 0.3 * RNG.random(N), 1 + 0.3 * RNG.random(N + 1)
 VOLUME = 0.5 + RNG.random(N)
 HELD = 1 + 0.5 * RNG.random(N)
+ISOTHERMAL = Gas(1.0, 0.0, 0)
 
 
 def inflows(m: np.ndarray, conductance: np.ndarray, n: float, kn: float, law: int) -> np.ndarray:
@@ -36,8 +48,9 @@ def test_a_stage_balances_what_is_held_and_what_flows(
     conductance[list(walls)] = 0.0
     m, outflow = H.copy(), np.full(2, np.nan)
     change, count = implicit_stage(
-        m, HELD, H, H_FACE, VOLUME, conductance, 0.4, n, kn, law, 1e-12, 20, outflow
-    )
+        m, HELD, Gaps(H, H_FACE), Line(VOLUME, conductance), 0.4, Gas(n, kn, law), Aim(1e-12, 20),
+        outflow,
+    )  # fmt: skip
     flow = 0.4 * inflows(m, conductance, n, kn, law)
     assert VOLUME * (m - HELD) == pytest.approx(np.diff(flow), abs=1e-11)
     assert outflow == pytest.approx([flow[0], -flow[-1]], abs=1e-11)
@@ -55,8 +68,9 @@ def test_a_stage_that_stops_early_says_how_far_it_was() -> None:
 
     def once(limit: int, tolerance: float = 1e-12) -> tuple[float, int]:
         return implicit_stage(
-            m, HELD, H, H_FACE, VOLUME, conductance, 0.4, 1.0, 0.0, 0, tolerance, limit, outflow
-        )
+            m, HELD, Gaps(H, H_FACE), Line(VOLUME, conductance), 0.4, ISOTHERMAL,
+            Aim(tolerance, limit), outflow,
+        )  # fmt: skip
 
     before = m.copy()
     change, count = once(1)
@@ -73,8 +87,9 @@ def test_a_step_never_empties_a_cell() -> None:
     m, outflow = np.full(1, 100.0), np.zeros(2)
     one = np.ones(1)
     change, _ = implicit_stage(
-        m, 0.01 * one, one, np.ones(2), one, np.zeros(2), 1.0, 1.0, 0.0, 0, 1e-12, 1, outflow
-    )
+        m, 0.01 * one, Gaps(one, np.ones(2)), Line(one, np.zeros(2)), 1.0, ISOTHERMAL,
+        Aim(1e-12, 1), outflow,
+    )  # fmt: skip
     # Newton alone would go to 0.01 at once; four fifths are taken.
     assert change == pytest.approx(0.9999)
     assert m == pytest.approx([20.0])
@@ -102,8 +117,9 @@ def marched(
     load, field = np.zeros(steps), np.full((2, 1), np.nan)
     rows = np.full(steps, -1) if keep is None else np.array(keep)
     lost, worst, made, done = march(
-        m, old, heights, np.repeat(heights, 2, axis=1), np.full(1, 0.5), np.array(conductance),
-        dt, 2.0, scheme, n, 0.0, 0, 1e-13, limit, load, field, rows,
+        m, old, Gaps(heights, np.repeat(heights, 2, axis=1)),
+        Line(np.full(1, 0.5), np.array(conductance)), Pace(dt, 2.0, scheme), Gas(n, 0.0, 0),
+        Aim(1e-13, limit), Track(load, field, rows),
     )  # fmt: skip
     return {
         "m": m[0], "before": old[0], "lost": lost, "worst": worst, "made": made, "done": done,
@@ -163,8 +179,9 @@ def test_the_load_is_the_mean_by_volume() -> None:
     load, field = np.zeros(1), np.zeros((1, 2))
     m = np.array([1.0, 3.0])
     march(
-        m, m.copy(), np.ones((1, 2)), np.ones((1, 3)), np.array([0.3, 0.1]), np.zeros(3), 0.1, 1.0,
-        BACKWARD_EULER, 1.0, 0.0, 0, 1e-12, 9, load, field, np.zeros(1, int),
+        m, m.copy(), Gaps(np.ones((1, 2)), np.ones((1, 3))),
+        Line(np.array([0.3, 0.1]), np.zeros(3)), Pace(0.1, 1.0, BACKWARD_EULER), ISOTHERMAL,
+        Aim(1e-12, 9), Track(load, field, np.zeros(1, int)),
     )  # fmt: skip
     assert load == pytest.approx([1.5])
     assert field == pytest.approx(np.array([[1.0, 3.0]]))
@@ -183,11 +200,13 @@ def test_a_step_that_fails_ends_the_march_there(scheme: int) -> None:
 def test_what_is_no_number_does_not_count_as_converged() -> None:
     one, m = np.ones(3), np.array([1.0, np.nan, 1.0])
     change, _ = implicit_stage(
-        m.copy(), one, one, np.ones(4), one, np.ones(4), 0.4, 1.0, 0.0, 0, 1e-12, 20, np.zeros(2)
-    )
+        m.copy(), one, Gaps(one, np.ones(4)), Line(one, np.ones(4)), 0.4, ISOTHERMAL,
+        Aim(1e-12, 20), np.zeros(2),
+    )  # fmt: skip
     assert not change <= 1e-6
     *_, done = march(
-        m.copy(), m.copy(), np.ones((2, 3)), np.ones((2, 4)), one, np.ones(4), 0.1, 1.0, 1, 1.0,
-        0.0, 0, 1e-12, 20, np.zeros(2), np.zeros((1, 3)), np.full(2, -1),
+        m.copy(), m.copy(), Gaps(np.ones((2, 3)), np.ones((2, 4))), Line(one, np.ones(4)),
+        Pace(0.1, 1.0, BACKWARD_EULER), ISOTHERMAL, Aim(1e-12, 20),
+        Track(np.zeros(2), np.zeros((1, 3)), np.full(2, -1)),
     )  # fmt: skip
     assert done == 0
