@@ -197,7 +197,7 @@ def test_period_means_agree_with_quadrature_and_with_the_compiled_code(heights: 
             0, math.pi, epsabs=1e-13 * mean, limit=200,
         )  # fmt: skip
         assert float(law.mean_pressure(u, a)) == pytest.approx(mean, rel=1e-9)
-        assert asperity_mean(*law.compiled(), u, a) == pytest.approx((mean, first), rel=1e-8)
+        assert asperity_mean(law.compiled(), u, a) == pytest.approx((mean, first), rel=1e-8)
 
 
 def test_gaussian_heights_share_the_load_like_their_tangent_exponential(table: FilmTable) -> None:
@@ -236,9 +236,9 @@ def test_no_energy_is_created(table: FilmTable, damping: float, stiffness: float
     u, swing, moved = (
         float(getattr(shared, name)) for name in ("mean_gap", "gap_amplitude", "skin_amplitude")
     )
-    k, d = (film_value(which, u, swing, *table.compiled)[0] for which in (1, 2))
+    k, d = (film_value(which, u, swing, table.compiled)[0] for which in (1, 2))
     assert d > 0
-    Z = complex(k + asperity_mean(*LAW.compiled(), u, swing)[1] / swing, d)
+    Z = complex(k + asperity_mean(LAW.compiled(), u, swing)[1] / swing, d)
     D = skin.dynamic_stiffness(table.frequency)
     b = a / (1 + Z / D)
     assert abs(b) == pytest.approx(swing, rel=1e-9)

@@ -19,6 +19,7 @@ from typing import Literal, get_args
 
 import numpy as np
 
+from squeezefilm.contact.records import CompiledAsperities
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import DECAY_LENGTH, PRESSURE, require_fields
 from squeezefilm.quantities import (
@@ -202,14 +203,14 @@ class AsperityLaw:
             self.heights,
         )
 
-    def compiled(self) -> tuple[int, FloatArray, FloatArray]:
-        """The law as the compiled code takes it: its number, its constants, its table."""
+    def compiled(self) -> CompiledAsperities:
+        """The law as the compiled code takes it."""
         constants = [self.reference_pressure, self.reference_gap, self.decay_length, 0.0, 0.0, 0.0]
         if self.heights == "exponential":
-            return EXPONENTIAL, np.array(constants), np.zeros(1)
+            return CompiledAsperities(EXPONENTIAL, np.array(constants), np.zeros(1))
         constants[3:] = [
             _LOWEST,
             _HIGHEST,
             math.log(float(gaussian_overlap(self.reference_gap / self.decay_length))),
         ]
-        return GAUSSIAN, np.array(constants), _gaussian_coefficients()
+        return CompiledAsperities(GAUSSIAN, np.array(constants), _gaussian_coefficients())

@@ -97,7 +97,7 @@ def share_load(
     solve: Any = kernel.balance_rows
     law, impedance = asperities.compiled(), _impedance(skin, table)
     while True:
-        lacking = solve(a, p, impedance, *law, *table.compiled, rows)
+        lacking = solve(a, p, impedance, law, table.compiled, rows)
         if lacking < 0:
             break
         table.build(lacking)
@@ -177,7 +177,7 @@ def share_load_tied(
     solve: Any = kernel.balance
     law, impedance = asperities.compiled(), _impedance(skin, table)
     while True:
-        solve(a, shift, plateau_pressure, impedance, *law, *table.compiled, row)
+        solve(a, shift, plateau_pressure, impedance, law, table.compiled, row)
         if int(row[kernel.STATUS]) != kernel.NEEDS_PANEL:
             break
         table.build(int(row[kernel.PANEL]))

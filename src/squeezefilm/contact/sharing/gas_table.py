@@ -15,6 +15,7 @@ from functools import lru_cache
 
 import numpy as np
 
+from squeezefilm.contact.records import CompiledFilms
 from squeezefilm.errors import ConvergenceError
 from squeezefilm.film.periodic.batch import solve_strips
 from squeezefilm.film.slip import slip_law
@@ -23,7 +24,6 @@ from squeezefilm.quantities import (
     Dimensionless,
     FloatArray,
     Hertz,
-    IntArray,
     Metre,
     MetreLike,
     PascalLike,
@@ -92,9 +92,9 @@ class FilmTable:
         self.error = None
 
     @property
-    def compiled(self) -> tuple[FloatArray, FloatArray, IntArray, FloatArray]:
-        """Scales, edges of the rows, which panels are solved, and their coefficients."""
-        return self._scale, self._edges, self._built, self._panels
+    def compiled(self) -> CompiledFilms:
+        """The table as the compiled code takes it."""
+        return CompiledFilms(self._scale, self._edges, self._built, self._panels)
 
     @property
     def relative_error(self) -> Dimensionless:
@@ -117,10 +117,10 @@ class FilmTable:
         require("mean_gap", u, Unit("m"), at_least=float(lowest), below=float(highest))
         out = np.empty(u.size)
         for k, (gap, swing) in enumerate(zip(u.ravel().tolist(), a.ravel().tolist(), strict=True)):
-            value, lack = film_value(0, gap, swing, *self.compiled)
+            value, lack = film_value(0, gap, swing, self.compiled)
             while lack >= 0:
                 self.build(lack)
-                value, lack = film_value(0, gap, swing, *self.compiled)
+                value, lack = film_value(0, gap, swing, self.compiled)
             out[k] = value
         return out.reshape(u.shape)[()]
 

@@ -11,7 +11,8 @@ import math
 import numpy as np
 from numba import njit
 
-from squeezefilm.quantities import FloatArray, IntArray
+from squeezefilm.contact.records import CompiledAsperities, CompiledFilms
+from squeezefilm.quantities import FloatArray
 
 BALANCED, NEEDS_PANEL, PRESSED_THROUGH, OUT_OF_TABLE, UNSETTLED = range(5)
 """What became of a balance."""
@@ -63,10 +64,9 @@ def _gaussian(h: float, law: FloatArray, table: FloatArray) -> float:
 
 
 @njit(nogil=True, cache=True, error_model="numpy")
-def asperity_mean(
-    kind: int, law: FloatArray, table: FloatArray, u: float, a: float
-) -> tuple[float, float]:
+def asperity_mean(asperities: CompiledAsperities, u: float, a: float) -> tuple[float, float]:
     """⟨p_a(u − a cos T)⟩ and its first harmonic 2⟨p_a cos T⟩, in Pa."""
+    kind, law, table = asperities
     if kind == 0:
         least = law[0] * math.exp(min(-(u - a - law[1]) / law[2], 700.0))
         z = a / law[2]
@@ -102,15 +102,13 @@ def _panel_value(c: FloatArray, xi: float, eta: float) -> float:
 
 
 @njit(nogil=True, cache=True, error_model="numpy")
-def film_value(
-    which: int, u: float, a: float, scale: FloatArray, edges: FloatArray, built: IntArray,
-    panels: FloatArray,
-) -> tuple[float, int]:  # fmt: skip
+def film_value(which: int, u: float, a: float, films: CompiledFilms) -> tuple[float, int]:
     """A tabulated film quantity at mean gap u and amplitude a, and the panel that lacks (or −1).
 
     0: the over-pressure in Pa; 1, 2: stiffness and damping in Pa/m of gap amplitude. −2 for a
     point outside the table.
     """
+    scale, edges, built, panels = films
     if a <= 0.0 and which == 0:
         return 0.0, -1
     eps = a / u
@@ -134,9 +132,8 @@ def film_value(
 
 @njit(nogil=True, cache=True, error_model="numpy")
 def _swing(
-    a: float, u: float, impedance: FloatArray, kind: int, law: FloatArray, table: FloatArray,
-    scale: FloatArray, edges: FloatArray, built: IntArray, panels: FloatArray,
-) -> tuple[float, float, int]:  # fmt: skip
+    a: float, u: float, impedance: FloatArray, asperities: CompiledAsperities, films: CompiledFilms
+) -> tuple[float, float, int]:
     """Amplitudes of gap and skin (m) where the skin yields to the alternating pressure.
 
     b = a/(1 + Z/D): D the skin's dynamic stiffness, Z = [film + 2⟨p_a cos T⟩/b] that of the gap.
@@ -144,19 +141,19 @@ def _swing(
     if a <= 0.0:
         return 0.0, 0.0, -1
     D = complex(impedance[0], impedance[1])
-    deepest = u * math.sqrt(-math.expm1(-edges[-1])) * (1.0 - 1e-9)
+    deepest = u * math.sqrt(-math.expm1(-films.edges[-1])) * (1.0 - 1e-9)
     low, f_low, high, f_high = 0.0, -a, math.nan, math.nan
     # A light skin resonates on the film, and the gap may have several swings: the least is taken,
     # which is the one met as the plate's amplitude rises.
     b, moved, side = min(0.6 * a, 0.3 * deepest), 0.0, 0
     for _ in range(_MOST_STEPS):
-        k, lack = film_value(1, u, b, scale, edges, built, panels)
+        k, lack = film_value(1, u, b, films)
         if lack != -1:
             return b, moved, lack
-        d, lack = film_value(2, u, b, scale, edges, built, panels)
+        d, lack = film_value(2, u, b, films)
         if lack != -1:
             return b, moved, lack
-        Z = complex(k + asperity_mean(kind, law, table, u, b)[1] / b, d)
+        Z = complex(k + asperity_mean(asperities, u, b)[1] / b, d)
         moved = b * abs(Z / D)
         miss = b * abs(1.0 + Z / D) - a
         if abs(miss) <= 1e-13 * a:
@@ -187,35 +184,31 @@ def _swing(
 
 @njit(nogil=True, cache=True, error_model="numpy")
 def _carried(
-    u: float, amplitudes: FloatArray, offsets: FloatArray, impedance: FloatArray, kind: int,
-    law: FloatArray, table: FloatArray, scale: FloatArray, edges: FloatArray, built: IntArray,
-    panels: FloatArray,
+    u: float, amplitudes: FloatArray, offsets: FloatArray, impedance: FloatArray,
+    asperities: CompiledAsperities, films: CompiledFilms,
 ) -> tuple[float, float, float, float, int]:  # fmt: skip
     """Mean gas and asperity pressure (Pa) of ridges at gaps u + offsets; swing and skin amplitude
     of the last; the panel lacking."""
-    gas, asperities, b, moved = 0.0, 0.0, 0.0, 0.0
+    gas, solid, b, moved = 0.0, 0.0, 0.0, 0.0
     for i in range(len(amplitudes)):
         gap, b = u + offsets[i], amplitudes[i]
         if impedance[2] > 0.0:
-            b, moved, lack = _swing(
-                b, gap, impedance, kind, law, table, scale, edges, built, panels
-            )
+            b, moved, lack = _swing(b, gap, impedance, asperities, films)
             if lack != -1:
                 return 0.0, 0.0, b, moved, lack
-        over, lack = film_value(0, gap, b, scale, edges, built, panels)
+        over, lack = film_value(0, gap, b, films)
         if lack != -1:
             return 0.0, 0.0, b, moved, lack
         gas += over
-        asperities += asperity_mean(kind, law, table, gap, b)[0]
+        solid += asperity_mean(asperities, gap, b)[0]
     count = len(amplitudes)
-    return gas / count, asperities / count, b, moved, -1
+    return gas / count, solid / count, b, moved, -1
 
 
 @njit(nogil=True, cache=True, error_model="numpy")
 def balance(
     amplitudes: FloatArray, offsets: FloatArray, pressure: float, impedance: FloatArray,
-    kind: int, law: FloatArray, table: FloatArray, scale: FloatArray, edges: FloatArray,
-    built: IntArray, panels: FloatArray, out: FloatArray,
+    asperities: CompiledAsperities, films: CompiledFilms, out: FloatArray,
 ) -> None:  # fmt: skip
     """The mean gap u at which ridges tied together carry a mean pressure (Pa), into `out`.
 
@@ -224,7 +217,8 @@ def balance(
     """
     out[:] = 0.0
     out[PANEL] = -1.0
-    deepest = math.sqrt(-math.expm1(-edges[-1]))
+    law = asperities.constants
+    deepest = math.sqrt(-math.expm1(-films.edges[-1]))
     low = 1e-9
     for i in range(len(amplitudes)):
         # A yielding skin can swing further than the plate.
@@ -235,11 +229,9 @@ def balance(
     alone = law[1] + swing - step * math.log(pressure / (law[0] * bessel(0, swing / step)))
     guess = max(low + 0.5 * step, alone)
     u, at, spent = guess, math.nan, 0
-    gas, asperities, b, moved, lack = _carried(
-        u, amplitudes, offsets, impedance, kind, law, table, scale, edges, built, panels
-    )
+    gas, solid, b, moved, lack = _carried(u, amplitudes, offsets, impedance, asperities, films)
     if lack == -1:
-        at = math.log((gas + asperities) / pressure)
+        at = math.log((gas + solid) / pressure)
     left, right, f_left, f_right = math.nan, math.nan, math.nan, math.nan
     if at >= 0.0:
         left, f_left = u, at
@@ -257,12 +249,10 @@ def balance(
             u = max(right - step, 0.5 * (low + right)) if right - step <= low else right - step
             if u - low < 1e-6 * low:
                 u = low
-        gas, asperities, b, moved, lack = _carried(
-            u, amplitudes, offsets, impedance, kind, law, table, scale, edges, built, panels
-        )
+        gas, solid, b, moved, lack = _carried(u, amplitudes, offsets, impedance, asperities, films)
         if lack != -1:
             break
-        at = math.log((gas + asperities) / pressure)
+        at = math.log((gas + solid) / pressure)
         if at >= 0.0:
             left, f_left = u, at
         else:
@@ -274,12 +264,10 @@ def balance(
         u = (left * f_right - right * f_left) / (f_right - f_left)
         if not left < u < right or right - left < 1e-15 * u:
             u = 0.5 * (left + right)
-        gas, asperities, b, moved, lack = _carried(
-            u, amplitudes, offsets, impedance, kind, law, table, scale, edges, built, panels
-        )
+        gas, solid, b, moved, lack = _carried(u, amplitudes, offsets, impedance, asperities, films)
         if lack != -1:
             break
-        at = math.log((gas + asperities) / pressure)
+        at = math.log((gas + solid) / pressure)
         if at >= 0.0:
             left, f_left = u, at
             if side == 1:
@@ -297,8 +285,8 @@ def balance(
     if lack == -2:
         out[STATUS] = OUT_OF_TABLE
         return
-    out[GAP], out[GAS], out[ASPERITIES], out[SWING], out[SKIN] = u, gas, asperities, b, moved
-    out[RESIDUAL] = (gas + asperities) / pressure - 1.0
+    out[GAP], out[GAS], out[ASPERITIES], out[SWING], out[SKIN] = u, gas, solid, b, moved
+    out[RESIDUAL] = (gas + solid) / pressure - 1.0
     # Where panels of the table meet, it may step by rounding: that much is allowed.
     settled = lack == -1 and abs(out[RESIDUAL]) < 1e-8
     if impedance[2] > 0.0 and b >= (u + offsets[-1]) * deepest * (1.0 - 1e-6):
@@ -308,9 +296,8 @@ def balance(
 
 @njit(nogil=True, cache=True, error_model="numpy")
 def balance_rows(
-    amplitude: FloatArray, pressure: FloatArray, impedance: FloatArray, kind: int,
-    law: FloatArray, table: FloatArray, scale: FloatArray, edges: FloatArray, built: IntArray,
-    panels: FloatArray, out: FloatArray,
+    amplitude: FloatArray, pressure: FloatArray, impedance: FloatArray,
+    asperities: CompiledAsperities, films: CompiledFilms, out: FloatArray,
 ) -> int:  # fmt: skip
     """Each plateau at its own balance; returns the first panel lacking, or −1.
 
@@ -321,10 +308,8 @@ def balance_rows(
     for i in range(len(amplitude)):
         if out[i, STEPS] > 0.0 and out[i, STATUS] != NEEDS_PANEL:
             continue
-        balance(
-            amplitude[i : i + 1], none, pressure[i], impedance, kind, law, table, scale, edges,
-            built, panels, out[i],
-        )  # fmt: skip
+        one = amplitude[i : i + 1]
+        balance(one, none, pressure[i], impedance, asperities, films, out[i])
         if out[i, STATUS] == NEEDS_PANEL and lacking < 0:
             lacking = int(out[i, PANEL])
     return lacking
