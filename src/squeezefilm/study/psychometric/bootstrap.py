@@ -50,21 +50,15 @@ class PenalisedLikelihood:
     k: FloatArray
     n: FloatArray
 
+    def model(self, free: BoolArray | None = None) -> kernel.Model:
+        """What is fitted, as the kernel takes it; with other parameters free, where given."""
+        some = self.free if free is None else free
+        return kernel.Model(self.code, some, self.low, self.high, self.beta)
+
     def maximum(self, start: FloatArray, free: BoolArray | None = None) -> tuple[FloatArray, float]:
         """θ of the largest ln density near a start, and that ln density."""
         theta = start.copy()
-        value = kernel.maximise(
-            self.code,
-            theta,
-            self.free if free is None else free,
-            self.low,
-            self.high,
-            self.beta,
-            self.x,
-            self.k,
-            self.n,
-        )
-        return theta, value
+        return theta, kernel.maximise(self.model(free), theta, self.x, self.k, self.n)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -110,19 +104,8 @@ def simulate_bootstrap(
     shares = np.random.default_rng(seed).random((replicates, likelihood.x.size))
     answers = _answers(likelihood, best, shares)
     estimates, deviances = np.empty((replicates, 4)), np.empty(replicates)
-    kernel.refit(
-        likelihood.code,
-        best,
-        likelihood.free,
-        likelihood.low,
-        likelihood.high,
-        likelihood.beta,
-        likelihood.x,
-        likelihood.n,
-        answers,
-        estimates,
-        deviances,
-    )
+    model, places = likelihood.model(), (likelihood.x, likelihood.n)
+    kernel.refit(model, best, *places, answers, estimates, deviances)
     return Bootstrap(best, estimates, deviances, shares)
 
 
@@ -168,19 +151,9 @@ def _inverted_end(
         if abs(end - before) <= _CLOSE * abs(end - float(bootstrap.best[parameter])):
             break
         drops = np.empty(bootstrap.shares.shape[0])
-        kernel.profile_drops(
-            likelihood.code,
-            held,
-            parameter,
-            likelihood.free,
-            likelihood.low,
-            likelihood.high,
-            likelihood.beta,
-            likelihood.x,
-            likelihood.n,
-            _answers(likelihood, held, bootstrap.shares),
-            drops,
-        )
+        answers = _answers(likelihood, held, bootstrap.shares)
+        places = (likelihood.x, likelihood.n)
+        kernel.profile_drops(likelihood.model(), held, parameter, *places, answers, drops)
         rank = math.ceil(level * (drops.size + 1)) - 1
         allowed = float(np.sort(drops)[min(rank, drops.size - 1)])
     return end

@@ -9,6 +9,7 @@ threshold and of ln width are flat between their bounds.
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -33,6 +34,16 @@ _LN_LN_2 = math.log(math.log(2.0))
 _LEAST = 1e-12
 _MOST_STEPS = 200
 _SETTLED = 1e-8
+
+
+class Model(NamedTuple):
+    """A shape, which of the four parameters are fitted, their bounds, and the priors' `beta`."""
+
+    shape: int
+    free: BoolArray
+    low: FloatArray
+    high: FloatArray
+    beta: FloatArray
 
 
 @njit(nogil=True, cache=True, error_model="numpy")
@@ -161,22 +172,13 @@ def _solve(matrix: FloatArray, right: FloatArray, size: int) -> bool:
 
 
 @njit(nogil=True, cache=True, error_model="numpy")
-def maximise(
-    shape: int,
-    theta: FloatArray,
-    free: BoolArray,
-    low: FloatArray,
-    high: FloatArray,
-    beta: FloatArray,
-    x: FloatArray,
-    k: FloatArray,
-    n: FloatArray,
-) -> float:
+def maximise(model: Model, theta: FloatArray, x: FloatArray, k: FloatArray, n: FloatArray) -> float:
     """Raise ln density over the free parameters within their bounds; θ is changed in place.
 
     Fisher scoring, damped after Levenberg and Marquardt, with an active set of bounds. Returns
     the largest ln density. A local maximum near the start.
     """
+    shape, free, low, high, beta = model
     gradient, information = np.empty(4), np.empty((4, 4))
     matrix, step = np.empty((4, 4)), np.empty(4)
     chosen, trial = np.empty(4, dtype=np.int64), np.empty(4)
@@ -265,12 +267,8 @@ def binomial_quantiles(p: FloatArray, n: FloatArray, shares: FloatArray, out: Fl
 
 @njit(nogil=True, cache=True, error_model="numpy")
 def refit(
-    shape: int,
+    model: Model,
     best: FloatArray,
-    free: BoolArray,
-    low: FloatArray,
-    high: FloatArray,
-    beta: FloatArray,
     x: FloatArray,
     n: FloatArray,
     answers: FloatArray,
@@ -285,20 +283,16 @@ def refit(
     for row in range(answers.shape[0]):
         k = answers[row]
         theta = best.copy()
-        maximise(shape, theta, free, low, high, beta, x, k, n)
+        maximise(model, theta, x, k, n)
         estimates[row] = theta
-        deviances[row] = 2.0 * (saturated(k, n) - log_density(shape, theta, flat, x, k, n))
+        deviances[row] = 2.0 * (saturated(k, n) - log_density(model.shape, theta, flat, x, k, n))
 
 
 @njit(nogil=True, cache=True, error_model="numpy")
 def profile_drops(
-    shape: int,
+    model: Model,
     held: FloatArray,
     parameter: int,
-    free: BoolArray,
-    low: FloatArray,
-    high: FloatArray,
-    beta: FloatArray,
     x: FloatArray,
     n: FloatArray,
     answers: FloatArray,
@@ -308,14 +302,15 @@ def profile_drops(
 
     For every row of `answers` (replicates, places), simulated at `held`; fills `drops`.
     """
-    some = free.copy()
+    some = model.free.copy()
     some[parameter] = False
+    less = Model(model.shape, some, model.low, model.high, model.beta)
     for row in range(answers.shape[0]):
         k = answers[row]
         under = held.copy()
-        bottom = maximise(shape, under, some, low, high, beta, x, k, n)
+        bottom = maximise(less, under, x, k, n)
         # From the constrained maximum the free one can only climb.
-        top = maximise(shape, under, free, low, high, beta, x, k, n)
+        top = maximise(model, under, x, k, n)
         drops[row] = 2.0 * (top - bottom)
 
 
