@@ -14,7 +14,14 @@ from squeezefilm.plate.working_mode import resonance_factor
 from squeezefilm.render.motion.stroke import Stroke
 from squeezefilm.render.resonator.carrier import carrier_trace
 from squeezefilm.render.resonator.envelope import envelope_time_constant
-from squeezefilm.twin.envelope_step import envelope_step, voltage_given
+from squeezefilm.twin.envelope_step import (
+    Electrical,
+    Fingers,
+    Limits,
+    Resonance,
+    envelope_step,
+    voltage_given,
+)
 from squeezefilm.twin.hand import Hand
 from squeezefilm.twin.plant import Plant
 from squeezefilm.twin.plant_kernel import COLUMNS
@@ -133,7 +140,7 @@ def test_the_amplifier_keeps_to_its_current_and_slew_rate() -> None:
     plant.advance(20_000, 20_000_000, carrier())
     assert plant.voltage == pytest.approx(1e6 / (2 * math.pi * carrier() * 1e-3))
     assert plant.counts.at_slew == 400
-    given, limit = voltage_given(9.0, 0j, 1e5, 1e-8, 0.0, 0.0, 5.0, 1.0, 1e9)
+    given, limit = voltage_given(9.0, 0j, 1e5, Electrical(1e-8, 0.0, 0.0), Limits(5.0, 1.0, 1e9))
     assert (given, limit) == (5.0, 1)
 
 
@@ -204,9 +211,10 @@ def test_finger_film_and_plate_together_agree_with_scipy_to_second_order() -> No
 
 
 def test_the_envelope_step_is_exact_whatever_its_length_without_a_finger() -> None:
-    forces, load = np.array([0.1, 1.0]), np.zeros((2, 3), dtype=complex)
+    load = np.zeros((2, 3), dtype=complex)
+    fingers = Fingers(np.array([0.1, 1.0]), load.real, load, 1.0)
     z, many = 0.3 + 0.1j, 0.3 + 0.1j
-    arguments = (1.01, 60.0, 5e-4, 0.0, forces, 1.0, load)
+    arguments = (Resonance(1.01, 60.0, 5e-4), 0.0, fingers)
     for _ in range(1000):
         many = envelope_step(many, 0.7, 2e-6, *arguments)
     assert envelope_step(z, 0.7, 2e-3, *arguments) == pytest.approx(many, rel=1e-12)

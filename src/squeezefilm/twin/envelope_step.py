@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import cmath
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numba
 
@@ -25,10 +25,45 @@ WITHIN, RAIL, SLEW, CURRENT = range(4)
 _STILL = 1e-15  # m; below it the plate stands, and no number becomes subnormal
 
 
+class Fingers(NamedTuple):
+    """Relative friction and the load δ on the mode, shape (forces, points), under forces (N) and at
+    amplitudes (m) of highest·(j/(points − 1))²."""
+
+    forces: Array
+    friction: Array
+    load: Array
+    highest: float
+
+
+class Resonance(NamedTuple):
+    """The carrier over the resonance frequency, the quality factor, and the time constant (s)."""
+
+    ratio: float
+    quality: float
+    time_constant: float
+
+
+class Electrical(NamedTuple):
+    """Capacitance (F), its loss tangent, and the force factor (A·s/m)."""
+
+    capacitance: float
+    loss: float
+    force_factor: float
+
+
+class Limits(NamedTuple):
+    """The amplifier's largest voltage (V), current (A) and slew rate (V/s)."""
+
+    voltage: float
+    current: float
+    slew_rate: float
+
+
 @numba.njit(cache=True, nogil=True)
-def table_place(force: float, amplitude: float, forces: Array, highest: float, points: int) -> Any:
-    """Where a force (N) and an amplitude (m) stand in tables whose amplitudes are
-    highest·(j/(points − 1))²: indices and shares of both, and whether the amplitude is beyond."""
+def table_place(force: float, amplitude: float, fingers: Fingers) -> Any:
+    """Where a force (N) and an amplitude (m) stand in the tables: indices and shares of both, and
+    whether the amplitude is beyond."""
+    forces, highest, points = fingers.forces, fingers.highest, fingers.friction.shape[1]
     i = 0
     while i < forces.size - 2 and force > forces[i + 1]:
         i += 1
@@ -51,28 +86,26 @@ def between(table: Array, i: int, p: float, j: int, q: float) -> Any:
 
 
 @numba.njit(cache=True, nogil=True)
-def finger_on_mode(
-    force: float, amplitude: float, forces: Array, highest: float, load: Array
-) -> complex:
+def finger_on_mode(force: float, amplitude: float, fingers: Fingers) -> complex:
     """δ under a force (N) at an amplitude (m); in proportion to the force below the lightest."""
     if force <= 0.0:
         return 0j
-    i, p, j, q, _ = table_place(force, amplitude, forces, highest, load.shape[1])
-    return complex(between(load, i, p, j, q) * min(1.0, force / forces[0]))
+    i, p, j, q, _ = table_place(force, amplitude, fingers)
+    return complex(between(fingers.load, i, p, j, q) * min(1.0, force / fingers.forces[0]))
 
 
 @numba.njit(cache=True, nogil=True)
-def decay_rate(ratio: float, quality: float, tau: float, load: complex) -> complex:
-    """λ of ż = u/τ − λ z (1/s), at a carrier `ratio` times the resonance frequency."""
+def decay_rate(plate: Resonance, load: complex) -> complex:
+    """λ of ż = u/τ − λ z (1/s)."""
+    ratio, quality, tau = plate
     tuned = quality * (ratio * ratio - 1.0 - load.real)
     return complex(1.0 + quality * load.imag, tuned) / tau
 
 
 @numba.njit(cache=True, nogil=True)
 def envelope_step(
-    z: complex, held: float, h: float, ratio: float, quality: float, tau: float,
-    force: float, forces: Array, highest: float, load: Array,
-) -> complex:  # fmt: skip
+    z: complex, held: float, h: float, plate: Resonance, force: float, fingers: Fingers
+) -> complex:
     """The envelope (m) a time h (s) later; `held` (m) is the drive, u.
 
     Exact for a constant load. The finger's load follows the amplitude, and is taken at half the
@@ -80,36 +113,35 @@ def envelope_step(
     """
     if held == 0.0 and abs(z) < _STILL:
         return 0j
-    rate = decay_rate(ratio, quality, tau, finger_on_mode(force, abs(z), forces, highest, load))
-    rest = held / (tau * rate)
+    rate = decay_rate(plate, finger_on_mode(force, abs(z), fingers))
+    rest = held / (plate.time_constant * rate)
     if force > 0.0:
         half = rest + (z - rest) * cmath.exp(-0.5 * h * rate)
-        there = finger_on_mode(force, abs(half), forces, highest, load)
-        rate = decay_rate(ratio, quality, tau, there)
-        rest = held / (tau * rate)
+        rate = decay_rate(plate, finger_on_mode(force, abs(half), fingers))
+        rest = held / (plate.time_constant * rate)
     return rest + (z - rest) * cmath.exp(-h * rate)
 
 
 @numba.njit(cache=True, nogil=True)
-def drawn_current(
-    voltage: float, z: complex, omega: float, capacitance: float, loss: float, force_factor: float
-) -> complex:
+def drawn_current(voltage: float, z: complex, omega: float, plate: Electrical) -> complex:
     """The amplifier's current (A, complex amplitude): the capacitance's and the motional one."""
+    capacitance, loss, force_factor = plate
     return complex(omega * capacitance * voltage * complex(loss, 1.0) + omega * force_factor * z)
 
 
 @numba.njit(cache=True, nogil=True)
 def voltage_given(
-    wanted: float, z: complex, omega: float, capacitance: float, loss: float, force_factor: float,
-    highest_voltage: float, highest_current: float, slew_rate: float,
-) -> Any:  # fmt: skip
+    wanted: float, z: complex, omega: float, plate: Electrical, limits: Limits
+) -> Any:
     """The voltage on the plate (V) and what limits it: rail, slew rate or current."""
+    capacitance, loss, force_factor = plate
+    highest_voltage, highest_current, slew_rate = limits
     given, limit = wanted, WITHIN
     if given > highest_voltage:
         given, limit = highest_voltage, RAIL
     if given * omega > slew_rate:
         given, limit = slew_rate / omega, SLEW
-    if abs(drawn_current(given, z, omega, capacitance, loss, force_factor)) > highest_current:
+    if abs(drawn_current(given, z, omega, plate)) > highest_current:
         # |ωC(tan δ + i) V + ωφ z| = I, the larger root; zero where even that is too much.
         a = (omega * capacitance) ** 2 * (1.0 + loss * loss)
         b = omega * omega * capacitance * force_factor * (loss * z.real + z.imag)

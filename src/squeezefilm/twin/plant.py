@@ -19,6 +19,7 @@ from squeezefilm.film.compiled import announce
 from squeezefilm.quantities import Ampere, FloatArray, Hertz, Metre, MetrePerVolt, Newton, Volt
 from squeezefilm.twin import plant_kernel as k
 from squeezefilm.twin.chance import gaussian
+from squeezefilm.twin.envelope_step import Fingers
 from squeezefilm.twin.hand import Hand
 from squeezefilm.twin.settings import TwinSettings
 from squeezefilm.twin.truth import TruthRecord
@@ -70,11 +71,15 @@ class Plant:
         waiting = math.ceil((sensor.latency + 10 * sensor.jitter) * sensor.rate) + 16
         self._ring = np.zeros((waiting, 5))
         self._buffer = np.empty((_BUFFER, len(k.COLUMNS)))
+        forces = np.ascontiguousarray(point.forces, dtype=float)
+        highest = float(point.highest_amplitude)
         self._rest = (
-            self._s, self._n, self._c, np.ascontiguousarray(point.forces, dtype=float),
-            point.relative_friction, point.load, self._places, self._plan, self._ring, np.ones(1),
+            k.State(self._s, self._n, self._c),
+            Fingers(forces, point.relative_friction, point.load, highest),
+            k.Path(self._places, self._plan),
+            self._ring,
             self._buffer,
-        )  # fmt: skip
+        )
         announce(k.advance, "twin's plant", 20)
 
     @property
@@ -204,7 +209,7 @@ def _constants(point: WorkingPoint, settings: TwinSettings, hand: Hand | None) -
         k.C_SUBSTEPS: substeps(step * 1e-6, pad, dry, strongest),
         k.C_MU: friction, k.C_STATIC: dry.static_ratio, k.C_STRIBECK: dry.stribeck_speed,
         k.C_EXPONENT: dry.load_exponent, k.C_REFERENCE: dry.reference_force, k.C_FORCE: force,
-        k.C_HIGHEST: point.highest_amplitude, k.C_RATE: sensor.rate,
+        k.C_RATE: sensor.rate,
         k.C_LATENCY: sensor.latency * 1e6, k.C_JITTER: sensor.jitter * 1e6,
         k.C_NOISE: sensor.noise, k.C_QUANTUM: sensor.quantisation, k.C_SHARE_LOST: sensor.loss,
     }  # fmt: skip

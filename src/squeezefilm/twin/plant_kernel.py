@@ -16,6 +16,7 @@ Motion is along x for the skin; along y the arm leads without friction.
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numba
 import numpy as np
@@ -28,6 +29,10 @@ from squeezefilm.twin.envelope_step import (
     CURRENT,
     RAIL,
     SLEW,
+    Electrical,
+    Fingers,
+    Limits,
+    Resonance,
     between,
     drawn_current,
     envelope_step,
@@ -53,10 +58,10 @@ COUNTS = 15
     C_STEP, C_ROW, C_SEED, C_F0, C_Q, C_PER_VOLT, C_FACTOR, C_OFFSET, C_AGEING, C_COEFFICIENT,
     C_SWING, C_PERIOD, C_RESISTANCE, C_THERMAL, C_GAIN, C_RAIL, C_CURRENT, C_SLEW, C_C0, C_LOSS,
     C_MASS, C_STIFFNESS, C_DAMPING, C_PAD_MASS, C_PAD_DAMPING, C_PAD_STIFFNESS, C_SUBSTEPS, C_MU,
-    C_STATIC, C_STRIBECK, C_EXPONENT, C_REFERENCE, C_FORCE, C_HIGHEST, C_RATE, C_LATENCY, C_JITTER,
+    C_STATIC, C_STRIBECK, C_EXPONENT, C_REFERENCE, C_FORCE, C_RATE, C_LATENCY, C_JITTER,
     C_NOISE, C_QUANTUM, C_SHARE_LOST,
-) = range(40)  # fmt: skip
-CONSTANTS = 40
+) = range(39)  # fmt: skip
+CONSTANTS = 39
 COLUMNS = (
     "time_s", "x_m", "y_m", "speed_m_per_s", "level_V", "frequency_Hz", "amplitude_m",
     "relative_friction", "tangential_force_N", "normal_force_N", "voltage_V", "current_A",
@@ -66,6 +71,21 @@ COLUMNS = (
 
 THERMAL = 10_000  # µs between looks at the temperature
 _NOISE_X, _NOISE_Y, _DELAY, _LOSS = 1, 2, 3, 4
+
+
+class State(NamedTuple):
+    """State, counts and constants, at the places that are named above."""
+
+    state: Array
+    counts: Array
+    constants: Array
+
+
+class Path(NamedTuple):
+    """The hand's places and its plan, as `hand.wanted` takes them."""
+
+    places: Array
+    plan: Array
 
 
 @numba.njit(cache=True, nogil=True)
@@ -79,8 +99,10 @@ def resonance(time: int, warmth: float, c: Array) -> float:
 
 
 @numba.njit(cache=True, nogil=True)
-def _sense(t0: int, h_us: int, x0: float, y0: float, s: Array, n: Array, c: Array, ring: Array,
-           touching: bool) -> None:  # fmt: skip
+def _sense(
+    t0: int, h_us: int, x0: float, y0: float, plant: State, ring: Array, touching: bool
+) -> None:
+    s, n, c = plant
     seed = int(c[C_SEED])
     while True:
         k = n[SAMPLE]
@@ -134,9 +156,11 @@ def _follow(h: float, x0: float, x1: float, y0: float, y1: float, s: Array, c: A
 
 
 @numba.njit(cache=True, nogil=True)
-def _drag(h: float, x0: float, v0: float, start: float, end: float, s: Array, n: Array, c: Array,
-          one: Array) -> None:  # fmt: skip
+def _drag(
+    h: float, x0: float, v0: float, start: float, end: float, plant: State, ground: Ground
+) -> None:
     """The skin under a bone that went from x0 with v0, friction limits `start` to `end` (N)."""
+    s, n, c = plant
     mean, bend = (s[X] - x0) / h, 0.5 * (s[VX] - v0)
     bone, limit = np.array([x0, s[X]]), np.array([start, end])
     v_in, v_out = np.array([mean - bend]), np.array([mean + bend])
@@ -146,7 +170,7 @@ def _drag(h: float, x0: float, v0: float, start: float, end: float, s: Array, n:
         Drive(bone, v_in, v_out, limit, h, int(c[C_SUBSTEPS])),
         Skin(c[C_PAD_MASS], c[C_PAD_DAMPING], c[C_PAD_STIFFNESS]),
         Law(c[C_STATIC], c[C_STRIBECK]),
-        Ground(0.0, 1.0, one),
+        ground,
         Track(place, speed, friction, pull, stuck, np.zeros((3, 2)), np.zeros(3)),
     )
     s[PULL_BEFORE], s[BEFORE] = s[PULL], h
@@ -160,16 +184,20 @@ def _drag(h: float, x0: float, v0: float, start: float, end: float, s: Array, n:
 
 @numba.njit(cache=True, nogil=True)
 def advance(
-    until: int, level: int, carrier: int, s: Array, n: Array, c: Array, forces: Array,
-    friction: Array, load: Array, places: Array, plan: Array, ring: Array, one: Array, truth: Array,
+    until: int, level: int, carrier: int, plant: State, fingers: Fingers, path: Path, ring: Array,
+    truth: Array,
 ) -> int:  # fmt: skip
     """Advance to `until` (µs) at a level (µV) and a carrier frequency (mHz).
 
     Returns the time reached; earlier than `until` where `truth` (rows, columns) is full, to be
     emptied by setting the count ROWS to 0. Allocates a few numbers a step, never raises.
     """
+    s, n, c = plant
+    places, plan = path
     step, row = np.int64(c[C_STEP]), np.int64(c[C_ROW])
-    points, highest = friction.shape[1], c[C_HIGHEST]
+    smooth = Ground(0.0, 1.0, np.ones(1))
+    plate = Electrical(c[C_C0], c[C_LOSS], c[C_FACTOR])
+    limits = Limits(c[C_RAIL], c[C_CURRENT], c[C_SLEW])
     if carrier > 0:
         n[CARRIER] = carrier
     here = wanted(n[NOW], places, plan)
@@ -188,19 +216,16 @@ def advance(
         frequency = n[CARRIER] * 1e-3 if n[CARRIER] > 0 else f0
         if level > 0 or before > 0.0:
             omega = 2.0 * math.pi * frequency
-            s[VOLTAGE], limited = voltage_given(
-                level * 1e-6 * c[C_GAIN], z, omega, c[C_C0], c[C_LOSS], c[C_FACTOR],
-                c[C_RAIL], c[C_CURRENT], c[C_SLEW],
-            )  # fmt: skip
+            asked = level * 1e-6 * c[C_GAIN]
+            s[VOLTAGE], limited = voltage_given(asked, z, omega, plate, limits)
             n[AT_RAIL] += limited == RAIL
             n[AT_SLEW] += limited == SLEW
             n[AT_CURRENT] += limited == CURRENT
-            z = envelope_step(
-                z, c[C_PER_VOLT] * s[VOLTAGE], h, frequency / f0, c[C_Q], c[C_Q] / (math.pi * f0),
-                0.5 * (began + force), forces, highest, load,
-            )  # fmt: skip
+            swing = Resonance(frequency / f0, c[C_Q], c[C_Q] / (math.pi * f0))
+            held = c[C_PER_VOLT] * s[VOLTAGE]
+            z = envelope_step(z, held, h, swing, 0.5 * (began + force), fingers)
             s[Z_RE], s[Z_IM] = z.real, z.imag
-            drawn = drawn_current(s[VOLTAGE], z, omega, c[C_C0], c[C_LOSS], c[C_FACTOR])
+            drawn = drawn_current(s[VOLTAGE], z, omega, plate)
             s[CURRENT_A] = abs(drawn)
             s[LOST] += 0.5 * s[VOLTAGE] * drawn.real * h
         else:
@@ -209,9 +234,9 @@ def advance(
         _follow(h, here[0], there[0], here[1], there[1], s, c)
         s[FORCE] = force
         if force > 0.0 or began > 0.0:
-            i, p, j, q, beyond = table_place(force, amplitude, forces, highest, points)
+            i, p, j, q, beyond = table_place(force, amplitude, fingers)
             n[BEYOND] += beyond
-            relative = between(friction, i, p, j, q)
+            relative = between(fingers.friction, i, p, j, q)
             if began <= 0.0:
                 # A relaxed skin, that lands with the bone's place and speed.
                 s[SKIN_X], s[SKIN_V], s[RELATIVE] = x0, v0, relative
@@ -219,14 +244,14 @@ def advance(
             start = c[C_MU] * s[RELATIVE] * ref * (began / ref) ** c[C_EXPONENT]
             end = c[C_MU] * relative * ref * (force / ref) ** c[C_EXPONENT]
             s[RELATIVE] = relative
-            _drag(h, x0, v0, start, end, s, n, c, one)
+            _drag(h, x0, v0, start, end, plant, smooth)
         if force <= 0.0:
             s[SKIN_X], s[SKIN_V] = s[X], s[VX]
             s[PULL], s[PULL_BEFORE], s[BEFORE], s[FRICTION] = 0.0, 0.0, 0.0, 0.0
             s[RELATIVE] = math.nan
         n[NOW] = t1
         here = there
-        _sense(t0, t1 - t0, x0, y0, s, n, c, ring, force > 0.0)
+        _sense(t0, t1 - t0, x0, y0, plant, ring, force > 0.0)
         if t1 % THERMAL == 0:
             part = THERMAL * 1e-6
             fade = math.exp(-part / c[C_THERMAL])
