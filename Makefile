@@ -56,7 +56,7 @@ coverage: $(VENV)/test.stamp  ## branches that the quick tests take, and which t
 	@$(BIN)/coverage report --skip-covered --sort=-cover
 
 nightly: export SQUEEZEFILM_EXPLORE = 1
-nightly: PYTEST += --hypothesis-seed=$(SEED)
+nightly: PYTEST += --hypothesis-seed=$(SEED) --durations=25
 nightly: $(VENV)/test.stamp  ## run every test but a campaign's, and explore properties (SEED=N)
 	@echo "nightly: seed $(SEED)"
 	$(call run_tests,)
