@@ -3,10 +3,7 @@ looked at, exported, and somebody taken out of it."""
 
 from __future__ import annotations
 
-import contextlib
-import os
 import re
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
@@ -30,13 +27,6 @@ pytestmark = [pytest.mark.chromium, pytest.mark.slow]
 
 COMPILED = 180_000
 """ms in which a twin is there, its kernels compiled."""
-
-
-def stolen() -> float:
-    """Seconds for which this computer's host has taken its processors away; 0 where none tells."""
-    with contextlib.suppress(OSError):
-        return int(Path("/proc/stat").read_text().split(maxsplit=9)[8]) / os.sysconf("SC_CLK_TCK")
-    return 0.0
 
 
 @pytest.mark.nightly
@@ -100,17 +90,14 @@ def test_a_twin_is_played_watched_and_stopped_by_the_space_bar(
 @pytest.mark.realtime
 def test_a_twin_passes_every_check(chromium: Browser, running_lab: RunningLab) -> None:
     page, complaints = opened(chromium, running_lab, "device", color_scheme="dark")
-    for _ in range(5):
-        before = stolen()
-        page.get_by_role("button", name="Check the device").click()
-        page.locator("h2", has_text="check").wait_for(timeout=COMPILED)
-        failed = page.locator(".failed").all_inner_texts()
-        # Timing that the computer's host disturbed says nothing of the twin's.
-        if not failed or stolen() - before < 0.05:
-            break
-    assert failed == []
+    page.get_by_role("button", name="Check the device").click()
+    page.locator("h2", has_text="check").wait_for(timeout=COMPILED)
+    failed = page.locator("tr", has=page.locator(".failed")).all_inner_texts()
+    # A loop whose ticks went while the computer's host had its processor fails, and says so.
+    assert all("the host of this virtual computer may have lost them" in one for one in failed)
     keep(page, "lab-device-checked-dark-1280")
-    assert page.locator(".passed").count() == 18
+    assert page.locator(".passed").count() + len(failed) == 18
+    assert len(failed) <= 1
     assert page.evaluate(CONTRAST) == []
     assert complaints == []
 

@@ -19,8 +19,7 @@ from squeezefilm.device.wire import messages as m
 from squeezefilm.device.wire.safety import Limits
 from squeezefilm.device.wire.states import Fault, Reason, State
 from squeezefilm.errors import DeviceError
-from squeezefilm.quantities import Dimensionless, Hertz, Second, Volt
-from squeezefilm.session.loop.lateness import Lateness
+from squeezefilm.quantities import Hertz, Second, Volt
 
 TEST_VOLTAGE: Volt = 1.0
 """The most that a check may ask of a device."""
@@ -28,7 +27,6 @@ ZERO_WITHIN: Second = 60e-3
 """From the last accepted frame to an output at zero, on the device's clock."""
 SLOWEST_ROUND_TRIP: Second = 25e-3
 """Half of the watchdog's patience: one lost frame must not stop the device."""
-LEAST_MADE: Dimensionless = 0.99
 REPORT_PERIOD: Second = 1e-3
 _ECHOES = 300
 _KEEP_ALIVE: Second = 20e-3
@@ -67,7 +65,7 @@ def check_device(
     *,
     drive: str,
     window: tuple[Hertz, Hertz] | None = None,
-    loop: Callable[[], Lateness] | None = None,
+    loop: Callable[[], CheckResult] | None = None,
     progress: Callable[[str], None] | None = None,
 ) -> DeviceCheck:
     """Run every check on a device; leaves it OFF, without a fault and without reports.
@@ -77,7 +75,7 @@ def check_device(
         frequency: a carrier that its plate may be driven with (Hz).
         drive: what to call it.
         window: frequencies that the limits allow (Hz); 1 % around the frequency without one.
-        loop: measures the lateness of this computer's loop; left out without it.
+        loop: checks this computer's loop; left out without it.
         progress: is told each step.
 
     Raises:
@@ -101,7 +99,7 @@ def check_device(
     results += watchdog_checks(talk, frequency)
     if loop is not None:
         tell("the loop of this computer")
-        results.append(loop_check(loop()))
+        results.append(loop())
     _make_quiet(talk)
     return DeviceCheck(drive, tuple(results))
 
@@ -304,18 +302,6 @@ def watchdog_checks(talk: Conversation, frequency: Hertz) -> list[CheckResult]:
     return [silent, latched]
 
 
-def loop_check(lateness: Lateness) -> CheckResult:
-    """Whether this computer makes its ticks."""
-    return _result(
-        "loop",
-        lateness.share_made >= LEAST_MADE,
-        f"{100 * lateness.share_made:.2f} % of {lateness.made + lateness.lost} ticks at "
-        f"{lateness.rate:g} Hz; late {_us(lateness.p50)} median, {_us(lateness.p99)} at 99 %",
-        f"at least {100 * LEAST_MADE:g} % made",
-        "allow real-time priority (rtprio), close other programs, or play at a lower --rate",
-    )
-
-
 def _begin(talk: Conversation, limits: Limits) -> None:
     talk.listen()
     if talk.ask(m.Stop(), 1.0) is None:
@@ -410,7 +396,3 @@ def _result(name: str, passed: bool, measured: str, allowed: str, advice: str) -
 
 def _ms(value: Second) -> str:
     return f"{1e3 * value:.3g} ms"
-
-
-def _us(value: Second) -> str:
-    return f"{1e6 * value:.3g} µs"

@@ -17,6 +17,7 @@ import numpy as np
 
 from squeezefilm.bench.check import DeviceCheck, check_device
 from squeezefilm.bench.conversation import Conversation
+from squeezefilm.bench.loop_check import check_loop
 from squeezefilm.bench.played_session import PlayedSession, judge_session
 from squeezefilm.bench.setup import play_setup
 from squeezefilm.chain.played_texture import FingerMotion, require_on_display
@@ -30,15 +31,8 @@ from squeezefilm.formats.trajectories import motion_from, read_trajectory
 from squeezefilm.from_text import reads_text
 from squeezefilm.progress import SayProgress
 from squeezefilm.quantities import FloatArray, Hertz, MetrePerVolt, Second, Unit, Volt, require
-from squeezefilm.render.motion.estimator import MotionEstimator
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ, SensorModel, sensor_named
-from squeezefilm.render.program.lowering import lower
-from squeezefilm.render.resonator.compensation import DrivenEnvelope
-from squeezefilm.render.texture.gratings import Square
 from squeezefilm.results import Result, stamp
-from squeezefilm.session.loop.lateness import Lateness
-from squeezefilm.session.loop.plan import DriveTable, LoopPlan
-from squeezefilm.session.loop.process import LoopProcess
 from squeezefilm.session.play.player import PlayView
 from squeezefilm.session.play.real_time import PlayOutcome, run_play
 from squeezefilm.session.record.trace import read_trace
@@ -52,8 +46,6 @@ JUDGING = "the record"
 """The step told of after playing; until then nothing of it can be shown."""
 STROKE = "60 mm/s over 4 cm"
 DURATION: Second = 4.0
-LOOP_SECONDS: Second = 3.0
-"""For which `device check` runs this computer's loop."""
 _MARGIN = 2e-3
 _REPLAY_PERIOD: Second = 1e-3
 
@@ -206,33 +198,9 @@ def check_drive(
             frequency,
             drive=drive,
             window=(limits.lowest_frequency, limits.highest_frequency),
-            loop=lambda: loop_lateness(rate),
+            loop=lambda: check_loop(rate),
             progress=tell,
         )
-
-
-def loop_lateness(rate: Hertz, duration: Second = LOOP_SECONDS) -> Lateness:
-    """How late this computer's loop is at a rate (Hz), over some seconds; nothing is played."""
-    square = Square(spatial_period=2e-3, low=0.0, high=1e-6)
-    plan = LoopPlan(
-        program=lower(square, largest_amplitude=1e-6),
-        rate=rate,
-        envelope=DrivenEnvelope(1e-3, 1e-3, 1e-6),
-        drive=DriveTable.linear(1e-6, 1.0),
-        estimator=MotionEstimator.for_sensor(LVDT_10_KHZ),
-    )
-    with LoopProcess(plan) as loop:
-        end = time.monotonic() + duration
-        number = 0
-        while time.monotonic() < end:
-            number += 1
-            moment = loop.time
-            x = 0.06 * (moment % 1.0)
-            loop.feed(np.array([[moment, x, 0.0, 1.0, np.nan, np.nan]]))
-            loop.take_commands()
-            loop.take_rows()
-            time.sleep(1e-3)
-    return loop.report().lateness
 
 
 @contextlib.contextmanager
