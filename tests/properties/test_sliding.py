@@ -68,7 +68,8 @@ def energy_scale(motion: Sliding) -> float:
 @given(motions())
 def test_energy_balances_and_friction_never_creates_any(both: Mirrored) -> None:
     motion = both.motion
-    assert motion.energy_residual <= 1e-6 * energy_scale(motion)
+    # Slips shorter than 1e-6 of a step are not followed: of 1e-49 m/s no energy is accounted for.
+    assert motion.energy_residual <= 1e-6 * energy_scale(motion) + 1e-30
     assert np.all(np.diff(motion.friction_loss) >= 0)
     assert np.all(np.diff(motion.damping_loss) >= 0)
 
