@@ -68,7 +68,7 @@ NOT_CALLED = {
     film.planar.ladder.Ladder film.planar.ladder.Ladder.grid film.planar.ladder.climb_to
     film.periodic.profile.GapProfile.grid film.periodic.profile.sampled_grid
     film.periodic.resolution.first_guess
-    film.periodic.resolution.refined film.periodic.resolution.tables film.slip.slip_law
+    film.periodic.resolution.refined film.periodic.resolution.collocation_times film.slip.slip_law
     film.transient.march.check_film plate.ring.elements.HarmonicSystem
     plate.ring.elements.HarmonicSystem.field plate.ring.elements.RingMesh
     plate.ring.elements.harmonic_system plate.elements.block_ldl.PartialLDL

@@ -18,6 +18,7 @@ from squeezefilm.contact.asperities import (
 )
 from squeezefilm.contact.finger.fingertip import Finger
 from squeezefilm.contact.finger.skin import Skin
+from squeezefilm.contact.records import CompiledAsperities
 from squeezefilm.contact.sharing.balance import share_load, share_load_tied
 from squeezefilm.contact.sharing.gas_table import DEEPEST_EXCURSION, FilmTable, film_table
 from squeezefilm.contact.sharing.pad import PadPosture, friction_ripple, pad_friction, ridge_points
@@ -185,6 +186,7 @@ def test_period_means_agree_with_quadrature_and_with_the_compiled_code(heights: 
     from squeezefilm.contact.sharing.kernel import asperity_mean
 
     law = AsperityLaw(heights=heights)  # type: ignore[arg-type]
+    assert isinstance(law.compiled(), CompiledAsperities)
     for u, a in ((2e-6, 0.1e-6), (3e-6, 1.5e-6), (6e-6, 5e-6), (22e-6, 20e-6)):
         mean, _ = quad(
             lambda T, u=u, a=a: float(law.pressure(u - a * math.cos(T))) / math.pi,
