@@ -100,9 +100,10 @@ def _solve_uniform(asked: Asked) -> FilmSolution:
     # stiffness and damping.
     eps = max(abs(float(asked.excursion_ratio)), 1e-6)
     keep = np.empty(3 * int(CELLS[-1]) // 2 * 200)
+    one = np.array([[sigma], [eps], [n], [kn]], dtype=float)
     out, c, t, met = solve_all(
-        asked.shape, *(np.array([float(value)]) for value in (sigma, eps, n, kn)), law,
-        asked.tolerance, 1, least_cells=16, least_times=11, keep=keep,
+        asked.shape, one[0], one[1], one[2], one[3], law, asked.tolerance, 1,
+        least_cells=16, least_times=11, keep=keep,
     )  # fmt: skip
     row, cells, times = out[0], int(CELLS[c[0]]), int(TIMES[t[0]])
     over, error = float(row[u.OVER]), float(row[u.ERROR])

@@ -11,7 +11,7 @@ class Times(NamedTuple):
     """The collocation times of a period: how many, the length of their padded row, the transposed
     Fourier differentiation matrix, and one minus the unit matrix, both flattened."""
 
-    count: int
+    number: int
     row: int
     derivative: FloatArray
     mask: FloatArray

@@ -190,14 +190,14 @@ def solve_rows(
     """
     sigma, eps, n, kn, law, shape = films
     cells, times, fuller = resolution
-    nt, ntp = times.count, times.row
+    nt, ntp = times.number, times.row
     wide = max(ntp, fuller.row)
     rows = cells + 1
     H, H3 = np.empty(wide), np.empty(wide)
     w, c, s = np.empty(wide), np.empty(wide), np.empty(wide)
     g, vol, share = np.empty(rows), np.empty(rows), np.empty(rows)
     p, other = np.empty(rows * wide), np.empty(rows * wide)
-    blocks = max(cells * nt * ntp, max(cells // 4, 2) * fuller.count * fuller.row)
+    blocks = max(cells * nt * ntp, max(cells // 4, 2) * fuller.number * fuller.row)
     room = Room(np.zeros(10 * rows * wide), np.empty(blocks))
     nodes, gaps = Cells(g, vol, share), Gap(H, H, H3, w, 0)
     close = Aim(0.03 * aim.tolerance, aim.most)
@@ -211,8 +211,8 @@ def solve_rows(
         wide_sigma = sig if shape == STRIP else 2.25 * sig
         a = edge_grading(wide_sigma, e)
         gas = Gas(poly, rare, law)
-        gap(fuller.count, fuller.row, e, H, H3)
-        load_weights(fuller.count, fuller.row, e, poly, H, w, c, s)
+        gap(fuller.number, fuller.row, e, H, H3)
+        load_weights(fuller.number, fuller.row, e, poly, H, w, c, s)
         grid(checked, shape, sig, a, g, vol, share)
         p[: checked * fuller.row] = 0.0
         check, its, left = newton(checked, fuller, nodes, gaps, gas, p, room, close)

@@ -133,7 +133,7 @@ def solve_varying(
     weight = np.empty(rows * wide)
     g, vol, share = np.zeros(rows), np.zeros(rows), np.zeros(rows)
     p, other = np.zeros(rows * wide), np.zeros(rows * wide)
-    blocks = max(rows * times.count * times.row, (cells // 4 + 1) * fuller.count * fuller.row)
+    blocks = max(rows * times.number * times.row, (cells // 4 + 1) * fuller.number * fuller.row)
     room = Room(np.zeros(10 * rows * wide), np.empty(blocks))
     close = Aim(0.03 * aim.tolerance, aim.most)
     level = np.zeros(3)
@@ -141,8 +141,8 @@ def solve_varying(
     for run in range(2):
         now = times if run == 1 else fuller
         row = now.row
-        _gaps(even, odd, now.count, row, HJ)
-        _weights(even, odd, n, now.count, row, fine[1 - run], HJ, WJ)
+        _gaps(even, odd, now.number, row, HJ)
+        _weights(even, odd, n, now.number, row, fine[1 - run], HJ, WJ)
         m = cells // 4
         for stage in range(3 if run == 1 else 1):
             stride = cells // m
