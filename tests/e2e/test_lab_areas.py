@@ -11,14 +11,13 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from .conftest import RunningLab
-from .test_lab_pages import CONTRAST, SOLVED
+from .test_lab_pages import AREAS, CONTRAST, SOLVED
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page, WebSocketRoute
 
 pytestmark = [pytest.mark.chromium, pytest.mark.slow]
 
-AREAS = ("design", "feel", "device", "study", "results", "help")
 SIZES = ((360, 740), (412, 915), (640, 450), (768, 1024), (960, 700), (1280, 900), (1920, 1080))
 """CSS pixels; 640 × 450 is a screen of 1280 × 900 at 200 %."""
 COMPUTED = ("compute design", "load texture", "parity", "analyze study", "field limits")

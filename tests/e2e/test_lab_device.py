@@ -90,14 +90,16 @@ def test_a_twin_is_played_watched_and_stopped_by_the_space_bar(
 @pytest.mark.realtime
 def test_a_twin_passes_every_check(chromium: Browser, running_lab: RunningLab) -> None:
     page, complaints = opened(chromium, running_lab, "device", color_scheme="dark")
-    page.get_by_role("button", name="Check the device").click()
-    page.locator("h2", has_text="check").wait_for(timeout=COMPILED)
-    failed = page.locator("tr", has=page.locator(".failed")).all_inner_texts()
-    # A loop whose ticks went while the computer's host had its processor fails, and says so.
-    assert all("the host of this virtual computer may have lost them" in one for one in failed)
+    for _ in range(5):
+        page.get_by_role("button", name="Check the device").click()
+        page.locator("h2", has_text="check").wait_for(timeout=COMPILED)
+        failed = page.locator("tr", has=page.locator(".failed")).all_inner_texts()
+        # Timing that the computer's host disturbed says nothing of the twin's.
+        if not any("the host of this virtual computer" in one for one in failed):
+            break
+    assert failed == []
     keep(page, "lab-device-checked-dark-1280")
-    assert page.locator(".passed").count() + len(failed) == 18
-    assert len(failed) <= 1
+    assert page.locator(".passed").count() == 18
     assert page.evaluate(CONTRAST) == []
     assert complaints == []
 

@@ -20,7 +20,7 @@ from squeezefilm.quantities import Second
 from squeezefilm.study.design.study_design import load_design
 from squeezefilm.study.record.store import StudyStore
 
-from .test_lab_pages import CONTRAST, SOLVED, keep, opened
+from .test_lab_pages import AREAS, CONTRAST, SOLVED, keep, opened
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Locator, Page
@@ -631,7 +631,7 @@ def test_a_stored_script_is_shown_as_text(chromium: Browser, running_lab: Runnin
         *(
             pytest.param(
                 one,
-                ("design", "feel", "device", "study", "results", "help"),
+                AREAS,
                 marks=pytest.mark.nightly,
             )
             for one in ("light", "dark")

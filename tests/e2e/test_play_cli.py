@@ -106,11 +106,12 @@ def test_what_cannot_be_played_is_said(
 @pytest.mark.realtime
 def test_a_twin_is_checked_through_its_port() -> None:
     words = ["device", "check", "--drive", "twin", "--rate", "1 kHz", "--json"]
-    done = subprocess.run([*PROGRAM, *words], capture_output=True, text=True, timeout=300)
-    check = json.loads(done.stdout)
-    failed = [one for one in check["results"] if not one["passed"]]
-    # A loop whose ticks went while the computer's host had its processor fails, and says so.
-    assert all("the host of this virtual computer" in one["advice"] for one in failed), failed
-    assert [one["name"] for one in failed] in ([], ["loop"])
-    assert (check["passed"], done.returncode) == (not failed, bool(failed))
+    for _ in range(5):
+        done = subprocess.run([*PROGRAM, *words], capture_output=True, text=True, timeout=300)
+        check = json.loads(done.stdout)
+        # Timing that the computer's host disturbed says nothing of the twin's.
+        if not any("the host of this virtual" in one["advice"] for one in check["results"]):
+            break
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert check["passed"]
     assert len(check["results"]) >= 17

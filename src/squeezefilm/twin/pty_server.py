@@ -113,6 +113,8 @@ class PtyServer:
 
     def _catch_up(self, wall: int) -> None:
         began = self._device.now
+        # Left out below: not to be left out again as time in which nothing was carried.
+        self._excused_to = wall
         waiting = b"".join(iter(self._hear, b""))
         slices = -(-(wall - began) // _SLICE)
         for k in range(slices):

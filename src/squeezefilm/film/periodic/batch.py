@@ -18,14 +18,7 @@ import numpy as np
 from squeezefilm.errors import ConvergenceError, InputError
 from squeezefilm.film.compiled import announce
 from squeezefilm.film.periodic.records import Resolution
-from squeezefilm.film.periodic.resolution import (
-    CELLS,
-    CHECKS,
-    TIMES,
-    collocation_times,
-    first_guess,
-    refined,
-)
+from squeezefilm.film.periodic.resolution import CELLS, TIMES, first_guess, refined, resolution_of
 from squeezefilm.film.records import Aim
 from squeezefilm.film.slip import slip_law
 from squeezefilm.film.solved_range import require_film
@@ -42,8 +35,8 @@ from squeezefilm.quantities import (
 MAX_EXCURSION = 0.99
 """Above this excursion the gap all but closes, and the error is no longer measured."""
 
-_MOST_NEWTON = 60
-_ROUNDS = 12
+MOST_NEWTON = 60
+ROUNDS = 12
 _CHUNK = 4096
 
 
@@ -242,7 +235,7 @@ def solve_all(
     total = len(sigma)
     form = u.STRIP if shape == "strip" else u.DISC
     keep = np.empty(0) if keep is None else keep
-    aim = Aim(tolerance, _MOST_NEWTON)
+    aim = Aim(tolerance, MOST_NEWTON)
     out = np.full((total, u.COLUMNS), np.nan)
     spent = np.zeros(total)
     met = np.zeros(total, dtype=bool)
@@ -251,15 +244,14 @@ def solve_all(
     pending: IntArray = np.arange(total)
     pool = ThreadPoolExecutor(workers) if workers > 1 and total > 64 else None
     try:
-        for _ in range(_ROUNDS):
+        for _ in range(ROUNDS):
             key = cells[pending] * len(TIMES) + times[pending]
             order = np.argsort(key, kind="stable")
             bounds = np.flatnonzero(np.diff(key[order])) + 1
             for group in np.split(pending[order], bounds):
                 c, t = int(cells[group[0]]), int(times[group[0]])
                 rows = np.full((len(group), u.COLUMNS), np.nan)
-                both = (collocation_times(int(one[t])) for one in (TIMES, CHECKS))
-                resolution = Resolution(int(CELLS[c]), *both)
+                resolution = resolution_of(int(CELLS[c]), t)
                 films = u.Films(sigma[group], eps[group], n[group], kn[group], law, form)
                 portion = min(_CHUNK, -(-len(group) // workers))
                 spans = [(a, min(a + portion, len(group))) for a in range(0, len(group), portion)]

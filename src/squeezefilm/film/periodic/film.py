@@ -16,20 +16,25 @@ from numpy.typing import ArrayLike
 
 from squeezefilm.errors import InputError
 from squeezefilm.film.compiled import announce
-from squeezefilm.film.periodic.batch import check_film, compiled, solve_all
+from squeezefilm.film.periodic.batch import (
+    MOST_NEWTON,
+    ROUNDS,
+    check_film,
+    compiled,
+    solve_all,
+)
 from squeezefilm.film.periodic.profile import (
     GapProfile,
     profile_from_function,
     sampled_grid,
 )
-from squeezefilm.film.periodic.records import Resolution
 from squeezefilm.film.periodic.resolution import (
     CELLS,
-    CHECKS,
     TIMES,
     collocation_times,
     first_guess,
     refined,
+    resolution_of,
 )
 from squeezefilm.film.periodic.solution import Asked, FilmSolution, Found, assembled
 from squeezefilm.film.records import Aim, Gas
@@ -39,9 +44,6 @@ from squeezefilm.quantities import (
     FloatArray,
     checked_numbers,
 )
-
-_MOST_NEWTON = 60
-_ROUNDS = 12
 
 
 @checked_numbers
@@ -179,9 +181,9 @@ def solve_profile(
     out = np.full(u.COLUMNS, np.nan)
     iterations = 0
     met = False
-    for _ in range(_ROUNDS):
-        times, check = int(TIMES[t[0]]), int(CHECKS[t[0]])
-        resolution = Resolution(cells, collocation_times(times), collocation_times(check))
+    for _ in range(ROUNDS):
+        resolution = resolution_of(cells, int(t[0]))
+        times, check = resolution.times.number, resolution.check.number
         x, slope, harmonics = sampled_grid(profile, cells, closed, grading)
         even, odd = np.ascontiguousarray(harmonics.real), np.ascontiguousarray(-harmonics.imag)
         ntp = resolution.times.row
@@ -189,7 +191,7 @@ def solve_profile(
         solve_varying(
             sigma, Gas(n, kn, law), Profile(slope, even, odd, profile.depth, closed), resolution,
             (load_times(times, profile.depth), load_times(check, profile.depth)),
-            Aim(tolerance, _MOST_NEWTON), out, keep,
+            Aim(tolerance, MOST_NEWTON), out, keep,
         )  # fmt: skip
         iterations += int(out[u.ITERATIONS])
         allowed = tolerance * abs(out[u.OVER])

@@ -11,7 +11,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from squeezefilm.film.periodic.records import Times
+from squeezefilm.film.periodic.records import Resolution, Times
 from squeezefilm.quantities import FloatArray, IntArray
 
 CELLS = np.array([4, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512, 768])
@@ -37,6 +37,13 @@ def collocation_times(nt: int) -> Times:
     mask = np.ones((nt, ntp))
     mask[:, :nt] -= np.eye(nt)
     return Times(nt, ntp, DT.ravel(), mask.ravel())
+
+
+def resolution_of(cells: int, times: int) -> Resolution:
+    """Cells of the finest grid, the times at an index into `TIMES`, and those that check them."""
+    return Resolution(
+        cells, collocation_times(int(TIMES[times])), collocation_times(int(CHECKS[times]))
+    )
 
 
 def first_guess(
