@@ -13,7 +13,7 @@ import pytest
 
 from squeezefilm.errors import ConvergenceError, GeometryError, InputError, UnreachableError
 from squeezefilm.film import compiled
-from squeezefilm.film.periodic import batch
+from squeezefilm.film.periodic import batch, film
 from squeezefilm.film.periodic.balance import mean_gap_for_load
 from squeezefilm.film.periodic.batch import solve_strips
 from squeezefilm.film.periodic.edge import edge_layer
@@ -110,8 +110,9 @@ def test_samples_and_function_of_the_same_gap_agree():
 
 
 def test_what_does_not_converge_raises_with_its_partial_result(monkeypatch):
-    monkeypatch.setattr(batch, "_ROUNDS", 1)
-    monkeypatch.setattr(batch, "_MOST_NEWTON", 2)
+    for solver in (batch, film):
+        monkeypatch.setattr(solver, "ROUNDS", 1)
+        monkeypatch.setattr(solver, "MOST_NEWTON", 2)
     with pytest.raises(ConvergenceError) as caught:
         solve_strip(10.0, 0.9, tolerance=1e-6)
     error = caught.value
