@@ -1,0 +1,235 @@
+"""Whether this tree is slower than another revision: `python benchmarks/against.py REVISION`.
+
+Kernels and whole verbs of both, asked in turn in one run, so that what else the machine does meets
+both alike; the best of `--rounds` each. Times are those of the processor, one thread, what was
+compiled loaded from the cache. Kernels are the inner calls of this folder's other files, taken
+from the names that they import, so that each revision finds its own wherever it keeps them.
+"""
+
+from __future__ import annotations
+
+import os
+
+os.environ["OMP_NUM_THREADS"] = os.environ["OPENBLAS_NUM_THREADS"] = "1"
+os.environ["NUMBA_NUM_THREADS"] = "1"
+
+import argparse
+import importlib
+import json
+import resource
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+ROOT = Path(__file__).parents[1]
+SLOWER = 1.05  # what "slower" means, as a ratio
+VERBS = {
+    "analyze the stator": ["analyze", "biet2008-stator", "--json"],
+    "analyze the plate": ["analyze", "biet2008-plate", "--json"],
+    "friction on the stator": ["friction", "biet2008-stator", "--amplitude", "2 um", "--json"],
+    "render a grating": ["render", "biet2008-square-2mm", "--display", "biet2008-stator", "--json"],
+    "a film by itself": ["film", "--squeeze-number", "10", "--excursion", "0.5", "--json"],
+    "--help": ["--help"],
+}
+
+
+def film_kernels() -> Iterator[tuple[str, Callable[[], object]]]:
+    film = importlib.import_module("film")
+    rng = np.random.default_rng(1)
+    sigma, eps = 10.0 ** rng.uniform(1.0, 3.0, 2000), rng.uniform(0.3, 0.5, 2000)
+    for tolerance in (5e-3, 1e-3, 1e-4):
+        yield (
+            f"2 000 strips at {tolerance:g}",
+            lambda tolerance=tolerance: film.solve_strips(
+                sigma, eps, tolerance=tolerance, workers=1
+            ),
+        )
+    waves = {"wavenumber": 20.0 * np.pi / 18.7, "ridge_wavenumber": 20.0 * np.pi / 0.35}
+    ridges = film.flexural_profile(0.038, ridge_depth=0.95, **waves)
+    yield "a film under 28 ridges", lambda: film.solve_profile(20.4, ridges, tolerance=1e-3)
+    yield "an ellipse in the plane", lambda: film.solve_ellipse(30.0, 0.4, 1.5, tolerance=1e-2)
+
+
+def contact_kernels() -> Iterator[tuple[str, Callable[[], object]]]:
+    contact, sliding = (importlib.import_module(name) for name in ("contact", "sliding"))
+    display = contact.load_display("biet2008-stator")
+    finger = display.finger
+    law = finger.asperity_law(display.surface().roughness)
+    points, pressure = contact.ridge_points(finger), finger.plateau_pressure()
+    amplitudes = np.linspace(0.05e-6, 5e-6, 100)
+
+    def curve(table: Any) -> object:
+        return contact.pad_friction(
+            table, law, amplitudes, contact.HALF_WAVELENGTH, points, pressure
+        )
+
+    def fresh() -> Any:
+        return contact.FilmTable(contact.FREQUENCY, finger.plateau_width, display.gas)
+
+    table = fresh()
+    rng = np.random.default_rng(3)
+    a, p = rng.uniform(0.2e-6, 5e-6, 20000), rng.uniform(1e3, 3e4, 20000)
+    yield "a friction curve, its film table too", lambda: curve(fresh())
+    yield "a friction curve, the table at hand", lambda: curve(table)
+    yield "20 000 load balances", lambda: contact.share_load(table, law, a, p)
+    yield "25 600 steps of sliding", lambda: sliding.marched(25_600)
+    weaker = sliding.DryFriction(1.4, 0.1)
+    yield "the same, weakening with speed", lambda: sliding.marched(25_600, weaker)
+
+
+def render_kernels() -> Iterator[tuple[str, Callable[[], object]]]:
+    render, motion = (importlib.import_module(name) for name in ("render", "motion"))
+    arrays = render.samples(200_000)
+    for name, texture in render.textures().items():
+        program = render.program_of(texture)
+        yield (
+            f"200 000 samples, {name}",
+            lambda program=program: render.evaluate(program, *arrays),
+        )
+    estimator = motion.MotionEstimator(motion.MotionModel(), 2e-5)
+    hand = motion.MinimumJerkStroke(passes=10)
+    stamps = np.linspace(0.0, hand.duration, 400_000)
+    seen = hand.position(stamps) + 2e-5 * np.random.default_rng(0).standard_normal(stamps.size)
+    yield "400 000 estimates of motion", lambda: motion.marched(estimator, stamps, seen)
+    envelope = motion.DrivenEnvelope(motion.TAU, motion.TAU, motion.LIMIT, braking=True)
+    wanted = np.where(
+        (np.arange(20_000) * 0.24 / motion.RATE / 0.4e-3) % 1 < 0.5, 0.8 * motion.LIMIT, 0.0
+    )
+    ahead = motion.preview_samples(envelope, 1 / motion.RATE)
+    yield "20 000 previews", lambda: motion.preview_seconds(envelope, wanted, ahead)
+
+
+def plate_kernels() -> Iterator[tuple[str, Callable[[], object]]]:
+    plate, study = (importlib.import_module(name) for name in ("plate", "study"))
+    paper = plate.load_display("biet2008-plate").actuator
+    f = np.linspace(32.5e3, 34.5e3, 200)
+    yield "the plate's mode (8,0)", lambda: plate.solve_modes(paper, mode=(8, 0))
+    yield "200 points of its response", lambda: plate.harmonic_response(paper, f)
+    people = study.DirichletParticipants(study.ordered_observer(1.5), 12, 20.0)
+    yield "a study of 1 000 simulated", lambda: people(1000, np.random.default_rng(1))
+
+
+ROOMS = (film_kernels, contact_kernels, render_kernels, plate_kernels)
+
+
+def serve(tree: Path) -> None:
+    """Answer the number of a kernel by its time, for as long as one is asked."""
+    sys.path[:1] = [str(tree / "benchmarks"), str(tree / "src")]
+    package = Path(importlib.import_module("squeezefilm").__file__ or "")
+    if tree not in package.parents:
+        raise SystemExit(f"squeezefilm was taken from {package}, not from {tree}")
+    kernels = [kernel for room in ROOMS for kernel in room()]
+    for _, run in kernels:
+        run()
+    print(json.dumps([name for name, _ in kernels]), flush=True)
+    for line in sys.stdin:
+        run = kernels[int(line)][1]
+        start = time.process_time()
+        run()
+        print(time.process_time() - start, flush=True)
+
+
+class Side:
+    """One revision: a process that holds its kernels, and its verbs."""
+
+    def __init__(self, tree: Path) -> None:
+        self.environment = {**os.environ, "PYTHONPATH": str(tree / "src")}
+        self.process = subprocess.Popen(
+            [sys.executable, str(Path(__file__).resolve()), "--serve", str(tree)],
+            stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, env=self.environment,
+        )  # fmt: skip
+
+    def answer(self) -> Any:
+        """What the process says next."""
+        assert self.process.stdout is not None
+        said = self.process.stdout.readline()
+        if not said:
+            raise SystemExit("one side ended before it answered; what it said is above")
+        return json.loads(said)
+
+    def kernel(self, number: int) -> float:
+        """Processor time of one call (s)."""
+        assert self.process.stdin is not None
+        self.process.stdin.write(f"{number}\n")
+        self.process.stdin.flush()
+        return float(self.answer())
+
+    def verb(self, words: list[str]) -> float:
+        """Processor time of one call of the program (s), interpreter and imports included."""
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        subprocess.run(
+            [sys.executable, "-c", "from squeezefilm.cli import main; main()", *words],
+            env=self.environment, stdout=subprocess.DEVNULL, check=True,
+        )  # fmt: skip
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+
+
+def best_of_both(asks: list[Callable[[], float]], rounds: int) -> list[float]:
+    """The shortest time of each side, asked in turn, the first of a round by turns."""
+    times = np.full((rounds, 2), np.inf)
+    for turn in range(rounds):
+        for side in (0, 1) if turn % 2 == 0 else (1, 0):
+            times[turn, side] = asks[side]()
+    return [float(one) for one in times.min(axis=0)]
+
+
+def compare(before: Path, rounds: int) -> int:
+    """Print the table; how many rows became slower than allowed."""
+    sides = [Side(before), Side(ROOT)]
+    kernels = sides[0].answer()
+    if sides[1].answer() != kernels:
+        raise SystemExit("the two revisions have different kernels")
+    print(f"best of {rounds} (verbs: of {max(rounds // 3, 1)}), in turn, ms of one processor")
+    print(f"{'':40s} {'before':>10s} {'after':>10s} {'ratio':>7s}")
+    slower = 0
+    rows: list[tuple[str, list[Callable[[], float]], int]] = [
+        (name, [lambda side=side, k=k: side.kernel(k) for side in sides], rounds)
+        for k, name in enumerate(kernels)
+    ]
+    rows += [
+        (name, [lambda side=side, words=words: side.verb(words) for side in sides],
+         max(rounds // 3, 1))
+        for name, words in VERBS.items()
+    ]  # fmt: skip
+    for name, asks, many in rows:
+        old, new = best_of_both(asks, many)
+        slower += new / old > SLOWER
+        mark = "  slower" if new / old > SLOWER else ""
+        print(f"{name:40s} {1e3 * old:10.2f} {1e3 * new:10.2f} {new / old:7.3f}{mark}", flush=True)
+    for side in sides:
+        side.process.kill()
+    return slower
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("revision", nargs="?", help="what to compare with, as git names it")
+    parser.add_argument("--rounds", type=int, default=15)
+    parser.add_argument("--serve", type=Path, help=argparse.SUPPRESS)
+    given = parser.parse_args()
+    if given.serve:
+        serve(given.serve)
+        return
+    if not given.revision:
+        parser.error("name the revision to compare with, such as a tag or HEAD~20")
+    with tempfile.TemporaryDirectory() as folder:
+        tree = Path(folder) / "before"
+        git = ["git", "-C", str(ROOT), "worktree"]
+        subprocess.run([*git, "add", "--detach", "--quiet", str(tree), given.revision], check=True)
+        try:
+            slower = compare(tree, given.rounds)
+        finally:
+            subprocess.run([*git, "remove", "--force", str(tree)], check=True)
+    print(f"{slower} of these are more than {SLOWER - 1:.0%} slower than at {given.revision}")
+    sys.exit(1 if slower else 0)
+
+
+if __name__ == "__main__":
+    main()
