@@ -192,6 +192,7 @@ def test_what_is_made_of_text_equals_what_is_made_of_numbers(name: str) -> None:
         make(lambda text, _: "3 V")
 
 
+@pytest.mark.slow
 def test_a_display_may_be_given_by_its_name_and_a_prediction_asked_in_words() -> None:
     asked = {"model": "paper2008", "vibration_amplitude": "2 um", "normal_force": "0.5 N"}
     by_text = sf.predict("biet2008-stator", **asked)

@@ -51,6 +51,7 @@ class Held:
             self.page.send(text)
 
 
+@pytest.mark.slow
 def test_numbers_of_an_older_design_are_grey_until_replaced(
     chromium: Browser, running_lab: RunningLab
 ) -> None:

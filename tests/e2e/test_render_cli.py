@@ -63,6 +63,7 @@ def test_everything_is_written_and_belongs_together(tmp_path: Path) -> None:
         assert (out / name).is_file(), name
 
 
+@pytest.mark.slow
 def test_the_table_says_what_theory_says() -> None:
     result = rendered(GRATING, *STATOR)
     tau = 200 / (math.pi * 40.5e3)
@@ -88,6 +89,7 @@ def test_compensation_and_sensor_change_what_they_should() -> None:
     assert json.loads(again.stdout)["friction_rms_error"] == seen["friction_rms_error"]
 
 
+@pytest.mark.slow
 def test_what_the_display_cannot_reach_is_counted(tmp_path: Path) -> None:
     (tmp_path / "t.toml").write_text(
         '[texture]\ntype = "relative_friction"\nlow = 0.2\nhigh = 1.0\n'

@@ -95,6 +95,7 @@ def test_a_grating_is_felt_where_it_is(
     assert summary["by_truth"]["fidelity"]["lag_m"] < 0.1e-3
 
 
+@pytest.mark.slow
 def test_record_and_truth_are_the_same_bit_for_bit(
     display: Display, point: WorkingPoint, tmp_path: Path
 ) -> None:
@@ -120,6 +121,7 @@ def test_a_device_plays_a_tile_by_itself(
     assert 0.0 < found.lag < 0.15e-3
 
 
+@pytest.mark.slow
 def test_a_slow_sensor_costs_contrast_or_place_and_it_shows(
     display: Display, point: WorkingPoint, tmp_path: Path
 ) -> None:

@@ -15,6 +15,9 @@ from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.results import to_json
 
 
+pytestmark = pytest.mark.xdist_group("analysis")  # what is dear is computed once
+
+
 @pytest.fixture(scope="module")
 def plate() -> Analysis:
     steps: list[str] = []

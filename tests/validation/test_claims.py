@@ -9,6 +9,9 @@ from squeezefilm.analysis.claims.values import CLAIM_VALUES, ClaimValue
 from squeezefilm.errors import ConfigError
 
 
+pytestmark = pytest.mark.xdist_group("claims")  # what is dear is computed once
+
+
 @pytest.fixture(scope="module")
 def found() -> dict[str, ClaimResult]:
     return {item.claim.id: item for item in reproduce().results}

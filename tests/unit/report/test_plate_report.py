@@ -16,6 +16,9 @@ from squeezefilm.report.plate.plate import admittance, frequency_response, line_
 from squeezefilm.report.plate.sensitivity_figures import tornado, tracks
 
 
+pytestmark = pytest.mark.xdist_group("plate-report")  # what is dear is computed once
+
+
 @pytest.fixture(scope="module")
 def result() -> PlateAnalysis:
     return analyze_plate(load_display("biet2008-plate"), points=60)
