@@ -12,10 +12,13 @@ from squeezefilm.contact.finger.fingertip import Finger
 from squeezefilm.device.wire.safety import HIGHEST_VOLTAGE, TOUCH_VOLTAGE, Limits
 from squeezefilm.errors import InputError
 from squeezefilm.from_text import ReadBy
-from squeezefilm.hard_limits import ROUGHNESS, require_fields
+from squeezefilm.hard_limits import ROUGHNESS
 from squeezefilm.materials import Gas
 from squeezefilm.plate.layout import Actuator
 from squeezefilm.quantities import (
+    Above,
+    AtLeast,
+    AtMost,
     Dimensionless,
     Hertz,
     Metre,
@@ -24,29 +27,28 @@ from squeezefilm.quantities import (
     Unit,
     Volt,
     VoltPerSecond,
+    checked_numbers,
     did_you_mean,
     require,
 )
 from squeezefilm.results import Result, write_whole
 
 
+@checked_numbers
 @dataclass(frozen=True)
 class Surface:
     """A surface the finger touches: its average roughness and its friction without vibration."""
 
     name: str
-    roughness: Metre
-    friction_coefficient: Dimensionless
-
-    def __post_init__(self) -> None:
-        require_fields(self, roughness=ROUGHNESS)
-        require("friction_coefficient", self.friction_coefficient, above=0, at_most=10)
+    roughness: Annotated[Metre, ROUGHNESS]
+    friction_coefficient: Annotated[Dimensionless, Above(0), AtMost(10)]
 
 
 _SECONDS_OF_HEAT = 10.0
 _FREQUENCY_WINDOW = 0.05
 
 
+@checked_numbers
 @dataclass(frozen=True)
 class Drive:
     """The electrical drive: the voltage's amplitude (zero-to-peak) at resonance, and its limits.
@@ -68,30 +70,15 @@ class Drive:
         InputError: a value outside its range; `limits` checks how they fit each other.
     """
 
-    voltage: Volt
+    voltage: Annotated[Volt, AtLeast(0), AtMost(HIGHEST_VOLTAGE)]
     insulation: str = ""
-    slew: VoltPerSecond | None = None
-    continuous_voltage: Volt | None = None
-    heat: SquareVoltSecond | None = None
-    lowest_frequency: Hertz | None = None
-    highest_frequency: Hertz | None = None
-    duty: Dimensionless = 1.0
-    duty_window: Second = 10.0
-
-    def __post_init__(self) -> None:
-        require("voltage", self.voltage, Unit("V"), at_least=0, at_most=HIGHEST_VOLTAGE)
-        optional = (
-            ("slew", self.slew, "V/s"),
-            ("continuous_voltage", self.continuous_voltage, "V"),
-            ("heat", self.heat, "V2*s"),
-            ("lowest_frequency", self.lowest_frequency, "Hz"),
-            ("highest_frequency", self.highest_frequency, "Hz"),
-        )
-        for name, value, unit in optional:
-            if value is not None:
-                require(name, value, Unit(unit), at_least=0)
-        require("duty", self.duty, at_least=1e-3, at_most=1)
-        require("duty_window", self.duty_window, Unit("s"), at_least=1e-3, at_most=3600)
+    slew: Annotated[VoltPerSecond, AtLeast(0)] | None = None
+    continuous_voltage: Annotated[Volt, AtLeast(0)] | None = None
+    heat: Annotated[SquareVoltSecond, AtLeast(0)] | None = None
+    lowest_frequency: Annotated[Hertz, AtLeast(0)] | None = None
+    highest_frequency: Annotated[Hertz, AtLeast(0)] | None = None
+    duty: Annotated[Dimensionless, AtLeast(0.001), AtMost(1)] = 1.0
+    duty_window: Annotated[Second, AtLeast(0.001), AtMost(3600)] = 10.0
 
     def limits(self, frequency: Hertz, voltage: Volt | None = None) -> Limits:
         """What a device may be asked for at a carrier near `frequency` (Hz).

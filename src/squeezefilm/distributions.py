@@ -24,7 +24,6 @@ class Normal:
     standard_deviation: float
 
     def __post_init__(self) -> None:
-        require("mean", self.mean)
         require("uncertainty", self.standard_deviation, above=0)
 
     @checked_numbers
@@ -52,8 +51,6 @@ class Uniform:
     high: float
 
     def __post_init__(self) -> None:
-        require("low", self.low)
-        require("high", self.high)
         if not self.low < self.high:
             raise InputError(
                 f"range = [{self.low:.6g}, {self.high:.6g}] is none; write the lower value first",

@@ -34,6 +34,10 @@ class HardLimit:
             f"at least {_shown(self.least, self.unit)} and at most {_shown(self.most, self.unit)}"
         )
 
+    def refuse_outside(self, asked: FloatLike, quantity: str) -> None:
+        """`require_within` for what an annotation bounds: ``Annotated[Metre, SIDE]``."""
+        require_within(self, asked, quantity)
+
 
 def require_within(
     limit: HardLimit, asked: FloatLike, quantity: str | None = None, *, enough: str = ""
@@ -97,7 +101,7 @@ LAYER = HardLimit("the thickness of a layer", 1e-8, 1.0, _M, "thin films to bloc
 MODULUS = HardLimit("a modulus", 1e-2, 1e13, _PA, "next to nothing to beyond diamond; " + _SLIP)
 SHEAR_MODULUS = HardLimit("a shear modulus", 0.0, 1e13, _PA, "up to beyond diamond; " + _SLIP)
 DENSITY = HardLimit("a density", 1.0, 1e5, Unit("kg/m3"), "aerogel to beyond osmium; " + _SLIP)
-QUALITY = HardLimit("a quality factor", 0.5000001, 1e8, _ONE, "from no resonance to beyond quartz")
+QUALITY = HardLimit("a quality factor", 0.501, 1e8, _ONE, "from no resonance to beyond quartz")
 COMPLIANCE = HardLimit("a compliance", 1e-14, 1e-3, Unit("m2/N"), "of any solid; " + _SLIP)
 CROSS_COMPLIANCE = HardLimit("a compliance", -1e-3, 1e-3, Unit("m2/N"), "of any solid; " + _SLIP)
 CHARGE_COEFFICIENT = HardLimit(

@@ -6,7 +6,7 @@ from __future__ import annotations
 import dataclasses
 import warnings
 from dataclasses import dataclass
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
 
@@ -24,10 +24,11 @@ from squeezefilm.hard_limits import (
     QUALITY,
     STRESS_COEFFICIENT,
     VISCOSITY,
-    require_fields,
     require_within,
 )
 from squeezefilm.quantities import (
+    Above,
+    Below,
     CoulombPerSquareMetre,
     Dimensionless,
     FaradPerMetre,
@@ -39,7 +40,6 @@ from squeezefilm.quantities import (
     PascalSecond,
     SquareMetrePerNewton,
     checked_numbers,
-    require,
 )
 
 PiezoDataSet = Literal["from_d31", "printed_e31"]
@@ -56,15 +56,10 @@ class ElasticMaterial:
     """
 
     name: str
-    young_modulus: Pascal
-    poisson_ratio: Dimensionless
-    density: KilogramPerCubicMetre
-    quality_factor: Dimensionless | None = None
-
-    def __post_init__(self) -> None:
-        require_fields(self, quality_factor=QUALITY, young_modulus=MODULUS)
-        require("poisson_ratio", self.poisson_ratio, above=-1, below=0.5)
-        require_fields(self, density=DENSITY)
+    young_modulus: Annotated[Pascal, MODULUS]
+    poisson_ratio: Annotated[Dimensionless, Above(-1), Below(0.5)]
+    density: Annotated[KilogramPerCubicMetre, DENSITY]
+    quality_factor: Annotated[Dimensionless, QUALITY] | None = None
 
     @property
     def shear_modulus(self) -> Pascal:
@@ -98,17 +93,17 @@ class PiezoConstants:
     within 3 %, or a `ContradictionError` names both.
     """
 
-    compliance_11: SquareMetrePerNewton
-    compliance_12: SquareMetrePerNewton
-    compliance_13: SquareMetrePerNewton
-    compliance_33: SquareMetrePerNewton
-    compliance_44: SquareMetrePerNewton
-    compliance_66: SquareMetrePerNewton
-    charge_coefficient_31: MetrePerVolt
-    charge_coefficient_33: MetrePerVolt
-    charge_coefficient_15: MetrePerVolt
-    clamped_permittivity_11: Dimensionless
-    clamped_permittivity_33: Dimensionless
+    compliance_11: Annotated[SquareMetrePerNewton, COMPLIANCE]
+    compliance_12: Annotated[SquareMetrePerNewton, CROSS_COMPLIANCE]
+    compliance_13: Annotated[SquareMetrePerNewton, CROSS_COMPLIANCE]
+    compliance_33: Annotated[SquareMetrePerNewton, COMPLIANCE]
+    compliance_44: Annotated[SquareMetrePerNewton, COMPLIANCE]
+    compliance_66: Annotated[SquareMetrePerNewton, COMPLIANCE]
+    charge_coefficient_31: Annotated[MetrePerVolt, CHARGE_COEFFICIENT]
+    charge_coefficient_33: Annotated[MetrePerVolt, CHARGE_COEFFICIENT]
+    charge_coefficient_15: Annotated[MetrePerVolt, CHARGE_COEFFICIENT]
+    clamped_permittivity_11: Annotated[Dimensionless, PERMITTIVITY]
+    clamped_permittivity_33: Annotated[Dimensionless, PERMITTIVITY]
     free_permittivity_11: Dimensionless | None = None
     free_permittivity_33: Dimensionless | None = None
     stress_coefficient_31: CoulombPerSquareMetre | None = None
@@ -116,14 +111,6 @@ class PiezoConstants:
     stress_coefficient_15: CoulombPerSquareMetre | None = None
 
     def __post_init__(self) -> None:
-        for name in ("compliance_11", "compliance_33", "compliance_44", "compliance_66"):
-            require_within(COMPLIANCE, getattr(self, name), name)
-        for name in ("compliance_12", "compliance_13"):
-            require_within(CROSS_COMPLIANCE, getattr(self, name), name)
-        for name in ("charge_coefficient_31", "charge_coefficient_33", "charge_coefficient_15"):
-            require_within(CHARGE_COEFFICIENT, getattr(self, name), name)
-        for name in ("clamped_permittivity_11", "clamped_permittivity_33"):
-            require_within(PERMITTIVITY, getattr(self, name), name)
         if np.linalg.eigvalsh(self.compliance_matrix)[0] <= 0:
             raise ContradictionError(
                 "the compliances of the ceramic contradict each other: the elastic energy of some "
@@ -218,29 +205,18 @@ class Piezoceramic:
     """
 
     name: str
-    in_plane_stiffness: Pascal
-    in_plane_poisson_ratio: Dimensionless
-    shear_modulus: Pascal
-    density: KilogramPerCubicMetre
-    charge_coefficient: MetrePerVolt
-    relative_permittivity: Dimensionless
-    quality_factor: Dimensionless
-    stress_coefficient: CoulombPerSquareMetre | None = None
+    in_plane_stiffness: Annotated[Pascal, MODULUS]
+    in_plane_poisson_ratio: Annotated[Dimensionless, Above(-1), Below(0.5)]
+    shear_modulus: Annotated[Pascal, MODULUS]
+    density: Annotated[KilogramPerCubicMetre, DENSITY]
+    charge_coefficient: Annotated[MetrePerVolt, CHARGE_COEFFICIENT]
+    relative_permittivity: Annotated[Dimensionless, PERMITTIVITY]
+    quality_factor: Annotated[Dimensionless, QUALITY]
+    stress_coefficient: Annotated[CoulombPerSquareMetre, STRESS_COEFFICIENT] | None = None
     data_set: PiezoDataSet = "from_d31"
     constants: PiezoConstants | None = None
 
     def __post_init__(self) -> None:
-        require_fields(self, in_plane_stiffness=MODULUS)
-        require("in_plane_poisson_ratio", self.in_plane_poisson_ratio, above=-1, below=0.5)
-        require_fields(
-            self,
-            shear_modulus=MODULUS,
-            density=DENSITY,
-            charge_coefficient=CHARGE_COEFFICIENT,
-            relative_permittivity=PERMITTIVITY,
-            quality_factor=QUALITY,
-            stress_coefficient=STRESS_COEFFICIENT,
-        )
         if self.stress_coefficient is None and self.data_set == "printed_e31":
             raise ContradictionError(
                 "data_set = 'printed_e31' needs a stress_coefficient; give one in C/m2, "
@@ -254,10 +230,13 @@ class Piezoceramic:
             return
         full = self.constants
         for name, own, derived in (
-            ("in_plane_stiffness", self.in_plane_stiffness,
-             full.compliance_11 / (full.compliance_11**2 - full.compliance_12**2)),
+            (
+                "in_plane_stiffness",
+                self.in_plane_stiffness,
+                full.compliance_11 / (full.compliance_11**2 - full.compliance_12**2),
+            ),
             ("charge_coefficient", self.charge_coefficient, full.charge_coefficient_31),
-        ):  # fmt: skip
+        ):
             if abs(own - derived) > 0.03 * abs(derived):
                 raise ContradictionError(
                     f"{name} = {own:.4g} contradicts the full constants, which give {derived:.4g} "
@@ -358,19 +337,10 @@ class Piezoceramic:
 class Gas:
     """The gas between finger and surface, at ambient pressure."""
 
-    viscosity: PascalSecond
-    ambient_pressure: Pascal
-    density: KilogramPerCubicMetre
-    mean_free_path: Metre
-
-    def __post_init__(self) -> None:
-        require_fields(
-            self,
-            viscosity=VISCOSITY,
-            ambient_pressure=PRESSURE,
-            density=GAS_DENSITY,
-            mean_free_path=FREE_PATH,
-        )
+    viscosity: Annotated[PascalSecond, VISCOSITY]
+    ambient_pressure: Annotated[Pascal, PRESSURE]
+    density: Annotated[KilogramPerCubicMetre, GAS_DENSITY]
+    mean_free_path: Annotated[Metre, FREE_PATH]
 
     @checked_numbers
     def at_pressure(self, ambient_pressure: Pascal) -> Gas:

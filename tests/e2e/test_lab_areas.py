@@ -50,6 +50,8 @@ class Watched:
         self.lab = lab
         self.asked: list[dict[str, Any]] = []
         self.answered: set[int] = set()
+        self.late: str | None = None  # the type of request whose answers are kept back
+        self._kept: list[str | bytes] = []
         self.complaints: list[str] = []
         context = browser.new_context(viewport={"width": 1280, "height": 900})
         context.route_web_socket(re.compile("/ws$"), self._between)
@@ -68,8 +70,12 @@ class Watched:
             server.send(text)
 
         def told(text: str | bytes) -> None:
-            self.answered.add(json.loads(text).get("id"))
-            route.send(text)
+            answers = json.loads(text).get("id")
+            self.answered.add(answers)
+            if self.late in [one["type"] for one in self.asked if one["id"] == answers]:
+                self._kept.append(text)
+            else:
+                route.send(text)
 
         self.route, self.server = route, server
         route.on_message(asked)
@@ -79,6 +85,12 @@ class Watched:
         """Enter an area."""
         self.page.goto(f"{self.lab.address}#{area}")
         self.page.locator(f"#area[data-area={area}] *").first.wait_for(state="attached")
+
+    def let_go(self) -> None:
+        """Give the page the answers that were kept back."""
+        self.late, kept, self._kept = None, self._kept, []
+        for text in kept:
+            self.route.send(text)
 
     def told(self, type: str, **fields: Any) -> None:
         """The page hears a message that the lab did not send."""
@@ -211,6 +223,22 @@ def test_a_visit_ends_what_was_begun_in_it(seen: Watched) -> None:
         "after": ["here answered", "done all the same"],
         "kept": "typed",
     }
+
+
+def test_the_answer_to_an_earlier_wish_is_not_shown_over_a_later_one(seen: Watched) -> None:
+    page = seen.page
+    seen.go("help")
+    seen.late = "plan study"
+    seen.go("study")
+    page.locator("#study-name").fill("early")
+    page.get_by_role("button", name="Create the study").click()
+    page.locator("h2", has_text="early").wait_for()
+    seen.let_go()
+    seen.settle()
+    assert page.locator("h2", has_text="early").is_visible()
+    page.reload()
+    page.get_by_role("button", name="early", exact=True).wait_for()
+    assert page.locator("h2", has_text="early").is_visible()
 
 
 def test_every_area_has_room_at_every_size(seen: Watched) -> None:

@@ -9,7 +9,7 @@ import multiprocessing
 from collections.abc import Callable
 from typing import Any
 
-IMPORTED = ["tests.faults.compiled_host", "tests.faults.study_child"]
+IMPORTED = ["tests.faults.compiled_host", "tests.faults.program_child", "tests.faults.study_child"]
 
 
 class Forked:

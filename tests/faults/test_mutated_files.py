@@ -19,7 +19,7 @@ import warnings
 from pathlib import Path
 
 import pytest
-from tests.e2e.program import PROGRAM
+from tests.faults.forked import Forked
 from tests.faults.mutants import (
     GIGABYTE,
     MOST_FILMS,
@@ -31,8 +31,9 @@ from tests.faults.mutants import (
     tried,
 )
 from tests.faults.mutations import mutated
+from tests.faults.program_child import program
 
-from squeezefilm.analysis.friction.command import analyze_friction
+from squeezefilm.chain.prediction import predict
 from squeezefilm.display import load_display
 from squeezefilm.errors import SqueezefilmError
 from squeezefilm.hard_limits import RENDER_STEPS, SOLID_MEMORY
@@ -98,7 +99,7 @@ def test_a_hundred_mutated_plates_are_solved_or_refused(
     monkeypatch.setattr(box_model, "SOLID_MEMORY", lower)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        analyze_friction(load_display(source), samples=0, points=4)
+        predict(load_display(source))
         before, solved, number = peak(), 0, 0
         while solved < 100:
             number += 1
@@ -107,7 +108,7 @@ def test_a_hundred_mutated_plates_are_solved_or_refused(
             file.write_bytes(mutated(source.read_text(encoding="utf-8"), chance))
             # Anything untyped comes out of here.
             with counted() as work, contextlib.suppress(SqueezefilmError):
-                analyze_friction(load_display(file), samples=0, points=4)
+                predict(load_display(file))
             solved += work.counts["solid solves"] > 0
     assert peak() - before < GIGABYTE, f"seed {seed}"
 
@@ -123,11 +124,8 @@ def test_a_hundred_mutated_files_through_the_program(tmp_path: Path) -> None:
         for verb in VERBS.get(kind, []):
             words = [*verb[:1], *verb[1:2], str(what)] if kind == "study" else [verb[0], str(what)]
             rest = verb[2:] if kind == "study" else verb[1:]
-            done = subprocess.run(
-                [*PROGRAM, *words, *rest], capture_output=True, text=True, check=False,
-                errors="backslashreplace",
-            )  # fmt: skip
-            which = f"seed {seed}, mutant {number}, {' '.join(verb)}: {done.stderr[-500:]}"
-            assert done.returncode in (0, 2), which
-            assert "Traceback" not in done.stderr, which
+            code, said = Forked(program, [*words, *rest]).hear() or (None, "it died")
+            which = f"seed {seed}, mutant {number}, {' '.join(verb)}: {said[-500:]}"
+            assert code in (0, 2), which
+            assert "Traceback" not in said, which
             run += 1

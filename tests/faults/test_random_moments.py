@@ -58,7 +58,7 @@ def hit(host: Forked, trace: Path, pick: random.Random) -> str:
     """Kill or stop a host at a random moment from its opening the port on; returns how it ended."""
     least = pick.choice((0, 0, 1, 100))  # rows of the record: before it plays, and while it does
     until(lambda: rows(trace) >= least or host.has_ended(), "the record")
-    time.sleep(pick.uniform(0.0, 1.0))
+    time.sleep(pick.uniform(0.0, 0.5))
     if host.has_ended():  # a computer that is too busy ends it before
         return ended(host)
     if pick.random() < 0.95:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import inspect
 import typing
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -269,8 +269,10 @@ def _choices(hint: Any) -> tuple[Any, ...]:
     return ()
 
 
-def good_value(name: str, hint: Any) -> Any:
-    """A good value of an argument, or raises LookupError."""
+def good_value(name: str, hint: Any) -> Callable[[], Any]:
+    """What makes a good value of an argument; raises LookupError where nothing is known to."""
+    if typing.get_origin(hint) is typing.Annotated and unit_of(hint) is None:
+        hint = hint.__origin__  # a count or a plain number with bounds
     if name in _BY_NAME and (unit_of(hint) or hint in (int, float, str)):
         value = _BY_NAME[name]
     elif (unit := unit_of(hint)) is not None:
@@ -282,13 +284,25 @@ def good_value(name: str, hint: Any) -> Any:
             (p for p in (hint, *typing.get_args(hint)) if inspect.isclass(p) and p in MADE), None
         )
         if kind is not None:
-            return made(kind)
+            return lambda: made(kind)
         if choices := _choices(hint):
-            return choices[0]
+            return lambda: choices[0]
         raise LookupError(name)
     if unit_of(hint) is not None and "ndarray" in str(hint) and "float |" not in str(hint):
-        return np.full(5, value) if np.ndim(value) == 0 else value
-    return value
+        return lambda: np.full(5, value) if np.ndim(value) == 0 else value
+    return lambda: value
+
+
+def wanted_values(call: PublicCall, given: Collection[str]) -> dict[str, Callable[[], Any]]:
+    """What makes the arguments that a call needs beside those given by name."""
+    return {
+        name: good_value(name, call.hints[name])
+        for name, parameter in inspect.signature(call.function).parameters.items()
+        if name not in given
+        and name != "self"
+        and parameter.default is inspect.Parameter.empty
+        and parameter.kind not in (parameter.VAR_POSITIONAL, parameter.VAR_KEYWORD)
+    }
 
 
 def good_arguments(call: PublicCall) -> dict[str, Any]:
@@ -306,14 +320,7 @@ def good_arguments(call: PublicCall) -> dict[str, Any]:
             arguments["self"] = own.function(**good_arguments(own))
         else:
             arguments["self"] = made(kind)
-    for name, parameter in inspect.signature(call.function).parameters.items():
-        if name in given or name == "self":
-            continue
-        if parameter.default is not inspect.Parameter.empty:
-            continue
-        if parameter.kind in (parameter.VAR_POSITIONAL, parameter.VAR_KEYWORD):
-            continue
-        arguments[name] = good_value(name, call.hints[name])
+    arguments |= {name: make() for name, make in wanted_values(call, given).items()}
     return {**arguments, **given}
 
 

@@ -33,6 +33,7 @@ _ROOMS = tuple(f"{room}." for room in ROOMS)
 
 NOT_CALLED = {
     "a record of what was computed, which only the package makes": """
+    film.periodic.solution.Asked film.periodic.solution.Found
     contact.sharing.film_load.FilmLoad contact.sharing.pad.PadFriction
     contact.sharing.balance.LoadSharing
     contact.sharing.balance.TiedSharing contact.sliding.skin_vibration.SkinVibration
@@ -112,8 +113,9 @@ NOT_CALLED = {
     plate.elements.slabs.Slabs.places plate.elements.slabs.Slabs.stiffness_times
     plate.elements.slabs.Slabs.weighted_sections render.opcodes.Assembler.emit
     render.opcodes.Assembler.table render.texture.noise.mixed render.texture.coordinate.require_fade
-    render.texture.coordinate.require_place render.texture.noise.field_noise
-    render.texture.noise.line_noise
+    render.texture.noise.field_noise
+    render.texture.noise.line_noise film.periodic.resolution.resolution_of
+    film.periodic.solution.assembled
     """,
     "no number but the index of what its other arguments hold, or an array the package made": """
     contact.sharing.gas_table.FilmTable.build film.compiled.announce
@@ -129,7 +131,7 @@ NOT_CALLED = {
     render.program.renderer.Renderer.tick
     """,
     "the check of numbers itself, whose bounds are the code's own, and its messages' text": """
-    quantities.checks.require quantities.checks.require_valid quantities.units.format_quantity
+    quantities.require.require quantities.require.require_valid quantities.units.format_quantity
     """,
 }
 """The public calls for which no good call is made here, by the reason. A new one must be named."""

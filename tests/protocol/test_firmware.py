@@ -148,6 +148,7 @@ def test_mauled_sessions(firmware: Library | Sanitized) -> None:
 
 
 @pytest.mark.nightly
+@pytest.mark.parametrize("firmware", ["sanitized"], indirect=True)
 def test_many_adversarial_streams(firmware: Library | Sanitized) -> None:
     first = random.SystemRandom().randrange(2**31)
     print(f"seeds {first} ... {first + 99}")

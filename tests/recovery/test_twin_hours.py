@@ -96,7 +96,7 @@ def test_a_session_across_the_wrap_of_the_clock_is_like_any_other() -> None:
 @pytest.mark.parametrize(
     "hours",
     [
-        pytest.param(3, marks=pytest.mark.nightly),  # over two wraps of the clock
+        pytest.param(2, marks=pytest.mark.nightly),  # over a wrap of the clock
         pytest.param(8, marks=pytest.mark.campaign),
     ],
 )

@@ -140,10 +140,18 @@ def play_texture(
         )
     tell("the display at its largest amplitude")
     setup = play_setup(
-        display, texture, sensor=eyes, voltage=voltage, surface=surface, rate=rate,
-        compensation=compensation, mode=mode, way=way, amplitude_per_pickup=amplitude_per_pickup,
+        display,
+        texture,
+        sensor=eyes,
+        voltage=voltage,
+        surface=surface,
+        rate=rate,
+        compensation=compensation,
+        mode=mode,
+        way=way,
+        amplitude_per_pickup=amplitude_per_pickup,
         twin=drive == "twin",
-    )  # fmt: skip
+    )
     metadata = {
         **stamp((display, texture, stroke, mode, rate, compensation, sensor), seed),
         "texture": setup.name,
@@ -161,9 +169,16 @@ def play_texture(
         with device_stream(drive, target, settings, stroke, truth) as stream:
             tell("playing; Ctrl-C stops safely")
             outcome = run_play(
-                setup.plan, stream, folder / TRACE_NAME, metadata, duration=duration,
-                sensor=_replay(sensor), show=show, tap=tap, bench_only=bench_only,
-            )  # fmt: skip
+                setup.plan,
+                stream,
+                folder / TRACE_NAME,
+                metadata,
+                duration=duration,
+                sensor=_replay(sensor),
+                show=show,
+                tap=tap,
+                bench_only=bench_only,
+            )
         tell(JUDGING)
         judged = judge_session(setup, read_trace(outcome.trace), truth)
     return PlayResult(outcome, judged, kept)

@@ -90,9 +90,12 @@ def sweep_resonance(
     require("voltage", voltage, Unit("V"), above=0.0, at_most=limits.voltage)
     for carrier in (float(carriers[0]), float(carriers[-1])):
         require(
-            "carriers", carrier, Unit("Hz"),
-            at_least=limits.lowest_frequency, at_most=limits.highest_frequency,
-        )  # fmt: skip
+            "carriers",
+            carrier,
+            Unit("Hz"),
+            at_least=limits.lowest_frequency,
+            at_most=limits.highest_frequency,
+        )
     if not host.open(limits).has_pickup:
         return None
     host.report(REPORT_PERIOD)

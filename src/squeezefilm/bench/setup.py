@@ -110,9 +110,7 @@ def play_setup(
             compensation or mode, or a texture that no tile can hold.
     """
     eyes = sensor if isinstance(sensor, SensorModel) else sensor_named(sensor)
-    p = predict(
-        display, voltage=voltage, normal_force=normal_force, surface=surface, model=model
-    )  # fmt: skip
+    p = predict(display, voltage=voltage, normal_force=normal_force, surface=surface, model=model)
     largest = p.vibration_amplitude
     if p.voltage is None or largest <= 0.0 or p.relative_friction >= 1.0:
         raise InputError(

@@ -7,7 +7,7 @@ curves, textures. Each law names its model.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal, cast, get_args
+from typing import Annotated, Literal, cast, get_args
 
 import numpy as np
 
@@ -29,6 +29,7 @@ from squeezefilm.film.closed.limits import PaperModel, contact_mean_pressure
 from squeezefilm.film.gap import PaperGap
 from squeezefilm.materials import Gas
 from squeezefilm.quantities import (
+    Above,
     Dimensionless,
     DimensionlessArray,
     DimensionlessLike,
@@ -40,7 +41,6 @@ from squeezefilm.quantities import (
     Newton,
     Unit,
     checked_numbers,
-    did_you_mean,
     format_quantity,
     require,
 )
@@ -130,22 +130,13 @@ class FrictionLaw:
     surface: Surface
     finger: Finger
     gas: Gas
-    half_wavelength: Metre
-    frequency: Hertz
-    normal_force: Newton
+    half_wavelength: Annotated[Metre, Above(0)]
+    frequency: Annotated[Hertz, Above(0)]
+    normal_force: Annotated[Newton, Above(0)]
     model: FrictionModel
     position: Metre = 0.0
 
     def __post_init__(self) -> None:
-        require("half_wavelength", self.half_wavelength, Unit("m"), above=0)
-        require("frequency", self.frequency, Unit("Hz"), above=0)
-        require("normal_force", self.normal_force, Unit("N"), above=0)
-        if self.model not in FRICTION_MODELS:
-            raise InputError(
-                f"model = '{self.model}' is not known.{did_you_mean(self.model, FRICTION_MODELS)} "
-                f"Allowed: {', '.join(FRICTION_MODELS)}"
-            )
-        require("position", self.position, Unit("m"))
         if self.position and not shares_load(self.model):
             raise InputError(
                 f"position = {format_quantity(self.position, Unit('m'))} from the antinode: the "

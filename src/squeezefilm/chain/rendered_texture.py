@@ -258,9 +258,7 @@ def render_texture(
     require_on_display(display.actuator, finger)
     require_on_image(texture.texture, finger)
     tell("the display at its largest amplitude")
-    p = predict(
-        display, voltage=voltage, normal_force=normal_force, surface=surface, model=model
-    )  # fmt: skip
+    p = predict(display, voltage=voltage, normal_force=normal_force, surface=surface, model=model)
     largest = p.vibration_amplitude
     if largest <= 0.0 or p.relative_friction >= 1.0:
         raise InputError(
@@ -283,9 +281,15 @@ def render_texture(
     tau = float(envelope_time_constant(quality, resonance))
     tell("the loop along the stroke")
     stroke = rendered_stroke(
-        played, finger.trajectory, DrivenEnvelope(tau, tau, largest, braking), friction,
-        compensation=way, sensor=eyes, control_rate=control_rate, seed=seed,
-    )  # fmt: skip
+        played,
+        finger.trajectory,
+        DrivenEnvelope(tau, tau, largest, braking),
+        friction,
+        compensation=way,
+        sensor=eyes,
+        control_rate=control_rate,
+        seed=seed,
+    )
     values = texture.texture(finger.x, finger.y, finger.speed, finger.time)
     amplitude = played.amplitude(values)
     reached = felt(amplitude / centred) if what == "compensated" else friction(amplitude)
@@ -314,10 +318,22 @@ def render_texture(
     except InputError as error:
         because = str(error)
     return RenderAnalysis(
-        display=display, texture=texture, motion=motion, prediction=p, played=played,
-        stroke=stroke, finger=finger, wave=what, factor=factor, asked=asked, counters=counters,
-        force=force, fidelity=judged, unjudged=because, seed=seed,
-    )  # fmt: skip
+        display=display,
+        texture=texture,
+        motion=motion,
+        prediction=p,
+        played=played,
+        stroke=stroke,
+        finger=finger,
+        wave=what,
+        factor=factor,
+        asked=asked,
+        counters=counters,
+        force=force,
+        fidelity=judged,
+        unjudged=because,
+        seed=seed,
+    )
 
 
 def _played(

@@ -121,9 +121,16 @@ def power(
 
     with terminal.progress(enabled=sys.stderr.isatty() or not as_json) as step:
         found = planned_power(
-            load_design(design), load_observer(observer), first, second, display=display,
-            target=target, studies=studies, seed=seed, progress=step,
-        )  # fmt: skip
+            load_design(design),
+            load_observer(observer),
+            first,
+            second,
+            display=display,
+            target=target,
+            studies=studies,
+            seed=seed,
+            progress=step,
+        )
     if out is not None:
         from squeezefilm.report.kit.style import png
         from squeezefilm.report.study.time_figures import power as drawn

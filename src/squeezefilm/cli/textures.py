@@ -96,9 +96,7 @@ def render(
         if out is not None:
             from squeezefilm.report.textures.page import hjif_export, write_render
 
-            written = write_render(
-                result, out, table=table, drive=drive, hjif=hjif, progress=step
-            )  # fmt: skip
+            written = write_render(result, out, table=table, drive=drive, hjif=hjif, progress=step)
     if as_json:
         print_json(result.summary())
         return

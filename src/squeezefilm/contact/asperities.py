@@ -15,13 +15,13 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Literal, get_args
+from typing import Annotated, Literal, get_args
 
 import numpy as np
 
 from squeezefilm.contact.records import CompiledAsperities
 from squeezefilm.errors import InputError
-from squeezefilm.hard_limits import DECAY_LENGTH, PRESSURE, require_fields
+from squeezefilm.hard_limits import DECAY_LENGTH, PRESSURE
 from squeezefilm.quantities import (
     Dimensionless,
     DimensionlessLike,
@@ -33,7 +33,6 @@ from squeezefilm.quantities import (
     Unit,
     checked_numbers,
     closed_form,
-    did_you_mean,
     require,
 )
 
@@ -115,21 +114,10 @@ class AsperityLaw:
     heights ("gaussian").
     """
 
-    reference_pressure: Pascal = 5e3
-    reference_gap: Metre = 2e-6
-    decay_length: Metre = 0.6e-6
+    reference_pressure: Annotated[Pascal, PRESSURE] = 5e3
+    reference_gap: Annotated[Metre, DECAY_LENGTH] = 2e-6
+    decay_length: Annotated[Metre, DECAY_LENGTH] = 0.6e-6
     heights: AsperityHeights = "exponential"
-
-    def __post_init__(self) -> None:
-        require_fields(
-            self, reference_pressure=PRESSURE, reference_gap=DECAY_LENGTH, decay_length=DECAY_LENGTH
-        )
-        if self.heights not in ASPERITY_HEIGHTS:
-            raise InputError(
-                f"heights = '{self.heights}' is no distribution of asperity heights."
-                f"{did_you_mean(self.heights, ASPERITY_HEIGHTS)} "
-                f"Allowed: {', '.join(ASPERITY_HEIGHTS)}"
-            )
 
     @checked_numbers
     def pressure(self, gap: MetreLike) -> PascalLike:

@@ -10,11 +10,14 @@ from __future__ import annotations
 
 import dataclasses
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
 from squeezefilm.errors import InputError
 from squeezefilm.quantities import (
+    Above,
+    AtLeast,
     Dimensionless,
     DimensionlessLike,
     HertzLike,
@@ -23,10 +26,8 @@ from squeezefilm.quantities import (
     Pascal,
     PascalSecond,
     SecondLike,
-    Unit,
     checked_numbers,
     closed_form,
-    require,
 )
 
 
@@ -142,23 +143,16 @@ class PaperGap:
     corrected gap closes at an antinode over a ridge, and the paper's pressure is infinite there.
     """
 
-    roughness: Metre
-    vibration_amplitude: MetreLike
-    ridge_amplitude: Metre
-    ridge_period: Metre
-    wavelength: Metre
-    contact_length: Metre
+    roughness: Annotated[Metre, Above(0)]
+    vibration_amplitude: Annotated[MetreLike, AtLeast(0)]
+    ridge_amplitude: Annotated[Metre, AtLeast(0)]
+    ridge_period: Annotated[Metre, Above(0)]
+    wavelength: Annotated[Metre, Above(0)]
+    contact_length: Annotated[Metre, Above(0)]
     wave_offset: Metre = 0.0
     ridge_offset: Metre = 0.0
 
     def __post_init__(self) -> None:
-        metre = Unit("m")
-        for name in ("roughness", "ridge_period", "wavelength", "contact_length"):
-            require(name, getattr(self, name), metre, above=0)
-        for name in ("vibration_amplitude", "ridge_amplitude"):
-            require(name, getattr(self, name), metre, at_least=0)
-        for name in ("wave_offset", "ridge_offset"):
-            require(name, getattr(self, name), metre)
         if np.ndim(self.vibration_amplitude) > 1:
             raise InputError(
                 f"vibration_amplitude has {np.ndim(self.vibration_amplitude)} dimensions; "

@@ -23,8 +23,10 @@ def require_film(
 ) -> None:
     """Refuse a gas film that no solver here has: raises `InputError` with the offending value."""
     require(
-        "squeeze_number", squeeze_number,
-        at_least=LEAST_SQUEEZE_NUMBER, at_most=MOST_SQUEEZE_NUMBER,
-    )  # fmt: skip
+        "squeeze_number",
+        squeeze_number,
+        at_least=LEAST_SQUEEZE_NUMBER,
+        at_most=MOST_SQUEEZE_NUMBER,
+    )
     require("polytropic_exponent", polytropic_exponent, at_least=1.0, at_most=5.0 / 3.0)
     require("knudsen_number", knudsen_number, at_least=0.0, at_most=MOST_KNUDSEN)

@@ -13,13 +13,19 @@ from __future__ import annotations
 import dataclasses
 from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath, PureWindowsPath
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 from squeezefilm.errors import InputError
 from squeezefilm.formats.pictures import read_picture
-from squeezefilm.quantities import FloatArray, Metre, Unit, checked_numbers, require
+from squeezefilm.quantities import (
+    AtLeast,
+    AtMost,
+    FloatArray,
+    Metre,
+    checked_numbers,
+)
 from squeezefilm.render.opcodes import Assembler
-from squeezefilm.render.texture.image import OUTSIDE, Image
+from squeezefilm.render.texture.image import Image
 from squeezefilm.render.texture.pattern import Pattern
 
 
@@ -39,7 +45,7 @@ class ImageFile(Pattern):
     """
 
     file: str
-    pixel: Metre
+    pixel: Annotated[Metre, AtLeast(1e-06), AtMost(0.1)]
     left: Metre = 0.0
     bottom: Metre = 0.0
     outside: Literal["hold", "repeat", "zero"] = "hold"
@@ -54,12 +60,6 @@ class ImageFile(Pattern):
                 f"file = '{self.file}' cannot be used: it must lie beside the texture's file or in "
                 "a folder below it; give a relative path without '..'",
                 quantity="file",
-            )
-        require("pixel", self.pixel, Unit("m"), at_least=1e-6, at_most=0.1)
-        if self.outside not in OUTSIDE:
-            raise InputError(
-                f"outside = {self.outside!r} is not known; it must be one of {', '.join(OUTSIDE)}",
-                quantity="outside",
             )
 
     def image(self, folder: Path) -> Image:

@@ -22,8 +22,13 @@ from squeezefilm.regular_file import read_regular
 from squeezefilm.render.texture.image import MOST_PIXELS
 
 _SIGNATURE = b"\x89PNG\r\n\x1a\n"
-_KINDS = {0: "greyscale", 2: "colour", 3: "colour from a palette", 4: "greyscale with alpha",
-          6: "colour with alpha"}  # fmt: skip
+_KINDS = {
+    0: "greyscale",
+    2: "colour",
+    3: "colour from a palette",
+    4: "greyscale with alpha",
+    6: "colour with alpha",
+}
 
 
 def read_picture(path: str | Path) -> DimensionlessArray:

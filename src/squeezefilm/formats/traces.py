@@ -134,8 +134,10 @@ def _numbers(row: list[str], names: list[str], path: str | Path, line: int) -> l
         except ValueError as error:
             raise ConfigError(
                 f"'{cell}' is no number; write one with a point, like 0.0125",
-                file=path, line=line, key=name,
-            ) from error  # fmt: skip
+                file=path,
+                line=line,
+                key=name,
+            ) from error
     return found
 
 

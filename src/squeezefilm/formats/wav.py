@@ -13,13 +13,23 @@ import struct
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Literal, get_args
+from typing import Annotated, Any, Literal, get_args
 
 import numpy as np
 
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import WAVE_BYTES
-from squeezefilm.quantities import FloatArray, Hertz, Unit, checked_numbers, require
+from squeezefilm.quantities import (
+    Above,
+    AtLeast,
+    AtMost,
+    FloatArray,
+    Hertz,
+    Unit,
+    checked_numbers,
+    require,
+    require_one_of,
+)
 from squeezefilm.regular_file import read_regular
 
 Encoding = Literal["float32", "int16", "int24"]
@@ -52,23 +62,19 @@ class Waveform:
     """
 
     samples: FloatArray
-    sample_rate: Hertz
+    sample_rate: Annotated[Hertz, AtLeast(1.0), AtMost(10000000.0)]
     unit: Literal["m", "V"]
-    full_scale: float
+    full_scale: Annotated[float, Above(0.0)]
     metadata: Mapping[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        if self.unit not in _UNITS:
-            raise InputError(f"unit = {self.unit!r} is not known; it must be m or V")
         unit = Unit(self.unit)
         if self.samples.ndim != 1 or self.samples.size == 0:
             raise InputError(
                 f"samples of shape {self.samples.shape} are no sound of one channel; give a list "
                 "of at least one"
             )
-        require("full_scale", self.full_scale, unit, above=0.0)
         require("samples", self.samples, unit, at_least=-self.full_scale, at_most=self.full_scale)
-        require("sample_rate", self.sample_rate, Unit("Hz"), at_least=1.0, at_most=1e7)
         if self.sample_rate != round(self.sample_rate):
             raise InputError(
                 f"sample_rate = {self.sample_rate!r} Hz cannot be written: a WAV file has a whole "
@@ -85,10 +91,7 @@ def wav_bytes(waveform: Waveform, encoding: Encoding = "float32") -> bytes:
     Raises:
         InputError: an unknown encoding, or more samples than such a file can hold.
     """
-    if encoding not in ENCODINGS:
-        raise InputError(
-            f"encoding = {encoding!r} is not known; it must be one of {', '.join(ENCODINGS)}"
-        )
+    require_one_of("encoding", encoding, ENCODINGS)
     width = _WIDTH[encoding]
     if waveform.samples.size * width > _MOST_BYTES:
         raise InputError(

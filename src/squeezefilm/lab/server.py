@@ -254,9 +254,12 @@ class UnheardServer(uvicorn.Server):
         await super().startup([])
         for listener in sockets or []:
             door = Door(
-                listener, self._serving, most=self._most,
-                most_of_address=self._most_of_address, tls=self.config.ssl,
-            )  # fmt: skip
+                listener,
+                self._serving,
+                most=self._most,
+                most_of_address=self._most_of_address,
+                tls=self.config.ssl,
+            )
             self.doors.append(door)
 
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:

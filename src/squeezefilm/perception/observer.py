@@ -18,6 +18,10 @@ from squeezefilm.contact.finger.fingertip import Moisture
 from squeezefilm.errors import InputError
 from squeezefilm.from_text import ReadBy
 from squeezefilm.quantities import (
+    Above,
+    AtLeast,
+    AtMost,
+    Below,
     Dimensionless,
     DimensionlessLike,
     Hertz,
@@ -29,6 +33,7 @@ from squeezefilm.quantities import (
     Radian,
     Second,
     Unit,
+    checked_numbers,
     require,
 )
 
@@ -36,6 +41,7 @@ _MOST_FINGERS = 64
 _FINGERS_STREAM = 71
 
 
+@checked_numbers
 @dataclass(frozen=True)
 class SensoryChannel:
     """One kind of mechanoreceptor as a band-pass of skin displacement with a threshold.
@@ -52,15 +58,13 @@ class SensoryChannel:
     """
 
     name: str
-    low: Hertz
+    low: Annotated[Hertz, AtLeast(0.0)]
     high: Hertz
-    threshold: Metre
+    threshold: Annotated[Metre, Above(0.0)]
     spatial: bool = False
 
     def __post_init__(self) -> None:
-        require("low", self.low, Unit("Hz"), at_least=0.0)
         require("high", self.high, Unit("Hz"), above=self.low)
-        require("threshold", self.threshold, Unit("m"), above=0.0)
 
     def gain(self, frequency: HertzLike) -> DimensionlessLike:
         """Share of a displacement's amplitude that passes, at frequencies (Hz): second-order
@@ -84,6 +88,7 @@ class FingerClass:
     speed: MetrePerSecond
 
 
+@checked_numbers
 @dataclass(frozen=True)
 class Observer:
     """Everything a simulated participant is made of.
@@ -125,35 +130,35 @@ class Observer:
     name: str
     title: str
     channels: tuple[SensoryChannel, ...]
-    friction_weber_fraction: Dimensionless
-    indentation_weber_fraction: Dimensionless
-    period_weber_fraction: Dimensionless
-    period_spread: Dimensionless
-    harmonic_weight: Dimensionless
-    harmonics: int
-    candidates: int
-    detection_criterion: Dimensionless
-    lapse_rate: Dimensionless
-    lapse_spread: Dimensionless
-    learning_excess: Dimensionless
-    learning_trials: Dimensionless
-    contact_length: Metre
-    contact_spread: Dimensionless
-    contact_aspect: Dimensionless
-    finger_orientation: Radian
-    dry_share: Dimensionless
+    friction_weber_fraction: Annotated[Dimensionless, Above(0.0)]
+    indentation_weber_fraction: Annotated[Dimensionless, Above(0.0)]
+    period_weber_fraction: Annotated[Dimensionless, Above(0.0)]
+    period_spread: Annotated[Dimensionless, AtLeast(0.0)]
+    harmonic_weight: Annotated[Dimensionless, Above(0.0), Below(1.0)]
+    harmonics: Annotated[int, AtLeast(1), AtMost(20)]
+    candidates: Annotated[int, AtLeast(1), AtMost(20)]
+    detection_criterion: Annotated[Dimensionless, AtLeast(0.0)]
+    lapse_rate: Annotated[Dimensionless, AtLeast(0.0), AtMost(1.0)]
+    lapse_spread: Annotated[Dimensionless, AtLeast(0.0)]
+    learning_excess: Annotated[Dimensionless, AtLeast(0.0)]
+    learning_trials: Annotated[Dimensionless, Above(0.0)]
+    contact_length: Annotated[Metre, Above(0.0)]
+    contact_spread: Annotated[Dimensionless, AtLeast(0.0)]
+    contact_aspect: Annotated[Dimensionless, Above(0.0)]
+    finger_orientation: Annotated[Radian, AtLeast(-4), AtMost(4)]
+    dry_share: Annotated[Dimensionless, AtLeast(0.0), AtMost(1.0)]
     moist_share: Dimensionless
-    speed: MetrePerSecond
-    speed_spread: Dimensionless
-    normal_force: Newton
-    force_spread: Dimensionless
-    stroke_length: Metre
-    passes: int
-    skin_modulus: Pascal
-    finger_classes: int
-    response_time: Second
-    response_time_spread: Dimensionless
-    doubt_time: Second
+    speed: Annotated[MetrePerSecond, Above(0.0)]
+    speed_spread: Annotated[Dimensionless, AtLeast(0.0)]
+    normal_force: Annotated[Newton, Above(0.0)]
+    force_spread: Annotated[Dimensionless, AtLeast(0.0)]
+    stroke_length: Annotated[Metre, Above(0.0)]
+    passes: Annotated[int, AtLeast(1), AtMost(100)]
+    skin_modulus: Annotated[Pascal, Above(0.0)]
+    finger_classes: Annotated[int, AtLeast(1), AtMost(_MOST_FINGERS)]
+    response_time: Annotated[Second, Above(0.0)]
+    response_time_spread: Annotated[Dimensionless, AtLeast(0.0)]
+    doubt_time: Annotated[Second, AtLeast(0.0)]
     provenance: Mapping[str, Provenance] = field(
         default_factory=dict, metadata={"loader": True}, compare=False, repr=False
     )
@@ -161,26 +166,7 @@ class Observer:
     def __post_init__(self) -> None:
         if not self.channels:
             raise InputError("channels is empty; give at least one", quantity="channels")
-        for name in (
-            "friction_weber_fraction", "indentation_weber_fraction", "period_weber_fraction",
-            "learning_trials", "contact_length", "contact_aspect", "speed", "normal_force",
-            "stroke_length", "skin_modulus", "response_time",
-        ):  # fmt: skip
-            require(name, getattr(self, name), above=0.0)
-        for name in (
-            "period_spread", "lapse_spread", "learning_excess", "contact_spread", "speed_spread",
-            "force_spread", "response_time_spread", "doubt_time", "detection_criterion",
-        ):  # fmt: skip
-            require(name, getattr(self, name), at_least=0.0)
-        require("harmonic_weight", self.harmonic_weight, above=0.0, below=1.0)
-        require("lapse_rate", self.lapse_rate, at_least=0.0, at_most=1.0)
-        require("dry_share", self.dry_share, at_least=0.0, at_most=1.0)
         require("moist_share", self.moist_share, at_least=0.0, at_most=1.0 - self.dry_share)
-        require("finger_orientation", self.finger_orientation, Unit("rad"), at_least=-4, at_most=4)
-        require("harmonics", self.harmonics, at_least=1, at_most=20)
-        require("candidates", self.candidates, at_least=1, at_most=20)
-        require("passes", self.passes, at_least=1, at_most=100)
-        require("finger_classes", self.finger_classes, at_least=1, at_most=_MOST_FINGERS)
 
     def fingers(self) -> tuple[FingerClass, ...]:
         """The finger classes: a Latin hypercube over what people differ in, always the same.

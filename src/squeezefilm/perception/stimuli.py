@@ -9,10 +9,20 @@ from __future__ import annotations
 
 import dataclasses
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import Dimensionless, Metre, Radian, Unit, did_you_mean, require
+from squeezefilm.quantities import (
+    Above,
+    AtLeast,
+    AtMost,
+    Below,
+    Dimensionless,
+    Metre,
+    Radian,
+    Unit,
+    checked_numbers,
+)
 from squeezefilm.render.texture.composition import Composable
 from squeezefilm.render.texture.coordinate import FARTHEST, FINEST, AlongDirection
 from squeezefilm.render.texture.levels import RelativeFriction
@@ -27,6 +37,7 @@ Varied = Literal["spatial_period", "friction_depth", "ridge_share", "orientation
 _METRE = Unit("m")
 
 
+@checked_numbers
 @dataclass(frozen=True)
 class Stimulus:
     """A virtual grating: friction low in its grooves, high on its ridges.
@@ -48,22 +59,18 @@ class Stimulus:
     """
 
     name: str
-    spatial_period: Metre
+    spatial_period: Annotated[Metre, AtLeast(FINEST), AtMost(FARTHEST)]
     period_means: PeriodMeans
     waveform: Waveform = "square"
-    ridge_share: Dimensionless = 0.5
-    orientation: Radian = 0.0
-    low: Dimensionless = 0.7
-    high: Dimensionless = 1.0
+    ridge_share: Annotated[Dimensionless, Above(0), Below(1)] = 0.5
+    orientation: Annotated[Radian, AtLeast(-10.0), AtMost(10.0)] = 0.0
+    low: Annotated[Dimensionless, AtLeast(0.0), AtMost(1.0)] = 0.7
+    high: Annotated[Dimensionless, Above(0.0), AtMost(1.0)] = 1.0
     texture: str = ""
     matches: str = ""
 
     def __post_init__(self) -> None:
-        _require_grating(self.name, self.spatial_period, self.period_means, self.ridge_share)
-        require_one_of("waveform", self.waveform, ("square", "sine", "constant"))
-        require("orientation", self.orientation, Unit("rad"), at_least=-10.0, at_most=10.0)
-        require("low", self.low, at_least=0.0, at_most=1.0)
-        require("high", self.high, above=0.0, at_most=1.0)
+        _require_title(self.name)
         if self.low >= self.high:
             raise InputError(
                 f"stimulus '{self.name}': low = {self.low:g} is not below high = {self.high:g}; "
@@ -129,6 +136,7 @@ class Stimulus:
         return dataclasses.replace(self, name=name, matches="", **changed)
 
 
+@checked_numbers
 @dataclass(frozen=True)
 class Grating:
     """A real grating that is touched for comparison, like the paper's etched copper boards.
@@ -147,19 +155,16 @@ class Grating:
     """
 
     name: str
-    spatial_period: Metre
+    spatial_period: Annotated[Metre, AtLeast(FINEST), AtMost(FARTHEST)]
     period_means: PeriodMeans
-    ridge_share: Dimensionless = 0.5
-    ridge_height: Metre = 70e-6
-    length: Metre = 0.13
-    width: Metre = 7e-3
+    ridge_share: Annotated[Dimensionless, Above(0), Below(1)] = 0.5
+    ridge_height: Annotated[Metre, Above(0.0), AtMost(0.01)] = 70e-6
+    length: Annotated[Metre, Above(0.0), AtMost(FARTHEST)] = 0.13
+    width: Annotated[Metre, Above(0.0), AtMost(FARTHEST)] = 7e-3
     material: str = "copper"
 
     def __post_init__(self) -> None:
-        _require_grating(self.name, self.spatial_period, self.period_means, self.ridge_share)
-        require("ridge_height", self.ridge_height, _METRE, above=0.0, at_most=0.01)
-        require("length", self.length, _METRE, above=0.0, at_most=FARTHEST)
-        require("width", self.width, _METRE, above=0.0, at_most=FARTHEST)
+        _require_title(self.name)
 
     @property
     def period(self) -> Metre:
@@ -172,26 +177,13 @@ class Grating:
         return self.period * (1.0 - self.ridge_share)
 
 
-def require_one_of(name: str, value: str, allowed: tuple[str, ...]) -> None:
-    """Refuse a word that is not among those allowed. Raises `InputError` that lists them."""
-    if value not in allowed:
-        raise InputError(
-            f"{name} = {value!r} is not known.{did_you_mean(str(value), allowed)} "
-            f"Allowed: {', '.join(allowed)}",
-            quantity=name,
-        )
-
-
 def _period(length: Metre, means: PeriodMeans, ridge_share: Dimensionless) -> Metre:
     return length if means == "period" else length / (1.0 - ridge_share)
 
 
-def _require_grating(name: str, length: Metre, means: str, ridge_share: Dimensionless) -> None:
+def _require_title(name: str) -> None:
     if not name.strip() or len(name) > 60 or not name.isprintable():
         raise InputError(
             f"name = {name!r} cannot be used; write one line of 1 to 60 characters",
             quantity="name",
         )
-    require("spatial_period", length, _METRE, at_least=FINEST, at_most=FARTHEST)
-    require_one_of("period_means", means, ("period", "groove width"))
-    require("ridge_share", ridge_share, above=0.0, below=1.0)

@@ -8,11 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import Annotated, Literal
 
 from squeezefilm.errors import InputError
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.quantities import (
+    Above,
     Kilogram,
     KilogramPerCubicMetre,
     KilogramPerSquareMetre,
@@ -21,7 +22,6 @@ from squeezefilm.quantities import (
     NewtonPerMetre,
     NewtonPerVolt,
     Pascal,
-    Unit,
     checked_numbers,
     require,
 )
@@ -35,16 +35,10 @@ SHEAR_CORRECTION = 5 / 6
 class Layer:
     """One layer of a laminate: its thickness, bending modulus, shear modulus and density."""
 
-    thickness: Metre
-    modulus: Pascal
-    shear_modulus: Pascal
-    density: KilogramPerCubicMetre
-
-    def __post_init__(self) -> None:
-        require("thickness", self.thickness, Unit("m"), above=0)
-        require("modulus", self.modulus, Unit("Pa"), above=0)
-        require("shear_modulus", self.shear_modulus, Unit("Pa"), above=0)
-        require("density", self.density, Unit("kg/m3"), above=0)
+    thickness: Annotated[Metre, Above(0)]
+    modulus: Annotated[Pascal, Above(0)]
+    shear_modulus: Annotated[Pascal, Above(0)]
+    density: Annotated[KilogramPerCubicMetre, Above(0)]
 
 
 @checked_numbers

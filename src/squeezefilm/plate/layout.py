@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Literal, TypeVar
+from typing import Annotated, Literal, TypeVar
 
 from squeezefilm import hard_limits as hard
 from squeezefilm.errors import GeometryError, InputError
@@ -54,27 +54,18 @@ class CeramicPatch:
     ceramic is poled away from the plate; like polarity it turns the sign of the response.
     """
 
-    x: Metre
-    y: Metre
-    length: Metre
-    width: Metre
-    thickness: Metre
+    x: Annotated[Metre, hard.PLACE]
+    y: Annotated[Metre, hard.PLACE]
+    length: Annotated[Metre, hard.SIDE]
+    width: Annotated[Metre, hard.SIDE]
+    thickness: Annotated[Metre, hard.LAYER]
     polarity: Literal[1, -1] = 1
     face: Face = "bottom"
     electrode: Electrode = "driven"
     poling: Literal[1, -1] = 1
-    shunt_resistance: Ohm | None = None
+    shunt_resistance: Annotated[Ohm, hard.RESISTANCE] | None = None
 
     def __post_init__(self) -> None:
-        hard.require_fields(
-            self,
-            x=hard.PLACE,
-            y=hard.PLACE,
-            length=hard.SIDE,
-            width=hard.SIDE,
-            thickness=hard.LAYER,
-        )
-        hard.require_fields(self, shunt_resistance=hard.RESISTANCE)
         if (self.electrode == "shunted") != (self.shunt_resistance is not None):
             raise InputError(
                 f"electrode = '{self.electrode}' and shunt_resistance do not go together; a "
@@ -94,31 +85,15 @@ class FoamSupport:
     the support at a nodal line. Foam under a ceramic is not provided.
     """
 
-    x: Metre
-    y: Metre
-    length: Metre
-    width: Metre
-    thickness: Metre
-    young_modulus: Pascal
-    quality_factor: Dimensionless = 3.0
-    shear_modulus: Pascal | None = None
+    x: Annotated[Metre, hard.PLACE]
+    y: Annotated[Metre, hard.PLACE]
+    length: Annotated[Metre, hard.SIDE]
+    width: Annotated[Metre, hard.SIDE]
+    thickness: Annotated[Metre, hard.LAYER]
+    young_modulus: Annotated[Pascal, hard.MODULUS]
+    quality_factor: Annotated[Dimensionless, hard.QUALITY] = 3.0
+    shear_modulus: Annotated[Pascal, hard.SHEAR_MODULUS] | None = None
     face: Face = "bottom"
-
-    def __post_init__(self) -> None:
-        hard.require_fields(
-            self,
-            x=hard.PLACE,
-            y=hard.PLACE,
-            length=hard.SIDE,
-            width=hard.SIDE,
-            thickness=hard.LAYER,
-        )
-        hard.require_fields(
-            self,
-            young_modulus=hard.MODULUS,
-            quality_factor=hard.QUALITY,
-            shear_modulus=hard.SHEAR_MODULUS,
-        )
 
     @property
     def stiffness_per_area(self) -> tuple[float, float, float]:
@@ -130,9 +105,14 @@ class FoamSupport:
 
 @checked_numbers
 def rim_supports(
-    length: Metre, width: Metre, strip: Metre, thickness: Metre, young_modulus: Pascal,
-    quality_factor: Dimensionless = 3.0, face: Face = "bottom",
-) -> tuple[FoamSupport, ...]:  # fmt: skip
+    length: Metre,
+    width: Metre,
+    strip: Metre,
+    thickness: Metre,
+    young_modulus: Pascal,
+    quality_factor: Dimensionless = 3.0,
+    face: Face = "bottom",
+) -> tuple[FoamSupport, ...]:
     """Four strips of foam of breadth `strip` around the rim of a plate of `length` × `width`."""
 
     def one(x: float, y: float, a: float, b: float) -> FoamSupport:
@@ -163,11 +143,11 @@ class RectangularPlate:
     Raises `GeometryError` for ceramics that overlap each other or overhang the plate.
     """
 
-    length: Metre
-    width: Metre
-    thickness: Metre
-    nodal_lines: int
-    quality_factor: Dimensionless
+    length: Annotated[Metre, hard.SIDE]
+    width: Annotated[Metre, hard.SIDE]
+    thickness: Annotated[Metre, hard.LAYER]
+    nodal_lines: Annotated[int, hard.NODAL_LINES]
+    quality_factor: Annotated[Dimensionless, hard.QUALITY]
     substrate: ElasticMaterial
     ceramic: Piezoceramic
     patches: tuple[CeramicPatch, ...]
@@ -178,14 +158,6 @@ class RectangularPlate:
     lines_across: Literal["length", "width"] = "length"
 
     def __post_init__(self) -> None:
-        hard.require_fields(
-            self,
-            length=hard.SIDE,
-            width=hard.SIDE,
-            thickness=hard.LAYER,
-            nodal_lines=hard.NODAL_LINES,
-            quality_factor=hard.QUALITY,
-        )
         hard.require_within(hard.PARTS_OF_A_PLATE, len(self.patches), "number of patches")
         hard.require_within(hard.PARTS_OF_A_PLATE, len(self.supports), "number of supports")
         if not self.patches:

@@ -5,12 +5,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Literal
+from typing import Annotated, Literal
 
 from squeezefilm import hard_limits as hard
 from squeezefilm.errors import GeometryError, InputError
 from squeezefilm.materials import ElasticMaterial, Piezoceramic
 from squeezefilm.quantities import (
+    Above,
+    Below,
     Dimensionless,
     Hertz,
     KilogramPerCubicMetre,
@@ -31,16 +33,11 @@ _M = Unit("m")
 class GlueLayer:
     """The glue between every ceramic and the plate, as an isotropic layer."""
 
-    thickness: Metre
-    young_modulus: Pascal
-    poisson_ratio: Dimensionless = 0.38
-    density: KilogramPerCubicMetre = 1150.0
-    quality_factor: Dimensionless = 20.0
-
-    def __post_init__(self) -> None:
-        hard.require_fields(self, thickness=hard.LAYER, young_modulus=hard.MODULUS)
-        require("poisson_ratio", self.poisson_ratio, above=-1, below=0.5)
-        hard.require_fields(self, density=hard.DENSITY, quality_factor=hard.QUALITY)
+    thickness: Annotated[Metre, hard.LAYER]
+    young_modulus: Annotated[Pascal, hard.MODULUS]
+    poisson_ratio: Annotated[Dimensionless, Above(-1), Below(0.5)] = 0.38
+    density: Annotated[KilogramPerCubicMetre, hard.DENSITY] = 1150.0
+    quality_factor: Annotated[Dimensionless, hard.QUALITY] = 20.0
 
 
 @checked_numbers
@@ -51,29 +48,18 @@ class AnnularStator:
     The surface may be toothed: `tooth_pitch` along the circumference, slots of `slot_width`.
     """
 
-    mean_diameter: Metre
-    radial_width: Metre
-    wavelength: Metre
-    resonance_frequency: Hertz
-    quality_factor: Dimensionless
-    reference_amplitude: Metre
-    reference_voltage: Volt
+    mean_diameter: Annotated[Metre, hard.SIDE]
+    radial_width: Annotated[Metre, hard.SIDE]
+    wavelength: Annotated[Metre, hard.SIDE]
+    resonance_frequency: Annotated[Hertz, hard.FREQUENCY]
+    quality_factor: Annotated[Dimensionless, hard.QUALITY]
+    reference_amplitude: Annotated[Metre, Above(0), hard.VIBRATION]
+    reference_voltage: Annotated[Volt, Above(0)]
     tooth_pitch: Metre | None = None
     slot_width: Metre | None = None
     type: Literal["annular_stator"] = "annular_stator"
 
     def __post_init__(self) -> None:
-        hard.require_fields(
-            self, mean_diameter=hard.SIDE, radial_width=hard.SIDE, wavelength=hard.SIDE
-        )
-        require("reference_amplitude", self.reference_amplitude, _M, above=0)
-        hard.require_fields(
-            self,
-            reference_amplitude=hard.VIBRATION,
-            resonance_frequency=hard.FREQUENCY,
-            quality_factor=hard.QUALITY,
-        )
-        require("reference_voltage", self.reference_voltage, Unit("V"), above=0)
         if self.radial_width >= self.mean_diameter:
             raise GeometryError(
                 f"radial_width = {format_quantity(self.radial_width, _M)} is not smaller than "
@@ -114,37 +100,30 @@ class DiscPlate:
     Raises `GeometryError` for a ceramic that overhangs, `InputError` for sectors that do not fit.
     """
 
-    diameter: Metre
-    thickness: Metre
-    quality_factor: Dimensionless
+    diameter: Annotated[Metre, hard.SIDE]
+    thickness: Annotated[Metre, hard.LAYER]
+    quality_factor: Annotated[Dimensionless, hard.QUALITY]
     substrate: ElasticMaterial
     ceramic: Piezoceramic
-    ceramic_outer_diameter: Metre
-    ceramic_thickness: Metre
+    ceramic_outer_diameter: Annotated[Metre, hard.SIDE]
+    ceramic_thickness: Annotated[Metre, hard.LAYER]
     inner_diameter: Metre = 0.0
     ceramic_inner_diameter: Metre = 0.0
-    nodal_circles: int = 1
-    nodal_diameters: int = 0
+    nodal_circles: Annotated[int, hard.NODAL_CIRCLES] = 1
+    nodal_diameters: Annotated[int, hard.NODAL_CIRCLES] = 0
     sectors: int = 0
     glue: GlueLayer | None = None
     type: Literal["disc"] = "disc"
 
     def __post_init__(self) -> None:
-        hard.require_fields(
-            self,
-            diameter=hard.SIDE,
-            ceramic_outer_diameter=hard.SIDE,
-            thickness=hard.LAYER,
-            ceramic_thickness=hard.LAYER,
-            quality_factor=hard.QUALITY,
-            nodal_circles=hard.NODAL_CIRCLES,
-            nodal_diameters=hard.NODAL_CIRCLES,
-        )
         require("inner_diameter", self.inner_diameter, _M, at_least=0, below=self.diameter)
         require(
-            "ceramic_inner_diameter", self.ceramic_inner_diameter, _M,
-            at_least=0, below=self.ceramic_outer_diameter,
-        )  # fmt: skip
+            "ceramic_inner_diameter",
+            self.ceramic_inner_diameter,
+            _M,
+            at_least=0,
+            below=self.ceramic_outer_diameter,
+        )
         self._check_ceramic()
         m = self.nodal_diameters
         if m == 0 and self.sectors:

@@ -11,7 +11,7 @@ from typing import Literal, get_args
 
 import numpy as np
 
-from squeezefilm.errors import InputError, OutOfRangeError
+from squeezefilm.errors import OutOfRangeError
 from squeezefilm.plate.beam.response import BeamResponse, beam_response
 from squeezefilm.plate.laminate import CrossSection
 from squeezefilm.plate.layout import Actuator, AnnularStator, DiscPlate, RectangularPlate
@@ -37,7 +37,7 @@ from squeezefilm.quantities import (
     MetrePerVoltLike,
     checked_numbers,
     closed_form,
-    did_you_mean,
+    require_one_of,
 )
 
 
@@ -135,12 +135,7 @@ def working_mode(
         )
     if isinstance(actuator, DiscPlate):
         return _disc(actuator)
-    if theory not in PLATE_THEORIES:
-        raise InputError(
-            f"theory = '{theory}' is not known.{did_you_mean(theory, PLATE_THEORIES)} "
-            f"Allowed: {', '.join(PLATE_THEORIES)}",
-            quantity="theory",
-        )
+    require_one_of("theory", theory, PLATE_THEORIES)
     if theory == "solid":
         solid = solid_mode(actuator)
         return WorkingMode(

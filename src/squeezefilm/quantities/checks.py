@@ -3,7 +3,11 @@
 `checked_numbers` reads the annotations of a function, a method or a dataclass and refuses what is
 no such number before anything is computed with it; `closed_form` does the same for a formula and
 registers it. Both refuse to give a number that is not finite: arguments so extreme that a float
-cannot hold what comes of them raise `OutOfRangeError`. Bounds beyond that stand with `require`.
+cannot hold what comes of them raise `OutOfRangeError`.
+
+Bounds stand in the annotation too (`squeezefilm.quantities.bounds`), or a hard limit
+(`squeezefilm.hard_limits`): ``Annotated[Metre, SIDE]``. What depends on other values, or is refused
+in another way, stands with `require`.
 """
 
 from __future__ import annotations
@@ -14,130 +18,53 @@ import inspect
 import math
 import types
 import typing
-import warnings
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any, Literal, ParamSpec, TypeVar
 
 import numpy as np
 
-from squeezefilm.errors import InputError, OutOfRangeError, OutOfRangeWarning
-from squeezefilm.quantities.units import FloatArray, Unit, format_quantity, unit_of
+from squeezefilm.errors import InputError, OutOfRangeError
+from squeezefilm.quantities.bounds import ROWS, Limit, bounds_of
+from squeezefilm.quantities.require import (
+    HOLDS,
+    is_whole,
+    require,
+    require_one_of,
+    shortened,
+)
+from squeezefilm.quantities.units import Unit, unit_of
 
-__all__ = [
-    "CLOSED_FORMS",
-    "checked_numbers",
-    "closed_form",
-    "real_numbers",
-    "require",
-    "require_valid",
-]
+__all__ = ["CLOSED_FORMS", "checked_numbers", "closed_form"]
 
 _PURE = Unit("1")
 _MOST_BITS = 64
 
-
-def real_numbers(name: str, value: Any) -> FloatArray:
-    """A value as an array of floats. Raises `InputError` for what is no real number or array."""
-    try:
-        array = np.asarray(getattr(value, "magnitude", value))
-        if array.dtype.kind in "fiu" or (array.dtype.kind == "O" and _is_whole(value)):
-            return np.asarray(array, dtype=float)
-    except (OverflowError, ValueError):
-        # A whole number above every float, or rows of unequal length.
-        pass
-    raise InputError(
-        f"{name} = {_shortened(value)} cannot be used: it must be a real number, or an array of "
-        "real numbers, that a float can hold",
-        quantity=name,
-    )
-
-
-def _is_whole(value: Any) -> bool:
-    return isinstance(value, int | np.integer) and not isinstance(value, bool)
-
-
-def _shortened(value: Any) -> str:
-    if _is_whole(value):
-        return f"a whole number of {int(value).bit_length()} bits"
-    text = repr(value)
-    return text if len(text) <= 60 else f"{text[:57]}..."
-
-
-def require(
-    name: str,
-    value: Any,
-    unit: Unit = _PURE,
-    *,
-    above: float | None = None,
-    at_least: float | None = None,
-    below: float | None = None,
-    at_most: float | None = None,
-    axes: int | None = None,
-) -> None:
-    """Refuse a value (scalar or array) that is no number, not finite or not within the bounds (SI),
-    or an array of another number of axes.
-
-    Raises `InputError` that names the quantity, the offending value with its unit and the bound.
-    """
-    array = real_numbers(name, value)
-    if axes is not None and array.ndim != axes:
-        raise InputError(
-            f"{name} has the shape {array.shape}; an array of {axes} axes is wanted", quantity=name
-        )
-    wanted: list[str] = []
-    good = np.isfinite(array)
-    for bound, word, holds in (
-        (above, "above", np.greater),
-        (at_least, "at least", np.greater_equal),
-        (below, "below", np.less),
-        (at_most, "at most", np.less_equal),
-    ):
-        if bound is not None:
-            good = good & holds(array, bound)
-            wanted.append(f"{word} {format_quantity(bound, unit)}")
-    if not np.all(good):
-        offender = float(array.ravel()[np.flatnonzero(~good)[0]])
-        allowed = " and ".join(["finite", *wanted])
-        raise InputError(
-            f"{name} = {format_quantity(offender, unit)} cannot be used: it must be {allowed}",
-            quantity=name,
-        )
-
-
-def require_valid(
-    name: str, value: Any, low: float, high: float, because: str, *, strict: bool = True
-) -> None:
-    """Refuse (strict) or warn of a dimensionless group outside the validity range of a model.
-
-    Raises `OutOfRangeError`, or warns `OutOfRangeWarning` if not `strict`.
-    """
-    array = np.ravel(real_numbers(name, value))
-    outside = ~((array >= low) & (array <= high))
-    if not np.any(outside):
-        return
-    offender = float(array[np.flatnonzero(outside)[0]])
-    message = f"{name} = {offender:.4g} is outside {low:.4g} to {high:.4g}, where {because}"
-    if strict:
-        raise OutOfRangeError(f"{message}; pass strict=False to compute it all the same")
-    warnings.warn(message, OutOfRangeWarning, stacklevel=3)
-
-
-_Kind = Literal["number", "array", "either", "complex", "count", "row", "table", "container"]
+_Kind = Literal[
+    "number", "array", "either", "complex", "count", "row", "table", "container", "word"
+]
 
 
 @dataclass(frozen=True, slots=True)
 class _Rule:
     """What an annotation says of an argument: one number, an array, either, a count, a row (a
     tuple or list of numbers), a table (a tuple of rows), or numbers in another container, which is
-    left as it is. `length` is of a row."""
+    left as it is; or a word, one of `words`. `length` is of a row, `bounds` as `require` takes
+    them."""
 
     kind: _Kind
     unit: Unit
     optional: bool
-    above: float | None = None
-    at_least: float | None = None
+    bounds: dict[str, Any]
+    limits: tuple[Limit, ...]
     length: int | None = None
+    words: tuple[Any, ...] = ()
+
+    def holds(self, value: float) -> bool:
+        """Whether a float is finite and within the bounds."""
+        return math.isfinite(value) and all(
+            HOLDS[word](value, bound) for word, bound in self.bounds.items()
+        )
 
 
 def _members(hint: Any) -> list[Any]:
@@ -149,10 +76,13 @@ def _members(hint: Any) -> list[Any]:
     return [hint]
 
 
-def _rule(hint: Any, above: float | None, at_least: float | None) -> _Rule | None:
-    """The rule of an annotation, None where it stands for no number."""
+def _rule(hint: Any, more: dict[str, Any]) -> _Rule | None:
+    """The rule of an annotation and of `more` bounds, None where it stands for no number."""
     members = _members(hint)
     plain = [member for member in members if member is not type(None)]
+    if all(typing.get_origin(member) is Literal for member in plain) and plain:
+        words = tuple(word for member in plain for word in typing.get_args(member))
+        return _Rule("word", _PURE, len(plain) < len(members), {}, (), words=words)
     kinds = {typing.get_origin(member) or member for member in plain}
     unit = unit_of(hint)
     kind: _Kind
@@ -182,15 +112,15 @@ def _rule(hint: Any, above: float | None, at_least: float | None) -> _Rule | Non
     is_tuple = typing.get_origin(plain[0]) is tuple
     parts = typing.get_args(plain[0]) if kind in ("row", "table") and is_tuple else (Ellipsis,)
     length = None if Ellipsis in parts else len(parts)
-    return _Rule(kind, unit or _PURE, len(plain) < len(members), above, at_least, length)
+    bounds, limits = bounds_of(hint)
+    return _Rule(kind, unit or _PURE, len(plain) < len(members), bounds | more, limits, length)
 
 
 def _is_row(hint: Any) -> bool:
     """Whether an annotation is a tuple, a list or a sequence of plain numbers."""
     parts = [part for part in typing.get_args(hint) if part is not Ellipsis]
     inner = {member for part in parts for member in _members(part)}
-    rows = (tuple, list, collections.abc.Sequence)
-    return typing.get_origin(hint) in rows and bool(inner) and inner <= {int, float}
+    return typing.get_origin(hint) in ROWS and bool(inner) and inner <= {int, float}
 
 
 def _rows_of(hint: Any) -> Any:
@@ -202,21 +132,22 @@ def _rows_of(hint: Any) -> Any:
 
 def _checked_value(name: str, value: Any, rule: _Rule) -> Any:
     """The value as the call takes it, floats for numbers. Raises `InputError`."""
-    if type(value) is float and rule.kind in ("number", "either") and math.isfinite(value):
-        if (rule.above is None or value > rule.above) and (
-            rule.at_least is None or value >= rule.at_least
-        ):
-            return value
-    elif value is None and rule.optional:
+    if value is None and rule.optional:
+        return value
+    quick = type(value) is float and rule.kind in ("number", "either") and rule.holds(value)
+    if not quick:
+        value = _in_kind(name, value, rule)
+    for limit in rule.limits:
+        limit.refuse_outside(value, name)
+    return value
+
+
+def _in_kind(name: str, value: Any, rule: _Rule) -> Any:
+    if rule.kind == "word":
+        require_one_of(name, value, rule.words)
         return value
     if rule.kind == "count":
-        if not _is_whole(value) or int(value).bit_length() > _MOST_BITS:
-            raise InputError(
-                f"{name} = {_shortened(value)} cannot be used: it must be a whole number of at "
-                f"most {_MOST_BITS} bits",
-                quantity=name,
-            )
-        return value
+        return _count(name, value, rule)
     if rule.kind == "complex":
         return _complex_value(name, value)
     if rule.kind == "table" and isinstance(value, tuple | list):
@@ -230,7 +161,7 @@ def _checked_value(name: str, value: Any, rule: _Rule) -> Any:
                 quantity=name,
             )
     axes = {"row": 1, "table": 2}.get(rule.kind)
-    require(name, value, rule.unit, above=rule.above, at_least=rule.at_least, axes=axes)
+    require(name, value, rule.unit, axes=axes, **rule.bounds)
     if hasattr(value, "magnitude"):
         return value
     array = np.asarray(value, dtype=float)
@@ -258,11 +189,23 @@ def _checked_value(name: str, value: Any, rule: _Rule) -> Any:
     return array if array.ndim else float(array)
 
 
+def _count(name: str, value: Any, rule: _Rule) -> Any:
+    counted = is_whole(value) and int(value).bit_length() <= _MOST_BITS
+    if counted and all(HOLDS[word](value, bound) for word, bound in rule.bounds.items()):
+        return value
+    wanted = [f"{word.replace('_', ' ')} {bound:.0f}" for word, bound in rule.bounds.items()]
+    raise InputError(
+        f"{name} = {value if counted else shortened(value)} cannot be used: it must be a whole "
+        f"number {' and '.join(wanted) or f'of at most {_MOST_BITS} bits'}",
+        quantity=name,
+    )
+
+
 def _complex_value(name: str, value: Any) -> Any:
     array = np.asarray(value)
     if array.dtype.kind not in "fiuc" or not np.all(np.isfinite(array)):
         raise InputError(
-            f"{name} = {_shortened(value)} cannot be used: it must be a finite number, real or "
+            f"{name} = {shortened(value)} cannot be used: it must be a finite number, real or "
             "complex, or an array of such numbers",
             quantity=name,
         )
@@ -316,9 +259,12 @@ def _guarded(
         names_there = getattr(inspect.unwrap(function), "__globals__", {})
         hints = typing.get_type_hints(taken, names_there, include_extras=True)
         for name, hint in hints.items():
-            above, at_least = 0.0 if name in strictly else None, 0.0 if name in weakly else None
-            if (rule := _rule(hint, above, at_least)) is not None:
+            more = {"above": 0.0} if name in strictly else {}
+            more |= {"at_least": 0.0} if name in weakly else {}
+            if (rule := _rule(hint, more)) is not None:
                 rules[name] = rule
+            elif any(bounds_of(hint)):
+                raise TypeError(f"{function.__qualname__}: {name} is bounded and is no number")
         ready.append(True)
 
     def check(arguments: dict[str, Any]) -> dict[str, Any]:

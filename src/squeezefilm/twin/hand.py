@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import numba
 import numpy as np
@@ -17,7 +17,18 @@ from numpy.typing import NDArray
 
 from squeezefilm.errors import InputError
 from squeezefilm.formats.trajectories import Motion, motion_from
-from squeezefilm.quantities import Array, FloatArray, Newton, Second, Unit, require
+from squeezefilm.quantities import (
+    Above,
+    Array,
+    AtLeast,
+    AtMost,
+    FloatArray,
+    Newton,
+    Second,
+    Unit,
+    checked_numbers,
+    require,
+)
 from squeezefilm.render.motion.finger_path import FingerPath
 
 EXPLORING = "60 mm in 0.75 s"
@@ -31,6 +42,7 @@ _LONGEST: Second = 86_400.0
 BEGIN, PASS, LIFT, REPEATS, PRESS, SAMPLE, MIRRORED = range(7)
 
 
+@checked_numbers
 @dataclass(frozen=True, slots=True)
 class Hand:
     """A finger led along a motion.
@@ -48,17 +60,13 @@ class Hand:
     """
 
     motion: Motion
-    normal_force: Newton = 0.5
-    begin: Second = 0.1
+    normal_force: Annotated[Newton, Above(0.0), AtMost(20.0)] = 0.5
+    begin: Annotated[Second, AtLeast(0.0), AtMost(_LONGEST)] = 0.1
     repeats: int | None = None
-    lift: Second = 0.0
-    press: Second = 0.05
+    lift: Annotated[Second, AtLeast(0.0), AtMost(_LONGEST)] = 0.0
+    press: Annotated[Second, AtLeast(1e-06), AtMost(_LONGEST)] = 0.05
 
     def __post_init__(self) -> None:
-        require("normal_force", self.normal_force, Unit("N"), above=0.0, at_most=20.0)
-        require("begin", self.begin, Unit("s"), at_least=0.0, at_most=_LONGEST)
-        require("lift", self.lift, Unit("s"), at_least=0.0, at_most=_LONGEST)
-        require("press", self.press, Unit("s"), at_least=1e-6, at_most=_LONGEST)
         require("the motion's duration", self.motion.duration, Unit("s"), at_most=_LONGEST)
         if self.repeats is not None and self.repeats < 1:
             raise InputError(f"repeats = {self.repeats} must be at least 1; None is for ever")

@@ -43,24 +43,90 @@ from squeezefilm.twin.hand import wanted
 
 # The state, float64.
 (
-    Z_RE, Z_IM, WARMTH, RESONANCE, LOST, X, VX, Y, VY, SKIN_X, SKIN_V, PULL, PULL_BEFORE, BEFORE,
-    FRICTION, FORCE, VOLTAGE, CURRENT_A, RELATIVE, SEEN_X, SEEN_Y,
-) = range(21)  # fmt: skip
+    Z_RE,
+    Z_IM,
+    WARMTH,
+    RESONANCE,
+    LOST,
+    X,
+    VX,
+    Y,
+    VY,
+    SKIN_X,
+    SKIN_V,
+    PULL,
+    PULL_BEFORE,
+    BEFORE,
+    FRICTION,
+    FORCE,
+    VOLTAGE,
+    CURRENT_A,
+    RELATIVE,
+    SEEN_X,
+    SEEN_Y,
+) = range(21)
 STATE = 21
 # The counts, int64; times in µs.
 (
-    NOW, SEEN_TAKEN, SEEN_TOUCHING, SAMPLE, HEAD, TAIL, ARRIVED, ROWS, AT_RAIL, AT_SLEW, AT_CURRENT,
-    BEYOND, FAILED, LOST_SAMPLES, CARRIER,
-) = range(15)  # fmt: skip
+    NOW,
+    SEEN_TAKEN,
+    SEEN_TOUCHING,
+    SAMPLE,
+    HEAD,
+    TAIL,
+    ARRIVED,
+    ROWS,
+    AT_RAIL,
+    AT_SLEW,
+    AT_CURRENT,
+    BEYOND,
+    FAILED,
+    LOST_SAMPLES,
+    CARRIER,
+) = range(15)
 COUNTS = 15
 # The constants, float64.
 (
-    C_STEP, C_ROW, C_SEED, C_F0, C_Q, C_PER_VOLT, C_FACTOR, C_OFFSET, C_AGEING, C_COEFFICIENT,
-    C_SWING, C_PERIOD, C_RESISTANCE, C_THERMAL, C_GAIN, C_RAIL, C_CURRENT, C_SLEW, C_C0, C_LOSS,
-    C_MASS, C_STIFFNESS, C_DAMPING, C_PAD_MASS, C_PAD_DAMPING, C_PAD_STIFFNESS, C_SUBSTEPS, C_MU,
-    C_STATIC, C_STRIBECK, C_EXPONENT, C_REFERENCE, C_FORCE, C_RATE, C_LATENCY, C_JITTER,
-    C_NOISE, C_QUANTUM, C_SHARE_LOST,
-) = range(39)  # fmt: skip
+    C_STEP,
+    C_ROW,
+    C_SEED,
+    C_F0,
+    C_Q,
+    C_PER_VOLT,
+    C_FACTOR,
+    C_OFFSET,
+    C_AGEING,
+    C_COEFFICIENT,
+    C_SWING,
+    C_PERIOD,
+    C_RESISTANCE,
+    C_THERMAL,
+    C_GAIN,
+    C_RAIL,
+    C_CURRENT,
+    C_SLEW,
+    C_C0,
+    C_LOSS,
+    C_MASS,
+    C_STIFFNESS,
+    C_DAMPING,
+    C_PAD_MASS,
+    C_PAD_DAMPING,
+    C_PAD_STIFFNESS,
+    C_SUBSTEPS,
+    C_MU,
+    C_STATIC,
+    C_STRIBECK,
+    C_EXPONENT,
+    C_REFERENCE,
+    C_FORCE,
+    C_RATE,
+    C_LATENCY,
+    C_JITTER,
+    C_NOISE,
+    C_QUANTUM,
+    C_SHARE_LOST,
+) = range(39)
 CONSTANTS = 39
 COLUMNS = (
     "time_s", "x_m", "y_m", "speed_m_per_s", "level_V", "frequency_Hz", "amplitude_m",
@@ -184,9 +250,15 @@ def _drag(
 
 @numba.njit(cache=True, nogil=True)
 def advance(
-    until: int, level: int, carrier: int, plant: State, fingers: Fingers, path: Path, ring: Array,
+    until: int,
+    level: int,
+    carrier: int,
+    plant: State,
+    fingers: Fingers,
+    path: Path,
+    ring: Array,
     truth: Array,
-) -> int:  # fmt: skip
+) -> int:
     """Advance to `until` (µs) at a level (µV) and a carrier frequency (mHz).
 
     Returns the time reached; earlier than `until` where `truth` (rows, columns) is full, to be

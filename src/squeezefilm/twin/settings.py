@@ -13,7 +13,11 @@ from typing import Annotated, Literal
 from squeezefilm.contact.sliding.dry_friction import DryFriction
 from squeezefilm.errors import InputError
 from squeezefilm.quantities import (
+    Above,
     Ampere,
+    AtLeast,
+    AtMost,
+    Below,
     Dimensionless,
     Farad,
     Kelvin,
@@ -25,6 +29,7 @@ from squeezefilm.quantities import (
     Unit,
     Volt,
     VoltPerSecond,
+    checked_numbers,
     require,
 )
 from squeezefilm.render.motion.sensor import TOUCH_PANEL_240_HZ, SensorModel
@@ -40,6 +45,7 @@ _COULOMB = DryFriction()
 PickupKind = Literal["motional_current", "sensing_patch", "none"]
 
 
+@checked_numbers
 @dataclass(frozen=True, slots=True)
 class PlateDrift:
     """How a plate's resonance departs from the predicted one, f0 (1 + offset + …).
@@ -60,28 +66,22 @@ class PlateDrift:
         InputError: a value outside its range.
     """
 
-    offset: Dimensionless = 0.0
-    ageing: PerSecond = 0.0
+    offset: Annotated[Dimensionless, Above(-0.5), Below(0.5)] = 0.0
+    ageing: Annotated[PerSecond, AtLeast(-1e-06), AtMost(1e-06)] = 0.0
     temperature_coefficient: PerKelvin = -1e-4
-    ambient_swing: Kelvin = 1.0
-    ambient_period: Second = 3600.0
-    thermal_resistance: KelvinPerWatt = 12.0
-    thermal_time: Second = 480.0
-    quality_factor_ratio: Dimensionless = 1.0
+    ambient_swing: Annotated[Kelvin, AtLeast(0.0), AtMost(50.0)] = 1.0
+    ambient_period: Annotated[Second, AtLeast(1.0), AtMost(1000000.0)] = 3600.0
+    thermal_resistance: Annotated[KelvinPerWatt, AtLeast(0.0)] = 12.0
+    thermal_time: Annotated[Second, Above(0.0)] = 480.0
+    quality_factor_ratio: Annotated[Dimensionless, Above(0.0), AtMost(10.0)] = 1.0
     evidence: str = ASSUMED
 
     def __post_init__(self) -> None:
-        require("offset", self.offset, above=-0.5, below=0.5)
-        require("ageing", self.ageing, Unit("1/s"), at_least=-1e-6, at_most=1e-6)
         coefficient = self.temperature_coefficient
         require("temperature_coefficient", coefficient, Unit("1/K"), above=-1e-2, below=1e-2)
-        require("ambient_swing", self.ambient_swing, Unit("K"), at_least=0.0, at_most=50.0)
-        require("ambient_period", self.ambient_period, Unit("s"), at_least=1.0, at_most=1e6)
-        require("thermal_resistance", self.thermal_resistance, Unit("K/W"), at_least=0.0)
-        require("thermal_time", self.thermal_time, Unit("s"), above=0.0)
-        require("quality_factor_ratio", self.quality_factor_ratio, above=0.0, at_most=10.0)
 
 
+@checked_numbers
 @dataclass(frozen=True, slots=True)
 class Amplifier:
     """What an amplifier can give to the plate's capacitance and motional branch.
@@ -100,24 +100,16 @@ class Amplifier:
         InputError: a value outside its range.
     """
 
-    gain: Dimensionless = 1.0
-    highest_voltage: Volt = 400.0
-    highest_current: Ampere = 2.0
-    slew_rate: VoltPerSecond = 1e8
-    capacitance: Farad | None = None
-    loss_tangent: Dimensionless = 0.02
+    gain: Annotated[Dimensionless, Above(0.0), AtMost(1000.0)] = 1.0
+    highest_voltage: Annotated[Volt, Above(0.0)] = 400.0
+    highest_current: Annotated[Ampere, Above(0.0)] = 2.0
+    slew_rate: Annotated[VoltPerSecond, Above(0.0)] = 1e8
+    capacitance: Annotated[Farad, Above(0.0)] | None = None
+    loss_tangent: Annotated[Dimensionless, AtLeast(0.0)] = 0.02
     evidence: str = ASSUMED
 
-    def __post_init__(self) -> None:
-        require("gain", self.gain, above=0.0, at_most=1000.0)
-        require("highest_voltage", self.highest_voltage, Unit("V"), above=0.0)
-        require("highest_current", self.highest_current, Unit("A"), above=0.0)
-        require("slew_rate", self.slew_rate, Unit("V/s"), above=0.0)
-        if self.capacitance is not None:
-            require("capacitance", self.capacitance, Unit("F"), above=0.0)
-        require("loss_tangent", self.loss_tangent, at_least=0.0)
 
-
+@checked_numbers
 @dataclass(frozen=True, slots=True)
 class Arm:
     """The arm that leads the finger: mass, spring and damper between finger and wanted place.
@@ -131,17 +123,13 @@ class Arm:
         InputError: a value outside its range.
     """
 
-    mass: Kilogram = 0.1
-    stiffness: NewtonPerMetre = 500.0
-    damping: NewtonSecondPerMetre = 12.0
+    mass: Annotated[Kilogram, Above(0.0)] = 0.1
+    stiffness: Annotated[NewtonPerMetre, Above(0.0)] = 500.0
+    damping: Annotated[NewtonSecondPerMetre, AtLeast(0.0)] = 12.0
     evidence: str = ASSUMED
 
-    def __post_init__(self) -> None:
-        require("mass", self.mass, Unit("kg"), above=0.0)
-        require("stiffness", self.stiffness, Unit("N/m"), above=0.0)
-        require("damping", self.damping, Unit("N*s/m"), at_least=0.0)
 
-
+@checked_numbers
 @dataclass(frozen=True, slots=True)
 class PickupModel:
     """How the device hears the vibration, as an amplitude at its input.
@@ -160,23 +148,14 @@ class PickupModel:
     """
 
     kind: PickupKind = "motional_current"
-    shunt: Ohm = 10.0
-    sensitivity: VoltPerMetre = 5e5
-    feedthrough: Dimensionless = 0.0
-    noise: Volt = 1e-3
+    shunt: Annotated[Ohm, Above(0.0)] = 10.0
+    sensitivity: Annotated[VoltPerMetre, Above(0.0)] = 5e5
+    feedthrough: Annotated[Dimensionless, AtLeast(0.0)] = 0.0
+    noise: Annotated[Volt, AtLeast(0.0)] = 1e-3
     evidence: str = ASSUMED
 
-    def __post_init__(self) -> None:
-        if self.kind not in ("motional_current", "sensing_patch", "none"):
-            raise InputError(
-                f"kind = '{self.kind}' is no pickup; allowed: motional_current, sensing_patch, none"
-            )
-        require("shunt", self.shunt, Unit("ohm"), above=0.0)
-        require("sensitivity", self.sensitivity, Unit("V/m"), above=0.0)
-        require("feedthrough", self.feedthrough, at_least=0.0)
-        require("noise", self.noise, Unit("V"), at_least=0.0)
 
-
+@checked_numbers
 @dataclass(frozen=True, slots=True)
 class TwinSettings:
     """Everything a twin assumes beyond the display's own description.
@@ -197,11 +176,11 @@ class TwinSettings:
         InputError: a value outside its range.
     """
 
-    seed: int = 1
-    tick: Second = 100e-6
-    steps_per_tick: int = 2
+    seed: Annotated[int, AtLeast(0), Below(2**53)] = 1
+    tick: Annotated[Second, AtLeast(1e-05), AtMost(0.001)] = 100e-6
+    steps_per_tick: Annotated[int, AtLeast(1), AtMost(100)] = 2
     truth_period: Second = 1e-3
-    truth_rows: int = 200_000
+    truth_rows: Annotated[int, AtLeast(1)] = 200_000
     highest_amplitude_ratio: Dimensionless = 2.0
     drift: PlateDrift = PlateDrift()
     amplifier: Amplifier = Amplifier()
@@ -211,11 +190,7 @@ class TwinSettings:
     dry: DryFriction = _COULOMB
 
     def __post_init__(self) -> None:
-        require("tick", self.tick, Unit("s"), at_least=10e-6, at_most=1e-3)
         require("truth_period", self.truth_period, Unit("s"), at_least=self.tick)
-        require("seed", self.seed, at_least=0, below=2**53)
-        require("steps_per_tick", self.steps_per_tick, at_least=1, at_most=100)
-        require("truth_rows", self.truth_rows, at_least=1)
         ratio = self.highest_amplitude_ratio
         require("highest_amplitude_ratio", ratio, above=0.0, at_most=100.0)
         if not _whole(self.tick * 1e6):

@@ -7,21 +7,17 @@ import re
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 import numpy as np
 import pint
 import pytest
 
 from squeezefilm.errors import InputError, OutOfRangeError, OutOfRangeWarning
-from squeezefilm.quantities.checks import (
-    CLOSED_FORMS,
-    checked_numbers,
-    closed_form,
-    real_numbers,
-    require,
-    require_valid,
-)
+from squeezefilm.hard_limits import SIDE
+from squeezefilm.quantities.bounds import Above, AtLeast, AtMost, Below, bounds_of
+from squeezefilm.quantities.checks import CLOSED_FORMS, checked_numbers, closed_form
+from squeezefilm.quantities.require import real_numbers, require, require_one_of, require_valid
 from squeezefilm.quantities.units import (
     ComplexArray,
     Dimensionless,
@@ -353,3 +349,71 @@ def test_a_dataclass_is_checked_as_it_is_made() -> None:
     assert refusal(lambda: Box("2")).startswith("side = '2' cannot be used")  # type: ignore[arg-type]
     with pytest.raises(OutOfRangeError, match=r"Box leaves the range of a float \(none\) at side"):
         Box(1.0, "singular")
+
+
+@checked_numbers
+@dataclass
+class Bounded:
+    """Every kind of number with bounds in its type."""
+
+    share: Annotated[Dimensionless, Above(0), Below(1)] = 0.5
+    way: Annotated[Metre, AtLeast(0), AtMost(2)] | None = None
+    side: Annotated[Metre, SIDE] = 0.1
+    times: Annotated[int, AtLeast(1), AtMost(10_000)] = 1
+    places: tuple[Annotated[Metre, AtLeast(-1)], ...] = ()
+    levels: Annotated[MetreArray, Above(0)] | None = None
+    waveform: Literal["square", "sine"] = "square"
+
+
+@pytest.mark.parametrize(
+    ("given", "says"),
+    [
+        ({"share": 0.0}, "share = 0 cannot be used: it must be finite and above 0 and below 1"),
+        ({"share": 1}, "share = 1 cannot be used: it must be finite and above 0 and below 1"),
+        ({"share": math.nan}, "share = nan cannot be used: .* and above 0 and below 1"),
+        ({"way": -1e-9}, "way = -1 nm cannot be used: .*at least 0 m and at most 2 m"),
+        ({"way": 2.5}, "way = 2.5 m cannot be used"),
+        ({"side": 1e-7}, "side = 100 nm cannot be used: it must be at least 1 um and at most 10 m"),
+        ({"side": 11}, r"side = 11 m cannot be used: .* \(a side or a diameter: "),
+        ({"times": 0}, "times = 0 .* a whole number at least 1 and at most 10000$"),
+        ({"times": 10_001}, "times = 10001 cannot be used"),
+        ({"times": 2.0}, "times = 2.0 cannot be used"),
+        ({"places": (0.0, -2.0)}, "places = -2 m cannot be used: .*at least -1 m"),
+        ({"levels": [1.0, 0.0]}, "levels = 0 m cannot be used: it must be finite and above 0 m"),
+        ({"waveform": "sinus"}, "'sinus' is not known. Did you mean 'sine'. Allowed: square, sine"),
+        ({"waveform": ["sine"]}, r"waveform = \['sine'\] is not known. Allowed: square, sine"),
+    ],
+)
+def test_bounds_stand_in_the_type(given: dict[str, Any], says: str) -> None:
+    assert re.search(says, refusal(lambda: Bounded(**given)))
+
+
+def test_what_is_on_its_side_of_the_bounds_is_taken() -> None:
+    found = Bounded(1e-9, 2.0, 1e-6, 10_000, (-1.0, 5), [1e-9, 3], "sine")  # type: ignore[arg-type]
+    assert (found.way, found.side, found.times) == (2.0, 1e-6, 10_000)
+    assert Bounded(way=0).way == 0.0
+    assert Bounded(levels=None).levels is None
+
+
+def test_the_bounds_of_a_type_can_be_read() -> None:
+    assert bounds_of(Annotated[Metre, AtLeast(1), Below(2)]) == ({"at_least": 1, "below": 2}, ())
+    assert bounds_of(Annotated[Metre, SIDE] | None) == ({}, (SIDE,))
+    assert bounds_of(Metre) == ({}, ())
+    assert bounds_of(str) == ({}, ())
+
+
+def test_bounds_beside_what_is_no_number_are_a_slip_of_the_writer() -> None:
+    @checked_numbers
+    def call(name: Annotated[str, Above(0)]) -> None:
+        pass
+
+    with pytest.raises(TypeError, match="name is bounded and is no number"):
+        call("x")
+
+
+def test_a_word_is_one_of_those_allowed() -> None:
+    require_one_of("axis", "log", ("linear", "log"))
+    require_one_of("polarity", -1, (1, -1))
+    for bad in ("logs", 2, None, ["log"], np.zeros(2)):
+        says = refusal(lambda bad=bad: require_one_of("axis", bad, ("linear", "log")))  # type: ignore[misc]
+        assert says.endswith(" Allowed: linear, log")

@@ -68,7 +68,7 @@ def test_the_settings_on_the_page_are_the_defaults(tmp_path: Path) -> None:
         (lambda: Amplifier(capacitance=0.0), "capacitance"),
         (lambda: Arm(mass=0.0), "mass"),
         (lambda: PickupModel(shunt=0.0), "shunt"),
-        (lambda: PickupModel(kind="ear"), "no pickup"),  # type: ignore[arg-type]
+        (lambda: PickupModel(kind="ear"), "kind = 'ear' is not known"),  # type: ignore[arg-type]
         (lambda: hand_from("60 mm/s over 4 cm", normal_force=0.0), "normal_force"),
         (lambda: hand_from("60 mm/s over 4 cm", repeats=0), "repeats"),
         (lambda: hand_from("fast"), "no stroke"),

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
@@ -21,6 +22,9 @@ from squeezefilm.plate.beam.modes import (
 )
 from squeezefilm.plate.laminate import Laminate
 from squeezefilm.quantities import (
+    Above,
+    AtLeast,
+    AtMost,
     Dimensionless,
     Hertz,
     Metre,
@@ -30,8 +34,8 @@ from squeezefilm.quantities import (
     PascalSecond,
     SquareMetre,
     Unit,
+    checked_numbers,
     format_quantity,
-    require,
 )
 
 MEAN_EXPLORED_AREA: SquareMetre = 28.18e-4
@@ -39,6 +43,7 @@ LARGEST_EXPLORED_AREA: SquareMetre = 128.37e-4
 PAPER_HALF_WAVELENGTHS = (7.5e-3, 10e-3, 12.5e-3, 15e-3)
 
 
+@checked_numbers
 @dataclass(frozen=True)
 class Requirements:
     """What a display of the paper's kind must do. The defaults are the paper's.
@@ -48,27 +53,16 @@ class Requirements:
     `frequency_amplitude` and `roughness`.
     """
 
-    smallest_area: SquareMetre = MEAN_EXPLORED_AREA
-    largest_area: SquareMetre = LARGEST_EXPLORED_AREA
-    squeeze_number: Dimensionless = 10.0
-    frequency_amplitude: Metre = 3e-6
-    relative_friction: Dimensionless = 0.7
-    ceramic_length: Metre = 11e-3
-    ceramic_gap: Metre = 1e-3
-    width: Metre = 49e-3
+    smallest_area: Annotated[SquareMetre, Above(0)] = MEAN_EXPLORED_AREA
+    largest_area: Annotated[SquareMetre, Above(0)] = LARGEST_EXPLORED_AREA
+    squeeze_number: Annotated[Dimensionless, Above(0)] = 10.0
+    frequency_amplitude: Annotated[Metre, Above(0)] = 3e-6
+    relative_friction: Annotated[Dimensionless, AtLeast(0), AtMost(1)] = 0.7
+    ceramic_length: Annotated[Metre, Above(0)] = 11e-3
+    ceramic_gap: Annotated[Metre, Above(0)] = 1e-3
+    width: Annotated[Metre, Above(0)] = 49e-3
 
     def __post_init__(self) -> None:
-        for name, unit in (
-            ("smallest_area", "m2"),
-            ("largest_area", "m2"),
-            ("squeeze_number", "1"),
-            ("frequency_amplitude", "m"),
-            ("ceramic_length", "m"),
-            ("ceramic_gap", "m"),
-            ("width", "m"),
-        ):
-            require(name, getattr(self, name), Unit(unit), above=0)
-        require("relative_friction", self.relative_friction, at_least=0, at_most=1)
         if self.smallest_area > self.largest_area:
             raise InputError("smallest_area is larger than largest_area; exchange them")
 

@@ -291,20 +291,22 @@ def _() -> ClaimValue:
     ours, printed = _both()
     against = f"{MODAL_FREQUENCY / ours.frequency - 1:+.1%}".replace("-", "−")
     return ClaimValue(
-        (ours.frequency,), alternative=(printed.frequency,),
+        (ours.frequency,),
+        alternative=(printed.frequency,),
         note="solved plate, mode (8,0), alternative: the printed e31; the paper stands "
         f"{against} from it; " + _beam_note(),
-    )  # fmt: skip
+    )
 
 
 @_for("harmonic-frequency")
 def _() -> ClaimValue:
     ours, printed = _both()
     return ClaimValue(
-        (ours.frequency,), alternative=(printed.frequency,),
+        (ours.frequency,),
+        alternative=(printed.frequency,),
         note="alternative: the printed e31; with the terminals open "
         f"{_kilohertz(ours.open_frequency)} and {_kilohertz(printed.open_frequency)}",
-    )  # fmt: skip
+    )
 
 
 def _volts() -> float:
@@ -325,10 +327,11 @@ def _() -> ClaimValue:
     loss = working_point(with_loss_in_ceramic_alone(_plate())).amplitude_per_volt
     assert loss is not None
     return ClaimValue(
-        (ours,), alternative=(printed,),
+        (ours,),
+        alternative=(printed,),
         note="alternative: the printed e31; Q 60 in all materials, largest of the upper face; with "
         f"the loss in the ceramic alone {_volts() * loss * 1e6:.2f} µm with d31",
-    )  # fmt: skip
+    )
 
 
 @_for("measured-frequency")
@@ -336,10 +339,11 @@ def _() -> ClaimValue:
     ours, printed = _both()
     glued = working_point(with_glue(_plate(), 50e-6, 1e9), amplitude=False).frequency
     return ClaimValue(
-        (ours.frequency,), alternative=(printed.frequency,),
+        (ours.frequency,),
+        alternative=(printed.frequency,),
         note="perfect bond, alternative: the printed e31; with 50 µm of glue of 1 GPa "
         f"{_kilohertz(glued)}",
-    )  # fmt: skip
+    )
 
 
 @_for("measured-amplitude")

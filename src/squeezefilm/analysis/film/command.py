@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 
@@ -15,11 +15,12 @@ from squeezefilm.film.periodic.profile import GapFunction, GapProfile
 from squeezefilm.film.periodic.solution import FilmSolution
 from squeezefilm.film.planar.film import FilmPlanar, solve_ellipse, solve_rectangle
 from squeezefilm.from_text import reads_text
-from squeezefilm.hard_limits import ASPECT, require_within
+from squeezefilm.hard_limits import ASPECT
 from squeezefilm.quantities import (
     Dimensionless,
     DimensionlessArray,
-    did_you_mean,
+    checked_numbers,
+    require_one_of,
 )
 from squeezefilm.results import Result, stamp, to_json
 
@@ -27,24 +28,20 @@ SHAPES = ("strip", "disc", "rectangle", "ellipse")
 _LINES = ("strip", "disc")
 
 
+@checked_numbers
 @dataclass(frozen=True)
 class FilmRequest:
     """A film of plain shape and uniform gap H = 1 + ε cos T; `tolerance` is relative, on W − 1."""
 
     shape: str = "strip"
-    aspect_ratio: Dimensionless = 1.0
+    aspect_ratio: Annotated[Dimensionless, ASPECT] = 1.0
     polytropic_exponent: Dimensionless = 1.0
     knudsen_number: Dimensionless = 0.0
     slip: str = "first"
     tolerance: Dimensionless = 1e-3
 
     def __post_init__(self) -> None:
-        if self.shape not in SHAPES:
-            raise InputError(
-                f"shape = '{self.shape}' is not known.{did_you_mean(self.shape, SHAPES)} "
-                f"Allowed: {', '.join(SHAPES)}"
-            )
-        require_within(ASPECT, self.aspect_ratio, "aspect_ratio")
+        require_one_of("shape", self.shape, SHAPES)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -205,9 +205,15 @@ def analyze_friction(
     tell("ripple of the standing wave")
     tapped = float(prediction.law.tapped(prediction.vibration_amplitude, speed)[0])
     return FrictionAnalysis(
-        display, prediction, curves, unsure, found, _ripple(prediction), wanted,
+        display,
+        prediction,
+        curves,
+        unsure,
+        found,
+        _ripple(prediction),
+        wanted,
         Tapping(speed, tapped),
-    )  # fmt: skip
+    )
 
 
 def friction_map(display: Display, prediction: Prediction, points: int = 40) -> FrictionMap:

@@ -247,9 +247,12 @@ def modes_in_band(
         count = 4
         while True:
             modes = annular_modes(
-                body.section, m, near=(low + high) / 2, count=count,
+                body.section,
+                m,
+                near=(low + high) / 2,
+                count=count,
                 quality_factor=body.quality_factor,
-            )  # fmt: skip
+            )
             inside = [x for x in modes if low <= x.frequency <= high and not x.is_rigid]
             # The nearest modes are all there are in the band once one of them lies outside.
             if len(inside) < len(modes):

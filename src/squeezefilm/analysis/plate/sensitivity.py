@@ -191,13 +191,17 @@ def usual_changes(plate: RectangularPlate) -> tuple[Change, ...]:
     both("plate Young's modulus", "Pa", E * 115 / 123, E * 131 / 123, with_young_modulus)
     for share in (0.9, 1.1):
         out.append(
-            Change("ceramic stiffness c11_p", f"{100 * (share - 1):+.0f} %".replace("-", "−"),
-                   functools.partial(with_ceramic_stiffness, share=share))
-        )  # fmt: skip
+            Change(
+                "ceramic stiffness c11_p",
+                f"{100 * (share - 1):+.0f} %".replace("-", "−"),
+                functools.partial(with_ceramic_stiffness, share=share),
+            )
+        )
     both("plate thickness", "m", 0.975 * t, 1.025 * t, with_thickness)
     both("ceramic thickness", "m", 0.95 * tp, 1.05 * tp, with_ceramic_thickness)
-    both("plate density", "kg/m3", own.density * 8140 / 8250, own.density * 8360 / 8250,
-         with_density)  # fmt: skip
+    both(
+        "plate density", "kg/m3", own.density * 8140 / 8250, own.density * 8360 / 8250, with_density
+    )
     nu = own.poisson_ratio
     both("plate Poisson's ratio", "1", nu - 0.03, min(nu + 0.03, 0.49), with_poisson_ratio)
     out.append(Change("ceramics open", "each on its own", with_open_ceramics, frequency_only=True))
@@ -206,17 +210,21 @@ def usual_changes(plate: RectangularPlate) -> tuple[Change, ...]:
             for thickness in (0.02 * tp, 0.05 * tp):
                 out.append(
                     Change(
-                        f"glue of {_text(modulus, 'Pa')}", _text(thickness, "m"),
+                        f"glue of {_text(modulus, 'Pa')}",
+                        _text(thickness, "m"),
                         functools.partial(with_glue, thickness=thickness, young_modulus=modulus),
                     )
-                )  # fmt: skip
+                )
     Q = plate.quality_factor
     if own.quality_factor is None:
         for share in (0.8, 1.2):
             out.append(
-                Change("quality factor, all materials", f"{Q:.3g} → {share * Q:.3g}",
-                       functools.partial(with_quality_factor, value=share * Q))
-            )  # fmt: skip
+                Change(
+                    "quality factor, all materials",
+                    f"{Q:.3g} → {share * Q:.3g}",
+                    functools.partial(with_quality_factor, value=share * Q),
+                )
+            )
         out.append(Change("losses", "in the ceramic alone", with_loss_in_ceramic_alone))
     ceramic = plate.ceramic
     if ceramic.stress_coefficient is not None and ceramic.constants is None:

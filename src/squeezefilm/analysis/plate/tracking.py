@@ -32,6 +32,7 @@ from squeezefilm.quantities import (
     FloatArray,
     HertzArray,
     Unit,
+    checked_numbers,
     did_you_mean,
     format_quantity,
     parse_quantity,
@@ -73,6 +74,7 @@ PARAMETERS: dict[str, tuple[Unit, _Get, _Set]] = {
 """What `track_modes` can vary: unit, how to read it, how to set it."""
 
 
+@checked_numbers
 @dataclass(frozen=True)
 class TrackRequest:
     """A parameter of `PARAMETERS`, its first and last value (SI) and the number of values."""
@@ -162,8 +164,10 @@ def track_modes(
     steps: dict[float, tuple[PlateModes, list[int | None], list[float]]] = {
         begun: (first, list(range(first.count)), [1.0] * first.count)
     }
-    for side in (values[values > begun + 1e-12 * abs(begun)],
-                 values[values < begun - 1e-12 * abs(begun)][::-1]):  # fmt: skip
+    for side in (
+        values[values > begun + 1e-12 * abs(begun)],
+        values[values < begun - 1e-12 * abs(begun)][::-1],
+    ):
         last = begun
         for value in side:
             _advance(plate, request, first, last, float(value), steps, _HALVINGS, tell)
@@ -187,12 +191,14 @@ def track_modes(
         tuple(
             ModeTrack(
                 "in plane" if own_label is None else f"({own_label[0]},{own_label[1]})",
-                frequency[row], likeness[row], bool(driven[row]),
+                frequency[row],
+                likeness[row],
+                bool(driven[row]),
             )
             for row, own_label in enumerate(first.labels)
         ),
         float(np.nanmin(likeness)),
-    )  # fmt: skip
+    )
 
 
 def check_track(plate: RectangularPlate, request: TrackRequest) -> None:

@@ -17,7 +17,6 @@ from squeezefilm.hard_limits import (
     PAD_DAMPING,
     PAD_MASS,
     PAD_STIFFNESS,
-    require_fields,
 )
 from squeezefilm.quantities import (
     ComplexArray,
@@ -69,12 +68,9 @@ class FingerpadDynamics:
         InputError: a value outside its range.
     """
 
-    stiffness: NewtonPerMetre = 1000.0
-    damping: NewtonSecondPerMetre = 1.0
-    mass: Kilogram = 1.5e-4
-
-    def __post_init__(self) -> None:
-        require_fields(self, stiffness=PAD_STIFFNESS, damping=PAD_DAMPING, mass=PAD_MASS)
+    stiffness: Annotated[NewtonPerMetre, PAD_STIFFNESS] = 1000.0
+    damping: Annotated[NewtonSecondPerMetre, PAD_DAMPING] = 1.0
+    mass: Annotated[Kilogram, PAD_MASS] = 1.5e-4
 
     @property
     def resonance_frequency(self) -> Hertz:

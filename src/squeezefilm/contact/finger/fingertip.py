@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Literal, get_args
+from typing import Annotated, Literal, get_args
 
 import numpy as np
 
@@ -20,10 +20,11 @@ from squeezefilm.hard_limits import (
     RIDGES,
     ROUGHNESS,
     SKIN_ROUGHNESS,
-    require_fields,
     require_within,
 )
 from squeezefilm.quantities import (
+    AtLeast,
+    AtMost,
     Dimensionless,
     FloatLike,
     Metre,
@@ -33,7 +34,6 @@ from squeezefilm.quantities import (
     SquareMetre,
     Unit,
     checked_numbers,
-    did_you_mean,
     format_quantity,
     require,
 )
@@ -72,42 +72,23 @@ class Finger:
     assumed and illustrative: they control the friction predicted, so give your own where you can.
     """
 
-    contact_length: Metre
-    ridge_amplitude: Metre
-    ridge_period: Metre
-    normal_force: Newton
-    plateau_width: Metre = 250e-6
-    contact_area_exponent: Dimensionless = 0.0
-    contact_area_force: Newton | None = None
-    ridge_angle: Radian = 0.0
+    contact_length: Annotated[Metre, CONTACT_LENGTH]
+    ridge_amplitude: Annotated[Metre, RIDGE_AMPLITUDE]
+    ridge_period: Annotated[Metre, RIDGE_PERIOD]
+    normal_force: Annotated[Newton, FORCE]
+    plateau_width: Annotated[Metre, RIDGE_PERIOD] = 250e-6
+    contact_area_exponent: Annotated[Dimensionless, AtLeast(0), AtMost(1)] = 0.0
+    contact_area_force: Annotated[Newton, FORCE] | None = None
+    ridge_angle: Annotated[Radian, AtLeast(-math.pi), AtMost(math.pi)] = 0.0
     asperities: AsperityLaw = _ASPERITIES
-    asperity_roughness: Metre = 0.6e-6
-    skin_roughness: Metre = 0.6e-6
+    asperity_roughness: Annotated[Metre, ROUGHNESS] = 0.6e-6
+    skin_roughness: Annotated[Metre, SKIN_ROUGHNESS] = 0.6e-6
     skin: Skin = _SKIN
     fingerpad: FingerpadDynamics = _FINGERPAD
     moisture: Moisture = "normal"
 
     def __post_init__(self) -> None:
-        require_fields(
-            self,
-            contact_length=CONTACT_LENGTH,
-            ridge_period=RIDGE_PERIOD,
-            plateau_width=RIDGE_PERIOD,
-            asperity_roughness=ROUGHNESS,
-            ridge_amplitude=RIDGE_AMPLITUDE,
-            normal_force=FORCE,
-        )
         _require_ridges(self.contact_length, self.ridge_period)
-        require("contact_area_exponent", self.contact_area_exponent, at_least=0, at_most=1)
-        require_fields(self, contact_area_force=FORCE)
-        require("ridge_angle", self.ridge_angle, Unit("rad"), at_least=-math.pi, at_most=math.pi)
-        require_fields(self, skin_roughness=SKIN_ROUGHNESS)
-        if self.moisture not in MOISTURES:
-            raise InputError(
-                f"moisture = '{self.moisture}' is not known."
-                f"{did_you_mean(self.moisture, MOISTURES)} Allowed: {', '.join(MOISTURES)}",
-                quantity="moisture",
-            )
         if self.plateau_width > self.ridge_period:
             raise InputError(
                 f"plateau_width = {format_quantity(self.plateau_width, Unit('m'))} is wider than "

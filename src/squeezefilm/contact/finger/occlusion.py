@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
 from squeezefilm.quantities import (
+    Above,
+    AtLeast,
     Dimensionless,
     DimensionlessLike,
     Second,
     SecondLike,
-    Unit,
     checked_numbers,
     closed_form,
-    require,
 )
 
 EVIDENCE = {
@@ -44,14 +45,9 @@ class Occlusion:
         InputError: a value outside its range.
     """
 
-    rise: Dimensionless = 0.5
-    time_constant: Second = 20.0 / 3.0
-    contact_time: Second = 0.0
-
-    def __post_init__(self) -> None:
-        require("rise", self.rise, above=-1.0)
-        require("time_constant", self.time_constant, Unit("s"), above=0.0)
-        require("contact_time", self.contact_time, Unit("s"), at_least=0.0)
+    rise: Annotated[Dimensionless, Above(-1.0)] = 0.5
+    time_constant: Annotated[Second, Above(0.0)] = 20.0 / 3.0
+    contact_time: Annotated[Second, AtLeast(0.0)] = 0.0
 
     @checked_numbers
     def factor(self, time: SecondLike) -> DimensionlessLike:

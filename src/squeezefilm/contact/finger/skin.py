@@ -8,6 +8,7 @@ swings by b = a − y instead of a; in the mean the skin is soft and only carrie
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
@@ -15,7 +16,6 @@ from squeezefilm.hard_limits import (
     SKIN_DAMPING,
     SKIN_MASS,
     SKIN_STIFFNESS,
-    require_fields,
 )
 from squeezefilm.quantities import (
     Hertz,
@@ -38,17 +38,9 @@ class Skin:
     damping, which at 40 kHz are taken to be below its inertia (0.2 MPa/µm).
     """
 
-    mass_per_area: KilogramPerSquareMetre = 3.3
-    stiffness_per_area: PascalPerMetre = 0.0
-    damping_per_area: PascalSecondPerMetre = 0.0
-
-    def __post_init__(self) -> None:
-        require_fields(
-            self,
-            mass_per_area=SKIN_MASS,
-            stiffness_per_area=SKIN_STIFFNESS,
-            damping_per_area=SKIN_DAMPING,
-        )
+    mass_per_area: Annotated[KilogramPerSquareMetre, SKIN_MASS] = 3.3
+    stiffness_per_area: Annotated[PascalPerMetre, SKIN_STIFFNESS] = 0.0
+    damping_per_area: Annotated[PascalSecondPerMetre, SKIN_DAMPING] = 0.0
 
     @checked_numbers
     def dynamic_stiffness(self, frequency: Hertz) -> complex:

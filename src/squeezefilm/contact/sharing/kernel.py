@@ -184,9 +184,13 @@ def _swing(
 
 @njit(nogil=True, cache=True, error_model="numpy")
 def _carried(
-    u: float, amplitudes: FloatArray, offsets: FloatArray, impedance: FloatArray,
-    asperities: CompiledAsperities, films: CompiledFilms,
-) -> tuple[float, float, float, float, int]:  # fmt: skip
+    u: float,
+    amplitudes: FloatArray,
+    offsets: FloatArray,
+    impedance: FloatArray,
+    asperities: CompiledAsperities,
+    films: CompiledFilms,
+) -> tuple[float, float, float, float, int]:
     """Mean gas and asperity pressure (Pa) of ridges at gaps u + offsets; swing and skin amplitude
     of the last; the panel lacking."""
     gas, solid, b, moved = 0.0, 0.0, 0.0, 0.0
@@ -207,9 +211,14 @@ def _carried(
 
 @njit(nogil=True, cache=True, error_model="numpy")
 def balance(
-    amplitudes: FloatArray, offsets: FloatArray, pressure: float, impedance: FloatArray,
-    asperities: CompiledAsperities, films: CompiledFilms, out: FloatArray,
-) -> None:  # fmt: skip
+    amplitudes: FloatArray,
+    offsets: FloatArray,
+    pressure: float,
+    impedance: FloatArray,
+    asperities: CompiledAsperities,
+    films: CompiledFilms,
+    out: FloatArray,
+) -> None:
     """The mean gap u at which ridges tied together carry a mean pressure (Pa), into `out`.
 
     Ridge i has the gap u + offsets[i] and the amplitude amplitudes[i]. What is carried falls
@@ -296,9 +305,13 @@ def balance(
 
 @njit(nogil=True, cache=True, error_model="numpy")
 def balance_rows(
-    amplitude: FloatArray, pressure: FloatArray, impedance: FloatArray,
-    asperities: CompiledAsperities, films: CompiledFilms, out: FloatArray,
-) -> int:  # fmt: skip
+    amplitude: FloatArray,
+    pressure: FloatArray,
+    impedance: FloatArray,
+    asperities: CompiledAsperities,
+    films: CompiledFilms,
+    out: FloatArray,
+) -> int:
     """Each plateau at its own balance; returns the first panel lacking, or −1.
 
     Rows that are balanced already (their status says so and they have taken steps) are kept.

@@ -9,7 +9,7 @@ lies between, and the two are reported together.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
 
@@ -20,6 +20,10 @@ from squeezefilm.contact.sharing.balance import share_load, share_load_tied
 from squeezefilm.contact.sharing.gas_table import FilmTable
 from squeezefilm.errors import InputError
 from squeezefilm.quantities import (
+    Above,
+    AtLeast,
+    AtMost,
+    Below,
     Dimensionless,
     DimensionlessArray,
     FloatArray,
@@ -52,13 +56,8 @@ class PadPosture:
     """
 
     position: Metre = 0.0
-    pressure_tilt: Dimensionless = 0.0
-    gap_tilt: Radian = 0.0
-
-    def __post_init__(self) -> None:
-        require("position", self.position, Unit("m"))
-        require("pressure_tilt", self.pressure_tilt, above=-1, below=1)
-        require("gap_tilt", self.gap_tilt, Unit("rad"), at_least=-0.01, at_most=0.01)
+    pressure_tilt: Annotated[Dimensionless, Above(-1), Below(1)] = 0.0
+    gap_tilt: Annotated[Radian, AtLeast(-0.01), AtMost(0.01)] = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -141,8 +140,6 @@ def pad_friction(
     a |cos(πx/half_wavelength)|. Raises as `share_load` does.
     """
     require("half_wavelength", half_wavelength, Unit("m"), above=0)
-    if limit not in ("own", "one-gap"):
-        raise InputError(f"limit = '{limit}' is not known; allowed: own, one-gap")
     posture = posture or PadPosture()
     a = np.atleast_1d(np.asarray(amplitude, dtype=float))
     wave = np.abs(np.cos(np.pi * (points + posture.position) / half_wavelength))

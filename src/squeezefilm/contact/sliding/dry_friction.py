@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
 from squeezefilm.errors import InputError
 from squeezefilm.quantities import (
+    Above,
+    AtLeast,
+    AtMost,
     Dimensionless,
     DimensionlessArray,
     DimensionlessLike,
@@ -52,16 +56,10 @@ class DryFriction:
         InputError: a value outside its range.
     """
 
-    static_ratio: Dimensionless = 1.0
-    stribeck_speed: MetrePerSecond = 0.0
-    load_exponent: Dimensionless = 1.0
-    reference_force: Newton = 1.0
-
-    def __post_init__(self) -> None:
-        require("static_ratio", self.static_ratio, at_least=1.0)
-        require("stribeck_speed", self.stribeck_speed, Unit("m/s"), at_least=0.0)
-        require("load_exponent", self.load_exponent, above=0.0, at_most=1.0)
-        require("reference_force", self.reference_force, Unit("N"), above=0.0)
+    static_ratio: Annotated[Dimensionless, AtLeast(1.0)] = 1.0
+    stribeck_speed: Annotated[MetrePerSecond, AtLeast(0.0)] = 0.0
+    load_exponent: Annotated[Dimensionless, Above(0.0), AtMost(1.0)] = 1.0
+    reference_force: Annotated[Newton, Above(0.0)] = 1.0
 
     @checked_numbers
     def kinetic_force(
@@ -99,13 +97,10 @@ class FrictionProfile:
     """
 
     start: Metre
-    spacing: Metre
-    relative_friction: DimensionlessArray
+    spacing: Annotated[Metre, Above(0.0)]
+    relative_friction: Annotated[DimensionlessArray, AtLeast(0.0)]
 
     def __post_init__(self) -> None:
-        require("start", self.start, Unit("m"))
-        require("spacing", self.spacing, Unit("m"), above=0.0)
-        require("relative_friction", self.relative_friction, at_least=0.0)
         if np.ndim(self.relative_friction) != 1 or np.size(self.relative_friction) < 2:
             raise InputError(
                 f"relative_friction of shape {np.shape(self.relative_friction)} cannot be used: "

@@ -190,9 +190,17 @@ class Machine:
         playing.forget_marks()
         pickup = 0 if self.pickup is None else self.pickup()
         reading = m.Reading(
-            self._now, x, y, int(touching), self.state, self.fault, flags, self.level, pickup,
+            self._now,
+            x,
+            y,
+            int(touching),
+            self.state,
+            self.fault,
+            flags,
+            self.level,
+            pickup,
             self.late_ticks,
-        )  # fmt: skip
+        )
         # The number is used up even where nobody fetches: the host then sees the loss.
         self._sent = (self._sent + 1) & 0xFFFF
         if len(self._unread) < _MOST_UNREAD:
@@ -215,9 +223,19 @@ class Machine:
         else:
             self.refused = (self.refused + 1) & CLOCK
         status = m.Status(
-            frame.sequence, reason, self.state, self.fault, 0, self.token, self.level,
-            self.accepted, self.refused, self.damaged & CLOCK, self.session, self._now,
-        )  # fmt: skip
+            frame.sequence,
+            reason,
+            self.state,
+            self.fault,
+            0,
+            self.token,
+            self.level,
+            self.accepted,
+            self.refused,
+            self.damaged & CLOCK,
+            self.session,
+            self._now,
+        )
         self._send(status)
         if reason is Reason.ACCEPTED and frame.type == m.AskInfo.TYPE:
             self._send(self._info())
@@ -225,11 +243,20 @@ class Machine:
     def _info(self) -> m.Info:
         own = self.own
         return m.Info(
-            own.voltage, own.slew, own.continuous_voltage, own.heat, own.lowest_frequency,
-            own.highest_frequency, own.duty, own.duty_window, self.tick_period,
-            int(self.sensor is not None), int(self.pickup is not None), m.LONGEST_TILE,
+            own.voltage,
+            own.slew,
+            own.continuous_voltage,
+            own.heat,
+            own.lowest_frequency,
+            own.highest_frequency,
+            own.duty,
+            own.duty_window,
+            self.tick_period,
+            int(self.sensor is not None),
+            int(self.pickup is not None),
+            m.LONGEST_TILE,
             FIRMWARE_VERSION,
-        )  # fmt: skip
+        )
 
     def _take(self, frame: Frame) -> Reason:
         if frame.version != VERSION:

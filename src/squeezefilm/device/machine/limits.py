@@ -51,9 +51,15 @@ class DeviceLimits:
         if not good:
             return None
         return DeviceLimits(
-            voltage, asked.slew, continuous, asked.heat, asked.lowest_frequency,
-            asked.highest_frequency, asked.duty, asked.duty_window,
-        )  # fmt: skip
+            voltage,
+            asked.slew,
+            continuous,
+            asked.heat,
+            asked.lowest_frequency,
+            asked.highest_frequency,
+            asked.duty,
+            asked.duty_window,
+        )
 
     def levels(self, volts: tuple[float, ...]) -> tuple[int, ...] | None:
         """µV of every amplitude, or None if any is outside the limits: one bad one refuses all."""

@@ -46,8 +46,10 @@ WORDS: dict[Reason, str] = {
 }
 """Why a frame was refused, and what to do."""
 _GOALS: dict[type[m.Message], State] = {
-    m.Arm: State.ARMED, m.Start: State.PLAYING, m.ClearFault: State.OFF,
-}  # fmt: skip
+    m.Arm: State.ARMED,
+    m.Start: State.PLAYING,
+    m.ClearFault: State.OFF,
+}
 """Commands that may not be sent twice, and the state that shows that one has worked."""
 _REMEMBERED = 256
 """The device's frames among which one that comes twice is known."""

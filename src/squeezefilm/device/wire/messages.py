@@ -311,16 +311,32 @@ SENSOR_PRESENT, PICKUP_PRESENT, RAN_DRY, CAME_LATE = 1, 2, 4, 8
 COMMANDS: dict[int, type[Message]] = {
     kind.TYPE: kind
     for kind in (
-        Hello, Stop, SetLimits, Arm, Start, SetFrequency, Envelope, TileBegin, TileData, Position,
-        KeepAlive, ClearFault, Report, Follow, AskInfo, TimedEnvelope,
+        Hello,
+        Stop,
+        SetLimits,
+        Arm,
+        Start,
+        SetFrequency,
+        Envelope,
+        TileBegin,
+        TileData,
+        Position,
+        KeepAlive,
+        ClearFault,
+        Report,
+        Follow,
+        AskInfo,
+        TimedEnvelope,
     )
-}  # fmt: skip
+}
 """What a host may send, by type."""
 
 Answer = Status | Reading | Info
 ANSWERS: dict[int, type[Status] | type[Reading] | type[Info]] = {
-    Status.TYPE: Status, Reading.TYPE: Reading, Info.TYPE: Info,
-}  # fmt: skip
+    Status.TYPE: Status,
+    Reading.TYPE: Reading,
+    Info.TYPE: Info,
+}
 """What a device may send, by type."""
 
 

@@ -7,18 +7,20 @@ host's copy only tells a mistake earlier.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 from squeezefilm.device.ports import Drive
 from squeezefilm.errors import InputError
 from squeezefilm.quantities import (
+    AtLeast,
+    AtMost,
     Dimensionless,
     Hertz,
     Second,
     SquareVoltSecond,
-    Unit,
     Volt,
     VoltPerSecond,
-    require,
+    checked_numbers,
 )
 
 TOUCH_VOLTAGE: Volt = 42.0
@@ -30,6 +32,7 @@ STOP_RAMP: Second = 10e-3
 """Longest time in which a device's output goes to zero; `slew` must be fast enough for it."""
 
 
+@checked_numbers
 @dataclass(frozen=True, slots=True)
 class Limits:
     """What a device never exceeds. All voltages are zero-to-peak amplitudes of the carrier.
@@ -43,26 +46,17 @@ class Limits:
         InputError: a limit outside what the wire carries, or limits that contradict each other.
     """
 
-    voltage: Volt
-    slew: VoltPerSecond
-    continuous_voltage: Volt
-    heat: SquareVoltSecond
-    lowest_frequency: Hertz
-    highest_frequency: Hertz
-    duty: Dimensionless = 1.0
-    duty_window: Second = 10.0
+    voltage: Annotated[Volt, AtLeast(0.001), AtMost(HIGHEST_VOLTAGE)]
+    slew: Annotated[VoltPerSecond, AtLeast(1), AtMost(1000000000.0)]
+    continuous_voltage: Annotated[Volt, AtLeast(0)]
+    heat: Annotated[SquareVoltSecond, AtLeast(0), AtMost(4000000.0)]
+    lowest_frequency: Annotated[Hertz, AtLeast(1), AtMost(1000000.0)]
+    highest_frequency: Annotated[Hertz, AtMost(1000000.0)]
+    duty: Annotated[Dimensionless, AtLeast(0.001), AtMost(1)] = 1.0
+    duty_window: Annotated[Second, AtLeast(0.001), AtMost(3600)] = 10.0
     insulation: str = ""
 
     def __post_init__(self) -> None:
-        volt = Unit("V")
-        require("voltage", self.voltage, volt, at_least=1e-3, at_most=HIGHEST_VOLTAGE)
-        require("slew", self.slew, Unit("V/s"), at_least=1, at_most=1e9)
-        require("continuous_voltage", self.continuous_voltage, volt, at_least=0)
-        require("heat", self.heat, Unit("V2*s"), at_least=0, at_most=4e6)
-        require("lowest_frequency", self.lowest_frequency, Unit("Hz"), at_least=1, at_most=1e6)
-        require("highest_frequency", self.highest_frequency, Unit("Hz"), at_most=1e6)
-        require("duty", self.duty, at_least=1e-3, at_most=1)
-        require("duty_window", self.duty_window, Unit("s"), at_least=1e-3, at_most=3600)
         if self.continuous_voltage > self.voltage:
             raise InputError(
                 f"continuous_voltage is {self.continuous_voltage:g} V, above voltage, "

@@ -78,9 +78,13 @@ def edge_layer_coefficient(
     ε → 0; 6 % low at ε = 0.5. Beyond ε = 0.3 raises `OutOfRangeError`, or warns if not `strict`.
     """
     require_valid(
-        "amplitude_ratio", amplitude_ratio, 0, 0.3,
-        "the second-order edge layer coefficient holds within 3 %", strict=strict,
-    )  # fmt: skip
+        "amplitude_ratio",
+        amplitude_ratio,
+        0,
+        0.3,
+        "the second-order edge layer coefficient holds within 3 %",
+        strict=strict,
+    )
     value: DimensionlessLike = 5 * np.sqrt(2) / 8 * amplitude_ratio**2 * edge_to_area
     return value
 
@@ -100,9 +104,13 @@ def edge_layer_load(
     O(1/σ) besides). Outside, raises `OutOfRangeError`, or warns if not `strict`.
     """
     require_valid(
-        "squeeze_number", squeeze_number, 50, np.inf,
-        "the edge layers are thin and do not meet", strict=strict,
-    )  # fmt: skip
+        "squeeze_number",
+        squeeze_number,
+        50,
+        np.inf,
+        "the edge layers are thin and do not meet",
+        strict=strict,
+    )
     coefficient = edge_layer_coefficient(amplitude_ratio, edge_to_area, strict=strict)
     return asymptotic_load(amplitude_ratio) - coefficient / np.sqrt(squeeze_number)
 

@@ -322,9 +322,13 @@ def second_order_mean_load(
     holds = "the second order in ε keeps the over-pressure within some 10 %"
     require_valid("amplitude_ratio", amplitude[springs], 0, 0.3, holds, strict=strict)
     require_valid(
-        "amplitude_ratio", amplitude[~springs], 0, 0.14,
-        f"{holds} for a film that leaks (fk < 0.4)", strict=strict,
-    )  # fmt: skip
+        "amplitude_ratio",
+        amplitude[~springs],
+        0,
+        0.14,
+        f"{holds} for a film that leaks (fk < 0.4)",
+        strict=strict,
+    )
     require_valid("knudsen_number", knudsen_number, 0, 0.1, "first-order slip holds", strict=strict)
     slip = 1.25 + 6 * knudsen_number - 1.5 * knudsen_number * (1 - polytropic_index)
     order = polytropic_index * fk * slip / (1 + 6 * knudsen_number)

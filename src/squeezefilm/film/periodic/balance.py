@@ -105,9 +105,16 @@ class _Film:
 
 
 def _film(
-    amplitude: float, frequency: float, length: float, viscosity: float, ambient_pressure: float,
-    polytropic_exponent: float, mean_free_path: float, slip: str, shape: str,
-) -> _Film:  # fmt: skip
+    amplitude: float,
+    frequency: float,
+    length: float,
+    viscosity: float,
+    ambient_pressure: float,
+    polytropic_exponent: float,
+    mean_free_path: float,
+    slip: str,
+    shape: str,
+) -> _Film:
     require("amplitude", amplitude, Unit("m"), above=0.0)
     require("frequency", frequency, Unit("Hz"), above=0.0)
     require("length", length, Unit("m"), above=0.0)
@@ -118,9 +125,14 @@ def _film(
         raise InputError(f"shape = '{shape}' cannot be used: it must be 'strip' or 'disc'")
     scale = 12.0 * viscosity * 2.0 * math.pi * frequency * length**2
     return _Film(
-        amplitude, scale / (ambient_pressure * amplitude**2), ambient_pressure,
-        polytropic_exponent, mean_free_path, slip, shape,
-    )  # fmt: skip
+        amplitude,
+        scale / (ambient_pressure * amplitude**2),
+        ambient_pressure,
+        polytropic_exponent,
+        mean_free_path,
+        slip,
+        shape,
+    )
 
 
 @checked_numbers
@@ -151,9 +163,16 @@ def mean_gap_for_load(
     require("load", load, Unit("Pa"), above=0.0)
     require("tolerance", tolerance, at_least=1e-6, at_most=0.1)
     film = _film(
-        amplitude, frequency, length, viscosity, ambient_pressure, polytropic_exponent,
-        mean_free_path, slip, shape,
-    )  # fmt: skip
+        amplitude,
+        frequency,
+        length,
+        viscosity,
+        ambient_pressure,
+        polytropic_exponent,
+        mean_free_path,
+        slip,
+        shape,
+    )
     wanted = load / ambient_pressure
     grid = np.geomspace(_MIN_EXCURSION, MAX_EXCURSION, 24)
     # At the faint end of the grid the over-pressure can drown in round-off: leave that out.
@@ -263,9 +282,16 @@ def levitation_limit(
     """
     require("excursion_ratio", excursion_ratio, at_least=0.1, at_most=MAX_EXCURSION)
     film = _film(
-        amplitude, frequency, length, viscosity, ambient_pressure, polytropic_exponent,
-        mean_free_path, slip, shape,
-    )  # fmt: skip
+        amplitude,
+        frequency,
+        length,
+        viscosity,
+        ambient_pressure,
+        polytropic_exponent,
+        mean_free_path,
+        slip,
+        shape,
+    )
     batch = film.solve(np.array([excursion_ratio]), tolerance)
     n = polytropic_exponent
     H = 1.0 + excursion_ratio * np.cos(2.0 * np.pi * np.arange(512) / 512)

@@ -99,9 +99,17 @@ def solve_strips(
     batch as `partial`; without, its error estimate shows it (NaN where nothing converged).
     """
     return _solve(
-        "strip", squeeze_number, excursion_ratio, polytropic_exponent, knudsen_number, slip,
-        tolerance, workers, progress, strict,
-    )  # fmt: skip
+        "strip",
+        squeeze_number,
+        excursion_ratio,
+        polytropic_exponent,
+        knudsen_number,
+        slip,
+        tolerance,
+        workers,
+        progress,
+        strict,
+    )
 
 
 @checked_numbers
@@ -119,9 +127,17 @@ def solve_discs(
 ) -> FilmBatch:
     """`solve_strips` for circular films; the squeeze number is on the radius."""
     return _solve(
-        "disc", squeeze_number, excursion_ratio, polytropic_exponent, knudsen_number, slip,
-        tolerance, workers, progress, strict,
-    )  # fmt: skip
+        "disc",
+        squeeze_number,
+        excursion_ratio,
+        polytropic_exponent,
+        knudsen_number,
+        slip,
+        tolerance,
+        workers,
+        progress,
+        strict,
+    )
 
 
 def check_film(
@@ -279,9 +295,12 @@ def solve_all(
                 break
             allowed = tolerance * np.abs(out[pending, u.OVER])
             more_cells, more_times = refined(
-                cells[pending], times[pending], out[pending, u.SPACE], out[pending, u.TIME],
+                cells[pending],
+                times[pending],
+                out[pending, u.SPACE],
+                out[pending, u.TIME],
                 np.where(allowed > 0.0, allowed, 1e-300),
-            )  # fmt: skip
+            )
             stuck = (more_cells == cells[pending]) & (more_times == times[pending])
             cells[pending], times[pending] = more_cells, more_times
             pending = pending[~stuck]

@@ -68,9 +68,16 @@ def solve_strip(
     result, where the tolerance is not reached.
     """
     return _solve_uniform(
-        Asked("strip", squeeze_number, excursion_ratio, polytropic_exponent, knudsen_number, slip,
-               tolerance)
-    )  # fmt: skip
+        Asked(
+            "strip",
+            squeeze_number,
+            excursion_ratio,
+            polytropic_exponent,
+            knudsen_number,
+            slip,
+            tolerance,
+        )
+    )
 
 
 @checked_numbers
@@ -88,9 +95,16 @@ def solve_disc(
     As `solve_strip`, with σ = 12 η ω R²/(p0 H0²) on the radius R.
     """
     return _solve_uniform(
-        Asked("disc", squeeze_number, excursion_ratio, polytropic_exponent, knudsen_number, slip,
-               tolerance)
-    )  # fmt: skip
+        Asked(
+            "disc",
+            squeeze_number,
+            excursion_ratio,
+            polytropic_exponent,
+            knudsen_number,
+            slip,
+            tolerance,
+        )
+    )
 
 
 def _solve_uniform(asked: Asked) -> FilmSolution:
@@ -104,9 +118,18 @@ def _solve_uniform(asked: Asked) -> FilmSolution:
     keep = np.empty(3 * int(CELLS[-1]) // 2 * 200)
     one = np.array([[sigma], [eps], [n], [kn]], dtype=float)
     out, c, t, met = solve_all(
-        asked.shape, one[0], one[1], one[2], one[3], law, asked.tolerance, 1,
-        least_cells=16, least_times=11, keep=keep,
-    )  # fmt: skip
+        asked.shape,
+        one[0],
+        one[1],
+        one[2],
+        one[3],
+        law,
+        asked.tolerance,
+        1,
+        least_cells=16,
+        least_times=11,
+        keep=keep,
+    )
     row, cells, times = out[0], int(CELLS[c[0]]), int(TIMES[t[0]])
     over, error = float(row[u.OVER]), float(row[u.ERROR])
     ntp = collocation_times(times).row
@@ -169,9 +192,13 @@ def solve_profile(
     closed = profile.symmetric
     sigma, n, kn = float(squeeze_number), float(polytropic_exponent), float(knudsen_number)
     c, t = first_guess(
-        np.array([sigma]), np.array([max(profile.mean_depth, 1e-3)]), np.array([kn]), tolerance,
-        least_cells=8, least_times=2 * profile.orders + 1,
-    )  # fmt: skip
+        np.array([sigma]),
+        np.array([max(profile.mean_depth, 1e-3)]),
+        np.array([kn]),
+        tolerance,
+        least_cells=8,
+        least_times=2 * profile.orders + 1,
+    )
     waves = profile.features / (2.0 if closed else 1.0)
     cells = max(int(CELLS[c[0]]), 4 * round(4.0 * waves * (0.01 / tolerance) ** 0.25))
     if not closed:
@@ -189,10 +216,15 @@ def solve_profile(
         ntp = resolution.times.row
         keep = np.empty((cells + 1 + cells // 2 + 1) * ntp)
         solve_varying(
-            sigma, Gas(n, kn, law), Profile(slope, even, odd, profile.depth, closed), resolution,
+            sigma,
+            Gas(n, kn, law),
+            Profile(slope, even, odd, profile.depth, closed),
+            resolution,
             (load_times(times, profile.depth), load_times(check, profile.depth)),
-            Aim(tolerance, MOST_NEWTON), out, keep,
-        )  # fmt: skip
+            Aim(tolerance, MOST_NEWTON),
+            out,
+            keep,
+        )
         iterations += int(out[u.ITERATIONS])
         allowed = tolerance * abs(out[u.OVER])
         met = bool(out[u.ERROR] <= allowed) or bool(abs(out[u.OVER]) < 1e-15)
@@ -200,9 +232,12 @@ def solve_profile(
             break
         some = np.zeros(1, dtype=np.int64)
         more, t2 = refined(
-            some, t, out[u.SPACE : u.SPACE + 1], out[u.TIME : u.TIME + 1],
+            some,
+            t,
+            out[u.SPACE : u.SPACE + 1],
+            out[u.TIME : u.TIME + 1],
             np.array([max(allowed, 1e-300) if np.isfinite(allowed) else 1e-300]),
-        )  # fmt: skip
+        )
         if more[0] > 0:
             ratio = max(out[u.SPACE] / allowed / 0.5, 1.0) ** 0.25
             cells = 4 * round(cells * min(max(1.3, ratio), 4.0) / 4)

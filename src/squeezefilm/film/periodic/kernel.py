@@ -87,8 +87,17 @@ def _invert(S: FloatArray, start: int, nt: int, ntp: int, mask: FloatArray) -> N
 
 
 @njit(nogil=True, cache=True, fastmath=_FAST, error_model="numpy")
-def _apply(S: FloatArray, start: int, nt: int, ntp: int, y: FloatArray, at: int, out: FloatArray,
-           to: int, accumulate: bool) -> None:  # fmt: skip
+def _apply(
+    S: FloatArray,
+    start: int,
+    nt: int,
+    ntp: int,
+    y: FloatArray,
+    at: int,
+    out: FloatArray,
+    to: int,
+    accumulate: bool,
+) -> None:
     """out[to:] (+)= Sᵀ y[at:] for the block at `start`, which holds the transposed inverse."""
     for v in range(0, ntp, 8):
         result = load(out, to + v) if accumulate else broadcast(0.0)

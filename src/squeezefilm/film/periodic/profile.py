@@ -208,9 +208,11 @@ def flexural_profile(
     """
     require("excursion_ratio", excursion_ratio, above=-1.0, below=1.0)
     for name, value in (
-        ("wavenumber", wavenumber), ("ridge_depth", ridge_depth),
-        ("ridge_wavenumber", ridge_wavenumber), ("tilt", tilt),
-    ):  # fmt: skip
+        ("wavenumber", wavenumber),
+        ("ridge_depth", ridge_depth),
+        ("ridge_wavenumber", ridge_wavenumber),
+        ("tilt", tilt),
+    ):
         require(name, value)
 
     harmonics = _Flexural(excursion_ratio, wavenumber, ridge_depth, ridge_wavenumber, tilt)

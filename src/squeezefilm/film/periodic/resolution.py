@@ -47,9 +47,13 @@ def resolution_of(cells: int, times: int) -> Resolution:
 
 
 def first_guess(
-    squeeze_number: FloatArray, excursion_ratio: FloatArray, knudsen_number: FloatArray,
-    tolerance: float, least_cells: int = 4, least_times: int = 5,
-) -> tuple[IntArray, IntArray]:  # fmt: skip
+    squeeze_number: FloatArray,
+    excursion_ratio: FloatArray,
+    knudsen_number: FloatArray,
+    tolerance: float,
+    least_cells: int = 4,
+    least_times: int = 5,
+) -> tuple[IntArray, IntArray]:
     """Indices into `CELLS` and `TIMES` that probably meet a relative tolerance on W − 1."""
     sigma = squeeze_number / (1.0 + 6.0 * knudsen_number)
     layer = np.sqrt(np.sqrt(1.0 + sigma / 60.0))
@@ -58,10 +62,12 @@ def first_guess(
     q = np.sqrt(np.arctanh(excursion_ratio))
     d = np.log(np.log10(1.0 / min(0.5 * tolerance, 0.01)))
     times = np.exp(
-        0.7123 + 0.2144 * d + 0.1161 * d * d
+        0.7123
+        + 0.2144 * d
+        + 0.1161 * d * d
         + a * (0.0328 - 0.0199 * d + a * (-0.0144 + 0.0014 * a))
         + q * (1.6309 + 0.1814 * d - 0.4562 * q + a * (-0.2191 + 0.0251 * q + 0.007 * a))
-    )  # fmt: skip
+    )
     # Four cells are too few to judge the edge layer by.
     least = np.where(sigma > 30.0, max(8, least_cells), least_cells)
     chosen_cells = np.searchsorted(CELLS, np.maximum(0.87 * cells, least))

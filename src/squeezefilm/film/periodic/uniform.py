@@ -40,9 +40,15 @@ def edge_grading(sigma: float, eps: float) -> float:
 
 @njit(nogil=True, cache=True, error_model="numpy")
 def load_weights(
-    nt: int, ntp: int, eps: float, n: float, H: FloatArray, w: FloatArray, c: FloatArray,
+    nt: int,
+    ntp: int,
+    eps: float,
+    n: float,
+    H: FloatArray,
+    w: FloatArray,
+    c: FloatArray,
     s: FloatArray,
-) -> None:  # fmt: skip
+) -> None:
     """Weights of p at the nt times for the mean force and its first harmonic.
 
     Ψ = P Hⁿ is nearly constant in time, P is not. So the trigonometric interpolant of Ψ − Hⁿ is
@@ -180,9 +186,14 @@ class Films(NamedTuple):
 
 @njit(nogil=True, cache=True, error_model="numpy")
 def solve_rows(
-    start: int, stop: int, films: Films, resolution: Resolution, aim: Aim, out: FloatArray,
+    start: int,
+    stop: int,
+    films: Films,
+    resolution: Resolution,
+    aim: Aim,
+    out: FloatArray,
     keep: FloatArray,
-) -> None:  # fmt: skip
+) -> None:
     """Fill rows start:stop of `out` for the films of those rows, all with the same resolution.
 
     The number of cells is a multiple of 4. NaN marks a film that did not converge. `keep`, if

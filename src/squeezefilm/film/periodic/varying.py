@@ -54,9 +54,15 @@ def _gaps(even: FloatArray, odd: FloatArray, nt: int, ntp: int, out: FloatArray)
 
 @njit(nogil=True, cache=True, error_model="numpy")
 def _weights(
-    even: FloatArray, odd: FloatArray, n: float, nt: int, ntp: int, fine: int, H: FloatArray,
+    even: FloatArray,
+    odd: FloatArray,
+    n: float,
+    nt: int,
+    ntp: int,
+    fine: int,
+    H: FloatArray,
     out: FloatArray,
-) -> None:  # fmt: skip
+) -> None:
     """Weights of p at the nt times in the mean force over `fine` times, for every other point.
 
     Ψ = P Hⁿ is interpolated to the fine times and divided by Hⁿ there.
@@ -113,9 +119,15 @@ class Profile(NamedTuple):
 
 @njit(nogil=True, cache=True, error_model="numpy")
 def solve_varying(
-    sigma: float, gas: Gas, profile: Profile, resolution: Resolution, fine: tuple[int, int],
-    aim: Aim, out: FloatArray, keep: FloatArray,
-) -> None:  # fmt: skip
+    sigma: float,
+    gas: Gas,
+    profile: Profile,
+    resolution: Resolution,
+    fine: tuple[int, int],
+    aim: Aim,
+    out: FloatArray,
+    keep: FloatArray,
+) -> None:
     """Fill one result row and `keep` (p on the two finer grids, one after the other).
 
     The profile has 2·cells + 1 points; `fine` are the numbers of times of the load integral for
@@ -177,9 +189,15 @@ def solve_varying(
                     H[k * row + t] = HJ[2 * stride * i * row + t]
                     weight[k * row + t] = WJ[stride * i * row + t]
             over, more, remains = newton(
-                unknowns, now, Cells(g, vol, share), Gap(H, Hf, Hf3, weight, row), gas, p, room,
+                unknowns,
+                now,
+                Cells(g, vol, share),
+                Gap(H, Hf, Hf3, weight, row),
+                gas,
+                p,
+                room,
                 close,
-            )  # fmt: skip
+            )
             its += more
             left = max(left, remains)
             if run == 0:

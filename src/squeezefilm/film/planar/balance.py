@@ -129,9 +129,14 @@ class Balancer:
         self.storage = Storage(film.squeeze_number * grid.area, derivative(count))
         self.gas = Gas(film.polytropic_exponent, film.knudsen_number, film.slip)
         self.faces = Faces(
-            grid.columns, grid.row_conductance, grid.column_from, grid.column_to,
-            grid.column_conductance, grid.edge_node, grid.edge_conductance,
-        )  # fmt: skip
+            grid.columns,
+            grid.row_conductance,
+            grid.column_from,
+            grid.column_to,
+            grid.column_conductance,
+            grid.edge_node,
+            grid.edge_conductance,
+        )
         row_of = grid.column_from // grid.columns
         within = [np.flatnonzero(row_of == i).astype(np.int64) for i in range(grid.rows)]
         self._factors = _Factors(grid.rows, grid.columns * count, within)

@@ -89,10 +89,15 @@ def solve_rectangle(
     """
     gap = PlanarGap(excursion_ratio, wave_number, ridge_height, ridge_wave_number)
     return solve_planar(
-        "rectangle", gap, squeeze_number, aspect_ratio=aspect_ratio,
-        polytropic_exponent=polytropic_exponent, knudsen_number=knudsen_number,
-        slip=slip, tolerance=tolerance,
-    )  # fmt: skip
+        "rectangle",
+        gap,
+        squeeze_number,
+        aspect_ratio=aspect_ratio,
+        polytropic_exponent=polytropic_exponent,
+        knudsen_number=knudsen_number,
+        slip=slip,
+        tolerance=tolerance,
+    )
 
 
 @checked_numbers
@@ -116,10 +121,15 @@ def solve_ellipse(
     """
     gap = PlanarGap(excursion_ratio, wave_number, ridge_height, ridge_wave_number)
     return solve_planar(
-        "ellipse", gap, squeeze_number, aspect_ratio=aspect_ratio,
-        polytropic_exponent=polytropic_exponent, knudsen_number=knudsen_number,
-        slip=slip, tolerance=tolerance,
-    )  # fmt: skip
+        "ellipse",
+        gap,
+        squeeze_number,
+        aspect_ratio=aspect_ratio,
+        polytropic_exponent=polytropic_exponent,
+        knudsen_number=knudsen_number,
+        slip=slip,
+        tolerance=tolerance,
+    )
 
 
 @checked_numbers
@@ -153,16 +163,17 @@ def solve_planar(
     require_film(squeeze_number, polytropic_exponent, knudsen_number)
     require("aspect_ratio", aspect_ratio, above=0.0)
     require("tolerance", tolerance, at_least=1e-5, at_most=0.5)
-    if shape not in ("rectangle", "disc", "ellipse"):
-        raise InputError(f"shape = '{shape}' is not known; allowed: rectangle, disc, ellipse")
     if shape == "disc" and aspect_ratio != 1.0:
         raise InputError(f"a disc has aspect_ratio 1, not {aspect_ratio}; ask for an ellipse")
     announce(row_block, "film solver in the plane", 3)
     quarter = isinstance(gap, PlanarGap) if symmetric is None else symmetric
     film = Film(
-        gap, float(squeeze_number), float(polytropic_exponent), float(knudsen_number),
+        gap,
+        float(squeeze_number),
+        float(polytropic_exponent),
+        float(knudsen_number),
         slip_law(slip, knudsen_number),
-    )  # fmt: skip
+    )
     ladder = Ladder(shape, float(aspect_ratio), film, quarter, cells)
     require_periodic(gap, ladder.grid(RUNGS[0]).X, ladder.grid(RUNGS[0]).Y)
     climb = climb_to(ladder, float(tolerance))

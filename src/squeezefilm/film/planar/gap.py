@@ -4,16 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
 from squeezefilm.errors import GeometryError, InputError
 from squeezefilm.quantities import (
+    Above,
+    AtLeast,
+    AtMost,
+    Below,
     Dimensionless,
     DimensionlessLike,
     FloatArray,
     checked_numbers,
-    require,
 )
 
 # A thousand waves on the surface; some twenty cells a wave make a grid of it.
@@ -34,21 +38,10 @@ class PlanarGap:
     Raises `InputError` for values out of range, `GeometryError` where the gap would close.
     """
 
-    excursion_ratio: Dimensionless
-    wave_number: Dimensionless = 0.0
-    ridge_height: Dimensionless = 0.0
-    ridge_wave_number: Dimensionless = 0.0
-
-    def __post_init__(self) -> None:
-        require("excursion_ratio", self.excursion_ratio, above=0.0, below=1.0)
-        require("wave_number", self.wave_number, at_least=0.0, at_most=_HIGHEST_WAVE_NUMBER)
-        require("ridge_height", self.ridge_height, at_least=0.0, below=1.0)
-        require(
-            "ridge_wave_number",
-            self.ridge_wave_number,
-            at_least=0.0,
-            at_most=_HIGHEST_WAVE_NUMBER,
-        )
+    excursion_ratio: Annotated[Dimensionless, Above(0.0), Below(1.0)]
+    wave_number: Annotated[Dimensionless, AtLeast(0.0), AtMost(_HIGHEST_WAVE_NUMBER)] = 0.0
+    ridge_height: Annotated[Dimensionless, AtLeast(0.0), Below(1.0)] = 0.0
+    ridge_wave_number: Annotated[Dimensionless, AtLeast(0.0), AtMost(_HIGHEST_WAVE_NUMBER)] = 0.0
 
     @checked_numbers
     def __call__(

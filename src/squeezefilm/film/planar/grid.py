@@ -164,10 +164,17 @@ def rectangle_grid(x: FloatArray, y: FloatArray, *, quarter: bool = True) -> Pla
     """
     area = np.diff(x[::2])[:, None] * np.diff(y[::2])
     return _build(
-        x, y, lambda a, b: (a, b), np.ones_like, np.ones_like, area,
-        quarter=quarter, first_row_open=not quarter, first_column_open=not quarter,
+        x,
+        y,
+        lambda a, b: (a, b),
+        np.ones_like,
+        np.ones_like,
+        area,
+        quarter=quarter,
+        first_row_open=not quarter,
+        first_column_open=not quarter,
         last_column_open=True,
-    )  # fmt: skip
+    )
 
 
 def _turn(count: int, quarter: bool) -> FloatArray:
@@ -185,11 +192,18 @@ def disc_grid(
     angle = _turn(counts[1], quarter)
     area = (np.diff(r[::2] ** 2) / 2)[:, None] * np.diff(angle[::2])
     return _build(
-        r, angle, lambda a, b: (a * np.cos(b), a * np.sin(b)),
-        lambda u: u, lambda u: 1.0 / u, area,
-        quarter=quarter, first_row_open=False, first_column_open=False, last_column_open=False,
+        r,
+        angle,
+        lambda a, b: (a * np.cos(b), a * np.sin(b)),
+        lambda u: u,
+        lambda u: 1.0 / u,
+        area,
+        quarter=quarter,
+        first_row_open=False,
+        first_column_open=False,
+        last_column_open=False,
         join="" if quarter else "turn",
-    )  # fmt: skip
+    )
 
 
 def ellipse_grid(
@@ -225,7 +239,15 @@ def ellipse_grid(
         return (across, along) if tall else (along, across)
 
     return _build(
-        mu, nu, place, np.ones_like, np.ones_like, area,
-        quarter=quarter, first_row_open=False, first_column_open=False, last_column_open=False,
+        mu,
+        nu,
+        place,
+        np.ones_like,
+        np.ones_like,
+        area,
+        quarter=quarter,
+        first_row_open=False,
+        first_column_open=False,
+        last_column_open=False,
         join="" if quarter else "segment",
-    )  # fmt: skip
+    )

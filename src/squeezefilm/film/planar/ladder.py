@@ -74,9 +74,10 @@ class Ladder:
             self._base = (out, around) if quarter else (out, 4 * around)
         rows, columns = sorted((part * RUNGS[0] for part in self._base), reverse=True)
         require_within(
-            PLANAR_MEMORY, _memory(rows, columns, _LEAST_TIMES),
+            PLANAR_MEMORY,
+            _memory(rows, columns, _LEAST_TIMES),
             enough="take fewer waves, ridges or cells",
-        )  # fmt: skip
+        )
         self.excursion = self._excursion()
 
     def _excursion(self) -> float:
@@ -172,9 +173,10 @@ def climb_to(ladder: Ladder, tolerance: float) -> Climb:
     count = 2 * int(np.ceil(1.5 + 2.5 * excursion + 3.0 * excursion**6)) + 1
     coarsest = ladder.grid(RUNGS[0])
     require_within(
-        PLANAR_MEMORY, _memory(coarsest.rows, coarsest.columns, count + 4),
+        PLANAR_MEMORY,
+        _memory(coarsest.rows, coarsest.columns, count + 4),
         enough="take fewer waves, ridges or cells",
-    )  # fmt: skip
+    )
     low = solved(RUNGS[0], count, None)
     if low.converged:
         # Newton's error must stay well below what the extrapolation looks at.
@@ -204,10 +206,13 @@ def climb_to(ladder: Ladder, tolerance: float) -> Climb:
         grid = ladder.grid(rung)
         if _memory(grid.rows, grid.columns, count) > PLANAR_MEMORY.most:
             return Climb(
-                best, states[-1], iterations, False,
+                best,
+                states[-1],
+                iterations,
+                False,
                 f"known to {best.error / abs(best.over_pressure):.2g} of the over-pressure; "
                 f"{tolerance:.2g} would take more memory than allowed",
-            )  # fmt: skip
+            )
         states.append(solved(rung, count, _moved(ladder.film, states[-1], grid)))
         if not states[-1].converged:
             status = f"stopped: Newton's method failed on {grid.rows} × {grid.columns} nodes"
@@ -297,9 +302,12 @@ def _solve_or_continue(
             return np.asarray(mean + part * (gap(X, Y, t) - mean))
 
         eased = Film(
-            smaller if part < 1.0 else gap, film.squeeze_number, film.polytropic_exponent,
-            film.knudsen_number, film.slip,
-        )  # fmt: skip
+            smaller if part < 1.0 else gap,
+            film.squeeze_number,
+            film.polytropic_exponent,
+            film.knudsen_number,
+            film.slip,
+        )
         state = Balancer(eased, grid, count).solve(gas, accuracy if part == 1.0 else 1e-3)
         spent += state.iterations
         gas = state.gas if state.converged else None

@@ -84,10 +84,16 @@ def compare_teeth(
         under: GapFunction, sigma: float, aspect: float, cells: tuple[int, int] | None = None
     ) -> FilmPlanar:
         return solve_planar(
-            "rectangle", under, sigma, aspect_ratio=aspect, cells=cells, tolerance=tolerance,
-            polytropic_exponent=polytropic_exponent, knudsen_number=knudsen_number,
+            "rectangle",
+            under,
+            sigma,
+            aspect_ratio=aspect,
+            cells=cells,
+            tolerance=tolerance,
+            polytropic_exponent=polytropic_exponent,
+            knudsen_number=knudsen_number,
             slip=slip,
-        )  # fmt: skip
+        )
 
     surface = solved(gap, squeeze_number, aspect_ratio)
     # Midpoints in the finger's half length: the wave need not fit it a whole number of times.

@@ -36,6 +36,7 @@ from squeezefilm.quantities import (
     FloatArray,
     checked_numbers,
     require,
+    require_one_of,
 )
 
 Scheme = Literal["bdf2", "sdirk2", "backward_euler"]
@@ -74,16 +75,14 @@ class FilmTransient:
 
 def stage_times(scheme: str) -> FloatArray:
     """Where in a step (0 to 1) a scheme asks for the gap."""
-    if scheme not in SCHEMES:
-        raise InputError(f"scheme = '{scheme}' is not known; allowed: {', '.join(SCHEMES)}")
+    require_one_of("scheme", scheme, SCHEMES)
     return np.array([1.0 - np.sqrt(0.5), 1.0] if scheme == "sdirk2" else [1.0])
 
 
 def check_film(shape: str, sigma: float, n: float, knudsen: float) -> None:
     """Refuse a shape that is not known and numbers out of range."""
     require_film(sigma, n, knudsen)
-    if shape not in ("strip", "disc"):
-        raise InputError(f"shape = '{shape}' is not known; allowed: strip, disc")
+    require_one_of("shape", shape, ("strip", "disc"))
 
 
 def _gas_balanced(volume: FloatArray, m: FloatArray, before: FloatArray, scheme: Scheme) -> float:
@@ -168,11 +167,15 @@ def solve_transient(
         held = _gas_balanced(grid.volume, m, before, how)
         now = slice(done + 1, done + count + 1)
         lost, change, made, reached = march(
-            m, before, Gaps(gap_table(gap, grid.centre, at), gap_table(gap, grid.face, at)),
-            Line(grid.volume, grid.conductance), Pace(dt, float(squeeze_number), SCHEMES[how]),
-            Gas(n, float(knudsen_number), law), NEWTON,
+            m,
+            before,
+            Gaps(gap_table(gap, grid.centre, at), gap_table(gap, grid.face, at)),
+            Line(grid.volume, grid.conductance),
+            Pace(dt, float(squeeze_number), SCHEMES[how]),
+            Gas(n, float(knudsen_number), law),
+            NEWTON,
             Track(load[now], field, keep[now]),
-        )  # fmt: skip
+        )
         closure += abs(_gas_balanced(grid.volume, m, before, how) - held + lost)
         worst = max(worst, change) if np.isfinite(change) else float("nan")
         iterations += made

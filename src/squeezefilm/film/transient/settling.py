@@ -135,9 +135,17 @@ def settle_to_periodic(
     if tolerance is not None:
         require("tolerance", tolerance, at_least=1e-9)
     asked = _Asked(
-        gap, squeeze_number, shape, polytropic_exponent, knudsen_number, slip, scheme, accelerate,
-        settled, max_periods,
-    )  # fmt: skip
+        gap,
+        squeeze_number,
+        shape,
+        polytropic_exponent,
+        knudsen_number,
+        slip,
+        scheme,
+        accelerate,
+        settled,
+        max_periods,
+    )
     history: list[FilmSettled] = []
     guess: tuple[FloatArray, FloatArray] | None = None
     while True:
@@ -230,10 +238,15 @@ def _settle(
         periods += 1
         m, before = x[0].copy(), x[-1].copy()
         lost, _, made, done = march(
-            m, before, gaps, Line(grid.volume, grid.conductance),
-            Pace(dt, float(sigma), SCHEMES[scheme]), gas, NEWTON,
+            m,
+            before,
+            gaps,
+            Line(grid.volume, grid.conductance),
+            Pace(dt, float(sigma), SCHEMES[scheme]),
+            gas,
+            NEWTON,
             track,
-        )  # fmt: skip
+        )
         iterations += made
         if done < steps:
             change = float("inf")

@@ -236,9 +236,14 @@ class StudyArea:
         display = await self.thread.do(Studies.display_of, asked.study, asked.participant)
         require_device(asked.device, display)
         found = await self.thread.do(
-            Studies.prepare, asked.study, asked.participant, asked.device, asked.consent,
-            asked.conditions, asked.acknowledged,
-        )  # fmt: skip
+            Studies.prepare,
+            asked.study,
+            asked.participant,
+            asked.device,
+            asked.consent,
+            asked.conditions,
+            asked.acknowledged,
+        )
         await self._release_ended()
         return {"type": "study", **found}
 

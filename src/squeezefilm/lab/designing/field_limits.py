@@ -1,7 +1,7 @@
-"""What one value of a display may be while the others stay: found by trying.
+"""What one value of a display may be while the others stay: read from its type, or tried.
 
-The limits live in the parts themselves, and some depend on other values (a patch ends where its
-plate does), so no table of them could be true; building the display anew says what it accepts.
+A field's own bounds stand in its annotation. Some limits depend on other values (a patch ends where
+its plate does): where the display does not fit at a bound, building it anew finds what it accepts.
 """
 
 from __future__ import annotations
@@ -13,8 +13,9 @@ from typing import Any
 
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError, SqueezefilmError
+from squeezefilm.hard_limits import HardLimit
 from squeezefilm.lab.designing.form import choices, display_of, stated
-from squeezefilm.quantities import Unit, format_quantity, unit_of
+from squeezefilm.quantities import Unit, bounds_of, format_quantity, unit_of
 from squeezefilm.report.kit.numbers import leaves
 
 _FAR = 1e9
@@ -49,10 +50,37 @@ def allowed(text: str, path: str) -> str:
             return False
         return True
 
+    least, most = _stated_ends(annotation)
     size = max(abs(value), 1.0) if whole else abs(value) or _size_of(display, place)
-    below = _limit(fits, value, -size, whole=whole)
-    above = _limit(fits, value, size, whole=whole)
+    below = _stated_end(fits, value, least) or _limit(fits, value, -size, whole=whole)
+    above = _stated_end(fits, value, most) or _limit(fits, value, size, whole=whole)
     return _words(below, above, unit)
+
+
+_End = tuple[float, bool]  # the last value, and whether it fits itself
+
+
+def _stated_ends(annotation: Any) -> tuple[_End | None, _End | None]:
+    """The least and the most that an annotation allows."""
+    bounds, limits = bounds_of(annotation)
+    hard = [one for one in limits if isinstance(one, HardLimit)]
+    low = [(bounds[name], name == "at_least") for name in ("above", "at_least") if name in bounds]
+    high = [(bounds[name], name == "at_most") for name in ("below", "at_most") if name in bounds]
+    low += [(one.least, True) for one in hard]
+    high += [(one.most, True) for one in hard]
+    # Of two alike the open one is the narrower.
+    return (
+        max(low, default=None, key=lambda end: (end[0], not end[1])),
+        min(high, default=None),
+    )
+
+
+def _stated_end(fits: Callable[[float], bool], value: float, end: _End | None) -> _End | None:
+    """The end that the type states, if the display fits there, or just before an open one."""
+    if end is None:
+        return None
+    number, itself = end
+    return end if fits(number if itself else number + 1e-9 * (value - number)) else None
 
 
 def _with(node: Any, place: tuple[str | int, ...], value: float) -> Any:
@@ -78,9 +106,7 @@ def _size_of(display: Display, place: tuple[str | int, ...]) -> float:
     return 1e-3 * max(beside, default=1.0)
 
 
-def _limit(
-    fits: Callable[[float], bool], value: float, step: float, *, whole: bool
-) -> tuple[float, bool] | None:
+def _limit(fits: Callable[[float], bool], value: float, step: float, *, whole: bool) -> _End | None:
     """The last value that fits in one direction, and whether it fits itself; None if far away."""
     zero = value and (value > 0) != (step > 0)
     if zero and not fits(0.0):
@@ -113,9 +139,7 @@ def _limit(
     return round_one, fits(round_one)
 
 
-def _words(
-    below: tuple[float, bool] | None, above: tuple[float, bool] | None, unit: Unit | None
-) -> str:
+def _words(below: _End | None, above: _End | None, unit: Unit | None) -> str:
     def text(number: float) -> str:
         if unit is None or unit.symbol == "1":
             return f"{number:.6g}"

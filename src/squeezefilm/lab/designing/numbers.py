@@ -20,7 +20,7 @@ from squeezefilm.lab.designing.form import display_of, edited, form
 from squeezefilm.lab.worker import tell
 from squeezefilm.plate.layout import Actuator, AnnularStator, DiscPlate, RectangularPlate
 from squeezefilm.plate.solid.working import response_frequencies, solid_mode
-from squeezefilm.quantities import FloatArray, Unit, parse_quantity
+from squeezefilm.quantities import FloatArray, Unit, parse_quantity, require_one_of
 from squeezefilm.results import stamp
 
 QUALITIES = ("screening", "solved")
@@ -173,8 +173,7 @@ def predicted(
 
     Raises `InputError` as `design` does.
     """
-    if quality not in QUALITIES:
-        raise InputError(f"quality = {quality!r} is not known; allowed: {', '.join(QUALITIES)}")
+    require_one_of("quality", quality, QUALITIES)
     display = display_of(text)
     plate = isinstance(display.actuator, RectangularPlate)
     with warnings.catch_warnings():

@@ -14,6 +14,7 @@ from squeezefilm import presets
 from squeezefilm.errors import InputError
 from squeezefilm.lab.files import existing, fresh
 from squeezefilm.perception.stimuli import Stimulus
+from squeezefilm.quantities import require_one_of
 from squeezefilm.results import to_json
 from squeezefilm.study.conduct.exposure import Exposure
 from squeezefilm.study.conduct.run import Response, StudyRun
@@ -288,9 +289,9 @@ class Studies:
             raise InputError("this sitting was not consented to yet")
         told = self.run(sitting).respond(token, response)
         self._now.pop(id, None)
-        phase = self.store(sitting.study).rows(
-            "SELECT phase FROM trial WHERE uuid = ?", [token]
-        )[0]["phase"]  # fmt: skip
+        phase = self.store(sitting.study).rows("SELECT phase FROM trial WHERE uuid = ?", [token])[
+            0
+        ]["phase"]
         feedback = phase == "practice"
         return {
             "number": told.number,
@@ -323,8 +324,7 @@ class Studies:
 
     def export(self, name: str, format: str) -> dict[str, Any]:
         """Export a study beside its file."""
-        if format not in ("csv", "psych-ds", "bids"):
-            raise InputError(f"format = '{format}' is not known; allowed: csv, psych-ds, bids")
+        require_one_of("format", format, ("csv", "psych-ds", "bids"))
         path = export_study(self.store(name), format)  # type: ignore[arg-type] # checked above
         return {"folder": str(path.relative_to(self.folder.parent))}
 

@@ -184,8 +184,9 @@ class SlabFactor:
             n = self._slabs.sizes[left]
             if place.mirrored:
                 signs = np.concatenate([self._signs(right), self._signs(left)])
-                swap = np.concatenate([np.arange(S.shape[0] - n, S.shape[0]),
-                                       np.arange(S.shape[0] - n)])  # fmt: skip
+                swap = np.concatenate(
+                    [np.arange(S.shape[0] - n, S.shape[0]), np.arange(S.shape[0] - n)]
+                )
                 S = (S * signs[:, None] * signs[None, :])[np.ix_(swap, swap)]
             else:
                 S = S.copy()
@@ -238,10 +239,13 @@ class SlabFactor:
             for number, place in enumerate(group):
                 columns = slice(number * vectors, (number + 1) * vectors)
                 for node, update in zip(
-                    (self._nodes(place.elements, 0)[0],
-                     self._nodes(place.elements, len(place.elements) - 1)[-1]),
-                    (block[0], block[-1]), strict=True,
-                ):  # fmt: skip
+                    (
+                        self._nodes(place.elements, 0)[0],
+                        self._nodes(place.elements, len(place.elements) - 1)[-1],
+                    ),
+                    (block[0], block[-1]),
+                    strict=True,
+                ):
                     slices[node] += self._signed(place, node, update[:, columns])
         for node in (0, len(slices) - 1):
             slices[node][self._held(node)] = 0

@@ -238,6 +238,12 @@ def _renumbered(model: BoxModel, section: CrossSection, element: int) -> CrossSe
     codes[electric] = base + (iy * model.z.nodes.size + iz)[electric] * ceramics + new
     return CrossSection(
         codes=codes,
-        P2=section.P2, P1=section.P1, P0=section.P0, R=section.R,
-        electrodes=tuple(after), g0=section.g0, g1=section.g1, c0=section.c0,
-    )  # fmt: skip
+        P2=section.P2,
+        P1=section.P1,
+        P0=section.P0,
+        R=section.R,
+        electrodes=tuple(after),
+        g0=section.g0,
+        g1=section.g1,
+        c0=section.c0,
+    )

@@ -6,12 +6,16 @@ Components are in Voigt order rr, θθ, zz, θz, rz, rθ with engineering shear 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
 from squeezefilm.errors import InputError
 from squeezefilm.materials import ElasticMaterial, Piezoceramic, isotropic_stiffness
 from squeezefilm.quantities import (
+    Above,
+    AtLeast,
+    Below,
     Dimensionless,
     FloatArray,
     KilogramPerCubicMetre,
@@ -36,15 +40,14 @@ class RingSolid:
 
     name: str
     stiffness: FloatArray
-    density: KilogramPerCubicMetre
+    density: Annotated[KilogramPerCubicMetre, Above(0)]
     piezoelectric: FloatArray | None = None
-    permittivity: FloatArray | None = None
-    loss_factor: Dimensionless | None = None
+    permittivity: Annotated[FloatArray, Above(0)] | None = None
+    loss_factor: Annotated[Dimensionless, AtLeast(0), Below(2)] | None = None
 
     def __post_init__(self) -> None:
         c = self.stiffness
         require("stiffness", c, Unit("Pa"))
-        require("density", self.density, Unit("kg/m3"), above=0)
         if c.shape != (6, 6) or not np.allclose(c, c.T, rtol=1e-9, atol=1e-9 * np.abs(c).max()):
             raise InputError(f"the stiffness of {self.name} must be a symmetric 6 × 6 array")
         if np.linalg.eigvalsh(c)[0] < -1e-9 * np.abs(c).max():
@@ -55,15 +58,12 @@ class RingSolid:
                 f"the stiffness of {self.name} couples θz or rθ shear to the other strains; only "
                 "materials with a mirror plane normal to θ can be computed by Fourier harmonics"
             )
-        if self.loss_factor is not None:
-            require("loss_factor", self.loss_factor, at_least=0, below=2)
         if self.piezoelectric is None:
             return
         e = self.piezoelectric
         require("piezoelectric", e, Unit("C/m2"))
         if self.permittivity is None:
             raise InputError(f"{self.name} is piezoelectric; give its clamped permittivity too")
-        require("permittivity", self.permittivity, Unit("F/m"), above=0)
         if np.any(e[np.ix_([0, 2], odd)]) or np.any(e[np.ix_([1], even)]):
             raise InputError(
                 f"{self.name} must be poled along z (or r): its couplings to θz and rθ shear "

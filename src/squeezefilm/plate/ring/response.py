@@ -105,9 +105,13 @@ def ring_response(
         receptance = force / (one.modal_mass * (own * (1 + 1j * loss) - omega2))
         motion += receptance[:, None] * surface_profile(one, radius)[None, :]
     admittance = annular_admittance(
-        body.section, body.drive, frequencies,
-        harmonics=tuple(harmonics), quality_factor=quality, modes=terms,
-    )  # fmt: skip
+        body.section,
+        body.drive,
+        frequencies,
+        harmonics=tuple(harmonics),
+        quality_factor=quality,
+        modes=terms,
+    )
     return RingResponse(frequencies, radius, motion, admittance, tuple(harmonics), len(near))
 
 

@@ -6,6 +6,7 @@ import itertools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Annotated, Literal
 
 import numpy as np
 
@@ -18,6 +19,8 @@ from squeezefilm.plate.ring.materials import (
     soft_teeth,
 )
 from squeezefilm.quantities import (
+    Above,
+    AtLeast,
     Dimensionless,
     Kilogram,
     Metre,
@@ -42,20 +45,16 @@ class RingLayer:
     earthed, at its upper face unless `driven_face` is "upper".
     """
 
-    inner_radius: Metre
+    inner_radius: Annotated[Metre, AtLeast(0)]
     outer_radius: Metre
     bottom: Metre
     top: Metre
     solid: RingSolid
-    driven_face: str = "lower"
+    driven_face: Literal["lower", "upper"] = "lower"
 
     def __post_init__(self) -> None:
-        require("inner_radius", self.inner_radius, _M, at_least=0)
         require("outer_radius", self.outer_radius, _M, above=self.inner_radius)
-        require("bottom", self.bottom, _M)
         require("top", self.top, _M, above=self.bottom)
-        if self.driven_face not in ("lower", "upper"):
-            raise InputError("driven_face must be 'lower' or 'upper'", quantity="driven_face")
 
     @property
     def thickness(self) -> Metre:
@@ -78,13 +77,11 @@ class AnnularSection:
     """
 
     layers: tuple[RingLayer, ...]
-    wave_diameter: Metre | None = None
+    wave_diameter: Annotated[Metre, Above(0)] | None = None
 
     def __post_init__(self) -> None:
         if not self.layers:
             raise GeometryError("layers is empty; a ring needs at least one")
-        if self.wave_diameter is not None:
-            require("wave_diameter", self.wave_diameter, _M, above=0)
         for i, a in enumerate(self.layers):
             for j, b in enumerate(self.layers[:i]):
                 wide = min(a.outer_radius, b.outer_radius) - max(a.inner_radius, b.inner_radius)

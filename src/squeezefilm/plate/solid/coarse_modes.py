@@ -155,5 +155,7 @@ def chosen_modes(
             for i, f in enumerate(fs)
         )
     )[:count]
-    return [np.array(sorted(i for _, k, i in every if k == c), dtype=np.int64)
-            for c in range(len(found))]  # fmt: skip
+    return [
+        np.array(sorted(i for _, k, i in every if k == c), dtype=np.int64)
+        for c in range(len(found))
+    ]

@@ -42,9 +42,13 @@ def extrapolated_class(one: ReducedClass, band: tuple[Hertz, Hertz]) -> ReducedC
     shift = values[mode] * (1 + 2e-3)
     start = prolonged(slabs, rough, vector)
     pairs = modes_near(
-        rough, SlabFactor(rough, shift).solve, shift,
-        lambda v: np.array([np.argmin(np.abs(v - shift))]), start, tolerance=1e-6,
-    )  # fmt: skip
+        rough,
+        SlabFactor(rough, shift).solve,
+        shift,
+        lambda v: np.array([np.argmin(np.abs(v - shift))]),
+        start,
+        tolerance=1e-6,
+    )
     wanted, _ = extrapolated(pairs.values, values[mode : mode + 1], level)
     ratio = float(wanted[0] / f[mode]) ** 2
     return dataclasses.replace(one, stiffness=ratio * one.stiffness, loss=ratio * one.loss)

@@ -188,9 +188,13 @@ def _media(plate: RectangularPlate) -> tuple[Medium, ...]:
 
     def piezo(name: str, sign: float) -> Medium:
         return Medium(
-            name, constants.stiffness_matrix, density, ceramic,
-            sign * constants.stress_matrix, constants.permittivity_matrix,
-        )  # fmt: skip
+            name,
+            constants.stiffness_matrix,
+            density,
+            ceramic,
+            sign * constants.stress_matrix,
+            constants.permittivity_matrix,
+        )
 
     media = [
         Medium(
@@ -257,12 +261,29 @@ def plate_model(
     swapped = (len(breaks[1][0]), plate.width) > (len(breaks[0][0]), plate.length)
     along, across = (1, 0) if swapped else (0, 1)
     thickness = min(plate.thickness, *(patch.thickness for patch in plate.patches))
-    x = _line(*breaks[along], half[along], thickness, resolution.edge_layers, resolution.order_x,
-              wave, resolution.extra_x, cut=True)  # fmt: skip
+    x = _line(
+        *breaks[along],
+        half[along],
+        thickness,
+        resolution.edge_layers,
+        resolution.order_x,
+        wave,
+        resolution.extra_x,
+        cut=True,
+    )
     # A ceramic that ends with the plate's own edge ends there without a corner.
     inner = [v for v in breaks[across][1] if v > 0 and v != breaks[across][0][-1]]
-    y = _line(breaks[across][0], inner, half[across], thickness, resolution.edge_layers_y,
-              resolution.order_x, wave, resolution.extra_y, cut=False)  # fmt: skip
+    y = _line(
+        breaks[across][0],
+        inner,
+        half[across],
+        thickness,
+        resolution.edge_layers_y,
+        resolution.order_x,
+        wave,
+        resolution.extra_y,
+        cut=False,
+    )
     z, layers, ceramics = _through_thickness(plate, resolution)
     require_memory(x, y, z, resolution.trunk)
     medium, ceramic = np.full((2, x.elements, y.elements, z.elements), -1)
@@ -324,9 +345,17 @@ def plate_model(
         else:
             ends.append("symmetric" if own == "S" else "antisymmetric")
     model = BoxModel(
-        x, y, z, _media(plate), medium, ceramic, tuple(electrodes),
-        (ends[0], ends[1], ends[2], ends[3]), tuple(foundations), resolution.trunk,
-    )  # fmt: skip
+        x,
+        y,
+        z,
+        _media(plate),
+        medium,
+        ceramic,
+        tuple(electrodes),
+        (ends[0], ends[1], ends[2], ends[3]),
+        tuple(foundations),
+        resolution.trunk,
+    )
     return PlateModel(
         model,
         parity,

@@ -83,13 +83,20 @@ def collected_modes(
                 turn = -1.0
             rows.append(
                 (
-                    frequency[i], error[i], np.sqrt(piece.values[i]) / (2 * np.pi),
-                    label_of(top, x, y), piece.found.parity, turn * top[:, :, 2],
-                    turn * forces[i], abs(driven), frequency[i] / shunted[i] * np.sqrt(opened[i]),
-                    shares[i], 1 / max(float(losses[i]), 1e-30),
+                    frequency[i],
+                    error[i],
+                    np.sqrt(piece.values[i]) / (2 * np.pi),
+                    label_of(top, x, y),
+                    piece.found.parity,
+                    turn * top[:, :, 2],
+                    turn * forces[i],
+                    abs(driven),
+                    frequency[i] / shunted[i] * np.sqrt(opened[i]),
+                    shares[i],
+                    1 / max(float(losses[i]), 1e-30),
                     (piece.solved, turn * vectors[:, i]),
                 )
-            )  # fmt: skip
+            )
     if band is not None:
         rows = [row for row in rows if band[0] <= row[0] <= band[1]]
     if not rows:

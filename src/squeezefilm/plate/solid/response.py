@@ -330,13 +330,26 @@ def harmonic_response(
         admittance = 1j * omega * charge
         error = _truncation(parts, omega, added, admittance)
     return HarmonicResponse(
-        plate, f, admittance, f"reduced to {q.shape[1]} coordinates", error, MODEL,
-        parts, q, potentials, tuple(loads),
+        plate,
+        f,
+        admittance,
+        f"reduced to {q.shape[1]} coordinates",
+        error,
+        MODEL,
+        parts,
+        q,
+        potentials,
+        tuple(loads),
         functools.partial(
-            harmonic_response, plate, f, loads=tuple(loads), steps=steps, resolution=resolution,
+            harmonic_response,
+            plate,
+            f,
+            loads=tuple(loads),
+            steps=steps,
+            resolution=resolution,
             extrapolate=extrapolate,
         ),
-    )  # fmt: skip
+    )
 
 
 def _load_stiffness(
@@ -375,11 +388,18 @@ def _truncation(
         start += size
         shorter.append(
             ReducedClass(
-                one.solved, one.resolution, one.basis[:, :n], one.mass[:n, :n],
+                one.solved,
+                one.resolution,
+                one.basis[:, :n],
+                one.mass[:n, :n],
                 one.stiffness[:n, :n],
-                one.loss[:n, :n], one.coupling[:n], one.capacitance, one.drive, one.circuit,
+                one.loss[:n, :n],
+                one.coupling[:n],
+                one.capacitance,
+                one.drive,
+                one.circuit,
             )
-        )  # fmt: skip
+        )
     kept = np.array(indices)
     less = None if added is None else added[np.ix_(pick, kept, kept)]
     _, _, charge = harmonic_solution(shorter, some, less, None, 1.0)
@@ -424,9 +444,16 @@ def direct_admittance(
             for real, loss in zip(slabs.sections, lossy, strict=True):
                 if id(real.P2) not in made:
                     made[id(real.P2)] = CrossSection(
-                        real.codes, real.P2 + 1j * loss.P2, real.P1 + 1j * loss.P1,
-                        real.P0 + 1j * loss.P0, real.R, real.electrodes, real.g0, real.g1, real.c0,
-                    )  # fmt: skip
+                        real.codes,
+                        real.P2 + 1j * loss.P2,
+                        real.P1 + 1j * loss.P1,
+                        real.P0 + 1j * loss.P0,
+                        real.R,
+                        real.electrodes,
+                        real.g0,
+                        real.g1,
+                        real.c0,
+                    )
                 sections.append(made[id(real.P2)])
             factor = SlabFactor(slabs, omega**2, sections=sections)
             G, C = slabs.electrode_columns

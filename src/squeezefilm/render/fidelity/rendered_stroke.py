@@ -32,7 +32,6 @@ from squeezefilm.render.motion.minimum_jerk import Trajectory
 from squeezefilm.render.motion.sensor import SensorModel, sensor_stream
 from squeezefilm.render.resonator import kernel
 from squeezefilm.render.resonator.compensation import (
-    COMPENSATIONS,
     Compensation,
     DrivenEnvelope,
     compensated_drive,
@@ -123,11 +122,6 @@ def rendered_stroke(
             one finite value at least 0 per sample.
     """
     require("control_rate", control_rate, Unit("Hz"), above=0.0)
-    if compensation not in COMPENSATIONS:
-        raise InputError(
-            f"compensation = {compensation!r} is not known; it must be one of "
-            f"{', '.join(COMPENSATIONS)}"
-        )
     if sensor is None and estimator is not None:
         raise InputError("an estimator needs a sensor to listen to; give a sensor as well")
     rounded = trajectory.duration * control_rate * (1 + 1e-12)

@@ -26,6 +26,8 @@ from numpy.typing import NDArray
 
 from squeezefilm.errors import InputError
 from squeezefilm.quantities import (
+    Above,
+    AtLeast,
     Dimensionless,
     FloatArray,
     Metre,
@@ -66,16 +68,12 @@ class MotionModel:
         InputError: a value outside its range.
     """
 
-    acceleration_density: AccelerationDensity = 0.0
-    jerk_density: JerkDensity = 40.0
-    speed_deviation: MetrePerSecond = 0.15
-    acceleration_deviation: MetrePerSecondSquared = 2.0
+    acceleration_density: Annotated[AccelerationDensity, AtLeast(0.0)] = 0.0
+    jerk_density: Annotated[JerkDensity, AtLeast(0.0)] = 40.0
+    speed_deviation: Annotated[MetrePerSecond, Above(0.0)] = 0.15
+    acceleration_deviation: Annotated[MetrePerSecondSquared, AtLeast(0.0)] = 2.0
 
     def __post_init__(self) -> None:
-        require("acceleration_density", self.acceleration_density, Unit("m2/s3"), at_least=0.0)
-        require("jerk_density", self.jerk_density, Unit("m2/s5"), at_least=0.0)
-        require("speed_deviation", self.speed_deviation, Unit("m/s"), above=0.0)
-        require("acceleration_deviation", self.acceleration_deviation, Unit("m/s2"), at_least=0.0)
         if self.acceleration_density == 0.0 and self.jerk_density == 0.0:
             raise InputError(
                 "acceleration_density and jerk_density are both 0: such a finger never changes "
@@ -116,17 +114,13 @@ class MotionEstimator:
     """
 
     model: MotionModel
-    position_error: Metre
-    stamp_error: Second = 0.0
-    gate: Dimensionless = 5.0
+    position_error: Annotated[Metre, Above(0.0)]
+    stamp_error: Annotated[Second, AtLeast(0.0)] = 0.0
+    gate: Annotated[Dimensionless, Above(0.0)] = 5.0
     most_rejected: int = 3
-    stall: Second = 0.1
+    stall: Annotated[Second, Above(0.0)] = 0.1
 
     def __post_init__(self) -> None:
-        require("position_error", self.position_error, Unit("m"), above=0.0)
-        require("stamp_error", self.stamp_error, Unit("s"), at_least=0.0)
-        require("gate", self.gate, above=0.0)
-        require("stall", self.stall, Unit("s"), above=0.0)
         if (
             not isinstance(self.most_rejected, int)
             or isinstance(self.most_rejected, bool)
@@ -246,9 +240,19 @@ def estimate_motion(
     x, v, dx, dv = np.empty((4, times.size))
     code = np.empty(times.size, dtype=np.int64)
     kernel.motion_march(
-        state, estimator.parameters(), stream.stamp, stream.arrival, stream.position,
-        times, ahead, x, v, dx, dv, code,
-    )  # fmt: skip
+        state,
+        estimator.parameters(),
+        stream.stamp,
+        stream.arrival,
+        stream.position,
+        times,
+        ahead,
+        x,
+        v,
+        dx,
+        dv,
+        code,
+    )
     return MotionEstimate(
         estimator, times + ahead, x, v, dx, dv, code == kernel.FRESH, MotionCounts.of(state)
     )

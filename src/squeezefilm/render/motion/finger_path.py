@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Annotated
 
 import numpy as np
 
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import MOTION_SAMPLES, require_within
 from squeezefilm.quantities import (
+    AtLeast,
+    AtMost,
     FloatArray,
     Metre,
     MetreArray,
@@ -43,8 +46,8 @@ class FingerPath:
     """
 
     time: SecondArray
-    x: MetreArray
-    y: MetreArray
+    x: Annotated[MetreArray, AtLeast(-_FARTHEST), AtMost(_FARTHEST)]
+    y: Annotated[MetreArray, AtLeast(-_FARTHEST), AtMost(_FARTHEST)]
     _way: FloatArray = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
@@ -55,9 +58,6 @@ class FingerPath:
                 "length, at least 2"
             )
         require_within(MOTION_SAMPLES, self.time.size)
-        require("time", self.time, Unit("s"))
-        require("x", self.x, Unit("m"), at_least=-_FARTHEST, at_most=_FARTHEST)
-        require("y", self.y, Unit("m"), at_least=-_FARTHEST, at_most=_FARTHEST)
         if np.any(np.diff(self.time) <= 0.0):
             raise InputError("the times of a motion must rise from each sample to the next")
         steps = np.hypot(np.diff(self.x), np.diff(self.y))

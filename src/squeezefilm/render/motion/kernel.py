@@ -145,10 +145,19 @@ def motion_at(state: Array, parameters: Array, t: float) -> tuple[float, float, 
 
 @numba.njit(cache=True, nogil=True)
 def motion_march(
-    state: Array, parameters: Array, stamp: Array, arrival: Array, position: Array,
-    render: Array, ahead: float,
-    at: Array, speed: Array, at_deviation: Array, speed_deviation: Array, code: Array,
-) -> None:  # fmt: skip
+    state: Array,
+    parameters: Array,
+    stamp: Array,
+    arrival: Array,
+    position: Array,
+    render: Array,
+    ahead: float,
+    at: Array,
+    speed: Array,
+    at_deviation: Array,
+    speed_deviation: Array,
+    code: Array,
+) -> None:
     """At each render time (s): take what has arrived, predict to `ahead` (s) after it."""
     k = 0
     for i in range(render.size):

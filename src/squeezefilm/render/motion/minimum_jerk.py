@@ -8,12 +8,12 @@ believes in white jerk has to live with.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Annotated, Protocol
 
 import numpy as np
 
 from squeezefilm.errors import InputError
-from squeezefilm.hard_limits import PASS_DURATION, STROKE_LENGTH, STROKE_START, require_fields
+from squeezefilm.hard_limits import PASS_DURATION, STROKE_LENGTH, STROKE_START
 from squeezefilm.quantities import (
     Metre,
     MetreArray,
@@ -55,13 +55,12 @@ class MinimumJerkStroke:
         InputError: a value outside its range.
     """
 
-    length: Metre = 0.04
-    pass_duration: Second = 0.4
+    length: Annotated[Metre, STROKE_LENGTH] = 0.04
+    pass_duration: Annotated[Second, PASS_DURATION] = 0.4
     passes: int = 2
-    start: Metre = 0.0
+    start: Annotated[Metre, STROKE_START] = 0.0
 
     def __post_init__(self) -> None:
-        require_fields(self, length=STROKE_LENGTH, pass_duration=PASS_DURATION, start=STROKE_START)
         if not isinstance(self.passes, int) or isinstance(self.passes, bool) or self.passes < 1:
             raise InputError(
                 f"passes = {self.passes!r} cannot be used: it must be a whole number, at least 1 "

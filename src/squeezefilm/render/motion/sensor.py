@@ -11,12 +11,16 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import MOTION_SAMPLES, require_motion
 from squeezefilm.quantities import (
+    Above,
+    AtLeast,
+    Below,
     Dimensionless,
     Hertz,
     Metre,
@@ -53,22 +57,16 @@ class SensorModel:
     """
 
     name: str
-    rate: Hertz
-    latency: Second
-    jitter: Second = 0.0
-    noise: Metre = 0.0
-    quantisation: Metre = 0.0
-    loss: Dimensionless = 0.0
+    rate: Annotated[Hertz, Above(0.0)]
+    latency: Annotated[Second, AtLeast(0.0)]
+    jitter: Annotated[Second, AtLeast(0.0)] = 0.0
+    noise: Annotated[Metre, AtLeast(0.0)] = 0.0
+    quantisation: Annotated[Metre, AtLeast(0.0)] = 0.0
+    loss: Annotated[Dimensionless, AtLeast(0.0), Below(1.0)] = 0.0
     stamped: bool = True
     evidence: str = "assumed"
 
     def __post_init__(self) -> None:
-        require("rate", self.rate, Unit("Hz"), above=0.0)
-        require("latency", self.latency, Unit("s"), at_least=0.0)
-        require("jitter", self.jitter, Unit("s"), at_least=0.0)
-        require("noise", self.noise, Unit("m"), at_least=0.0)
-        require("quantisation", self.quantisation, Unit("m"), at_least=0.0)
-        require("loss", self.loss, at_least=0.0, below=1.0)
         if self.noise == 0.0 and self.quantisation == 0.0:
             raise InputError(
                 f"sensor '{self.name}' has noise = 0 m and quantisation = 0 m: no sensor is exact; "

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
@@ -14,7 +15,6 @@ from squeezefilm.hard_limits import (
     MOTION_SAMPLES,
     STROKE_LENGTH,
     STROKE_START,
-    require_fields,
 )
 from squeezefilm.quantities import (
     FloatArray,
@@ -56,13 +56,12 @@ class Stroke:
         InputError: a value outside its range.
     """
 
-    speed: MetrePerSecond
-    length: Metre = 0.04
+    speed: Annotated[MetrePerSecond, FINGER_SPEED]
+    length: Annotated[Metre, STROKE_LENGTH] = 0.04
     passes: int = 1
-    start: Metre = 0.0
+    start: Annotated[Metre, STROKE_START] = 0.0
 
     def __post_init__(self) -> None:
-        require_fields(self, speed=FINGER_SPEED, length=STROKE_LENGTH, start=STROKE_START)
         if not isinstance(self.passes, int) or isinstance(self.passes, bool) or self.passes < 1:
             raise InputError(
                 f"passes = {self.passes!r} cannot be used: it must be a whole number, at least 1 "

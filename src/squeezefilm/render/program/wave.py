@@ -10,11 +10,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
 from squeezefilm.errors import InputError
 from squeezefilm.quantities import (
+    Above,
+    AtLeast,
+    AtMost,
     Dimensionless,
     DimensionlessArray,
     FloatArray,
@@ -78,15 +82,13 @@ class WaveCompensation:
         InputError: a value outside its range.
     """
 
-    half_wavelength: Metre
-    factors: tuple[Dimensionless, ...]
+    half_wavelength: Annotated[Metre, AtLeast(1e-06), AtMost(FARTHEST)]
+    factors: Annotated[tuple[Dimensionless, ...], Above(0.0), AtMost(1.0)]
     along: Coordinate = X_AXIS
 
     def __post_init__(self) -> None:
-        require("half_wavelength", self.half_wavelength, METRE, at_least=1e-6, at_most=FARTHEST)
         if not 2 <= len(self.factors) <= _MOST_FACTORS:
             raise InputError(f"{len(self.factors)} factors cannot be used; give 2 to 65 536")
-        require("factors", self.factors, above=0.0, at_most=1.0)
         if isinstance(self.along, FromPoint):
             raise InputError("a wave runs along a direction; give AlongX, AlongY, AlongDirection")
 

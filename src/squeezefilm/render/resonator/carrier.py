@@ -80,9 +80,18 @@ def carrier_block(
 
 @numba.njit(cache=True, nogil=True)
 def _resonate(
-    drive: Array, m00: float, m01: float, m10: float, m11: float, b0: float, b1: float,
-    x: float, v: float, place: Array, quadrature: Array,
-) -> None:  # fmt: skip
+    drive: Array,
+    m00: float,
+    m01: float,
+    m10: float,
+    m11: float,
+    b0: float,
+    b1: float,
+    x: float,
+    v: float,
+    place: Array,
+    quadrature: Array,
+) -> None:
     for k in range(drive.size):
         place[k] = x
         quadrature[k] = v
@@ -204,9 +213,13 @@ def carrier_trace(
     gain = 1 / float(hold_gain(frequency, sample_rate)) if hold_compensated else 1.0
     drive = np.empty(levels.size * samples_per_command)
     carrier_block(
-        math.fmod(phase, 2 * math.pi), 2 * math.pi * frequency / sample_rate, levels,
-        samples_per_command, gain, drive,
-    )  # fmt: skip
+        math.fmod(phase, 2 * math.pi),
+        2 * math.pi * frequency / sample_rate,
+        levels,
+        samples_per_command,
+        gain,
+        drive,
+    )
     place, quadrature = resonator_response(drive, sample_rate, own, quality_factor)
     held = np.repeat(levels, samples_per_command)
     tau = float(envelope_time_constant(quality_factor, own))

@@ -23,12 +23,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
 
 from squeezefilm.errors import InputError
 from squeezefilm.quantities import (
+    Above,
     Dimensionless,
     FloatArray,
     Hertz,
@@ -86,15 +87,10 @@ class DrivenEnvelope:
         InputError: a value outside its range.
     """
 
-    rise_time_constant: Second
-    fall_time_constant: Second
-    amplitude_limit: Metre
+    rise_time_constant: Annotated[Second, Above(0.0)]
+    fall_time_constant: Annotated[Second, Above(0.0)]
+    amplitude_limit: Annotated[Metre, Above(0.0)]
     braking: bool = False
-
-    def __post_init__(self) -> None:
-        require("rise_time_constant", self.rise_time_constant, Unit("s"), above=0.0)
-        require("fall_time_constant", self.fall_time_constant, Unit("s"), above=0.0)
-        require("amplitude_limit", self.amplitude_limit, Unit("m"), above=0.0)
 
     @classmethod
     @checked_numbers
@@ -221,11 +217,6 @@ def compensated_drive(
         InputError: amplitudes that are empty, not finite or negative, a time step or preview not
             above 0, an initial amplitude outside the limits, or an unknown compensation.
     """
-    if compensation not in COMPENSATIONS:
-        raise InputError(
-            f"compensation = {compensation!r} is not known; it must be one of "
-            f"{', '.join(COMPENSATIONS)}"
-        )
     goal = _samples("wanted", wanted)
     require("wanted", goal, Unit("m"), at_least=0.0)
     first = min(float(goal[0]), envelope.amplitude_limit) if initial is None else initial

@@ -136,10 +136,8 @@ def _time_constants_per_period(kept: DimensionlessLike, shape: Shape) -> Dimensi
         # 4 artanh(kept), by logarithms since an inverse hyperbolic counts as an angle to pint.
         square: DimensionlessLike = 2 * (np.log1p(kept) - np.log1p(-kept))
         return square
-    if shape == "sine":
-        sine: DimensionlessLike = 2 * math.pi * kept / np.sqrt((1 - kept) * (1 + kept))
-        return sine
-    raise InputError(f"shape = {shape!r} is not known; it must be 'square' or 'sine'")
+    sine: DimensionlessLike = 2 * math.pi * kept / np.sqrt((1 - kept) * (1 + kept))
+    return sine
 
 
 @checked_numbers

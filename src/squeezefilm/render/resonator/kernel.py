@@ -157,9 +157,14 @@ def previewed_step(
 
 @numba.njit(cache=True, nogil=True)
 def previewed_march(
-    state: Array, parameters: Array, wanted: Array, ahead: int, work: Array,
-    command: Array, code: Array,
-) -> None:  # fmt: skip
+    state: Array,
+    parameters: Array,
+    wanted: Array,
+    ahead: int,
+    work: Array,
+    command: Array,
+    code: Array,
+) -> None:
     """`previewed_step` over a block, each with the next `ahead` samples; the last sample holds."""
     window = np.empty(ahead)
     for k in range(wanted.size):

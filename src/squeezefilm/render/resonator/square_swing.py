@@ -7,7 +7,7 @@ from typing import Literal
 
 import numpy as np
 
-from squeezefilm.errors import InputError, OutOfRangeError
+from squeezefilm.errors import OutOfRangeError
 from squeezefilm.quantities import (
     Dimensionless,
     DimensionlessLike,
@@ -51,10 +51,6 @@ def square_swing_compensated(
     require("speed", speed, Unit("m/s"), above=0.0)
     require("low", low, Unit("m"), at_least=0.0, below=high)
     require("high", high, Unit("m"), at_most=envelope.amplitude_limit)
-    if compensation not in ("none", "inverse"):
-        raise InputError(
-            f"compensation = {compensation!r} has no closed form; it must be 'none' or 'inverse'"
-        )
     half = np.asarray(spatial_period, dtype=float) / (2 * np.asarray(speed, dtype=float))
     rise = np.exp(-half / envelope.rise_time_constant)
     fall = np.exp(-half / envelope.fall_time_constant)
@@ -136,6 +132,10 @@ def least_cycle(envelope: DrivenEnvelope, swing: Metre, highest: Metre | None = 
         return rising + envelope.fall_time_constant * float(np.log(down))
 
     room = ceiling - swing
-    found = minimize_scalar(period, bounds=(0.0, max(room, 1e-300)), method="bounded",
-                            options={"xatol": 1e-12 * envelope.amplitude_limit})  # fmt: skip
+    found = minimize_scalar(
+        period,
+        bounds=(0.0, max(room, 1e-300)),
+        method="bounded",
+        options={"xatol": 1e-12 * envelope.amplitude_limit},
+    )
     return min(float(found.fun), period(0.0), period(room))

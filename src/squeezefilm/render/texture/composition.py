@@ -26,13 +26,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence as SequenceOf
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 
 from squeezefilm.errors import InputError
 from squeezefilm.from_text import reads_text
 from squeezefilm.quantities import (
+    AtLeast,
+    AtMost,
     Dimensionless,
     FloatArray,
     FloatLike,
@@ -41,16 +43,15 @@ from squeezefilm.quantities import (
     MetrePerSecondLike,
     SecondLike,
     checked_numbers,
-    require,
 )
 from squeezefilm.render.opcodes import ADD, CROSS, FADE, MULTIPLY, WEIGH, Assembler
 from squeezefilm.render.texture.coordinate import (
     X_AXIS,
     Coordinate,
+    Place,
     finger_arguments,
     require_coordinate,
     require_fade,
-    require_place,
 )
 from squeezefilm.render.texture.pattern import MOST_PARTS, Pattern, require_pattern
 
@@ -61,8 +62,10 @@ Polarity = Literal["slipperier", "stickier"]
 """What a greater value feels like."""
 
 AT_REST: dict[Quantity, float] = {
-    "amplitude": 0.0, "relative_friction": 1.0, "friction_reduction": 0.0,
-}  # fmt: skip
+    "amplitude": 0.0,
+    "relative_friction": 1.0,
+    "friction_reduction": 0.0,
+}
 """The value of a plate that does not vibrate."""
 
 
@@ -246,12 +249,11 @@ class Scaled(Composable):
     """`texture` times a number from 0 to 1000. Raises `InputError` outside that."""
 
     texture: Composable
-    factor: Dimensionless
+    factor: Annotated[Dimensionless, AtLeast(0.0), AtMost(1000.0)]
     type: Literal["scaled"] = field(default="scaled", repr=False)
 
     def __post_init__(self) -> None:
         require_texture("texture", self.texture)
-        require("factor", self.factor, at_least=0.0, at_most=1000.0)
 
     @property
     def quantity(self) -> Quantity:
@@ -314,7 +316,7 @@ class Sequence(Composable):
     """
 
     textures: tuple[Composable, ...]
-    edges: tuple[Metre, ...]
+    edges: tuple[Place, ...]
     fade: Metre = 0.0
     along: Coordinate = X_AXIS
     type: Literal["sequence"] = field(default="sequence", repr=False)
@@ -328,8 +330,6 @@ class Sequence(Composable):
                 f"between them; here are {len(self.edges)}",
                 quantity="edges",
             )
-        for edge in self.edges:
-            require_place("edges", edge)
         steps = np.diff(self.edges)
         if np.any(steps <= 0.0):
             raise InputError(

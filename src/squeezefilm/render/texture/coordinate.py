@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
 
 from squeezefilm.errors import InputError
 from squeezefilm.quantities import (
+    AtLeast,
+    AtMost,
     FloatArray,
     Metre,
     MetreArray,
@@ -26,6 +28,9 @@ from squeezefilm.render.opcodes import ALONG, RADIUS, Assembler
 METRE = Unit("m")
 FARTHEST: Metre = 10.0
 """No display is ten metres long (m): a place beyond is a slip of unit."""
+
+Place = Annotated[Metre, AtLeast(-FARTHEST), AtMost(FARTHEST)]
+"""A place on a display, in annotations: at most 10 m from the origin."""
 
 FINEST: Metre = 1e-9
 """No texture is finer than a nanometre (m): a width below is a slip of unit."""
@@ -88,9 +93,6 @@ class AlongDirection(Coordinate):
     angle: Radian
     type: Literal["direction"] = field(default="direction", repr=False)
 
-    def __post_init__(self) -> None:
-        require("angle", self.angle, Unit("rad"))
-
     def at(self, x: MetreArray, y: MetreArray) -> MetreArray:
         """The way along the line (m)."""
         return np.asarray(math.cos(self.angle) * x + math.sin(self.angle) * y)
@@ -107,13 +109,9 @@ class FromPoint(Coordinate):
     Raises `InputError` for a point that is not within ±10 m.
     """
 
-    x: Metre = 0.0
-    y: Metre = 0.0
+    x: Place = 0.0
+    y: Place = 0.0
     type: Literal["radius"] = field(default="radius", repr=False)
-
-    def __post_init__(self) -> None:
-        require_place("x", self.x)
-        require_place("y", self.y)
 
     def at(self, x: MetreArray, y: MetreArray) -> MetreArray:
         """The distance (m)."""
@@ -122,11 +120,6 @@ class FromPoint(Coordinate):
 
     def _lower(self, assembler: Assembler) -> None:
         assembler.emit(RADIUS, self.x, self.y)
-
-
-def require_place(name: str, value: Metre) -> None:
-    """Refuse a place (m) that is not finite or farther than 10 m from the origin."""
-    require(name, value, METRE, at_least=-FARTHEST, at_most=FARTHEST)
 
 
 def require_fade(value: Metre, at_most: Metre) -> None:

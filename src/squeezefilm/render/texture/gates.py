@@ -8,13 +8,17 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
 
 from squeezefilm.errors import InputError
 from squeezefilm.from_text import reads_text
 from squeezefilm.quantities import (
+    Above,
+    AtLeast,
+    AtMost,
+    Below,
     Dimensionless,
     FloatArray,
     Hertz,
@@ -50,15 +54,13 @@ class SpeedGate(Pattern):
         InputError: a speed outside its range.
     """
 
-    above: MetrePerSecond | None = None
+    above: Annotated[MetrePerSecond, AtLeast(0.0), Below(_FASTEST)] | None = None
     below: MetrePerSecond | None = None
     type: Literal["speed_gate"] = field(default="speed_gate", repr=False)
 
     def __post_init__(self) -> None:
         if self.above is None and self.below is None:
             raise InputError("a speed gate needs a speed above or below which it is open")
-        if self.above is not None:
-            require("above", self.above, _SPEED, at_least=0.0, below=_FASTEST)
         if self.below is not None:
             least = 0.0 if self.above is None else self.above
             require("below", self.below, _SPEED, above=least, at_most=_FASTEST)
@@ -110,13 +112,9 @@ class Attack(Pattern):
         InputError: a time outside its range.
     """
 
-    duration: Second
-    start: Second = 0.0
+    duration: Annotated[Second, AtLeast(1e-06), AtMost(_LONGEST)]
+    start: Annotated[Second, AtLeast(0.0), AtMost(_LONGEST)] = 0.0
     type: Literal["attack"] = field(default="attack", repr=False)
-
-    def __post_init__(self) -> None:
-        require("duration", self.duration, _SECOND, at_least=1e-6, at_most=_LONGEST)
-        require("start", self.start, _SECOND, at_least=0.0, at_most=_LONGEST)
 
     def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
         end = self.start + self.duration
@@ -140,13 +138,9 @@ class Decay(Pattern):
         InputError: a time outside its range.
     """
 
-    time_constant: Second
-    start: Second = 0.0
+    time_constant: Annotated[Second, AtLeast(1e-06), AtMost(_LONGEST)]
+    start: Annotated[Second, AtLeast(0.0), AtMost(_LONGEST)] = 0.0
     type: Literal["decay"] = field(default="decay", repr=False)
-
-    def __post_init__(self) -> None:
-        require("time_constant", self.time_constant, _SECOND, at_least=1e-6, at_most=_LONGEST)
-        require("start", self.start, _SECOND, at_least=0.0, at_most=_LONGEST)
 
     def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
         passed = np.maximum(t - self.start, 0.0)
@@ -172,21 +166,11 @@ class Periodic(Pattern):
         InputError: a value outside its range.
     """
 
-    frequency: Hertz
+    frequency: Annotated[Hertz, AtLeast(1e-06), AtMost(2000.0)]
     shape: Literal["square", "sine"] = "square"
-    duty: Dimensionless = 0.5
+    duty: Annotated[Dimensionless, Above(0.0), Below(1.0)] = 0.5
     phase: Radian = 0.0
     type: Literal["periodic"] = field(default="periodic", repr=False)
-
-    def __post_init__(self) -> None:
-        require("frequency", self.frequency, Unit("Hz"), at_least=1e-6, at_most=2000.0)
-        require("duty", self.duty, above=0.0, below=1.0)
-        require("phase", self.phase, Unit("rad"))
-        if self.shape not in ("square", "sine"):
-            raise InputError(
-                f"shape = {self.shape!r} is not known; it must be 'square' or 'sine'",
-                quantity="shape",
-            )
 
     def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
         cycles = t / (1.0 / self.frequency) + self.phase / (2 * math.pi)

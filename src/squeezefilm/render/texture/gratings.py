@@ -10,13 +10,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Literal, Protocol
+from typing import Annotated, Literal, Protocol
 
 import numpy as np
 
 from squeezefilm.errors import InputError
 from squeezefilm.from_text import reads_text
 from squeezefilm.quantities import (
+    Above,
+    Below,
     Dimensionless,
     FloatArray,
     Metre,
@@ -83,13 +85,12 @@ class Square(Composable):
     spatial_period: Metre
     low: Metre
     high: Metre
-    duty: Dimensionless = 0.5
+    duty: Annotated[Dimensionless, Above(0.0), Below(1.0)] = 0.5
     phase: Radian = 0.0
     type: Literal["square"] = field(default="square", repr=False)
 
     def __post_init__(self) -> None:
         _require_grating(self.spatial_period, self.low, self.high, self.phase)
-        require("duty", self.duty, above=0.0, below=1.0)
 
     @classmethod
     @reads_text

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 
@@ -11,6 +11,8 @@ from squeezefilm.errors import InputError
 from squeezefilm.from_text import reads_text
 from squeezefilm.hard_limits import PIXELS
 from squeezefilm.quantities import (
+    AtLeast,
+    AtMost,
     Dimensionless,
     DimensionlessArray,
     FloatArray,
@@ -20,7 +22,7 @@ from squeezefilm.quantities import (
     require,
 )
 from squeezefilm.render.opcodes import IMAGE, Assembler
-from squeezefilm.render.texture.coordinate import METRE, require_place
+from squeezefilm.render.texture.coordinate import Place
 from squeezefilm.render.texture.pattern import Pattern
 
 MOST_PIXELS = int(PIXELS.most)
@@ -51,9 +53,9 @@ class Image(Pattern):
     """
 
     values: tuple[tuple[Dimensionless, ...], ...]
-    pixel: Metre
-    left: Metre = 0.0
-    bottom: Metre = 0.0
+    pixel: Annotated[Metre, AtLeast(1e-06), AtMost(0.1)]
+    left: Place = 0.0
+    bottom: Place = 0.0
     outside: Literal["hold", "repeat", "zero"] = "hold"
     type: Literal["image"] = field(default="image", repr=False)
     _grid: FloatArray = field(init=False, repr=False, compare=False)
@@ -84,14 +86,6 @@ class Image(Pattern):
         require("values", grid, at_least=0.0, at_most=1.0)
         grid.setflags(write=False)
         object.__setattr__(self, "_grid", grid)
-        require("pixel", self.pixel, METRE, at_least=1e-6, at_most=0.1)
-        require_place("left", self.left)
-        require_place("bottom", self.bottom)
-        if self.outside not in OUTSIDE:
-            raise InputError(
-                f"outside = {self.outside!r} is not known; it must be one of {', '.join(OUTSIDE)}",
-                quantity="outside",
-            )
 
     @classmethod
     @reads_text

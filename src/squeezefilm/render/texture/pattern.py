@@ -14,12 +14,14 @@ Morgan). There is no +: it would leave 0…1. Add textures, which have a quantit
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
 
 from squeezefilm.errors import InputError
 from squeezefilm.quantities import (
+    AtLeast,
+    AtMost,
     DimensionlessArray,
     FloatArray,
     MetreLike,
@@ -224,16 +226,14 @@ class SpeedScaled(Pattern):
     """
 
     pattern: Pattern
-    reference_speed: MetrePerSecond
-    slowest: MetrePerSecond = 0.001
+    reference_speed: Annotated[MetrePerSecond, AtLeast(1e-06), AtMost(10.0)]
+    slowest: Annotated[MetrePerSecond, AtLeast(1e-06), AtMost(10.0)] = 0.001
     fastest: MetrePerSecond = 1.0
     type: Literal["speed_scaled"] = field(default="speed_scaled", repr=False)
 
     def __post_init__(self) -> None:
         require_pattern("pattern", self.pattern)
         unit = Unit("m/s")
-        require("reference_speed", self.reference_speed, unit, at_least=1e-6, at_most=10.0)
-        require("slowest", self.slowest, unit, at_least=1e-6, at_most=10.0)
         require("fastest", self.fastest, unit, at_least=self.slowest, at_most=10.0)
 
     def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:

@@ -4,13 +4,17 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
 
 from squeezefilm.errors import InputError
 from squeezefilm.from_text import reads_text
 from squeezefilm.quantities import (
+    Above,
+    AtLeast,
+    AtMost,
+    Below,
     Dimensionless,
     FloatArray,
     Metre,
@@ -38,9 +42,9 @@ from squeezefilm.render.texture.coordinate import (
     X_AXIS,
     Coordinate,
     FromPoint,
+    Place,
     require_coordinate,
     require_fade,
-    require_place,
 )
 from squeezefilm.render.texture.pattern import Pattern
 
@@ -53,11 +57,8 @@ _FULL_WIDTH = 2.0 * math.sqrt(2.0 * math.log(2.0))
 class Constant(Pattern):
     """The same `share` (1, from 0 to 1) everywhere. Raises `InputError` outside that."""
 
-    share: Dimensionless = 1.0
+    share: Annotated[Dimensionless, AtLeast(0.0), AtMost(1.0)] = 1.0
     type: Literal["constant"] = field(default="constant", repr=False)
-
-    def __post_init__(self) -> None:
-        require("share", self.share, at_least=0.0, at_most=1.0)
 
     def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
         return np.full(x.shape, float(self.share))
@@ -85,14 +86,13 @@ class SquareWave(Pattern):
     """
 
     spatial_period: Metre
-    duty: Dimensionless = 0.5
+    duty: Annotated[Dimensionless, Above(0.0), Below(1.0)] = 0.5
     phase: Radian = 0.0
     along: Coordinate = X_AXIS
     type: Literal["square_wave"] = field(default="square_wave", repr=False)
 
     def __post_init__(self) -> None:
         _require_wave(self.spatial_period, self.phase, self.along)
-        require("duty", self.duty, above=0.0, below=1.0)
 
     def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
         cycles = self.along.at(x, y) / self.spatial_period + self.phase / (2 * math.pi)
@@ -145,21 +145,14 @@ class Pulse(Pattern):
         InputError: a value outside its range.
     """
 
-    centre: Metre
-    width: Metre
+    centre: Place
+    width: Annotated[Metre, AtLeast(FINEST), AtMost(FARTHEST)]
     shape: Literal["gaussian", "raised_cosine"] = "gaussian"
     along: Coordinate = X_AXIS
     type: Literal["pulse"] = field(default="pulse", repr=False)
 
     def __post_init__(self) -> None:
-        require_place("centre", self.centre)
-        require("width", self.width, METRE, at_least=FINEST, at_most=FARTHEST)
         require_coordinate(self.along)
-        if self.shape not in ("gaussian", "raised_cosine"):
-            raise InputError(
-                f"shape = {self.shape!r} is not known; it must be 'gaussian' or 'raised_cosine'",
-                quantity="shape",
-            )
 
     def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
         s = self.along.at(x, y)
@@ -191,26 +184,19 @@ class Ramp(Pattern):
         InputError: a value outside its range.
     """
 
-    start: Metre
-    end: Metre
+    start: Place
+    end: Place
     profile: Literal["linear", "smooth"] = "linear"
     along: Coordinate = X_AXIS
     type: Literal["ramp"] = field(default="ramp", repr=False)
 
     def __post_init__(self) -> None:
-        require_place("start", self.start)
-        require_place("end", self.end)
         require_coordinate(self.along)
         if abs(self.end - self.start) < 1e-9:
             raise InputError(
                 "start and end of a ramp are the same; they must be a nanometre apart at least; "
                 "take a Band for a step",
                 quantity="end",
-            )
-        if self.profile not in ("linear", "smooth"):
-            raise InputError(
-                f"profile = {self.profile!r} is not known; it must be 'linear' or 'smooth'",
-                quantity="profile",
             )
 
     def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
@@ -242,15 +228,13 @@ class Band(Pattern):
         InputError: a value outside its range.
     """
 
-    start: Metre
-    end: Metre
+    start: Place
+    end: Place
     fade: Metre = 0.0
     along: Coordinate = X_AXIS
     type: Literal["band"] = field(default="band", repr=False)
 
     def __post_init__(self) -> None:
-        require_place("start", self.start)
-        require_place("end", self.end)
         require("end", self.end, METRE, above=self.start)
         require_fade(self.fade, self.end - self.start)
         require_coordinate(self.along)
@@ -303,20 +287,14 @@ class Bump(Pattern):
         InputError: a value outside its range.
     """
 
-    centre: Metre
-    width: Metre
+    centre: Place
+    width: Annotated[Metre, AtLeast(FINEST), AtMost(FARTHEST)]
     kind: Literal["bump", "hole"] = "bump"
     along: Coordinate = X_AXIS
     type: Literal["bump"] = field(default="bump", repr=False)
 
     def __post_init__(self) -> None:
-        require_place("centre", self.centre)
-        require("width", self.width, METRE, at_least=FINEST, at_most=FARTHEST)
         require_coordinate(self.along)
-        if self.kind not in ("bump", "hole"):
-            raise InputError(
-                f"kind = {self.kind!r} is not known; it must be 'bump' or 'hole'", quantity="kind"
-            )
 
     def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
         d = (self.along.at(x, y) - self.centre) / self.width

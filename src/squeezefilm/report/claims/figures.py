@@ -53,9 +53,14 @@ def frequency_against_half_wavelength(section: Laminate) -> Figure:
     for at, color in ((limit, BLUE), (shear_limit, ORANGE)):
         axes.plot([1e3 * at], [_CRITERION / 1e3], "o", color=color, ms=6, zorder=3)
     axes.plot(
-        [1e3 * _PRINTED_LIMIT], [_CRITERION / 1e3], "x", color=INK, ms=9, mew=2,
+        [1e3 * _PRINTED_LIMIT],
+        [_CRITERION / 1e3],
+        "x",
+        color=INK,
+        ms=9,
+        mew=2,
         label="printed: 16.1 mm",
-    )  # fmt: skip
+    )
     axes.set(xlim=(5, 25), ylim=(0, 110), xlabel="half wavelength (mm)", ylabel="frequency (kHz)")
     legend_below(axes)
     return figure

@@ -193,9 +193,15 @@ def identifiability(study: PrototypeStudy) -> Figure:
         values, errors, label = _panel(study.explanations, number)
         for y, value, error, one in zip(at, values, errors, study.explanations, strict=True):
             axes.errorbar(
-                value, y, xerr=error, fmt="o", ms=5, lw=2.2, capsize=3,
+                value,
+                y,
+                xerr=error,
+                fmt="o",
+                ms=5,
+                lw=2.2,
+                capsize=3,
                 color=ORANGE if "e31" in one.name else BLUE,
-            )  # fmt: skip
+            )
         axes.set_xlabel(label)
         axes.set_ylim(-0.6, at.size - 0.4)
         axes.locator_params(axis="x", nbins=3)
@@ -204,10 +210,15 @@ def identifiability(study: PrototypeStudy) -> Figure:
             axes.tick_params(left=False)
     panels[-1].axvline(MEASURED_AMPLITUDE * 1e6, color=INK, lw=1, ls=(0, (4, 2)))
     panels[-1].annotate(
-        "measured,\nQ unknown", (MEASURED_AMPLITUDE * 1e6, 0.2), (3, 0),
-        xycoords=("data", "axes fraction"), textcoords="offset points", va="top", fontsize=8,
+        "measured,\nQ unknown",
+        (MEASURED_AMPLITUDE * 1e6, 0.2),
+        (3, 0),
+        xycoords=("data", "axes fraction"),
+        textcoords="offset points",
+        va="top",
+        fontsize=8,
         color=MUTED,
-    )  # fmt: skip
+    )
     panels[0].set_yticks(
         at, [f"{one.name}\n{one.free}: {one.value}" for one in study.explanations], fontsize=8.5
     )

@@ -160,9 +160,11 @@ def sensor_contrast(contrast: SensorContrast) -> Figure:
         )
         axes.semilogx(1e3 * contrast.spatial_periods, row, label=label, **look)
     axes.set(
-        xlabel="spatial period (mm)", ylabel="contrast kept in its place", ylim=(0, 1.05),
+        xlabel="spatial period (mm)",
+        ylabel="contrast kept in its place",
+        ylim=(0, 1.05),
         xlim=(1e3 * contrast.spatial_periods[0], 1e3 * contrast.spatial_periods[-1]),
-    )  # fmt: skip
+    )
     rungs = np.array([0.25, 0.5, 1, 2, 4, 8])
     low, high = axes.get_xlim()
     axes.set_xticks(rungs[(rungs >= low) & (rungs <= high)])

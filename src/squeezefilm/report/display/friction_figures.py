@@ -78,13 +78,19 @@ def pressure(analysis: Analysis) -> Figure:
         for item, color in zip(profiles, (BLUE, GREEN), strict=False):
             mean = float(np.trapezoid(item.mean_pressure, x) / (x[-1] - x[0]))
             below.plot(
-                x, item.mean_pressure, color=color, lw=1.4,
+                x,
+                item.mean_pressure,
+                color=color,
+                lw=1.4,
                 label=f"{_NAMES[item.model]}, mean {mean:.4f}",
-            )  # fmt: skip
+            )
         below.axhline(
-            carried, color=ORANGE, lw=1.6, ls=(0, (6, 1.6)),
+            carried,
+            color=ORANGE,
+            lw=1.6,
+            ls=(0, (6, 1.6)),
             label=f"would carry the finger: {carried:.4f}",
-        )  # fmt: skip
+        )
         below.set(xlim=(low, high), xlabel="position under the finger (mm)")
     grid[0][0].set(ylabel="mean gap (µm)")
     grid[1][0].set(ylabel="pressure over ambient")
@@ -119,10 +125,13 @@ def friction(analysis: Analysis) -> Figure:
         words = "0.7 out of reach" if reached is None else f"0.7 at {shown(reached, M, 3)}"
         words += "" if zero is None else f", zero at {shown(zero, M, 3)}"
         axes.plot(
-            1e6 * curve.amplitude, curve.relative_friction, color=color, ls=dashes,
+            1e6 * curve.amplitude,
+            curve.relative_friction,
+            color=color,
+            ls=dashes,
             label=f"{_NAMES.get(curve.model, curve.model)}, {plain(curve.surface, 20)} "
             f"({shown(curve.roughness, M, 3)}): {words}",
-        )  # fmt: skip
+        )
         if reached is not None:
             _drop(axes, reached, color)
         if zero is not None and zero <= curve.amplitude[-1]:
@@ -154,13 +163,20 @@ def film_models(analysis: Analysis) -> Figure:
     for number, curve in enumerate(films.curves):
         color, dashes = _FIVE[number % len(_FIVE)]
         axes.semilogy(
-            1e6 * curve.amplitude, curve.load_share, color=color, ls=dashes,
+            1e6 * curve.amplitude,
+            curve.load_share,
+            color=color,
+            ls=dashes,
             label=_NAMES[curve.model],
-        )  # fmt: skip
+        )
         axes.plot(
-            [1e6 * p.vibration_amplitude], [films.results[number].load_share], "o", color=color,
-            ms=6, zorder=3,
-        )  # fmt: skip
+            [1e6 * p.vibration_amplitude],
+            [films.results[number].load_share],
+            "o",
+            color=color,
+            ms=6,
+            zorder=3,
+        )
     axes.axhline(1, color=MUTED, lw=1.2, ls=(0, (2, 2)), label="carries the whole finger")
     right = 1e6 * max(float(curve.amplitude[-1]) for curve in films.curves)
     axes.set(xlim=(0, right), ylim=(1e-4, 30), xlabel="vibration amplitude, zero-to-peak (µm)")
@@ -189,9 +205,12 @@ def wavelength(analysis: Analysis) -> Figure:
     for number, curve in enumerate(curves):
         color, dashes = LINES[number % len(LINES)]
         axes.plot(
-            1e6 * curve.amplitude, curve.relative_friction, color=color, ls=dashes,
+            1e6 * curve.amplitude,
+            curve.relative_friction,
+            color=color,
+            ls=dashes,
             label=f"λ/2 = {shown(curve.half_wavelength, M, 3)}: 0.7 at {at[number]}",
-        )  # fmt: skip
+        )
         if 1e6 * curve.amplitude_for_criterion <= right:
             _drop(axes, curve.amplitude_for_criterion, color)
     _criterion(axes)
@@ -209,9 +228,12 @@ def wavelength(analysis: Analysis) -> Figure:
 
 def _criterion(axes: Axes) -> None:
     axes.axhline(
-        PAPER_CRITERION, color=MUTED, lw=1.2, ls=(0, (2, 2)),
+        PAPER_CRITERION,
+        color=MUTED,
+        lw=1.2,
+        ls=(0, (2, 2)),
         label="0.7: what the paper asks for",
-    )  # fmt: skip
+    )
 
 
 def _drop(axes: Axes, amplitude: float, color: str) -> None:
@@ -227,7 +249,14 @@ def _working_point(
     p = analysis.prediction
     height = p.relative_friction if friction is None else friction
     axes.plot(
-        [1e6 * p.vibration_amplitude], [height], "D", color=INK, ms=9, mec=PAPER,
-        mew=1.4, zorder=5, clip_on=False,
+        [1e6 * p.vibration_amplitude],
+        [height],
+        "D",
+        color=INK,
+        ms=9,
+        mec=PAPER,
+        mew=1.4,
+        zorder=5,
+        clip_on=False,
         label=f"this display: {height:.2f} at {shown(p.vibration_amplitude, M, 3)}{more}",
-    )  # fmt: skip
+    )

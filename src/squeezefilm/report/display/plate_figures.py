@@ -127,11 +127,16 @@ def _disc(disc: DiscPlate, analysis: Analysis) -> Figure:
             plan.add_patch(Circle((0, 0), size, facecolor=fill, edgecolor=INK, lw=0.8))
     plan.add_patch(
         Rectangle(
-            (-contact / 2, -contact / 2), contact, contact,
-            facecolor="none", edgecolor=ORANGE, lw=2.2, zorder=3,
+            (-contact / 2, -contact / 2),
+            contact,
+            contact,
+            facecolor="none",
+            edgecolor=ORANGE,
+            lw=2.2,
+            zorder=3,
             label=f"finger contact, {contact:.3g} mm × {contact:.3g} mm",
         )
-    )  # fmt: skip
+    )
     side.set_title("section, to scale")
     side.add_patch(Rectangle((-radius, -thick), 2 * radius, thick, facecolor=METAL, edgecolor=INK))
     parts = ((-outer, -inner), (inner, outer)) if inner > 0 else ((-outer, outer),)
@@ -204,10 +209,16 @@ def _ring(ring: AnnularStator, analysis: Analysis) -> Figure:
         sign = 1 if number % 2 == 0 else -1
         axes.add_patch(
             Wedge(
-                (0, 0), outer, angle - half, angle + half, width=width,
-                facecolor=_FILL[sign], edgecolor=INK, lw=0.8,
+                (0, 0),
+                outer,
+                angle - half,
+                angle + half,
+                width=width,
+                facecolor=_FILL[sign],
+                edgecolor=INK,
+                lw=0.8,
             )
-        )  # fmt: skip
+        )
         if 2 * waves <= 60 and number:
             axes.text(
                 (radius + width / 4) * math.cos(math.radians(angle)),
@@ -220,31 +231,42 @@ def _ring(ring: AnnularStator, analysis: Analysis) -> Figure:
     axes.add_patch(Circle((0, 0), radius, fill=False, ls=(0, (5, 3)), ec=MUTED, lw=1))
     axes.add_patch(
         Rectangle(
-            (-contact / 2, radius - contact / 2), contact, contact,
-            facecolor="none", edgecolor=ORANGE, lw=2.2, zorder=3,
+            (-contact / 2, radius - contact / 2),
+            contact,
+            contact,
+            facecolor="none",
+            edgecolor=ORANGE,
+            lw=2.2,
+            zorder=3,
         )
-    )  # fmt: skip
+    )
     axes.annotate(
         "", (-radius, 0), (radius, 0), arrowprops={"arrowstyle": "<->", "color": INK, "lw": 1}
     )
     axes.text(
-        0, 0.03 * outer, f"mean diameter\n{2 * radius:.4g} mm",
-        ha="center", va="bottom", fontsize=9.5,
-    )  # fmt: skip
+        0,
+        0.03 * outer,
+        f"mean diameter\n{2 * radius:.4g} mm",
+        ha="center",
+        va="bottom",
+        fontsize=9.5,
+    )
     axes.legend(
         handles=[
             Patch(facecolor=PLUS, edgecolor=INK, label="+  half wave going up"),
             Patch(facecolor=MINUS, edgecolor=INK, label="−  half wave going down"),
             Patch(facecolor=PAPER, edgecolor=INK, label="lines between: nodal lines"),
             Patch(
-                facecolor="none", edgecolor=ORANGE, lw=2,
+                facecolor="none",
+                edgecolor=ORANGE,
+                lw=2,
                 label=f"finger contact, {contact:.3g} mm × {contact:.3g} mm",
             ),
         ],
         loc="center left",
         bbox_to_anchor=(1.04, 0.5),
         frameon=False,
-    )  # fmt: skip
+    )
     reach = 1.06 * max(outer, radius + contact / 2)
     axes.set(xlim=(-reach, reach), ylim=(-1.06 * outer, reach), aspect="equal")
     axes.set(xlabel="x (mm)", ylabel="y (mm)")
@@ -344,14 +366,21 @@ def _half_wave_arrow(axes: Axes, nodes: FloatArray, height: float, half: float) 
     middle = len(nodes) // 2
     left, right = float(nodes[middle - 1]), float(nodes[middle])
     axes.annotate(
-        "", (left, height), (right, height),
+        "",
+        (left, height),
+        (right, height),
         arrowprops={"arrowstyle": "<->", "color": INK, "lw": 1, "shrinkA": 0, "shrinkB": 0},
-    )  # fmt: skip
+    )
     axes.annotate(
-        f"λ/2 = {shown(half, M, 4)}", ((left + right) / 2, height), (0, 4),
-        textcoords="offset points", ha="center", va="bottom", fontsize=9.5,
+        f"λ/2 = {shown(half, M, 4)}",
+        ((left + right) / 2, height),
+        (0, 4),
+        textcoords="offset points",
+        ha="center",
+        va="bottom",
+        fontsize=9.5,
         bbox={"facecolor": PAPER, "edgecolor": "none", "pad": 1.2},
-    )  # fmt: skip
+    )
 
 
 @drawn
@@ -380,25 +409,38 @@ def frequency_response(analysis: Analysis) -> Figure:
     axes = figure.subplots()
     if band is not None:
         axes.axvspan(
-            *band, color=BAND, lw=0,
+            *band,
+            color=BAND,
+            lw=0,
             label=f"half-power band, {band[0]:.2f} to {band[1]:.2f} kHz (above 71 % of the peak)",
-        )  # fmt: skip
+        )
     axes.plot(
-        f, per_volt, color=BLUE,
+        f,
+        per_volt,
+        color=BLUE,
         label=f"amplitude per volt, quality factor Q = {p.mode.quality_factor:.3g}",
-    )  # fmt: skip
+    )
     axes.axvline(
-        1e-3 * p.mode.resonance_frequency, color=INK, lw=1, ls=(0, (4, 2)),
+        1e-3 * p.mode.resonance_frequency,
+        color=INK,
+        lw=1,
+        ls=(0, (4, 2)),
         label=f"resonance, {shown(p.mode.resonance_frequency, HZ)}",
-    )  # fmt: skip
+    )
     drive = 1e-3 * p.frequency
     if p.voltage is not None and f[0] <= drive <= f[-1]:
         axes.plot(
-            [drive], [1e9 * p.vibration_amplitude / p.voltage if p.voltage else peak], "o",
-            color=ORANGE, ms=8, mec=PAPER, mew=1.2, zorder=4,
+            [drive],
+            [1e9 * p.vibration_amplitude / p.voltage if p.voltage else peak],
+            "o",
+            color=ORANGE,
+            ms=8,
+            mec=PAPER,
+            mew=1.2,
+            zorder=4,
             label=f"drive: {shown(p.voltage, V)} at {shown(p.frequency, HZ)}, "
             f"{shown(p.vibration_amplitude, M, 3)}",
-        )  # fmt: skip
+        )
     axes.set(xlim=(float(f[0]), float(f[-1])), ylim=(0, 1.08 * peak if peak > 0 else 1))
     axes.set(xlabel="frequency (kHz)", ylabel="amplitude per volt (nm/V)")
     if p.voltage:

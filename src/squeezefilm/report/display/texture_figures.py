@@ -74,9 +74,12 @@ def texture(analysis: Analysis) -> Figure:
         grid[1][column].set(xlim=(1e3 * low, 1e3 * high), xlabel="finger position (mm)")
     for axes in (grid[0][1], grid[1][1]):
         axes.axvspan(
-            1e3 * edge, 1e3 * (edge + trace.lag), color=SKIN, lw=0,
+            1e3 * edge,
+            1e3 * (edge + trace.lag),
+            color=SKIN,
+            lw=0,
             label=f"lag τ·v = {shown(trace.lag, M, 2)}",
-        )  # fmt: skip
+        )
     grid[0][0].set(ylabel="amplitude (µm)", ylim=(0, None))
     grid[1][0].set(ylabel="relative friction µ′/µ")
     if np.ptp(trace.relative_friction_wanted) < 0.01:
@@ -133,19 +136,27 @@ def fidelity(analysis: Analysis) -> Figure:
             fill = colors(share**3)
             axes.add_patch(
                 Rectangle(
-                    (column - 0.48, row - 0.46), 0.96, 0.92, facecolor=fill,
-                    edgecolor=INK, lw=1.2 if survives else 0.8,
+                    (column - 0.48, row - 0.46),
+                    0.96,
+                    0.92,
+                    facecolor=fill,
+                    edgecolor=INK,
+                    lw=1.2 if survives else 0.8,
                     ls="-" if survives else (0, (3, 2)),
                 )
-            )  # fmt: skip
+            )
             ink = "#ffffff" if _luminance(fill[:3]) < 0.2 else "#101820"
             words = f"{_percent(share, table.kept)}  {'✓' if survives else '✗'}"
             axes.text(column, row - 0.12, words, ha="center", va="center", color=ink, fontsize=12)
             axes.text(
-                column, row + 0.24,
+                column,
+                row + 0.24,
                 f"friction {_percent(float(table.friction_kept[row, column]), table.kept)}",
-                ha="center", va="center", color=ink, fontsize=8.5,
-            )  # fmt: skip
+                ha="center",
+                va="center",
+                color=ink,
+                fontsize=8.5,
+            )
     axes.set(xlim=(-0.52, columns - 0.48), ylim=(rows - 0.5, -0.5))
     axes.set_yticks(range(rows), [f"{1e3 * period:g}" for period in table.spatial_periods])
     axes.set_xticks(
@@ -162,13 +173,18 @@ def fidelity(analysis: Analysis) -> Figure:
         axes.spines[side].set_visible(False)
     strip.legend(
         handles=[
-            Patch(facecolor="none", edgecolor=INK, lw=1.2,
-                  label=f"✓ keeps {100 * table.kept:.0f} % of the amplitude's swing"),
-            Patch(facecolor="none", edgecolor=INK, lw=0.8, ls="--",
-                  label="✗ loses more"),
+            Patch(
+                facecolor="none",
+                edgecolor=INK,
+                lw=1.2,
+                label=f"✓ keeps {100 * table.kept:.0f} % of the amplitude's swing",
+            ),
+            Patch(facecolor="none", edgecolor=INK, lw=0.8, ls="--", label="✗ loses more"),
         ],
-        loc="center", ncols=2, frameon=False,
-    )  # fmt: skip
+        loc="center",
+        ncols=2,
+        frameon=False,
+    )
     return figure
 
 

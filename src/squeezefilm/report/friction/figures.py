@@ -74,13 +74,20 @@ def draw_models(
     tied = next(c for c in curves if c.model == "partial-levitation-one-gap")
     stiff = np.interp(own.amplitude, tied.amplitude, tied.relative_friction)
     axes.fill_between(
-        1e6 * own.amplitude, stiff, own.relative_friction, color=BAND, lw=0,
+        1e6 * own.amplitude,
+        stiff,
+        own.relative_friction,
+        color=BAND,
+        lw=0,
         label="between a stiff pad (one mean gap) and a soft one",
-    )  # fmt: skip
+    )
     axes.plot(
-        1e6 * own.amplitude, own.relative_friction, color=BLUE, lw=2.4,
+        1e6 * own.amplitude,
+        own.relative_friction,
+        color=BLUE,
+        lw=2.4,
         label="partial levitation, each ridge at its own balance",
-    )  # fmt: skip
+    )
     at = 1e6 * p.vibration_amplitude
     if unsure is not None:
         low, high = unsure.interval
@@ -91,9 +98,17 @@ def draw_models(
     if unsure is not None:
         words += f" ({unsure.interval[0]:.2f}–{unsure.interval[1]:.2f}, {unsure.level:.0%})"
     axes.plot(
-        [at], [p.relative_friction], "D", color=INK, ms=8, mec=PAPER, mew=1.3, zorder=5,
-        clip_on=False, label=f"this display, {p.model}: {words}",
-    )  # fmt: skip
+        [at],
+        [p.relative_friction],
+        "D",
+        color=INK,
+        ms=8,
+        mec=PAPER,
+        mew=1.3,
+        zorder=5,
+        clip_on=False,
+        label=f"this display, {p.model}: {words}",
+    )
     axes.set(xlim=(0, 1e6 * float(own.amplitude[-1])), ylim=(0, 1.04))
     axes.set(xlabel="vibration amplitude, zero-to-peak (µm)", ylabel="relative friction µ′/µ")
 
@@ -177,18 +192,32 @@ def friction_map(result: FrictionAnalysis) -> Figure:
     axes = figure.subplots()
     levels = np.linspace(0, 1, 11)
     filled = axes.contourf(
-        1e6 * found.amplitude, found.normal_force, found.relative_friction,
-        levels=levels, cmap="cividis",
-    )  # fmt: skip
+        1e6 * found.amplitude,
+        found.normal_force,
+        found.relative_friction,
+        levels=levels,
+        cmap="cividis",
+    )
     lines = axes.contour(
-        1e6 * found.amplitude, found.normal_force, found.relative_friction,
-        levels=levels[1:-1:2], colors=PAPER, linewidths=1.0,
-    )  # fmt: skip
+        1e6 * found.amplitude,
+        found.normal_force,
+        found.relative_friction,
+        levels=levels[1:-1:2],
+        colors=PAPER,
+        linewidths=1.0,
+    )
     axes.clabel(lines, fmt=lambda v: f"{v:.1f}", fontsize=9)
     axes.plot(
-        [1e6 * p.vibration_amplitude], [p.normal_force], "D", color=ORANGE, ms=9, mec=PAPER,
-        mew=1.4, zorder=5, label="this display",
-    )  # fmt: skip
+        [1e6 * p.vibration_amplitude],
+        [p.normal_force],
+        "D",
+        color=ORANGE,
+        ms=9,
+        mec=PAPER,
+        mew=1.4,
+        zorder=5,
+        label="this display",
+    )
     bar = figure.colorbar(filled, ax=axes, label="relative friction µ′/µ")
     bar.outline.set_edgecolor(MUTED)
     axes.set(yscale="log", xlabel="vibration amplitude, zero-to-peak (µm)")
@@ -219,9 +248,14 @@ def uncertainty(result: FrictionAnalysis) -> Figure:
     ranked = unsure.influences[:8][::-1]
     rows = np.arange(len(ranked))
     right.barh(
-        rows, [100 * max(i.total, 0) for i in ranked], color=BAND, edgecolor=MUTED,
-        xerr=[100 * i.total_error for i in ranked], ecolor=MUTED, label="with all its company",
-    )  # fmt: skip
+        rows,
+        [100 * max(i.total, 0) for i in ranked],
+        color=BAND,
+        edgecolor=MUTED,
+        xerr=[100 * i.total_error for i in ranked],
+        ecolor=MUTED,
+        label="with all its company",
+    )
     right.barh(
         rows, [100 * max(i.first_order, 0) for i in ranked], height=0.4, color=ORANGE, label="alone"
     )
@@ -251,9 +285,12 @@ def ripple(result: FrictionAnalysis) -> Figure:
     axes.axhline(found.mean, color=MUTED, ls=(0, (4, 2)), lw=1.2, label=f"mean {found.mean:.2f}")
     for node in (0.5 * half, 1.5 * half):
         axes.axvline(
-            1e3 * node, color=INK, lw=0.9, ls=(0, (1, 2)),
+            1e3 * node,
+            color=INK,
+            lw=0.9,
+            ls=(0, (1, 2)),
             label="nodal lines" if node < half else None,
-        )  # fmt: skip
+        )
     axes.set(xlabel="centre of the pad, from an antinode (mm)", ylabel="relative friction µ′/µ")
     axes.set(xlim=(0, 2e3 * half), ylim=(0, 1.04))
     legend_below(axes)

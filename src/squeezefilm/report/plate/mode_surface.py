@@ -49,9 +49,19 @@ def mode_surface(result: PlateAnalysis) -> Figure:
     axes: Any = figure.add_axes((-0.02, 0.08, 0.88, 0.9), projection="3d", computed_zorder=False)
     X, Y = np.meshgrid(1e3 * x, 1e3 * y, indexing="ij")
     surface = axes.plot_surface(
-        X, Y, w, cmap="RdBu_r", vmin=-reach, vmax=reach, rcount=x.size, ccount=y.size,
-        linewidth=0, antialiased=False, zorder=1, clip_on=False,
-    )  # fmt: skip
+        X,
+        Y,
+        w,
+        cmap="RdBu_r",
+        vmin=-reach,
+        vmax=reach,
+        rcount=x.size,
+        ccount=y.size,
+        linewidth=0,
+        antialiased=False,
+        zorder=1,
+        clip_on=False,
+    )
     hidden = _Hidden(x, y, w, (plate.length, plate.width, _DRAWN_HEIGHT * plate.length), reach)
     for line in lines:
         seen = np.array([not hidden(a, b) for a, b in line])

@@ -101,24 +101,31 @@ def _numbers(result: PlateAnalysis) -> str:
     if result.circuit is not None:
         c = result.circuit
         rows.append(
-            ("Equivalent circuit", f"C0 {shown(c.static_capacitance, Unit('F'), 3)}",
-             f"R1 {c.motional_resistance:.3g} Ω, L1 {shown(c.motional_inductance, Unit('H'), 3)}, "
-             f"C1 {shown(c.motional_capacitance, Unit('F'), 3)}")
-        )  # fmt: skip
+            (
+                "Equivalent circuit",
+                f"C0 {shown(c.static_capacitance, Unit('F'), 3)}",
+                f"R1 {c.motional_resistance:.3g} Ω, "
+                f"L1 {shown(c.motional_inductance, Unit('H'), 3)}, "
+                f"C1 {shown(c.motional_capacitance, Unit('F'), 3)}",
+            )
+        )
     return _table(f"{result.modes.model}", ("Quantity", "Value", "Remark"), rows)
 
 
 def _modes(result: PlateAnalysis) -> str:
     rows = [
         (
-            row.label, shown(row.frequency, HZ, 5), f"± {shown(row.frequency_error, HZ, 2)}",
+            row.label,
+            shown(row.frequency, HZ, 5),
+            f"± {shown(row.frequency_error, HZ, 2)}",
             f"{row.quality_factor:.3g}",
-            "not driven" if row.amplitude_per_volt < 1e-4 * result.amplitude_per_volt
+            "not driven"
+            if row.amplitude_per_volt < 1e-4 * result.amplitude_per_volt
             else shown(row.amplitude_per_volt, PER_VOLT, 3),
             f"{row.coupling:.2g}",
         )
         for row in result.rows
-    ]  # fmt: skip
+    ]
     head = ("Mode", "Frequency", "Error", "Q", "Per volt", "Coupling")
     return _table(result.modes.status, head, rows)
 
@@ -127,11 +134,12 @@ def sensitivities(table: SensitivityTable) -> str:
     """The table of sensitivities as HTML."""
     rows = [
         (
-            f"{row.name}: {row.change}", shown(row.frequency, HZ, 5),
+            f"{row.name}: {row.change}",
+            shown(row.frequency, HZ, 5),
             f"{row.frequency_shift:+.2%}",
             "–" if row.amplitude_shift is None else f"{row.amplitude_shift:+.1%}",
         )
         for row in table.rows
-    ]  # fmt: skip
+    ]
     head = ("Change", "Frequency", "Shift of frequency", "Shift of amplitude per volt")
     return _table("Each changed plate solved anew", head, rows)

@@ -79,9 +79,14 @@ def line_scan(result: PlateAnalysis) -> Figure:
     axes.axhline(0, color=MUTED, lw=0.8)
     nodes = zero_crossings(x, w[:, 1])
     axes.plot(
-        1e3 * nodes, np.zeros(nodes.size), "o", color=INK, ms=4, zorder=3,
+        1e3 * nodes,
+        np.zeros(nodes.size),
+        "o",
+        color=INK,
+        ms=4,
+        zorder=3,
         label=f"{nodes.size} nodes of the centreline",
-    )  # fmt: skip
+    )
     axes.set(xlabel="x (mm)" if lengthwise else "y (mm)", xlim=(0, 1e3 * span))
     axes.set(ylabel="w per volt (nm/V)")
     if volts:
@@ -112,9 +117,12 @@ def frequency_response(result: PlateAnalysis) -> Figure:
         axes.axvspan(*band, color=BAND, lw=0, label="half-power band")
     axes.plot(f, per_volt, color=BLUE, label="solved plate, all modes")
     axes.axvline(
-        result.working.frequency / 1e3, color=INK, lw=1, ls=(0, (4, 2)),
+        result.working.frequency / 1e3,
+        color=INK,
+        lw=1,
+        ls=(0, (4, 2)),
         label=f"mode {result.working.label} extrapolated, {result.working.frequency / 1e3:.2f} kHz",
-    )  # fmt: skip
+    )
     axes.set(xlabel="frequency (kHz)", ylabel="largest amplitude (nm/V)")
     axes.set(ylim=(0, None), xlim=(f[0], f[-1]))
     legend_below(axes, columns=3, gap=0.2)
@@ -178,6 +186,9 @@ def write_plate(result: PlateAnalysis, folder: Path) -> Path:
 def write_mode(result: PlateAnalysis, file: Path) -> Path:
     """Write the working mode and its response at the display's voltage as .vtu; the file."""
     return write_vtu(
-        file, result.alone, result.alone.index(result.working_label),
-        response=result.response, voltage=result.display.drive.voltage,
-    )  # fmt: skip
+        file,
+        result.alone,
+        result.alone.index(result.working_label),
+        response=result.response,
+        voltage=result.display.drive.voltage,
+    )

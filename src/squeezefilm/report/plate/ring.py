@@ -63,9 +63,13 @@ def shape(result: RingAnalysis) -> Figure:
     field = left.contourf(x, y, w, levels=levels, cmap="RdBu_r")
     left.contour(x, y, w, levels=[0.0], colors=INK, linewidths=0.9)
     figure.colorbar(
-        field, ax=left, label="per volt (nm/V)", ticks=MaxNLocator(nbins=6, symmetric=True),
-        location="bottom", shrink=0.75,
-    )  # fmt: skip
+        field,
+        ax=left,
+        label="per volt (nm/V)",
+        ticks=MaxNLocator(nbins=6, symmetric=True),
+        location="bottom",
+        shrink=0.75,
+    )
     left.set_title("touched face; nodal lines in black")
     _sectors(right, result)
     outer = 1e3 * max(layer.outer_radius for layer in result.body.section.layers)
@@ -106,16 +110,25 @@ def _sectors(axes: Axes, result: RingAnalysis) -> None:
     for start, end, sign in result.body.drive.sectors:
         axes.add_patch(
             Wedge(
-                (0, 0), edge, math.degrees(start), math.degrees(end), width=width,
-                facecolor=_FILL[sign], edgecolor=INK, lw=0.8,
+                (0, 0),
+                edge,
+                math.degrees(start),
+                math.degrees(end),
+                width=width,
+                facecolor=_FILL[sign],
+                edgecolor=INK,
+                lw=0.8,
             )
-        )  # fmt: skip
+        )
         middle, place = (start + end) / 2, edge - width / 2
         axes.text(
             0.0 if whole and inner == 0 else place * math.cos(middle),
             0.0 if whole and inner == 0 else place * math.sin(middle),
-            "+" if sign > 0 else "−", ha="center", va="center", fontsize=11,
-        )  # fmt: skip
+            "+" if sign > 0 else "−",
+            ha="center",
+            va="center",
+            fontsize=11,
+        )
     for radius in {outer, inner} - {0.0}:
         axes.add_patch(Circle((0, 0), radius, fill=False, ec=INK, lw=1))
     axes.set_title("ceramic below, seen through the body")
@@ -125,9 +138,14 @@ def _sectors(axes: Axes, result: RingAnalysis) -> None:
         Patch(facecolor="none", edgecolor=MUTED, label="not on this channel"),
     ]
     axes.legend(
-        handles=handles[:1] if whole else handles, loc="upper center",
-        bbox_to_anchor=(0.5, -0.16), ncols=3, frameon=False, fontsize=8.5, handlelength=1.2,
-    )  # fmt: skip
+        handles=handles[:1] if whole else handles,
+        loc="upper center",
+        bbox_to_anchor=(0.5, -0.16),
+        ncols=3,
+        frameon=False,
+        fontsize=8.5,
+        handlelength=1.2,
+    )
 
 
 @drawn
@@ -160,9 +178,12 @@ def scan(result: RingAnalysis) -> Figure:
     for number, circle in enumerate(result.circles):
         for side in (1,) if m else (1, -1):
             below.axvline(
-                side * 1e3 * float(circle), color=ORANGE, lw=1.2, ls=(0, (4, 2)),
+                side * 1e3 * float(circle),
+                color=ORANGE,
+                lw=1.2,
+                ls=(0, (4, 2)),
                 label="nodal circle" if number == 0 and side == 1 else None,
-            )  # fmt: skip
+            )
     below.set(xlabel="radius (mm)" if m else "along a diameter (mm)", ylabel="per volt (nm/V)")
     below.set_xlim(r[0] if m else -r[-1], r[-1])
     if below.get_legend_handles_labels()[0]:
@@ -204,9 +225,13 @@ def response(result: RingAnalysis) -> Figure:
         circuit = 1e3 * np.abs(result.circuit.admittance(swept.frequencies))
         resistance = shown(result.circuit.motional_resistance, Unit("ohm"), 3)
         below.semilogy(
-            f, circuit, color=INK, lw=1.0, ls=(0, (1, 2)),
+            f,
+            circuit,
+            color=INK,
+            lw=1.0,
+            ls=(0, (1, 2)),
             label=f"equivalent circuit, R1 = {resistance}",
-        )  # fmt: skip
+        )
     plain_log(below.yaxis)
     below.set(xlabel="frequency (kHz)", ylabel="admittance (mS)")
     legend_below(below, columns=3, gap=0.28)

@@ -62,9 +62,14 @@ def tornado(table: SensitivityTable) -> Figure:
             cut = "" if abs(value) <= limit * 1.0001 else " (cut)"
             text = "no drive" if np.isnan(value) else f"{_signed(value)} %{cut}"
             axes.annotate(
-                text, (width, y), (3 if width >= 0 else -3, 0), textcoords="offset points",
-                ha="left" if width >= 0 else "right", va="center", fontsize=8.5,
-            )  # fmt: skip
+                text,
+                (width, y),
+                (3 if width >= 0 else -3, 0),
+                textcoords="offset points",
+                ha="left" if width >= 0 else "right",
+                va="center",
+                fontsize=8.5,
+            )
         axes.set_xlabel(f"shift of {name} (%)" if name == "frequency" else f"{name} per volt (%)")
         axes.grid(visible=False, axis="y")
     right.tick_params(left=False)
@@ -92,12 +97,18 @@ def tracks(found: ModeTracks) -> Figure:
     plain = [t for t in found.tracks if not t.driven]
     driven = [t for t in found.tracks if t.driven]
     for number, track in enumerate(plain):
-        axes.plot(x, track.frequency / 1e3, color=MUTED, lw=1.0,
-                  label="not driven (symmetry)" if number == 0 else None)  # fmt: skip
+        axes.plot(
+            x,
+            track.frequency / 1e3,
+            color=MUTED,
+            lw=1.0,
+            label="not driven (symmetry)" if number == 0 else None,
+        )
     for number, track in enumerate(driven):
         color, dashes = LINES[number % len(LINES)]
-        axes.plot(x, track.frequency / 1e3, color=color, ls=dashes, lw=2.2,
-                  label=f"{track.label}, driven")  # fmt: skip
+        axes.plot(
+            x, track.frequency / 1e3, color=color, ls=dashes, lw=2.2, label=f"{track.label}, driven"
+        )
     axes.axvline(scale * found.own, color=INK, lw=0.8, ls=(0, (2, 2)), label="this plate")
     ends: list[tuple[float, str]] = []
     for track in found.tracks:
@@ -110,10 +121,14 @@ def tracks(found: ModeTracks) -> Figure:
     for value, text in sorted(ends):
         height = max(value, height + 0.034 * (high - low))
         axes.annotate(
-            text, (x[-1], value), (x[-1] + 0.03 * (x[-1] - x[0]), height), fontsize=8.5,
-            va="center", annotation_clip=False,
+            text,
+            (x[-1], value),
+            (x[-1] + 0.03 * (x[-1] - x[0]), height),
+            fontsize=8.5,
+            va="center",
+            annotation_clip=False,
             arrowprops={"arrowstyle": "-", "color": MUTED, "lw": 0.5, "shrinkA": 0, "shrinkB": 0},
-        )  # fmt: skip
+        )
     axes.set(xlim=(x[0], x[-1]), xlabel=f"{name} ({symbol})" if symbol != "1" else name)
     axes.set(ylabel="frequency (kHz)")
     legend_below(axes, columns=4, gap=0.12)
@@ -125,10 +140,12 @@ def _signed(percent: float) -> str:
     if abs(percent) < 0.005:
         return "0"
     digits = (
-        f"{percent:+.0f}" if abs(percent) >= 10
-        else f"{percent:+.1f}" if abs(percent) >= 1
+        f"{percent:+.0f}"
+        if abs(percent) >= 10
+        else f"{percent:+.1f}"
+        if abs(percent) >= 1
         else f"{percent:+.2g}"
-    )  # fmt: skip
+    )
     return digits.replace("-", "−")
 
 

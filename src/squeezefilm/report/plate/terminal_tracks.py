@@ -33,7 +33,8 @@ def show_tracks(console: Console, found: ModeTracks) -> None:
             (
                 track.label,
                 *(
-                    "not followed" if np.isnan(track.frequency[k])
+                    "not followed"
+                    if np.isnan(track.frequency[k])
                     else shown(float(track.frequency[k]), Unit("Hz"), 5)
                     for k in columns
                 ),
@@ -41,4 +42,4 @@ def show_tracks(console: Console, found: ModeTracks) -> None:
             )
             for track in found.tracks
         ],
-    )  # fmt: skip
+    )

@@ -56,20 +56,31 @@ def friction(session: PlayedSession) -> Figure:
     part = _middle_pass(way)
     order = part[np.argsort(way.x[part])]
     axes.plot(
-        1e3 * way.x[order], way.relative_friction_wanted[order], color=ORANGE, lw=1.5,
-        ls=(0, (6, 1.6)), label="wanted where the finger was",
-    )  # fmt: skip
+        1e3 * way.x[order],
+        way.relative_friction_wanted[order],
+        color=ORANGE,
+        lw=1.5,
+        ls=(0, (6, 1.6)),
+        label="wanted where the finger was",
+    )
     axes.plot(
-        1e3 * way.x[order], way.relative_friction_rendered[order], color=BLUE, lw=1.7,
+        1e3 * way.x[order],
+        way.relative_friction_rendered[order],
+        color=BLUE,
+        lw=1.7,
         label="rendered",
-    )  # fmt: skip
+    )
     if session.by_truth is not None:
         seen = session.by_record.way
         inside = (seen.time >= way.time[part[0]]) & (seen.time <= way.time[part[-1]])
         axes.plot(
-            1e3 * seen.x[inside], seen.relative_friction_rendered[inside], ".", ms=3, color=GREEN,
+            1e3 * seen.x[inside],
+            seen.relative_friction_rendered[inside],
+            ".",
+            ms=3,
+            color=GREEN,
             label="by the record (sensor and pickup)",
-        )  # fmt: skip
+        )
     axes.set(xlabel="place of the finger (mm)", ylabel="relative friction µ′/µ", ylim=(0, 1.05))
     legend_below(axes, columns=3)
     return figure
@@ -119,9 +130,13 @@ def amplitude(session: PlayedSession) -> Figure:
     volts = np.abs(rows[inside, column.VOLTAGE])
     commanded = np.interp(volts, plan.drive.voltage, plan.drive.amplitude)
     above.step(
-        t + plan.output_delay, 1e6 * commanded, where="post", color=ORANGE, lw=1.2,
+        t + plan.output_delay,
+        1e6 * commanded,
+        where="post",
+        color=ORANGE,
+        lw=1.2,
         label="commanded, at its time",
-    )  # fmt: skip
+    )
     if session.by_truth is not None:
         way = session.by_truth.way
         near = np.abs(way.time - middle) <= 0.5 * _WINDOW

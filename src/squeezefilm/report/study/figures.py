@@ -110,23 +110,36 @@ def proportion_correct(analysis: IdentificationAnalysis) -> Figure:
     )
     left.set(ylabel="right answers (%)", ylim=(0, 104), xlabel="stimulus")
     right.hist(
-        100 * analysis.participant_correct, bins=_bins(analysis), orientation="horizontal",
-        color=PLUS, edgecolor=MUTED,
-    )  # fmt: skip
+        100 * analysis.participant_correct,
+        bins=_bins(analysis),
+        orientation="horizontal",
+        color=PLUS,
+        edgecolor=MUTED,
+    )
     right.set(xlabel="participants")
     for k, interval in enumerate(analysis.intervals):
         x = (0.6 + 0.11 * k) * right.get_xlim()[1]
         right.plot([x, x], [100 * interval.low, 100 * interval.high], color=ORANGE, lw=2, zorder=4)
         right.text(
-            x, 100 * interval.low - 2, interval.method, rotation=90, ha="center", va="top",
-            fontsize=8.5, bbox={"facecolor": PAPER, "edgecolor": "none", "alpha": 0.8, "pad": 0.5},
-        )  # fmt: skip
+            x,
+            100 * interval.low - 2,
+            interval.method,
+            rotation=90,
+            ha="center",
+            va="top",
+            fontsize=8.5,
+            bbox={"facecolor": PAPER, "edgecolor": "none", "alpha": 0.8, "pad": 0.5},
+        )
     for axes in (left, right):
         axes.axhline(chance, color=MUTED, lw=1, ls=(0, (1.4, 1.2)))
     left.annotate(
-        f"guessing: {chance:.3g} %", (0, chance), (-8, 4), textcoords="offset points", fontsize=9,
+        f"guessing: {chance:.3g} %",
+        (0, chance),
+        (-8, 4),
+        textcoords="offset points",
+        fontsize=9,
         color=MUTED,
-    )  # fmt: skip
+    )
     left.set_title("each stimulus")
     right.set_title("people, and the mean's intervals")
     return figure
@@ -163,9 +176,15 @@ def information(analysis: IdentificationAnalysis) -> Figure:
             axes.plot([item.interval.low, item.interval.high], [row, row], color=MUTED, lw=1.4)
         if np.isfinite(item.estimate):
             axes.plot(
-                [item.estimate], [row], "D" if chosen else "o", color=color, ms=8, mec=PAPER,
-                clip_on=False, zorder=4,
-            )  # fmt: skip
+                [item.estimate],
+                [row],
+                "D" if chosen else "o",
+                color=color,
+                ms=8,
+                mec=PAPER,
+                clip_on=False,
+                zorder=4,
+            )
     axes.set_yticks(rows, [item.name for item in found.estimates])
     for label, item in zip(axes.get_yticklabels(), found.estimates, strict=True):
         label.set_fontweight("bold" if item.key == found.recommended else "normal")
@@ -174,9 +193,14 @@ def information(analysis: IdentificationAnalysis) -> Figure:
     )
     for row, item in zip(rows, found.estimates, strict=True):
         axes.text(
-            1.02, row, textwrap.fill(item.fails, 62), fontsize=7.6, color=MUTED, va="center",
+            1.02,
+            row,
+            textwrap.fill(item.fails, 62),
+            fontsize=7.6,
+            color=MUTED,
+            va="center",
             transform=axes.get_yaxis_transform(),
-        )  # fmt: skip
+        )
     axes.grid(visible=False, axis="y")
     return figure
 

@@ -49,9 +49,15 @@ def channels(tables: ChainTables) -> Figure:
     for name, why in tables.explain().items():
         axes.axvline(why.texture_frequency, color=MUTED, lw=0.9)
         axes.text(
-            why.texture_frequency, 1.03, plain(name, 10), ha="center", va="bottom",
-            fontsize=9.0, color=INK, rotation=35,
-        )  # fmt: skip
+            why.texture_frequency,
+            1.03,
+            plain(name, 10),
+            ha="center",
+            va="bottom",
+            fontsize=9.0,
+            color=INK,
+            rotation=35,
+        )
     for index in range(len(tables.design.displays)):
         width = next(iter(tables.explain(index).values())).envelope_bandwidth
         axes.axvline(width, color=METAL, lw=2.2, ls=":")

@@ -174,14 +174,19 @@ def key_rows(analysis: IdentificationAnalysis) -> list[tuple[str, str, str]]:
         rows.append(("Total sensitivity Δ′", f"{fit.total:.3g}", "equal-variance Thurstone model"))
         rows += [
             (
-                f"d′ {one} – {other}", f"{d:.2f}",
+                f"d′ {one} – {other}",
+                f"{d:.2f}",
                 f"{low:.2f} to {high:.2f} ({fit.interval_method}, {100 * fit.level:g} %)",
             )
             for one, other, d, low, high in zip(
-                analysis.matrix.stimuli[:-1], analysis.matrix.stimuli[1:], fit.d_prime, fit.low,
-                fit.high, strict=True,
+                analysis.matrix.stimuli[:-1],
+                analysis.matrix.stimuli[1:],
+                fit.d_prime,
+                fit.low,
+                fit.high,
+                strict=True,
             )
-        ]  # fmt: skip
+        ]
     if analysis.ex_gaussian is not None:
         g = analysis.ex_gaussian
         texts = [shown(value, Unit("s"), 3) for value in (g.mean, g.spread, g.tail)]
@@ -221,12 +226,13 @@ def _information(analysis: IdentificationAnalysis) -> str:
         (
             item.name + (" (to quote)" if item.key == analysis.information.recommended else ""),
             f"{item.estimate:.3f}" if item.estimate == item.estimate else "none",
-            "–" if item.interval is None else
-            f"{item.interval.low:.3f} to {item.interval.high:.3f}",
+            "–"
+            if item.interval is None
+            else f"{item.interval.low:.3f} to {item.interval.high:.3f}",
             item.fails,
         )
         for item in analysis.information.estimates
-    ]  # fmt: skip
+    ]
     return _table(
         "The pooled matrix; intervals over participants",
         ("Estimator", "Transfer (bit)", "Interval (bit)", "Where it fails"),
@@ -239,14 +245,20 @@ def _mixed(analysis: IdentificationAnalysis) -> str:
     assert fit is not None
     rows = [
         (
-            name, f"{100 * one:.0f} %", f"{odds:.2f} ± {error:.2f}",
+            name,
+            f"{100 * one:.0f} %",
+            f"{odds:.2f} ± {error:.2f}",
             "none (always or never right)" if mean != mean else f"{100 * mean:.0f} %",
         )
         for name, one, odds, error, mean in zip(
-            fit.names, fit.proportion_correct, fit.log_odds, fit.log_odds_error,
-            fit.average_proportion_correct, strict=True,
+            fit.names,
+            fit.proportion_correct,
+            fit.log_odds,
+            fit.log_odds_error,
+            fit.average_proportion_correct,
+            strict=True,
         )
-    ]  # fmt: skip
+    ]
     spread = f"{fit.participant_spread:.2f}"
     bounds = f"{fit.participant_spread_low:.2f} to {fit.participant_spread_high:.2f}"
     return _table(

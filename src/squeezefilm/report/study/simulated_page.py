@@ -136,10 +136,8 @@ def confusion_rows(study: SimulatedStudy, index: int) -> tuple[list[str], list[l
     matrix = study.confusion(index)
     rows = [
         [name, *(f"{share:.0f} % ({count})" for share, count in zip(percent, counts, strict=True))]
-        for name, percent, counts in zip(
-            matrix.answers, matrix.percent, matrix.counts, strict=True
-        )
-    ]  # fmt: skip
+        for name, percent, counts in zip(matrix.answers, matrix.percent, matrix.counts, strict=True)
+    ]
     return ["Answered \\ simulated", *matrix.stimuli], rows
 
 

@@ -97,9 +97,13 @@ def _draw_means(axes: Axes, key: str, rows: tuple[ConditionMean, ...]) -> None:
 def key_words(key: str) -> str:
     """A key with its unit as a person reads it: mean_speed_m_per_s → mean speed (m/s)."""
     for suffix, unit in (
-        ("_m_per_s", "m/s"), ("_mm_per_s", "mm/s"), ("_m", "m"), ("_mm", "mm"), ("_N", "N"),
+        ("_m_per_s", "m/s"),
+        ("_mm_per_s", "mm/s"),
+        ("_m", "m"),
+        ("_mm", "mm"),
+        ("_N", "N"),
         ("_s", "s"),
-    ):  # fmt: skip
+    ):
         if key.endswith(suffix):
             return f"{plain(key[: -len(suffix)].replace('_', ' '), 28)} ({unit})"
     return plain(key.replace("_", " "), 28)

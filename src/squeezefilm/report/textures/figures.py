@@ -41,10 +41,14 @@ def _thin(count: int) -> slice:
 def friction(result: RenderAnalysis) -> Figure:
     """Friction asked for and rendered over time, whole and enlarged."""
     stroke = result.stroke
-    late = "" if result.fidelity is None or not np.isfinite(result.fidelity.lag) else (
-        f", {shown(abs(result.fidelity.lag), M, 2)} "
-        + ("late" if result.fidelity.lag >= 0 else "early")
-    )  # fmt: skip
+    late = (
+        ""
+        if result.fidelity is None or not np.isfinite(result.fidelity.lag)
+        else (
+            f", {shown(abs(result.fidelity.lag), M, 2)} "
+            + ("late" if result.fidelity.lag >= 0 else "early")
+        )
+    )
     figure = new_figure(
         f"{plain(result.played.name, 40)} on {plain(result.display.name, 24)}: friction is "
         f"rendered within {result.rms_error:.2g} RMS of µ′/µ{late}",
@@ -88,9 +92,11 @@ def drive(result: RenderAnalysis) -> Figure:
     stroke, force = result.stroke, result.force
     largest = stroke.envelope.amplitude_limit
     saturated = stroke.saturated_top + stroke.saturated_bottom
-    shown_volts = "" if result.prediction.voltage is None else (
-        f" at {shown(result.prediction.voltage, V, 3)}"
-    )  # fmt: skip
+    shown_volts = (
+        ""
+        if result.prediction.voltage is None
+        else (f" at {shown(result.prediction.voltage, V, 3)}")
+    )
     figure = new_figure(
         f"The drive is at a limit {100 * saturated:.2g} % of the time; the finger is dragged with "
         f"{shown(float(np.mean(np.abs(force.friction_force))), N, 2)} on average",
@@ -103,9 +109,12 @@ def drive(result: RenderAnalysis) -> Figure:
     above.plot(t, 1e6 * stroke.command[thin], color=ORANGE, lw=1.2, label="commanded")
     above.plot(t, 1e6 * stroke.amplitude[thin], color=BLUE, lw=1.6, label="vibrating")
     above.axhline(
-        1e6 * largest, color=MUTED, lw=1.1, ls=(0, (2, 2)),
+        1e6 * largest,
+        color=MUTED,
+        lw=1.1,
+        ls=(0, (2, 2)),
         label=f"largest: {shown(largest, M, 3)}{shown_volts}",
-    )  # fmt: skip
+    )
     above.set(ylabel="amplitude (µm)")
     below.plot(t, force.friction_force[thin], color=GREEN, lw=1.4, label="tangential force")
     stuck = np.where(force.sticking[thin], force.friction_force[thin], np.nan)
@@ -135,13 +144,24 @@ def contrast(result: RenderAnalysis) -> Figure:
     figure = new_figure(title, judged.model, 3.6)
     axes = figure.subplots()
     axes.semilogx(
-        1e3 * period, 100 * swing[good], "s", ms=9, color=ORANGE, mfc="none", mew=1.6,
+        1e3 * period,
+        100 * swing[good],
+        "s",
+        ms=9,
+        color=ORANGE,
+        mfc="none",
+        mew=1.6,
         label="swing kept, wherever it lies",
-    )  # fmt: skip
+    )
     axes.semilogx(
-        1e3 * period, 100 * kept[good], "o", ms=6, color=BLUE, mec=PAPER,
+        1e3 * period,
+        100 * kept[good],
+        "o",
+        ms=6,
+        color=BLUE,
+        mec=PAPER,
         label="contrast kept in its place",
-    )  # fmt: skip
+    )
     axes.axhline(100, color=MUTED, lw=1.0, ls=(0, (2, 2)))
     axes.set(xlabel="spatial period (mm)", ylabel="kept (%)")
     axes.set(ylim=(0, 1.1 * max(100.0, 100 * float(np.max(swing[good], initial=0.0)))))
@@ -172,10 +192,15 @@ def way(result: RenderAnalysis) -> Figure:
     axes = figure.subplots()
     picture = _picture(result, low, high, speed)
     drawn_ = axes.imshow(
-        picture, extent=(1e3 * low[0], 1e3 * high[0], 1e3 * low[1], 1e3 * high[1]),
-        origin="lower", cmap="cividis", aspect="equal", interpolation="nearest",
-        vmin=0.0, vmax=max(1.0, float(np.max(picture))),
-    )  # fmt: skip
+        picture,
+        extent=(1e3 * low[0], 1e3 * high[0], 1e3 * low[1], 1e3 * high[1]),
+        origin="lower",
+        cmap="cividis",
+        aspect="equal",
+        interpolation="nearest",
+        vmin=0.0,
+        vmax=max(1.0, float(np.max(picture))),
+    )
     figure.colorbar(drawn_, ax=axes, label="µ′/µ asked for", shrink=0.9)
     thin = _thin(finger.x.size)
     axes.plot(1e3 * finger.x[thin], 1e3 * finger.y[thin], color=PAPER, lw=3.4)
@@ -191,8 +216,9 @@ def _picture(
     result: RenderAnalysis, low: tuple[float, float], high: tuple[float, float], speed: float
 ) -> Any:
     x = np.linspace(low[0], high[0], _MAP_POINTS)
-    y = np.linspace(low[1], high[1], max(2, round(_MAP_POINTS * (high[1] - low[1])
-                                                 / (high[0] - low[0]))))  # fmt: skip
+    y = np.linspace(
+        low[1], high[1], max(2, round(_MAP_POINTS * (high[1] - low[1]) / (high[0] - low[0])))
+    )
     values = result.texture.texture(x[None, :], y[:, None], speed, 0.0)
     played = result.played
     if result.texture.texture.quantity == "amplitude":
@@ -221,15 +247,27 @@ def ripple(result: RenderAnalysis) -> Figure:
     first = slice(0, int(turns[0]) if turns.size else None)
     x = 1e3 * finger.x[first]
     thin = _thin(x.size)
-    above.plot(x[thin], 1e6 * stroke.amplitude[first][thin], color=ORANGE, lw=1.4,
-               label="at the antinodes")  # fmt: skip
+    above.plot(
+        x[thin], 1e6 * stroke.amplitude[first][thin], color=ORANGE, lw=1.4, label="at the antinodes"
+    )
     met = (stroke.amplitude * result.factor)[first]
     above.plot(x[thin], 1e6 * met[thin], color=BLUE, lw=1.6, label="met by the pad")
     above.set(ylabel="amplitude (µm)", ylim=(0, None))
-    below.plot(x[thin], result.asked[first][thin], color=ORANGE, lw=1.4, ls=(0, (6, 1.6)),
-               label="asked for")  # fmt: skip
-    below.plot(x[thin], stroke.relative_friction_rendered[first][thin], color=BLUE, lw=1.6,
-               label="rendered")  # fmt: skip
+    below.plot(
+        x[thin],
+        result.asked[first][thin],
+        color=ORANGE,
+        lw=1.4,
+        ls=(0, (6, 1.6)),
+        label="asked for",
+    )
+    below.plot(
+        x[thin],
+        stroke.relative_friction_rendered[first][thin],
+        color=BLUE,
+        lw=1.6,
+        label="rendered",
+    )
     below.set(ylabel="µ′/µ", xlabel="x (mm)", ylim=(0, 1.05))
     for axes in (above, below):
         _beside(axes)

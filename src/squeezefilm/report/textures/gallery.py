@@ -48,9 +48,13 @@ def picture(texture: TextureFile) -> Figure:
     x, y = np.linspace(0, wide, 501), np.linspace(0, high, 301)
     values = scale * texture.texture(x[None, :], y[:, None], _SPEED, 0.0)
     seen = left.imshow(
-        values, extent=(0, 1e3 * wide, 0, 1e3 * high), origin="lower", cmap="cividis",
-        aspect="equal", interpolation="nearest",
-    )  # fmt: skip
+        values,
+        extent=(0, 1e3 * wide, 0, 1e3 * high),
+        origin="lower",
+        cmap="cividis",
+        aspect="equal",
+        interpolation="nearest",
+    )
     bar = figure.colorbar(seen, ax=left, orientation="horizontal", label=label)
     bar.outline.set_edgecolor(MUTED)
     left.axhline(500 * high, color=PAPER, lw=2.6)

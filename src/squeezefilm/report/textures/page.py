@@ -31,17 +31,22 @@ _DAC_RATE = 192_000
 
 def trace_table(result: RenderAnalysis) -> Table:
     """Every step of the loop as a table, with the origin in its metadata."""
-    return Table(result.columns(), {**result.provenance(), "texture": result.played.name,
-                           "display": result.display.name})  # fmt: skip
+    return Table(
+        result.columns(),
+        {**result.provenance(), "texture": result.played.name, "display": result.display.name},
+    )
 
 
 def envelope_waveform(result: RenderAnalysis) -> Waveform:
     """The amplitude commanded over time, full scale being the display's largest amplitude."""
     stroke = result.stroke
     return Waveform(
-        stroke.command, stroke.control_rate, "m", stroke.envelope.amplitude_limit,
+        stroke.command,
+        stroke.control_rate,
+        "m",
+        stroke.envelope.amplitude_limit,
         {**result.provenance(), "quantity": "amplitude commanded, zero-to-peak"},
-    )  # fmt: skip
+    )
 
 
 def drive_waveform(result: RenderAnalysis) -> Waveform:
@@ -65,9 +70,12 @@ def drive_waveform(result: RenderAnalysis) -> Waveform:
     out = np.empty(stroke.command.size * samples)
     carrier_block(0.0, 2 * np.pi * p.frequency / _DAC_RATE, volts, samples, 1.0, out)
     return Waveform(
-        out, float(_DAC_RATE), "V", p.voltage,
+        out,
+        float(_DAC_RATE),
+        "V",
+        p.voltage,
         {**result.provenance(), "carrier_frequency_Hz": p.frequency},
-    )  # fmt: skip
+    )
 
 
 def hjif_export(result: RenderAnalysis) -> HjifExport:
@@ -181,8 +189,9 @@ def _page(result: RenderAnalysis, figures: dict[str, tuple[str, Figure]], files:
         for name, (heading, figure) in figures.items()
     )
     warned = "".join(f"<li>{escape(printable(text))}</li>" for text in result.prediction.warnings)
-    links = ", ".join(f'<a href="{name}">{name}</a>' for name in files if not name.endswith(
-        (".png", ".html")))  # fmt: skip
+    links = ", ".join(
+        f'<a href="{name}">{name}</a>' for name in files if not name.endswith((".png", ".html"))
+    )
     return f"""{page_head(f"{title}: rendered texture")}
 <header><h1>{title}</h1>
 <p class="name">rendered on <code>{escape(printable(result.display.name))}</code> by squeezefilm

@@ -65,13 +65,24 @@ def _draw_force(axes: Axes, force: StrokeForce, end: float) -> None:
     shown_part = shown_part[:: max(1, shown_part.size // _MOST_POINTS)]
     t = 1e3 * motion.time[shown_part]
     axes.fill_between(
-        t, 0, 1, where=motion.sticking[shown_part].tolist(), step="post", color=SKIN, lw=0,
-        transform=axes.get_xaxis_transform(), label="skin sticks",
-    )  # fmt: skip
+        t,
+        0,
+        1,
+        where=motion.sticking[shown_part].tolist(),
+        step="post",
+        color=SKIN,
+        lw=0,
+        transform=axes.get_xaxis_transform(),
+        label="skin sticks",
+    )
     axes.plot(
-        t, motion.friction_force[shown_part], color=ORANGE, lw=1.5, ls=(0, (6, 1.6)),
+        t,
+        motion.friction_force[shown_part],
+        color=ORANGE,
+        lw=1.5,
+        ls=(0, (6, 1.6)),
         label="at the surface",
-    )  # fmt: skip
+    )
     axes.plot(t, motion.bone_force[shown_part], color=BLUE, label="at the bone")
     axes.set(xlabel="time (ms)", ylabel="tangential force (N)", xlim=(0, t[-1]))
     axes.set_title(f"start of the stroke and {_PERIODS_SHOWN} periods")
@@ -87,9 +98,15 @@ def _draw_spectrum(axes: Axes, vibration: SkinVibration) -> None:
         amplitude = shown(float(vibration.displacement_amplitude[k]), M, 2)
         axes.axvline(line, color=MUTED, lw=0.8, ls=(0, (1.4, 1.2)))
         axes.text(
-            1.01 * line, 2.4 * top, amplitude, color=MUTED, fontsize=9, rotation=35,
-            ha="left", va="bottom",
-        )  # fmt: skip
+            1.01 * line,
+            2.4 * top,
+            amplitude,
+            color=MUTED,
+            fontsize=9,
+            rotation=35,
+            ha="left",
+            va="bottom",
+        )
     low, high = 0.4 * vibration.fundamental, 20 * vibration.fundamental
     axes.set(
         xlabel="frequency (Hz)",

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal, NamedTuple
+from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
 
 from squeezefilm.errors import InputError
 from squeezefilm.quantities import (
+    Above,
     Array,
+    AtLeast,
+    AtMost,
+    Below,
     DimensionlessArray,
     FloatArray,
     Hertz,
@@ -20,6 +24,7 @@ from squeezefilm.quantities import (
     Unit,
     Volt,
     VoltArray,
+    checked_numbers,
     require,
 )
 from squeezefilm.render.motion import kernel as motion_kernel
@@ -128,6 +133,7 @@ class FrictionTable:
             )
 
 
+@checked_numbers
 @dataclass(frozen=True, slots=True, eq=False)
 class LoopPlan:
     """All that a loop needs; it can be pickled and does not change while the loop runs.
@@ -154,25 +160,16 @@ class LoopPlan:
     """
 
     program: Program
-    rate: Hertz
+    rate: Annotated[Hertz, AtLeast(LEAST_RATE), AtMost(HIGHEST_RATE)]
     envelope: DrivenEnvelope
     drive: DriveTable
     estimator: MotionEstimator
     compensation: LoopCompensation = "none"
     relative_friction: FrictionTable | None = None
-    output_delay: Second = 0.0
-    host_timeout: Second = 50e-3
+    output_delay: Annotated[Second, AtLeast(0.0), Below(1.0)] = 0.0
+    host_timeout: Annotated[Second, Above(0.0), AtMost(60.0)] = 50e-3
 
     def __post_init__(self) -> None:
-        require("rate", self.rate, Unit("Hz"), at_least=LEAST_RATE, at_most=HIGHEST_RATE)
-        require("output_delay", self.output_delay, Unit("s"), at_least=0.0, below=1.0)
-        require("host_timeout", self.host_timeout, Unit("s"), above=0.0, at_most=60.0)
-        if self.compensation not in ("none", "inverse"):
-            raise InputError(
-                f"compensation = {self.compensation!r} cannot run in the loop; it must be 'none' "
-                "or 'inverse'",
-                quantity="compensation",
-            )
         if self.envelope.amplitude_limit > self.drive.largest_amplitude * (1 + 1e-9):
             raise InputError(
                 f"the envelope's limit is {self.envelope.amplitude_limit * 1e6:.4g} um and the "

@@ -37,9 +37,21 @@ COLUMNS = (
 - `flags`: a sum of the flags below.
 """
 (
-    TICK, TIME, ROW_SAMPLE_TIME, X, Y, SPEED, WANTED, VOLTAGE, LEVEL, AMPLITUDE, FRICTION, LAG,
-    LATENESS, FLAGS,
-) = range(14)  # fmt: skip
+    TICK,
+    TIME,
+    ROW_SAMPLE_TIME,
+    X,
+    Y,
+    SPEED,
+    WANTED,
+    VOLTAGE,
+    LEVEL,
+    AMPLITUDE,
+    FRICTION,
+    LAG,
+    LATENESS,
+    FLAGS,
+) = range(14)
 
 # The first ten are the renderer's own (`render.program.layout`): 1 bad place … 512 saturated.
 NEW_SAMPLE = 1 << 10

@@ -44,9 +44,15 @@ def _advance(arrays: Any, memory: Any, until: int) -> None:
 
 @numba.njit(cache=True, nogil=True)
 def _march(
-    arrays: Any, memory: Any, samples: Array, arrival: Array, delays: Array, ticks: int,
-    rows: Array, commands: Array,
-) -> int:  # fmt: skip
+    arrays: Any,
+    memory: Any,
+    samples: Array,
+    arrival: Array,
+    delays: Array,
+    ticks: int,
+    rows: Array,
+    commands: Array,
+) -> int:
     """Wake for tick after tick, each time `delays` (s) late, until `ticks` were due."""
     control, period = memory.control, arrays.settings[at.DT]
     now, heard, made, wakes = 0, 0, 0, 0

@@ -14,7 +14,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum
-from typing import Any, Literal, Protocol
+from typing import Annotated, Any, Literal, Protocol
 
 import numpy as np
 
@@ -25,6 +25,8 @@ from squeezefilm.device.wire.safety import Limits
 from squeezefilm.device.wire.states import Fault, State
 from squeezefilm.errors import DeviceError, InputError, LoopError
 from squeezefilm.quantities import (
+    AtLeast,
+    AtMost,
     FloatArray,
     Hertz,
     Metre,
@@ -32,6 +34,7 @@ from squeezefilm.quantities import (
     Second,
     Unit,
     Volt,
+    checked_numbers,
     require,
 )
 from squeezefilm.session.loop import rows as column
@@ -74,6 +77,7 @@ class Loop(Protocol):
         ...
 
 
+@checked_numbers
 @dataclass(frozen=True, slots=True, eq=False)
 class PlayPlan:
     """What is to be played, and on what.
@@ -99,21 +103,20 @@ class PlayPlan:
     frequency: Hertz
     mode: PlayMode = "stream"
     tile: TextureTile | None = None
-    report_period: Second = REPORT_PERIOD
-    sensor_latency: Second = 0.0
+    report_period: Annotated[Second, AtLeast(0.0002), AtMost(0.02)] = REPORT_PERIOD
+    sensor_latency: Annotated[Second, AtLeast(0.0), AtMost(1.0)] = 0.0
     amplitude_per_pickup: MetrePerVolt | None = None
     twin: bool = False
 
     def __post_init__(self) -> None:
         limits = self.limits
         require(
-            "frequency", self.frequency, Unit("Hz"),
-            at_least=limits.lowest_frequency, at_most=limits.highest_frequency,
-        )  # fmt: skip
-        require("report_period", self.report_period, Unit("s"), at_least=200e-6, at_most=20e-3)
-        require("sensor_latency", self.sensor_latency, Unit("s"), at_least=0.0, at_most=1.0)
-        if self.mode not in ("stream", "tile"):
-            raise InputError(f"mode = '{self.mode}' is not known; it may be stream or tile")
+            "frequency",
+            self.frequency,
+            Unit("Hz"),
+            at_least=limits.lowest_frequency,
+            at_most=limits.highest_frequency,
+        )
         if (self.mode == "tile") != (self.tile is not None):
             raise InputError("mode tile needs a tile, and mode stream has none")
         highest = float(self.loop.drive.voltage[-1])
@@ -377,9 +380,13 @@ class Player:
             self.state, self.fault = state, fault
             self._note(
                 "device",
-                {"state": state.name.lower(), "fault": fault.name.lower(), "time_s": stamp,
-                 "device_time_us": reading.time},
-            )  # fmt: skip
+                {
+                    "state": state.name.lower(),
+                    "fault": fault.name.lower(),
+                    "time_s": stamp,
+                    "device_time_us": reading.time,
+                },
+            )
             if state is State.FAULT:
                 self.ending = Ending.FAULT
 

@@ -15,7 +15,13 @@ import numpy as np
 
 from squeezefilm.errors import InputError
 from squeezefilm.from_text import reads_text
-from squeezefilm.quantities import Dimensionless, DimensionlessArray, FloatArray, require
+from squeezefilm.quantities import (
+    Dimensionless,
+    DimensionlessArray,
+    FloatArray,
+    require,
+    require_one_of,
+)
 from squeezefilm.study.psychometric import kernel
 from squeezefilm.study.psychometric.function import Axis, Shape, on_axis, shape_code
 from squeezefilm.study.psychometric.prior import PsychometricPrior
@@ -59,12 +65,7 @@ class AdaptiveDesign:
         require("most_trials", self.most_trials, at_least=1)
         if len(self.stimuli) < 2:
             raise InputError(f"stimuli = {self.stimuli} leaves nothing to choose; give two or more")
-        if self.interest not in ("threshold and width", "all"):
-            raise InputError(
-                f"interest = {self.interest!r} is not known; it must be 'threshold and width' or "
-                "'all'",
-                quantity="interest",
-            )
+        require_one_of("interest", self.interest, ("threshold and width", "all"))
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import Dimensionless, require
+from squeezefilm.quantities import Dimensionless, require, require_one_of
 from squeezefilm.study.psychometric.function import AXES, Axis
 
 
@@ -64,11 +64,7 @@ class StaircaseRule:
     most_trials: int = 200
 
     def __post_init__(self) -> None:
-        if self.axis not in AXES:
-            raise InputError(
-                f"axis = {self.axis!r} is not known; it must be one of {', '.join(AXES)}",
-                quantity="axis",
-            )
+        require_one_of("axis", self.axis, AXES)
         require("start", self.start, above=0.0 if self.axis == "log" else None)
         require("step", self.step, above=0.0)
         require("smallest_step", self.smallest_step, above=0.0, at_most=self.step)

@@ -171,9 +171,15 @@ class Bench:
             "assumed_limits": list(setup.assumed_limits),
         }
         outcome = run_play(
-            setup.plan, self._streaming(orders.stroke), Path(orders.traces) / name, metadata,
-            duration=LONGEST_PRESENTATION, show=show, until=self._connection.poll, study=True,
-        )  # fmt: skip
+            setup.plan,
+            self._streaming(orders.stroke),
+            Path(orders.traces) / name,
+            metadata,
+            duration=LONGEST_PRESENTATION,
+            show=show,
+            until=self._connection.poll,
+            study=True,
+        )
         trace = read_trace(outcome.trace)
         return _failure(outcome, trace), explored(trace, name)
 

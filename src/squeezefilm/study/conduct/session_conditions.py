@@ -3,14 +3,23 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Annotated, Literal
 
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import Dimensionless, Kelvin, Newton, Radian, Unit, require
+from squeezefilm.quantities import (
+    AtLeast,
+    AtMost,
+    Dimensionless,
+    Kelvin,
+    Newton,
+    Radian,
+    checked_numbers,
+)
 
 _LONGEST_TEXT = 200
 
 
+@checked_numbers
 @dataclass(frozen=True)
 class SessionConditions:
     """The conditions of one sitting. What was not measured stays None; nothing is guessed.
@@ -39,28 +48,18 @@ class SessionConditions:
     consent: bool
     consent_form: str = ""
     room: str = ""
-    temperature: Kelvin | None = None
-    relative_humidity: Dimensionless | None = None
-    skin_moisture: Dimensionless | None = None
+    temperature: Annotated[Kelvin, AtLeast(253), AtMost(333)] | None = None
+    relative_humidity: Annotated[Dimensionless, AtLeast(0), AtMost(1)] | None = None
+    skin_moisture: Annotated[Dimensionless, AtLeast(0), AtMost(1e6)] | None = None
     skin_moisture_method: str = ""
     hand: Literal["", "left", "right"] = ""
     finger: Literal["", "thumb", "index", "middle", "ring", "little"] = ""
-    finger_orientation: Radian | None = None
-    normal_force_asked: Newton | None = None
+    finger_orientation: Annotated[Radian, AtLeast(-6.3), AtMost(6.3)] | None = None
+    normal_force_asked: Annotated[Newton, AtLeast(0), AtMost(50)] | None = None
     masking_noise: str = ""
     note: str = ""
 
     def __post_init__(self) -> None:
-        for name, unit, low, high in (
-            ("temperature", Unit("K"), 253.0, 333.0),
-            ("relative_humidity", Unit("1"), 0.0, 1.0),
-            ("skin_moisture", Unit("1"), 0.0, 1e6),
-            ("finger_orientation", Unit("rad"), -6.3, 6.3),
-            ("normal_force_asked", Unit("N"), 0.0, 50.0),
-        ):
-            value = getattr(self, name)
-            if value is not None:
-                require(name, value, unit, at_least=low, at_most=high)
         for name in ("consent_form", "room", "skin_moisture_method", "masking_noise", "note"):
             if len(getattr(self, name)) > _LONGEST_TEXT:
                 raise InputError(

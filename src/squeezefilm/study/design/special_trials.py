@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from typing import Literal
+from typing import Annotated, Literal
 
 from squeezefilm.errors import InputError
-from squeezefilm.perception.stimuli import Stimulus, Varied, require_one_of
-from squeezefilm.quantities import Dimensionless, require
+from squeezefilm.perception.stimuli import Stimulus, Varied
+from squeezefilm.quantities import Above, AtLeast, AtMost, Dimensionless, checked_numbers, require
 
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,79}")
 
 
+@checked_numbers
 @dataclass(frozen=True)
 class CatchTrial:
     """A trial whose answer is plain to everyone who attends, and how often it comes.
@@ -22,12 +23,10 @@ class CatchTrial:
 
     stimulus: Stimulus
     answer: str
-    count: int = 1
-
-    def __post_init__(self) -> None:
-        require_count("count", self.count, 1, 1000)
+    count: Annotated[int, AtLeast(1), AtMost(1000)] = 1
 
 
+@checked_numbers
 @dataclass(frozen=True)
 class AdaptiveCondition:
     """A series of trials in which a method chooses each comparison after the last answer.
@@ -47,21 +46,17 @@ class AdaptiveCondition:
     method: Literal["staircase", "bayesian"]
     varied: Varied = "spatial_period"
     start: Dimensionless = 0.4
-    lowest: Dimensionless = 0.005
+    lowest: Annotated[Dimensionless, Above(0.0)] = 0.005
     highest: Dimensionless = 0.9
     step: Dimensionless = 0.1
-    down: int = 2
-    count: int = 60
+    down: Annotated[int, AtLeast(1), AtMost(10)] = 2
+    count: Annotated[int, AtLeast(1), AtMost(10000)] = 60
 
     def __post_init__(self) -> None:
         require_name(self.name)
-        require_one_of("method", self.method, ("staircase", "bayesian"))
-        require("lowest", self.lowest, above=0.0)
         require("highest", self.highest, above=self.lowest, at_most=100.0)
         require("start", self.start, at_least=self.lowest, at_most=self.highest)
         require("step", self.step, above=0.0, at_most=self.highest)
-        require_count("down", self.down, 1, 10)
-        require_count("count", self.count, 1, 10_000)
 
 
 def require_name(name: str) -> None:
@@ -71,15 +66,6 @@ def require_name(name: str) -> None:
             f"name = {name!r} cannot be used: it goes into file names; write up to 80 of the "
             "letters A-Z a-z, digits, dot, dash and underscore, beginning with a letter or digit",
             quantity="name",
-        )
-
-
-def require_count(name: str, value: int, least: int, most: int) -> None:
-    """Refuse what is no whole number between two. Raises `InputError`."""
-    if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= most:
-        raise InputError(
-            f"{name} = {value!r} cannot be used: it must be a whole number from {least} to {most}",
-            quantity=name,
         )
 
 

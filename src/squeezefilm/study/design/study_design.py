@@ -23,13 +23,20 @@ from squeezefilm.config.provenance import Provenance
 from squeezefilm.errors import InputError
 from squeezefilm.from_text import ReadBy
 from squeezefilm.hard_limits import PARTICIPANT_TRIALS, require_within
-from squeezefilm.perception.stimuli import Grating, Stimulus, Varied, require_one_of
-from squeezefilm.quantities import Dimensionless, Second, Unit, did_you_mean, require
+from squeezefilm.perception.stimuli import Grating, Stimulus, Varied
+from squeezefilm.quantities import (
+    Above,
+    AtLeast,
+    AtMost,
+    Dimensionless,
+    Second,
+    checked_numbers,
+    did_you_mean,
+)
 from squeezefilm.results import config_hash
 from squeezefilm.study.design.special_trials import (
     AdaptiveCondition,
     CatchTrial,
-    require_count,
     require_different,
     require_name,
 )
@@ -59,6 +66,7 @@ TASKS: tuple[Task, ...] = (
 )
 
 
+@checked_numbers
 @dataclass(frozen=True)
 class StudyDesign:
     """A whole design. Read one with `load_design`.
@@ -100,17 +108,17 @@ class StudyDesign:
     alternatives: tuple[Grating, ...] = ()
     reference: str = ""
     judged: Varied = "spatial_period"
-    modulus: Dimensionless = 0.0
+    modulus: Annotated[Dimensionless, AtLeast(0.0)] = 0.0
     question: str = ""
     order: Order = "williams"
-    familiarisation: int = 0
-    practice: int = 0
-    blocks: int = 1
-    repetitions: int = 1
+    familiarisation: Annotated[int, AtLeast(0), AtMost(20)] = 0
+    practice: Annotated[int, AtLeast(0), AtMost(1000)] = 0
+    blocks: Annotated[int, AtLeast(1), AtMost(100)] = 1
+    repetitions: Annotated[int, AtLeast(1), AtMost(1000)] = 1
     catch: tuple[CatchTrial, ...] = ()
     adaptive: tuple[AdaptiveCondition, ...] = ()
-    break_between_blocks: Second = 60.0
-    trial_duration: Second = 20.0
+    break_between_blocks: Annotated[Second, AtLeast(0.0)] = 60.0
+    trial_duration: Annotated[Second, Above(0.0), AtMost(3600.0)] = 20.0
     note: str = ""
     provenance: Mapping[str, Provenance] = field(
         default_factory=dict, metadata={"loader": True}, compare=False, repr=False
@@ -118,20 +126,11 @@ class StudyDesign:
 
     def __post_init__(self) -> None:
         require_name(self.name)
-        require_one_of("task", self.task, TASKS)
-        require_one_of("order", self.order, ("williams", "latin-square", "shuffled"))
         if not self.displays:
             raise InputError("displays is empty; name at least one", quantity="displays")
         require_different("displays", list(self.displays))
         if not self.stimuli:
             raise InputError("stimuli is empty; give at least one", quantity="stimuli")
-        require_count("familiarisation", self.familiarisation, 0, 20)
-        require_count("practice", self.practice, 0, 1000)
-        require_count("blocks", self.blocks, 1, 100)
-        require_count("repetitions", self.repetitions, 1, 1000)
-        require("break_between_blocks", self.break_between_blocks, Unit("s"), at_least=0.0)
-        require("trial_duration", self.trial_duration, Unit("s"), above=0.0, at_most=3600.0)
-        require("modulus", self.modulus, at_least=0.0)
         presented = [one.name for one in self.stimuli] + [one.stimulus.name for one in self.catch]
         require_different("stimuli", presented)
         require_different("alternatives", [one.name for one in self.alternatives])

@@ -261,12 +261,27 @@ def analyze_identification(
         fitted = mixed_model(person, kind, kind == np.asarray(choice), names)
     tell("posterior")
     return IdentificationAnalysis(
-        name, origin, matrix, counts, tuple(intervals), _by_stimulus(matrix, level),
+        name,
+        origin,
+        matrix,
+        counts,
+        tuple(intervals),
+        _by_stimulus(matrix, level),
         np.trace(counts, axis1=1, axis2=2) / counts.sum(axis=(1, 2)),
-        chance_test(matrix), permutation_test(counts, resamples, seed),
-        confusion_posterior(matrix, level=level, seed=seed), information, sensitivity, choice_fit,
-        points, times, ex_gaussian, explored, fitted, tuple(notes), seed,
-    )  # fmt: skip
+        chance_test(matrix),
+        permutation_test(counts, resamples, seed),
+        confusion_posterior(matrix, level=level, seed=seed),
+        information,
+        sensitivity,
+        choice_fit,
+        points,
+        times,
+        ex_gaussian,
+        explored,
+        fitted,
+        tuple(notes),
+        seed,
+    )
 
 
 def _by_stimulus(matrix: ConfusionMatrix, level: float) -> tuple[StimulusCorrect, ...]:

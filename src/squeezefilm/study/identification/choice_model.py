@@ -124,11 +124,16 @@ def choice_model(counts: ArrayLike, pseudo_trials: Dimensionless = 0.0) -> Choic
     with np.errstate(divide="ignore"):
         distance = np.where(np.eye(k) > 0, 0.0, -np.log(similarity))
     return ChoiceModel(
-        similarity, _bias(fitted), distance, float(pseudo_trials),
-        max(deviance, 0.0) if fits else float("nan"), freedom,
+        similarity,
+        _bias(fitted),
+        distance,
+        float(pseudo_trials),
+        max(deviance, 0.0) if fits else float("nan"),
+        freedom,
         float(stats.chi2.sf(max(deviance, 0.0), freedom)) if fits else float("nan"),
-        float((n * log_p).sum()), rounds,
-    )  # fmt: skip
+        float((n * log_p).sum()),
+        rounds,
+    )
 
 
 def _bias(fitted: FloatArray) -> FloatArray:
@@ -164,8 +169,10 @@ def _quasi_symmetric(n: FloatArray) -> tuple[FloatArray, int]:
             return m, rounds
     raise ConvergenceError(
         f"the choice model found no fixed point in {_MOST_ROUNDS} rounds; pass pseudo_trials=1",
-        partial=m, residual=float(np.abs(m - before).max()), iterations=_MOST_ROUNDS,
-    )  # fmt: skip
+        partial=m,
+        residual=float(np.abs(m - before).max()),
+        iterations=_MOST_ROUNDS,
+    )
 
 
 def _ratio(wanted: FloatArray, have: FloatArray) -> FloatArray:

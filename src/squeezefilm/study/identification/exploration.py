@@ -95,10 +95,15 @@ def exploration(
         mean_force = float((middle * steps).sum() / duration)
         spread = float(np.sqrt(((middle - mean_force) ** 2 * steps).sum() / duration))
     return Exploration(
-        duration, float(way.sum()), float(way.sum()) / duration,
-        float(way[moving].sum()) / moved if moved > 0 else float("nan"), moved / duration,
-        int(np.count_nonzero(np.diff(heading))), mean_force, spread,
-    )  # fmt: skip
+        duration,
+        float(way.sum()),
+        float(way.sum()) / duration,
+        float(way[moving].sum()) / moved if moved > 0 else float("nan"),
+        moved / duration,
+        int(np.count_nonzero(np.diff(heading))),
+        mean_force,
+        spread,
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -163,8 +168,13 @@ def condition_means(
         centre = float(means.mean())
         found.append(
             ConditionMean(
-                name, int(count[:, column].sum()), means.size, centre, centre - half, centre + half,
+                name,
+                int(count[:, column].sum()),
+                means.size,
+                centre,
+                centre - half,
+                centre + half,
                 level,
             )
-        )  # fmt: skip
+        )
     return tuple(found)

@@ -45,45 +45,61 @@ ESTIMATORS: dict[str, InformationEstimator] = {
     item.key: item
     for item in (
         InformationEstimator(
-            "plug-in", "plug-in (maximum likelihood)", estimators.plug_in,
+            "plug-in",
+            "plug-in (maximum likelihood)",
+            estimators.plug_in,
             "too high everywhere with few trials: +0.23 bit for a guesser, still +0.07 near "
             "perfection, at 60 trials of 5 stimuli",
         ),
         InformationEstimator(
-            "first-order", "plug-in less (r−1)(s−1)/2N", estimators.first_order,
+            "first-order",
+            "plug-in less (r−1)(s−1)/2N",
+            estimators.first_order,
             "too low for all but guessers: it corrects for cells that are never used",
         ),
         InformationEstimator(
-            "miller-madow", "Miller–Madow on observed cells", estimators.miller_madow,
+            "miller-madow",
+            "Miller–Madow on observed cells",
+            estimators.miller_madow,
             "+0.05 to +0.1 bit everywhere at 60 trials, +0.18 with a few even errors: rare cells "
             "not yet seen are not counted",
         ),
         InformationEstimator(
-            "jackknife", "jackknife by stimulus", estimators.jackknife,
+            "jackknife",
+            "jackknife by stimulus",
+            estimators.jackknife,
             "up to +0.09 bit where a few errors fall evenly on all answers (lapses, 90 to 95 % "
             "right), −0.04 bit for a guesser; has no value where a stimulus has a single trial",
         ),
         InformationEstimator(
-            "grassberger", "Grassberger 1988", estimators.grassberger,
+            "grassberger",
+            "Grassberger 1988",
+            estimators.grassberger,
             "varies more than the jackknife; −0.05 bit for a guesser, up to +0.08 bit with a few "
             "even errors",
         ),
         InformationEstimator(
-            "chao-shen", "Chao–Shen coverage", estimators.chao_shen,
+            "chao-shen",
+            "Chao–Shen coverage",
+            estimators.chao_shen,
             "−0.13 bit for a guesser, −0.1 bit for poor observers",
         ),
         InformationEstimator(
-            "dirichlet", "Dirichlet posterior mean, prior 1/2", estimators.dirichlet,
+            "dirichlet",
+            "Dirichlet posterior mean, prior 1/2",
+            estimators.dirichlet,
             "far too low for good observers (−0.6 bit near perfection), where the prior spreads "
             "answers over cells never used; +0.28 bit for a guesser",
         ),
         InformationEstimator(
-            "nsb", "NSB, one concentration for all columns", estimators.nsb,
+            "nsb",
+            "NSB, one concentration for all columns",
+            estimators.nsb,
             "−0.04 to −0.07 bit for ordered stimuli confused with neighbours only (50 to 90 % "
             "right); at most +0.05 bit for guessers, lapses and even errors",
         ),
     )
-}  # fmt: skip
+}
 """Every estimator by its key."""
 
 
@@ -257,8 +273,13 @@ def estimator_bias(
             spread = float(error.std(ddof=1))
             table.append(
                 EstimatorError(
-                    key, name, true, float(error.mean()), spread / np.sqrt(runs), spread,
+                    key,
+                    name,
+                    true,
+                    float(error.mean()),
+                    spread / np.sqrt(runs),
+                    spread,
                     float(np.sqrt(np.mean(error**2))),
                 )
-            )  # fmt: skip
+            )
     return tuple(table)

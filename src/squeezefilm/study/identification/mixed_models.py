@@ -111,19 +111,30 @@ def mixed_model(
             # It warns of designs without a constant column; the columns here sum to one.
             warnings.simplefilter("ignore")
             fitted = api.GEE(
-                right[use], fixed[use][:, mixed], people[use],
-                family=api.families.Binomial(), cov_struct=api.cov_struct.Exchangeable(),
-            ).fit(cov_type="bias_reduced")  # fmt: skip
+                right[use],
+                fixed[use][:, mixed],
+                people[use],
+                family=api.families.Binomial(),
+                cov_struct=api.cov_struct.Exchangeable(),
+            ).fit(cov_type="bias_reduced")
         average[mixed], error[mixed] = fitted.params, fitted.bse
         correlation = float(np.squeeze(fitted.cov_struct.dep_params))
     log_odds = np.asarray(bayes.fe_mean, dtype=float)
     return MixedModel(
-        names, log_odds, np.asarray(bayes.fe_sd, dtype=float), 1 / (1 + np.exp(-log_odds)),
-        float(np.exp(spread)), float(np.exp(spread - 1.96 * spread_error)),
-        float(np.exp(spread + 1.96 * spread_error)), average, error, 1 / (1 + np.exp(-average)),
-        correlation, tuple(names[k] for k in range(len(names)) if k not in mixed),
+        names,
+        log_odds,
+        np.asarray(bayes.fe_sd, dtype=float),
+        1 / (1 + np.exp(-log_odds)),
+        float(np.exp(spread)),
+        float(np.exp(spread - 1.96 * spread_error)),
+        float(np.exp(spread + 1.96 * spread_error)),
+        average,
+        error,
+        1 / (1 + np.exp(-average)),
+        correlation,
+        tuple(names[k] for k in range(len(names)) if k not in mixed),
         "logit(right) = stimulus + participant; variational Bayes, and GEE (statsmodels)",
-    )  # fmt: skip
+    )
 
 
 def _statsmodels() -> ModuleType:

@@ -99,6 +99,8 @@ def recentred_interval(
     wide = expansion(participants, level) / float(stats.norm.isf(tail))
     low, high = estimate + wide * (np.quantile(values, [tail, 1 - tail]) - values.mean())
     return Interval(
-        float(np.clip(low, least, greatest)), float(np.clip(high, least, greatest)), level,
+        float(np.clip(low, least, greatest)),
+        float(np.clip(high, least, greatest)),
+        level,
         "participant bootstrap, recentred",
-    )  # fmt: skip
+    )

@@ -204,9 +204,16 @@ def power_curve(
     power = np.array(found) / studies
     low, high = np.array([b.low for b in bounds]), np.array([b.high for b in bounds])
     return PowerCurve(
-        np.array(sizes), power, low, high, studies, alpha, target,
-        _first_lasting(sizes, power >= target), _first_lasting(sizes, low >= target),
-    )  # fmt: skip
+        np.array(sizes),
+        power,
+        low,
+        high,
+        studies,
+        alpha,
+        target,
+        _first_lasting(sizes, power >= target),
+        _first_lasting(sizes, low >= target),
+    )
 
 
 def _significant(

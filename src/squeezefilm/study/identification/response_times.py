@@ -82,12 +82,17 @@ def response_time_summary(
             half = t * float(means.std(ddof=1)) / np.sqrt(means.size)
         found.append(
             ResponseTimeSummary(
-                name, int(n.sum()), int(some.sum()), float(np.exp(centre)),
-                float(np.exp(centre - half)), float(np.exp(centre + half)), level,
+                name,
+                int(n.sum()),
+                int(some.sum()),
+                float(np.exp(centre)),
+                float(np.exp(centre - half)),
+                float(np.exp(centre + half)),
+                level,
                 float(np.sqrt(inner / freedom)) if freedom else float("nan"),
                 float(np.median(times[kind == column])),
             )
-        )  # fmt: skip
+        )
     return tuple(found)
 
 
@@ -148,9 +153,12 @@ def fit_ex_gaussian(response_time: ArrayLike, seed: int = 0) -> ExGaussian:
         raise ConvergenceError(f"no ex-Gaussian fits the response times: {done.message}")
     mean, spread, tail = done.x[0], np.exp(done.x[1]), np.exp(done.x[2])
     return ExGaussian(
-        centre + deviation * float(mean), deviation * float(spread), deviation * float(tail),
-        -float(done.fun) - float(np.log(deviation)), times.size,
-    )  # fmt: skip
+        centre + deviation * float(mean),
+        deviation * float(spread),
+        deviation * float(tail),
+        -float(done.fun) - float(np.log(deviation)),
+        times.size,
+    )
 
 
 def ex_gaussian_density(time: ArrayLike, fit: ExGaussian) -> FloatArray:

@@ -133,10 +133,21 @@ def ordered_sensitivity(
     # The trials added are no answers of anybody, and no normal tail describes them.
     fits = freedom > 0 and not corrected
     return OrderedSensitivity(
-        positions[0], criteria[0], d_prime, error, low, high, float(d_prime.sum()), level, method,
-        corrected, deviance if fits else float("nan"), freedom,
-        float(stats.chi2.sf(deviance, freedom)) if fits else float("nan"), likelihood,
-    )  # fmt: skip
+        positions[0],
+        criteria[0],
+        d_prime,
+        error,
+        low,
+        high,
+        float(d_prime.sum()),
+        level,
+        method,
+        corrected,
+        deviance if fits else float("nan"),
+        freedom,
+        float(stats.chi2.sf(deviance, freedom)) if fits else float("nan"),
+        likelihood,
+    )
 
 
 def _bootstrapped(counts: FloatArray, corrected: bool) -> FloatArray:

@@ -14,7 +14,7 @@ from scipy.optimize import brentq
 from scipy.special import ndtr, ndtri
 
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import Dimensionless, FloatArray, require
+from squeezefilm.quantities import Dimensionless, FloatArray, require, require_one_of
 from squeezefilm.study.psychometric.fit import Interval, PsychometricFit
 
 # Nodes of the integral over the percept of the right alternative; the integrand is smooth.
@@ -208,11 +208,7 @@ def sensitivity(
     Raises:
         InputError: an unknown model or a value outside its range.
     """
-    if model not in _MODELS:
-        raise InputError(
-            f"model = {model!r} is not known; it must be one of {', '.join(_MODELS)}",
-            quantity="model",
-        )
+    require_one_of("model", model, _MODELS)
     require("level", level, above=0.0, below=1.0)
     require("draws", draws, at_least=39)
     of = _MODELS[model]

@@ -9,7 +9,7 @@ the width, from S = 5 % to S = 95 %.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal, get_args
+from typing import Annotated, Literal, get_args
 
 import numpy as np
 from scipy.special import ndtri
@@ -17,12 +17,16 @@ from scipy.special import ndtri
 from squeezefilm.errors import InputError
 from squeezefilm.from_text import reads_text
 from squeezefilm.quantities import (
+    Above,
+    AtLeast,
+    Below,
     Dimensionless,
     DimensionlessLike,
     FloatArray,
     FloatLike,
-    did_you_mean,
+    checked_numbers,
     require,
+    require_one_of,
 )
 from squeezefilm.study.psychometric import kernel
 
@@ -53,16 +57,8 @@ def shape_code(shape: Shape, axis: Axis) -> int:
         InputError: an unknown shape or axis, or Weibull's or Quick's function, which are
             defined on a logarithmic axis, on a linear one.
     """
-    if shape not in SHAPES:
-        raise InputError(
-            f"shape = {shape!r} is not known; it must be one of {', '.join(SHAPES)}."
-            f"{did_you_mean(str(shape), SHAPES)}",
-            quantity="shape",
-        )
-    if axis not in AXES:
-        raise InputError(
-            f"axis = {axis!r} is not known; it must be one of {', '.join(AXES)}", quantity="axis"
-        )
+    require_one_of("shape", shape, SHAPES)
+    require_one_of("axis", axis, AXES)
     if shape in ("weibull", "quick") and axis != "log":
         raise InputError(
             f"shape = '{shape}' is defined for the logarithm of intensity; give axis = 'log', or "
@@ -84,6 +80,7 @@ def on_axis(intensity: FloatLike, axis: Axis) -> FloatArray:
 
 
 @reads_text
+@checked_numbers
 @dataclass(frozen=True, slots=True)
 class PsychometricFunction:
     """A psychometric function: ψ(x) = γ + (1 − γ − λ) S((x − threshold)/width).
@@ -107,17 +104,14 @@ class PsychometricFunction:
 
     shape: Shape
     threshold: float
-    width: float
-    guess_rate: Dimensionless = 0.0
-    lapse_rate: Dimensionless = 0.0
+    width: Annotated[float, Above(0.0)]
+    guess_rate: Annotated[Dimensionless, AtLeast(0.0), Below(1.0)] = 0.0
+    lapse_rate: Annotated[Dimensionless, AtLeast(0.0), Below(1.0)] = 0.0
     axis: Axis = "linear"
 
     def __post_init__(self) -> None:
         shape_code(self.shape, self.axis)
         require("threshold", self.threshold, above=0.0 if self.axis == "log" else None)
-        require("width", self.width, above=0.0)
-        require("guess_rate", self.guess_rate, at_least=0.0, below=1.0)
-        require("lapse_rate", self.lapse_rate, at_least=0.0, below=1.0)
         if self.guess_rate + self.lapse_rate >= 1.0:
             raise InputError(
                 f"guess_rate + lapse_rate = {self.guess_rate + self.lapse_rate:g} leaves no rise; "

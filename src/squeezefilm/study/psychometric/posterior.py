@@ -12,8 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
-from squeezefilm.errors import InputError
-from squeezefilm.quantities import Dimensionless, FloatArray, FloatLike, require
+from squeezefilm.quantities import Dimensionless, FloatArray, FloatLike, require, require_one_of
 from squeezefilm.study.psychometric import kernel
 from squeezefilm.study.psychometric.function import Axis
 from squeezefilm.study.psychometric.prior import LARGEST_RATE, PsychometricPrior
@@ -116,11 +115,7 @@ class PsychometricPosterior:
 
 
 def _index(parameter: str) -> int:
-    if parameter not in PARAMETERS:
-        raise InputError(
-            f"parameter = {parameter!r} is not known; it must be one of {', '.join(PARAMETERS)}",
-            quantity="parameter",
-        )
+    require_one_of("parameter", parameter, PARAMETERS)
     return PARAMETERS.index(parameter)
 
 

@@ -82,9 +82,15 @@ def delete_participant(store: StudyStore, pseudonym: str) -> Deletion:
     folders = export_again(store)
     searched = _require_gone(store, sittings, identifiers)
     return Deletion(
-        enrolled, answers, len(traces), len(backups), folders, sat, searched,
+        enrolled,
+        answers,
+        len(traces),
+        len(backups),
+        folders,
+        sat,
+        searched,
         tuple(str(path) for path in left),
-    )  # fmt: skip
+    )
 
 
 def _surveyed(

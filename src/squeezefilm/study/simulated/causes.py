@@ -48,9 +48,12 @@ class Causes:
 
 
 def causes(
-    stimulus: Stimulus, found: Percept, played: RenderAnalysis, observer: Observer,
+    stimulus: Stimulus,
+    found: Percept,
+    played: RenderAnalysis,
+    observer: Observer,
     finger: FingerClass,
-) -> Causes:  # fmt: skip
+) -> Causes:
     """The numbers of one percept of a virtual grating; `played` is its rendering."""
     period, loop = stimulus.period, played.stroke
     latency = 0.0 if loop.sensor is None else loop.sensor.latency

@@ -191,9 +191,7 @@ def simulate_participants(
         count = min(_CHUNK, participants - first)
         random = np.random.default_rng([seed, _STREAM, first // _CHUNK])
         chunks.append(_answers(found, display, stimulus, number, random, count))
-    choice, felt, times, finger = (
-        np.concatenate([one[i] for one in chunks]) for i in range(4)
-    )  # fmt: skip
+    choice, felt, times, finger = (np.concatenate([one[i] for one in chunks]) for i in range(4))
     return SimulatedStudy(
         found, seed, display[rows], stimulus[rows], choice, number[rows], felt, times, finger
     )
@@ -245,18 +243,21 @@ def _answers(
     display, stimulus, number = display[:count], stimulus[:count], number[:count]
     skill = 1.0 + observer.learning_excess * np.exp(-number / observer.learning_trials)
     shown, touched = tables.virtual, tables.real
-    u, d = (
-        table[display, finger[:, None], stimulus] for table in (shown.period, shown.d_prime)
-    )  # fmt: skip
+    u, d = (table[display, finger[:, None], stimulus] for table in (shown.period, shown.d_prime))
     virtual, felt = _perceived(u, d, skill, sigma[:, None], observer, random, (_CHUNK, asked))
     ru, rd = (table[finger][:, None] for table in (touched.period, touched.d_prime))
     gratings = touched.period.shape[1]
     shape = (_CHUNK, asked, gratings)
     within = (count, asked, gratings, ru.shape[-1])
     real, real_felt = _perceived(
-        np.broadcast_to(ru, within), np.broadcast_to(rd, within),
-        skill[:, :, None], sigma[:, None, None], observer, random, shape,
-    )  # fmt: skip
+        np.broadcast_to(ru, within),
+        np.broadcast_to(rd, within),
+        skill[:, :, None],
+        sigma[:, None, None],
+        observer,
+        random,
+        shape,
+    )
     away = np.where(real_felt, np.abs(virtual[:, :, None] - real), np.inf)
     guess = random.integers(0, gratings, (_CHUNK, asked))[:count]
     blind = random.random((_CHUNK, asked))[:count] < lapse[:, None]

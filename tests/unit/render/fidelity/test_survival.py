@@ -46,7 +46,7 @@ def test_a_sine_loses_more_than_a_square() -> None:
     [
         ({"time_constant": 0.0}, "time_constant = 0 s"),
         ({"kept": 1.0}, "kept = 1"),
-        ({"shape": "saw"}, "'square' or 'sine'"),
+        ({"shape": "saw"}, "Allowed: square, sine"),
         ({"low": 2e-6, "high": 1e-6}, "low must be below high"),
         ({"spatial_periods": []}, "spatial_periods of shape"),
         ({"spatial_periods": [0.0]}, "spatial_periods = 0 m"),

@@ -121,7 +121,7 @@ def test_rates_that_divide_give_a_number_of_samples() -> None:
     (lambda: slew_time(1e-3, 0.5, 0.6, 0.0), "limit - start"),
     (lambda: square_swing_compensated(1e-3, 0.1, ENVELOPE, 0.0, 2e-6), "high"),
     (lambda: square_swing_compensated(1e-3, 0.1, ENVELOPE, 5e-7, 5e-7), "low"),
-    (lambda: square_swing_compensated(1e-3, 0.1, ENVELOPE, 0.0, 5e-7, "preview"), "closed form"),  # type: ignore[arg-type]
+    (lambda: square_swing_compensated(1e-3, 0.1, ENVELOPE, 0.0, 5e-7, "preview"), "none, inverse"),  # type: ignore[arg-type]
     (lambda: fastest_compensated_speed(1e-3, ENVELOPE, 0.0, 5e-7, kept=1.0), "kept"),
     (lambda: least_cycle(ENVELOPE, 1e-6), "swing"),
     (lambda: least_cycle(ENVELOPE, 5e-7, highest=2e-6), "highest"),

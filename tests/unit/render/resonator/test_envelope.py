@@ -44,7 +44,7 @@ def test_a_share_outside_zero_to_one_is_refused(form: object, kept: float) -> No
 
 
 def test_an_unknown_shape_is_refused() -> None:
-    with pytest.raises(InputError, match="'square' or 'sine'"):
+    with pytest.raises(InputError, match="Allowed: square, sine"):
         envelope.finest_period(0.1, 1e-3, 0.9, "triangle")
 
 

@@ -117,7 +117,7 @@ def test_what_is_right_in_each_task() -> None:
         ('task = "two-interval"', 'task = "two-intervals"', "task"),
         ('task = "two-interval"', 'task = "match-to-sample"', "real gratings"),
         ('answer = "first"', 'answer = "third"', "none of: first, second"),
-        ("repetitions = 3", "repetitions = 0", "whole number from 1"),
+        ("repetitions = 3", "repetitions = 0", "a whole number at least 1"),
         ("practice = 4", "practise = 4", "Did you mean 'practice'"),
     ],
 )  # fmt: skip

@@ -18,7 +18,8 @@ export async function show(place, lab) {
 
 class StudyView {
   constructor(place, lab) {
-    Object.assign(this, { place, lab, name: sessionStorage.getItem("squeezefilm study") });
+    // `turn` counts what was asked to be shown: an answer to an earlier wish is not shown any more.
+    Object.assign(this, { place, lab, turn: 0, name: sessionStorage.getItem("squeezefilm study") });
   }
 
   async start() {
@@ -67,7 +68,9 @@ class StudyView {
   }
 
   async showPlan() {
+    const turn = ++this.turn;
     const plan = await this.lab.socket.ask("plan study", { design: this.design.value });
+    if (turn !== this.turn) return;
     this.main.replaceChildren(element("section", { class: "card" }, element("h2", { text: plan.title }),
       element("p", { text: plan.note }), element("p", { text: `Asked: “${plan.question}”` }),
       element("table", {}, ...[
@@ -80,16 +83,20 @@ class StudyView {
   async create() {
     const seed = Number(this.seed.value);
     if (!Number.isInteger(seed) || seed < 0) throw new Error(`the seed '${this.seed.value}' is no whole number from 0 on`);
+    const turn = ++this.turn;
     const made = await this.lab.act("create study", { design: this.design.value, study: this.title.value, seed });
     this.listing = await this.lab.socket.ask("studies");
-    this.name = made.name;
+    if (turn === this.turn) this.name = made.name;
     this.showList();
-    this.take(made);
+    if (turn === this.turn) this.take(made);
   }
 
   async open(name) {
+    const turn = ++this.turn;
     this.name = name;
-    this.take(await this.lab.socket.ask("study", { study: name }));
+    const study = await this.lab.socket.ask("study", { study: name });
+    if (turn !== this.turn) return;
+    this.take(study);
     for (const button of this.list.querySelectorAll("li button")) {
       if (button.textContent === name) button.setAttribute("aria-current", "true");
       else button.removeAttribute("aria-current");

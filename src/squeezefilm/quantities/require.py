@@ -1,0 +1,120 @@
+"""Refusing a value in words: no real number, not within its bounds, not among the words allowed."""
+
+from __future__ import annotations
+
+import operator
+import warnings
+from collections.abc import Callable, Iterable
+from typing import Any
+
+import numpy as np
+
+from squeezefilm.errors import InputError, OutOfRangeError, OutOfRangeWarning
+from squeezefilm.quantities.units import FloatArray, Unit, did_you_mean, format_quantity
+
+__all__ = ["real_numbers", "require", "require_one_of", "require_valid"]
+
+_PURE = Unit("1")
+
+HOLDS: dict[str, Callable[[Any, Any], Any]] = {
+    "above": operator.gt,
+    "at_least": operator.ge,
+    "below": operator.lt,
+    "at_most": operator.le,
+}
+
+
+def real_numbers(name: str, value: Any) -> FloatArray:
+    """A value as an array of floats. Raises `InputError` for what is no real number or array."""
+    try:
+        array = np.asarray(getattr(value, "magnitude", value))
+        if array.dtype.kind in "fiu" or (array.dtype.kind == "O" and is_whole(value)):
+            return np.asarray(array, dtype=float)
+    except (OverflowError, ValueError):
+        # A whole number above every float, or rows of unequal length.
+        pass
+    raise InputError(
+        f"{name} = {shortened(value)} cannot be used: it must be a real number, or an array of "
+        "real numbers, that a float can hold",
+        quantity=name,
+    )
+
+
+def is_whole(value: Any) -> bool:
+    """Whether a value is a whole number, and no truth value."""
+    return isinstance(value, int | np.integer) and not isinstance(value, bool)
+
+
+def shortened(value: Any) -> str:
+    """A value as a message shows it, however long it is."""
+    if is_whole(value):
+        return f"a whole number of {int(value).bit_length()} bits"
+    text = repr(value)
+    return text if len(text) <= 60 else f"{text[:57]}..."
+
+
+def require(
+    name: str,
+    value: Any,
+    unit: Unit = _PURE,
+    *,
+    above: float | None = None,
+    at_least: float | None = None,
+    below: float | None = None,
+    at_most: float | None = None,
+    axes: int | None = None,
+) -> None:
+    """Refuse a value (scalar or array) that is no number, not finite or not within the bounds (SI),
+    or an array of another number of axes.
+
+    Raises `InputError` that names the quantity, the offending value with its unit and the bound.
+    """
+    array = real_numbers(name, value)
+    if axes is not None and array.ndim != axes:
+        raise InputError(
+            f"{name} has the shape {array.shape}; an array of {axes} axes is wanted", quantity=name
+        )
+    wanted: list[str] = []
+    good = np.isfinite(array)
+    bounds = {"above": above, "at_least": at_least, "below": below, "at_most": at_most}
+    for word, bound in bounds.items():
+        if bound is not None:
+            good = good & HOLDS[word](array, bound)
+            wanted.append(f"{word.replace('_', ' ')} {format_quantity(bound, unit)}")
+    if not np.all(good):
+        offender = float(array.ravel()[np.flatnonzero(~good)[0]])
+        allowed = " and ".join(["finite", *wanted])
+        raise InputError(
+            f"{name} = {format_quantity(offender, unit)} cannot be used: it must be {allowed}",
+            quantity=name,
+        )
+
+
+def require_one_of(name: str, value: Any, allowed: Iterable[Any]) -> None:
+    """Refuse a word that is not among those allowed. Raises `InputError` that lists them."""
+    allowed = tuple(allowed)
+    if not isinstance(value, str | int) or value not in allowed:
+        words = [str(one) for one in allowed]
+        hint = did_you_mean(value, words) if isinstance(value, str) else ""
+        raise InputError(
+            f"{name} = {shortened(value)} is not known.{hint} Allowed: {', '.join(words)}",
+            quantity=name,
+        )
+
+
+def require_valid(
+    name: str, value: Any, low: float, high: float, because: str, *, strict: bool = True
+) -> None:
+    """Refuse (strict) or warn of a dimensionless group outside the validity range of a model.
+
+    Raises `OutOfRangeError`, or warns `OutOfRangeWarning` if not `strict`.
+    """
+    array = np.ravel(real_numbers(name, value))
+    outside = ~((array >= low) & (array <= high))
+    if not np.any(outside):
+        return
+    offender = float(array[np.flatnonzero(outside)[0]])
+    message = f"{name} = {offender:.4g} is outside {low:.4g} to {high:.4g}, where {because}"
+    if strict:
+        raise OutOfRangeError(f"{message}; pass strict=False to compute it all the same")
+    warnings.warn(message, OutOfRangeWarning, stacklevel=3)
