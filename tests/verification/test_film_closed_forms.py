@@ -418,7 +418,7 @@ def test_pressure_refuses_a_closed_gap_and_a_point_outside() -> None:
         limits.mean_pressure_profile(np.array([0.6]), STATOR)
     with pytest.raises(InputError, match="centred"):
         limits.mean_pressure_profile(np.array([0.0]), SHIFTED, "paper2008-printed")
-    with pytest.raises(InputError, match="unknown"):
+    with pytest.raises(InputError, match="is not known"):
         limits.contact_mean_pressure(STATOR, "paper2007")
     with pytest.raises(ConvergenceError, match="settle"):
         limits.contact_mean_pressure(

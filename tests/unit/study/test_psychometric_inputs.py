@@ -126,7 +126,7 @@ def test_rules_that_are_none(change: dict[str, Any], message: str) -> None:
     ("change", "message"),
     [
         ({"stimuli": (1.0,)}, "two or more"),
-        ({"interest": "lapse"}, "must be 'threshold and width'"),
+        ({"interest": "lapse"}, "Allowed: threshold and width, all"),
         ({"guess_rate": 0.9}, "guess_rate"),
         ({"cells": (0, 3, 3)}, "cells = 0"),
     ],

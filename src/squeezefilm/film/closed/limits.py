@@ -279,8 +279,6 @@ def mean_pressure_profile(
             )
         ratio = lift(gap.amplitude_ratio_printed)
         return np.asarray(paper_mean_pressure_printed(X, ratio, delta, k1, k2))
-    if model != "paper2008":
-        raise InputError(f"model = '{model}' is unknown; allowed are {', '.join(PAPER_MODELS)}")
     epsilon = lift(gap.amplitude_ratio)
     if gap.symmetric:
         return np.asarray(paper_mean_pressure(X, epsilon, delta, k1, k2))

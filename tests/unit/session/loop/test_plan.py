@@ -22,7 +22,7 @@ PlanOf = Callable[..., LoopPlan]
         ({"rate": 1e6}, "rate = 1 MHz"),
         ({"output_delay": -1e-3}, "output_delay"),
         ({"host_timeout": 0.0}, "host_timeout"),
-        ({"compensation": "preview"}, "'none' or 'inverse'"),
+        ({"compensation": "preview"}, "Allowed: none, inverse"),
         ({"drive": DriveTable.linear(1e-8, 50.0)}, "1 um and the drive's table ends at 0.5 um"),
     ],
 )
