@@ -47,7 +47,7 @@ QUICK = "not realtime and not slow and not nightly and not campaign"
 REALTIME = "realtime and not slow and not nightly"
 SLOW, NIGHTLY = "slow and not nightly", "nightly"
 _MOST_TESTS = 400  # that run a mutant's lines and are asked; the nearest
-_FAILED = re.compile(r"^(?:FAILED|ERROR) (\S+)", re.MULTILINE)
+_FAILED = re.compile(r"^(?:FAILED|ERROR) (.+)$", re.MULTILINE)
 
 
 @dataclass(frozen=True)
@@ -165,7 +165,7 @@ class Copy:
             output.seek(0)
             failed = _FAILED.search(output.read().decode(errors="replace"))
         said = {0: "passed", 5: "empty"}.get(process.returncode, "failed")
-        name = failed[1] if failed else test
+        name = failed_test(failed[1], tests) if failed else test
         return Answer(said, test if said == "passed" else name, time.monotonic() - started)
 
     def _end_processes(self) -> None:
@@ -175,6 +175,13 @@ class Copy:
             with contextlib.suppress(OSError):
                 if mark in (folder / "environ").read_bytes().split(b"\0"):
                     os.kill(int(folder.name), signal.SIGKILL)
+
+
+def failed_test(told: str, asked: Sequence[str]) -> str:
+    """The test that failed, of what pytest tells in its summary: its name, which may hold blanks,
+    and perhaps a dash and a message."""
+    by_name = [test for test in asked if told == test or told.startswith(f"{test} - ")]
+    return max(by_name, key=len, default=told.partition(" - ")[0])
 
 
 class Nearness:
