@@ -24,7 +24,7 @@ from squeezefilm.quantities import (
     checked_numbers,
 )
 from squeezefilm.render.texture.composition import Composable
-from squeezefilm.render.texture.coordinate import FARTHEST, FINEST, AlongDirection
+from squeezefilm.render.texture.coordinate import FARTHEST, AlongDirection, Length
 from squeezefilm.render.texture.levels import RelativeFriction
 from squeezefilm.render.texture.pattern import Pattern
 from squeezefilm.render.texture.shapes import SineWave, SquareWave
@@ -59,7 +59,7 @@ class Stimulus:
     """
 
     name: str
-    spatial_period: Annotated[Metre, AtLeast(FINEST), AtMost(FARTHEST)]
+    spatial_period: Length
     period_means: PeriodMeans
     waveform: Waveform = "square"
     ridge_share: Annotated[Dimensionless, Above(0), Below(1)] = 0.5
@@ -155,7 +155,7 @@ class Grating:
     """
 
     name: str
-    spatial_period: Annotated[Metre, AtLeast(FINEST), AtMost(FARTHEST)]
+    spatial_period: Length
     period_means: PeriodMeans
     ridge_share: Annotated[Dimensionless, Above(0), Below(1)] = 0.5
     ridge_height: Annotated[Metre, Above(0.0), AtMost(0.01)] = 70e-6

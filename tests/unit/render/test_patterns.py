@@ -144,6 +144,8 @@ def test_gates_of_speed_and_time() -> None:
     assert Attack(1.0)(0, 0, 0, t) == pytest.approx([0, 0.5, 1, 1])
     assert Decay(1.0, 0.5)(0, 0, 0, t) == pytest.approx(np.exp([0, 0, -0.5, -2.5]))
     assert Periodic(1.0, duty=0.6)(0, 0, 0, t).tolist() == [1, 1, 1, 1]
+    # Each part of the period holds its beginning and not its end.
+    assert Periodic(1.0, duty=0.25)(0, 0, 0, t / 2).tolist() == [1, 0, 0, 0]
     assert Periodic(1.0, "sine", phase=math.pi / 2)(0, 0, 0, t) == pytest.approx([1, 0, 1, 1])
 
 
@@ -192,6 +194,10 @@ def test_gates_of_speed_and_time() -> None:
         (lambda: Periodic(1.0, "saw"), "Allowed: square, sine"),
         (lambda: AlongDirection(math.nan), "angle = nan"),
         (lambda: FromPoint(11.0), "x = 11 m"),
+        (lambda: SquareWave(1e-3, along="x"), "no coordinate"),
+        (lambda: SineWave(1e-3, along="x"), "no coordinate"),
+        (lambda: SineWave(11.0), "spatial_period = 11 m"),
+        (lambda: SquareWave(1e-10), "spatial_period = 100 pm"),
         (lambda: Constant() & 1.0, "no pattern"),
         (lambda: Constant() + Constant(), "cannot be added"),
         (lambda: ~Constant() | "x", "no pattern"),

@@ -59,6 +59,11 @@ def test_the_line_scan_has_the_modes_nodes(result: PlateAnalysis) -> None:
     # The specification's nodal lines of the beam; the solved centreline is near them.
     beam = [4.38, 13.80, 24.11, 35.50, 47.50, 58.89, 69.20, 78.62]
     assert nodes == pytest.approx(beam, abs=0.4)
+    legend = axes.get_legend()
+    assert legend is not None
+    assert "8 nodes of the centreline" in [text.get_text() for text in legend.get_texts()]
+    volts = result.display.drive.voltage
+    assert axes.child_axes[0].get_ylabel() == f"w at {volts:g} V (µm)"
 
 
 @pytest.mark.slow

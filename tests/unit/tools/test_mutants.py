@@ -34,6 +34,15 @@ def test_a_line_that_was_cut_off_is_asked_again(tmp_path: Path) -> None:
         mutants.Report(path, {"seed": 2})
 
 
+def test_the_name_of_a_failed_test_may_hold_blanks_and_dashes() -> None:
+    asked = ["t.py::test_a[x]", "t.py::test_a[x] - y z]", "t.py::test_b"]
+    assert mutants.failed_test("t.py::test_a[x] - AssertionError", asked) == asked[0]
+    assert mutants.failed_test("t.py::test_a[x] - y z] - no - none", asked) == asked[1]
+    assert mutants.failed_test("t.py::test_b", asked) == asked[2]
+    # Where a file was asked, what stands before the message.
+    assert mutants.failed_test("t.py::test_c[a b] - E", ["t.py"]) == "t.py::test_c[a b]"
+
+
 def test_every_equivalent_mutant_has_a_reason() -> None:
     assert all(len(reason) > 20 for reason in mutants.equivalent_mutants().values())
 

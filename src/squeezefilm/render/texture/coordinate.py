@@ -35,6 +35,9 @@ Place = Annotated[Metre, AtLeast(-FARTHEST), AtMost(FARTHEST)]
 FINEST: Metre = 1e-9
 """No texture is finer than a nanometre (m): a width below is a slip of unit."""
 
+Length = Annotated[Metre, AtLeast(FINEST), AtMost(FARTHEST)]
+"""A period or a width on a display, in annotations: from 1 nm to 10 m."""
+
 
 class Coordinate:
     """A length (m) read off the finger's place; the base of the family `AlongX`, `AlongY`,

@@ -19,7 +19,6 @@ from squeezefilm.quantities import (
     FloatArray,
     Metre,
     Radian,
-    Unit,
     checked_numbers,
     require,
 )
@@ -36,12 +35,11 @@ from squeezefilm.render.opcodes import (
     Assembler,
 )
 from squeezefilm.render.texture.coordinate import (
-    FARTHEST,
-    FINEST,
     METRE,
     X_AXIS,
     Coordinate,
     FromPoint,
+    Length,
     Place,
     require_coordinate,
     require_fade,
@@ -85,14 +83,14 @@ class SquareWave(Pattern):
         InputError: a value outside its range.
     """
 
-    spatial_period: Metre
+    spatial_period: Length
     duty: Annotated[Dimensionless, Above(0.0), Below(1.0)] = 0.5
     phase: Radian = 0.0
     along: Coordinate = X_AXIS
     type: Literal["square_wave"] = field(default="square_wave", repr=False)
 
     def __post_init__(self) -> None:
-        _require_wave(self.spatial_period, self.phase, self.along)
+        require_coordinate(self.along)
 
     def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
         cycles = self.along.at(x, y) / self.spatial_period + self.phase / (2 * math.pi)
@@ -112,13 +110,13 @@ class SineWave(Pattern):
     Args and errors as for `SquareWave`.
     """
 
-    spatial_period: Metre
+    spatial_period: Length
     phase: Radian = 0.0
     along: Coordinate = X_AXIS
     type: Literal["sine_wave"] = field(default="sine_wave", repr=False)
 
     def __post_init__(self) -> None:
-        _require_wave(self.spatial_period, self.phase, self.along)
+        require_coordinate(self.along)
 
     def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
         cycles = self.along.at(x, y) / self.spatial_period + self.phase / (2 * math.pi)
@@ -146,7 +144,7 @@ class Pulse(Pattern):
     """
 
     centre: Place
-    width: Annotated[Metre, AtLeast(FINEST), AtMost(FARTHEST)]
+    width: Length
     shape: Literal["gaussian", "raised_cosine"] = "gaussian"
     along: Coordinate = X_AXIS
     type: Literal["pulse"] = field(default="pulse", repr=False)
@@ -288,7 +286,7 @@ class Bump(Pattern):
     """
 
     centre: Place
-    width: Annotated[Metre, AtLeast(FINEST), AtMost(FARTHEST)]
+    width: Length
     kind: Literal["bump", "hole"] = "bump"
     along: Coordinate = X_AXIS
     type: Literal["bump"] = field(default="bump", repr=False)
@@ -309,9 +307,3 @@ class Bump(Pattern):
     @property
     def _sign(self) -> float:
         return 1.0 if self.kind == "bump" else -1.0
-
-
-def _require_wave(spatial_period: Metre, phase: Radian, along: Coordinate) -> None:
-    require("spatial_period", spatial_period, METRE, at_least=FINEST, at_most=FARTHEST)
-    require("phase", phase, Unit("rad"))
-    require_coordinate(along)

@@ -134,6 +134,18 @@ def test_nothing_is_deleted_while_somebody_reads(tmp_path: Path) -> None:
     store.close()
 
 
+def test_nothing_is_deleted_while_another_program_has_the_file_open(tmp_path: Path) -> None:
+    store, people = _study(tmp_path)
+    idle = sqlite3.connect(store.path)
+    idle.execute("SELECT count(*) FROM response").fetchall()
+    with pytest.raises(RecordError, match="close every session"):
+        delete_participant(store, people[0])
+    assert len(store.participants()) == 3
+    idle.close()
+    assert delete_participant(store, people[0]).enrolled
+    store.close()
+
+
 def test_a_freed_number_is_given_again(tmp_path: Path) -> None:
     store, people = _study(tmp_path)
     delete_participant(store, people[1])
