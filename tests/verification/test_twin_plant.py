@@ -1,8 +1,10 @@
 """The twin's plant against closed forms, against prediction, and against scipy's integrator."""
 
+import dataclasses
 import math
 from dataclasses import replace
 from functools import lru_cache
+from typing import Literal
 
 import numpy as np
 import pytest
@@ -220,17 +222,23 @@ def test_the_envelope_step_is_exact_whatever_its_length_without_a_finger() -> No
     assert envelope_step(z, 0.7, 2e-3, *arguments) == pytest.approx(many, rel=1e-12)
 
 
-def test_friction_drags_the_finger_back_and_its_work_is_lost() -> None:
+@pytest.mark.parametrize(("moisture", "factor"), [("normal", 1.0), ("moist", 1.8)])
+def test_friction_drags_the_finger_back_and_its_work_is_lost(
+    moisture: Literal["normal", "moist"], factor: float
+) -> None:
+    display = point().display
+    finger = dataclasses.replace(display.finger, moisture=moisture)
+    display = dataclasses.replace(display, finger=finger)
     hand = Hand(Stroke(0.08, 0.2), begin=0.0)
-    plant = Plant(point(), CALM, hand)
+    plant = Plant(dataclasses.replace(point(), display=display), CALM, hand)
     plant.advance(1_500_000, 0, carrier())
     arm = CALM.arm
     force = plant.tangential_force
     x = column(plant, "x_m")[-1]
     # Steady sliding: the spring carries friction, the damper moves along with the hand.
     assert 0.08 * 1.5 - x == pytest.approx(force / arm.stiffness, rel=1e-3)
-    base = point().display.surface().friction_coefficient
-    assert force == pytest.approx(base * point().display.finger.friction_factor * 0.5, rel=1e-9)
+    base = display.surface().friction_coefficient
+    assert force == pytest.approx(factor * base * 0.5, rel=1e-9)
     skin = column(plant, "skin_x_m")[-1]
     assert x - skin == pytest.approx(force / 1000.0, rel=1e-3)
     # A pad at rest stays at rest: friction holds it, and does not creep.

@@ -1,5 +1,7 @@
 """Who may talk to the lab: hosts, origins, sessions, roles, sizes, files."""
 
+import json
+
 import pytest
 from starlette.testclient import TestClient
 from starlette.websockets import WebSocketDisconnect
@@ -212,6 +214,17 @@ def test_sessions_outlive_a_crash_and_no_clean_end(tmp_path):
     assert not file.exists()
     assert again.session(session.secret) is None
     assert Keys(file).session(session.secret) is None
+
+
+def test_sessions_that_are_over_are_not_kept(tmp_path):
+    clock = Clock()
+    keys = Keys(tmp_path / "keys", clock)
+    over, _ = keys.use_link(keys.new_link())
+    clock.now += SESSION_LIFE + 1
+    assert keys.session(over.secret) is None
+    now, _ = keys.use_link(keys.new_link())
+    assert [one["secret"] for one in json.loads((tmp_path / "keys").read_text())] == [now.secret]
+    assert keys.session(now.secret) == now
 
 
 def test_a_full_disk_burns_no_link(tmp_path, monkeypatch):

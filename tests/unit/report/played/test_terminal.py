@@ -44,6 +44,7 @@ def test_the_table_fits_a_terminal(view: PlayView, width: int) -> None:
     assert all(len(line) <= width for line in lines)
     assert lines[0].startswith("time")
     assert "friction µ′/µ" in stream.getvalue()
+    assert ("fault: watchdog" if view is UNKNOWN else "fault: none") in stream.getvalue()
 
 
 @pytest.mark.parametrize(("share", "full"), [(0.0, 0), (0.5, 14), (1.0, 28), (7.0, 28), (-1.0, 0)])
