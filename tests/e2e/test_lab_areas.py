@@ -92,6 +92,15 @@ class Watched:
         for text in kept:
             self.route.send(text)
 
+    def keeps(self) -> None:
+        """Until an answer is kept back; those to what is asked from then on are not."""
+        for _ in range(600):
+            if self._kept:
+                self.late = None
+                return
+            self.page.wait_for_timeout(50)
+        raise AssertionError(f"nothing answered to {self.late} within 30 s")
+
     def told(self, type: str, **fields: Any) -> None:
         """The page hears a message that the lab did not send."""
         self.route.send(json.dumps({"type": type, **fields}))
@@ -239,6 +248,57 @@ def test_the_answer_to_an_earlier_wish_is_not_shown_over_a_later_one(seen: Watch
     page.reload()
     page.get_by_role("button", name="early", exact=True).wait_for()
     assert page.locator("h2", has_text="early").is_visible()
+
+
+def test_an_earlier_texture_is_not_shown_over_a_later_one(seen: Watched) -> None:
+    page = seen.page
+    seen.go("help")
+    page.evaluate("sessionStorage.clear()")
+    seen.late = "load texture"
+    seen.go("feel")
+    seen.keeps()
+    page.locator("#texture-choice").select_option("preset:bump")
+    heading = page.locator("#area h2", has_text=", on ")
+    heading.wait_for()
+    shown = heading.text_content()
+    seen.let_go()
+    seen.settle()
+    assert heading.text_content() == shown
+    assert "4 mm" not in (shown or "")
+
+
+def test_an_earlier_study_is_not_shown_over_a_later_one(seen: Watched) -> None:
+    page = seen.page
+    seen.go("help")
+    seen.go("study")
+    for name in ("first", "second"):
+        page.locator("#study-name").fill(name)
+        page.get_by_role("button", name="Create the study").click()
+        page.locator("h2", has_text=name).wait_for()
+        if name == "first":
+            page.get_by_role("button", name="Enrol a participant").click()
+            page.locator("tr[data-participant]").wait_for()
+    seen.settle()
+    seen.late = "study"
+    page.get_by_role("button", name="first", exact=True).click()
+    seen.keeps()
+    page.get_by_role("button", name="second", exact=True).click()
+    seen.settle()
+    seen.let_go()
+    page.wait_for_timeout(200)
+    assert page.locator("[aria-current=true]", has_text="second").count() == 1
+    assert page.locator("h2", has_text="first").count() == 0
+    seen.go("results")
+    page.locator("#results-study").wait_for()
+    seen.settle()
+    seen.late = "study"
+    page.locator("#results-study").select_option("first")
+    seen.keeps()
+    page.locator("#results-study").select_option("second")
+    seen.settle()
+    seen.let_go()
+    page.wait_for_timeout(200)
+    assert page.locator(".person").count() == 0
 
 
 def test_every_area_has_room_at_every_size(seen: Watched) -> None:

@@ -17,7 +17,8 @@ export async function show(place, lab) {
 
 class FeelView {
   constructor(place, lab, store) {
-    Object.assign(this, { place, lab, store, rows: [], delays: [], down: false, drawn: 0 });
+    // `turn` counts what was asked to be felt: an answer to an earlier wish is not shown any more.
+    Object.assign(this, { place, lab, store, turn: 0, rows: [], delays: [], down: false, drawn: 0 });
   }
 
   async start() {
@@ -223,8 +224,10 @@ class FeelView {
   async choose(value) {
     const [kind, name] = value.split(/:(.*)/);
     if (kind === "own") return;
+    const turn = ++this.turn;
     try {
       const { text } = await this.lab.socket.ask("texture text", { [kind]: name });
+      if (turn !== this.turn) return;
       this.text.value = text;
       this.choice.value = value;
       this.source = kind === "preset" ? { preset: name } : { texture: text };
@@ -252,20 +255,23 @@ class FeelView {
 
   async reload() {
     if (!this.source) return;
+    const turn = ++this.turn;
     const asked = { display: this.store.current.text, quality: this.solved.box.checked ? "solved" : "screening", ...this.source };
     try {
       this.heading.textContent = "preparing…";
       const ready = await this.lab.socket.ask("load texture", asked);
+      if (turn !== this.turn) return;
       this.error.hidden = true;
       sessionStorage.setItem(TEXTURE, JSON.stringify({ text: this.text.value, choice: this.choice.value, source: this.source }));
       this.take(ready);
       const samples = await this.lab.socket.ask("parity", asked);
+      if (turn !== this.turn) return;
       const { ticks, worst } = parity(ready.program, samples);
       const same = worst <= 1e-12 * ready.largest_amplitude_m;
       this.parityLine.textContent = `Page and compiled loop: ${ticks} ticks ${same ? "agree" : "DIFFER"}, greatest difference ${quantity(worst, "m", 2)}.`;
       this.parityLine.classList.toggle("error", !same);
     } catch (error) {
-      this.fail(error);
+      if (turn === this.turn) this.fail(error);
     }
   }
 

@@ -79,7 +79,9 @@ class ResultsView {
   async open(name) {
     Object.assign(this, { name, analysed: null });
     sessionStorage.setItem("squeezefilm study", name);
-    this.showPeople(await this.lab.socket.ask("study", { study: name }));
+    const study = await this.lab.socket.ask("study", { study: name });
+    if (name !== this.name) return;
+    this.showPeople(study);
     await this.analyse(name);
   }
 

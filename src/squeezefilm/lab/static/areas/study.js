@@ -109,8 +109,8 @@ class StudyView {
       return;
     }
     await this.tried(async () => {
-      const found = await this.lab.socket.ask("study", { study: this.name });
-      if (quietly && this.main.querySelector("form")) return;
+      const { name } = this, found = await this.lab.socket.ask("study", { study: name });
+      if (name !== this.name || (quietly && this.main.querySelector("form"))) return;
       if (!quietly || !this.progress(found)) this.take(found);
     });
   }
