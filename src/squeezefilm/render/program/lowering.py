@@ -219,8 +219,6 @@ def checked(array: FloatArray) -> FloatArray:
             f"the array is no program of version {op.VERSION}: it begins with "
             f"{program[at.H_MAGIC]:.17g}, {program[at.H_VERSION]:.17g}"
         )
-    if not np.all(np.isfinite(program)):
-        raise _broken("holds numbers that are not finite")
     if program[at.H_LENGTH] != program.size:
         raise _broken(f"is {program.size} long and should be {program[at.H_LENGTH]:g}")
     whole = (

@@ -35,6 +35,14 @@ def test_to_and_fro_with_a_rest() -> None:
     assert math.isnan(found.mean_force)
 
 
+def test_the_spread_of_a_force_is_over_time() -> None:
+    # 1 N for three seconds, 3 N for one, and nothing in between.
+    t = np.array([0.0, 3.0, 3.0 + 1e-9, 4.0])
+    found = exploration(t, 0.01 * t, None, np.array([1.0, 1.0, 3.0, 3.0]))
+    assert found.mean_force == pytest.approx(1.5)
+    assert found.force_spread == pytest.approx(math.sqrt((3 * 0.5**2 + 1.5**2) / 4))
+
+
 def test_a_finger_that_never_moved() -> None:
     found = exploration([0.0, 1.0], [0.0, 0.0])
     assert found.path_length == 0
