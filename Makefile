@@ -38,7 +38,7 @@ lab: $(VENV)/run.stamp  ## open the lab in the browser
 PYTEST := $(BIN)/python -m pytest
 define run_tests
 @failed=0; \
-$(PYTEST) -n $(WORKERS) --dist loadgroup -m "not campaign and not realtime $(1)" || failed=1; \
+$(PYTEST) -n $(WORKERS) -m "not campaign and not realtime $(1)" || failed=1; \
 $(PYTEST) -m "not campaign and realtime $(1)" || failed=1; \
 exit $$failed
 endef
@@ -52,7 +52,7 @@ slow: $(VENV)/test.stamp  ## run the tests that take seconds each, as CI does af
 	$(call run_tests,and slow and not nightly)
 
 coverage: $(VENV)/test.stamp  ## branches that the quick tests take, and which test runs which line
-	@$(PYTEST) -n $(WORKERS) --dist loadgroup -m "not campaign and not realtime $(QUICK)" --cov --cov-context=test --cov-report=
+	@$(PYTEST) -n $(WORKERS) -m "not campaign and not realtime $(QUICK)" --cov --cov-context=test --cov-report=
 	@$(BIN)/coverage report --skip-covered --sort=-cover
 
 nightly: export SQUEEZEFILM_EXPLORE = 1

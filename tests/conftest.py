@@ -6,6 +6,9 @@ many new ones in `make nightly`, which sets SQUEEZEFILM_EXPLORE and prints its s
 """
 
 import os
+from typing import Any
+
+import pytest
 
 for _library in ("OMP", "OPENBLAS", "MKL"):
     os.environ.setdefault(f"{_library}_NUM_THREADS", "1")
@@ -23,3 +26,23 @@ settings.register_profile("properties", max_examples=120 if _EXPLORES else 25, *
 # For properties whose every example is a solve, a process or a session.
 settings.register_profile("dear", max_examples=24 if _EXPLORES else 8, **_HOW)
 settings.load_profile("properties")
+
+# Tests that may go to any process, one by one; of other files one process takes all, since they
+# share what is dear. (xdist's own groups are passed over under pytest 9.2: it names tests anew.)
+_SPREAD = ("tests/e2e/", "tests/faults/", "tests/properties/")
+_TOGETHER = ("tests/e2e/test_report_page.py",)
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: Any, log: Any) -> Any:
+    """Schedule by files, in their order: the longest tests are the first."""
+    from xdist.scheduler import LoadScopeScheduling
+
+    class ByFiles(LoadScopeScheduling):
+        def _split_scope(self, nodeid: str) -> str:
+            file = nodeid.partition("::")[0]
+            spread = file.startswith(_SPREAD) and file not in _TOGETHER
+            return nodeid if spread else file
+
+    config.option.loadscopereorder = False
+    return ByFiles(config, log)

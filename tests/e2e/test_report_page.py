@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from playwright.sync_api import Browser
 
 # One worker: the page is made once.
-pytestmark = [pytest.mark.slow, pytest.mark.chromium, pytest.mark.xdist_group("report-page")]
+pytestmark = [pytest.mark.slow, pytest.mark.chromium]
 
 FIGURES = (
     "layout", "mode", "response", "pressure", "friction", "films", "wavelength", "texture",

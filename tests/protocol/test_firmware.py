@@ -31,7 +31,6 @@ from .test_frames import VECTORS
 Bits = NDArray[np.uint32]
 HIGHEST = 0x44FA0000  # 2000 V
 # On one worker, so that what the twin did is made once.
-pytestmark = pytest.mark.xdist_group("firmware")
 
 
 def test_framing_in_c(library: Library) -> None:

@@ -19,8 +19,6 @@ from .recording import (
     tile_sweep,
 )
 
-pytestmark = pytest.mark.xdist_group("firmware")
-
 MOST_INSTRUCTIONS = {"cortex-m0plus": 25_000, "cortex-m3": 10_000, "cortex-m4": 10_000}
 """Of one call: at 125 MHz, and up to two cycles for an instruction, within the 1 ms of a tick."""
 FLOATING = re.compile(r"__aeabi_(c?[df]\w+|\w+2[dfh])|__\w+[sd]f([23]|[ds]i)?$")

@@ -14,7 +14,6 @@ from .recording import Recording
 
 FAST = Limits(60.0, 1e9, 60.0, 0.0, 20e3, 60e3, insulation="glass")
 PERIOD, LEAD = 200, 5_000
-pytestmark = pytest.mark.xdist_group("firmware")
 
 
 @pytest.fixture

@@ -14,8 +14,6 @@ from squeezefilm.plate.laminate import plate_laminate
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.results import to_json
 
-pytestmark = pytest.mark.xdist_group("analysis")  # what is dear is computed once
-
 
 @pytest.fixture(scope="module")
 def plate() -> Analysis:

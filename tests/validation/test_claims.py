@@ -8,8 +8,6 @@ from squeezefilm.analysis.claims.command import Claim, ClaimResult, judge, read_
 from squeezefilm.analysis.claims.values import CLAIM_VALUES, ClaimValue
 from squeezefilm.errors import ConfigError
 
-pytestmark = pytest.mark.xdist_group("claims")  # what is dear is computed once
-
 
 @pytest.fixture(scope="module")
 def found() -> dict[str, ClaimResult]:

@@ -127,6 +127,25 @@ def test_what_does_not_converge_raises_with_its_partial_result(monkeypatch):
     assert np.all(kept.over_pressure_error > 1e-6 * kept.over_pressure)
 
 
+def test_a_partial_result_holds_nothing_that_was_not_computed(monkeypatch):
+    for solver in (batch, film):
+        monkeypatch.setattr(solver, "ROUNDS", 1)
+        monkeypatch.setattr(solver, "MOST_NEWTON", 2)
+    # What memory happens to hold is seen where it is no number.
+    monkeypatch.setattr(film.np, "empty", lambda shape, **_: np.full(shape, np.nan))
+    wavy = profile_from_function(lambda x, t: 1 + 0.3 * np.cos(6 * x) + 0.5 * np.cos(t))
+    for solve in (
+        lambda: solve_strip(10.0, 0.9, tolerance=1e-6),
+        lambda: solve_disc(10.0, 0.9, tolerance=1e-6),
+        lambda: solve_profile(30.0, wavy, tolerance=1e-6),
+    ):
+        with pytest.raises(ConvergenceError) as caught:
+            solve()
+        partial = caught.value.partial
+        assert np.all(np.isfinite(partial.pressure))
+        assert np.all(np.isfinite(partial.mean_pressure))
+
+
 def test_still_plate_makes_no_pressure():
     solution = solve_strip(10.0, 0.0)
     assert solution.over_pressure == 0.0

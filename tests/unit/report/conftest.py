@@ -19,19 +19,6 @@ HOSTILE = '<script>alert("x")</script> $\\frac{1}{0}$ [bold]漢字 \x1b[31m\u202
 PRESETS = ("biet2008-plate", "biet2008-stator", "winfield2007-tpad")
 
 
-# One process asks all that needs an analysis: each process computes its own.
-GROUPS = {"plate_analysis": "biet2008-plate", "hostile_analysis": "hostile-names"}
-
-
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    for item in items:
-        if item.get_closest_marker("xdist_group"):
-            continue
-        for fixture, group in GROUPS.items():
-            if fixture in getattr(item, "fixturenames", ()):
-                item.add_marker(pytest.mark.xdist_group(group))
-
-
 # The fewest samples that have an interval: what is tested is how it is shown.
 analyze = functools.partial(whole_analysis, samples=8)
 

@@ -15,8 +15,6 @@ from squeezefilm.report.plate.page import PlateFigure, plate_page
 from squeezefilm.report.plate.plate import admittance, frequency_response, line_scan, plan_view
 from squeezefilm.report.plate.sensitivity_figures import tornado, tracks
 
-pytestmark = pytest.mark.xdist_group("plate-report")  # what is dear is computed once
-
 
 @pytest.fixture(scope="module")
 def result() -> PlateAnalysis:

@@ -260,7 +260,7 @@ def solve_all(
     pending: IntArray = np.arange(total)
     pool = ThreadPoolExecutor(workers) if workers > 1 and total > 64 else None
     try:
-        for _ in range(ROUNDS):
+        for turn in range(1, ROUNDS + 1):
             key = cells[pending] * len(TIMES) + times[pending]
             order = np.argsort(key, kind="stable")
             bounds = np.flatnonzero(np.diff(key[order])) + 1
@@ -291,8 +291,8 @@ def solve_all(
             if progress is not None:
                 progress(int(np.count_nonzero(met)), total)
             pending = np.flatnonzero(~met)
-            if len(pending) == 0:
-                break
+            if len(pending) == 0 or turn == ROUNDS:
+                break  # what is given back is of the grids that were solved
             allowed = tolerance * np.abs(out[pending, u.OVER])
             more_cells, more_times = refined(
                 cells[pending],

@@ -208,7 +208,7 @@ def solve_profile(
     out = np.full(u.COLUMNS, np.nan)
     iterations = 0
     met = False
-    for _ in range(ROUNDS):
+    for turn in range(1, ROUNDS + 1):
         resolution = resolution_of(cells, int(t[0]))
         times, check = resolution.times.number, resolution.check.number
         x, slope, harmonics = sampled_grid(profile, cells, closed, grading)
@@ -228,8 +228,8 @@ def solve_profile(
         iterations += int(out[u.ITERATIONS])
         allowed = tolerance * abs(out[u.OVER])
         met = bool(out[u.ERROR] <= allowed) or bool(abs(out[u.OVER]) < 1e-15)
-        if met or cells > 6000:
-            break
+        if met or cells > 6000 or turn == ROUNDS:
+            break  # what is given back is of the grid that was solved
         some = np.zeros(1, dtype=np.int64)
         more, t2 = refined(
             some,

@@ -51,9 +51,7 @@ OFTEN = {*PRESETS, "hostile-names", "no-voltage", "one-ceramic"}
 
 
 def _marks(name: str) -> list[pytest.MarkDecorator]:
-    # One process draws all figures of a display: each computes its analysis for itself.
-    group = pytest.mark.xdist_group(name)
-    return [group] if name in OFTEN else [group, pytest.mark.nightly]
+    return [] if name in OFTEN else [pytest.mark.nightly]
 
 
 CASES = [

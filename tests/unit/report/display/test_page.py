@@ -57,9 +57,6 @@ def read(text: str) -> Reader:
     return reader
 
 
-pytestmark = pytest.mark.xdist_group("biet2008-plate")  # its analysis and report are made once
-
-
 @pytest.fixture(scope="module")
 def written(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Analysis]:
     from squeezefilm.analysis.analyze import analyze
