@@ -180,8 +180,8 @@ def best_of_both(asks: list[Callable[[], float]], rounds: int) -> list[float]:
     return [float(one) for one in times.min(axis=0)]
 
 
-def compare(before: Path, rounds: int) -> int:
-    """Print the table; how many rows became slower than allowed."""
+def compare(before: Path, rounds: int, only: str) -> int:
+    """Print the table of what has `only` in its name; how many became slower than allowed."""
     sides = [Side(before), Side(ROOT)]
     kernels = sides[0].answer()
     if sides[1].answer() != kernels:
@@ -199,6 +199,8 @@ def compare(before: Path, rounds: int) -> int:
         for name, words in VERBS.items()
     ]  # fmt: skip
     for name, asks, many in rows:
+        if only not in name:
+            continue
         old, new = best_of_both(asks, many)
         slower += new / old > SLOWER
         mark = "  slower" if new / old > SLOWER else ""
@@ -212,6 +214,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("revision", nargs="?", help="what to compare with, as git names it")
     parser.add_argument("--rounds", type=int, default=15)
+    parser.add_argument("--only", default="", help="what has this in its name")
     parser.add_argument("--serve", type=Path, help=argparse.SUPPRESS)
     given = parser.parse_args()
     if given.serve:
@@ -224,7 +227,7 @@ def main() -> None:
         git = ["git", "-C", str(ROOT), "worktree"]
         subprocess.run([*git, "add", "--detach", "--quiet", str(tree), given.revision], check=True)
         try:
-            slower = compare(tree, given.rounds)
+            slower = compare(tree, given.rounds, given.only)
         finally:
             subprocess.run([*git, "remove", "--force", str(tree)], check=True)
     print(f"{slower} of these are more than {SLOWER - 1:.0%} slower than at {given.revision}")
