@@ -72,17 +72,6 @@ def require_motion(limit: HardLimit, steps: float, duration: float, rate: float)
     require_within(limit, float(np.floor(steps)), enough=enough)
 
 
-def require_fields(described: object, **limits: HardLimit) -> None:
-    """Refuse a description one of whose fields is outside its hard limit; None is left alone.
-
-    ``require_fields(self, length=SIDE, thickness=LAYER)``. Raises as `require_within` does.
-    """
-    for name, limit in limits.items():
-        value = getattr(described, name)
-        if value is not None:
-            require_within(limit, value, name)
-
-
 def _shown(value: float, unit: Unit) -> str:
     """Counts are written out, other numbers with four digits and their unit."""
     if unit == _ONE and float(value).is_integer() and abs(value) < 1e15:

@@ -2,6 +2,7 @@
 
 import dataclasses
 import re
+from typing import Annotated
 
 import numpy as np
 import pytest
@@ -14,14 +15,14 @@ from squeezefilm.chain.played_texture import FingerMotion
 from squeezefilm.config.load import load_text
 from squeezefilm.display import Display, load_display
 from squeezefilm.errors import ConfigError, InputError
-from squeezefilm.hard_limits import HardLimit, require_fields, require_motion, require_within
+from squeezefilm.hard_limits import HardLimit, require_motion, require_within
 from squeezefilm.plate.beam.modes import free_beam_mode
 from squeezefilm.plate.laminate import plate_laminate
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.solid.mesh import plate_model
 from squeezefilm.plate.solid.modes import check_band
 from squeezefilm.presets import path as preset_path
-from squeezefilm.quantities import Unit
+from squeezefilm.quantities import Unit, checked_numbers
 from squeezefilm.render.motion.minimum_jerk import MinimumJerkStroke
 from squeezefilm.render.motion.stroke import Stroke
 from squeezefilm.study.design.plan import plan_study
@@ -50,14 +51,15 @@ def test_every_limit_is_one_and_says_what_was_asked_what_is_allowed_and_why(name
 
 
 def test_fields_are_checked_by_name_and_none_is_left_alone() -> None:
+    @checked_numbers
     @dataclasses.dataclass
     class Described:
-        length: float
-        width: float | None = None
+        length: Annotated[float, hard.SIDE]
+        width: Annotated[float, hard.SIDE] | None = None
 
-    require_fields(Described(0.1), length=hard.SIDE, width=hard.SIDE)
+    assert Described(0.1).width is None
     with pytest.raises(InputError, match="width = 20 m"):
-        require_fields(Described(0.1, 20.0), length=hard.SIDE, width=hard.SIDE)
+        Described(0.1, 20.0)
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ from __future__ import annotations
 import dataclasses
 import math
 from dataclasses import dataclass
-from typing import Any, ClassVar, Literal, get_args
+from typing import Any, ClassVar, Literal, cast, get_args
 
 import numpy as np
 
@@ -40,7 +40,7 @@ from squeezefilm.quantities import (
     Newton,
     Second,
     Volt,
-    did_you_mean,
+    require_one_of,
 )
 from squeezefilm.render.fidelity.rendered_stroke import RenderedStroke, rendered_stroke
 from squeezefilm.render.fidelity.report import FidelityReport, fidelity_report
@@ -251,8 +251,9 @@ def render_texture(
     """
     tell = progress or (lambda _: None)
     texture = TextureFile.of(texture)
-    way: Compensation = _one_of("compensation", compensation, COMPENSATIONS)
-    what: Wave = _one_of("wave", wave, WAVES)
+    require_one_of("compensation", compensation, COMPENSATIONS)
+    require_one_of("wave", wave, WAVES)
+    way, what = cast(Compensation, compensation), cast(Wave, wave)
     eyes = sensor if sensor is None or isinstance(sensor, SensorModel) else sensor_named(sensor)
     finger = FingerMotion.of(motion, control_rate)
     require_on_display(display.actuator, finger)
@@ -403,12 +404,3 @@ def _strongest(stroke: RenderedStroke, period: Metre | None) -> FloatArray | Non
     strong = peaks[power[peaks] > _FAINT * power[least:].max(initial=0.0)]
     best = np.sort(strong[np.argsort(power[strong])[::-1][:_MOST_LINES]])
     return np.asarray(best / length, dtype=float) if best.size else None
-
-
-def _one_of(name: str, value: str, allowed: tuple[Any, ...]) -> Any:
-    if value not in allowed:
-        raise InputError(
-            f"{name} = '{value}' is not known.{did_you_mean(value, allowed)} Allowed: "
-            f"{', '.join(allowed)}"
-        )
-    return value

@@ -62,9 +62,13 @@ class _Rule:
 
     def holds(self, value: float) -> bool:
         """Whether a float is finite and within the bounds."""
-        return math.isfinite(value) and all(
-            HOLDS[word](value, bound) for word, bound in self.bounds.items()
-        )
+        if not self.bounds:  # most of what is called often
+            return math.isfinite(value)
+        return math.isfinite(value) and self.within(value)
+
+    def within(self, value: Any) -> bool:
+        """Whether a number is within the bounds."""
+        return all(HOLDS[word](value, bound) for word, bound in self.bounds.items())
 
 
 def _members(hint: Any) -> list[Any]:
@@ -191,7 +195,7 @@ def _in_kind(name: str, value: Any, rule: _Rule) -> Any:
 
 def _count(name: str, value: Any, rule: _Rule) -> Any:
     counted = is_whole(value) and int(value).bit_length() <= _MOST_BITS
-    if counted and all(HOLDS[word](value, bound) for word, bound in rule.bounds.items()):
+    if counted and rule.within(value):
         return value
     wanted = [f"{word.replace('_', ' ')} {bound:.0f}" for word, bound in rule.bounds.items()]
     raise InputError(

@@ -289,10 +289,9 @@ class Studies:
             raise InputError("this sitting was not consented to yet")
         told = self.run(sitting).respond(token, response)
         self._now.pop(id, None)
-        phase = self.store(sitting.study).rows("SELECT phase FROM trial WHERE uuid = ?", [token])[
-            0
-        ]["phase"]
-        feedback = phase == "practice"
+        store = self.store(sitting.study)
+        [row] = store.rows("SELECT phase FROM trial WHERE uuid = ?", [token])
+        feedback = row["phase"] == "practice"
         return {
             "number": told.number,
             "repeated": told.repeated,
