@@ -221,6 +221,41 @@ def test_a_twins_watchdog_waits_for_a_system_that_carries_nothing(
     assert latest - 25 <= clock.faulted <= latest
 
 
+@pytest.mark.parametrize(
+    ("waits", "patient", "latest"),
+    [(range(0), True, 53), (range(200), True, 270), (range(200), False, 53)],
+    ids=["has it", "waits", "strict"],
+)
+def test_a_twins_watchdog_waits_for_a_host_that_waits_for_a_processor(
+    waits: range,
+    patient: bool,
+    latest: int,
+    host: list[int],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    device = playing_twin()
+    server = PtyServer(device, patient=patient)
+    host.append(os.open(server.port, os.O_RDWR | os.O_NOCTTY))
+    clock = Seconds(server, device, range(5000))
+
+    class Waits:
+        def __init__(self, parent: int) -> None:
+            assert parent == os.getppid()
+
+        def waited_since(self, begin: int, now: int) -> int:
+            assert begin <= now
+            return 1000 if (clock.now - clock.began) // 1000 in waits else 0
+
+    monkeypatch.setattr(server._way, "held_up_since", lambda wall: wall)
+    monkeypatch.setattr(pty_server, "Waiting", Waits)
+    monkeypatch.setattr(pty_server, "_PAUSE", 0.0)
+    monkeypatch.setattr(pty_server.time, "monotonic_ns", clock)
+    server.serve(os.getppid())
+    server.close()
+    assert device.machine.fault is Fault.WATCHDOG
+    assert latest - 25 <= clock.faulted <= latest
+
+
 def test_a_byte_goes_to_and_fro_through_the_system() -> None:
     server = PtyServer(Told(), patient=True)  # type: ignore[arg-type] # as above
     assert server._way.held_up_since(1000) == 1000
