@@ -13,7 +13,8 @@ from squeezefilm.bench.setup import PlaySetup, play_setup
 from squeezefilm.display import Display, load_display
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ, TOUCH_PANEL_240_HZ, SensorModel
 from squeezefilm.session.play import simulated as bench
-from squeezefilm.session.play.player import Ending, Player
+from squeezefilm.session.play.plan import Ending
+from squeezefilm.session.play.player import Player
 from squeezefilm.session.play.real_time import PlayOutcome
 from squeezefilm.session.play.simulated import virtual_play
 from squeezefilm.session.record.trace import read_trace

@@ -15,7 +15,8 @@ from pathlib import Path
 
 import numpy as np
 
-from squeezefilm.device.machine.device import Fault, Machine
+from squeezefilm.device.machine.device import Machine
+from squeezefilm.device.wire.states import Fault
 from squeezefilm.display import load_display
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ
 from squeezefilm.twin.device import TwinDevice

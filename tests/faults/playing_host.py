@@ -19,7 +19,7 @@ from squeezefilm.render.program.lowering import lower
 from squeezefilm.render.resonator.compensation import DrivenEnvelope
 from squeezefilm.render.texture.gratings import Square
 from squeezefilm.session.loop.plan import DriveTable, LoopPlan
-from squeezefilm.session.play.player import PlayPlan
+from squeezefilm.session.play.plan import PlayPlan
 from squeezefilm.session.play.real_time import run_play
 
 

@@ -19,7 +19,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from squeezefilm.device.machine.device import Fault
+from squeezefilm.device.wire.states import Fault
 from squeezefilm.session.loop import rows as column
 from squeezefilm.session.record.trace import read_trace
 

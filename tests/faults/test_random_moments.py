@@ -18,7 +18,8 @@ import pytest
 from tests.faults.forked import Forked
 from tests.faults.playing_host import tell_ending
 
-from squeezefilm.device.machine.device import CLOCK, Fault
+from squeezefilm.device.machine.playing import CLOCK
+from squeezefilm.device.wire.states import Fault
 from squeezefilm.session.record.trace import read_trace
 
 from .test_play_faults import observed_twin

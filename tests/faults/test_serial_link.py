@@ -13,9 +13,11 @@ import numpy as np
 import pytest
 
 from squeezefilm.device.host import DeviceHost
-from squeezefilm.device.machine.device import CLOCK, Fault, Machine, State
+from squeezefilm.device.machine.device import Machine
+from squeezefilm.device.machine.playing import CLOCK
 from squeezefilm.device.wire.link import Link
 from squeezefilm.device.wire.safety import Limits
+from squeezefilm.device.wire.states import Fault, State
 from squeezefilm.device.wire.streams import SerialStream, open_stream
 from squeezefilm.errors import DeviceError, InputError
 

@@ -30,6 +30,7 @@ from squeezefilm.formats.hjif import ReferenceDevice, hjif_of
 from squeezefilm.materials import ElasticMaterial, Gas, Piezoceramic, PiezoConstants
 from squeezefilm.plate.beam.modes import BeamMode
 from squeezefilm.plate.beam.response import BeamResponse, beam_response
+from squeezefilm.plate.circuit import EquivalentCircuit
 from squeezefilm.plate.laminate import Laminate, Layer, plate_laminate
 from squeezefilm.plate.layout import CeramicPatch, RectangularPlate
 from squeezefilm.plate.loaded_mode import LoadedMode
@@ -53,12 +54,7 @@ from squeezefilm.plate.shear.section import (
     shear_layout,
 )
 from squeezefilm.plate.solid.modes import PlateModes
-from squeezefilm.plate.solid.response import (
-    EquivalentCircuit,
-    HarmonicResponse,
-    SurfaceLoad,
-    harmonic_response,
-)
+from squeezefilm.plate.solid.response import HarmonicResponse, SurfaceLoad, harmonic_response
 from squeezefilm.plate.solid.solve import solve_modes
 from squeezefilm.plate.solid.working import SolidMode, solid_mode
 from squeezefilm.plate.sound import RadiatingSurface, rectangular_surface

@@ -8,10 +8,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from squeezefilm.device.machine.device import State
 from squeezefilm.device.wire import messages as m
 from squeezefilm.device.wire.frames import Deframer
 from squeezefilm.device.wire.safety import Limits
+from squeezefilm.device.wire.states import State
 from squeezefilm.display import load_display
 from squeezefilm.errors import InputError
 from squeezefilm.render.motion.sensor import SensorModel, sensor_stream

@@ -12,7 +12,8 @@ import struct
 from collections import Counter
 from dataclasses import astuple
 
-from squeezefilm.device.machine.device import TICK_PERIOD, DeviceLimits, Machine
+from squeezefilm.device.machine.device import TICK_PERIOD, Machine
+from squeezefilm.device.machine.limits import DeviceLimits
 from squeezefilm.device.machine.playing import Mode
 from squeezefilm.device.wire import messages as m
 from squeezefilm.device.wire.frames import Deframer

@@ -14,9 +14,10 @@ from squeezefilm.bench.check import DeviceCheck, check_device
 from squeezefilm.bench.conversation import Conversation
 from squeezefilm.bench.loop_check import loop_result
 from squeezefilm.device.machine import device
-from squeezefilm.device.machine.device import Machine, Reason
+from squeezefilm.device.machine.device import Machine
 from squeezefilm.device.wire import messages as m
 from squeezefilm.device.wire.frames import Frame
+from squeezefilm.device.wire.states import Reason
 from squeezefilm.errors import DeviceError
 from squeezefilm.session.loop.lateness import CLASSES, Lateness, lateness_class
 

@@ -12,9 +12,10 @@ from dataclasses import dataclass, field
 import pytest
 
 from squeezefilm.device.host import DeviceHost
-from squeezefilm.device.machine.device import Fault, Machine, State
+from squeezefilm.device.machine.device import Machine
 from squeezefilm.device.wire.link import Link
 from squeezefilm.device.wire.safety import Limits
+from squeezefilm.device.wire.states import Fault, State
 from squeezefilm.errors import DeviceError
 
 from .wire import TICK, Wire

@@ -9,12 +9,14 @@ import numpy as np
 import pytest
 
 from squeezefilm.device.host import DeviceHost
-from squeezefilm.device.machine.device import DeviceLimits, Fault, Machine, State
+from squeezefilm.device.machine.device import Machine
+from squeezefilm.device.machine.limits import DeviceLimits
 from squeezefilm.device.ports import Drive, Pickup, Sensor
 from squeezefilm.device.serial_ports import DevicePickup, DeviceSensor, SerialDrive
 from squeezefilm.device.wire import messages as m
 from squeezefilm.device.wire.link import Link
 from squeezefilm.device.wire.safety import Limits
+from squeezefilm.device.wire.states import Fault, State
 from squeezefilm.errors import DeviceError, InputError
 
 from .adversary import LIMITS

@@ -5,18 +5,12 @@ import struct
 
 import pytest
 
-from squeezefilm.device.machine.device import (
-    DeviceLimits,
-    Fault,
-    Machine,
-    Reason,
-    State,
-    level_of,
-    next_token,
-)
+from squeezefilm.device.machine.device import Machine, next_token
+from squeezefilm.device.machine.limits import DeviceLimits, level_of
 from squeezefilm.device.wire import messages as m
 from squeezefilm.device.wire.frames import Frame, frame_from_bytes
 from squeezefilm.device.wire.safety import Limits
+from squeezefilm.device.wire.states import Fault, Reason, State
 
 from .adversary import LIMITS
 

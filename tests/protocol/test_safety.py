@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from squeezefilm.device.machine.device import level_of
+from squeezefilm.device.machine.limits import level_of
 from squeezefilm.device.wire.messages import limits_message
 from squeezefilm.device.wire.safety import Limits, require_safe_drive
 from squeezefilm.errors import InputError

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator
 
 import pytest
 
-from squeezefilm.device.machine.device import CLOCK
+from squeezefilm.device.machine.playing import CLOCK
 from squeezefilm.device.wire import messages as m
 from squeezefilm.device.wire.safety import Limits
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 import random
 from dataclasses import dataclass, field
 
-from squeezefilm.device.machine.device import CLOCK, Machine
+from squeezefilm.device.machine.device import Machine
+from squeezefilm.device.machine.playing import CLOCK
 from squeezefilm.errors import DeviceError
 
 TICK = 100

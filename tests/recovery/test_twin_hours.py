@@ -10,9 +10,10 @@ import tracemalloc
 import numpy as np
 import pytest
 
-from squeezefilm.device.machine.device import CLOCK, State
+from squeezefilm.device.machine.playing import CLOCK
 from squeezefilm.device.wire import messages as m
 from squeezefilm.device.wire.safety import Limits
+from squeezefilm.device.wire.states import State
 from squeezefilm.display import load_display
 from squeezefilm.twin.device import TwinDevice
 from squeezefilm.twin.hand import hand_from

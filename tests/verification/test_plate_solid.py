@@ -19,14 +19,12 @@ from squeezefilm.plate.layout import (
     RectangularPlate,
     rim_supports,
 )
-from squeezefilm.plate.solid.mesh import COARSE, plate_model
+from squeezefilm.plate.solid.direct import direct_admittance
+from squeezefilm.plate.solid.mesh import plate_model
 from squeezefilm.plate.solid.modes import SolvedModel, tracked
 from squeezefilm.plate.solid.reduced import harmonic_solution, reduced_class, surface_values
-from squeezefilm.plate.solid.response import (
-    SurfaceLoad,
-    direct_admittance,
-    harmonic_response,
-)
+from squeezefilm.plate.solid.resolution import COARSE
+from squeezefilm.plate.solid.response import SurfaceLoad, harmonic_response
 from squeezefilm.plate.solid.solve import solve_modes
 from squeezefilm.plate.solid.symmetry import all_classes, drive_classes
 from squeezefilm.presets import path as preset_path

@@ -20,6 +20,7 @@ from squeezefilm.device.wire.safety import Limits
 from squeezefilm.device.wire.states import Fault, Reason, State
 from squeezefilm.errors import DeviceError
 from squeezefilm.quantities import Hertz, Second, Volt
+from squeezefilm.session.play.plan import REPORT_PERIOD
 
 TEST_VOLTAGE: Volt = 1.0
 """The most that a check may ask of a device."""
@@ -27,7 +28,6 @@ ZERO_WITHIN: Second = 60e-3
 """From the last accepted frame to an output at zero, on the device's clock."""
 SLOWEST_ROUND_TRIP: Second = 25e-3
 """Half of the watchdog's patience: one lost frame must not stop the device."""
-REPORT_PERIOD: Second = 1e-3
 _ECHOES = 300
 _KEEP_ALIVE: Second = 20e-3
 

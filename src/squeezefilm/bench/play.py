@@ -33,7 +33,7 @@ from squeezefilm.progress import SayProgress
 from squeezefilm.quantities import FloatArray, Hertz, MetrePerVolt, Second, Unit, Volt, require
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ, SensorModel, sensor_named
 from squeezefilm.results import Result, stamp
-from squeezefilm.session.play.player import PlayView
+from squeezefilm.session.play.plan import PlayView
 from squeezefilm.session.play.real_time import PlayOutcome, run_play
 from squeezefilm.session.record.trace import read_trace
 from squeezefilm.texture_file import NamedTexture, TextureFile

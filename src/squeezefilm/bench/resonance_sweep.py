@@ -28,8 +28,8 @@ from squeezefilm.quantities import (
     Volt,
     require,
 )
+from squeezefilm.session.play.plan import REPORT_PERIOD
 
-REPORT_PERIOD: Second = 1e-3
 READINGS = 16
 """Readings averaged at each carrier."""
 PROMINENCE: Dimensionless = 1.1

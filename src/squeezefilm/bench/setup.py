@@ -30,7 +30,7 @@ from squeezefilm.render.resonator.compensation import DrivenEnvelope
 from squeezefilm.render.resonator.envelope import envelope_time_constant
 from squeezefilm.session.loop.plan import DriveTable, FrictionTable, LoopPlan
 from squeezefilm.session.loop.tick import make_tick
-from squeezefilm.session.play.player import REPORT_PERIOD, PlayPlan
+from squeezefilm.session.play.plan import REPORT_PERIOD, PlayPlan
 from squeezefilm.session.play.tile import TextureTile, tile_of
 from squeezefilm.texture_file import TextureFile
 

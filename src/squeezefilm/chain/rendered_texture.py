@@ -7,7 +7,6 @@ with the finger on it → friction by the display's law → tangential force →
 from __future__ import annotations
 
 import dataclasses
-import math
 from dataclasses import dataclass
 from typing import Any, ClassVar, Literal, cast, get_args
 
@@ -36,7 +35,6 @@ from squeezefilm.quantities import (
     DimensionlessArray,
     FloatArray,
     Hertz,
-    Metre,
     Newton,
     Second,
     Volt,
@@ -44,6 +42,7 @@ from squeezefilm.quantities import (
 )
 from squeezefilm.render.fidelity.rendered_stroke import RenderedStroke, rendered_stroke
 from squeezefilm.render.fidelity.report import FidelityReport, fidelity_report
+from squeezefilm.render.fidelity.spectral_lines import strongest_lines
 from squeezefilm.render.motion.sensor import SensorModel, sensor_named
 from squeezefilm.render.motion.stroke import Stroke
 from squeezefilm.render.program.inverse import FrictionInverse
@@ -59,8 +58,6 @@ Wave = Literal["ignored", "felt", "compensated"]
 WAVES: tuple[Wave, ...] = get_args(Wave)
 """Whether the standing wave's nodes are left out, felt, or felt and made up for."""
 
-_MOST_LINES = 6
-_FAINT = 0.01
 CONTROL_RATE: Hertz = 19.2e3
 """Of the loop (Hz): commands to which a converter of 192 kHz gives ten samples each."""
 
@@ -294,7 +291,7 @@ def render_texture(
     values = texture.texture(finger.x, finger.y, finger.speed, finger.time)
     amplitude = played.amplitude(values)
     reached = felt(amplitude / centred) if what == "compensated" else friction(amplitude)
-    asked = reached if _is_amplitude(texture) else played.friction(values)
+    asked = reached if texture.texture.quantity == "amplitude" else played.friction(values)
     factor = np.ones(finger.time.size)
     if factors is not None:
         factor = factors.factor(finger.x, finger.y) / centred
@@ -315,7 +312,7 @@ def render_texture(
     )
     judged, because = None, None
     try:
-        judged = fidelity_report(stroke, _strongest(stroke, played.spatial_period))
+        judged = fidelity_report(stroke, strongest_lines(stroke, played.spatial_period))
     except InputError as error:
         because = str(error)
     return RenderAnalysis(
@@ -375,32 +372,3 @@ def lowered(
         friction_coefficient=p.friction_coefficient if quantity == "friction_reduction" else None,
         compensation=compensation,
     )
-
-
-def _is_amplitude(texture: TextureFile) -> bool:
-    return texture.texture.quantity == "amplitude"
-
-
-def _strongest(stroke: RenderedStroke, period: Metre | None) -> FloatArray | None:
-    """Spatial frequencies (1/m) at which a texture without a period has its contrast.
-
-    The strongest lines of the first pass's spectrum, at most six; elsewhere a share of next to
-    nothing would be measured. None where `fidelity_report` knows better.
-    """
-    turns = np.flatnonzero(np.diff(np.sign(np.diff(stroke.position))) != 0)
-    end = int(turns[0]) + 2 if turns.size else stroke.position.size
-    way, wanted = stroke.position[:end], stroke.relative_friction_wanted[:end]
-    length = abs(float(way[-1] - way[0]))
-    if period is not None or length == 0.0 or way.size < 64:
-        return None
-    rising = 1 if way[-1] > way[0] else -1
-    even = np.linspace(way.min(), way.max(), 8192)
-    values = np.interp(even, way[::rising], wanted[::rising])
-    power = np.abs(np.fft.rfft((values - values.mean()) * np.hanning(even.size))) ** 2
-    # A pass whose start is left out must still show four periods.
-    least = math.ceil(5 / (1 - 0.2))
-    lines = np.arange(least, power.size - 1)
-    peaks = lines[(power[lines] >= power[lines - 1]) & (power[lines] > power[lines + 1])]
-    strong = peaks[power[peaks] > _FAINT * power[least:].max(initial=0.0)]
-    best = np.sort(strong[np.argsort(power[strong])[::-1][:_MOST_LINES]])
-    return np.asarray(best / length, dtype=float) if best.size else None

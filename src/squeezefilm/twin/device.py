@@ -11,8 +11,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from squeezefilm.device.machine.device import CLOCK, DeviceLimits, Machine, State
-from squeezefilm.device.machine.playing import Finger, until
+from squeezefilm.device.machine.device import Machine
+from squeezefilm.device.machine.limits import DeviceLimits
+from squeezefilm.device.machine.playing import CLOCK, Finger, until
+from squeezefilm.device.wire.states import State
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError
 from squeezefilm.twin.hand import Hand

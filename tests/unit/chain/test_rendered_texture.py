@@ -15,13 +15,13 @@ from squeezefilm.chain.rendered_texture import (
     CONTROL_RATE,
     WAVES,
     RenderAnalysis,
-    _strongest,
     lowered,
     render_texture,
 )
 from squeezefilm.chain.standing_wave import wave_factors
 from squeezefilm.display import load_display
 from squeezefilm.errors import InputError
+from squeezefilm.render.fidelity.spectral_lines import strongest_lines
 from squeezefilm.render.motion.finger_path import FingerPath
 from squeezefilm.render.motion.minimum_jerk import MinimumJerkStroke
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ
@@ -257,7 +257,7 @@ def strongest(way: Any, *strengths: tuple[int, float], period: float | None = No
     stroke = dataclasses.replace(
         made().stroke, position=way, relative_friction_wanted=np.asarray(wanted)
     )
-    return _strongest(stroke, period)
+    return strongest_lines(stroke, period)
 
 
 def test_the_strongest_lines_of_the_first_pass_are_found() -> None:
@@ -283,7 +283,7 @@ def test_later_passes_and_what_others_know_are_left_out() -> None:
             [np.sin(500 * math.pi * WAY), np.sin(1500 * math.pi * WAY[-2::-1])]
         ),
     )
-    assert _strongest(stroke, None) == pytest.approx([250.0], rel=1e-3)
+    assert strongest_lines(stroke, None) == pytest.approx([250.0], rel=1e-3)
     assert strongest(WAY, (10, 1.0), period=4e-3) is None
     assert strongest(WAY[:63], (10, 1.0)) is None
     assert strongest(np.linspace(0, 40e-3, 64), (10, 1.0)) is not None

@@ -15,7 +15,7 @@ import pytest
 from squeezefilm.errors import DeviceError, InputError
 from squeezefilm.perception.stimuli import Stimulus
 from squeezefilm.session.play import real_time as playing
-from squeezefilm.session.play.player import PlayPlan
+from squeezefilm.session.play.plan import PlayPlan
 from squeezefilm.study.conduct.played_device import SessionDevice
 from squeezefilm.study.conduct.run import StudyRun
 from squeezefilm.study.conduct.sessions import begin_session

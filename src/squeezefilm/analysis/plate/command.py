@@ -19,6 +19,7 @@ from squeezefilm.display import Display
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import NODAL_LINES, require_within
 from squeezefilm.plate.beam.response import beam_response
+from squeezefilm.plate.circuit import EquivalentCircuit
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.shear.modes import shear_mode
 from squeezefilm.plate.solid.modes import (
@@ -28,7 +29,7 @@ from squeezefilm.plate.solid.modes import (
     profiles,
     zero_crossings,
 )
-from squeezefilm.plate.solid.response import EquivalentCircuit, HarmonicResponse, harmonic_response
+from squeezefilm.plate.solid.response import HarmonicResponse, harmonic_response
 from squeezefilm.plate.solid.solve import solve_modes
 from squeezefilm.plate.sound import SoundField, rectangular_surface, sound_field
 from squeezefilm.progress import SayProgress

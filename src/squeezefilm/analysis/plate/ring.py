@@ -11,6 +11,7 @@ from squeezefilm.analysis.plate.command import ModeRow
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import RING_MODES, require_within
+from squeezefilm.plate.circuit import EquivalentCircuit
 from squeezefilm.plate.layout import AnnularStator, DiscPlate
 from squeezefilm.plate.ring.body import (
     Direction,
@@ -27,7 +28,6 @@ from squeezefilm.plate.ring.response import (
     static_capacitance,
 )
 from squeezefilm.plate.solid.modes import check_band
-from squeezefilm.plate.solid.response import EquivalentCircuit
 from squeezefilm.plate.sound import SoundField, ring_surface, sound_field
 from squeezefilm.progress import SayProgress
 from squeezefilm.quantities import (

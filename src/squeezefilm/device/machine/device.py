@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from squeezefilm.device.machine.limits import DeviceLimits, level_of
+from squeezefilm.device.machine.limits import DeviceLimits
 from squeezefilm.device.machine.loads import Loads
 from squeezefilm.device.machine.playing import CLOCK, Finger, Mode, Playing
 from squeezefilm.device.machine.reports import Reports
@@ -18,17 +18,6 @@ from squeezefilm.device.machine.tile import Tile
 from squeezefilm.device.wire import messages as m
 from squeezefilm.device.wire.frames import VERSION, Deframer, Frame
 from squeezefilm.device.wire.states import Fault, Reason, State
-
-__all__ = [
-    "CLOCK",
-    "DeviceLimits",
-    "Fault",
-    "Machine",
-    "Reason",
-    "State",
-    "level_of",
-    "next_token",
-]
 
 SILENCE = 50_000
 """µs without an accepted frame after which an armed device faults."""

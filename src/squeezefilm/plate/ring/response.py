@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from squeezefilm.plate.circuit import EquivalentCircuit
 from squeezefilm.plate.ring.body import RingBody, surface_profile
 from squeezefilm.plate.ring.modes import (
     AnnularMode,
@@ -16,7 +17,6 @@ from squeezefilm.plate.ring.modes import (
     annular_modes,
     clamped_capacitance,
 )
-from squeezefilm.plate.solid.response import EquivalentCircuit
 from squeezefilm.quantities import (
     Ampere,
     ComplexArray,

@@ -16,8 +16,9 @@ from squeezefilm.plate.elements.slabs import Slabs
 from squeezefilm.plate.laminate import plate_laminate
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.solid.electrode_circuits import inverse_with_open
-from squeezefilm.plate.solid.mesh import COARSE, plate_model
+from squeezefilm.plate.solid.mesh import plate_model
 from squeezefilm.plate.solid.modes import Label, SolvedModel, label_of, surface_shapes
+from squeezefilm.plate.solid.resolution import COARSE
 from squeezefilm.plate.solid.shear_guess import screened_frequency
 from squeezefilm.plate.solid.symmetry import Parity
 from squeezefilm.quantities import FloatArray, IntArray

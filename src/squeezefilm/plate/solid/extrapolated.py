@@ -10,9 +10,10 @@ from scipy.linalg import eigh
 from squeezefilm.plate.elements.krylov import modes_near, prolonged
 from squeezefilm.plate.elements.slab_factor import SlabFactor
 from squeezefilm.plate.elements.slabs import Slabs
-from squeezefilm.plate.solid.mesh import COARSE, plate_model
+from squeezefilm.plate.solid.mesh import plate_model
 from squeezefilm.plate.solid.reduced import ReducedClass, resolved_frequency
 from squeezefilm.plate.solid.refined_modes import LEVELS, extrapolated
+from squeezefilm.plate.solid.resolution import COARSE
 from squeezefilm.quantities import Hertz
 
 

@@ -9,30 +9,29 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
 
 from squeezefilm.errors import GeometryError, OutOfRangeError
-from squeezefilm.materials import isotropic_stiffness
 from squeezefilm.plate.elements.box_model import (
     BoxModel,
     Electrode,
     EndCondition,
     Foundation,
-    Medium,
     require_memory,
 )
 from squeezefilm.plate.elements.lobatto import MAX_ORDER, LineMesh
-from squeezefilm.plate.layout import CeramicPatch, Face, FoamSupport, RectangularPlate
+from squeezefilm.plate.layout import CeramicPatch, FoamSupport, RectangularPlate
+from squeezefilm.plate.solid.layers import media, merged, snapped, through_thickness
+from squeezefilm.plate.solid.resolution import NORMAL, Resolution
 from squeezefilm.plate.solid.symmetry import (
     SNAP,
     Parity,
     mirror_map,
     symmetric_axes,
 )
-from squeezefilm.quantities import Dimensionless, IntArray, Metre, Unit, format_quantity
+from squeezefilm.quantities import IntArray, Unit, format_quantity
 
 # Largest side of the plate over its thinnest layer. Measured on the paper's plate: a layer of glue
 # with the plate's own constants moves (8,0) in proportion to its thickness, to 2e-6, up to a
@@ -42,34 +41,6 @@ _THINNEST = 2e4
 # 4e-5 of thin-plate theory at 290, within 1e-4 at 230, and off by 1e-3 at 430 and by 22 % at 1400,
 # where bending is lost in the rounding of membrane stiffness.
 _SLENDEREST = 250.0
-
-
-@dataclass(frozen=True)
-class Resolution:
-    """How fine a plate is meshed.
-
-    `edge_layers` are distances of element edges from a ceramic's edge, in units of the thinner of
-    plate and ceramic (`edge_layers_y` those across the slices), `bond_layers` those from a bond
-    across the thickness, in units of the layer's own. `order_x` is the least order of elements in
-    the plane, `order_z` that across each layer; `extra_x` and `extra_y` are added to 0.65 times the
-    phase (rad) that the shortest wave covers in an element.
-    """
-
-    edge_layers: tuple[float, ...]
-    edge_layers_y: tuple[float, ...]
-    order_x: int
-    extra_x: float
-    extra_y: float
-    order_z: int
-    bond_layers: tuple[float, ...] = ()
-    trunk: Dimensionless = 1.0
-
-
-# From each to the next every kind of error (smooth, at strip edges, at the bond) falls by a factor
-# of three or more: only then does the difference of two say what the finer one still lacks.
-COARSE = Resolution((0.9,), (0.9,), 3, 1, 2, 3, trunk=1.3)
-NORMAL = Resolution((0.2, 1.2), (0.3,), 3, 3, 4, 6)
-FINE = Resolution((0.06, 0.4, 1.5), (0.15,), 3, 3, 5.5, 5, (0.1,))
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,14 +78,6 @@ def wave_number(plate: RectangularPlate, frequency: float) -> float:
     return math.sqrt(k2)
 
 
-def _merged(values: Iterable[float]) -> list[float]:
-    out: list[float] = []
-    for value in sorted(values):
-        if not out or value > out[-1] + SNAP:
-            out.append(value)
-    return out
-
-
 def _breaks(plate: RectangularPlate, axis: int, half: bool) -> tuple[list[float], list[float]]:
     """All element edges that the layout asks for along an axis, and those of ceramics."""
     span = (plate.length, plate.width)[axis]
@@ -126,7 +89,7 @@ def _breaks(plate: RectangularPlate, axis: int, half: bool) -> tuple[list[float]
         (ceramics if isinstance(part, CeramicPatch) else springs).extend([start, start + extent])
     stop = span / 2 if half else span
     inside = [v for v in ceramics + springs if SNAP < v < stop - SNAP]
-    every = _merged([0.0, *inside, stop])
+    every = merged([0.0, *inside, stop])
     # An edge that coincides with the plate's own is snapped to it.
     sharp = [v for v in every if any(abs(v - c) < 2 * SNAP for c in ceramics)]
     return every, sharp
@@ -171,52 +134,6 @@ def _line(
             need = 0.65 * wave * (b - a) / number + extra
             orders.append(int(min(max(order, round(need)), MAX_ORDER)))
     return LineMesh(tuple(fine), tuple(orders))
-
-
-def _losses(plate: RectangularPlate) -> tuple[float, float, float]:
-    if plate.substrate.quality_factor is None:
-        whole = 1 / plate.quality_factor
-        return whole, whole, whole if plate.glue is None else 1 / plate.glue.quality_factor
-    glue = 0.0 if plate.glue is None else 1 / plate.glue.quality_factor
-    return 1 / plate.substrate.quality_factor, 1 / plate.ceramic.quality_factor, glue
-
-
-def _media(plate: RectangularPlate) -> tuple[Medium, ...]:
-    constants = plate.ceramic.full_constants
-    substrate, ceramic, glue = _losses(plate)
-    density = plate.ceramic.density
-
-    def piezo(name: str, sign: float) -> Medium:
-        return Medium(
-            name,
-            constants.stiffness_matrix,
-            density,
-            ceramic,
-            sign * constants.stress_matrix,
-            constants.permittivity_matrix,
-        )
-
-    media = [
-        Medium(
-            "substrate",
-            isotropic_stiffness(plate.substrate.young_modulus, plate.substrate.poisson_ratio),
-            plate.substrate.density,
-            substrate,
-        ),
-        # Poled away from the plate: towards −z below it, where all e change their sign.
-        piezo("ceramic_bottom", -1.0),
-        piezo("ceramic_top", 1.0),
-    ]
-    if plate.glue is not None:
-        media.append(
-            Medium(
-                "glue",
-                isotropic_stiffness(plate.glue.young_modulus, plate.glue.poisson_ratio),
-                plate.glue.density,
-                glue,
-            )
-        )
-    return tuple(media)
 
 
 def plate_model(
@@ -284,7 +201,7 @@ def plate_model(
         resolution.extra_y,
         cut=False,
     )
-    z, layers, ceramics = _through_thickness(plate, resolution)
+    z, layers, ceramics = through_thickness(plate, resolution)
     require_memory(x, y, z, resolution.trunk)
     medium, ceramic = np.full((2, x.elements, y.elements, z.elements), -1)
     centre_x, centre_y = ((np.array(m.edges[1:]) + np.array(m.edges[:-1])) / 2 for m in (x, y))
@@ -312,7 +229,7 @@ def plate_model(
         if electrode_of[i] != i or rows.size == 0 or columns.size == 0:
             continue
         number_of[i] = len(electrodes)
-        first, last = ceramics[patch.face, _snapped(patch.thickness)]
+        first, last = ceramics[patch.face, snapped(patch.thickness)]
         block = np.ix_(rows, columns, np.arange(first, last))
         medium[block] = 1 if patch.face == "bottom" else 2
         ceramic[block] = number_of[i]
@@ -348,7 +265,7 @@ def plate_model(
         x,
         y,
         z,
-        _media(plate),
+        media(plate),
         medium,
         ceramic,
         tuple(electrodes),
@@ -403,65 +320,3 @@ def _electrode_map(
                     signs[i] = -signs[i]
                 stands = [image if s == i else s for s in stands]
     return stands, tuple(signs)
-
-
-def _thicknesses(plate: RectangularPlate, face: Face) -> list[Metre]:
-    """The different thicknesses of the ceramics on a face, ascending."""
-    return _merged(patch.thickness for patch in plate.patches if patch.face == face)
-
-
-def _through_thickness(
-    plate: RectangularPlate, resolution: Resolution
-) -> tuple[LineMesh, dict[str, tuple[int, int]], dict[tuple[Face, int], tuple[int, int]]]:
-    """The mesh along z (0 at the plate's lower face), the range of elements of plate and glue by
-    name, and that of each patch's ceramic by its face and thickness (in units of `SNAP`)."""
-    glue = 0.0 if plate.glue is None else plate.glue.thickness
-    edges, orders = [0.0], []
-    layers: dict[str, tuple[int, int]] = {}
-    ceramics: dict[tuple[Face, int], tuple[int, int]] = {}
-
-    def add(thickness: Metre, order: int, *, from_below: bool, from_above: bool) -> None:
-        """One layer, its elements shrinking towards the bond below or above it."""
-        near = [c * thickness for c in resolution.bond_layers]
-        inner = [d for d in near if from_below] + [thickness - d for d in near if from_above]
-        bottom = edges[-1]
-        for part in [*sorted(inner), thickness]:
-            edges.append(bottom + part)
-            orders.append(order)
-
-    below = _thicknesses(plate, "bottom")
-    above = _thicknesses(plate, "top")
-    # Without its start: z = 0 is the plate's lower face, found when all below is known.
-    for outer, own in itertools.pairwise([*reversed(below), 0.0]):
-        add(outer - own, resolution.order_z, from_below=False, from_above=own == 0.0)
-    under = len(orders)
-    if below and glue:
-        add(glue, min(resolution.order_z, 4), from_below=False, from_above=False)
-        layers["glue_bottom"] = (under, len(orders))
-    start = len(orders)
-    add(plate.thickness, resolution.order_z, from_below=bool(below), from_above=bool(above))
-    layers["plate"] = (start, len(orders))
-    over = len(orders)
-    if above and glue:
-        add(glue, min(resolution.order_z, 4), from_below=False, from_above=False)
-        layers["glue_top"] = (over, len(orders))
-        over = len(orders)
-    for own, outer in itertools.pairwise([0.0, *above]):
-        add(outer - own, resolution.order_z, from_below=own == 0.0, from_above=False)
-    shift = edges[start]
-    mesh = LineMesh(tuple(v - shift for v in edges), tuple(orders))
-    for thickness in below:
-        at = _nearest(mesh, mesh.edges[under] - thickness)
-        ceramics["bottom", _snapped(thickness)] = (at, under)
-    for thickness in above:
-        at = _nearest(mesh, mesh.edges[over] + thickness)
-        ceramics["top", _snapped(thickness)] = (over, at)
-    return mesh, layers, ceramics
-
-
-def _nearest(mesh: LineMesh, position: Metre) -> int:
-    return int(np.argmin(np.abs(np.array(mesh.edges) - position)))
-
-
-def _snapped(length: Metre) -> int:
-    return round(length / SNAP)

@@ -15,8 +15,9 @@ from squeezefilm.plate.elements.box_model import Foundation, Medium
 from squeezefilm.plate.elements.slab_factor import SlabFactor
 from squeezefilm.plate.elements.slabs import Slabs
 from squeezefilm.plate.layout import RectangularPlate
-from squeezefilm.plate.solid.mesh import NORMAL, Resolution, plate_model
+from squeezefilm.plate.solid.mesh import plate_model
 from squeezefilm.plate.solid.modes import SolvedModel
+from squeezefilm.plate.solid.resolution import NORMAL, Resolution
 from squeezefilm.plate.solid.symmetry import Parity, drive_signs
 from squeezefilm.quantities import ComplexArray, FloatArray, Hertz
 

@@ -13,8 +13,9 @@ from squeezefilm.plate.elements.slabs import Slabs
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.solid.coarse_modes import CoarseModes
 from squeezefilm.plate.solid.electrode_circuits import inverse_with_open
-from squeezefilm.plate.solid.mesh import FINE, NORMAL, plate_model
+from squeezefilm.plate.solid.mesh import plate_model
 from squeezefilm.plate.solid.modes import Label, SolvedModel, label_of, surface_shapes
+from squeezefilm.plate.solid.resolution import FINE, NORMAL
 from squeezefilm.quantities import FloatArray, IntArray
 
 LEVELS = (NORMAL, FINE)

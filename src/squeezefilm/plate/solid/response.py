@@ -10,12 +10,11 @@ from typing import ClassVar
 import numpy as np
 
 from squeezefilm.errors import GeometryError, InputError
-from squeezefilm.hard_limits import FREQUENCY, require_within
+from squeezefilm.plate.circuit import EquivalentCircuit
 from squeezefilm.plate.elements.again import SolvedAgain
 from squeezefilm.plate.elements.blas_threads import one_blas_thread
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.solid.extrapolated import extrapolated_class
-from squeezefilm.plate.solid.mesh import NORMAL, Resolution
 from squeezefilm.plate.solid.modes import MODEL
 from squeezefilm.plate.solid.reduced import (
     ReducedClass,
@@ -23,20 +22,17 @@ from squeezefilm.plate.solid.reduced import (
     reduced_class,
     surface_values,
 )
+from squeezefilm.plate.solid.resolution import NORMAL, Resolution
 from squeezefilm.plate.solid.symmetry import all_classes, drive_classes, drive_signs
 from squeezefilm.quantities import (
     ComplexArray,
     Dimensionless,
-    Farad,
     FloatArray,
-    Henry,
-    Hertz,
     HertzArray,
     IntArray,
     KilogramPerSquareMetre,
     Metre,
     MetreArray,
-    Ohm,
     PascalPerMetre,
     PascalSecondPerMetre,
     Unit,
@@ -67,30 +63,6 @@ class SurfaceLoad:
         x = self.x + self.length * (nodes + 1) / 2
         y = self.y + self.width * (nodes + 1) / 2
         return x, y, np.outer(weights, weights) * self.length * self.width / 4
-
-
-@checked_numbers
-@dataclass(frozen=True)
-class EquivalentCircuit:
-    """Butterworth–Van Dyke: C0 parallel to a series of R1, L1 and C1, near one resonance."""
-
-    frequency: Hertz
-    quality_factor: Dimensionless
-    static_capacitance: Farad
-    motional_resistance: Ohm
-    motional_inductance: Henry
-    motional_capacitance: Farad
-
-    @checked_numbers
-    def admittance(self, frequency: HertzArray) -> ComplexArray:
-        """Y (S) of the circuit at frequencies (Hz)."""
-        omega = 2 * np.pi * np.asarray(frequency, dtype=float)
-        series = (
-            self.motional_resistance
-            + 1j * omega * self.motional_inductance
-            + 1 / (1j * omega * self.motional_capacitance)
-        )
-        return np.asarray(1j * omega * self.static_capacitance + 1 / series)
 
 
 @dataclass(frozen=True, eq=False)
@@ -405,60 +377,3 @@ def _truncation(
     _, _, charge = harmonic_solution(shorter, some, less, None, 1.0)
     change = np.abs(1j * some * charge - admittance[pick])
     return float(np.max(change / np.max(np.abs(admittance))))
-
-
-@checked_numbers
-def direct_admittance(
-    plate: RectangularPlate, frequency: Hertz, resolution: Resolution = NORMAL
-) -> tuple[complex, list[ComplexArray]]:
-    """Y (S) by a direct solve with complex constants at one frequency, and the solution of each
-    driven class: the check of the reduced response. Electrodes driven or shorted only.
-
-    Raises `InputError` for a frequency outside its hard limit.
-    """
-    require_within(FREQUENCY, frequency, "frequency")
-    from squeezefilm.plate.elements.cross_section import CrossSection
-    from squeezefilm.plate.elements.slab_factor import SlabFactor
-    from squeezefilm.plate.elements.slabs import Slabs
-    from squeezefilm.plate.solid.mesh import plate_model
-    from squeezefilm.plate.solid.modes import SolvedModel
-    from squeezefilm.plate.solid.reduced import (
-        class_drive,
-        loss_weight,
-        resolved_frequency,
-        spring_losses,
-    )
-
-    omega, charge = 2 * np.pi * frequency, 0j
-    solutions: list[ComplexArray] = []
-    with one_blas_thread():
-        for parity in drive_classes(plate):
-            built = plate_model(
-                plate, resolved_frequency((frequency, frequency)), resolution, parity
-            )
-            slabs = Slabs(built.model)
-            solved = SolvedModel(plate, built, slabs)
-            lossy = slabs.weighted_sections(loss_weight, spring_losses(built.model.foundations))
-            made: dict[int, CrossSection] = {}
-            sections = []
-            for real, loss in zip(slabs.sections, lossy, strict=True):
-                if id(real.P2) not in made:
-                    made[id(real.P2)] = CrossSection(
-                        real.codes,
-                        real.P2 + 1j * loss.P2,
-                        real.P1 + 1j * loss.P1,
-                        real.P0 + 1j * loss.P0,
-                        real.R,
-                        real.electrodes,
-                        real.g0,
-                        real.g1,
-                        real.c0,
-                    )
-                sections.append(made[id(real.P2)])
-            factor = SlabFactor(slabs, omega**2, sections=sections)
-            G, C = slabs.electrode_columns
-            drive = class_drive(plate, solved)
-            x = factor.solve(-(G @ drive)[:, None].astype(complex))
-            charge -= complex(built.copies * (drive @ (G.T @ x[:, 0] + C @ drive)))
-            solutions.append(x[:, 0])
-    return 1j * omega * charge, solutions

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from squeezefilm.report.display import (
     fidelity_figures,
     friction_figures,
+    layout_figures,
     plate_figures,
     texture_figures,
 )
@@ -35,7 +36,7 @@ FIGURES: tuple[FigureOfReport, ...] = (
         "layout",
         "Side view and layout",
         "The vibrating body to scale. Parts marked + and − follow the drive with opposite sign.",
-        plate_figures.layout,
+        layout_figures.layout,
     ),
     FigureOfReport(
         "mode",

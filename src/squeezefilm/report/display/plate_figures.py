@@ -7,23 +7,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from squeezefilm.plate.laminate import plate_laminate
-from squeezefilm.plate.layout import AnnularStator, DiscPlate, RectangularPlate
+from squeezefilm.plate.layout import AnnularStator, RectangularPlate
+from squeezefilm.report.display.layout_figures import _drive_strip
 from squeezefilm.report.kit.numbers import HZ, M, V, shown
 from squeezefilm.report.kit.style import (
     BAND,
     BLUE,
     INK,
-    METAL,
-    MINUS,
     MUTED,
     ORANGE,
     PAPER,
-    PLUS,
     drawn,
     legend_below,
     new_figure,
-    plain,
 )
 
 if TYPE_CHECKING:
@@ -31,247 +27,10 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from squeezefilm.analysis.analyze import Analysis
-    from squeezefilm.plate.laminate import Laminate
     from squeezefilm.quantities import FloatArray
 
-_SIGN = {1: "+", -1: "−"}
-_FILL = {1: PLUS, -1: MINUS}
 # More labels than this cannot be told apart on one axis.
 _MOST_LABELS = 26
-
-
-@drawn
-def layout(analysis: Analysis) -> Figure:
-    """The body to scale: plate with ceramics, or ring with waves."""
-    actuator = analysis.display.actuator
-    if isinstance(actuator, AnnularStator):
-        return _ring(actuator, analysis)
-    if isinstance(actuator, DiscPlate):
-        return _disc(actuator, analysis)
-    return _plate(actuator, plate_laminate(actuator))
-
-
-def _plate(plate: RectangularPlate, section: Laminate) -> Figure:
-    from matplotlib.patches import Rectangle
-
-    count = len(plate.patches)
-    neutral = section.neutral_axis
-    noun = "ceramic covers" if count == 1 else "ceramics cover"
-    title = (
-        f"{count} {noun} {100 * plate.coverage:.0f} % of the lower face; the plate bends about an "
-        f"axis {shown(neutral, M, 3)} below the touched face"
-    )
-    plan_height = float(np.clip(6.9 * plate.width / plate.length, 1.0, 5.2))
-    figure = new_figure(
-        title,
-        "neutral axis of a section with ceramic; thicknesses and positions as described",
-        plan_height + 2.6,
-    )
-    grid = figure.add_gridspec(2, 2, width_ratios=[4.6, 1.2], height_ratios=[plan_height, 0.55])
-    plan, side = figure.add_subplot(grid[0, 0]), figure.add_subplot(grid[1, 0])
-    detail = figure.add_subplot(grid[:, 1])
-    length, width = 1e3 * plate.length, 1e3 * plate.width
-
-    plan.set_title("lower face, seen through the plate; + and − say how it follows the drive")
-    plan.add_patch(Rectangle((0, 0), length, width, facecolor=METAL, edgecolor=INK, lw=1))
-    side.set_title("side view, to scale")
-    thick, ceramic = 1e3 * plate.thickness, 1e3 * plate.ceramic_thickness
-    side.add_patch(Rectangle((0, -thick), length, thick, facecolor=METAL, edgecolor=INK, lw=0.8))
-    for patch in plate.patches:
-        x, y, dx, dy = (1e3 * v for v in (patch.x, patch.y, patch.length, patch.width))
-        fill = _FILL[patch.polarity]
-        plan.add_patch(Rectangle((x, y), dx, dy, facecolor=fill, edgecolor=INK, lw=0.8))
-        side.add_patch(
-            Rectangle((x, -thick - ceramic), dx, ceramic, facecolor=fill, edgecolor=INK, lw=0.8)
-        )
-        # A sign needs some two percent of the picture to be read.
-        if min(dx, dy) > 0.02 * length:
-            plan.text(
-                x + dx / 2, y + dy / 2, _SIGN[patch.polarity], ha="center", va="center", fontsize=15
-            )
-    side.axhline(-1e3 * neutral, color=ORANGE, lw=1.2, ls=(0, (5, 2)))
-    pad = 0.015 * length
-    plan.set(xlim=(-pad, length + pad), ylim=(-pad, width + pad), aspect="equal")
-    plan.set(xlabel="x along the plate (mm)", ylabel="y (mm)")
-    deep = thick + ceramic
-    side.set(xlim=(-pad, length + pad), ylim=(-1.5 * deep, 0.5 * deep), aspect="equal")
-    side.set(xlabel="x along the plate (mm)")
-    side.set_yticks([])
-    for axes in (plan, side):
-        axes.grid(visible=False)
-    side.spines["left"].set_visible(False)
-    _section(detail, plate, neutral)
-    return figure
-
-
-def _disc(disc: DiscPlate, analysis: Analysis) -> Figure:
-    from matplotlib.patches import Circle, Rectangle
-
-    radius, thick = 500 * disc.diameter, 1e3 * disc.thickness
-    outer, inner = 500 * disc.ceramic_outer_diameter, 500 * disc.ceramic_inner_diameter
-    ceramic, hole = 1e3 * disc.ceramic_thickness, 500 * disc.inner_diameter
-    contact = 1e3 * analysis.display.finger.contact_length
-    share = (outer**2 - inner**2) / (radius**2 - hole**2)
-    figure = new_figure(
-        f"A ceramic below covers {100 * share:.0f} % of the disc; a finger pad {contact:.3g} mm "
-        f"wide touches {contact / (2 * radius):.0%} of its diameter",
-        "thicknesses and diameters as described",
-        5.6,
-    )
-    plan, side = figure.subplots(2, 1, height_ratios=[5, 1], sharex=True)
-    plan.set_title("seen from above, the ceramic through the disc")
-    plan.add_patch(Circle((0, 0), radius, facecolor=METAL, edgecolor=INK, lw=1))
-    plan.add_patch(Circle((0, 0), outer, facecolor=PLUS, edgecolor=INK, lw=0.8))
-    for size, fill in ((inner, METAL), (hole, PAPER)):
-        if size > 0:
-            plan.add_patch(Circle((0, 0), size, facecolor=fill, edgecolor=INK, lw=0.8))
-    plan.add_patch(
-        Rectangle(
-            (-contact / 2, -contact / 2),
-            contact,
-            contact,
-            facecolor="none",
-            edgecolor=ORANGE,
-            lw=2.2,
-            zorder=3,
-            label=f"finger contact, {contact:.3g} mm × {contact:.3g} mm",
-        )
-    )
-    side.set_title("section, to scale")
-    side.add_patch(Rectangle((-radius, -thick), 2 * radius, thick, facecolor=METAL, edgecolor=INK))
-    parts = ((-outer, -inner), (inner, outer)) if inner > 0 else ((-outer, outer),)
-    for left, right in parts:
-        side.add_patch(
-            Rectangle(
-                (left, -thick - ceramic), right - left, ceramic, facecolor=PLUS, edgecolor=INK
-            )
-        )
-    reach = 1.06 * max(radius, contact / 2)
-    deep = thick + ceramic
-    plan.set(xlim=(-reach, reach), ylim=(-reach, reach), aspect="equal", ylabel="y (mm)")
-    side.set(xlim=(-reach, reach), ylim=(-1.6 * deep, 0.6 * deep), aspect="equal")
-    side.set(xlabel="x (mm)")
-    side.set_yticks([])
-    side.spines["left"].set_visible(False)
-    for axes in (plan, side):
-        axes.grid(visible=False)
-    legend_below(plan, gap=0.02)
-    return figure
-
-
-def _section(axes: Axes, plate: RectangularPlate, neutral: float) -> None:
-    """The layers through the thickness, with the neutral axis."""
-    from matplotlib.patches import Rectangle
-
-    thick, ceramic = 1e3 * plate.thickness, 1e3 * plate.ceramic_thickness
-    axes.set_title("section, enlarged")
-    for top, height, fill, name in (
-        (0.0, thick, METAL, plate.substrate.name),
-        (thick, ceramic, PLUS, plate.ceramic.name),
-    ):
-        axes.add_patch(Rectangle((0, top), 1, height, facecolor=fill, edgecolor=INK, lw=1))
-        # Named at the edge that the neutral axis is further from, so that it crosses no name.
-        middle = top + height / 2
-        at = middle - 0.22 * height if 1e3 * neutral > middle else middle + 0.22 * height
-        axes.text(
-            0.5,
-            at,
-            f"{plain(name, 16)}\n{height:.3g} mm",
-            ha="center",
-            va="center",
-            fontsize=8.5,
-            linespacing=1.1,
-        )
-    axes.axhline(1e3 * neutral, color=ORANGE, lw=1.6, ls=(0, (5, 2)), label="neutral axis")
-    axes.set(xlim=(0, 1), ylim=(1.04 * (thick + ceramic), -0.04 * (thick + ceramic)))
-    axes.set(ylabel="depth below the touched face (mm)")
-    axes.set_xticks([])
-    axes.grid(visible=False)
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.02), frameon=False, handlelength=1.6)
-
-
-def _ring(ring: AnnularStator, analysis: Analysis) -> Figure:
-    from matplotlib.patches import Circle, Patch, Rectangle, Wedge
-
-    waves = round(ring.wavelengths_around)
-    radius, width = 500 * ring.mean_diameter, 1e3 * ring.radial_width
-    contact = 1e3 * analysis.display.finger.contact_length
-    figure = new_figure(
-        f"{waves} waves of {shown(ring.wavelength, M)} stand on the ring; a finger pad covers "
-        f"{contact / (500 * ring.wavelength):.2g} half waves",
-        f"{analysis.prediction.mode.model}, the ring taken as smooth (its teeth are left out)",
-        5.6,
-    )
-    axes = figure.subplots()
-    outer, half = radius + width / 2, 180 / (2 * waves)
-    for number in range(2 * waves):
-        angle = 90 - number * 2 * half
-        sign = 1 if number % 2 == 0 else -1
-        axes.add_patch(
-            Wedge(
-                (0, 0),
-                outer,
-                angle - half,
-                angle + half,
-                width=width,
-                facecolor=_FILL[sign],
-                edgecolor=INK,
-                lw=0.8,
-            )
-        )
-        if 2 * waves <= 60 and number:
-            axes.text(
-                (radius + width / 4) * math.cos(math.radians(angle)),
-                (radius + width / 4) * math.sin(math.radians(angle)),
-                _SIGN[sign],
-                ha="center",
-                va="center",
-                fontsize=float(np.clip(220 / (2 * waves), 7, 14)),
-            )
-    axes.add_patch(Circle((0, 0), radius, fill=False, ls=(0, (5, 3)), ec=MUTED, lw=1))
-    axes.add_patch(
-        Rectangle(
-            (-contact / 2, radius - contact / 2),
-            contact,
-            contact,
-            facecolor="none",
-            edgecolor=ORANGE,
-            lw=2.2,
-            zorder=3,
-        )
-    )
-    axes.annotate(
-        "", (-radius, 0), (radius, 0), arrowprops={"arrowstyle": "<->", "color": INK, "lw": 1}
-    )
-    axes.text(
-        0,
-        0.03 * outer,
-        f"mean diameter\n{2 * radius:.4g} mm",
-        ha="center",
-        va="bottom",
-        fontsize=9.5,
-    )
-    axes.legend(
-        handles=[
-            Patch(facecolor=PLUS, edgecolor=INK, label="+  half wave going up"),
-            Patch(facecolor=MINUS, edgecolor=INK, label="−  half wave going down"),
-            Patch(facecolor=PAPER, edgecolor=INK, label="lines between: nodal lines"),
-            Patch(
-                facecolor="none",
-                edgecolor=ORANGE,
-                lw=2,
-                label=f"finger contact, {contact:.3g} mm × {contact:.3g} mm",
-            ),
-        ],
-        loc="center left",
-        bbox_to_anchor=(1.04, 0.5),
-        frameon=False,
-    )
-    reach = 1.06 * max(outer, radius + contact / 2)
-    axes.set(xlim=(-reach, reach), ylim=(-1.06 * outer, reach), aspect="equal")
-    axes.set(xlabel="x (mm)", ylabel="y (mm)")
-    axes.grid(visible=False)
-    return figure
 
 
 @drawn
@@ -343,23 +102,6 @@ def _mean_radius(analysis: Analysis) -> float:
     actuator = analysis.display.actuator
     assert isinstance(actuator, AnnularStator), "only a stator has no line along a plate"
     return actuator.mean_diameter / 2
-
-
-def _drive_strip(axes: Axes, plate: RectangularPlate, reach: float) -> float:
-    """The ceramics under the mode that they drive; the new bottom of the axes."""
-    from matplotlib.patches import Rectangle
-
-    low, high = -1.62 * reach, -1.28 * reach
-    for patch in plate.patches:
-        x, dx = 1e3 * patch.x, 1e3 * patch.length
-        axes.add_patch(
-            Rectangle(
-                (x, low), dx, high - low, facecolor=_FILL[patch.polarity], edgecolor=INK, lw=0.8
-            )
-        )
-        if patch.length > 0.02 * plate.length:
-            axes.text(x + dx / 2, (low + high) / 2, _SIGN[patch.polarity], ha="center", va="center")
-    return -1.75 * reach
 
 
 def _half_wave_arrow(axes: Axes, nodes: FloatArray, height: float, half: float) -> None:

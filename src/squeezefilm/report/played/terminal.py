@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from squeezefilm.bench.check import DeviceCheck
     from squeezefilm.bench.play import PlayResult
     from squeezefilm.bench.played_session import Judged, PlayedSession
-    from squeezefilm.session.play.player import PlayView
+    from squeezefilm.session.play.plan import PlayView
     from squeezefilm.session.record.export import TraceExport
 
 _BAR = 28

@@ -12,39 +12,26 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
-from enum import Enum
-from typing import Annotated, Any, Literal, Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
 from squeezefilm.device.host import DeviceHost
 from squeezefilm.device.ports import Sensor
 from squeezefilm.device.wire.messages import MOST_LEVELS, PICKUP_PRESENT, SENSOR_PRESENT, Reading
-from squeezefilm.device.wire.safety import Limits
 from squeezefilm.device.wire.states import Fault, State
-from squeezefilm.errors import DeviceError, InputError, LoopError
+from squeezefilm.errors import DeviceError, LoopError
 from squeezefilm.quantities import (
-    AtLeast,
-    AtMost,
     FloatArray,
-    Hertz,
     Metre,
-    MetrePerVolt,
     Second,
-    Unit,
     Volt,
-    checked_numbers,
-    require,
 )
 from squeezefilm.session.loop import rows as column
-from squeezefilm.session.loop.plan import LoopPlan
 from squeezefilm.session.loop.rows import flag_meanings
-from squeezefilm.session.play.tile import TextureTile
+from squeezefilm.session.play.plan import Ending, PlayPlan, PlayView
 from squeezefilm.session.record.trace_writer import TraceWriter
 
-PlayMode = Literal["stream", "tile"]
-REPORT_PERIOD: Second = 1e-3
 RESTING_SAMPLE: Second = 20e-3
 """A sensor slower than the reports repeats its last place; such repeats are fed this seldom."""
 LOOP_LIMIT: Second = 25e-3
@@ -75,92 +62,6 @@ class Loop(Protocol):
     def mute(self, muted: bool = True) -> None:
         """Play nothing."""
         ...
-
-
-@checked_numbers
-@dataclass(frozen=True, slots=True, eq=False)
-class PlayPlan:
-    """What is to be played, and on what.
-
-    Args:
-        loop: texture, rate, estimator, compensation, output delay.
-        limits: that the device is given, and holds.
-        frequency: of the carrier (Hz), within the limits.
-        mode: "stream" sends the loop's commands; "tile" gives the device the texture, which it
-            plays at its own sensor while the loop only watches.
-        tile: the texture for mode "tile".
-        report_period: of the device's readings (s); at least 0.2 ms.
-        sensor_latency: of the device's sensor (s), by which its places are older than their stamp.
-        amplitude_per_pickup: vibration amplitude per signal of the pickup (m/V); None if unknown.
-        twin: whether the device is a twin, whose watchdog counts its own time.
-
-    Raises:
-        InputError: a value outside its range, a tile without its mode, or the other way round.
-    """
-
-    loop: LoopPlan
-    limits: Limits
-    frequency: Hertz
-    mode: PlayMode = "stream"
-    tile: TextureTile | None = None
-    report_period: Annotated[Second, AtLeast(0.0002), AtMost(0.02)] = REPORT_PERIOD
-    sensor_latency: Annotated[Second, AtLeast(0.0), AtMost(1.0)] = 0.0
-    amplitude_per_pickup: MetrePerVolt | None = None
-    twin: bool = False
-
-    def __post_init__(self) -> None:
-        limits = self.limits
-        require(
-            "frequency",
-            self.frequency,
-            Unit("Hz"),
-            at_least=limits.lowest_frequency,
-            at_most=limits.highest_frequency,
-        )
-        if (self.mode == "tile") != (self.tile is not None):
-            raise InputError("mode tile needs a tile, and mode stream has none")
-        highest = float(self.loop.drive.voltage[-1])
-        if highest > limits.voltage * (1 + 1e-9):
-            raise InputError(
-                f"the loop may command {highest:.4g} V and the limits allow {limits.voltage:.4g} "
-                "V; lower the loop's drive table",
-                quantity="loop",
-            )
-
-
-class Ending(Enum):
-    """Why a session ended."""
-
-    DURATION = "the time was over"
-    INTERRUPTED = "it was interrupted"
-    FAULT = "the device faulted"
-    LINK = "the link to the device broke"
-    LOOP = "the loop died"
-
-
-@dataclass(frozen=True, slots=True)
-class PlayView:
-    """A moment of a session, for a live view; NaN where not known.
-
-    Time (s), the finger's place (m) and speed (m/s), wanted amplitude, amplitude by the pickup
-    (m), friction, the device's level (V), lag (m), lateness of the last tick (s), the device's
-    state and fault, readings heard, rows recorded, the round trip (s), flags of the last tick.
-    """
-
-    time: Second
-    x: Metre
-    speed: float
-    wanted: Metre
-    amplitude: Metre
-    friction: float
-    level: Volt
-    lag: Metre
-    lateness: Second
-    state: State
-    fault: Fault
-    readings: int
-    rows: int
-    flags: tuple[str, ...]
 
 
 class Player:

@@ -38,7 +38,8 @@ from squeezefilm.results import to_json
 from squeezefilm.session.loop.process import LoopProcess
 from squeezefilm.session.loop.rows import COLUMNS, SAMPLE_COLUMNS
 from squeezefilm.session.loop.simulated import SimulatedLoop
-from squeezefilm.session.play.player import FADE, Ending, Player, PlayPlan, PlayView
+from squeezefilm.session.play.plan import Ending, PlayPlan, PlayView
+from squeezefilm.session.play.player import FADE, Player
 from squeezefilm.session.record.trace_writer import TraceWriter
 
 PAUSE: Second = 1e-3

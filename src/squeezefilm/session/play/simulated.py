@@ -19,7 +19,8 @@ from squeezefilm.quantities import Second, Unit, require
 from squeezefilm.results import to_json
 from squeezefilm.session.loop.rows import COLUMNS
 from squeezefilm.session.loop.simulated import SimulatedLoop
-from squeezefilm.session.play.player import FADE, Ending, Player, PlayPlan
+from squeezefilm.session.play.plan import Ending, PlayPlan
+from squeezefilm.session.play.player import FADE, Player
 from squeezefilm.session.play.real_time import PlayOutcome, fault_sentence
 from squeezefilm.session.record.trace_writer import TraceWriter
 from squeezefilm.twin.device import TwinDevice

@@ -39,7 +39,7 @@ from squeezefilm.quantities import Dimensionless, FloatArray, Hertz, MetrePerVol
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ
 from squeezefilm.results import stamp
 from squeezefilm.session.loop import rows as column
-from squeezefilm.session.play.player import Ending, PlayView
+from squeezefilm.session.play.plan import Ending, PlayView
 from squeezefilm.session.play.real_time import PlayOutcome, run_play
 from squeezefilm.session.record.trace import Trace, read_trace
 from squeezefilm.study.conduct.study_device import DeviceVerification, Exploration

@@ -14,7 +14,8 @@ from tests.unit.lab.areas.too_long import require_refused_if_longer
 from squeezefilm import presets
 from squeezefilm.errors import DeviceError
 from squeezefilm.lab.areas import study as study_area
-from squeezefilm.lab.areas.study import (
+from squeezefilm.lab.areas.study import StudyArea
+from squeezefilm.lab.areas.study_requests import (
     CreateStudy,
     DeleteParticipant,
     ExportStudy,
@@ -27,7 +28,6 @@ from squeezefilm.lab.areas.study import (
     PrepareSitting,
     RehearseStudy,
     Respond,
-    StudyArea,
     SurfacesFelt,
 )
 from squeezefilm.lab.keys import CODE_LIFE

@@ -24,7 +24,7 @@ from squeezefilm.plate.ring.body import (
 from squeezefilm.plate.ring.materials import isotropic_solid, piezoceramic_solid
 from squeezefilm.plate.ring.modes import annular_modes, clamped_capacitance
 from squeezefilm.plate.ring.response import ring_circuit, ring_response
-from squeezefilm.plate.solid.mesh import _media
+from squeezefilm.plate.solid.layers import _media
 
 
 @pytest.fixture(scope="module")

@@ -13,9 +13,9 @@ import pytest
 from matplotlib.colors import to_hex
 from matplotlib.patches import Circle, Wedge
 
+from squeezefilm.plate.circuit import EquivalentCircuit
 from squeezefilm.plate.ring.response import RingResponse
 from squeezefilm.plate.ring.section import SectorDrive
-from squeezefilm.plate.solid.response import EquivalentCircuit
 from squeezefilm.report.kit.style import BLUE, MINUS, MUTED, PLUS
 from squeezefilm.report.plate import ring
 from squeezefilm.report.plate.ring import response, scan, shape, write_ring

@@ -9,8 +9,8 @@ import numpy as np
 from tests.unit.report.printed import printed
 
 from squeezefilm.analysis.plate.command import ModeRow
+from squeezefilm.plate.circuit import EquivalentCircuit
 from squeezefilm.plate.ring.stator import StatorAssumptions
-from squeezefilm.plate.solid.response import EquivalentCircuit
 from squeezefilm.report.plate.terminal_ring import fit_sentences, show_ring
 
 WORKING = ModeRow("B(0,9)", 40523.4, 12.345, 212.34, 1.2e-7, 0.1234, 1.0, 9.3456e-3)

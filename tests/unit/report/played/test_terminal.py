@@ -10,7 +10,7 @@ import pytest
 from squeezefilm.bench.check import CheckResult, DeviceCheck
 from squeezefilm.device.wire.states import Fault, State
 from squeezefilm.report.played.terminal import bar, live_view, show_check, view_line, view_table
-from squeezefilm.session.play.player import PlayView
+from squeezefilm.session.play.plan import PlayView
 
 VIEW = PlayView(
     time=1.25, x=12.34e-3, speed=0.06, wanted=1e-6, amplitude=0.9e-6, friction=0.7, level=8.0,

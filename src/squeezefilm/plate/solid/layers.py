@@ -1,0 +1,132 @@
+"""The layers of a plate: what each consists of, and the mesh through the thickness."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterable
+
+import numpy as np
+
+from squeezefilm.materials import isotropic_stiffness
+from squeezefilm.plate.elements.box_model import Medium
+from squeezefilm.plate.elements.lobatto import LineMesh
+from squeezefilm.plate.layout import Face, RectangularPlate
+from squeezefilm.plate.solid.resolution import Resolution
+from squeezefilm.plate.solid.symmetry import SNAP
+from squeezefilm.quantities import Metre
+
+
+def losses(plate: RectangularPlate) -> tuple[float, float, float]:
+    if plate.substrate.quality_factor is None:
+        whole = 1 / plate.quality_factor
+        return whole, whole, whole if plate.glue is None else 1 / plate.glue.quality_factor
+    glue = 0.0 if plate.glue is None else 1 / plate.glue.quality_factor
+    return 1 / plate.substrate.quality_factor, 1 / plate.ceramic.quality_factor, glue
+
+
+def media(plate: RectangularPlate) -> tuple[Medium, ...]:
+    constants = plate.ceramic.full_constants
+    substrate, ceramic, glue = losses(plate)
+    density = plate.ceramic.density
+
+    def piezo(name: str, sign: float) -> Medium:
+        return Medium(
+            name,
+            constants.stiffness_matrix,
+            density,
+            ceramic,
+            sign * constants.stress_matrix,
+            constants.permittivity_matrix,
+        )
+
+    media = [
+        Medium(
+            "substrate",
+            isotropic_stiffness(plate.substrate.young_modulus, plate.substrate.poisson_ratio),
+            plate.substrate.density,
+            substrate,
+        ),
+        # Poled away from the plate: towards −z below it, where all e change their sign.
+        piezo("ceramic_bottom", -1.0),
+        piezo("ceramic_top", 1.0),
+    ]
+    if plate.glue is not None:
+        media.append(
+            Medium(
+                "glue",
+                isotropic_stiffness(plate.glue.young_modulus, plate.glue.poisson_ratio),
+                plate.glue.density,
+                glue,
+            )
+        )
+    return tuple(media)
+
+
+def thicknesses(plate: RectangularPlate, face: Face) -> list[Metre]:
+    """The different thicknesses of the ceramics on a face, ascending."""
+    return merged(patch.thickness for patch in plate.patches if patch.face == face)
+
+
+def through_thickness(
+    plate: RectangularPlate, resolution: Resolution
+) -> tuple[LineMesh, dict[str, tuple[int, int]], dict[tuple[Face, int], tuple[int, int]]]:
+    """The mesh along z (0 at the plate's lower face), the range of elements of plate and glue by
+    name, and that of each patch's ceramic by its face and thickness (in units of `SNAP`)."""
+    glue = 0.0 if plate.glue is None else plate.glue.thickness
+    edges, orders = [0.0], []
+    layers: dict[str, tuple[int, int]] = {}
+    ceramics: dict[tuple[Face, int], tuple[int, int]] = {}
+
+    def add(thickness: Metre, order: int, *, from_below: bool, from_above: bool) -> None:
+        """One layer, its elements shrinking towards the bond below or above it."""
+        near = [c * thickness for c in resolution.bond_layers]
+        inner = [d for d in near if from_below] + [thickness - d for d in near if from_above]
+        bottom = edges[-1]
+        for part in [*sorted(inner), thickness]:
+            edges.append(bottom + part)
+            orders.append(order)
+
+    below = thicknesses(plate, "bottom")
+    above = thicknesses(plate, "top")
+    # Without its start: z = 0 is the plate's lower face, found when all below is known.
+    for outer, own in itertools.pairwise([*reversed(below), 0.0]):
+        add(outer - own, resolution.order_z, from_below=False, from_above=own == 0.0)
+    under = len(orders)
+    if below and glue:
+        add(glue, min(resolution.order_z, 4), from_below=False, from_above=False)
+        layers["glue_bottom"] = (under, len(orders))
+    start = len(orders)
+    add(plate.thickness, resolution.order_z, from_below=bool(below), from_above=bool(above))
+    layers["plate"] = (start, len(orders))
+    over = len(orders)
+    if above and glue:
+        add(glue, min(resolution.order_z, 4), from_below=False, from_above=False)
+        layers["glue_top"] = (over, len(orders))
+        over = len(orders)
+    for own, outer in itertools.pairwise([0.0, *above]):
+        add(outer - own, resolution.order_z, from_below=own == 0.0, from_above=False)
+    shift = edges[start]
+    mesh = LineMesh(tuple(v - shift for v in edges), tuple(orders))
+    for thickness in below:
+        at = nearest(mesh, mesh.edges[under] - thickness)
+        ceramics["bottom", snapped(thickness)] = (at, under)
+    for thickness in above:
+        at = nearest(mesh, mesh.edges[over] + thickness)
+        ceramics["top", snapped(thickness)] = (over, at)
+    return mesh, layers, ceramics
+
+
+def snapped(length: Metre) -> int:
+    return round(length / SNAP)
+
+
+def merged(values: Iterable[float]) -> list[float]:
+    out: list[float] = []
+    for value in sorted(values):
+        if not out or value > out[-1] + SNAP:
+            out.append(value)
+    return out
+
+
+def nearest(mesh: LineMesh, position: Metre) -> int:
+    return int(np.argmin(np.abs(np.array(mesh.edges) - position)))
