@@ -95,7 +95,9 @@ NOT_CALLED = {
     plate.elements.nodal_basis.gauss_points plate.elements.nodal_basis.graded_edges
     plate.elements.nodal_basis.lagrange
     plate.elements.nodal_basis.node_coordinates plate.solid.mesh.PlateModel
-    plate.solid.mesh.Resolution plate.solid.mesh.plate_model plate.solid.mesh.wave_number
+    plate.solid.resolution.Resolution plate.solid.layers.merged
+    plate.solid.layers.nearest plate.solid.layers.snapped
+    plate.solid.mesh.plate_model plate.solid.mesh.wave_number
     plate.solid.modes.SolvedModel.field plate.solid.modes.SolvedModel.force
     plate.solid.modes.label_of plate.solid.modes.profiles plate.solid.modes.surface_shapes
     plate.solid.modes.zero_crossings plate.solid.symmetry.mirror_map
@@ -125,6 +127,7 @@ NOT_CALLED = {
     render.texture.coordinate.FromPoint.at render.texture.coordinate.AlongY.at
     render.texture.coordinate.AlongX.at
     render.texture.coordinate.AlongDirection.at render.fidelity.report.fidelity_report
+    render.fidelity.spectral_lines.strongest_lines
     render.motion.estimator.MotionCounts.of render.program.renderer.counters_of
     """,
     "the real-time tick: it takes any floats, flags what it cannot use and never raises": """

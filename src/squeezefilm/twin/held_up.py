@@ -39,6 +39,7 @@ class Way:
         return wall
 
     def close(self) -> None:
+        """Close both ends."""
         os.close(self._near)
         os.close(self._far)
 

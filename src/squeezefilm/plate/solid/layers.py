@@ -16,7 +16,7 @@ from squeezefilm.plate.solid.symmetry import SNAP
 from squeezefilm.quantities import Metre
 
 
-def losses(plate: RectangularPlate) -> tuple[float, float, float]:
+def _losses(plate: RectangularPlate) -> tuple[float, float, float]:
     if plate.substrate.quality_factor is None:
         whole = 1 / plate.quality_factor
         return whole, whole, whole if plate.glue is None else 1 / plate.glue.quality_factor
@@ -25,8 +25,9 @@ def losses(plate: RectangularPlate) -> tuple[float, float, float]:
 
 
 def media(plate: RectangularPlate) -> tuple[Medium, ...]:
+    """Substrate, ceramic of either polarity and glue, in the order of their numbers in a mesh."""
     constants = plate.ceramic.full_constants
-    substrate, ceramic, glue = losses(plate)
+    substrate, ceramic, glue = _losses(plate)
     density = plate.ceramic.density
 
     def piezo(name: str, sign: float) -> Medium:
@@ -117,10 +118,12 @@ def through_thickness(
 
 
 def snapped(length: Metre) -> int:
+    """A length in whole units of `SNAP`, to compare by."""
     return round(length / SNAP)
 
 
 def merged(values: Iterable[float]) -> list[float]:
+    """The values ascending, without those nearer than `SNAP` to the one before."""
     out: list[float] = []
     for value in sorted(values):
         if not out or value > out[-1] + SNAP:
@@ -129,4 +132,5 @@ def merged(values: Iterable[float]) -> list[float]:
 
 
 def nearest(mesh: LineMesh, position: Metre) -> int:
+    """The number of the edge nearest to a position."""
     return int(np.argmin(np.abs(np.array(mesh.edges) - position)))

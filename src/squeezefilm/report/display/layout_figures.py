@@ -270,7 +270,7 @@ def _ring(ring: AnnularStator, analysis: Analysis) -> Figure:
     return figure
 
 
-def _drive_strip(axes: Axes, plate: RectangularPlate, reach: float) -> float:
+def drive_strip(axes: Axes, plate: RectangularPlate, reach: float) -> float:
     """The ceramics under the mode that they drive; the new bottom of the axes."""
     from matplotlib.patches import Rectangle
 

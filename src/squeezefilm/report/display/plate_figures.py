@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from squeezefilm.plate.layout import AnnularStator, RectangularPlate
-from squeezefilm.report.display.layout_figures import _drive_strip
+from squeezefilm.report.display.layout_figures import drive_strip
 from squeezefilm.report.kit.numbers import HZ, M, V, shown
 from squeezefilm.report.kit.style import (
     BAND,
@@ -76,7 +76,7 @@ def mode_shape(analysis: Analysis) -> Figure:
     bottom = -1.2 * reach
     plate = analysis.display.actuator
     if isinstance(plate, RectangularPlate) and plate.lines_across == "length":
-        bottom = _drive_strip(axes, plate, reach)
+        bottom = drive_strip(axes, plate, reach)
     if len(nodes) >= 4:
         _half_wave_arrow(axes, nodes, 1.14 * reach, mode.half_wavelength)
     margin = 0.01 * float(x[-1])

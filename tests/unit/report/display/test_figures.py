@@ -12,7 +12,10 @@ import numpy as np
 import pytest
 
 from squeezefilm.analysis.analyze import Analysis
+from squeezefilm.display import load_display
+from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.report.display.figures import FIGURES
+from squeezefilm.report.display.layout_figures import drive_strip
 from squeezefilm.report.display.plate_figures import half_power
 from squeezefilm.report.kit import style
 
@@ -226,3 +229,20 @@ def test_importing_the_report_room_loads_no_matplotlib() -> None:
 def test_a_users_text_is_made_fit_for_a_figure() -> None:
     assert style.plain("a\x1b[31m\nb 漢") == "a [31m b □"
     assert style.plain("long " * 20, 12) == "long long l…"
+
+
+def test_the_ceramics_are_drawn_where_they_are_under_the_mode() -> None:
+    plate = load_display("biet2008-plate").actuator
+    assert isinstance(plate, RectangularPlate)
+    axes = style.new_figure("a mode", "a model", 3.0).subplots()
+    bottom = drive_strip(axes, plate, 2.0)
+    bars = [patch.get_bbox() for patch in axes.patches]  # type: ignore[attr-defined] # rectangles
+    assert [(bar.x0, bar.width) for bar in bars] == pytest.approx(
+        [(1e3 * patch.x, 1e3 * patch.length) for patch in plate.patches]
+    )
+    # Below the mode's deepest place, and above the new end of the axes.
+    assert all(bottom < bar.y0 < bar.y1 < -2.0 for bar in bars)
+    signs = {1: "+", -1: "−"}
+    assert [text.get_text() for text in axes.texts] == [
+        signs[patch.polarity] for patch in plate.patches if patch.length > 0.02 * plate.length
+    ]
