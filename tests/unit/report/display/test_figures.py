@@ -237,9 +237,8 @@ def test_the_ceramics_are_drawn_where_they_are_under_the_mode() -> None:
     axes = style.new_figure("a mode", "a model", 3.0).subplots()
     bottom = drive_strip(axes, plate, 2.0)
     bars = [patch.get_bbox() for patch in axes.patches]  # type: ignore[attr-defined] # rectangles
-    assert [(bar.x0, bar.width) for bar in bars] == pytest.approx(
-        [(1e3 * patch.x, 1e3 * patch.length) for patch in plate.patches]
-    )
+    wanted = [(1e3 * patch.x, 1e3 * patch.length) for patch in plate.patches]
+    assert np.allclose([(bar.x0, bar.width) for bar in bars], wanted)
     # Below the mode's deepest place, and above the new end of the axes.
     assert all(bottom < bar.y0 < bar.y1 < -2.0 for bar in bars)
     signs = {1: "+", -1: "−"}
