@@ -26,7 +26,7 @@ import numpy as np
 from scipy.linalg import solve_banded
 
 from squeezefilm.film.line_grid import uniform_gap
-from squeezefilm.film.periodic.batch import solve_strips
+from squeezefilm.film.periodic.batch import solve_films
 from squeezefilm.film.periodic.film import solve_profile, solve_strip
 from squeezefilm.film.periodic.profile import flexural_profile
 from squeezefilm.film.planar.film import solve_ellipse
@@ -49,8 +49,8 @@ def best_time(run: Callable[[], object], repeats: int = 3) -> float:
 
 def true_errors(sigma, eps, tolerance, reference=1e-6):
     """Errors relative to the over-pressure, and the estimates in the same unit."""
-    fine = solve_strips(sigma, eps, tolerance=reference, workers=1, strict=False)
-    batch = solve_strips(sigma, eps, tolerance=tolerance, workers=1, strict=False)
+    fine = solve_films(sigma, eps, tolerance=reference, workers=1, strict=False)
+    batch = solve_films(sigma, eps, tolerance=tolerance, workers=1, strict=False)
     true = np.abs(batch.over_pressure / fine.over_pressure - 1.0)
     return true, batch.over_pressure_error / batch.over_pressure
 
@@ -62,7 +62,7 @@ def target_region(count: int) -> None:
     sigma, eps = 10.0 ** rng.uniform(1.0, 3.0, count), rng.uniform(0.3, 0.5, count)
     for tolerance in (1e-2, 5e-3, 1e-3, 1e-4, 1e-5):
         seconds = best_time(
-            lambda tolerance=tolerance: solve_strips(sigma, eps, tolerance=tolerance, workers=1)
+            lambda tolerance=tolerance: solve_films(sigma, eps, tolerance=tolerance, workers=1)
         )
         true, estimate = true_errors(sigma[:2000], eps[:2000], tolerance, tolerance / 100.0)
         print(
@@ -80,7 +80,7 @@ def speed_map(tolerance: float, count: int) -> None:
         for e in eps:
             sigmas = sigma * np.linspace(0.97, 1.03, count)
             seconds = best_time(
-                lambda s=sigmas, e=e: solve_strips(s, e, tolerance=tolerance, workers=1), 2
+                lambda s=sigmas, e=e: solve_films(s, e, tolerance=tolerance, workers=1), 2
             )
             true, _ = true_errors(sigmas[:: count // 8], e, tolerance, tolerance / 300.0)
             row += f"  {count / seconds / 1e3:6.1f} ({np.median(true) / tolerance:.2f})"
@@ -158,7 +158,7 @@ def against_march() -> None:
     print("     σ    ε   march: steps × cycles × cells     error        ms"
           "   ours: error        µs        ratio")  # fmt: skip
     for sigma, eps in ((1.0, 0.5), (10.0, 0.5), (100.0, 0.5)):
-        exact = float(solve_strips(sigma, eps, tolerance=1e-7).over_pressure)
+        exact = float(solve_films(sigma, eps, tolerance=1e-7).over_pressure)
         # Cheap settings first; the first that reaches 0.5 % is what an expert would settle on.
         cycles = {1.0: 2, 10.0: 3, 100.0: 15}[sigma]
         for steps, cells in ((32, 10), (64, 10), (128, 16), (256, 16), (512, 24), (1024, 32)):
@@ -170,9 +170,9 @@ def against_march() -> None:
                 break
         tolerance = min(max(error, 5e-4), 1e-2)
         sigmas = np.full(4000, sigma)
-        each = best_time(lambda s=sigmas, e=eps, t=tolerance: solve_strips(
+        each = best_time(lambda s=sigmas, e=eps, t=tolerance: solve_films(
             s, e, tolerance=t, workers=1)) / len(sigmas)  # fmt: skip
-        ours = float(solve_strips(sigma, eps, tolerance=tolerance).over_pressure)
+        ours = float(solve_films(sigma, eps, tolerance=tolerance).over_pressure)
         print(
             f"{sigma:6g} {eps:4g}   {steps:12d} × {cycles:2d} × {cells:2d} {error:17.1e} "
             f"{seconds * 1e3:9.1f}   {abs(ours / exact - 1.0):11.1e} {each * 1e6:9.1f} "
@@ -183,13 +183,13 @@ def against_march() -> None:
 def ours_at(error: float, sigma: float, eps: float, exact: float) -> tuple[float, float, float]:
     """Our true error at a tolerance of about `error`, seconds a strip in a batch, and alone."""
     tolerance = min(max(error, 5e-4), 1e-2)
-    ours = float(solve_strips(sigma, eps, tolerance=tolerance, workers=1).over_pressure)
+    ours = float(solve_films(sigma, eps, tolerance=tolerance, workers=1).over_pressure)
     sigmas = np.full(4000, sigma)
-    each = best_time(lambda: solve_strips(sigmas, eps, tolerance=tolerance, workers=1)) / 4000
+    each = best_time(lambda: solve_films(sigmas, eps, tolerance=tolerance, workers=1)) / 4000
 
     def one_by_one() -> None:
         for _ in range(100):
-            solve_strips(sigma, eps, tolerance=tolerance, workers=1)
+            solve_films(sigma, eps, tolerance=tolerance, workers=1)
 
     return abs(ours / exact - 1.0), each, best_time(one_by_one) / 100
 
@@ -205,7 +205,7 @@ def against_transient() -> None:
     gap = uniform_gap(eps)
     ladder = ((32, 12), (64, 16), (64, 24), (96, 24), (96, 32), (128, 32), (192, 48))
     for sigma in (1.0, 10.0, 100.0):
-        exact = float(solve_strips(sigma, eps, tolerance=1e-7).over_pressure)
+        exact = float(solve_films(sigma, eps, tolerance=1e-7).over_pressure)
         for steps, cells in ladder:
 
             def fixed(sigma: float = sigma, steps: int = steps, cells: int = cells) -> Any:
@@ -295,7 +295,7 @@ def against_gapflow() -> None:
     # cancel, in its favour; as all four go to their limits it converges to the Reynolds film.
     cases = ((1.0, 0.05, 16, 800, 200), (10.0, 0.005, 50, 2600, 1300))
     for sigma, inertia, cells, steps, settle in cases:
-        exact = float(solve_strips(sigma, eps, tolerance=1e-7).over_pressure)
+        exact = float(solve_films(sigma, eps, tolerance=1e-7).over_pressure)
         # At rest it divides by its kinetic energy, 0.
         with contextlib.redirect_stdout(io.StringIO()), np.errstate(all="ignore"):
             problem = gapflow_strip(problem_class, sigma, inertia, cells)

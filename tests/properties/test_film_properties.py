@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from squeezefilm.film.periodic.batch import solve_discs, solve_strips
+from squeezefilm.film.periodic.batch import solve_films
 from squeezefilm.film.periodic.film import solve_profile, solve_strip
 from squeezefilm.film.periodic.profile import flexural_profile
 from squeezefilm.film.slip import SLIP_LAWS
@@ -23,7 +23,7 @@ calm = settings(settings.get_profile("dear"))
 @calm
 @given(sigmas, excursions, exponents, knudsens, slips)
 def test_load_is_even_in_the_excursion(sigma, eps, n, kn, slip):
-    result = solve_strips(sigma, [eps, -eps], polytropic_exponent=n, knudsen_number=kn, slip=slip)
+    result = solve_films(sigma, [eps, -eps], polytropic_exponent=n, knudsen_number=kn, slip=slip)
     assert result.over_pressure[0] == result.over_pressure[1]
     assert result.over_pressure[0] > 0.0
 
@@ -32,8 +32,10 @@ def test_load_is_even_in_the_excursion(sigma, eps, n, kn, slip):
 @given(excursions, exponents, knudsens, slips)
 def test_load_rises_with_the_squeeze_number(eps, n, kn, slip):
     sigma = np.geomspace(0.01, 1e4, 13)
-    for solve in (solve_strips, solve_discs):
-        result = solve(sigma, eps, polytropic_exponent=n, knudsen_number=kn, slip=slip)
+    for shape in ("strip", "disc"):
+        result = solve_films(
+            sigma, eps, shape=shape, polytropic_exponent=n, knudsen_number=kn, slip=slip
+        )
         assert np.all(np.diff(result.over_pressure) > 0.0)
 
 
@@ -41,14 +43,14 @@ def test_load_rises_with_the_squeeze_number(eps, n, kn, slip):
 @given(sigmas, exponents, knudsens, slips)
 def test_load_rises_with_the_excursion(sigma, n, kn, slip):
     eps = np.linspace(0.05, 0.95, 10)
-    result = solve_strips(sigma, eps, polytropic_exponent=n, knudsen_number=kn, slip=slip)
+    result = solve_films(sigma, eps, polytropic_exponent=n, knudsen_number=kn, slip=slip)
     assert np.all(np.diff(result.over_pressure) > 0.0)
 
 
 @calm
 @given(sigmas, excursions, knudsens)
 def test_slip_lowers_the_load(sigma, eps, kn):
-    result = solve_strips(sigma, eps, knudsen_number=[kn, kn + 0.05], tolerance=1e-4)
+    result = solve_films(sigma, eps, knudsen_number=[kn, kn + 0.05], tolerance=1e-4)
     assert result.over_pressure[1] < result.over_pressure[0]
 
 
@@ -56,7 +58,7 @@ def test_slip_lowers_the_load(sigma, eps, kn):
 @given(sigmas, excursions)
 def test_load_stays_below_the_infinite_squeeze_number_limit(sigma, eps):
     limit = np.sqrt((1.0 + 1.5 * eps**2) / (1.0 - eps**2))
-    result = solve_strips(sigma, eps, tolerance=1e-3)
+    result = solve_films(sigma, eps, tolerance=1e-3)
     assert result.mean_load - result.over_pressure_error < limit
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.film.periodic.balance import levitation_limit, mean_gap_for_load
-from squeezefilm.film.periodic.batch import solve_discs, solve_strips
+from squeezefilm.film.periodic.batch import solve_films
 from squeezefilm.film.periodic.edge import edge_layer
 from squeezefilm.film.periodic.film import solve_disc, solve_profile, solve_strip
 from squeezefilm.film.periodic.kernel import newton
@@ -45,7 +45,7 @@ def test_tabulated_strip_loads(case, load):
     eps, sigma = case
     assert solve_strip(sigma, eps, tolerance=1e-7).mean_load == pytest.approx(load, abs=ROUNDED)
     for tolerance in (2e-2, 5e-3, 1e-4):
-        loose = solve_strips(sigma, eps, tolerance=tolerance)
+        loose = solve_films(sigma, eps, tolerance=tolerance)
         assert abs(loose.mean_load - load) <= loose.over_pressure_error + ROUNDED
         assert loose.over_pressure_error <= tolerance * loose.over_pressure
 
@@ -64,8 +64,8 @@ def test_tabulated_slip_and_polytropic_loads():
 
 def test_linear_limit_of_stiffness_and_damping():
     sigma = np.geomspace(0.01, 1e4, 25)
-    for solve, force in ((solve_strips, strip_force), (solve_discs, disc_force)):
-        batch = solve(sigma, 1e-4, tolerance=1e-5)
+    for shape, force in (("strip", strip_force), ("disc", disc_force)):
+        batch = solve_films(sigma, 1e-4, shape=shape, tolerance=1e-5)
         exact = force(sigma)
         np.testing.assert_allclose(batch.stiffness_relative, exact.real, rtol=2e-4)
         np.testing.assert_allclose(batch.damping_relative, exact.imag, rtol=2e-4)
@@ -78,8 +78,8 @@ def test_linear_values_and_crossovers():
     assert ten.damping_relative == pytest.approx(0.417175, abs=2e-6)
     assert hundred.stiffness_relative == pytest.approx(0.858578, abs=2e-6)
     assert hundred.damping_relative == pytest.approx(0.141082, abs=2e-6)
-    for solve, crossover in ((solve_strips, 10.13418), (solve_discs, 6.23324)):
-        batch = solve(crossover, 1e-3, tolerance=1e-6)
+    for shape, crossover in (("strip", 10.13418), ("disc", 6.23324)):
+        batch = solve_films(crossover, 1e-3, shape=shape, tolerance=1e-6)
         assert batch.stiffness_relative == pytest.approx(float(batch.damping_relative), abs=2e-6)
 
 
@@ -87,9 +87,10 @@ def test_linear_values_and_crossovers():
 @pytest.mark.parametrize("n", [1.0, 1.2, 1.4])
 def test_second_order_identity(sigma, n):
     # W = 1 + (5/4) ε² n fk(σ/n) + O(ε⁴), exact for any planform under a rigid uniform gap.
-    for solve, force in ((solve_strips, strip_force), (solve_discs, disc_force)):
+    for shape, force in (("strip", strip_force), ("disc", disc_force)):
         eps = np.array([0.02, 0.04])
-        ratio = solve(sigma, eps, polytropic_exponent=n, tolerance=1e-5).over_pressure / eps**2
+        films = solve_films(sigma, eps, shape=shape, polytropic_exponent=n, tolerance=1e-5)
+        ratio = films.over_pressure / eps**2
         limit = ratio[0] + (ratio[0] - ratio[1]) / 3.0
         assert limit == pytest.approx(1.25 * n * force(sigma / n).real, rel=3e-5)
 
@@ -98,7 +99,7 @@ def test_second_order_identity(sigma, n):
 @pytest.mark.parametrize("kn", [0.02, 0.1, 0.3])
 def test_second_order_identity_with_slip(sigma, kn):
     eps = np.array([0.02, 0.04])
-    ratio = solve_strips(sigma, eps, knudsen_number=kn, tolerance=1e-5).over_pressure / eps**2
+    ratio = solve_films(sigma, eps, knudsen_number=kn, tolerance=1e-5).over_pressure / eps**2
     q = 1.0 + 6.0 * kn
     exact = strip_force(sigma / q).real * (1.25 + 6.0 * kn) / q
     assert ratio[0] + (ratio[0] - ratio[1]) / 3.0 == pytest.approx(exact, rel=3e-5)
@@ -111,7 +112,7 @@ def test_infinite_squeeze_number_and_edge_layer_law(eps, n):
     if n == 1.0:
         salbu = np.sqrt((1.0 + 1.5 * eps**2) / (1.0 - eps**2))
         assert layer.asymptotic_load == pytest.approx(salbu, rel=1e-12)
-    batch = solve_strips([500.0, 2000.0, 1e4], eps, polytropic_exponent=n, tolerance=1e-7)
+    batch = solve_films([500.0, 2000.0, 1e4], eps, polytropic_exponent=n, tolerance=1e-7)
     law = layer.asymptotic_load - layer.constant / np.sqrt(batch.squeeze_number)
     np.testing.assert_allclose(batch.mean_load, law, atol=2e-6 * layer.asymptotic_load)
 
@@ -228,7 +229,7 @@ def test_field_and_load_agree():
     assert solution.force_harmonics[0].real == solution.over_pressure
     first = -(solution.stiffness_relative + 1j * solution.damping_relative) * 0.6
     assert solution.force_harmonics[1] == pytest.approx(first)
-    batch = solve_strips(30.0, 0.6, tolerance=1e-5)
+    batch = solve_films(30.0, 0.6, tolerance=1e-5)
     assert batch.stiffness_relative == pytest.approx(solution.stiffness_relative, rel=1e-4)
     assert batch.damping_relative == pytest.approx(solution.damping_relative, rel=1e-4)
 
@@ -265,17 +266,17 @@ def random_cases(count, seed=20240806):
 def honesty(count, tolerances, seed=20240806):
     """For strips and discs: tolerance, share of cases within the estimate, median estimate/true."""
     sigma, eps, n, kn = random_cases(count, seed)
-    inputs = {"polytropic_exponent": n, "knudsen_number": kn, "strict": False}
     rows = []
-    for solve in (solve_strips, solve_discs):
-        fine = solve(sigma, eps, tolerance=min(tolerances) / 100.0, **inputs).over_pressure
+    for shape in ("strip", "disc"):
+        inputs = {"shape": shape, "polytropic_exponent": n, "knudsen_number": kn, "strict": False}
+        fine = solve_films(sigma, eps, tolerance=min(tolerances) / 100.0, **inputs).over_pressure
         for tolerance in tolerances:
-            batch = solve(sigma, eps, tolerance=tolerance, **inputs)
+            batch = solve_films(sigma, eps, tolerance=tolerance, **inputs)
             true = np.abs(batch.over_pressure - fine)
             within = np.mean(true <= batch.over_pressure_error)
             met = np.mean(batch.over_pressure_error <= tolerance * batch.over_pressure)
             ratio = np.median(batch.over_pressure_error / np.maximum(true, 1e-300))
-            rows.append((solve.__name__, tolerance, within, ratio, met))
+            rows.append((shape, tolerance, within, ratio, met))
     return rows
 
 

@@ -15,7 +15,7 @@ from squeezefilm.errors import ConvergenceError, GeometryError, InputError, Unre
 from squeezefilm.film import compiled
 from squeezefilm.film.periodic import batch, film
 from squeezefilm.film.periodic.balance import mean_gap_for_load
-from squeezefilm.film.periodic.batch import solve_strips
+from squeezefilm.film.periodic.batch import solve_films
 from squeezefilm.film.periodic.edge import edge_layer
 from squeezefilm.film.periodic.film import solve_disc, solve_profile, solve_strip
 from squeezefilm.film.periodic.profile import (
@@ -26,7 +26,7 @@ from squeezefilm.film.periodic.profile import (
 from squeezefilm.film.solved_range import MOST_SQUEEZE_NUMBER
 
 
-@pytest.mark.parametrize("solve", [solve_strip, solve_disc, solve_strips])
+@pytest.mark.parametrize("solve", [solve_strip, solve_disc, solve_films])
 @pytest.mark.parametrize(
     ("arguments", "offender"),
     [
@@ -51,11 +51,11 @@ def test_bad_input_is_named(solve, arguments, offender):
 
 def test_batch_names_the_offending_element_and_shapes():
     with pytest.raises(InputError, match=r"excursion_ratio = 1\.2"):
-        solve_strips([1.0, 2.0], [0.5, 1.2])
+        solve_films([1.0, 2.0], [0.5, 1.2])
     with pytest.raises(InputError, match="broadcast"):
-        solve_strips([1.0, 2.0], [0.1, 0.2, 0.3])
+        solve_films([1.0, 2.0], [0.1, 0.2, 0.3])
     with pytest.raises(InputError, match="workers = 0"):
-        solve_strips(1.0, 0.5, workers=0)
+        solve_films(1.0, 0.5, workers=0)
 
 
 def test_closed_gap_is_a_geometry_error_that_says_where():
@@ -121,9 +121,9 @@ def test_what_does_not_converge_raises_with_its_partial_result(monkeypatch):
     assert error.partial.over_pressure == pytest.approx(1.33, abs=0.2)
     assert "not converged" in error.partial.status
     with pytest.raises(ConvergenceError) as caught:
-        solve_strips([1.0, 10.0], 0.9, tolerance=1e-6)
+        solve_films([1.0, 10.0], 0.9, tolerance=1e-6)
     assert caught.value.partial.mean_load.shape == (2,)
-    kept = solve_strips([1.0, 10.0], 0.9, tolerance=1e-6, strict=False)
+    kept = solve_films([1.0, 10.0], 0.9, tolerance=1e-6, strict=False)
     assert np.all(kept.over_pressure_error > 1e-6 * kept.over_pressure)
 
 
@@ -151,14 +151,14 @@ def test_still_plate_makes_no_pressure():
     assert solution.over_pressure == 0.0
     assert np.all(solution.pressure == 1.0)
     assert solution.stiffness_relative == pytest.approx(0.411794, abs=1e-5)
-    loads = solve_strips(10.0, [0.0, 0.1]).over_pressure
+    loads = solve_films(10.0, [0.0, 0.1]).over_pressure
     assert loads[0] == 0.0
     assert loads[1] > 0.0
 
 
 def test_shapes_broadcast_and_progress_reaches_the_total():
     seen = []
-    result = solve_strips(
+    result = solve_films(
         np.geomspace(1.0, 100.0, 5)[:, None], np.linspace(0.1, 0.9, 4),
         workers=2, progress=lambda done, total: seen.append((done, total)),
     )  # fmt: skip
@@ -169,8 +169,8 @@ def test_shapes_broadcast_and_progress_reaches_the_total():
 
 def test_workers_do_not_change_the_result():
     sigma = np.geomspace(0.1, 1e3, 200)
-    one = solve_strips(sigma, 0.5, workers=1)
-    two = solve_strips(sigma, 0.5, workers=2)
+    one = solve_films(sigma, 0.5, workers=1)
+    two = solve_films(sigma, 0.5, workers=2)
     np.testing.assert_array_equal(one.over_pressure, two.over_pressure)
 
 
@@ -202,14 +202,14 @@ def test_edge_layer_range():
 def test_the_first_compile_is_announced(tmp_path, caplog):
     dispatcher = SimpleNamespace(
         stats=SimpleNamespace(cache_path=str(tmp_path)),
-        py_func=inspect.unwrap(solve_strips),
+        py_func=inspect.unwrap(solve_films),
         __name__="solve_rows",
     )
     with caplog.at_level(logging.INFO, logger="squeezefilm"):
         compiled.announce.__wrapped__(dispatcher, "film solver", 20)
     assert "compiling the film solver" in caplog.text
     caplog.clear()
-    (tmp_path / "batch.solve_strips-1.py311.nbi").touch()
+    (tmp_path / "batch.solve_films-1.py311.nbi").touch()
     with caplog.at_level(logging.INFO, logger="squeezefilm"):
         compiled.announce.__wrapped__(dispatcher, "film solver", 20)
     assert caplog.text == ""
@@ -231,6 +231,6 @@ def test_a_gas_of_tar_is_refused_before_a_solve_that_would_not_end():
 
 
 def test_the_largest_squeeze_number_is_nearly_an_infinite_one():
-    at = solve_strips(MOST_SQUEEZE_NUMBER, 0.3, tolerance=1e-3).mean_load
+    at = solve_films(MOST_SQUEEZE_NUMBER, 0.3, tolerance=1e-3).mean_load
     infinite = np.sqrt((1.0 + 1.5 * 0.3**2) / (1.0 - 0.3**2))  # Salbu's
     assert at == pytest.approx(infinite, rel=2e-4)

@@ -179,7 +179,7 @@ def sweep_film(
 
     Raises `InputError` for shapes in the plane, which are too slow for a map of thousands.
     """
-    from squeezefilm.film.periodic.batch import solve_discs, solve_strips
+    from squeezefilm.film.periodic.batch import solve_films
 
     if request.shape not in _LINES:
         raise InputError(
@@ -195,9 +195,10 @@ def sweep_film(
             tenths = 10 * done // total
             progress(f"{done} of {total} films")
 
-    films = (solve_strips if request.shape == "strip" else solve_discs)(
+    films = solve_films(
         sigma[:, None],
         excursion[None, :],
+        shape=request.shape,
         polytropic_exponent=request.polytropic_exponent,
         knudsen_number=request.knudsen_number,
         slip=request.slip,

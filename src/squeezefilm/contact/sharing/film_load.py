@@ -215,7 +215,7 @@ def _plateaus(
     slip: str,
     tolerance: float,
 ) -> FilmLoad:
-    from squeezefilm.film.periodic.batch import solve_strips
+    from squeezefilm.film.periodic.batch import solve_films
 
     require("plateau_width", plateau_width, Unit("m"), above=0, at_most=gap.ridge_period)
     crest = float(gap.crest_thickness)
@@ -231,7 +231,7 @@ def _plateaus(
     wave = np.abs(np.cos(2 * np.pi * positions / gap.wavelength))
     # A plateau at a node hardly moves and carries nothing that matters.
     excursion = np.maximum(wave * float(gap.vibration_amplitude) / crest, 1e-6)
-    films = solve_strips(
+    films = solve_films(
         np.full_like(excursion, sigma),
         excursion,
         knudsen_number=gas.mean_free_path / crest,

@@ -17,7 +17,7 @@ import numpy as np
 
 from squeezefilm.contact.records import CompiledFilms
 from squeezefilm.errors import ConvergenceError
-from squeezefilm.film.periodic.batch import solve_strips
+from squeezefilm.film.periodic.batch import solve_films
 from squeezefilm.film.slip import slip_law
 from squeezefilm.materials import Gas
 from squeezefilm.quantities import (
@@ -169,7 +169,7 @@ class FilmTable:
         low, high = self._edges[row], self._edges[row + 1]
         gap = np.exp(_FIRST_COLUMN + column + 0.5 * (x + 1.0))
         excursion = np.sqrt(-np.expm1(-(low + 0.5 * (y + 1.0) * (high - low))))
-        films = solve_strips(
+        films = solve_films(
             gap**-2.0,
             excursion,
             knudsen_number=self.gas.mean_free_path / (self.length * gap),

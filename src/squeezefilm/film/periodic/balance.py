@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from squeezefilm.errors import ConvergenceError, InputError, OutOfRangeError, UnreachableError
-from squeezefilm.film.periodic.batch import FilmBatch, solve_discs, solve_strips
+from squeezefilm.errors import ConvergenceError, OutOfRangeError, UnreachableError
+from squeezefilm.film.periodic.batch import FilmBatch, solve_films
 from squeezefilm.quantities import (
     Dimensionless,
     FloatArray,
@@ -91,10 +91,10 @@ class _Film:
     shape: str
 
     def solve(self, excursion: FloatArray, tolerance: float, strict: bool = True) -> FilmBatch:
-        solve = solve_strips if self.shape == "strip" else solve_discs
-        return solve(
+        return solve_films(
             self.scale * excursion**2,
             excursion,
+            shape=self.shape,
             polytropic_exponent=self.polytropic_exponent,
             knudsen_number=self.mean_free_path * excursion / self.amplitude,
             slip=self.slip,
@@ -121,8 +121,6 @@ def _film(
     require("viscosity", viscosity, Unit("Pa*s"), above=0.0)
     require("ambient_pressure", ambient_pressure, Unit("Pa"), above=0.0)
     require("mean_free_path", mean_free_path, Unit("m"), at_least=0.0)
-    if shape not in ("strip", "disc"):
-        raise InputError(f"shape = '{shape}' cannot be used: it must be 'strip' or 'disc'")
     scale = 12.0 * viscosity * 2.0 * math.pi * frequency * length**2
     return _Film(
         amplitude,

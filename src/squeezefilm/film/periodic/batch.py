@@ -30,6 +30,7 @@ from squeezefilm.quantities import (
     IntArray,
     checked_numbers,
     require,
+    require_one_of,
 )
 
 MAX_EXCURSION = 0.99
@@ -77,69 +78,6 @@ def compiled() -> Any:
     return uniform
 
 
-@checked_numbers
-def solve_strips(
-    squeeze_number: DimensionlessLike,
-    excursion_ratio: DimensionlessLike,
-    *,
-    polytropic_exponent: DimensionlessLike = 1.0,
-    knudsen_number: DimensionlessLike = 0.0,
-    slip: str = "first",
-    tolerance: float = 5e-3,
-    workers: int | None = None,
-    progress: CountProgress | None = None,
-    strict: bool = True,
-) -> FilmBatch:
-    """Mean load and first force harmonic of many strip films, H = 1 + ε cos T; inputs broadcast.
-
-    The equation, inputs, ranges and errors are those of `solve_strip`; the squeeze number is on
-    the full length. `tolerance` is relative, on the over-pressure. `workers` threads share the
-    work (None: one per core). `progress(done, total)` is called after each portion. With
-    `strict`, a case that does not reach the tolerance raises `ConvergenceError` carrying the
-    batch as `partial`; without, its error estimate shows it (NaN where nothing converged).
-    """
-    return _solve(
-        "strip",
-        squeeze_number,
-        excursion_ratio,
-        polytropic_exponent,
-        knudsen_number,
-        slip,
-        tolerance,
-        workers,
-        progress,
-        strict,
-    )
-
-
-@checked_numbers
-def solve_discs(
-    squeeze_number: DimensionlessLike,
-    excursion_ratio: DimensionlessLike,
-    *,
-    polytropic_exponent: DimensionlessLike = 1.0,
-    knudsen_number: DimensionlessLike = 0.0,
-    slip: str = "first",
-    tolerance: float = 5e-3,
-    workers: int | None = None,
-    progress: CountProgress | None = None,
-    strict: bool = True,
-) -> FilmBatch:
-    """`solve_strips` for circular films; the squeeze number is on the radius."""
-    return _solve(
-        "disc",
-        squeeze_number,
-        excursion_ratio,
-        polytropic_exponent,
-        knudsen_number,
-        slip,
-        tolerance,
-        workers,
-        progress,
-        strict,
-    )
-
-
 def check_film(
     squeeze_number: DimensionlessLike,
     excursion_ratio: DimensionlessLike,
@@ -153,18 +91,30 @@ def check_film(
     require("tolerance", tolerance, at_least=1e-9, at_most=0.05)
 
 
-def _solve(
-    shape: str,
+@checked_numbers
+def solve_films(
     squeeze_number: DimensionlessLike,
     excursion_ratio: DimensionlessLike,
-    polytropic_exponent: DimensionlessLike,
-    knudsen_number: DimensionlessLike,
-    slip: str,
-    tolerance: float,
-    workers: int | None,
-    progress: CountProgress | None,
-    strict: bool,
+    *,
+    shape: str = "strip",
+    polytropic_exponent: DimensionlessLike = 1.0,
+    knudsen_number: DimensionlessLike = 0.0,
+    slip: str = "first",
+    tolerance: float = 5e-3,
+    workers: int | None = None,
+    progress: CountProgress | None = None,
+    strict: bool = True,
 ) -> FilmBatch:
+    """Mean load and first force harmonic of many films, H = 1 + ε cos T; inputs broadcast.
+
+    The equation, inputs, ranges and errors are those of `solve_strip` and `solve_disc`; the squeeze
+    number is on a strip's full length or on a disc's radius. `tolerance` is relative, on the
+    over-pressure. `workers` threads share the work (None: one per core). `progress(done, total)` is
+    called after each portion. With `strict`, a case that does not reach the tolerance raises
+    `ConvergenceError` carrying the batch as `partial`; without, its error estimate shows it (NaN
+    where nothing converged).
+    """
+    require_one_of("shape", shape, ("strip", "disc"))
     check_film(squeeze_number, excursion_ratio, polytropic_exponent, knudsen_number, tolerance)
     law = slip_law(slip, float(np.max(knudsen_number)))
     if workers is not None and workers < 1:

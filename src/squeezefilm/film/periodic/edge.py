@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from squeezefilm.film.periodic.batch import solve_strips
+from squeezefilm.film.periodic.batch import solve_films
 from squeezefilm.quantities import Dimensionless, checked_numbers, require
 
 _SIGMA = 3600.0
@@ -52,7 +52,7 @@ def edge_layer(
     root = float(np.sqrt(_SIGMA))
     # C/√σ is about an eightieth of the over-pressure here: the solve must be that much finer.
     tolerance = max(relative_accuracy / 80.0, 2e-9)
-    batch = solve_strips(
+    batch = solve_films(
         _SIGMA, excursion_ratio, polytropic_exponent=n, tolerance=tolerance, workers=1
     )
     return EdgeLayer(
