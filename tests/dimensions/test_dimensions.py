@@ -54,7 +54,7 @@ VALUES: dict[tuple[str, str], float] = {
 }
 DEFAULT_VALUES: dict[str, float] = {
     # Indices and ratios that start at 1.
-    "polytropic_index": 1.2,
+    "polytropic_exponent": 1.2,
     "mean_pressure": 1.01,
     "quality_factor": 60.0,
     "relative_permittivity": 1000.0,

@@ -24,6 +24,7 @@ from squeezefilm.contact.sliding.march import Sliding, slide
 from squeezefilm.display import Display, Surface, load_display
 from squeezefilm.distributions import Normal, Uniform
 from squeezefilm.film.gap import PaperGap
+from squeezefilm.film.periodic.balance import VibratedFilm
 from squeezefilm.film.periodic.profile import GapProfile, flexural_profile
 from squeezefilm.film.planar.gap import PlanarGap
 from squeezefilm.formats.hjif import ReferenceDevice, hjif_of
@@ -157,6 +158,7 @@ MADE: dict[Any, Callable[[], Any]] = {
     CeramicPatch: lambda: PLATE.patches[0],
     LoadedMode: lambda: LoadedMode(30e3, 60.0, 0.01 + 0.01j),
     SurfaceLoad: lambda: SurfaceLoad(10e-3, 2e-3, 5e-3, 5e-3, 1.0),
+    VibratedFilm: lambda: VibratedFilm(2e-6, 40e3, 10e-3),
     EquivalentCircuit: lambda: EquivalentCircuit(30e3, 60.0, 1e-9, 100.0, 0.03, 1e-9),
     BeamResponse: lambda: beam_response(PLATE),
     ShearLayout: lambda: shear_layout(PLATE),

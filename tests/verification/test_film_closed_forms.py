@@ -222,14 +222,14 @@ def test_low_squeeze_film_is_the_incompressible_damper() -> None:
 def test_trapped_film_is_a_gas_spring() -> None:
     # Boyle: d(p A)/dh = p0 A/h; adiabatic: n times as stiff.
     for n in (1.0, 1.4):
-        fk = linear.relative_stiffness(1e14, polytropic_index=n)
+        fk = linear.relative_stiffness(1e14, polytropic_exponent=n)
         assert linear.film_stiffness(fk, 1e-4, 5e-6, 1e5) == pytest.approx(n * 2e6, rel=1e-6)
 
 
 def test_force_matches_the_first_harmonic_of_slip_and_polytropic_scaling() -> None:
     fk = linear.relative_stiffness
     assert fk(10.0, knudsen_number=0.05) == pytest.approx(fk(10 / 1.3))
-    assert fk(10.0, polytropic_index=1.4) == pytest.approx(1.4 * fk(10 / 1.4))
+    assert fk(10.0, polytropic_exponent=1.4) == pytest.approx(1.4 * fk(10 / 1.4))
 
 
 @pytest.mark.parametrize(
@@ -240,7 +240,7 @@ def test_second_order_load_errs_by_the_fourth_power(sigma, n, knudsen) -> None:
     errors = []
     for epsilon in (0.05, 0.1):
         closed = linear.second_order_mean_load(
-            epsilon, sigma, polytropic_index=n, knudsen_number=knudsen
+            epsilon, sigma, polytropic_exponent=n, knudsen_number=knudsen
         )
         solved = extrapolated_load(sigma, epsilon, n, knudsen)
         errors.append((solved - closed) / epsilon**2)
@@ -248,7 +248,7 @@ def test_second_order_load_errs_by_the_fourth_power(sigma, n, knudsen) -> None:
     # ε² coefficient.
     limit = errors[0] - (errors[1] - errors[0]) / 3
     coefficient = linear.second_order_mean_load(
-        0.1, sigma, polytropic_index=n, knudsen_number=knudsen
+        0.1, sigma, polytropic_exponent=n, knudsen_number=knudsen
     )
     assert limit == pytest.approx(0, abs=1e-3 * (coefficient - 1) / 0.01)
 
@@ -289,7 +289,7 @@ def test_asymptotic_load_is_its_defining_means(epsilon: float, n: float) -> None
 def test_small_amplitude_asymptote_joins_the_second_order_load() -> None:
     for n in (1.0, 1.4):
         small = limits.asymptotic_load_polytropic(1e-3, n) - 1
-        second = linear.second_order_mean_load(1e-3, 1e16, polytropic_index=n) - 1
+        second = linear.second_order_mean_load(1e-3, 1e16, polytropic_exponent=n) - 1
         assert small == pytest.approx(second, rel=1e-5)
 
 

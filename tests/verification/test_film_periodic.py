@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from squeezefilm.film.periodic.balance import levitation_limit, mean_gap_for_load
+from squeezefilm.film.periodic.balance import VibratedFilm, levitation_limit, mean_gap_for_load
 from squeezefilm.film.periodic.batch import solve_films
 from squeezefilm.film.periodic.edge import edge_layer
 from squeezefilm.film.periodic.film import solve_disc, solve_profile, solve_strip
@@ -235,19 +235,21 @@ def test_field_and_load_agree():
 
 
 def test_load_balance_carries_the_load():
-    balance = mean_gap_for_load(5e3, 2e-6, 40e3, 10e-3, mean_free_path=68e-9, tolerance=1e-4)
+    film = VibratedFilm(2e-6, 40e3, 10e-3, mean_free_path=68e-9)
+    balance = mean_gap_for_load(film, 5e3, tolerance=1e-4)
     check = solve_strip(
         balance.squeeze_number, balance.excursion_ratio,
         knudsen_number=balance.knudsen_number, tolerance=1e-5,
     )  # fmt: skip
     assert check.over_pressure * 101325.0 == pytest.approx(5e3, rel=1e-4)
-    wider = mean_gap_for_load(4.9e3, 2e-6, 40e3, 10e-3, mean_free_path=68e-9, tolerance=1e-5)
+    wider = mean_gap_for_load(film, 4.9e3, tolerance=1e-5)
     slope = 100.0 / (wider.mean_gap - balance.mean_gap)
     assert balance.static_stiffness == pytest.approx(slope, rel=0.05)
 
 
 def test_levitation_limit_grows_as_the_gap_closes_and_stays_below_salbu():
-    limits = [levitation_limit(2e-6, 40e3, 10e-3, excursion_ratio=e) for e in (0.5, 0.8, 0.95)]
+    film = VibratedFilm(2e-6, 40e3, 10e-3)
+    limits = [levitation_limit(film, excursion_ratio=e) for e in (0.5, 0.8, 0.95)]
     loads = [limit.load for limit in limits]
     assert loads == sorted(loads)
     assert all(limit.load < limit.load_infinite_sigma for limit in limits)

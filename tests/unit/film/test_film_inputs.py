@@ -14,7 +14,7 @@ import pytest
 from squeezefilm.errors import ConvergenceError, GeometryError, InputError, UnreachableError
 from squeezefilm.film import compiled
 from squeezefilm.film.periodic import batch, film
-from squeezefilm.film.periodic.balance import mean_gap_for_load
+from squeezefilm.film.periodic.balance import VibratedFilm, mean_gap_for_load
 from squeezefilm.film.periodic.batch import solve_films
 from squeezefilm.film.periodic.edge import edge_layer
 from squeezefilm.film.periodic.film import solve_disc, solve_profile, solve_strip
@@ -176,19 +176,19 @@ def test_workers_do_not_change_the_result():
 
 def test_load_balance_refuses_what_the_film_cannot_carry():
     with pytest.raises(UnreachableError, match=r"more than the film carries"):
-        mean_gap_for_load(1e7, 2e-6, 40e3, 10e-3)
+        mean_gap_for_load(VibratedFilm(2e-6, 40e3, 10e-3), 1e7)
     with pytest.raises(UnreachableError, match=r"less than the film carries"):
-        mean_gap_for_load(1e-9, 2e-6, 40e3, 10e-3)
+        mean_gap_for_load(VibratedFilm(2e-6, 40e3, 10e-3), 1e-9)
     with pytest.raises(InputError, match="amplitude = 0 m"):
-        mean_gap_for_load(100.0, 0.0, 40e3, 10e-3)
+        mean_gap_for_load(VibratedFilm(0.0, 40e3, 10e-3), 100.0)
     with pytest.raises(InputError, match="shape = 'square'"):
-        mean_gap_for_load(100.0, 1e-6, 40e3, 10e-3, shape="square")
+        mean_gap_for_load(VibratedFilm(1e-6, 40e3, 10e-3, shape="square"), 100.0)
 
 
 @pytest.mark.slow
 def test_load_balance_of_a_narrow_ridge():
     # At σ far below 1 the over-pressure is of second order and tiny over most of the search.
-    balance = mean_gap_for_load(1e3, 2e-6, 40e3, 250e-6, polytropic_exponent=1.2)
+    balance = mean_gap_for_load(VibratedFilm(2e-6, 40e3, 250e-6, polytropic_exponent=1.2), 1e3)
     assert balance.mean_load_pressure == pytest.approx(1e3, rel=1e-3)
 
 
@@ -227,7 +227,7 @@ def test_importing_the_film_imports_neither_scipy_nor_numba():
 
 def test_a_gas_of_tar_is_refused_before_a_solve_that_would_not_end():
     with pytest.raises(InputError, match="squeeze_number"):
-        mean_gap_for_load(1e4, 1e-6, 30e3, 0.03, viscosity=4e8)
+        mean_gap_for_load(VibratedFilm(1e-6, 30e3, 0.03, viscosity=4e8), 1e4)
 
 
 def test_the_largest_squeeze_number_is_nearly_an_infinite_one():

@@ -190,21 +190,21 @@ def _teeth(display: Display, prediction: Prediction) -> ToothResult | None:
 
 def _balance(display: Display, prediction: Prediction) -> PlateauBalance | None:
     from squeezefilm.errors import UnreachableError
-    from squeezefilm.film.periodic.balance import mean_gap_for_load
+    from squeezefilm.film.periodic.balance import VibratedFilm, mean_gap_for_load
 
     p, finger, gas = prediction, display.finger, display.gas
     load = finger.mean_pressure * finger.ridge_period / finger.plateau_width
     load *= p.normal_force / finger.normal_force
     try:
-        found = mean_gap_for_load(
-            load,
+        film = VibratedFilm(
             p.vibration_amplitude,
             p.frequency,
             finger.plateau_width,
-            viscosity=gas.viscosity,
-            ambient_pressure=gas.ambient_pressure,
+            gas.viscosity,
+            gas.ambient_pressure,
             mean_free_path=gas.mean_free_path,
         )
+        found = mean_gap_for_load(film, load)
     except UnreachableError:
         return None
     clear = found.least_gap - p.surface.roughness

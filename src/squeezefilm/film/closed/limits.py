@@ -41,9 +41,9 @@ def asymptotic_load(amplitude_ratio: DimensionlessLike) -> DimensionlessLike:
     return np.sqrt((1 + 1.5 * amplitude_ratio**2) / (1 - amplitude_ratio**2))
 
 
-@closed_form(nonnegative="amplitude_ratio", positive="polytropic_index")
+@closed_form(nonnegative="amplitude_ratio", positive="polytropic_exponent")
 def asymptotic_load_polytropic(
-    amplitude_ratio: DimensionlessLike, polytropic_index: Dimensionless
+    amplitude_ratio: DimensionlessLike, polytropic_exponent: Dimensionless
 ) -> DimensionlessLike:
     """The mean load W over p0 A of a uniform polytropic film as σ → ∞ (dimensionless); broadcasts.
 
@@ -53,8 +53,8 @@ def asymptotic_load_polytropic(
     from scipy.special import hyp2f1
 
     require("amplitude_ratio", amplitude_ratio, below=1)
-    require("polytropic_index", polytropic_index, at_least=1, at_most=5 / 3)
-    n = polytropic_index
+    require("polytropic_exponent", polytropic_exponent, at_least=1, at_most=5 / 3)
+    n = polytropic_exponent
 
     def mean_power(p: float) -> Any:
         return hyp2f1(-p / 2, (1 - p) / 2, 1, np.square(amplitude_ratio))

@@ -163,16 +163,18 @@ def _plain(value: Any) -> Any:
 
 
 def _effective(sigma: Any, n: float, knudsen: Any) -> Any:
-    require("polytropic_index", n, at_least=1, at_most=5 / 3)
+    require("polytropic_exponent", n, at_least=1, at_most=5 / 3)
     return sigma / (n * (1 + 6 * knudsen))
 
 
-@closed_form(nonnegative="squeeze_number knudsen_number", positive="polytropic_index aspect_ratio")
+@closed_form(
+    nonnegative="squeeze_number knudsen_number", positive="polytropic_exponent aspect_ratio"
+)
 def relative_stiffness(
     squeeze_number: DimensionlessLike,
     planform: Planform = "strip",
     aspect_ratio: Dimensionless = 1.0,
-    polytropic_index: Dimensionless = 1.0,
+    polytropic_exponent: Dimensionless = 1.0,
     knudsen_number: DimensionlessLike = 0.0,
 ) -> DimensionlessLike:
     """The film's stiffness over p0 A/h: n fk(σ / (n (1 + 6 Kn))) (dimensionless); broadcasts.
@@ -181,28 +183,30 @@ def relative_stiffness(
     adiabatic). `aspect_ratio` (shorter/longer) counts for the rectangle only. Raises `InputError`
     for an unknown planform, n outside 1 to 5/3 or an aspect ratio outside (0, 1].
     """
-    sigma = _effective(squeeze_number, polytropic_index, knudsen_number)
+    sigma = _effective(squeeze_number, polytropic_exponent, knudsen_number)
     value: DimensionlessLike = _plain(
-        polytropic_index * np.real(_force(planform, sigma, aspect_ratio))
+        polytropic_exponent * np.real(_force(planform, sigma, aspect_ratio))
     )
     return value
 
 
-@closed_form(nonnegative="squeeze_number knudsen_number", positive="polytropic_index aspect_ratio")
+@closed_form(
+    nonnegative="squeeze_number knudsen_number", positive="polytropic_exponent aspect_ratio"
+)
 def relative_damping(
     squeeze_number: DimensionlessLike,
     planform: Planform = "strip",
     aspect_ratio: Dimensionless = 1.0,
-    polytropic_index: Dimensionless = 1.0,
+    polytropic_exponent: Dimensionless = 1.0,
     knudsen_number: DimensionlessLike = 0.0,
 ) -> DimensionlessLike:
     """The film's damping times ω over p0 A/h: n fd(σ / (n (1 + 6 Kn))) (dimensionless).
 
     Arguments, range and errors as `relative_stiffness`; broadcasts.
     """
-    sigma = _effective(squeeze_number, polytropic_index, knudsen_number)
+    sigma = _effective(squeeze_number, polytropic_exponent, knudsen_number)
     value: DimensionlessLike = _plain(
-        polytropic_index * np.imag(_force(planform, sigma, aspect_ratio))
+        polytropic_exponent * np.imag(_force(planform, sigma, aspect_ratio))
     )
     return value
 
@@ -291,14 +295,14 @@ def crossover_squeeze_number(
 
 @closed_form(
     nonnegative="amplitude_ratio squeeze_number knudsen_number",
-    positive="polytropic_index aspect_ratio",
+    positive="polytropic_exponent aspect_ratio",
 )
 def second_order_mean_load(
     amplitude_ratio: DimensionlessLike,
     squeeze_number: DimensionlessLike,
     planform: Planform = "strip",
     aspect_ratio: Dimensionless = 1.0,
-    polytropic_index: Dimensionless = 1.0,
+    polytropic_exponent: Dimensionless = 1.0,
     knudsen_number: DimensionlessLike = 0.0,
     *,
     strict: bool = True,
@@ -316,7 +320,7 @@ def second_order_mean_load(
     pressure and gap, g⟨p2⟩ = −(3 + 12 Kn)⟨H1 p1⟩ − ½ (1/n + 6 Kn (1/n − 1))⟨p1²⟩; the linear
     equation gives the area means ⟨H1 p1⟩ = −F/2 and ⟨p1²⟩ = n F/2 with F = n fk(σ/(n g)).
     """
-    sigma = _effective(squeeze_number, polytropic_index, knudsen_number)
+    sigma = _effective(squeeze_number, polytropic_exponent, knudsen_number)
     fk = np.real(_force(planform, sigma, aspect_ratio))
     amplitude, springs = np.broadcast_arrays(amplitude_ratio, fk >= 0.4)
     holds = "the second order in ε keeps the over-pressure within some 10 %"
@@ -330,7 +334,7 @@ def second_order_mean_load(
         strict=strict,
     )
     require_valid("knudsen_number", knudsen_number, 0, 0.1, "first-order slip holds", strict=strict)
-    slip = 1.25 + 6 * knudsen_number - 1.5 * knudsen_number * (1 - polytropic_index)
-    order = polytropic_index * fk * slip / (1 + 6 * knudsen_number)
+    slip = 1.25 + 6 * knudsen_number - 1.5 * knudsen_number * (1 - polytropic_exponent)
+    order = polytropic_exponent * fk * slip / (1 + 6 * knudsen_number)
     value: DimensionlessLike = _plain(1 + amplitude_ratio**2 * order)
     return value

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
 from squeezefilm.errors import ConvergenceError, OutOfRangeError, UnreachableError
 from squeezefilm.film.periodic.batch import FilmBatch, solve_films
 from squeezefilm.quantities import (
+    Above,
+    AtLeast,
     Dimensionless,
-    FloatArray,
     Hertz,
     Metre,
     Pascal,
@@ -27,6 +29,27 @@ MAX_EXCURSION = 0.95
 
 _MIN_EXCURSION = 1e-3
 _STEPS = 30
+
+
+@checked_numbers
+@dataclass(frozen=True)
+class VibratedFilm:
+    """A film of fixed size and motion, whatever its mean gap h0: amplitude a (m, zero to peak),
+    frequency (Hz), full width of a strip or radius of a disc (m), the gas, and its free path at
+    ambient pressure (m; 0: no slip).
+
+    Raises `InputError` for what no film has.
+    """
+
+    amplitude: Annotated[Metre, Above(0.0)]
+    frequency: Annotated[Hertz, Above(0.0)]
+    length: Annotated[Metre, Above(0.0)]
+    viscosity: Annotated[PascalSecond, Above(0.0)] = 1.81e-5
+    ambient_pressure: Annotated[Pascal, Above(0.0)] = 101325.0
+    polytropic_exponent: Dimensionless = 1.0
+    mean_free_path: Annotated[Metre, AtLeast(0.0)] = 0.0
+    slip: str = "first"
+    shape: str = "strip"
 
 
 @dataclass(frozen=True)
@@ -47,12 +70,7 @@ class LoadBalance:
     excursion_ratio: Dimensionless
     knudsen_number: Dimensionless
     load: Pascal
-    amplitude: Metre
-    frequency: Hertz
-    length: Metre
-    viscosity: PascalSecond
-    ambient_pressure: Pascal
-    shape: str
+    film: VibratedFilm
     model: str
     iterations: int
     status: str
@@ -78,103 +96,46 @@ class LevitationLimit:
     model: str
 
 
-@dataclass(frozen=True)
-class _Film:
-    """A film of fixed size and motion, as a function of its mean gap through ε = a/h0."""
-
-    amplitude: float
-    scale: float
-    ambient_pressure: float
-    polytropic_exponent: float
-    mean_free_path: float
-    slip: str
-    shape: str
-
-    def solve(self, excursion: FloatArray, tolerance: float, strict: bool = True) -> FilmBatch:
-        return solve_films(
-            self.scale * excursion**2,
-            excursion,
-            shape=self.shape,
-            polytropic_exponent=self.polytropic_exponent,
-            knudsen_number=self.mean_free_path * excursion / self.amplitude,
-            slip=self.slip,
-            tolerance=tolerance,
-            workers=1,
-            strict=strict,
-        )
+def _squeeze_number(film: VibratedFilm, excursion_ratio: FloatArray) -> FloatArray:
+    """σ = 12 η ω l²/(p0 h0²) at ε = a/h0."""
+    scale = 12.0 * film.viscosity * 2.0 * math.pi * film.frequency * film.length**2
+    scale = scale / (film.ambient_pressure * film.amplitude**2)
+    return np.asarray(scale * excursion_ratio**2)
 
 
-def _film(
-    amplitude: float,
-    frequency: float,
-    length: float,
-    viscosity: float,
-    ambient_pressure: float,
-    polytropic_exponent: float,
-    mean_free_path: float,
-    slip: str,
-    shape: str,
-) -> _Film:
-    require("amplitude", amplitude, Unit("m"), above=0.0)
-    require("frequency", frequency, Unit("Hz"), above=0.0)
-    require("length", length, Unit("m"), above=0.0)
-    require("viscosity", viscosity, Unit("Pa*s"), above=0.0)
-    require("ambient_pressure", ambient_pressure, Unit("Pa"), above=0.0)
-    require("mean_free_path", mean_free_path, Unit("m"), at_least=0.0)
-    scale = 12.0 * viscosity * 2.0 * math.pi * frequency * length**2
-    return _Film(
-        amplitude,
-        scale / (ambient_pressure * amplitude**2),
-        ambient_pressure,
-        polytropic_exponent,
-        mean_free_path,
-        slip,
-        shape,
+def _solved(
+    film: VibratedFilm, excursion_ratio: FloatArray, tolerance: float, *, strict: bool = True
+) -> FilmBatch:
+    return solve_films(
+        _squeeze_number(film, excursion_ratio),
+        excursion_ratio,
+        shape=film.shape,
+        polytropic_exponent=film.polytropic_exponent,
+        knudsen_number=film.mean_free_path * excursion_ratio / film.amplitude,
+        slip=film.slip,
+        tolerance=tolerance,
+        workers=1,
+        strict=strict,
     )
 
 
 @checked_numbers
-def mean_gap_for_load(
-    load: Pascal,
-    amplitude: Metre,
-    frequency: Hertz,
-    length: Metre,
-    *,
-    viscosity: PascalSecond = 1.81e-5,
-    ambient_pressure: Pascal = 101325.0,
-    polytropic_exponent: Dimensionless = 1.0,
-    mean_free_path: Metre = 0.0,
-    slip: str = "first",
-    shape: str = "strip",
-    tolerance: float = 1e-3,
-) -> LoadBalance:
-    """The mean gap h0 at which a film vibrated with an amplitude carries a mean pressure load.
+def mean_gap_for_load(film: VibratedFilm, load: Pascal, *, tolerance: float = 1e-3) -> LoadBalance:
+    """The mean gap h0 at which a vibrated film carries a mean pressure load.
 
-    Solves p0 (W(σ, ε) − 1) = load for h0, with ε = amplitude/h0 and σ = 12 η ω l²/(p0 h0²); the
-    over-pressure falls steadily with h0. `length` is the full width of a strip or the radius of a
-    disc, `amplitude` zero to peak, `mean_free_path` that of the gas at ambient pressure (0: no
-    slip). `tolerance` is relative, on the load. Searched for 0.001 ≤ ε ≤ 0.95.
+    Solves p0 (W(σ, ε) − 1) = load for h0, with ε = a/h0; the over-pressure falls steadily with h0.
+    `tolerance` is relative, on the load. Searched for 0.001 ≤ ε ≤ 0.95.
 
     Raises `InputError` for values that no film has and `UnreachableError` for a load above what
     the film carries at ε = 0.95 (see `levitation_limit`) or below that at ε = 0.001.
     """
     require("load", load, Unit("Pa"), above=0.0)
     require("tolerance", tolerance, at_least=1e-6, at_most=0.1)
-    film = _film(
-        amplitude,
-        frequency,
-        length,
-        viscosity,
-        ambient_pressure,
-        polytropic_exponent,
-        mean_free_path,
-        slip,
-        shape,
-    )
+    amplitude, ambient_pressure = film.amplitude, film.ambient_pressure
     wanted = load / ambient_pressure
     grid = np.geomspace(_MIN_EXCURSION, MAX_EXCURSION, 24)
     # At the faint end of the grid the over-pressure can drown in round-off: leave that out.
-    first = film.solve(grid, 0.02, strict=False)
+    first = _solved(film, grid, 0.02, strict=False)
     usable = first.over_pressure_error <= 0.05 * first.over_pressure
     if np.count_nonzero(usable) < 2:
         raise OutOfRangeError(
@@ -184,7 +145,7 @@ def mean_gap_for_load(
     solves = len(grid)
     grid, rough = grid[usable], first.over_pressure[usable]
     ends = rough[[0, -1]].copy()
-    ends[1] = film.solve(grid[-1:], 0.5 * tolerance).over_pressure[0]
+    ends[1] = _solved(film, grid[-1:], 0.5 * tolerance).over_pressure[0]
     if not ends[0] <= wanted <= ends[1]:
         which, at = ("more", 1) if wanted > ends[1] else ("less", 0)
         gap = amplitude / grid[[0, -1]][at]
@@ -205,7 +166,7 @@ def mean_gap_for_load(
     for _ in range(_STEPS):
         guess = min(max(guess, low), high)
         near = np.minimum(np.exp([guess - 0.5 * step, guess, guess + 0.5 * step]), MAX_EXCURSION)
-        batch = film.solve(near, 0.3 * tolerance)
+        batch = _solved(film, near, 0.3 * tolerance)
         solves += 3
         logs = np.log(batch.over_pressure)
         slope = float((logs[2] - logs[0]) / np.log(near[2] / near[0]))
@@ -238,16 +199,11 @@ def mean_gap_for_load(
         mean_load_pressure=pressure,
         mean_load_pressure_error=error,
         static_stiffness=pressure * slope / gap,
-        squeeze_number=film.scale * eps**2,
+        squeeze_number=float(_squeeze_number(film, near[1])),
         excursion_ratio=eps,
-        knudsen_number=mean_free_path / gap,
+        knudsen_number=film.mean_free_path / gap,
         load=load,
-        amplitude=amplitude,
-        frequency=frequency,
-        length=length,
-        viscosity=viscosity,
-        ambient_pressure=ambient_pressure,
-        shape=shape,
+        film=film,
         model=batch.model,
         iterations=solves,
         status=(
@@ -259,39 +215,18 @@ def mean_gap_for_load(
 
 @checked_numbers
 def levitation_limit(
-    amplitude: Metre,
-    frequency: Hertz,
-    length: Metre,
-    *,
-    viscosity: PascalSecond = 1.81e-5,
-    ambient_pressure: Pascal = 101325.0,
-    polytropic_exponent: Dimensionless = 1.0,
-    mean_free_path: Metre = 0.0,
-    slip: str = "first",
-    shape: str = "strip",
-    excursion_ratio: Dimensionless = MAX_EXCURSION,
-    tolerance: float = 5e-3,
+    film: VibratedFilm, *, excursion_ratio: Dimensionless = MAX_EXCURSION, tolerance: float = 5e-3
 ) -> LevitationLimit:
     """The highest load a film carries before its gap closes to (1 − ε) of its mean.
 
-    The arguments are those of `mean_gap_for_load`. `excursion_ratio` (0.1 to 0.95) says how far
-    the gap may close; choose it from the roughness h_r, which must stay below the least gap:
-    ε = 1/(1 + h_r/amplitude). Raises `InputError` for values that no film has.
+    `excursion_ratio` (0.1 to 0.95) says how far the gap may close; choose it from the roughness
+    h_r, which must stay below the least gap: ε = 1/(1 + h_r/amplitude). Raises `InputError` for
+    values that no film has.
     """
     require("excursion_ratio", excursion_ratio, at_least=0.1, at_most=MAX_EXCURSION)
-    film = _film(
-        amplitude,
-        frequency,
-        length,
-        viscosity,
-        ambient_pressure,
-        polytropic_exponent,
-        mean_free_path,
-        slip,
-        shape,
-    )
-    batch = film.solve(np.array([excursion_ratio]), tolerance)
-    n = polytropic_exponent
+    ambient_pressure, gap = film.ambient_pressure, film.amplitude / excursion_ratio
+    batch = _solved(film, np.array([excursion_ratio]), tolerance)
+    n = film.polytropic_exponent
     H = 1.0 + excursion_ratio * np.cos(2.0 * np.pi * np.arange(512) / 512)
     psi = (np.mean(H**3) / np.mean(H ** (2.0 - n))) ** (1.0 / (n + 1.0))
     bound = float(psi**n * np.mean(H ** (-n))) - 1.0
@@ -299,9 +234,9 @@ def levitation_limit(
         load=float(batch.over_pressure[0]) * ambient_pressure,
         load_error=float(batch.over_pressure_error[0]) * ambient_pressure,
         load_infinite_sigma=bound * ambient_pressure,
-        mean_gap=amplitude / excursion_ratio,
-        least_gap=amplitude / excursion_ratio - amplitude,
-        squeeze_number=film.scale * excursion_ratio**2,
+        mean_gap=gap,
+        least_gap=gap - film.amplitude,
+        squeeze_number=float(_squeeze_number(film, np.asarray(excursion_ratio))),
         excursion_ratio=excursion_ratio,
         model=batch.model,
     )
