@@ -14,6 +14,7 @@ from squeezefilm.quantities import (
     Above,
     AtLeast,
     Dimensionless,
+    FloatArray,
     Hertz,
     Metre,
     Pascal,
