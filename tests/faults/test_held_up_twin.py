@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import itertools
 import os
+import select
 import sys
 import time
 import tty
@@ -221,39 +222,36 @@ def test_a_twins_watchdog_waits_for_a_system_that_carries_nothing(
     assert latest - 25 <= clock.faulted <= latest
 
 
-@pytest.mark.parametrize(
-    ("waits", "patient", "latest"),
-    [(range(0), True, 53), (range(200), True, 270), (range(200), False, 53)],
-    ids=["has it", "waits", "strict"],
-)
-def test_a_twins_watchdog_waits_for_a_host_that_waits_for_a_processor(
-    waits: range,
-    patient: bool,
-    latest: int,
-    host: list[int],
-    monkeypatch: pytest.MonkeyPatch,
+@pytest.mark.parametrize("patient", [True, False], ids=["patient", "strict"])
+def test_who_speaks_while_the_twin_is_held_up_at_its_port_did_not_fall_silent(
+    patient: bool, host: list[int], monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    """Held up after it has looked at the clock, while it waits for the port."""
     device = playing_twin()
     server = PtyServer(device, patient=patient)
     host.append(os.open(server.port, os.O_RDWR | os.O_NOCTTY))
-    clock = Seconds(server, device, range(5000))
+    tty.setraw(host[0])
+    alive = b"".join(m.KeepAlive().frame(number + 6).encoded() for number in range(40))
+    began = now = device.now
+    looks, calls = itertools.count(1), itertools.count()
 
-    class Waits:
-        def __init__(self, parent: int) -> None:
-            assert parent == os.getppid()
+    def flags(wait: float) -> int:
+        nonlocal now
+        look = next(looks)
+        if look == 2:
+            os.write(host[0], alive)
+            now += 200_000
+        if look == 6:
+            server.stop()
+        return select.POLLIN
 
-        def waited_since(self, begin: int, now: int) -> int:
-            assert begin <= now
-            return 1000 if (clock.now - clock.began) // 1000 in waits else 0
-
-    monkeypatch.setattr(server._way, "held_up_since", lambda wall: wall)
-    monkeypatch.setattr(pty_server, "Waiting", Waits)
-    monkeypatch.setattr(pty_server, "_PAUSE", 0.0)
-    monkeypatch.setattr(pty_server.time, "monotonic_ns", clock)
-    server.serve(os.getppid())
+    monkeypatch.setattr(server, "_flags", flags)
+    # The first look is when the twin's time began.
+    monkeypatch.setattr(pty_server.time, "monotonic_ns", lambda: now * 1000 if next(calls) else 0)
+    server.serve()
     server.close()
-    assert device.machine.fault is Fault.WATCHDOG
-    assert latest - 25 <= clock.faulted <= latest
+    assert device.now == began + 200_000
+    assert device.machine.fault is Fault.NONE
 
 
 def test_a_byte_goes_to_and_fro_through_the_system() -> None:

@@ -10,8 +10,8 @@ nobody knows when: it is heard evenly over it, as a device that was not held up 
 
 A computer that is busy holds up programs for longer than a device waits for its host. Its twin's
 watchdog therefore counts the twin's own time: neither that for which this process was held up, nor
-that for which the host leaves unread what it was told or waits for a processor, nor that for which
-the system does not carry what was said, up to a second. A real device waits 50 ms.
+that for which the host leaves unread what it was told, nor that for which the system does not carry
+what was said, up to a second. A real device waits 50 ms.
 """
 
 from __future__ import annotations
@@ -41,7 +41,6 @@ from squeezefilm.errors import InputError, SqueezefilmError
 from squeezefilm.quantities import Newton, Second
 from squeezefilm.twin.device import TwinDevice
 from squeezefilm.twin.hand import EXPLORING, Hand, hand_from
-from squeezefilm.twin.held_up import Waiting, Way
 from squeezefilm.twin.settings import TwinSettings, load_settings
 
 _PAUSE = 1.0  # ms between looks at the port
@@ -82,44 +81,43 @@ class PtyServer:
         self._connected = False
         self.longest_behind = 0
         self._said = self._read = self._read_at = self._heard_at = self._excused_to = 0
-        self._way = Way()
-        self._waiting: Waiting | None = None
+        self._way = _Way()
 
     def stop(self) -> None:
         """End `serve` soon; may be called from a signal handler."""
         self._running = False
 
     def serve(self, parent: int | None = None) -> None:
-        """Run in real time until `stop`, or until the process `parent`, the host, is no longer the
-        parent."""
-        self._waiting = None if parent is None else Waiting(parent)
+        """Run in real time until `stop`, or until the process `parent` is no longer the parent."""
         began = time.monotonic_ns()
+        heard = b""
         while self._running and (parent is None or os.getppid() == parent):
             wall = (time.monotonic_ns() - began) // 1000
             behind = wall - self._device.now
             self.longest_behind = max(self.longest_behind, behind)
             if behind > _HELD_UP:
                 self._connected = not self._flags(0.0) & select.POLLHUP
-                self._catch_up(wall)
+                self._catch_up(wall, heard)
+                heard = b""
                 continue
-            if self._patient and wall - self._heard_at > _READS_WITHIN:
+            if heard:
+                self._heard_at = self._excused_to = wall
+                self._device.receive(heard, wall)
+            elif self._patient and wall - self._heard_at > _READS_WITHIN:
                 self._excuse_silence(wall)
             self._say(self._device.advance(wall))
             flags = self._flags(_PAUSE)
             self._connected = not flags & select.POLLHUP
             heard = self._hear() if flags & select.POLLIN else b""
-            if heard:
-                self._heard_at = self._excused_to = wall
-                self._device.receive(heard, max(wall, (time.monotonic_ns() - began) // 1000))
-                self._say(self._device.advance(self._device.now))
-            elif not self._connected:
+            if not heard and not self._connected:
                 time.sleep(_UNCONNECTED_PAUSE * 1e-3)
 
-    def _catch_up(self, wall: int) -> None:
+    def _catch_up(self, wall: int, heard: bytes) -> None:
+        """Hear evenly, up to `wall`, what was `heard` and what waits in the port."""
         began = self._device.now
         # Left out below: not to be left out again as time in which nothing was carried.
         self._excused_to = wall
-        waiting = b"".join(iter(self._hear, b""))
+        waiting = heard + b"".join(iter(self._hear, b""))
         slices = -(-(wall - began) // _SLICE)
         for k in range(slices):
             if not self._running:
@@ -128,9 +126,9 @@ class PtyServer:
             if self._patient:
                 self._device.excuse(at - self._device.now)
             self._say(self._device.advance(at))
-            heard = waiting[len(waiting) * k // slices : len(waiting) * (k + 1) // slices]
-            if heard:
-                self._device.receive(heard, at)
+            part = waiting[len(waiting) * k // slices : len(waiting) * (k + 1) // slices]
+            if part:
+                self._device.receive(part, at)
 
     def close(self) -> None:
         """Hang up and write the truth out."""
@@ -143,13 +141,7 @@ class PtyServer:
         return dict(self._poll.poll(wait)).get(self._master, 0)
 
     def _excuse_silence(self, wall: int) -> None:
-        """Leave out the time since the host reads no more, or since nothing is carried to it, and
-        that for which it waited for a processor."""
-        if self._waiting is not None:
-            waited = self._waiting.waited_since(self._heard_at, wall)
-            waited = min(waited, wall - self._excused_to)
-            self._device.excuse(waited)
-            self._excused_to += waited
+        """Leave out the time since the host reads no more, or since nothing is carried to it."""
         since = min(self._unread_since(wall), self._way.held_up_since(wall))
         if wall - since > _READS_WITHIN:
             since = max(since, self._excused_to)
@@ -196,6 +188,36 @@ class PtyServer:
         # What a full wire or an absent host does not take is lost, as on a real one.
         with contextlib.suppress(OSError):
             self._said += os.write(self._master, data)
+
+
+class _Way:
+    """How long the system takes to carry a byte through a pseudo-terminal: one is sent again and
+    again. Linux carries them in a worker of ordinary priority, which a busy machine holds up for
+    hundreds of milliseconds while both programs run before ordinary work.
+    """
+
+    def __init__(self) -> None:
+        import tty
+
+        self._near, self._far = os.openpty()
+        tty.setraw(self._far)
+        os.set_blocking(self._near, False)
+        self._sent_at: int | None = None
+
+    def held_up_since(self, wall: int) -> int:
+        """When the byte was sent that is still on its way, or now."""
+        if self._sent_at is not None:
+            try:
+                os.read(self._near, 1)
+            except BlockingIOError:
+                return self._sent_at
+        os.write(self._far, bytes(1))
+        self._sent_at = wall
+        return wall
+
+    def close(self) -> None:
+        os.close(self._near)
+        os.close(self._far)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
