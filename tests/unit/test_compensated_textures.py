@@ -122,3 +122,13 @@ def test_a_grating_is_played_until_it_has_settled(speed: float) -> None:
         last, before = drive.amplitude[-per_period:], drive.amplitude[-2 * per_period : -per_period]
         assert np.allclose(last, before, rtol=1e-6, atol=1e-9 * PLATE.amplitude_limit)
         assert kept == pytest.approx(np.ptp(last) / (0.8 * PLATE.amplitude_limit), rel=1e-6)
+
+
+def test_drive_laws_do_what_their_names_say() -> None:
+    from squeezefilm.analysis.textures import DRIVE_LAWS
+
+    assert {law.name: (law.compensated, law.braking) for law in DRIVE_LAWS} == {
+        "no compensation": (False, False),
+        "compensated, no phase inversion": (True, False),
+        "compensated, phase inversion": (True, True),
+    }

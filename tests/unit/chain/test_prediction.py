@@ -102,6 +102,15 @@ def test_the_finger_takes_some_of_the_vibration_of_a_plate(plate: Display) -> No
     assert predict(plate, normal_force=2.0).touch.kept < p.touch.kept
 
 
+def test_only_a_measured_amplitude_leaves_out_what_a_finger_takes(
+    plate: Display, stator: Display
+) -> None:
+    says = "what a finger takes from it is not known"
+    assert [says in one for one in predict(stator).warnings].count(True) == 1
+    for other in (predict(stator, vibration_amplitude=1e-6), predict(plate)):
+        assert not any(says in one for one in other.warnings)
+
+
 def test_the_voltage_for_a_friction_gives_that_friction(plate: Display, stator: Display) -> None:
     for wanted in (0.9, 0.6):
         for frequency in (None, 33.8e3):

@@ -14,6 +14,7 @@ from squeezefilm.perception.percepts import grating_percept, indentation
 from squeezefilm.perception.senses import (
     D_PRIME_OF_75,
     SPACING,
+    Evidence,
     candidates,
     channel_gains,
     evidence,
@@ -132,3 +133,53 @@ def test_a_real_grating_is_felt_at_its_whole_period(means: str) -> None:
         found = grating_percept(grating, OBSERVER, finger)
         assert found.candidates.period[0] == pytest.approx(grating.period, rel=0.02)
         assert found.candidates.d_prime[0] > 5.0
+
+
+def _of_lines(power: dict[float, float], harmonics: int, weight: float) -> Evidence:
+    """Evidence of lines that are each as clear as said, in one channel."""
+    wide = SensoryChannel("all", 0.0, 1e9, 1.0)
+    one = dataclasses.replace(
+        OBSERVER, channels=(wide,), harmonics=harmonics, harmonic_weight=weight
+    )
+    periods = line_periods()
+    amplitude = np.zeros_like(periods)
+    for period, d_prime in power.items():
+        amplitude[np.argmin(np.abs(np.log(periods / period)))] = d_prime
+    return evidence(one, amplitude, np.ones((1, periods.size)), 0.0, 0.0)
+
+
+def test_a_rhythm_is_the_root_of_the_squares_of_its_harmonics() -> None:
+    periods = line_periods()
+    base = periods[np.argmin(np.abs(np.log(periods / 6e-3)))]
+    found = _of_lines({base: 3.0}, 3, 0.5)
+    # A line alone is a rhythm of its own period, and fainter one of twice and three times it.
+    assert found.at(base) == pytest.approx(3.0)
+    # Between two steps of 0.4 % the power is interpolated: at the nearest at least half is left.
+    for times, weight in ((2, 0.5), (3, 0.25)):
+        near = np.abs(np.log(found.period / (times * base))) < 0.0045
+        heights = (found.rhythm[near] / (3.0 * weight)) ** 2
+        assert heights.sum() == pytest.approx(1.0, abs=1e-6)
+    # Nothing shorter is made of it, and nothing four times as long.
+    assert np.all(found.rhythm[found.period < 0.99 * base] == 0)
+    assert found.at(3.3 * base if 3.3 * base < 20e-3 else 19.9e-3) == 0
+    alone = _of_lines({base: 3.0}, 1, 0.5)
+    assert alone.at(2 * base) == 0
+
+
+def test_the_lines_of_a_rhythm_add_up() -> None:
+    periods = line_periods()
+    base = periods[np.argmin(np.abs(np.log(periods / 8e-3)))]
+    half = _of_lines({base: 3.0, base / 2: 4.0}, 2, 0.5)
+    nearest = float(np.log(base / 2 / periods[np.argmin(np.abs(np.log(periods * 2 / base)))]))
+    # The share of the line at half the period that falls to the base's own step.
+    share = 1 - abs(nearest) / 0.004
+    assert half.at(base) == pytest.approx(math.sqrt(9.0 + 0.25 * 16.0 * share), rel=1e-6)
+
+
+def test_a_real_grating_is_refused_below_nothing() -> None:
+    with pytest.raises(InputError, match="groove_width"):
+        spatial_sensitivity(-1e-9)
+    assert spatial_sensitivity(0.0) == 0.0
+    assert spatial_sensitivity(0.7001e-3) == pytest.approx(4.25 * 0.1501)
+    assert spatial_sensitivity(3e-3) == pytest.approx(4.25 * 2.45)
+    assert spatial_sensitivity(2.9e-3) < spatial_sensitivity(3e-3)

@@ -116,3 +116,13 @@ def test_a_display_file_may_say_more_of_the_finger_and_need_not(tmp_path: Path) 
     file.write_text(text.replace("[gas]", '[finger.asperities]\nheight = "1 um"\n[gas]'))
     with pytest.raises(ConfigError, match="Did you mean 'heights'"):
         load(Display, file)
+
+
+def test_skin_moves_by_its_mass_spring_and_damper() -> None:
+    skin = Skin(3.0, 2e10, 4e5)
+    omega = 2 * math.pi * 30e3
+    stiffness = complex(2e10 - 3.0 * omega**2, 4e5 * omega)
+    assert skin.dynamic_stiffness(30e3) == pytest.approx(stiffness)
+    assert skin.displacement(50.0, 30e3) == pytest.approx(50.0 / abs(stiffness))
+    with pytest.raises(InputError, match="frequency"):
+        skin.dynamic_stiffness(0.0)

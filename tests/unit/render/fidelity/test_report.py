@@ -88,6 +88,21 @@ def test_chosen_frequencies_are_measured() -> None:
     assert fidelity_report(rendered, [500.0]).contrast_kept.shape == (1,)
 
 
+def test_four_periods_in_a_pass_are_enough_to_the_last_digit() -> None:
+    stroke = rendered_stroke(GRATING, STROKE, ENVELOPE, friction)
+    # The second pass, from the turn to the last step that still moves.
+    length = stroke.position.max() - stroke.position[-2]
+    for off in (-1e-12, 1e-12):
+        asked = [(4 + off) / length, 500.0]
+        kept = fidelity_report(stroke, asked).contrast_kept
+        assert np.isfinite(kept[1])
+        # There the 2 mm grating has no line; one of four periods to the pass has.
+        wide = rendered_stroke(Square(length / 4, 0.0, 0.8e-6), STROKE, ENVELOPE, friction)
+        assert np.isfinite(fidelity_report(wide, asked).contrast_kept[0])
+    with pytest.raises(InputError, match="no pass shows 4 periods"):
+        fidelity_report(stroke, [3.999 / length, 500.0])
+
+
 def bad_texture(x, y, v, t):  # type: ignore[no-untyped-def]
     return x * np.nan
 

@@ -66,6 +66,21 @@ def test_the_same_token_twice_is_one_row_and_the_first_answer(tmp_path: Path) ->
         assert len(store.rows("SELECT * FROM response")) == 4
 
 
+def test_a_trial_waits_for_its_answer_and_then_nothing_does(tmp_path: Path) -> None:
+    with StudyStore.create(tmp_path / "a.sqlite", gratings(1), 7) as store:
+        run = session(store, store.enrol())
+        assert run.state == "ready"
+        states = []
+        while (shown := run.next_trial()) is not None:
+            states.append(run.state)
+            assert not run.recorded(shown.token)
+            choice = shown.trial.alternatives[0] if shown.trial.asks else ""
+            run.respond(shown.token, Response(choice=choice))
+            states.append(run.state)
+            assert run.recorded(shown.token)
+        assert states == ["presented", "ready"] * 5 + ["presented", "finished"]
+
+
 def test_a_reload_shows_the_same_trial_again_and_is_counted(tmp_path: Path) -> None:
     with StudyStore.create(tmp_path / "a.sqlite", gratings(), 7) as store:
         run = session(store, store.enrol())

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 import math
 from pathlib import Path
@@ -131,3 +132,52 @@ def test_conditions_are_read_from_a_file_with_units() -> None:
     ):
         with pytest.raises(ConfigError, match=says):
             config.load_text(SessionConditions, f"consent = true\n{more}")
+
+
+def test_the_nearest_distance_that_was_computed_is_taken() -> None:
+    field = SoundField(
+        frequency=33e3,
+        distances=(0.25, 0.5, 1.0),
+        # Nearer than 1/distance would have it, so that it shows from which the level is taken.
+        sound_pressure_level_dB=(120.0, 110.0, 90.0),
+        polar=(0.5, 0.5, 0.5),
+        azimuth=(0.0, 0.0, 0.0),
+        polar_angles=np.zeros(1),
+        azimuths=np.zeros(1),
+        levels_dB=np.zeros((3, 1, 1)),
+        radiated_power=1e-3,
+        directivity_dB=9.0,
+        guidance=None,
+    )
+    for distance, level, base in ((0.2, 120.0, 0.25), (0.5, 110.0, 0.5), (1.5, 90.0, 1.0)):
+        found = exposure_of("d", field, 600.0, distance)
+        assert found.level_dB == pytest.approx(level - 20 * math.log10(distance / base))
+    assert (found.display, found.frequency, found.duration) == ("d", 33e3, 600.0)
+    assert (found.guidance_dB, found.guidance, found.above_guidance_dB) == (None, "", None)
+    assert found.statement.endswith("There is no published guidance for this frequency.")
+    below = dataclasses.replace(found, guidance_dB=100.0, level_dB=88.0, guidance="somebody 1984")
+    assert below.statement.endswith(
+        "That is 12 dB below the guidance for the public, somebody 1984."
+    )
+    assert below.above_guidance_dB == -12.0
+    even = dataclasses.replace(below, level_dB=100.0)
+    assert "0 dB below" in even.statement
+
+
+def test_a_tolerance_is_a_share_and_expectations_are_above_nothing() -> None:
+    fine = DeviceVerification(2e-6, 2e-6, 30e3, 30e3)
+    for field in ("amplitude_tolerance", "resonance_tolerance"):
+        for wrong in (0.0, 1.0):
+            with pytest.raises(InputError, match=field):
+                dataclasses.replace(fine, **{field: wrong})
+    for field in ("expected_amplitude", "expected_resonance_frequency"):
+        with pytest.raises(InputError, match=field):
+            dataclasses.replace(fine, **{field: 0.0})
+    # At the very end of the tolerance all is well, on either side.
+    ends = DeviceVerification(1.5, 1.0, 0.5, 1.0, 0.5, 0.5)
+    assert ends.passed
+    assert dataclasses.replace(ends, amplitude=0.5, resonance_frequency=1.5).passed
+    assert len(dataclasses.replace(ends, amplitude=0.49, resonance_frequency=1.51).problems) == 2
+    assert (fine.amplitude_tolerance, fine.resonance_tolerance) == (0.1, 0.01)
+    # What was never measurable may hold anything.
+    assert DeviceVerification(measurable=False).passed

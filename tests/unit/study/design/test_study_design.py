@@ -174,3 +174,173 @@ def test_every_preset_is_kept_whole_in_a_studys_file(name: str, tmp_path: Path) 
         assert store.design == design
         assert store.design.sha256 == design.sha256 == store.study["design_sha256"]
         assert len(trials(design, 0, 7)) > 0
+
+
+def _gratings(**more: object) -> StudyDesign:
+    """Three gratings to be told apart, with nothing said that need not be."""
+    values: dict[str, object] = {
+        "name": "a",
+        "title": "",
+        "displays": ("biet2008-plate",),
+        "task": "match-to-sample",
+        "stimuli": tuple(Stimulus(f"{mm} mm", mm * 1e-3, "period") for mm in (2, 4, 8)),
+        "alternatives": tuple(Grating(f"{mm} mm", mm * 1e-3, "period") for mm in (2, 4, 8)),
+    }
+    return StudyDesign(**(values | more))  # type: ignore[arg-type]
+
+
+def test_what_is_not_said_is_done_once_and_nothing_before_it() -> None:
+    design = _gratings()
+    assert [one.phase for one in trials(design, 0, 1)] == ["main"] * 3
+    assert design.most_trials == 3
+    assert (design.blocks, design.repetitions) == (1, 1)
+    assert (design.practice, design.familiarisation, design.catch, design.adaptive) == (
+        0,
+        0,
+        (),
+        (),
+    )
+    assert design.order == "williams"
+    assert (design.break_between_blocks, design.trial_duration) == (60.0, 20.0)
+    assert (design.modulus, design.judged) == (0.0, "spatial_period")
+
+
+def test_most_trials_count_all_phases_on_every_display() -> None:
+    design = _gratings(displays=("biet2008-plate", "biet2008-stator"), blocks=2, repetitions=5,
+                       familiarisation=3, practice=4, catch=(
+                           CatchTrial(Stimulus("a", 2e-3, "period", matches="2 mm"), "2 mm", 6),
+                       ))  # fmt: skip
+    assert design.most_trials == 2 * (2 * 5 * 3 + 3 * 3 + 6 + 4)
+    assert len(trials(design, 0, 1)) <= design.most_trials
+    # Of pairs there are the two orders, and for same/different also both alike.
+    two = config.load_text(StudyDesign, TWO_INTERVAL)
+    assert two.most_trials == 3 * 3 * 2 + 2 + 4
+    assert dataclasses.replace(two, task="same-different", catch=()).most_trials == 3 * 3 * 4 + 4
+    series = (AdaptiveCondition("a", "staircase", count=7), AdaptiveCondition("b", "bayesian",
+                                                                              count=9))  # fmt: skip
+    assert dataclasses.replace(two, adaptive=series).most_trials == 7 + 9 + 2 + 4
+
+
+def test_whoever_says_where_values_are_from_the_design_is_the_same() -> None:
+    design = _gratings()
+    said = dataclasses.replace(design, provenance=load_design("biet2008-gratings").provenance)
+    assert said.provenance
+    assert said == design
+    assert said.sha256 == design.sha256
+    assert "provenance" not in repr(said)
+    assert dataclasses.replace(design, note="b").sha256 != design.sha256
+
+
+@pytest.mark.parametrize(
+    ("change", "quantity", "says"),
+    [
+        ({"displays": ()}, "displays", "displays is empty"),
+        ({"displays": ("a", "a")}, "displays", "name twice"),
+        ({"stimuli": ()}, "stimuli", "stimuli is empty"),
+        ({"reference": "5 mm"}, "reference", "is no stimulus.* Stimuli: 2 mm, 4 mm, 8 mm"),
+        ({"alternatives": ()}, "alternatives", "two or more .*; there are 0"),
+        ({"alternatives": (Grating("2 mm", 2e-3, "period"),)}, "alternatives", "there are 1"),
+        ({"task": "magnitude-estimation"}, "alternatives", "has no alternatives; remove them"),
+        ({"task": "two-interval", "alternatives": ()}, "reference", "compares with a reference"),
+        ({"task": "two-interval", "alternatives": (), "reference": "2 mm",
+          "stimuli": (Stimulus("2 mm", 2e-3, "period"),)}, "stimuli", "only the reference"),
+        ({"adaptive": (AdaptiveCondition("a", "staircase"),)}, "adaptive",
+         "need task = 'two-interval', not 'match-to-sample'"),
+        ({"task": "same-different", "alternatives": (), "reference": "2 mm",
+          "adaptive": (AdaptiveCondition("a", "staircase"),)}, "adaptive", "not 'same-different'"),
+        ({"modulus": 10.0}, "modulus", "needs magnitude-estimation and a reference"),
+        ({"modulus": 10.0, "reference": "2 mm"}, "modulus", "needs magnitude-estimation"),
+        ({"task": "magnitude-estimation", "alternatives": (), "modulus": 10.0}, "modulus",
+         "and a reference"),
+        ({"stimuli": (Stimulus("2 mm", 2e-3, "period", matches="9 mm"),)}, "stimuli",
+         "matches '9 mm', which is no alternative.* Alternatives: 2 mm, 4 mm, 8 mm"),
+    ],
+)  # fmt: skip
+def test_a_design_that_does_not_fit_its_task_is_refused(
+    change: dict[str, object], quantity: str, says: str
+) -> None:
+    with pytest.raises(InputError, match=says) as refused:
+        _gratings(**change)
+    assert refused.value.quantity == quantity
+
+
+def test_a_modulus_and_a_series_with_the_reference_alone_are_fine() -> None:
+    one = (Stimulus("2 mm", 2e-3, "period"),)
+    rated = _gratings(task="magnitude-estimation", alternatives=(), modulus=10.0, reference="2 mm")
+    assert rated.modulus == 10.0
+    assert rated.answers == ()
+    alone = _gratings(task="two-interval", alternatives=(), reference="2 mm", stimuli=one,
+                      adaptive=(AdaptiveCondition("a", "staircase", count=5),))  # fmt: skip
+    assert alone.most_trials == 5
+    assert alone.answers == ("first", "second")
+    found = alone.comparison(alone.adaptive[0], 0.25)
+    assert (found.name, found.period) == ("2 mm +25 %", pytest.approx(2.5e-3))
+    same = _gratings(task="same-different", alternatives=(), reference="2 mm")
+    assert same.answers == ("same", "different")
+
+
+def test_a_stimulus_is_found_by_its_name_or_told() -> None:
+    odd = Stimulus("odd", 4e-3, "period")
+    design = _gratings(catch=(CatchTrial(odd, "4 mm"),))
+    assert design.stimulus("odd") is odd
+    assert design.stimulus("8 mm").period == 8e-3
+    with pytest.raises(InputError, match=r"has no stimulus '8mm'\. Did you mean '8 mm'"):
+        design.stimulus("8mm")
+    # One surface is presented alone, whatever its answer.
+    assert design.catch_condition(design.catch[0]) == ("odd",)
+
+
+def test_each_task_asks_its_own_question() -> None:
+    two = config.load_text(StudyDesign, TWO_INTERVAL)
+    assert two.spoken_question == "Which of the two surfaces was coarser?"
+    deep = dataclasses.replace(
+        two,
+        judged="friction_depth",
+        catch=(),
+        stimuli=(two.stimuli[0], dataclasses.replace(two.stimuli[1], low=0.5)),
+    )
+    assert deep.spoken_question == "Which of the two surfaces was more strongly felt?"
+    assert dataclasses.replace(deep, question="Which?").spoken_question == "Which?"
+    assert _gratings().spoken_question.startswith("Which of the gratings")
+    same = dataclasses.replace(two, task="same-different", catch=())
+    assert same.spoken_question == "Were the two surfaces the same or different?"
+    assert "number" in _gratings(task="magnitude-estimation", alternatives=()).spoken_question
+
+
+def test_what_is_right_where_something_is() -> None:
+    design = _gratings()
+    flat = Stimulus("flat", 2e-3, "period", waveform="constant")
+    assert design.answer_to(flat) == ""
+    assert design.answer_to(dataclasses.replace(flat, matches="8 mm")) == "8 mm"
+    assert design.answer_to(Stimulus("x", 2e-3 + 0.5e-9, "period")) == "2 mm"
+    assert design.answer_to(Stimulus("x", 2e-3 + 2e-9, "period")) == ""
+    assert design.answer_to(Stimulus("x", 2e-3, "period", matches="4 mm")) == "4 mm"
+    twice = _gratings(alternatives=(*design.alternatives, Grating("again", 2e-3, "period")))
+    assert twice.answer_to(design.stimuli[0]) == ""
+    two = config.load_text(StudyDesign, TWO_INTERVAL)
+    four = two.stimulus("4 mm")
+    assert two.answer_to(four) == ""
+    assert two.answer_to(four, dataclasses.replace(four, low=0.5)) == ""
+    deep = dataclasses.replace(four, low=0.5)
+    by_depth = dataclasses.replace(
+        two,
+        judged="friction_depth",
+        catch=(),
+        stimuli=(four, dataclasses.replace(deep, name="deep")),
+    )
+    assert by_depth.answer_to(four, deep) == "second"
+    assert by_depth.answer_to(deep, four) == "first"
+    same = dataclasses.replace(two, task="same-different", catch=())
+    assert same.answer_to(four, deep) == "different"
+    assert same.answer_to(four) == ""
+    rated = _gratings(task="magnitude-estimation", alternatives=())
+    assert rated.answer_to(four) == ""
+
+
+def test_a_catch_trial_is_put_in_the_order_in_which_it_is_right() -> None:
+    design = config.load_text(StudyDesign, TWO_INTERVAL)
+    odd = design.catch[0].stimulus
+    assert design.catch_condition(CatchTrial(odd, "second")) == ("4 mm", "20 mm")
+    same = dataclasses.replace(design, task="same-different", catch=(CatchTrial(odd, "same"),))
+    assert same.catch_condition(same.catch[0]) == ("20 mm", "20 mm")
+    assert same.catch_condition(CatchTrial(odd, "different")) == ("20 mm", "4 mm")

@@ -210,3 +210,71 @@ def test_posterior_of_a_cell_is_a_beta() -> None:
     spread = 0.5 * math.sqrt(20 / (144 * 13) + 11 / (144 * 13))
     assert both.low < mean < both.high
     assert both.high - both.low == pytest.approx(3.9 * spread, rel=0.1)
+
+
+def test_counts_that_do_not_fit_their_names_are_refused() -> None:
+    with pytest.raises(InputError, match=r"\(2, 2\) do not fit 3 answers \(rows\) and 2 stimuli"):
+        ConfusionMatrix(np.eye(2, dtype=int), NAMES, ("a", "b"))
+    for wrong in (np.array([["x", "y"], ["z", "w"]]), np.array([[1.0, np.inf], [0.0, 1.0]])):
+        with pytest.raises(InputError, match="some are not numbers"):
+            ConfusionMatrix(wrong, ("a", "b"), ("a", "b"))
+    with pytest.raises(InputError, match=r"from 0 up; 0\.5 is among them"):
+        ConfusionMatrix(np.array([[1.0, 0.5], [2.5, 1.0]]), ("a", "b"), ("a", "b"))
+
+
+def test_the_first_number_out_of_range_is_named() -> None:
+    with pytest.raises(InputError, match="stimulus = -2 is out of range"):
+        confusion_matrix([0, -2, 3], [0, 0, 0], NAMES)
+    with pytest.raises(InputError, match="choice = 3 is out of range; it must be 0 to 2"):
+        confusion_matrix([0, 1, 2], [0, 3, -1], NAMES)
+    # Nought is a number like others.
+    with pytest.raises(InputError, match="choice = 7"):
+        confusion_matrix([0, 0], [0, 7], NAMES)
+    assert confusion_matrix([2], [0], NAMES).counts[0, 2] == 1
+    assert confusion_matrix([0, 1], [1, 0], ("a", "b"), ("x", "y")).stimuli == ("x", "y")
+
+
+@pytest.mark.parametrize("interval", [wilson_interval, jeffreys_interval, clopper_pearson_interval])
+def test_one_trial_has_an_interval_and_none_has_not(interval) -> None:  # type: ignore[no-untyped-def]
+    assert interval(0, 1).low == 0.0
+    assert interval(1, 1).high == 1.0
+    assert 0 < interval(0, 1).high < 1
+    for successes, trials in ((0, 0), (-1, 3), (4, 3)):
+        with pytest.raises(InputError, match=f"{successes} successes of {trials} trials cannot be"):
+            interval(successes, trials)
+    for level in (0.0, 1.0):
+        with pytest.raises(InputError, match="level"):
+            interval(1, 2, level)
+
+
+def test_matrices_of_people_are_square_and_shuffled_at_least_once() -> None:
+    for wrong in (np.ones((2, 2, 3), dtype=int), np.eye(2, dtype=int)):
+        for test in (participant_interval, permutation_test):
+            with pytest.raises(InputError, match="no square matrices of participants"):
+                test(wrong)
+    with pytest.raises(InputError, match="permutations = 0"):
+        permutation_test(np.diag([2, 2])[None], 0)
+    # The data count as one of the permutations.
+    assert permutation_test(np.diag([9, 9])[None], 1) in (0.5, 1.0)
+    # With one answer to everything all permutations are alike, and so is the normal limit.
+    always = np.array([[[3, 3], [0, 0]]])
+    assert permutation_test(always, 20) == 1.0
+    assert permutation_test(np.tile(always, (201, 1, 1))) == 1.0
+    for level in (0.0, 1.0):
+        with pytest.raises(InputError, match="level"):
+            participant_interval(np.tile(always, (3, 1, 1)), level)
+
+
+def test_resamples_are_as_many_as_asked_for() -> None:
+    counts = np.array([np.diag([3, 0]), np.diag([0, 5]), np.diag([1, 1])])
+    whole = resampled_counts(counts, 7, 4)
+    assert whole.shape == (7, 2, 2)
+    # Who are all alike stay so.
+    many = resampled_counts(np.tile(np.diag([1, 2]), (300, 1, 1)), 5, 1)
+    assert np.array_equal(many, np.tile(np.diag([300, 600]), (5, 1, 1)))
+    assert len(resampled_counts(counts, 1, 4)) == 1
+    assert np.array_equal(resampled_counts(counts, 1, 4)[0], whole[0])
+    with pytest.raises(InputError, match="resamples = 0"):
+        resampled_counts(counts, 0, 4)
+    with pytest.raises(InputError, match="fewer than 2 participants"):
+        resampled_counts(np.eye(2, dtype=int), 3, 4)

@@ -65,3 +65,52 @@ def test_means_are_over_people_not_trials() -> None:
     assert found[0].mean == 2
     assert (found[0].trials, found[0].participants) == (4, 2)
     assert found[0].high - 2 == pytest.approx(12.706, abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("rows", "says"),
+    [
+        (([0], [0, 0], [1.0, 1.0]), "one value a trial"),
+        (([0, 0], [0, 0], [1.0]), "one value a trial"),
+        (([[0]], [[0]], [[1.0]]), "one value a trial"),
+    ],
+)
+def test_rows_that_are_none_are_refused(rows: tuple[list, list, list], says: str) -> None:
+    with pytest.raises(InputError, match=says):
+        condition_means(*rows, ("a",))
+
+
+@pytest.mark.parametrize("level", [0.0, 1.0, 1.5])
+def test_a_level_is_between_none_and_all(level: float) -> None:
+    with pytest.raises(InputError, match="level"):
+        condition_means([0, 1], [0, 0], [1.0, 2.0], ("a",), level)
+
+
+def test_a_wider_level_reaches_further_and_one_person_nowhere() -> None:
+    rows = ([0, 1, 2, 0], [0, 0, 0, 1], [1.0, 2.0, 6.0, 5.0])
+    a, b = condition_means(*rows, ("a", "b"), 0.9)
+    # Student's t of two degrees of freedom, 2.920, times √(7/3).
+    assert (a.mean, a.level) == (3.0, 0.9)
+    assert a.high - 3.0 == pytest.approx(2.919986 * math.sqrt(7 / 3), rel=1e-6)
+    assert a.low == pytest.approx(6.0 - a.high)
+    assert (b.mean, b.trials, b.participants) == (5.0, 1, 1)
+    assert math.isnan(b.low)
+    assert math.isnan(b.high)
+    assert condition_means([], [], [], ("a",)) == ()
+
+
+def test_traces_of_two_samples_are_enough_and_say_where_they_lie() -> None:
+    found = exploration([1.0, 3.0], [0.0, 0.3], [0.0, 0.4], [1.0, 2.0])
+    assert (found.duration, found.path_length) == (2.0, pytest.approx(0.5))
+    assert (found.mean_force, found.force_spread) == (1.5, 0.0)
+    for wrong in (math.nan, math.inf):
+        with pytest.raises(InputError, match="x ="):
+            exploration([0.0, 1.0], [0.0, wrong])
+        with pytest.raises(InputError, match="y ="):
+            exploration([0.0, 1.0], [0.0, 1.0], [0.0, wrong])
+        with pytest.raises(InputError, match="time"):
+            exploration([0.0, wrong], [0.0, 1.0])
+    with pytest.raises(InputError, match="at least 2 samples"):
+        exploration([[0.0, 1.0]], [[0.0, 1.0]])
+    with pytest.raises(InputError, match="time must rise"):
+        exploration([0.0, 1.0, 1.0], [0.0, 1.0, 2.0])

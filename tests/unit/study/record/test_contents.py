@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import random
 import sqlite3
 from collections import Counter
@@ -15,6 +16,7 @@ from squeezefilm.study.conduct.sessions import display_wanted
 from squeezefilm.study.conduct.study_device import NoDevice
 from squeezefilm.study.conduct.trial_by_trial import conduct
 from squeezefilm.study.identification.recorded import analyze_study
+from squeezefilm.study.record.contents import is_trace, require_identifier
 from squeezefilm.study.record.deletion import delete_participant
 from squeezefilm.study.record.exports import FORMATS, export_study
 from squeezefilm.study.record.merge import merge
@@ -188,3 +190,115 @@ def test_a_file_with_triggers_or_other_tables_is_refused(tmp_path: Path) -> None
         connection.close()
         with pytest.raises(InputError, match=f"damaged or was not written by this .*{says}"):
             StudyStore.open(path)
+
+
+# One value that this program never writes, and what is said of it. Each stands alone.
+WRONG = (
+    ("UPDATE study SET seed = -1", "study .* has seed = -1"),
+    ("UPDATE study SET seed = 9007199254740993", "has seed = 9007199254740993"),
+    ("UPDATE study SET stations = 0", "has stations = 0"),
+    ("UPDATE study SET station = -1", "has station = -1"),
+    ("UPDATE study SET created_utc = '2026-01-01T00:00:00'", "has created_utc"),
+    ("UPDATE study SET uuid = '0123456789abcde'", "has uuid"),
+    ("UPDATE participant SET number = -1", "participant .* has number = -1"),
+    ("UPDATE participant SET enrolled_utc = 'today'", "has enrolled_utc = 'today'"),
+    ("UPDATE trial SET number = -1 WHERE number = 1", "trial .* has number = -1"),
+    ("UPDATE trial SET display = 'glass'", "has display = 'glass'"),
+    ("UPDATE trial SET phase = 'last'", "has phase = 'last'"),
+    ("UPDATE trial SET stimuli = '{}'", "has stimuli = '{}'"),
+    ("UPDATE trial SET stimuli = '[1]'", r"has stimuli = '\[1\]'"),
+    ("UPDATE trial SET stimuli = '['", r"has stimuli = '\['"),
+    ("UPDATE trial SET alternatives = '[null]'", "has alternatives"),
+    ("UPDATE trial SET adaptive = 'stairs'", "has adaptive = 'stairs'"),
+    ("UPDATE trial SET pause_s = -0.1", "has pause_s = -0.1"),
+    ("UPDATE trial SET pause_s = 9e999", "has pause_s = inf"),
+    ("UPDATE trial SET seed = -1", "has seed = -1"),
+    ("UPDATE session SET conditions = '{\"a\": [1]}'", "session .* has conditions"),
+    ("UPDATE session SET conditions = 'null'", "has conditions = 'null'"),
+    ("UPDATE session SET exposure = '[]'", "has exposure"),
+    ("UPDATE session SET started_utc = ''", "has started_utc"),
+    ("UPDATE verification SET moment = 'meanwhile'", "has moment = 'meanwhile'"),
+    ("UPDATE verification SET result = '{\"measurable\": true}'", "has result"),
+    ("UPDATE verification SET result = 'null'", "has result = 'null'"),
+    ("UPDATE verification SET result = '{\"measurable\": true, \"amplitude_m\": [1], "
+     "\"resonance_frequency_Hz\": 1}'", "has result"),
+    ("UPDATE presentation SET presented_utc = 'x'", "presentation .* has presented_utc"),
+    ("UPDATE response SET traces = '[\"../../escaped\"]'", "response .* has traces"),
+    ("UPDATE response SET correct = 2", "has correct = 2"),
+    ("UPDATE response SET response_time_s = -1.0", "has response_time_s = -1.0"),
+    # What no column shows alone.
+    ("UPDATE trial SET stimuli = '[\"9 mm\"]' WHERE phase = 'main'", "which its design does not"),
+    ("UPDATE trial SET stimuli = '[]' WHERE number = 3", "presents .*which its design does not"),
+    ("UPDATE trial SET alternatives = '[\"9 mm\"]'", "offers .*which its design does not"),
+    ("UPDATE response SET stimuli = '[\"8 mm\", \"2 mm\"]'", "instead of"),
+    ("UPDATE response SET stimuli = '[]'", r"is to \[\] instead of"),
+    ("UPDATE response SET choice = '9 mm'", "is '9 mm', which was not offered"),
+    ("DELETE FROM participant", r"a row of \w+ belongs to one of participant that is gone"),
+)  # fmt: skip
+
+
+def test_each_value_that_was_never_written_is_named(tmp_path: Path) -> None:
+    data = _made(tmp_path, adaptive=False)
+    path = tmp_path / "study.sqlite"
+    path.write_bytes(data)
+    StudyStore.open(path).close()
+    for statement, says in WRONG:
+        path.write_bytes(data)
+        connection = sqlite3.connect(path, isolation_level=None)
+        connection.execute(statement)
+        connection.close()
+        with pytest.raises(InputError, match=f"damaged or was not written by this .*{says}"):
+            StudyStore.open(path)
+
+
+def test_an_adaptive_answer_has_its_intensity(tmp_path: Path) -> None:
+    path = tmp_path / "study.sqlite"
+    path.write_bytes(_made(tmp_path, adaptive=True))
+    StudyStore.open(path).close()
+    connection = sqlite3.connect(path, isolation_level=None)
+    connection.execute("UPDATE response SET intensity = NULL")
+    connection.close()
+    with pytest.raises(InputError, match="has no intensity"):
+        StudyStore.open(path)
+
+
+def test_what_may_be_left_open_is_taken(tmp_path: Path) -> None:
+    """The ends of what is written: the highest seed, no exposure or an object of plain values."""
+    path = tmp_path / "study.sqlite"
+    path.write_bytes(_made(tmp_path, adaptive=False))
+    exposure = json.dumps({"acknowledged": True, "level_dB": 124.0, "guidance_dB": None, "n": 1})
+    for statement in (
+        f"UPDATE study SET seed = {2**53}",
+        "UPDATE study SET seed = 0",
+        "UPDATE session SET exposure = 'null'",
+        f"UPDATE session SET exposure = '{exposure}'",
+        "UPDATE response SET correct = 0",
+        "UPDATE response SET correct = NULL, response_time_s = NULL",
+        "UPDATE response SET response_time_s = 0.0",
+        f'UPDATE response SET traces = \'["{"0af9" * 8}.csv", "{"0af9" * 8}.sqft"]\'',
+        "UPDATE trial SET pause_s = 0.0",
+        "UPDATE verification SET session = NULL, moment = 'after'",
+    ):
+        connection = sqlite3.connect(path, isolation_level=None)
+        connection.execute(statement)
+        connection.close()
+        StudyStore.open(path).close()
+
+
+def test_names_of_traces_are_known_half_written_or_not() -> None:
+    name = "0af9" * 8
+    for ours in (f"{name}.csv", f"{name}.sqft", f".{name}.sqft.k2_x"):
+        assert is_trace(ours)
+    for other in (f"{name}.txt", f"{name[:-1]}.csv", f".{name}.sqft", f"x{name}.csv",
+                  f"{name}.csv~", f".{name}.csv.K"):  # fmt: skip
+        assert not is_trace(other)
+
+
+def test_a_pseudonym_is_of_16_to_36_digits_and_letters() -> None:
+    for fine in ("0123456789abcdef", "a" * 36, "01234567-89ab-cdef"):
+        require_identifier(fine)
+    for none in ("0123456789abcde", "a" * 37, "0123456789abcdeg", "0123456789abcdef\n", ""):
+        with pytest.raises(InputError, match="is no participant's pseudonym"):
+            require_identifier(none)
+    with pytest.raises(InputError, match=f"^'{'x' * 80}' is"):
+        require_identifier("x" * 90)

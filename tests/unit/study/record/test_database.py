@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import shutil
 import sqlite3
@@ -17,10 +18,22 @@ from squeezefilm.study.conduct.run import Response, StudyRun
 from squeezefilm.study.conduct.study_device import NoDevice
 from squeezefilm.study.conduct.trial_by_trial import conduct
 from squeezefilm.study.identification.recorded import analyze_study
+from squeezefilm.study.record import database as database_module
 from squeezefilm.study.record import store as store_module
+from squeezefilm.study.record.database import (
+    Database,
+    claim,
+    discard,
+    identity_of,
+    is_study,
+    require_alone,
+    require_study,
+    same_folders,
+)
 from squeezefilm.study.record.deletion import delete_participant
 from squeezefilm.study.record.exports import export_study
 from squeezefilm.study.record.merge import merge
+from squeezefilm.study.record.schema import APPLICATION_ID, VERSION
 from squeezefilm.study.record.store import StudyStore
 
 from ..scripted import Script, gratings, run_through, session
@@ -332,3 +345,267 @@ def test_a_file_of_version_1_opens_goes_on_and_exports(tmp_path: Path) -> None:
         after = store.rows("SELECT * FROM response ORDER BY trial")
         assert [row for row in after if row in before] == before
         export_study(store, "psych-ds")
+
+
+class Connection:
+    """SQLite, of which one statement fails or answers otherwise."""
+
+    def __init__(self, place: object, fails: str, by: object, **how: object) -> None:
+        self._inner = sqlite3.connect(place, **how)  # type: ignore[call-overload]
+        self._fails, self._by = fails, by
+        self.closed = False
+
+    def execute(self, statement: str, *more: object) -> object:
+        """As it is, but for the one."""
+        if self._fails not in statement:
+            return self._inner.execute(statement, *more)
+        if isinstance(self._by, Exception):
+            raise self._by
+        # Another answer, of the same shape.
+        return self._inner.execute(f"SELECT {self._by}")
+
+    def close(self) -> None:
+        """Keep that it was."""
+        self.closed = True
+        self._inner.close()
+
+
+def _failing(monkeypatch: pytest.MonkeyPatch, statement: str, by: object) -> list[Connection]:
+    made: list[Connection] = []
+
+    class Module:
+        """`sqlite3`, of which only `connect` is another."""
+
+        Error, sqlite_version = sqlite3.Error, sqlite3.sqlite_version
+        sqlite_version_info = sqlite3.sqlite_version_info
+
+        @staticmethod
+        def connect(place: object, **how: object) -> Connection:
+            made.append(Connection(place, statement, by, **how))
+            return made[-1]
+
+    monkeypatch.setattr(database_module, "sqlite3", Module)
+    return made
+
+
+FULL = sqlite3.OperationalError("database or disk is full")
+
+
+@pytest.mark.parametrize(
+    ("statement", "by", "kind", "says"),
+    [
+        ("count(*) FROM sqlite_schema", FULL, RecordError, "cannot be opened: database or disk is"),
+        ("journal_mode", "'delete'", RecordError, r"\(journal_mode is delete\); put it on a local"),
+        ("foreign_keys", FULL, RecordError, "cannot be opened: database or disk is full"),
+        ("synchronous", sqlite3.DatabaseError("file is not a database"), InputError,
+         "is no study's file: file is not a database"),
+    ],
+)  # fmt: skip
+def test_a_database_that_cannot_be_opened_is_closed_again(
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    statement: str,
+    by: object,
+    kind: type[BaseException],
+    says: str,
+) -> None:
+    path = tmp_path / "study.sqlite"
+    StudyStore.create(path, gratings(), 7).close()
+    made = _failing(monkeypatch, statement, by)
+    with pytest.raises(kind, match=says):
+        Database(path)
+    assert [one.closed for one in made] == [True]
+
+
+def test_a_folder_that_keeps_nothing_is_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "study.sqlite"
+    StudyStore.create(path, gratings(), 7).close()
+
+    def refused(*_: object, **__: object) -> None:
+        raise sqlite3.OperationalError("unable to open database file")
+
+    with monkeypatch.context() as patched:
+        patched.setattr(database_module.sqlite3, "connect", refused)
+        with pytest.raises(RecordError, match=r"unable to open .*; is the folder writable\?"):
+            Database(path)
+    with monkeypatch.context() as patched:
+        patched.setattr(database_module.sqlite3, "sqlite_version_info", (3, 36, 9))
+        with pytest.raises(RecordError, match=r"a study needs 3\.37 or later"):
+            Database(path)
+    with monkeypatch.context() as patched:
+        patched.setattr(database_module.sqlite3, "sqlite_version_info", (3, 37))
+        Database(path).close()
+
+
+def test_a_file_that_was_replaced_while_it_was_opened_is_not_taken(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "study.sqlite"
+    StudyStore.create(path, gratings(), 7).close()
+    connect = database_module._connect
+
+    def slow(path: Path, new: bool) -> sqlite3.Connection:
+        made = connect(path, new)
+        _replaced(path)
+        return made
+
+    monkeypatch.setattr(database_module, "_connect", slow)
+    with pytest.raises(RecordError, match="was replaced while it was being opened; open it again"):
+        Database(path)
+
+
+def test_a_person_who_stops_an_opening_leaves_nothing_open(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "study.sqlite"
+    StudyStore.create(path, gratings(), 7).close()
+    made = _failing(monkeypatch, "nothing that is asked", 0)
+    looks: list[Path] = []
+
+    def look(at: Path) -> tuple[int, int] | None:
+        looks.append(at)
+        if len(looks) > 1:
+            raise KeyboardInterrupt
+        return identity_of(at)
+
+    monkeypatch.setattr(database_module, "identity_of", look)
+    with pytest.raises(KeyboardInterrupt):
+        Database(path)
+    assert [one.closed for one in made] == [True]
+
+
+def test_what_is_no_study_is_told_from_one_of_another_version(tmp_path: Path) -> None:
+    path = tmp_path / "study.sqlite"
+    StudyStore.create(path, gratings(), 7).close()
+    require_study(path)
+    assert is_study(path)
+    for mark, value, says, still in (
+        ("application_id", APPLICATION_ID + 1, "no study's file; give one that `study run`", False),
+        ("application_id", 0, "no study's file; give one that `study run`", False),
+        ("user_version", VERSION + 1, f"version {VERSION + 1}; this program reads version", True),
+        ("user_version", VERSION - 1, f"version {VERSION - 1}; this program reads version", True),
+    ):
+        other = tmp_path / "other.sqlite"
+        shutil.copy(path, other)
+        connection = sqlite3.connect(other)
+        connection.execute(f"PRAGMA {mark} = {value}")
+        connection.close()
+        for look in (require_study, Database):
+            with pytest.raises(InputError, match=says):
+                look(other)
+        assert is_study(other) is still
+    text = tmp_path / "text.sqlite"
+    text.write_text("no database, however long it goes on " * 50)
+    with pytest.raises(InputError, match="is no study's file: file is not a database"):
+        require_study(text)
+    # With a log beside it the log is asked too.
+    text.with_name("text.sqlite-wal").write_bytes(b"nor a log")
+    with pytest.raises(InputError, match="is no study's file"):
+        require_study(text)
+    for none in (text, tmp_path, tmp_path / "none.sqlite"):
+        assert not is_study(none)
+    for none in (tmp_path, tmp_path / "none.sqlite"):
+        with pytest.raises(InputError, match="does not exist; plan a study"):
+            require_study(none)
+    # A name that no file can have.
+    with pytest.raises(InputError):
+        require_study(Path("a\x00b.sqlite"))
+
+
+def test_a_file_is_claimed_once_and_discarded_by_who_claimed_it(tmp_path: Path) -> None:
+    path = tmp_path / "deep" / "study.sqlite"
+    claimed = claim(path)
+    assert claimed == identity_of(path) == (path.stat().st_dev, path.stat().st_ino)
+    assert path.read_bytes() == b""
+    with pytest.raises(InputError, match="exists; open it to go on"):
+        claim(path)
+    with pytest.raises(RecordError, match=r"cannot be made: .*; choose another"):
+        claim(path / "under" / "a-file.sqlite")
+    log = path.with_name("study.sqlite-wal")
+    log.touch()
+    discard(path, (claimed[0], claimed[1] + 1))
+    assert path.exists()
+    assert log.exists()
+    discard(path, claimed)
+    assert list(path.parent.iterdir()) == []
+    # Nothing is there any more, and nothing is made of that.
+    discard(path, claimed)
+    assert identity_of(path) is None
+
+
+def test_who_is_not_alone_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "study.sqlite"
+    StudyStore.create(path, gratings(), 7).close()
+    require_alone(path)
+    connect = sqlite3.connect
+    # Nobody else will end meanwhile: do not wait half a second for them.
+    monkeypatch.setattr(
+        database_module.sqlite3, "connect", lambda *at, **how: connect(*at, **{**how, "timeout": 0})
+    )
+    with contextlib.closing(connect(path, isolation_level=None)) as other:
+        other.execute("BEGIN IMMEDIATE")
+        with pytest.raises(RecordError, match=r"open in another program \(database is locked\)"):
+            require_alone(path)
+    require_alone(path)
+
+
+def test_a_file_that_another_reads_is_not_compacted(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "study.sqlite"
+    StudyStore.create(path, gratings(), 7).close()
+    database = Database(path)
+    waits = "PRAGMA busy_timeout"
+    before = database.connection.execute(waits).fetchone()[0]
+    assert before == 5000
+    database.compact()
+    made = database.connection
+    for statement, by, says in (
+        ("wal_checkpoint", 1, "is open in another program; close every session"),
+        ("VACUUM", FULL, "could not be compacted: database or disk is full"),
+    ):
+        failing = Connection(path, statement, by, isolation_level=None)
+        database.connection = failing  # type: ignore[assignment]
+        with pytest.raises(RecordError, match=says):
+            database.compact()
+        # It waits as long as ever for what comes next.
+        assert failing.execute(waits).fetchone()[0] == before  # type: ignore[attr-defined]
+        failing.close()
+    database.connection = made
+    database.compact()
+    assert made.execute(waits).fetchone()[0] == before
+    database.close()
+
+
+def test_studies_of_one_name_share_their_folders_and_nothing_else_does(tmp_path: Path) -> None:
+    path = tmp_path / "study[1].sqlite"
+    StudyStore.create(path, gratings(), 7).close()
+    assert same_folders(path) == []
+    shutil.copy(path, tmp_path / "study[1].db")
+    shutil.copy(path, tmp_path / "study[1].a.db")
+    shutil.copy(path, tmp_path / "study1.db")
+    (tmp_path / "study[1].txt").write_text("notes")
+    assert same_folders(path) == [tmp_path / "study[1].db"]
+    shutil.copy(path, tmp_path / "study[1].aaa")
+    assert same_folders(path) == [tmp_path / "study[1].aaa", tmp_path / "study[1].db"]
+
+
+def test_what_is_written_is_kept_by_all_that_sqlite_offers(tmp_path: Path) -> None:
+    path = tmp_path / "study.sqlite"
+    StudyStore.create(path, gratings(), 7).close()
+    database = Database(path)
+    found = {
+        one: database.connection.execute(f"PRAGMA {one}").fetchone()[0]
+        for one in ("synchronous", "fullfsync", "foreign_keys", "secure_delete", "trusted_schema",
+                    "cell_size_check", "temp_store", "journal_mode")
+    }  # fmt: skip
+    # FULL is 2, and 2 of temp_store is memory.
+    assert found == {
+        "synchronous": 2, "fullfsync": 1, "foreign_keys": 1, "secure_delete": 1,
+        "trusted_schema": 0, "cell_size_check": 1, "temp_store": 2, "journal_mode": "wal",
+    }  # fmt: skip
+    database.copy_to(tmp_path / "copy.sqlite")
+    require_study(tmp_path / "copy.sqlite")
+    database.close()

@@ -14,6 +14,7 @@ from squeezefilm.study.conduct.run import StudyRun
 from squeezefilm.study.conduct.session_conditions import SessionConditions
 from squeezefilm.study.conduct.sessions import begin_session, end_session
 from squeezefilm.study.conduct.trial_by_trial import conduct
+from squeezefilm.study.record import deletion
 from squeezefilm.study.record.deletion import delete_participant
 from squeezefilm.study.record.exports import export_study
 from squeezefilm.study.record.sittings import FILE, Sittings
@@ -312,4 +313,62 @@ def test_a_relative_path_is_the_same_study(tmp_path: Path, monkeypatch: pytest.M
     assert _left(tmp_path, [people[1], SECRET]) == []
     monkeypatch.chdir(tmp_path.parent)
     assert store.enrol()
+    store.close()
+
+
+def test_notes_of_anything_random_that_is_theirs_are_found(tmp_path: Path) -> None:
+    store, people = _study(tmp_path)
+    notes = tmp_path / "study.sqlite.notes.txt"
+    gone = people[1]
+    theirs = [
+        store.rows(query, [gone])[-1]["uuid"]
+        for query in (
+            "SELECT uuid FROM trial WHERE participant = ?",
+            "SELECT uuid FROM session WHERE participant = ?",
+            "SELECT v.uuid FROM verification v JOIN session s ON s.uuid = v.session "
+            "WHERE s.participant = ?",
+            "SELECT p.uuid FROM presentation p JOIN trial t ON t.uuid = p.trial "
+            "WHERE t.participant = ?",
+        )
+    ]
+    theirs += [gone, _traces(store, gone)[0][0]]
+    for word in theirs:
+        notes.write_text(f"at {word} the plate was loud")
+        with pytest.raises(InputError, match=r"notes\.txt was not written .* belongs to"):
+            delete_participant(store, gone)
+    # Of somebody else they say nothing of this one.
+    notes.write_text(people[0])
+    assert delete_participant(store, gone).left == (str(notes),)
+    store.close()
+
+
+def test_what_is_left_after_a_deletion_is_told_with_its_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    store, people = _study(tmp_path)
+    late = store.path.with_name("study.sqlite.late")
+
+    def slow(_: StudyStore) -> int:
+        """Another program writes while exports are made anew."""
+        late.write_bytes(b"x" * 5_000 + people[1].encode())
+        return 0
+
+    monkeypatch.setattr(deletion, "export_again", slow)
+    with pytest.raises(RecordError, match=rf"traces are left in {late}; delete these files by"):
+        delete_participant(store, people[1])
+    late.unlink()
+    assert not delete_participant(store, people[0]).left
+    store.close()
+
+
+def test_a_word_across_two_pieces_of_a_file_is_found(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(deletion, "_PIECE", 64)
+    store, people = _study(tmp_path)
+    notes = tmp_path / "study.sqlite.notes.txt"
+    for before in (0, 48, 56, 63, 64, 100):
+        notes.write_text("-" * before + people[1] + "-" * 70)
+        with pytest.raises(InputError, match=r"notes\.txt was not written"):
+            delete_participant(store, people[1])
     store.close()

@@ -2,13 +2,21 @@
 
 from __future__ import annotations
 
+import errno
 import os
 from pathlib import Path
 
 import pytest
 
-from squeezefilm.errors import InputError
-from squeezefilm.study.record.erasure import erase_file, read_plain, require_plain
+from squeezefilm.errors import InputError, RecordError
+from squeezefilm.study.record import erasure
+from squeezefilm.study.record.erasure import (
+    erase_file,
+    overwrite,
+    plain_file,
+    read_plain,
+    require_plain,
+)
 
 
 def _not_plain(folder: Path) -> dict[str, Path]:
@@ -54,3 +62,41 @@ def test_a_plain_file_is_overwritten_and_removed(
     kept.close()
     with pytest.raises(InputError, match="cannot be opened"):
         erase_file(path)
+
+
+def test_as_many_zeros_are_written_as_there_were_bytes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(erasure, "_PIECE", 64)
+    for size in (0, 1, 63, 64, 65, 200):
+        path = tmp_path / f"{size}"
+        path.write_bytes(b"\x01" * size)
+        with plain_file(path, os.O_RDWR) as handle:
+            overwrite(handle, path)
+        assert path.read_bytes() == b"\x00" * size
+
+
+def test_a_disk_that_refuses_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "a"
+    path.write_bytes(b"secret")
+
+    def refused(*_: object, **__: object) -> None:
+        raise OSError(errno.EIO, "Input/output error")
+
+    with monkeypatch.context() as patched:
+        patched.setattr(os, "fsync", refused)
+        with pytest.raises(RecordError, match="could not be overwritten: Input/output error"):
+            erase_file(path)
+    with monkeypatch.context() as patched:
+        patched.setattr(os, "unlink", refused)
+        with pytest.raises(RecordError, match="is empty but cannot be removed: Input/output"):
+            erase_file(path)
+    assert path.read_bytes() == bytes(6)
+    erase_file(path)
+    assert not path.exists()
+
+
+def test_a_file_that_is_not_there_cannot_be_opened(tmp_path: Path) -> None:
+    for path in (tmp_path / "none", tmp_path / "none" / "a"):
+        with pytest.raises(InputError, match="cannot be opened: No such file or directory; see"):
+            erase_file(path)

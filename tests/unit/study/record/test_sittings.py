@@ -134,3 +134,10 @@ def test_who_is_forgotten_is_overwritten(tmp_path: Path) -> None:
     assert [one.id for one in sittings.of_study("s")] == [other]
     assert Sittings(tmp_path / "elsewhere" / FILE).forget(WHO) == 0
     assert not (tmp_path / "elsewhere").exists()
+
+
+def test_texts_are_written_as_they_were_typed(tmp_path: Path) -> None:
+    sittings = Sittings(tmp_path / FILE)
+    sittings.new(study="Übung", participant=WHO, device="none", consent_text="c")
+    assert "Übung" in (tmp_path / FILE).read_text(encoding="utf-8")
+    assert [one.study for one in Sittings(tmp_path / FILE).of_study("Übung")] == ["Übung"]

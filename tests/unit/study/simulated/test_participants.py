@@ -125,3 +125,15 @@ def test_what_cannot_be_simulated_is_refused() -> None:
     other = dataclasses.replace(DESIGN, task="magnitude-estimation", alternatives=())
     with pytest.raises(InputError, match="match-to-sample"):
         chain_tables(other, EXACT)
+
+
+def test_two_people_are_enough_to_draw_from_and_one_is_not() -> None:
+    two = np.stack([np.eye(5, dtype=np.int64), 2 * np.eye(5, dtype=np.int64)])
+    drawn = SimulatedPeople(two)(50, np.random.default_rng(1))
+    assert {int(one[0, 0]) for one in drawn} == {1, 2}
+    with pytest.raises(InputError, match="at least two people"):
+        SimulatedPeople(two[:1])
+    with pytest.raises(InputError, match="at least two people"):
+        SimulatedPeople(two[0])
+    with pytest.raises(InputError, match="participants"):
+        SimulatedPeople(two)(0, np.random.default_rng(1))

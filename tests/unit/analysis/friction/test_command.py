@@ -1,0 +1,230 @@
+"""What a friction analysis asks of the models, and its map, ripple and numbers."""
+
+from __future__ import annotations
+
+import dataclasses
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from squeezefilm.analysis.friction import command
+from squeezefilm.analysis.friction.command import (
+    FrictionAnalysis,
+    Tapping,
+    Wanted,
+    analyze_friction,
+    friction_map,
+)
+from squeezefilm.analysis.friction.models import ModelCurve
+from squeezefilm.display import Display, load_display
+from squeezefilm.errors import OutOfRangeError
+
+
+@dataclasses.dataclass(frozen=True)
+class Law:
+    """µ′/µ falls by a tenth a micrometre, the steeper the less the finger presses; above 2 N there
+    is no balance beyond 2 µm."""
+
+    model: str = "partial-levitation"
+    normal_force: float = 0.5
+    position: float = 0.0
+    frequency: float = 40e3
+    half_wavelength: float = 9e-3
+    gas: str = "air"
+    finger: Any = None
+    surface: Any = None
+
+    def at(self, amplitude: float) -> float:
+        if self.normal_force > 1.99 and amplitude > 2.01e-6:
+            raise OutOfRangeError("pressed through")
+        return 1 - 0.1 * amplitude / 1e-6 * 0.5 / self.normal_force
+
+    def curve(self, amplitude: np.ndarray) -> np.ndarray:
+        return np.array([self.at(float(one)) for one in amplitude])
+
+    def tapped(self, amplitude: float, speed: float) -> np.ndarray:
+        return np.array([0.9 - amplitude / 1e-5 - speed, 7.0])
+
+
+def prediction(**changes: Any) -> Any:
+    sharing = SimpleNamespace(
+        film_share=np.array([0.6, 9.0]), relative_friction=np.array([0.4, 9.0]),
+        mean_gap=np.array([1.5e-6, 9.0]), residual=1e-9,
+        relative_friction_error=np.array([1e-3, 9.0]),
+    )  # fmt: skip
+    values: dict[str, Any] = {
+        "law": Law(), "voltage": 15.0, "vibration_amplitude": 2e-6, "frequency": 40e3,
+        "normal_force": 0.5, "surface": SimpleNamespace(name="bare"),
+        "touch": SimpleNamespace(free_amplitude=2.5e-6, kept=0.8, sharing=sharing),
+        "amplitude_model": "an-amplitude", "relative_friction": 0.4, "model": "a-model",
+        "relative_friction_limits": (0.35, 0.45), "friction_reduction": 0.24,
+        "friction_coefficient": 0.4, "tangential_force": 0.08, "warnings": ("mind this",),
+    }  # fmt: skip
+    return SimpleNamespace(**{**values, **changes})
+
+
+@pytest.fixture(scope="module")
+def stator() -> Display:
+    return load_display("biet2008-stator")
+
+
+def test_a_map_goes_over_amplitudes_and_forces(stator: Display) -> None:
+    found = friction_map(stator, prediction(), 5)
+    # At the least 3 µm, else twice the working amplitude; a tenth to four times the force.
+    assert found.amplitude == pytest.approx(1e-6 * np.arange(5))
+    assert found.normal_force[[0, -1]] == pytest.approx([0.05, 2.0])
+    assert np.diff(np.log(found.normal_force)) == pytest.approx(np.full(4, np.log(40) / 4))
+    assert found.model == "partial-levitation"
+    expected = 1 - 0.05 * 1e6 * found.amplitude[None, :] / found.normal_force[:, None]
+    # Where the asperities are pressed through a row ends; what was before it stays.
+    expected[-1, 3:] = np.nan
+    assert found.relative_friction == pytest.approx(expected, nan_ok=True)
+    small = friction_map(stator, prediction(vibration_amplitude=1e-6), 4)
+    assert small.amplitude == pytest.approx(1e-6 * np.arange(4))
+    assert friction_map(stator, prediction()).relative_friction.shape == (40, 40)
+
+
+@pytest.mark.parametrize(
+    ("model", "mapped"),
+    [
+        ("partial-levitation-one-gap", "partial-levitation-one-gap"),
+        ("partial-levitation", "partial-levitation"),
+        ("paper2008", "partial-levitation"),
+        ("film-open", "partial-levitation"),
+    ],
+)
+def test_a_map_is_by_a_model_that_balances_loads(stator: Display, model: str, mapped: str) -> None:
+    assert friction_map(stator, prediction(law=Law(model)), 2).model == mapped
+
+
+def test_the_ripple_is_of_the_standing_wave_under_the_finger(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    asked: list[Any] = []
+    monkeypatch.setattr(command, "film_table", lambda *given: ("film", *given))
+    monkeypatch.setattr(
+        command, "friction_ripple", lambda *given, **named: asked.append((given, named)) or "ripple"
+    )
+    finger = SimpleNamespace(plateau_width=2e-4, asperity_law=lambda r: ("asperities", r))
+    law = Law(finger=finger, surface=SimpleNamespace(roughness=3e-7))
+    assert command._ripple(prediction(law=law)) == "ripple"
+    film, asperities = ("film", 40e3, 2e-4, "air"), ("asperities", 3e-7)
+    assert asked == [((film, asperities, 2e-6, 9e-3, finger), {"normal_force": 0.5})]
+    # A model that holds the gap has no balance that could ripple.
+    untouched = SimpleNamespace(sharing=None)
+    assert command._ripple(prediction(law=law, touch=untouched)) is None
+    assert len(asked) == 1
+
+
+@pytest.fixture
+def parts(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
+    """Every part of an analysis by its name, and what it was asked."""
+    asked: list[Any] = []
+
+    def stand_in(name: str, answer: Any) -> None:
+        def asked_for(*given: Any, **named: Any) -> Any:
+            asked.append((name, given, named))
+            return answer
+
+        monkeypatch.setattr(command, name, asked_for)
+
+    stand_in("predict", PREDICTION)
+    stand_in("voltage_for_friction", (12.0, 1.4e-6))
+    for name in ("model_curves", "friction_map", "uncertain_friction", "_ripple"):
+        stand_in(name, f"the {name}")
+    return asked
+
+
+PREDICTION = prediction()
+
+
+def test_an_analysis_passes_on_what_was_asked(stator: Display, parts: list[Any]) -> None:
+    told: list[str] = []
+    said = told.append
+    found = analyze_friction(
+        stator, voltage=100.0, frequency=41e3, normal_force=0.3, surface="bare", model="film-open",
+        position=1e-3, speed=0.1, ambient_pressure=5e4, wanted_friction=0.6, samples=16, seed=9,
+        points=7, progress=said,
+    )  # fmt: skip
+    thin = dataclasses.replace(stator, gas=stator.gas.at_pressure(5e4))
+    point = {"frequency": 41e3, "normal_force": 0.3, "surface": "bare", "model": "film-open"}
+    more = {"voltage": 100.0, "vibration_amplitude": None, "position": 1e-3}
+    assert parts == [
+        ("predict", (thin,), point | more),
+        ("voltage_for_friction", (thin, 0.6), point),
+        ("model_curves", (thin, PREDICTION), {}),
+        ("friction_map", (thin, PREDICTION, 7), {}),
+        (
+            "uncertain_friction", (thin, PREDICTION),
+            {"samples": 16, "seed": 9, "progress": said},
+        ),
+        ("_ripple", (PREDICTION,), {}),
+    ]  # fmt: skip
+    assert (found.display, found.prediction) == (thin, PREDICTION)
+    assert (found.curves, found.map, found.uncertainty, found.ripple) == (
+        "the model_curves", "the friction_map", "the uncertain_friction", "the _ripple",
+    )  # fmt: skip
+    assert found.wanted == Wanted(0.6, 1.4e-6, 12.0)
+    # 0.9 − 0.2 − 0.1 by the made-up law.
+    assert found.tapping.speed == 0.1
+    assert found.tapping.relative_friction == pytest.approx(0.6)
+    assert told == [
+        "amplitude and load balance", "models side by side", "map over amplitude and force",
+        "ripple of the standing wave",
+    ]  # fmt: skip
+
+
+def test_what_is_not_asked_for_is_not_computed(stator: Display, parts: list[Any]) -> None:
+    found = analyze_friction(stator, vibration_amplitude=2e-6, samples=0)
+    assert [name for name, *_ in parts] == ["predict", "model_curves", "friction_map", "_ripple"]
+    assert parts[0][1][0] is stator
+    assert parts[0][2]["vibration_amplitude"] == 2e-6
+    assert (found.wanted, found.uncertainty) == (None, None)
+    # Smith, Gosselin and Houde 2002.
+    assert found.tapping.speed == 0.08
+
+
+def test_a_summary_has_every_number_under_its_name(stator: Display) -> None:
+    curve = ModelCurve("paper2008", np.array([1e-6, 3e-6]), np.array([0.8, 0.4]))
+    unsure = SimpleNamespace(interval=(0.3, 0.5), level=0.9, summary=lambda: {"seed": 1})
+    found: Any = FrictionAnalysis(
+        stator, PREDICTION, (curve,), unsure, None, SimpleNamespace(ripple=0.07),  # type: ignore[arg-type]
+        Wanted(0.6, 1.4e-6, 12.0), Tapping(0.08, 0.7),
+    )  # fmt: skip
+    said = found.summary()
+    assert said.pop("provenance")["config_sha256"]
+    assert said == {
+        "display": "biet2008-stator", "surface": "bare", "voltage_V": 15.0, "frequency_Hz": 40e3,
+        "normal_force_N": 0.5, "ambient_pressure_Pa": 1e5, "vibration_amplitude_m": 2e-6,
+        "free_amplitude_m": 2.5e-6, "amplitude_kept": 0.8, "amplitude_model": "an-amplitude",
+        "relative_friction": 0.4, "relative_friction_interval": [0.3, 0.5], "interval_level": 0.9,
+        "relative_friction_limits": {
+            "each_ridge_at_its_own_balance": 0.35, "all_ridges_at_one_mean_gap": 0.45,
+        },
+        "friction_reduction": 0.24, "friction_coefficient": 0.4, "tangential_force_N": 0.08,
+        "model": "a-model",
+        "load_shares": {
+            "film": 0.6, "asperities": 0.4, "mean_gap_m": 1.5e-6, "residual": 1e-9,
+            "relative_friction_error": 1e-3,
+        },
+        "standing_wave_ripple": 0.07,
+        "wanted": {"relative_friction": 0.6, "vibration_amplitude_m": 1.4e-6, "voltage_V": 12.0},
+        "intermittent_contact": {"speed_m_per_s": 0.08, "relative_friction": 0.7},
+        # In the middle of 0.8 at 1 µm and 0.4 at 3 µm.
+        "models": [{"model": "paper2008", "relative_friction": pytest.approx(0.6)}],
+        "uncertainty": {"seed": 1}, "warnings": ["mind this"],
+    }  # fmt: skip
+
+
+def test_a_summary_says_none_where_there_is_nothing(stator: Display) -> None:
+    p = prediction(
+        relative_friction_limits=None,
+        touch=SimpleNamespace(free_amplitude=2e-6, kept=1.0, sharing=None),
+    )
+    none: Any = None
+    said = FrictionAnalysis(stator, p, (), none, none, none, none, Tapping(0.1, 0.5)).summary()
+    for name in ("relative_friction_interval", "interval_level", "relative_friction_limits",
+                 "load_shares", "standing_wave_ripple", "wanted", "uncertainty"):  # fmt: skip
+        assert said[name] is None, name

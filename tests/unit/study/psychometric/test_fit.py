@@ -1,0 +1,204 @@
+"""What a fit is given and says: rows, priors, intervals and what the data do not bound."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from squeezefilm.errors import InputError
+from squeezefilm.study.psychometric import kernel
+from squeezefilm.study.psychometric.bootstrap import (
+    Bootstrap,
+    PenalisedLikelihood,
+    inverted_interval,
+    simulate_bootstrap,
+)
+from squeezefilm.study.psychometric.fit import fit_psychometric
+from squeezefilm.study.psychometric.posterior import PsychometricPosterior, coarse_maxima
+from squeezefilm.study.psychometric.prior import PsychometricPrior
+
+LEVELS = np.arange(1.0, 6.0)
+
+
+def test_places_that_nobody_answered_are_left_out() -> None:
+    rows = ([3.0, 1.0, 9.0, 2.0, 3.0], [4, 2, 0, 3, 5], [6, 4, 0, 5, 6])
+    fit = fit_psychometric(*rows, replicates=0)
+    assert fit.intensity.tolist() == [1.0, 2.0, 3.0]
+    assert fit.positive.tolist() == [2.0, 3.0, 9.0]
+    assert fit.trials.tolist() == [4.0, 5.0, 12.0]
+    # The prior is of the places that were answered, not of 9.
+    assert fit.prior.threshold == pytest.approx((0.0, 4.0))
+
+
+def test_the_first_row_that_is_no_count_is_named() -> None:
+    with pytest.raises(InputError, match=r"positive = 2 of trials = 2\.5 at intensity 7 is no"):
+        fit_psychometric([5, 7, 8], [1, 2, 9], [2, 2.5, 3])
+    with pytest.raises(InputError, match="positive = -1"):
+        fit_psychometric([5, 7], [-1, 2], [2, 2])
+    with pytest.raises(InputError, match="at least one row"):
+        fit_psychometric([], [], [])
+    with pytest.raises(InputError, match="one-dimensional"):
+        fit_psychometric([[1.0, 2.0]], [[1, 2]], [[2, 2]])
+
+
+def test_a_rate_that_is_known_may_be_none_at_all_or_a_half() -> None:
+    for rate in (0.0, 0.5):
+        fit = fit_psychometric(LEVELS, [3, 6, 8, 9, 10], [10] * 5, guess_rate=rate, replicates=0)
+        assert fit.function.guess_rate == pytest.approx(rate, abs=1e-12)
+        assert fit.fitted == ("threshold", "width", "lapse_rate")
+    free = fit_psychometric(LEVELS, [1, 2, 8, 9, 9], [10] * 5, guess_rate=None, replicates=0)
+    assert free.fitted[-1] == "guess_rate"
+    assert set(free.posterior_interval) == set(free.fitted)
+    for wrong in (-0.01, 0.51):
+        with pytest.raises(InputError, match="guess_rate"):
+            fit_psychometric(LEVELS, [1, 2, 8, 9, 9], [10] * 5, guess_rate=wrong)
+    for level in (0.0, 1.0):
+        with pytest.raises(InputError, match="level"):
+            fit_psychometric(LEVELS, [1, 2, 8, 9, 9], [10] * 5, level=level)
+
+
+def test_on_a_logarithmic_axis_all_goes_with_the_unit_of_intensity() -> None:
+    answers = ([3, 5, 8, 9, 10], [10] * 5)
+    one, other = (
+        fit_psychometric(unit * 2.0**LEVELS, *answers, axis="log", replicates=39)
+        for unit in (1.0, 1000.0)
+    )
+    assert other.function.threshold == pytest.approx(1000 * one.function.threshold, rel=1e-6)
+    assert other.function.width == pytest.approx(one.function.width, rel=1e-5)
+    for by in ("posterior_interval", "bootstrap_interval"):
+        low, high = getattr(one, by)["threshold"]
+        assert low <= one.function.threshold <= high
+        assert getattr(other, by)["threshold"] == pytest.approx((1000 * low, 1000 * high), rel=2e-3)
+        assert getattr(other, by)["width"] == pytest.approx(getattr(one, by)["width"], rel=2e-3)
+
+
+def test_the_prior_of_stimuli_is_as_wide_as_it_says() -> None:
+    # Range 8, smallest distance 1: thresholds half of the range beyond, widths from ½ to 24.
+    prior = PsychometricPrior.for_stimuli(np.array([9.0, 1.0, 2.0, 2.0, 5.0]))
+    assert prior.threshold == pytest.approx((-3.0, 13.0))
+    assert prior.width == pytest.approx((0.5, 24.0))
+    # Two of a thousand apart by 0.001: no less than 1 % of the range.
+    near = PsychometricPrior.for_stimuli(np.array([0.0, 1000.0, 1000.001]))
+    assert near.width[0] == pytest.approx(10.0, rel=1e-5)
+    log = PsychometricPrior.for_stimuli(np.exp([1.0, 2.0, 9.0]), "log")
+    assert np.log(log.threshold) == pytest.approx((-3.0, 13.0))
+    assert log.width == pytest.approx((0.5, 24.0))
+    with pytest.raises(InputError, match="1 different intensities"):
+        PsychometricPrior.for_stimuli(np.array([2.0, 2.0]))
+
+
+@pytest.mark.parametrize("parameter", range(4))
+def test_a_priors_density_integrates_to_one_and_undoes_its_quantiles(parameter: int) -> None:
+    prior = PsychometricPrior((1.0, 9.0), (0.5, 12.0), (1.0, 10.0), (2.0, 5.0))
+    low, high = prior.bounds("log")
+    assert low == pytest.approx([0.0, math.log(0.5), 0.0, 0.0])
+    assert high == pytest.approx([math.log(9.0), math.log(12.0), 0.5, 0.49])
+    end = 0.5 if parameter > 1 else high[parameter]
+    edges = np.linspace(low[parameter], end, 4001)
+    middle = 0.5 * (edges[1:] + edges[:-1])
+    mass = prior.density(parameter, middle, "log") * np.diff(edges)
+    assert mass.sum() == pytest.approx(1.0, abs=1e-6)
+    share = np.array([0.1, 0.5, 0.9])
+    below = [
+        mass[middle <= one].sum() for one in prior.quantile(parameter, share, "log")
+    ]  # fmt: skip
+    assert below == pytest.approx(share, abs=2e-3)
+
+
+def _even(cells: int) -> PsychometricPosterior:
+    """Thresholds 1 to 3, even; nothing is left open of the others."""
+    edges = (np.linspace(1.0, 3.0, cells + 1), np.array([1.0, 2.0]), np.array([0.0, 0.1]))
+    share = np.full((cells, 1, 1, 1), 1 / cells)
+    return PsychometricPosterior("linear", (*edges, np.array([0.5, 0.5])), share, 0.0)
+
+
+def test_an_even_posterior_has_even_quantiles() -> None:
+    even = _even(10)
+    for share in (0.0, 0.025, 0.3, 0.5, 1.0):
+        assert even.quantile("threshold", share) == pytest.approx(1 + 2 * share, abs=1e-6)
+    assert even.interval("threshold", 0.9) == pytest.approx((1.1, 2.9), abs=1e-6)
+    assert even.interval("threshold") == pytest.approx((1.05, 2.95), abs=1e-6)
+    assert even.mean("threshold") == pytest.approx(2.0)
+    # A rate that is known lies where it is known to.
+    assert even.quantile("guess_rate", 0.1) == 0.5
+    assert even.interval("guess_rate") == (0.5, 0.5)
+    for level in (0.0, 1.0):
+        with pytest.raises(InputError, match="level"):
+            even.interval("threshold", level)
+    with pytest.raises(InputError, match="share"):
+        even.quantile("threshold", 1.1)
+    draws = even.draws(4000, seed=2)
+    assert draws.shape == (4000, 4)
+    assert stats.kstest((draws[:, 0] - 1) / 2, "uniform").pvalue > 1e-3
+    assert stats.kstest(draws[:, 1] - 1, "uniform").pvalue > 1e-3
+    assert np.all(draws[:, 3] == 0.5)
+    assert np.array_equal(draws, even.draws(4000, seed=2))
+
+
+def test_marginals_are_sums_over_the_others() -> None:
+    share = np.random.default_rng(0).random((3, 4, 2, 5))
+    share /= share.sum()
+    edges = tuple(np.arange(size + 1.0) for size in share.shape)
+    found = PsychometricPosterior("linear", edges, share, 0.0)  # type: ignore[arg-type]
+    for at, name in enumerate(("threshold", "width", "lapse_rate", "guess_rate")):
+        moved = np.moveaxis(share, at, 0).reshape(share.shape[at], -1)
+        assert found.marginal(name) == pytest.approx(moved.sum(axis=1))
+        middles = np.arange(share.shape[at]) + 0.5
+        assert found.mean(name) == pytest.approx(float(found.marginal(name) @ middles))
+
+
+@pytest.mark.parametrize("guess_rate", [0.5, None])
+def test_searches_start_from_each_sixth_of_the_widths(guess_rate: float | None) -> None:
+    prior = PsychometricPrior((0.0, 6.0), (0.1, 20.0))
+    k, n = np.array([5.0, 6.0, 8.0, 9.0, 10.0]), np.full(5, 10.0)
+    starts = coarse_maxima(kernel.LOGISTIC, "linear", prior, guess_rate, LEVELS, k, n)
+    low, high = prior.bounds("linear")
+    assert starts.shape == (6, 4)
+    sixths = (starts[:, 1] - low[1]) / (high[1] - low[1]) * 6
+    assert np.floor(sixths).tolist() == [0, 1, 2, 3, 4, 5]
+    assert np.all((low[0] < starts[:, 0]) & (starts[:, 0] < high[0]))
+    assert np.all((starts[:, 2] > 0) & (starts[:, 2] < 0.5))
+    if guess_rate is not None:
+        assert starts[:, 3] == pytest.approx(0.5)
+
+
+def _likelihood(k: list[float], prior: PsychometricPrior) -> PenalisedLikelihood:
+    low, high = prior.bounds("linear")
+    low[3] = high[3] = 0.0
+    free, beta = np.array([True, True, True, False]), np.array([1.0, 10.0, 1.0, 1.0])
+    n = np.full(5, 20.0)
+    return PenalisedLikelihood(kernel.LOGISTIC, free, low, high, beta, LEVELS, np.array(k), n)
+
+
+@pytest.mark.parametrize("k", [[0.0, 2.0, 10.0, 18.0, 20.0], [0.0, 0.0, 20.0, 20.0, 20.0]])
+def test_an_interval_holds_the_best_value_and_stays_within_the_prior(k: list[float]) -> None:
+    prior = PsychometricPrior((0.0, 6.0), (0.4, 12.0))
+    likelihood = _likelihood(k, prior)
+    best, _ = likelihood.maximum(np.array([3.0, math.log(2.0), 0.02, 0.0]))
+    bootstrap = simulate_bootstrap(likelihood, best, 39, 1)
+    for at in range(3):
+        low, high = inverted_interval(likelihood, bootstrap, at, 0.9)
+        assert likelihood.low[at] <= low <= best[at] + 1e-6
+        assert best[at] - 1e-6 <= high <= likelihood.high[at]
+        wider = inverted_interval(likelihood, bootstrap, at, 0.99)
+        assert wider[0] <= low + 1e-3
+        assert wider[1] >= high - 1e-3
+    # No lapse was seen, so that none is not refused.
+    assert inverted_interval(likelihood, bootstrap, 2, 0.9)[0] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_a_bootstraps_percentiles_and_its_test_are_counted() -> None:
+    estimates = np.arange(101.0)[:, None] + np.array([0.0, 1000.0, 2000.0, 3000.0])
+    found = Bootstrap(np.zeros(4), estimates, np.array([1.0, 2.0, 3.0, 4.0]), np.zeros((101, 2)))
+    assert found.percentiles(1, 0.9) == pytest.approx((1005.0, 1095.0))
+    assert found.percentiles(0, 0.5) == pytest.approx((25.0, 75.0))
+    # The data count as one of the simulations, and a tie as one as large.
+    assert found.goodness_of_fit(2.5) == pytest.approx(3 / 5)
+    assert found.goodness_of_fit(2.0) == pytest.approx(4 / 5)
+    assert found.goodness_of_fit(9.0) == pytest.approx(1 / 5)
+    likelihood = _likelihood([0.0, 2.0, 10.0, 18.0, 20.0], PsychometricPrior((0, 6), (0.4, 12)))
+    with pytest.raises(InputError, match="replicates = 38"):
+        simulate_bootstrap(likelihood, np.array([3.0, 0.7, 0.02, 0.0]), 38, 1)
