@@ -27,7 +27,7 @@ from squeezefilm.quantities import (
     checked_numbers,
 )
 from squeezefilm.regular_file import read_regular_text
-from squeezefilm.render.texture.image import MOST_PIXELS, Image
+from squeezefilm.render.texture.image import LARGEST_PIXEL, MOST_PIXELS, Image
 from squeezefilm.render.texture.levels import RelativeFriction
 from squeezefilm.render.texture.pattern import Pattern
 from squeezefilm.render.texture.shapes import SineWave, SquareWave
@@ -172,6 +172,8 @@ def texture_of_hjif(document: Any) -> HjifImport:
     smooth = any(band.get("curve_type") != "Linear" for band, _ in line.effects)
     step = math.gcd(*(one - steps[0] for one in steps)) * line.unit
     lost = list(line.lost)
+    # Keyframes lie on the finer grid as well.
+    step /= max(1, math.ceil(step / LARGEST_PIXEL))
     if not curves or smooth:
         step = min(step, _COARSE)
         lost.append(f"waves and cubics were sampled every {step * 1e6:.4g} µm")

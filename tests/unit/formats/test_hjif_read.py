@@ -370,3 +370,12 @@ def test_a_perception_that_lacks_something_is_named(name: str) -> None:
 def test_the_largest_numbers_that_are_exact_are_taken() -> None:
     for level in (2**53 - 1, 1 - 2**53):
         require_hjif(of_bands(RAMP) | {"level": level})
+
+
+@pytest.mark.parametrize("length", [100, 200, 250, 3_000])
+def test_a_straight_line_longer_than_a_pixel_may_be_is_read_exactly(length: int) -> None:
+    whole = of_bands(curve(key(0, 0.2), key(length, 0.6)))
+    found = texture_of_hjif(whole)
+    x = np.linspace(0.0, length, 7) * MM
+    assert found.texture(x, 0.0, 0.0, 0.0) == pytest.approx(friction_along(whole, x))
+    assert found.lost == ()

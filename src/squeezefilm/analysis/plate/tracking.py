@@ -274,6 +274,7 @@ def _advance(
     before, numbers, _ = steps[last]
     known = [n for n in numbers if n is not None]
     if not known:
+        steps[value] = (before, numbers, [0.0] * len(numbers))  # all are lost, and stay so
         return
     lowest = float(before.frequencies[min(known)])
     highest = float(before.frequencies[max(known)])

@@ -23,7 +23,6 @@ from squeezefilm.quantities import (
     Metre,
     Unit,
     checked_numbers,
-    did_you_mean,
     require,
 )
 
@@ -89,11 +88,6 @@ def film_load(
     model, an array of amplitudes or plateaus wider than the ridge period, `ConvergenceError` where
     the film cannot be solved to `tolerance`.
     """
-    if model not in DESCRIPTIONS:
-        raise InputError(
-            f"model = '{model}' is no film model.{did_you_mean(model, FILM_MODELS)} "
-            f"Allowed: {', '.join(FILM_MODELS)}"
-        )
     if np.ndim(gap.vibration_amplitude) != 0:
         raise InputError("film_load takes a single vibration amplitude; call it for each")
     amplitude = float(gap.vibration_amplitude)

@@ -23,6 +23,7 @@ from squeezefilm.quantities import (
     checked_numbers,
     format_quantity,
     require,
+    require_one_of,
 )
 
 MAX_EXCURSION = 0.95
@@ -51,6 +52,9 @@ class VibratedFilm:
     mean_free_path: Annotated[Metre, AtLeast(0.0)] = 0.0
     slip: str = "first"
     shape: str = "strip"
+
+    def __post_init__(self) -> None:
+        require_one_of("shape", self.shape, ("strip", "disc"))
 
 
 @dataclass(frozen=True)

@@ -25,6 +25,7 @@ from squeezefilm.render.opcodes import IMAGE, Assembler
 from squeezefilm.render.texture.coordinate import Place
 from squeezefilm.render.texture.pattern import Pattern
 
+LARGEST_PIXEL: Metre = 0.1
 MOST_PIXELS = int(PIXELS.most)
 """Pixels one image may have."""
 
@@ -53,7 +54,7 @@ class Image(Pattern):
     """
 
     values: tuple[tuple[Dimensionless, ...], ...]
-    pixel: Annotated[Metre, AtLeast(1e-06), AtMost(0.1)]
+    pixel: Annotated[Metre, AtLeast(1e-06), AtMost(LARGEST_PIXEL)]
     left: Place = 0.0
     bottom: Place = 0.0
     outside: Literal["hold", "repeat", "zero"] = "hold"

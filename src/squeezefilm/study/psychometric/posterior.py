@@ -243,14 +243,15 @@ def _weigh(
     nodes, masses = [], []
     for at, size in enumerate(cells):
         edges = np.linspace(low[at], high[at], size + 1)
-        known = at == kernel.GUESS and guess_rate is not None
+        known = guess_rate if at == kernel.GUESS else None
         middle = 0.5 * (edges[1:] + edges[:-1])
-        theta = _theta(at, middle)
+        # To and fro through the coordinate a known rate would lose its last digit.
+        theta = _theta(at, middle) if known is None else np.array([known])
         nodes.append(theta)
         # dθ/dφ of θ = sin²φ.
         stretch = np.sin(2 * middle) if at in (kernel.LAPSE, kernel.GUESS) else 1.0
         cell = np.diff(edges) * stretch
-        masses.append(np.ones(1) if known else prior.density(at, theta, axis) * cell)
+        masses.append(np.ones(1) if known is not None else prior.density(at, theta, axis) * cell)
     m, w, lapse, guess = nodes
     weights = kernel.grid_log_likelihood(code, m, w, lapse, guess, x, k, n)
     largest = float(weights.max())

@@ -49,9 +49,10 @@ def claim(path: Path) -> Identity:
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         handle = os.open(path, os.O_RDWR | os.O_CREAT | os.O_EXCL, 0o644)
-    except FileExistsError as error:
-        raise InputError(f"{path} exists; open it to go on, or give another name") from error
     except OSError as error:
+        # A file where the folder should be says the same as a file that is there.
+        if isinstance(error, FileExistsError) and os.path.lexists(path):
+            raise InputError(f"{path} exists; open it to go on, or give another name") from error
         raise RecordError(f"{path} cannot be made: {error.strerror}; choose another") from error
     found = os.fstat(handle)
     os.close(handle)

@@ -364,3 +364,12 @@ def test_a_value_without_a_unit_is_told_as_a_number(bench: Bench) -> None:
     request = TrackRequest("poisson_ratio", 0.3, 0.35, 2)
     track_modes(bench.paper, request, progress=bench.told.append)
     assert bench.told == ["poisson_ratio = 0.3", "poisson_ratio = 0.35"]
+
+
+def test_where_every_mode_is_lost_the_track_goes_on_without_any(bench: Bench) -> None:
+    def motions(density: float) -> tuple[Motion, ...]:
+        return (Motion(30e3, (1.0, 0.0) if density < 8390 else (0.0, 1.0)),)
+
+    found = bench.track(8300, 8700, values=5, motions=motions)
+    assert {8400.0, 8500.0, 8600.0, 8700.0} <= set(found.values)
+    assert np.all(np.isnan(found.tracks[0].frequency) == (found.values >= 8390))

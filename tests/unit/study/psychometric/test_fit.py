@@ -202,3 +202,11 @@ def test_a_bootstraps_percentiles_and_its_test_are_counted() -> None:
     likelihood = _likelihood([0.0, 2.0, 10.0, 18.0, 20.0], PsychometricPrior((0, 6), (0.4, 12)))
     with pytest.raises(InputError, match="replicates = 38"):
         simulate_bootstrap(likelihood, np.array([3.0, 0.7, 0.02, 0.0]), 38, 1)
+
+
+@pytest.mark.parametrize("known", [0.0, 0.1, 0.25, 1 / 3, 0.5])
+def test_a_known_guess_rate_is_kept_to_the_last_digit(known: float) -> None:
+    found = fit_psychometric(
+        [1, 2, 3, 4, 5], [3, 6, 8, 9, 10], [10] * 5, guess_rate=known, replicates=0
+    )
+    assert found.function.guess_rate == known

@@ -523,6 +523,8 @@ def test_a_file_is_claimed_once_and_discarded_by_who_claimed_it(tmp_path: Path) 
         claim(path)
     with pytest.raises(RecordError, match=r"cannot be made: .*; choose another"):
         claim(path / "under" / "a-file.sqlite")
+    with pytest.raises(RecordError, match=r"cannot be made: .*; choose another"):
+        claim(path / "a-file.sqlite")  # the folder is a file
     log = path.with_name("study.sqlite-wal")
     log.touch()
     discard(path, (claimed[0], claimed[1] + 1))
