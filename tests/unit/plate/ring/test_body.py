@@ -24,7 +24,7 @@ from squeezefilm.plate.ring.body import (
 from squeezefilm.plate.ring.materials import isotropic_solid, piezoceramic_solid
 from squeezefilm.plate.ring.modes import annular_modes, clamped_capacitance
 from squeezefilm.plate.ring.response import ring_circuit, ring_response
-from squeezefilm.plate.solid.layers import _media
+from squeezefilm.plate.solid.layers import media
 
 
 @pytest.fixture(scope="module")
@@ -37,16 +37,16 @@ def disc() -> DiscPlate:
 def test_boxes_and_rings_have_one_definition_of_their_materials(disc: DiscPlate) -> None:
     plate = load_display("basdogan2020-glass").actuator
     assert isinstance(plate, RectangularPlate)
-    media = {medium.name: medium for medium in _media(plate)}
-    solid, box = piezoceramic_solid(plate.ceramic), media["ceramic_top"]
+    found = {medium.name: medium for medium in media(plate)}
+    solid, box = piezoceramic_solid(plate.ceramic), found["ceramic_top"]
     assert solid.stiffness == pytest.approx(box.stiffness, rel=1e-12, abs=1)
     assert solid.piezoelectric == pytest.approx(box.stress_matrix, rel=1e-12, abs=1e-12)
     assert box.permittivity is not None
     assert solid.permittivity == pytest.approx(np.diag(box.permittivity), rel=1e-12)
     assert solid.loss_factor == pytest.approx(box.loss)
     glass = isotropic_solid(plate.substrate)
-    assert glass.stiffness == pytest.approx(media["substrate"].stiffness, rel=1e-12, abs=1)
-    assert glass.loss_factor == pytest.approx(media["substrate"].loss)
+    assert glass.stiffness == pytest.approx(found["substrate"].stiffness, rel=1e-12, abs=1)
+    assert glass.loss_factor == pytest.approx(found["substrate"].loss)
     assert isotropic_solid(disc.substrate).loss_factor is None
 
 
