@@ -12,9 +12,9 @@ from typing import Annotated, Protocol
 
 import numpy as np
 
-from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import PASS_DURATION, STROKE_LENGTH, STROKE_START
 from squeezefilm.quantities import (
+    AtLeast,
     Metre,
     MetreArray,
     MetrePerSecond,
@@ -57,15 +57,8 @@ class MinimumJerkStroke:
 
     length: Annotated[Metre, STROKE_LENGTH] = 0.04
     pass_duration: Annotated[Second, PASS_DURATION] = 0.4
-    passes: int = 2
+    passes: Annotated[int, AtLeast(1)] = 2
     start: Annotated[Metre, STROKE_START] = 0.0
-
-    def __post_init__(self) -> None:
-        if not isinstance(self.passes, int) or isinstance(self.passes, bool) or self.passes < 1:
-            raise InputError(
-                f"passes = {self.passes!r} cannot be used: it must be a whole number, at least 1 "
-                "(2 is there and back)"
-            )
 
     @property
     def duration(self) -> Second:

@@ -17,6 +17,7 @@ from squeezefilm.hard_limits import (
     STROKE_START,
 )
 from squeezefilm.quantities import (
+    AtLeast,
     FloatArray,
     Hertz,
     Metre,
@@ -58,15 +59,8 @@ class Stroke:
 
     speed: Annotated[MetrePerSecond, FINGER_SPEED]
     length: Annotated[Metre, STROKE_LENGTH] = 0.04
-    passes: int = 1
+    passes: Annotated[int, AtLeast(1)] = 1
     start: Annotated[Metre, STROKE_START] = 0.0
-
-    def __post_init__(self) -> None:
-        if not isinstance(self.passes, int) or isinstance(self.passes, bool) or self.passes < 1:
-            raise InputError(
-                f"passes = {self.passes!r} cannot be used: it must be a whole number, at least 1 "
-                "(2 is there and back)"
-            )
 
     @property
     def pass_duration(self) -> Second:
