@@ -57,8 +57,6 @@ coverage: $(VENV)/test.stamp  ## branches that the quick tests take, and which t
 
 nightly: export SQUEEZEFILM_EXPLORE = 1
 nightly: PYTEST += --hypothesis-seed=$(SEED) --durations=25
-# Its tests wait for killed processes, pages and clocks a third of the time: one more than processors.
-nightly: WORKERS := $(shell expr $$(getconf _NPROCESSORS_ONLN) + 1)
 nightly: $(VENV)/test.stamp  ## run every test but a campaign's, and explore properties (SEED=N)
 	@echo "nightly: seed $(SEED)"
 	$(call run_tests,)

@@ -3,6 +3,7 @@
 import ast
 import importlib
 import inspect
+import os
 import pkgutil
 import subprocess
 import sys
@@ -12,6 +13,7 @@ from typing import Any
 
 import pytest
 
+import front_door_stub
 import squeezefilm as sf
 from squeezefilm.errors import QuantityError
 from squeezefilm.from_text import reads_text
@@ -80,16 +82,55 @@ def test_no_name_hides_a_room() -> None:
     assert not {one.name for one in pkgutil.iter_modules(sf.__path__)} & set(NAMES)
 
 
-def test_the_stub_says_what_is_loaded() -> None:
-    assert sf.__file__ is not None
-    stub = ast.parse(Path(sf.__file__).with_suffix(".pyi").read_text(encoding="utf-8"))
-    said = {
-        alias.asname: (node.module, alias.name)
-        for node in ast.walk(stub)
-        if isinstance(node, ast.ImportFrom) and node.module != "typing"
-        for alias in node.names
+def said(text: str) -> set[str]:
+    """What a stub says, however it is set."""
+    nodes = list(ast.walk(ast.parse(text)))
+    return {
+        ast.dump(node) for node in nodes if isinstance(node, ast.FunctionDef | ast.ClassDef)
+    } | {
+        f"{node.module} {one.name} {one.asname}"
+        for node in nodes
+        if isinstance(node, ast.ImportFrom)
+        for one in node.names
     }
-    assert said == {name: (f"squeezefilm.{sf._NAMES[name]}", name) for name in NAMES}
+
+
+def test_the_stub_is_as_its_tool_writes_it_and_says_what_is_loaded() -> None:
+    assert sf.__file__ is not None
+    stub = Path(sf.__file__).with_suffix(".pyi").read_text(encoding="utf-8")
+    assert said(stub) == said(front_door_stub.stub()), "run python tools/front_door_stub.py"
+    named = [
+        getattr(node, "asname", None) or getattr(node, "name", None)
+        for node in ast.walk(ast.parse(stub))
+    ]
+    assert set(named).issuperset(NAMES)
+
+
+TYPED = """\
+import squeezefilm as sf
+
+amplitude: float = sf.predict("biet2008-plate", voltage="15 V").vibration_amplitude
+texture = sf.RelativeFriction(sf.SquareWave("2 mm"), 0.5, 1.0)
+sf.render_texture("biet2008-plate", texture, sf.Stroke("80 mm/s", length="40 mm", passes=2))
+volts: float = sf.voltage_for_friction(sf.load_display("biet2008-plate"), 0.7)[0]
+sf.solve_plate("plate.toml", band=("20 kHz", "40 kHz"))
+sf.predict("biet2008-plate", voltage=b"15")
+sf.predict("biet2008-plate", volts="15 V")
+"""
+
+
+@pytest.mark.slow
+def test_a_type_checker_takes_text_where_the_program_does_and_nothing_else(tmp_path: Path) -> None:
+    (tmp_path / "typed.py").write_text(TYPED, encoding="utf-8")
+    assert sf.__file__ is not None
+    source = Path(sf.__file__).parents[1]
+    command = [sys.executable, "-m", "mypy", "--strict", "--follow-imports=silent", "typed.py"]
+    done = subprocess.run(
+        command, cwd=tmp_path, env=os.environ | {"MYPYPATH": str(source)},
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    complaints = [line for line in done.stdout.splitlines() if ": error: " in line]
+    assert [line.split(":")[1] for line in complaints] == ["8", "9"], done.stdout + done.stderr
 
 
 def test_importing_it_imports_nothing_and_asking_for_a_name_only_what_that_needs() -> None:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 pytestmark = [pytest.mark.chromium, pytest.mark.slow]
 
-SOLVED = 60_000
+SOLVED = 180_000
 CONTRAST = """() => {
   const parse = (text) => (text.match(/[\\d.]+/g) || []).map(Number)
     .map((one, k) => (text.startsWith("color(srgb") && k < 3 ? 255 * one : one));

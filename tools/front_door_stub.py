@@ -1,0 +1,139 @@
+"""Write `squeezefilm/__init__.pyi`: the front door for type checkers, who do not run `reads_text`.
+
+    python tools/front_door_stub.py
+
+Where a parameter may be text ("2 mm", a display's name), its type says so; all else is as its
+module says. A test compares.
+"""
+
+from __future__ import annotations
+
+import ast
+import builtins
+import importlib
+import inspect
+import typing
+from collections import defaultdict
+from pathlib import Path
+from typing import Annotated, Any
+
+import squeezefilm
+from squeezefilm.from_text import ReadBy
+from squeezefilm.quantities import unit_of
+
+HEAD = '''"""The front door for type checkers; `tools/front_door_stub.py` writes it."""
+
+from typing import TYPE_CHECKING
+
+# Every module depends on this one: so marked, a checker reads it last and meets no circle.
+if TYPE_CHECKING:
+'''
+
+
+def text_of(hint: Any) -> str:
+    """What may stand in place of a value of this type, as an annotation; "" for nothing."""
+    if typing.get_origin(hint) is Annotated:
+        if unit_of(hint) is not None:
+            return "str"
+        if any(isinstance(mark, ReadBy) for mark in hint.__metadata__):
+            return "str | Path"
+        return text_of(hint.__origin__)
+    parts = typing.get_args(hint)
+    if typing.get_origin(hint) is tuple and parts and all(unit_of(part) for part in parts):
+        return f"tuple[{', '.join(['str'] * len(parts))}]"
+    return next((text for text in map(text_of, parts) if text), "")
+
+
+def imported_from(module: Any, name: str) -> str:
+    """The module from which another one has a name: itself, or as its source says."""
+    for node in ast.walk(ast.parse(inspect.getsource(module))):
+        if isinstance(node, ast.ImportFrom) and any(one.name == name for one in node.names):
+            assert node.module is not None
+            return node.module
+    return str(module.__name__)
+
+
+class _WithoutMarks(ast.NodeTransformer):
+    """A type's bounds are not for those who check types."""
+
+    def visit_Subscript(self, node: ast.Subscript) -> ast.AST:
+        if isinstance(node.value, ast.Name) and node.value.id == "Annotated":
+            assert isinstance(node.slice, ast.Tuple)
+            return self.generic_visit(node.slice.elts[0])
+        return self.generic_visit(node)
+
+
+class Stub:
+    """The stub's text as it grows: what is imported, and what is written out."""
+
+    def __init__(self) -> None:
+        self.imports: dict[str, set[str]] = defaultdict(set)
+        self.bodies: list[str] = []
+
+    def add(self, name: str, place: str) -> None:
+        """Write a name out where text may stand in it, and import it as it is elsewhere."""
+        module = importlib.import_module(place)
+        found = getattr(module, name)
+        parameters = self._parameters(found, module)
+        if not any(text for _, text in parameters.values()):
+            self.imports[place].add(f"{name} as {name}")
+            return
+        said = []
+        for key, (one, text) in parameters.items():
+            if one.kind is one.KEYWORD_ONLY and "*" not in said:
+                said.append("*")
+            plain = self._plain(one.annotation, module)
+            first, none, _ = plain.partition(" | None")
+            widened = f"{first} | {text}{none}" if text else plain
+            said.append(f"{key}: {widened}" + ("" if one.default is one.empty else " = ..."))
+        if inspect.isclass(found):
+            self.imports[place].add(f"{name} as _{name}")
+            self.bodies.append(f"class {name}(_{name}):")
+            self.bodies.append(f'    """{str(inspect.getdoc(found)).splitlines()[0]}"""')
+            self.bodies.append(f"    def __init__(self, {', '.join(said)}) -> None: ...")
+        else:
+            back = self._plain(inspect.unwrap(found).__annotations__["return"], module)
+            self.bodies.append(f"def {name}({', '.join(said)}) -> {back}:")
+            self.bodies.append(f'    """{str(inspect.getdoc(found)).splitlines()[0]}"""')
+
+    def _parameters(self, found: Any, module: Any) -> dict[str, tuple[inspect.Parameter, str]]:
+        called = found.__init__ if inspect.isclass(found) else found
+        if not hasattr(called, "__wrapped__"):
+            return {}  # it reads no text
+        hints = typing.get_type_hints(inspect.unwrap(found), vars(module), include_extras=True)
+        given = inspect.signature(found).parameters
+        return {name: (one, text_of(hints.get(name))) for name, one in given.items()}
+
+    def _plain(self, annotation: str, module: Any) -> str:
+        """The annotation without its marks; what it names is imported."""
+        tree = _WithoutMarks().visit(ast.parse(annotation, mode="eval"))
+        for node in ast.walk(tree):
+            if isinstance(node, ast.Name) and not hasattr(builtins, node.id):
+                self.imports[imported_from(module, node.id)].add(node.id)
+        return ast.unparse(tree)
+
+    def text(self) -> str:
+        """The whole stub."""
+        self.imports["pathlib"].add("Path")
+        for names in self.imports.values():
+            names -= {name for name in names if f"{name} as {name}" in names}
+        lines = [
+            f"    from {place} import {', '.join(sorted(names))}"
+            for place, names in sorted(self.imports.items())
+        ]
+        bodies = [f"    {line}" for line in self.bodies]
+        return "\n".join([HEAD.rstrip(), *lines, *bodies, "__version__: str", ""])
+
+
+def stub() -> str:
+    """The text of the stub, not formatted."""
+    made = Stub()
+    # What the stub does not say, and this is written from.
+    for name, place in vars(squeezefilm)["_NAMES"].items():
+        made.add(name, f"squeezefilm.{place}")
+    return made.text()
+
+
+if __name__ == "__main__":
+    assert squeezefilm.__file__ is not None
+    Path(squeezefilm.__file__).with_suffix(".pyi").write_text(stub(), encoding="utf-8")
