@@ -36,7 +36,7 @@ def test_the_types_a_file_may_name_are_all_of_the_algebra() -> None:
         "sum", "product", "scaled", "masked", "sequence",
     }  # fmt: skip
     assert tags(Pattern) == {
-        "constant", "square_wave", "sine_wave", "triangle_wave", "pulse", "ramp", "band", "bump",
-        "noise", "noise_field", "image", "image_file", "speed_gate", "attack", "decay", "periodic",
+        "constant", "square_wave", "sine_wave", "pulse", "ramp", "band", "bump", "noise",
+        "noise_field", "image", "image_file", "speed_gate", "attack", "decay", "periodic",
         "complement", "least", "greatest", "times", "speed_scaled",
     }  # fmt: skip

@@ -41,7 +41,6 @@ from squeezefilm.render.texture.shapes import (
     Ramp,
     SineWave,
     SquareWave,
-    TriangleWave,
 )
 
 shares = st.floats(0.0, 1.0)
@@ -100,7 +99,6 @@ generators: st.SearchStrategy[Pattern] = st.one_of(
     st.builds(Constant, shares),
     st.builds(SquareWave, widths, duties, phases, coordinates),
     st.builds(SineWave, widths, phases, coordinates),
-    st.builds(TriangleWave, widths, phases, coordinates),
     st.builds(Pulse, places, widths, st.sampled_from(["gaussian", "raised_cosine"]), coordinates),
     st.builds(Bump, places, widths, st.sampled_from(["bump", "hole"]), coordinates),
     st.builds(Noise, widths, seeds, octaves, persistences, coordinates),

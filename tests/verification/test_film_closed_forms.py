@@ -226,16 +226,6 @@ def test_trapped_film_is_a_gas_spring() -> None:
         assert linear.film_stiffness(fk, 1e-4, 5e-6, 1e5) == pytest.approx(n * 2e6, rel=1e-6)
 
 
-def test_trapped_film_frequency_is_that_of_the_stiff_film() -> None:
-    for n in (1.0, 1.4):
-        fk = linear.relative_stiffness(1e14, polytropic_exponent=n)
-        stiffness = linear.film_stiffness(fk, 1e-4, 5e-6, 1e5)
-        frequency = limits.trapped_film_frequency(1e-3, 1e-4, 5e-6, 1e5, n)
-        assert (2 * np.pi * frequency) ** 2 * 1e-3 == pytest.approx(stiffness, rel=1e-6)
-    with pytest.raises(InputError, match="polytropic_exponent"):
-        limits.trapped_film_frequency(1e-3, 1e-4, 5e-6, 1e5, 0.9)
-
-
 def test_force_matches_the_first_harmonic_of_slip_and_polytropic_scaling() -> None:
     fk = linear.relative_stiffness
     assert fk(10.0, knudsen_number=0.05) == pytest.approx(fk(10 / 1.3))

@@ -37,18 +37,6 @@ def presets(as_json: AsJson = False) -> None:
 
 
 @app.command()
-def units(as_json: AsJson = False) -> None:
-    """List the units that quantities may be written in."""
-    from squeezefilm.quantities import known_units
-    from squeezefilm.report.kit.terminal import show_units
-
-    if as_json:
-        print_json(known_units())
-    else:
-        show_units(known_units())
-
-
-@app.command()
 def show(target: Target, as_json: AsJson = False) -> None:
     """Show every value of a display, with its source and what is assumed."""
     from squeezefilm.report.kit import terminal

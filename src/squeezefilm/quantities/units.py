@@ -138,17 +138,6 @@ class Unit:
         return "" if self.symbol == "1" else self.symbol
 
 
-def known_units() -> list[dict[str, str | bool]]:
-    """The units a quantity may be written in: symbol, value in SI units, whether it takes prefixes.
-
-    Prefixes are p n u µ m c d k M G. Units combine: ``"kg/m3"``, ``"N*s/m"``.
-    """
-    return [
-        {"unit": symbol, "in_si": f"{scale:.10g}", "takes_prefix": prefixed}
-        for symbol, (scale, _, prefixed) in _UNITS.items()
-    ]
-
-
 # What to offer a person who wrote no unit, or the wrong one.
 _EXAMPLES = {
     "m": "m, mm, um, nm",

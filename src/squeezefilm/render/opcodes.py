@@ -46,7 +46,6 @@ the finger's place (m), velocity (m/s) and the time (s).
                                            x ← x/f, y ← y/f
 28  LEAVE_SCALE                            x y s → s, and x, y are what they were
 29  WEIGH         w                        s → w·s
-30  TRIANGLE      period phase             u = s/period + phase; 1 − |2(u − ⌊u⌋) − 1|
 ==  ============  =======================  ========================================================
 """
 
@@ -92,7 +91,6 @@ CROSS = 26
 ENTER_SCALE = 27
 LEAVE_SCALE = 28
 WEIGH = 29
-TRIANGLE = 30
 
 # Operands, values taken from the stack, values put on it; by opcode.
 SHAPES: tuple[tuple[int, int, int], ...] = (
@@ -101,7 +99,6 @@ SHAPES: tuple[tuple[int, int, int], ...] = (
     (3, 1, 1), (2, 1, 1), (2, 1, 1), (2, 1, 1), (2, 1, 1), (0, 1, 1),
     (3, 1, 1), (3, 1, 1), (2, 1, 1), (2, 0, 1), (7, 0, 1), (2, 1, 1),
     (2, 1, 1), (1, 2, 1), (2, 3, 1), (3, 0, 2), (0, 3, 1), (1, 1, 1),
-    (2, 1, 1),
 )  # fmt: skip
 """(operands, values popped, values pushed) of every opcode."""
 

@@ -11,10 +11,9 @@ from typing import Any
 import pytest
 from tests.e2e.program import run
 
-from squeezefilm.cli.describe import analyze, new, presets, show, units
+from squeezefilm.cli.describe import analyze, new, presets, show
 from squeezefilm.display import load_display
 from squeezefilm.presets import display_names
-from squeezefilm.quantities import parse_unit
 
 DISPLAY = "biet2008-plate"
 StandsIn = Callable[..., Any]
@@ -23,7 +22,7 @@ ANSWER = SimpleNamespace(summary=lambda: {"found": 1})
 
 def test_the_verbs_are_those_of_the_program() -> None:
     said = run("--help").stdout
-    for verb in (presets, show, new, analyze, units):
+    for verb in (presets, show, new, analyze):
         assert verb.__name__ in said
 
 
@@ -34,17 +33,6 @@ def test_presets_are_listed() -> None:
     assert not said.startswith("[")
     assert all(name in said for name in display_names())
     assert "what it is" in said
-
-
-def test_units_are_listed_and_each_is_read() -> None:
-    listing = json.loads(run("units", "--json").stdout)
-    for one in listing:
-        scale, _ = parse_unit(one["unit"])
-        assert float(one["in_si"]) == pytest.approx(float(scale), rel=1e-9)
-    assert {"m", "Pa", "deg", "%"} <= {one["unit"] for one in listing}
-    said = run("units").stdout
-    assert all(one["unit"] in said for one in listing)
-    assert "prefixes" in said
 
 
 def test_values_are_shown_with_their_sources() -> None:

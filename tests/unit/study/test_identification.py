@@ -114,9 +114,6 @@ def test_times_and_exploration_come_by_stimulus() -> None:
     assert found.exploration["mean_speed_m_per_s"][4].mean == pytest.approx(0.08)
     assert found.mixed is not None
     assert "geometric_mean_s" in found.summary()["response_times"][0]
-    assert found.participant_quick_share is not None
-    assert found.participant_quick_share.tolist() == [0.0] * 8
-    assert found.summary()["participant_share_below_500_ms"] == [0.0] * 8
 
 
 def test_one_label_is_refused() -> None:

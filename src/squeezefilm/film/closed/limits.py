@@ -20,11 +20,6 @@ from squeezefilm.quantities import (
     DimensionlessArray,
     DimensionlessLike,
     FloatArray,
-    HertzLike,
-    Kilogram,
-    MetreLike,
-    Pascal,
-    SquareMetre,
     checked_numbers,
     closed_form,
     require,
@@ -67,26 +62,6 @@ def asymptotic_load_polytropic(
     psi = ((1 + 1.5 * np.square(amplitude_ratio)) / mean_power(2 - n)) ** (1 / (n + 1))
     value: DimensionlessLike = psi**n * mean_power(-n)
     return value
-
-
-@closed_form(positive="mass area film_thickness ambient_pressure polytropic_exponent")
-def trapped_film_frequency(
-    mass: Kilogram,
-    area: SquareMetre,
-    film_thickness: MetreLike,
-    ambient_pressure: Pascal,
-    polytropic_exponent: Dimensionless = 1.0,
-) -> HertzLike:
-    """Undamped frequency of a rigid finger on the film as σ → ∞ (Hz); broadcasts.
-
-    f = √(n p0 A/(h m))/2π: the trapped gas is a spring n p0 A/h without damping (fk → 1,
-    Langlois 1962). n from 1 (isothermal) to 5/3, else `InputError`. Small vibrations, no slip.
-    An upper bound: at a finite squeeze number gas escapes at the edges and the film is softer.
-    """
-    require("polytropic_exponent", polytropic_exponent, at_least=1, at_most=5 / 3)
-    stiffness = polytropic_exponent * ambient_pressure * area / film_thickness
-    frequency: HertzLike = np.sqrt(stiffness / mass) / (2 * np.pi)
-    return frequency
 
 
 @closed_form(nonnegative="amplitude_ratio", positive="edge_to_area")

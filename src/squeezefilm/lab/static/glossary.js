@@ -117,7 +117,6 @@ export const RESULTS = {
   total_sensitivity: { name: "total sensitivity", symbol: "Δ′", text: "d′ of the two outermost stimuli, summed over neighbours.", source: "Braida & Durlach 1972 (10.1121/1.1912868)" },
   d_prime: { name: "d′ of neighbours", symbol: "d′", text: "Distance of two neighbouring percepts over their spread.", source: "Braida & Durlach 1972 (10.1121/1.1912868)" },
   response_time: { name: "response time", text: "Mean and spread of its normal part and mean of its exponential tail, all trials.", source: "ex-Gaussian distribution" },
-  quick_share: { name: "response times below 0.5 s", text: "Share of a participant's trials answered in less than 0.5 s, least to greatest over participants.", source: "the study's file" },
 };
 
 export const GLOSSARY = { ...DISPLAY, ...MOTION, ...RESULTS };

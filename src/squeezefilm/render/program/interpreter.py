@@ -155,10 +155,6 @@ def interpret(
         elif code == op.WEIGH:
             memory[top] *= program[pc]
             pc += 1
-        elif code == op.TRIANGLE:
-            u = memory[top] / program[pc] + program[pc + 1]
-            memory[top] = 1.0 - abs(2.0 * (u - math.floor(u)) - 1.0)
-            pc += 2
         else:
             return math.nan
 

@@ -301,9 +301,9 @@ _INFLUENCES: dict[int, frozenset[str]] = {
 
 # Operands that divide, and so must not be 0 or below.
 _DIVISORS = {
-    op.SQUARE: (0,), op.SINE: (0,), op.TRIANGLE: (0,), op.GAUSSIAN: (1,),
-    op.HANN: (1,), op.BUMP: (1,), op.NOISE: (0,), op.NOISE_FIELD: (0,), op.IMAGE: (5,),
-    op.DECAY: (1,), op.ENTER_SCALE: (0, 1, 2),
+    op.SQUARE: (0,), op.SINE: (0,), op.GAUSSIAN: (1,), op.HANN: (1,), op.BUMP: (1,),
+    op.NOISE: (0,), op.NOISE_FIELD: (0,), op.IMAGE: (5,), op.DECAY: (1,),
+    op.ENTER_SCALE: (0, 1, 2),
 }  # fmt: skip
 
 

@@ -33,7 +33,6 @@ const STEP_ACROSS = 0x85ebca77;
 // Numbers that follow each opcode.
 const OPERANDS = [
   0, 1, 3, 2, 0, 0, 0, 0, 0, 0, 0, 2, 3, 2, 2, 2, 2, 0, 3, 3, 2, 2, 7, 2, 2, 1, 2, 3, 0, 1,
-  2,
 ];
 
 function hold(value, low, high) {
@@ -257,10 +256,6 @@ export function interpret(program, memory, base, x, y, v, t) {
         break;
       case 29: // WEIGH
         memory[top] *= program[pc];
-        break;
-      case 30: // TRIANGLE
-        u = memory[top] / program[pc] + program[pc + 1];
-        memory[top] = 1 - Math.abs(2 * (u - Math.floor(u)) - 1);
         break;
       default:
         return NaN;

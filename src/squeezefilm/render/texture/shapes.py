@@ -32,7 +32,6 @@ from squeezefilm.render.opcodes import (
     SINE,
     SMOOTH,
     SQUARE,
-    TRIANGLE,
     Assembler,
 )
 from squeezefilm.render.texture.coordinate import (
@@ -126,33 +125,6 @@ class SineWave(Pattern):
     def _lower(self, assembler: Assembler) -> None:
         self.along._lower(assembler)
         assembler.emit(SINE, self.spatial_period, self.phase / (2 * math.pi))
-
-
-@reads_text
-@checked_numbers
-@dataclass(frozen=True, slots=True)
-class TriangleWave(Pattern):
-    """From 0 at the start of every period straight up to 1 at its middle, and back.
-
-    1 − |2 (u mod 1) − 1| with u = s/spatial_period + phase/2π, s being the coordinate `along`.
-    Args and errors as for `SquareWave`.
-    """
-
-    spatial_period: Length
-    phase: Radian = 0.0
-    along: Coordinate = X_AXIS
-    type: Literal["triangle_wave"] = field(default="triangle_wave", repr=False)
-
-    def __post_init__(self) -> None:
-        require_coordinate(self.along)
-
-    def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
-        cycles = self.along.at(x, y) / self.spatial_period + self.phase / (2 * math.pi)
-        return 1.0 - np.abs(2.0 * (cycles - np.floor(cycles)) - 1.0)
-
-    def _lower(self, assembler: Assembler) -> None:
-        self.along._lower(assembler)
-        assembler.emit(TRIANGLE, self.spatial_period, self.phase / (2 * math.pi))
 
 
 @reads_text

@@ -261,21 +261,6 @@ def show_presets(listing: Sequence[dict[str, Any]]) -> None:
     console.print("squeezefilm show NAME lists the values; squeezefilm analyze NAME works them out")
 
 
-def show_units(listing: Sequence[dict[str, Any]]) -> None:
-    """Print the units that quantities may be written in."""
-    console = plain_console()
-    table(
-        console,
-        ("unit", "in SI units", "prefixes"),
-        [
-            (str(one["unit"]), str(one["in_si"]), "p to G" if one["takes_prefix"] else "none")
-            for one in listing
-        ],
-        fixed=(0, 1, 2),
-    )
-    console.print('units combine: "8250 kg/m3", "1.85e-5 Pa*s"')
-
-
 def display_values(target: str) -> list[dict[str, Any]]:
     """Every value that a display's file states: path, text as written, source, evidence.
 

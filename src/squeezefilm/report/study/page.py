@@ -7,8 +7,6 @@ from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from squeezefilm.quantities import Unit
 from squeezefilm.report.kit.folder import json_text, require_folder, write_folder
 from squeezefilm.report.kit.numbers import printable, shown
@@ -193,15 +191,6 @@ def key_rows(analysis: IdentificationAnalysis) -> list[tuple[str, str, str]]:
         g = analysis.ex_gaussian
         texts = [shown(value, Unit("s"), 3) for value in (g.mean, g.spread, g.tail)]
         rows.append(("Response time μ, σ, τ", ", ".join(texts), "ex-Gaussian, all trials"))
-    if analysis.participant_quick_share is not None:
-        shares = 100 * analysis.participant_quick_share
-        rows.append(
-            (
-                "Response times below 0.5 s",
-                f"{np.nanmin(shares):.3g} to {np.nanmax(shares):.3g} %",
-                "share of a participant's trials, least to greatest over participants",
-            )
-        )
     return rows
 
 

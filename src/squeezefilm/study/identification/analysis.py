@@ -39,7 +39,6 @@ from squeezefilm.study.identification.response_times import (
     ExGaussian,
     ResponseTimeSummary,
     fit_ex_gaussian,
-    quick_share,
     response_time_summary,
 )
 from squeezefilm.study.identification.sensitivity import OrderedSensitivity, ordered_sensitivity
@@ -77,8 +76,6 @@ class IdentificationAnalysis(Result):
         sensitivity: d′ of stimuli in the order of the labels; None where it has none.
         choice: the biased choice model, and `choice_map` its stimuli as points; None likewise.
         response_times, ex_gaussian: empty and None without response times.
-        participant_quick_share: share of response times below 0.5 s of each participant, shape
-            (participants,), NaN where one has no time; None without response times.
         exploration: quantity (with unit in its key) → means by stimulus.
         mixed: mixed models; None if not asked for.
         notes: what could not be computed, and why.
@@ -101,7 +98,6 @@ class IdentificationAnalysis(Result):
     choice_map: PerceptualMap | None
     response_times: tuple[ResponseTimeSummary, ...]
     ex_gaussian: ExGaussian | None
-    participant_quick_share: DimensionlessArray | None
     exploration: Mapping[str, tuple[ConditionMean, ...]]
     mixed: MixedModel | None
     notes: tuple[str, ...]
@@ -165,7 +161,6 @@ class IdentificationAnalysis(Result):
             "choice_map": self.choice_map,
             "response_times": self.response_times,
             "ex_gaussian": self.ex_gaussian,
-            "participant_share_below_500_ms": self.participant_quick_share,
             "exploration": self.exploration,
             "mixed_model": self.mixed,
             "notes": self.notes,
@@ -249,10 +244,9 @@ def analyze_identification(
     person = np.unique(np.asarray(participant), return_inverse=True)[1]
     kind = np.asarray(stimulus, dtype=np.int64)
     times: tuple[ResponseTimeSummary, ...] = ()
-    ex_gaussian, quick = None, None
+    ex_gaussian = None
     if response_time is not None:
         times = response_time_summary(person, kind, response_time, names, level)
-        quick = quick_share(person, response_time) if times else None
         try:
             ex_gaussian = fit_ex_gaussian(response_time, seed)
         except (InputError, ConvergenceError) as error:
@@ -283,7 +277,6 @@ def analyze_identification(
         points,
         times,
         ex_gaussian,
-        quick,
         explored,
         fitted,
         tuple(notes),

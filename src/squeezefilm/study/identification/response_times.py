@@ -10,15 +10,7 @@ from scipy import optimize, stats
 from scipy.special import erfcx, log_ndtr
 
 from squeezefilm.errors import ConvergenceError, InputError
-from squeezefilm.quantities import (
-    Dimensionless,
-    DimensionlessArray,
-    FloatArray,
-    IntArray,
-    Second,
-    Unit,
-    require,
-)
+from squeezefilm.quantities import Dimensionless, FloatArray, IntArray, Second, Unit, require
 
 _MOST_VALUES = 20_000
 
@@ -102,29 +94,6 @@ def response_time_summary(
             )
         )
     return tuple(found)
-
-
-def quick_share(
-    participant: ArrayLike, response_time: ArrayLike, limit: Second = 0.5
-) -> DimensionlessArray:
-    """Share of each participant's response times below `limit`, shape (participants,).
-
-    Args:
-        participant: numbers from 0 up, shape (trials,).
-        response_time: in s, shape (trials,), above 0; NaN for a time not taken.
-        limit: what counts as quick (s), above 0.
-
-    A participant without a time has NaN.
-
-    Raises:
-        InputError: times or a limit not above 0, or arrays of unequal length.
-    """
-    require("limit", limit, Unit("s"), above=0.0)
-    person, _, times = _three(participant, participant, response_time)
-    people = int(np.max(np.asarray(participant), initial=-1)) + 1
-    taken = np.bincount(person, minlength=people)
-    quick = np.bincount(person[times < limit], minlength=people)
-    return np.where(taken > 0, quick / np.maximum(taken, 1), np.nan)
 
 
 @dataclass(frozen=True, slots=True)

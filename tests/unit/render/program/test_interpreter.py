@@ -30,7 +30,6 @@ from squeezefilm.render.texture.shapes import (
     Ramp,
     SineWave,
     SquareWave,
-    TriangleWave,
 )
 
 INVERSE = FrictionInverse.from_function(lambda a: 1 - 0.5 * a / 4e-6, 4e-6)
@@ -51,7 +50,6 @@ MILD = Amplitude.constant(0.8e-6)
         SquareWave(2e-3, 0.25, 0.4),
         SquareWave(2e-3, 0.25, -1.0, AlongY()),
         SineWave(3e-3, 0.6, DIAGONAL),
-        TriangleWave(3e-3, 0.6, DIAGONAL),
         Pulse(1e-3, 2e-3, along=DIAGONAL),
         Pulse(1e-3, 2e-3, "raised_cosine", FromPoint(1e-3, 2e-3)),
         Ramp(-1e-3, 3e-3),

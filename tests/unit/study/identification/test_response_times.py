@@ -13,7 +13,6 @@ from squeezefilm.study.identification.response_times import (
     ExGaussian,
     ex_gaussian_density,
     fit_ex_gaussian,
-    quick_share,
     response_time_summary,
 )
 
@@ -41,16 +40,6 @@ def test_a_summary_is_of_peoples_means_and_its_spread_of_their_own_trials() -> N
     # One trial each: nothing to tell a spread from.
     assert math.isnan(b.spread)
     assert b.median == 1.75
-
-
-def test_quick_answers_are_counted_by_participant() -> None:
-    assert quick_share([0, 0, 1, 3], [0.2, 0.5, 0.499, 2.0]).tolist() == pytest.approx(
-        [0.5, 1.0, math.nan, 0.0], nan_ok=True
-    )
-    holes = quick_share([0, 0, 1], [0.2, math.nan, math.nan], limit=0.3)
-    assert holes.tolist() == pytest.approx([1.0, math.nan], nan_ok=True)
-    with pytest.raises(InputError, match="limit"):
-        quick_share([0], [1.0], limit=0.0)
 
 
 def test_times_that_were_not_taken_and_conditions_without_any_are_left_out() -> None:

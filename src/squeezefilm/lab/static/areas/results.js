@@ -10,8 +10,7 @@ export async function show(place, lab) {
 const EXPLAINED = [
   ["Participants", "participants"], ["Proportion correct", "proportion_correct"], ["Guessing", "guessing"],
   ["p against guessing", "chance_p"], ["p against unrelated", "permutation_p"], ["Information transfer", "information_transfer"],
-  ["Total sensitivity", "total_sensitivity"], ["d′", "d_prime"],
-  ["Response times below", "quick_share"], ["Response time", "response_time"],
+  ["Total sensitivity", "total_sensitivity"], ["d′", "d_prime"], ["Response time", "response_time"],
 ];
 
 /** The glossary's entry for a row of the analysis. */
