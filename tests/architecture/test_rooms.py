@@ -10,8 +10,6 @@ import import_graph
 ROOT = Path(__file__).parents[2]
 SOURCE, TESTS = ROOT / "src", ROOT / "tests"
 
-# Mended elsewhere at present; nothing may be added here.
-
 
 @pytest.fixture(scope="module")
 def graph() -> dict[str, frozenset[str]]:

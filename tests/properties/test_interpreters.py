@@ -14,6 +14,7 @@ import pytest
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 
+from squeezefilm.errors import InputError
 from squeezefilm.render import opcodes
 from squeezefilm.render.program.inverse import FrictionInverse
 from squeezefilm.render.program.lowering import Program, lower
@@ -128,6 +129,26 @@ def test_golden_programs_use_every_opcode() -> None:
             used.add(int(code[place]))
             place += 1 + opcodes.SHAPES[int(code[place])][0]
     assert used == set(range(len(opcodes.SHAPES)))
+
+
+def test_an_operand_that_divides_is_never_zero() -> None:
+    """Every operand of every opcode in turn: refused as zero, or nothing is divided by it."""
+    place = np.array([-3e-3, 0.0, 1.7e-3, 20e-3])
+    for case in golden():
+        whole = np.array(case["program"], dtype=float)
+        at = 24
+        while at < whole[4]:
+            operands = opcodes.SHAPES[int(whole[at])][0]
+            for operand in range(at + 1, at + 1 + operands):
+                changed = whole.copy()
+                changed[operand] = 0.0
+                try:
+                    program = Program(changed)
+                except InputError:
+                    continue
+                found = evaluate(program, place, place, np.full(4, 0.08), np.full(4, 0.1))
+                assert np.all(np.isfinite(found)), (whole[at], operand - at - 1)
+            at += 1 + operands
 
 
 def test_golden_programs_mean_what_they_meant() -> None:

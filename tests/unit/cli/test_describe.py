@@ -3,14 +3,20 @@
 from __future__ import annotations
 
 import json
+import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
+import typer
 from tests.e2e.program import run
 
+from squeezefilm import __main__
+from squeezefilm.cli import main
+from squeezefilm.cli.app import app
 from squeezefilm.cli.describe import analyze, new, presets, show
 from squeezefilm.display import load_display
 from squeezefilm.presets import display_names
@@ -24,6 +30,33 @@ def test_the_verbs_are_those_of_the_program() -> None:
     said = run("--help").stdout
     for verb in (presets, show, new, analyze):
         assert verb.__name__ in said
+
+
+def test_every_verb_is_described_in_the_docs() -> None:
+    text = (Path(__file__).parents[3] / "docs" / "cli.md").read_text(encoding="utf-8")
+    commands: dict[str, Any] = vars(typer.main.get_command(app))["commands"]
+    verbs = [
+        f"{name} {below}".strip()
+        for name, command in commands.items()
+        for below in getattr(command, "commands", [""])
+    ]
+    assert len(verbs) > 15
+    headed = [
+        word.split()[0]
+        for line in text.splitlines()
+        if line.startswith("## ")
+        for word in line[3:].split(", ")
+    ]
+    assert [
+        verb for verb in verbs if f"squeezefilm {verb}" not in text and verb not in headed
+    ] == []
+
+
+def test_the_package_can_be_run_by_its_name() -> None:
+    assert __main__.main is main
+    command = [sys.executable, "-m", "squeezefilm", "presets", "--json"]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert [one["name"] for one in json.loads(done.stdout)] == list(display_names())
 
 
 def test_presets_are_listed() -> None:

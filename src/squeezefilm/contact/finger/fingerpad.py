@@ -26,6 +26,7 @@ from squeezefilm.quantities import (
     Hertz,
     HertzLike,
     Kilogram,
+    KilogramLike,
     MetrePerSecondLike,
     NewtonLike,
     NewtonPerMetre,
@@ -39,7 +40,6 @@ from squeezefilm.quantities import (
     closed_form,
 )
 
-KilogramLike = Annotated[float | np.ndarray, Unit("kg")]
 MetrePerNewtonComplexLike = Annotated[complex | ComplexArray, Unit("m/N")]
 
 EVIDENCE = {
