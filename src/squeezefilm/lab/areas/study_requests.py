@@ -2,14 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from pydantic import Field
 
 from squeezefilm.lab.wire import Request
-
-if TYPE_CHECKING:
-    pass
 
 
 class NamedStudy(Request):

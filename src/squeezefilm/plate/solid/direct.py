@@ -6,14 +6,21 @@ import numpy as np
 
 from squeezefilm.hard_limits import FREQUENCY, require_within
 from squeezefilm.plate.elements.blas_threads import one_blas_thread
+from squeezefilm.plate.elements.cross_section import CrossSection
+from squeezefilm.plate.elements.slab_factor import SlabFactor
+from squeezefilm.plate.elements.slabs import Slabs
 from squeezefilm.plate.layout import RectangularPlate
+from squeezefilm.plate.solid.mesh import plate_model
+from squeezefilm.plate.solid.modes import SolvedModel
+from squeezefilm.plate.solid.reduced import (
+    class_drive,
+    loss_weight,
+    resolved_frequency,
+    spring_losses,
+)
 from squeezefilm.plate.solid.resolution import NORMAL, Resolution
 from squeezefilm.plate.solid.symmetry import drive_classes
-from squeezefilm.quantities import (
-    ComplexArray,
-    Hertz,
-    checked_numbers,
-)
+from squeezefilm.quantities import ComplexArray, Hertz, checked_numbers
 
 
 @checked_numbers
@@ -26,18 +33,6 @@ def direct_admittance(
     Raises `InputError` for a frequency outside its hard limit.
     """
     require_within(FREQUENCY, frequency, "frequency")
-    from squeezefilm.plate.elements.cross_section import CrossSection
-    from squeezefilm.plate.elements.slab_factor import SlabFactor
-    from squeezefilm.plate.elements.slabs import Slabs
-    from squeezefilm.plate.solid.mesh import plate_model
-    from squeezefilm.plate.solid.modes import SolvedModel
-    from squeezefilm.plate.solid.reduced import (
-        class_drive,
-        loss_weight,
-        resolved_frequency,
-        spring_losses,
-    )
-
     omega, charge = 2 * np.pi * frequency, 0j
     solutions: list[ComplexArray] = []
     with one_blas_thread():

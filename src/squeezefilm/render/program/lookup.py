@@ -8,7 +8,7 @@ import numba
 
 from squeezefilm.quantities import Array
 from squeezefilm.render.program import layout as at
-from squeezefilm.render.texture.noise import STEP_ACROSS, STEP_ALONG
+from squeezefilm.render.texture.noise import STEP_ACROSS, STEP_ALONG, mixed
 
 _MASK = 0xFFFFFFFF
 _WHOLE = 2.0**-32
@@ -16,14 +16,8 @@ _WHOLE = 2.0**-32
 _FARTHEST_CELL = 2.0**31
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
-def _mixed(value: int) -> int:
-    # Products may pass 63 bits; the low 32, which alone are kept, are right all the same.
-    value ^= value >> 16
-    value = (value * 0x7FEB352D) & _MASK
-    value ^= value >> 15
-    value = (value * 0x846CA68B) & _MASK
-    return value ^ (value >> 16)
+# Products may pass 63 bits; the low 32, which alone are kept, are right all the same.
+_mixed = numba.njit(cache=True, nogil=True, error_model="numpy")(mixed)
 
 
 @numba.njit(cache=True, nogil=True, error_model="numpy")

@@ -121,18 +121,8 @@ def _disc(disc: DiscPlate, analysis: Analysis) -> Figure:
     for size, fill in ((inner, METAL), (hole, PAPER)):
         if size > 0:
             plan.add_patch(Circle((0, 0), size, facecolor=fill, edgecolor=INK, lw=0.8))
-    plan.add_patch(
-        Rectangle(
-            (-contact / 2, -contact / 2),
-            contact,
-            contact,
-            facecolor="none",
-            edgecolor=ORANGE,
-            lw=2.2,
-            zorder=3,
-            label=f"finger contact, {contact:.3g} mm × {contact:.3g} mm",
-        )
-    )
+    label = f"finger contact, {contact:.3g} mm × {contact:.3g} mm"
+    _finger(plan, contact, 0.0, label)
     side.set_title("section, to scale")
     side.add_patch(Rectangle((-radius, -thick), 2 * radius, thick, facecolor=METAL, edgecolor=INK))
     parts = ((-outer, -inner), (inner, outer)) if inner > 0 else ((-outer, outer),)
@@ -153,6 +143,25 @@ def _disc(disc: DiscPlate, analysis: Analysis) -> Figure:
         axes.grid(visible=False)
     legend_below(plan, gap=0.02)
     return figure
+
+
+def _finger(axes: Axes, contact: float, y: float, label: str = "") -> None:
+    """The contact's outline (mm) about x = 0."""
+    from matplotlib.patches import Rectangle
+
+    corner = (-contact / 2, y - contact / 2)
+    axes.add_patch(
+        Rectangle(
+            corner,
+            contact,
+            contact,
+            facecolor="none",
+            edgecolor=ORANGE,
+            lw=2.2,
+            zorder=3,
+            label=label,
+        )
+    )
 
 
 def _section(axes: Axes, plate: RectangularPlate, neutral: float) -> None:
@@ -187,7 +196,7 @@ def _section(axes: Axes, plate: RectangularPlate, neutral: float) -> None:
 
 
 def _ring(ring: AnnularStator, analysis: Analysis) -> Figure:
-    from matplotlib.patches import Circle, Patch, Rectangle, Wedge
+    from matplotlib.patches import Circle, Patch, Wedge
 
     waves = round(ring.wavelengths_around)
     radius, width = 500 * ring.mean_diameter, 1e3 * ring.radial_width
@@ -225,17 +234,7 @@ def _ring(ring: AnnularStator, analysis: Analysis) -> Figure:
                 fontsize=float(np.clip(220 / (2 * waves), 7, 14)),
             )
     axes.add_patch(Circle((0, 0), radius, fill=False, ls=(0, (5, 3)), ec=MUTED, lw=1))
-    axes.add_patch(
-        Rectangle(
-            (-contact / 2, radius - contact / 2),
-            contact,
-            contact,
-            facecolor="none",
-            edgecolor=ORANGE,
-            lw=2.2,
-            zorder=3,
-        )
-    )
+    _finger(axes, contact, radius)
     axes.annotate(
         "", (-radius, 0), (radius, 0), arrowprops={"arrowstyle": "<->", "color": INK, "lw": 1}
     )
