@@ -23,6 +23,7 @@ from squeezefilm.film.periodic.lanes import (
     broadcast,
     div,
     fma,
+    item,
     largest_magnitude,
     load,
     mul,
@@ -64,7 +65,7 @@ def _invert(S: FloatArray, start: int, nt: int, ntp: int, mask: FloatArray) -> N
     """
     for k in range(nt):
         pivot_row = start + k * ntp
-        pivot = broadcast(1.0 / S[pivot_row + k])
+        pivot = broadcast(1.0 / item(S, pivot_row + k))
         for v in range(0, ntp, 8):
             keep = load(mask, k * ntp + v)
             one = sub(broadcast(1.0), keep)
@@ -75,13 +76,13 @@ def _invert(S: FloatArray, start: int, nt: int, ntp: int, mask: FloatArray) -> N
             for i in range(nt):
                 if i != k:
                     at = start + i * ntp
-                    factor = broadcast(-S[at + k])
+                    factor = broadcast(-item(S, at + k))
                     store(S, at, fma(factor, row, mul(load(S, at), keep)))
         else:
             for i in range(nt):
                 if i != k:
                     at = start + i * ntp
-                    factor = broadcast(-S[at + k])
+                    factor = broadcast(-item(S, at + k))
                     for v in range(0, ntp, 8):
                         keep = load(mask, k * ntp + v)
                         row = load(S, pivot_row + v)
@@ -103,7 +104,7 @@ def _apply(
     for v in range(0, ntp, 8):
         result = load(work, to + v) if accumulate else broadcast(0.0)
         for j in range(nt):
-            result = fma(broadcast(work[at + j]), load(S, start + j * ntp + v), result)
+            result = fma(broadcast(item(work, at + j)), load(S, start + j * ntp + v), result)
         store(work, to + v, result)
 
 
@@ -148,7 +149,7 @@ def _coefficients(
     zero = broadcast(0.0)
     if law == NO_SLIP:
         for f in range(m + 1):
-            geometry = broadcast(g[f])
+            geometry = broadcast(item(g, f))
             for v in range(0, ntp, 8):
                 c = mul(geometry, load(Hf3, f * stride + v))
                 left, right = (f - 1) * ntp + v, f * ntp + v
@@ -220,12 +221,12 @@ def newton(
             our, cr = cr, our
             ol, cl = cl, ol
         for i in range(m):
-            amount = broadcast(-vol[i])
+            amount = broadcast(-item(vol, i))
             for v in range(0, ntp, 8):
                 at = i * ntp + v
                 change = broadcast(0.0)
                 for j in range(nt):
-                    M = broadcast(work[R + i * ntp + j] * H[i * stride + j])
+                    M = broadcast(item(work, R + i * ntp + j) * item(H, i * stride + j))
                     change = fma(M, load(DT, j * ntp + v), change)
                 flow = sub(load(work, F + at + ntp), load(work, F + at))
                 store(work, r + at, fma(amount, change, flow))
@@ -235,13 +236,15 @@ def newton(
             if fresh:
                 for j in range(nt):
                     row = start + j * ntp
-                    diagonal = broadcast(work[ol + at + ntp + j] + work[our + at + j])
+                    diagonal = broadcast(item(work, ol + at + ntp + j) + item(work, our + at + j))
                     for v in range(0, ntp, 8):
                         unit = sub(broadcast(1.0), load(mask, j * ntp + v))
-                        entry = mul(broadcast(vol[i]), load(DT, j * ntp + v))
+                        entry = mul(broadcast(item(vol, i)), load(DT, j * ntp + v))
                         entry = fma(diagonal, unit, entry)
                         if i > 0:
-                            link = mul(broadcast(-work[our + at + j]), load(work, ol + at + v))
+                            link = mul(
+                                broadcast(-item(work, our + at + j)), load(work, ol + at + v)
+                            )
                             entry = fma(link, load(S, row - block + v), entry)
                         store(S, row + v, entry)
                 _invert(S, start, nt, ntp, mask)

@@ -53,6 +53,16 @@ def _load(typingctx: Any, array: Any, index: Any) -> Any:
     return eight(array, types.intp), codegen
 
 
+def _item(typingctx: Any, array: Any, index: Any) -> Any:
+    """The double of a contiguous 1-D array at `index`, which is not negative: numba would ask."""
+
+    def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        data = context.make_array(signature.args[0])(context, builder, args[0]).data
+        return builder.load(builder.gep(data, [args[1]]))
+
+    return types.float64(array, types.intp), codegen
+
+
 def _store(typingctx: Any, array: Any, index: Any, value: Any) -> Any:
     """Write eight doubles into a contiguous 1-D array from `index` on."""
 
@@ -161,6 +171,7 @@ def _largest_magnitude(typingctx: Any, a: Any, b: Any) -> Any:
 
 # Typed as Any: what numba calls is the code behind them, with one argument less.
 load: Any = intrinsic(_load)
+item: Any = intrinsic(_item)
 store: Any = intrinsic(_store)
 broadcast: Any = intrinsic(_broadcast)
 fma: Any = intrinsic(_fma)
