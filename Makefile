@@ -36,10 +36,11 @@ lab: $(VENV)/run.stamp  ## open the lab in the browser
 # Twins and loops in real time are tested last and alone: a device stops when its host is held up
 # for 50 ms, as it must, and other tests would hold it up. Both runs happen even if the first fails.
 PYTEST := $(BIN)/python -m pytest
+REALTIME = $$(grep -rl --include='test_*.py' 'pytest.mark.realtime' tests)
 define run_tests
 @failed=0; \
 $(PYTEST) -n $(WORKERS) -m "not campaign and not realtime $(1)" || failed=1; \
-$(PYTEST) -m "not campaign and realtime $(1)" || failed=1; \
+$(PYTEST) -m "not campaign and realtime $(1)" $(REALTIME) || failed=1; \
 exit $$failed
 endef
 

@@ -5,7 +5,9 @@ when tests run side by side. Properties draw the same few examples every time in
 many new ones in `make nightly`, which sets SQUEEZEFILM_EXPLORE and prints its seed.
 """
 
+import gc
 import os
+from collections.abc import Iterator
 from typing import Any
 
 import pytest
@@ -31,6 +33,17 @@ settings.load_profile("properties")
 # share what is dear. (xdist's own groups are passed over under pytest 9.2: it names tests anew.)
 _SPREAD = ("tests/e2e/", "tests/faults/", "tests/properties/")
 _TOGETHER = ("tests/e2e/test_report_page.py",)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_collection() -> Iterator[None]:
+    """Look for no garbage among thousands of tests while they are collected, nor ever after."""
+    gc.disable()
+    try:
+        yield
+    finally:
+        gc.enable()
+        gc.freeze()
 
 
 @pytest.hookimpl(optionalhook=True)

@@ -128,6 +128,14 @@ def test_a_solve_that_fits_no_memory_is_refused_before_it_begins() -> None:
     assert "slices of" in str(caught.value)
 
 
+@pytest.mark.parametrize("frequency", [4.4e37, 1e300])
+def test_elements_are_not_counted_for_a_frequency_beyond_all_limits(frequency: float) -> None:
+    with pytest.raises(InputError, match=r"near = .* at most 1 GHz"):
+        solve_modes(PLATE, near=frequency)
+    with pytest.raises(InputError, match=r"frequency = .* at most 2 GHz"):
+        plate_model(PLATE, frequency)
+
+
 def test_other_sizes_of_work() -> None:
     for refused in (
         lambda: check_band((0.0, 1e12)),

@@ -89,7 +89,7 @@ def analysis_named(name: str) -> Analysis:
     return analyze(base, model="paper2008-printed")
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def analysis_of() -> Callable[[str], Analysis]:
     """The function that gives the analysis of a preset or of an odd display by its name here."""
     return analysis_named

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from squeezefilm.errors import GeometryError, OutOfRangeError
+from squeezefilm.hard_limits import FREQUENCY
 from squeezefilm.plate.elements.box_model import (
     BoxModel,
     Electrode,
@@ -31,7 +32,7 @@ from squeezefilm.plate.solid.symmetry import (
     mirror_map,
     symmetric_axes,
 )
-from squeezefilm.quantities import IntArray, Unit, format_quantity
+from squeezefilm.quantities import IntArray, Unit, format_quantity, require
 
 # Largest side of the plate over its thinnest layer. Measured on the paper's plate: a layer of glue
 # with the plate's own constants moves (8,0) in proportion to its thickness, to 2e-6, up to a
@@ -144,9 +145,12 @@ def plate_model(
 ) -> PlateModel:
     """The box model of a plate for modes up to about `frequency`, in one class of symmetry.
 
-    Raises `GeometryError` for a class that the plate does not have, `OutOfRangeError` for a plate
-    so thin against its length that elements lose their digits.
+    Raises `InputError` for a frequency beyond its hard limit, before elements are counted,
+    `GeometryError` for a class that the plate does not have, `OutOfRangeError` for a plate so thin
+    against its length that elements lose their digits.
     """
+    # What resolves a band lies somewhat above it.
+    require("frequency", frequency, Unit("Hz"), above=0, at_most=2 * FREQUENCY.most)
     for axis in (0, 1):
         if parity[axis] is not None and not symmetric_axes(plate)[axis]:
             raise GeometryError(

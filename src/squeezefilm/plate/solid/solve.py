@@ -11,6 +11,7 @@ import dataclasses
 import functools
 
 from squeezefilm.errors import InputError
+from squeezefilm.hard_limits import FREQUENCY
 from squeezefilm.plate.elements.blas_threads import one_blas_thread
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.solid.coarse_modes import (
@@ -64,7 +65,7 @@ def solve_modes(
     require("tolerance", tolerance, above=0, below=1)
     require("count", count, at_least=1)
     if near is not None:
-        require("near", near, Unit("Hz"), above=0)
+        require("near", near, Unit("Hz"), above=0, at_most=FREQUENCY.most)
     if band is not None:
         check_band(band)
     if near is None and band is None and mode is None:

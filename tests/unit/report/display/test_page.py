@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Callable
 from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
@@ -58,11 +59,10 @@ def read(text: str) -> Reader:
 
 
 @pytest.fixture(scope="module")
-def written(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Analysis]:
-    from squeezefilm.analysis.analyze import analyze
-    from squeezefilm.display import load_display
-
-    analysis = analyze(load_display("biet2008-plate"))
+def written(
+    tmp_path_factory: pytest.TempPathFactory, analysis_of: Callable[[str], Analysis]
+) -> tuple[Path, Analysis]:
+    analysis = analysis_of("biet2008-plate")
     steps: list[str] = []
     path = write_analysis(analysis, tmp_path_factory.mktemp("out") / "new", steps.append)
     assert len(steps) == len(FIGURE_KEYS) + 1
