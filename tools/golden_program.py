@@ -29,7 +29,7 @@ def golden_case(name: str, texture: Composable, samples: list[list[Any]]) -> dic
     """The program of a texture, and what it gives at samples (x, y in m, v in m/s, t in s)."""
     if texture.quantity != "amplitude":
         raise InputError(
-            f"a golden program's levels are amplitudes; those of this texture are {texture.quantity}"
+            f"a golden program's levels are amplitudes, not {texture.quantity}"
         )
     program = lower(texture, largest_amplitude=LARGEST_AMPLITUDE)
     where = np.array([[float(number) for number in sample] for sample in samples]).T

@@ -21,6 +21,7 @@ from squeezefilm.plate.laminate import plate_laminate
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.solid.mesh import plate_model
 from squeezefilm.plate.solid.modes import check_band
+from squeezefilm.plate.solid.solve import solve_modes
 from squeezefilm.presets import path as preset_path
 from squeezefilm.quantities import Unit, checked_numbers
 from squeezefilm.render.motion.minimum_jerk import MinimumJerkStroke

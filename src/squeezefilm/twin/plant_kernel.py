@@ -207,17 +207,13 @@ def _follow(h: float, x0: float, x1: float, y0: float, y1: float, s: Array, c: A
     """The finger's bone after a step in which the arm's wanted place goes from 0 to 1."""
     d, k = c[C_DAMPING], c[C_STIFFNESS]
     arm = Skin(c[C_MASS], d, k)
-    pull = np.empty(3)
     by = transition(h, arm)
-    pull[2] = 0.0
-    pull[1] = k * (x1 - x0) / h
-    pull[0] = k * x0 + d * (x1 - x0) / h
     ahead = s[PULL]
     if s[BEFORE] > 0.0:
         ahead += 0.5 * (s[PULL] - s[PULL_BEFORE]) * h / s[BEFORE]
+    pull = (k * x0 + d * (x1 - x0) / h, k * (x1 - x0) / h, 0.0)
     s[X], s[VX], _ = slide_by(by, h, s[X], s[VX], Forces(pull, ahead, 0.0), arm)
-    pull[1] = k * (y1 - y0) / h
-    pull[0] = k * y0 + d * (y1 - y0) / h
+    pull = (k * y0 + d * (y1 - y0) / h, k * (y1 - y0) / h, 0.0)
     s[Y], s[VY], _ = slide_by(by, h, s[Y], s[VY], Forces(pull, 0.0, 0.0), arm)
 
 

@@ -79,9 +79,8 @@ class Track(NamedTuple):
 
 
 @numba.njit(cache=True, nogil=True)
-def at_place(place: float, ground: Ground) -> float:
+def at_place(place: float, start: float, spacing: float, profile: Array) -> float:
     """The ground's factor (linear between its points, held beyond its ends) at a place (m)."""
-    start, spacing, profile = ground
     if profile.size == 1:
         return float(profile[0])
     along = (place - start) / spacing
@@ -98,20 +97,20 @@ def slide_march(drive: Drive, skin: Skin, law: Law, ground: Ground, track: Track
     """
     bone, speed_in, speed_out, limit, time_step, substeps = drive
     static_ratio, stribeck_speed = law
+    start, spacing, profile = ground
     position, speed, friction, bone_force, stuck, work, account = track
-    pull = np.empty(3)
     x = position[0]
     v = speed[0]
     k, c = skin.stiffness, skin.damping
     drops = stribeck_speed > 0.0 and static_ratio > 1.0
-    bent = drops or ground.factor.size > 1
+    bent = drops or profile.size > 1
     h = time_step / substeps
     # Whole substeps are alike: their exponentials are taken once.
     whole = transition(h, skin)
     first = transition(_NODES[0] * h, skin)
     second = transition(_NODES[1] * h, skin)
     third = transition(_NODES[2] * h, skin)
-    here = at_place(x, ground)
+    here = at_place(x, start, spacing, profile)
     load = k * (bone[0] - x) + c * (speed_in[0] - v)
     sign = 0.0
     if v != 0.0:
@@ -142,11 +141,9 @@ def slide_march(drive: Drive, skin: Skin, law: Law, ground: Ground, track: Track
                 span = goal - s
                 vb = v_in + rate * s
                 xb = bone[i] + s * (v_in + 0.5 * rate * s)
-                pull[0] = k * xb + c * vb
-                pull[1] = k * vb + c * rate
-                pull[2] = 0.5 * k * rate
+                pull = (k * xb + c * vb, k * vb + c * rate, 0.5 * k * rate)
                 L = L0 + dL * s
-                here = at_place(x, ground)
+                here = at_place(x, start, spacing, profile)
                 if sign == 0.0:
                     hold = static_ratio * here
                     f = pull[0] - k * x
@@ -185,7 +182,7 @@ def slide_march(drive: Drive, skin: Skin, law: Law, ground: Ground, track: Track
                     for _ in range(3):
                         forces = Forces(pull, sign * F0, sign * dF)
                         x1, v1, _ = slide_by(passed, span, x, v, forces, skin)
-                        F1 = (L + dL * span) * at_place(x1, ground)
+                        F1 = (L + dL * span) * at_place(x1, start, spacing, profile)
                         if drops:
                             v1 = max(sign * v1, 0.0)
                             F1 *= 1.0 + (static_ratio - 1.0) * math.exp(-v1 / stribeck_speed)
@@ -213,7 +210,7 @@ def slide_march(drive: Drive, skin: Skin, law: Law, ground: Ground, track: Track
                     for _ in range(4):
                         forces = Forces(pull, sign * F0, sign * dF)
                         x1, _, _ = slide_along(part, x, v, forces, skin)
-                        F1 = (L + dL * part) * at_place(x1, ground)
+                        F1 = (L + dL * part) * at_place(x1, start, spacing, profile)
                         if drops:
                             F1 *= static_ratio
                         steeper = (F1 - F0) / part
@@ -242,7 +239,7 @@ def slide_march(drive: Drive, skin: Skin, law: Law, ground: Ground, track: Track
                     done[1] += _WEIGHTS[q] * part * F_t * abs(v_t)
                     done[2] += _WEIGHTS[q] * part * c * (vb_t - v_t) ** 2
                     if bent and q == 1:
-                        top = (L + dL * t) * at_place(x_t, ground)
+                        top = (L + dL * t) * at_place(x_t, start, spacing, profile)
                         lawful = top
                         if drops:
                             lawful *= 1.0 + (static_ratio - 1.0) * math.exp(
@@ -259,7 +256,7 @@ def slide_march(drive: Drive, skin: Skin, law: Law, ground: Ground, track: Track
                 v = 0.0
                 vb = v_in + rate * s
                 f = k * (bone[i] + s * (v_in + 0.5 * rate * s) - x) + c * vb
-                here = at_place(x, ground)
+                here = at_place(x, start, spacing, profile)
                 hold = static_ratio * here * (L0 + dL * s)
                 sign = 0.0
                 if abs(f) > hold:

@@ -7,8 +7,6 @@ from typing import Any, NamedTuple
 
 import numba
 
-from squeezefilm.quantities import Array
-
 _ROOT_STEPS = 80
 # Slips shorter than this power of ½ of a substep are not looked for.
 HALVINGS = 20
@@ -23,10 +21,10 @@ class Skin(NamedTuple):
 
 
 class Forces(NamedTuple):
-    """On a skin that slides, over time: the coefficients (3,) of k x_bone + c v_bone, and the
-    friction force against it with its slope."""
+    """On a skin that slides, over time: the coefficients of k x_bone + c v_bone, and the friction
+    force against it with its slope. Three numbers, not an array, whose references numba counts."""
 
-    pull: Array
+    pull: tuple[float, float, float]
     friction: float
     slope: float
 

@@ -7,7 +7,6 @@ off on a finer set of times. Factors are kept while they still serve (chord step
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,7 +24,7 @@ from squeezefilm.film.planar.kernel import (
     take_off,
 )
 from squeezefilm.film.records import Gas
-from squeezefilm.quantities import ComplexArray, FloatArray, IntArray
+from squeezefilm.quantities import ComplexArray, FloatArray
 
 _OVERSAMPLE = 6
 
@@ -82,17 +81,24 @@ def resampled(values: FloatArray, count: int) -> FloatArray:
 class _Factors:
     """The Jacobian eliminated row by row; keeps the inverse of every pivot block."""
 
-    def __init__(self, rows: int, size: int, within: Sequence[IntArray]) -> None:
-        self.inverse = np.empty((rows, size, size))
-        self.within = within
+    def __init__(self, grid: PlanarGrid, count: int) -> None:
+        rows, columns = grid.rows, grid.columns
+        self.inverse = np.empty((rows, columns * count, columns * count))
+        # The faces within each row, and the nodes in the row that they join.
+        row_of, joins = np.divmod(np.stack([grid.column_from, grid.column_to]), columns)
+        self.within = [np.flatnonzero(row_of[0] == i) for i in range(rows)]
+        self.joins = [np.ascontiguousarray(joins[:, faces]) for faces in self.within]
 
-    def factor(self, faces: Faces, storage: Storage, parts: Balances) -> None:
+    def factor(self, storage: Storage, parts: Balances) -> None:
         rows, size = self.inverse.shape[:2]
+        weight = storage.weight.reshape(rows, -1)
+        diagonal = parts.diagonal.reshape(rows, weight.shape[1], -1)
         self.up = parts.row_up.reshape(rows - 1, size)
         self.down = parts.row_down.reshape(rows - 1, size)
         block = np.empty((size, size), order="F")
         for i in range(rows):
-            row_block(i * faces.columns, self.within[i], faces, storage, parts, block)
+            up, down = (slope[self.within[i]] for slope in (parts.column_up, parts.column_down))
+            row_block(weight[i], storage.derivative, diagonal[i], self.joins[i], up, down, block)
             if i:
                 take_off(block, self.down[i - 1], self.inverse[i - 1], self.up[i - 1])
             lu, pivots, bad = lapack.dgetrf(block, overwrite_a=1)
@@ -137,9 +143,7 @@ class Balancer:
             grid.edge_node,
             grid.edge_conductance,
         )
-        row_of = grid.column_from // grid.columns
-        within = [np.flatnonzero(row_of == i).astype(np.int64) for i in range(grid.rows)]
-        self._factors = _Factors(grid.rows, grid.columns * count, within)
+        self._factors = _Factors(grid, count)
         self._fresh = False
 
     def _assemble(self, m: FloatArray) -> Balances:
@@ -176,7 +180,7 @@ class Balancer:
             made += 1
             if not self._fresh:
                 try:
-                    self._factors.factor(self.faces, self.storage, parts)
+                    self._factors.factor(self.storage, parts)
                 except np.linalg.LinAlgError:
                     break
                 factored += 1

@@ -118,29 +118,28 @@ def assemble(
 
 @numba.njit(cache=True, nogil=True)
 def row_block(
-    first: int, within: Array, faces: Faces, storage: Storage, balance: Balances, block: Array
+    weight: Array, D: Array, diagonal: Array, joins: Array, up: Array, down: Array, block: Array
 ) -> None:
-    """The dense Jacobian block of one row: its nodes from `first`, all their times.
+    """The dense Jacobian block of one row: its nodes, all their times.
 
-    `within` are the faces within this row. `block` (columns·times)² is overwritten.
+    `weight` (columns,) and `diagonal` (columns, times) are those of its nodes, `up` and `down`
+    (faces, times) those of the faces within it, `joins` (2, faces) the nodes that they join.
+    `block` (columns·times)² is overwritten. Arrays and no records: it is called for every row, and
+    a record of arrays takes longer to hand over than a small block to fill.
     """
-    columns, column_from, column_to = faces.columns, faces.column_from, faces.column_to
-    weight, D = storage
     M = D.shape[0]
     block[:, :] = 0.0
-    for j in range(columns):
-        i = first + j
+    for i in range(weight.size):
         for k in range(M):
             for q in range(M):
-                block[j * M + k, j * M + q] = -weight[i] * D[k, q]
-            block[j * M + k, j * M + k] += balance.diagonal[i, k]
-    for g in within:
-        a = column_from[g] - first
-        b = column_to[g] - first
+                block[i * M + k, i * M + q] = -weight[i] * D[k, q]
+            block[i * M + k, i * M + k] += diagonal[i, k]
+    for g in range(joins.shape[1]):
+        a, b = joins[0, g], joins[1, g]
         for k in range(M):
             # += because on a full ring of two columns both faces join the same nodes.
-            block[a * M + k, b * M + k] += balance.column_up[g, k]
-            block[b * M + k, a * M + k] += balance.column_down[g, k]
+            block[a * M + k, b * M + k] += up[g, k]
+            block[b * M + k, a * M + k] += down[g, k]
 
 
 @numba.njit(cache=True, nogil=True)

@@ -68,8 +68,8 @@ def test_a_profile_is_linear_between_its_points_and_held_beyond() -> None:
         (0.9, 1.0), (1.0, 1.0), (1.25, 1.15), (1.5, 1.3), (1.75, 1.05), (2.375, 1.025),
         (2.5, 1.1), (9.0, 1.1), (-9.0, 1.0),
     ):  # fmt: skip
-        assert at_place(place, Ground(1.0, 0.5, ROUGH)) == pytest.approx(value)
-    assert at_place(7.0, Ground(0.0, 1.0, np.array([0.4]))) == 0.4
+        assert at_place(place, 1.0, 0.5, ROUGH) == pytest.approx(value)
+    assert at_place(7.0, 0.0, 1.0, np.array([0.4])) == 0.4
 
 
 def test_a_stuck_skin_stores_the_bones_work_and_heats_the_damper() -> None:
@@ -263,7 +263,7 @@ def test_no_work_is_lost_from_the_ledger_through_sticks_and_slips() -> None:
     assert np.all(found.v[found.stuck] == 0)
     assert 0 < found.account[2] < 0.05
     # What it holds while stuck never exceeds what it can hold.
-    hold = 1.6 * limit * [at_place(x, Ground(*STICK_SLIP["profile"])) for x in found.x]
+    hold = 1.6 * limit * [at_place(x, *STICK_SLIP["profile"]) for x in found.x]
     assert np.all(np.abs(found.friction) <= hold * (1 + 1e-9))
 
 

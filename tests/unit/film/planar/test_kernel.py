@@ -75,7 +75,10 @@ def test_the_jacobian_is_the_derivative_of_the_residual(law: tuple[float, float,
     for row in range(ROWS):
         block = np.full((block_size, block_size), np.nan)
         faces = np.flatnonzero(np.isin(FROM // COLUMNS, row))
-        row_block(row * COLUMNS, faces, FACES, STORAGE, slopes, block)
+        nodes = slice(row * COLUMNS, (row + 1) * COLUMNS)
+        joins = np.stack([FROM, TO])[:, faces] - row * COLUMNS
+        up, down = slopes.column_up[faces], slopes.column_down[faces]
+        row_block(WEIGHT[nodes], D, slopes.diagonal[nodes], joins, up, down, block)
         at = slice(row * block_size, (row + 1) * block_size)
         found[at, at] = block
     for face in range(NODES - COLUMNS):
