@@ -165,11 +165,9 @@ def climb_to(ladder: Ladder, tolerance: float) -> Climb:
     if times.enough:
         return climber.in_space(times)
     high, count = times.high, times.low.gas.shape[1]
-    return climber.end(
-        Extrapolated(high.over_pressure, abs(times.correction), high.harmonics),
-        high,
-        f"stopped: {count // 2} harmonics in time are too few or Newton's method failed",
-    )
+    status = f"stopped: {count // 2} harmonics in time are too few or Newton's method failed"
+    best = Extrapolated(high.over_pressure, abs(times.correction), high.harmonics)
+    return Climb(best, high, climber.iterations, False, status)
 
 
 @dataclass(frozen=True)
@@ -203,12 +201,6 @@ class _Climber:
         state = _solve_or_continue(self.ladder.film, grid, count, start, self.accuracy)
         self.iterations += state.iterations
         return state
-
-    def end(
-        self, best: Extrapolated, fine: Balance, status: str, *, reached: bool = False
-    ) -> Climb:
-        """The climb where it stands."""
-        return Climb(best, fine, self.iterations, reached, status)
 
     def in_time(self) -> _Times:
         """Add times on the coarsest rung until four more change little enough."""
@@ -249,15 +241,13 @@ class _Climber:
             grid = self.ladder.grid(rung)
             nodes = f"{grid.rows} × {grid.columns} nodes"
             if _memory(grid.rows, grid.columns, count) > PLANAR_MEMORY.most:
-                return self.end(
-                    best,
-                    states[-1],
-                    f"known to {best.error / abs(best.over_pressure):.2g} of the over-pressure; "
-                    f"{tolerance:.2g} would take more memory than allowed",
-                )
+                known = f"known to {best.error / abs(best.over_pressure):.2g} of the over-pressure"
+                status = f"{known}; {tolerance:.2g} would take more memory than allowed"
+                return Climb(best, states[-1], self.iterations, False, status)
             states.append(self.solved(rung, count, _moved(self.ladder.film, states[-1], grid)))
             if not states[-1].converged:
-                return self.end(best, states[-1], f"stopped: Newton's method failed on {nodes}")
+                status = f"stopped: Newton's method failed on {nodes}"
+                return Climb(best, states[-1], self.iterations, False, status)
             if place < 2:
                 continue
             space = _irregular if self.ladder.cut else _richardson
@@ -267,9 +257,10 @@ class _Climber:
             best = Extrapolated(value, error, harmonics + shift)
             if error <= tolerance * abs(value):
                 solved = f"solved to {error / abs(value):.1g} of the over-pressure on {nodes}"
-                return self.end(best, states[-1], f"{solved} at {count} times", reached=True)
+                status = f"{solved} at {count} times"
+                return Climb(best, states[-1], self.iterations, True, status)
         status = f"known to {best.error / abs(best.over_pressure):.2g} of the over-pressure only"
-        return self.end(best, states[-1], status)
+        return Climb(best, states[-1], self.iterations, False, status)
 
 
 def _richardson(states: list[Balance]) -> tuple[float, ComplexArray, float]:
