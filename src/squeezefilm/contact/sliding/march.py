@@ -335,4 +335,4 @@ def _factor_at(position: MetreArray, profile: FrictionProfile) -> FloatArray:
         )
     values = np.array(profile.relative_friction, dtype=float)
     places = profile.start + profile.spacing * np.arange(values.size)
-    return np.interp(position, places, values)
+    return np.asarray(np.interp(position, places, values))

@@ -309,4 +309,4 @@ def _refine(
     )
     stuck = (more_cells == cells[pending]) & (more_times == times[pending])
     cells[pending], times[pending] = more_cells, more_times
-    return pending[~stuck]
+    return np.asarray(pending[~stuck])

@@ -116,9 +116,7 @@ def _solve_uniform(asked: Asked) -> FilmSolution:
     keep = np.empty(3 * int(CELLS[-1]) // 2 * 200)
     one = np.array([[sigma], [eps], [n], [kn]], dtype=float)
     films = u.Films(*one, law, u.STRIP if strip else u.DISC)
-    out, c, t, met = solve_all(
-        films, asked.tolerance, 1, least_cells=16, least_times=11, keep=keep
-    )
+    out, c, t, met = solve_all(films, asked.tolerance, 1, least_cells=16, least_times=11, keep=keep)
     row, cells, times = out[0], int(CELLS[c[0]]), int(TIMES[t[0]])
     over, error = float(row[u.OVER]), float(row[u.ERROR])
     ntp = collocation_times(times).row

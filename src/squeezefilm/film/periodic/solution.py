@@ -93,9 +93,7 @@ class Found:
         """How well it went."""
         effort = f"{self.cells} cells and {self.times} times in {self.iterations} Newton steps"
         if self.met:
-            return (
-                f"converged: over-pressure {self.over:.4g} within {self.error:.1g} with {effort}"
-            )
+            return f"converged: over-pressure {self.over:.4g} within {self.error:.1g} with {effort}"
         return (
             f"not converged: over-pressure {self.over:.4g} is only known within {self.error:.1g}, "
             f"asked was {asked.tolerance:g} of it, with {effort}"

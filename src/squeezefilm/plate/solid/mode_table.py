@@ -128,9 +128,7 @@ class _Mode(NamedTuple):
     field: tuple[SolvedModel, FloatArray]
 
 
-def _modes_of(
-    piece: RefinedModes, signs: FloatArray
-) -> tuple[FloatArray, FloatArray, list[_Mode]]:
+def _modes_of(piece: RefinedModes, signs: FloatArray) -> tuple[FloatArray, FloatArray, list[_Mode]]:
     """The modes of one class, and x and y of their shapes; `signs` are those of the drive."""
     frequency, error = extrapolated(piece.coarse_values, piece.values, piece.level)
     scale = 1 / np.sqrt(piece.solved.built.copies)
