@@ -69,14 +69,15 @@ def counted() -> Iterator[Work]:
     """Solves, films, unknowns and steps are counted within."""
     work = Work()
     one = lambda *_, **__: 1  # noqa: E731
+    films = lambda some, *_, **__: len(some.squeeze_number)  # noqa: E731
     with (
         mock.patch.object(
             batch, "solve_all",
-            work.counting(batch.solve_all, "films", lambda _, sigma, *__, **___: len(sigma)),
+            work.counting(batch.solve_all, "films", films),
         ),
         mock.patch.object(
             periodic, "solve_all",
-            work.counting(periodic.solve_all, "films", lambda _, sigma, *__, **___: len(sigma)),
+            work.counting(periodic.solve_all, "films", films),
         ),
         mock.patch.object(
             solve_modes, "_solved", work.counting(solve_modes._solved, "solid solves", one)

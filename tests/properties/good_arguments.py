@@ -90,10 +90,6 @@ _RADIATOR = {
     "x": np.linspace(0, 0.02, 9), "y": np.linspace(0, 0.01, 5), "velocity": np.ones((9, 5)) + 0j,
 }  # fmt: skip
 _BAND = {"band": (20e3, 40e3)}
-_STATOR = {
-    "mean_diameter": 53.6e-3, "radial_width": 12e-3, "ring_thickness": 3e-3,
-    "ceramic_thickness": 0.5e-3,
-}  # fmt: skip
 _WAVE = np.linspace(0.0, 8e-3, 8, endpoint=False)
 _SERIES = {name: np.linspace(0.0, 0.01, 5) for name in ("x", "y", "v", "t")}
 
@@ -154,13 +150,6 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
     },
     "plate.ring.section.AnnularSection": {"layers": Later(lambda: disc_section().layers)},
     "plate.ring.section.SectorDrive": {"sectors": ((0.0, 1.0, 1),)},
-    "plate.ring.section.motor_stator": _STATOR,
-    "plate.ring.section.bonded_disc": {
-        "diameter": 25e-3,
-        "thickness": 1e-3,
-        "ceramic_outer_diameter": 15e-3,
-        "ceramic_thickness": 0.5e-3,
-    },
     "plate.ring.materials.RingSolid": {
         "stiffness": Later(lambda: isotropic_solid(BRASS).stiffness)
     },

@@ -33,7 +33,7 @@ from squeezefilm.plate.beam.modes import BeamMode
 from squeezefilm.plate.beam.response import BeamResponse, beam_response
 from squeezefilm.plate.circuit import EquivalentCircuit
 from squeezefilm.plate.laminate import Laminate, Layer, plate_laminate
-from squeezefilm.plate.layout import CeramicPatch, RectangularPlate
+from squeezefilm.plate.layout import CeramicPatch, DiscPlate, RectangularPlate
 from squeezefilm.plate.loaded_mode import LoadedMode
 from squeezefilm.plate.ring.body import RingBody
 from squeezefilm.plate.ring.materials import RingSolid, isotropic_solid
@@ -105,10 +105,7 @@ def _law() -> FrictionLaw:
 
 
 def disc_section() -> AnnularSection:
-    return bonded_disc(
-        diameter=25e-3, thickness=1e-3, plate=BRASS, ceramic=PZT,
-        ceramic_outer_diameter=15e-3, ceramic_thickness=0.5e-3,
-    )  # fmt: skip
+    return bonded_disc(DiscPlate(25e-3, 1e-3, 60.0, BRASS, PZT, 15e-3, 0.5e-3))
 
 
 def hjif_document() -> Any:

@@ -8,6 +8,7 @@ from squeezefilm.film.line_grid import uniform_gap
 from squeezefilm.film.periodic.film import solve_disc, solve_profile, solve_strip
 from squeezefilm.film.periodic.profile import flexural_profile
 from squeezefilm.film.planar.film import solve_ellipse, solve_rectangle
+from squeezefilm.film.records import FilmGas
 from squeezefilm.film.transient.settling import settle_to_periodic
 
 
@@ -26,19 +27,20 @@ from squeezefilm.film.transient.settling import settle_to_periodic
 def test_harmonic_balance_agrees_with_the_march(
     shape: str, sigma: float, excursion: float, n: float, knudsen: float, slip: str
 ) -> None:
-    options = {"polytropic_exponent": n, "knudsen_number": knudsen, "slip": slip}
     balance = (solve_strip if shape == "strip" else solve_disc)(
         sigma,
         excursion,
         tolerance=1e-5,
-        **options,  # type: ignore[arg-type]
+        polytropic_exponent=n,
+        knudsen_number=knudsen,
+        slip=slip,
     )
     march = settle_to_periodic(
         uniform_gap(excursion),
         sigma,
         shape=shape,  # type: ignore[arg-type]
         tolerance=1e-3,
-        **options,  # type: ignore[arg-type]
+        gas=FilmGas(n, knudsen, slip),
     )
     assert march.over_pressure == pytest.approx(balance.over_pressure, rel=2e-3)
 
@@ -46,7 +48,8 @@ def test_harmonic_balance_agrees_with_the_march(
 @pytest.mark.parametrize("slip", ["first", "second", "fukui-kaneko", "veijola"])
 def test_a_very_long_rectangle_is_a_strip(slip: str) -> None:
     strip = solve_strip(20.0, 0.5, knudsen_number=0.1, slip=slip, tolerance=1e-4)
-    long = solve_rectangle(20.0, 0.5, 400.0, knudsen_number=0.1, slip=slip, tolerance=2e-3)
+    rare = FilmGas(knudsen_number=0.1, slip=slip)
+    long = solve_rectangle(20.0, 0.5, 400.0, gas=rare, tolerance=2e-3)
     assert long.over_pressure == pytest.approx(strip.over_pressure, rel=5e-3)
 
 

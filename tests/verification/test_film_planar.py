@@ -15,6 +15,7 @@ from squeezefilm.film.planar.film import solve_ellipse, solve_planar, solve_rect
 from squeezefilm.film.planar.gap import PlanarGap
 from squeezefilm.film.planar.grid import disc_grid, ellipse_grid, graded_line, rectangle_grid
 from squeezefilm.film.planar.teeth import compare_teeth
+from squeezefilm.film.records import FilmGas
 from squeezefilm.film.transient.settling import settle_to_periodic
 from squeezefilm.hard_limits import PLANAR_MEMORY
 
@@ -85,13 +86,9 @@ def test_an_ellipse_turned_by_a_quarter_is_the_same_film():
 
 
 def test_polytropic_gas_and_slip_on_a_disc_agree_with_the_march():
-    for extra in (
-        {"polytropic_exponent": 1.4},
-        {"knudsen_number": 0.05},
-        {"knudsen_number": 0.05, "slip": "veijola", "polytropic_exponent": 1.2},
-    ):
-        film = solve_planar("disc", PlanarGap(0.6), 20.0, tolerance=1e-3, **extra)
-        march = settle_to_periodic(uniform_gap(0.6), 20.0, shape="disc", tolerance=1e-4, **extra)
+    for gas in (FilmGas(1.4), FilmGas(knudsen_number=0.05), FilmGas(1.2, 0.05, "veijola")):
+        film = solve_planar("disc", PlanarGap(0.6), 20.0, tolerance=1e-3, gas=gas)
+        march = settle_to_periodic(uniform_gap(0.6), 20.0, shape="disc", tolerance=1e-4, gas=gas)
         allowed = film.over_pressure_error + march.over_pressure_error
         assert abs(film.over_pressure - march.over_pressure) <= allowed
 
@@ -280,9 +277,11 @@ def test_the_error_estimate_is_honest():
             "gap": PlanarGap(random.uniform(0.05, 0.9), random.choice([0.0, 2.0])),
             "squeeze_number": 10 ** random.uniform(-1.5, 4.0),
             "aspect_ratio": float(np.exp(random.uniform(-1.0, 1.0))),
-            "polytropic_exponent": random.choice([1.0, 1.4]),
-            "knudsen_number": random.choice([0.0, 0.05]),
-            "slip": str(random.choice(["first", "veijola"])),
+            "gas": FilmGas(
+                random.choice([1.0, 1.4]),
+                random.choice([0.0, 0.05]),
+                str(random.choice(["first", "veijola"])),
+            ),
         }
         exact = solve_planar(**film, tolerance=1.5e-4)
         for tolerance in (2e-2, 5e-3, 1e-3):
@@ -322,9 +321,9 @@ def test_teeth_matter_where_the_film_is_smooth():
         ({"squeeze_number": 0.0}, InputError, "squeeze_number = 0"),
         ({"squeeze_number": float("nan")}, InputError, "nan"),
         ({"aspect_ratio": -1.0}, InputError, "aspect_ratio = -1"),
-        ({"polytropic_exponent": 3.0}, InputError, "polytropic_exponent = 3"),
-        ({"knudsen_number": float("inf")}, InputError, "inf"),
-        ({"slip": "secund"}, InputError, "Did you mean 'second'"),
+        ({"gas": {"polytropic_exponent": 3.0}}, InputError, "polytropic_exponent = 3"),
+        ({"gas": {"knudsen_number": float("inf")}}, InputError, "inf"),
+        ({"gas": {"slip": "secund"}}, InputError, "Did you mean 'second'"),
         ({"tolerance": 0.0}, InputError, "tolerance"),
         ({"shape": "triangle"}, InputError, "triangle"),
         ({"shape": "disc", "aspect_ratio": 2.0}, InputError, "disc"),
@@ -338,7 +337,7 @@ def test_teeth_matter_where_the_film_is_smooth():
 def test_what_cannot_be_used_is_refused_with_its_value(change, error, says):
     asked = {"shape": "rectangle", "gap": PlanarGap(0.5), "squeeze_number": 10.0} | change
     with pytest.raises(error, match=says):
-        solve_planar(**asked)
+        solve_planar(**asked | {"gas": FilmGas(**asked.get("gas", {}))})
 
 
 @pytest.mark.parametrize("excursion", [0.0, 1.0, float("nan")])

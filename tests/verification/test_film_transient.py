@@ -7,6 +7,7 @@ import pytest
 
 from squeezefilm.errors import ConvergenceError, GeometryError, InputError
 from squeezefilm.film.line_grid import uniform_gap
+from squeezefilm.film.records import FilmGas
 from squeezefilm.film.transient.march import solve_transient
 from squeezefilm.film.transient.settling import settle_to_periodic
 
@@ -34,8 +35,9 @@ def test_the_disc_settles_to_the_tabulated_load(squeeze_number, expected):
 
 
 def test_polytropic_gas_and_slip_reach_the_tabulated_load():
-    warm = settle_to_periodic(uniform_gap(0.5), 10.0, polytropic_exponent=1.4, tolerance=2e-4)
-    slip = settle_to_periodic(uniform_gap(0.5), 10.0, knudsen_number=0.026, tolerance=2e-4)
+    rare = FilmGas(knudsen_number=0.026)
+    warm = settle_to_periodic(uniform_gap(0.5), 10.0, gas=FilmGas(1.4), tolerance=2e-4)
+    slip = settle_to_periodic(uniform_gap(0.5), 10.0, gas=rare, tolerance=2e-4)
     assert warm.mean_load == pytest.approx(1.173567, abs=2e-5)
     assert slip.mean_load == pytest.approx(1.139260, abs=2e-5)
 
@@ -85,7 +87,8 @@ def test_the_order_in_space_is_two(shape):
 
 
 def test_no_gas_is_lost_over_a_settled_period():
-    result = settle_to_periodic(uniform_gap(0.7), 30.0, knudsen_number=0.02, tolerance=1e-3)
+    rare = FilmGas(knudsen_number=0.02)
+    result = settle_to_periodic(uniform_gap(0.7), 30.0, gas=rare, tolerance=1e-3)
     assert result.mass_residual < 1e-9
 
 
@@ -164,9 +167,9 @@ def test_sealed_grooves_of_the_paper_s_finger():
     [
         ({"squeeze_number": 0.0}, InputError, "squeeze_number = 0"),
         ({"squeeze_number": float("nan")}, InputError, "nan"),
-        ({"polytropic_exponent": 0.5}, InputError, "polytropic_exponent = 0.5"),
-        ({"knudsen_number": -1.0}, InputError, "knudsen_number = -1"),
-        ({"slip": "veijolla"}, InputError, "Did you mean 'veijola'"),
+        ({"gas": FilmGas(0.5)}, InputError, "polytropic_exponent = 0.5"),
+        ({"gas": FilmGas(1.0, -1.0)}, InputError, "knudsen_number = -1"),
+        ({"gas": FilmGas(slip="veijolla")}, InputError, "Did you mean 'veijola'"),
         ({"shape": "square"}, InputError, "square"),
         ({"scheme": "rk4"}, InputError, "rk4"),
         ({"gap": lambda X, T: 1.0 + 1.2 * np.cos(T)}, GeometryError, "the gap closes: H = -0.2"),

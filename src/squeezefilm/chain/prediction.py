@@ -11,7 +11,7 @@ import dataclasses
 import functools
 import warnings
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -24,8 +24,9 @@ from squeezefilm.chain.friction import (
     shares_load,
 )
 from squeezefilm.chain.touch import Touch, kept_at, touch
+from squeezefilm.contact.sharing.film_load import FilmLoad
 from squeezefilm.device.wire.safety import HIGHEST_VOLTAGE
-from squeezefilm.display import NamedDisplay, Surface
+from squeezefilm.display import Display, NamedDisplay, Surface
 from squeezefilm.errors import (
     InputError,
     OutOfRangeError,
@@ -185,108 +186,153 @@ def predict(
         if isinstance(display.actuator, RectangularPlate):
             display.actuator.ceramic.check_consistency(strict=strict)
         mode = _mode(display.actuator, theory, strict)
-        drive_frequency = mode.resonance_frequency if frequency is None else frequency
-        require("frequency", drive_frequency, Unit("Hz"), above=0)
-        volts: Volt | None
-        if vibration_amplitude is None:
-            volts = display.drive.voltage if voltage is None else voltage
-            require("voltage", volts, Unit("V"), at_least=0)
-            free = float(volts * _per_volt(mode, drive_frequency))
-            source = mode.model
-        else:
-            require("vibration_amplitude", vibration_amplitude, Unit("m"), at_least=0)
-            volts, free, source = None, vibration_amplitude, "given"
+        drive = _drive(display, mode, frequency, voltage, vibration_amplitude)
         law = friction_law(
             display,
             mode.half_wavelength,
-            drive_frequency,
+            drive.frequency,
             surface=where,
             normal_force=force,
             model=model or DEFAULT_MODEL,
             position=position,
         )
-        felt = touch(
-            mode if volts is not None else dataclasses.replace(mode, modal_mass=None), law, free
-        )
-        amplitude = felt.amplitude
         asked_for_asymptote = model is not None and model.startswith("paper2008")
-        validity = film_validity(
-            law.gap(amplitude), drive_frequency, display.gas, strict=strict and asked_for_asymptote
-        )
-        load = law.load(amplitude)
-        friction = law.under(load, amplitude)
-        limits = _limits(law, amplitude)
-    gap, gas = law.gap(amplitude), display.gas
-    base = where.friction_coefficient * display.finger.friction_factor
-    sigma = squeeze_number(
-        drive_frequency,
-        gap.contact_length,
-        gap.reference_thickness,
-        gas.viscosity,
-        gas.ambient_pressure,
-    )
-    # Where the film is solved, what fails of the asymptote is no doubt about this number.
-    solved = not law.model.startswith("paper2008")
-    doubt = None
-    plate = display.actuator
-    if isinstance(plate, RectangularPlate) and mode.solid is None and vibration_amplitude is None:
-        doubt = beam_doubt(plate)
+        felt = _felt(mode, drive, law, strict=strict and asked_for_asymptote)
+    doubts = _beam_doubts(display.actuator, mode, drive, strict=strict)
+    return _prediction(display, felt, _doubts(caught, felt) + doubts)
+
+
+class _Drive(NamedTuple):
+    """A plate that vibrates without a finger: its voltage where that is known, and what made the
+    amplitude."""
+
+    frequency: Hertz
+    voltage: Volt | None
+    amplitude: Metre
+    source: str
+
+
+class _Felt(NamedTuple):
+    """A vibration, and what finger, film and friction make of it."""
+
+    mode: WorkingMode
+    drive: _Drive
+    law: FrictionLaw
+    touch: Touch
+    validity: FilmValidity
+    load: FilmLoad
+    relative_friction: Dimensionless
+    limits: tuple[Dimensionless, Dimensionless] | None
+
+
+def _drive(
+    display: Display,
+    mode: WorkingMode,
+    frequency: Hertz | None,
+    voltage: Volt | None,
+    vibration_amplitude: Metre | None,
+) -> _Drive:
+    """The vibration at a voltage, the display's own by default, or the one given."""
+    frequency = mode.resonance_frequency if frequency is None else frequency
+    require("frequency", frequency, Unit("Hz"), above=0)
+    if vibration_amplitude is not None:
+        require("vibration_amplitude", vibration_amplitude, Unit("m"), at_least=0)
+        return _Drive(frequency, None, vibration_amplitude, "given")
+    volts = display.drive.voltage if voltage is None else voltage
+    require("voltage", volts, Unit("V"), at_least=0)
+    return _Drive(frequency, volts, float(volts * _per_volt(mode, frequency)), mode.model)
+
+
+def _felt(mode: WorkingMode, drive: _Drive, law: FrictionLaw, *, strict: bool) -> _Felt:
+    """The finger on the vibration, the film under it, and the friction that is left."""
+    taking = mode if drive.voltage is not None else dataclasses.replace(mode, modal_mass=None)
+    felt = touch(taking, law, drive.amplitude)
+    validity = film_validity(law.gap(felt.amplitude), drive.frequency, law.gas, strict=strict)
+    load = law.load(felt.amplitude)
+    friction, limits = law.under(load, felt.amplitude), None
+    if shares_load(law.model):
+        found = law.limits(felt.amplitude)
+        limits = float(found.own[0]), float(found.one_gap[0])
+    return _Felt(mode, drive, law, felt, validity, load, friction, limits)
+
+
+def _beam_doubts(
+    actuator: Actuator, mode: WorkingMode, drive: _Drive, *, strict: bool
+) -> list[str]:
+    """What speaks against a beam in the place of the plate; with `strict` it raises."""
+    if not isinstance(actuator, RectangularPlate) or mode.solid is not None:
+        return []
+    doubt = None if drive.voltage is None else beam_doubt(actuator)
     if doubt is not None and strict:
         raise OutOfRangeError(f"{doubt}; leave strictness out to compute it all the same")
+    return [] if doubt is None else [doubt]
+
+
+def _doubts(caught: list[warnings.WarningMessage], felt: _Felt) -> list[str]:
+    """What was warned of on the way, and what the models leave out."""
+    model = felt.law.model
+    # Where the film is solved, what fails of the asymptote is no doubt about this number.
+    solved = not model.startswith("paper2008")
     messages = [
         str(item.message)
         for item in caught
         if not (solved and issubclass(item.category, OutOfRangeWarning))
     ]
-    if law.model.startswith("film-"):
-        inertia = validity.check("inertia")
+    if model.startswith("film-"):
+        inertia = felt.validity.check("inertia")
         messages += [] if inertia.holds else [inertia.sentence]
-    if volts is not None and mode.modal_mass is None:
+    if felt.drive.voltage is not None and felt.mode.modal_mass is None:
         messages.append(
             "the amplitude is the measured one; what a finger takes from it is not known and left "
             "out"
         )
-    if shares_load(law.model):
-        assert limits is not None
-        spread = abs(limits[0] - limits[1])
+    if felt.limits is not None:
+        spread = abs(felt.limits[0] - felt.limits[1])
         messages.append(
-            f"the model '{law.model}' lets film and asperities share the load of each ridge; its "
+            f"the model '{model}' lets film and asperities share the load of each ridge; its "
             "asperities and plateaus are assumed, not measured, and decide the answer: see the "
             "interval of squeezefilm friction. Relative friction differs by "
             f"{spread:.2f} between a skin that sinks ridge by ridge and a stiff one"
         )
-    if doubt is not None:
-        messages.append(doubt)
+    return messages
+
+
+def _prediction(display: Display, felt: _Felt, doubts: list[str]) -> Prediction:
+    """The answer, put together."""
+    drive, law, friction = felt.drive, felt.law, felt.relative_friction
+    amplitude, force = felt.touch.amplitude, law.normal_force
+    gap, gas = law.gap(amplitude), law.gas
+    base = law.surface.friction_coefficient * law.finger.friction_factor
+    sigma = squeeze_number(
+        drive.frequency,
+        gap.contact_length,
+        gap.reference_thickness,
+        gas.viscosity,
+        gas.ambient_pressure,
+    )
     return Prediction(
         display=display.name,
-        surface=where,
-        voltage=volts,
-        frequency=drive_frequency,
+        surface=law.surface,
+        voltage=drive.voltage,
+        frequency=drive.frequency,
         normal_force=force,
-        mode=mode,
-        amplitude_model=source,
+        mode=felt.mode,
+        amplitude_model=drive.source,
         vibration_amplitude=amplitude,
-        touch=felt,
+        touch=felt.touch,
         model=law.model,
         law=law,
         squeeze_number=float(sigma),
-        mean_pressure=1 + load.over_pressure,
-        mean_pressure_error=load.error,
+        mean_pressure=1 + felt.load.over_pressure,
+        mean_pressure_error=felt.load.error,
         relative_friction=friction,
-        relative_friction_limits=limits,
+        relative_friction_limits=felt.limits,
         friction_coefficient=base,
         friction_reduction=base * (1 - friction),
         tangential_force=base * friction * force,
-        validity=validity,
-        warnings=tuple(dict.fromkeys(messages)),
+        validity=felt.validity,
+        warnings=tuple(dict.fromkeys(doubts)),
     )
-
-
-def _limits(law: FrictionLaw, amplitude: Metre) -> tuple[Dimensionless, Dimensionless] | None:
-    if not shares_load(law.model):
-        return None
-    found = law.limits(amplitude)
-    return float(found.own[0]), float(found.one_gap[0])
 
 
 @reads_text

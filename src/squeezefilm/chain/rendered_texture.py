@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import dataclasses
 from dataclasses import dataclass
-from typing import Any, ClassVar, Literal, cast, get_args
+from typing import Any, ClassVar, cast
 
 import numpy as np
 
@@ -21,7 +21,7 @@ from squeezefilm.chain.played_texture import (
     single_period,
 )
 from squeezefilm.chain.prediction import Prediction, predict
-from squeezefilm.chain.standing_wave import resonance_with_finger, wave_factors
+from squeezefilm.chain.standing_wave import WAVES, UnderPad, Wave, resonance_with_finger
 from squeezefilm.chain.stroke_force import first_pass_vibration
 from squeezefilm.contact.sliding.march import Sliding, slide
 from squeezefilm.contact.sliding.skin_vibration import SkinVibration
@@ -53,10 +53,6 @@ from squeezefilm.render.resonator.compensation import COMPENSATIONS, Compensatio
 from squeezefilm.render.resonator.envelope import envelope_time_constant
 from squeezefilm.results import Result, stamp, to_json
 from squeezefilm.texture_file import NamedTexture, TextureFile
-
-Wave = Literal["ignored", "felt", "compensated"]
-WAVES: tuple[Wave, ...] = get_args(Wave)
-"""Whether the standing wave's nodes are left out, felt, or felt and made up for."""
 
 CONTROL_RATE: Hertz = 19.2e3
 """Of the loop (Hz): commands to which a converter of 192 kHz gives ten samples each."""
@@ -208,15 +204,42 @@ class RenderAnalysis(Result):
 
 
 @reads_text
+@dataclass(frozen=True)
+class Conditions:
+    """At what a display renders, where not at its own: the largest voltage (V) of its drive, the
+    finger's force (N), a surface by name, and the model of friction; all as `predict` takes them.
+    """
+
+    voltage: Volt | None = None
+    normal_force: Newton | None = None
+    surface: str | None = None
+    model: FrictionModel | None = None
+
+    def predict(self, display: Display) -> Prediction:
+        """What a display does there. Raises as `predict` does, and `InputError` where it changes no
+        friction."""
+        p = predict(
+            display,
+            voltage=self.voltage,
+            normal_force=self.normal_force,
+            surface=self.surface,
+            model=self.model,
+        )
+        if p.vibration_amplitude <= 0.0 or p.relative_friction >= 1.0:
+            raise InputError(
+                f"display '{display.name}' changes no friction at {p.voltage or 0.0:g} V, so it "
+                "renders no texture; give it a voltage"
+            )
+        return p
+
+
+@reads_text
 def render_texture(
     display: NamedDisplay,
     texture: NamedTexture,
     motion: NamedMotion,
     *,
-    voltage: Volt | None = None,
-    normal_force: Newton | None = None,
-    surface: str | None = None,
-    model: FrictionModel | None = None,
+    conditions: Conditions | None = None,
     sensor: str | SensorModel | None = None,
     compensation: str = "none",
     braking: bool = False,
@@ -228,11 +251,11 @@ def render_texture(
     """Render a texture on a display under a finger.
 
     Args:
-        display: what renders; its voltage (or `voltage`, V) is the largest the drive gives, and
-            what it makes under the finger the largest amplitude.
+        display: what renders; its voltage is the largest the drive gives, and what it makes under
+            the finger the largest amplitude.
         texture: what is to be felt; x = 0 is an antinode where the wave counts.
         motion: of the finger, along x or (not on a stator) in the plane.
-        normal_force, surface, model: as `predict`.
+        conditions: another voltage, force, surface or model than the display's own.
         sensor: what the loop sees the finger with, by name; without one it knows the place.
         compensation: "none", "inverse" or "preview".
         braking: whether the drive may invert the carrier's phase.
@@ -250,88 +273,87 @@ def render_texture(
     texture = TextureFile.of(texture)
     require_one_of("compensation", compensation, COMPENSATIONS)
     require_one_of("wave", wave, WAVES)
-    way, what = cast(Compensation, compensation), cast(Wave, wave)
     eyes = sensor if sensor is None or isinstance(sensor, SensorModel) else sensor_named(sensor)
     finger = FingerMotion.of(motion, control_rate)
     require_on_display(display.actuator, finger)
     require_on_image(texture.texture, finger)
     tell("the display at its largest amplitude")
-    p = predict(display, voltage=voltage, normal_force=normal_force, surface=surface, model=model)
-    largest = p.vibration_amplitude
-    if largest <= 0.0 or p.relative_friction >= 1.0:
-        raise InputError(
-            f"display '{display.name}' changes no friction at {p.voltage or 0.0:g} V, so it "
-            "renders no texture; give it a voltage"
-        )
-    friction, inverse = p.friction, p.inverse
-    factors = None if what == "ignored" else wave_factors(display, p)
-    centred, felt = 1.0, friction
-    if factors is not None:
-        # Factors are over the best place, the display's law is that of an antinode.
-        centred = float(factors.factor(0.0))
-        felt = p.law.table(largest / centred)
-    if what == "compensated":
-        inverse = FrictionInverse.from_function(lambda a: felt(a / centred), largest)
-    played = _played(
-        texture, motion, finger, p, inverse, factors if what == "compensated" else None
-    )
-    quality, resonance = resonance_with_finger(p)
-    tau = float(envelope_time_constant(quality, resonance))
+    p = (conditions or Conditions()).predict(display)
+    under = UnderPad.of(display, p, cast(Wave, wave))
+    played = _played(texture, motion, finger, p, under)
+    tau = float(envelope_time_constant(*resonance_with_finger(p)))
     tell("the loop along the stroke")
     stroke = rendered_stroke(
         played,
         finger.trajectory,
-        DrivenEnvelope(tau, tau, largest, braking),
-        friction,
-        compensation=way,
+        DrivenEnvelope(tau, tau, p.vibration_amplitude, braking),
+        p.friction,
+        compensation=cast(Compensation, compensation),
         sensor=eyes,
         control_rate=control_rate,
         seed=seed,
     )
-    values = texture.texture(finger.x, finger.y, finger.speed, finger.time)
-    amplitude = played.amplitude(values)
-    reached = felt(amplitude / centred) if what == "compensated" else friction(amplitude)
-    asked = reached if texture.texture.quantity == "amplitude" else played.friction(values)
-    factor = np.ones(finger.time.size)
-    if factors is not None:
-        factor = factors.factor(finger.x, finger.y) / centred
-    stroke = dataclasses.replace(
-        stroke,
-        relative_friction_wanted=reached,
-        relative_friction_rendered=felt(stroke.amplitude * factor),
-        model=stroke.model + ("" if factors is None else f"; standing wave {what}"),
-    )
-    counters = render(played.program, finger.x, finger.y, finger.speed, finger.time).counters
-    tell("tangential force")
-    force = slide(
-        finger.way,
-        1 / control_rate,
-        p.friction_coefficient * stroke.relative_friction_rendered,
-        p.normal_force,
-        display.finger.fingerpad,
-    )
-    judged, because = None, None
-    try:
-        judged = fidelity_report(stroke, strongest_lines(stroke, played.spatial_period))
-    except InputError as error:
-        because = str(error)
-    return RenderAnalysis(
-        display=display,
-        texture=texture,
-        motion=motion,
-        prediction=p,
-        played=played,
-        stroke=stroke,
-        finger=finger,
-        wave=what,
-        factor=factor,
-        asked=asked,
-        counters=counters,
-        force=force,
-        fidelity=judged,
-        unjudged=because,
-        seed=seed,
-    )
+    return _Rendering(display, texture, motion, p, played, under).analysis(stroke, tell)
+
+
+@dataclass(frozen=True)
+class _Rendering:
+    """A texture on its way through the chain, up to what the loop makes of it."""
+
+    display: Display
+    texture: TextureFile
+    motion: Motion
+    prediction: Prediction
+    played: PlayedTexture
+    under: UnderPad
+
+    def analysis(self, stroke: RenderedStroke, tell: SayProgress) -> RenderAnalysis:
+        """The friction under the pad along a stroke, the force that it makes, and how faithful
+        all of it is."""
+        played, under, p = self.played, self.under, self.prediction
+        finger = played.motion
+        values = self.texture.texture(finger.x, finger.y, finger.speed, finger.time)
+        amplitude = played.amplitude(values)
+        reached, factor = under.reached(amplitude), under.factor(finger)
+        by_amplitude = self.texture.texture.quantity == "amplitude"
+        nodes = "" if under.factors is None else f"; standing wave {under.wave}"
+        stroke = dataclasses.replace(
+            stroke,
+            relative_friction_wanted=reached,
+            relative_friction_rendered=under.felt(stroke.amplitude * factor),
+            model=stroke.model + nodes,
+        )
+        counters = render(played.program, finger.x, finger.y, finger.speed, finger.time).counters
+        tell("tangential force")
+        force = slide(
+            finger.way,
+            1 / stroke.control_rate,
+            p.friction_coefficient * stroke.relative_friction_rendered,
+            p.normal_force,
+            self.display.finger.fingerpad,
+        )
+        judged, because = None, None
+        try:
+            judged = fidelity_report(stroke, strongest_lines(stroke, played.spatial_period))
+        except InputError as error:
+            because = str(error)
+        return RenderAnalysis(
+            display=self.display,
+            texture=self.texture,
+            motion=self.motion,
+            prediction=p,
+            played=played,
+            stroke=stroke,
+            finger=finger,
+            wave=under.wave,
+            factor=factor,
+            asked=reached if by_amplitude else played.friction(values),
+            counters=counters,
+            force=force,
+            fidelity=judged,
+            unjudged=because,
+            seed=stroke.seed,
+        )
 
 
 def _played(
@@ -339,10 +361,9 @@ def _played(
     motion: Motion,
     finger: FingerMotion,
     p: Prediction,
-    inverse: FrictionInverse,
-    compensation: WaveCompensation | None,
+    under: UnderPad,
 ) -> PlayedTexture:
-    program = lowered(texture, p, inverse, compensation)
+    program = lowered(texture, p, under.inverse, under.compensation)
     steady = motion if isinstance(motion, Stroke) else None
     period = single_period(texture.texture, steady) if finger.path is None else None
     # Contrast at a period's harmonics needs four of them in a pass, the start left out.
@@ -350,7 +371,7 @@ def _played(
         period = None
     name = texture.title or f"a texture of {texture.texture.quantity}"
     return PlayedTexture(
-        name, program, inverse, finger, p.friction_coefficient, compensation, period
+        name, program, under.inverse, finger, p.friction_coefficient, under.compensation, period
     )
 
 

@@ -2,19 +2,27 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from typing import Literal, get_args
+
 import numpy as np
 
-from squeezefilm.chain.friction import shares_load
+from squeezefilm.chain.friction import FrictionTable, shares_load
+from squeezefilm.chain.played_texture import FingerMotion
 from squeezefilm.chain.prediction import Prediction
 from squeezefilm.contact.sharing.gas_table import film_table
 from squeezefilm.contact.sharing.pad import friction_ripple
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError
 from squeezefilm.plate.layout import DiscPlate, RectangularPlate
-from squeezefilm.quantities import Dimensionless, Hertz
+from squeezefilm.quantities import Dimensionless, DimensionlessArray, Hertz, MetreArray
 from squeezefilm.render.program.inverse import FrictionInverse
 from squeezefilm.render.program.wave import WaveCompensation
 from squeezefilm.render.texture.coordinate import AlongX, AlongY
+
+Wave = Literal["ignored", "felt", "compensated"]
+WAVES: tuple[Wave, ...] = get_args(Wave)
+"""Whether the standing wave's nodes are left out, felt, or felt and made up for."""
 
 # How much more amplitude a pad may seem to meet off an antinode than on it.
 _BETTER = 1.5
@@ -55,3 +63,50 @@ def wave_factors(display: Display, p: Prediction) -> WaveCompensation:
     inverse = FrictionInverse.from_function(law.table(wide), wide)
     reached = np.clip(found.relative_friction, inverse.least_friction, 1.0)
     return WaveCompensation.from_ripple(found.position, reached, inverse, half, along=along)
+
+
+@dataclass(frozen=True)
+class UnderPad:
+    """The friction that a pad meets at an amplitude, with or without the wave's nodes.
+
+    `friction` is the display's law, that of an antinode; `factors` are the amplitude that the pad
+    meets over that at the best place, and `centred` is theirs at an antinode.
+    """
+
+    wave: Wave
+    friction: FrictionTable
+    felt: FrictionTable
+    inverse: FrictionInverse
+    factors: WaveCompensation | None
+    centred: float
+
+    @classmethod
+    def of(cls, display: Display, p: Prediction, wave: Wave) -> UnderPad:
+        """Under the pad on a display."""
+        friction, inverse, largest = p.friction, p.inverse, p.vibration_amplitude
+        if wave == "ignored":
+            return cls(wave, friction, friction, inverse, None, 1.0)
+        factors = wave_factors(display, p)
+        # Factors are over the best place, the display's law is that of an antinode.
+        centred = float(factors.factor(0.0))
+        felt = p.law.table(largest / centred)
+        if wave == "compensated":
+            inverse = FrictionInverse.from_function(lambda a: felt(a / centred), largest)
+        return cls(wave, friction, felt, inverse, factors, centred)
+
+    @property
+    def compensation(self) -> WaveCompensation | None:
+        """By what the renderer drives harder, None where it does not."""
+        return self.factors if self.wave == "compensated" else None
+
+    def reached(self, amplitude: MetreArray) -> DimensionlessArray:
+        """Relative friction (1) where the renderer asks for amplitudes (m)."""
+        if self.wave == "compensated":
+            return self.felt(amplitude / self.centred)
+        return self.friction(amplitude)
+
+    def factor(self, finger: FingerMotion) -> DimensionlessArray:
+        """The amplitude along the way over that of an antinode (1)."""
+        if self.factors is None:
+            return np.ones(finger.time.size)
+        return self.factors.factor(finger.x, finger.y) / self.centred

@@ -178,15 +178,7 @@ def film_validity(
             thickness,
         ),
         _slip(float(knudsen_number(gas.mean_free_path, thickness)), here, gas.mean_free_path),
-        ValidityCheck(
-            "asymptote",
-            sigma,
-            ASYMPTOTE_SQUEEZE_NUMBER,
-            None,
-            f"Squeeze number {sigma:.4g}: a smooth film has {fraction:.0%} of the over-pressure "
-            f"that σ → ∞ promises; 90 % takes σ ≥ {ASYMPTOTE_SQUEEZE_NUMBER:.0f}, and the paper's "
-            "criterion σ ≥ 10 gives 41 %.",
-        ),
+        _asymptote(sigma, fraction),
     ]
     if gap.ridge_amplitude > 0:
         crest = float(
@@ -233,6 +225,15 @@ def _slip(knudsen: float, where: str, mean_free_path: float) -> ValidityCheck:
     )
     sentence = f"Knudsen number {knudsen:.3g} {where}: {verdict} (it counts below {thinnest})."
     return ValidityCheck("slip", knudsen, None, SLIP_LIMIT, sentence)
+
+
+def _asymptote(sigma: float, fraction: float) -> ValidityCheck:
+    sentence = (
+        f"Squeeze number {sigma:.4g}: a smooth film has {fraction:.0%} of the over-pressure "
+        f"that σ → ∞ promises; 90 % takes σ ≥ {ASYMPTOTE_SQUEEZE_NUMBER:.0f}, and the paper's "
+        "criterion σ ≥ 10 gives 41 %."
+    )
+    return ValidityCheck("asymptote", sigma, ASYMPTOTE_SQUEEZE_NUMBER, None, sentence)
 
 
 def _crest(crest: float, sigma: float) -> ValidityCheck:

@@ -9,7 +9,9 @@ estimate.
 
 from __future__ import annotations
 
+import functools
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
@@ -300,20 +302,10 @@ def sound_field(
 
     theta, phi = np.meshgrid(polar, azimuth, indexing="ij")
     levels = np.stack([at(distance, theta, phi) for distance in distances])
-    best: list[tuple[float, float, float]] = []
-    for distance, level in zip(distances, levels, strict=True):
-        i, j = np.unravel_index(int(np.argmax(level)), level.shape)
-        found = (float(level[i, j]), float(polar[i]), float(azimuth[j]))
-        wide = (float(polar[1]), float(azimuth[1]))
-        for _ in range(3):
-            near_t = np.clip(found[1] + wide[0] * np.linspace(-1, 1, 9), 0, math.pi / 2)
-            near_p = found[2] + wide[1] * np.linspace(-1, 1, 9)
-            t, p = np.meshgrid(near_t, near_p, indexing="ij")
-            fine = at(distance, t, p)
-            i, j = np.unravel_index(int(np.argmax(fine)), fine.shape)
-            found = max(found, (float(fine[i, j]), float(t[i, j]), float(p[i, j])))
-            wide = (wide[0] / 4, wide[1] / 4)
-        best.append(found)
+    best = [
+        _loudest(functools.partial(at, distance), level, polar, azimuth)
+        for distance, level in zip(distances, levels, strict=True)
+    ]
     strongest = (best[-1][1], best[-1][2])
     power, directivity = _power(surface, strongest, density, sound_speed)
     return SoundField(
@@ -329,6 +321,27 @@ def sound_field(
         directivity_dB=directivity,
         guidance=exposure_guidance(surface.frequency, audience),
     )
+
+
+def _loudest(
+    at: Callable[[FloatArray, FloatArray], FloatArray],
+    level: FloatArray,
+    polar: FloatArray,
+    azimuth: FloatArray,
+) -> tuple[float, float, float]:
+    """The highest level (dB) and its direction (rad): the best of a grid, looked around thrice."""
+    i, j = np.unravel_index(int(np.argmax(level)), level.shape)
+    found = (float(level[i, j]), float(polar[i]), float(azimuth[j]))
+    wide = (float(polar[1]), float(azimuth[1]))
+    for _ in range(3):
+        near_t = np.clip(found[1] + wide[0] * np.linspace(-1, 1, 9), 0, math.pi / 2)
+        near_p = found[2] + wide[1] * np.linspace(-1, 1, 9)
+        t, p = np.meshgrid(near_t, near_p, indexing="ij")
+        fine = at(t, p)
+        i, j = np.unravel_index(int(np.argmax(fine)), fine.shape)
+        found = max(found, (float(fine[i, j]), float(t[i, j]), float(p[i, j])))
+        wide = (wide[0] / 4, wide[1] / 4)
+    return found
 
 
 def _power(

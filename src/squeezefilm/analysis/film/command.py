@@ -14,6 +14,7 @@ from squeezefilm.film.periodic.film import solve_disc, solve_profile, solve_stri
 from squeezefilm.film.periodic.profile import GapFunction, GapProfile
 from squeezefilm.film.periodic.solution import FilmSolution
 from squeezefilm.film.planar.film import FilmPlanar, solve_ellipse, solve_rectangle
+from squeezefilm.film.records import FilmGas
 from squeezefilm.from_text import reads_text
 from squeezefilm.hard_limits import ASPECT
 from squeezefilm.quantities import (
@@ -145,7 +146,8 @@ def solve_film(
         film = solve(squeeze_number, gap, **gas)
     else:
         planar = solve_rectangle if shape == "rectangle" else solve_ellipse
-        film = planar(squeeze_number, gap, aspect_ratio, **gas)
+        own = FilmGas(polytropic_exponent, knudsen_number, slip)
+        film = planar(squeeze_number, gap, aspect_ratio, gas=own, tolerance=tolerance)
     return _answer(film, gap, request)
 
 

@@ -154,6 +154,7 @@ def _teeth(display: Display, prediction: Prediction) -> ToothResult | None:
         return None
     from squeezefilm.film.planar.gap import PlanarGap
     from squeezefilm.film.planar.teeth import compare_teeth
+    from squeezefilm.film.records import FilmGas
 
     assert actuator.slot_width is not None
     p, gas = prediction, display.gas
@@ -171,7 +172,7 @@ def _teeth(display: Display, prediction: Prediction) -> ToothResult | None:
             ridged,
             tooth_width=(actuator.tooth_pitch - actuator.slot_width) / gap.contact_length,
             tooth_pitch=actuator.tooth_pitch / gap.contact_length,
-            knudsen_number=gas.mean_free_path / reference,
+            gas=FilmGas(knudsen_number=gas.mean_free_path / reference),
         )
     except SqueezefilmError:
         return None

@@ -173,6 +173,7 @@ def line_film(
 
 def _open(gap: PaperGap, frequency: Hertz, gas: Gas, slip: str, tolerance: float) -> FilmLoad:
     from squeezefilm.film.planar.film import solve_rectangle
+    from squeezefilm.film.records import FilmGas
 
     reference = float(gap.reference_thickness)
     sigma = _sigma(gap, frequency, gas)
@@ -182,8 +183,7 @@ def _open(gap: PaperGap, frequency: Hertz, gas: Gas, slip: str, tolerance: float
         wave_number=gap.wave_number,
         ridge_height=gap.ridge_amplitude / reference,
         ridge_wave_number=gap.ridge_number,
-        knudsen_number=gas.mean_free_path / reference,
-        slip=slip,
+        gas=FilmGas(knudsen_number=gas.mean_free_path / reference, slip=slip),
         # In the plane a per cent costs a tenth of a second, a tenth of that a second.
         tolerance=max(tolerance, 1e-2),
     )

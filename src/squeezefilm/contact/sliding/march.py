@@ -178,6 +178,23 @@ def slide(
     require("time_step", time_step, Unit("s"), above=0.0)
     require("initial_stretch", initial_stretch, Unit("m"))
     require("initial_speed", initial_speed, Unit("m/s"))
+    bone = _checked_bone(bone_position)
+    n = bone.size
+    limit = _over_time("friction_coefficient", friction_coefficient, n)
+    limit = np.asarray(law.kinetic_force(limit, _over_time("normal_force", normal_force, n)))
+    if occlusion is not None:
+        limit = limit * occlusion.factor(np.arange(n, dtype=float) * time_step)
+    position, speed, friction, bone_force = (np.zeros(n) for _ in range(4))
+    position[0], speed[0] = bone[0] + initial_stretch, initial_speed
+    sticking, work, account = np.zeros(n, dtype=bool), np.zeros((3, n)), np.zeros(3)
+    track = Track(position, speed, friction, bone_force, sticking, work, account)
+    _march(bone, float(time_step), limit, pad, law, profile, track)
+    if profile is not None:
+        limit = limit * _factor_at(position, profile)
+    return _sliding(pad, law, time_step, bone, limit, track)
+
+
+def _checked_bone(bone_position: MetreArray) -> FloatArray:
     bone = np.ascontiguousarray(bone_position, dtype=float)
     if bone.ndim != 1 or bone.size < 2:
         raise InputError(
@@ -185,58 +202,70 @@ def slide(
             "least two",
             quantity="bone_position",
         )
-    n = bone.size
-    time: SecondArray = np.arange(n, dtype=float) * time_step
-    limit = _over_time("friction_coefficient", friction_coefficient, n)
-    limit = np.asarray(law.kinetic_force(limit, _over_time("normal_force", normal_force, n)))
-    if occlusion is not None:
-        limit = limit * occlusion.factor(time)
+    return bone
+
+
+def _march(
+    bone: FloatArray,
+    time_step: float,
+    limit: FloatArray,
+    pad: FingerpadDynamics,
+    law: DryFriction,
+    profile: FrictionProfile | None,
+    track: Track,
+) -> None:
+    """March over all samples, from what stands first in the track; raises `ConvergenceError`."""
     values = np.ones(1) if profile is None else np.array(profile.relative_friction, dtype=float)
     start, spacing = (0.0, 1.0) if profile is None else (profile.start, profile.spacing)
     strongest = float(limit.max() * values.max())
-
-    position, speed, friction, bone_force = (np.zeros(n) for _ in range(4))
-    sticking, work, account = np.zeros(n, dtype=bool), np.zeros((3, n)), np.zeros(3)
-    position[0], speed[0] = bone[0] + initial_stretch, initial_speed
     speed_in, speed_out = interval_speeds(bone, time_step)
     parts = substeps(time_step, pad, law, strongest)
     done = slide_march(
-        Drive(bone, speed_in, speed_out, np.ascontiguousarray(limit), float(time_step), parts),
+        Drive(bone, speed_in, speed_out, np.ascontiguousarray(limit), time_step, parts),
         Skin(pad.mass, pad.damping, pad.stiffness),
         Law(law.static_ratio, law.stribeck_speed),
         Ground(start, spacing, values),
-        Track(position, speed, friction, bone_force, sticking, work, account),
+        track,
     )
-    if done < n:
+    if done < bone.size:
         raise ConvergenceError(
             f"the skin started and stopped more than {MOST_EVENTS} times within the time step "
-            f"after t = {format_quantity(float(time[done]), Unit('s'))}; take a shorter time_step",
-            partial=position[: done + 1],
+            f"after t = {format_quantity(done * time_step, Unit('s'))}; take a shorter time_step",
+            partial=track.position[: done + 1],
             iterations=MOST_EVENTS,
         )
-    if profile is not None:
-        _require_covered(position, profile)
-        places = profile.start + profile.spacing * np.arange(values.size)
-        limit = limit * np.interp(position, places, values)
+
+
+def _sliding(
+    pad: FingerpadDynamics,
+    law: DryFriction,
+    time_step: float,
+    bone: FloatArray,
+    limit: FloatArray,
+    track: Track,
+) -> Sliding:
+    """What was marched, with its energies."""
+    n = bone.size
+    stretch = track.position - bone
     return Sliding(
         fingerpad=pad,
         law=law,
         time_step=time_step,
-        time=time,
+        time=np.arange(n, dtype=float) * time_step,
         bone_position=bone,
-        skin_position=position,
-        skin_speed=speed,
-        friction_force=friction,
-        bone_force=bone_force,
+        skin_position=track.position,
+        skin_speed=track.speed,
+        friction_force=track.friction,
+        bone_force=track.bone_force,
         friction_limit=limit,
-        sticking=sticking,
-        bone_work=work[0],
-        friction_loss=work[1],
-        damping_loss=work[2],
-        stored_energy=0.5 * (pad.mass * speed**2 + pad.stiffness * (position - bone) ** 2),
-        stuck_share=float(account[0] / (time_step * (n - 1))),
-        slips=int(account[1]),
-        friction_law_error=float(account[2]),
+        sticking=track.stuck,
+        bone_work=track.work[0],
+        friction_loss=track.work[1],
+        damping_loss=track.work[2],
+        stored_energy=0.5 * (pad.mass * track.speed**2 + pad.stiffness * stretch**2),
+        stuck_share=float(track.account[0] / (time_step * (n - 1))),
+        slips=int(track.account[1]),
+        friction_law_error=float(track.account[2]),
     )
 
 
@@ -295,7 +324,8 @@ def substeps(time_step: Second, pad: FingerpadDynamics, law: DryFriction, strong
     return max(count, 1)
 
 
-def _require_covered(position: MetreArray, profile: FrictionProfile) -> None:
+def _factor_at(position: MetreArray, profile: FrictionProfile) -> FloatArray:
+    """The profile at the skin's places; raises `OutOfRangeError` where it does not reach."""
     low, high = float(position.min()), float(position.max())
     if low < profile.start or high > profile.end:
         ends = [format_quantity(x, Unit("m")) for x in (low, high, profile.start, profile.end)]
@@ -303,3 +333,6 @@ def _require_covered(position: MetreArray, profile: FrictionProfile) -> None:
             f"the skin moved from {ends[0]} to {ends[1]}, and the profile covers {ends[2]} to "
             f"{ends[3]}; extend it (the skin leads and trails the bone by its stretch)"
         )
+    values = np.array(profile.relative_friction, dtype=float)
+    places = profile.start + profile.spacing * np.arange(values.size)
+    return np.asarray(np.interp(position, places, values))

@@ -109,19 +109,7 @@ def skin_vibration(
     require("end", stop, Unit("s"), above=start, at_most=last * (1 + 1e-12))
     if harmonics < 1:
         raise InputError(f"harmonics = {harmonics} cannot be used: it must be at least 1")
-    inside = slice(
-        math.ceil(start / motion.time_step - 1e-9), math.floor(stop / motion.time_step + 1e-9) + 1
-    )
-    signals: FloatArray = np.array([motion.stretch, motion.skin_acceleration, motion.bone_force])[
-        :, inside
-    ]
-    periods = signals.shape[1] * motion.time_step * fundamental
-    if signals.shape[1] < _FEWEST or periods < 2:
-        raise InputError(
-            f"a window of {format_quantity(stop - start, Unit('s'))} with {signals.shape[1]} "
-            f"samples is too short: give at least {_FEWEST} samples and two periods of "
-            f"{format_quantity(1 / fundamental, Unit('s'))}"
-        )
+    signals = _window(motion, start, stop, fundamental)
     from scipy.signal import (
         detrend,
         welch,
@@ -147,6 +135,27 @@ def skin_vibration(
         acceleration_amplitude=amplitude[1],
         force_amplitude=amplitude[2],
     )
+
+
+def _window(motion: Sliding, start: float, stop: float, fundamental: float) -> FloatArray:
+    """Stretch, acceleration and force at the bone between two times (s), shape (3, samples).
+
+    Raises `InputError` where that is too little for spectra.
+    """
+    inside = slice(
+        math.ceil(start / motion.time_step - 1e-9), math.floor(stop / motion.time_step + 1e-9) + 1
+    )
+    signals: FloatArray = np.array([motion.stretch, motion.skin_acceleration, motion.bone_force])[
+        :, inside
+    ]
+    periods = signals.shape[1] * motion.time_step * fundamental
+    if signals.shape[1] < _FEWEST or periods < 2:
+        raise InputError(
+            f"a window of {format_quantity(stop - start, Unit('s'))} with {signals.shape[1]} "
+            f"samples is too short: give at least {_FEWEST} samples and two periods of "
+            f"{format_quantity(1 / fundamental, Unit('s'))}"
+        )
+    return signals
 
 
 @checked_numbers

@@ -30,6 +30,8 @@ MAX_EXCURSION = 0.95
 """The deepest excursion the balance uses; the least gap is then 5 % of the mean gap."""
 
 _MIN_EXCURSION = 1e-3
+_SEARCHED = 24
+"""Excursion ratios at which the load is looked for first."""
 _STEPS = 30
 
 
@@ -136,9 +138,38 @@ def mean_gap_for_load(film: VibratedFilm, load: Pascal, *, tolerance: float = 1e
     """
     require("load", load, Unit("Pa"), above=0.0)
     require("tolerance", tolerance, at_least=1e-6, at_most=0.1)
-    amplitude, ambient_pressure = film.amplitude, film.ambient_pressure
-    wanted = load / ambient_pressure
-    grid = np.geomspace(_MIN_EXCURSION, MAX_EXCURSION, 24)
+    grid, rough = _searched(film, load, tolerance)
+    found = _balanced(film, load, grid, rough, tolerance)
+    eps, slope = float(found.excursion_ratio[1]), found.slope
+    gap, solves = film.amplitude / eps, _SEARCHED + found.solves
+    pressure = float(found.films.over_pressure[1]) * film.ambient_pressure
+    error = float(found.films.over_pressure_error[1]) * film.ambient_pressure
+    return LoadBalance(
+        mean_gap=gap,
+        mean_gap_error=gap * (abs(found.miss) + error / pressure) / slope,
+        least_gap=gap - film.amplitude,
+        mean_load_pressure=pressure,
+        mean_load_pressure_error=error,
+        static_stiffness=pressure * slope / gap,
+        squeeze_number=float(_squeeze_number(film, found.excursion_ratio[1])),
+        excursion_ratio=eps,
+        knudsen_number=film.mean_free_path / gap,
+        load=load,
+        film=film,
+        model=found.films.model,
+        iterations=solves,
+        status=(
+            f"balanced: {format_quantity(pressure, Unit('Pa'))} at a mean gap of "
+            f"{format_quantity(gap, Unit('m'))} after {solves} film solves"
+        ),
+    )
+
+
+def _searched(film: VibratedFilm, load: float, tolerance: float) -> tuple[FloatArray, FloatArray]:
+    """Rising excursion ratios between which the load (Pa) is carried, and rough over-pressures
+    there; raises `UnreachableError` for none."""
+    wanted = load / film.ambient_pressure
+    grid = np.geomspace(_MIN_EXCURSION, MAX_EXCURSION, _SEARCHED)
     # At the faint end of the grid the over-pressure can drown in round-off: leave that out.
     first = _solved(film, grid, 0.02, strict=False)
     usable = first.over_pressure_error <= 0.05 * first.over_pressure
@@ -147,37 +178,53 @@ def mean_gap_for_load(film: VibratedFilm, load: Pascal, *, tolerance: float = 1e
             "the film carries so little that its load is lost in rounding; take a larger "
             "amplitude, frequency or length, or a shorter mean free path"
         )
-    solves = len(grid)
     grid, rough = grid[usable], first.over_pressure[usable]
     ends = rough[[0, -1]].copy()
     ends[1] = _solved(film, grid[-1:], 0.5 * tolerance).over_pressure[0]
     if not ends[0] <= wanted <= ends[1]:
         which, at = ("more", 1) if wanted > ends[1] else ("less", 0)
-        gap = amplitude / grid[[0, -1]][at]
+        gap = film.amplitude / grid[[0, -1]][at]
         raise UnreachableError(
             f"load = {format_quantity(load, Unit('Pa'))} is {which} than the film carries at "
             f"excursion_ratio {grid[[0, -1]][at]:g} (mean gap {format_quantity(gap, Unit('m'))}): "
-            f"{format_quantity(ends[at] * ambient_pressure, Unit('Pa'))}. Change the amplitude, "
-            f"the frequency or the length"
+            f"{format_quantity(ends[at] * film.ambient_pressure, Unit('Pa'))}. Change the "
+            f"amplitude, the frequency or the length"
         )
-    # Secant in logarithms inside a bracket: the over-pressure is nearly a power of ε there.
-    k = int(np.clip(np.searchsorted(rough, wanted) - 1, 0, len(grid) - 2))
+    return grid, rough
+
+
+@dataclass(frozen=True)
+class _Balanced:
+    """Films at three excursion ratios, the middle one of which carries the load but for `miss` (in
+    its logarithm), and d ln(over-pressure)/d ln ε between them."""
+
+    excursion_ratio: FloatArray
+    films: FilmBatch
+    slope: float
+    miss: float
+    solves: int
+
+
+def _balanced(
+    film: VibratedFilm, load: float, grid: FloatArray, rough: FloatArray, tolerance: float
+) -> _Balanced:
+    """The secant in logarithms inside a bracket: the over-pressure is nearly a power of ε there."""
+    aim = math.log(load / film.ambient_pressure)
+    k = int(np.clip(np.searchsorted(rough, load / film.ambient_pressure) - 1, 0, len(grid) - 2))
     low, high = math.log(grid[max(k - 1, 0)]), math.log(grid[min(k + 2, len(grid) - 1)])
     points = np.log(grid[[k, k + 1]])
     values = np.log(rough[[k, k + 1]])
-    aim = math.log(wanted)
     guess = float(points[0] + (aim - values[0]) * np.diff(points)[0] / np.diff(values)[0])
     step = 0.02
-    for _ in range(_STEPS):
+    for turn in range(1, _STEPS + 1):
         guess = min(max(guess, low), high)
         near = np.minimum(np.exp([guess - 0.5 * step, guess, guess + 0.5 * step]), MAX_EXCURSION)
         batch = _solved(film, near, 0.3 * tolerance)
-        solves += 3
         logs = np.log(batch.over_pressure)
         slope = float((logs[2] - logs[0]) / np.log(near[2] / near[0]))
         miss = aim - float(logs[1])
         if abs(miss) <= 0.3 * tolerance:
-            break
+            return _Balanced(near, batch, slope, miss, 3 * turn)
         if miss > 0.0:
             low = max(low, guess)
         else:
@@ -185,36 +232,12 @@ def mean_gap_for_load(film: VibratedFilm, load: Pascal, *, tolerance: float = 1e
         ahead = guess + miss / slope
         guess = ahead if low <= ahead <= high else 0.5 * (low + high)
         step = min(step, max(abs(ahead - guess), 2e-3))
-    else:
-        raise ConvergenceError(
-            f"the load balance missed {format_quantity(load, Unit('Pa'))} by a factor "
-            f"{math.exp(miss):.6g} after {_STEPS} steps; ask a larger tolerance",
-            partial=batch,
-            residual=abs(miss),
-            iterations=_STEPS,
-        )
-    eps = float(near[1])
-    gap = amplitude / eps
-    pressure = float(batch.over_pressure[1]) * ambient_pressure
-    error = float(batch.over_pressure_error[1]) * ambient_pressure
-    return LoadBalance(
-        mean_gap=gap,
-        mean_gap_error=gap * (abs(miss) + error / pressure) / slope,
-        least_gap=gap - amplitude,
-        mean_load_pressure=pressure,
-        mean_load_pressure_error=error,
-        static_stiffness=pressure * slope / gap,
-        squeeze_number=float(_squeeze_number(film, near[1])),
-        excursion_ratio=eps,
-        knudsen_number=film.mean_free_path / gap,
-        load=load,
-        film=film,
-        model=batch.model,
-        iterations=solves,
-        status=(
-            f"balanced: {format_quantity(pressure, Unit('Pa'))} at a mean gap of "
-            f"{format_quantity(gap, Unit('m'))} after {solves} film solves"
-        ),
+    raise ConvergenceError(
+        f"the load balance missed {format_quantity(load, Unit('Pa'))} by a factor "
+        f"{math.exp(miss):.6g} after {_STEPS} steps; ask a larger tolerance",
+        partial=batch,
+        residual=abs(miss),
+        iterations=_STEPS,
     )
 
 

@@ -8,12 +8,15 @@ tolerance come back in the next round with more cells or more times.
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import nullcontext
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from squeezefilm.errors import ConvergenceError, InputError
 from squeezefilm.film.compiled import announce
@@ -32,6 +35,9 @@ from squeezefilm.quantities import (
     require,
     require_one_of,
 )
+
+if TYPE_CHECKING:
+    from squeezefilm.film.periodic.uniform import Films
 
 MAX_EXCURSION = 0.99
 """Above this excursion the gap all but closes, and the error is no longer measured."""
@@ -119,27 +125,57 @@ def solve_films(
     law = slip_law(slip, float(np.max(knudsen_number)))
     if workers is not None and workers < 1:
         raise InputError(f"workers = {workers} cannot be used: at least 1, or None for all cores")
-    try:
-        inputs = np.broadcast_arrays(
-            np.asarray(squeeze_number, dtype=float),
-            np.asarray(excursion_ratio, dtype=float),
-            np.asarray(polytropic_exponent, dtype=float),
-            np.asarray(knudsen_number, dtype=float),
-        )
-    except ValueError as error:
-        raise InputError(f"the inputs do not broadcast together: {error}") from error
-    form = inputs[0].shape
+    inputs = _broadcast(squeeze_number, excursion_ratio, polytropic_exponent, knudsen_number)
     sigma, signed, n, kn = (np.ascontiguousarray(a.ravel()) for a in inputs)
     # ε and −ε are the same film half a period apart; ε = 0 is solved as nearly 0 and set to 1.
     eps = np.maximum(np.abs(signed), 1e-6)
-    out, cells, times, met = solve_all(
-        shape, sigma, eps, n, kn, law, tolerance, workers or os.cpu_count() or 1, progress
-    )
     u = compiled()
+    films = u.Films(sigma, eps, n, kn, law, u.STRIP if shape == "strip" else u.DISC)
+    solved = solve_all(films, tolerance, workers or os.cpu_count() or 1, progress)
     still = signed == 0.0
-    out[still, u.OVER], out[still, u.ERROR] = 0.0, 0.0
-    missed = int(np.count_nonzero(~(met | still)))
-    batch = FilmBatch(
+    solved.rows[still, u.OVER], solved.rows[still, u.ERROR] = 0.0, 0.0
+    solved = solved._replace(met=solved.met | still)
+    films = films._replace(excursion_ratio=signed)
+    batch = _as_batch(films, solved, inputs[0].shape, slip, tolerance)
+    if strict and not solved.met.all():
+        at = int(np.flatnonzero(~solved.met)[0])
+        raise ConvergenceError(
+            f"{batch.status}; the first has squeeze_number {sigma[at]:.4g}, excursion_ratio "
+            f"{signed[at]:.4g}. Ask a larger tolerance, or pass strict=False to keep the others",
+            partial=batch,
+            residual=float(solved.rows[at, u.RESIDUAL]),
+            iterations=int(solved.rows[at, u.ITERATIONS]),
+        )
+    return batch
+
+
+def _broadcast(*values: DimensionlessLike) -> Sequence[FloatArray]:
+    """The inputs in one shape; raises `InputError` where they have none in common."""
+    try:
+        return np.broadcast_arrays(*(np.asarray(value, dtype=float) for value in values))
+    except ValueError as error:
+        raise InputError(f"the inputs do not broadcast together: {error}") from error
+
+
+class _Solved(NamedTuple):
+    """Result rows (columns in `uniform`), indices of cells and times, and which met the
+    tolerance."""
+
+    rows: FloatArray
+    cells: IntArray
+    times: IntArray
+    met: NDArray[np.bool_]
+
+
+def _as_batch(
+    films: Films, solved: _Solved, form: tuple[int, ...], slip: str, tolerance: float
+) -> FilmBatch:
+    """What is given back, in the shape of the inputs."""
+    u, out, total = compiled(), solved.rows, len(films.squeeze_number)
+    shape = "strip" if films.shape == u.STRIP else "disc"
+    law = f"slip {slip} at local Kn" if films.law else "no slip"
+    missed = int(np.count_nonzero(~solved.met))
+    return FilmBatch(
         mean_load=1.0 + out[:, u.OVER].reshape(form),
         over_pressure=out[:, u.OVER].reshape(form).copy(),
         over_pressure_error=out[:, u.ERROR].reshape(form).copy(),
@@ -147,117 +183,130 @@ def solve_films(
         damping_relative=out[:, u.DAMPING].reshape(form).copy(),
         iterations=out[:, u.ITERATIONS].astype(np.int64).reshape(form),
         residual=out[:, u.RESIDUAL].reshape(form).copy(),
-        cells=CELLS[cells].reshape(form),
-        times=TIMES[times].reshape(form),
-        squeeze_number=sigma.reshape(form),
-        excursion_ratio=signed.reshape(form),
-        polytropic_exponent=n.reshape(form),
-        knudsen_number=kn.reshape(form),
+        cells=CELLS[solved.cells].reshape(form),
+        times=TIMES[solved.times].reshape(form),
+        squeeze_number=films.squeeze_number.reshape(form),
+        excursion_ratio=films.excursion_ratio.reshape(form),
+        polytropic_exponent=films.polytropic_exponent.reshape(form),
+        knudsen_number=films.knudsen_number.reshape(form),
         slip=slip,
         shape=shape,
         tolerance=tolerance,
-        model=(
-            f"periodic compressible Reynolds film, {shape}, "
-            + (f"slip {slip} at local Kn" if law else "no slip")
-        ),
+        model=f"periodic compressible Reynolds film, {shape}, {law}",
         status=(
-            f"all {len(sigma)} films within {tolerance:g} of their over-pressure"
+            f"all {total} films within {tolerance:g} of their over-pressure"
             if missed == 0
-            else f"{missed} of {len(sigma)} films not within {tolerance:g} of their over-pressure"
+            else f"{missed} of {total} films not within {tolerance:g} of their over-pressure"
         ),
     )
-    if missed and strict:
-        at = int(np.flatnonzero(~(met | still))[0])
-        raise ConvergenceError(
-            f"{batch.status}; the first has squeeze_number {sigma[at]:.4g}, excursion_ratio "
-            f"{signed[at]:.4g}. Ask a larger tolerance, or pass strict=False to keep the others",
-            partial=batch,
-            residual=float(out[at, u.RESIDUAL]),
-            iterations=int(out[at, u.ITERATIONS]),
-        )
-    return batch
 
 
 def solve_all(
-    shape: str,
-    sigma: FloatArray,
-    eps: FloatArray,
-    n: FloatArray,
-    kn: FloatArray,
-    law: int,
+    films: Films,
     tolerance: float,
     workers: int,
     progress: CountProgress | None = None,
     least_cells: int = 4,
     least_times: int = 5,
     keep: FloatArray | None = None,
-) -> tuple[FloatArray, IntArray, IntArray, Any]:
-    """Result rows (columns in `uniform`), indices of cells and times, and which met the tolerance.
+) -> _Solved:
+    """Solve films, refining those that miss the tolerance.
 
     Inputs are checked 1-D arrays with 0 < ε < 1. `keep` is passed to the compiled loop and makes
     sense for one case only.
     """
-    u = compiled()
+    u, sigma = compiled(), films.squeeze_number
     total = len(sigma)
-    form = u.STRIP if shape == "strip" else u.DISC
-    keep = np.empty(0) if keep is None else keep
-    aim = Aim(tolerance, MOST_NEWTON)
-    out = np.full((total, u.COLUMNS), np.nan)
-    spent = np.zeros(total)
-    met = np.zeros(total, dtype=bool)
-    wide_sigma = sigma if form == u.STRIP else 2.25 * sigma
-    cells, times = first_guess(wide_sigma, eps, kn, tolerance, least_cells, least_times)
+    cells, times = first_guess(
+        sigma if films.shape == u.STRIP else 2.25 * sigma,
+        films.excursion_ratio,
+        films.knudsen_number,
+        tolerance,
+        least_cells,
+        least_times,
+    )
+    work = _Work(
+        films,
+        Aim(tolerance, MOST_NEWTON),
+        workers,
+        progress,
+        np.empty(0) if keep is None else keep,
+        np.full((total, u.COLUMNS), np.nan),
+        np.zeros(total),
+        np.zeros(total, dtype=bool),
+    )
     pending: IntArray = np.arange(total)
     pool = ThreadPoolExecutor(workers) if workers > 1 and total > 64 else None
-    try:
+    with pool or nullcontext():
         for turn in range(1, ROUNDS + 1):
             key = cells[pending] * len(TIMES) + times[pending]
             order = np.argsort(key, kind="stable")
             bounds = np.flatnonzero(np.diff(key[order])) + 1
             for group in np.split(pending[order], bounds):
-                c, t = int(cells[group[0]]), int(times[group[0]])
-                rows = np.full((len(group), u.COLUMNS), np.nan)
-                resolution = resolution_of(int(CELLS[c]), t)
-                films = u.Films(sigma[group], eps[group], n[group], kn[group], law, form)
-                portion = min(_CHUNK, -(-len(group) // workers))
-                spans = [(a, min(a + portion, len(group))) for a in range(0, len(group), portion)]
-
-                def part(
-                    span: tuple[int, int],
-                    films: Any = films,
-                    resolution: Resolution = resolution,
-                    rows: FloatArray = rows,
-                ) -> int:
-                    u.solve_rows(*span, films, resolution, aim, rows, keep)
-                    return span[1] - span[0]
-
-                done = map(part, spans) if pool is None else pool.map(part, spans)
-                for _number in done:
-                    if progress is not None:
-                        progress(int(np.count_nonzero(met)), total)
-                out[group] = rows
-                spent[group] += rows[:, u.ITERATIONS]
-                met[group] = rows[:, u.ERROR] <= tolerance * np.abs(rows[:, u.OVER])
-            if progress is not None:
-                progress(int(np.count_nonzero(met)), total)
-            pending = np.flatnonzero(~met)
+                first = group[0]
+                work.solve(group, resolution_of(int(CELLS[cells[first]]), int(times[first])), pool)
+            work.tell()
+            pending = np.flatnonzero(~work.met)
             if len(pending) == 0 or turn == ROUNDS:
                 break  # what is given back is of the grids that were solved
-            allowed = tolerance * np.abs(out[pending, u.OVER])
-            more_cells, more_times = refined(
-                cells[pending],
-                times[pending],
-                out[pending, u.SPACE],
-                out[pending, u.TIME],
-                np.where(allowed > 0.0, allowed, 1e-300),
-            )
-            stuck = (more_cells == cells[pending]) & (more_times == times[pending])
-            cells[pending], times[pending] = more_cells, more_times
-            pending = pending[~stuck]
+            pending = _refine(work.rows, tolerance, pending, cells, times)
             if len(pending) == 0:
                 break
-    finally:
-        if pool is not None:
-            pool.shutdown()
-    out[:, u.ITERATIONS] = spent
-    return out, cells, times, met
+    work.rows[:, u.ITERATIONS] = work.spent
+    return _Solved(work.rows, cells, times, work.met)
+
+
+@dataclass(frozen=True)
+class _Work:
+    """Films under way: their result rows, the iterations spent on each, and which met the aim."""
+
+    films: Films
+    aim: Aim
+    workers: int
+    progress: CountProgress | None
+    keep: FloatArray
+    rows: FloatArray
+    spent: FloatArray
+    met: NDArray[np.bool_]
+
+    def tell(self) -> None:
+        """Say how many are done."""
+        if self.progress is not None:
+            self.progress(int(np.count_nonzero(self.met)), len(self.met))
+
+    def solve(
+        self, group: IntArray, resolution: Resolution, pool: ThreadPoolExecutor | None
+    ) -> None:
+        """Solve the films of the indices `group` on one resolution, in portions."""
+        u, whole = compiled(), self.films
+        films = u.Films(*(column[group] for column in whole[:4]), whole.law, whole.shape)
+        rows = np.full((len(group), u.COLUMNS), np.nan)
+        portion = min(_CHUNK, -(-len(group) // self.workers))
+        spans = [(a, min(a + portion, len(group))) for a in range(0, len(group), portion)]
+
+        def part(span: tuple[int, int]) -> None:
+            u.solve_rows(*span, films, resolution, self.aim, rows, self.keep)
+
+        for _ in map(part, spans) if pool is None else pool.map(part, spans):
+            self.tell()
+        self.rows[group] = rows
+        self.spent[group] += rows[:, u.ITERATIONS]
+        self.met[group] = rows[:, u.ERROR] <= self.aim.tolerance * np.abs(rows[:, u.OVER])
+
+
+def _refine(
+    rows: FloatArray, tolerance: float, pending: IntArray, cells: IntArray, times: IntArray
+) -> IntArray:
+    """Give pending films the cells and times that they lack, in place; those to solve again."""
+    u = compiled()
+    allowed = tolerance * np.abs(rows[pending, u.OVER])
+    more_cells, more_times = refined(
+        cells[pending],
+        times[pending],
+        rows[pending, u.SPACE],
+        rows[pending, u.TIME],
+        np.where(allowed > 0.0, allowed, 1e-300),
+    )
+    stuck = (more_cells == cells[pending]) & (more_times == times[pending])
+    cells[pending], times[pending] = more_cells, more_times
+    return np.asarray(pending[~stuck])

@@ -10,6 +10,7 @@ by Fourier collocation in time and finite volumes in space; see `kernel` for the
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -28,6 +29,7 @@ from squeezefilm.film.periodic.profile import (
     profile_from_function,
     sampled_grid,
 )
+from squeezefilm.film.periodic.records import Resolution
 from squeezefilm.film.periodic.resolution import (
     CELLS,
     TIMES,
@@ -39,11 +41,7 @@ from squeezefilm.film.periodic.resolution import (
 from squeezefilm.film.periodic.solution import Asked, FilmSolution, Found, assembled
 from squeezefilm.film.records import Aim, Gas
 from squeezefilm.film.slip import slip_law
-from squeezefilm.quantities import (
-    Dimensionless,
-    FloatArray,
-    checked_numbers,
-)
+from squeezefilm.quantities import ComplexArray, Dimensionless, FloatArray, checked_numbers
 
 
 @checked_numbers
@@ -117,19 +115,8 @@ def _solve_uniform(asked: Asked) -> FilmSolution:
     eps = max(abs(float(asked.excursion_ratio)), 1e-6)
     keep = np.empty(3 * int(CELLS[-1]) // 2 * 200)
     one = np.array([[sigma], [eps], [n], [kn]], dtype=float)
-    out, c, t, met = solve_all(
-        asked.shape,
-        one[0],
-        one[1],
-        one[2],
-        one[3],
-        law,
-        asked.tolerance,
-        1,
-        least_cells=16,
-        least_times=11,
-        keep=keep,
-    )
+    films = u.Films(*one, law, u.STRIP if strip else u.DISC)
+    out, c, t, met = solve_all(films, asked.tolerance, 1, least_cells=16, least_times=11, keep=keep)
     row, cells, times = out[0], int(CELLS[c[0]]), int(TIMES[t[0]])
     over, error = float(row[u.OVER]), float(row[u.ERROR])
     ntp = collocation_times(times).row
@@ -184,47 +171,74 @@ def solve_profile(
             )
         profile = profile_from_function(profile)
     check_film(squeeze_number, 0.0, polytropic_exponent, knudsen_number, tolerance)
-    law = slip_law(slip, knudsen_number)
+    sigma = float(squeeze_number)
+    gas = Gas(float(polytropic_exponent), float(knudsen_number), slip_law(slip, knudsen_number))
+    grid, found = _refined_profile(profile, sigma, gas, tolerance)
+    closed, excursion = profile.symmetric, profile.excursion
+    n, kn = gas.polytropic_exponent, gas.knudsen_number
+    asked = Asked("profile", sigma, excursion, n, kn, slip, tolerance, profile)
+    levels = grid.levels(closed) if field else []
+    return assembled(
+        asked, found, levels, grid.harmonics[:, ::2], grid.x[::2], 0.0, closed, excursion
+    )
+
+
+class _ProfileGrid(NamedTuple):
+    """A profile on one grid and what was solved there: X, dX/dξ and the gap's harmonics at nodes
+    and faces, the result row, and p on the two finer grids, one after the other."""
+
+    resolution: Resolution
+    x: FloatArray
+    slope: FloatArray
+    harmonics: ComplexArray
+    row: FloatArray
+    keep: FloatArray
+
+    def levels(self, closed: bool) -> list[tuple[FloatArray, FloatArray]]:
+        """p at the nodes of the two finer grids, edges included, and their shares of the area."""
+        cells, times = self.resolution.cells, self.resolution.times
+        levels: list[tuple[FloatArray, FloatArray]] = []
+        start = 0
+        for m in (cells // 2, cells):
+            unknowns = m if closed else m - 1
+            p = self.keep[start : start + unknowns * times.row].reshape(unknowns, times.row)
+            p = p[:, : times.number]
+            start = (cells // 2 + 1) * times.row
+            edge = np.zeros((1, times.number))
+            p = np.vstack([p, edge]) if closed else np.vstack([edge, p, edge])
+            share = self.slope[:: 2 * cells // m] * ((2.0 if closed else 1.0) / m)
+            share *= 1.0 if closed else 2.0
+            share[[0, -1]] *= 0.5
+            levels.append((p, share))
+        return levels
+
+
+def _refined_profile(
+    profile: GapProfile, sigma: float, gas: Gas, tolerance: float
+) -> tuple[_ProfileGrid, Found]:
+    """Solve and refine until the tolerance is met, or nothing more is to be gained."""
     from squeezefilm.film.periodic import uniform as u
-    from squeezefilm.film.periodic.varying import Profile, solve_varying
+    from squeezefilm.film.periodic.varying import solve_varying
 
     announce(solve_varying, "solver of film profiles", 20)
-    closed = profile.symmetric
-    sigma, n, kn = float(squeeze_number), float(polytropic_exponent), float(knudsen_number)
     c, t = first_guess(
         np.array([sigma]),
         np.array([max(profile.mean_depth, 1e-3)]),
-        np.array([kn]),
+        np.array([gas.knudsen_number]),
         tolerance,
         least_cells=8,
         least_times=2 * profile.orders + 1,
     )
-    waves = profile.features / (2.0 if closed else 1.0)
+    waves = profile.features / (2.0 if profile.symmetric else 1.0)
     cells = max(int(CELLS[c[0]]), 4 * round(4.0 * waves * (0.01 / tolerance) ** 0.25))
-    if not closed:
+    if not profile.symmetric:
         cells = 2 * cells
     # Rounded, so that a sweep over σ finds its grids again.
     grading = round(float(u.edge_grading(sigma / (1.0 + profile.features) ** 2, profile.depth)), 2)
-    out = np.full(u.COLUMNS, np.nan)
     iterations = 0
-    met = False
     for turn in range(1, ROUNDS + 1):
-        resolution = resolution_of(cells, int(t[0]))
-        times, check = resolution.times.number, resolution.check.number
-        x, slope, harmonics = sampled_grid(profile, cells, closed, grading)
-        even, odd = np.ascontiguousarray(harmonics.real), np.ascontiguousarray(-harmonics.imag)
-        ntp = resolution.times.row
-        keep = np.empty((cells + 1 + cells // 2 + 1) * ntp)
-        solve_varying(
-            sigma,
-            Gas(n, kn, law),
-            Profile(slope, even, odd, profile.depth, closed),
-            resolution,
-            (load_times(times, profile.depth), load_times(check, profile.depth)),
-            Aim(tolerance, MOST_NEWTON),
-            out,
-            keep,
-        )
+        grid = _on_grid(profile, sigma, gas, resolution_of(cells, int(t[0])), grading, tolerance)
+        out = grid.row
         iterations += int(out[u.ITERATIONS])
         allowed = tolerance * abs(out[u.OVER])
         met = bool(out[u.ERROR] <= allowed) or bool(abs(out[u.OVER]) < 1e-15)
@@ -244,24 +258,39 @@ def solve_profile(
         elif t2[0] == t[0]:
             break
         t = t2
-    levels: list[tuple[FloatArray, FloatArray]] = []
-    start = 0
-    for m in (cells // 2, cells) if field else ():
-        unknowns = m if closed else m - 1
-        p = keep[start : start + unknowns * ntp].reshape(unknowns, ntp)[:, :times]
-        start = (cells // 2 + 1) * ntp
-        edge = np.zeros((1, times))
-        p = np.vstack([p, edge]) if closed else np.vstack([edge, p, edge])
-        share = slope[:: 2 * cells // m] * ((2.0 if closed else 1.0) / m)
-        share *= 1.0 if closed else 2.0
-        share[[0, -1]] *= 0.5
-        levels.append((p, share))
     over, error, residual = (float(out[column]) for column in (u.OVER, u.ERROR, u.RESIDUAL))
-    found = Found(over, error, met, iterations, residual, cells, times)
-    asked = Asked("profile", sigma, profile.excursion, n, kn, slip, tolerance, profile)
-    return assembled(
-        asked, found, levels, harmonics[:, ::2], x[::2], 0.0, closed, profile.excursion
+    times = grid.resolution.times.number
+    return grid, Found(over, error, met, iterations, residual, grid.resolution.cells, times)
+
+
+def _on_grid(
+    profile: GapProfile,
+    sigma: float,
+    gas: Gas,
+    resolution: Resolution,
+    grading: float,
+    tolerance: float,
+) -> _ProfileGrid:
+    """The film over a profile on one grid."""
+    from squeezefilm.film.periodic.uniform import COLUMNS
+    from squeezefilm.film.periodic.varying import Profile, solve_varying
+
+    closed, depth, cells = profile.symmetric, profile.depth, resolution.cells
+    x, slope, harmonics = sampled_grid(profile, cells, closed, grading)
+    even, odd = np.ascontiguousarray(harmonics.real), np.ascontiguousarray(-harmonics.imag)
+    row = np.full(COLUMNS, np.nan)
+    keep = np.empty((cells + 1 + cells // 2 + 1) * resolution.times.row)
+    solve_varying(
+        sigma,
+        gas,
+        Profile(slope, even, odd, depth, closed),
+        resolution,
+        (load_times(resolution.times.number, depth), load_times(resolution.check.number, depth)),
+        Aim(tolerance, MOST_NEWTON),
+        row,
+        keep,
     )
+    return _ProfileGrid(resolution, x, slope, harmonics, row, keep)
 
 
 def load_times(times: int, depth: float) -> int:

@@ -68,6 +68,14 @@ class Asked:
     tolerance: float
     profile: GapProfile | None = None
 
+    @property
+    def model(self) -> str:
+        """What is solved, in words."""
+        n = self.polytropic_exponent
+        name = "isothermal" if n == 1.0 else f"polytropic (n = {n:g})"
+        law = f"slip {self.slip} at local Kn" if self.knudsen_number > 0.0 else "no slip"
+        return f"periodic compressible Reynolds film, {name}, {law}"
+
 
 @dataclass(frozen=True)
 class Found:
@@ -81,6 +89,16 @@ class Found:
     cells: int
     times: int
 
+    def status(self, asked: Asked) -> str:
+        """How well it went."""
+        effort = f"{self.cells} cells and {self.times} times in {self.iterations} Newton steps"
+        if self.met:
+            return f"converged: over-pressure {self.over:.4g} within {self.error:.1g} with {effort}"
+        return (
+            f"not converged: over-pressure {self.over:.4g} is only known within {self.error:.1g}, "
+            f"asked was {asked.tolerance:g} of it, with {effort}"
+        )
+
 
 def assembled(
     asked: Asked,
@@ -93,42 +111,25 @@ def assembled(
     excursion: float,
 ) -> FilmSolution:
     """Assemble the result from p on the two finer grids, extrapolated like the load."""
-    n, over, error = asked.polytropic_exponent, found.over, found.error
+    over, error = found.over, found.error
     if levels:
-        T, gap, fine, spectrum = _field(levels, harmonics, found.times, n)
+        T, gap, fine, spectrum = _field(levels, harmonics, found.times, asked.polytropic_exponent)
     else:
         x, T, gap, fine = np.empty(0), np.empty(0), np.empty((0, 0)), np.empty((0, 0))
         spectrum = np.full(_HARMONICS + 1, complex(np.nan, np.nan))
         mirrored = False
-    count = len(T)
-    turn = np.exp(1j * np.arange(_HARMONICS + 1) * shift)
-    force_harmonics = np.zeros(_HARMONICS + 1, dtype=complex)
-    available = min(_HARMONICS + 1, len(spectrum))
-    force_harmonics[:available] = spectrum[:available]
-    force_harmonics *= turn
+    force_harmonics = spectrum[: _HARMONICS + 1] * np.exp(1j * np.arange(_HARMONICS + 1) * shift)
     force_harmonics[0] = over
     if shift:
-        fine = np.roll(fine, -count // 2, axis=1)
-        gap = np.roll(gap, -count // 2, axis=1)
+        fine, gap = (np.roll(rows, -len(T) // 2, axis=1) for rows in (fine, gap))
     if mirrored:
         x = np.concatenate([-x[:0:-1], x])
-        fine = np.concatenate([fine[:0:-1], fine])
-        gap = np.concatenate([gap[:0:-1], gap])
+        fine, gap = (np.concatenate([rows[:0:-1], rows]) for rows in (fine, gap))
     first = spectrum[1] / excursion if excursion > 0.0 else complex(np.nan, np.nan)
     if asked.excursion_ratio == 0.0 and asked.profile is None:
         force_harmonics[:] = 0.0
         fine[:] = 0.0
         gap[:] = 1.0
-    name = "isothermal" if n == 1.0 else f"polytropic (n = {n:g})"
-    law = f"slip {asked.slip} at local Kn" if asked.knudsen_number > 0.0 else "no slip"
-    effort = f"{found.cells} cells and {found.times} times in {found.iterations} Newton steps"
-    if found.met:
-        status = f"converged: over-pressure {over:.4g} within {error:.1g} with {effort}"
-    else:
-        status = (
-            f"not converged: over-pressure {over:.4g} is only known within {error:.1g}, asked was "
-            f"{asked.tolerance:g} of it, with {effort}"
-        )
     solution = FilmSolution(
         mean_load=1.0 + over,
         over_pressure=over,
@@ -145,26 +146,31 @@ def assembled(
         residual=found.residual,
         cells=found.cells,
         times=found.times,
-        status=status,
-        model=f"periodic compressible Reynolds film, {name}, {law}",
+        status=found.status(asked),
+        model=asked.model,
         shape=asked.shape,
         squeeze_number=float(asked.squeeze_number),
         excursion_ratio=float(asked.excursion_ratio),
-        polytropic_exponent=float(n),
+        polytropic_exponent=float(asked.polytropic_exponent),
         knudsen_number=float(asked.knudsen_number),
         slip=asked.slip,
         tolerance=asked.tolerance,
         profile=asked.profile,
     )
     if not found.met:
-        raise ConvergenceError(
-            f"the film with squeeze_number {asked.squeeze_number:.4g} and excursion_ratio "
-            f"{asked.excursion_ratio:.4g} did not converge: {status}. Ask a larger tolerance",
-            partial=solution,
-            residual=found.residual,
-            iterations=found.iterations,
-        )
+        raise _not_converged(solution)
     return solution
+
+
+def _not_converged(partial: FilmSolution) -> ConvergenceError:
+    return ConvergenceError(
+        f"the film with squeeze_number {partial.squeeze_number:.4g} and excursion_ratio "
+        f"{partial.excursion_ratio:.4g} did not converge: {partial.status}. Ask a larger "
+        "tolerance",
+        partial=partial,
+        residual=partial.residual,
+        iterations=partial.iterations,
+    )
 
 
 def _field(

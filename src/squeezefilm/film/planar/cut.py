@@ -10,7 +10,9 @@ from __future__ import annotations
 import numpy as np
 
 from squeezefilm.film.planar.grid import PlanarGrid
-from squeezefilm.quantities import FloatArray
+from squeezefilm.quantities import FloatArray, IntArray
+
+_Mask = np.ndarray[tuple[int, ...], np.dtype[np.bool_]]
 
 
 def cut_ellipse_grid(
@@ -24,33 +26,10 @@ def cut_ellipse_grid(
     """
     x_node, y_node, dx, dy = x[1::2], y[1::2], np.diff(x[::2]), np.diff(y[::2])
     rows, columns = x_node.size, y_node.size
-    shape = (rows, columns)
     X, Y = np.meshgrid(x_node, y_node, indexing="ij")
     inside = X**2 + (Y / aspect_ratio) ** 2 < 1.0
-    index = np.arange(rows * columns).reshape(shape)
-
-    edge_node, edge_X, edge_Y, edge_G = [], [], [], []
-    end_x = np.sqrt(np.maximum(1.0 - (Y / aspect_ratio) ** 2, 0.0))
-    end_y = aspect_ratio * np.sqrt(np.maximum(1.0 - X**2, 0.0))
-    for axis, place, end, across in (
-        (0, X, end_x, np.broadcast_to(dy, shape)),
-        (1, Y, end_y, np.broadcast_to(dx[:, None], shape)),
-    ):
-        for side in (1,) if quarter else (1, -1):
-            near = np.roll(inside, -side, axis)
-            np.moveaxis(near, axis, 0)[-1 if side > 0 else 0] = False
-            last = inside & ~near & (side * place > 0)
-            edge_node.append(index[last])
-            edge_X.append(side * end[last] if axis == 0 else X[last])
-            edge_Y.append(side * end[last] if axis == 1 else Y[last])
-            # A node on the boundary to rounding is ambient, not infinitely well connected.
-            distance = np.maximum(end - side * place, 1e-6 * end)
-            edge_G.append((across / distance)[last])
-    edge_node.append(index[~inside])
-    edge_X.append(X[~inside])
-    edge_Y.append(Y[~inside])
-    edge_G.append(np.ones(edge_node[-1].size))
-
+    index = np.arange(rows * columns).reshape(rows, columns)
+    edge_node, edge_X, edge_Y, edge_conductance = _edges(x, y, aspect_ratio, inside, quarter)
     row_open, column_open = inside[1:] & inside[:-1], inside[:, 1:] & inside[:, :-1]
     row_X = np.broadcast_to(x[2:-1:2, None], (rows - 1, columns))
     column_Y = np.broadcast_to(y[2:-1:2], (rows, columns - 1))
@@ -69,19 +48,51 @@ def cut_ellipse_grid(
         column_X=X[:, 1:].ravel(),
         column_Y=np.ascontiguousarray(column_Y).ravel(),
         column_conductance=(column_open * dx[:, None] / np.diff(y_node)).ravel(),
-        edge_node=np.concatenate(edge_node),
-        edge_X=np.concatenate(edge_X),
-        edge_Y=np.concatenate(edge_Y),
-        edge_conductance=np.concatenate(edge_G),
+        edge_node=edge_node,
+        edge_X=edge_X,
+        edge_Y=edge_Y,
+        edge_conductance=edge_conductance,
+    )
+
+
+def _edges(
+    x: FloatArray, y: FloatArray, aspect_ratio: float, inside: _Mask, quarter: bool
+) -> tuple[IntArray, FloatArray, FloatArray, FloatArray]:
+    """Node, X, Y and conductance of the faces between a line's last node and its end, and of one
+    for every node outside, which holds it at ambient pressure."""
+    X, Y = np.meshgrid(x[1::2], y[1::2], indexing="ij")
+    index = np.arange(X.size).reshape(X.shape)
+    node, edge_X, edge_Y, conductance = [], [], [], []
+    end_x = np.sqrt(np.maximum(1.0 - (Y / aspect_ratio) ** 2, 0.0))
+    end_y = aspect_ratio * np.sqrt(np.maximum(1.0 - X**2, 0.0))
+    for axis, place, end, across in (
+        (0, X, end_x, np.broadcast_to(np.diff(y[::2]), X.shape)),
+        (1, Y, end_y, np.broadcast_to(np.diff(x[::2])[:, None], X.shape)),
+    ):
+        for side in (1,) if quarter else (1, -1):
+            near = np.roll(inside, -side, axis)
+            np.moveaxis(near, axis, 0)[-1 if side > 0 else 0] = False
+            last = inside & ~near & (side * place > 0)
+            node.append(index[last])
+            edge_X.append(side * end[last] if axis == 0 else X[last])
+            edge_Y.append(side * end[last] if axis == 1 else Y[last])
+            # A node on the boundary to rounding is ambient, not infinitely well connected.
+            distance = np.maximum(end - side * place, 1e-6 * end)
+            conductance.append((across / distance)[last])
+    node.append(index[~inside])
+    edge_X.append(X[~inside])
+    edge_Y.append(Y[~inside])
+    conductance.append(np.ones(node[-1].size))
+    return (
+        np.concatenate(node),
+        np.concatenate(edge_X),
+        np.concatenate(edge_Y),
+        np.concatenate(conductance),
     )
 
 
 def _areas(
-    x: FloatArray,
-    y: FloatArray,
-    aspect_ratio: float,
-    inside: np.ndarray[tuple[int, ...], np.dtype[np.bool_]],
-    quarter: bool,
+    x: FloatArray, y: FloatArray, aspect_ratio: float, inside: _Mask, quarter: bool
 ) -> FloatArray:
     """The ellipse's area shared out: whole cells within, a strip's rest to its last node."""
     u = np.clip(x[::2], -1.0, 1.0)

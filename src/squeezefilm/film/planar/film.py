@@ -15,8 +15,8 @@ from squeezefilm.film.compiled import announce
 from squeezefilm.film.planar.balance import Film
 from squeezefilm.film.planar.gap import GapFunction, PlanarGap, require_periodic
 from squeezefilm.film.planar.kernel import row_block
-from squeezefilm.film.planar.ladder import RUNGS, Ladder, PlanarShape, climb_to
-from squeezefilm.film.slip import slip_law
+from squeezefilm.film.planar.ladder import RUNGS, Climb, Ladder, PlanarShape, climb_to
+from squeezefilm.film.records import ISOTHERMAL, FilmGas
 from squeezefilm.film.solved_range import require_film
 from squeezefilm.quantities import (
     ComplexArray,
@@ -76,9 +76,7 @@ def solve_rectangle(
     wave_number: Dimensionless = 0.0,
     ridge_height: Dimensionless = 0.0,
     ridge_wave_number: Dimensionless = 0.0,
-    polytropic_exponent: Dimensionless = 1.0,
-    knudsen_number: Dimensionless = 0.0,
-    slip: str = "first",
+    gas: FilmGas = ISOTHERMAL,
     tolerance: Dimensionless = 5e-3,
 ) -> FilmPlanar:
     """The periodic film under X ∈ [−½, ½], Y ∈ [−aspect/2, aspect/2], all sides open.
@@ -93,9 +91,7 @@ def solve_rectangle(
         gap,
         squeeze_number,
         aspect_ratio=aspect_ratio,
-        polytropic_exponent=polytropic_exponent,
-        knudsen_number=knudsen_number,
-        slip=slip,
+        gas=gas,
         tolerance=tolerance,
     )
 
@@ -109,9 +105,7 @@ def solve_ellipse(
     wave_number: Dimensionless = 0.0,
     ridge_height: Dimensionless = 0.0,
     ridge_wave_number: Dimensionless = 0.0,
-    polytropic_exponent: Dimensionless = 1.0,
-    knudsen_number: Dimensionless = 0.0,
-    slip: str = "first",
+    gas: FilmGas = ISOTHERMAL,
     tolerance: Dimensionless = 5e-3,
 ) -> FilmPlanar:
     """The periodic film under the ellipse X² + (Y/aspect)² ≤ 1, such as a finger pad.
@@ -125,9 +119,7 @@ def solve_ellipse(
         gap,
         squeeze_number,
         aspect_ratio=aspect_ratio,
-        polytropic_exponent=polytropic_exponent,
-        knudsen_number=knudsen_number,
-        slip=slip,
+        gas=gas,
         tolerance=tolerance,
     )
 
@@ -141,9 +133,7 @@ def solve_planar(
     aspect_ratio: Dimensionless = 1.0,
     symmetric: bool | None = None,
     cells: tuple[int, int] | None = None,
-    polytropic_exponent: Dimensionless = 1.0,
-    knudsen_number: Dimensionless = 0.0,
-    slip: str = "first",
+    gas: FilmGas = ISOTHERMAL,
     tolerance: Dimensionless = 5e-3,
 ) -> FilmPlanar:
     """The periodic film under any gap H(X, Y, T) of period 2π, to `tolerance` of W − 1.
@@ -160,26 +150,33 @@ def solve_planar(
     viscous flow; slip by the local Knudsen number Kn/(PH). The tolerance is on the over-pressure,
     down to 1e-5 of it. Sources: Gross (1962); Blech, 10.1115/1.3254692 for the linear limit.
     """
-    require_film(squeeze_number, polytropic_exponent, knudsen_number)
+    require_film(squeeze_number, gas.polytropic_exponent, gas.knudsen_number)
     require("aspect_ratio", aspect_ratio, above=0.0)
     require("tolerance", tolerance, at_least=1e-5, at_most=0.5)
     if shape == "disc" and aspect_ratio != 1.0:
         raise InputError(f"a disc has aspect_ratio 1, not {aspect_ratio}; ask for an ellipse")
     announce(row_block, "film solver in the plane", 3)
     quarter = isinstance(gap, PlanarGap) if symmetric is None else symmetric
-    film = Film(
-        gap,
-        float(squeeze_number),
-        float(polytropic_exponent),
-        float(knudsen_number),
-        slip_law(slip, knudsen_number),
-    )
+    film = Film(gap, float(squeeze_number), *gas.compiled())
     ladder = Ladder(shape, float(aspect_ratio), film, quarter, cells)
     require_periodic(gap, ladder.grid(RUNGS[0]).X, ladder.grid(RUNGS[0]).Y)
     climb = climb_to(ladder, float(tolerance))
+    result = _assembled(ladder, climb, gas, tolerance)
+    if not climb.reached:
+        raise ConvergenceError(
+            f"the film in the plane was {climb.status}",
+            partial=result,
+            residual=climb.fine.residual,
+            iterations=climb.iterations,
+        )
+    return result
+
+
+def _assembled(ladder: Ladder, climb: Climb, gas: FilmGas, tolerance: float) -> FilmPlanar:
+    """The result, from where a climb of the ladder ended."""
     best, fine = climb.best, climb.fine
     first = best.harmonics[0] / ladder.excursion
-    result = FilmPlanar(
+    return FilmPlanar(
         mean_load=1.0 + best.over_pressure,
         over_pressure=best.over_pressure,
         over_pressure_error=best.error,
@@ -192,25 +189,17 @@ def solve_planar(
         mean_pressure=fine.mean_pressure,
         rows=fine.grid.rows,
         columns=fine.grid.columns,
-        quarter=quarter,
+        quarter=ladder.quarter,
         time_points=fine.gas.shape[1],
         iterations=climb.iterations,
         residual=fine.residual,
         status=climb.status,
-        shape=shape,
-        aspect_ratio=aspect_ratio,
-        gap=gap,
-        squeeze_number=squeeze_number,
-        polytropic_exponent=polytropic_exponent,
-        knudsen_number=knudsen_number,
-        slip=slip,
+        shape=ladder.shape,
+        aspect_ratio=ladder.aspect,
+        gap=ladder.film.gap,
+        squeeze_number=ladder.film.squeeze_number,
+        polytropic_exponent=gas.polytropic_exponent,
+        knudsen_number=gas.knudsen_number,
+        slip=gas.slip,
         tolerance=tolerance,
     )
-    if not climb.reached:
-        raise ConvergenceError(
-            f"the film in the plane was {climb.status}",
-            partial=result,
-            residual=fine.residual,
-            iterations=climb.iterations,
-        )
-    return result

@@ -11,11 +11,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
 from squeezefilm.film.line_grid import edge_graded, edge_layer
 from squeezefilm.quantities import FloatArray, IntArray, require
+
+_Sides = Literal["open", "turn", "segment"]
+"""Where columns end: at ambient gas, or in each other, with no line or one between two foci."""
 
 
 @dataclass(frozen=True)
@@ -48,78 +52,47 @@ class PlanarGrid:
     edge_conductance: FloatArray
 
 
-def _build(
-    u: FloatArray,
-    v: FloatArray,
-    place: Callable[[FloatArray, FloatArray], tuple[FloatArray, FloatArray]],
-    across_rows: Callable[[FloatArray], FloatArray],
-    across_columns: Callable[[FloatArray], FloatArray],
-    area: FloatArray,
-    *,
-    quarter: bool,
-    first_row_open: bool,
-    first_column_open: bool,
-    last_column_open: bool,
-    join: str = "",
-) -> PlanarGrid:
-    """A grid from its coordinate lines: `u` (2 rows + 1,), `v` (2 columns + 1,), faces at even
-    places and nodes at odd ones. `across_rows(u)` multiplies Δv/Δu in the conductance of a face
-    between rows, `across_columns(u)` multiplies Δu/Δv. The last row is always open.
-    """
-    u_face, u_node, v_face, v_node = u[::2], u[1::2], v[::2], v[1::2]
-    rows, columns = u_node.size, v_node.size
-    du, dv = np.diff(u_face), np.diff(v_face)
-    index = np.arange(rows * columns).reshape(rows, columns)
+@dataclass(frozen=True)
+class _Lines:
+    """Coordinate lines `u` (2 rows + 1,) and `v` (2 columns + 1,), faces at even places and nodes
+    at odd ones, with the map to X and Y.
 
-    def grid(a: FloatArray, b: FloatArray) -> tuple[FloatArray, FloatArray]:
-        x, y = place(a[:, None], b[None, :])
+    `across_rows(u)` multiplies Δv/Δu in the conductance of a face between rows,
+    `across_columns(u)` multiplies Δu/Δv.
+    """
+
+    u: FloatArray
+    v: FloatArray
+    place: Callable[[FloatArray, FloatArray], tuple[FloatArray, FloatArray]]
+    across_rows: Callable[[FloatArray], FloatArray]
+    across_columns: Callable[[FloatArray], FloatArray]
+
+    def at(self, a: FloatArray, b: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """X and Y where some lines cross, row by row."""
+        x, y = self.place(a[:, None], b[None, :])
         shape = (a.size, b.size)
         return (
             np.ascontiguousarray(np.broadcast_to(x, shape)).ravel(),
             np.ascontiguousarray(np.broadcast_to(y, shape)).ravel(),
         )
 
-    X, Y = grid(u_node, v_node)
-    row_X, row_Y = grid(u_face[1:-1], v_node)
-    row_G = (across_rows(u_face[1:-1]) / np.diff(u_node))[:, None] * dv
-    col_X, col_Y = grid(u_node, v_face[1:-1])
-    weight = across_columns(u_node) * du
-    col_G = weight[:, None] / np.diff(v_node)
-    pieces_from, pieces_to = [index[:, :-1].ravel()], [index[:, 1:].ravel()]
-    pieces = [(col_X, col_Y, col_G.ravel())]
-    if join:
-        # A full turn: the last column meets the first.
-        x, y = grid(u_node, v_face[-1:])
-        turn = v_node[0] - v_node[-1] + 2 * np.pi
-        pieces_from.append(index[:, -1])
-        pieces_to.append(index[:, 0])
-        pieces.append((x, y, weight / turn))
-    if join == "segment":
-        # The line between the foci: above and below it lie columns ν and −ν of the first row.
-        half = columns // 2
-        x, y = grid(u_face[:1], v_node[:half])
-        pieces_from.append(index[0, :half])
-        pieces_to.append(index[0, ::-1][:half])
-        pieces.append((x, y, dv[:half] / (2 * u_node[0])))
-    edges = [
-        (
-            index[-1],
-            grid(u_face[-1:], v_node),
-            across_rows(u_face[-1:]) / (u_face[-1] - u_node[-1]) * dv,
-        )
-    ]
-    if first_row_open:
-        edges.append(
-            (
-                index[0],
-                grid(u_face[:1], v_node),
-                across_rows(u_face[:1]) / (u_node[0] - u_face[0]) * dv,
-            )
-        )
-    if last_column_open:
-        edges.append((index[:, -1], grid(u_node, v_face[-1:]), weight / (v_face[-1] - v_node[-1])))
-    if first_column_open:
-        edges.append((index[:, 0], grid(u_node, v_face[:1]), weight / (v_node[0] - v_face[0])))
+    @property
+    def weight(self) -> FloatArray:
+        """Per row, what multiplies 1/Δv in the conductance of a face within it."""
+        return self.across_columns(self.u[1::2]) * np.diff(self.u[::2])
+
+
+def _build(lines: _Lines, area: FloatArray, sides: _Sides, *, quarter: bool) -> PlanarGrid:
+    """A grid from its coordinate lines. The last row is always open; on a quarter the first row
+    and the first column are walls."""
+    u_face, u_node, v_face, v_node = lines.u[::2], lines.u[1::2], lines.v[::2], lines.v[1::2]
+    rows, columns = u_node.size, v_node.size
+    index = np.arange(rows * columns).reshape(rows, columns)
+    X, Y = lines.at(u_node, v_node)
+    row_X, row_Y = lines.at(u_face[1:-1], v_node)
+    row_G = (lines.across_rows(u_face[1:-1]) / np.diff(u_node))[:, None] * np.diff(v_face)
+    within = _faces_within_rows(lines, index, "open" if quarter else sides)
+    edges = _edges(lines, index, sides, quarter=quarter)
     return PlanarGrid(
         rows=rows,
         columns=columns,
@@ -130,16 +103,58 @@ def _build(
         row_X=row_X,
         row_Y=row_Y,
         row_conductance=row_G.ravel(),
-        column_from=np.concatenate(pieces_from),
-        column_to=np.concatenate(pieces_to),
-        column_X=np.concatenate([p[0] for p in pieces]),
-        column_Y=np.concatenate([p[1] for p in pieces]),
-        column_conductance=np.concatenate([p[2] for p in pieces]),
-        edge_node=np.concatenate([e[0] for e in edges]),
-        edge_X=np.concatenate([e[1][0] for e in edges]),
-        edge_Y=np.concatenate([e[1][1] for e in edges]),
-        edge_conductance=np.concatenate([e[2] for e in edges]),
+        column_from=np.concatenate([face[0] for face in within]),
+        column_to=np.concatenate([face[1] for face in within]),
+        column_X=np.concatenate([face[2] for face in within]),
+        column_Y=np.concatenate([face[3] for face in within]),
+        column_conductance=np.concatenate([face[4] for face in within]),
+        edge_node=np.concatenate([face[0] for face in edges]),
+        edge_X=np.concatenate([face[1] for face in edges]),
+        edge_Y=np.concatenate([face[2] for face in edges]),
+        edge_conductance=np.concatenate([face[3] for face in edges]),
     )
+
+
+def _faces_within_rows(
+    lines: _Lines, index: IntArray, sides: _Sides
+) -> list[tuple[IntArray, IntArray, FloatArray, FloatArray, FloatArray]]:
+    """Nodes from and to, X, Y and conductance of the faces between columns, joins included."""
+    u_node, v_face, v_node, weight = lines.u[1::2], lines.v[::2], lines.v[1::2], lines.weight
+    col_X, col_Y = lines.at(u_node, v_face[1:-1])
+    col_G = weight[:, None] / np.diff(v_node)
+    faces = [(index[:, :-1].ravel(), index[:, 1:].ravel(), col_X, col_Y, col_G.ravel())]
+    if sides != "open":
+        # A full turn: the last column meets the first.
+        x, y = lines.at(u_node, v_face[-1:])
+        turn = v_node[0] - v_node[-1] + 2 * np.pi
+        faces.append((index[:, -1], index[:, 0], x, y, weight / turn))
+    if sides == "segment":
+        # The line between the foci: above and below it lie columns ν and −ν of the first row.
+        half = v_node.size // 2
+        x, y = lines.at(lines.u[:1], v_node[:half])
+        conductance = np.diff(v_face)[:half] / (2 * u_node[0])
+        faces.append((index[0, :half], index[0, ::-1][:half], x, y, conductance))
+    return faces
+
+
+def _edges(
+    lines: _Lines, index: IntArray, sides: _Sides, *, quarter: bool
+) -> list[tuple[IntArray, FloatArray, FloatArray, FloatArray]]:
+    """Node, X, Y and conductance of the faces on every side that is open."""
+    u_face, u_node, v_face, v_node = lines.u[::2], lines.u[1::2], lines.v[::2], lines.v[1::2]
+    dv, weight = np.diff(v_face), lines.weight
+    last = lines.across_rows(u_face[-1:]) / (u_face[-1] - u_node[-1]) * dv
+    edges = [(index[-1], *lines.at(u_face[-1:], v_node), last)]
+    if sides == "open":
+        if not quarter:
+            first = lines.across_rows(u_face[:1]) / (u_node[0] - u_face[0]) * dv
+            edges.append((index[0], *lines.at(u_face[:1], v_node), first))
+        last = weight / (v_face[-1] - v_node[-1])
+        edges.append((index[:, -1], *lines.at(u_node, v_face[-1:]), last))
+        if not quarter:
+            first = weight / (v_node[0] - v_face[0])
+            edges.append((index[:, 0], *lines.at(u_node, v_face[:1]), first))
+    return edges
 
 
 def graded_line(
@@ -163,18 +178,8 @@ def rectangle_grid(x: FloatArray, y: FloatArray, *, quarter: bool = True) -> Pla
     On a quarter both start at 0, which is then a line of symmetry. Rows lie along X.
     """
     area = np.diff(x[::2])[:, None] * np.diff(y[::2])
-    return _build(
-        x,
-        y,
-        lambda a, b: (a, b),
-        np.ones_like,
-        np.ones_like,
-        area,
-        quarter=quarter,
-        first_row_open=not quarter,
-        first_column_open=not quarter,
-        last_column_open=True,
-    )
+    lines = _Lines(x, y, lambda a, b: (a, b), np.ones_like, np.ones_like)
+    return _build(lines, area, "open", quarter=quarter)
 
 
 def _turn(count: int, quarter: bool) -> FloatArray:
@@ -191,19 +196,14 @@ def disc_grid(
     r = graded_line(counts[0], 1.0, squeeze_number, mirror=False, least=least)
     angle = _turn(counts[1], quarter)
     area = (np.diff(r[::2] ** 2) / 2)[:, None] * np.diff(angle[::2])
-    return _build(
+    lines = _Lines(
         r,
         angle,
         lambda a, b: (a * np.cos(b), a * np.sin(b)),
         lambda u: u,
         lambda u: 1.0 / u,
-        area,
-        quarter=quarter,
-        first_row_open=False,
-        first_column_open=False,
-        last_column_open=False,
-        join="" if quarter else "turn",
     )
+    return _build(lines, area, "turn", quarter=quarter)
 
 
 def ellipse_grid(
@@ -238,16 +238,5 @@ def ellipse_grid(
         along, across = focus * np.cosh(a) * np.cos(b), focus * np.sinh(a) * np.sin(b)
         return (across, along) if tall else (along, across)
 
-    return _build(
-        mu,
-        nu,
-        place,
-        np.ones_like,
-        np.ones_like,
-        area,
-        quarter=quarter,
-        first_row_open=False,
-        first_column_open=False,
-        last_column_open=False,
-        join="" if quarter else "segment",
-    )
+    lines = _Lines(mu, nu, place, np.ones_like, np.ones_like)
+    return _build(lines, area, "segment", quarter=quarter)

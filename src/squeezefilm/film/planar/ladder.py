@@ -160,78 +160,107 @@ def _memory(rows: float, columns: float, count: int) -> float:
 
 def climb_to(ladder: Ladder, tolerance: float) -> Climb:
     """Climb until the over-pressure is known to `tolerance` of itself, or to the last rung."""
-    accuracy = 1e-7
-    iterations = 0
+    climber = _Climber(ladder, tolerance)
+    times = climber.in_time()
+    if times.enough:
+        return climber.in_space(times)
+    high, count = times.high, times.low.gas.shape[1]
+    status = f"stopped: {count // 2} harmonics in time are too few or Newton's method failed"
+    best = Extrapolated(high.over_pressure, abs(times.correction), high.harmonics)
+    return Climb(best, high, climber.iterations, False, status)
 
-    def solved(rung: int, count: int, start: FloatArray | None) -> Balance:
-        nonlocal iterations
-        state = _solve_or_continue(ladder.film, ladder.grid(rung), count, start, accuracy)
-        iterations += state.iterations
+
+@dataclass(frozen=True)
+class _Times:
+    """The coarsest rung with some times and with four more, and the doubt (in the over-pressure)
+    that their difference leaves; whether that is `enough`."""
+
+    low: Balance
+    high: Balance
+    doubt: float
+    enough: bool
+
+    @property
+    def correction(self) -> float:
+        """What the harmonics left out add to the over-pressure."""
+        return self.high.over_pressure - self.low.over_pressure
+
+
+@dataclass
+class _Climber:
+    """A climb under way: how far Newton's method is driven, and the steps it took so far."""
+
+    ladder: Ladder
+    tolerance: float
+    accuracy: float = 1e-7
+    iterations: int = 0
+
+    def solved(self, rung: int, count: int, start: FloatArray | None) -> Balance:
+        """One rung at `count` times, from a start."""
+        grid = self.ladder.grid(rung)
+        state = _solve_or_continue(self.ladder.film, grid, count, start, self.accuracy)
+        self.iterations += state.iterations
         return state
 
-    excursion = ladder.relative_excursion()
-    count = 2 * int(np.ceil(1.5 + 2.5 * excursion + 3.0 * excursion**6)) + 1
-    coarsest = ladder.grid(RUNGS[0])
-    require_within(
-        PLANAR_MEMORY,
-        _memory(coarsest.rows, coarsest.columns, count + 4),
-        enough="take fewer waves, ridges or cells",
-    )
-    low = solved(RUNGS[0], count, None)
-    if low.converged:
-        # Newton's error must stay well below what the extrapolation looks at.
-        accuracy = float(np.clip(1e-3 * tolerance * abs(low.over_pressure), 1e-13, 1e-7))
-        low = solved(RUNGS[0], count, low.gas)
-    correction = 0.0
-    while True:
-        guess = resampled(low.gas, count + 4) if low.converged else None
-        high = solved(RUNGS[0], count + 4, guess)
-        before, correction = correction, high.over_pressure - low.over_pressure
-        # Harmonics converge geometrically, but with changes of sign: one small step may be chance.
-        doubt = max(abs(correction), 0.3 * abs(before))
-        if high.converged and doubt <= 0.5 * tolerance * abs(high.over_pressure):
-            break
-        if count + 4 > 2 * _MOST_HARMONICS:
-            status = (
-                f"stopped: {count // 2} harmonics in time are too few or Newton's method failed"
-            )
-            best = Extrapolated(high.over_pressure, abs(correction), high.harmonics)
-            return Climb(best, high, iterations, False, status)
-        count, low = count + 4, high
-    shift = high.harmonics - low.harmonics
+    def in_time(self) -> _Times:
+        """Add times on the coarsest rung until four more change little enough."""
+        excursion = self.ladder.relative_excursion()
+        count = 2 * int(np.ceil(1.5 + 2.5 * excursion + 3.0 * excursion**6)) + 1
+        coarsest = self.ladder.grid(RUNGS[0])
+        require_within(
+            PLANAR_MEMORY,
+            _memory(coarsest.rows, coarsest.columns, count + 4),
+            enough="take fewer waves, ridges or cells",
+        )
+        low = self.solved(RUNGS[0], count, None)
+        if low.converged:
+            # Newton's error must stay well below what the extrapolation looks at.
+            least = 1e-3 * self.tolerance * abs(low.over_pressure)
+            self.accuracy = float(np.clip(least, 1e-13, 1e-7))
+            low = self.solved(RUNGS[0], count, low.gas)
+        before = 0.0
+        while True:
+            guess = resampled(low.gas, count + 4) if low.converged else None
+            high = self.solved(RUNGS[0], count + 4, guess)
+            correction = high.over_pressure - low.over_pressure
+            # Harmonics converge geometrically, but with changes of sign: one small step may be
+            # chance.
+            doubt = max(abs(correction), 0.3 * abs(before))
+            enough = high.converged and doubt <= 0.5 * self.tolerance * abs(high.over_pressure)
+            if enough or count + 4 > 2 * _MOST_HARMONICS:
+                return _Times(low, high, doubt, enough)
+            count, low, before = count + 4, high, correction
 
-    states = [low]
-    best = Extrapolated(high.over_pressure, float("inf"), high.harmonics)
-    for place, rung in enumerate(RUNGS[1:], start=1):
-        grid = ladder.grid(rung)
-        if _memory(grid.rows, grid.columns, count) > PLANAR_MEMORY.most:
-            return Climb(
-                best,
-                states[-1],
-                iterations,
-                False,
-                f"known to {best.error / abs(best.over_pressure):.2g} of the over-pressure; "
-                f"{tolerance:.2g} would take more memory than allowed",
-            )
-        states.append(solved(rung, count, _moved(ladder.film, states[-1], grid)))
-        if not states[-1].converged:
-            status = f"stopped: Newton's method failed on {grid.rows} × {grid.columns} nodes"
-            return Climb(best, states[-1], iterations, False, status)
-        if place < 2:
-            continue
-        space = _irregular if ladder.cut else _richardson
-        value, harmonics, error = space(states)
-        value += correction
-        error += doubt + 1e-13
-        best = Extrapolated(value, error, harmonics + shift)
-        if error <= tolerance * abs(value):
-            status = (
-                f"solved to {error / abs(value):.1g} of the over-pressure on "
-                f"{grid.rows} × {grid.columns} nodes at {count} times"
-            )
-            return Climb(best, states[-1], iterations, True, status)
-    status = f"known to {best.error / abs(best.over_pressure):.2g} of the over-pressure only"
-    return Climb(best, states[-1], iterations, False, status)
+    def in_space(self, times: _Times) -> Climb:
+        """Climb the rungs above the coarsest with the times that were enough there."""
+        tolerance, count = self.tolerance, times.low.gas.shape[1]
+        shift = times.high.harmonics - times.low.harmonics
+        states = [times.low]
+        best = Extrapolated(times.high.over_pressure, float("inf"), times.high.harmonics)
+        for place, rung in enumerate(RUNGS[1:], start=1):
+            grid = self.ladder.grid(rung)
+            nodes = f"{grid.rows} × {grid.columns} nodes"
+            if _memory(grid.rows, grid.columns, count) > PLANAR_MEMORY.most:
+                known = f"known to {best.error / abs(best.over_pressure):.2g} of the over-pressure"
+                status = f"{known}; {tolerance:.2g} would take more memory than allowed"
+                return Climb(best, states[-1], self.iterations, False, status)
+            states.append(self.solved(rung, count, _moved(self.ladder.film, states[-1], grid)))
+            if not states[-1].converged:
+                status = f"stopped: Newton's method failed on {nodes}"
+                return Climb(best, states[-1], self.iterations, False, status)
+            if place < 2:
+                continue
+            space = _irregular if self.ladder.cut else _richardson
+            value, harmonics, error = space(states)
+            value += times.correction
+            error += times.doubt + 1e-13
+            best = Extrapolated(value, error, harmonics + shift)
+            if error <= tolerance * abs(value):
+                solved = f"solved to {error / abs(value):.1g} of the over-pressure on {nodes}"
+                status = f"{solved} at {count} times"
+                return Climb(best, states[-1], self.iterations, True, status)
+        status = f"known to {best.error / abs(best.over_pressure):.2g} of the over-pressure only"
+        return Climb(best, states[-1], self.iterations, False, status)
 
 
 def _richardson(states: list[Balance]) -> tuple[float, ComplexArray, float]:

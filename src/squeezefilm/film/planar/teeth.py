@@ -13,6 +13,7 @@ import numpy as np
 from squeezefilm.errors import InputError
 from squeezefilm.film.planar.film import FilmPlanar, solve_planar
 from squeezefilm.film.planar.gap import GapFunction, PlanarGap
+from squeezefilm.film.records import ISOTHERMAL, FilmGas
 from squeezefilm.quantities import Dimensionless, FloatArray, checked_numbers, require
 
 _PHASES = 5
@@ -56,9 +57,7 @@ def compare_teeth(
     tooth_width: Dimensionless,
     tooth_pitch: Dimensionless,
     aspect_ratio: Dimensionless = 1.0,
-    polytropic_exponent: Dimensionless = 1.0,
-    knudsen_number: Dimensionless = 0.0,
-    slip: str = "first",
+    gas: FilmGas = ISOTHERMAL,
     tolerance: Dimensionless = 1e-2,
 ) -> ToothedFilm:
     """The over-pressure under a rectangular finger on a toothed surface, against a smooth one.
@@ -79,39 +78,11 @@ def compare_teeth(
             f"tooth_width = {tooth_width:.4g} exceeds tooth_pitch = {tooth_pitch:.4g}; "
             "a tooth must be at most as wide as its pitch"
         )
-
-    def solved(
-        under: GapFunction, sigma: float, aspect: float, cells: tuple[int, int] | None = None
-    ) -> FilmPlanar:
-        return solve_planar(
-            "rectangle",
-            under,
-            sigma,
-            aspect_ratio=aspect,
-            cells=cells,
-            tolerance=tolerance,
-            polytropic_exponent=polytropic_exponent,
-            knudsen_number=knudsen_number,
-            slip=slip,
-        )
-
-    surface = solved(gap, squeeze_number, aspect_ratio)
-    # Midpoints in the finger's half length: the wave need not fit it a whole number of times.
-    centres = (np.arange(_PHASES) + 0.5) / (2 * _PHASES) if gap.wave_number > 0 else np.zeros(1)
+    surface = solve_planar(
+        "rectangle", gap, squeeze_number, aspect_ratio=aspect_ratio, gas=gas, tolerance=tolerance
+    )
     local = squeeze_number * tooth_width**2
-    # Ridges: a groove, a flank or a crest at the middle of the tooth; the flank counts twice.
-    ridged = gap.ridge_height > 0.0
-    shifts = ((0.0, 0.25), (0.5 * np.pi, 0.5), (np.pi, 0.25)) if ridged else ((0.0, 1.0),)
-    cells = (2 * max(4, int(np.ceil(gap.ridge_wave_number * tooth_width / 2))), 8)
-    total = 0.0
-    for amplitude in gap.excursion_ratio * np.abs(np.cos(gap.wave_number * centres)):
-        # At a node of the wave a tooth carries nothing, and less than can be computed.
-        if amplitude < 1e-3 * gap.excursion_ratio:
-            continue
-        for shift, share in shifts:
-            on_tooth = _tooth_gap(gap, float(amplitude), tooth_width, shift)
-            film = solved(on_tooth, local, aspect_ratio / tooth_width, cells if ridged else None)
-            total += share * film.over_pressure / centres.size
+    total = _over_teeth(gap, local, tooth_width, aspect_ratio / tooth_width, gas, tolerance)
     toothed = total * tooth_width / tooth_pitch
     ratio = toothed / surface.over_pressure
     return ToothedFilm(
@@ -124,3 +95,40 @@ def compare_teeth(
         surface=surface,
         status=f"a toothed surface gives {ratio:.2g} of the continuous surface's over-pressure",
     )
+
+
+def _over_teeth(
+    gap: PlanarGap,
+    squeeze_number: float,
+    width: float,
+    aspect_ratio: float,
+    gas: FilmGas,
+    tolerance: float,
+) -> float:
+    """The over-pressure on teeth, over their places along the wave and those of ridges on them.
+
+    `squeeze_number` and `aspect_ratio` are a tooth's, on its `width` in the finger's length.
+    """
+    # Midpoints in the finger's half length: the wave need not fit it a whole number of times.
+    centres = (np.arange(_PHASES) + 0.5) / (2 * _PHASES) if gap.wave_number > 0 else np.zeros(1)
+    # Ridges: a groove, a flank or a crest at the middle of the tooth; the flank counts twice.
+    ridged = gap.ridge_height > 0.0
+    shifts = ((0.0, 0.25), (0.5 * np.pi, 0.5), (np.pi, 0.25)) if ridged else ((0.0, 1.0),)
+    cells = (2 * max(4, int(np.ceil(gap.ridge_wave_number * width / 2))), 8)
+    total = 0.0
+    for amplitude in gap.excursion_ratio * np.abs(np.cos(gap.wave_number * centres)):
+        # At a node of the wave a tooth carries nothing, and less than can be computed.
+        if amplitude < 1e-3 * gap.excursion_ratio:
+            continue
+        for shift, share in shifts:
+            film = solve_planar(
+                "rectangle",
+                _tooth_gap(gap, float(amplitude), width, shift),
+                squeeze_number,
+                aspect_ratio=aspect_ratio,
+                cells=cells if ridged else None,
+                gas=gas,
+                tolerance=tolerance,
+            )
+            total += share * film.over_pressure / centres.size
+    return total

@@ -15,9 +15,8 @@ import numpy as np
 
 from squeezefilm.errors import ConvergenceError, InputError
 from squeezefilm.film.compiled import announce
-from squeezefilm.film.line_grid import Gap, Shape, gap_table, line_grid, mean_over
-from squeezefilm.film.records import Aim, Gas
-from squeezefilm.film.slip import slip_law
+from squeezefilm.film.line_grid import Gap, LineGrid, Shape, gap_table, line_grid, mean_over
+from squeezefilm.film.records import ISOTHERMAL, Aim, FilmGas, Gas
 from squeezefilm.film.solved_range import require_film
 from squeezefilm.film.transient.kernel import (
     BACKWARD_EULER,
@@ -34,6 +33,7 @@ from squeezefilm.quantities import (
     DimensionlessArray,
     DimensionlessLike,
     FloatArray,
+    IntArray,
     checked_numbers,
     require,
     require_one_of,
@@ -100,9 +100,7 @@ def solve_transient(
     steps: int = 1000,
     cells: int = 64,
     shape: Shape = "strip",
-    polytropic_exponent: Dimensionless = 1.0,
-    knudsen_number: Dimensionless = 0.0,
-    slip: str = "first",
+    gas: FilmGas = ISOTHERMAL,
     initial_pressure: DimensionlessLike = 1.0,
     snapshots: int = 11,
     scheme: Scheme = "bdf2",
@@ -123,7 +121,7 @@ def solve_transient(
     Holds for 0 < P, isothermal (n = 1) to adiabatic (1.4), viscous flow (h ≲ 10 µm at 40 kHz).
     Source: Gross, Gas Film Lubrication (1962); SDIRK2: Alexander, 10.1137/0714068.
     """
-    check_film(shape, squeeze_number, polytropic_exponent, knudsen_number)
+    check_film(shape, squeeze_number, gas.polytropic_exponent, gas.knudsen_number)
     announce(march, "film solver in time", 4)
     require("end", end, above=start)
     require("steps", steps, at_least=1)
@@ -136,58 +134,68 @@ def solve_transient(
             f"for each of {cells} cells",
             quantity="initial_pressure",
         )
-    law = slip_law(slip, knudsen_number)
-    stage_times(scheme)
-    grid = line_grid(shape, cells, squeeze_number, mean_over(gap, np.linspace(start, end, 9)))
-    dt = (end - start) / steps
-    time: FloatArray = start + dt * np.arange(steps + 1, dtype=np.float64)
-    n = float(polytropic_exponent)
-
-    H_start = gap_table(gap, grid.centre, time[:1])[0]
     pressure = np.broadcast_to(np.asarray(initial_pressure, dtype=float), (cells,))
-    m = pressure ** (1.0 / n) * H_start
-    gas = float(grid.volume @ m)
-    load = np.empty(steps + 1)
-    load[0] = grid.volume @ pressure / grid.volume.sum()
     kept = np.unique(np.linspace(0, steps, snapshots).round().astype(np.int64))
-    field = np.empty((kept.size, cells))
-    keep = np.full(steps + 1, -1, dtype=np.int64)
+    asked = _Asked(gap, squeeze_number, shape, gas, scheme, start, end, steps)
+    return _followed(asked, pressure, kept)
+
+
+@dataclass(frozen=True)
+class _Asked:
+    """What is to be followed, and in which steps."""
+
+    gap: Gap
+    squeeze_number: float
+    shape: Shape
+    gas: FilmGas
+    scheme: Scheme
+    start: float
+    end: float
+    steps: int
+
+    @property
+    def time_step(self) -> float:
+        """One step (rad)."""
+        return (self.end - self.start) / self.steps
+
+    @property
+    def time(self) -> FloatArray:
+        """The ends of the steps (rad), the start before them (steps + 1,)."""
+        return self.start + self.time_step * np.arange(self.steps + 1, dtype=np.float64)
+
+
+@dataclass(frozen=True)
+class _Marched:
+    """How far a march came: the steps `done`, the last and the `worst` change that Newton's method
+    left in a step, the gas that its balances miss, and the iterations."""
+
+    done: int
+    change: float
+    worst: float
+    closure: float
+    iterations: int
+
+
+def _followed(asked: _Asked, pressure: FloatArray, kept: IntArray) -> FilmTransient:
+    """The film from a `pressure` in each cell, its field after the steps `kept`."""
+    gas, time = asked.gas.compiled(), asked.time
+    over = np.linspace(asked.start, asked.end, 9)
+    grid = line_grid(asked.shape, pressure.size, asked.squeeze_number, mean_over(asked.gap, over))
+    H_start = gap_table(asked.gap, grid.centre, time[:1])[0]
+    m = pressure ** (1.0 / gas.polytropic_exponent) * H_start
+    held = float(grid.volume @ m)
+    load, field = np.empty(time.size), np.empty((kept.size, pressure.size))
+    load[0] = grid.volume @ pressure / grid.volume.sum()
+    keep = np.full(time.size, -1, dtype=np.int64)
     keep[kept] = np.arange(kept.size)
     if kept.size:
         field[0] = pressure
-
-    worst, iterations, done, closure = 0.0, 0, 0, 0.0
-    before = m.copy()
-    chunk = max(1, _CHUNK // (2 * len(stage_times(scheme)) * cells))
-    while done < steps:
-        # BDF2 needs one step to start from; the one-step SDIRK2 of the same order makes it.
-        how: Scheme = "sdirk2" if scheme == "bdf2" and done == 0 else scheme
-        count = 1 if how != scheme else min(chunk, steps - done)
-        at: FloatArray = (time[done : done + count, None] + dt * stage_times(how)).ravel()
-        held = _gas_balanced(grid.volume, m, before, how)
-        now = slice(done + 1, done + count + 1)
-        lost, change, made, reached = march(
-            m,
-            before,
-            Gaps(gap_table(gap, grid.centre, at), gap_table(gap, grid.face, at)),
-            Line(grid.volume, grid.conductance),
-            Pace(dt, float(squeeze_number), SCHEMES[how]),
-            Gas(n, float(knudsen_number), law),
-            NEWTON,
-            Track(load[now], field, keep[now]),
-        )
-        closure += abs(_gas_balanced(grid.volume, m, before, how) - held + lost)
-        worst = max(worst, change) if np.isfinite(change) else float("nan")
-        iterations += made
-        done += reached
-        if reached < count:
-            break
-
-    finished = done == steps
+    ended = _marched(asked, gas, grid, m, Track(load, field, keep))
+    done, finished = ended.done, ended.done == asked.steps
     status = (
-        f"followed over {steps} steps to T = {end:.4g}"
+        f"followed over {asked.steps} steps to T = {asked.end:.4g}"
         if finished
-        else f"stopped at T = {time[done]:.4g}: a step did not converge (change {change:.2g})"
+        else f"stopped at T = {time[done]:.4g}: a step did not converge (change {ended.change:.2g})"
     )
     inside = kept <= done
     result = FilmTransient(
@@ -196,22 +204,55 @@ def solve_transient(
         position=grid.centre,
         snapshot_time=time[kept[inside]],
         pressure=field[inside],
-        mass_residual=closure / gas,
-        residual=worst,
-        iterations=iterations,
+        mass_residual=ended.closure / held,
+        residual=ended.worst,
+        iterations=ended.iterations,
         status=status,
-        squeeze_number=squeeze_number,
-        polytropic_exponent=polytropic_exponent,
-        knudsen_number=knudsen_number,
-        slip=slip,
-        shape=shape,
-        scheme=scheme,
+        squeeze_number=asked.squeeze_number,
+        polytropic_exponent=asked.gas.polytropic_exponent,
+        knudsen_number=asked.gas.knudsen_number,
+        slip=asked.gas.slip,
+        shape=asked.shape,
+        scheme=asked.scheme,
     )
     if not finished:
         raise ConvergenceError(
-            f"the transient {status}; take more steps (now {steps})",
+            f"the transient {status}; take more steps (now {asked.steps})",
             partial=result,
-            residual=worst,
-            iterations=iterations,
+            residual=ended.worst,
+            iterations=ended.iterations,
         )
     return result
+
+
+def _marched(asked: _Asked, gas: Gas, grid: LineGrid, m: FloatArray, track: Track) -> _Marched:
+    """March on from the gas `m`, which is changed, to the end or to a step that fails."""
+    dt, time, scheme = asked.time_step, asked.time, asked.scheme
+    line = Line(grid.volume, grid.conductance)
+    worst, iterations, done, closure = 0.0, 0, 0, 0.0
+    before = m.copy()
+    chunk = max(1, _CHUNK // (2 * len(stage_times(scheme)) * m.size))
+    while done < asked.steps:
+        # BDF2 needs one step to start from; the one-step SDIRK2 of the same order makes it.
+        how: Scheme = "sdirk2" if scheme == "bdf2" and done == 0 else scheme
+        count = 1 if how != scheme else min(chunk, asked.steps - done)
+        at: FloatArray = (time[done : done + count, None] + dt * stage_times(how)).ravel()
+        held = _gas_balanced(grid.volume, m, before, how)
+        now = slice(done + 1, done + count + 1)
+        lost, change, made, reached = march(
+            m,
+            before,
+            Gaps(gap_table(asked.gap, grid.centre, at), gap_table(asked.gap, grid.face, at)),
+            line,
+            Pace(dt, float(asked.squeeze_number), SCHEMES[how]),
+            gas,
+            NEWTON,
+            Track(track.load[now], track.field, track.keep[now]),
+        )
+        closure += abs(_gas_balanced(grid.volume, m, before, how) - held + lost)
+        worst = max(worst, change) if np.isfinite(change) else float("nan")
+        iterations += made
+        done += reached
+        if reached < count:
+            break
+    return _Marched(done, change, worst, closure, iterations)

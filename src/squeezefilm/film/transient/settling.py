@@ -13,8 +13,7 @@ import numpy as np
 from squeezefilm.errors import ConvergenceError
 from squeezefilm.film.compiled import announce
 from squeezefilm.film.line_grid import Gap, Shape, gap_table, line_grid, mean_over
-from squeezefilm.film.records import Gas
-from squeezefilm.film.slip import slip_law
+from squeezefilm.film.records import ISOTHERMAL, FilmGas
 from squeezefilm.film.transient.kernel import Gaps, Line, Pace, Track, march
 from squeezefilm.film.transient.march import (
     NEWTON,
@@ -103,9 +102,7 @@ def settle_to_periodic(
     tolerance: Dimensionless | None = 1e-3,
     cells: int = 24,
     steps: int = 32,
-    polytropic_exponent: Dimensionless = 1.0,
-    knudsen_number: Dimensionless = 0.0,
-    slip: str = "first",
+    gas: FilmGas = ISOTHERMAL,
     scheme: Scheme = "bdf2",
     accelerate: bool = True,
     settled: Dimensionless = 1e-10,
@@ -125,7 +122,7 @@ def settle_to_periodic(
     best state had where the march does not settle or `max_cells` do not reach the tolerance.
     Holds for isothermal (1) to adiabatic (1.4) viscous flow at any σ and excursion below 1.
     """
-    check_film(shape, squeeze_number, polytropic_exponent, knudsen_number)
+    check_film(shape, squeeze_number, gas.polytropic_exponent, gas.knudsen_number)
     announce(march, "film solver in time", 4)
     require("cells", cells, at_least=4)
     require("steps", steps, at_least=4)
@@ -134,29 +131,11 @@ def settle_to_periodic(
     require("settled", settled, at_least=1e-14)
     if tolerance is not None:
         require("tolerance", tolerance, at_least=1e-9)
-    asked = _Asked(
-        gap,
-        squeeze_number,
-        shape,
-        polytropic_exponent,
-        knudsen_number,
-        slip,
-        scheme,
-        accelerate,
-        settled,
-        max_periods,
-    )
+    asked = _Asked(gap, squeeze_number, shape, gas, scheme, accelerate, settled, max_periods)
     history: list[FilmSettled] = []
     guess: tuple[FloatArray, FloatArray] | None = None
     while True:
         result, guess = _settle(asked, cells, steps, guess)
-        if result.residual > settled:
-            raise ConvergenceError(
-                f"the film {result.status}; allow more periods (now {max_periods})",
-                partial=result,
-                residual=result.residual,
-                iterations=result.periods,
-            )
         history.append(result)
         if tolerance is None:
             return result
@@ -198,55 +177,99 @@ class _Asked:
     gap: Gap
     squeeze_number: float
     shape: Shape
-    polytropic_exponent: float
-    knudsen_number: float
-    slip: str
+    gas: FilmGas
     scheme: Scheme
     accelerate: bool
     settled: float
     max_periods: int
 
 
+@dataclass(frozen=True)
+class _Marched:
+    """Where a march ended: the gas held now and, for `bdf2`, a step before (rows × cells), the
+    largest relative change of the last period, the gas lost over it, and the effort."""
+
+    gas: FloatArray
+    change: float
+    lost: float
+    periods: int
+    iterations: int
+
+
 def _settle(
     asked: _Asked, cells: int, steps: int, guess: tuple[FloatArray, FloatArray] | None
 ) -> tuple[FilmSettled, tuple[FloatArray, FloatArray]]:
-    gap, sigma, shape, scheme = asked.gap, asked.squeeze_number, asked.shape, asked.scheme
-    n, knudsen = asked.polytropic_exponent, asked.knudsen_number
-    grid = line_grid(shape, cells, sigma, mean_over(gap, np.pi / 4 * np.arange(8.0)))
-    stages = stage_times(scheme)
+    """The film on one grid, and its gas there as a guess for the next; raises `ConvergenceError`
+    with that film where it does not settle."""
+    sigma, gas = asked.squeeze_number, asked.gas
+    grid = line_grid(asked.shape, cells, sigma, mean_over(asked.gap, np.pi / 4 * np.arange(8.0)))
+    stages = stage_times(asked.scheme)
     dt = 2 * np.pi / steps
     at = ((np.arange(steps)[:, None] + stages) * dt).ravel()
-    gaps = Gaps(gap_table(gap, grid.centre, at), gap_table(gap, grid.face, at))
-    gas = Gas(float(n), float(knudsen), slip_law(asked.slip, knudsen))
+    gaps = Gaps(gap_table(asked.gap, grid.centre, at), gap_table(asked.gap, grid.face, at))
     if guess is None:
-        # Gas that cannot follow: m is constant in time, and ⟨H³ P^{1/n} ∂P⟩ = 0 gives its value.
-        H = gaps.cell
-        mean = (np.mean(H**3, axis=0) / np.mean(H ** (2 - n), axis=0)) ** (1 / (n + 1))
-        still = H[-1]
-        part = min(1.0, sigma / 30.0)
-        x = np.stack(
-            [still + (mean - still) * part, H[-1 - stages.size] * (1 - part) + mean * part]
-        )
+        x = _rough(gaps.cell, stages.size, gas.polytropic_exponent, min(1.0, sigma / 30.0))
     else:
         x = np.stack([np.interp(grid.centre, guess[0], row) for row in guess[1]])
-    if scheme != "bdf2":
-        x = x[:1]
     track = Track(np.empty(steps), np.empty((steps, cells)), np.arange(steps))
-    mixer = _Mixer()
+    line = Line(grid.volume, grid.conductance)
+    ended = _marched(asked, x if asked.scheme == "bdf2" else x[:1], gaps, line, track)
+    W = float(track.load.mean())
+    good = ended.change <= asked.settled
+    result = FilmSettled(
+        mean_load=W,
+        over_pressure=W - 1.0,
+        over_pressure_error=float("inf"),
+        time=dt * np.arange(1.0, steps + 1),
+        load=track.load,
+        position=grid.centre,
+        pressure=track.field.mean(axis=0),
+        residual=ended.change,
+        mass_residual=abs(ended.lost) / float(grid.volume @ ended.gas[0]),
+        periods=ended.periods,
+        iterations=ended.iterations,
+        cells=cells,
+        steps=steps,
+        status=(
+            f"settled in {ended.periods} periods of {steps} steps on {cells} cells"
+            if good
+            else f"did not settle in {ended.periods} periods (change {ended.change:.2g} a period)"
+        ),
+        squeeze_number=sigma,
+        polytropic_exponent=gas.polytropic_exponent,
+        knudsen_number=gas.knudsen_number,
+        slip=gas.slip,
+        shape=asked.shape,
+        scheme=asked.scheme,
+    )
+    if result.residual > asked.settled:
+        raise ConvergenceError(
+            f"the film {result.status}; allow more periods (now {asked.max_periods})",
+            partial=result,
+            residual=result.residual,
+            iterations=result.periods,
+        )
+    return result, (grid.centre, ended.gas[:2])
+
+
+def _rough(H: FloatArray, stages: int, n: float, part: float) -> FloatArray:
+    """The gas to start from, now and a step before: `part` of the way from gas at rest to gas that
+    cannot follow, whose m is constant in time, so that ⟨H³ P^{1/n} ∂P⟩ = 0 gives its value."""
+    mean = (np.mean(H**3, axis=0) / np.mean(H ** (2 - n), axis=0)) ** (1 / (n + 1))
+    still = H[-1]
+    return np.stack([still + (mean - still) * part, H[-1 - stages] * (1 - part) + mean * part])
+
+
+def _marched(asked: _Asked, x: FloatArray, gaps: Gaps, line: Line, track: Track) -> _Marched:
+    """March period after period from the gas `x` until it repeats, or the periods are spent."""
+    steps = track.load.size
+    pace = Pace(2 * np.pi / steps, float(asked.squeeze_number), SCHEMES[asked.scheme])
+    gas, mixer = asked.gas.compiled(), _Mixer()
     change, lost, iterations, periods = np.inf, 0.0, 0, 0
     while periods < asked.max_periods:
         periods += 1
         m, before = x[0].copy(), x[-1].copy()
-        lost, _, made, done = march(
-            m,
-            before,
-            gaps,
-            Line(grid.volume, grid.conductance),
-            Pace(dt, float(sigma), SCHEMES[scheme]),
-            gas,
-            NEWTON,
-            track,
-        )
+        lost, _, made, done = march(m, before, gaps, line, pace, gas, NEWTON, track)
         iterations += made
         if done < steps:
             change = float("inf")
@@ -257,32 +280,4 @@ def _settle(
             x = image
             break
         x = mixer.next(x, image) if asked.accelerate else image
-    W = float(track.load.mean())
-    good = change <= asked.settled
-    result = FilmSettled(
-        mean_load=W,
-        over_pressure=W - 1.0,
-        over_pressure_error=float("inf"),
-        time=dt * np.arange(1.0, steps + 1),
-        load=track.load,
-        position=grid.centre,
-        pressure=track.field.mean(axis=0),
-        residual=change,
-        mass_residual=abs(lost) / float(grid.volume @ x[0]),
-        periods=periods,
-        iterations=iterations,
-        cells=cells,
-        steps=steps,
-        status=(
-            f"settled in {periods} periods of {steps} steps on {cells} cells"
-            if good
-            else f"did not settle in {periods} periods (change {change:.2g} a period)"
-        ),
-        squeeze_number=sigma,
-        polytropic_exponent=n,
-        knudsen_number=knudsen,
-        slip=asked.slip,
-        shape=shape,
-        scheme=scheme,
-    )
-    return result, (grid.centre, x[:2])
+    return _Marched(x, change, lost, periods, iterations)

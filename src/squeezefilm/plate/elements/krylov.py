@@ -68,29 +68,12 @@ def modes_near(
     X = solve(slabs.mass_times(start))
     before: FloatArray | None = None
     for step in range(1, most_steps + 1):
-        for _ in range(2):
-            X = X - Q @ (MQ.T @ X)
-        MX = slabs.mass_times(X)
-        gram = X.T @ MX
-        size, turn = np.linalg.eigh((gram + gram.T) / 2)
-        good = size > 1e-13 * max(size[-1], 1e-300)
-        if not good.any():
+        X, MX = _orthonormal(slabs, X, Q, MQ)
+        if not X.shape[1]:
             break
-        scale = turn[:, good] / np.sqrt(size[good])
-        X, MX = X @ scale, MX @ scale
-        # A second pass: the first divides by small numbers where the block is near a mode.
-        again = MX.T @ X
-        lower = np.linalg.inv(np.linalg.cholesky((again + again.T) / 2)).T
-        X, MX = X @ lower, MX @ lower
         Q, MQ = np.concatenate([Q, X], axis=1), np.concatenate([MQ, MX], axis=1)
         X = solve(MX)
-        new = MQ.T @ X
-        old = H.shape[0]
-        grown = np.empty((Q.shape[1], Q.shape[1]))
-        grown[:old, :old] = H
-        grown[:, old:] = new
-        grown[old:, :] = new.T
-        H = (grown + grown.T) / 2
+        H = _grown(H, MQ.T @ X)
         inverse, turn = eigh(H)
         keep = np.abs(inverse) > 1e-30
         values = shift + 1 / inverse[keep]
@@ -117,6 +100,37 @@ def modes_near(
         f"the modes did not converge in {most_steps} steps; ask for a narrower band or fewer modes",
         iterations=most_steps,
     )
+
+
+def _orthonormal(
+    slabs: Slabs, X: FloatArray, Q: FloatArray, MQ: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """A block orthonormal in mass to itself and to the basis Q, and M times it; directions that
+    the basis has are left out."""
+    for _ in range(2):
+        X = X - Q @ (MQ.T @ X)
+    MX = slabs.mass_times(X)
+    gram = X.T @ MX
+    size, turn = np.linalg.eigh((gram + gram.T) / 2)
+    good = size > 1e-13 * max(size[-1], 1e-300)
+    if not good.any():
+        return X[:, good], MX[:, good]
+    scale = turn[:, good] / np.sqrt(size[good])
+    X, MX = X @ scale, MX @ scale
+    # A second pass: the first divides by small numbers where the block is near a mode.
+    again = MX.T @ X
+    lower = np.linalg.inv(np.linalg.cholesky((again + again.T) / 2)).T
+    return X @ lower, MX @ lower
+
+
+def _grown(H: FloatArray, new: FloatArray) -> FloatArray:
+    """The symmetric projection with the columns of a new block, and the rows that mirror them."""
+    old = H.shape[0]
+    grown = np.empty((new.shape[0], new.shape[0]))
+    grown[:old, :old] = H
+    grown[:, old:] = new
+    grown[old:, :] = new.T
+    return np.asarray((grown + grown.T) / 2)
 
 
 def prolonged(source: Slabs, target: Slabs, vectors: FloatArray) -> FloatArray:

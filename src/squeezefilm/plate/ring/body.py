@@ -11,7 +11,6 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from squeezefilm.errors import InputError
-from squeezefilm.materials import ElasticMaterial
 from squeezefilm.plate.layout import AnnularStator, DiscPlate
 from squeezefilm.plate.ring.modes import AnnularMode, bending_mode
 from squeezefilm.plate.ring.section import (
@@ -102,30 +101,10 @@ def stator_assumptions(actuator: AnnularStator) -> StatorAssumptions:
 
 
 def _disc(disc: DiscPlate) -> RingBody:
-    whole = disc.substrate.quality_factor is None
-    glue = disc.glue
-    layer = None
-    if glue is not None:
-        layer = ElasticMaterial(
-            "glue", glue.young_modulus, glue.poisson_ratio, glue.density, glue.quality_factor
-        )
-    section = bonded_disc(
-        diameter=disc.diameter,
-        thickness=disc.thickness,
-        plate=disc.substrate,
-        ceramic=disc.ceramic,
-        ceramic_outer_diameter=disc.ceramic_outer_diameter,
-        ceramic_thickness=disc.ceramic_thickness,
-        ceramic_inner_diameter=disc.ceramic_inner_diameter,
-        inner_diameter=disc.inner_diameter,
-        glue=layer,
-        glue_thickness=0.0 if glue is None else glue.thickness,
-        loss_factor=1 / disc.quality_factor if whole else None,
-    )
     m = disc.nodal_diameters
     drive = alternate_sectors(disc.sectors, math.pi / m) if m else full_drive()
-    quality = disc.quality_factor if whole else None
-    return RingBody(section, drive, (disc.nodal_circles, m), quality)
+    quality = disc.quality_factor if disc.substrate.quality_factor is None else None
+    return RingBody(bonded_disc(disc), drive, (disc.nodal_circles, m), quality)
 
 
 @checked_numbers

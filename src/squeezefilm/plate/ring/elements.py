@@ -28,6 +28,8 @@ _SAME = 5e-10
 # Radius over thickness: a plain disc of 500 still has its lowest frequency to 1e-3.
 _THINNEST_BODY, _THINNEST_LAYER = 500.0, 20000.0
 _RADIAL, _HOOP, _AXIAL, _POTENTIAL = range(4)
+_Triple = tuple[np.ndarray, np.ndarray, FloatArray]
+"""Rows, columns and values of entries of a matrix."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,30 +131,18 @@ def harmonic_system(
     unknown, sign, count, potentials, used = _unknowns(section, mesh, harmonic, degree, r, z)
     total = count + potentials
     local = np.arange(degree + 1)
-    points, weights = gauss_points(degree + 3)
-    value, slope = lagrange(degree, tuple(points))
-    triples: list[tuple[np.ndarray, np.ndarray, FloatArray]] = []
-    masses: list[tuple[np.ndarray, np.ndarray, FloatArray]] = []
-    per_layer: list[list[tuple[np.ndarray, np.ndarray, FloatArray]]] = [[] for _ in section.layers]
+    nodes = local.size**2
+    triples: list[_Triple] = []
+    masses: list[_Triple] = []
+    per_layer: list[list[_Triple]] = [[] for _ in section.layers]
     force = np.zeros(total + 1)
     capacitance = 0.0
     angular = 2 * np.pi if harmonic == 0 else np.pi
     for i, j in zip(*np.nonzero(mesh.layer >= 0), strict=True):
         layer = section.layers[mesh.layer[i, j]]
-        half_r = (mesh.r_edges[i + 1] - mesh.r_edges[i]) / 2
-        half_z = (mesh.z_edges[j + 1] - mesh.z_edges[j]) / 2
-        radius = (mesh.r_edges[i] + mesh.r_edges[i + 1]) / 2 + half_r * points
-        shape = np.einsum("ga,hb->ghab", value, value)
-        along_r = np.einsum("ga,hb->ghab", slope, value) / half_r
-        along_z = np.einsum("ga,hb->ghab", value, slope) / half_z
-        over_r = shape / radius[:, None, None, None]
-        nodes = shape.shape[2] * shape.shape[3]
-        flat = (-1, nodes)
-        B = _strains(harmonic, *(x.reshape(flat) for x in (along_r, along_z, over_r)))
-        area = (np.outer(weights * radius * half_r, weights) * half_z).ravel()
+        N, B, area = _element(harmonic, degree, mesh.r_edges[i : i + 2], mesh.z_edges[j : j + 2])
         law = _constitutive(layer)
         stiff = angular * np.einsum("gsi,st,gtj,g->ij", B, law, B, area, optimize=True)
-        N = shape.reshape(flat)
         inertia = angular * layer.solid.density * (N.T * area) @ N
         grid = (i * degree + local)[:, None] * z.size + (j * degree + local)[None, :]
         rows = unknown[grid.ravel()].T.ravel()
@@ -185,6 +175,25 @@ def harmonic_system(
         sign=sign[used],
         layer_stiffness=tuple(_gather(part, count) for part in per_layer),
     )
+
+
+def _element(
+    m: int, degree: int, r: FloatArray, z: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Of the cell between two radii and two heights (m), at its Gauss points: N (points, nodes), B
+    as `_strains` has it, and the area with the radius in it, r dr dz (points,)."""
+    points, weights = gauss_points(degree + 3)
+    value, slope = lagrange(degree, tuple(points))
+    half_r, half_z = (r[1] - r[0]) / 2, (z[1] - z[0]) / 2
+    radius = (r[0] + r[1]) / 2 + half_r * points
+    shape = np.einsum("ga,hb->ghab", value, value)
+    along_r = np.einsum("ga,hb->ghab", slope, value) / half_r
+    along_z = np.einsum("ga,hb->ghab", value, slope) / half_z
+    over_r = shape / radius[:, None, None, None]
+    flat = (-1, (degree + 1) ** 2)
+    B = _strains(m, *(x.reshape(flat) for x in (along_r, along_z, over_r)))
+    area = (np.outer(weights * radius * half_r, weights) * half_z).ravel()
+    return shape.reshape(flat), B, area
 
 
 def _strains(m: int, along_r: FloatArray, along_z: FloatArray, over_r: FloatArray) -> FloatArray:
@@ -269,14 +278,12 @@ def _unique(values: list[float]) -> list[float]:
     return [x for k, x in enumerate(ordered) if k == 0 or x - ordered[k - 1] > _SAME]
 
 
-def _entries(rows: np.ndarray, block: FloatArray) -> tuple[np.ndarray, np.ndarray, FloatArray]:
+def _entries(rows: np.ndarray, block: FloatArray) -> _Triple:
     keep = rows >= 0
     rows, block = rows[keep], block[np.ix_(keep, keep)]
     return np.repeat(rows, rows.size), np.tile(rows, rows.size), block.ravel()
 
 
-def _gather(
-    triples: list[tuple[np.ndarray, np.ndarray, FloatArray]], size: int
-) -> sparse.csc_matrix:
+def _gather(triples: list[_Triple], size: int) -> sparse.csc_matrix:
     row, column, entries = (np.concatenate([t[k] for t in triples]) for k in range(3))
     return sparse.coo_matrix((entries, (row, column)), shape=(size, size)).tocsc()

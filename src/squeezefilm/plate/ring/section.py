@@ -4,24 +4,18 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
 import numpy as np
 
 from squeezefilm.errors import GeometryError, InputError
-from squeezefilm.materials import ElasticMaterial, Piezoceramic
-from squeezefilm.plate.ring.materials import (
-    RingSolid,
-    isotropic_solid,
-    piezoceramic_solid,
-    soft_teeth,
-)
+from squeezefilm.materials import ElasticMaterial
+from squeezefilm.plate.layout import DiscPlate
+from squeezefilm.plate.ring.materials import RingSolid, isotropic_solid, piezoceramic_solid
 from squeezefilm.quantities import (
     Above,
     AtLeast,
-    Dimensionless,
     Kilogram,
     Metre,
     Radian,
@@ -208,90 +202,24 @@ def full_drive() -> SectorDrive:
     return SectorDrive(((0.0, 2 * math.pi, 1),))
 
 
-@checked_numbers
-def motor_stator(
-    *,
-    mean_diameter: Metre,
-    radial_width: Metre,
-    ring_thickness: Metre,
-    ceramic_thickness: Metre,
-    metal: ElasticMaterial,
-    ceramic: Piezoceramic,
-    tooth_height: Metre = 0.0,
-    tooth_fill: Dimensionless = 0.8,
-    teeth: Callable[[RingSolid, float], RingSolid] = soft_teeth,
-    web_thickness: Metre = 0.0,
-    web_inner_radius: Metre = 0.0,
-    loss_factor: Dimensionless | None = None,
-) -> AnnularSection:
-    """The section of a travelling-wave motor's stator: ceramic below, metal ring, teeth on top.
-
-    A thin web (with its lower face level with the ring's) reaches inwards to `web_inner_radius` if
-    `web_thickness` is not 0. `teeth` is `soft_teeth` or `stiff_teeth`, the two bounds of the tooth
-    layer; `tooth_fill` the share of the circumference that is tooth.
-    Raises `GeometryError` for a web that is not inside the ring.
-    """
-    require("mean_diameter", mean_diameter, _M, above=0)
-    require("radial_width", radial_width, _M, above=0, below=mean_diameter)
-    require("ring_thickness", ring_thickness, _M, above=0)
-    require("tooth_height", tooth_height, _M, at_least=0)
-    require("web_thickness", web_thickness, _M, at_least=0, at_most=ring_thickness)
-    inner, outer = (mean_diameter - radial_width) / 2, (mean_diameter + radial_width) / 2
-    solid = isotropic_solid(metal, loss_factor)
-    base = ceramic_thickness
-    layers = [
-        RingLayer(inner, outer, 0.0, base, piezoceramic_solid(ceramic, loss_factor)),
-        RingLayer(inner, outer, base, base + ring_thickness, solid),
-    ]
-    if tooth_height > 0:
-        low = base + ring_thickness
-        layers.append(RingLayer(inner, outer, low, low + tooth_height, teeth(solid, tooth_fill)))
-    if web_thickness > 0:
-        if not 0 <= web_inner_radius < inner:
-            raise GeometryError(
-                f"web_inner_radius = {format_quantity(web_inner_radius, _M)} is not inside the "
-                f"ring, which begins at {format_quantity(inner, _M)}"
-            )
-        layers.append(RingLayer(web_inner_radius, inner, base, base + web_thickness, solid))
-    return AnnularSection(tuple(layers), wave_diameter=mean_diameter)
-
-
-@checked_numbers
-def bonded_disc(
-    *,
-    diameter: Metre,
-    thickness: Metre,
-    plate: ElasticMaterial,
-    ceramic: Piezoceramic,
-    ceramic_outer_diameter: Metre,
-    ceramic_thickness: Metre,
-    ceramic_inner_diameter: Metre = 0.0,
-    inner_diameter: Metre = 0.0,
-    glue: ElasticMaterial | None = None,
-    glue_thickness: Metre = 0.0,
-    loss_factor: Dimensionless | None = None,
-) -> AnnularSection:
+def bonded_disc(disc: DiscPlate) -> AnnularSection:
     """The section of a disc display (T-PaD): a glass disc with a ceramic disc or ring below.
 
-    The bond is perfect, or a layer of `glue`. `inner_diameter` makes the disc an annulus. Without
-    `loss_factor` each material has its own, where it has one.
-    Raises `GeometryError` for a ceramic that overhangs the disc.
+    The bond is perfect, or a layer of glue. The loss of the whole assembly counts in every
+    material, unless the substrate has its own.
     """
-    if ceramic_outer_diameter > diameter + _SAME:
-        raise GeometryError(
-            f"the ceramic of diameter {format_quantity(ceramic_outer_diameter, _M)} overhangs the "
-            f"disc of {format_quantity(diameter, _M)}; make it smaller"
-        )
-    solid = isotropic_solid(plate, loss_factor)
-    piezo = piezoceramic_solid(ceramic, loss_factor)
-    inner, outer = ceramic_inner_diameter / 2, ceramic_outer_diameter / 2
-    base = ceramic_thickness
+    loss_factor = 1 / disc.quality_factor if disc.substrate.quality_factor is None else None
+    inner, outer = disc.ceramic_inner_diameter / 2, disc.ceramic_outer_diameter / 2
+    base, glue = disc.ceramic_thickness, disc.glue
+    piezo = piezoceramic_solid(disc.ceramic, loss_factor)
     layers = [RingLayer(inner, outer, 0.0, base, piezo)]
     if glue is not None:
-        require("glue_thickness", glue_thickness, _M, above=0)
-        layers.append(
-            RingLayer(inner, outer, base, base + glue_thickness, isotropic_solid(glue, loss_factor))
+        bond = ElasticMaterial(
+            "glue", glue.young_modulus, glue.poisson_ratio, glue.density, glue.quality_factor
         )
-        base += glue_thickness
-    layers.append(RingLayer(inner_diameter / 2, diameter / 2, base, base + thickness, solid))
-    return AnnularSection(tuple(layers), wave_diameter=diameter)
+        top = base + glue.thickness
+        layers.append(RingLayer(inner, outer, base, top, isotropic_solid(bond, loss_factor)))
+        base = top
+    solid, half = isotropic_solid(disc.substrate, loss_factor), disc.inner_diameter / 2
+    layers.append(RingLayer(half, disc.diameter / 2, base, base + disc.thickness, solid))
+    return AnnularSection(tuple(layers), wave_diameter=disc.diameter)

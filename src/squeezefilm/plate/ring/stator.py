@@ -9,15 +9,20 @@ from typing import Literal
 
 from scipy.optimize import brentq
 
-from squeezefilm.errors import UnreachableError
+from squeezefilm.errors import GeometryError, UnreachableError
 from squeezefilm.materials import ElasticMaterial, Piezoceramic
-from squeezefilm.plate.ring.materials import soft_teeth, stiff_teeth
+from squeezefilm.plate.ring.materials import (
+    isotropic_solid,
+    piezoceramic_solid,
+    soft_teeth,
+    stiff_teeth,
+)
 from squeezefilm.plate.ring.modes import DEFAULT_DEGREE, AnnularMode, bending_mode
 from squeezefilm.plate.ring.section import (
     AnnularSection,
+    RingLayer,
     SectorDrive,
     alternate_sectors,
-    motor_stator,
 )
 from squeezefilm.quantities import (
     Dimensionless,
@@ -108,26 +113,38 @@ def stator_section(
     assumptions: StatorAssumptions,
     tooth_model: ToothModel,
 ) -> AnnularSection:
-    """The section with one ring thickness and one bound of the teeth.
+    """The section of a travelling-wave motor's stator: ceramic below, metal ring, teeth on top.
 
-    Raises `InputError` if the outer diameter does not exceed the mean diameter.
+    A thin web (with its lower face level with the ring's) reaches inwards to `web_inner_radius` if
+    `web_thickness` is not 0. `tooth_model` is one of the two bounds of the tooth layer.
+    Raises `InputError` if the outer diameter does not exceed the mean diameter, `GeometryError` for
+    a web that is not inside the ring.
     """
     a = assumptions
     require("outer_diameter", a.outer_diameter, _M, above=mean_diameter, below=2 * mean_diameter)
-    return motor_stator(
-        mean_diameter=mean_diameter,
-        radial_width=a.outer_diameter - mean_diameter,
-        ring_thickness=ring_thickness,
-        ceramic_thickness=a.ceramic_thickness,
-        metal=a.metal,
-        ceramic=a.ceramic,
-        tooth_height=a.tooth_height,
-        tooth_fill=a.tooth_fill,
-        teeth=stiff_teeth if tooth_model == "stiff" else soft_teeth,
-        web_thickness=a.web_thickness,
-        web_inner_radius=a.web_inner_radius,
-        loss_factor=1 / a.quality_factor,
-    )
+    require("ring_thickness", ring_thickness, _M, above=0)
+    require("tooth_height", a.tooth_height, _M, at_least=0)
+    require("web_thickness", a.web_thickness, _M, at_least=0, at_most=ring_thickness)
+    radial_width, loss_factor = a.outer_diameter - mean_diameter, 1 / a.quality_factor
+    inner, outer = (mean_diameter - radial_width) / 2, (mean_diameter + radial_width) / 2
+    solid = isotropic_solid(a.metal, loss_factor)
+    base = a.ceramic_thickness
+    layers = [
+        RingLayer(inner, outer, 0.0, base, piezoceramic_solid(a.ceramic, loss_factor)),
+        RingLayer(inner, outer, base, base + ring_thickness, solid),
+    ]
+    if a.tooth_height > 0:
+        low = base + ring_thickness
+        teeth = (stiff_teeth if tooth_model == "stiff" else soft_teeth)(solid, a.tooth_fill)
+        layers.append(RingLayer(inner, outer, low, low + a.tooth_height, teeth))
+    if a.web_thickness > 0:
+        if not 0 <= a.web_inner_radius < inner:
+            raise GeometryError(
+                f"web_inner_radius = {format_quantity(a.web_inner_radius, _M)} is not inside the "
+                f"ring, which begins at {format_quantity(inner, _M)}"
+            )
+        layers.append(RingLayer(a.web_inner_radius, inner, base, base + a.web_thickness, solid))
+    return AnnularSection(tuple(layers), wave_diameter=mean_diameter)
 
 
 @checked_numbers
@@ -156,47 +173,62 @@ def fit_stator(
     start = max(thinnest, a.web_thickness)  # a ring is no thinner than its web
     require("thickest", thickest, _M, above=start)
     mean_diameter = waves * wavelength / math.pi
-
-    def mode(thickness: float, model: ToothModel) -> AnnularMode:
-        section = stator_section(mean_diameter, thickness, a, model)
-        return bending_mode(section, waves, degree=degree, quality_factor=a.quality_factor)
-
-    def fit(model: ToothModel) -> float:
-        ends = [mode(t, model).frequency - frequency for t in (start, thickest)]
-        if ends[0] * ends[1] > 0:
-            raise UnreachableError(
-                f"no ring thickness from {format_quantity(start, _M)} to "
-                f"{format_quantity(thickest, _M)} puts B(0,{waves}) with {model} teeth on "
-                f"{format_quantity(frequency, _HZ)}: it lies between "
-                f"{format_quantity(ends[0] + frequency, _HZ)} and "
-                f"{format_quantity(ends[1] + frequency, _HZ)}; change the assumptions",
-                quantity="frequency",
-            )
-        return float(
-            brentq(lambda t: mode(t, model).frequency - frequency, start, thickest, xtol=1e-9)
-        )
-
-    has_teeth = a.tooth_height > 0
-    soft = fit("soft")
+    ring = _Ring(frequency, waves, mean_diameter, (start, thickest), degree, a)
+    soft = ring.thickness("soft")
     # The stiff bound may be out of reach with any metal at all; it bounds the fit, it is not it.
     try:
-        stiff = fit("stiff") if has_teeth else soft
+        stiff = ring.thickness("stiff") if a.tooth_height > 0 else soft
     except UnreachableError:
         if a.tooth_model == "stiff":
             raise
         stiff = start
     thickness = soft if a.tooth_model == "soft" else stiff
-    section = stator_section(mean_diameter, thickness, a, a.tooth_model)
-    found = mode(thickness, a.tooth_model)
+    bounds = (ring.mode(thickness, "soft").frequency, ring.mode(thickness, "stiff").frequency)
     return StatorFit(
-        section=section,
-        mode=found,
+        section=stator_section(mean_diameter, thickness, a, a.tooth_model),
+        mode=ring.mode(thickness, a.tooth_model),
         drive=alternate_sectors(a.driven_sectors, math.pi / waves),
         ring_thickness=thickness,
-        frequency_bounds=(mode(thickness, "soft").frequency, mode(thickness, "stiff").frequency),
+        frequency_bounds=bounds,
         thickness_bounds=(stiff, soft),
         assumptions=a,
         fitted={"ring_thickness": thickness},
         derived={"mean_diameter": mean_diameter},
         assumed={f.name: getattr(a, f.name) for f in dataclasses.fields(a)},
     )
+
+
+@dataclass(frozen=True)
+class _Ring:
+    """A stator but for its metal's thickness, which lies between `ends` (m) and is fitted to put
+    B(0, `waves`) on the frequency (Hz)."""
+
+    frequency: float
+    waves: int
+    mean_diameter: float
+    ends: tuple[float, float]
+    degree: int
+    assumptions: StatorAssumptions
+
+    def mode(self, thickness: float, teeth: ToothModel) -> AnnularMode:
+        """The mode with a thickness (m) and one bound of the teeth."""
+        section = stator_section(self.mean_diameter, thickness, self.assumptions, teeth)
+        quality = self.assumptions.quality_factor
+        return bending_mode(section, self.waves, degree=self.degree, quality_factor=quality)
+
+    def _above(self, thickness: float, teeth: ToothModel) -> float:
+        return self.mode(thickness, teeth).frequency - self.frequency
+
+    def thickness(self, teeth: ToothModel) -> float:
+        """The thickness (m) that has the frequency; raises `UnreachableError` where none does."""
+        ends = [self._above(t, teeth) for t in self.ends]
+        if ends[0] * ends[1] > 0:
+            raise UnreachableError(
+                f"no ring thickness from {format_quantity(self.ends[0], _M)} to "
+                f"{format_quantity(self.ends[1], _M)} puts B(0,{self.waves}) with {teeth} teeth on "
+                f"{format_quantity(self.frequency, _HZ)}: it lies between "
+                f"{format_quantity(ends[0] + self.frequency, _HZ)} and "
+                f"{format_quantity(ends[1] + self.frequency, _HZ)}; change the assumptions",
+                quantity="frequency",
+            )
+        return float(brentq(self._above, *self.ends, args=(teeth,), xtol=1e-9))

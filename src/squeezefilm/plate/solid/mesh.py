@@ -23,7 +23,7 @@ from squeezefilm.plate.elements.box_model import (
     require_memory,
 )
 from squeezefilm.plate.elements.lobatto import MAX_ORDER, LineMesh
-from squeezefilm.plate.layout import CeramicPatch, FoamSupport, RectangularPlate
+from squeezefilm.plate.layout import CeramicPatch, Face, FoamSupport, RectangularPlate
 from squeezefilm.plate.solid.layers import media, merged, snapped, through_thickness
 from squeezefilm.plate.solid.resolution import NORMAL, Resolution
 from squeezefilm.plate.solid.symmetry import (
@@ -97,18 +97,19 @@ def _breaks(plate: RectangularPlate, axis: int, half: bool) -> tuple[list[float]
 
 
 def _line(
-    every: list[float],
-    sharp: list[float],
+    breaks: tuple[list[float], list[float]],
     half: bool,
     thickness: float,
-    layers: tuple[float, ...],
-    order: int,
     wave: float,
-    extra: float,
+    resolution: Resolution,
     *,
     cut: bool,
 ) -> LineMesh:
-    """A graded mesh; `cut` puts an element edge at the middle of each interval."""
+    """A graded mesh; `cut`, for the axis along which slices follow each other, puts an element edge
+    at the middle of each interval."""
+    every, sharp = breaks
+    layers = resolution.edge_layers if cut else resolution.edge_layers_y
+    extra = resolution.extra_x if cut else resolution.extra_y
     edges: list[float] = [every[0]]
     distances = [c * thickness for c in layers]
     for a, b in itertools.pairwise(every):
@@ -133,7 +134,7 @@ def _line(
         for k in range(number):
             fine.append(a + (b - a) * (k + 1) / number)
             need = 0.65 * wave * (b - a) / number + extra
-            orders.append(int(min(max(order, round(need)), MAX_ORDER)))
+            orders.append(int(min(max(resolution.order_x, round(need)), MAX_ORDER)))
     return LineMesh(tuple(fine), tuple(orders))
 
 
@@ -156,115 +157,24 @@ def plate_model(
             raise GeometryError(
                 f"the plate is not symmetric along {'xy'[axis]}; parity None is allowed there"
             )
-    thinnest = min(
-        plate.thickness,
-        *(patch.thickness for patch in plate.patches),
-        math.inf if plate.glue is None else plate.glue.thickness,
-    )
-    if max(plate.length, plate.width) > _THINNEST * thinnest:
-        raise OutOfRangeError(
-            f"a layer of {format_quantity(thinnest, Unit('m'))} on a plate of "
-            f"{format_quantity(max(plate.length, plate.width), Unit('m'))} has an aspect ratio "
-            f"above {_THINNEST:.0f}, where three-dimensional elements lose their digits; use "
-            "a plate theory"
-        )
     wave = wave_number(plate, frequency)
-    if math.pi / wave > _SLENDEREST * plate.thickness:
-        ratio = math.pi / wave / plate.thickness
-        raise OutOfRangeError(
-            f"at {frequency:.4g} Hz half a wave on the plate is {ratio:.0f} times its thickness; "
-            f"above {_SLENDEREST:.0f} three-dimensional elements lose their digits; ask for a "
-            "higher frequency or use a plate theory"
-        )
+    _require_thick(plate, frequency, wave)
     half = tuple(p is not None for p in parity)
     breaks = [_breaks(plate, axis, half[axis]) for axis in (0, 1)]
     # Slices stand across the axis with more edges: they are smaller then.
     swapped = (len(breaks[1][0]), plate.width) > (len(breaks[0][0]), plate.length)
     along, across = (1, 0) if swapped else (0, 1)
     thickness = min(plate.thickness, *(patch.thickness for patch in plate.patches))
-    x = _line(
-        *breaks[along],
-        half[along],
-        thickness,
-        resolution.edge_layers,
-        resolution.order_x,
-        wave,
-        resolution.extra_x,
-        cut=True,
-    )
+    x = _line(breaks[along], half[along], thickness, wave, resolution, cut=True)
     # A ceramic that ends with the plate's own edge ends there without a corner.
-    inner = [v for v in breaks[across][1] if v > 0 and v != breaks[across][0][-1]]
-    y = _line(
-        breaks[across][0],
-        inner,
-        half[across],
-        thickness,
-        resolution.edge_layers_y,
-        resolution.order_x,
-        wave,
-        resolution.extra_y,
-        cut=False,
-    )
+    every, sharp = breaks[across]
+    inner = [v for v in sharp if v > 0 and v != every[-1]]
+    y = _line((every, inner), half[across], thickness, wave, resolution, cut=False)
     z, layers, ceramics = through_thickness(plate, resolution)
     require_memory(x, y, z, resolution.trunk)
-    medium, ceramic = np.full((2, x.elements, y.elements, z.elements), -1)
-    centre_x, centre_y = ((np.array(m.edges[1:]) + np.array(m.edges[:-1])) / 2 for m in (x, y))
-
-    def cells(part: CeramicPatch | FoamSupport) -> tuple[IntArray, IntArray]:
-        spans = [(part.x, part.x + part.length), (part.y, part.y + part.width)]
-        (x0, x1), (y0, y1) = spans[along], spans[across]
-        return (
-            np.flatnonzero((centre_x > x0) & (centre_x < x1)),
-            np.flatnonzero((centre_y > y0) & (centre_y < y1)),
-        )
-
-    medium[:, :, slice(*layers["plate"])] = 0
+    cells = _Cells(plate, swapped, x, y, z, layers)
     electrode_of, sign_of = _electrode_map(plate, parity)
-    electrodes: list[Electrode] = []
-    number_of: dict[int, int] = {}
-    # Ceramics are numbered across first, then along: the same order in every slice.
-    order = sorted(
-        range(len(plate.patches)),
-        key=lambda i: (plate.patches[i].y, plate.patches[i].x)[:: 1 if not swapped else -1],
-    )
-    for i in order:
-        patch = plate.patches[i]
-        rows, columns = cells(patch)
-        if electrode_of[i] != i or rows.size == 0 or columns.size == 0:
-            continue
-        number_of[i] = len(electrodes)
-        first, last = ceramics[patch.face, snapped(patch.thickness)]
-        block = np.ix_(rows, columns, np.arange(first, last))
-        medium[block] = 1 if patch.face == "bottom" else 2
-        ceramic[block] = number_of[i]
-        if plate.glue is not None:
-            glued = np.arange(*layers[f"glue_{patch.face}"])
-            medium[np.ix_(rows, columns, glued)] = 3
-        low, high = z.first_node[first], z.first_node[last]
-        electrodes.append(Electrode(low, high) if patch.face == "bottom" else Electrode(high, low))
-    bottom, top = (z.first_node[k] for k in layers["plate"])
-    foundations = []
-    for support in plate.supports:
-        rows, columns = cells(support)
-        if rows.size and columns.size:
-            kx, ky, kz = support.stiffness_per_area
-            foundations.append(
-                Foundation(
-                    (int(rows[0]), int(rows[-1]) + 1),
-                    (int(columns[0]), int(columns[-1]) + 1),
-                    top if support.face == "top" else bottom,
-                    (ky, kx, kz) if swapped else (kx, ky, kz),
-                    1 / support.quality_factor,
-                )
-            )
-    ends: list[EndCondition] = []
-    for axis, names in ((along, _names(along)), (across, _names(across))):
-        ends.append("clamped" if names[0] in plate.clamped_edges else "free")
-        own = parity[axis]
-        if own is None:
-            ends.append("clamped" if names[1] in plate.clamped_edges else "free")
-        else:
-            ends.append("symmetric" if own == "S" else "antisymmetric")
+    medium, ceramic, electrodes, number_of = cells.filled(ceramics, electrode_of)
     model = BoxModel(
         x,
         y,
@@ -272,9 +182,9 @@ def plate_model(
         media(plate),
         medium,
         ceramic,
-        tuple(electrodes),
-        (ends[0], ends[1], ends[2], ends[3]),
-        tuple(foundations),
+        electrodes,
+        _ends(plate, parity, swapped),
+        cells.foundations(),
         resolution.trunk,
     )
     return PlateModel(
@@ -288,6 +198,122 @@ def plate_model(
     )
 
 
+def _require_thick(plate: RectangularPlate, frequency: float, wave: float) -> None:
+    """Refuse a plate so thin, against its sides or half a wave, that elements lose their digits."""
+    thinnest = min(
+        plate.thickness,
+        *(patch.thickness for patch in plate.patches),
+        math.inf if plate.glue is None else plate.glue.thickness,
+    )
+    if max(plate.length, plate.width) > _THINNEST * thinnest:
+        raise OutOfRangeError(
+            f"a layer of {format_quantity(thinnest, Unit('m'))} on a plate of "
+            f"{format_quantity(max(plate.length, plate.width), Unit('m'))} has an aspect ratio "
+            f"above {_THINNEST:.0f}, where three-dimensional elements lose their digits; use "
+            "a plate theory"
+        )
+    if math.pi / wave > _SLENDEREST * plate.thickness:
+        ratio = math.pi / wave / plate.thickness
+        raise OutOfRangeError(
+            f"at {frequency:.4g} Hz half a wave on the plate is {ratio:.0f} times its thickness; "
+            f"above {_SLENDEREST:.0f} three-dimensional elements lose their digits; ask for a "
+            "higher frequency or use a plate theory"
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class _Cells:
+    """The cells of three line meshes: which lie over a part, and what fills them; `layers` as
+    `through_thickness` gives them."""
+
+    plate: RectangularPlate
+    swapped: bool
+    x: LineMesh
+    y: LineMesh
+    z: LineMesh
+    layers: dict[str, tuple[int, int]]
+
+    def over(self, part: CeramicPatch | FoamSupport) -> tuple[IntArray, IntArray]:
+        """The cells along x and y of the model that a part covers."""
+        spans = [(part.x, part.x + part.length), (part.y, part.y + part.width)]
+        along, across = (1, 0) if self.swapped else (0, 1)
+        (x0, x1), (y0, y1) = spans[along], spans[across]
+        centre_x, centre_y = (
+            (np.array(m.edges[1:]) + np.array(m.edges[:-1])) / 2 for m in (self.x, self.y)
+        )
+        return (
+            np.flatnonzero((centre_x > x0) & (centre_x < x1)),
+            np.flatnonzero((centre_y > y0) & (centre_y < y1)),
+        )
+
+    def filled(
+        self, ceramics: dict[tuple[Face, int], tuple[int, int]], electrode_of: list[int]
+    ) -> tuple[IntArray, IntArray, tuple[Electrode, ...], dict[int, int]]:
+        """The medium and the number of the ceramic of each cell, the electrodes, and which of them
+        a patch has; `ceramics` as `through_thickness` gives them."""
+        medium, ceramic = np.full((2, self.x.elements, self.y.elements, self.z.elements), -1)
+        medium[:, :, slice(*self.layers["plate"])] = 0
+        electrodes: list[Electrode] = []
+        number_of: dict[int, int] = {}
+        patches = self.plate.patches
+        # Ceramics are numbered across first, then along: the same order in every slice.
+        order = sorted(
+            range(len(patches)),
+            key=lambda i: (patches[i].y, patches[i].x)[:: 1 if not self.swapped else -1],
+        )
+        for i in order:
+            patch = patches[i]
+            rows, columns = self.over(patch)
+            if electrode_of[i] != i or rows.size == 0 or columns.size == 0:
+                continue
+            number_of[i] = len(electrodes)
+            first, last = ceramics[patch.face, snapped(patch.thickness)]
+            block, below = np.ix_(rows, columns, np.arange(first, last)), patch.face == "bottom"
+            medium[block] = 1 if below else 2
+            ceramic[block] = number_of[i]
+            if self.plate.glue is not None:
+                glued = np.arange(*self.layers[f"glue_{patch.face}"])
+                medium[np.ix_(rows, columns, glued)] = 3
+            low, high = self.z.first_node[first], self.z.first_node[last]
+            electrodes.append(Electrode(low, high) if below else Electrode(high, low))
+        return medium, ceramic, tuple(electrodes), number_of
+
+    def foundations(self) -> tuple[Foundation, ...]:
+        """The supports that the model holds a part of."""
+        bottom, top = (self.z.first_node[k] for k in self.layers["plate"])
+        found = []
+        for support in self.plate.supports:
+            rows, columns = self.over(support)
+            if rows.size and columns.size:
+                kx, ky, kz = support.stiffness_per_area
+                found.append(
+                    Foundation(
+                        (int(rows[0]), int(rows[-1]) + 1),
+                        (int(columns[0]), int(columns[-1]) + 1),
+                        top if support.face == "top" else bottom,
+                        (ky, kx, kz) if self.swapped else (kx, ky, kz),
+                        1 / support.quality_factor,
+                    )
+                )
+        return tuple(found)
+
+
+def _ends(
+    plate: RectangularPlate, parity: tuple[Parity | None, Parity | None], swapped: bool
+) -> tuple[EndCondition, EndCondition, EndCondition, EndCondition]:
+    """How the model ends: at both ends of its x, then of its y."""
+    ends: list[EndCondition] = []
+    for axis in (1, 0) if swapped else (0, 1):
+        names = ("left", "right") if axis == 0 else ("front", "back")
+        ends.append("clamped" if names[0] in plate.clamped_edges else "free")
+        own = parity[axis]
+        if own is None:
+            ends.append("clamped" if names[1] in plate.clamped_edges else "free")
+        else:
+            ends.append("symmetric" if own == "S" else "antisymmetric")
+    return ends[0], ends[1], ends[2], ends[3]
+
+
 def _share(
     plate: RectangularPlate, patch: CeramicPatch, parity: tuple[Parity | None, Parity | None]
 ) -> float:
@@ -298,10 +324,6 @@ def _share(
         if parity[axis] is not None and start < middle - SNAP and start + extent > middle + SNAP:
             share *= 2.0 if parity[axis] == "S" else 0.0
     return share
-
-
-def _names(axis: int) -> tuple[str, str]:
-    return ("left", "right") if axis == 0 else ("front", "back")
 
 
 def _electrode_map(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from squeezefilm.errors import InputError
@@ -9,9 +11,16 @@ from squeezefilm.plate.elements.box_model import Medium
 from squeezefilm.plate.elements.slabs import Slabs
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.solid.electrode_circuits import open_values, shunted_frequencies
-from squeezefilm.plate.solid.modes import MODEL, PlateModes, label_of, surface_shapes
+from squeezefilm.plate.solid.modes import (
+    MODEL,
+    Label,
+    PlateModes,
+    SolvedModel,
+    label_of,
+    surface_shapes,
+)
 from squeezefilm.plate.solid.refined_modes import RefinedModes, extrapolated
-from squeezefilm.plate.solid.symmetry import drive_signs
+from squeezefilm.plate.solid.symmetry import Parity, drive_signs
 from squeezefilm.quantities import FloatArray
 
 
@@ -51,54 +60,14 @@ def collected_modes(
 
     Raises `InputError` where none is left.
     """
-    rows = []
+    rows: list[_Mode] = []
     x = y = np.zeros(0)
     signs = drive_signs(plate)
     for piece in pieces:
-        frequency, error = extrapolated(piece.coarse_values, piece.values, piece.level)
-        scale = 1 / np.sqrt(piece.solved.built.copies)
-        vectors = piece.vectors * scale
-        x, y, surface = surface_shapes(piece.solved, vectors)
-        G, _ = piece.solved.slabs.electrode_columns
-        built = piece.solved.built
-        per_electrode = -(G.T @ vectors).T
-        own = np.array(built.sign_of) * np.array(built.share_of)
-        forces = per_electrode[:, list(built.electrode_of)] * own[None, :]
-        # Ratios need few digits: they are taken from the coarse mesh.
-        rough, some = piece.found, piece.found.vectors[:, piece.index]
-        shares, losses = energy_shares_of(rough.solved.slabs, some)
-        omega = shunted_frequencies(piece.solved, piece.factor, piece.values, piece.vectors)
-        shunted = omega.real / np.sqrt(piece.values)
-        frequency, error = frequency * shunted, error * shunted
-        losses = losses + 2 * omega.imag / omega.real
-        known = rough.values[piece.index]
-        opened = open_values(rough.solved, rough.factor, rough.shift, known, some) / known
-        for i in range(frequency.size):
-            top = surface[i]
-            turn = 1.0
-            driven = float(forces[i] @ signs)
-            # The sign of a mode is free: the drive pushes it up, or its largest value does.
-            largest = top[:, :, 2].flat[int(np.argmax(np.abs(top[:, :, 2])))]
-            if driven < -1e-9 or (abs(driven) <= 1e-9 and largest < 0):
-                turn = -1.0
-            rows.append(
-                (
-                    frequency[i],
-                    error[i],
-                    np.sqrt(piece.values[i]) / (2 * np.pi),
-                    label_of(top, x, y),
-                    piece.found.parity,
-                    turn * top[:, :, 2],
-                    turn * forces[i],
-                    abs(driven),
-                    frequency[i] / shunted[i] * np.sqrt(opened[i]),
-                    shares[i],
-                    1 / max(float(losses[i]), 1e-30),
-                    (piece.solved, turn * vectors[:, i]),
-                )
-            )
+        x, y, found = _modes_of(piece, signs)
+        rows += found
     if band is not None:
-        rows = [row for row in rows if band[0] <= row[0] <= band[1]]
+        rows = [row for row in rows if band[0] <= row.frequency <= band[1]]
     if not rows:
         low, high = band or (0.0, 0.0)
         raise InputError(
@@ -106,38 +75,103 @@ def collected_modes(
             "modes near a frequency",
             quantity="band",
         )
-    rows.sort(key=lambda row: row[0])
-    columns = list(zip(*rows, strict=True))
-    frequencies, errors = np.array(columns[0]), np.array(columns[1])
-    opened_f = np.array(columns[8])
+    rows.sort(key=lambda row: row.frequency)
+    frequencies = np.array([row.frequency for row in rows])
+    errors = np.array([row.error for row in rows])
+    opened = np.array([row.open_frequency for row in rows])
     over = int(np.sum(errors > tolerance * frequencies))
-    status = (
-        f"all {len(rows)} modes within {tolerance:.1e} (estimated)"
-        if over == 0
-        else f"{over} of {len(rows)} modes have an estimated error above {tolerance:.1e}; the "
-        "finest mesh was used"
-    )
     media = pieces[0].solved.built.model
     names = [m.name for m in media.media] + (["supports"] if media.foundations else [])
     return PlateModes(
         plate=plate,
         frequencies=frequencies,
         errors=errors,
-        mesh_frequencies=np.array(columns[2]),
-        labels=columns[3],
-        parities=columns[4],
+        mesh_frequencies=np.array([row.mesh_frequency for row in rows]),
+        labels=tuple(row.label for row in rows),
+        parities=tuple(row.parity for row in rows),
         x=x,
         y=y,
-        shapes=np.stack(columns[5]),
-        modal_forces=np.stack(columns[6]),
-        drive_forces=np.array(columns[7]),
-        open_frequencies=opened_f,
-        couplings=np.sqrt(np.maximum(0.0, 1 - (frequencies / opened_f) ** 2)),
-        quality_factors=np.array(columns[10]),
+        shapes=np.stack([row.shape for row in rows]),
+        modal_forces=np.stack([row.forces for row in rows]),
+        drive_forces=np.array([row.drive_force for row in rows]),
+        open_frequencies=opened,
+        couplings=np.sqrt(np.maximum(0.0, 1 - (frequencies / opened) ** 2)),
+        quality_factors=np.array([row.quality_factor for row in rows]),
         materials=tuple(names),
-        energy_shares=np.stack(columns[9]),
+        energy_shares=np.stack([row.energy_shares for row in rows]),
         model=MODEL,
-        status=status,
+        status=(
+            f"all {len(rows)} modes within {tolerance:.1e} (estimated)"
+            if over == 0
+            else f"{over} of {len(rows)} modes have an estimated error above {tolerance:.1e}; the "
+            "finest mesh was used"
+        ),
         unknowns=max(piece.solved.slabs.unknowns for piece in pieces),
-        _fields=columns[11],
+        _fields=tuple(row.field for row in rows),
     )
+
+
+class _Mode(NamedTuple):
+    """One mode, as `PlateModes` has many."""
+
+    frequency: float
+    error: float
+    mesh_frequency: float
+    label: Label | None
+    parity: tuple[Parity | None, Parity | None]
+    shape: FloatArray
+    forces: FloatArray
+    drive_force: float
+    open_frequency: float
+    energy_shares: FloatArray
+    quality_factor: float
+    field: tuple[SolvedModel, FloatArray]
+
+
+def _modes_of(piece: RefinedModes, signs: FloatArray) -> tuple[FloatArray, FloatArray, list[_Mode]]:
+    """The modes of one class, and x and y of their shapes; `signs` are those of the drive."""
+    frequency, error = extrapolated(piece.coarse_values, piece.values, piece.level)
+    scale = 1 / np.sqrt(piece.solved.built.copies)
+    vectors = piece.vectors * scale
+    x, y, surface = surface_shapes(piece.solved, vectors)
+    G, _ = piece.solved.slabs.electrode_columns
+    built = piece.solved.built
+    per_electrode = -(G.T @ vectors).T
+    own = np.array(built.sign_of) * np.array(built.share_of)
+    forces = per_electrode[:, list(built.electrode_of)] * own[None, :]
+    # Ratios need few digits: they are taken from the coarse mesh.
+    rough, some = piece.found, piece.found.vectors[:, piece.index]
+    shares, losses = energy_shares_of(rough.solved.slabs, some)
+    omega = shunted_frequencies(piece.solved, piece.factor, piece.values, piece.vectors)
+    shunted = omega.real / np.sqrt(piece.values)
+    frequency, error = frequency * shunted, error * shunted
+    losses = losses + 2 * omega.imag / omega.real
+    known = rough.values[piece.index]
+    opened = open_values(rough.solved, rough.factor, rough.shift, known, some) / known
+    modes = []
+    for i in range(frequency.size):
+        top = surface[i]
+        driven = float(forces[i] @ signs)
+        turn = _turn(top, driven)
+        mode = _Mode(
+            frequency=frequency[i],
+            error=error[i],
+            mesh_frequency=np.sqrt(piece.values[i]) / (2 * np.pi),
+            label=label_of(top, x, y),
+            parity=piece.found.parity,
+            shape=turn * top[:, :, 2],
+            forces=turn * forces[i],
+            drive_force=abs(driven),
+            open_frequency=frequency[i] / shunted[i] * np.sqrt(opened[i]),
+            energy_shares=shares[i],
+            quality_factor=1 / max(float(losses[i]), 1e-30),
+            field=(piece.solved, turn * vectors[:, i]),
+        )
+        modes.append(mode)
+    return x, y, modes
+
+
+def _turn(top: FloatArray, driven: float) -> float:
+    """The sign of a mode is free: the drive pushes it up, or its largest value does."""
+    largest = top[:, :, 2].flat[int(np.argmax(np.abs(top[:, :, 2])))]
+    return -1.0 if driven < -1e-9 or (abs(driven) <= 1e-9 and largest < 0) else 1.0

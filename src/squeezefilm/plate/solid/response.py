@@ -267,35 +267,13 @@ def harmonic_response(
     driven electrode, `GeometryError` for a load beside the plate.
     """
     f = np.atleast_1d(np.asarray(frequencies, dtype=float))
-    require("frequencies", f, Unit("Hz"), above=0)
-    if f.size > 1 and np.any(np.diff(f) <= 0):
-        raise InputError("frequencies must ascend", quantity="frequencies")
-    if not np.any(drive_signs(plate)):
-        raise InputError("no electrode is driven; give at least one patch electrode = 'driven'")
-    for load in loads:
-        if load.x + load.length > plate.length + 1e-9 or load.y + load.width > plate.width + 1e-9:
-            raise GeometryError("a surface load overhangs the plate; move it or make it smaller")
-    # A load breaks the symmetry of the drive: then every class answers.
-    classes = all_classes(plate) if loads else drive_classes(plate)
+    _require_answered(plate, f, loads)
     band = float(f[0]), float(f[-1])
-    if steps is not None:
-        require("steps", steps, at_least=1)
-    else:
+    if steps is None:
         steps = int(np.clip(14 + 40 * (band[1] - band[0]) / band[1], 14, 60))
-    pressures = [load.points() for load in loads]
+    require("steps", steps, at_least=1)
     with one_blas_thread():
-        parts = []
-        for number, parity in enumerate(classes):
-            if progress is not None:
-                progress(f"reducing class {number + 1} of {len(classes)}", number / len(classes))
-            part = reduced_class(plate, parity, band, steps, pressures, resolution)
-            if not part.basis.shape[1]:
-                raise InputError(
-                    "the driven ceramics exert no force on the plate, so no resonance answers to "
-                    "the voltage; give them a charge_coefficient (d31) other than 0",
-                    quantity="charge_coefficient",
-                )
-            parts.append(extrapolated_class(part, band) if extrapolate else part)
+        parts = _reduced(plate, loads, band, steps, resolution, extrapolate, progress)
         omega = 2 * np.pi * f
         added = _load_stiffness(plate, parts, loads, omega) if loads else None
         q, potentials, charge = harmonic_solution(parts, omega, added, None, 1.0)
@@ -322,6 +300,48 @@ def harmonic_response(
             extrapolate=extrapolate,
         ),
     )
+
+
+def _require_answered(
+    plate: RectangularPlate, frequencies: HertzArray, loads: Sequence[SurfaceLoad]
+) -> None:
+    """Refuse frequencies, a drive or a load to which there is no response."""
+    require("frequencies", frequencies, Unit("Hz"), above=0)
+    if frequencies.size > 1 and np.any(np.diff(frequencies) <= 0):
+        raise InputError("frequencies must ascend", quantity="frequencies")
+    if not np.any(drive_signs(plate)):
+        raise InputError("no electrode is driven; give at least one patch electrode = 'driven'")
+    for load in loads:
+        if load.x + load.length > plate.length + 1e-9 or load.y + load.width > plate.width + 1e-9:
+            raise GeometryError("a surface load overhangs the plate; move it or make it smaller")
+
+
+def _reduced(
+    plate: RectangularPlate,
+    loads: Sequence[SurfaceLoad],
+    band: tuple[float, float],
+    steps: int,
+    resolution: Resolution,
+    extrapolate: bool,
+    progress: Callable[[str, float], None] | None,
+) -> list[ReducedClass]:
+    """The classes of symmetry that answer, reduced; raises `InputError` where nothing drives."""
+    # A load breaks the symmetry of the drive: then every class answers.
+    classes = all_classes(plate) if loads else drive_classes(plate)
+    pressures = [load.points() for load in loads]
+    parts = []
+    for number, parity in enumerate(classes):
+        if progress is not None:
+            progress(f"reducing class {number + 1} of {len(classes)}", number / len(classes))
+        part = reduced_class(plate, parity, band, steps, pressures, resolution)
+        if not part.basis.shape[1]:
+            raise InputError(
+                "the driven ceramics exert no force on the plate, so no resonance answers to "
+                "the voltage; give them a charge_coefficient (d31) other than 0",
+                quantity="charge_coefficient",
+            )
+        parts.append(extrapolated_class(part, band) if extrapolate else part)
+    return parts
 
 
 def _load_stiffness(
