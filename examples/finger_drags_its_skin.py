@@ -1,17 +1,13 @@
 """A square grating under a finger whose skin has a mass: its force, and how the skin vibrates."""
 
 import squeezefilm as sf
-from squeezefilm.chain.rendered_texture import Conditions
 
 
 def main() -> dict[str, float]:
     high = sf.predict("biet2008-plate", model="paper2008").vibration_amplitude
     grating = sf.Amplitude(sf.SquareWave("1 mm"), 0.0, high)
     rendered = sf.render_texture(
-        "biet2008-plate",
-        grating,
-        "80 mm/s over 4 cm",
-        conditions=Conditions(normal_force="0.5 N", model="paper2008"),
+        "biet2008-plate", grating, "80 mm/s over 4 cm", model="paper2008", normal_force="0.5 N"
     )
     motion, lines = rendered.force, rendered.skin_vibration()
     sliding = motion.bone_force[motion.time >= lines.start]

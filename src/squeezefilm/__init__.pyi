@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from squeezefilm.bench.play import PlayResult
     from squeezefilm.chain.friction import FrictionModel
     from squeezefilm.chain.prediction import Prediction
-    from squeezefilm.chain.rendered_texture import Conditions, RenderAnalysis
+    from squeezefilm.chain.rendered_texture import RenderAnalysis
     from squeezefilm.display import Display, NamedDisplay
     from squeezefilm.display import load_display as load_display
     from squeezefilm.errors import SqueezefilmError as SqueezefilmError
@@ -268,7 +268,10 @@ if TYPE_CHECKING:
         texture: NamedTexture | str | Path,
         motion: NamedMotion | str | Path,
         *,
-        conditions: Conditions | None = ...,
+        voltage: Volt | str | None = ...,
+        normal_force: Newton | str | None = ...,
+        surface: str | None = ...,
+        model: FrictionModel | None = ...,
         sensor: str | SensorModel | None = ...,
         compensation: str = ...,
         braking: bool = ...,

@@ -7,11 +7,12 @@ with the finger on it → friction by the display's law → tangential force →
 from __future__ import annotations
 
 import dataclasses
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 from typing import Any, ClassVar, cast
 
 import numpy as np
 
+from squeezefilm.arguments import called_with
 from squeezefilm.chain.friction import FrictionModel
 from squeezefilm.chain.played_texture import (
     FingerMotion,
@@ -203,23 +204,30 @@ class RenderAnalysis(Result):
         }
 
 
-@reads_text
 @dataclass(frozen=True)
-class Conditions:
-    """At what a display renders, where not at its own: the largest voltage (V) of its drive, the
-    finger's force (N), a surface by name, and the model of friction; all as `predict` takes them.
-    """
+class RenderRequest:
+    """What `render_texture` is asked for."""
 
+    display: NamedDisplay
+    texture: NamedTexture
+    motion: NamedMotion
+    _: KW_ONLY
     voltage: Volt | None = None
     normal_force: Newton | None = None
     surface: str | None = None
     model: FrictionModel | None = None
+    sensor: str | SensorModel | None = None
+    compensation: str = "none"
+    braking: bool = False
+    wave: str = "ignored"
+    control_rate: Hertz = CONTROL_RATE
+    seed: int = 0
+    progress: SayProgress | None = None
 
-    def predict(self, display: Display) -> Prediction:
-        """What a display does there. Raises as `predict` does, and `InputError` where it changes no
-        friction."""
+    def prediction(self) -> Prediction:
+        """What the display does at its largest amplitude; refused where it changes no friction."""
         p = predict(
-            display,
+            self.display,
             voltage=self.voltage,
             normal_force=self.normal_force,
             surface=self.surface,
@@ -227,35 +235,23 @@ class Conditions:
         )
         if p.vibration_amplitude <= 0.0 or p.relative_friction >= 1.0:
             raise InputError(
-                f"display '{display.name}' changes no friction at {p.voltage or 0.0:g} V, so it "
-                "renders no texture; give it a voltage"
+                f"display '{self.display.name}' changes no friction at {p.voltage or 0.0:g} V, so "
+                "it renders no texture; give it a voltage"
             )
         return p
 
 
 @reads_text
-def render_texture(
-    display: NamedDisplay,
-    texture: NamedTexture,
-    motion: NamedMotion,
-    *,
-    conditions: Conditions | None = None,
-    sensor: str | SensorModel | None = None,
-    compensation: str = "none",
-    braking: bool = False,
-    wave: str = "ignored",
-    control_rate: Hertz = CONTROL_RATE,
-    seed: int = 0,
-    progress: SayProgress | None = None,
-) -> RenderAnalysis:
+@called_with(RenderRequest)
+def render_texture(asked: RenderRequest) -> RenderAnalysis:
     """Render a texture on a display under a finger.
 
     Args:
-        display: what renders; its voltage is the largest the drive gives, and what it makes under
-            the finger the largest amplitude.
+        display: what renders; its voltage (or `voltage`, V) is the largest the drive gives, and
+            what it makes under the finger the largest amplitude.
         texture: what is to be felt; x = 0 is an antinode where the wave counts.
         motion: of the finger, along x or (not on a stator) in the plane.
-        conditions: another voltage, force, surface or model than the display's own.
+        normal_force, surface, model: as `predict`.
         sensor: what the loop sees the finger with, by name; without one it knows the place.
         compensation: "none", "inverse" or "preview".
         braking: whether the drive may invert the carrier's phase.
@@ -269,29 +265,30 @@ def render_texture(
         InputError: a name that is not known, a motion that leaves an image or the surface, a
             display that does not vibrate at its voltage, or what the links of the chain refuse.
     """
-    tell = progress or (lambda _: None)
-    texture = TextureFile.of(texture)
-    require_one_of("compensation", compensation, COMPENSATIONS)
-    require_one_of("wave", wave, WAVES)
-    eyes = sensor if sensor is None or isinstance(sensor, SensorModel) else sensor_named(sensor)
-    finger = FingerMotion.of(motion, control_rate)
+    tell = asked.progress or (lambda _: None)
+    display, motion = asked.display, asked.motion
+    texture = TextureFile.of(asked.texture)
+    require_one_of("compensation", asked.compensation, COMPENSATIONS)
+    require_one_of("wave", asked.wave, WAVES)
+    eyes = sensor_named(asked.sensor) if isinstance(asked.sensor, str) else asked.sensor
+    finger = FingerMotion.of(motion, asked.control_rate)
     require_on_display(display.actuator, finger)
     require_on_image(texture.texture, finger)
     tell("the display at its largest amplitude")
-    p = (conditions or Conditions()).predict(display)
-    under = UnderPad.of(display, p, cast(Wave, wave))
+    p = asked.prediction()
+    under = UnderPad.of(display, p, cast(Wave, asked.wave))
     played = _played(texture, motion, finger, p, under)
     tau = float(envelope_time_constant(*resonance_with_finger(p)))
     tell("the loop along the stroke")
     stroke = rendered_stroke(
         played,
         finger.trajectory,
-        DrivenEnvelope(tau, tau, p.vibration_amplitude, braking),
+        DrivenEnvelope(tau, tau, p.vibration_amplitude, asked.braking),
         p.friction,
-        compensation=cast(Compensation, compensation),
+        compensation=cast(Compensation, asked.compensation),
         sensor=eyes,
-        control_rate=control_rate,
-        seed=seed,
+        control_rate=asked.control_rate,
+        seed=asked.seed,
     )
     return _Rendering(display, texture, motion, p, played, under).analysis(stroke, tell)
 

@@ -65,7 +65,7 @@ def render(
     seed: Annotated[int, typer.Option(help="Of the sensor's noise.")] = 0,
 ) -> None:
     """A texture on a display under a moving finger: what is asked for and what is rendered."""
-    from squeezefilm.chain.rendered_texture import Conditions, render_texture
+    from squeezefilm.chain.rendered_texture import render_texture
     from squeezefilm.display import load_display
     from squeezefilm.formats.trajectories import motion_from
     from squeezefilm.quantities import Unit
@@ -77,17 +77,14 @@ def render(
         raise InputError("--drive, --hjif and --table write files; say where with --out DIR")
     what, motion, where = load_texture(texture), motion_from(stroke), load_display(display)
     with terminal.progress(enabled=sys.stderr.isatty() or not as_json) as step:
-        conditions = Conditions(
-            quantity(voltage, "--voltage", Unit("V")),
-            quantity(force, "--force", Unit("N")),
-            surface,
-            model,  # type: ignore[arg-type] # checked with a message by FrictionLaw
-        )
         result = render_texture(
             where,
             what,
             motion,
-            conditions=conditions,
+            voltage=quantity(voltage, "--voltage", Unit("V")),
+            normal_force=quantity(force, "--force", Unit("N")),
+            surface=surface,
+            model=model,  # type: ignore[arg-type] # checked with a message by FrictionLaw
             sensor=sensor,
             compensation=compensate,
             braking=braking,

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from squeezefilm.chain.rendered_texture import Conditions, RenderAnalysis, render_texture
+from squeezefilm.chain.rendered_texture import RenderAnalysis, render_texture
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError
 from squeezefilm.perception.observer import FingerClass, Observer
@@ -93,7 +93,7 @@ def percept(
         _with_finger(display, finger),
         TextureFile(stimulus.surface(), stimulus.name),
         exploration(observer, finger),
-        conditions=Conditions(normal_force=finger.normal_force),
+        normal_force=finger.normal_force,
         sensor=run.sensor,
         compensation=run.compensation,
         braking=run.braking,

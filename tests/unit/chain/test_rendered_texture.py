@@ -13,7 +13,6 @@ import pytest
 from squeezefilm.chain.prediction import Prediction, predict
 from squeezefilm.chain.rendered_texture import (
     CONTROL_RATE,
-    Conditions,
     RenderAnalysis,
     lowered,
     render_texture,
@@ -157,7 +156,7 @@ def test_a_compensated_wave_leaves_an_even_texture_even() -> None:
 def test_the_force_is_friction_times_load_once_the_pad_slides() -> None:
     found = made(EVEN)
     assert found.force.friction_force[1200] == pytest.approx(0.9 * 0.85 * 0.5, rel=2e-3)
-    harder = made(EVEN, conditions=Conditions(normal_force=0.25))
+    harder = made(EVEN, normal_force=0.25)
     assert harder.prediction.normal_force == 0.25
     assert harder.force.friction_force[1200] == pytest.approx(0.9 * 0.85 * 0.25, rel=2e-3)
     data = found.summary()
@@ -168,8 +167,7 @@ def test_the_force_is_friction_times_load_once_the_pad_slides() -> None:
 
 
 def test_the_summary_says_what_was_done() -> None:
-    elsewhere = Conditions(100.0, surface="bare", model="partial-levitation-one-gap")
-    found = made(seed=5, conditions=elsewhere)
+    found = made(seed=5, surface="bare", voltage=100.0, model="partial-levitation-one-gap")
     data = found.summary()
     assert {key: data[key] for key in (
         "display", "texture", "quantity", "surface", "voltage_V", "normal_force_N", "samples",
@@ -315,8 +313,7 @@ PICTURE = Image(((0.0, 1.0), (1.0, 0.0)), 1e-3)
         ({"compensation": "inverted"}, "compensation = 'inverted' is not known. Did you mean 'inv"),
         ({"wave": "fel"}, "wave = 'fel' is not known. Did you mean 'felt'? Allowed: ignored, "),
         ({"sensor": "eye"}, "the sensor 'eye' is not known"),
-        ({"conditions": Conditions(0.0)},
-         "display 'biet2008-stator' changes no friction at 0 V, so it renders"),
+        ({"voltage": 0.0}, "display 'biet2008-stator' changes no friction at 0 V, so it renders"),
         ({"motion": FingerPath(np.array([0.0, 1.0]), np.array([0.0, 0.0]), np.array([0.0, 0.01]))},
          "a stator renders along its circumference"),
         ({"texture": RelativeFriction(PICTURE, 0.7, 1.0)}, "the stroke leaves the image: at"),

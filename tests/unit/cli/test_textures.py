@@ -11,7 +11,6 @@ from typing import Any
 import pytest
 from tests.e2e.program import run
 
-from squeezefilm.chain.rendered_texture import Conditions
 from squeezefilm.cli.textures import render, textures
 from squeezefilm.display import load_display
 from squeezefilm.presets import texture_names
@@ -43,7 +42,7 @@ def test_a_texture_is_rendered_under_a_known_finger(rendered: SimpleNamespace) -
     # 60 mm/s over 4 cm, to and fro.
     assert motion.duration >= 2 * 0.04 / 0.06
     assert rendered.asked.named == {
-        "conditions": Conditions(), "sensor": None,
+        "voltage": None, "normal_force": None, "surface": None, "model": None, "sensor": None,
         "compensation": "none", "braking": False, "wave": "ignored", "seed": 0,
     }  # fmt: skip
     assert rendered.shown.given == (ANSWER,)
@@ -60,7 +59,7 @@ def test_every_option_of_a_rendering_arrives(rendered: SimpleNamespace, tmp_path
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
     assert rendered.asked.named == {
-        "conditions": Conditions(15.0, 0.3, "copper", "film-open"),
+        "voltage": 15.0, "normal_force": 0.3, "surface": "copper", "model": "film-open",
         "sensor": "touch-panel-120-hz", "compensation": "inverse", "braking": True, "wave": "felt",
         "seed": 5,
     }  # fmt: skip

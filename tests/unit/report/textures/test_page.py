@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from squeezefilm.chain.rendered_texture import Conditions, RenderAnalysis, render_texture
+from squeezefilm.chain.rendered_texture import RenderAnalysis, render_texture
 from squeezefilm.errors import InputError
 from squeezefilm.formats.hjif_read import friction_along
 from squeezefilm.formats.traces import csv_text, table_from_csv
@@ -42,9 +42,8 @@ FILES = {
 def rendered(texture: Any, **changes: Any) -> RenderAnalysis:
     # The paper's closed form: no film to solve. Starts and ends between micrometres.
     stroke = Stroke(0.1, 12.0004e-3, start=1.0003e-3)
-    plain = Conditions(model="paper2008")
     return render_texture(
-        "biet2008-stator", TextureFile(texture, HOSTILE), stroke, conditions=plain, **changes
+        "biet2008-stator", TextureFile(texture, HOSTILE), stroke, model="paper2008", **changes
     )
 
 
