@@ -1,19 +1,15 @@
-"""Figures of compensation: a grating at twice the speed, what survives, what a sensor costs."""
+"""Figures of compensation: a grating at twice the speed, and which gratings survive."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from squeezefilm.render.fidelity.survival import PAPER_PERIODS
-from squeezefilm.render.motion.minimum_jerk import MinimumJerkStroke
 from squeezefilm.report.kit.numbers import M, S, shown
 from squeezefilm.report.kit.style import (
     INK,
     LINES,
-    METAL,
     MUTED,
     drawn,
     message_figure,
@@ -26,12 +22,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from squeezefilm.analysis.analyze import Analysis
-    from squeezefilm.analysis.textures import (
-        CompensatedGrating,
-        SensorContrast,
-        TextureSurvival,
-    )
-    from squeezefilm.quantities import FloatArray
+    from squeezefilm.analysis.textures import CompensatedGrating, TextureSurvival
 
 _PERIODS_SHOWN = 2
 
@@ -131,66 +122,3 @@ def texture_survival(tables: Sequence[TextureSurvival]) -> Figure:
     labels.append("the paper's gratings")
     strip.legend(handles, labels, loc="center", ncols=2, frameon=False)
     return figure
-
-
-@drawn
-def sensor_contrast(contrast: SensorContrast) -> Figure:
-    """Contrast rendered in its place against the period, one line per sensor."""
-    half = [_finest(contrast.spatial_periods, row) for row in contrast.contrast_kept]
-    names = ["position known" if one is None else one.name for one in contrast.sensors]
-    figure = new_figure(
-        f"Half of the contrast is rendered in its place {half[0]} with a {names[0]}, "
-        f"{half[-1]} with the {names[-1]}",
-        f"{contrast.reports[0][0].model.split(';')[0]}; sensors are assumed, not measured; "
-        f"{_hand(contrast)}",
-        4.9,
-    )
-    grid = figure.add_gridspec(2, 1, height_ratios=[1, 0.12])
-    axes, strip = figure.add_subplot(grid[0]), figure.add_subplot(grid[1])
-    strip.set_axis_off()
-    for k, (name, row) in enumerate(zip(names, contrast.contrast_kept, strict=True)):
-        error = contrast.reports[k][0].position_error
-        label = name if error is None else f"{name} (error {shown(error, M, 2)})"
-        # Wide and behind: a good sensor's line lies on it.
-        color, dashes = LINES[k % len(LINES)]
-        look = (
-            {"color": METAL, "lw": 5, "zorder": 1}
-            if error is None
-            else {"color": color, "ls": dashes}
-        )
-        axes.semilogx(1e3 * contrast.spatial_periods, row, label=label, **look)
-    axes.set(
-        xlabel="spatial period (mm)",
-        ylabel="contrast kept in its place",
-        ylim=(0, 1.05),
-        xlim=(1e3 * contrast.spatial_periods[0], 1e3 * contrast.spatial_periods[-1]),
-    )
-    rungs = np.array([0.25, 0.5, 1, 2, 4, 8])
-    low, high = axes.get_xlim()
-    axes.set_xticks(rungs[(rungs >= low) & (rungs <= high)])
-    plain_log(axes.xaxis)
-    strip.legend(*axes.get_legend_handles_labels(), loc="center", ncols=2, frameon=False)
-    return figure
-
-
-def _hand(contrast: SensorContrast) -> str:
-    hand = contrast.trajectory
-    if isinstance(hand, MinimumJerkStroke):
-        return (
-            f"{hand.passes} minimum-jerk passes of {shown(hand.length, M, 3)} in "
-            f"{shown(hand.pass_duration, S, 3)}"
-        )
-    return plain(repr(hand), 80)
-
-
-def _finest(periods: FloatArray, row: FloatArray) -> str:
-    """From which period on at least half of the contrast is kept, in words."""
-    lacking = np.flatnonzero(row < 0.5)
-    if lacking.size == 0:
-        return "at every period shown"
-    k = int(lacking[-1])
-    if k == periods.size - 1:
-        return "at no period shown"
-    share = (0.5 - row[k]) / (row[k + 1] - row[k])
-    finest = periods[k] * (periods[k + 1] / periods[k]) ** share
-    return f"from {shown(float(finest), M, 2)} up"

@@ -17,8 +17,9 @@ if typing.TYPE_CHECKING:
     from squeezefilm.chain.prediction import Prediction
     from squeezefilm.display import Display
     from squeezefilm.plate.working_mode import WorkingMode
+    from squeezefilm.render.fidelity.report import FidelityReport
 
-M, HZ, S, N, V, ONE = Unit("m"), Unit("Hz"), Unit("s"), Unit("N"), Unit("V"), Unit("1")
+M, HZ, S, N, V = Unit("m"), Unit("Hz"), Unit("s"), Unit("N"), Unit("V")
 
 
 @dataclass(frozen=True)
@@ -219,6 +220,21 @@ def leaves(node: Any, path: tuple[str | int, ...] = ()) -> Iterator[Leaf]:
                 yield from leaves(item, (*here, index))
         elif value is not None:
             yield Leaf(here, value, hints[field.name], field)
+
+
+def lag_rows(judged: FidelityReport, what: str = "Lag") -> list[tuple[str, str, str]]:
+    """How far the rendered pattern trails the finger, in a line; none where that is not known."""
+    if not math.isfinite(judged.lag):
+        return []
+    word = "behind" if judged.lag >= 0 else "ahead of"
+    return [
+        (
+            what,
+            f"{1e3 * judged.lag:.3f} mm",
+            f"{word} the finger, {shown(abs(judged.lag_time), S, 2)} at "
+            f"{1e3 * judged.mean_speed:.3g} mm/s",
+        )
+    ]
 
 
 def film_rows(analysis: Analysis) -> list[tuple[str, str, str, str]]:

@@ -17,7 +17,7 @@ from squeezefilm.formats.wav import Waveform, wav_bytes
 from squeezefilm.quantities import FloatArray
 from squeezefilm.report.kit.folder import json_text, require_folder, write_folder
 from squeezefilm.report.kit.numbers import printable
-from squeezefilm.report.kit.page_style import page_head
+from squeezefilm.report.kit.page_style import html_table, page_head, picture_sections, section
 from squeezefilm.report.kit.style import png
 from squeezefilm.report.textures.terminal import render_rows
 
@@ -172,23 +172,15 @@ def render_figures(result: RenderAnalysis) -> dict[str, tuple[str, Figure]]:
 def _page(result: RenderAnalysis, figures: dict[str, tuple[str, Figure]], files: list[str]) -> str:
     title = escape(printable(result.played.name))
     stamp = result.provenance()
-    rows = "\n".join(
-        f'<tr><th scope="row">{escape(a)}</th><td>{escape(b)}</td><td>{escape(c)}</td></tr>'
-        for a, b, c in render_rows(result)
-    )
-    numbers = (
-        '<div class="scroll" tabindex="0" role="region" aria-label="Numbers"><table>'
-        "<caption>What was asked for and what the finger meets</caption><thead><tr>"
-        '<th scope="col">Quantity</th><th scope="col">Value</th><th scope="col">Remark</th>'
-        f"</tr></thead><tbody>\n{rows}\n</tbody></table></div>"
-    )
-    pictures = "".join(
-        f"<section>\n<h2>{escape(heading)}</h2>\n"
-        f'<figure><img src="{name}.png" alt="'
-        f'{escape(" ".join(figure.get_suptitle().split()))}"></figure>\n</section>\n'
-        for name, (heading, figure) in figures.items()
+    numbers = html_table(
+        "What was asked for and what the finger meets",
+        ("Quantity", "Value", "Remark"),
+        [[*map(escape, row)] for row in render_rows(result)],
+        label="Numbers",
+        between="",
     )
     warned = "".join(f"<li>{escape(printable(text))}</li>" for text in result.prediction.warnings)
+    warnings = f"<ul>{warned or '<li>None.</li>'}</ul>"
     links = ", ".join(
         f'<a href="{name}">{name}</a>' for name in files if not name.endswith((".png", ".html"))
     )
@@ -197,15 +189,7 @@ def _page(result: RenderAnalysis, figures: dict[str, tuple[str, Figure]], files:
 <p class="name">rendered on <code>{escape(printable(result.display.name))}</code> by squeezefilm
 </p></header>
 <main>
-<section>
-<h2>Numbers</h2>
-{numbers}
-</section>
-{pictures}<section>
-<h2>Warnings</h2>
-<ul>{warned or "<li>None.</li>"}</ul>
-</section>
-</main>
+{section("Numbers", numbers)}{picture_sections(figures)}{section("Warnings", warnings)}</main>
 <footer><p>squeezefilm {escape(str(stamp["squeezefilm_version"]))} ·
 made {escape(str(stamp["created_utc"]))} (UTC) ·
 SHA-256 of display, texture and motion <code>{escape(str(stamp["config_sha256"]))}</code> ·
