@@ -203,12 +203,7 @@ def carrier_trace(
     require("sample_rate", sample_rate, Unit("Hz"), above=0.0)
     require("frequency", frequency, Unit("Hz"), above=0.0, below=sample_rate / 2)
     require("phase", phase, Unit("rad"))
-    levels = np.ascontiguousarray(command, dtype=float)
-    if levels.ndim != 1 or levels.size == 0 or samples_per_command < 1:
-        raise InputError(
-            f"command of shape {levels.shape} at {samples_per_command} samples each makes no "
-            "carrier: give one row of at least one, and at least 1 sample each"
-        )
+    levels = _levels(command, samples_per_command)
     own = frequency if resonance_frequency is None else resonance_frequency
     gain = 1 / float(hold_gain(frequency, sample_rate)) if hold_compensated else 1.0
     drive = np.empty(levels.size * samples_per_command)
@@ -234,6 +229,16 @@ def carrier_trace(
         amplitude=np.hypot(place, quadrature),
         amplitude_modelled=np.abs(envelope_response(held, 1 / sample_rate, tau)),
     )
+
+
+def _levels(command: MetreArray, samples_per_command: int) -> MetreArray:
+    levels = np.ascontiguousarray(command, dtype=float)
+    if levels.ndim != 1 or levels.size == 0 or samples_per_command < 1:
+        raise InputError(
+            f"command of shape {levels.shape} at {samples_per_command} samples each makes no "
+            "carrier: give one row of at least one, and at least 1 sample each"
+        )
+    return levels
 
 
 @checked_numbers
