@@ -134,7 +134,6 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
     "formats.hjif_read.friction_along": {"document": Later(hjif_document)},
     "formats.hjif.hjif_of": {"texture": Later(lambda: made(RelativeFriction))},
     "formats.image_file.ImageFile": {"file": "picture.png"},
-    "formats.pictures.picture_bytes": {"values": np.full((4, 4), 0.5)},
     "formats.traces.Table": {"columns": {"time_s": _GRID}},
     "formats.wav.Waveform": {"samples": _GRID * 1e-7, "unit": "m", "full_scale": 1e-6},
     "materials.PiezoConstants": Later(lambda: fields_of(PZT.full_constants)),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from squeezefilm.render.fidelity.survival import PAPER_PERIODS
@@ -81,43 +80,36 @@ def survival(analysis: Analysis) -> Figure:
     """`texture_survival` of an analysis."""
     if analysis.survival is None:
         return message_figure("Nothing to compensate", "No voltage makes an amplitude here.")
-    return texture_survival([analysis.survival])
+    return texture_survival(analysis.survival)
 
 
 @drawn
-def texture_survival(tables: Sequence[TextureSurvival]) -> Figure:
-    """Which spatial period survives at which speed, one panel per display, one line per drive."""
-    first = tables[0]
-    figure = new_figure(
-        f"Compensation with phase inversion keeps a grating up to {first.gain[-1]:.2g} times the "
-        f"finger speed, without inversion up to {first.gain[1]:.2g} times",
-        f"{first.model}; swing from 0 to {100 * first.level:g} % of what the full voltage holds, "
-        f"{100 * first.kept:g} % of it kept; Q as the display states it",
-        5.0,
-    )
-    grid = figure.add_gridspec(2, len(tables), height_ratios=[1, 0.1])
-    strip = figure.add_subplot(grid[1, :])
-    strip.set_axis_off()
-    axes = None
-    for column, table in enumerate(tables):
-        axes = figure.add_subplot(grid[0, column], sharey=axes)
-        for law, row, (color, dashes) in zip(table.laws, table.finest_period, LINES, strict=False):
-            axes.loglog(1e3 * table.speeds, 1e3 * row, color=color, ls=dashes, label=law.name)
-        for period in PAPER_PERIODS:
-            axes.axhline(1e3 * period, color=MUTED, lw=0.8, ls=(0, (1.4, 1.2)))
-        axes.set_title(f"{plain(table.name)}, τ = {shown(table.time_constant, S, 3)}")
-        axes.set(xlabel="finger speed (mm/s)", xlim=(10, 400), ylim=(0.02, 12))
-        axes.set_xticks([10, 20, 50, 100, 200, 400])
-        axes.set_yticks([0.02, 0.05, 0.1, 0.2, 0.4, 1, 2, 4, 10])
-        plain_log(axes.xaxis)
-        plain_log(axes.yaxis)
-        if column == 0:
-            axes.set_ylabel("finest period that survives (mm)")
-            handles, labels = axes.get_legend_handles_labels()
-        else:
-            axes.tick_params(labelleft=False)
+def texture_survival(table: TextureSurvival) -> Figure:
+    """Which spatial period survives at which speed, one line per drive."""
     from matplotlib.lines import Line2D
 
+    figure = new_figure(
+        f"Compensation with phase inversion keeps a grating up to {table.gain[-1]:.2g} times the "
+        f"finger speed, without inversion up to {table.gain[1]:.2g} times",
+        f"{table.model}; swing from 0 to {100 * table.level:g} % of what the full voltage holds, "
+        f"{100 * table.kept:g} % of it kept; Q as the display states it",
+        5.0,
+    )
+    grid = figure.add_gridspec(2, 1, height_ratios=[1, 0.1])
+    strip, axes = figure.add_subplot(grid[1]), figure.add_subplot(grid[0])
+    strip.set_axis_off()
+    for law, row, (color, dashes) in zip(table.laws, table.finest_period, LINES, strict=False):
+        axes.loglog(1e3 * table.speeds, 1e3 * row, color=color, ls=dashes, label=law.name)
+    for period in PAPER_PERIODS:
+        axes.axhline(1e3 * period, color=MUTED, lw=0.8, ls=(0, (1.4, 1.2)))
+    axes.set_title(f"{plain(table.name)}, τ = {shown(table.time_constant, S, 3)}")
+    axes.set(xlabel="finger speed (mm/s)", xlim=(10, 400), ylim=(0.02, 12))
+    axes.set_ylabel("finest period that survives (mm)")
+    axes.set_xticks([10, 20, 50, 100, 200, 400])
+    axes.set_yticks([0.02, 0.05, 0.1, 0.2, 0.4, 1, 2, 4, 10])
+    plain_log(axes.xaxis)
+    plain_log(axes.yaxis)
+    handles, labels = axes.get_legend_handles_labels()
     handles.append(Line2D([], [], color=MUTED, lw=0.8, ls=(0, (1.4, 1.2))))
     labels.append("the paper's gratings")
     strip.legend(handles, labels, loc="center", ncols=2, frameon=False)

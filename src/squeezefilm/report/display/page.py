@@ -144,8 +144,8 @@ def _verdict(analysis: Analysis) -> str:
 
 def _key_numbers(analysis: Analysis) -> str:
     rows = [
-        (escape(row.label), f'<span class="mark">{escape(row.text)}</span>', escape(row.remark))
-        for row in key_numbers(analysis)
+        (escape(label), f'<span class="mark">{escape(text)}</span>', escape(remark))
+        for label, text, remark in key_numbers(analysis)
     ]
     return html_table("At the working point", ("Quantity", "Value", "Remark"), rows)
 

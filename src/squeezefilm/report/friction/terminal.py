@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from squeezefilm.quantities import Unit
-from squeezefilm.report.kit.numbers import HZ, M, N, V, shown
+from squeezefilm.report.kit.numbers import HZ, M, N, V, reduction_row, shown
 from squeezefilm.report.kit.terminal import heading, plain_console, table
 
 if TYPE_CHECKING:
@@ -86,11 +86,7 @@ def _friction_rows(result: FrictionAnalysis) -> list[tuple[str, str, str]]:
     p = result.prediction
     rows = [
         ("Relative friction µ′/µ", f"{p.relative_friction:.3f}", p.model),
-        (
-            "Friction reduction µ − µ′",
-            f"{p.friction_reduction:.3f}",
-            f"of µ = {p.friction_coefficient:.3g}",
-        ),
+        reduction_row(p),
         ("Tangential force", shown(p.tangential_force, N, 3), "sliding steadily"),
     ]
     if p.relative_friction_limits is not None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from functools import partial
 from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -14,11 +15,11 @@ from squeezefilm.errors import InputError
 from squeezefilm.formats.hjif import HjifExport, ReferenceDevice, hjif_of
 from squeezefilm.formats.traces import Table, csv_text, parquet_bytes
 from squeezefilm.formats.wav import Waveform, wav_bytes
-from squeezefilm.quantities import FloatArray
 from squeezefilm.report.kit.folder import json_text, require_folder, write_folder
 from squeezefilm.report.kit.numbers import printable
 from squeezefilm.report.kit.page_style import html_table, page_head, picture_sections, section
 from squeezefilm.report.kit.style import png
+from squeezefilm.report.textures import figures as draw
 from squeezefilm.report.textures.terminal import render_rows
 
 if TYPE_CHECKING:
@@ -82,13 +83,6 @@ def hjif_export(result: RenderAnalysis) -> HjifExport:
     """The texture under the stroke as MPEG haptics. Raises `InputError` as `hjif_of` does."""
     p, played = result.prediction, result.played
 
-    def to_friction(values: FloatArray) -> FloatArray:
-        if result.texture.texture.quantity == "amplitude":
-            return np.interp(
-                played.amplitude(values), played.inverse.amplitude, played.inverse.relative_friction
-            )
-        return played.friction(values)
-
     frictional = result.texture.texture.quantity == "relative_friction"
     return hjif_of(
         result.texture.texture,
@@ -101,7 +95,7 @@ def hjif_export(result: RenderAnalysis) -> HjifExport:
             result.stroke.envelope.amplitude_limit,
         ),
         title=played.name,
-        to_friction=None if frictional else to_friction,
+        to_friction=None if frictional else partial(draw.friction_of, result),
         speed=float(np.mean(np.abs(result.finger.speed))),
     )
 
@@ -156,8 +150,6 @@ def write_render(
 
 def render_figures(result: RenderAnalysis) -> dict[str, tuple[str, Figure]]:
     """The figures by the name of their file: heading and drawing."""
-    from squeezefilm.report.textures import figures as draw
-
     found = {
         "render-friction": ("Friction along the stroke", draw.friction(result)),
         "render-drive": ("Drive and tangential force", draw.drive(result)),
