@@ -169,6 +169,21 @@ def legend_below(axes: Axes, columns: int = 2, gap: float = 0.16) -> None:
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -gap), ncols=columns, frameon=False)
 
 
+def mark(
+    axes: Axes,
+    x: float,
+    y: float,
+    size: float,
+    label: str | None = None,
+    *,
+    color: str = INK,
+    clip_on: bool = False,
+) -> None:
+    """A diamond of a size (points) with a ring around it, above all lines: a working point."""
+    look: dict[str, Any] = {"color": color, "ms": size, "mec": PAPER, "mew": 0.5 + 0.1 * size}
+    axes.plot([x], [y], "D", zorder=5, clip_on=clip_on, label=label, **look)
+
+
 def micrometres_beside(axes: Axes, voltage: float, label: str) -> None:
     """A second axis on the right of one in nm/V: micrometres at a voltage (V)."""
     micro = 1e-3 * voltage
