@@ -223,10 +223,6 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
     },
     "render.motion.finger_path.FingerPath": {"time": _GRID, "x": WAYS, "y": WAYS},
     "render.program.inverse.FrictionInverse.from_function": _FALL,
-    "render.program.inverse.FrictionInverse.from_arrays": {
-        "amplitude": WAYS * 1e-3,
-        "relative_friction": falling_friction(WAYS * 1e-3),
-    },
     "render.texture.levels.Amplitude.constant": {"value": 1e-6},
     "render.texture.levels.RelativeFriction": {"low": 0.4, "high": 0.8},
     "render.texture.levels.FrictionReduction": {"low": 0.4, "high": 0.8},
