@@ -199,8 +199,7 @@ def test_a_grating_is_composed_and_a_picture_dropped(
     chromium: Browser, running_lab: RunningLab, tmp_path: Path
 ) -> None:
     import numpy as np
-
-    from squeezefilm.formats.pictures import picture_bytes
+    from tests.pictures import picture_bytes
 
     page, complaints = opened(chromium, running_lab, "feel")
     page.locator(".parity", has_text="agree").wait_for(timeout=SOLVED)

@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 import pytest
 from tests.e2e.program import run
+from tests.pictures import picture_bytes
 
 from squeezefilm import presets
 from squeezefilm.formats.hjif_read import read_hjif
-from squeezefilm.formats.pictures import picture_bytes
 from squeezefilm.formats.traces import table_from_csv, table_from_parquet
 from squeezefilm.formats.wav import read_wav
 

@@ -130,7 +130,6 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
     "formats.hjif_read.friction_along": {"document": Later(hjif_document)},
     "formats.hjif.hjif_of": {"texture": Later(lambda: made(RelativeFriction))},
     "formats.image_file.ImageFile": {"file": "picture.png"},
-    "formats.pictures.picture_bytes": {"values": np.full((4, 4), 0.5)},
     "formats.traces.Table": {"columns": {"time_s": _GRID}},
     "formats.wav.Waveform": {"samples": _GRID * 1e-7, "unit": "m", "full_scale": 1e-6},
     "materials.PiezoConstants": Later(lambda: fields_of(PZT.full_constants)),
@@ -213,10 +212,6 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
     },
     "render.motion.finger_path.FingerPath": {"time": _GRID, "x": WAYS, "y": WAYS},
     "render.program.inverse.FrictionInverse.from_function": _FALL,
-    "render.program.inverse.FrictionInverse.from_arrays": {
-        "amplitude": WAYS * 1e-3,
-        "relative_friction": falling_friction(WAYS * 1e-3),
-    },
     "render.texture.levels.Amplitude.constant": {"value": 1e-6},
     "render.texture.levels.RelativeFriction": {"low": 0.4, "high": 0.8},
     "render.texture.levels.FrictionReduction": {"low": 0.4, "high": 0.8},

@@ -1,4 +1,4 @@
-"""Pictures as maps: greyscale PNG of 8 or 16 bits to values from 0 (black) to 1 (white) and back.
+"""Pictures as maps: greyscale PNG of 8 or 16 bits to values from 0 (black) to 1 (white).
 
 Size and kind are read from the file's header and checked before anything is decoded: a small file
 may unpack to gigabytes. A picture has no scale of its own; whoever uses one gives the side of a
@@ -11,13 +11,12 @@ import io
 import struct
 import warnings
 from pathlib import Path
-from typing import Literal
 
 import numpy as np
 
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import PICTURE_BYTES
-from squeezefilm.quantities import DimensionlessArray, real_numbers, require
+from squeezefilm.quantities import DimensionlessArray
 from squeezefilm.regular_file import read_regular
 from squeezefilm.render.texture.image import MOST_PIXELS
 
@@ -68,26 +67,3 @@ def picture_from(data: bytes, name: str = "the picture") -> DimensionlessArray:
     if found.shape != (rows, columns):
         raise InputError(f"{name} is damaged: its header does not belong to its pixels")
     return np.asarray(found / (2**bits - 1))
-
-
-def picture_bytes(values: DimensionlessArray, bits: Literal[8, 16] = 8) -> bytes:
-    """The greyscale PNG of values from 0 to 1, shape (rows, columns), the top row first.
-
-    A value is rounded to the nearest of 2^bits steps. Raises `InputError` for values outside 0 to
-    1, another shape, too many pixels or other bits.
-    """
-    from PIL import Image as Pillow
-
-    array = real_numbers("values", values)
-    if array.ndim != 2 or not 1 <= array.size <= MOST_PIXELS:
-        raise InputError(
-            f"values of shape {array.shape} are no picture; give rows and columns, at most "
-            f"{MOST_PIXELS} pixels together"
-        )
-    if bits not in (8, 16):
-        raise InputError(f"bits = {bits!r} cannot be used: it must be 8 or 16")
-    require("values", array, at_least=0.0, at_most=1.0)
-    grey = np.rint(array * (2**bits - 1)).astype(np.uint8 if bits == 8 else np.uint16)
-    stream = io.BytesIO()
-    Pillow.fromarray(grey).save(stream, format="PNG")
-    return stream.getvalue()

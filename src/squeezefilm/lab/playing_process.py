@@ -16,12 +16,16 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from multiprocessing.connection import Connection
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from squeezefilm.errors import InputError, SqueezefilmError
 from squeezefilm.quantities import FloatArray, Second
+from squeezefilm.results import to_json
+
+if TYPE_CHECKING:
+    from squeezefilm.session.play.plan import PlayView
 
 ROW_PERIOD: Second = 2e-3
 """Between two rows that the page's scope gets; the record has them all."""
@@ -119,33 +123,34 @@ class DeviceSession:
         self._tell(end)
 
 
-def play(connection: Connection, work: DeviceWork) -> None:
-    """Play, and tell of it."""
-    from squeezefilm.bench.play import JUDGING, play_texture
-    from squeezefilm.session.loop.rows import COLUMNS
-    from squeezefilm.texture_file import load_texture
+class _Watched:
+    """What a page hears of a session while it plays."""
 
-    tell = _telling(connection)
-    last = -math.inf
-    stage = ""
+    def __init__(self, tell: Tell) -> None:
+        self.stage = ""
+        self._tell = tell
+        self._last = -math.inf
 
-    def progress(text: str) -> None:
-        nonlocal stage
-        stage = text
-        tell({"type": "device progress", "text": text})
+    def progress(self, text: str) -> None:
+        """What is done now."""
+        self.stage = text
+        self._tell({"type": "device progress", "text": text})
 
-    def tap(rows: FloatArray) -> None:
-        nonlocal last
+    def tap(self, rows: FloatArray) -> None:
+        """The newest rows, as many as a page can draw."""
+        from squeezefilm.session.loop.rows import COLUMNS
+
         kept = []
         for row in rows:
-            if row[1] - last >= ROW_PERIOD:
-                last = float(row[1])
+            if row[1] - self._last >= ROW_PERIOD:
+                self._last = float(row[1])
                 kept.append([float(one) if np.isfinite(one) else None for one in row])
         if kept:
-            tell({"type": "device rows", "columns": list(COLUMNS), "rows": kept})
+            self._tell({"type": "device rows", "columns": list(COLUMNS), "rows": kept})
 
-    def show(view: Any) -> None:
-        tell(
+    def show(self, view: PlayView) -> None:
+        """The moment."""
+        self._tell(
             {
                 "type": "device view",
                 "state": view.state.name,
@@ -163,6 +168,14 @@ def play(connection: Connection, work: DeviceWork) -> None:
             }
         )
 
+
+def play(connection: Connection, work: DeviceWork) -> None:
+    """Play, and tell of it."""
+    from squeezefilm.bench.play import JUDGING, play_texture
+    from squeezefilm.texture_file import load_texture
+
+    tell = _telling(connection)
+    page = _Watched(tell)
     try:
         result = play_texture(
             work.display,
@@ -176,9 +189,9 @@ def play(connection: Connection, work: DeviceWork) -> None:
             compensation=work.compensation,
             out=Path(work.out),
             seed=work.seed,
-            show=show,
-            tap=tap,
-            progress=progress,
+            show=page.show,
+            tap=page.tap,
+            progress=page.progress,
         )
         # The device is at zero and disarmed; what is left to be written is not to be cut short.
         signal.signal(signal.SIGINT, signal.SIG_IGN)
@@ -198,8 +211,8 @@ def play(connection: Connection, work: DeviceWork) -> None:
     except KeyboardInterrupt:
         # Whatever was driven is at zero: only what comes before and after playing ends like this.
         message = (
-            f"stopped during: {stage}; what was played is recorded in {work.out}, not judged"
-            if stage == JUDGING
+            f"stopped during: {page.stage}; what was played is recorded in {work.out}, not judged"
+            if page.stage == JUDGING
             else _STOPPED_BEFORE
         )
         tell({"type": "device ended", "failed": False, "message": message})
@@ -220,16 +233,7 @@ def check(connection: Connection, drive: str, display: str) -> None:
             {
                 "type": "device checked",
                 "passed": result.passed,
-                "results": [
-                    {
-                        "name": one.name,
-                        "passed": one.passed,
-                        "measured": one.measured,
-                        "allowed": one.allowed,
-                        "advice": one.advice,
-                    }
-                    for one in result.results
-                ],
+                "results": to_json(result.results),
             }
         )
         tell({"type": "device ended", "failed": False, "message": "checked"})

@@ -37,9 +37,29 @@ Varied = Literal["spatial_period", "friction_depth", "ridge_share", "orientation
 _METRE = Unit("m")
 
 
+class _Periodic:
+    """What virtual and real gratings share: grooves and ridges."""
+
+    spatial_period: Metre
+    period_means: PeriodMeans
+    ridge_share: Dimensionless
+
+    @property
+    def period(self) -> Metre:
+        """Groove plus ridge (m), whatever `spatial_period` means."""
+        if self.period_means == "period":
+            return self.spatial_period
+        return self.spatial_period / (1.0 - self.ridge_share)
+
+    @property
+    def groove_width(self) -> Metre:
+        """Width of a groove (m): period × (1 − ridge share)."""
+        return self.period * (1.0 - self.ridge_share)
+
+
 @checked_numbers
 @dataclass(frozen=True)
-class Stimulus:
+class Stimulus(_Periodic):
     """A virtual grating: friction low in its grooves, high on its ridges.
 
     Args:
@@ -85,16 +105,6 @@ class Stimulus:
             )
 
     @property
-    def period(self) -> Metre:
-        """Groove plus ridge (m), whatever `spatial_period` means."""
-        return _period(self.spatial_period, self.period_means, self.ridge_share)
-
-    @property
-    def groove_width(self) -> Metre:
-        """Width of a groove (m): period × (1 − ridge share)."""
-        return self.period * (1.0 - self.ridge_share)
-
-    @property
     def friction_depth(self) -> Dimensionless:
         """high − low, in parts of the friction without vibration (1); 0 if constant."""
         return 0.0 if self.waveform == "constant" else self.high - self.low
@@ -138,7 +148,7 @@ class Stimulus:
 
 @checked_numbers
 @dataclass(frozen=True)
-class Grating:
+class Grating(_Periodic):
     """A real grating that is touched for comparison, like the paper's etched copper boards.
 
     Args:
@@ -165,20 +175,6 @@ class Grating:
 
     def __post_init__(self) -> None:
         _require_title(self.name)
-
-    @property
-    def period(self) -> Metre:
-        """Groove plus ridge (m), whatever `spatial_period` means."""
-        return _period(self.spatial_period, self.period_means, self.ridge_share)
-
-    @property
-    def groove_width(self) -> Metre:
-        """Width of a groove (m)."""
-        return self.period * (1.0 - self.ridge_share)
-
-
-def _period(length: Metre, means: PeriodMeans, ridge_share: Dimensionless) -> Metre:
-    return length if means == "period" else length / (1.0 - ridge_share)
 
 
 def _require_title(name: str) -> None:

@@ -40,10 +40,9 @@ class TruthRecord:
             self._file.write("".join(line + "\n" for line in lines))
             self._file.flush()
         size = self._rows.shape[0]
-        for row in (rows[-size:],):
-            skipped = len(rows) - len(row)
-            at = (self._written + skipped + np.arange(len(row))) % size
-            self._rows[at] = row
+        newest = rows[-size:]
+        first = self._written + len(rows) - len(newest)
+        self._rows[(first + np.arange(len(newest))) % size] = newest
         self._written += len(rows)
 
     @property

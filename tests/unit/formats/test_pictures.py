@@ -6,10 +6,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.pictures import picture_bytes
 
 from squeezefilm.errors import ConfigError, InputError
 from squeezefilm.formats.image_file import ImageFile
-from squeezefilm.formats.pictures import picture_bytes, picture_from, read_picture
+from squeezefilm.formats.pictures import picture_from, read_picture
 from squeezefilm.render.texture.image import MOST_PIXELS
 from squeezefilm.texture_file import load_texture, texture_from_text
 
@@ -26,10 +27,10 @@ SCALE = ', pixel = "0.5 mm"'
 
 @pytest.mark.parametrize("bits", [8, 16])
 def test_what_is_written_is_read_within_half_a_step(bits: int) -> None:
-    read = picture_from(picture_bytes(GRID, bits))  # type: ignore[arg-type]
+    read = picture_from(picture_bytes(GRID, bits))
     assert np.max(np.abs(read - GRID)) <= 0.5 / (2**bits - 1) * 1.0001
     ends = np.array([[0.0, 1.0]])
-    assert np.array_equal(picture_from(picture_bytes(ends, bits)), ends)  # type: ignore[arg-type]
+    assert np.array_equal(picture_from(picture_bytes(ends, bits)), ends)
 
 
 def header(columns: int, rows: int, bits: int = 8, kind: int = 0) -> bytes:
@@ -59,10 +60,8 @@ def test_what_is_no_map_is_refused_before_it_is_decoded(data: bytes, says: str) 
 def test_as_many_pixels_as_an_image_may_have() -> None:
     side = int(MOST_PIXELS**0.5)
     assert picture_from(picture_bytes(np.zeros((side, side)))).shape == (side, side)
-    with pytest.raises(InputError, match="at most"):
-        picture_bytes(np.zeros((side + 1, side)))
-    with pytest.raises(InputError, match="values"):
-        picture_bytes(np.array([[np.nan]]))
+    with pytest.raises(InputError, match="together"):
+        picture_from(picture_bytes(np.zeros((side + 1, side))))
 
 
 def test_a_texture_reads_the_picture_beside_it(tmp_path: Path) -> None:

@@ -6,6 +6,7 @@ import math
 import os
 import signal
 from collections.abc import Callable
+from dataclasses import asdict
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -14,6 +15,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.bench import play as bench_play
+from squeezefilm.bench.check import CheckResult
 from squeezefilm.errors import DeviceError, InputError
 from squeezefilm.lab import playing_process
 from squeezefilm.lab.playing_process import DeviceSession, DeviceWork, check, play
@@ -166,8 +168,8 @@ def test_a_session_that_fails_says_why(played: Played) -> None:
 
 
 def test_a_check_tells_each_step_and_each_result(monkeypatch: pytest.MonkeyPatch) -> None:
-    one = SimpleNamespace(name="link", passed=True, measured="1", allowed="2", advice="")
-    two = SimpleNamespace(name="stop", passed=False, measured="3", allowed="4", advice="mend it")
+    one = CheckResult(name="link", passed=True, measured="1", allowed="2")
+    two = CheckResult(name="stop", passed=False, measured="3", allowed="4", advice="mend it")
 
     def done(drive: str, display: str, *, progress: Any) -> Any:
         progress(f"{drive} of {display}")
@@ -178,7 +180,7 @@ def test_a_check_tells_each_step_and_each_result(monkeypatch: pytest.MonkeyPatch
     check(pipe, "twin", "one")
     assert pipe.said == [
         {"type": "device progress", "text": "twin of one"},
-        {"type": "device checked", "passed": False, "results": [vars(one), vars(two)]},
+        {"type": "device checked", "passed": False, "results": [asdict(one), asdict(two)]},
         {"type": "device ended", "failed": False, "message": "checked"},
     ]
 

@@ -11,7 +11,7 @@ from squeezefilm.analysis.plate.sensitivity import Sensitivity, SensitivityTable
 from squeezefilm.analysis.plate.tracking import ModeTrack, ModeTracks
 from squeezefilm.display import load_display
 from squeezefilm.report.plate.mode_surface import driven_shape, mode_surface
-from squeezefilm.report.plate.page import PlateFigure, plate_page
+from squeezefilm.report.plate.page import plate_page
 from squeezefilm.report.plate.plate import admittance, frequency_response, line_scan, plan_view
 from squeezefilm.report.plate.sensitivity_figures import tornado, tracks
 
@@ -76,7 +76,7 @@ def test_each_figure_has_its_message(result: PlateAnalysis) -> None:
 
 def test_a_name_in_the_page_is_text(result: PlateAnalysis) -> None:
     display = dataclasses.replace(result.display, title="<script>alert(1)</script>")
-    figures = [PlateFigure("line-scan", "Line scan", line_scan(result))]
+    figures = {"line-scan": ("Line scan", line_scan(result))}
     page = plate_page(dataclasses.replace(result, display=display), figures)
     assert "<script>" not in page
     assert 'src="line-scan.png"' in page

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 import struct
 from dataclasses import dataclass, fields
-from typing import ClassVar, Self
+from typing import Any, ClassVar, Self
 
 from squeezefilm.device.wire.arguments import amplitudes, binary32_below
 from squeezefilm.device.wire.frames import Frame
@@ -118,23 +118,29 @@ class SetFrequency(Message):
     frequency: int
 
 
-@dataclass(frozen=True, slots=True)
-class Envelope(Message):
-    """Amplitudes (V) from now on, one every `period` µs; the last one holds. While PLAYING."""
+class _Levels(Message):
+    """A number of 16 bits, and amplitudes (V) behind it."""
 
-    TYPE: ClassVar[int] = 0x07
-    period: int
-    levels: tuple[Volt, ...]
+    __slots__ = ()
 
     def payload(self) -> bytes:
         """The payload's bytes. Raises `InputError` for too many, or what is no amplitude."""
-        return _levels_payload(self.period, self.levels)
+        return _levels_payload(*(getattr(self, field.name) for field in fields(self)))
 
     @classmethod
     def read(cls, payload: bytes) -> Self | None:
         """The message in a payload, or None if its length is wrong."""
         parts = _levels_read(payload)
         return None if parts is None else cls(*parts)
+
+
+@dataclass(frozen=True, slots=True)
+class Envelope(_Levels):
+    """Amplitudes (V) from now on, one every `period` µs; the last one holds. While PLAYING."""
+
+    TYPE: ClassVar[int] = 0x07
+    period: int
+    levels: tuple[Volt, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -149,22 +155,12 @@ class TileBegin(Message):
 
 
 @dataclass(frozen=True, slots=True)
-class TileData(Message):
+class TileData(_Levels):
     """The tile's amplitudes (V) from number `first`, which must be how many are there already."""
 
     TYPE: ClassVar[int] = 0x09
     first: int
     levels: tuple[Volt, ...]
-
-    def payload(self) -> bytes:
-        """The payload's bytes. Raises `InputError` for too many, or what is no amplitude."""
-        return _levels_payload(self.first, self.levels)
-
-    @classmethod
-    def read(cls, payload: bytes) -> Self | None:
-        """The message in a payload, or None if its length is wrong."""
-        parts = _levels_read(payload)
-        return None if parts is None else cls(*parts)
 
 
 @dataclass(frozen=True, slots=True)
@@ -367,7 +363,8 @@ def _levels_payload(number: int, levels: tuple[float, ...]) -> bytes:
         raise InputError(f"{number} before the amplitudes does not fit: {error}") from error
 
 
-def _levels_read(payload: bytes) -> tuple[int, tuple[float, ...]] | None:
+def _levels_read(payload: bytes) -> tuple[Any, ...] | None:
+    """The number and the amplitudes, or None if the length is wrong."""
     if len(payload) < 3:
         return None
     number, count = struct.unpack_from("<HB", payload)

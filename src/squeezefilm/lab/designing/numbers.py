@@ -15,13 +15,14 @@ import numpy as np
 
 from squeezefilm.analysis.uncertainty import friction_band
 from squeezefilm.chain.prediction import Prediction, predict
+from squeezefilm.display import Display
 from squeezefilm.errors import InputError, SqueezefilmError
 from squeezefilm.lab.designing.form import display_of, edited, form
 from squeezefilm.lab.worker import tell
 from squeezefilm.plate.layout import Actuator, AnnularStator, DiscPlate, RectangularPlate
 from squeezefilm.plate.solid.working import response_frequencies, solid_mode
 from squeezefilm.quantities import FloatArray, Unit, parse_quantity, require_one_of
-from squeezefilm.results import stamp
+from squeezefilm.results import stamp, to_json
 
 QUALITIES = ("screening", "solved")
 _POINTS = 49
@@ -68,39 +69,24 @@ class WorkingPoint:
 
 
 def designed(point: WorkingPoint, quality: str) -> dict[str, Any]:
-    """As `design`, with the text. Raises as `design` and `description.edited`."""
-    text = point.edited()
-    if quality == "solved":
-        # What takes the time, told while it is solved; it is kept for what `design` asks of it.
-        actuator = display_of(text).actuator
-        if isinstance(actuator, RectangularPlate):
-            solid_mode(actuator, progress=tell)
-    found = design(text, quality, point.voltage, point.surface, point.force)
-    return {"text": text, **found}
-
-
-def banded(point: WorkingPoint, quality: str) -> dict[str, Any]:
-    """As `band`. Raises as `design` and `description.edited`."""
-    return band(point.edited(), quality, point.voltage, point.surface, point.force)
-
-
-def design(
-    text: str, quality: str, voltage: str | None, surface: str | None, force: str | None
-) -> dict[str, Any]:
-    """The numbers, curves and shape of a display at a working point.
-
-    `voltage` and `force` are quantity texts, None for the display's own. Keys carry units.
+    """The text, the numbers, curves and shape of a display at a working point. Keys carry units.
 
     Raises:
-        InputError: a text that is no display, or a working point it does not have.
+        InputError: a text that is no display, an edit that cannot be made, or a working point it
+            does not have.
     """
+    text = point.edited()
     display = display_of(text)
-    p = predicted(text, quality, voltage, surface, force)
+    if quality == "solved" and isinstance(display.actuator, RectangularPlate):
+        # What takes the time, told while it is solved; it is kept for what is asked of it below.
+        solid_mode(display.actuator, progress=tell)
+    p = predicted(display, quality, point)
     mode = p.mode
     span = max(2.0 * p.vibration_amplitude, _LEAST_SPAN)
     amplitude = np.linspace(0.0, span, _POINTS)
     frequency = response_frequencies(mode.resonance_frequency, mode.quality_factor, 121)
     return {
+        "text": text,
         "quality": quality,
         "name": display.name,
         "title": display.title,
@@ -126,12 +112,12 @@ def design(
         "friction_model": p.model,
         "friction_curve": {
             "amplitude_m": amplitude.tolist(),
-            "relative_friction": _listed(p.law.curve(amplitude)),
-            "paper2008": _listed(_paper(p, amplitude)),
+            "relative_friction": to_json(p.law.curve(amplitude)),
+            "paper2008": to_json(_paper(p, amplitude)),
         },
         "response": {
             "frequency_Hz": frequency.tolist(),
-            "amplitude_per_volt_m_per_V": _listed(mode.response(frequency)),
+            "amplitude_per_volt_m_per_V": to_json(mode.response(frequency)),
         },
         "line": _line(p, display.actuator),
         "shape": _shape(p),
@@ -140,49 +126,35 @@ def design(
     }
 
 
-def band(
-    text: str,
-    quality: str,
-    voltage: str | None,
-    surface: str | None,
-    force: str | None,
-    samples: int = 64,
-) -> dict[str, Any]:
-    """The friction curve's band on the same amplitudes as `design` draws it."""
-    display = display_of(text)
-    p = predicted(text, quality, voltage, surface, force)
+def banded(point: WorkingPoint, quality: str, samples: int = 64) -> dict[str, Any]:
+    """The friction curve's band on every third amplitude that `designed` draws it on.
+
+    Raises as `designed`.
+    """
+    display = display_of(point.edited())
+    p = predicted(display, quality, point)
     amplitude = np.linspace(0.0, max(2.0 * p.vibration_amplitude, _LEAST_SPAN), _POINTS)
-    found = friction_band(display, p, amplitude[::3], samples=samples, progress=tell)
-    return {
-        "amplitude_m": found.amplitude.tolist(),
-        "low": _listed(found.low),
-        "high": _listed(found.high),
-        "level": found.level,
-        "samples": found.samples,
-    }
+    found: dict[str, Any] = to_json(
+        friction_band(display, p, amplitude[::3], samples=samples, progress=tell)
+    )
+    return found
 
 
-def predicted(
-    text: str,
-    quality: str,
-    voltage: str | None = None,
-    surface: str | None = None,
-    force: str | None = None,
-) -> Prediction:
-    """The prediction of a display's text at a working point, by the theory of a quality.
+def predicted(display: Display, quality: str, point: WorkingPoint) -> Prediction:
+    """The prediction of a display at a working point's voltage, surface and force, by the theory
+    of a quality.
 
-    Raises `InputError` as `design` does.
+    Raises `InputError` as `designed` does.
     """
     require_one_of("quality", quality, QUALITIES)
-    display = display_of(text)
     plate = isinstance(display.actuator, RectangularPlate)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         return predict(
             display,
-            voltage=None if voltage is None else parse_quantity(voltage, Unit("V")),
-            normal_force=None if force is None else parse_quantity(force, Unit("N")),
-            surface=surface,
+            voltage=None if point.voltage is None else parse_quantity(point.voltage, Unit("V")),
+            normal_force=None if point.force is None else parse_quantity(point.force, Unit("N")),
+            surface=point.surface,
             theory=("timoshenko" if quality == "screening" else "solid") if plate else None,
         )
 
@@ -267,5 +239,3 @@ def outline(text: str) -> dict[str, Any]:
     raise InputError(f"an actuator of type '{actuator.type}' cannot be drawn")
 
 
-def _listed(values: FloatArray) -> list[float | None]:
-    return [float(one) if np.isfinite(one) else None for one in np.asarray(values)]

@@ -21,12 +21,12 @@ from squeezefilm.display import Display
 from squeezefilm.errors import InputError
 from squeezefilm.formats.pictures import picture_from
 from squeezefilm.lab.designing.form import display_of
-from squeezefilm.lab.designing.numbers import predicted
+from squeezefilm.lab.designing.numbers import WorkingPoint, predicted
 from squeezefilm.plate.layout import Actuator, DiscPlate, RectangularPlate
 from squeezefilm.quantities import FloatArray, Metre
 from squeezefilm.render.program.lowering import Program
 from squeezefilm.render.program.renderer import render
-from squeezefilm.results import stamp
+from squeezefilm.results import stamp, to_json
 from squeezefilm.texture_file import TextureFile, load_texture, texture_from_text
 
 _KNOTS = 257
@@ -55,7 +55,7 @@ def _ready(
     else:
         texture = texture_from_text(str(texture_text), file=folder / "texture.toml")
     display = display_of(display_text)
-    p = predicted(display_text, quality)
+    p = predicted(display, quality, WorkingPoint(display_text))
     if p.vibration_amplitude <= 0.0 or p.relative_friction > 1.0 - _LEAST_REDUCTION:
         raise InputError(
             f"display '{display.name}' changes no friction at {p.voltage or 0.0:g} V, so it "
@@ -153,7 +153,7 @@ def parity(
     done = render(ready.program, x, y, v, t)
     return {
         "display": ready.display.name,
-        "x_m": _listed(x),
+        "x_m": to_json(x),
         "y_m": y.tolist(),
         "v_m_per_s": v.tolist(),
         "t_s": t.tolist(),
@@ -168,7 +168,3 @@ def _size(actuator: Actuator) -> tuple[Metre, Metre]:
     if isinstance(actuator, DiscPlate):
         return actuator.diameter, actuator.diameter
     return float(np.pi * actuator.mean_diameter), actuator.radial_width
-
-
-def _listed(values: np.ndarray[Any, Any]) -> list[float | None]:
-    return [float(one) if np.isfinite(one) else None for one in values]

@@ -26,7 +26,7 @@ from squeezefilm.quantities import (
     checked_numbers,
     require,
 )
-from squeezefilm.render.fidelity.trace import RelativeFriction
+from squeezefilm.render.fidelity.trace import RelativeFriction, friction_of, per_sample
 from squeezefilm.render.motion.estimator import MotionEstimate, MotionEstimator, estimate_motion
 from squeezefilm.render.motion.minimum_jerk import Trajectory
 from squeezefilm.render.motion.sensor import SensorModel, sensor_stream
@@ -175,12 +175,8 @@ def rendered_stroke(
         wanted=wanted,
         command=command,
         amplitude=amplitude,
-        relative_friction_wanted=_per_sample(
-            "relative_friction", relative_friction(wanted), wanted.shape
-        ),
-        relative_friction_rendered=_per_sample(
-            "relative_friction", relative_friction(amplitude), wanted.shape
-        ),
+        relative_friction_wanted=friction_of(relative_friction, wanted),
+        relative_friction_rendered=friction_of(relative_friction, amplitude),
         saturated_top=top,
         saturated_bottom=bottom,
         silent=float(np.mean(~known)),
@@ -220,15 +216,4 @@ def _previewed(
 
 
 def _asked(texture: Texture, x: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
-    return _per_sample("texture", texture(x, 0.0, np.abs(v), t), x.shape)
-
-
-def _per_sample(name: str, values: FloatArray, shape: tuple[int, ...]) -> FloatArray:
-    array = np.asarray(values, dtype=float)
-    if array.shape != shape:
-        raise InputError(
-            f"{name} returned values of shape {array.shape} where {shape} was given; it must "
-            "return one value per sample"
-        )
-    require(f"a value returned by {name}", array, at_least=0.0)
-    return array
+    return per_sample("texture", texture(x, 0.0, np.abs(v), t), x)

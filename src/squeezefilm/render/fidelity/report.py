@@ -31,6 +31,8 @@ from squeezefilm.render.motion.sensor import SensorModel
 from squeezefilm.render.resonator.compensation import Compensation, DrivenEnvelope
 
 PerMetreArray = Annotated[FloatArray, Unit("1/m")]
+_Mask = np.ndarray[tuple[int], np.dtype[np.bool_]]
+_Passes = list[tuple[FloatArray, FloatArray, FloatArray]]
 
 # After fifteen time constants 3e-7 of the start is left.
 _SETTLING = 15
@@ -113,36 +115,15 @@ def fidelity_report(
         InputError: a stroke that ends before its start has settled, friction wanted that doesn't
             change, a frequency not above 0, or no pass of four periods at the lowest frequency.
     """
-    slowest = max(stroke.envelope.rise_time_constant, stroke.envelope.fall_time_constant)
-    skip = _SETTLING * slowest
-    if stroke.sensor is not None:
-        skip += stroke.sensor.latency + 10 / stroke.sensor.rate
-    judged = stroke.time >= skip
-    if np.count_nonzero(judged) < 2:
-        raise InputError(
-            f"the stroke of {stroke.time[-1]:.4g} s ends before its start has settled "
-            f"({skip:.4g} s); make it longer"
-        )
-    wanted = stroke.relative_friction_wanted
-    error = (stroke.relative_friction_rendered - wanted)[judged]
-    spread = float(np.std(wanted[judged]))
-    if np.ptp(wanted[judged]) <= 1e-12:  # the deviation of equal numbers is rounding, not zero
-        raise InputError(
-            "the friction wanted does not change along the stroke, so there is no fidelity to "
-            "judge; choose a texture, or amplitudes, that change it"
-        )
+    skip, judged = _judged(stroke)
+    wanted = stroke.relative_friction_wanted[judged]
+    error = _rms(stroke.relative_friction_rendered[judged] - wanted)
     passes = _passes(stroke, judged)
     frequencies = _frequencies(stroke, passes, spatial_frequencies)
     contrast, swing = _contrast(passes, frequencies)
     mean_speed = float(np.mean(np.abs(stroke.speed[judged])))
     lag = _lag(passes, getattr(stroke.texture, "spatial_period", None), float(frequencies.max()))
-    position_error = speed_error = refused = None
-    if stroke.estimate is not None:
-        seen = judged & stroke.estimate.fresh
-        position_error = _rms((stroke.estimate.position - stroke.position)[seen])
-        speed_error = _rms((stroke.estimate.speed - stroke.speed)[seen])
-        c = stroke.estimate.counts
-        refused = c.not_finite + c.duplicate + c.backwards + c.outlier
+    position_error, speed_error, refused = _errors_of_estimate(stroke, judged)
     return FidelityReport(
         texture=repr(stroke.texture),
         trajectory=repr(stroke.trajectory),
@@ -154,9 +135,9 @@ def fidelity_report(
         seed=stroke.seed,
         judged=float(stroke.time[-1] - skip),
         mean_speed=mean_speed,
-        wanted_swing=float(np.ptp(wanted[judged])),
-        rms_error=_rms(error),
-        relative_error=_rms(error) / spread,
+        wanted_swing=float(np.ptp(wanted)),
+        rms_error=error,
+        relative_error=error / float(np.std(wanted)),
         spatial_frequency=frequencies,
         contrast_kept=contrast,
         swing_kept=swing,
@@ -172,13 +153,46 @@ def fidelity_report(
     )
 
 
+def _judged(stroke: RenderedStroke) -> tuple[Second, _Mask]:
+    """The start that is left out (s), and which steps are judged. Raises as `fidelity_report`."""
+    slowest = max(stroke.envelope.rise_time_constant, stroke.envelope.fall_time_constant)
+    skip = _SETTLING * slowest
+    if stroke.sensor is not None:
+        skip += stroke.sensor.latency + 10 / stroke.sensor.rate
+    judged = stroke.time >= skip
+    if np.count_nonzero(judged) < 2:
+        raise InputError(
+            f"the stroke of {stroke.time[-1]:.4g} s ends before its start has settled "
+            f"({skip:.4g} s); make it longer"
+        )
+    # The deviation of equal numbers is rounding, not zero.
+    if np.ptp(stroke.relative_friction_wanted[judged]) <= 1e-12:
+        raise InputError(
+            "the friction wanted does not change along the stroke, so there is no fidelity to "
+            "judge; choose a texture, or amplitudes, that change it"
+        )
+    return skip, judged
+
+
+def _errors_of_estimate(
+    stroke: RenderedStroke, judged: _Mask
+) -> tuple[Metre | None, MetrePerSecond | None, int | None]:
+    """RMS errors of place and speed, and how many samples were refused; None without a sensor."""
+    if stroke.estimate is None:
+        return None, None, None
+    seen, c = judged & stroke.estimate.fresh, stroke.estimate.counts
+    return (
+        _rms((stroke.estimate.position - stroke.position)[seen]),
+        _rms((stroke.estimate.speed - stroke.speed)[seen]),
+        c.not_finite + c.duplicate + c.backwards + c.outlier,
+    )
+
+
 def _rms(values: FloatArray) -> float:
     return math.sqrt(float(np.mean(values**2))) if values.size else math.nan
 
 
-def _passes(
-    stroke: RenderedStroke, judged: np.ndarray[tuple[int], np.dtype[np.bool_]]
-) -> list[tuple[FloatArray, FloatArray, FloatArray]]:
+def _passes(stroke: RenderedStroke, judged: _Mask) -> _Passes:
     """Way (m, rising), wanted and rendered friction of each pass in one direction."""
     direction = np.sign(np.diff(stroke.position))
     found = []
@@ -200,7 +214,7 @@ def _passes(
 
 def _frequencies(
     stroke: RenderedStroke,
-    passes: list[tuple[FloatArray, FloatArray, FloatArray]],
+    passes: _Passes,
     asked: Sequence[float] | FloatArray | None,
 ) -> FloatArray:
     longest = max((float(np.ptp(way)) for way, _, _ in passes), default=0.0)
@@ -225,9 +239,7 @@ def _frequencies(
     return frequencies
 
 
-def _contrast(
-    passes: list[tuple[FloatArray, FloatArray, FloatArray]], frequencies: FloatArray
-) -> tuple[FloatArray, FloatArray]:
+def _contrast(passes: _Passes, frequencies: FloatArray) -> tuple[FloatArray, FloatArray]:
     cross = np.zeros(frequencies.size, dtype=complex)
     wanted_power, rendered_power = np.zeros((2, frequencies.size))
     whole = 0.0
@@ -252,11 +264,7 @@ def _contrast(
     return np.abs(cross) / power, np.sqrt(rendered_power / power)
 
 
-def _lag(
-    passes: list[tuple[FloatArray, FloatArray, FloatArray]],
-    period: float | None,
-    highest_frequency: float,
-) -> float:
+def _lag(passes: _Passes, period: float | None, highest_frequency: float) -> float:
     step = 1 / (_PER_PERIOD * highest_frequency)
     reach = _LONGEST_LAG if period is None else period / 2
     most = max(2, math.ceil(reach / step))

@@ -228,7 +228,6 @@ def estimate_motion(
     Raises:
         InputError: render times that are empty, not finite or falling, or `ahead` below 0.
     """
-    require("render", render, Unit("s"))
     require("ahead", ahead, Unit("s"), at_least=0.0)
     times = np.ascontiguousarray(render, dtype=float)
     if times.ndim != 1 or times.size == 0 or bool(np.any(np.diff(times) < 0)):

@@ -17,7 +17,6 @@ from squeezefilm.quantities import (
     AtLeast,
     Metre,
     MetreArray,
-    MetrePerSecond,
     Second,
     SecondLike,
     Unit,
@@ -64,11 +63,6 @@ class MinimumJerkStroke:
     def duration(self) -> Second:
         """Time the whole motion takes (s)."""
         return self.passes * self.pass_duration
-
-    @property
-    def top_speed(self) -> MetrePerSecond:
-        """Speed in the middle of each pass (m/s): 15/8 of the mean."""
-        return 1.875 * self.length / self.pass_duration
 
     @checked_numbers
     def position(self, t: SecondLike) -> MetreArray:

@@ -155,7 +155,6 @@ def sensor_stream(
             not finite or have another shape than the times.
     """
     require("duration", duration, Unit("s"), above=0.0)
-    require("start", start, Unit("s"))
     require("seed", seed, at_least=0)
     steps = duration * sensor.rate * (1 + 1e-12)
     require_motion(MOTION_SAMPLES, steps + 2, duration, sensor.rate)

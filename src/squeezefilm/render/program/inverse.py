@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 
@@ -34,20 +33,18 @@ _FLAT = 1e-12
 class FrictionInverse:
     """Knots of a falling friction curve, read backwards with straight lines between them.
 
-    Build it with `from_function` or `from_arrays`.
+    Build it with `from_function`.
 
     Attributes:
         amplitude: rising from 0 (m, zero-to-peak), shape (n,).
         relative_friction: strictly falling from 1 (1), shape (n,).
-        max_error: how far the friction at an amplitude found here may be from the one wanted (1).
-        error_source: "measured" between the knots on the curve itself, or "estimated" from what
-            leaving out every other knot would change.
+        max_error: how far the friction at an amplitude found here may be from the one wanted (1),
+            measured between the knots on the curve itself.
     """
 
     amplitude: MetreArray
     relative_friction: DimensionlessArray
     max_error: Dimensionless
-    error_source: Literal["measured", "estimated"]
 
     @classmethod
     @checked_numbers
@@ -87,37 +84,7 @@ class FrictionInverse:
         amplitude, friction = _knots(fine[::4], found[::4], rise_allowed)
         back = np.interp(fine, amplitude, friction)
         error = float(np.max(np.abs(back - found)))
-        return cls(amplitude, friction, error, "measured")
-
-    @classmethod
-    @checked_numbers
-    def from_arrays(
-        cls,
-        amplitude: MetreArray,
-        relative_friction: DimensionlessArray,
-        *,
-        rise_allowed: Dimensionless = 1e-9,
-    ) -> FrictionInverse:
-        """The inverse of a curve given by its points: amplitudes from 0 rising (m), friction (1).
-
-        Raises `InputError` as `from_function` does, and for fewer than 3 points.
-        """
-        places, values = np.asarray(amplitude, float), np.asarray(relative_friction, float)
-        if places.ndim != 1 or places.shape != values.shape or not 3 <= places.size <= _MOST_KNOTS:
-            raise InputError(
-                f"amplitude and relative_friction of shapes {places.shape} and {values.shape} are "
-                f"no curve; give two lists of one length, 3 to {_MOST_KNOTS}"
-            )
-        require("amplitude", places, _METRE, at_least=0.0, at_most=1e-3)
-        if places[0] != 0.0 or np.any(np.diff(places) <= 0.0):
-            raise InputError("amplitude must begin with 0 and rise from each value to the next")
-        require("rise_allowed", rise_allowed, at_least=0.0, at_most=0.1)
-        knots, friction = _knots(places, values, rise_allowed)
-        # Lines over twice the spacing miss a smooth curve by four times as much.
-        coarse = np.interp(places, places[::2], values[::2])
-        bend = float(np.max(np.abs(coarse - values))) / 4.0
-        flattened = float(np.max(np.abs(np.interp(places, knots, friction) - values)))
-        return cls(knots, friction, max(bend, flattened), "estimated")
+        return cls(amplitude, friction, error)
 
     @property
     def largest_amplitude(self) -> Metre:

@@ -118,23 +118,7 @@ def lower(
     """
     require_texture("texture", texture)
     quantity = texture.quantity
-    frictional = quantity != "amplitude"
-    if frictional and inverse is None:
-        raise InputError(
-            f"a texture of {quantity} needs the display's friction curve to become an amplitude; "
-            "pass inverse=FrictionInverse.from_function(…)"
-        )
-    if not frictional and inverse is not None:
-        raise InputError("a texture of amplitude needs no inverse friction; leave inverse out")
-    if (quantity == "friction_reduction") != (friction_coefficient is not None):
-        raise InputError(
-            f"a texture of {quantity} "
-            + (
-                "needs the surface's friction coefficient at rest; pass friction_coefficient"
-                if friction_coefficient is None
-                else "takes no friction_coefficient; leave it out"
-            )
-        )
+    _require_what_belongs(quantity, inverse, friction_coefficient)
     if largest_amplitude is None:
         if inverse is None:
             raise InputError("a texture of amplitude needs the display's largest_amplitude (m)")
@@ -142,12 +126,8 @@ def lower(
     require("largest_amplitude", largest_amplitude, METRE, above=0.0, at_most=LARGEST_AMPLITUDE)
     if friction_coefficient is not None:
         require("friction_coefficient", friction_coefficient, above=0.0, at_most=10.0)
-    for name, ticks, least in (("hold_ticks", hold_ticks, 0), ("fade_ticks", fade_ticks, 1)):
-        if not isinstance(ticks, int) or not least <= ticks <= _MOST_TICKS:
-            raise InputError(
-                f"{name} = {ticks!r} cannot be used: it must be a whole number from {least} to "
-                f"{_MOST_TICKS}"
-            )
+    _require_ticks("hold_ticks", hold_ticks, 0)
+    _require_ticks("fade_ticks", fade_ticks, 1)
     assembler = Assembler()
     texture._lower(assembler)
     assembler.emit(op.END)
@@ -166,6 +146,37 @@ def lower(
             compensation=compensation,
         )
     )
+
+
+def _require_what_belongs(
+    quantity: Quantity, inverse: FrictionInverse | None, friction_coefficient: float | None
+) -> None:
+    """Refuse what a texture of this quantity lacks, and what it has no use for."""
+    frictional = quantity != "amplitude"
+    if frictional and inverse is None:
+        raise InputError(
+            f"a texture of {quantity} needs the display's friction curve to become an amplitude; "
+            "pass inverse=FrictionInverse.from_function(…)"
+        )
+    if not frictional and inverse is not None:
+        raise InputError("a texture of amplitude needs no inverse friction; leave inverse out")
+    if (quantity == "friction_reduction") != (friction_coefficient is not None):
+        raise InputError(
+            f"a texture of {quantity} "
+            + (
+                "needs the surface's friction coefficient at rest; pass friction_coefficient"
+                if friction_coefficient is None
+                else "takes no friction_coefficient; leave it out"
+            )
+        )
+
+
+def _require_ticks(name: str, ticks: object, least: int) -> None:
+    if not isinstance(ticks, int) or not least <= ticks <= _MOST_TICKS:
+        raise InputError(
+            f"{name} = {ticks!r} cannot be used: it must be a whole number from {least} to "
+            f"{_MOST_TICKS}"
+        )
 
 
 def _assembled(

@@ -49,7 +49,6 @@ def wave_factor(
         InputError: a position that is not finite, a half wavelength not above 0, a negative
             contact.
     """
-    require("position", position, METRE)
     require("half_wavelength", half_wavelength, METRE, above=0.0, at_most=FARTHEST)
     require("contact_length", contact_length, METRE, at_least=0.0, at_most=FARTHEST)
     u = math.pi * np.asarray(position, dtype=float) / half_wavelength

@@ -39,7 +39,7 @@ from squeezefilm.quantities import (
     format_quantity,
     require,
 )
-from squeezefilm.render.resonator.envelope import envelope_response, envelope_time_constant
+from squeezefilm.render.resonator.envelope import envelope_response, envelope_time_constant, one_row
 
 DAC_RATE: Hertz = 192e3
 """Rate of common sound converters that reach an ultrasonic carrier (Hz)."""
@@ -115,15 +115,10 @@ def resonator_response(
         InputError: a drive that is empty or not finite, a rate or frequency not above 0, or a
             quality factor not above ½ (no resonance).
     """
-    require("drive", drive, Unit("m"))
     require("sample_rate", sample_rate, Unit("Hz"), above=0.0)
     require("frequency", frequency, Unit("Hz"), above=0.0)
     require("quality_factor", quality_factor, above=0.5)
-    held = np.ascontiguousarray(drive, dtype=float)
-    if held.ndim != 1 or held.size == 0:
-        raise InputError(
-            f"drive of shape {held.shape} cannot be used: give one row of at least one sample"
-        )
+    held = one_row("drive", drive)
     # In units of 1/ω0: x' = y, y' = −x − y/Q + u/Q. Damped rotation, in closed form.
     turn = 2 * math.pi * frequency / sample_rate
     loss = 0.5 / quality_factor
@@ -199,16 +194,9 @@ def carrier_trace(
     Raises:
         InputError: a value outside its range.
     """
-    require("command", command, Unit("m"))
     require("sample_rate", sample_rate, Unit("Hz"), above=0.0)
     require("frequency", frequency, Unit("Hz"), above=0.0, below=sample_rate / 2)
-    require("phase", phase, Unit("rad"))
-    levels = np.ascontiguousarray(command, dtype=float)
-    if levels.ndim != 1 or levels.size == 0 or samples_per_command < 1:
-        raise InputError(
-            f"command of shape {levels.shape} at {samples_per_command} samples each makes no "
-            "carrier: give one row of at least one, and at least 1 sample each"
-        )
+    levels = _levels(command, samples_per_command)
     own = frequency if resonance_frequency is None else resonance_frequency
     gain = 1 / float(hold_gain(frequency, sample_rate)) if hold_compensated else 1.0
     drive = np.empty(levels.size * samples_per_command)
@@ -234,6 +222,16 @@ def carrier_trace(
         amplitude=np.hypot(place, quadrature),
         amplitude_modelled=np.abs(envelope_response(held, 1 / sample_rate, tau)),
     )
+
+
+def _levels(command: MetreArray, samples_per_command: int) -> MetreArray:
+    levels = np.ascontiguousarray(command, dtype=float)
+    if levels.ndim != 1 or levels.size == 0 or samples_per_command < 1:
+        raise InputError(
+            f"command of shape {levels.shape} at {samples_per_command} samples each makes no "
+            "carrier: give one row of at least one, and at least 1 sample each"
+        )
+    return levels
 
 
 @checked_numbers

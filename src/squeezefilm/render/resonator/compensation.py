@@ -27,7 +27,6 @@ from typing import Annotated, Literal
 
 import numpy as np
 
-from squeezefilm.errors import InputError
 from squeezefilm.quantities import (
     Above,
     Dimensionless,
@@ -46,7 +45,7 @@ from squeezefilm.quantities import (
     require,
 )
 from squeezefilm.render.resonator import kernel
-from squeezefilm.render.resonator.envelope import envelope_time_constant
+from squeezefilm.render.resonator.envelope import envelope_time_constant, one_row
 
 Compensation = Literal["none", "inverse", "preview"]
 COMPENSATIONS: tuple[Compensation, ...] = ("none", "inverse", "preview")
@@ -155,8 +154,7 @@ class DrivenEnvelope:
             InputError: a command that is empty, of another shape or not finite, or a time step
                 not above 0.
         """
-        held = _samples("command", command)
-        require("initial", initial, Unit("m"))
+        held = one_row("command", command)
         rise, fall, _, _ = self.parameters(time_step)
         amplitude = np.empty_like(held)
         kernel.envelope_march(held, initial, rise, fall, amplitude)
@@ -217,7 +215,7 @@ def compensated_drive(
         InputError: amplitudes that are empty, not finite or negative, a time step or preview not
             above 0, an initial amplitude outside the limits, or an unknown compensation.
     """
-    goal = _samples("wanted", wanted)
+    goal = one_row("wanted", wanted)
     require("wanted", goal, Unit("m"), at_least=0.0)
     first = min(float(goal[0]), envelope.amplitude_limit) if initial is None else initial
     state, parameters = envelope.new_state(first), envelope.parameters(time_step)
@@ -266,13 +264,3 @@ def preview_work(samples: int) -> FloatArray:
     """Working memory of `previewed_step` for so many samples ahead, shape (5, 2·samples + 2)."""
     require("samples", samples, at_least=0)
     return np.zeros((5, 2 * samples + 2))
-
-
-def _samples(name: str, values: MetreArray) -> FloatArray:
-    array = np.ascontiguousarray(values, dtype=float)
-    if array.ndim != 1 or array.size == 0:
-        raise InputError(
-            f"{name} of shape {array.shape} cannot be used: give one row of at least one sample"
-        )
-    require(name, array, Unit("m"))
-    return array

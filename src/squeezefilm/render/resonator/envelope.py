@@ -140,6 +140,16 @@ def _time_constants_per_period(kept: DimensionlessLike, shape: Shape) -> Dimensi
     return sine
 
 
+def one_row(name: str, values: MetreArray) -> MetreArray:
+    """Samples (m) as the compiled steps take them. Raises `InputError` for another shape."""
+    array = np.ascontiguousarray(values, dtype=float)
+    if array.ndim != 1 or array.size == 0:
+        raise InputError(
+            f"{name} of shape {array.shape} cannot be used: give one row of at least one sample"
+        )
+    return array
+
+
 @checked_numbers
 def envelope_response(
     command: MetreArray,
@@ -159,10 +169,8 @@ def envelope_response(
         InputError: a command that is empty or not finite, a step or time constant not above 0, or
             an `initial` that does not broadcast to the leading axes.
     """
-    require("command", command, Unit("m"))
     require("time_step", time_step, Unit("s"), above=0.0)
     require("time_constant", time_constant, Unit("s"), above=0.0)
-    require("initial", initial, Unit("m"))
     steps = np.asarray(command, dtype=float)
     if steps.ndim == 0 or steps.size == 0:
         raise InputError(

@@ -26,7 +26,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence as SequenceOf
 from dataclasses import dataclass, field
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
 
@@ -79,11 +79,12 @@ class Composable:
     """
 
     __slots__ = ()
+    _quantity: ClassVar[Quantity]
 
     @property
     def quantity(self) -> Quantity:
         """What the values are: amplitude (m), relative_friction or friction_reduction (1)."""
-        raise NotImplementedError
+        return self._quantity
 
     @property
     def polarity(self) -> Polarity:
@@ -217,13 +218,12 @@ class Sum(Composable):
                 assembler.emit(ADD)
 
 
-@dataclass(frozen=True, slots=True)
-class Product(Composable):
-    """`texture` times a dimensionless `pattern`, value by value. See `Masked` to fade to rest."""
+class _Shaped:
+    """A texture that a pattern shapes."""
 
+    __slots__ = ()
     texture: Composable
     pattern: Pattern
-    type: Literal["product"] = field(default="product", repr=False)
 
     def __post_init__(self) -> None:
         require_texture("texture", self.texture)
@@ -233,6 +233,15 @@ class Product(Composable):
     def quantity(self) -> Quantity:
         """That of its texture."""
         return self.texture.quantity
+
+
+@dataclass(frozen=True, slots=True)
+class Product(_Shaped, Composable):
+    """`texture` times a dimensionless `pattern`, value by value. See `Masked` to fade to rest."""
+
+    texture: Composable
+    pattern: Pattern
+    type: Literal["product"] = field(default="product", repr=False)
 
     def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
         return self.texture._values(x, y, v, t) * self.pattern._values(x, y, v, t)
@@ -269,7 +278,7 @@ class Scaled(Composable):
 
 
 @dataclass(frozen=True, slots=True)
-class Masked(Composable):
+class Masked(_Shaped, Composable):
     """`texture` where `pattern` is 1, the plate at rest where it is 0.
 
     Value: rest + pattern·(texture − rest), with the rest of the texture's quantity.
@@ -278,15 +287,6 @@ class Masked(Composable):
     texture: Composable
     pattern: Pattern
     type: Literal["masked"] = field(default="masked", repr=False)
-
-    def __post_init__(self) -> None:
-        require_texture("texture", self.texture)
-        require_pattern("pattern", self.pattern)
-
-    @property
-    def quantity(self) -> Quantity:
-        """That of its texture."""
-        return self.texture.quantity
 
     def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
         share = self.pattern._values(x, y, v, t)

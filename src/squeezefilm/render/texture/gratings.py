@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Annotated, Literal, Protocol
+from typing import Annotated, ClassVar, Literal, Protocol
 
 import numpy as np
 
@@ -34,10 +34,8 @@ from squeezefilm.quantities import (
 )
 from squeezefilm.render.opcodes import ALONG, BETWEEN, SINE, SQUARE, Assembler
 from squeezefilm.render.texture.composition import Composable, Quantity
-from squeezefilm.render.texture.coordinate import FARTHEST, FINEST
+from squeezefilm.render.texture.coordinate import FARTHEST, FINEST, METRE
 from squeezefilm.render.texture.levels import LARGEST_AMPLITUDE
-
-_METRE = Unit("m")
 
 
 class Texture(Protocol):
@@ -57,10 +55,32 @@ class Texture(Protocol):
         ...
 
 
+class _Grating:
+    """What the gratings have in common: a period and two amplitudes."""
+
+    __slots__ = ()
+    spatial_period: Metre
+    low: Metre
+    high: Metre
+    phase: Radian
+
+    def __post_init__(self) -> None:
+        require("spatial_period", self.spatial_period, METRE, at_least=FINEST, at_most=FARTHEST)
+        require("low", self.low, METRE, at_least=0.0)
+        require("high", self.high, METRE, above=0.0, at_most=LARGEST_AMPLITUDE)
+        require("phase", self.phase, Unit("rad"))
+        if not self.low < self.high:
+            raise InputError(
+                f"low = {format_quantity(self.low, METRE)} and high = "
+                f"{format_quantity(self.high, METRE)} make no texture: low must be below high; "
+                "to exchange grooves and ridges, change duty and phase"
+            )
+
+
 @reads_text
 @checked_numbers
 @dataclass(frozen=True, slots=True)
-class Square(Composable):
+class Square(_Grating, Composable):
     """A square grating along x: amplitude `high` over `duty` of each period, `low` over the rest.
 
     The amplitude is `high` where ``(x/spatial_period + phase/2π) mod 1 < duty``; a vibrating
@@ -88,9 +108,7 @@ class Square(Composable):
     duty: Annotated[Dimensionless, Above(0.0), Below(1.0)] = 0.5
     phase: Radian = 0.0
     type: Literal["square"] = field(default="square", repr=False)
-
-    def __post_init__(self) -> None:
-        _require_grating(self.spatial_period, self.low, self.high, self.phase)
+    _quantity: ClassVar[Quantity] = "amplitude"
 
     @classmethod
     @reads_text
@@ -106,15 +124,10 @@ class Square(Composable):
         Raises:
             InputError: a width that is not above 0, or a value outside its range.
         """
-        require("groove", groove, _METRE, above=0.0)
-        require("ridge", ridge, _METRE, above=0.0)
+        require("groove", groove, METRE, above=0.0)
+        require("ridge", ridge, METRE, above=0.0)
         period = groove + ridge
         return cls(period, low, high, duty=groove / period, phase=phase)
-
-    @property
-    def quantity(self) -> Quantity:
-        """The amplitude."""
-        return "amplitude"
 
     def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
         cycles = x / self.spatial_period + self.phase / (2 * math.pi)
@@ -129,7 +142,7 @@ class Square(Composable):
 @reads_text
 @checked_numbers
 @dataclass(frozen=True, slots=True)
-class Sine(Composable):
+class Sine(_Grating, Composable):
     """A sine grating along x: amplitude between `low` and `high`, once per spatial period.
 
     ``(low + high)/2 + (high - low)/2 · sin(2πx/spatial_period + phase)``
@@ -149,14 +162,7 @@ class Sine(Composable):
     high: Metre
     phase: Radian = 0.0
     type: Literal["sine"] = field(default="sine", repr=False)
-
-    def __post_init__(self) -> None:
-        _require_grating(self.spatial_period, self.low, self.high, self.phase)
-
-    @property
-    def quantity(self) -> Quantity:
-        """The amplitude."""
-        return "amplitude"
+    _quantity: ClassVar[Quantity] = "amplitude"
 
     def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
         cycles = x / self.spatial_period + self.phase / (2 * math.pi)
@@ -168,16 +174,3 @@ class Sine(Composable):
         assembler.emit(ALONG, 1.0, 0.0, 0.0)
         assembler.emit(SINE, self.spatial_period, self.phase / (2 * math.pi))
         assembler.emit(BETWEEN, self.low, self.high)
-
-
-def _require_grating(spatial_period: Metre, low: Metre, high: Metre, phase: Radian) -> None:
-    require("spatial_period", spatial_period, _METRE, at_least=FINEST, at_most=FARTHEST)
-    require("low", low, _METRE, at_least=0.0)
-    require("high", high, _METRE, above=0.0, at_most=LARGEST_AMPLITUDE)
-    require("phase", phase, Unit("rad"))
-    if not low < high:
-        raise InputError(
-            f"low = {format_quantity(low, _METRE)} and high = {format_quantity(high, _METRE)} "
-            "make no texture: low must be below high; to exchange grooves and ridges, "
-            "change duty and phase"
-        )

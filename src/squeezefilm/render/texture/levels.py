@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 
@@ -72,6 +72,7 @@ class Amplitude(_Level):
     low: Metre
     high: Metre
     type: Literal["amplitude"] = field(default="amplitude", repr=False)
+    _quantity: ClassVar[Quantity] = "amplitude"
 
     def __post_init__(self) -> None:
         self._require(Unit("m"), LARGEST_AMPLITUDE)
@@ -82,11 +83,6 @@ class Amplitude(_Level):
     def constant(cls, value: Metre) -> Amplitude:
         """The same amplitude (m, zero-to-peak) everywhere."""
         return cls(Constant(), value, value)
-
-    @property
-    def quantity(self) -> Quantity:
-        """The amplitude."""
-        return "amplitude"
 
 
 @reads_text
@@ -103,6 +99,7 @@ class RelativeFriction(_Level):
     low: Dimensionless
     high: Dimensionless
     type: Literal["relative_friction"] = field(default="relative_friction", repr=False)
+    _quantity: ClassVar[Quantity] = "relative_friction"
 
     def __post_init__(self) -> None:
         self._require(Unit("1"), 1.0)
@@ -113,11 +110,6 @@ class RelativeFriction(_Level):
     def constant(cls, value: Dimensionless) -> RelativeFriction:
         """The same relative friction (1) everywhere."""
         return cls(Constant(), value, value)
-
-    @property
-    def quantity(self) -> Quantity:
-        """The relative friction."""
-        return "relative_friction"
 
 
 @reads_text
@@ -134,6 +126,7 @@ class FrictionReduction(_Level):
     low: Dimensionless
     high: Dimensionless
     type: Literal["friction_reduction"] = field(default="friction_reduction", repr=False)
+    _quantity: ClassVar[Quantity] = "friction_reduction"
 
     def __post_init__(self) -> None:
         self._require(Unit("1"), _LARGEST_REDUCTION)
@@ -144,8 +137,3 @@ class FrictionReduction(_Level):
     def constant(cls, value: Dimensionless) -> FrictionReduction:
         """The same reduction (1) everywhere."""
         return cls(Constant(), value, value)
-
-    @property
-    def quantity(self) -> Quantity:
-        """The friction reduction."""
-        return "friction_reduction"

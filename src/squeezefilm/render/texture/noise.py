@@ -98,34 +98,61 @@ def field_noise(u: FloatArray, w: FloatArray, state: int) -> FloatArray:
     return total
 
 
-def _octaves(
-    finest: Metre, seed: int, octaves: int, persistence: Dimensionless
-) -> list[tuple[float, int, float]]:
-    """Spacing, mixed seed and weight of every octave; the weights sum to 1."""
-    weights = [persistence ** (octaves - 1 - k) for k in range(octaves)]
-    total = sum(weights)
-    return [(finest * 2.0**k, mixed(seed + k), weights[k] / total) for k in range(octaves)]
+class _Octaves:
+    """Noises that are added, each with twice the period of the one before."""
 
+    __slots__ = ()
+    finest_period: Metre
+    seed: int
+    octaves: int
+    persistence: Dimensionless
 
-def _require_noise(finest: Metre, seed: int, octaves: int, persistence: Dimensionless) -> None:
-    require("finest_period", finest, METRE, at_least=_FINEST, at_most=1.0)
-    for name, value, low, high in (
-        ("seed", seed, 0, _MASK),
-        ("octaves", octaves, 1, _MOST_OCTAVES),
-    ):
-        if not isinstance(value, int) or isinstance(value, bool) or not low <= value <= high:
-            raise InputError(
-                f"{name} = {value!r} cannot be used: it must be a whole number from {low} to "
-                f"{high}",
-                quantity=name,
-            )
-    require("persistence", persistence, above=0.0, at_most=1.0)
+    def __post_init__(self) -> None:
+        require("finest_period", self.finest_period, METRE, at_least=_FINEST, at_most=1.0)
+        for name, value, low, high in (
+            ("seed", self.seed, 0, _MASK),
+            ("octaves", self.octaves, 1, _MOST_OCTAVES),
+        ):
+            if not isinstance(value, int) or isinstance(value, bool) or not low <= value <= high:
+                raise InputError(
+                    f"{name} = {value!r} cannot be used: it must be a whole number from {low} to "
+                    f"{high}",
+                    quantity=name,
+                )
+        require("persistence", self.persistence, above=0.0, at_most=1.0)
+
+    def _octave(self, x: FloatArray, y: FloatArray, period: Metre, state: int) -> FloatArray:
+        raise NotImplementedError
+
+    def _lower_octave(self, assembler: Assembler, period: Metre, state: int) -> None:
+        raise NotImplementedError
+
+    def _weighed(self) -> list[tuple[Metre, int, float]]:
+        """Spacing, mixed seed and weight of every octave; the weights sum to 1."""
+        count, seed, finest = self.octaves, self.seed, self.finest_period
+        weights = [self.persistence ** (count - 1 - k) for k in range(count)]
+        total = sum(weights)
+        return [(finest * 2.0**k, mixed(seed + k), weights[k] / total) for k in range(count)]
+
+    def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
+        total = np.zeros(x.shape)
+        for period, state, weight in self._weighed():
+            total = total + weight * self._octave(x, y, period, state)
+        # The weights sum to 1 but for rounding.
+        return np.minimum(total, 1.0)
+
+    def _lower(self, assembler: Assembler) -> None:
+        for index, (period, state, weight) in enumerate(self._weighed()):
+            self._lower_octave(assembler, period, state)
+            assembler.emit(WEIGH, weight)
+            if index:
+                assembler.emit(ADD)
 
 
 @reads_text
 @checked_numbers
 @dataclass(frozen=True, slots=True)
-class Noise(Pattern):
+class Noise(_Octaves, Pattern):
     """Seeded noise along one coordinate, with nothing finer than `finest_period`.
 
     Args:
@@ -147,33 +174,20 @@ class Noise(Pattern):
     type: Literal["noise"] = field(default="noise", repr=False)
 
     def __post_init__(self) -> None:
-        _require_noise(self.finest_period, self.seed, self.octaves, self.persistence)
+        _Octaves.__post_init__(self)
         require_coordinate(self.along)
 
-    def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
-        s = self.along.at(x, y)
-        return _summed(
-            [
-                (line_noise(s / period, state), weight)
-                for period, state, weight in _octaves(
-                    self.finest_period, self.seed, self.octaves, self.persistence
-                )
-            ]
-        )
+    def _octave(self, x: FloatArray, y: FloatArray, period: Metre, state: int) -> FloatArray:
+        return line_noise(self.along.at(x, y) / period, state)
 
-    def _lower(self, assembler: Assembler) -> None:
-        octaves = _octaves(self.finest_period, self.seed, self.octaves, self.persistence)
-        for index, (period, state, weight) in enumerate(octaves):
-            self.along._lower(assembler)
-            assembler.emit(NOISE, period, state)
-            assembler.emit(WEIGH, weight)
-            if index:
-                assembler.emit(ADD)
+    def _lower_octave(self, assembler: Assembler, period: Metre, state: int) -> None:
+        self.along._lower(assembler)
+        assembler.emit(NOISE, period, state)
 
 
 @checked_numbers
 @dataclass(frozen=True, slots=True)
-class NoiseField(Pattern):
+class NoiseField(_Octaves, Pattern):
     """Seeded noise in the plane, with nothing finer than `finest_period` along x or y.
 
     Args and errors as for `Noise`.
@@ -185,31 +199,8 @@ class NoiseField(Pattern):
     persistence: Dimensionless = 0.5
     type: Literal["noise_field"] = field(default="noise_field", repr=False)
 
-    def __post_init__(self) -> None:
-        _require_noise(self.finest_period, self.seed, self.octaves, self.persistence)
+    def _octave(self, x: FloatArray, y: FloatArray, period: Metre, state: int) -> FloatArray:
+        return field_noise(x / period, y / period, state)
 
-    def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
-        return _summed(
-            [
-                (field_noise(x / period, y / period, state), weight)
-                for period, state, weight in _octaves(
-                    self.finest_period, self.seed, self.octaves, self.persistence
-                )
-            ]
-        )
-
-    def _lower(self, assembler: Assembler) -> None:
-        octaves = _octaves(self.finest_period, self.seed, self.octaves, self.persistence)
-        for index, (period, state, weight) in enumerate(octaves):
-            assembler.emit(NOISE_FIELD, period, state)
-            assembler.emit(WEIGH, weight)
-            if index:
-                assembler.emit(ADD)
-
-
-def _summed(parts: list[tuple[FloatArray, float]]) -> FloatArray:
-    total = np.zeros(parts[0][0].shape)
-    for values, weight in parts:
-        total = total + weight * values
-    # The weights sum to 1 but for rounding.
-    return np.minimum(total, 1.0)
+    def _lower_octave(self, assembler: Assembler, period: Metre, state: int) -> None:
+        assembler.emit(NOISE_FIELD, period, state)

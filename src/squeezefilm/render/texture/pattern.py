@@ -14,7 +14,7 @@ Morgan). There is no +: it would leave 0…1. Add textures, which have a quantit
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 
@@ -99,15 +99,11 @@ class Pattern:
         return SpeedScaled(self, reference_speed, slowest, fastest)
 
 
-def _parts(kind: type, *operands: Pattern) -> tuple[Pattern, ...]:
+def _parts(kind: type[_Joined], *operands: Pattern) -> tuple[Pattern, ...]:
     """Operands with nested ones of the same kind flattened, so that brackets make no difference."""
     found: list[Pattern] = []
     for one in operands:
-        found += (
-            one.patterns
-            if isinstance(one, Least | Greatest | Times) and isinstance(one, kind)
-            else [one]
-        )
+        found += one.patterns if isinstance(one, kind) else [one]
     return tuple(found)
 
 
@@ -119,15 +115,6 @@ def require_pattern(name: str, value: object) -> None:
             "Noise (a texture has a quantity of its own and can be no mask)",
             quantity=name,
         )
-
-
-def _require_patterns(values: tuple[Pattern, ...]) -> None:
-    if not 1 <= len(values) <= MOST_PARTS:
-        raise InputError(
-            f"{len(values)} patterns cannot be joined; give 1 to {MOST_PARTS}", quantity="patterns"
-        )
-    for value in values:
-        require_pattern("patterns", value)
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,65 +135,59 @@ class Complement(Pattern):
         assembler.emit(COMPLEMENT)
 
 
+class _Joined:
+    """Any number of patterns joined by one operation, in which their order makes no difference."""
+
+    __slots__ = ()
+    patterns: tuple[Pattern, ...]
+    _operation: ClassVar[np.ufunc]
+    _opcode: ClassVar[int]
+
+    def __post_init__(self) -> None:
+        if not 1 <= len(self.patterns) <= MOST_PARTS:
+            raise InputError(
+                f"{len(self.patterns)} patterns cannot be joined; give 1 to {MOST_PARTS}",
+                quantity="patterns",
+            )
+        for one in self.patterns:
+            require_pattern("patterns", one)
+
+    def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
+        parts = [one._values(x, y, v, t) for one in self.patterns]
+        return np.asarray(self._operation.reduce(parts))
+
+    def _lower(self, assembler: Assembler) -> None:
+        for index, one in enumerate(self.patterns):
+            one._lower(assembler)
+            if index:
+                assembler.emit(self._opcode)
+
+
 @dataclass(frozen=True, slots=True)
-class Least(Pattern):
+class Least(_Joined, Pattern):
     """The least of `patterns`: where masks overlap."""
 
     patterns: tuple[Pattern, ...]
     type: Literal["least"] = field(default="least", repr=False)
-
-    def __post_init__(self) -> None:
-        _require_patterns(self.patterns)
-
-    def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
-        parts = [one._values(x, y, v, t) for one in self.patterns]
-        return np.asarray(np.minimum.reduce(parts))
-
-    def _lower(self, assembler: Assembler) -> None:
-        _lower_all(self.patterns, LEAST, assembler)
+    _operation, _opcode = np.minimum, LEAST
 
 
 @dataclass(frozen=True, slots=True)
-class Greatest(Pattern):
+class Greatest(_Joined, Pattern):
     """The greatest of `patterns`: masks side by side."""
 
     patterns: tuple[Pattern, ...]
     type: Literal["greatest"] = field(default="greatest", repr=False)
-
-    def __post_init__(self) -> None:
-        _require_patterns(self.patterns)
-
-    def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
-        parts = [one._values(x, y, v, t) for one in self.patterns]
-        return np.asarray(np.maximum.reduce(parts))
-
-    def _lower(self, assembler: Assembler) -> None:
-        _lower_all(self.patterns, GREATEST, assembler)
+    _operation, _opcode = np.maximum, GREATEST
 
 
 @dataclass(frozen=True, slots=True)
-class Times(Pattern):
+class Times(_Joined, Pattern):
     """The product of `patterns`: one fading another."""
 
     patterns: tuple[Pattern, ...]
     type: Literal["times"] = field(default="times", repr=False)
-
-    def __post_init__(self) -> None:
-        _require_patterns(self.patterns)
-
-    def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
-        parts = [one._values(x, y, v, t) for one in self.patterns]
-        return np.asarray(np.multiply.reduce(parts))
-
-    def _lower(self, assembler: Assembler) -> None:
-        _lower_all(self.patterns, MULTIPLY, assembler)
-
-
-def _lower_all(patterns: tuple[Pattern, ...], opcode: int, assembler: Assembler) -> None:
-    for index, one in enumerate(patterns):
-        one._lower(assembler)
-        if index:
-            assembler.emit(opcode)
+    _operation, _opcode = np.multiply, MULTIPLY
 
 
 @checked_numbers

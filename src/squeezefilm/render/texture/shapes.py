@@ -65,10 +65,20 @@ class Constant(Pattern):
         assembler.emit(CONSTANT, self.share)
 
 
+class _Along:
+    """What a shape along a coordinate has: it is one."""
+
+    __slots__ = ()
+    along: Coordinate
+
+    def __post_init__(self) -> None:
+        require_coordinate(self.along)
+
+
 @reads_text
 @checked_numbers
 @dataclass(frozen=True, slots=True)
-class SquareWave(Pattern):
+class SquareWave(_Along, Pattern):
     """1 over the first `duty` of every period, 0 over the rest.
 
     1 where ``(s/spatial_period + phase/2π) mod 1 < duty``, s being the coordinate `along`.
@@ -89,9 +99,6 @@ class SquareWave(Pattern):
     along: Coordinate = X_AXIS
     type: Literal["square_wave"] = field(default="square_wave", repr=False)
 
-    def __post_init__(self) -> None:
-        require_coordinate(self.along)
-
     def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
         cycles = self.along.at(x, y) / self.spatial_period + self.phase / (2 * math.pi)
         return np.where(cycles - np.floor(cycles) < self.duty, 1.0, 0.0)
@@ -104,7 +111,7 @@ class SquareWave(Pattern):
 @reads_text
 @checked_numbers
 @dataclass(frozen=True, slots=True)
-class SineWave(Pattern):
+class SineWave(_Along, Pattern):
     """½ + ½ sin(2πs/spatial_period + phase), s being the coordinate `along`.
 
     Args and errors as for `SquareWave`.
@@ -114,9 +121,6 @@ class SineWave(Pattern):
     phase: Radian = 0.0
     along: Coordinate = X_AXIS
     type: Literal["sine_wave"] = field(default="sine_wave", repr=False)
-
-    def __post_init__(self) -> None:
-        require_coordinate(self.along)
 
     def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
         cycles = self.along.at(x, y) / self.spatial_period + self.phase / (2 * math.pi)
@@ -130,7 +134,7 @@ class SineWave(Pattern):
 @reads_text
 @checked_numbers
 @dataclass(frozen=True, slots=True)
-class Pulse(Pattern):
+class Pulse(_Along, Pattern):
     """One localised rise to 1 at `centre`, ½ at `width`/2 to either side.
 
     Args:
@@ -148,9 +152,6 @@ class Pulse(Pattern):
     shape: Literal["gaussian", "raised_cosine"] = "gaussian"
     along: Coordinate = X_AXIS
     type: Literal["pulse"] = field(default="pulse", repr=False)
-
-    def __post_init__(self) -> None:
-        require_coordinate(self.along)
 
     def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
         s = self.along.at(x, y)
@@ -260,7 +261,7 @@ class Band(Pattern):
 @reads_text
 @checked_numbers
 @dataclass(frozen=True, slots=True)
-class Bump(Pattern):
+class Bump(_Along, Pattern):
     """The slope of a Gaussian bump or hole, felt as its shape: ½ far away, 1 and 0 on its flanks.
 
     Lateral force alone makes a flat surface feel like a bump or a hole: it resists on the way up
@@ -290,9 +291,6 @@ class Bump(Pattern):
     kind: Literal["bump", "hole"] = "bump"
     along: Coordinate = X_AXIS
     type: Literal["bump"] = field(default="bump", repr=False)
-
-    def __post_init__(self) -> None:
-        require_coordinate(self.along)
 
     def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
         d = (self.along.at(x, y) - self.centre) / self.width

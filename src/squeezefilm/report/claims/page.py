@@ -11,7 +11,7 @@ from squeezefilm.analysis.claims.procedure import Design
 from squeezefilm.errors import InputError
 from squeezefilm.quantities import Unit, format_quantity
 from squeezefilm.report.claims.prototype import prototype_markdown
-from squeezefilm.report.claims.prototype_page import prototype_sections
+from squeezefilm.report.claims.prototype_page import html_row, prototype_sections
 from squeezefilm.report.kit.folder import json_text, write_folder
 from squeezefilm.report.kit.page_style import STYLE
 from squeezefilm.results import write_whole
@@ -157,10 +157,8 @@ def write_reproduction(
 
 def _page(result: Reproduction, figures: list[str]) -> str:
     rows = "\n".join(
-        "<tr>"
-        + "".join(
-            f"<td>{html.escape(cell)}</td>"
-            for cell in (
+        html_row(
+            (
                 item.claim.where,
                 item.claim.statement,
                 _printed(item),
@@ -170,17 +168,10 @@ def _page(result: Reproduction, figures: list[str]) -> str:
                 item.why,
             )
         )
-        + "</tr>"
         for item in result.results
     )
     errata = "\n".join(
-        "<tr>"
-        + "".join(
-            f"<td>{html.escape(cell)}</td>"
-            for cell in (one.equation, one.printed, one.corrected, one.why)
-        )
-        + "</tr>"
-        for one in result.errata
+        html_row((one.equation, one.printed, one.corrected, one.why)) for one in result.errata
     )
     design = "".join(f"<li>{html.escape(one)}</li>" for one in design_sentences(result.design))
     return f"""<!doctype html>

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from html import escape
 from typing import TYPE_CHECKING
 
@@ -47,12 +48,15 @@ def _drawing(drawing: str) -> str:
     return f'<figure><div class="scroll" tabindex="0">{drawing}</div></figure>'
 
 
+def html_row(cells: Iterable[str]) -> str:
+    """A row of a table of plain texts."""
+    return "<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in cells) + "</tr>"
+
+
 def _table(table: Table) -> str:
     head, rows = table
     top = "".join(f"<th>{escape(cell)}</th>" for cell in head)
-    body = "".join(
-        "<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in row) + "</tr>" for row in rows
-    )
+    body = "".join(map(html_row, rows))
     return (
         f'<div class="scroll" tabindex="0"><table><thead><tr>{top}</tr></thead>'
         f"<tbody>{body}</tbody></table></div>"

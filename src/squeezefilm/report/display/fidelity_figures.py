@@ -1,19 +1,14 @@
-"""Figures of compensation: a grating at twice the speed, what survives, what a sensor costs."""
+"""Figures of compensation: a grating at twice the speed, and which gratings survive."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from squeezefilm.render.fidelity.survival import PAPER_PERIODS
-from squeezefilm.render.motion.minimum_jerk import MinimumJerkStroke
 from squeezefilm.report.kit.numbers import M, S, shown
 from squeezefilm.report.kit.style import (
     INK,
     LINES,
-    METAL,
     MUTED,
     drawn,
     message_figure,
@@ -26,12 +21,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from squeezefilm.analysis.analyze import Analysis
-    from squeezefilm.analysis.textures import (
-        CompensatedGrating,
-        SensorContrast,
-        TextureSurvival,
-    )
-    from squeezefilm.quantities import FloatArray
+    from squeezefilm.analysis.textures import CompensatedGrating, TextureSurvival
 
 _PERIODS_SHOWN = 2
 
@@ -90,107 +80,37 @@ def survival(analysis: Analysis) -> Figure:
     """`texture_survival` of an analysis."""
     if analysis.survival is None:
         return message_figure("Nothing to compensate", "No voltage makes an amplitude here.")
-    return texture_survival([analysis.survival])
+    return texture_survival(analysis.survival)
 
 
 @drawn
-def texture_survival(tables: Sequence[TextureSurvival]) -> Figure:
-    """Which spatial period survives at which speed, one panel per display, one line per drive."""
-    first = tables[0]
-    figure = new_figure(
-        f"Compensation with phase inversion keeps a grating up to {first.gain[-1]:.2g} times the "
-        f"finger speed, without inversion up to {first.gain[1]:.2g} times",
-        f"{first.model}; swing from 0 to {100 * first.level:g} % of what the full voltage holds, "
-        f"{100 * first.kept:g} % of it kept; Q as the display states it",
-        5.0,
-    )
-    grid = figure.add_gridspec(2, len(tables), height_ratios=[1, 0.1])
-    strip = figure.add_subplot(grid[1, :])
-    strip.set_axis_off()
-    axes = None
-    for column, table in enumerate(tables):
-        axes = figure.add_subplot(grid[0, column], sharey=axes)
-        for law, row, (color, dashes) in zip(table.laws, table.finest_period, LINES, strict=False):
-            axes.loglog(1e3 * table.speeds, 1e3 * row, color=color, ls=dashes, label=law.name)
-        for period in PAPER_PERIODS:
-            axes.axhline(1e3 * period, color=MUTED, lw=0.8, ls=(0, (1.4, 1.2)))
-        axes.set_title(f"{plain(table.name)}, τ = {shown(table.time_constant, S, 3)}")
-        axes.set(xlabel="finger speed (mm/s)", xlim=(10, 400), ylim=(0.02, 12))
-        axes.set_xticks([10, 20, 50, 100, 200, 400])
-        axes.set_yticks([0.02, 0.05, 0.1, 0.2, 0.4, 1, 2, 4, 10])
-        plain_log(axes.xaxis)
-        plain_log(axes.yaxis)
-        if column == 0:
-            axes.set_ylabel("finest period that survives (mm)")
-            handles, labels = axes.get_legend_handles_labels()
-        else:
-            axes.tick_params(labelleft=False)
+def texture_survival(table: TextureSurvival) -> Figure:
+    """Which spatial period survives at which speed, one line per drive."""
     from matplotlib.lines import Line2D
 
+    figure = new_figure(
+        f"Compensation with phase inversion keeps a grating up to {table.gain[-1]:.2g} times the "
+        f"finger speed, without inversion up to {table.gain[1]:.2g} times",
+        f"{table.model}; swing from 0 to {100 * table.level:g} % of what the full voltage holds, "
+        f"{100 * table.kept:g} % of it kept; Q as the display states it",
+        5.0,
+    )
+    grid = figure.add_gridspec(2, 1, height_ratios=[1, 0.1])
+    strip, axes = figure.add_subplot(grid[1]), figure.add_subplot(grid[0])
+    strip.set_axis_off()
+    for law, row, (color, dashes) in zip(table.laws, table.finest_period, LINES, strict=False):
+        axes.loglog(1e3 * table.speeds, 1e3 * row, color=color, ls=dashes, label=law.name)
+    for period in PAPER_PERIODS:
+        axes.axhline(1e3 * period, color=MUTED, lw=0.8, ls=(0, (1.4, 1.2)))
+    axes.set_title(f"{plain(table.name)}, τ = {shown(table.time_constant, S, 3)}")
+    axes.set(xlabel="finger speed (mm/s)", xlim=(10, 400), ylim=(0.02, 12))
+    axes.set_ylabel("finest period that survives (mm)")
+    axes.set_xticks([10, 20, 50, 100, 200, 400])
+    axes.set_yticks([0.02, 0.05, 0.1, 0.2, 0.4, 1, 2, 4, 10])
+    plain_log(axes.xaxis)
+    plain_log(axes.yaxis)
+    handles, labels = axes.get_legend_handles_labels()
     handles.append(Line2D([], [], color=MUTED, lw=0.8, ls=(0, (1.4, 1.2))))
     labels.append("the paper's gratings")
     strip.legend(handles, labels, loc="center", ncols=2, frameon=False)
     return figure
-
-
-@drawn
-def sensor_contrast(contrast: SensorContrast) -> Figure:
-    """Contrast rendered in its place against the period, one line per sensor."""
-    half = [_finest(contrast.spatial_periods, row) for row in contrast.contrast_kept]
-    names = ["position known" if one is None else one.name for one in contrast.sensors]
-    figure = new_figure(
-        f"Half of the contrast is rendered in its place {half[0]} with a {names[0]}, "
-        f"{half[-1]} with the {names[-1]}",
-        f"{contrast.reports[0][0].model.split(';')[0]}; sensors are assumed, not measured; "
-        f"{_hand(contrast)}",
-        4.9,
-    )
-    grid = figure.add_gridspec(2, 1, height_ratios=[1, 0.12])
-    axes, strip = figure.add_subplot(grid[0]), figure.add_subplot(grid[1])
-    strip.set_axis_off()
-    for k, (name, row) in enumerate(zip(names, contrast.contrast_kept, strict=True)):
-        error = contrast.reports[k][0].position_error
-        label = name if error is None else f"{name} (error {shown(error, M, 2)})"
-        # Wide and behind: a good sensor's line lies on it.
-        color, dashes = LINES[k % len(LINES)]
-        look = (
-            {"color": METAL, "lw": 5, "zorder": 1}
-            if error is None
-            else {"color": color, "ls": dashes}
-        )
-        axes.semilogx(1e3 * contrast.spatial_periods, row, label=label, **look)
-    axes.set(
-        xlabel="spatial period (mm)",
-        ylabel="contrast kept in its place",
-        ylim=(0, 1.05),
-        xlim=(1e3 * contrast.spatial_periods[0], 1e3 * contrast.spatial_periods[-1]),
-    )
-    rungs = np.array([0.25, 0.5, 1, 2, 4, 8])
-    low, high = axes.get_xlim()
-    axes.set_xticks(rungs[(rungs >= low) & (rungs <= high)])
-    plain_log(axes.xaxis)
-    strip.legend(*axes.get_legend_handles_labels(), loc="center", ncols=2, frameon=False)
-    return figure
-
-
-def _hand(contrast: SensorContrast) -> str:
-    hand = contrast.trajectory
-    if isinstance(hand, MinimumJerkStroke):
-        return (
-            f"{hand.passes} minimum-jerk passes of {shown(hand.length, M, 3)} in "
-            f"{shown(hand.pass_duration, S, 3)}"
-        )
-    return plain(repr(hand), 80)
-
-
-def _finest(periods: FloatArray, row: FloatArray) -> str:
-    """From which period on at least half of the contrast is kept, in words."""
-    lacking = np.flatnonzero(row < 0.5)
-    if lacking.size == 0:
-        return "at every period shown"
-    k = int(lacking[-1])
-    if k == periods.size - 1:
-        return "at no period shown"
-    share = (0.5 - row[k]) / (row[k + 1] - row[k])
-    finest = periods[k] * (periods[k + 1] / periods[k]) ** share
-    return f"from {shown(float(finest), M, 2)} up"

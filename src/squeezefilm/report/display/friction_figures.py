@@ -15,10 +15,10 @@ from squeezefilm.report.kit.style import (
     LINES,
     MUTED,
     ORANGE,
-    PAPER,
     SKIN,
     drawn,
     legend_below,
+    mark,
     message_figure,
     new_figure,
     pairs_of_axes,
@@ -248,15 +248,5 @@ def _working_point(
     """Mark this display, at its own friction or at that of the model the curves are of."""
     p = analysis.prediction
     height = p.relative_friction if friction is None else friction
-    axes.plot(
-        [1e6 * p.vibration_amplitude],
-        [height],
-        "D",
-        color=INK,
-        ms=9,
-        mec=PAPER,
-        mew=1.4,
-        zorder=5,
-        clip_on=False,
-        label=f"this display: {height:.2f} at {shown(p.vibration_amplitude, M, 3)}{more}",
-    )
+    words = f"this display: {height:.2f} at {shown(p.vibration_amplitude, M, 3)}{more}"
+    mark(axes, 1e6 * p.vibration_amplitude, height, 9, words)

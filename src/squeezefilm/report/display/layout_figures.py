@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 
 _SIGN = {1: "+", -1: "−"}
-_FILL = {1: PLUS, -1: MINUS}
+FILL = {1: PLUS, -1: MINUS}
 
 
 @drawn
@@ -75,7 +75,7 @@ def _plate(plate: RectangularPlate, section: Laminate) -> Figure:
     side.add_patch(Rectangle((0, -thick), length, thick, facecolor=METAL, edgecolor=INK, lw=0.8))
     for patch in plate.patches:
         x, y, dx, dy = (1e3 * v for v in (patch.x, patch.y, patch.length, patch.width))
-        fill = _FILL[patch.polarity]
+        fill = FILL[patch.polarity]
         plan.add_patch(Rectangle((x, y), dx, dy, facecolor=fill, edgecolor=INK, lw=0.8))
         side.add_patch(
             Rectangle((x, -thick - ceramic), dx, ceramic, facecolor=fill, edgecolor=INK, lw=0.8)
@@ -196,7 +196,7 @@ def _section(axes: Axes, plate: RectangularPlate, neutral: float) -> None:
 
 
 def _ring(ring: AnnularStator, analysis: Analysis) -> Figure:
-    from matplotlib.patches import Circle, Patch, Wedge
+    from matplotlib.patches import Circle
 
     waves = round(ring.wavelengths_around)
     radius, width = 500 * ring.mean_diameter, 1e3 * ring.radial_width
@@ -208,31 +208,8 @@ def _ring(ring: AnnularStator, analysis: Analysis) -> Figure:
         5.6,
     )
     axes = figure.subplots()
-    outer, half = radius + width / 2, 180 / (2 * waves)
-    for number in range(2 * waves):
-        angle = 90 - number * 2 * half
-        sign = 1 if number % 2 == 0 else -1
-        axes.add_patch(
-            Wedge(
-                (0, 0),
-                outer,
-                angle - half,
-                angle + half,
-                width=width,
-                facecolor=_FILL[sign],
-                edgecolor=INK,
-                lw=0.8,
-            )
-        )
-        if 2 * waves <= 60 and number:
-            axes.text(
-                (radius + width / 4) * math.cos(math.radians(angle)),
-                (radius + width / 4) * math.sin(math.radians(angle)),
-                _SIGN[sign],
-                ha="center",
-                va="center",
-                fontsize=float(np.clip(220 / (2 * waves), 7, 14)),
-            )
+    outer = radius + width / 2
+    _half_waves(axes, 2 * waves, radius, width)
     axes.add_patch(Circle((0, 0), radius, fill=False, ls=(0, (5, 3)), ec=MUTED, lw=1))
     _finger(axes, contact, radius)
     axes.annotate(
@@ -246,6 +223,45 @@ def _ring(ring: AnnularStator, analysis: Analysis) -> Figure:
         va="bottom",
         fontsize=9.5,
     )
+    _explain_ring(axes, contact)
+    reach = 1.06 * max(outer, radius + contact / 2)
+    axes.set(xlim=(-reach, reach), ylim=(-1.06 * outer, reach), aspect="equal")
+    axes.set(xlabel="x (mm)", ylabel="y (mm)")
+    axes.grid(visible=False)
+    return figure
+
+
+def _half_waves(axes: Axes, count: int, radius: float, width: float) -> None:
+    """The half waves on a ring of a mean radius and a width (mm), with their signs."""
+    half = 180 / count
+    for number in range(count):
+        angle = 90 - number * 2 * half
+        sign = 1 if number % 2 == 0 else -1
+        draw_sector(axes, radius + width / 2, width, (angle - half, angle + half), sign)
+        if count <= 60 and number:
+            axes.text(
+                (radius + width / 4) * math.cos(math.radians(angle)),
+                (radius + width / 4) * math.sin(math.radians(angle)),
+                _SIGN[sign],
+                ha="center",
+                va="center",
+                fontsize=float(np.clip(220 / count, 7, 14)),
+            )
+
+
+def draw_sector(
+    axes: Axes, outer: float, width: float, ends: tuple[float, float], sign: int
+) -> None:
+    """A sector of one sign: its outer radius and width, in the axes' unit, its ends (degrees)."""
+    from matplotlib.patches import Wedge
+
+    fill = FILL[sign]
+    axes.add_patch(Wedge((0, 0), outer, *ends, width=width, facecolor=fill, edgecolor=INK, lw=0.8))
+
+
+def _explain_ring(axes: Axes, contact: float) -> None:
+    from matplotlib.patches import Patch
+
     axes.legend(
         handles=[
             Patch(facecolor=PLUS, edgecolor=INK, label="+  half wave going up"),
@@ -262,11 +278,6 @@ def _ring(ring: AnnularStator, analysis: Analysis) -> Figure:
         bbox_to_anchor=(1.04, 0.5),
         frameon=False,
     )
-    reach = 1.06 * max(outer, radius + contact / 2)
-    axes.set(xlim=(-reach, reach), ylim=(-1.06 * outer, reach), aspect="equal")
-    axes.set(xlabel="x (mm)", ylabel="y (mm)")
-    axes.grid(visible=False)
-    return figure
 
 
 def drive_strip(axes: Axes, plate: RectangularPlate, reach: float) -> float:
@@ -278,7 +289,7 @@ def drive_strip(axes: Axes, plate: RectangularPlate, reach: float) -> float:
         x, dx = 1e3 * patch.x, 1e3 * patch.length
         axes.add_patch(
             Rectangle(
-                (x, low), dx, high - low, facecolor=_FILL[patch.polarity], edgecolor=INK, lw=0.8
+                (x, low), dx, high - low, facecolor=FILL[patch.polarity], edgecolor=INK, lw=0.8
             )
         )
         if patch.length > 0.02 * plate.length:

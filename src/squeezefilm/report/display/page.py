@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -19,6 +19,7 @@ from squeezefilm.report.kit.numbers import (
     shown,
     unsaid_warnings,
 )
+from squeezefilm.report.kit.page_style import STYLE, html_table, section
 from squeezefilm.results import to_json
 
 if TYPE_CHECKING:
@@ -90,19 +91,17 @@ def report_page(
     progress: Callable[[str], None] | None = None,
 ) -> str:
     """The report as the text of one self-contained HTML page."""
-    from squeezefilm.report.kit.page_style import STYLE
-
     summary = summary or analysis.summary()
     display = analysis.display
     title, name = escape(printable(display.title)), escape(printable(display.name))
     parts = [
-        _section("Verdict", _verdict(analysis)),
-        _section("Key numbers", _key_numbers(analysis)),
+        section("Verdict", _verdict(analysis)),
+        section("Key numbers", _key_numbers(analysis)),
         *_figures(analysis, progress),
-        _section("How far the film's model is from where it holds", _validity(analysis)),
-        _section("Warnings", _warnings(analysis)),
-        _section("Models", _models(analysis)),
-        _section("Where the values come from", _provenance(analysis)),
+        section("How far the film's model is from where it holds", _validity(analysis)),
+        section("Warnings", _warnings(analysis)),
+        section("Models", _models(analysis)),
+        section("Where the values come from", _provenance(analysis)),
     ]
     stamp = summary["provenance"]
     return f"""<!DOCTYPE html>
@@ -134,27 +133,6 @@ The numbers and curves are in <code>result.json</code> beside this page.</p>
 """  # noqa: E501
 
 
-def _section(heading: str, body: str, kind: str = "") -> str:
-    attribute = f' class="{kind}"' if kind else ""
-    return f"<section{attribute}>\n<h2>{heading}</h2>\n{body}\n</section>\n"
-
-
-def _table(caption: str, head: Iterable[str], rows: Iterable[tuple[str, list[str]]]) -> str:
-    """A table of escaped cells in HTML; each row comes with its class. The first cell heads it."""
-    columns = "".join(f'<th scope="col">{cell}</th>' for cell in head)
-    lines = "\n".join(
-        f'<tr{f" class={kind!r}" if kind else ""}><th scope="row">{cells[0]}</th>'
-        + "".join(f"<td>{cell}</td>" for cell in cells[1:])
-        + "</tr>"
-        for kind, cells in rows
-    )
-    return (
-        f'<div class="scroll" tabindex="0" role="region" aria-label="{caption}"><table>'
-        f"<caption>{caption}</caption>"
-        f"<thead><tr>{columns}</tr></thead>\n<tbody>\n{lines}\n</tbody></table></div>"
-    )
-
-
 def _verdict(analysis: Analysis) -> str:
     items = "\n".join(
         f'<li class="{finding.kind}"><b>{_KINDS[finding.kind]}</b>'
@@ -166,17 +144,10 @@ def _verdict(analysis: Analysis) -> str:
 
 def _key_numbers(analysis: Analysis) -> str:
     rows = [
-        (
-            "",
-            [
-                escape(row.label),
-                f'<span class="mark">{escape(row.text)}</span>',
-                escape(row.remark),
-            ],
-        )
-        for row in key_numbers(analysis)
+        (escape(label), f'<span class="mark">{escape(text)}</span>', escape(remark))
+        for label, text, remark in key_numbers(analysis)
     ]
-    return _table("At the working point", ("Quantity", "Value", "Remark"), rows)
+    return html_table("At the working point", ("Quantity", "Value", "Remark"), rows)
 
 
 def _figures(analysis: Analysis, progress: Callable[[str], None] | None) -> list[str]:
@@ -195,7 +166,7 @@ def _figures(analysis: Analysis, progress: Callable[[str], None] | None) -> list
             f'aria-label="{escape(item.heading)}">{drawing}</div>\n'
             f"<figcaption>{escape(item.reading)}</figcaption>\n</figure>"
         )
-        sections.append(_section(f"{number}. {escape(item.heading)}", body, "figure"))
+        sections.append(section(f"{number}. {escape(item.heading)}", body, "figure"))
     return sections
 
 
@@ -210,18 +181,15 @@ def _validity(analysis: Analysis) -> str:
         holds = check not in analysis.prediction.validity.failed
         rows.append(
             (
-                "",
-                [
-                    escape(check.name),
-                    f"{check.value:.3g}",
-                    limits(check.low, check.high),
-                    f'<span class="mark">{"✓ holds" if holds else "✗ does not hold"}</span>',
-                    escape(printable(check.sentence)),
-                ],
+                escape(check.name),
+                f"{check.value:.3g}",
+                limits(check.low, check.high),
+                f'<span class="mark">{"✓ holds" if holds else "✗ does not hold"}</span>',
+                escape(printable(check.sentence)),
             )
         )
     head = ("Assumption", "Number", "Wanted", "Here", "In words")
-    return _table("Assumptions of the film's model", head, rows)
+    return html_table("Assumptions of the film's model", head, rows)
 
 
 def _warnings(analysis: Analysis) -> str:
@@ -233,24 +201,20 @@ def _warnings(analysis: Analysis) -> str:
 
 
 def _models(analysis: Analysis) -> str:
-    used = _table(
+    used = html_table(
         "What made the numbers",
         ("Link of the chain", "Model"),
-        [("", [escape(what), f"<code>{escape(model)}</code>"]) for what, model in models(analysis)],
+        [(escape(what), f"<code>{escape(model)}</code>") for what, model in models(analysis)],
     )
     films = analysis.film_models
     if films is not None:
         means: dict[str, str] = {item.model: item.description for item in films.results}
-        used += "\n<br>\n" + _table(
+        drawn = film_rows(analysis)
+        used += "\n<br>\n" + html_table(
             "The film under the finger, drawn in five ways",
             ("Model", "Over-pressure over ambient", "Carries", "µ′/µ", "What it is"),
-            [
-                (
-                    "used" if row[0] == analysis.prediction.model else "",
-                    [f"<code>{escape(row[0])}</code>", *row[1:], escape(means[row[0]])],
-                )
-                for row in film_rows(analysis)
-            ],
+            [(f"<code>{escape(row[0])}</code>", *row[1:], escape(means[row[0]])) for row in drawn],
+            kinds=["used" if row[0] == analysis.prediction.model else "" for row in drawn],
         )
     if not analysis.other_models:
         return used
@@ -269,17 +233,14 @@ def _models(analysis: Analysis) -> str:
     ]
     rows = [
         (
-            "",
-            [
-                f"<code>{escape(model)}</code>",
-                shown(frequency, Unit("Hz")),
-                "–" if half is None else shown(half, Unit("m")),
-                "–" if amplitude is None else shown(amplitude, Unit("m"), 3),
-            ],
+            f"<code>{escape(model)}</code>",
+            shown(frequency, Unit("Hz")),
+            "–" if half is None else shown(half, Unit("m")),
+            "–" if amplitude is None else shown(amplitude, Unit("m"), 3),
         )
         for model, frequency, half, amplitude in made
     ]
-    others = _table(
+    others = html_table(
         "The same plate by other theories, each driven at its own resonance",
         ("Model", "Resonance", "Half wavelength", "Amplitude"),
         rows,
@@ -288,23 +249,22 @@ def _models(analysis: Analysis) -> str:
 
 
 def _provenance(analysis: Analysis) -> str:
-    rows = []
+    rows, kinds = [], []
     for value in display_values(analysis.display):
         assumed = value.evidence == "assumed"
         evidence = escape(value.evidence) or "not stated"
+        kinds.append("assumed" if assumed else "")
         rows.append(
             (
-                "assumed" if assumed else "",
-                [
-                    f"<code>{escape(value.path)}</code>",
-                    escape(printable(value.text)),
-                    escape(printable(value.source)) or "–",
-                    f'<span class="mark">⚠\u00a0{evidence}</span>' if assumed else evidence,
-                ],
+                f"<code>{escape(value.path)}</code>",
+                escape(printable(value.text)),
+                escape(printable(value.source)) or "–",
+                f'<span class="mark">⚠\u00a0{evidence}</span>' if assumed else evidence,
             )
         )
-    return _table(
+    return html_table(
         "Every value of the description; ⚠ marks what is assumed",
         ("Key", "Value", "Source", "Evidence"),
         rows,
+        kinds=kinds,
     )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -19,6 +19,7 @@ from squeezefilm.report.kit.style import (
     PAPER,
     drawn,
     legend_below,
+    micrometres_beside,
     new_figure,
 )
 
@@ -27,6 +28,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from squeezefilm.analysis.analyze import Analysis
+    from squeezefilm.chain.prediction import Prediction
+    from squeezefilm.plate.working_mode import ModeLine, WorkingMode
     from squeezefilm.quantities import FloatArray
 
 # More labels than this cannot be told apart on one axis.
@@ -38,27 +41,9 @@ def mode_shape(analysis: Analysis) -> Figure:
     """The working mode at the working amplitude, with its nodal lines."""
     mode = analysis.prediction.mode
     size = 1e6 * analysis.prediction.vibration_amplitude
-    if mode.line is not None:
-        x, w = 1e3 * mode.line.position, mode.line.deflection
-        nodes = 1e3 * mode.line.nodal_positions
-        ends = float(np.max(np.abs([w[0], w[-1]])))
-        title = (
-            f"{mode.label}: {len(nodes)} nodal lines, λ/2 = "
-            f"{shown(mode.half_wavelength, M)}; the free ends move {ends:.2f} times as far as "
-            "the lobes between"
-        )
-        along = "position across the nodal lines (mm)"
-    else:
-        waves = round(2 * math.pi * _mean_radius(analysis) / (2 * mode.half_wavelength))
-        seen = min(3, waves)
-        x = np.linspace(0, 2e3 * mode.half_wavelength * seen, 1201)
-        w = np.sin(np.pi * x / (1e3 * mode.half_wavelength))
-        nodes = 1e3 * mode.half_wavelength * np.arange(2 * seen + 1, dtype=float)
-        title = (
-            f"{seen} of the {waves} waves around the ring: a nodal line every "
-            f"{shown(mode.half_wavelength, M)}, where the surface stands still"
-        )
-        along = f"position along the mean circumference (mm), {seen} of {waves} waves"
+    x, w, nodes, title, along = (
+        _around_the_ring(analysis) if mode.line is None else _along_the_line(mode, mode.line)
+    )
     figure = new_figure(title, mode.model, 4.4)
     axes = figure.subplots()
     unit = f"deflection at {shown(analysis.prediction.vibration_amplitude, M, 3)} (µm)"
@@ -85,6 +70,52 @@ def mode_shape(analysis: Analysis) -> Figure:
     axes.grid(visible=False)
     # The strip of ceramics has no deflection to read.
     axes.set_yticks([tick for tick in axes.get_yticks() if abs(tick) <= reach])
+    _label_nodes(axes, nodes)
+    legend_below(axes)
+    return figure
+
+
+class _Drawn(NamedTuple):
+    """A mode along a line: places (mm), deflection (1), nodes (mm), the title, the axis' label."""
+
+    place: FloatArray
+    deflection: FloatArray
+    nodes: FloatArray
+    title: str
+    along: str
+
+
+def _along_the_line(mode: WorkingMode, line: ModeLine) -> _Drawn:
+    """The mode of a plate or a disc, from end to end."""
+    w, nodes = line.deflection, 1e3 * line.nodal_positions
+    ends = float(np.max(np.abs([w[0], w[-1]])))
+    title = (
+        f"{mode.label}: {len(nodes)} nodal lines, λ/2 = "
+        f"{shown(mode.half_wavelength, M)}; the free ends move {ends:.2f} times as far as "
+        "the lobes between"
+    )
+    return _Drawn(1e3 * line.position, w, nodes, title, "position across the nodal lines (mm)")
+
+
+def _around_the_ring(analysis: Analysis) -> _Drawn:
+    """The mode of a stator along its mean circumference, three waves of it at most."""
+    actuator, half = analysis.display.actuator, analysis.prediction.mode.half_wavelength
+    assert isinstance(actuator, AnnularStator), "only a stator has no line along a plate"
+    waves = round(2 * math.pi * (actuator.mean_diameter / 2) / (2 * half))
+    seen = min(3, waves)
+    x = np.linspace(0, 2e3 * half * seen, 1201)
+    return _Drawn(
+        x,
+        np.sin(np.pi * x / (1e3 * half)),
+        1e3 * half * np.arange(2 * seen + 1, dtype=float),
+        f"{seen} of the {waves} waves around the ring: a nodal line every "
+        f"{shown(half, M)}, where the surface stands still",
+        f"position along the mean circumference (mm), {seen} of {waves} waves",
+    )
+
+
+def _label_nodes(axes: Axes, nodes: FloatArray) -> None:
+    """Where the nodal lines are (mm), above the axes; of very many only some."""
     above = axes.secondary_xaxis("top")
     every = math.ceil(len(nodes) / _MOST_LABELS)
     marked = nodes[::every]
@@ -94,14 +125,6 @@ def mode_shape(analysis: Analysis) -> Figure:
     above.set_xlabel(
         "nodal lines at (mm)" if every == 1 else f"nodal lines at (mm), one in {every}"
     )
-    legend_below(axes)
-    return figure
-
-
-def _mean_radius(analysis: Analysis) -> float:
-    actuator = analysis.display.actuator
-    assert isinstance(actuator, AnnularStator), "only a stator has no line along a plate"
-    return actuator.mean_diameter / 2
 
 
 def _half_wave_arrow(axes: Axes, nodes: FloatArray, height: float, half: float) -> None:
@@ -137,16 +160,10 @@ def frequency_response(analysis: Analysis) -> Figure:
     driven = own > 0.1e-9 * peak
     band = half_power(f, per_volt) if driven else None
     at = shown(p.mode.resonance_frequency, HZ)
+    title = f"The ceramics cancel out: they do not drive the mode at {at}"
     if driven:
         wide = "" if band is None else f" is {shown(1e3 * (band[1] - band[0]), HZ, 3)} wide"
-        title = f"The resonance at {at}{wide}: the drive must stay on it"
-        share = 1.0
-        if p.voltage:
-            share = p.vibration_amplitude / (p.voltage * p.mode.amplitude_per_volt)
-        if share < 0.99:
-            title += f", but at {shown(p.frequency, HZ)} it gets {100 * share:.0f} % of the motion"
-    else:
-        title = f"The ceramics cancel out: they do not drive the mode at {at}"
+        title = f"The resonance at {at}{wide}: the drive must stay on it{_lost_beside(p)}"
     figure = new_figure(title, response.model, 4.3)
     axes = figure.subplots()
     if band is not None:
@@ -169,30 +186,40 @@ def frequency_response(analysis: Analysis) -> Figure:
         ls=(0, (4, 2)),
         label=f"resonance, {shown(p.mode.resonance_frequency, HZ)}",
     )
-    drive = 1e-3 * p.frequency
-    if p.voltage is not None and f[0] <= drive <= f[-1]:
-        axes.plot(
-            [drive],
-            [1e9 * p.vibration_amplitude / p.voltage if p.voltage else peak],
-            "o",
-            color=ORANGE,
-            ms=8,
-            mec=PAPER,
-            mew=1.2,
-            zorder=4,
-            label=f"drive: {shown(p.voltage, V)} at {shown(p.frequency, HZ)}, "
-            f"{shown(p.vibration_amplitude, M, 3)}",
-        )
+    if p.voltage is not None and f[0] <= 1e-3 * p.frequency <= f[-1]:
+        _mark_drive(axes, p, p.voltage, peak)
     axes.set(xlim=(float(f[0]), float(f[-1])), ylim=(0, 1.08 * peak if peak > 0 else 1))
     axes.set(xlabel="frequency (kHz)", ylabel="amplitude per volt (nm/V)")
     if p.voltage:
-        micro = 1e-3 * p.voltage  # nm/V to µm
-        right = axes.secondary_yaxis(
-            "right", functions=(lambda v: np.multiply(v, micro), lambda v: np.divide(v, micro))
-        )
-        right.set_ylabel(f"amplitude at {shown(p.voltage, V)} (µm)")
+        micrometres_beside(axes, p.voltage, f"amplitude at {shown(p.voltage, V)} (µm)")
     legend_below(axes)
     return figure
+
+
+def _lost_beside(p: Prediction) -> str:
+    """What a drive beside the resonance gets of the motion, in words; nothing where it is all."""
+    share = 1.0
+    if p.voltage:
+        share = p.vibration_amplitude / (p.voltage * p.mode.amplitude_per_volt)
+    if share >= 0.99:
+        return ""
+    return f", but at {shown(p.frequency, HZ)} it gets {100 * share:.0f} % of the motion"
+
+
+def _mark_drive(axes: Axes, p: Prediction, voltage: float, peak: float) -> None:
+    """The working point; without a voltage (V) the amplitude per volt is the peak's (nm/V)."""
+    axes.plot(
+        [1e-3 * p.frequency],
+        [1e9 * p.vibration_amplitude / voltage if voltage else peak],
+        "o",
+        color=ORANGE,
+        ms=8,
+        mec=PAPER,
+        mew=1.2,
+        zorder=4,
+        label=f"drive: {shown(voltage, V)} at {shown(p.frequency, HZ)}, "
+        f"{shown(p.vibration_amplitude, M, 3)}",
+    )
 
 
 def half_power(frequency: FloatArray, amplitude: FloatArray) -> tuple[float, float] | None:

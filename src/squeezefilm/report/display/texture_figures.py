@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
     from squeezefilm.analysis.analyze import Analysis
     from squeezefilm.quantities import FloatArray
+    from squeezefilm.render.fidelity.survival import FidelityTable
     from squeezefilm.render.fidelity.trace import FrictionTrace
 
 _NOTHING = (
@@ -110,8 +111,7 @@ def _draw(
 @drawn
 def fidelity(analysis: Analysis) -> Figure:
     """Which spatial period keeps its swing at which finger speed."""
-    from matplotlib.colors import LinearSegmentedColormap
-    from matplotlib.patches import Patch, Rectangle
+    from matplotlib.patches import Patch
 
     table = analysis.fidelity
     if table is None:
@@ -127,36 +127,9 @@ def fidelity(analysis: Analysis) -> Figure:
     )
     axes, strip = figure.subplots(2, 1, height_ratios=[rows, 0.35])
     strip.set_axis_off()
-    # The same colours on a light and a dark page: the text on each cell is chosen for the cell.
-    colors = LinearSegmentedColormap.from_list("kept", ["#f6efe2", "#8fc1c7", "#0d4f6b"])
     for row in range(rows):
         for column in range(columns):
-            share = float(table.amplitude_kept[row, column])
-            survives = bool(table.amplitude_survives[row, column])
-            fill = colors(share**3)
-            axes.add_patch(
-                Rectangle(
-                    (column - 0.48, row - 0.46),
-                    0.96,
-                    0.92,
-                    facecolor=fill,
-                    edgecolor=INK,
-                    lw=1.2 if survives else 0.8,
-                    ls="-" if survives else (0, (3, 2)),
-                )
-            )
-            ink = "#ffffff" if _luminance(fill[:3]) < 0.2 else "#101820"
-            words = f"{_percent(share, table.kept)}  {'✓' if survives else '✗'}"
-            axes.text(column, row - 0.12, words, ha="center", va="center", color=ink, fontsize=12)
-            axes.text(
-                column,
-                row + 0.24,
-                f"friction {_percent(float(table.friction_kept[row, column]), table.kept)}",
-                ha="center",
-                va="center",
-                color=ink,
-                fontsize=8.5,
-            )
+            _draw_cell(axes, table, row, column)
     axes.set(xlim=(-0.52, columns - 0.48), ylim=(rows - 0.5, -0.5))
     axes.set_yticks(range(rows), [f"{1e3 * period:g}" for period in table.spatial_periods])
     axes.set_xticks(
@@ -186,6 +159,34 @@ def fidelity(analysis: Analysis) -> Figure:
         frameon=False,
     )
     return figure
+
+
+def _draw_cell(axes: Axes, table: FidelityTable, row: int, column: int) -> None:
+    """One period at one speed: what is kept of the amplitude, and of the friction."""
+    from matplotlib.colors import LinearSegmentedColormap
+    from matplotlib.patches import Rectangle
+
+    # The same colours on a light and a dark page: the text on each cell is chosen for the cell.
+    colors = LinearSegmentedColormap.from_list("kept", ["#f6efe2", "#8fc1c7", "#0d4f6b"])
+    share = float(table.amplitude_kept[row, column])
+    survives = bool(table.amplitude_survives[row, column])
+    fill = colors(share**3)
+    axes.add_patch(
+        Rectangle(
+            (column - 0.48, row - 0.46),
+            0.96,
+            0.92,
+            facecolor=fill,
+            edgecolor=INK,
+            lw=1.2 if survives else 0.8,
+            ls="-" if survives else (0, (3, 2)),
+        )
+    )
+    ink = "#ffffff" if _luminance(fill[:3]) < 0.2 else "#101820"
+    words = f"{_percent(share, table.kept)}  {'✓' if survives else '✗'}"
+    axes.text(column, row - 0.12, words, ha="center", va="center", color=ink, fontsize=12)
+    words = f"friction {_percent(float(table.friction_kept[row, column]), table.kept)}"
+    axes.text(column, row + 0.24, words, ha="center", va="center", color=ink, fontsize=8.5)
 
 
 def _percent(share: float, kept: float) -> str:

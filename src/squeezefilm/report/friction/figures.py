@@ -21,6 +21,7 @@ from squeezefilm.report.kit.style import (
     PURPLE,
     drawn,
     legend_below,
+    mark,
     new_figure,
     plain,
     plain_log,
@@ -97,18 +98,7 @@ def draw_models(
     words = f"{p.relative_friction:.2f}"
     if unsure is not None:
         words += f" ({unsure.interval[0]:.2f}–{unsure.interval[1]:.2f}, {unsure.level:.0%})"
-    axes.plot(
-        [at],
-        [p.relative_friction],
-        "D",
-        color=INK,
-        ms=8,
-        mec=PAPER,
-        mew=1.3,
-        zorder=5,
-        clip_on=False,
-        label=f"this display, {p.model}: {words}",
-    )
+    mark(axes, at, p.relative_friction, 8, f"this display, {p.model}: {words}")
     axes.set(xlim=(0, 1e6 * float(own.amplitude[-1])), ylim=(0, 1.04))
     axes.set(xlabel="vibration amplitude, zero-to-peak (µm)", ylabel="relative friction µ′/µ")
 
@@ -162,17 +152,7 @@ def predictions(found: Sequence[Prediction]) -> Figure:
         table = law.table(highest)
         axes.plot(1e6 * table.amplitude, table.relative_friction, color=color, ls=dashes)
     for one in found:
-        axes.plot(
-            [1e6 * one.vibration_amplitude],
-            [one.relative_friction],
-            "D",
-            color=INK,
-            ms=7,
-            mec=PAPER,
-            mew=1.2,
-            zorder=5,
-            clip_on=False,
-        )
+        mark(axes, 1e6 * one.vibration_amplitude, one.relative_friction, 7)
     axes.set(xlim=(0, None), ylim=(0, 1.04))
     axes.set(xlabel="vibration amplitude, zero-to-peak (µm)", ylabel="relative friction µ′/µ")
     return figure
@@ -207,17 +187,8 @@ def friction_map(result: FrictionAnalysis) -> Figure:
         linewidths=1.0,
     )
     axes.clabel(lines, fmt=lambda v: f"{v:.1f}", fontsize=9)
-    axes.plot(
-        [1e6 * p.vibration_amplitude],
-        [p.normal_force],
-        "D",
-        color=ORANGE,
-        ms=9,
-        mec=PAPER,
-        mew=1.4,
-        zorder=5,
-        label="this display",
-    )
+    here = 1e6 * p.vibration_amplitude, p.normal_force
+    mark(axes, *here, 9, "this display", color=ORANGE, clip_on=True)
     bar = figure.colorbar(filled, ax=axes, label="relative friction µ′/µ")
     bar.outline.set_edgecolor(MUTED)
     axes.set(yscale="log", xlabel="vibration amplitude, zero-to-peak (µm)")

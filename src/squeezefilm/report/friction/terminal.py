@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from squeezefilm.quantities import Unit
-from squeezefilm.report.kit.numbers import HZ, M, N, V, shown
+from squeezefilm.report.kit.numbers import HZ, M, N, V, reduction_row, shown
 from squeezefilm.report.kit.terminal import heading, plain_console, table
 
 if TYPE_CHECKING:
@@ -26,6 +26,29 @@ def show_friction(result: FrictionAnalysis) -> None:
         else f"{unsure.sentence}, {unsure.level:.0%} interval"
     )
     console.print(headline)
+    table(console, ("", "", ""), _rows(result), fixed=(0,))
+    heading(console, "The same finger by other models")
+    others: list[tuple[str, str]] = [
+        (curve.model, "–" if (at := curve.at(p.vibration_amplitude)) is None else f"{at:.3f}")
+        for curve in result.curves
+    ]
+    tapping = result.tapping
+    others.append(
+        (
+            f"intermittent contact at {shown(tapping.speed, Unit('m/s'))}, no gas",
+            f"{tapping.relative_friction:.3f}",
+        )
+    )
+    table(console, ("model", "µ′/µ"), others)
+    if unsure is not None:
+        _ranking(result, unsure)
+    for text in p.warnings:
+        console.print(f"! {text}")
+
+
+def _rows(result: FrictionAnalysis) -> list[tuple[str, str, str]]:
+    """The lines of the table: the drive, what carries the finger, its friction."""
+    p = result.prediction
     drive = "amplitude given" if p.voltage is None else f"at {shown(p.voltage, V)}"
     rows = [
         ("Vibration amplitude", shown(p.vibration_amplitude, M), f"with the finger, {drive}"),
@@ -43,11 +66,7 @@ def show_friction(result: FrictionAnalysis) -> None:
     rows += [
         ("Surface", p.surface.name, f"roughness {shown(p.surface.roughness, M)}"),
         ("Normal force", shown(p.normal_force, N), ""),
-        (
-            "Ambient pressure",
-            shown(result.display.gas.ambient_pressure, Unit("Pa")),
-            "",
-        ),
+        ("Ambient pressure", shown(result.display.gas.ambient_pressure, Unit("Pa")), ""),
     ]
     sharing = p.touch.sharing
     if sharing is not None:
@@ -59,13 +78,15 @@ def show_friction(result: FrictionAnalysis) -> None:
                 f"mean gap {shown(float(sharing.mean_gap[0]), M, 3)}",
             ),
         ]
-    rows += [
+    return rows + _friction_rows(result)
+
+
+def _friction_rows(result: FrictionAnalysis) -> list[tuple[str, str, str]]:
+    """The friction itself, between which limits it lies, its ripple, and what was asked for."""
+    p = result.prediction
+    rows = [
         ("Relative friction µ′/µ", f"{p.relative_friction:.3f}", p.model),
-        (
-            "Friction reduction µ − µ′",
-            f"{p.friction_reduction:.3f}",
-            f"of µ = {p.friction_coefficient:.3g}",
-        ),
+        reduction_row(p),
         ("Tangential force", shown(p.tangential_force, N, 3), "sliding steadily"),
     ]
     if p.relative_friction_limits is not None:
@@ -93,24 +114,7 @@ def show_friction(result: FrictionAnalysis) -> None:
                 shown(result.wanted.vibration_amplitude, M, 3),
             )
         )
-    table(console, ("", "", ""), rows, fixed=(0,))
-    heading(console, "The same finger by other models")
-    others: list[tuple[str, str]] = [
-        (curve.model, "–" if (at := curve.at(p.vibration_amplitude)) is None else f"{at:.3f}")
-        for curve in result.curves
-    ]
-    tapping = result.tapping
-    others.append(
-        (
-            f"intermittent contact at {shown(tapping.speed, Unit('m/s'))}, no gas",
-            f"{tapping.relative_friction:.3f}",
-        )
-    )
-    table(console, ("model", "µ′/µ"), others)
-    if unsure is not None:
-        _ranking(result, unsure)
-    for text in p.warnings:
-        console.print(f"! {text}")
+    return rows
 
 
 def _ranking(result: FrictionAnalysis, unsure: UncertainFriction) -> None:

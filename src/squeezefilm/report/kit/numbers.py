@@ -17,17 +17,9 @@ if typing.TYPE_CHECKING:
     from squeezefilm.chain.prediction import Prediction
     from squeezefilm.display import Display
     from squeezefilm.plate.working_mode import WorkingMode
+    from squeezefilm.render.fidelity.report import FidelityReport
 
-M, HZ, S, N, V, ONE = Unit("m"), Unit("Hz"), Unit("s"), Unit("N"), Unit("V"), Unit("1")
-
-
-@dataclass(frozen=True)
-class KeyNumber:
-    """One line of the table of results: what it is, its value with unit, a remark or nothing."""
-
-    label: str
-    text: str
-    remark: str = ""
+M, HZ, S, N, V = Unit("m"), Unit("Hz"), Unit("s"), Unit("N"), Unit("V")
 
 
 @dataclass(frozen=True)
@@ -66,8 +58,11 @@ def printable(text: str) -> str:
     )
 
 
-def key_numbers(analysis: Analysis) -> list[KeyNumber]:
-    """The results in the order of the chain: drive, vibration, film, friction, texture."""
+def key_numbers(analysis: Analysis) -> list[tuple[str, str, str]]:
+    """The results in the order of the chain: drive, vibration, film, friction, texture.
+
+    Each is what it is, its value with unit, a remark or nothing.
+    """
     p = analysis.prediction
     here = next(
         c for c in analysis.friction_curves if c.surface == p.surface.name and c.model == p.model
@@ -77,49 +72,37 @@ def key_numbers(analysis: Analysis) -> list[KeyNumber]:
     off = abs(p.frequency / p.mode.resonance_frequency - 1) > 1e-6
     drive = "none" if p.voltage is None else shown(p.voltage, V)
     per_volt = shown(p.mode.amplitude_per_volt, Unit("m/V"))
+    at_criterion = _reached(here.amplitude_for_criterion)
     rows = [
-        KeyNumber(label, text, remark)
-        for label, text, remark in (
-            ("Resonance frequency", shown(p.mode.resonance_frequency, HZ), _mode(p.mode)),
-            ("Quality factor", f"{p.mode.quality_factor:.4g}", ""),
-            ("Half wavelength", shown(p.mode.half_wavelength, M), ""),
-            ("Drive voltage", drive, "amplitude given instead" if given else "zero-to-peak"),
-            ("Drive frequency", shown(p.frequency, HZ), "off resonance" if off else "at resonance"),
-            ("Amplitude per volt", per_volt, "at resonance"),
-            ("Vibration amplitude", shown(p.vibration_amplitude, M), _kept(p)),
-            ("Surface", printable(p.surface.name), f"roughness {shown(p.surface.roughness, M)}"),
-            ("Normal force", shown(p.normal_force, N), ""),
-            ("Squeeze number", f"{p.squeeze_number:.4g}", ""),
-            ("Mean pressure", f"{p.mean_pressure:.4f}", "over ambient, contact and period"),
-            ("Relative friction µ′/µ", f"{p.relative_friction:.3f}", _sure(analysis)),
-            (
-                "Friction reduction µ − µ′",
-                f"{p.friction_reduction:.3f}",
-                f"of µ = {p.friction_coefficient:.3g}",
-            ),
-            (
-                "Amplitude for µ′/µ = 0.7",
-                _reached(here.amplitude_for_criterion),
-                "the paper asks for it",
-            ),
-            (
-                "Amplitude for no friction",
-                _reached(here.zero_friction_amplitude),
-                "the finger floats",
-            ),
-            ("Envelope time constant", shown(analysis.envelope_time_constant, S), ""),
-            (
-                "Envelope bandwidth",
-                shown(analysis.envelope_bandwidth, HZ),
-                "of a texture's changes",
-            ),
-        )
+        ("Resonance frequency", shown(p.mode.resonance_frequency, HZ), _mode(p.mode)),
+        ("Quality factor", f"{p.mode.quality_factor:.4g}", ""),
+        ("Half wavelength", shown(p.mode.half_wavelength, M), ""),
+        ("Drive voltage", drive, "amplitude given instead" if given else "zero-to-peak"),
+        ("Drive frequency", shown(p.frequency, HZ), "off resonance" if off else "at resonance"),
+        ("Amplitude per volt", per_volt, "at resonance"),
+        ("Vibration amplitude", shown(p.vibration_amplitude, M), _kept(p)),
+        ("Surface", printable(p.surface.name), f"roughness {shown(p.surface.roughness, M)}"),
+        ("Normal force", shown(p.normal_force, N), ""),
+        ("Squeeze number", f"{p.squeeze_number:.4g}", ""),
+        ("Mean pressure", f"{p.mean_pressure:.4f}", "over ambient, contact and period"),
+        ("Relative friction µ′/µ", f"{p.relative_friction:.3f}", _sure(analysis)),
+        reduction_row(p),
+        ("Amplitude for µ′/µ = 0.7", at_criterion, "the paper asks for it"),
+        ("Amplitude for no friction", _reached(here.zero_friction_amplitude), "the finger floats"),
+        ("Envelope time constant", shown(analysis.envelope_time_constant, S), ""),
+        ("Envelope bandwidth", shown(analysis.envelope_bandwidth, HZ), "of a texture's changes"),
     ]
     rows += [
-        KeyNumber(f"Finest grating at {speed}", shown(period, M, 3), "keeps 90 % of its swing")
+        (f"Finest grating at {speed}", shown(period, M, 3), "keeps 90 % of its swing")
         for speed, period in analysis.finest_period().items()
     ]
     return rows
+
+
+def reduction_row(p: Prediction) -> tuple[str, str, str]:
+    """What vibration takes away of the friction."""
+    reduction, coefficient = f"{p.friction_reduction:.3f}", f"{p.friction_coefficient:.3g}"
+    return "Friction reduction µ − µ′", reduction, f"of µ = {coefficient}"
 
 
 def _kept(p: Prediction) -> str:
@@ -219,6 +202,21 @@ def leaves(node: Any, path: tuple[str | int, ...] = ()) -> Iterator[Leaf]:
                 yield from leaves(item, (*here, index))
         elif value is not None:
             yield Leaf(here, value, hints[field.name], field)
+
+
+def lag_rows(judged: FidelityReport, what: str = "Lag") -> list[tuple[str, str, str]]:
+    """How far the rendered pattern trails the finger, in a line; none where that is not known."""
+    if not math.isfinite(judged.lag):
+        return []
+    word = "behind" if judged.lag >= 0 else "ahead of"
+    return [
+        (
+            what,
+            f"{1e3 * judged.lag:.3f} mm",
+            f"{word} the finger, {shown(abs(judged.lag_time), S, 2)} at "
+            f"{1e3 * judged.mean_speed:.3g} mm/s",
+        )
+    ]
 
 
 def film_rows(analysis: Analysis) -> list[tuple[str, str, str, str]]:

@@ -1,8 +1,20 @@
-"""The style sheet of the report: light, dark and print, with no file or font from elsewhere."""
+"""What pages are made of: the style sheet, for light, dark and print, the head, sections, tables.
+
+No file and no font comes from elsewhere.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping, Sequence
+from html import escape
+from itertools import zip_longest
+from typing import TYPE_CHECKING
+
+from squeezefilm.report.kit.numbers import printable
 from squeezefilm.report.kit.style import PALETTE
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 def _variables(which: int) -> str:
@@ -74,3 +86,58 @@ def page_head(title: str) -> str:
 figure img {{ display: block; width: 100%; height: auto; background: #fff; }}</style>
 </head>
 <body>"""
+
+
+def section(heading: str, body: str, kind: str = "") -> str:
+    """A section of a class; heading and body are HTML already."""
+    attribute = f' class="{kind}"' if kind else ""
+    return f"<section{attribute}>\n<h2>{heading}</h2>\n{body}\n</section>\n"
+
+
+def picture_sections(figures: Mapping[str, tuple[str, Figure]]) -> str:
+    """A section for each picture NAME.png beside the page: its heading; its message is read out."""
+    return "".join(
+        section(
+            escape(heading),
+            f'<figure><img src="{name}.png" '
+            f'alt="{escape(" ".join(figure.get_suptitle().split()))}"></figure>',
+        )
+        for name, (heading, figure) in figures.items()
+    )
+
+
+def html_table(
+    caption: str,
+    head: Iterable[str],
+    rows: Iterable[Sequence[str]],
+    *,
+    kinds: Iterable[str] = (),
+    label: str = "",
+    between: str = "\n",
+) -> str:
+    """A table of cells that are HTML already; the first cell of a row heads it.
+
+    `kinds` are the rows' classes; `label` is read out in the caption's place, `between` stands
+    between head and body.
+    """
+    columns = "".join(f'<th scope="col">{cell}</th>' for cell in head)
+    lines = "\n".join(
+        f'<tr{f" class={kind!r}" if kind else ""}><th scope="row">{cells[0]}</th>'
+        + "".join(f"<td>{cell}</td>" for cell in cells[1:])
+        + "</tr>"
+        for cells, kind in zip_longest(rows, kinds, fillvalue="")
+    )
+    return (
+        f'<div class="scroll" tabindex="0" role="region" aria-label="{label or caption}"><table>'
+        f"<caption>{caption}</caption><thead><tr>{columns}</tr></thead>{between}"
+        f"<tbody>\n{lines}\n</tbody></table></div>"
+    )
+
+
+def text_table(caption: str, head: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
+    """A table of plain texts; the first cell of a row heads it."""
+    return html_table(_plain(caption), map(_plain, head), [[*map(_plain, row)] for row in rows])
+
+
+def _plain(text: str) -> str:
+    return escape(printable(text))

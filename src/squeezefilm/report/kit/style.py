@@ -15,6 +15,8 @@ from collections.abc import Callable
 from contextlib import AbstractContextManager
 from typing import TYPE_CHECKING, Any, TypeVar
 
+import numpy as np
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.axis import Axis
@@ -165,6 +167,30 @@ def plain_log(axis: Axis) -> None:
 def legend_below(axes: Axes, columns: int = 2, gap: float = 0.16) -> None:
     """A legend under the axes, where it can hide no curve; `gap` in heights of the axes."""
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -gap), ncols=columns, frameon=False)
+
+
+def mark(
+    axes: Axes,
+    x: float,
+    y: float,
+    size: float,
+    label: str | None = None,
+    *,
+    color: str = INK,
+    clip_on: bool = False,
+) -> None:
+    """A diamond of a size (points) with a ring around it, above all lines: a working point."""
+    look: dict[str, Any] = {"color": color, "ms": size, "mec": PAPER, "mew": 0.5 + 0.1 * size}
+    axes.plot([x], [y], "D", zorder=5, clip_on=clip_on, label=label, **look)
+
+
+def micrometres_beside(axes: Axes, voltage: float, label: str) -> None:
+    """A second axis on the right of one in nm/V: micrometres at a voltage (V)."""
+    micro = 1e-3 * voltage
+    right = axes.secondary_yaxis(
+        "right", functions=(lambda v: np.multiply(v, micro), lambda v: np.divide(v, micro))
+    )
+    right.set_ylabel(label)
 
 
 def pairs_of_axes(figure: Figure) -> tuple[Any, Axes]:

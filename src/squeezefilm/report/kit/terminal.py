@@ -123,12 +123,7 @@ def show_analysis(analysis: Analysis) -> None:
     """Print an analysis: verdict last, where the eye rests, after numbers, models and warnings."""
     console = plain_console()
     heading(console, f"{analysis.display.title} [{analysis.display.name}]")
-    table(
-        console,
-        ("", "", ""),
-        [(row.label, row.text, row.remark) for row in key_numbers(analysis)],
-        fixed=(0,),
-    )
+    table(console, ("", "", ""), key_numbers(analysis), fixed=(0,))
     heading(console, "Models")
     table(console, ("", ""), models(analysis), fixed=(0,))
     if analysis.other_models:

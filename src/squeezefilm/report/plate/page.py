@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
 from html import escape
 from typing import TYPE_CHECKING
 
 from squeezefilm.quantities import Unit
-from squeezefilm.report.kit.numbers import printable, shown
-from squeezefilm.report.kit.page_style import page_head
+from squeezefilm.report.kit.numbers import HZ, printable, shown
+from squeezefilm.report.kit.page_style import html_table, page_head, picture_sections, section
+from squeezefilm.report.plate.terminal_modes import mode_rows, working_rows
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -17,28 +17,17 @@ if TYPE_CHECKING:
     from squeezefilm.analysis.plate.command import PlateAnalysis
     from squeezefilm.analysis.plate.sensitivity import SensitivityTable
 
-HZ, PER_VOLT = Unit("Hz"), Unit("m/V")
 
-
-@dataclass(frozen=True, eq=False)
-class PlateFigure:
-    """A figure of the page: the name of its PNG (without the ending), heading, drawing."""
-
-    name: str
-    heading: str
-    figure: Figure
-
-
-def plate_page(result: PlateAnalysis, figures: list[PlateFigure]) -> str:
-    """The text of index.html; figures are the PNG files beside it."""
+def plate_page(result: PlateAnalysis, figures: Mapping[str, tuple[str, Figure]]) -> str:
+    """The text of index.html; figures (heading and drawing) are the PNG files beside it by name."""
     title = escape(printable(result.display.title))
     sections = [
-        _section("Working mode", _numbers(result)),
-        *(_section(escape(one.heading), _figure(one)) for one in figures),
-        _section("Modes in the band", _modes(result)),
+        section("Working mode", _numbers(result)),
+        picture_sections(figures),
+        section("Modes in the band", _modes(result)),
     ]
     if result.sensitivities is not None:
-        sections.append(_section("Sensitivities in numbers", sensitivities(result.sensitivities)))
+        sections.append(section("Sensitivities in numbers", sensitivities(result.sensitivities)))
     stamp = result.summary()["provenance"]
     return f"""{page_head(f"{title}: solved plate")}
 <header><h1>{title}</h1>
@@ -58,40 +47,15 @@ largest).</p></footer>
 """
 
 
-def _section(heading: str, body: str) -> str:
-    return f"<section>\n<h2>{heading}</h2>\n{body}\n</section>\n"
-
-
-def _figure(one: PlateFigure) -> str:
-    message = escape(" ".join(one.figure.get_suptitle().split()))
-    return f'<figure><img src="{one.name}.png" alt="{message}"></figure>'
-
-
 def _table(caption: str, head: tuple[str, ...], rows: Sequence[tuple[str, ...]]) -> str:
-    columns = "".join(f'<th scope="col">{escape(cell)}</th>' for cell in head)
-    body = "\n".join(
-        f'<tr><th scope="row">{escape(row[0])}</th>'
-        + "".join(f"<td>{escape(cell)}</td>" for cell in row[1:])
-        + "</tr>"
-        for row in rows
-    )
-    return (
-        f'<div class="scroll" tabindex="0" role="region" aria-label="{escape(caption)}"><table>'
-        f"<caption>{escape(caption)}</caption><thead><tr>{columns}</tr></thead>"
-        f"<tbody>\n{body}\n</tbody></table></div>"
-    )
+    cells = [[*map(escape, row)] for row in rows]
+    return html_table(escape(caption), map(escape, head), cells, between="")
 
 
 def _numbers(result: PlateAnalysis) -> str:
-    mode, volts = result.working, result.display.drive.voltage
-    at = result.response.resonance
-    rows: list[tuple[str, ...]] = [
-        (f"Mode {mode.label}", shown(mode.frequency, HZ, 5),
-         f"± {shown(mode.frequency_error, HZ, 2)} (estimated)"),
-        ("Amplitude per volt", shown(result.amplitude_per_volt, PER_VOLT), "largest, upper face"),
-        ("", shown(result.centreline_per_volt, PER_VOLT), "centreline, between outer nodes"),
-        ("Quality factor", f"{mode.quality_factor:.4g}", "from the losses of its materials"),
-        ("Effective coupling", f"{mode.coupling:.3g}", ""),
+    volts, at = result.display.drive.voltage, result.response.resonance
+    rows = working_rows(result)
+    rows += [
         (f"Amplitude at {volts:g} V", shown(volts * result.amplitude_per_volt, Unit("m"), 3),
          "zero-to-peak, largest"),
         (f"Current at {volts:g} V", shown(float(result.response.current(volts)[at]), Unit("A"), 3),
@@ -114,17 +78,8 @@ def _numbers(result: PlateAnalysis) -> str:
 
 def _modes(result: PlateAnalysis) -> str:
     rows = [
-        (
-            row.label,
-            shown(row.frequency, HZ, 5),
-            f"± {shown(row.frequency_error, HZ, 2)}",
-            f"{row.quality_factor:.3g}",
-            "not driven"
-            if row.amplitude_per_volt < 1e-4 * result.amplitude_per_volt
-            else shown(row.amplitude_per_volt, PER_VOLT, 3),
-            f"{row.coupling:.2g}",
-        )
-        for row in result.rows
+        (label, frequency, f"± {error}", *rest)
+        for label, frequency, error, *rest in mode_rows(result.rows, result.amplitude_per_volt)
     ]
     head = ("Mode", "Frequency", "Error", "Q", "Per volt", "Coupling")
     return _table(result.modes.status, head, rows)

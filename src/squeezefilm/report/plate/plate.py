@@ -19,6 +19,7 @@ from squeezefilm.report.kit.style import (
     ORANGE,
     drawn,
     legend_below,
+    micrometres_beside,
     new_figure,
     png,
 )
@@ -90,11 +91,7 @@ def line_scan(result: PlateAnalysis) -> Figure:
     axes.set(xlabel="x (mm)" if lengthwise else "y (mm)", xlim=(0, 1e3 * span))
     axes.set(ylabel="w per volt (nm/V)")
     if volts:
-        micro = 1e-3 * volts
-        right = axes.secondary_yaxis(
-            "right", functions=(lambda v: np.multiply(v, micro), lambda v: np.divide(v, micro))
-        )
-        right.set_ylabel(f"w at {volts:g} V (µm)")
+        micrometres_beside(axes, volts, f"w at {volts:g} V (µm)")
     legend_below(axes, columns=3, gap=0.2)
     return figure
 
@@ -161,21 +158,23 @@ def write_plate(result: PlateAnalysis, folder: Path) -> Path:
 
     Everything is made before anything is written.
     """
-    from squeezefilm.report.plate.page import PlateFigure, plate_page
+    from squeezefilm.report.plate.page import plate_page
     from squeezefilm.report.plate.sensitivity_figures import tornado, tracks
 
-    figures = [
-        PlateFigure("mode-surface", "Mode shape", mode_surface(result)),
-        PlateFigure("mode-plan", "Mode shape from above", plan_view(result)),
-        PlateFigure("line-scan", "Line scan along the plate", line_scan(result)),
-        PlateFigure("frequency-response", "Frequency response", frequency_response(result)),
-        PlateFigure("admittance", "Admittance", admittance(result)),
-    ]
+    figures = {
+        "mode-surface": ("Mode shape", mode_surface(result)),
+        "mode-plan": ("Mode shape from above", plan_view(result)),
+        "line-scan": ("Line scan along the plate", line_scan(result)),
+        "frequency-response": ("Frequency response", frequency_response(result)),
+        "admittance": ("Admittance", admittance(result)),
+    }
     if result.sensitivities is not None:
-        figures.append(PlateFigure("sensitivity", "Sensitivities", tornado(result.sensitivities)))
+        figures["sensitivity"] = ("Sensitivities", tornado(result.sensitivities))
     if result.tracks is not None:
-        figures.append(PlateFigure("tracking", "Modes against a parameter", tracks(result.tracks)))
-    files: dict[str, str | bytes] = {f"{one.name}.png": png(one.figure) for one in figures}
+        figures["tracking"] = ("Modes against a parameter", tracks(result.tracks))
+    files: dict[str, str | bytes] = {
+        f"{name}.png": png(figure) for name, (_, figure) in figures.items()
+    }
     files["plate.json"] = json_text(result.summary())
     files["index.html"] = plate_page(result, figures)
     write_mode(result, folder / "mode.vtu")

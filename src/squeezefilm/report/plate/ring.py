@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from squeezefilm.quantities import Unit
+from squeezefilm.report.display.layout_figures import FILL, draw_sector
 from squeezefilm.report.kit.folder import json_text, write_folder
 from squeezefilm.report.kit.numbers import HZ, M, shown
 from squeezefilm.report.kit.style import (
@@ -30,8 +31,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from squeezefilm.analysis.plate.ring import RingAnalysis
-
-_FILL = {1: PLUS, -1: MINUS}
 
 
 @drawn
@@ -108,18 +107,7 @@ def _sectors(axes: Axes, result: RingAnalysis) -> None:
             Wedge((0, 0), edge, 0, 360, width=width, facecolor="none", edgecolor=MUTED, lw=0.8)
         )
     for start, end, sign in result.body.drive.sectors:
-        axes.add_patch(
-            Wedge(
-                (0, 0),
-                edge,
-                math.degrees(start),
-                math.degrees(end),
-                width=width,
-                facecolor=_FILL[sign],
-                edgecolor=INK,
-                lw=0.8,
-            )
-        )
+        draw_sector(axes, edge, width, (math.degrees(start), math.degrees(end)), sign)
         middle, place = (start + end) / 2, edge - width / 2
         axes.text(
             0.0 if whole and inner == 0 else place * math.cos(middle),
@@ -201,7 +189,7 @@ def _around(axes: Axes, result: RingAnalysis, here: float) -> None:
     axes.set(xlabel=f"along the circumference at a radius of {shown(mean, M)} (mm)")
     axes.set(ylabel="per volt (nm/V)", xlim=(0, float(length[-1])))
     for start, end, sign in result.body.drive.sectors:
-        axes.axvspan(1e3 * mean * start, 1e3 * mean * end, ymax=0.06, color=_FILL[sign], lw=0.0)
+        axes.axvspan(1e3 * mean * start, 1e3 * mean * end, ymax=0.06, color=FILL[sign], lw=0.0)
 
 
 @drawn

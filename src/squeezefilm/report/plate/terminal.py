@@ -4,9 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from squeezefilm.report.kit.numbers import shown
+from squeezefilm.quantities import Unit
+from squeezefilm.report.kit.numbers import HZ, V, shown
 from squeezefilm.report.kit.terminal import heading, plain_console, table
-from squeezefilm.report.plate.terminal_modes import show_guidance, show_modes, sound_rows
+from squeezefilm.report.plate.terminal_modes import (
+    show_guidance,
+    show_modes,
+    sound_rows,
+    working_rows,
+)
 
 if TYPE_CHECKING:
     from squeezefilm.analysis.film.command import FilmAnswer
@@ -41,40 +47,22 @@ def show_film(answer: FilmAnswer) -> None:
 
 def show_plate(result: PlateAnalysis) -> None:
     """Print a solved plate: the working mode, then every mode of the band."""
-    from squeezefilm.quantities import Unit
-
-    hertz, per_volt = Unit("Hz"), Unit("m/V")
     console, mode = plain_console(), result.working
     heading(console, f"{result.display.title} [{result.display.name}]")
-    rows = [
-        (
-            f"Mode {mode.label}",
-            shown(mode.frequency, hertz, 5),
-            f"± {shown(mode.frequency_error, hertz, 2)} (estimated)",
-        ),
-        ("Amplitude per volt", shown(result.amplitude_per_volt, per_volt), "largest, upper face"),
-        ("", shown(result.centreline_per_volt, per_volt), "centreline, between outer nodes"),
-        ("Quality factor", f"{mode.quality_factor:.4g}", "from the losses of its materials"),
-        ("Effective coupling", f"{mode.coupling:.3g}", ""),
-        (
-            "As a Timoshenko beam",
-            shown(result.beam_frequency, hertz, 5),
-            f"{result.beam_frequency / mode.frequency - 1:+.1%}",
-        ),
-    ]
-    if result.shear_frequency is not None:
-        rows.append(
-            (
-                "As a shear plate",
-                shown(result.shear_frequency, hertz, 5),
-                f"{result.shear_frequency / mode.frequency - 1:+.1%}",
-            )
+    rows = working_rows(result)
+    rows += [
+        (f"As a {theory}", shown(frequency, HZ, 5), f"{frequency / mode.frequency - 1:+.1%}")
+        for theory, frequency in (
+            ("Timoshenko beam", result.beam_frequency),
+            ("shear plate", result.shear_frequency),
         )
+        if frequency is not None
+    ]
     volts = result.display.drive.voltage
     at = result.response.resonance
     rows.append(
         (
-            f"At {shown(volts, Unit('V'))}",
+            f"At {shown(volts, V)}",
             shown(float(result.response.current(volts)[at]), Unit("A"), 3),
             f"{result.response.apparent_power(volts)[at]:.3g} VA, "
             f"{result.response.input_power(volts)[at]:.3g} W",

@@ -1,4 +1,4 @@
-"""What the terminal shows alike of plates, discs and stators: sound levels, the table of modes."""
+"""What terminal and page show alike: the working mode, the table of modes, sound levels."""
 
 from __future__ import annotations
 
@@ -6,17 +6,35 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from squeezefilm.quantities import MetrePerVolt, Unit
-from squeezefilm.report.kit.numbers import shown
+from squeezefilm.report.kit.numbers import HZ, shown
 from squeezefilm.report.kit.terminal import heading, table
 
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from squeezefilm.analysis.plate.command import ModeRow
+    from squeezefilm.analysis.plate.command import ModeRow, PlateAnalysis
     from squeezefilm.plate.sound import SoundField
+
+PER_VOLT = Unit("m/V")
 
 # Of the working mode's amplitude per volt: below it a mode is called not driven.
 _DRIVEN = 1e-4
+
+
+def working_rows(result: PlateAnalysis) -> list[tuple[str, str, str]]:
+    """The working mode of a solved plate: quantity, value, remark."""
+    mode = result.working
+    return [
+        (
+            f"Mode {mode.label}",
+            shown(mode.frequency, HZ, 5),
+            f"± {shown(mode.frequency_error, HZ, 2)} (estimated)",
+        ),
+        ("Amplitude per volt", shown(result.amplitude_per_volt, PER_VOLT), "largest, upper face"),
+        ("", shown(result.centreline_per_volt, PER_VOLT), "centreline, between outer nodes"),
+        ("Quality factor", f"{mode.quality_factor:.4g}", "from the losses of its materials"),
+        ("Effective coupling", f"{mode.coupling:.3g}", ""),
+    ]
 
 
 def sound_rows(sound: SoundField, direction: str) -> list[tuple[str, str, str]]:
@@ -41,24 +59,30 @@ def show_guidance(console: Console, sound: SoundField) -> None:
         console.print(f"Guidance ({sound.guidance.evidence}): {sound.guidance.source}")
 
 
+def mode_rows(
+    rows: Sequence[ModeRow], amplitude_per_volt: MetrePerVolt
+) -> list[tuple[str, str, str, str, str, str]]:
+    """Label, frequency, its error, quality factor, amplitude per volt and coupling of every mode.
+
+    `amplitude_per_volt` is the working mode's (m/V).
+    """
+    return [
+        (
+            row.label,
+            shown(row.frequency, HZ, 5),
+            shown(row.frequency_error, HZ, 2),
+            f"{row.quality_factor:.3g}",
+            "not driven"
+            if row.amplitude_per_volt < _DRIVEN * amplitude_per_volt
+            else shown(row.amplitude_per_volt, PER_VOLT, 3),
+            f"{row.coupling:.2g}",
+        )
+        for row in rows
+    ]
+
+
 def show_modes(console: Console, rows: Sequence[ModeRow], amplitude_per_volt: MetrePerVolt) -> None:
     """Print the table of modes; `amplitude_per_volt` is the working mode's (m/V)."""
-    hertz, per_volt = Unit("Hz"), Unit("m/V")
     heading(console, "Modes in the band")
-    table(
-        console,
-        ("mode", "frequency", "±", "Q", "per volt", "coupling"),
-        [
-            (
-                row.label,
-                shown(row.frequency, hertz, 5),
-                shown(row.frequency_error, hertz, 2),
-                f"{row.quality_factor:.3g}",
-                "not driven"
-                if row.amplitude_per_volt < _DRIVEN * amplitude_per_volt
-                else shown(row.amplitude_per_volt, per_volt, 3),
-                f"{row.coupling:.2g}",
-            )
-            for row in rows
-        ],
-    )
+    head = ("mode", "frequency", "±", "Q", "per volt", "coupling")
+    table(console, head, mode_rows(rows, amplitude_per_volt))

@@ -5,57 +5,75 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from squeezefilm.quantities import Unit
-from squeezefilm.report.kit.numbers import shown
+from squeezefilm.report.kit.numbers import HZ, M, shown
 from squeezefilm.report.kit.terminal import heading, plain_console, table
-from squeezefilm.report.plate.terminal_modes import show_guidance, show_modes, sound_rows
+from squeezefilm.report.plate.terminal_modes import PER_VOLT, show_guidance, show_modes, sound_rows
 
 if TYPE_CHECKING:
     from squeezefilm.analysis.plate.ring import RingAnalysis
     from squeezefilm.plate.ring.stator import StatorFit
 
-_HZ, _M, _PER_VOLT = Unit("Hz"), Unit("m"), Unit("m/V")
-
 
 def show_ring(result: RingAnalysis) -> None:
     """Print a solved ring: the working mode, how it was fitted, then every mode of the band."""
-    console, mode = plain_console(), result.working
+    console = plain_console()
     heading(console, f"{result.display.title} [{result.display.name}]")
+    rows = _mode_rows(result) + _drive_rows(result)
+    rows += sound_rows(result.sound, "loudest direction, touched face only")
+    table(console, ("", "", ""), rows, fixed=(0,))
+    show_guidance(console, result.sound)
+    if result.body.fit is not None:
+        for sentence in fit_sentences(result.body.fit):
+            console.print(sentence)
+    show_modes(console, result.rows, result.amplitude_per_volt)
+    console.print("B(circles, diameters) bends; R and T move in the plane, radially and around.")
+    console.print(f"{result.model}; {result.status}")
+
+
+def _mode_rows(result: RingAnalysis) -> list[tuple[str, str, str]]:
+    """The working mode: its frequency, its amplitude per volt, where it stands still."""
+    mode = result.working
     rows = [
         (
             f"Mode {mode.label}",
-            shown(mode.frequency, _HZ, 5),
-            f"± {shown(mode.frequency_error, _HZ, 2)} (estimated)"
+            shown(mode.frequency, HZ, 5),
+            f"± {shown(mode.frequency_error, HZ, 2)} (estimated)"
             + ("; fitted, not predicted" if result.body.fit is not None else ""),
         ),
         (
             "Amplitude per volt",
-            shown(result.amplitude_per_volt, _PER_VOLT),
+            shown(result.amplitude_per_volt, PER_VOLT),
             "largest, touched face",
         ),
         (
             "",
-            shown(result.centreline_per_volt, _PER_VOLT),
+            shown(result.centreline_per_volt, PER_VOLT),
             "antinodes of the mean circumference" if result.mode.harmonic else "inner lobe",
         ),
     ]
     if result.described_amplitude_per_volt is not None:
         rows.append(
-            ("", shown(result.described_amplitude_per_volt, _PER_VOLT), "described as measured")
+            ("", shown(result.described_amplitude_per_volt, PER_VOLT), "described as measured")
         )
     if mode.half_wavelength is not None:
         rows.append(
             (
                 "Half wavelength",
-                shown(mode.half_wavelength, _M),
+                shown(mode.half_wavelength, M),
                 f"along the {result.half_wavelength_along}",
             )
         )
     if result.circles.size:
         rows.append(
-            ("Nodal circles", ", ".join(shown(float(r), _M, 3) for r in result.circles), "radius")
+            ("Nodal circles", ", ".join(shown(float(r), M, 3) for r in result.circles), "radius")
         )
-    volts = result.display.drive.voltage
-    rows += [
+    return rows
+
+
+def _drive_rows(result: RingAnalysis) -> list[tuple[str, str, str]]:
+    """What drives it: losses, coupling, current and power at the voltage, equivalent circuit."""
+    mode, volts = result.working, result.display.drive.voltage
+    rows = [
         (
             "Quality factor",
             f"{mode.quality_factor:.4g}",
@@ -82,24 +100,16 @@ def show_ring(result: RingAnalysis) -> None:
                 f"C1 {shown(c.motional_capacitance, Unit('F'), 3)}",
             )
         )
-    rows += sound_rows(result.sound, "loudest direction, touched face only")
-    table(console, ("", "", ""), rows, fixed=(0,))
-    show_guidance(console, result.sound)
-    if result.body.fit is not None:
-        for sentence in fit_sentences(result.body.fit):
-            console.print(sentence)
-    show_modes(console, result.rows, result.amplitude_per_volt)
-    console.print("B(circles, diameters) bends; R and T move in the plane, radially and around.")
-    console.print(f"{result.model}; {result.status}")
+    return rows
 
 
 def fit_sentences(fit: StatorFit) -> tuple[str, ...]:
     """What was fitted of a stator, what the teeth leave uncertain, and what is assumed."""
     a = fit.assumptions
     said = [
-        f"Fitted: {shown(fit.ring_thickness, _M, 4)} of metal under the teeth, so that "
-        f"{fit.mode.label} falls on {shown(fit.mode.frequency, _HZ)}, with the mean diameter of "
-        f"{shown(fit.derived['mean_diameter'], _M, 4)} from the wavelength. One frequency fits one "
+        f"Fitted: {shown(fit.ring_thickness, M, 4)} of metal under the teeth, so that "
+        f"{fit.mode.label} falls on {shown(fit.mode.frequency, HZ)}, with the mean diameter of "
+        f"{shown(fit.derived['mean_diameter'], M, 4)} from the wavelength. One frequency fits one "
         "dimension and validates nothing."
     ]
     if a.tooth_height > 0:
@@ -107,11 +117,11 @@ def fit_sentences(fit: StatorFit) -> tuple[str, ...]:
         said.append(
             f"Teeth: an equivalent layer of {a.tooth_fill:.0%} metal ({a.tooth_model}). Between "
             f"teeth without hoop stiffness and teeth as stiff as their share of metal, this body "
-            f"lies between {shown(low, _HZ)} and {shown(high, _HZ)}; real teeth are 7 to 13 % of "
+            f"lies between {shown(low, HZ)} and {shown(high, HZ)}; real teeth are 7 to 13 % of "
             "the way up."
         )
     said.append(
-        f"Assumed: {a.metal.name}, {a.ceramic.name} of {shown(a.ceramic_thickness, _M)}, teeth of "
-        f"{shown(a.tooth_height, _M)}, {a.driven_sectors} half-wave sectors on the channel."
+        f"Assumed: {a.metal.name}, {a.ceramic.name} of {shown(a.ceramic_thickness, M)}, teeth of "
+        f"{shown(a.tooth_height, M)}, {a.driven_sectors} half-wave sectors on the channel."
     )
     return tuple(said)

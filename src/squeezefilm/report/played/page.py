@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from squeezefilm.report.kit.folder import json_text, write_folder
 from squeezefilm.report.kit.numbers import printable
-from squeezefilm.report.kit.page_style import page_head
+from squeezefilm.report.kit.page_style import page_head, picture_sections, section
 from squeezefilm.report.kit.style import png
 from squeezefilm.report.played import figures as draw
 from squeezefilm.report.played.terminal import play_rows, play_warnings
@@ -55,13 +55,8 @@ def _page(result: PlayResult, figures: dict[str, tuple[str, Figure]], files: lis
         "</tr>"
         for a, b, c in play_rows(result)
     )
-    pictures = "".join(
-        f"<section>\n<h2>{escape(heading)}</h2>\n"
-        f'<figure><img src="{name}.png" alt="'
-        f'{escape(" ".join(figure.get_suptitle().split()))}"></figure>\n</section>\n'
-        for name, (heading, figure) in figures.items()
-    )
     warned = "".join(f"<li>{escape(text)}</li>" for text in play_warnings(session))
+    warnings = f"<ul>{warned or '<li>None.</li>'}</ul>"
     links = ", ".join(f'<a href="{escape(name)}">{escape(name)}</a>' for name in files)
     return f"""{page_head(f"{title}: a session")}
 <header><h1>{title}</h1>
@@ -77,11 +72,7 @@ drive <code>{escape(printable(str(stamp.get("drive", ""))))}</code>, by squeezef
 {rows}
 </tbody></table></div>
 </section>
-{pictures}<section>
-<h2>Warnings</h2>
-<ul>{warned or "<li>None.</li>"}</ul>
-</section>
-</main>
+{picture_sections(figures)}{section("Warnings", warnings)}</main>
 <footer><p>squeezefilm {escape(str(stamp.get("squeezefilm_version", "")))} ·
 begun {escape(str(stamp.get("created_utc", "")))} (UTC) ·
 SHA-256 of display, texture and settings <code>{escape(str(stamp.get("config_sha256", "")))}</code> ·

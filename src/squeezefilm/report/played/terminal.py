@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 from squeezefilm.quantities import Unit
-from squeezefilm.report.kit.numbers import HZ, M, S, V, printable, shown
+from squeezefilm.report.kit.numbers import HZ, M, S, V, lag_rows, printable, shown
 from squeezefilm.report.kit.terminal import heading, plain_console, table
 
 if TYPE_CHECKING:
@@ -220,17 +220,7 @@ def _judged_rows(who: str, judged: Judged) -> list[tuple[str, str, str]]:
             f"RMS of µ′/µ, swing wanted {found.wanted_swing:.2f}; by {judged.way.source}",
         )
     )
-    if math.isfinite(found.lag):
-        word = "behind" if found.lag >= 0 else "ahead of"
-        rows.append(
-            (
-                f"{who}: lag",
-                f"{1e3 * found.lag:.3f} mm",
-                f"{word} the finger, {shown(abs(found.lag_time), S, 2)} at "
-                f"{1e3 * found.mean_speed:.3g} mm/s",
-            )
-        )
-    return rows
+    return rows + lag_rows(found, f"{who}: lag")
 
 
 def _loop_rows(loop: Mapping[str, Any]) -> list[tuple[str, str, str]]:

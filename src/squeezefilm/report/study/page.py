@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from squeezefilm.quantities import Unit
 from squeezefilm.report.kit.folder import json_text, require_folder, write_folder
 from squeezefilm.report.kit.numbers import printable, shown
-from squeezefilm.report.kit.page_style import page_head
+from squeezefilm.report.kit.page_style import page_head, picture_sections, section, text_table
 from squeezefilm.report.kit.style import png
 
 if TYPE_CHECKING:
@@ -82,22 +82,15 @@ def study_page(
 ) -> str:
     """The page as text; its figures lie beside it as study-KEY.png."""
     title = escape(printable(analysis.name))
-    pictures = "".join(
-        _section(
-            escape(heading),
-            f'<figure><img src="study-{key}.png" '
-            f'alt="{escape(" ".join(figure.get_suptitle().split()))}"></figure>',
-        )
-        for key, (heading, figure) in figures.items()
-    )
+    pictures = picture_sections({f"study-{key}": one for key, one in figures.items()})
     notes = "".join(f"<li>{escape(printable(note))}</li>" for note in analysis.notes)
     sections = (
-        _section("Numbers", _numbers(analysis))
+        section("Numbers", _numbers(analysis))
         + pictures
-        + _section("Confusions in numbers", _confusion(analysis))
-        + _section("Information transfer by every estimator", _information(analysis))
-        + (_section("Mixed models", _mixed(analysis)) if analysis.mixed is not None else "")
-        + _section("What could not be computed", f"<ul>{notes or '<li>Nothing.</li>'}</ul>")
+        + section("Confusions in numbers", _confusion(analysis))
+        + section("Information transfer by every estimator", _information(analysis))
+        + (section("Mixed models", _mixed(analysis)) if analysis.mixed is not None else "")
+        + section("What could not be computed", f"<ul>{notes or '<li>Nothing.</li>'}</ul>")
     )
     return f"""{page_head(f"{title}: identification study")}
 <header><h1>{title}</h1>
@@ -112,27 +105,6 @@ All numbers: <a href="identification.json">identification.json</a>.</p></footer>
 </body>
 </html>
 """  # noqa: E501
-
-
-def _section(heading: str, body: str) -> str:
-    return f"<section>\n<h2>{heading}</h2>\n{body}\n</section>\n"
-
-
-def _table(caption: str, head: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
-    """A table of plain texts; the first cell of a row heads it."""
-    caption = printable(caption)
-    columns = "".join(f'<th scope="col">{escape(printable(cell))}</th>' for cell in head)
-    lines = []
-    for row in rows:
-        first, *others = (escape(printable(cell)) for cell in row)
-        cells = "".join(f"<td>{cell}</td>" for cell in others)
-        lines.append(f'<tr><th scope="row">{first}</th>{cells}</tr>')
-    return (
-        f'<div class="scroll" tabindex="0" role="region" aria-label="{escape(caption)}"><table>'
-        f"<caption>{escape(caption)}</caption><thead><tr>{columns}</tr></thead>\n<tbody>\n"
-        + "\n".join(lines)
-        + "\n</tbody></table></div>"
-    )
 
 
 def _between(interval: Interval | None, scale: float = 1.0, unit: str = "") -> str:
@@ -195,7 +167,8 @@ def key_rows(analysis: IdentificationAnalysis) -> list[tuple[str, str, str]]:
 
 
 def _numbers(analysis: IdentificationAnalysis) -> str:
-    return _table(f"{analysis.origin} answers", ("Quantity", "Value", "Remark"), key_rows(analysis))
+    head = ("Quantity", "Value", "Remark")
+    return text_table(f"{analysis.origin} answers", head, key_rows(analysis))
 
 
 def _confusion(analysis: IdentificationAnalysis) -> str:
@@ -204,7 +177,7 @@ def _confusion(analysis: IdentificationAnalysis) -> str:
         [answer, *(_cell(analysis, i, j) for j in range(len(matrix.stimuli)))]
         for i, answer in enumerate(matrix.answers)
     ]
-    return _table(
+    return text_table(
         f"Per cent of each column; in brackets trials, and the {100 * posterior.level:g} % "
         f"interval of the Dirichlet posterior (prior {posterior.prior:g}, trials taken as "
         "independent)",
@@ -233,7 +206,7 @@ def _information(analysis: IdentificationAnalysis) -> str:
         )
         for item in analysis.information.estimates
     ]
-    return _table(
+    return text_table(
         "The pooled matrix; intervals over participants",
         ("Estimator", "Transfer (bit)", "Interval (bit)", "Where it fails"),
         rows,
@@ -261,7 +234,7 @@ def _mixed(analysis: IdentificationAnalysis) -> str:
     ]
     spread = f"{fit.participant_spread:.2f}"
     bounds = f"{fit.participant_spread_low:.2f} to {fit.participant_spread_high:.2f}"
-    return _table(
+    return text_table(
         f"{fit.model}. Participants spread by {spread} in log-odds ({bounds})",
         ("Stimulus", "A typical person", "Log-odds", "Mean over people"),
         rows,

@@ -11,7 +11,7 @@ import numpy as np
 
 from squeezefilm.report.kit.folder import json_text, require_folder, write_folder
 from squeezefilm.report.kit.numbers import printable
-from squeezefilm.report.kit.page_style import page_head
+from squeezefilm.report.kit.page_style import page_head, section, text_table
 from squeezefilm.report.kit.style import png
 from squeezefilm.report.study import observer_figures
 from squeezefilm.study.record.trial_table import Column, csv_text
@@ -159,22 +159,6 @@ def reason_rows(study: SimulatedStudy, index: int) -> list[list[str]]:
     ]
 
 
-def _table(caption: str, head: list[str] | tuple[str, ...], rows: list[list[str]]) -> str:
-    columns = "".join(f'<th scope="col">{escape(printable(cell))}</th>' for cell in head)
-    lines = "\n".join(
-        f'<tr><th scope="row">{escape(printable(row[0]))}</th>'
-        + "".join(f"<td>{escape(printable(cell))}</td>" for cell in row[1:])
-        + "</tr>"
-        for row in rows
-    )
-    label = escape(printable(caption))
-    return (
-        f'<div class="scroll" tabindex="0" role="region" aria-label="{label}"><table>'
-        f"<caption>{label}</caption><thead><tr>{columns}</tr></thead>\n<tbody>\n{lines}\n"
-        "</tbody></table></div>"
-    )
-
-
 def _page(study: SimulatedStudy, summary: dict[str, Any], analysed: dict[str, str]) -> str:
     design, provenance = study.tables.design, summary["provenance"]
     parts = []
@@ -182,11 +166,15 @@ def _page(study: SimulatedStudy, summary: dict[str, Any], analysed: dict[str, st
         head, rows = confusion_rows(study, index)
         right = 100 * study.proportion_correct(index)
         link = f'<p><a href="{analysed[name]}">Full analysis</a></p>' if name in analysed else ""
+        answers = "Simulated answers, per cent of each column; in brackets trials"
+        reasons = f"Reasons the model sees. {LEGEND}"
         parts.append(
-            f"<section>\n<h2>{escape(printable(name))}, simulated: {right:.1f} % right</h2>\n"
-            + _table("Simulated answers, per cent of each column; in brackets trials", head, rows)
-            + _table(f"Reasons the model sees. {LEGEND}", REASONS, reason_rows(study, index))
-            + f"{link}\n</section>\n"
+            section(
+                f"{escape(printable(name))}, simulated: {right:.1f} % right",
+                text_table(answers, head, rows)
+                + text_table(reasons, REASONS, reason_rows(study, index))
+                + link,
+            )
         )
     title = escape(printable(f"{design.name}: simulated participants"))
     return f"""{page_head(f"{title}")}

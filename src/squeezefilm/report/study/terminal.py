@@ -11,6 +11,7 @@ from squeezefilm.report.kit.numbers import M, shown
 from squeezefilm.report.kit.terminal import heading, plain_console, table
 
 if TYPE_CHECKING:
+    from squeezefilm.perception.stimuli import Grating, Stimulus
     from squeezefilm.quantities import Second
     from squeezefilm.study.conduct.run import Acknowledgement, Presentation
     from squeezefilm.study.design.plan import StudyPlan
@@ -42,13 +43,10 @@ def show_plan(plan: StudyPlan) -> None:
     heading(console, "Presented")
     table(
         console,
-        ("Name", "Period", "Groove", "Length means", "Waveform", "Friction", "Right answer"),
+        (*_GRATING, "Waveform", "Friction", "Right answer"),
         [
             (
-                one.name,
-                shown(one.period, M, 3),
-                shown(one.groove_width, M, 3),
-                one.period_means,
+                *_grating(one),
                 one.waveform,
                 f"{one.low:g} to {one.high:g}",
                 "" if design.two_surfaces else design.answer_to(one) or "none",
@@ -60,16 +58,9 @@ def show_plan(plan: StudyPlan) -> None:
         heading(console, "Compared with")
         table(
             console,
-            ("Name", "Period", "Groove", "Length means", "Ridge", "Material"),
+            (*_GRATING, "Ridge", "Material"),
             [
-                (
-                    one.name,
-                    shown(one.period, M, 3),
-                    shown(one.groove_width, M, 3),
-                    one.period_means,
-                    shown(one.ridge_height, M, 3),
-                    one.material,
-                )
+                (*_grating(one), shown(one.ridge_height, M, 3), one.material)
                 for one in design.alternatives
             ],
         )
@@ -82,6 +73,19 @@ def show_plan(plan: StudyPlan) -> None:
         console.print(", ".join(plan.assumed))
     if design.note:
         console.print(f"\n{design.note}")
+
+
+_GRATING = ("Name", "Period", "Groove", "Length means")
+
+
+def _grating(one: Stimulus | Grating) -> tuple[str, str, str, str]:
+    """What a virtual and a real grating both have, as `_GRATING` heads it."""
+    return (
+        one.name,
+        shown(one.period, M, 3),
+        shown(one.groove_width, M, 3),
+        one.period_means,
+    )
 
 
 def show_status(store: StudyStore) -> None:

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from squeezefilm.chain.rendered_texture import RenderAnalysis
+    from squeezefilm.quantities import FloatArray
 
 _MOST_POINTS = 3000
 _ZOOM = 0.16
@@ -219,7 +220,11 @@ def _picture(
     y = np.linspace(
         low[1], high[1], max(2, round(_MAP_POINTS * (high[1] - low[1]) / (high[0] - low[0])))
     )
-    values = result.texture.texture(x[None, :], y[:, None], speed, 0.0)
+    return friction_of(result, result.texture.texture(x[None, :], y[:, None], speed, 0.0))
+
+
+def friction_of(result: RenderAnalysis, values: FloatArray) -> FloatArray:
+    """The relative friction (1) that values of the texture, in its quantity, ask of the display."""
     played = result.played
     if result.texture.texture.quantity == "amplitude":
         return np.interp(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from functools import partial
 from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -14,11 +15,11 @@ from squeezefilm.errors import InputError
 from squeezefilm.formats.hjif import HjifExport, ReferenceDevice, hjif_of
 from squeezefilm.formats.traces import Table, csv_text, parquet_bytes
 from squeezefilm.formats.wav import Waveform, wav_bytes
-from squeezefilm.quantities import FloatArray
 from squeezefilm.report.kit.folder import json_text, require_folder, write_folder
 from squeezefilm.report.kit.numbers import printable
-from squeezefilm.report.kit.page_style import page_head
+from squeezefilm.report.kit.page_style import html_table, page_head, picture_sections, section
 from squeezefilm.report.kit.style import png
+from squeezefilm.report.textures import figures as draw
 from squeezefilm.report.textures.terminal import render_rows
 
 if TYPE_CHECKING:
@@ -82,13 +83,6 @@ def hjif_export(result: RenderAnalysis) -> HjifExport:
     """The texture under the stroke as MPEG haptics. Raises `InputError` as `hjif_of` does."""
     p, played = result.prediction, result.played
 
-    def to_friction(values: FloatArray) -> FloatArray:
-        if result.texture.texture.quantity == "amplitude":
-            return np.interp(
-                played.amplitude(values), played.inverse.amplitude, played.inverse.relative_friction
-            )
-        return played.friction(values)
-
     frictional = result.texture.texture.quantity == "relative_friction"
     return hjif_of(
         result.texture.texture,
@@ -101,7 +95,7 @@ def hjif_export(result: RenderAnalysis) -> HjifExport:
             result.stroke.envelope.amplitude_limit,
         ),
         title=played.name,
-        to_friction=None if frictional else to_friction,
+        to_friction=None if frictional else partial(draw.friction_of, result),
         speed=float(np.mean(np.abs(result.finger.speed))),
     )
 
@@ -156,8 +150,6 @@ def write_render(
 
 def render_figures(result: RenderAnalysis) -> dict[str, tuple[str, Figure]]:
     """The figures by the name of their file: heading and drawing."""
-    from squeezefilm.report.textures import figures as draw
-
     found = {
         "render-friction": ("Friction along the stroke", draw.friction(result)),
         "render-drive": ("Drive and tangential force", draw.drive(result)),
@@ -172,23 +164,15 @@ def render_figures(result: RenderAnalysis) -> dict[str, tuple[str, Figure]]:
 def _page(result: RenderAnalysis, figures: dict[str, tuple[str, Figure]], files: list[str]) -> str:
     title = escape(printable(result.played.name))
     stamp = result.provenance()
-    rows = "\n".join(
-        f'<tr><th scope="row">{escape(a)}</th><td>{escape(b)}</td><td>{escape(c)}</td></tr>'
-        for a, b, c in render_rows(result)
-    )
-    numbers = (
-        '<div class="scroll" tabindex="0" role="region" aria-label="Numbers"><table>'
-        "<caption>What was asked for and what the finger meets</caption><thead><tr>"
-        '<th scope="col">Quantity</th><th scope="col">Value</th><th scope="col">Remark</th>'
-        f"</tr></thead><tbody>\n{rows}\n</tbody></table></div>"
-    )
-    pictures = "".join(
-        f"<section>\n<h2>{escape(heading)}</h2>\n"
-        f'<figure><img src="{name}.png" alt="'
-        f'{escape(" ".join(figure.get_suptitle().split()))}"></figure>\n</section>\n'
-        for name, (heading, figure) in figures.items()
+    numbers = html_table(
+        "What was asked for and what the finger meets",
+        ("Quantity", "Value", "Remark"),
+        [[*map(escape, row)] for row in render_rows(result)],
+        label="Numbers",
+        between="",
     )
     warned = "".join(f"<li>{escape(printable(text))}</li>" for text in result.prediction.warnings)
+    warnings = f"<ul>{warned or '<li>None.</li>'}</ul>"
     links = ", ".join(
         f'<a href="{name}">{name}</a>' for name in files if not name.endswith((".png", ".html"))
     )
@@ -197,15 +181,7 @@ def _page(result: RenderAnalysis, figures: dict[str, tuple[str, Figure]], files:
 <p class="name">rendered on <code>{escape(printable(result.display.name))}</code> by squeezefilm
 </p></header>
 <main>
-<section>
-<h2>Numbers</h2>
-{numbers}
-</section>
-{pictures}<section>
-<h2>Warnings</h2>
-<ul>{warned or "<li>None.</li>"}</ul>
-</section>
-</main>
+{section("Numbers", numbers)}{picture_sections(figures)}{section("Warnings", warnings)}</main>
 <footer><p>squeezefilm {escape(str(stamp["squeezefilm_version"]))} ·
 made {escape(str(stamp["created_utc"]))} (UTC) ·
 SHA-256 of display, texture and motion <code>{escape(str(stamp["config_sha256"]))}</code> ·

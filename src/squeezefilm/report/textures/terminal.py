@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from squeezefilm.report.kit.numbers import HZ, M, N, S, V, shown
+from squeezefilm.report.kit.numbers import HZ, M, N, S, V, lag_rows, shown
 from squeezefilm.report.kit.terminal import heading, plain_console, table
 
 if TYPE_CHECKING:
@@ -16,8 +16,7 @@ if TYPE_CHECKING:
 
 def render_rows(result: RenderAnalysis) -> list[tuple[str, str, str]]:
     """The lines of the table: quantity, value, remark."""
-    stroke, p = result.stroke, result.prediction
-    judged, counters = result.fidelity, result.counters
+    stroke, p, counters = result.stroke, result.prediction, result.counters
     rendered = stroke.relative_friction_rendered
     drive = "" if p.voltage is None else f"at {shown(p.voltage, V)}, the limit"
     eyes = "the finger's place is known"
@@ -40,24 +39,9 @@ def render_rows(result: RenderAnalysis) -> list[tuple[str, str, str]]:
         ("Friction rendered", f"{np.mean(rendered):.3f} ± {np.std(rendered):.3f}", ""),
         ("RMS error of µ′/µ", f"{result.rms_error:.3f}", "rendered − asked for"),
     ]
-    if judged is None:
-        rows.append(("Contrast, lag", "–", result.unjudged or ""))
-    else:
-        for f, kept in zip(judged.spatial_frequency, judged.contrast_kept, strict=True):
-            if np.isfinite(kept):
-                rows.append((f"Contrast kept at {shown(1 / f, M, 3)}", f"{100 * kept:.0f} %", ""))
-        if np.isfinite(judged.lag):
-            word = "behind" if judged.lag >= 0 else "ahead of"
-            rows.append(
-                (
-                    "Lag",
-                    f"{1e3 * judged.lag:.3f} mm",
-                    f"{word} the finger, {shown(abs(judged.lag_time), S, 2)} at "
-                    f"{1e3 * judged.mean_speed:.3g} mm/s",
-                )
-            )
     saturated = stroke.saturated_top + stroke.saturated_bottom
     rows += [
+        *_judged_rows(result),
         ("Drive at a limit", f"{100 * saturated:.3g} %", "of the time"),
         (
             "Beyond the display",
@@ -82,6 +66,20 @@ def render_rows(result: RenderAnalysis) -> list[tuple[str, str, str]]:
             )
         )
     return rows
+
+
+def _judged_rows(result: RenderAnalysis) -> list[tuple[str, str, str]]:
+    """Contrast and lag of what was rendered, or why there are none."""
+    judged = result.fidelity
+    if judged is None:
+        return [("Contrast, lag", "–", result.unjudged or "")]
+    contrast = zip(judged.spatial_frequency, judged.contrast_kept, strict=True)
+    rows = [
+        (f"Contrast kept at {shown(1 / f, M, 3)}", f"{100 * kept:.0f} %", "")
+        for f, kept in contrast
+        if np.isfinite(kept)
+    ]
+    return rows + lag_rows(judged)
 
 
 def show_render(result: RenderAnalysis) -> None:

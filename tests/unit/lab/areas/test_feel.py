@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 from pydantic import ValidationError
+from tests.pictures import picture_bytes
 from tests.unit.lab.areas.too_long import require_refused_if_longer
 
 from squeezefilm import presets
-from squeezefilm.formats.pictures import picture_bytes
 from squeezefilm.lab.areas.feel import (
     COLUMNS,
     AddPicture,

@@ -8,7 +8,7 @@ from squeezefilm import presets
 from squeezefilm.errors import InputError, SqueezefilmError
 from squeezefilm.lab.designing.field_limits import allowed
 from squeezefilm.lab.designing.form import edited, form, preset_text
-from squeezefilm.lab.designing.numbers import design
+from squeezefilm.lab.designing.numbers import WorkingPoint, designed
 
 PLATE = preset_text("biet2008-plate")
 
@@ -95,4 +95,4 @@ def test_a_word_in_a_number_s_field_is_refused_in_a_sentence(path: str, says: st
 def test_the_mode_of_a_plate_says_along_which_axis_it_lies() -> None:
     across = edited(PLATE, "actuator.lines_across", "width")
     for text, axis in ((PLATE, "x"), (across, "y")):
-        assert design(text, "screening", None, None, None)["line"]["along"] == axis
+        assert designed(WorkingPoint(text), "screening")["line"]["along"] == axis

@@ -9,11 +9,12 @@ from typing import Any
 import numpy as np
 import pytest
 
+from squeezefilm.analysis.uncertainty import FrictionBand
 from squeezefilm.chain.prediction import predict
 from squeezefilm.errors import InputError
 from squeezefilm.lab.designing import numbers
 from squeezefilm.lab.designing.form import display_of, edited, form, preset_text
-from squeezefilm.lab.designing.numbers import WorkingPoint, design, opened, outline, predicted
+from squeezefilm.lab.designing.numbers import WorkingPoint, designed, opened, outline, predicted
 
 STATOR, DISC = preset_text("biet2008-stator"), preset_text("winfield2007-tpad")
 GLASS = preset_text("touchpad-glass")
@@ -59,12 +60,12 @@ def test_an_edit_is_made_on_the_way_only_where_there_is_one() -> None:
 
 
 def test_a_stators_numbers_are_the_predictions_own() -> None:
-    found = design(STATOR, "screening", "100 V", "bare", "0.7 N")
+    found = designed(WorkingPoint(STATOR, "100 V", "bare", "0.7 N"), "screening")
     display = display_of(STATOR)
     p = predict(display, voltage=100.0, normal_force=0.7, surface="bare")
     mode = p.mode
     expected: dict[str, Any] = {
-        "quality": "screening", "name": "biet2008-stator", "title": display.title,
+        "text": STATOR, "quality": "screening", "name": "biet2008-stator", "title": display.title,
         "surface": "bare", "surfaces": [one.name for one in display.surfaces], "voltage_V": 100.0,
         "normal_force_N": 0.7, "mode": mode.label,
         "resonance_frequency_Hz": mode.resonance_frequency,
@@ -98,7 +99,7 @@ def test_a_stators_numbers_are_the_predictions_own() -> None:
 
 
 def test_the_line_of_a_stator_is_the_wave_round_its_mean_circumference() -> None:
-    line = design(STATOR, "screening", None, None, None)["line"]
+    line = designed(WorkingPoint(STATOR), "screening")["line"]
     length, wave = math.pi * 53.57e-3, 18.7e-3
     np.testing.assert_allclose(line["position_m"], np.linspace(0.0, length, 241), rtol=1e-9)
     expected = np.cos(2 * math.pi * np.array(line["position_m"]) / wave)
@@ -169,13 +170,13 @@ def test_a_quality_is_a_theory_for_plates_only(
 ) -> None:
     asked: list[Any] = []
     monkeypatch.setattr(numbers, "predict", lambda display, **how: asked.append((display, how)))
-    predicted(text, quality)
-    predicted(text, quality, "0.1 kV", "bare", "300 mN")
+    predicted(display_of(text), quality, WorkingPoint(text))
+    predicted(display_of(text), quality, WorkingPoint(text, "0.1 kV", "bare", "300 mN"))
     nothing = {"voltage": None, "normal_force": None, "surface": None, "theory": theory}
     given = {"voltage": 100.0, "normal_force": 0.3, "surface": "bare", "theory": theory}
     assert asked == [(display_of(text), nothing), (display_of(text), given)]
     with pytest.raises(InputError, match="quality"):
-        predicted(text, "rough")
+        predicted(display_of(text), "rough", WorkingPoint(text))
 
 
 def test_a_curve_of_the_papers_model_is_left_out_where_it_does_not_hold() -> None:
@@ -186,7 +187,6 @@ def test_a_curve_of_the_papers_model_is_left_out_where_it_does_not_hold() -> Non
     # No law stands for an amplitude that is none.
     broken = numbers._paper(SimpleNamespace(law=law), np.array([-1e-6, 1e-6]))  # type: ignore[arg-type]
     assert np.all(np.isnan(broken))
-    assert numbers._listed(np.array([1.0, np.nan, np.inf])) == [1.0, None, None]
 
 
 def test_a_solved_plate_is_told_of_while_it_is_solved(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -197,18 +197,25 @@ def test_a_solved_plate_is_told_of_while_it_is_solved(monkeypatch: pytest.Monkey
         progress("sweeping", 0.5)
 
     told: list[Any] = []
+    asked: list[Any] = []
+
+    def beam(display: Any, quality: str, point: WorkingPoint) -> Any:
+        asked.append((display, quality, point))
+        return predicted(display, "screening", point)
+
     monkeypatch.setattr(numbers, "solid_mode", solid)
     monkeypatch.setattr(numbers, "tell", lambda *said: told.append(said))
-    monkeypatch.setattr(numbers, "design", lambda *given: {"given": given})
-    point = WorkingPoint(GLASS, "10 V", "glass", "1 N", "drive.voltage", "99 V")
+    monkeypatch.setattr(numbers, "predicted", beam)
+    point = WorkingPoint(GLASS, "10 V", path="drive.voltage", value="99 V")
     text = edited(GLASS, "drive.voltage", "99 V")
-    given = {"text": text, "given": (text, "solved", "10 V", "glass", "1 N")}
-    assert numbers.designed(point, "solved") == given
+    found = designed(point, "solved")
+    assert (found["text"], found["quality"], found["voltage_V"]) == (text, "solved", 10.0)
+    assert asked == [(display_of(text), "solved", point)]
     assert solved == [display_of(text).actuator]
     assert told == [("sweeping", 0.5)]
     # Neither a beam nor what is no plate is solved ahead.
-    numbers.designed(point, "screening")
-    numbers.designed(WorkingPoint(STATOR), "solved")
+    designed(point, "screening")
+    designed(WorkingPoint(STATOR), "solved")
     assert len(solved) == 1
 
 
@@ -218,20 +225,17 @@ def test_a_band_lies_on_every_third_amplitude_of_the_curve(monkeypatch: pytest.M
     def banded(display: Any, p: Any, amplitude: Any, *, samples: int, progress: Any) -> Any:
         asked.append((display, p.voltage, samples))
         low = np.where(amplitude > 0, 0.3, np.nan)
-        return SimpleNamespace(
-            amplitude=amplitude, low=low, high=low + 0.2, level=0.9, samples=samples - 1
-        )
+        return FrictionBand(amplitude, low, low + 0.2, level=0.9, samples=samples - 1)
 
     monkeypatch.setattr(numbers, "friction_band", banded)
-    found = numbers.band(STATOR, "screening", "100 V", None, None)
+    point = WorkingPoint(STATOR, "100 V")
+    found = numbers.banded(point, "screening")
     assert asked == [(display_of(STATOR), 100.0, 64)]
-    curve = design(STATOR, "screening", "100 V", None, None)["friction_curve"]
+    curve = designed(point, "screening")["friction_curve"]
     assert found["amplitude_m"] == curve["amplitude_m"][::3]
     assert found["low"] == [None] + [0.3] * 16
     assert found["high"] == [None] + [0.5] * 16
     assert (found["level"], found["samples"]) == (0.9, 63)
     point = WorkingPoint(STATOR, "100 V", path="finger.contact_length", value="8 mm")
-    monkeypatch.setattr(numbers, "band", lambda *given: {"given": given})
-    assert numbers.banded(point, "screening")["given"] == (
-        point.edited(), "screening", "100 V", None, None,
-    )  # fmt: skip
+    numbers.banded(point, "screening")
+    assert asked[1:] == [(display_of(point.edited()), 100.0, 64)]

@@ -9,11 +9,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.pictures import picture_bytes
 
 from squeezefilm import load_display
 from squeezefilm.chain.prediction import predict
 from squeezefilm.errors import InputError, SqueezefilmError
-from squeezefilm.formats.pictures import picture_bytes
 from squeezefilm.lab.designing import program
 from squeezefilm.lab.designing.form import edited, preset_text
 from squeezefilm.lab.designing.program import feel, parity, pixels_of, title_of

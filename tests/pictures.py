@@ -1,0 +1,18 @@
+"""Pictures for tests: what the package only reads."""
+
+from __future__ import annotations
+
+import io
+
+import numpy as np
+from PIL import Image
+
+from squeezefilm.quantities import DimensionlessArray
+
+
+def picture_bytes(values: DimensionlessArray, bits: int = 8) -> bytes:
+    """The greyscale PNG of values from 0 to 1, the top row first, in 8 or 16 bits."""
+    grey = np.rint(values * (2**bits - 1)).astype(np.uint8 if bits == 8 else np.uint16)
+    stream = io.BytesIO()
+    Image.fromarray(grey).save(stream, format="PNG")
+    return stream.getvalue()
