@@ -92,7 +92,7 @@ class Stub:
             self.bodies.append(f'    """{str(inspect.getdoc(found)).splitlines()[0]}"""')
             self.bodies.append(f"    def __init__(self, {', '.join(said)}) -> None: ...")
         else:
-            back = self._plain(inspect.unwrap(found).__annotations__["return"], module)
+            back = self._plain(found.__annotations__["return"], module)
             self.bodies.append(f"def {name}({', '.join(said)}) -> {back}:")
             self.bodies.append(f'    """{str(inspect.getdoc(found)).splitlines()[0]}"""')
 
@@ -100,7 +100,7 @@ class Stub:
         called = found.__init__ if inspect.isclass(found) else found
         if not hasattr(called, "__wrapped__"):
             return {}  # it reads no text
-        hints = typing.get_type_hints(inspect.unwrap(found), vars(module), include_extras=True)
+        hints = typing.get_type_hints(found, vars(module), include_extras=True)
         given = inspect.signature(found).parameters
         return {name: (one, text_of(hints.get(name))) for name, one in given.items()}
 

@@ -149,10 +149,9 @@ def _hints(name: str) -> tuple[Any, dict[str, Any]]:
     """What is called, and the annotations of its parameters."""
     found = getattr(sf, name)
     called = found.__init__ if inspect.isclass(found) else found
-    annotated = found if inspect.isclass(found) else inspect.unwrap(found)
     module = importlib.import_module(f"squeezefilm.{sf._NAMES[name]}")
     given = inspect.signature(called).parameters
-    hints = typing.get_type_hints(annotated, vars(module), include_extras=True)
+    hints = typing.get_type_hints(found, vars(module), include_extras=True)
     return called, {key: hint for key, hint in hints.items() if key in given}
 
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.bench.played_session import PlayedSession, judge_session
-from squeezefilm.bench.setup import PlaySetup, play_setup
+from squeezefilm.bench.setup import KnownDevice, PlaySetup, play_setup
 from squeezefilm.display import Display, load_display
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ, TOUCH_PANEL_240_HZ, SensorModel
 from squeezefilm.session.play import simulated as bench
@@ -39,14 +39,12 @@ def settings(sensor: SensorModel = LVDT_10_KHZ) -> TwinSettings:
     return TwinSettings(sensor=sensor, pickup=PickupModel(kind="sensing_patch"))
 
 
-def prepared(display: Display, texture: str = "biet2008-square-4mm", **how: object) -> PlaySetup:
-    per_volt = 1 / settings().pickup.sensitivity
-    return play_setup(
-        display,
-        load_texture(texture),
-        amplitude_per_pickup=per_volt,
-        **how,  # type: ignore[arg-type]
+def prepared(display: Display, mode: str = "stream", **known: object) -> PlaySetup:
+    device = KnownDevice(
+        amplitude_per_pickup=1 / settings().pickup.sensitivity,
+        **known,  # type: ignore[arg-type]
     )
+    return play_setup(display, load_texture("biet2008-square-4mm"), device=device, mode=mode)
 
 
 def played(

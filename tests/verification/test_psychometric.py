@@ -19,7 +19,7 @@ from squeezefilm.study.psychometric.function import (
     Shape,
     on_axis,
 )
-from squeezefilm.study.psychometric.posterior import grid_posterior
+from squeezefilm.study.psychometric.posterior import Answered, grid_posterior
 from squeezefilm.study.psychometric.prior import PsychometricPrior
 
 LEVELS = np.arange(1.0, 9.0)
@@ -166,17 +166,8 @@ def test_the_grid_is_fine_enough(guess_rate: float | None) -> None:
     f = fit.function
     mode = np.array([f.threshold, math.log(f.width), f.lapse_rate, f.guess_rate])
     coarse = fit.posterior
-    fine = grid_posterior(
-        kernel.LOGISTIC,
-        "linear",
-        fit.prior,
-        guess_rate,
-        LEVELS,
-        CORRECT,
-        TRIALS,
-        mode,
-        cells=(96, 64, 28, 28),
-    )
+    answered = Answered(kernel.LOGISTIC, "linear", fit.prior, guess_rate, LEVELS, CORRECT, TRIALS)
+    fine = grid_posterior(answered, mode, cells=(96, 64, 28, 28))
     names = ("threshold", "width", "lapse_rate", "guess_rate")
     for name in names[: 3 if guess_rate is not None else 4]:
         width = np.diff(fine.interval(name))[0]

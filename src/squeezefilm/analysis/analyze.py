@@ -169,6 +169,13 @@ def analyze(
         model=model,
         strict=strict,
     )
+    return _what_follows(display, prediction, samples, tell)
+
+
+def _what_follows(
+    display: Display, prediction: Prediction, samples: int, tell: SayProgress
+) -> Analysis:
+    """All that an analysis says, from a prediction."""
     mode = prediction.mode
     tau = prediction.envelope_time_constant
     tell("frequency response")
@@ -180,9 +187,9 @@ def analyze(
     if prediction.model not in models:
         models = (*models, prediction.model)
     curves = tuple(
-        friction_curve(display, prediction, surface_, model_)
-        for model_ in models
-        for surface_ in display.surfaces
+        friction_curve(display, prediction, surface, model)
+        for model in models
+        for surface in display.surfaces
     )
     tell("friction by every model, and how sure it is")
     by_model = model_curves(display, prediction)

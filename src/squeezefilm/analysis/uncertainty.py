@@ -129,26 +129,12 @@ def uncertain_friction(
         raise InputError(
             f"samples = {samples} cannot be used: take a power of two from 8 to 65536, like 128"
         )
-    from SALib.analyze import sobol
-    from SALib.sample import sobol as design
-
     driven = prediction.voltage is not None
     parameters = uncertain_parameters(display, prediction.surface.name, driven=driven)
-    count = len(parameters)
-    problem = {
-        "num_vars": count,
-        "names": [item.path for item in parameters],
-        "bounds": [[0.0, 1.0]] * count,
-    }
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        unit = design.sample(problem, samples, calc_second_order=False, seed=seed)
-    values = np.column_stack(
-        [item.distribution.quantile(unit[:, k]) for k, item in enumerate(parameters)]
-    )
+    values = _quantiles(parameters, _saltelli_points(parameters, samples, seed))
     tell = progress or (lambda _: None)
     friction, amplitude = _evaluate(display, prediction, parameters, values, tell)
-    blocks = friction.reshape(samples, count + 2)
+    blocks = friction.reshape(samples, len(parameters) + 2)
     whole = np.isfinite(blocks).all(axis=1)
     failed = int(np.count_nonzero(~np.isfinite(friction)))
     if failed > _MOST_FAILED * friction.size:
@@ -158,25 +144,10 @@ def uncertain_friction(
             "less"
         )
     kept = blocks[whole]
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        indices = sobol.analyze(
-            problem, kept.ravel(), calc_second_order=False, seed=seed, print_to_console=False
-        )
     independent = np.concatenate([kept[:, 0], kept[:, -1]])
-    amplitudes = amplitude.reshape(samples, count + 2)[whole]
+    amplitudes = amplitude.reshape(blocks.shape)[whole]
     tails = (1 - LEVEL) / 2
     low, middle, high = np.quantile(independent, [tails, 0.5, 1 - tails])
-    influences = [
-        Influence(
-            item,
-            float(indices["S1"][k]),
-            float(indices["S1_conf"][k]),
-            float(indices["ST"][k]),
-            float(indices["ST_conf"][k]),
-        )
-        for k, item in enumerate(parameters)
-    ]
     return UncertainFriction(
         nominal=_nominal(prediction),
         median=float(middle),
@@ -184,12 +155,61 @@ def uncertain_friction(
         level=LEVEL,
         samples=independent,
         amplitudes=np.concatenate([amplitudes[:, 0], amplitudes[:, -1]]),
-        influences=tuple(sorted(influences, key=lambda item: -item.total)),
+        influences=_influences(parameters, kept, seed),
         failed=failed,
         evaluations=friction.size,
         seed=seed,
         model="partial levitation between its two limits; Sobol' indices by SALib",
     )
+
+
+def _problem(parameters: tuple[Parameter, ...]) -> dict[str, Any]:
+    """The parameters as SALib takes them: each by its share of probability."""
+    return {
+        "num_vars": len(parameters),
+        "names": [item.path for item in parameters],
+        "bounds": [[0.0, 1.0]] * len(parameters),
+    }
+
+
+def _saltelli_points(parameters: tuple[Parameter, ...], samples: int, seed: int) -> FloatArray:
+    """The design's points in the unit cube, shape (samples · (parameters + 2), parameters)."""
+    from SALib.sample import sobol
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        points = sobol.sample(_problem(parameters), samples, calc_second_order=False, seed=seed)
+    return np.asarray(points)
+
+
+def _quantiles(parameters: tuple[Parameter, ...], points: FloatArray) -> FloatArray:
+    """The parameters' values at points of the unit cube; a column for each."""
+    return np.column_stack(
+        [item.distribution.quantile(points[:, k]) for k, item in enumerate(parameters)]
+    )
+
+
+def _influences(
+    parameters: tuple[Parameter, ...], friction: DimensionlessArray, seed: int
+) -> tuple[Influence, ...]:
+    """What each parameter explains of the design's frictions, shape (samples, parameters + 2); the
+    most important first."""
+    from SALib.analyze import sobol
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        indices = sobol.analyze(
+            _problem(parameters),
+            friction.ravel(),
+            calc_second_order=False,
+            seed=seed,
+            print_to_console=False,
+        )
+    found = [
+        Influence(item, *(float(indices[key][k]) for key in ("S1", "S1_conf", "ST", "ST_conf")))
+        for k, item in enumerate(parameters)
+    ]
+    return tuple(sorted(found, key=lambda item: -item.total))
 
 
 @dataclass(frozen=True, eq=False)
@@ -226,10 +246,7 @@ def friction_band(
     from scipy.stats import qmc
 
     parameters = uncertain_parameters(display, prediction.surface.name, driven=False)
-    points = qmc.Sobol(len(parameters), rng=seed).random(samples)
-    values = np.column_stack(
-        [item.distribution.quantile(points[:, k]) for k, item in enumerate(parameters)]
-    )
+    values = _quantiles(parameters, qmc.Sobol(len(parameters), rng=seed).random(samples))
     rows = np.full((samples, amplitude.size), np.nan)
     for number, (changes, share) in enumerate(_changes(parameters, values)):
         if progress is not None:

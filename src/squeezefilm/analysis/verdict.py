@@ -39,33 +39,8 @@ def verdict(
 ) -> tuple[Finding, ...]:
     """What an analysis amounts to, in sentences."""
     p = prediction
-    found: list[Finding] = []
-    reduction = 1 - p.relative_friction
     amplitude = f"{p.vibration_amplitude * 1e6:.3g} µm"
-    here = next(c for c in curves if c.surface == p.surface.name and c.model == p.model)
-    by = "By the paper's model" if p.model.startswith("paper") else f"By the model '{p.model}'"
-    needed = here.amplitude_for_criterion
-    if p.relative_friction <= PAPER_CRITERION:
-        found.append(
-            Finding(
-                "good",
-                f"{by} {amplitude} lower the friction to "
-                f"{100 * p.relative_friction:.3g} % of what it is without vibration, below the "
-                f"70 % that the paper asks for.",
-            )
-        )
-    else:
-        ask = (
-            "which no amplitude reaches" if needed is None else f"which {needed * 1e6:.3g} µm reach"
-        )
-        found.append(
-            Finding(
-                "limit" if reduction >= NOTICED_DIFFERENCE else "doubt",
-                f"{by} {amplitude} lower the friction to "
-                f"{100 * p.relative_friction:.3g} % of what it is without vibration; the paper "
-                f"asks for 70 %, {ask}.",
-            )
-        )
+    found = [_of_friction(p, amplitude, curves)]
     if p.vibration_amplitude > PLAUSIBLE_AMPLITUDE:
         found.append(
             Finding(
@@ -75,23 +50,7 @@ def verdict(
             )
         )
     if table is not None:
-        fastest = table.fastest_speed
-        worst = int(np.argmin(fastest))
-        kept = [
-            f"{1e3 * period:g}"
-            for period, survives in zip(
-                table.spatial_periods, table.amplitude_survives[:, -1], strict=True
-            )
-            if survives
-        ]
-        found.append(
-            Finding(
-                "good" if kept else "limit",
-                f"Square gratings of {', '.join(kept) or 'no listed'} mm keep 90 % of their swing "
-                f"up to {1e3 * table.speeds[-1]:g} mm/s; {1e3 * table.spatial_periods[worst]:g} mm "
-                f"up to {1e3 * fastest[worst]:.0f} mm/s.",
-            )
-        )
+        found.append(_of_gratings(table))
     if p.model.startswith("paper"):
         found.extend(Finding("doubt", check.sentence) for check in p.validity.failed)
     if films is not None:
@@ -113,6 +72,41 @@ def verdict(
         )
     )
     return tuple(found)
+
+
+def _of_friction(p: Prediction, amplitude: str, curves: tuple[FrictionCurve, ...]) -> Finding:
+    """How far the friction falls, against the paper's criterion."""
+    here = next(c for c in curves if c.surface == p.surface.name and c.model == p.model)
+    by = "By the paper's model" if p.model.startswith("paper") else f"By the model '{p.model}'"
+    lowered = (
+        f"{by} {amplitude} lower the friction to {100 * p.relative_friction:.3g} % of what it is "
+        "without vibration"
+    )
+    if p.relative_friction <= PAPER_CRITERION:
+        return Finding("good", f"{lowered}, below the 70 % that the paper asks for.")
+    needed = here.amplitude_for_criterion
+    ask = "which no amplitude reaches" if needed is None else f"which {needed * 1e6:.3g} µm reach"
+    noticed = 1 - p.relative_friction >= NOTICED_DIFFERENCE
+    return Finding("limit" if noticed else "doubt", f"{lowered}; the paper asks for 70 %, {ask}.")
+
+
+def _of_gratings(table: FidelityTable) -> Finding:
+    """Which square gratings survive, and how fast the finger may be on the worst."""
+    fastest = table.fastest_speed
+    worst = int(np.argmin(fastest))
+    kept = [
+        f"{1e3 * period:g}"
+        for period, survives in zip(
+            table.spatial_periods, table.amplitude_survives[:, -1], strict=True
+        )
+        if survives
+    ]
+    return Finding(
+        "good" if kept else "limit",
+        f"Square gratings of {', '.join(kept) or 'no listed'} mm keep 90 % of their swing "
+        f"up to {1e3 * table.speeds[-1]:g} mm/s; {1e3 * table.spatial_periods[worst]:g} mm "
+        f"up to {1e3 * fastest[worst]:.0f} mm/s.",
+    )
 
 
 def _of_films(p: Prediction, films: FilmComparison) -> list[Finding]:

@@ -9,28 +9,38 @@ import contextlib
 import tempfile
 import time
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 from pathlib import Path
 from typing import Any, ClassVar
 
 import numpy as np
 
+from squeezefilm.arguments import called_with
 from squeezefilm.bench.check import DeviceCheck, check_device
 from squeezefilm.bench.conversation import Conversation
 from squeezefilm.bench.loop_check import check_loop
 from squeezefilm.bench.played_session import PlayedSession, judge_session
-from squeezefilm.bench.setup import play_setup
+from squeezefilm.bench.setup import KnownDevice, PlaySetup, play_setup
 from squeezefilm.chain.played_texture import FingerMotion, require_on_display
 from squeezefilm.chain.prediction import predict
 from squeezefilm.config.write import text_of
 from squeezefilm.device.replay import ReplaySensor
 from squeezefilm.device.wire.streams import open_stream
-from squeezefilm.display import load_display
+from squeezefilm.display import Display, load_display
 from squeezefilm.errors import InputError
 from squeezefilm.formats.trajectories import motion_from, read_trajectory
 from squeezefilm.from_text import reads_text
 from squeezefilm.progress import SayProgress
-from squeezefilm.quantities import FloatArray, Hertz, MetrePerVolt, Second, Unit, Volt, require
+from squeezefilm.quantities import (
+    FloatArray,
+    Hertz,
+    Metre,
+    MetrePerVolt,
+    Second,
+    Unit,
+    Volt,
+    require,
+)
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ, SensorModel, sensor_named
 from squeezefilm.results import Result, stamp
 from squeezefilm.session.play.plan import PlayView
@@ -46,7 +56,7 @@ JUDGING = "the record"
 """The step told of after playing; until then nothing of it can be shown."""
 STROKE = "60 mm/s over 4 cm"
 DURATION: Second = 4.0
-_MARGIN = 2e-3
+_MARGIN: Metre = 2e-3
 _REPLAY_PERIOD: Second = 1e-3
 
 
@@ -71,28 +81,34 @@ class PlayResult(Result):
         }
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class PlayRequest:
+    """What `play_texture` is asked for."""
+
+    target: str | Path
+    texture: NamedTexture
+    _: KW_ONLY
+    drive: str = "twin"
+    sensor: str = "device"
+    mode: str = "stream"
+    stroke: str = STROKE
+    duration: Second = DURATION
+    rate: Hertz = 5e3
+    voltage: Volt | None = None
+    surface: str | None = None
+    compensation: str = "none"
+    amplitude_per_pickup: MetrePerVolt | None = None
+    bench_only: bool = False
+    out: str | Path | None = None
+    seed: int = 0
+    show: Callable[[PlayView], None] | None = None
+    tap: Callable[[FloatArray], None] | None = None
+    progress: SayProgress | None = None
+
+
 @reads_text
-def play_texture(
-    target: str | Path,
-    texture: NamedTexture,
-    *,
-    drive: str = "twin",
-    sensor: str = "device",
-    mode: str = "stream",
-    stroke: str = STROKE,
-    duration: Second = DURATION,
-    rate: Hertz = 5e3,
-    voltage: Volt | None = None,
-    surface: str | None = None,
-    compensation: str = "none",
-    amplitude_per_pickup: MetrePerVolt | None = None,
-    bench_only: bool = False,
-    out: str | Path | None = None,
-    seed: int = 0,
-    show: Callable[[PlayView], None] | None = None,
-    tap: Callable[[FloatArray], None] | None = None,
-    progress: SayProgress | None = None,
-) -> PlayResult:
+@called_with(PlayRequest)
+def play_texture(asked: PlayRequest) -> PlayResult:
     """Play a texture on a device or on a twin of the display, in real time, and judge the record.
 
     Args:
@@ -120,20 +136,16 @@ def play_texture(
         InputError: what cannot be played, or not safely.
         DeviceError, LoopError, RecordError: what failed before anything was played.
     """
-    tell = progress or (lambda _: None)
-    texture = TextureFile.of(texture)
-    require("duration", duration, Unit("s"), above=0.0, at_most=86_400.0)
-    display = load_display(target)
-    eyes = _eyes(sensor)
-    settings = TwinSettings(seed=seed, sensor=eyes, pickup=PickupModel(kind="sensing_patch"))
-    way = None
-    if drive == "twin":
-        finger = FingerMotion.of(motion_from(stroke), 1e3)
-        require_on_display(display.actuator, finger)
-        # The arm swings a little beyond where it turns.
-        way = (float(np.min(finger.x)) - _MARGIN, float(np.max(finger.x)) + _MARGIN)
-        amplitude_per_pickup = 1 / settings.pickup.sensitivity
-    kept = None if out is None else Path(out)
+    tell = asked.progress or (lambda _: None)
+    texture = TextureFile.of(asked.texture)
+    require("duration", asked.duration, Unit("s"), above=0.0, at_most=86_400.0)
+    display = load_display(asked.target)
+    eyes, pickup = _eyes(asked.sensor), PickupModel(kind="sensing_patch")
+    settings = TwinSettings(seed=asked.seed, sensor=eyes, pickup=pickup)
+    device = KnownDevice(eyes, asked.amplitude_per_pickup)
+    if asked.drive == "twin":
+        device = KnownDevice(eyes, 1 / pickup.sensitivity, _way(display, asked.stroke), twin=True)
+    kept = None if asked.out is None else Path(asked.out)
     if kept is not None and (kept / TRACE_NAME).exists():
         raise InputError(
             f"{kept / TRACE_NAME} exists; a record is never written over: give another folder"
@@ -142,46 +154,60 @@ def play_texture(
     setup = play_setup(
         display,
         texture,
-        sensor=eyes,
-        voltage=voltage,
-        surface=surface,
-        rate=rate,
-        compensation=compensation,
-        mode=mode,
-        way=way,
-        amplitude_per_pickup=amplitude_per_pickup,
-        twin=drive == "twin",
+        device=device,
+        voltage=asked.voltage,
+        surface=asked.surface,
+        rate=asked.rate,
+        compensation=asked.compensation,
+        mode=asked.mode,
     )
-    metadata = {
-        **stamp((display, texture, stroke, mode, rate, compensation, sensor), seed),
-        "texture": setup.name,
-        "display": display.name,
-        "drive": drive,
-        "sensor": sensor,
-        "stroke": stroke if drive == "twin" else None,
-        "mode": mode,
-        "assumed_limits": list(setup.assumed_limits),
-    }
     with _folder(kept) as folder:
-        truth = folder / TRUTH_NAME if drive == "twin" else None
-        if drive == "twin":
-            tell("the twin, a process of its own")
-        with device_stream(drive, target, settings, stroke, truth) as stream:
-            tell("playing; Ctrl-C stops safely")
-            outcome = run_play(
-                setup.plan,
-                stream,
-                folder / TRACE_NAME,
-                metadata,
-                duration=duration,
-                sensor=_replay(sensor),
-                show=show,
-                tap=tap,
-                bench_only=bench_only,
-            )
+        truth = folder / TRUTH_NAME if device.twin else None
+        outcome = _played(asked, setup, settings, folder / TRACE_NAME, truth)
         tell(JUDGING)
         judged = judge_session(setup, read_trace(outcome.trace), truth)
     return PlayResult(outcome, judged, kept)
+
+
+def _way(display: Display, stroke: str) -> tuple[Metre, Metre]:
+    """From where to where (m) a twin's finger goes; it must stay on the display."""
+    finger = FingerMotion.of(motion_from(stroke), 1e3)
+    require_on_display(display.actuator, finger)
+    # The arm swings a little beyond where it turns.
+    return float(np.min(finger.x)) - _MARGIN, float(np.max(finger.x)) + _MARGIN
+
+
+def _played(
+    asked: PlayRequest, setup: PlaySetup, settings: TwinSettings, trace: Path, truth: Path | None
+) -> PlayOutcome:
+    """Play on the drive and record it; a twin's process, with its `truth`, lives as long."""
+    tell = asked.progress or (lambda _: None)
+    config = (setup.display, setup.texture, asked.stroke, asked.mode, asked.rate)
+    metadata = {
+        **stamp((*config, asked.compensation, asked.sensor), asked.seed),
+        "texture": setup.name,
+        "display": setup.display.name,
+        "drive": asked.drive,
+        "sensor": asked.sensor,
+        "stroke": None if truth is None else asked.stroke,
+        "mode": asked.mode,
+        "assumed_limits": list(setup.assumed_limits),
+    }
+    if truth is not None:
+        tell("the twin, a process of its own")
+    with device_stream(asked.drive, asked.target, settings, asked.stroke, truth) as stream:
+        tell("playing; Ctrl-C stops safely")
+        return run_play(
+            setup.plan,
+            stream,
+            trace,
+            metadata,
+            duration=asked.duration,
+            sensor=_replay(asked.sensor),
+            show=asked.show,
+            tap=asked.tap,
+            bench_only=asked.bench_only,
+        )
 
 
 def check_drive(

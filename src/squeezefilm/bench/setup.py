@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from squeezefilm.chain.friction import FrictionModel
 from squeezefilm.chain.prediction import Prediction, predict
 from squeezefilm.device.wire.messages import LONGEST_TILE
 from squeezefilm.display import Display
@@ -18,19 +17,18 @@ from squeezefilm.quantities import (
     Metre,
     MetreArray,
     MetrePerVolt,
-    Newton,
     Second,
     Volt,
 )
 from squeezefilm.render.motion.estimator import MotionEstimator
-from squeezefilm.render.motion.sensor import SensorModel, sensor_named
+from squeezefilm.render.motion.sensor import LVDT_10_KHZ, SensorModel
 from squeezefilm.render.program.inverse import FrictionInverse
-from squeezefilm.render.program.lowering import lower
+from squeezefilm.render.program.lowering import Program, lower
 from squeezefilm.render.resonator.compensation import DrivenEnvelope
 from squeezefilm.render.resonator.envelope import envelope_time_constant
 from squeezefilm.session.loop.plan import DriveTable, FrictionTable, LoopPlan
 from squeezefilm.session.loop.tick import make_tick
-from squeezefilm.session.play.plan import REPORT_PERIOD, PlayPlan
+from squeezefilm.session.play.plan import PlayPlan
 from squeezefilm.session.play.tile import TextureTile, tile_of
 from squeezefilm.texture_file import TextureFile
 
@@ -39,6 +37,26 @@ OUTPUT_DELAY: Second = 6e-3
 its jitter may be (assumed; commands that come later than this are counted, and not played)."""
 _FINEST_PITCH: Metre = 1e-6
 _LONGEST_TILE_WAY: Metre = 0.1
+
+
+@dataclass(frozen=True)
+class KnownDevice:
+    """What is known of the device that plays.
+
+    Attributes:
+        sensor: what the finger is seen with.
+        amplitude_per_pickup: of its pickup (m/V), if known.
+        way: x that a tile covers (m), from and to; 0 to 10 cm, or what 512 amplitudes span.
+        twin: whether it is a twin, where an assumed insulation counts.
+    """
+
+    sensor: SensorModel = LVDT_10_KHZ
+    amplitude_per_pickup: MetrePerVolt | None = None
+    way: tuple[Metre, Metre] | None = None
+    twin: bool = False
+
+
+_NOTHING_KNOWN = KnownDevice()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -76,81 +94,74 @@ def play_setup(
     display: Display,
     texture: TextureFile,
     *,
-    sensor: str | SensorModel = "LVDT 10 kHz",
+    device: KnownDevice = _NOTHING_KNOWN,
     voltage: Volt | None = None,
-    normal_force: Newton | None = None,
     surface: str | None = None,
-    model: FrictionModel | None = None,
     rate: Hertz = 5e3,
     compensation: str = "none",
     mode: str = "stream",
-    way: tuple[Metre, Metre] | None = None,
-    amplitude_per_pickup: MetrePerVolt | None = None,
-    output_delay: Second = OUTPUT_DELAY,
-    twin: bool = False,
 ) -> PlaySetup:
     """The plan for a texture on a display.
 
     Args:
         display: what plays; its drive's limits are the device's.
         texture: what is to be felt.
-        sensor: what the finger is seen with, a name or a model.
+        device: what is known of it.
         voltage: the most to use (V), less than the drive's own.
-        normal_force, surface, model: as `predict`.
+        surface: of the display.
         rate: of the loop (Hz).
         compensation: "none" or "inverse".
         mode: "stream" or "tile".
-        way: x that a tile covers (m), from and to; 0 to 10 cm, or what 512 amplitudes span.
-        amplitude_per_pickup: of the device's pickup (m/V), if known.
-        output_delay: from a tick to its command at the plate (s).
-        twin: whether it is for a twin, where an assumed insulation counts.
 
     Raises:
-        InputError: a display that does not vibrate, limits that do not fit, an unknown sensor,
+        InputError: a display that does not vibrate, limits that do not fit, an unknown
             compensation or mode, or a texture that no tile can hold.
     """
-    eyes = sensor if isinstance(sensor, SensorModel) else sensor_named(sensor)
-    p = predict(display, voltage=voltage, normal_force=normal_force, surface=surface, model=model)
+    p = predict(display, voltage=voltage, surface=surface)
     largest = p.vibration_amplitude
     if p.voltage is None or largest <= 0.0 or p.relative_friction >= 1.0:
         raise InputError(
             f"display '{display.name}' changes no friction at {p.voltage or 0.0:g} V, so it "
             "plays no texture; give it a voltage"
         )
-    limits = display.limits(p.frequency, p.voltage, twin=twin)
-    inverse = p.inverse
-    quantity = texture.texture.quantity
-    program = lower(
-        texture.texture,
-        largest_amplitude=largest,
-        inverse=None if quantity == "amplitude" else inverse,
-        friction_coefficient=p.friction_coefficient if quantity == "friction_reduction" else None,
-    )
+    limits = display.limits(p.frequency, p.voltage, twin=device.twin)
     loaded = p.touch.mode or p.mode
     tau = float(envelope_time_constant(loaded.quality_factor, loaded.resonance_frequency))
     loop = LoopPlan(
-        program=program,
+        program=_program(texture, p),
         rate=rate,
         envelope=DrivenEnvelope(tau, tau, largest),
         drive=DriveTable.linear(largest / p.voltage, p.voltage),
-        estimator=MotionEstimator.for_sensor(eyes),
+        estimator=MotionEstimator.for_sensor(device.sensor),
         compensation=compensation,  # type: ignore[arg-type] # checked with a message by LoopPlan
-        relative_friction=FrictionTable(inverse.amplitude, inverse.relative_friction),
-        output_delay=output_delay,
+        relative_friction=FrictionTable(p.inverse.amplitude, p.inverse.relative_friction),
+        output_delay=OUTPUT_DELAY,
     )
     announce(make_tick, "real-time loop", 20)
     plan = PlayPlan(
         loop=loop,
         limits=limits,
         frequency=p.frequency,
-        twin=twin,
+        twin=device.twin,
         mode=mode,  # type: ignore[arg-type] # checked with a message by PlayPlan
-        tile=_tile(loop, way) if mode == "tile" else None,
-        report_period=max(REPORT_PERIOD, 200e-6),
-        sensor_latency=eyes.latency,
-        amplitude_per_pickup=amplitude_per_pickup,
+        tile=_tile(loop, device.way) if mode == "tile" else None,
+        sensor_latency=device.sensor.latency,
+        amplitude_per_pickup=device.amplitude_per_pickup,
     )
-    return PlaySetup(display, texture, p, inverse, eyes, plan, display.drive.assumed_limits)
+    assumed = display.drive.assumed_limits
+    return PlaySetup(display, texture, p, p.inverse, device.sensor, plan, assumed)
+
+
+def _program(texture: TextureFile, prediction: Prediction) -> Program:
+    """The texture for the loop, up to the amplitude of a prediction."""
+    inverse, quantity = prediction.inverse, texture.texture.quantity
+    reduces = quantity == "friction_reduction"
+    return lower(
+        texture.texture,
+        largest_amplitude=prediction.vibration_amplitude,
+        inverse=None if quantity == "amplitude" else inverse,
+        friction_coefficient=prediction.friction_coefficient if reduces else None,
+    )
 
 
 def _tile(loop: LoopPlan, way: tuple[Metre, Metre] | None) -> TextureTile:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -11,6 +13,7 @@ from squeezefilm import __version__
 from squeezefilm.errors import InputError
 
 if TYPE_CHECKING:
+    from squeezefilm.progress import SayProgress
     from squeezefilm.quantities import Unit
 
 app = typer.Typer(
@@ -28,6 +31,16 @@ Target = Annotated[
 AsJson = Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")]
 Strict = Annotated[
     bool, typer.Option("--strict", help="Refuse contradicting data and models out of range.")
+]
+
+# A texture on a display, and the device that plays it.
+Texture = Annotated[
+    str, typer.Argument(metavar="TEXTURE|FILE", help="A preset texture or a TOML file.")
+]
+OnDisplay = Annotated[str, typer.Option(help="A display: a preset's name or a TOML file.")]
+LargestVoltage = Annotated[str | None, typer.Option(help='Largest voltage amplitude, like "15 V".')]
+Pickup = Annotated[
+    str | None, typer.Option(help='Amplitude per signal of the device\'s pickup: "2 um/V".')
 ]
 
 # A working point is asked for in the same words by every verb.
@@ -88,6 +101,13 @@ def quantity(text: str | None, option: str, unit: Unit) -> float | None:
         return parse_quantity(text, unit)
     except InputError as error:
         raise InputError(f"{option}: {error}") from error
+
+
+def working(quiet: bool) -> AbstractContextManager[SayProgress]:
+    """Where a verb tells its steps: at a terminal always, elsewhere unless it is to be quiet."""
+    from squeezefilm.report.kit import terminal
+
+    return terminal.progress(enabled=sys.stderr.isatty() or not quiet)
 
 
 def print_json(value: Any) -> None:

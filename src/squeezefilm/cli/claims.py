@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from squeezefilm.cli.app import AsJson, app, print_json, reachable
+from squeezefilm.cli.app import AsJson, app, print_json, reachable, working
 
 
 @app.command()
@@ -32,7 +31,7 @@ def reproduce(
     if write_docs:
         # Minutes of work lie before the writing.
         checkout()
-    with terminal.progress(enabled=sys.stderr.isatty() or not as_json) as step:
+    with working(as_json) as step:
         result = run(prototype=out is not None or write_docs, progress=step)
         if out is not None:
             written = write_reproduction(result, out, progress=step)

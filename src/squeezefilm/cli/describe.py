@@ -1,13 +1,12 @@
 """Verbs about a display: what there is, what it says, and what follows from it."""
 
-from __future__ import annotations
-
-import sys
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from squeezefilm.arguments import called_with
 from squeezefilm.cli.app import (
     AsJson,
     Force,
@@ -21,6 +20,7 @@ from squeezefilm.cli.app import (
     print_json,
     quantity,
     reachable,
+    working,
 )
 
 
@@ -61,62 +61,68 @@ def new(
     typer.echo(f"wrote {file}; edit it, then: squeezefilm analyze {file}")
 
 
-@app.command()
-def analyze(
-    target: Target,
+@dataclass(frozen=True)
+class AnalyzeOptions:
+    """What `analyze` is asked for."""
+
+    target: Target
     out: Annotated[
         Path | None,
         typer.Option(callback=reachable, help="Write result.json and report.html to this folder."),
-    ] = None,
-    as_json: AsJson = False,
-    voltage: Voltage = None,
-    frequency: Frequency = None,
+    ] = None
+    as_json: AsJson = False
+    voltage: Voltage = None
+    frequency: Frequency = None
     amplitude: Annotated[
         str | None,
         typer.Option(help='Vibration amplitude, like "2 um", in place of voltage and plate.'),
-    ] = None,
-    force: Force = None,
-    surface: OnSurface = None,
-    model: Model = None,
+    ] = None
+    force: Force = None
+    surface: OnSurface = None
+    model: Model = None
     samples: Annotated[
         int, typer.Option(help="Base samples of the friction's interval, a power of two; 0: none.")
-    ] = 32,
+    ] = 32
     theory: Annotated[
         str | None,
         typer.Option(
             help="How a plate is computed: solid (three-dimensional piezoelectric elements, the "
             "default), timoshenko or euler_bernoulli (beams)."
         ),
-    ] = None,
-    strict: Strict = False,
-) -> None:
+    ] = None
+    strict: Strict = False
+
+
+@app.command()
+@called_with(AnalyzeOptions)
+def analyze(asked: AnalyzeOptions) -> None:
     """From the display's description to resonance, amplitude, friction and textures."""
     from squeezefilm.analysis.analyze import analyze as run
     from squeezefilm.display import load_display
     from squeezefilm.quantities import Unit
     from squeezefilm.report.kit import terminal
 
-    display = load_display(target)
-    with terminal.progress(enabled=sys.stderr.isatty() or not as_json) as step:
+    display = load_display(asked.target)
+    with working(asked.as_json) as step:
         result = run(
             display,
-            voltage=quantity(voltage, "--voltage", Unit("V")),
-            frequency=quantity(frequency, "--frequency", Unit("Hz")),
-            vibration_amplitude=quantity(amplitude, "--amplitude", Unit("m")),
-            normal_force=quantity(force, "--force", Unit("N")),
-            surface=surface,
-            samples=samples,
-            theory=theory,  # type: ignore[arg-type] # checked with a message by working_mode
-            model=model,  # type: ignore[arg-type] # checked with a message by FrictionLaw
-            strict=strict,
+            voltage=quantity(asked.voltage, "--voltage", Unit("V")),
+            frequency=quantity(asked.frequency, "--frequency", Unit("Hz")),
+            vibration_amplitude=quantity(asked.amplitude, "--amplitude", Unit("m")),
+            normal_force=quantity(asked.force, "--force", Unit("N")),
+            surface=asked.surface,
+            samples=asked.samples,
+            theory=asked.theory,  # type: ignore[arg-type] # checked with a message by working_mode
+            model=asked.model,  # type: ignore[arg-type] # checked with a message by FrictionLaw
+            strict=asked.strict,
             progress=step,
         )
         written = None
-        if out is not None:
+        if asked.out is not None:
             from squeezefilm.report.display.page import write_analysis
 
-            written = write_analysis(result, out, progress=step)
-    if as_json:
+            written = write_analysis(result, asked.out, progress=step)
+    if asked.as_json:
         print_json(result.summary())
         return
     terminal.show_analysis(result)

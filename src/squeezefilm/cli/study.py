@@ -1,14 +1,13 @@
 """Verbs of a study: plan it, run it, look at it, export it, merge it, take somebody out."""
 
-from __future__ import annotations
-
-import sys
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from squeezefilm.cli.app import AsJson, app, print_json, quantity, reachable
+from squeezefilm.arguments import called_with
+from squeezefilm.cli.app import AsJson, Pickup, app, print_json, quantity, reachable, working
 
 study = typer.Typer(
     name="study",
@@ -21,7 +20,12 @@ Design = Annotated[
     str, typer.Argument(metavar="NAME|FILE", help="A preset study or a design in TOML.")
 ]
 Store = Annotated[Path, typer.Argument(metavar="STUDY.sqlite", help="The study's file.")]
+NewStore = Annotated[
+    Path, typer.Option("--store", callback=reachable, help="The study's file; made if not there.")
+]
+Consent = Annotated[bool, typer.Option("--consent", help="The participant has consented.")]
 Seed = Annotated[int, typer.Option(help="Of all orders.")]
+Observer = Annotated[str, typer.Option(help="What people are made of: a preset or a TOML file.")]
 
 
 @study.command()
@@ -66,14 +70,11 @@ def simulate(
         Path | None,
         typer.Option(callback=reachable, help="Folder for answers, tables, figures and a page."),
     ] = None,
-    observer: Annotated[
-        str, typer.Option(help="What people are made of: a preset or a TOML file.")
-    ] = "fingertip",
+    observer: Observer = "fingertip",
     as_json: AsJson = False,
 ) -> None:
     """Let simulated participants do a match-to-sample study; every number is simulated."""
     from squeezefilm.perception.observer import load_observer
-    from squeezefilm.report.kit import terminal
     from squeezefilm.report.study.simulated_page import write_simulated
     from squeezefilm.report.study.terminal_simulated import show_simulated
     from squeezefilm.study.design.study_design import load_design
@@ -81,7 +82,7 @@ def simulate(
     from squeezefilm.study.simulated.participants import simulate_participants
 
     planned, people = load_design(design), load_observer(observer)
-    with terminal.progress(enabled=sys.stderr.isatty() or not as_json) as step:
+    with working(as_json) as step:
         tables = chain_tables(planned, people, progress=step)
         found = simulate_participants(planned, people, participants, seed, tables)
         written = None if out is None else write_simulated(found, out, step)
@@ -93,51 +94,54 @@ def simulate(
         typer.echo(f"page: {written}")
 
 
-@study.command()
-def power(
-    design: Design,
-    first: Annotated[str, typer.Argument(help='A stimulus, like "8 mm".')],
-    second: Annotated[str, typer.Argument(help="The one to be told from it.")],
+@dataclass(frozen=True)
+class PowerOptions:
+    """What `power` is asked for."""
+
+    design: Design
+    first: Annotated[str, typer.Argument(help='A stimulus, like "8 mm".')]
+    second: Annotated[str, typer.Argument(help="The one to be told from it.")]
     display: Annotated[
         str | None, typer.Option(help="One of the design's; its first without it.")
-    ] = None,
-    target: Annotated[float, typer.Option(help="Power asked for.")] = 0.8,
-    studies: Annotated[int, typer.Option(help="Simulated per number of people.")] = 400,
-    observer: Annotated[
-        str, typer.Option(help="What people are made of: a preset or a TOML file.")
-    ] = "fingertip",
-    seed: Annotated[int, typer.Option(help="Of people, answers and studies.")] = 0,
+    ] = None
+    target: Annotated[float, typer.Option(help="Power asked for.")] = 0.8
+    studies: Annotated[int, typer.Option(help="Simulated per number of people.")] = 400
+    observer: Observer = "fingertip"
+    seed: Annotated[int, typer.Option(help="Of people, answers and studies.")] = 0
     out: Annotated[
         Path | None, typer.Option(callback=reachable, help="A PNG of the curve to write.")
-    ] = None,
-    as_json: AsJson = False,
-) -> None:
+    ] = None
+    as_json: AsJson = False
+
+
+@study.command()
+@called_with(PowerOptions)
+def power(asked: PowerOptions) -> None:
     """How many people are needed to tell two stimuli apart, by simulated participants."""
     from squeezefilm.perception.observer import load_observer
-    from squeezefilm.report.kit import terminal
     from squeezefilm.report.study.terminal_identification import show_power
     from squeezefilm.study.design.study_design import load_design
     from squeezefilm.study.simulated.planned_power import planned_power
 
-    with terminal.progress(enabled=sys.stderr.isatty() or not as_json) as step:
+    with working(asked.as_json) as step:
         found = planned_power(
-            load_design(design),
-            load_observer(observer),
-            first,
-            second,
-            display=display,
-            target=target,
-            studies=studies,
-            seed=seed,
+            load_design(asked.design),
+            load_observer(asked.observer),
+            asked.first,
+            asked.second,
+            display=asked.display,
+            target=asked.target,
+            studies=asked.studies,
+            seed=asked.seed,
             progress=step,
         )
-    if out is not None:
+    if asked.out is not None:
         from squeezefilm.report.kit.style import png
         from squeezefilm.report.study.time_figures import power as drawn
         from squeezefilm.results import write_whole
 
-        write_whole(out, png(drawn(found.curve)))
-    if as_json:
+        write_whole(asked.out, png(drawn(found.curve)))
+    if asked.as_json:
         print_json(found.summary())
     else:
         show_power(found)
@@ -146,85 +150,77 @@ def power(
 @study.command()
 def rehearse(
     design: Design,
-    store: Annotated[
-        Path,
-        typer.Option("--store", callback=reachable, help="The study's file; made if not there."),
-    ],
+    store: NewStore,
     participants: Annotated[int, typer.Option(help="How many simulated people.")] = 3,
-    observer: Annotated[
-        str, typer.Option(help="What people are made of: a preset or a TOML file.")
-    ] = "fingertip",
+    observer: Observer = "fingertip",
     seed: Seed = 0,
 ) -> None:
     """Let simulated participants do every trial of a study's file, to try analysis and exports."""
     from squeezefilm.perception.observer import load_observer
-    from squeezefilm.report.kit import terminal
     from squeezefilm.study.conduct.rehearsal import rehearse as run_through
     from squeezefilm.study.conduct.terminal_run import open_study
 
     with (
         open_study(store, design, seed, 0, 1) as found,
-        terminal.progress(enabled=sys.stderr.isatty()) as step,
+        working(quiet=True) as step,
     ):
         people = run_through(found, load_observer(observer), participants, progress=step)
     typer.echo(f"{len(people)} simulated participants answered everything; look at it with:")
     typer.echo(f"squeezefilm study analyze {store}")
 
 
-@study.command()
-def run(
-    design: Design,
-    store: Annotated[
-        Path,
-        typer.Option("--store", callback=reachable, help="The study's file; made if not there."),
-    ],
+@dataclass(frozen=True)
+class RunOptions:
+    """What `run` is asked for."""
+
+    design: Design
+    store: NewStore
     participant: Annotated[
         str | None, typer.Option(help="Who goes on; somebody new is enrolled without it.")
-    ] = None,
+    ] = None
     conditions: Annotated[
         Path | None, typer.Option(help="Conditions of the session in TOML: consent, room, skin …")
-    ] = None,
-    consent: Annotated[
-        bool, typer.Option("--consent", help="The participant has consented.")
-    ] = False,
+    ] = None
+    consent: Consent = False
     drive: Annotated[
         str,
         typer.Option(
             help="serial:PORT (a device), twin (a simulated one behind a port, in real time), "
             "rehearsal (one without a port, as fast as it goes) or none."
         ),
-    ] = "none",
-    pickup: Annotated[
-        str | None, typer.Option(help='Amplitude per signal of the device\'s pickup: "2 um/V".')
-    ] = None,
+    ] = "none"
+    pickup: Pickup = None
     acknowledge: Annotated[
         bool,
         typer.Option("--acknowledge-ultrasound", help="The exposure was read and acknowledged."),
-    ] = False,
-    seed: Seed = 0,
-    station: Annotated[int, typer.Option(help="Which station this is, from 0.")] = 0,
-    stations: Annotated[int, typer.Option(help="How many stations there are.")] = 1,
-) -> None:
+    ] = False
+    seed: Seed = 0
+    station: Annotated[int, typer.Option(help="Which station this is, from 0.")] = 0
+    stations: Annotated[int, typer.Option(help="How many stations there are.")] = 1
+
+
+@study.command()
+@called_with(RunOptions)
+def run(asked: RunOptions) -> None:
     """Run a session at the terminal; stop with Ctrl-C, and go on later where it stopped."""
     from squeezefilm.quantities import Unit
-    from squeezefilm.report.kit import terminal
     from squeezefilm.report.study.session import run_study
     from squeezefilm.report.study.terminal import ask_acknowledgement
 
     ended = run_study(
-        design,
-        store,
-        participant,
-        drive=drive,
-        amplitude_per_pickup=quantity(pickup, "--pickup", Unit("m/V")),
-        conditions=conditions,
-        consent=consent,
-        acknowledge=(lambda _: True) if acknowledge else ask_acknowledgement,
-        seed=seed,
-        station=station,
-        stations=stations,
+        asked.design,
+        asked.store,
+        asked.participant,
+        drive=asked.drive,
+        amplitude_per_pickup=quantity(asked.pickup, "--pickup", Unit("m/V")),
+        conditions=asked.conditions,
+        consent=asked.consent,
+        acknowledge=(lambda _: True) if asked.acknowledge else ask_acknowledgement,
+        seed=asked.seed,
+        station=asked.station,
+        stations=asked.stations,
         tell=typer.echo,
-        progress=lambda: terminal.progress(enabled=sys.stderr.isatty()),
+        progress=lambda: working(quiet=True),
     )
     typer.echo(ended)
 
@@ -316,14 +312,13 @@ def analyze(
     as_json: AsJson = False,
 ) -> None:
     """Analyse what was recorded: confusions, intervals, information transfer, sensitivity."""
-    from squeezefilm.report.kit import terminal
     from squeezefilm.report.study.terminal_identification import show_analyses
     from squeezefilm.study.identification.recorded import analyze_study
     from squeezefilm.study.record.store import StudyStore
 
     with (
         StudyStore.open(store) as found,
-        terminal.progress(enabled=sys.stderr.isatty() or not as_json) as step,
+        working(as_json) as step,
     ):
         analyses = analyze_study(found, mixed=mixed, seed=seed, progress=step)
         pages = []

@@ -35,9 +35,12 @@ class Bench:
             monkeypatch.setattr(module, name, getattr(self, f"_{name}"))
         monkeypatch.setattr(module, "read_trace", lambda path: ("read", path))
 
-    def _play_setup(self, display: Any, texture: Any, **how: Any) -> Any:
-        self.setup.append({"display": display.name, **how})
-        return SimpleNamespace(plan="plan", name="a grating", assumed_limits=("slew",))
+    def _play_setup(self, display: Any, texture: Any, *, device: Any, **how: Any) -> Any:
+        self.setup.append({"display": display.name, **how, **vars(device)})
+        return SimpleNamespace(
+            display=display, texture=texture, plan="plan", name="a grating",
+            assumed_limits=("slew",),
+        )  # fmt: skip
 
     @contextlib.contextmanager
     def _device_stream(self, *given: Any) -> Iterator[str]:

@@ -8,11 +8,11 @@ are directions and orders of magnitude, from abstracts.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
 
-from squeezefilm.analysis.claims.values import CLAIM_VALUES, ClaimValue
+from squeezefilm.analysis.claims.values import ClaimValue, value_of
 from squeezefilm.contact.finger.fingertip import Finger
 from squeezefilm.contact.finger.skin import Skin
 from squeezefilm.contact.sharing.balance import share_load
@@ -79,15 +79,7 @@ class FrozenContact:
 FROZEN = FrozenContact()
 
 
-def _for(claim: str) -> Callable[[Callable[[], ClaimValue]], Callable[[], ClaimValue]]:
-    def register(function: Callable[[], ClaimValue]) -> Callable[[], ClaimValue]:
-        CLAIM_VALUES[claim] = function
-        return function
-
-    return register
-
-
-@_for("contact-near-vacuum")
+@value_of("contact-near-vacuum")
 def _() -> ClaimValue:
     def left(slip: str) -> float:
         inside = FROZEN.relative_friction(ambient_pressure=2e3, slip=slip)
@@ -100,7 +92,7 @@ def _() -> ClaimValue:
     )
 
 
-@_for("contact-half-atmosphere")
+@value_of("contact-half-atmosphere")
 def _() -> ClaimValue:
     change = FROZEN.relative_friction(ambient_pressure=0.5e5) - FROZEN.relative_friction()
     return ClaimValue(
@@ -110,7 +102,7 @@ def _() -> ClaimValue:
     )
 
 
-@_for("contact-reach")
+@value_of("contact-reach")
 def _() -> ClaimValue:
     value = 1 - FROZEN.relative_friction(roughness=5e-9, amplitude=3e-6, plateau_pressure=2e3)
     rough = 1 - FROZEN.relative_friction(amplitude=3e-6)
@@ -121,25 +113,25 @@ def _() -> ClaimValue:
     )
 
 
-@_for("contact-frequency")
+@value_of("contact-frequency")
 def _() -> ClaimValue:
     low, high = (FROZEN.relative_friction(frequency=f) for f in (30e3, 60e3))
     return ClaimValue((low - high,), note=f"µ′/µ {low:.3f} at 30 kHz, {high:.3f} at 60 kHz")
 
 
-@_for("contact-amplitude")
+@value_of("contact-amplitude")
 def _() -> ClaimValue:
     low, high = (FROZEN.relative_friction(amplitude=a) for a in (1e-6, 3e-6))
     return ClaimValue((low - high,), note=f"µ′/µ {low:.3f} at 1 µm, {high:.3f} at 3 µm")
 
 
-@_for("contact-roughness")
+@value_of("contact-roughness")
 def _() -> ClaimValue:
     rough, smooth = (FROZEN.relative_friction(roughness=r) for r in (0.6e-6, 0.2e-6))
     return ClaimValue((rough - smooth,), note=f"µ′/µ {rough:.3f} at 0.6 µm, {smooth:.3f} at 0.2 µm")
 
 
-@_for("contact-damping")
+@value_of("contact-damping")
 def _() -> ClaimValue:
     def gain(stiffness: float) -> float:
         free, damped = (
@@ -159,7 +151,7 @@ def _() -> ClaimValue:
     )
 
 
-@_for("contact-tapping-load")
+@value_of("contact-tapping-load")
 def _() -> ClaimValue:
     low, high = (
         tapping_friction(
@@ -174,7 +166,7 @@ def _() -> ClaimValue:
     )
 
 
-@_for("contact-tapping-speed")
+@value_of("contact-tapping-speed")
 def _() -> ClaimValue:
     slow, fast = (
         tapping_friction(

@@ -41,6 +41,10 @@ from squeezefilm.quantities import (
 MEAN_EXPLORED_AREA: SquareMetre = 28.18e-4
 LARGEST_EXPLORED_AREA: SquareMetre = 128.37e-4
 PAPER_HALF_WAVELENGTHS = (7.5e-3, 10e-3, 12.5e-3, 15e-3)
+_NO_ASYMPTOTE_YET = (
+    "σ ≥ 10 does not make the asymptote hold: there a smooth film reaches less than half of the "
+    "asymptotic over-pressure"
+)
 
 
 @checked_numbers
@@ -137,12 +141,11 @@ def design_plate(
     not for design. Raises `InputError` for requirements that contradict each other.
     """
     wants = requirements or Requirements()
-    unfavourable = gap.with_amplitude(wants.frequency_amplitude)
     lowest = float(
         frequency_for_squeeze_number(
             wants.squeeze_number,
             gap.contact_length,
-            unfavourable.reference_thickness,
+            gap.with_amplitude(wants.frequency_amplitude).reference_thickness,
             viscosity,
             ambient_pressure,
         )
@@ -155,6 +158,59 @@ def design_plate(
     amplitudes = friction_criterion(
         gap, halves, wants.relative_friction, normal_force, ambient_pressure
     )
+    ceramics, length = _ceramics(wants)
+    lines = ceramics + 1
+    mode = free_beam_mode(section, length, lines)
+    required = friction_criterion(
+        gap, (mode.half_wavelength,), wants.relative_friction, normal_force, ambient_pressure
+    )
+    return Design(
+        lowest_frequency=lowest,
+        longest_half_wavelength_euler=euler,
+        longest_half_wavelength_timoshenko=timoshenko,
+        half_wavelengths=halves,
+        amplitudes=amplitudes,
+        ceramics=ceramics,
+        length=length,
+        width=wants.width,
+        area=length * wants.width,
+        nodal_lines=lines,
+        half_wavelength=mode.half_wavelength,
+        resonance_frequency=mode.frequency,
+        required_amplitude=float(required[0]),
+        contradictions=(
+            _against_division(length, lines, mode.half_wavelength),
+            _against_rising(halves, amplitudes),
+            f"the frequency criterion allows λ/2 up to {euler * 1e3:.4g} mm (Euler–Bernoulli) or "
+            f"{timoshenko * 1e3:.4g} mm (Timoshenko), not the paper's 16.1 mm",
+            _NO_ASYMPTOTE_YET,
+        ),
+    )
+
+
+def _against_division(length: Metre, lines: int, half: Metre) -> str:
+    """That a free plate's half wavelength is not its length over its nodal lines."""
+    return (
+        f"a free plate of {length * 1e3:.4g} mm with {lines} nodal lines has λ/2 = "
+        f"{half * 1e3:.4g} mm, not {length * 1e3:.4g}/{lines} = {length / lines * 1e3:.4g} mm"
+    )
+
+
+def _against_rising(halves: MetreArray, amplitudes: MetreArray) -> str:
+    """How the amplitude of the friction criterion goes with the half wavelength."""
+    falling = bool(np.all(np.diff(amplitudes[np.argsort(halves)]) < 0))
+    return (
+        f"the friction criterion needs {_list(amplitudes)} µm at λ/2 = {_list(halves, 1e3)} mm; "
+        + (
+            "it falls with the half wavelength, and the paper lists it rising"
+            if falling
+            else "it does not fall with the half wavelength"
+        )
+    )
+
+
+def _ceramics(wants: Requirements) -> tuple[int, Metre]:
+    """The number of ceramics, and the plate's length (m); `InputError` for too large a plate."""
     pitch = wants.ceramic_length + wants.ceramic_gap
     ceramics = math.ceil((wants.smallest_area / wants.width + wants.ceramic_gap) / pitch)
     # An odd number puts an antinode at the centre, where the paper's plate has one.
@@ -167,51 +223,7 @@ def design_plate(
             f"plate of {area * 1e4:.4g} cm2, above the largest explored area of "
             f"{wants.largest_area * 1e4:.4g} cm2; use fewer, shorter or narrower ones"
         )
-    lines = ceramics + 1
-    mode = free_beam_mode(section, length, lines)
-    required = float(
-        friction_criterion(
-            gap,
-            (mode.half_wavelength,),
-            wants.relative_friction,
-            normal_force,
-            ambient_pressure,
-        )[0]
-    )
-    simple = length / lines
-    order = np.argsort(halves)
-    falling = bool(np.all(np.diff(amplitudes[order]) < 0))
-    contradictions = (
-        f"a free plate of {length * 1e3:.4g} mm with {lines} nodal lines has λ/2 = "
-        f"{mode.half_wavelength * 1e3:.4g} mm, not {length * 1e3:.4g}/{lines} = "
-        f"{simple * 1e3:.4g} mm",
-        f"the friction criterion needs {_list(amplitudes)} µm at λ/2 = {_list(halves, 1e3)} mm; "
-        + (
-            "it falls with the half wavelength, and the paper lists it rising"
-            if falling
-            else "it does not fall with the half wavelength"
-        ),
-        f"the frequency criterion allows λ/2 up to {euler * 1e3:.4g} mm (Euler–Bernoulli) or "
-        f"{timoshenko * 1e3:.4g} mm (Timoshenko), not the paper's 16.1 mm",
-        "σ ≥ 10 does not make the asymptote hold: there a smooth film reaches less than half of "
-        "the asymptotic over-pressure",
-    )
-    return Design(
-        lowest_frequency=lowest,
-        longest_half_wavelength_euler=euler,
-        longest_half_wavelength_timoshenko=timoshenko,
-        half_wavelengths=halves,
-        amplitudes=amplitudes,
-        ceramics=ceramics,
-        length=length,
-        width=wants.width,
-        area=area,
-        nodal_lines=lines,
-        half_wavelength=mode.half_wavelength,
-        resonance_frequency=mode.frequency,
-        required_amplitude=required,
-        contradictions=contradictions,
-    )
+    return ceramics, length
 
 
 def _list(values: MetreArray, scale: float = 1e6) -> str:

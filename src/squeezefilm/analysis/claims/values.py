@@ -62,7 +62,9 @@ class ClaimValue:
 CLAIM_VALUES: dict[str, Callable[[], ClaimValue]] = {}
 
 
-def _for(claim: str) -> Callable[[Callable[[], ClaimValue]], Callable[[], ClaimValue]]:
+def value_of(claim: str) -> Callable[[Callable[[], ClaimValue]], Callable[[], ClaimValue]]:
+    """Enter a function as what computes a claim's value."""
+
     def register(function: Callable[[], ClaimValue]) -> Callable[[], ClaimValue]:
         CLAIM_VALUES[claim] = function
         return function
@@ -109,13 +111,13 @@ def _force_and_ambient() -> tuple[float, float]:
     return _stator().finger.normal_force, _stator().gas.ambient_pressure
 
 
-@_for("squeeze-number-stator")
+@value_of("squeeze-number-stator")
 def _() -> ClaimValue:
     value, printed = _sigma(40.5e3, _gap(2e-6))
     return ClaimValue((value,), (printed,), note="the printed formula's value is in 1/m")
 
 
-@_for("squeeze-number-plate")
+@value_of("squeeze-number-plate")
 def _() -> ClaimValue:
     value, printed = _sigma(30.5e3, _gap(1.15e-6))
     other, _ = _sigma(30.5e3, _gap(2.3e-6))
@@ -124,7 +126,7 @@ def _() -> ClaimValue:
     )
 
 
-@_for("frequency-criterion")
+@value_of("frequency-criterion")
 def _() -> ClaimValue:
     gas = _stator().gas
 
@@ -145,18 +147,18 @@ def _() -> ClaimValue:
     )
 
 
-@_for("asymptote-at-10")
+@value_of("asymptote-at-10")
 def _() -> ClaimValue:
     return ClaimValue((float(asymptotic_fraction(10.0)),), note="smooth strip, small amplitude")
 
 
-@_for("asymptote-at-20")
+@value_of("asymptote-at-20")
 def _() -> ClaimValue:
     sigma, _ = _sigma(40.5e3, _gap(2e-6))
     return ClaimValue((float(asymptotic_fraction(sigma)),), note="smooth strip, small amplitude")
 
 
-@_for("mean-pressure-above-one")
+@value_of("mean-pressure-above-one")
 def _() -> ClaimValue:
     gap = _gap(2e-6)
     return ClaimValue(
@@ -165,7 +167,7 @@ def _() -> ClaimValue:
     )
 
 
-@_for("ridge-peaks")
+@value_of("ridge-peaks")
 def _() -> ClaimValue:
     gap = _gap(2e-6)
     X = np.linspace(0, 0.03, 30001)
@@ -174,14 +176,14 @@ def _() -> ClaimValue:
     return ClaimValue((float(X[top]) * gap.contact_length,), note=f"peak {profile[top]:.3f} p0")
 
 
-@_for("levitation-amplitude")
+@value_of("levitation-amplitude")
 def _() -> ClaimValue:
     force, ambient = _force_and_ambient()
     rough, smooth = (zero_friction_amplitude(_gap(0.0, r), force, ambient) for r in (6e-7, 2e-7))
     return ClaimValue((rough,), alternative=(smooth,), note="alternative: roughness 0.2 µm")
 
 
-@_for("two-micrometres-are-felt")
+@value_of("two-micrometres-are-felt")
 def _() -> ClaimValue:
     force, ambient = _force_and_ambient()
     rough, smooth = (float(relative_friction(_gap(2e-6, r), force, ambient)) for r in (6e-7, 2e-7))
@@ -189,7 +191,7 @@ def _() -> ClaimValue:
     return ClaimValue((rough,), (printed,), (smooth,), "alternative: roughness 0.2 µm")
 
 
-@_for("friction-criterion")
+@value_of("friction-criterion")
 def _() -> ClaimValue:
     force, ambient = _force_and_ambient()
     found = friction_criterion(_gap(0.0), PAPER_HALF_WAVELENGTHS, 0.7, force, ambient)
@@ -201,7 +203,7 @@ def _section() -> Laminate:
     return plate_laminate(_plate(), "paper")
 
 
-@_for("half-wavelength-limit")
+@value_of("half-wavelength-limit")
 def _() -> ClaimValue:
     from scipy.optimize import brentq
 
@@ -216,13 +218,13 @@ def _() -> ClaimValue:
     )
 
 
-@_for("half-wavelength-of-mode")
+@value_of("half-wavelength-of-mode")
 def _() -> ClaimValue:
     beam = beam_response(_plate(), "euler_bernoulli", "paper")
     return ClaimValue((beam.mode.half_wavelength,), (_plate().length / 8,))
 
 
-@_for("prototype-is-enough")
+@value_of("prototype-is-enough")
 def _() -> ClaimValue:
     force, ambient = _force_and_ambient()
     gap = _gap(1.15e-6, half_wavelength=PRINTED_HALF_WAVELENGTH)
@@ -232,31 +234,31 @@ def _() -> ClaimValue:
     )
 
 
-@_for("plate-area")
+@value_of("plate-area")
 def _() -> ClaimValue:
     return ClaimValue((_plate().area,))
 
 
-@_for("plate-length")
+@value_of("plate-length")
 def _() -> ClaimValue:
     patches = _plate().patches
     gaps = sum(right.x - left.x - left.length for left, right in itertools.pairwise(patches))
     return ClaimValue((sum(patch.length for patch in patches) + gaps,))
 
 
-@_for("workspace")
+@value_of("workspace")
 def _() -> ClaimValue:
     return ClaimValue((_plate().area,))
 
 
-@_for("stator-wavelength")
+@value_of("stator-wavelength")
 def _() -> ClaimValue:
     actuator = _stator().actuator
     assert isinstance(actuator, AnnularStator)
     return ClaimValue((actuator.wavelengths_around,))
 
 
-@_for("effective-coupling")
+@value_of("effective-coupling")
 def _() -> ClaimValue:
     return ClaimValue((_plate().ceramic.stress_coefficient_from_d31,))
 
@@ -286,7 +288,7 @@ def _kilohertz(value: float) -> str:
     return f"{value / 1e3:.2f} kHz"
 
 
-@_for("modal-frequency")
+@value_of("modal-frequency")
 def _() -> ClaimValue:
     ours, printed = _both()
     against = f"{MODAL_FREQUENCY / ours.frequency - 1:+.1%}".replace("-", "−")
@@ -298,7 +300,7 @@ def _() -> ClaimValue:
     )
 
 
-@_for("harmonic-frequency")
+@value_of("harmonic-frequency")
 def _() -> ClaimValue:
     ours, printed = _both()
     return ClaimValue(
@@ -321,7 +323,7 @@ def _amplitudes() -> tuple[float, float]:
     return _volts() * ours, _volts() * printed
 
 
-@_for("harmonic-amplitude")
+@value_of("harmonic-amplitude")
 def _() -> ClaimValue:
     ours, printed = _amplitudes()
     loss = working_point(with_loss_in_ceramic_alone(_plate())).amplitude_per_volt
@@ -334,7 +336,7 @@ def _() -> ClaimValue:
     )
 
 
-@_for("measured-frequency")
+@value_of("measured-frequency")
 def _() -> ClaimValue:
     ours, printed = _both()
     glued = working_point(with_glue(_plate(), 50e-6, 1e9), amplitude=False).frequency
@@ -346,7 +348,7 @@ def _() -> ClaimValue:
     )
 
 
-@_for("measured-amplitude")
+@value_of("measured-amplitude")
 def _() -> ClaimValue:
     ours, printed = _amplitudes()
     return ClaimValue((ours,), alternative=(printed,), note="alternative: the printed e31")

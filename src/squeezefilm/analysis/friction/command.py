@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import dataclasses
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 from typing import Any, ClassVar
 
 import numpy as np
 
 from squeezefilm.analysis.friction.models import ModelCurve, model_curves
 from squeezefilm.analysis.uncertainty import UncertainFriction, uncertain_friction
+from squeezefilm.arguments import called_with
 from squeezefilm.chain.friction import DEFAULT_MODEL, FrictionModel
 from squeezefilm.chain.prediction import Prediction, predict, voltage_for_friction
 from squeezefilm.contact.sharing.gas_table import film_table
@@ -141,25 +142,31 @@ class FrictionAnalysis(Result):
         }
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class FrictionRequest:
+    """What `analyze_friction` is asked for."""
+
+    display: NamedDisplay
+    _: KW_ONLY
+    voltage: Volt | None = None
+    frequency: Hertz | None = None
+    vibration_amplitude: Metre | None = None
+    normal_force: Newton | None = None
+    surface: str | None = None
+    model: FrictionModel | None = None
+    position: Metre = 0.0
+    speed: MetrePerSecond = EXPLORING_SPEED
+    ambient_pressure: Pascal | None = None
+    wanted_friction: Dimensionless | None = None
+    samples: int = 64
+    seed: int = 1
+    points: int = 40
+    progress: SayProgress | None = None
+
+
 @reads_text
-def analyze_friction(
-    display: NamedDisplay,
-    *,
-    voltage: Volt | None = None,
-    frequency: Hertz | None = None,
-    vibration_amplitude: Metre | None = None,
-    normal_force: Newton | None = None,
-    surface: str | None = None,
-    model: FrictionModel | None = None,
-    position: Metre = 0.0,
-    speed: MetrePerSecond = EXPLORING_SPEED,
-    ambient_pressure: Pascal | None = None,
-    wanted_friction: Dimensionless | None = None,
-    samples: int = 64,
-    seed: int = 1,
-    points: int = 40,
-    progress: SayProgress | None = None,
-) -> FrictionAnalysis:
+@called_with(FrictionRequest)
+def analyze_friction(asked: FrictionRequest) -> FrictionAnalysis:
     """The friction of a display at a working point, with everything around it.
 
     Arguments as `prediction.predict`; `ambient_pressure` (Pa) puts display and finger into another
@@ -168,42 +175,33 @@ def analyze_friction(
     `points` the side of the map. Raises what `predict`, `voltage_for_friction` and
     `uncertain_friction` raise.
     """
-    tell = progress or (lambda _: None)
-    if ambient_pressure is not None:
-        display = dataclasses.replace(display, gas=display.gas.at_pressure(ambient_pressure))
+    tell, display = asked.progress or (lambda _: None), asked.display
+    if asked.ambient_pressure is not None:
+        gas = display.gas.at_pressure(asked.ambient_pressure)
+        display = dataclasses.replace(display, gas=gas)
     tell("amplitude and load balance")
     prediction = predict(
         display,
-        voltage=voltage,
-        frequency=frequency,
-        normal_force=normal_force,
-        surface=surface,
-        vibration_amplitude=vibration_amplitude,
-        model=model,
-        position=position,
+        voltage=asked.voltage,
+        frequency=asked.frequency,
+        normal_force=asked.normal_force,
+        surface=asked.surface,
+        vibration_amplitude=asked.vibration_amplitude,
+        model=asked.model,
+        position=asked.position,
     )
-    wanted = None
-    if wanted_friction is not None:
-        volts, amplitude = voltage_for_friction(
-            display,
-            wanted_friction,
-            frequency=frequency,
-            normal_force=normal_force,
-            surface=surface,
-            model=model,
-        )
-        wanted = Wanted(wanted_friction, amplitude, volts)
+    wanted = _wanted(display, asked)
     tell("models side by side")
     curves = model_curves(display, prediction)
     tell("map over amplitude and force")
-    found = friction_map(display, prediction, points)
+    found = friction_map(display, prediction, asked.points)
     unsure = None
-    if samples:
+    if asked.samples:
         unsure = uncertain_friction(
-            display, prediction, samples=samples, seed=seed, progress=progress
+            display, prediction, samples=asked.samples, seed=asked.seed, progress=asked.progress
         )
     tell("ripple of the standing wave")
-    tapped = float(prediction.law.tapped(prediction.vibration_amplitude, speed)[0])
+    tapped = float(prediction.law.tapped(prediction.vibration_amplitude, asked.speed)[0])
     return FrictionAnalysis(
         display,
         prediction,
@@ -212,8 +210,23 @@ def analyze_friction(
         found,
         _ripple(prediction),
         wanted,
-        Tapping(speed, tapped),
+        Tapping(asked.speed, tapped),
     )
+
+
+def _wanted(display: Display, asked: FrictionRequest) -> Wanted | None:
+    """What the wanted friction takes on a display, if one is asked for."""
+    if asked.wanted_friction is None:
+        return None
+    volts, amplitude = voltage_for_friction(
+        display,
+        asked.wanted_friction,
+        frequency=asked.frequency,
+        normal_force=asked.normal_force,
+        surface=asked.surface,
+        model=asked.model,
+    )
+    return Wanted(asked.wanted_friction, amplitude, volts)
 
 
 def friction_map(display: Display, prediction: Prediction, points: int = 40) -> FrictionMap:

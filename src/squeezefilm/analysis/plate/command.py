@@ -38,6 +38,7 @@ from squeezefilm.quantities import (
     Dimensionless,
     FloatArray,
     Hertz,
+    HertzArray,
     Metre,
     MetreArray,
     MetrePerVolt,
@@ -121,13 +122,7 @@ class PlateAnalysis(Result):
                 "frequency_Hz": self.shear_frequency,
                 "error_against_solid": self.shear_frequency / self.working.frequency - 1,
             },
-            "sound_pressure_level_dB": {
-                f"{distance:g} m": level
-                for distance, level in zip(
-                    self.sound.distances, self.sound.sound_pressure_level_dB, strict=True
-                )
-            },
-            "sound_guidance": to_json(self.sound.guidance),
+            **sound_summary(self.sound),
             "sensitivities": to_json(self.sensitivities),
             "tracks": to_json(self.tracks),
             "model": self.modes.model,
@@ -137,6 +132,15 @@ class PlateAnalysis(Result):
 
     def _table(self) -> Any:
         return to_json(self.rows)
+
+
+def sound_summary(sound: SoundField) -> dict[str, Any]:
+    """What a summary says of the sound: its levels by distance, and the guidance on exposure."""
+    levels = zip(sound.distances, sound.sound_pressure_level_dB, strict=True)
+    return {
+        "sound_pressure_level_dB": {f"{distance:g} m": level for distance, level in levels},
+        "sound_guidance": to_json(sound.guidance),
+    }
 
 
 def parse_mode(text: str) -> tuple[int, int]:
@@ -168,17 +172,7 @@ def analyze_plate(
     `InputError` for a display without a rectangular plate and what `solve_modes` raises: a band
     with no mode, a mode that is not found.
     """
-    plate = display.actuator
-    if not isinstance(plate, RectangularPlate):
-        raise InputError(
-            f"display '{display.name}' has a {plate.type} and no rectangular plate; analyze_ring "
-            "solves discs and stators"
-        )
-    if not any(patch.electrode == "driven" for patch in plate.patches):
-        raise InputError(
-            "no electrode is driven; give at least one patch electrode = 'driven'",
-            quantity="patches",
-        )
+    plate = _driven_plate(display)
     if band is not None:
         check_band(band)
     if track is not None:
@@ -193,22 +187,13 @@ def analyze_plate(
     rows = tuple(_row(modes, index) for index in range(modes.count))
     working = _row(alone, alone.index(label))
     tell(f"response at {points} frequencies")
-    span = max(4 / working.quality_factor, 0.01)
-    # Dense near the peak, where the curve turns within f/Q.
-    near = np.sinh(np.linspace(-3, 3, points)) / np.sinh(3)
-    response = harmonic_response(plate, frequency * (1 + span * near))
-    peak = response.resonance
-    x, line = centre_scan(response, peak, label)
-    nodes = zero_crossings(x, centre_profile(alone.shapes[alone.index(label)], alone, x, label))
-    inside = (x > nodes[0]) & (x < nodes[-1]) if nodes.size > 1 else np.ones(x.size, bool)
+    response = harmonic_response(plate, sweep_around(frequency, working.quality_factor, points))
     try:
         circuit = response.equivalent_circuit()
     except InputError:
         circuit = None
     tell("airborne sound")
-    x, y = np.linspace(0, plate.length, 84), np.linspace(0, plate.width, 50)
-    w = display.drive.voltage * response.displacement(x, y)[peak]
-    sound = sound_field(rectangular_surface(x, y, 2j * np.pi * frequency * w, frequency))
+    sound = _sound(display, response, frequency)
     beam = beam_response(plate)
     return PlateAnalysis(
         display=display,
@@ -219,8 +204,8 @@ def analyze_plate(
         rows=rows,
         working=working,
         response=response,
-        amplitude_per_volt=float(response.maximum[peak]),
-        centreline_per_volt=float(np.max(np.abs(line)[inside])),
+        amplitude_per_volt=float(response.maximum[response.resonance]),
+        centreline_per_volt=_centreline_per_volt(response, alone, label),
         circuit=circuit,
         beam_frequency=beam.mode.frequency,
         beam_amplitude_per_volt=beam.amplitude_per_volt,
@@ -229,6 +214,50 @@ def analyze_plate(
         sensitivities=plate_sensitivity(plate, label=label, progress=tell) if sensitivity else None,
         tracks=None if track is None else track_modes(plate, track, label=label, progress=tell),
     )
+
+
+def _driven_plate(display: Display) -> RectangularPlate:
+    """The display's rectangular plate, refused where it has none, or one that nothing drives."""
+    plate = display.actuator
+    if not isinstance(plate, RectangularPlate):
+        raise InputError(
+            f"display '{display.name}' has a {plate.type} and no rectangular plate; analyze_ring "
+            "solves discs and stators"
+        )
+    if not any(patch.electrode == "driven" for patch in plate.patches):
+        raise InputError(
+            "no electrode is driven; give at least one patch electrode = 'driven'",
+            quantity="patches",
+        )
+    return plate
+
+
+def sweep_around(frequency: Hertz, quality_factor: Dimensionless, points: int) -> HertzArray:
+    """Frequencies (Hz) over ±4/Q about a resonance, 1 % at the least, shape (points,).
+
+    They are dense near the peak, where the curve turns within f/Q.
+    """
+    span = max(4 / quality_factor, 0.01)
+    near = np.sinh(np.linspace(-3, 3, points)) / np.sinh(3)
+    return np.asarray(frequency * (1 + span * near))
+
+
+def _centreline_per_volt(
+    response: HarmonicResponse, alone: PlateModes, label: tuple[int, int]
+) -> MetrePerVolt:
+    """The largest amplitude on the centre line at resonance, between the mode's outer nodes."""
+    x, line = centre_scan(response, response.resonance, label)
+    nodes = zero_crossings(x, centre_profile(alone.shapes[alone.index(label)], alone, x, label))
+    inside = (x > nodes[0]) & (x < nodes[-1]) if nodes.size > 1 else np.ones(x.size, bool)
+    return float(np.max(np.abs(line)[inside]))
+
+
+def _sound(display: Display, response: HarmonicResponse, frequency: Hertz) -> SoundField:
+    """The sound of the plate's face alone, in a baffle, at the display's voltage."""
+    plate = response.plate
+    x, y = np.linspace(0, plate.length, 84), np.linspace(0, plate.width, 50)
+    w = display.drive.voltage * response.displacement(x, y)[response.resonance]
+    return sound_field(rectangular_surface(x, y, 2j * np.pi * frequency * w, frequency))
 
 
 def scan_axis(label: tuple[int, int]) -> int:

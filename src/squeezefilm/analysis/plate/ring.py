@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from squeezefilm.analysis.plate.command import ModeRow
+from squeezefilm.analysis.plate.command import ModeRow, sound_summary, sweep_around
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import RING_MODES, require_within
@@ -123,13 +123,7 @@ class RingAnalysis(Result):
             "equivalent_circuit": to_json(self.circuit),
             "described_amplitude_m_per_V": self.described_amplitude_per_volt,
             "fit": self._fit(),
-            "sound_pressure_level_dB": {
-                f"{distance:g} m": level
-                for distance, level in zip(
-                    self.sound.distances, self.sound.sound_pressure_level_dB, strict=True
-                )
-            },
-            "sound_guidance": to_json(self.sound.guidance),
+            **sound_summary(self.sound),
             "model": self.model,
             "status": self.status,
             "provenance": stamp(self.display),
@@ -184,9 +178,7 @@ def analyze_ring(
     modes = modes_in_band(body, limits, tell)
     _, along = half_wavelength_of(found)
     tell(f"response at {points} frequencies")
-    span = max(4 / found.quality_factor, 0.01)
-    near = np.sinh(np.linspace(-3, 3, points | 1)) / np.sinh(3)
-    sweep = found.frequency * (1 + span * near)
+    sweep = sweep_around(found.frequency, found.quality_factor, points | 1)
     beside = {found.harmonic - 1, found.harmonic + 1} if found.harmonic else set()
     harmonics = sorted({found.harmonic, *beside, *(one.harmonic for one in modes)})
     response = ring_response(body, found, sweep, harmonics)

@@ -57,6 +57,8 @@ def _set_glue_modulus(plate: RectangularPlate, value: float) -> RectangularPlate
 
 _Get = Callable[[RectangularPlate], float]
 _Set = Callable[[RectangularPlate, float], RectangularPlate]
+# By value: the modes there, which of them each tracked one is, and how alike it is.
+_Steps = dict[float, tuple[PlateModes, list[int | None], list[float]]]
 
 PARAMETERS: dict[str, tuple[Unit, _Get, _Set]] = {
     "ceramic_thickness": (Unit("m"), lambda p: p.ceramic_thickness, with_ceramic_thickness),
@@ -161,9 +163,7 @@ def track_modes(
     tell(f"{request.parameter} = {_shown(begun, unit)}")
     f0 = _centre(plate, request, begun, label or (plate.nodal_lines, 0))
     first = _solve(plate, request, begun, ((1 - _REACH) * f0, (1 + _REACH) * f0))
-    steps: dict[float, tuple[PlateModes, list[int | None], list[float]]] = {
-        begun: (first, list(range(first.count)), [1.0] * first.count)
-    }
+    steps: _Steps = {begun: (first, list(range(first.count)), [1.0] * first.count)}
     for side in (
         values[values > begun + 1e-12 * abs(begun)],
         values[values < begun - 1e-12 * abs(begun)][::-1],
@@ -172,32 +172,31 @@ def track_modes(
         for value in side:
             _advance(plate, request, first, last, float(value), steps, _HALVINGS, tell)
             last = float(value)
+    tracks = _tracks(first, steps)
+    least = float(np.nanmin([one.likeness for one in tracks]))
     every = np.array(sorted(steps))
-    frequency = np.full((first.count, every.size), np.nan)
-    likeness = np.full((first.count, every.size), np.nan)
-    for column, value in enumerate(every):
-        modes, numbers, alike = steps[float(value)]
+    return ModeTracks(request.parameter, unit.symbol, every, own, begun, tracks, least)
+
+
+def _tracks(first: PlateModes, steps: _Steps) -> tuple[ModeTrack, ...]:
+    """Each mode of where the tracking began, over all values, rising."""
+    shape = (first.count, len(steps))
+    frequency, likeness = np.full(shape, np.nan), np.full(shape, np.nan)
+    for column, value in enumerate(sorted(steps)):
+        modes, numbers, alike = steps[value]
         for row, number in enumerate(numbers):
             if number is not None:
                 frequency[row, column] = modes.frequencies[number]
                 likeness[row, column] = alike[row]
     driven = np.abs(first.drive_forces) > 1e-6 * np.max(np.abs(first.drive_forces))
-    return ModeTracks(
-        request.parameter,
-        unit.symbol,
-        every,
-        own,
-        begun,
-        tuple(
-            ModeTrack(
-                "in plane" if own_label is None else f"({own_label[0]},{own_label[1]})",
-                frequency[row],
-                likeness[row],
-                bool(driven[row]),
-            )
-            for row, own_label in enumerate(first.labels)
-        ),
-        float(np.nanmin(likeness)),
+    return tuple(
+        ModeTrack(
+            "in plane" if label is None else f"({label[0]},{label[1]})",
+            frequency[row],
+            likeness[row],
+            bool(driven[row]),
+        )
+        for row, label in enumerate(first.labels)
     )
 
 
@@ -265,7 +264,7 @@ def _advance(
     first: PlateModes,
     last: float,
     value: float,
-    steps: dict[float, tuple[PlateModes, list[int | None], list[float]]],
+    steps: _Steps,
     halvings: int,
     tell: SayProgress,
 ) -> None:

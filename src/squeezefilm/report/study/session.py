@@ -4,33 +4,41 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import AbstractContextManager
+from dataclasses import KW_ONLY, dataclass
 from pathlib import Path
 
+from squeezefilm.arguments import called_with
 from squeezefilm.from_text import reads_text
 from squeezefilm.quantities import MetrePerVolt
 from squeezefilm.report.study.terminal import TerminalExaminer, ask_acknowledgement
-from squeezefilm.study.conduct.terminal_run import open_study, run_session
+from squeezefilm.study.conduct.terminal_run import Desk, open_study, run_session
 from squeezefilm.study.conduct.trial_by_trial import Examiner
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class SessionRequest:
+    """What `run_study` is asked for."""
+
+    design: str | Path
+    store: str | Path
+    participant: str | None = None
+    _: KW_ONLY
+    examiner: Examiner | None = None
+    drive: str = "none"
+    amplitude_per_pickup: MetrePerVolt | None = None
+    conditions: Path | None = None
+    consent: bool = False
+    acknowledge: Callable[[str], bool] = ask_acknowledgement
+    seed: int = 0
+    station: int = 0
+    stations: int = 1
+    tell: Callable[[str], None] = print
+    progress: Callable[[], AbstractContextManager[Callable[[str], None]]] | None = None
+
+
 @reads_text
-def run_study(
-    design: str | Path,
-    store: str | Path,
-    participant: str | None = None,
-    *,
-    examiner: Examiner | None = None,
-    drive: str = "none",
-    amplitude_per_pickup: MetrePerVolt | None = None,
-    conditions: Path | None = None,
-    consent: bool = False,
-    acknowledge: Callable[[str], bool] = ask_acknowledgement,
-    seed: int = 0,
-    station: int = 0,
-    stations: int = 1,
-    tell: Callable[[str], None] = print,
-    progress: Callable[[], AbstractContextManager[Callable[[str], None]]] | None = None,
-) -> str:
+@called_with(SessionRequest)
+def run_study(asked: SessionRequest) -> str:
     """Run a session of a study; stopped by Ctrl-C, it goes on later where it stopped. Returns how
     it ended.
 
@@ -38,18 +46,18 @@ def run_study(
     new is enrolled without a `participant`. `examiner` asks the questions: without one, this
     terminal does. The rest, and what is raised, as `open_study` and `run_session`.
     """
-    with open_study(Path(store), design, seed, station, stations) as found:
+    path = Path(asked.store)
+    with open_study(path, asked.design, asked.seed, asked.station, asked.stations) as found:
         planned = found.design
-        asked = examiner or TerminalExaminer(planned.spoken_question, modulus=planned.modulus)
+        examiner = asked.examiner
+        if examiner is None:
+            examiner = TerminalExaminer(planned.spoken_question, modulus=planned.modulus)
         return run_session(
             found,
-            participant,
-            asked,
-            drive=drive,
-            amplitude_per_pickup=amplitude_per_pickup,
-            conditions=conditions,
-            consent=consent,
-            acknowledge=acknowledge,
-            tell=tell,
-            progress=progress,
+            asked.participant,
+            Desk(examiner, asked.acknowledge, asked.tell, asked.progress),
+            drive=asked.drive,
+            amplitude_per_pickup=asked.amplitude_per_pickup,
+            conditions=asked.conditions,
+            consent=asked.consent,
         )

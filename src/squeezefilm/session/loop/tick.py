@@ -112,6 +112,41 @@ def _commanded(arrays: Any, wanted: float, silent: bool) -> tuple[float, int]:
 
 
 @numba.njit(cache=True, nogil=True, error_model="numpy")
+def _wanted(arrays: Any, meant: float) -> tuple[float, bool, int]:
+    """The amplitude wanted at the moment a command is meant for (m), whether the output is to be
+    silent, and flags."""
+    memory, parameters = arrays.memory, arrays.motion_parameters
+    x, vx, _, _, code_x = motion_at(arrays.motion_x, parameters, meant)
+    y, vy, _, _, code_y = motion_at(arrays.motion_y, parameters, meant)
+    if memory[at.SILENCED] != 0.0:
+        return 0.0, True, int(memory[at.SILENCED])
+    if memory[at.TOUCHING] == 0.0:
+        return 0.0, False, column.NOT_TOUCHING
+    if code_x != motion_kernel.FRESH or code_y != motion_kernel.FRESH:
+        return 0.0, False, column.NO_FRESH_SAMPLE
+    speed = math.hypot(vx, vy)
+    wanted = rendered_amplitude(arrays.program, arrays.render_state, x, y, speed, meant)
+    return wanted, False, int(arrays.render_state[layout.S_FLAGS])
+
+
+@numba.njit(cache=True, nogil=True, error_model="numpy")
+def _driven(arrays: Any, command: float) -> tuple[float, float, int]:
+    """The command that may be given (m), its voltage (V), and flags."""
+    volts = math.copysign(
+        interpolated(arrays.drive_amplitude, arrays.drive_voltage, abs(command)), command
+    )
+    top, bottom = (
+        arrays.envelope[compensation_kernel.TOP],
+        arrays.envelope[compensation_kernel.BOTTOM],
+    )
+    # Written so that it refuses a NaN too.
+    if bottom <= command <= top and math.isfinite(volts):
+        return command, volts, 0
+    arrays.compensator[compensation_kernel.AMPLITUDE] = 0.0
+    return 0.0, 0.0, column.REFUSED_COMMAND
+
+
+@numba.njit(cache=True, nogil=True, error_model="numpy")
 def make_tick(arrays: Any, shared: Any, number: int, lateness: float, lost: int) -> int:
     """Make the tick of a number, `lateness` (s) after it was due, with `lost` ones just before.
 
@@ -131,43 +166,14 @@ def make_tick(arrays: Any, shared: Any, number: int, lateness: float, lost: int)
     x, vx, _, _, _ = motion_at(arrays.motion_x, parameters, time)
     y, vy, _, _, _ = motion_at(arrays.motion_y, parameters, time)
     meant = time + settings[at.LEAD]
-    there_x, there_vx, _, _, code_x = motion_at(arrays.motion_x, parameters, meant)
-    there_y, there_vy, _, _, code_y = motion_at(arrays.motion_y, parameters, meant)
-
-    silent, wanted = True, 0.0
-    if memory[at.SILENCED] != 0.0:
-        flags |= int(memory[at.SILENCED])
-    elif memory[at.TOUCHING] == 0.0:
-        flags |= column.NOT_TOUCHING
-        silent = False
-    elif code_x != motion_kernel.FRESH or code_y != motion_kernel.FRESH:
-        flags |= column.NO_FRESH_SAMPLE
-        silent = False
-    else:
-        silent = False
-        speed_there = math.hypot(there_vx, there_vy)
-        wanted = rendered_amplitude(
-            arrays.program, arrays.render_state, there_x, there_y, speed_there, meant
-        )
-        flags |= int(arrays.render_state[layout.S_FLAGS])
+    wanted, silent, why = _wanted(arrays, meant)
 
     amplitude = abs(arrays.compensator[compensation_kernel.AMPLITUDE])
     if math.isfinite(memory[at.REPORTED_AMPLITUDE]):
         amplitude = memory[at.REPORTED_AMPLITUDE]
     command, met = _commanded(arrays, wanted, silent)
-    flags |= met
-    volts = math.copysign(
-        interpolated(arrays.drive_amplitude, arrays.drive_voltage, abs(command)), command
-    )
-    top, bottom = (
-        arrays.envelope[compensation_kernel.TOP],
-        arrays.envelope[compensation_kernel.BOTTOM],
-    )
-    # Written so that it refuses a NaN too.
-    if not (bottom <= command <= top and math.isfinite(volts)):
-        command, volts = 0.0, 0.0
-        arrays.compensator[compensation_kernel.AMPLITUDE] = 0.0
-        flags |= column.REFUSED_COMMAND
+    command, volts, refused = _driven(arrays, command)
+    flags |= why | met | refused
     memory[at.COMMAND] = command
 
     out = arrays.command

@@ -100,12 +100,8 @@ def run_play(
     with (
         contextlib.closing(open_stream(drive)) as stream,
         TraceWriter(trace, COLUMNS, metadata) as writer,
-        _interruptible() as pressed,
+        _interruptible(until) as interrupted,
     ):
-
-        def interrupted() -> bool:
-            return pressed() or (until is not None and until())
-
         loop = LoopProcess(plan.loop)
         link = Link(stream, lambda: loop.time)
         host = DeviceHost(link)
@@ -118,13 +114,8 @@ def run_play(
             loop.start()
             try:
                 with contextlib.nullcontext() if plan.twin else _preferred():
-                    try:
+                    with _stopping(host):
                         ending, message = _played(player, loop, duration, interrupted, show)
-                    except BaseException:
-                        # A full disk, say; should the device not hear it, its watchdog is left.
-                        with contextlib.suppress(DeviceError):
-                            host.stop()
-                        raise
                     player.end(ending, time.sleep, message)
             finally:
                 report = loop.stop()
@@ -207,6 +198,18 @@ _FAULTS: dict[Fault, str] = {
 
 
 @contextlib.contextmanager
+def _stopping(host: DeviceHost) -> Iterator[None]:
+    """Stop the device where something nobody expected ends what plays."""
+    try:
+        yield
+    except BaseException:
+        # A full disk, say; should the device not hear it, its watchdog is left.
+        with contextlib.suppress(DeviceError):
+            host.stop()
+        raise
+
+
+@contextlib.contextmanager
 def _collected() -> Iterator[None]:
     """`collect_garbage_first`, and everything again afterwards."""
     collect_garbage_first()
@@ -235,11 +238,15 @@ def _preferred() -> Iterator[None]:
 
 
 @contextlib.contextmanager
-def _interruptible() -> Iterator[Callable[[], bool]]:
-    """Whether Ctrl-C was pressed, instead of an exception in the middle of something."""
+def _interruptible(until: Callable[[], bool] | None) -> Iterator[Callable[[], bool]]:
+    """Whether Ctrl-C was pressed (no exception in the middle of something), or `until` is true."""
     pressed = threading.Event()
+
+    def interrupted() -> bool:
+        return pressed.is_set() or (until is not None and until())
+
     if threading.current_thread() is not threading.main_thread():
-        yield pressed.is_set
+        yield interrupted
         return
 
     def note(_: int, __: FrameType | None) -> None:
@@ -247,7 +254,7 @@ def _interruptible() -> Iterator[Callable[[], bool]]:
 
     before = {number: signal.signal(number, note) for number in (signal.SIGINT, signal.SIGTERM)}
     try:
-        yield pressed.is_set
+        yield interrupted
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)

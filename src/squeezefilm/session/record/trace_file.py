@@ -30,7 +30,6 @@ _CRC = struct.Struct("<I")
 ROW_HEAD = struct.Struct("<I")
 CLOSING = struct.Struct("<QQ")
 HEADER_SIZE = _HEADER.size
-BLOCK_OVERHEAD = _BLOCK.size + _CRC.size
 
 
 class BlockKind(IntEnum):

@@ -23,7 +23,7 @@ import numpy as np
 
 from squeezefilm.bench.play import device_stream
 from squeezefilm.bench.resonance_sweep import sweep_resonance
-from squeezefilm.bench.setup import PlaySetup, play_setup
+from squeezefilm.bench.setup import KnownDevice, PlaySetup, play_setup
 from squeezefilm.chain.prediction import predict
 from squeezefilm.device.host import DeviceHost
 from squeezefilm.device.serial_ports import SerialDrive
@@ -195,13 +195,12 @@ class Bench:
         return self._display
 
     def _setup(self, stimulus: Stimulus) -> PlaySetup:
+        twin = self._orders.drive == "twin"
         return play_setup(
             self._loaded(),
             TextureFile(stimulus.surface(), stimulus.name),
-            sensor=LVDT_10_KHZ,
+            device=KnownDevice(LVDT_10_KHZ, self._amplitude_per_pickup, twin=twin),
             rate=self._orders.rate,
-            amplitude_per_pickup=self._amplitude_per_pickup,
-            twin=self._orders.drive == "twin",
         )
 
     def _streaming(self, finger: str) -> str:

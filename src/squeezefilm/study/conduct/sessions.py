@@ -62,15 +62,7 @@ def begin_session(
         raise InputError(f"participant {participant} has answered every trial; enrol another")
     conditions.require_consent()
     identity = device.identity()
-    if exposure is None and identity.name != "none":
-        raise InputError(
-            "the exposure to airborne ultrasound was not computed; a session with a device needs it"
-        )
-    if exposure is not None and not acknowledged:
-        raise InputError(
-            f"the exposure to airborne ultrasound was not acknowledged. {exposure.statement} "
-            "Show it and acknowledge it (--acknowledge-ultrasound), or lower voltage or duration"
-        )
+    _require_acknowledged(exposure, acknowledged, driven=identity.name != "none")
     verification = device.verify_device()
     if not verification.passed:
         store.add("verification", _verification_row(None, "before", verification))
@@ -99,6 +91,19 @@ def begin_session(
         insert(write, "session", row)
         insert(write, "verification", _verification_row(session, "before", verification))
     return session
+
+
+def _require_acknowledged(exposure: Exposure | None, acknowledged: bool, driven: bool) -> None:
+    """Refuse a driven device whose exposure is not known, and one that was not acknowledged."""
+    if exposure is None and driven:
+        raise InputError(
+            "the exposure to airborne ultrasound was not computed; a session with a device needs it"
+        )
+    if exposure is not None and not acknowledged:
+        raise InputError(
+            f"the exposure to airborne ultrasound was not acknowledged. {exposure.statement} "
+            "Show it and acknowledge it (--acknowledge-ultrasound), or lower voltage or duration"
+        )
 
 
 def end_session(store: StudyStore, session: str, device: StudyDevice) -> DeviceVerification:

@@ -6,6 +6,7 @@ import contextlib
 import dataclasses
 from collections.abc import Callable
 from contextlib import AbstractContextManager
+from dataclasses import dataclass
 from pathlib import Path
 
 from squeezefilm import config
@@ -22,6 +23,23 @@ from squeezefilm.study.design.study_design import load_design
 from squeezefilm.study.design.trials import expected_duration
 from squeezefilm.study.record.deletion import remove_rows
 from squeezefilm.study.record.store import StudyStore
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Desk:
+    """How people are spoken to where a session is held.
+
+    Attributes:
+        examiner: asks the participant.
+        acknowledge: is shown the statement on airborne ultrasound, and says whether it may go on.
+        tell: is told who was enrolled.
+        progress: shows what goes on while it is open; it is closed whenever anybody is asked.
+    """
+
+    examiner: Examiner
+    acknowledge: Callable[[str], bool]
+    tell: Callable[[str], None] = print
+    progress: Callable[[], AbstractContextManager[SayProgress]] | None = None
 
 
 def open_study(
@@ -48,33 +66,24 @@ def open_study(
 def run_session(
     store: StudyStore,
     participant: str | None,
-    examiner: Examiner,
+    desk: Desk,
     *,
     drive: str = "none",
     amplitude_per_pickup: MetrePerVolt | None = None,
     conditions: Path | None = None,
     consent: bool = False,
-    acknowledge: Callable[[str], bool],
-    tell: Callable[[str], None] = print,
-    progress: Callable[[], AbstractContextManager[SayProgress]] | None = None,
 ) -> str:
     """One session on the display that the participant's next trial needs. Returns how it ended.
 
     `drive` is "none", "rehearsal" (the twin in this process, on a virtual clock), "twin" (behind a
     port, in real time) or "serial:PORT", whose pickup gives `amplitude_per_pickup` (m/V; None if
-    not calibrated). Without a participant somebody new is enrolled and named by `tell`; not so if
-    the session cannot start.
-    `conditions` is a TOML file of `SessionConditions`; `consent` counts beside what it says.
-    `acknowledge` is shown the statement on airborne ultrasound. `progress` shows what goes on
-    while it is open; it is closed whenever anybody is asked. Raises what `begin_session` and
-    `conduct` raise.
+    not calibrated). Without a participant somebody new is enrolled and named by `desk.tell`; not so
+    if the session cannot start.
+    `conditions` is a TOML file of `SessionConditions`; `consent` counts beside what it says. Raises
+    what `begin_session` and `conduct` raise.
     """
-    sitting = SessionConditions(consent=consent)
-    if conditions is not None:
-        sitting = config.load(SessionConditions, conditions)
-        sitting = dataclasses.replace(sitting, consent=sitting.consent or consent)
-    sitting.require_consent()
-    shown = progress or (lambda: contextlib.nullcontext(lambda _: None))
+    sitting = _sitting(conditions, consent)
+    shown = desk.progress or (lambda: contextlib.nullcontext(lambda _: None))
     who = participant or store.enrol()
     with contextlib.ExitStack() as closing:
         try:
@@ -85,7 +94,7 @@ def run_session(
                 device, exposed = _device(
                     drive, store, display, amplitude_per_pickup, step, closing
                 )
-            acknowledged = exposed is not None and acknowledge(exposed.statement)
+            acknowledged = exposed is not None and desk.acknowledge(exposed.statement)
             with shown() as step:
                 if exposed is not None:
                     step("the device is verified: keep fingers off")
@@ -96,10 +105,10 @@ def run_session(
             if participant is None:
                 remove_rows(store, who)
             raise
-        tell(f"participant {who}: go on with --participant {who}")
+        desk.tell(f"participant {who}: go on with --participant {who}")
         run = StudyRun(store, session)
         try:
-            count = conduct(run, device, examiner)
+            count = conduct(run, device, desk.examiner)
         except KeyboardInterrupt:
             # Stopped by a person: what was answered up to here deserves its verification too.
             end_session(store, session, device)
@@ -111,6 +120,16 @@ def run_session(
     if run.state == "display changes":
         said += f"; next display: {display_wanted(store, who)}"
     return said
+
+
+def _sitting(conditions: Path | None, consent: bool) -> SessionConditions:
+    """The conditions in a file, if any, with `consent` beside it; refused without consent."""
+    sitting = SessionConditions(consent=consent)
+    if conditions is not None:
+        sitting = config.load(SessionConditions, conditions)
+        sitting = dataclasses.replace(sitting, consent=sitting.consent or consent)
+    sitting.require_consent()
+    return sitting
 
 
 def _device(

@@ -208,12 +208,25 @@ def _display_trials(
     if design.adaptive:
         _adaptive_trials(design, display, place, participant, seed, found)
         return
+    for block, queue in enumerate(_blocks(design, place, participant, seed)):
+        for position, (phase, one_condition, answer) in enumerate(queue):
+            rest = design.break_between_blocks if position == 0 and block else 0.0
+            add(block + 1, phase, one_condition, max(rest, pause), answer)
+            pause = 0.0
+
+
+def _blocks(
+    design: StudyDesign, place: int, participant: int, seed: int
+) -> list[list[tuple[Phase, Condition, str]]]:
+    """What each block presents, in its order: the repetitions, and catch trials between them."""
+    every = conditions(design)
     rows = orders(
         len(every), design.blocks * design.repetitions, participant, seed + place, design.order
     )
     spread = _random(seed, _SPREAD, participant, place)
     catches = [one for one in design.catch for _ in range(one.count)]
     where = spread.integers(0, design.blocks, len(catches))
+    found = []
     for block in range(design.blocks):
         mine = rows[block * design.repetitions : (block + 1) * design.repetitions]
         queue: list[tuple[Phase, Condition, str]] = [
@@ -223,10 +236,8 @@ def _display_trials(
             # Never the first trial of a block: people are still settling.
             at = int(spread.integers(1, len(queue) + 1))
             queue.insert(at, ("catch", design.catch_condition(one), one.answer))
-        for position, (phase, one_condition, answer) in enumerate(queue):
-            rest = design.break_between_blocks if position == 0 and block else 0.0
-            add(block + 1, phase, one_condition, max(rest, pause), answer)
-            pause = 0.0
+        found.append(queue)
+    return found
 
 
 def _adaptive_trials(

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from squeezefilm.arguments import called_with
 from squeezefilm.errors import ConvergenceError, InputError
 from squeezefilm.quantities import Dimensionless, DimensionlessArray, IntArray
 from squeezefilm.results import Result, stamp, to_json
@@ -181,22 +182,28 @@ class IdentificationAnalysis(Result):
         ]
 
 
-def analyze_identification(
-    participant: ArrayLike,
-    stimulus: ArrayLike,
-    choice: ArrayLike,
-    labels: Sequence[str],
-    *,
-    name: str = "identification",
-    origin: str = "not stated",
-    response_time: ArrayLike | None = None,
-    exploration: Mapping[str, ArrayLike] | None = None,
-    mixed: bool = False,
-    level: Dimensionless = 0.95,
-    resamples: int = 1000,
-    seed: int = 0,
-    progress: Callable[[str], None] | None = None,
-) -> IdentificationAnalysis:
+@dataclass(frozen=True, slots=True, eq=False)
+class IdentificationRequest:
+    """What `analyze_identification` is asked for."""
+
+    participant: ArrayLike
+    stimulus: ArrayLike
+    choice: ArrayLike
+    labels: Sequence[str]
+    _: KW_ONLY
+    name: str = "identification"
+    origin: str = "not stated"
+    response_time: ArrayLike | None = None
+    exploration: Mapping[str, ArrayLike] | None = None
+    mixed: bool = False
+    level: Dimensionless = 0.95
+    resamples: int = 1000
+    seed: int = 0
+    progress: Callable[[str], None] | None = None
+
+
+@called_with(IdentificationRequest)
+def analyze_identification(asked: IdentificationRequest) -> IdentificationAnalysis:
     """Analyse identification trials, one row a trial; leave out practice and catch trials before.
 
     Args:
@@ -216,56 +223,57 @@ def analyze_identification(
         InputError: fewer than two labels, arrays that do not fit, or no trial. What the data are
             too few for is None in the result, with the reason in `notes`.
     """
-    tell = progress or (lambda _: None)
-    k = len(labels)
+    tell = asked.progress or (lambda _: None)
+    names = tuple(asked.labels)
+    k = len(names)
     if k < 2:
         raise InputError(f"{k} labels cannot be confused; at least 2 are wanted")
-    names = tuple(labels)
     tell("counting")
-    _, counts = participant_counts(participant, stimulus, choice, k, k)
-    people = counts.shape[0]
-    matrix = ConfusionMatrix(counts.sum(axis=0), names, names)
+    _, counts = participant_counts(asked.participant, asked.stimulus, asked.choice, k, k)
+    return _analysis(asked, counts, ConfusionMatrix(counts.sum(axis=0), names, names), tell)
+
+
+def _analysis(
+    asked: IdentificationRequest,
+    counts: IntArray,
+    matrix: ConfusionMatrix,
+    tell: Callable[[str], None],
+) -> IdentificationAnalysis:
+    """What follows from every participant's counts, their sum and the trials themselves."""
+    names, level, resamples, seed = matrix.stimuli, asked.level, asked.resamples, asked.seed
     notes: list[str] = []
     tell("intervals and tests")
-    right, trials = matrix.correct, matrix.trials
-    intervals = [
-        made(right, trials, level)
-        for made in (wilson_interval, jeffreys_interval, clopper_pearson_interval)
-    ]
-    if people > 1:
-        intervals.append(participant_interval(counts, level, resamples, seed))
-    else:
-        notes.append("intervals over people: there is one participant; those shown are over trials")
+    intervals = _intervals(counts, matrix, asked, notes)
     tell("information transfer")
     information = information_transfer(counts, level, resamples, seed)
     tell("d′ and choice model")
-    sensitivity, choice_fit, points = _models(counts, matrix, level, resamples, seed, notes)
+    sensitivity, choice_fit, points = _models(counts, matrix, asked, notes)
     tell("response times and exploration")
-    person = np.unique(np.asarray(participant), return_inverse=True)[1]
-    kind = np.asarray(stimulus, dtype=np.int64)
+    person = np.unique(np.asarray(asked.participant), return_inverse=True)[1]
+    kind = np.asarray(asked.stimulus, dtype=np.int64)
     times: tuple[ResponseTimeSummary, ...] = ()
     ex_gaussian = None
-    if response_time is not None:
-        times = response_time_summary(person, kind, response_time, names, level)
+    if asked.response_time is not None:
+        times = response_time_summary(person, kind, asked.response_time, names, level)
         try:
-            ex_gaussian = fit_ex_gaussian(response_time, seed)
+            ex_gaussian = fit_ex_gaussian(asked.response_time, seed)
         except (InputError, ConvergenceError) as error:
             notes.append(f"ex-Gaussian: {error}")
     explored = {
         key: condition_means(person, kind, values, names, level)
-        for key, values in (exploration or {}).items()
+        for key, values in (asked.exploration or {}).items()
     }
     fitted = None
-    if mixed:
+    if asked.mixed:
         tell("mixed models")
-        fitted = mixed_model(person, kind, kind == np.asarray(choice), names)
+        fitted = mixed_model(person, kind, kind == np.asarray(asked.choice), names)
     tell("posterior")
     return IdentificationAnalysis(
-        name=name,
-        origin=origin,
+        name=asked.name,
+        origin=asked.origin,
         matrix=matrix,
         counts=counts,
-        intervals=tuple(intervals),
+        intervals=intervals,
         by_stimulus=_by_stimulus(matrix, level),
         participant_correct=np.trace(counts, axis1=1, axis2=2) / counts.sum(axis=(1, 2)),
         chance_p=chance_test(matrix),
@@ -284,6 +292,22 @@ def analyze_identification(
     )
 
 
+def _intervals(
+    counts: IntArray, matrix: ConfusionMatrix, asked: IdentificationRequest, notes: list[str]
+) -> tuple[Interval, ...]:
+    """Of the proportion correct: over trials, and over people where there are two or more."""
+    level = asked.level
+    intervals = [
+        made(matrix.correct, matrix.trials, level)
+        for made in (wilson_interval, jeffreys_interval, clopper_pearson_interval)
+    ]
+    if counts.shape[0] > 1:
+        intervals.append(participant_interval(counts, level, asked.resamples, asked.seed))
+    else:
+        notes.append("intervals over people: there is one participant; those shown are over trials")
+    return tuple(intervals)
+
+
 def _by_stimulus(matrix: ConfusionMatrix, level: float) -> tuple[StimulusCorrect, ...]:
     found = []
     for j, name in enumerate(matrix.stimuli):
@@ -296,16 +320,11 @@ def _by_stimulus(matrix: ConfusionMatrix, level: float) -> tuple[StimulusCorrect
 
 
 def _models(
-    counts: IntArray,
-    matrix: ConfusionMatrix,
-    level: float,
-    resamples: int,
-    seed: int,
-    notes: list[str],
+    counts: IntArray, matrix: ConfusionMatrix, asked: IdentificationRequest, notes: list[str]
 ) -> tuple[OrderedSensitivity | None, ChoiceModel | None, PerceptualMap | None]:
     sensitivity, choice, points = None, None, None
     try:
-        sensitivity = ordered_sensitivity(counts, level, resamples, seed)
+        sensitivity = ordered_sensitivity(counts, asked.level, asked.resamples, asked.seed)
         if sensitivity.corrected:
             notes.append(
                 "d′: some stimuli were never confused, or an answer never given; one trial per "

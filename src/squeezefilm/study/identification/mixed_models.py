@@ -10,12 +10,13 @@ from __future__ import annotations
 import warnings
 from dataclasses import dataclass
 from types import ModuleType
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import Dimensionless, DimensionlessArray, require
+from squeezefilm.quantities import Dimensionless, DimensionlessArray, FloatArray, IntArray, require
 
 _MOST_TRIALS = 50_000
 
@@ -80,43 +81,20 @@ def mixed_model(
     """
     api = _statsmodels()
     require("prior_spread", prior_spread, above=0.0)
-    who, people = np.unique(np.asarray(participant), return_inverse=True)
-    kind, right = np.asarray(stimulus, dtype=np.int64), np.asarray(correct, dtype=float)
-    if people.ndim != 1 or not people.shape == kind.shape == right.shape:
-        raise InputError(
-            "participant, stimulus and correct must have one value a trial; their shapes are "
-            f"{people.shape}, {kind.shape} and {right.shape}"
-        )
-    if who.size < 2 or kind.size > _MOST_TRIALS:
-        raise InputError(
-            f"{who.size} participants with {kind.size} trials cannot be fitted; at least 2 people "
-            f"and at most {_MOST_TRIALS} trials are wanted (take a part of the people)"
-        )
-    count = np.bincount(kind, minlength=len(names))
-    if count.size != len(names) or np.any(count == 0):
-        raise InputError(f"trials by stimulus are {count.tolist()}; each of {names} needs some")
-    share = np.bincount(kind, right, len(names)) / count
-    mixed = np.flatnonzero((share > 0) & (share < 1))
+    people, kind, right = _trials(participant, stimulus, correct)
+    count = int(people.max()) + 1
+    mixed = _mixed(kind, right, names)
     fixed = (kind[:, None] == np.arange(len(names))).astype(float)
-    random = (people[:, None] == np.arange(who.size)).astype(float)
+    random = (people[:, None] == np.arange(count)).astype(float)
     bayes = api.BinomialBayesMixedGLM(
-        right, fixed, random, np.zeros(who.size, dtype=int), vcp_p=1.0, fe_p=prior_spread
+        right, fixed, random, np.zeros(count, dtype=int), vcp_p=1.0, fe_p=prior_spread
     ).fit_vb()
     spread, spread_error = float(bayes.vcp_mean[0]), float(bayes.vcp_sd[0])
     average, error = np.full(len(names), np.nan), np.full(len(names), np.nan)
     correlation = float("nan")
     if mixed.size:
         use = np.isin(kind, mixed)
-        with warnings.catch_warnings():
-            # It warns of designs without a constant column; the columns here sum to one.
-            warnings.simplefilter("ignore")
-            fitted = api.GEE(
-                right[use],
-                fixed[use][:, mixed],
-                people[use],
-                family=api.families.Binomial(),
-                cov_struct=api.cov_struct.Exchangeable(),
-            ).fit(cov_type="bias_reduced")
+        fitted = _averaged(right[use], fixed[use][:, mixed], people[use])
         average[mixed], error[mixed] = fitted.params, fitted.bse
         correlation = float(np.squeeze(fitted.cov_struct.dep_params))
     log_odds = np.asarray(bayes.fe_mean, dtype=float)
@@ -135,6 +113,51 @@ def mixed_model(
         tuple(names[k] for k in range(len(names)) if k not in mixed),
         "logit(right) = stimulus + participant; variational Bayes, and GEE (statsmodels)",
     )
+
+
+def _trials(
+    participant: ArrayLike, stimulus: ArrayLike, correct: ArrayLike
+) -> tuple[IntArray, IntArray, FloatArray]:
+    """Of each trial the numbers of participant and stimulus, and whether the answer was right.
+    Raises `InputError` for arrays that do not fit, one participant or too many trials."""
+    who, people = np.unique(np.asarray(participant), return_inverse=True)
+    kind, right = np.asarray(stimulus, dtype=np.int64), np.asarray(correct, dtype=float)
+    if people.ndim != 1 or not people.shape == kind.shape == right.shape:
+        raise InputError(
+            "participant, stimulus and correct must have one value a trial; their shapes are "
+            f"{people.shape}, {kind.shape} and {right.shape}"
+        )
+    if who.size < 2 or kind.size > _MOST_TRIALS:
+        raise InputError(
+            f"{who.size} participants with {kind.size} trials cannot be fitted; at least 2 people "
+            f"and at most {_MOST_TRIALS} trials are wanted (take a part of the people)"
+        )
+    return people, kind, right
+
+
+def _mixed(kind: IntArray, right: FloatArray, names: tuple[str, ...]) -> IntArray:
+    """Numbers of the stimuli that were answered both rightly and wrongly. Raises `InputError` where
+    one has no trial."""
+    count = np.bincount(kind, minlength=len(names))
+    if count.size != len(names) or np.any(count == 0):
+        raise InputError(f"trials by stimulus are {count.tolist()}; each of {names} needs some")
+    share = np.bincount(kind, right, len(names)) / count
+    return np.flatnonzero((share > 0) & (share < 1))
+
+
+def _averaged(right: FloatArray, fixed: FloatArray, people: IntArray) -> Any:
+    """The population-averaged model, as statsmodels fitted it."""
+    api = _statsmodels()
+    with warnings.catch_warnings():
+        # It warns of designs without a constant column; the columns here sum to one.
+        warnings.simplefilter("ignore")
+        return api.GEE(
+            right,
+            fixed,
+            people,
+            family=api.families.Binomial(),
+            cov_struct=api.cov_struct.Exchangeable(),
+        ).fit(cov_type="bias_reduced")
 
 
 def _statsmodels() -> ModuleType:

@@ -184,12 +184,7 @@ def power_curve(
         InputError: no sizes or one below 2, fewer than 10 studies, a share not between 0 and 1,
             a cache without a key, or a p value that is not one.
     """
-    sizes = tuple(sorted(set(participants)))
-    if not sizes or sizes[0] < 2 or studies < 10:
-        raise InputError(
-            f"participants = {sizes} with {studies} studies cannot be simulated; at least one size "
-            "of at least 2, and at least 10 studies, are wanted"
-        )
+    sizes = _sizes(participants, studies)
     require_within(STUDIES, studies, "studies")
     require("alpha", alpha, above=0.0, below=1.0)
     require("target", target, above=0.0, below=1.0)
@@ -214,6 +209,17 @@ def power_curve(
         _first_lasting(sizes, power >= target),
         _first_lasting(sizes, low >= target),
     )
+
+
+def _sizes(participants: tuple[int, ...], studies: int) -> tuple[int, ...]:
+    """Numbers of people, rising; refused where they or the studies are too few to simulate."""
+    sizes = tuple(sorted(set(participants)))
+    if not sizes or sizes[0] < 2 or studies < 10:
+        raise InputError(
+            f"participants = {sizes} with {studies} studies cannot be simulated; at least one size "
+            "of at least 2, and at least 10 studies, are wanted"
+        )
+    return sizes
 
 
 def _significant(

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from squeezefilm.errors import InputError
+from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.identification.analysis import IdentificationAnalysis, analyze_identification
 from squeezefilm.study.record.origin import origin_of
 from squeezefilm.study.record.store import StudyStore
@@ -41,18 +42,7 @@ def analyze_study(
                 opened, mixed=mixed, resamples=resamples, seed=seed, progress=progress
             )
     design = store.design
-    if design.task != "match-to-sample":
-        raise InputError(
-            f"'{design.name}' is a study of {design.task}; its confusions are not defined. Export "
-            "it, and fit thresholds with squeezefilm.study.psychometric.fit"
-        )
-    stimuli = [one.name for one in design.stimuli]
-    right = [design.answer_to(one) for one in design.stimuli]
-    if sorted(right) != sorted(design.answers):
-        raise InputError(
-            "an identification needs one right answer for each stimulus and no other answers; "
-            f"stimuli: {', '.join(stimuli)}; answers: {', '.join(design.answers)}"
-        )
+    stimuli, right = _stimuli_and_answers(design)
     store.require_whole()
     rows = [row for row in trial_table(store) if row["phase"] == "main"]
     found = {}
@@ -84,3 +74,21 @@ def analyze_study(
     if not found:
         raise InputError(f"{store.path} has no answered main trial yet; run some first")
     return found
+
+
+def _stimuli_and_answers(design: StudyDesign) -> tuple[list[str], list[str]]:
+    """Names of the stimuli and their right answers. Raises `InputError` for another task, and
+    where the answers are not each the right one to a stimulus."""
+    if design.task != "match-to-sample":
+        raise InputError(
+            f"'{design.name}' is a study of {design.task}; its confusions are not defined. Export "
+            "it, and fit thresholds with squeezefilm.study.psychometric.fit"
+        )
+    stimuli = [one.name for one in design.stimuli]
+    right = [design.answer_to(one) for one in design.stimuli]
+    if sorted(right) != sorted(design.answers):
+        raise InputError(
+            "an identification needs one right answer for each stimulus and no other answers; "
+            f"stimuli: {', '.join(stimuli)}; answers: {', '.join(design.answers)}"
+        )
+    return stimuli, right

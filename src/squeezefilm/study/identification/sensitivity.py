@@ -16,7 +16,13 @@ from scipy import stats
 from scipy.special import ndtr
 
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import Dimensionless, DimensionlessArray, FloatArray, require
+from squeezefilm.quantities import (
+    Dimensionless,
+    DimensionlessArray,
+    FloatArray,
+    IntArray,
+    require,
+)
 from squeezefilm.study.identification.confusion import whole_counts
 from squeezefilm.study.identification.participant_bootstrap import (
     recentred_interval,
@@ -89,32 +95,19 @@ def ordered_sensitivity(
             same answer to everything, or a level not between 0 and 1.
     """
     require("level", level, above=0.0, below=1.0)
-    whole = whole_counts(counts)
-    whole = whole[None] if whole.ndim == 2 else whole
-    pooled = whole.sum(axis=0)
-    answers, stimuli = pooled.shape
-    if answers < 2 or stimuli < 2:
-        raise InputError(f"{answers} answers to {stimuli} stimuli have no d′; 2 are wanted of each")
-    if np.any(pooled.sum(axis=0) == 0):
-        raise InputError("d′ needs trials of every stimulus; leave out those never presented")
-    if np.count_nonzero(pooled.sum(axis=1)) < 2:
-        raise InputError("d′ needs two answers at least; one and the same was given to everything")
-    n = pooled[None].astype(float)
+    whole = _enough_counts(counts)
+    answers, stimuli = whole.shape[1:]
+    n = whole.sum(axis=0)[None].astype(float)
     criteria, positions, finite = _fit(n)
     corrected = not bool(finite[0])
     if corrected:
         n = n + 1.0 / answers
         criteria, positions, _ = _fit(n)
-    p = _probabilities(criteria, positions)
-    covariance = np.linalg.inv(_information(criteria, positions, n.sum(axis=1))[0])
-    to_d = np.zeros((stimuli - 1, answers + stimuli - 2))
-    to_d[:, answers - 1 :] = np.eye(stimuli - 1) - np.eye(stimuli - 1, k=-1)
-    error = np.sqrt(np.diag(to_d @ covariance @ to_d.T))
+    error = _standard_error(criteria, positions, n.sum(axis=1))
     d_prime = np.diff(positions[0])
     if whole.shape[0] > 1:
         again = resampled_counts(whole, resamples, seed).astype(float)
-        again = again[np.all(again.sum(axis=1) > 0, axis=1)]
-        resampled = _bootstrapped(again, corrected)
+        resampled = _bootstrapped(again[np.all(again.sum(axis=1) > 0, axis=1)], corrected)
         bounds = [
             recentred_interval(float(d), column, whole.shape[0], level)
             for d, column in zip(d_prime, resampled.T, strict=True)
@@ -124,12 +117,8 @@ def ordered_sensitivity(
     else:
         z = float(stats.norm.isf((1 - level) / 2))
         low, high, method = d_prime - z * error, d_prime + z * error, "Fisher information"
-    share = n / n.sum(axis=1, keepdims=True)
-    some = n > 0
-    log_p = np.log(np.where(some, p, 1.0))
-    likelihood = float((n * log_p).sum())
+    likelihood, deviance = _goodness(n, _probabilities(criteria, positions))
     freedom = (answers - 1) * stimuli - (answers + stimuli - 2)
-    deviance = 2 * float((n * (np.log(np.where(some, share, 1.0)) - log_p)).sum())
     # The trials added are no answers of anybody, and no normal tail describes them.
     fits = freedom > 0 and not corrected
     return OrderedSensitivity(
@@ -148,6 +137,38 @@ def ordered_sensitivity(
         float(stats.chi2.sf(deviance, freedom)) if fits else float("nan"),
         likelihood,
     )
+
+
+def _enough_counts(counts: ArrayLike) -> IntArray:
+    """Counts, shape (participants, answers, stimuli), refused where they have no d′."""
+    whole = whole_counts(counts)
+    whole = whole[None] if whole.ndim == 2 else whole
+    pooled = whole.sum(axis=0)
+    answers, stimuli = pooled.shape
+    if answers < 2 or stimuli < 2:
+        raise InputError(f"{answers} answers to {stimuli} stimuli have no d′; 2 are wanted of each")
+    if np.any(pooled.sum(axis=0) == 0):
+        raise InputError("d′ needs trials of every stimulus; leave out those never presented")
+    if np.count_nonzero(pooled.sum(axis=1)) < 2:
+        raise InputError("d′ needs two answers at least; one and the same was given to everything")
+    return whole
+
+
+def _standard_error(criteria: FloatArray, positions: FloatArray, totals: FloatArray) -> FloatArray:
+    """Of the d′ of neighbours, from the Fisher information of the first of a batch."""
+    cuts, steps = criteria.shape[1], positions.shape[1] - 1
+    covariance = np.linalg.inv(_information(criteria, positions, totals)[0])
+    to_d = np.zeros((steps, cuts + steps))
+    to_d[:, cuts:] = np.eye(steps) - np.eye(steps, k=-1)
+    return np.asarray(np.sqrt(np.diag(to_d @ covariance @ to_d.T)))
+
+
+def _goodness(n: FloatArray, p: FloatArray) -> tuple[float, float]:
+    """ln likelihood of counts with probabilities, and G² against the saturated model."""
+    some, share = n > 0, n / n.sum(axis=1, keepdims=True)
+    log_p = np.log(np.where(some, p, 1.0))
+    deviance = 2 * float((n * (np.log(np.where(some, share, 1.0)) - log_p)).sum())
+    return float((n * log_p).sum()), deviance
 
 
 def _bootstrapped(counts: FloatArray, corrected: bool) -> FloatArray:

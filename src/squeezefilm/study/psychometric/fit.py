@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from squeezefilm.arguments import called_with
 from squeezefilm.errors import InputError
 from squeezefilm.from_text import reads_text
 from squeezefilm.quantities import Dimensionless, FloatArray, require
@@ -28,6 +29,7 @@ from squeezefilm.study.psychometric.function import (
 )
 from squeezefilm.study.psychometric.posterior import (
     PARAMETERS,
+    Answered,
     PsychometricPosterior,
     coarse_maxima,
     grid_posterior,
@@ -99,20 +101,26 @@ class PsychometricFit(Result):
         return {"intensity": self.intensity, "positive": self.positive, "trials": self.trials}
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class FitRequest:
+    """What `fit_psychometric` is asked for."""
+
+    intensity: ArrayLike
+    positive: ArrayLike
+    trials: ArrayLike | None = None
+    _: KW_ONLY
+    shape: Shape = "logistic"
+    axis: Axis = "linear"
+    guess_rate: Dimensionless | None = 0.5
+    prior: PsychometricPrior | None = None
+    level: Dimensionless = 0.95
+    replicates: int = 999
+    seed: int = 0
+
+
 @reads_text
-def fit_psychometric(
-    intensity: ArrayLike,
-    positive: ArrayLike,
-    trials: ArrayLike | None = None,
-    *,
-    shape: Shape = "logistic",
-    axis: Axis = "linear",
-    guess_rate: Dimensionless | None = 0.5,
-    prior: PsychometricPrior | None = None,
-    level: Dimensionless = 0.95,
-    replicates: int = 999,
-    seed: int = 0,
-) -> PsychometricFit:
+@called_with(FitRequest)
+def fit_psychometric(asked: FitRequest) -> PsychometricFit:
     """Fit a psychometric function to answers.
 
     Args:
@@ -132,47 +140,31 @@ def fit_psychometric(
         InputError: data that are no counts, of unlike shape or empty, or a value outside its
             range.
     """
-    code = shape_code(shape, axis)
+    axis, level, guess_rate = asked.axis, asked.level, asked.guess_rate
+    code = shape_code(asked.shape, axis)
     require("level", level, above=0.0, below=1.0)
     if guess_rate is not None:
         require("guess_rate", guess_rate, at_least=0.0, at_most=0.5)
-    places, k, n = _by_place(intensity, positive, trials)
-    x = on_axis(places, axis)
-    prior = PsychometricPrior.for_stimuli(places, axis) if prior is None else prior
-    low, high = prior.bounds(axis)
-    free = np.array([True, True, True, guess_rate is None])
-    beta = np.array([*prior.lapse_rate, *prior.guess_rate])
-    if guess_rate is not None:
-        low[kernel.GUESS] = high[kernel.GUESS] = guess_rate
-        # A known rate has no prior; without a bound γ + λ could reach 1.
-        beta[2:] = 1.0
-        high[kernel.LAPSE] = min(high[kernel.LAPSE], 0.99 - guess_rate)
-    likelihood = PenalisedLikelihood(code, free, low, high, beta, x, k, n)
-    starts = coarse_maxima(code, axis, prior, guess_rate, x, k, n)
+    places, k, n = _by_place(asked.intensity, asked.positive, asked.trials)
+    prior = PsychometricPrior.for_stimuli(places, axis) if asked.prior is None else asked.prior
+    answered = Answered(code, axis, prior, guess_rate, on_axis(places, axis), k, n)
+    likelihood = _penalised(answered)
+    starts = coarse_maxima(answered)
     best, _ = max((likelihood.maximum(start) for start in starts), key=lambda found: found[1])
-    posterior = grid_posterior(code, axis, prior, guess_rate, x, k, n, best)
-    fitted = tuple(name for name, is_free in zip(PARAMETERS, free, strict=True) if is_free)
-    likeliest = kernel.log_density(code, best, np.ones(4), x, k, n)
+    posterior = grid_posterior(answered, best)
+    fitted = PARAMETERS if guess_rate is None else PARAMETERS[: kernel.GUESS]
+    likeliest = kernel.log_density(code, best, np.ones(4), answered.x, k, n)
     deviance = max(2.0 * (kernel.saturated(k, n) - likeliest), 0.0)
     bootstrap, p, confidence = None, None, {}
-    if replicates:
-        bootstrap = simulate_bootstrap(likelihood, best, replicates, seed)
+    if asked.replicates:
+        bootstrap = simulate_bootstrap(likelihood, best, asked.replicates, asked.seed)
         p = bootstrap.goodness_of_fit(deviance)
         confidence = {
             name: _in_own_unit(at, inverted_interval(likelihood, bootstrap, at, level), axis)
-            for at, name in enumerate(PARAMETERS)
-            if free[at]
+            for at, name in enumerate(fitted)
         }
-    credible = {name: posterior.interval(name, level) for name in fitted}
     return PsychometricFit(
-        function=PsychometricFunction(
-            shape,
-            float(np.exp(best[0])) if axis == "log" else float(best[0]),
-            float(np.exp(best[1])),
-            float(best[3]),
-            float(best[2]),
-            axis,
-        ),
+        function=_function(asked.shape, axis, best),
         intensity=places,
         positive=k,
         trials=n,
@@ -180,13 +172,34 @@ def fit_psychometric(
         fitted=fitted,
         level=level,
         posterior=posterior,
-        posterior_interval=credible,
+        posterior_interval={name: posterior.interval(name, level) for name in fitted},
         bootstrap=bootstrap,
         bootstrap_interval=confidence,
         deviance=deviance,
         deviance_p=p,
         bounded_by_prior=_bounded(prior, posterior, confidence),
     )
+
+
+def _penalised(answered: Answered) -> PenalisedLikelihood:
+    """The likelihood of the answers with the priors of the rates, within the whole prior."""
+    a, rate = answered, answered.guess_rate
+    low, high = a.prior.bounds(a.axis)
+    beta = np.array([*a.prior.lapse_rate, *a.prior.guess_rate])
+    if rate is not None:
+        low[kernel.GUESS] = high[kernel.GUESS] = rate
+        # A known rate has no prior; without a bound γ + λ could reach 1.
+        beta[2:] = 1.0
+        high[kernel.LAPSE] = min(high[kernel.LAPSE], 0.99 - rate)
+    free = np.array([True, True, True, rate is None])
+    return PenalisedLikelihood(a.code, free, low, high, beta, a.x, a.k, a.n)
+
+
+def _function(shape: Shape, axis: Axis, theta: FloatArray) -> PsychometricFunction:
+    """The function of the kernel's θ."""
+    threshold = float(np.exp(theta[0])) if axis == "log" else float(theta[0])
+    width, lapse, guess = float(np.exp(theta[1])), float(theta[2]), float(theta[3])
+    return PsychometricFunction(shape, threshold, width, guess, lapse, axis)
 
 
 def _in_own_unit(parameter: int, interval: Interval, axis: Axis) -> Interval:

@@ -8,6 +8,7 @@ the regression of ln number on ln intensity, or by modulus equalisation (Lane, C
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -45,6 +46,30 @@ class PowerLaw:
     degrees_of_freedom: int
 
 
+class _Line(NamedTuple):
+    """One person's ln number over ln intensity, by least squares: slope, value at ln intensity 0,
+    and the sums of dx², of dx · dy and of what is left, squared."""
+
+    slope: float
+    start: float
+    spread: float
+    within: float
+    squares: float
+
+
+def _line(name: str, x: FloatArray, y: FloatArray) -> _Line:
+    """The line of a person. Raises `InputError` where all intensities are the same."""
+    dx, dy = x - x.mean(), y - y.mean()
+    if np.unique(x).size < 2:
+        raise InputError(
+            f"participant '{name}' judged one intensity only; an exponent needs two or more"
+        )
+    spread, within = float(dx @ dx), float(dx @ dy)
+    slope = within / spread
+    start = float(y.mean() - slope * x.mean())
+    return _Line(slope, start, spread, within, float(np.sum((dy - slope * dx) ** 2)))
+
+
 def fit_power_law(
     intensity: ArrayLike,
     estimate: ArrayLike,
@@ -70,31 +95,18 @@ def fit_power_law(
     x, y, who = _logarithms(intensity, estimate, participant)
     require("level", level, above=0.0, below=1.0)
     people = sorted(set(who))
-    slopes, starts, spreads = [], [], []
-    squares, freedom, within = 0.0, 0, 0.0
-    for name in people:
-        own = np.array([one == name for one in who])
-        dx, dy = x[own] - x[own].mean(), y[own] - y[own].mean()
-        spread = float(dx @ dx)
-        if np.unique(x[own]).size < 2:
-            raise InputError(
-                f"participant '{name}' judged one intensity only; an exponent needs two or more"
-            )
-        slope = float(dx @ dy) / spread
-        slopes.append(slope)
-        starts.append(float(y[own].mean() - slope * x[own].mean()))
-        spreads.append(spread)
-        squares += float(np.sum((dy - slope * dx) ** 2))
-        freedom += int(own.sum()) - 2
-        within += float(dx @ dy)
-    exponents = np.array(slopes)
+    names = np.array(who)
+    lines = [_line(name, x[names == name], y[names == name]) for name in people]
+    freedom = x.size - 2 * len(people)
+    exponents = np.array([one.slope for one in lines])
+    squares = sum(one.squares for one in lines)
     residual = float(np.sqrt(squares / freedom)) if freedom > 0 else 0.0
     if len(people) > 1:
         degrees = len(people) - 1
         error = float(exponents.std(ddof=1)) / np.sqrt(len(people))
     else:
         degrees = freedom
-        error = residual / np.sqrt(spreads[0])
+        error = residual / np.sqrt(lines[0].spread)
         if degrees < 1:
             raise InputError("one participant with two trials has no interval; give three or more")
     mean = float(exponents.mean())
@@ -105,8 +117,8 @@ def fit_power_law(
         level=level,
         participants=tuple(people),
         exponents=exponents,
-        moduli=np.exp(np.array(starts)),
-        pooled_exponent=within / sum(spreads),
+        moduli=np.exp(np.array([one.start for one in lines])),
+        pooled_exponent=sum(one.within for one in lines) / sum(one.spread for one in lines),
         residual=residual,
         degrees_of_freedom=degrees,
     )

@@ -30,6 +30,26 @@ _OUTSIDE = 1e-6
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class Answered:
+    """Answers, and the function that is to explain them.
+
+    Attributes:
+        code: of the shape.
+        axis, prior: of the function.
+        guess_rate: where it is known (1); None where it is fitted.
+        x, k, n: places on the axis, answers, trials, shape (places,).
+    """
+
+    code: int
+    axis: Axis
+    prior: PsychometricPrior
+    guess_rate: Dimensionless | None
+    x: FloatArray
+    k: FloatArray
+    n: FloatArray
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class PsychometricPosterior:
     """Marginal posteriors of a psychometric function.
 
@@ -119,23 +139,15 @@ def _index(parameter: str) -> int:
     return PARAMETERS.index(parameter)
 
 
-def coarse_maxima(
-    code: int,
-    axis: Axis,
-    prior: PsychometricPrior,
-    guess_rate: Dimensionless | None,
-    x: FloatArray,
-    k: FloatArray,
-    n: FloatArray,
-) -> FloatArray:
+def coarse_maxima(answered: Answered) -> FloatArray:
     """θ of the likeliest cells of a coarse grid over the whole prior, to start searches from.
 
     One for each sixth of the widths, shape (6, 4): few answers can have a narrow and a wide
     function as local maxima.
     """
-    low, high = _span(prior, guess_rate, axis)
-    cells = _one_guess(_COARSE, guess_rate)
-    nodes, weights, _ = _weigh(code, axis, prior, guess_rate, x, k, n, low, high, cells)
+    low, high = _span(answered)
+    cells = _one_guess(_COARSE, answered.guess_rate)
+    nodes, weights, _ = _weigh(answered, low, high, cells)
     starts = []
     for first in range(0, cells[1], cells[1] // 6):
         band = weights[:, first : first + cells[1] // 6]
@@ -145,32 +157,21 @@ def coarse_maxima(
 
 
 def grid_posterior(
-    code: int,
-    axis: Axis,
-    prior: PsychometricPrior,
-    guess_rate: Dimensionless | None,
-    x: FloatArray,
-    k: FloatArray,
-    n: FloatArray,
-    mode: FloatArray,
-    *,
-    cells: tuple[int, int, int, int] | None = None,
+    answered: Answered, mode: FloatArray, *, cells: tuple[int, int, int, int] | None = None
 ) -> PsychometricPosterior:
     """The posterior of threshold, width, lapse rate and, where it is not known, guess rate.
 
     Args:
-        code: of the shape.
-        axis, prior: of the function.
-        guess_rate: where it is known (1); None where it is fitted.
-        x: places on the axis; k: answers; n: trials; all of shape (places,).
+        answered: the answers, and what is to explain them.
         mode: θ of the largest ln density, shape (4,); the grid never loses it.
         cells: of the last grid along threshold, ln width, lapse rate and guess rate.
     """
-    low, high = _span(prior, guess_rate, axis)
+    guess_rate = answered.guess_rate
+    low, high = _span(answered)
     coarse = _one_guess(_COARSE, guess_rate)
     centre = [_coordinate(at, mode[at]) for at in range(4)]
     for _ in range(_MOST_PASSES):
-        _, weights, _ = _weigh(code, axis, prior, guess_rate, x, k, n, low, high, coarse)
+        _, weights, _ = _weigh(answered, low, high, coarse)
         before = high - low
         for at in range(4):
             marginal = weights.sum(axis=tuple(other for other in range(4) if other != at))
@@ -186,8 +187,8 @@ def grid_posterior(
             break
     fine = (_FINE if guess_rate is not None else _FINE_WITH_GUESS) if cells is None else cells
     fine = _one_guess(fine, guess_rate)
-    _, weights, log_mean = _weigh(code, axis, prior, guess_rate, x, k, n, low, high, fine)
-    edges = []
+    _, weights, log_mean = _weigh(answered, low, high, fine)
+    axis, edges = answered.axis, []
     for at, size in enumerate(fine):
         theta = _theta(at, np.linspace(low[at], high[at], size + 1))
         as_logarithm = at == kernel.LOG_WIDTH or (at == kernel.THRESHOLD and axis == "log")
@@ -212,13 +213,11 @@ def _theta(at: int, coordinate: FloatArray) -> FloatArray:
     return np.asarray(np.sin(coordinate) ** 2 if rate else coordinate)
 
 
-def _span(
-    prior: PsychometricPrior, guess_rate: float | None, axis: Axis
-) -> tuple[FloatArray, FloatArray]:
+def _span(answered: Answered) -> tuple[FloatArray, FloatArray]:
     """Lowest and highest coordinates of the whole prior; equal for a rate that is known."""
-    low, high = prior.bounds(axis)
-    if guess_rate is not None:
-        low[kernel.GUESS] = high[kernel.GUESS] = guess_rate
+    low, high = answered.prior.bounds(answered.axis)
+    if answered.guess_rate is not None:
+        low[kernel.GUESS] = high[kernel.GUESS] = answered.guess_rate
     else:
         high[kernel.GUESS] = LARGEST_RATE
     return (
@@ -228,22 +227,13 @@ def _span(
 
 
 def _weigh(
-    code: int,
-    axis: Axis,
-    prior: PsychometricPrior,
-    guess_rate: float | None,
-    x: FloatArray,
-    k: FloatArray,
-    n: FloatArray,
-    low: FloatArray,
-    high: FloatArray,
-    cells: tuple[int, int, int, int],
+    answered: Answered, low: FloatArray, high: FloatArray, cells: tuple[int, int, int, int]
 ) -> tuple[list[FloatArray], FloatArray, float]:
     """Nodes (θ), probabilities of the cells, and ln of the mean likelihood over the prior."""
-    nodes, masses = [], []
+    a, nodes, masses = answered, [], []
     for at, size in enumerate(cells):
         edges = np.linspace(low[at], high[at], size + 1)
-        known = guess_rate if at == kernel.GUESS else None
+        known = a.guess_rate if at == kernel.GUESS else None
         middle = 0.5 * (edges[1:] + edges[:-1])
         # To and fro through the coordinate a known rate would lose its last digit.
         theta = _theta(at, middle) if known is None else np.array([known])
@@ -251,9 +241,10 @@ def _weigh(
         # dθ/dφ of θ = sin²φ.
         stretch = np.sin(2 * middle) if at in (kernel.LAPSE, kernel.GUESS) else 1.0
         cell = np.diff(edges) * stretch
-        masses.append(np.ones(1) if known is not None else prior.density(at, theta, axis) * cell)
+        whole = known is not None
+        masses.append(np.ones(1) if whole else a.prior.density(at, theta, a.axis) * cell)
     m, w, lapse, guess = nodes
-    weights = kernel.grid_log_likelihood(code, m, w, lapse, guess, x, k, n)
+    weights = kernel.grid_log_likelihood(a.code, m, w, lapse, guess, a.x, a.k, a.n)
     largest = float(weights.max())
     np.exp(weights - largest, out=weights)
     weights *= masses[0][:, None, None, None] * masses[1][:, None, None]

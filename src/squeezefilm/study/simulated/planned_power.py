@@ -75,30 +75,13 @@ def planned_power(
     Raises:
         InputError: names that are not in the design, or what the simulation refuses.
     """
-    names = [one.name for one in design.stimuli]
-    for name in (first, second):
-        if name not in names:
-            raise InputError(
-                f"design '{design.name}' has no stimulus '{name}'.{did_you_mean(name, names)} "
-                f"It has: {', '.join(names)}"
-            )
-    where = design.displays[0] if display is None else display
-    if where not in design.displays:
-        raise InputError(
-            f"design '{design.name}' is not on '{where}'; it is on {', '.join(design.displays)}"
-        )
+    a, b = (_number(design, name) for name in (first, second))
+    alone = _on_one_display(design, display)
     tell = progress or (lambda _: None)
-    alone = dataclasses.replace(design, displays=(where,))
-    if right_answers(alone).tolist() != list(range(len(names))):
-        raise InputError(
-            f"power needs each stimulus of '{design.name}' to have its own right answer, in the "
-            "order of the stimuli"
-        )
     tables = chain_tables(alone, observer, progress=tell)
     tell(f"{POOL} simulated participants")
     pool = simulate_participants(alone, observer, POOL, seed, tables)
     people = SimulatedPeople.of(pool)
-    a, b = names.index(first), names.index(second)
     curve = power_curve(
         people,
         lambda counts: distinction(counts, a, b).p_value,
@@ -110,4 +93,33 @@ def planned_power(
         progress=lambda done, all_: tell(f"studies of size {done} of {all_}"),
     )
     whole = distinction(people.counts, a, b).score
+    where = alone.displays[0]
     return PlannedPower(design.name, where, first, second, observer.name, curve, whole, seed)
+
+
+def _number(design: StudyDesign, name: str) -> int:
+    """Which stimulus of a design has a name. Raises `InputError` where none has."""
+    names = [one.name for one in design.stimuli]
+    if name not in names:
+        raise InputError(
+            f"design '{design.name}' has no stimulus '{name}'.{did_you_mean(name, names)} "
+            f"It has: {', '.join(names)}"
+        )
+    return names.index(name)
+
+
+def _on_one_display(design: StudyDesign, display: str | None) -> StudyDesign:
+    """The design on one of its displays, the first without one. Raises `InputError` for another
+    display, and for a design whose stimuli have no right answers of their own."""
+    where = design.displays[0] if display is None else display
+    if where not in design.displays:
+        raise InputError(
+            f"design '{design.name}' is not on '{where}'; it is on {', '.join(design.displays)}"
+        )
+    alone = dataclasses.replace(design, displays=(where,))
+    if right_answers(alone).tolist() != list(range(len(design.stimuli))):
+        raise InputError(
+            f"power needs each stimulus of '{design.name}' to have its own right answer, in the "
+            "order of the stimuli"
+        )
+    return alone

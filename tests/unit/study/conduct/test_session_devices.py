@@ -14,7 +14,7 @@ from squeezefilm import display as display_module
 from squeezefilm.errors import InputError
 from squeezefilm.progress import SayProgress
 from squeezefilm.study.conduct import played_device, rehearsal_device, terminal_run
-from squeezefilm.study.conduct.terminal_run import open_study, run_session
+from squeezefilm.study.conduct.terminal_run import Desk, open_study, run_session
 from squeezefilm.study.design.trials import expected_duration
 from squeezefilm.study.record.store import StudyStore
 
@@ -82,10 +82,8 @@ class Room:
     def held(self, store: StudyStore, who: str | None, script: Script, **more: Any) -> str:
         """A session; how it ended."""
         how: dict[str, Any] = {"consent": True, **more}
-        return run_session(
-            store, who, script, acknowledge=self.acknowledge, tell=self.told.append,
-            progress=self.progress, **how,
-        )  # fmt: skip
+        desk = Desk(script, self.acknowledge, self.told.append, self.progress)
+        return run_session(store, who, desk, **how)
 
 
 @pytest.fixture

@@ -10,7 +10,7 @@ import pytest
 
 from squeezefilm.progress import SayProgress
 from squeezefilm.study.conduct.run import Presentation
-from squeezefilm.study.conduct.terminal_run import run_session
+from squeezefilm.study.conduct.terminal_run import Desk, run_session
 from squeezefilm.study.record.store import StudyStore
 
 from ..scripted import Script, gratings
@@ -43,10 +43,7 @@ def test_what_goes_on_is_shown_only_while_nobody_is_asked(tmp_path: Path) -> Non
         assert shown[0] == 0
 
     with StudyStore.create(tmp_path / "a.sqlite", gratings(), 7) as store:
-        run_session(
-            store, None, Person(), consent=True, acknowledge=lambda _: True, tell=tell,
-            progress=progress,
-        )  # fmt: skip
+        run_session(store, None, Desk(Person(), lambda _: True, tell, progress), consent=True)
     assert asked[0] == 6
     assert told[0] == 1
 

@@ -17,7 +17,7 @@ from squeezefilm.study.psychometric.bootstrap import (
     simulate_bootstrap,
 )
 from squeezefilm.study.psychometric.fit import fit_psychometric
-from squeezefilm.study.psychometric.posterior import PsychometricPosterior, coarse_maxima
+from squeezefilm.study.psychometric.posterior import Answered, PsychometricPosterior, coarse_maxima
 from squeezefilm.study.psychometric.prior import PsychometricPrior
 
 LEVELS = np.arange(1.0, 6.0)
@@ -154,7 +154,7 @@ def test_marginals_are_sums_over_the_others() -> None:
 def test_searches_start_from_each_sixth_of_the_widths(guess_rate: float | None) -> None:
     prior = PsychometricPrior((0.0, 6.0), (0.1, 20.0))
     k, n = np.array([5.0, 6.0, 8.0, 9.0, 10.0]), np.full(5, 10.0)
-    starts = coarse_maxima(kernel.LOGISTIC, "linear", prior, guess_rate, LEVELS, k, n)
+    starts = coarse_maxima(Answered(kernel.LOGISTIC, "linear", prior, guess_rate, LEVELS, k, n))
     low, high = prior.bounds("linear")
     assert starts.shape == (6, 4)
     sixths = (starts[:, 1] - low[1]) / (high[1] - low[1]) * 6
