@@ -28,9 +28,7 @@ LARGEST_AMPLITUDE = 4e-6  # m
 def golden_case(name: str, texture: Composable, samples: list[list[Any]]) -> dict[str, Any]:
     """The program of a texture, and what it gives at samples (x, y in m, v in m/s, t in s)."""
     if texture.quantity != "amplitude":
-        raise InputError(
-            f"a golden program's levels are amplitudes, not {texture.quantity}"
-        )
+        raise InputError(f"a golden program's levels are amplitudes, not {texture.quantity}")
     program = lower(texture, largest_amplitude=LARGEST_AMPLITUDE)
     where = np.array([[float(number) for number in sample] for sample in samples]).T
     found = render(program, *where)
