@@ -237,5 +237,3 @@ def outline(text: str) -> dict[str, Any]:
             "radial_width_m": actuator.radial_width,
         }
     raise InputError(f"an actuator of type '{actuator.type}' cannot be drawn")
-
-
