@@ -116,9 +116,7 @@ NOT_CALLED = {
     plate.elements.slabs.Slabs.weighted_sections render.opcodes.Assembler.emit
     render.opcodes.Assembler.table render.texture.noise.mixed render.texture.coordinate.require_fade
     render.texture.noise.field_noise
-    render.texture.noise.line_noise render.resonator.envelope.one_row
-    render.fidelity.trace.friction_of render.fidelity.trace.per_sample
-    film.periodic.resolution.resolution_of
+    render.texture.noise.line_noise film.periodic.resolution.resolution_of
     film.periodic.solution.assembled
     """,
     "no number but the index of what its other arguments hold, or an array the package made": """

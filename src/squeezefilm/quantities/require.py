@@ -12,7 +12,7 @@ import numpy as np
 from squeezefilm.errors import InputError, OutOfRangeError, OutOfRangeWarning
 from squeezefilm.quantities.units import FloatArray, Unit, did_you_mean, format_quantity
 
-__all__ = ["real_numbers", "require", "require_one_of", "require_valid"]
+__all__ = ["real_numbers", "require", "require_one_of", "require_valid", "returned"]
 
 _PURE = Unit("1")
 
@@ -100,6 +100,20 @@ def require_one_of(name: str, value: Any, allowed: Iterable[Any]) -> None:
             f"{name} = {shortened(value)} is not known.{hint} Allowed: {', '.join(words)}",
             quantity=name,
         )
+
+
+def returned(name: str, values: Any, given: Any, what: str) -> FloatArray:
+    """What a callable `name` returned where an array was `given`, as floats.
+
+    Raises `InputError` unless it has the shape of that array: `what` says what must be returned.
+    """
+    array = np.asarray(values, dtype=float)
+    if array.shape != given.shape:
+        raise InputError(
+            f"{name} returned values of shape {array.shape} where {given.shape} was given; it must "
+            f"return {what}"
+        )
+    return array
 
 
 def require_valid(

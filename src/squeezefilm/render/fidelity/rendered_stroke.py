@@ -25,8 +25,9 @@ from squeezefilm.quantities import (
     Unit,
     checked_numbers,
     require,
+    returned,
 )
-from squeezefilm.render.fidelity.trace import RelativeFriction, friction_of, per_sample
+from squeezefilm.render.fidelity.trace import RelativeFriction
 from squeezefilm.render.motion.estimator import MotionEstimate, MotionEstimator, estimate_motion
 from squeezefilm.render.motion.minimum_jerk import Trajectory
 from squeezefilm.render.motion.sensor import SensorModel, sensor_stream
@@ -175,8 +176,8 @@ def rendered_stroke(
         wanted=wanted,
         command=command,
         amplitude=amplitude,
-        relative_friction_wanted=friction_of(relative_friction, wanted),
-        relative_friction_rendered=friction_of(relative_friction, amplitude),
+        relative_friction_wanted=_friction(relative_friction, wanted),
+        relative_friction_rendered=_friction(relative_friction, amplitude),
         saturated_top=top,
         saturated_bottom=bottom,
         silent=float(np.mean(~known)),
@@ -216,4 +217,14 @@ def _previewed(
 
 
 def _asked(texture: Texture, x: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
-    return per_sample("texture", texture(x, 0.0, np.abs(v), t), x)
+    return _per_sample("texture", texture(x, 0.0, np.abs(v), t), x)
+
+
+def _friction(law: RelativeFriction, amplitude: FloatArray) -> FloatArray:
+    return _per_sample("relative_friction", law(amplitude), amplitude)
+
+
+def _per_sample(name: str, values: FloatArray, given: FloatArray) -> FloatArray:
+    array = returned(name, values, given, "one value per sample")
+    require(f"a value returned by {name}", array, at_least=0.0)
+    return array

@@ -20,6 +20,7 @@ from squeezefilm.quantities import (
     checked_numbers,
     format_quantity,
     require,
+    returned,
 )
 from squeezefilm.render.motion.stroke import Stroke
 from squeezefilm.render.resonator.envelope import envelope_response
@@ -35,7 +36,6 @@ _PER_TIME_CONSTANT = 50
 _PER_PERIOD = 128
 _PER_STROKE = 1000
 _FEWEST_PER_PERIOD = 4
-_PURE = Unit("1")
 
 
 @checked_numbers
@@ -117,11 +117,11 @@ def friction_trace(
     rate = _rate(texture, stroke, time_constant, sample_rate)
     time, position = stroke.sampled(rate)
     wanted = texture(position, 0.0, stroke.velocity(time), time)
-    command = per_sample("texture", wanted, time, Unit("m"))
+    command = _values("texture", wanted, time, Unit("m"))
     middle = time[:-1] + 0.5 / rate
     held = texture(stroke.position(middle), 0.0, stroke.velocity(middle), middle)
     # The last sample's command is held over a step that nobody sees.
-    steps = np.append(per_sample("texture", held, middle, Unit("m")), command[-1])
+    steps = np.append(_values("texture", held, middle, Unit("m")), command[-1])
     amplitude = envelope_response(steps, 1 / rate, time_constant, initial=float(command[0]))
     return FrictionTrace(
         texture=texture,
@@ -132,8 +132,8 @@ def friction_trace(
         position=position,
         command=command,
         amplitude=amplitude,
-        relative_friction_wanted=friction_of(relative_friction, command),
-        relative_friction_rendered=friction_of(relative_friction, amplitude),
+        relative_friction_wanted=_friction(relative_friction, command),
+        relative_friction_rendered=_friction(relative_friction, amplitude),
     )
 
 
@@ -158,21 +158,11 @@ def _rate(
     return sample_rate
 
 
-def friction_of(relative_friction: RelativeFriction, amplitude: MetreArray) -> DimensionlessArray:
-    """Relative friction (1) at amplitudes (m). Raises as `per_sample`."""
-    return per_sample("relative_friction", relative_friction(amplitude), amplitude)
+def _friction(relative_friction: RelativeFriction, amplitude: MetreArray) -> DimensionlessArray:
+    return _values("relative_friction", relative_friction(amplitude), amplitude, Unit("1"))
 
 
-def per_sample(name: str, values: FloatArray, given: FloatArray, unit: Unit = _PURE) -> FloatArray:
-    """What a callable `name` returned where so many samples were given.
-
-    Raises `InputError` unless that is one finite value, at least 0, for each.
-    """
-    array = np.asarray(values, dtype=float)
-    if array.shape != given.shape:
-        raise InputError(
-            f"{name} returned values of shape {array.shape} where {given.shape} was given; it must "
-            "return one value per sample"
-        )
+def _values(name: str, values: FloatArray, given: FloatArray, unit: Unit) -> FloatArray:
+    array = returned(name, values, given, "one value per sample")
     require(f"a value returned by {name}", array, unit, at_least=0.0)
     return array

@@ -31,6 +31,7 @@ from squeezefilm.quantities import (
     checked_numbers,
     did_you_mean,
     require,
+    returned,
 )
 
 
@@ -161,12 +162,7 @@ def sensor_stream(
     count = math.floor(steps) + 1
     random = np.random.default_rng(seed)
     taken = start + np.minimum(np.arange(count) / sensor.rate, duration)
-    true = np.asarray(position(taken), dtype=float)
-    if true.shape != taken.shape:
-        raise InputError(
-            f"position returned values of shape {true.shape} where {taken.shape} was given; it "
-            "must return one position per time"
-        )
+    true = returned("position", position(taken), taken, "one position per time")
     require("a value returned by position", true, Unit("m"))
     seen = true + sensor.noise * random.standard_normal(count)
     if sensor.quantisation > 0.0:

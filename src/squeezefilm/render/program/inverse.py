@@ -18,6 +18,7 @@ from squeezefilm.quantities import (
     checked_numbers,
     format_quantity,
     require,
+    returned,
 )
 
 _METRE = Unit("m")
@@ -75,12 +76,8 @@ class FrictionInverse:
             raise InputError(f"knots = {knots!r} cannot be used: it must be 3 to {_MOST_KNOTS}")
         require("rise_allowed", rise_allowed, at_least=0.0, at_most=0.1)
         fine = np.linspace(0.0, largest_amplitude, 4 * (knots - 1) + 1)
-        found = np.asarray(relative_friction(fine), dtype=float)
-        if found.shape != fine.shape:
-            raise InputError(
-                f"relative_friction returned values of shape {found.shape} where {fine.shape} was "
-                "given; it must return one value per amplitude"
-            )
+        values = relative_friction(fine)
+        found = returned("relative_friction", values, fine, "one value per amplitude")
         amplitude, friction = _knots(fine[::4], found[::4], rise_allowed)
         back = np.interp(fine, amplitude, friction)
         error = float(np.max(np.abs(back - found)))

@@ -140,6 +140,7 @@ def _time_constants_per_period(kept: DimensionlessLike, shape: Shape) -> Dimensi
     return sine
 
 
+@checked_numbers
 def one_row(name: str, values: MetreArray) -> MetreArray:
     """Samples (m) as the compiled steps take them. Raises `InputError` for another shape."""
     array = np.ascontiguousarray(values, dtype=float)
