@@ -301,3 +301,12 @@ def test_without_statsmodels_the_extra_is_named(monkeypatch: pytest.MonkeyPatch)
 def test_one_person_has_no_mixed_model() -> None:
     with pytest.raises(InputError, match="at least 2 people"):
         mixed_model([0, 0], [0, 0], [True, False], ("a",))
+
+
+def test_the_same_trials_have_the_same_mixed_model() -> None:
+    random = np.random.default_rng(4)
+    who, kind = np.repeat(np.arange(6), 20), np.tile(np.arange(4), 30)
+    right = random.random(120) < 0.6
+    first, second = (mixed_model(who, kind, right, ("a", "b", "c", "d")) for _ in range(2))
+    assert first.log_odds.tolist() == second.log_odds.tolist()
+    assert first.participant_spread == second.participant_spread
