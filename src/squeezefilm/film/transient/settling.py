@@ -131,7 +131,7 @@ def settle_to_periodic(
     require("settled", settled, at_least=1e-14)
     if tolerance is not None:
         require("tolerance", tolerance, at_least=1e-9)
-    asked = _Asked(gap, squeeze_number, shape, gas, scheme, accelerate, settled, max_periods)
+    asked = _Settling(gap, squeeze_number, shape, gas, scheme, accelerate, settled, max_periods)
     history: list[FilmSettled] = []
     guess: tuple[FloatArray, FloatArray] | None = None
     while True:
@@ -171,7 +171,7 @@ def _extrapolated(history: list[FilmSettled]) -> FilmSettled:
 
 
 @dataclass(frozen=True)
-class _Asked:
+class _Settling:
     """What is to settle, and how."""
 
     gap: Gap
@@ -185,7 +185,7 @@ class _Asked:
 
 
 @dataclass(frozen=True)
-class _Marched:
+class _Settled:
     """Where a march ended: the gas held now and, for `bdf2`, a step before (rows × cells), the
     largest relative change of the last period, the gas lost over it, and the effort."""
 
@@ -197,7 +197,7 @@ class _Marched:
 
 
 def _settle(
-    asked: _Asked, cells: int, steps: int, guess: tuple[FloatArray, FloatArray] | None
+    asked: _Settling, cells: int, steps: int, guess: tuple[FloatArray, FloatArray] | None
 ) -> tuple[FilmSettled, tuple[FloatArray, FloatArray]]:
     """The film on one grid, and its gas there as a guess for the next; raises `ConvergenceError`
     with that film where it does not settle."""
@@ -260,7 +260,7 @@ def _rough(H: FloatArray, stages: int, n: float, part: float) -> FloatArray:
     return np.stack([still + (mean - still) * part, H[-1 - stages] * (1 - part) + mean * part])
 
 
-def _marched(asked: _Asked, x: FloatArray, gaps: Gaps, line: Line, track: Track) -> _Marched:
+def _marched(asked: _Settling, x: FloatArray, gaps: Gaps, line: Line, track: Track) -> _Settled:
     """March period after period from the gas `x` until it repeats, or the periods are spent."""
     steps = track.load.size
     pace = Pace(2 * np.pi / steps, float(asked.squeeze_number), SCHEMES[asked.scheme])
@@ -280,4 +280,4 @@ def _marched(asked: _Asked, x: FloatArray, gaps: Gaps, line: Line, track: Track)
             x = image
             break
         x = mixer.next(x, image) if asked.accelerate else image
-    return _Marched(x, change, lost, periods, iterations)
+    return _Settled(x, change, lost, periods, iterations)
