@@ -1,9 +1,12 @@
 """Whether this tree is slower than another revision: `python benchmarks/against.py REVISION`.
 
-Kernels and whole verbs of both, asked in turn in one run, so that what else the machine does meets
-both alike; the best of `--rounds` each. Times are those of the processor, one thread, what was
-compiled loaded from the cache. Kernels are the inner calls of this folder's other files, taken
-from the names that they import, so that each revision finds its own wherever it keeps them.
+Kernels and whole verbs of both, asked in turn in one run. A machine's speed drifts by more than
+what is looked for, so a ratio is that of two neighbouring calls: printed are the median of the
+`--rounds` of each of `--processes` (whose memory lies elsewhere every time) and the interval that
+holds the true median with 95 %. Slower is what has all of its interval above 1.05; a "?" marks
+one that reaches beyond. Times are those of the processor, one thread, what was compiled loaded
+from the cache. Kernels are the inner calls of this folder's other files, taken from the names that
+they import, so that each revision finds its own wherever it keeps them.
 """
 
 from __future__ import annotations
@@ -14,8 +17,10 @@ os.environ["OMP_NUM_THREADS"] = os.environ["OPENBLAS_NUM_THREADS"] = "1"
 os.environ["NUMBA_NUM_THREADS"] = "1"
 
 import argparse
+import contextlib
 import importlib
 import json
+import math
 import resource
 import subprocess
 import sys
@@ -26,9 +31,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from scipy import stats
 
 ROOT = Path(__file__).parents[1]
 SLOWER = 1.05  # what "slower" means, as a ratio
+_LEAST = 0.02  # s that an answer takes; what is quicker is called more than once
 VERBS = {
     "analyze the stator": ["analyze", "biet2008-stator", "--json"],
     "analyze the plate": ["analyze", "biet2008-plate", "--json"],
@@ -125,14 +132,19 @@ def serve(tree: Path) -> None:
     if tree not in package.parents:
         raise SystemExit(f"squeezefilm was taken from {package}, not from {tree}")
     kernels = [kernel for room in ROOMS for kernel in room()]
+    calls = []
     for _, run in kernels:
         run()
-    print(json.dumps([name for name, _ in kernels]), flush=True)
-    for line in sys.stdin:
-        run = kernels[int(line)][1]
         start = time.process_time()
         run()
-        print(time.process_time() - start, flush=True)
+        calls.append(math.ceil(_LEAST / max(time.process_time() - start, 1e-6)))
+    print(json.dumps([name for name, _ in kernels]), flush=True)
+    for line in sys.stdin:
+        run, many = kernels[int(line)][1], calls[int(line)]
+        start = time.process_time()
+        for _ in range(many):
+            run()
+        print((time.process_time() - start) / many, flush=True)
 
 
 class Side:
@@ -171,49 +183,70 @@ class Side:
         return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
 
-def best_of_both(asks: list[Callable[[], float]], rounds: int) -> list[float]:
-    """The shortest time of each side, asked in turn, the first of a round by turns."""
-    times = np.full((rounds, 2), np.inf)
+Times = np.ndarray[tuple[int, int], np.dtype[np.float64]]
+Pair = tuple[Side, Side]
+
+
+def in_turn(pair: Pair, ask: Callable[[Side], float], rounds: int) -> Times:
+    """Times of both sides (s), shape (rounds, 2), the first of a round by turns."""
+    times = np.empty((rounds, 2))
     for turn in range(rounds):
         for side in (0, 1) if turn % 2 == 0 else (1, 0):
-            times[turn, side] = asks[side]()
-    return [float(one) for one in times.min(axis=0)]
+            times[turn, side] = ask(pair[side])
+    return times
 
 
-def compare(before: Path, rounds: int, only: str) -> int:
+def median_and_interval(ratios: Any) -> tuple[float, float, float]:
+    """The median of a sample, and the two of its values that hold the true one with 95 %."""
+    ordered = np.sort(ratios)
+    outside = int(stats.binom.ppf(0.025, ordered.size, 0.5))
+    least = max(outside - 1, 0)
+    return float(np.median(ordered)), float(ordered[least]), float(ordered[-1 - least])
+
+
+def measure(before: Path, rounds: int, processes: int, only: str) -> Iterator[tuple[str, Times]]:
+    """Times of all rounds of what has `only` in its name."""
+    pairs: list[Pair] = []
+    with contextlib.ExitStack() as stack:
+        for _ in range(processes):
+            pairs.append((Side(before), Side(ROOT)))
+            for side in pairs[-1]:
+                stack.callback(side.process.kill)
+        kernels = [side.answer() for pair in pairs for side in pair]
+        if any(names != kernels[0] for names in kernels):
+            raise SystemExit("the two revisions have different kernels")
+        asks = {name: lambda side, k=k: side.kernel(k) for k, name in enumerate(kernels[0])}
+        for name, ask in asks.items():
+            if only in name:
+                yield name, np.concatenate([in_turn(pair, ask, rounds) for pair in pairs])
+        asks = {name: lambda side, words=words: side.verb(words) for name, words in VERBS.items()}
+        for name, ask in asks.items():
+            if only in name:
+                yield name, in_turn(pairs[0], ask, max(rounds // 3, 1) * processes)
+
+
+def compare(before: Path, rounds: int, processes: int, only: str) -> int:
     """Print the table of what has `only` in its name; how many became slower than allowed."""
-    sides = [Side(before), Side(ROOT)]
-    kernels = sides[0].answer()
-    if sides[1].answer() != kernels:
-        raise SystemExit("the two revisions have different kernels")
-    print(f"best of {rounds} (verbs: of {max(rounds // 3, 1)}), in turn, ms of one processor")
-    print(f"{'':40s} {'before':>10s} {'after':>10s} {'ratio':>7s}")
+    print("ms of one processor (medians), and after/before of neighbouring calls")
+    print(f"{'':40s} {'before':>10s} {'after':>10s} {'ratio':>7s}   95 % of its median")
     slower = 0
-    rows: list[tuple[str, list[Callable[[], float]], int]] = [
-        (name, [lambda side=side, k=k: side.kernel(k) for side in sides], rounds)
-        for k, name in enumerate(kernels)
-    ]
-    rows += [
-        (name, [lambda side=side, words=words: side.verb(words) for side in sides],
-         max(rounds // 3, 1))
-        for name, words in VERBS.items()
-    ]  # fmt: skip
-    for name, asks, many in rows:
-        if only not in name:
-            continue
-        old, new = best_of_both(asks, many)
-        slower += new / old > SLOWER
-        mark = "  slower" if new / old > SLOWER else ""
-        print(f"{name:40s} {1e3 * old:10.2f} {1e3 * new:10.2f} {new / old:7.3f}{mark}", flush=True)
-    for side in sides:
-        side.process.kill()
+    for name, times in measure(before, rounds, processes, only):
+        ratio, low, high = median_and_interval(times[:, 1] / times[:, 0])
+        slower += low > SLOWER
+        mark = "  slower" if low > SLOWER else "  ?" if high > SLOWER else ""
+        old, new = 1e3 * np.median(times, axis=0)
+        print(
+            f"{name:40s} {old:10.2f} {new:10.2f} {ratio:7.3f}   {low:.3f} to {high:.3f}{mark}",
+            flush=True,
+        )
     return slower
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("revision", nargs="?", help="what to compare with, as git names it")
-    parser.add_argument("--rounds", type=int, default=15)
+    parser.add_argument("--rounds", type=int, default=10, help="calls in one process (10)")
+    parser.add_argument("--processes", type=int, default=3, help="of either revision (3)")
     parser.add_argument("--only", default="", help="what has this in its name")
     parser.add_argument("--serve", type=Path, help=argparse.SUPPRESS)
     given = parser.parse_args()
@@ -227,7 +260,7 @@ def main() -> None:
         git = ["git", "-C", str(ROOT), "worktree"]
         subprocess.run([*git, "add", "--detach", "--quiet", str(tree), given.revision], check=True)
         try:
-            slower = compare(tree, given.rounds, given.only)
+            slower = compare(tree, given.rounds, given.processes, given.only)
         finally:
             subprocess.run([*git, "remove", "--force", str(tree)], check=True)
     print(f"{slower} of these are more than {SLOWER - 1:.0%} slower than at {given.revision}")

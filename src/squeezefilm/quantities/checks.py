@@ -18,7 +18,7 @@ import inspect
 import math
 import types
 import typing
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Literal, ParamSpec, TypeVar
 
@@ -216,15 +216,16 @@ def _complex_value(name: str, value: Any) -> Any:
     return value
 
 
-def _numbers(result: Any) -> Iterator[Any]:
-    """The floats, and arrays of floats, of a result."""
+def _finite(result: Any) -> bool:
+    """Whether the floats, and arrays of floats, of a result are all finite."""
+    if isinstance(result, float):
+        return math.isfinite(result)
     if isinstance(result, tuple):
-        for part in result:
-            yield from _numbers(part)
-    elif isinstance(result, float | complex | np.ndarray) or hasattr(result, "magnitude"):
+        return all(map(_finite, result))
+    if isinstance(result, complex | np.ndarray) or hasattr(result, "magnitude"):
         array = np.asarray(getattr(result, "magnitude", result))
-        if array.dtype.kind in "fc":
-            yield array
+        return array.dtype.kind not in "fc" or bool(np.isfinite(array).all())
+    return True
 
 
 def _beyond(function: Callable[..., Any], arguments: dict[str, Any], why: str) -> OutOfRangeError:
@@ -280,7 +281,8 @@ def _guarded(
             if rule.kind == "either" and isinstance(good, np.ndarray):
                 shapes.append((name, good.shape))
         try:
-            np.broadcast_shapes(*(shape for _, shape in shapes))
+            if len(shapes) > 1:
+                np.broadcast_shapes(*(shape for _, shape in shapes))
         except ValueError:
             of = ", ".join(f"{name} {shape}" for name, shape in shapes)
             raise InputError(f"the shapes of {of} do not broadcast") from None
@@ -299,7 +301,7 @@ def _guarded(
                 result = function(*named.values(), **rest)
         except (ArithmeticError, np.linalg.LinAlgError) as error:
             raise _beyond(function, named | rest, str(error)) from error
-        if all(np.all(np.isfinite(numbers)) for numbers in _numbers(result)):
+        if _finite(result):
             return result
         raise _beyond(function, named | rest, "the result is not finite")
 

@@ -74,20 +74,20 @@ def require(
         raise InputError(
             f"{name} has the shape {array.shape}; an array of {axes} axes is wanted", quantity=name
         )
-    wanted: list[str] = []
-    good = np.isfinite(array)
     bounds = {"above": above, "at_least": at_least, "below": below, "at_most": at_most}
-    for word, bound in bounds.items():
-        if bound is not None:
-            good = good & HOLDS[word](array, bound)
-            wanted.append(f"{word.replace('_', ' ')} {format_quantity(bound, unit)}")
-    if not np.all(good):
-        offender = float(array.ravel()[np.flatnonzero(~good)[0]])
-        allowed = " and ".join(["finite", *wanted])
-        raise InputError(
-            f"{name} = {format_quantity(offender, unit)} cannot be used: it must be {allowed}",
-            quantity=name,
-        )
+    given = {word: bound for word, bound in bounds.items() if bound is not None}
+    good = np.isfinite(array)
+    for word, bound in given.items():
+        good = good & HOLDS[word](array, bound)
+    if good.all():
+        return
+    offender = float(array.ravel()[np.flatnonzero(~good)[0]])
+    wanted = [f"{word.replace('_', ' ')} {format_quantity(given[word], unit)}" for word in given]
+    raise InputError(
+        f"{name} = {format_quantity(offender, unit)} cannot be used: it must be "
+        + " and ".join(["finite", *wanted]),
+        quantity=name,
+    )
 
 
 def require_one_of(name: str, value: Any, allowed: Iterable[Any]) -> None:

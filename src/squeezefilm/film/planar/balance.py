@@ -17,7 +17,6 @@ from squeezefilm.film.planar.grid import PlanarGrid
 from squeezefilm.film.planar.kernel import (
     Balances,
     Faces,
-    Gaps,
     Storage,
     assemble,
     row_block,
@@ -84,10 +83,11 @@ class _Factors:
     def __init__(self, grid: PlanarGrid, count: int) -> None:
         rows, columns = grid.rows, grid.columns
         self.inverse = np.empty((rows, columns * count, columns * count))
-        # The faces within each row, and the nodes in the row that they join.
-        row_of, joins = np.divmod(np.stack([grid.column_from, grid.column_to]), columns)
-        self.within = [np.flatnonzero(row_of[0] == i) for i in range(rows)]
-        self.joins = [np.ascontiguousarray(joins[:, faces]) for faces in self.within]
+        row_of = grid.column_from // columns
+        first = row_of * columns
+        faces = np.arange(row_of.size)
+        within = np.stack([faces, grid.column_from - first, grid.column_to - first], axis=1)
+        self.within = [within[row_of == i] for i in range(rows)]
 
     def factor(self, storage: Storage, parts: Balances) -> None:
         rows, size = self.inverse.shape[:2]
@@ -95,10 +95,10 @@ class _Factors:
         diagonal = parts.diagonal.reshape(rows, weight.shape[1], -1)
         self.up = parts.row_up.reshape(rows - 1, size)
         self.down = parts.row_down.reshape(rows - 1, size)
+        D, up, down = storage.derivative, parts.column_up, parts.column_down
         block = np.empty((size, size), order="F")
         for i in range(rows):
-            up, down = (slope[self.within[i]] for slope in (parts.column_up, parts.column_down))
-            row_block(weight[i], storage.derivative, diagonal[i], self.joins[i], up, down, block)
+            row_block(weight[i], D, diagonal[i], self.within[i], up, down, block)
             if i:
                 take_off(block, self.down[i - 1], self.inverse[i - 1], self.up[i - 1])
             lu, pivots, bad = lapack.dgetrf(block, overwrite_a=1)
@@ -126,12 +126,9 @@ class Balancer:
         self.film, self.grid, self.count = film, grid, count
         T = times(count)
         self.T = T
-        self.gaps = Gaps(
-            gap_values(film.gap, grid.X, grid.Y, T),
-            gap_values(film.gap, grid.row_X, grid.row_Y, T),
-            gap_values(film.gap, grid.column_X, grid.column_Y, T),
-            gap_values(film.gap, grid.edge_X, grid.edge_Y, T),
-        )
+        X = np.concatenate([grid.X, grid.row_X, grid.column_X, grid.edge_X])
+        Y = np.concatenate([grid.Y, grid.row_Y, grid.column_Y, grid.edge_Y])
+        self.gaps = gap_values(film.gap, X, Y, T)
         self.storage = Storage(film.squeeze_number * grid.area, derivative(count))
         self.gas = Gas(film.polytropic_exponent, film.knudsen_number, film.slip)
         self.faces = Faces(
@@ -158,7 +155,7 @@ class Balancer:
 
     def starts(self) -> list[FloatArray]:
         """Two guesses: gas at rest (P = 1), and gas that cannot follow at all (m constant)."""
-        n, H = self.film.polytropic_exponent, self.gaps.node
+        n, H = self.film.polytropic_exponent, self.gaps[: self.grid.X.size]
         fine = gap_values(self.film.gap, self.grid.X, self.grid.Y, times(32))
         still = (np.mean(fine**3, axis=1) / np.mean(fine ** (2 - n), axis=1)) ** (1 / (n + 1))
         return [H.copy(), np.ascontiguousarray(np.broadcast_to(still[:, None], H.shape))]

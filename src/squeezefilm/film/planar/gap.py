@@ -60,9 +60,6 @@ class PlanarGap:
 def gap_values(gap: GapFunction, X: FloatArray, Y: FloatArray, T: FloatArray) -> FloatArray:
     """H at every place and time, (places, times), checked: finite and open."""
     shape = (X.size, T.size)
-    if not X.size:
-        # A grid may have no faces of a kind, and no gap is asked for at no place.
-        return np.empty(shape)
     values = gap._at if isinstance(gap, PlanarGap) else gap
     try:
         given = np.asarray(values(X[:, None], Y[:, None], T[None, :]), dtype=float)

@@ -17,15 +17,6 @@ from squeezefilm.film.records import Gas
 from squeezefilm.quantities import Array
 
 
-class Gaps(NamedTuple):
-    """The gap at nodes, at faces between rows and within a row, and on the edge; (…, times)."""
-
-    node: Array
-    row: Array
-    column: Array
-    edge: Array
-
-
 class Faces(NamedTuple):
     """Nodes in a row; the faces between rows, within a row and on the edge, with the nodes they
     join and their conductances, as `PlanarGrid` has them."""
@@ -63,15 +54,22 @@ class Balances(NamedTuple):
 
 @numba.njit(cache=True, nogil=True)
 def assemble(
-    m: Array, gaps: Gaps, faces: Faces, storage: Storage, gas: Gas, balance: Balances
+    m: Array, gaps: Array, faces: Faces, storage: Storage, gas: Gas, balance: Balances
 ) -> None:
-    """Fill `balance` at the gas m, shape (nodes, times)."""
-    H, H_row, H_column, H_edge = gaps
+    """Fill `balance` at the gas m, shape (nodes, times).
+
+    `gaps` (…, times) is that at the nodes, at the faces between rows, at those within a row and at
+    those on the edge, one after the other.
+    """
     columns, row_G, column_from, column_to, column_G, edge_node, edge_G = faces
     weight, D = storage
     n, knudsen, model = gas
     residual, diagonal, row_up, row_down, column_up, column_down = balance
     N, M = m.shape
+    row_end = N + row_G.size
+    H, H_row = gaps[:N], gaps[N:row_end]
+    H_column = gaps[row_end : row_end + column_G.size]
+    H_edge = gaps[row_end + column_G.size :]
     P = np.empty((N, M))
     dP = np.empty((N, M))
     for i in range(N):
@@ -118,12 +116,13 @@ def assemble(
 
 @numba.njit(cache=True, nogil=True)
 def row_block(
-    weight: Array, D: Array, diagonal: Array, joins: Array, up: Array, down: Array, block: Array
+    weight: Array, D: Array, diagonal: Array, within: Array, up: Array, down: Array, block: Array
 ) -> None:
     """The dense Jacobian block of one row: its nodes, all their times.
 
-    `weight` (columns,) and `diagonal` (columns, times) are those of its nodes, `up` and `down`
-    (faces, times) those of the faces within it, `joins` (2, faces) the nodes that they join.
+    `weight` (columns,) and `diagonal` (columns, times) are those of its nodes. `within` (…, 3) are
+    the faces within it, each with the nodes that it joins, counted in the row; `up` and `down`
+    (faces, times) those of the faces of all rows.
     `block` (columns·times)² is overwritten. Arrays and no records: it is called for every row, and
     a record of arrays takes longer to hand over than a small block to fill.
     """
@@ -134,8 +133,8 @@ def row_block(
             for q in range(M):
                 block[i * M + k, i * M + q] = -weight[i] * D[k, q]
             block[i * M + k, i * M + k] += diagonal[i, k]
-    for g in range(joins.shape[1]):
-        a, b = joins[0, g], joins[1, g]
+    for f in range(within.shape[0]):
+        g, a, b = within[f]
         for k in range(M):
             # += because on a full ring of two columns both faces join the same nodes.
             block[a * M + k, b * M + k] += up[g, k]
