@@ -30,6 +30,8 @@ from squeezefilm.film.gap import PaperGap
 from squeezefilm.materials import Gas
 from squeezefilm.quantities import (
     Above,
+    AtLeast,
+    AtMost,
     Dimensionless,
     DimensionlessArray,
     DimensionlessLike,
@@ -305,13 +307,14 @@ class FrictionLaw:
         return "paper2008-printed" if self.model == "paper2008-printed" else "paper2008"
 
     @checked_numbers
-    def amplitude_for(self, relative_friction: Dimensionless) -> Metre:
+    def amplitude_for(
+        self, relative_friction: Annotated[Dimensionless, AtLeast(0.0), AtMost(1.0)]
+    ) -> Metre:
         """The least amplitude (m, zero-to-peak) that brings µ′/µ down to a wanted value.
 
         Raises `InputError` for a value outside [0, 1] and `UnreachableError` where no amplitude up
         to 50 µm does.
         """
-        require("relative_friction", relative_friction, at_least=0, at_most=1)
         if not is_solved(self.model):
             return paper.vibration_amplitude_for(
                 relative_friction,
@@ -351,14 +354,15 @@ class FrictionLaw:
         )
 
     @checked_numbers
-    def table(self, highest_amplitude: Metre, points: int | None = None) -> FrictionTable:
+    def table(
+        self, highest_amplitude: Annotated[Metre, Above(0.0)], points: int | None = None
+    ) -> FrictionTable:
         """The law as a fast function: a table, linear between its points, for many samples.
 
         Holds from 0 to `highest_amplitude`, raises `OutOfRangeError` outside. With the default
         points (257; 65 where the film is solved) it is within 1e-4 (1e-3) of the law for the
         paper's devices.
         """
-        require("highest_amplitude", highest_amplitude, Unit("m"), above=0)
         if points is not None:
             require("points", points, at_least=2)
         count = points or (65 if is_solved(self.model) else 257)

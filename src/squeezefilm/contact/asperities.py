@@ -23,6 +23,7 @@ from squeezefilm.contact.records import CompiledAsperities
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import DECAY_LENGTH, PRESSURE
 from squeezefilm.quantities import (
+    Above,
     Dimensionless,
     DimensionlessLike,
     FloatArray,
@@ -30,7 +31,6 @@ from squeezefilm.quantities import (
     MetreLike,
     Pascal,
     PascalLike,
-    Unit,
     checked_numbers,
     closed_form,
     require,
@@ -154,13 +154,12 @@ class AsperityLaw:
         return np.asarray(np.mean(self.pressure(gap), axis=-1))[()]
 
     @checked_numbers
-    def gap_for(self, pressure: Pascal) -> Metre:
+    def gap_for(self, pressure: Annotated[Pascal, Above(0.0)]) -> Metre:
         """The gap (m) at which the asperities alone, at rest, carry a pressure (Pa).
 
         Below zero where they would be crushed: the law does not hold there. Raises `InputError`
         for a pressure that is not positive, or outside the tabulated range of Gaussian heights.
         """
-        require("pressure", pressure, Unit("Pa"), above=0)
         if self.heights == "exponential":
             return self.reference_gap - self.decay_length * float(
                 np.log(pressure / self.reference_pressure)
@@ -181,9 +180,8 @@ class AsperityLaw:
         return float(brentq(excess, _LOWEST, _HIGHEST)) * self.decay_length
 
     @checked_numbers
-    def scaled(self, factor: Dimensionless) -> AsperityLaw:
+    def scaled(self, factor: Annotated[Dimensionless, Above(0.0)]) -> AsperityLaw:
         """The law of a geometrically similar interface, all heights times `factor` (> 0)."""
-        require("factor", factor, above=0)
         return AsperityLaw(
             self.reference_pressure,
             self.reference_gap * factor,

@@ -19,12 +19,15 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import UTC, datetime
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
 from squeezefilm.errors import InputError
 from squeezefilm.quantities import (
+    Above,
+    AtLeast,
+    AtMost,
     Dimensionless,
     DimensionlessArray,
     FloatArray,
@@ -107,14 +110,14 @@ class HjifExport:
 @checked_numbers
 def hjif_of(
     texture: Composable,
-    start: Metre,
+    start: Annotated[Metre, AtLeast(-10.0), AtMost(10.0)],
     end: Metre,
     *,
     device: ReferenceDevice,
     title: str = "",
     to_friction: ToFriction | None = None,
-    speed: MetrePerSecond = 0.08,
-    tolerance: Dimensionless = 1e-4,
+    speed: Annotated[MetrePerSecond, Above(0.0)] = 0.08,
+    tolerance: Annotated[Dimensionless, Above(0.0), AtMost(0.1)] = 1e-4,
 ) -> HjifExport:
     """A texture along x from `start` to `end` (m, y = 0) as a document of MPEG haptics.
 
@@ -132,10 +135,7 @@ def hjif_of(
             `to_friction`, a friction beyond 0 to 1, or more than 65 535 keyframes.
     """
     require_texture("texture", texture)
-    require("start", start, Unit("m"), at_least=-10.0, at_most=10.0)
     require("end", end, Unit("m"), above=start, at_most=start + LONGEST)
-    require("speed", speed, Unit("m/s"), above=0.0)
-    require("tolerance", tolerance, above=0.0, at_most=0.1)
     if to_friction is None and texture.quantity != "relative_friction":
         raise InputError(
             f"a texture of {texture.quantity} is no friction yet; pass to_friction, the display's "

@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
 from squeezefilm.quantities import (
+    Above,
+    AtLeast,
+    AtMost,
     Dimensionless,
     Hertz,
     Kilogram,
@@ -42,23 +46,22 @@ class LoadedMode:
         return float((1 + self.load_ratio.real) / loss)
 
     @checked_numbers
-    def amplitude_ratio(self, frequency: Hertz) -> Dimensionless:
+    def amplitude_ratio(self, frequency: Annotated[Hertz, Above(0.0)]) -> Dimensionless:
         """The amplitude at a frequency (Hz), over that of the free mode at its resonance.
 
         1/(Q |1 + i/Q + δ − (f/f0)²|): of this mode alone. Raises `InputError` unless f > 0.
         """
-        require("frequency", frequency, Unit("Hz"), above=0)
         Q, x = self.free_quality_factor, frequency / self.free_frequency
         return float(1 / abs(Q * (1 + self.load_ratio - x**2) + 1j))
 
 
 @checked_numbers
 def mean_square_wave(
-    half_wavelength: Metre, contact_length: Metre, position: Metre = 0.0
+    half_wavelength: Annotated[Metre, Above(0.0)],
+    contact_length: Annotated[Metre, Above(0.0)],
+    position: Metre = 0.0,
 ) -> Dimensionless:
     """⟨cos²(πx/half_wavelength)⟩ over a contact centred `position` (m) from an antinode."""
-    require("half_wavelength", half_wavelength, Unit("m"), above=0)
-    require("contact_length", contact_length, Unit("m"), above=0)
     k = 2 * np.pi / half_wavelength
     reach = k * contact_length / 2
     return float((1 + np.cos(k * position) * np.sin(reach) / reach) / 2)
@@ -66,12 +69,12 @@ def mean_square_wave(
 
 @checked_numbers
 def loaded_mode(
-    frequency: Hertz,
-    quality_factor: Dimensionless,
-    modal_mass: Kilogram,
+    frequency: Annotated[Hertz, Above(0.0)],
+    quality_factor: Annotated[Dimensionless, Above(0.0)],
+    modal_mass: Annotated[Kilogram, Above(0.0)],
     stiffness_per_area: complex,
-    area: SquareMetre,
-    mean_square: Dimensionless,
+    area: Annotated[SquareMetre, Above(0.0)],
+    mean_square: Annotated[Dimensionless, AtLeast(0.0), AtMost(1.0)],
 ) -> LoadedMode:
     """A mode of `frequency` (Hz) and Q that moves `modal_mass` (kg, for unit amplitude at an
     antinode), with a load of complex `stiffness_per_area` (Pa/m) on `area` (m²), over which the
@@ -82,11 +85,6 @@ def loaded_mode(
     Raises `InputError` for a frequency, Q, mass or area that is not above 0, or a load with gain
     (negative loss).
     """
-    require("frequency", frequency, Unit("Hz"), above=0)
-    require("quality_factor", quality_factor, above=0)
-    require("modal_mass", modal_mass, Unit("kg"), above=0)
-    require("area", area, Unit("m2"), above=0)
-    require("mean_square", mean_square, at_least=0, at_most=1)
     require("the load's loss", stiffness_per_area.imag, Unit("Pa/m"), at_least=0)
     own = modal_mass * (2 * np.pi * frequency) ** 2
     return LoadedMode(frequency, quality_factor, stiffness_per_area * area * mean_square / own)

@@ -13,13 +13,15 @@ import functools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
 
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import SOUND_SPEED, require_within
 from squeezefilm.quantities import (
+    Above,
+    AtLeast,
     ComplexArray,
     Dimensionless,
     FloatArray,
@@ -95,10 +97,9 @@ GUIDANCE = (
 
 @checked_numbers
 def exposure_guidance(
-    frequency: Hertz, audience: Literal["public", "occupational"] = "public"
+    frequency: Annotated[Hertz, Above(0.0)], audience: Literal["public", "occupational"] = "public"
 ) -> ExposureGuidance | None:
     """The guidance for a tone, or None where there is none."""
-    require("frequency", frequency, Unit("Hz"), above=0)
     for entry in GUIDANCE:
         if entry.audience == audience and entry.low <= frequency < entry.high:
             return entry
@@ -127,7 +128,7 @@ def rectangular_surface(
     x: MetreArray,
     y: MetreArray,
     velocity: ComplexArray,
-    frequency: Hertz,
+    frequency: Annotated[Hertz, Above(0.0)],
     sound_speed: float = 343.2,
 ) -> RadiatingSurface:
     """A plate's surface from its velocity (len(x), len(y)) on a rising grid (trapezoidal rule).
@@ -138,7 +139,6 @@ def rectangular_surface(
     """
     x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
     values = np.asarray(velocity, dtype=complex)
-    require("frequency", frequency, Unit("Hz"), above=0)
     if values.shape != (x.size, y.size):
         raise InputError(
             f"velocity has the shape {values.shape}; for this grid it must be {(x.size, y.size)}",
@@ -157,10 +157,10 @@ def rectangular_surface(
 
 @checked_numbers
 def ring_surface(
-    radius: MetreArray,
+    radius: Annotated[MetreArray, AtLeast(0.0)],
     velocity: ComplexArray,
-    harmonic: int,
-    frequency: Hertz,
+    harmonic: Annotated[int, AtLeast(0)],
+    frequency: Annotated[Hertz, Above(0.0)],
     sound_speed: float = 343.2,
 ) -> RadiatingSurface:
     """A ring's or disc's surface moving with `velocity` (r) × cos(`harmonic` × θ).
@@ -171,9 +171,6 @@ def ring_surface(
     """
     radius = np.asarray(radius, dtype=float)
     values = np.asarray(velocity, dtype=complex)
-    require("frequency", frequency, Unit("Hz"), above=0)
-    require("harmonic", harmonic, at_least=0)
-    require("radius", radius, Unit("m"), at_least=0)
     if radius.size < 2 or np.any(np.diff(radius) <= 0) or values.shape != radius.shape:
         raise InputError(
             "radius must be two or more rising radii, with one velocity each", quantity="radius"
@@ -198,14 +195,13 @@ def sound_pressure(
     surface: RadiatingSurface,
     points: MetreArray,
     *,
-    density: KilogramPerCubicMetre = 1.204,
+    density: Annotated[KilogramPerCubicMetre, Above(0.0)] = 1.204,
     sound_speed: MetrePerSecond = 343.2,
 ) -> ComplexArray:
     """Complex sound pressure (Pa, zero-to-peak) at `points` (..., 3) above the surface (z > 0).
 
     p = iωρ/2π ∫ v exp(−ikR)/R dS, lossless. Raises `InputError` for a point not above the plane.
     """
-    require("density", density, Unit("kg/m3"), above=0)
     require_within(SOUND_SPEED, sound_speed, "sound_speed")
     points = np.asarray(points, dtype=float)
     if points.shape[-1:] != (3,):
@@ -270,7 +266,7 @@ def sound_field(
     surface: RadiatingSurface,
     distances: tuple[Metre, ...] = DISTANCES,
     *,
-    absorption_dB_per_m: Dimensionless = 0.0,
+    absorption_dB_per_m: Annotated[Dimensionless, AtLeast(0.0)] = 0.0,
     density: KilogramPerCubicMetre = 1.204,
     sound_speed: MetrePerSecond = 343.2,
     audience: Literal["public", "occupational"] = "public",
@@ -282,7 +278,6 @@ def sound_field(
     `absorption_dB_per_m` of the air (ISO 9613-1; about 1 dB/m at 33 kHz) is left out by default,
     which errs on the loud side. Raises `InputError` for a distance within the surface's extent.
     """
-    require("absorption_dB_per_m", absorption_dB_per_m, at_least=0)
     require_within(SOUND_SPEED, sound_speed, "sound_speed")
     if not distances:
         raise InputError("distances is empty; name at least one", quantity="distances")

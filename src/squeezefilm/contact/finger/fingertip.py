@@ -35,7 +35,6 @@ from squeezefilm.quantities import (
     Unit,
     checked_numbers,
     format_quantity,
-    require,
 )
 
 Moisture = Literal["dry", "normal", "moist"]
@@ -124,12 +123,11 @@ class Finger:
         return force / self.contact_area(force) * self.ridge_period / self.plateau_width
 
     @checked_numbers
-    def asperity_law(self, surface_roughness: Metre) -> AsperityLaw:
+    def asperity_law(self, surface_roughness: Annotated[Metre, AtLeast(0.0)]) -> AsperityLaw:
         """What the asperities of this skin carry on a surface of a roughness (m).
 
         Heights add as independent ones do; the moisture scales the pressure.
         """
-        require("surface_roughness", surface_roughness, Unit("m"), at_least=0)
         here: FloatLike = np.hypot(self.skin_roughness, surface_roughness)
         there = float(np.hypot(self.skin_roughness, self.asperity_roughness))
         if not here > 0:

@@ -8,6 +8,8 @@ it.
 
 from __future__ import annotations
 
+from typing import Annotated
+
 import numpy as np
 
 from squeezefilm.contact.asperities import AsperityLaw
@@ -15,15 +17,22 @@ from squeezefilm.contact.finger.skin import Skin
 from squeezefilm.film.closed.linear import relative_damping, relative_stiffness
 from squeezefilm.film.gap import squeeze_number
 from squeezefilm.materials import Gas
-from squeezefilm.quantities import Hertz, Metre, Unit, checked_numbers, require
+from squeezefilm.quantities import (
+    Above,
+    AtLeast,
+    AtMost,
+    Hertz,
+    Metre,
+    checked_numbers,
+)
 
 _PHASES = np.cos(2 * np.pi * np.arange(64) / 64)
 
 
 @checked_numbers
 def interface_stiffness(
-    mean_gap: Metre,
-    amplitude: Metre,
+    mean_gap: Annotated[Metre, Above(0.0)],
+    amplitude: Annotated[Metre, AtLeast(0.0)],
     plateau_width: Metre,
     frequency: Hertz,
     gas: Gas,
@@ -36,8 +45,6 @@ def interface_stiffness(
     harmonic of their law over the swing, −2⟨p_a cos T⟩/a, exact at any amplitude. Raises
     `InputError` for a gap, width or frequency not above 0, or a negative amplitude.
     """
-    require("mean_gap", mean_gap, Unit("m"), above=0)
-    require("amplitude", amplitude, Unit("m"), at_least=0)
     sigma = squeeze_number(frequency, plateau_width, mean_gap, gas.viscosity, gas.ambient_pressure)
     knudsen = gas.mean_free_path / mean_gap
     spring = relative_stiffness(sigma, "strip", knudsen_number=knudsen)
@@ -51,14 +58,16 @@ def interface_stiffness(
 
 @checked_numbers
 def finger_stiffness(
-    interface: complex, skin: Skin, frequency: Hertz, plateau_share: float
+    interface: complex,
+    skin: Skin,
+    frequency: Hertz,
+    plateau_share: Annotated[float, AtLeast(0.0), AtMost(1.0)],
 ) -> complex:
     """What the plate feels of a finger, per area of contact (Pa/m, complex): K_i D/(K_i + D) on the
     plateaus, which are `plateau_share` (0 to 1) of the contact; grooves are left out.
 
     Raises `InputError` for a share outside 0 to 1.
     """
-    require("plateau_share", plateau_share, at_least=0, at_most=1)
     behind = skin.dynamic_stiffness(frequency)
     felt: complex = plateau_share * interface * behind / (interface + behind)
     return felt

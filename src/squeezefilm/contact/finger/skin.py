@@ -18,14 +18,13 @@ from squeezefilm.hard_limits import (
     SKIN_STIFFNESS,
 )
 from squeezefilm.quantities import (
+    Above,
     Hertz,
     KilogramPerSquareMetre,
     Pascal,
     PascalPerMetre,
     PascalSecondPerMetre,
-    Unit,
     checked_numbers,
-    require,
 )
 
 
@@ -43,9 +42,8 @@ class Skin:
     damping_per_area: Annotated[PascalSecondPerMetre, SKIN_DAMPING] = 0.0
 
     @checked_numbers
-    def dynamic_stiffness(self, frequency: Hertz) -> complex:
+    def dynamic_stiffness(self, frequency: Annotated[Hertz, Above(0.0)]) -> complex:
         """k − m ω² + iωc in Pa/m, ω = 2π frequency."""
-        require("frequency", frequency, Unit("Hz"), above=0)
         omega = 2 * np.pi * frequency
         return complex(
             self.stiffness_per_area - self.mass_per_area * omega**2,

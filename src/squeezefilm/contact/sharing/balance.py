@@ -10,7 +10,7 @@ with the film solved (`gas_table`) and p_a the asperities' law, which does not k
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -20,6 +20,9 @@ from squeezefilm.contact.sharing.gas_table import DEEPEST_EXCURSION, FilmTable
 from squeezefilm.errors import ConvergenceError, OutOfRangeError
 from squeezefilm.film.compiled import announce
 from squeezefilm.quantities import (
+    Above,
+    AtLeast,
+    AtMost,
     DimensionlessArray,
     FloatArray,
     Metre,
@@ -73,8 +76,8 @@ class LoadSharing:
 def share_load(
     table: FilmTable,
     asperities: AsperityLaw,
-    amplitude: MetreLike,
-    plateau_pressure: PascalLike,
+    amplitude: Annotated[MetreLike, AtLeast(0.0), AtMost(1e-4)],
+    plateau_pressure: Annotated[PascalLike, Above(0.0)],
     *,
     skin: Skin | None = None,
 ) -> LoadSharing:
@@ -88,8 +91,6 @@ def share_load(
     from squeezefilm.contact.sharing import kernel
 
     announce(kernel.balance_rows, "load balance", 20)
-    require("amplitude", amplitude, Unit("m"), at_least=0, at_most=1e-4)
-    require("plateau_pressure", plateau_pressure, Unit("Pa"), above=0)
     form = np.broadcast_shapes(np.shape(amplitude), np.shape(plateau_pressure))
     a = np.array(np.broadcast_to(amplitude, form), dtype=float).ravel()
     p = np.array(np.broadcast_to(plateau_pressure, form), dtype=float).ravel()
@@ -155,8 +156,8 @@ class TiedSharing:
 def share_load_tied(
     table: FilmTable,
     asperities: AsperityLaw,
-    amplitude: MetreArray,
-    plateau_pressure: Pascal,
+    amplitude: Annotated[MetreArray, AtLeast(0.0), AtMost(1e-4)],
+    plateau_pressure: Annotated[Pascal, Above(0.0)],
     *,
     offset: MetreArray | None = None,
     skin: Skin | None = None,
@@ -168,8 +169,6 @@ def share_load_tied(
     from squeezefilm.contact.sharing import kernel
 
     announce(kernel.balance, "load balance", 20)
-    require("amplitude", amplitude, Unit("m"), at_least=0, at_most=1e-4)
-    require("plateau_pressure", plateau_pressure, Unit("Pa"), above=0)
     a = np.ascontiguousarray(np.ravel(amplitude), dtype=float)
     shift = np.zeros_like(a) if offset is None else np.ascontiguousarray(offset, dtype=float)
     require("offset", shift, Unit("m"), at_least=-1e-4, at_most=1e-4)

@@ -126,7 +126,7 @@ def pad_friction(
     table: FilmTable,
     asperities: AsperityLaw,
     amplitude: MetreLike,
-    half_wavelength: Metre,
+    half_wavelength: Annotated[Metre, Above(0.0)],
     points: MetreArray,
     plateau_pressure: Pascal,
     *,
@@ -139,7 +139,6 @@ def pad_friction(
     `amplitude` (m, at an antinode) may be an array; the plate's amplitude at x is
     a |cos(πx/half_wavelength)|. Raises as `share_load` does.
     """
-    require("half_wavelength", half_wavelength, Unit("m"), above=0)
     posture = posture or PadPosture()
     a = np.atleast_1d(np.asarray(amplitude, dtype=float))
     wave = np.abs(np.cos(np.pi * (points + posture.position) / half_wavelength))

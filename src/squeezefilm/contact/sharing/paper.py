@@ -7,7 +7,7 @@ equations as they stand. Both take σ → ∞, which the paper's σ ≈ 20 is fa
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -15,6 +15,9 @@ from squeezefilm.errors import UnreachableError
 from squeezefilm.film.closed.limits import PAPER_MODELS, PaperModel, contact_mean_pressure
 from squeezefilm.film.gap import PaperGap
 from squeezefilm.quantities import (
+    Above,
+    AtLeast,
+    AtMost,
     Dimensionless,
     DimensionlessLike,
     Metre,
@@ -27,7 +30,6 @@ from squeezefilm.quantities import (
     checked_numbers,
     closed_form,
     format_quantity,
-    require,
 )
 
 __all__ = [
@@ -97,8 +99,8 @@ def _unclipped(gap: PaperGap, force: Any, ambient: float, model: PaperModel) -> 
 @checked_numbers
 def relative_friction(
     gap: PaperGap,
-    normal_force: NewtonLike,
-    ambient_pressure: Pascal,
+    normal_force: Annotated[NewtonLike, Above(0.0)],
+    ambient_pressure: Annotated[Pascal, Above(0.0)],
     model: PaperModel = "paper2008",
 ) -> DimensionlessLike:
     """The relative friction µ′/µ (dimensionless) of the paper's model at the amplitude(s) of `gap`.
@@ -110,21 +112,19 @@ def relative_friction(
 
     Raises `InputError` for values that are not finite or positive, or an unknown model.
     """
-    require("normal_force", normal_force, Unit("N"), above=0)
-    require("ambient_pressure", ambient_pressure, Unit("Pa"), above=0)
     value = np.maximum(0.0, _unclipped(gap, normal_force, ambient_pressure, model))
     return value if np.ndim(value) else float(value)
 
 
 @checked_numbers
 def vibration_amplitude_for(
-    relative_friction: Dimensionless,
+    relative_friction: Annotated[Dimensionless, AtLeast(0.0), AtMost(1.0)],
     gap: PaperGap,
-    normal_force: Newton,
-    ambient_pressure: Pascal,
+    normal_force: Annotated[Newton, Above(0.0)],
+    ambient_pressure: Annotated[Pascal, Above(0.0)],
     model: PaperModel = "paper2008",
     *,
-    highest: Metre = 50e-6,
+    highest: Annotated[Metre, AtLeast(1e-12)] = 50e-6,
 ) -> Metre:
     """The least vibration amplitude (m, zero-to-peak) that brings µ′/µ down to a wanted value.
 
@@ -133,11 +133,6 @@ def vibration_amplitude_for(
     to `highest` brings the friction that low.
     """
     from scipy.optimize import brentq
-
-    require("relative_friction", relative_friction, at_least=0, at_most=1)
-    require("normal_force", normal_force, Unit("N"), above=0)
-    require("ambient_pressure", ambient_pressure, Unit("Pa"), above=0)
-    require("highest", highest, Unit("m"), at_least=1e-12)
 
     def excess(amplitude: Any) -> Any:
         friction = _unclipped(gap.with_amplitude(amplitude), normal_force, ambient_pressure, model)

@@ -19,10 +19,13 @@ friction with one coefficient; shear starts from zero at each tap.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
 from squeezefilm.quantities import (
+    Above,
+    AtLeast,
     Dimensionless,
     DimensionlessLike,
     Hertz,
@@ -90,7 +93,9 @@ class Tapping:
 
 
 @checked_numbers
-def contact_angle(amplitude: Metre, rest_penetration: Metre) -> float:
+def contact_angle(
+    amplitude: Annotated[Metre, AtLeast(0.0)], rest_penetration: Annotated[Metre, Above(0.0)]
+) -> float:
     """Half the phase (rad) in contact, θ0, at which taps of a linear skin carry the load.
 
     a (sin θ0 − θ0 cos θ0)/π = `rest_penetration` = p/k_n: the mean of a (cos T − cos θ0) over the
@@ -98,8 +103,6 @@ def contact_angle(amplitude: Metre, rest_penetration: Metre) -> float:
     """
     from scipy.optimize import brentq
 
-    require("amplitude", amplitude, Unit("m"), at_least=0)
-    require("rest_penetration", rest_penetration, Unit("m"), above=0)
     if amplitude <= rest_penetration:
         return float(np.pi)
     wanted = np.pi * rest_penetration / amplitude
@@ -108,14 +111,14 @@ def contact_angle(amplitude: Metre, rest_penetration: Metre) -> float:
 
 @checked_numbers
 def tapping_friction(
-    amplitude: Metre,
-    frequency: Hertz,
-    speed: MetrePerSecond,
-    pressure: Pascal,
+    amplitude: Annotated[Metre, AtLeast(0.0)],
+    frequency: Annotated[Hertz, Above(0.0)],
+    speed: Annotated[MetrePerSecond, Above(0.0)],
+    pressure: Annotated[Pascal, Above(0.0)],
     *,
-    friction_coefficient: Dimensionless = 0.9,
+    friction_coefficient: Annotated[Dimensionless, Above(0.0)] = 0.9,
     normal_stiffness: PascalPerMetre | None = None,
-    stiffness_ratio: Dimensionless = MINDLIN_RATIO,
+    stiffness_ratio: Annotated[Dimensionless, Above(0.0)] = MINDLIN_RATIO,
 ) -> Tapping:
     """Friction of a patch of skin under a mean `pressure` (Pa), tapped at `amplitude` (m).
 
@@ -125,12 +128,6 @@ def tapping_friction(
     follows the finger, dq/dt = k_t U, capped by µ p_c(t). Raises `InputError` for values that
     cannot be used.
     """
-    require("amplitude", amplitude, Unit("m"), at_least=0)
-    require("frequency", frequency, Unit("Hz"), above=0)
-    require("speed", speed, Unit("m/s"), above=0)
-    require("pressure", pressure, Unit("Pa"), above=0)
-    require("friction_coefficient", friction_coefficient, above=0)
-    require("stiffness_ratio", stiffness_ratio, above=0)
     if normal_stiffness is None:
         normal_stiffness = pressure / ASPERITY_DECAY
     require("normal_stiffness", normal_stiffness, Unit("Pa/m"), above=0)

@@ -63,15 +63,15 @@ class DryFriction:
 
     @checked_numbers
     def kinetic_force(
-        self, friction_coefficient: DimensionlessLike, normal_force: NewtonLike
+        self,
+        friction_coefficient: Annotated[DimensionlessLike, AtLeast(0.0)],
+        normal_force: Annotated[NewtonLike, AtLeast(0.0)],
     ) -> NewtonLike:
         """Friction force of fast sliding (N) under a normal force (N); both broadcast.
 
         Raises:
             InputError: a negative or infinite coefficient or force.
         """
-        require("friction_coefficient", friction_coefficient, at_least=0.0)
-        require("normal_force", normal_force, Unit("N"), at_least=0.0)
         relative = np.asarray(normal_force, dtype=float) / self.reference_force
         force: NewtonLike = (
             friction_coefficient * self.reference_force * relative**self.load_exponent
@@ -124,7 +124,6 @@ def sampled_profile(
         InputError: an end not beyond the start, fewer than two points, or values that a
             `FrictionProfile` refuses.
     """
-    require("start", start, Unit("m"))
     require("end", end, Unit("m"), above=start)
     if points < 2:
         raise InputError(f"points = {points} cannot be used: it must be at least 2")

@@ -35,6 +35,7 @@ from squeezefilm.contact.sliding.kernel import (
 from squeezefilm.contact.sliding.skin_motion import Skin
 from squeezefilm.errors import ConvergenceError, InputError, OutOfRangeError
 from squeezefilm.quantities import (
+    Above,
     Dimensionless,
     DimensionlessLike,
     FloatArray,
@@ -137,7 +138,7 @@ class Sliding:
 @checked_numbers
 def slide(
     bone_position: MetreArray,
-    time_step: Second,
+    time_step: Annotated[Second, Above(0.0)],
     friction_coefficient: DimensionlessLike,
     normal_force: NewtonLike,
     fingerpad: FingerpadDynamics | None = None,
@@ -174,10 +175,6 @@ def slide(
             holds the skin positions up to there.
     """
     pad, law = fingerpad or FingerpadDynamics(), law or DryFriction()
-    require("bone_position", bone_position, Unit("m"))
-    require("time_step", time_step, Unit("s"), above=0.0)
-    require("initial_stretch", initial_stretch, Unit("m"))
-    require("initial_speed", initial_speed, Unit("m/s"))
     bone = _checked_bone(bone_position)
     n = bone.size
     limit = _over_time("friction_coefficient", friction_coefficient, n)
@@ -271,7 +268,7 @@ def _sliding(
 
 @checked_numbers
 def interval_speeds(
-    bone: MetreArray, time_step: Second
+    bone: MetreArray, time_step: Annotated[Second, Above(0.0)]
 ) -> tuple[MetrePerSecondArray, MetrePerSecondArray]:
     """Speed of the bone at the start and the end of each interval (m/s), shape (n−1,) each.
 
@@ -279,7 +276,6 @@ def interval_speeds(
     to the right, and 0 where they differ in sign: second order on smooth motion, and a motion in
     straight pieces that meet at samples keeps its corners.
     """
-    require("time_step", time_step, Unit("s"), above=0)
     require("bone", bone, Unit("m"), axes=1)
     mean = np.diff(bone) / time_step
     change = np.diff(mean)

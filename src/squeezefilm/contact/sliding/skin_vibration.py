@@ -11,6 +11,7 @@ import numpy as np
 from squeezefilm.contact.sliding.march import MetrePerSquareSecondArray, Sliding
 from squeezefilm.errors import InputError
 from squeezefilm.quantities import (
+    Above,
     FloatArray,
     Hertz,
     HertzArray,
@@ -159,14 +160,15 @@ def _window(motion: Sliding, start: float, stop: float, fundamental: float) -> F
 
 
 @checked_numbers
-def line_amplitudes(signals: FloatArray, time_step: Second, lines: HertzArray) -> FloatArray:
+def line_amplitudes(
+    signals: FloatArray, time_step: Annotated[Second, Above(0.0)], lines: HertzArray
+) -> FloatArray:
     """Zero-to-peak amplitudes of sines at the frequencies `lines` (Hz) in signals (…, samples).
 
     Least squares of a line in time and all the sines together over as many whole periods of the
     first line as fit, so that neither a drift nor the window's ends leak into them. The result has
     shape (…, lines) and the unit of the signals.
     """
-    require("time_step", time_step, Unit("s"), above=0)
     require("lines", lines, Unit("Hz"), above=0, axes=1)
     periods = signals.shape[-1] * time_step * lines[0]
     if not 1 <= periods + 1e-9 <= signals.shape[-1] / 2:

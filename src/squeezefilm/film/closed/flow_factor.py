@@ -7,14 +7,18 @@ compressed to P and H.
 
 from __future__ import annotations
 
+from typing import Annotated
+
 import numpy as np
 
 from squeezefilm.film.slip import slip_law
-from squeezefilm.quantities import DimensionlessLike, FloatLike, checked_numbers, require
+from squeezefilm.quantities import AtLeast, DimensionlessLike, FloatLike, checked_numbers
 
 
 @checked_numbers
-def flow_factor(local_knudsen_number: DimensionlessLike, slip: str = "first") -> FloatLike:
+def flow_factor(
+    local_knudsen_number: Annotated[DimensionlessLike, AtLeast(0.0)], slip: str = "first"
+) -> FloatLike:
     """The factor φ by which slip raises the flow of a film at a local Knudsen number λ/h.
 
     - ``"first"``: 1 + 6 Kn, Burgdorfer 1959 (J. Basic Eng. 81, 94); good below Kn ≈ 0.1.
@@ -29,7 +33,6 @@ def flow_factor(local_knudsen_number: DimensionlessLike, slip: str = "first") ->
     Takes and returns scalars or arrays. Raises `InputError` for an unknown law or a Knudsen
     number that is negative or not finite.
     """
-    require("local_knudsen_number", local_knudsen_number, at_least=0.0)
     # numba is loaded by who computes, not by who imports the closed forms.
     from squeezefilm.film.slip_kernel import slip_factor
 

@@ -9,13 +9,16 @@ Sources: Salbu 1964, 10.1115/1.3653080; Biet et al., equations 5 to 12.
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 
 from squeezefilm.errors import ConvergenceError, InputError, OutOfRangeError
 from squeezefilm.film.gap import PaperGap
 from squeezefilm.quantities import (
+    AtLeast,
+    AtMost,
+    Below,
     Dimensionless,
     DimensionlessArray,
     DimensionlessLike,
@@ -31,19 +34,18 @@ PAPER_MODELS: tuple[PaperModel, ...] = ("paper2008", "paper2008-printed")
 
 
 @closed_form(nonnegative="amplitude_ratio")
-def asymptotic_load(amplitude_ratio: DimensionlessLike) -> DimensionlessLike:
+def asymptotic_load(amplitude_ratio: Annotated[DimensionlessLike, Below(1.0)]) -> DimensionlessLike:
     """The mean load W over p0 A of a uniform isothermal film as σ → ∞ (dimensionless); broadcasts.
 
     W = √((1 + 1.5 ε²)/(1 − ε²)), any planform, ε = amplitude over mean gap below 1. Source: Salbu
     1964, 10.1115/1.3653080. An upper bound: see `film.validity.asymptotic_fraction`.
     """
-    require("amplitude_ratio", amplitude_ratio, below=1)
     return np.sqrt((1 + 1.5 * amplitude_ratio**2) / (1 - amplitude_ratio**2))
 
 
 @closed_form(nonnegative="amplitude_ratio", positive="polytropic_exponent")
 def asymptotic_load_polytropic(
-    amplitude_ratio: DimensionlessLike, polytropic_exponent: Dimensionless
+    amplitude_ratio: Annotated[DimensionlessLike, Below(1.0)], polytropic_exponent: Dimensionless
 ) -> DimensionlessLike:
     """The mean load W over p0 A of a uniform polytropic film as σ → ∞ (dimensionless); broadcasts.
 
@@ -52,7 +54,6 @@ def asymptotic_load_polytropic(
     """
     from scipy.special import hyp2f1
 
-    require("amplitude_ratio", amplitude_ratio, below=1)
     require("polytropic_exponent", polytropic_exponent, at_least=1, at_most=5 / 3)
     n = polytropic_exponent
 
@@ -248,7 +249,9 @@ def _inverse_cube_integral(theta: Any, delta: Any) -> Any:
 
 @checked_numbers
 def mean_pressure_profile(
-    X: DimensionlessLike, gap: PaperGap, model: PaperModel = "paper2008"
+    X: Annotated[DimensionlessLike, AtLeast(-0.5), AtMost(0.5)],
+    gap: PaperGap,
+    model: PaperModel = "paper2008",
 ) -> DimensionlessArray:
     """The mean over a period of the pressure over ambient, P̄(X), as σ → ∞ (dimensionless).
 
@@ -262,7 +265,6 @@ def mean_pressure_profile(
     Raises `InputError` for an X outside the contact, an unknown model, or an off-centre contact of
     the printed model; `OutOfRangeError` where the printed root fails.
     """
-    require("X", X, at_least=-0.5, at_most=0.5)
     X = np.asarray(X, dtype=float)
     array = np.ndim(gap.vibration_amplitude) == 1
     if array:

@@ -13,6 +13,7 @@ from squeezefilm.film.periodic.batch import FilmBatch, solve_films
 from squeezefilm.quantities import (
     Above,
     AtLeast,
+    AtMost,
     Dimensionless,
     FloatArray,
     Hertz,
@@ -22,7 +23,6 @@ from squeezefilm.quantities import (
     Unit,
     checked_numbers,
     format_quantity,
-    require,
     require_one_of,
 )
 
@@ -127,7 +127,12 @@ def _solved(
 
 
 @checked_numbers
-def mean_gap_for_load(film: VibratedFilm, load: Pascal, *, tolerance: float = 1e-3) -> LoadBalance:
+def mean_gap_for_load(
+    film: VibratedFilm,
+    load: Annotated[Pascal, Above(0.0)],
+    *,
+    tolerance: Annotated[float, AtLeast(1e-6), AtMost(0.1)] = 1e-3,
+) -> LoadBalance:
     """The mean gap h0 at which a vibrated film carries a mean pressure load.
 
     Solves p0 (W(σ, ε) − 1) = load for h0, with ε = a/h0; the over-pressure falls steadily with h0.
@@ -136,8 +141,6 @@ def mean_gap_for_load(film: VibratedFilm, load: Pascal, *, tolerance: float = 1e
     Raises `InputError` for values that no film has and `UnreachableError` for a load above what
     the film carries at ε = 0.95 (see `levitation_limit`) or below that at ε = 0.001.
     """
-    require("load", load, Unit("Pa"), above=0.0)
-    require("tolerance", tolerance, at_least=1e-6, at_most=0.1)
     grid, rough = _searched(film, load, tolerance)
     found = _balanced(film, load, grid, rough, tolerance)
     eps, slope = float(found.excursion_ratio[1]), found.slope
@@ -243,7 +246,10 @@ def _balanced(
 
 @checked_numbers
 def levitation_limit(
-    film: VibratedFilm, *, excursion_ratio: Dimensionless = MAX_EXCURSION, tolerance: float = 5e-3
+    film: VibratedFilm,
+    *,
+    excursion_ratio: Annotated[Dimensionless, AtLeast(0.1), AtMost(MAX_EXCURSION)] = MAX_EXCURSION,
+    tolerance: float = 5e-3,
 ) -> LevitationLimit:
     """The highest load a film carries before its gap closes to (1 − ε) of its mean.
 
@@ -251,7 +257,6 @@ def levitation_limit(
     h_r, which must stay below the least gap: ε = 1/(1 + h_r/amplitude). Raises `InputError` for
     values that no film has.
     """
-    require("excursion_ratio", excursion_ratio, at_least=0.1, at_most=MAX_EXCURSION)
     ambient_pressure, gap = film.ambient_pressure, film.amplitude / excursion_ratio
     batch = _solved(film, np.array([excursion_ratio]), tolerance)
     n = film.polytropic_exponent

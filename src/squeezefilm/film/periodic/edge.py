@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
 from squeezefilm.film.periodic.batch import solve_films
-from squeezefilm.quantities import Dimensionless, checked_numbers, require
+from squeezefilm.quantities import AtLeast, AtMost, Dimensionless, checked_numbers, require
 
 _SIGMA = 3600.0
 
@@ -29,7 +30,7 @@ def edge_layer(
     excursion_ratio: Dimensionless,
     *,
     polytropic_exponent: Dimensionless = 1.0,
-    relative_accuracy: float = 1e-5,
+    relative_accuracy: Annotated[float, AtLeast(1e-6), AtMost(1e-2)] = 1e-5,
 ) -> EdgeLayer:
     """The edge-layer constant C(ε) of a strip without slip: W = W∞ − C/√σ as σ → ∞.
 
@@ -44,7 +45,6 @@ def edge_layer(
     """
     require("excursion_ratio", abs(excursion_ratio), at_least=1e-3, at_most=0.95)
     require("polytropic_exponent", polytropic_exponent, at_least=1.0, at_most=5.0 / 3.0)
-    require("relative_accuracy", relative_accuracy, at_least=1e-6, at_most=1e-2)
     n = polytropic_exponent
     H = 1.0 + excursion_ratio * np.cos(2.0 * np.pi * np.arange(512) / 512)
     psi = (np.mean(H**3) / np.mean(H ** (2.0 - n))) ** (1.0 / (n + 1.0))

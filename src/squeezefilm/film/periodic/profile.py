@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import lru_cache
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from squeezefilm.errors import GeometryError, InputError
-from squeezefilm.quantities import ComplexArray, FloatArray, checked_numbers, require
+from squeezefilm.quantities import Above, Below, ComplexArray, FloatArray, checked_numbers, require
 
 _TIMES = 128
 _MOST_ORDERS = 40
@@ -192,7 +193,7 @@ def _sampled(gap: GapFunction, x: FloatArray, times: FloatArray) -> FloatArray:
 
 @checked_numbers
 def flexural_profile(
-    excursion_ratio: float,
+    excursion_ratio: Annotated[float, Above(-1.0), Below(1.0)],
     *,
     wavenumber: float = 0.0,
     ridge_depth: float = 0.0,
@@ -206,7 +207,6 @@ def flexural_profile(
     roughness. Raises `InputError` for values that are not finite or ε ≥ 1, and `GeometryError`
     for a gap that closes.
     """
-    require("excursion_ratio", excursion_ratio, above=-1.0, below=1.0)
     for name, value in (
         ("wavenumber", wavenumber),
         ("ridge_depth", ridge_depth),

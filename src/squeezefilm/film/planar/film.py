@@ -9,6 +9,7 @@ give the error estimate. P = p/p0, H = h/H0, lengths over the reference length l
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 from squeezefilm.errors import ConvergenceError, InputError
 from squeezefilm.film.compiled import announce
@@ -19,11 +20,13 @@ from squeezefilm.film.planar.ladder import RUNGS, Climb, Ladder, PlanarShape, cl
 from squeezefilm.film.records import ISOTHERMAL, FilmGas
 from squeezefilm.film.solved_range import require_film
 from squeezefilm.quantities import (
+    Above,
+    AtLeast,
+    AtMost,
     ComplexArray,
     Dimensionless,
     DimensionlessArray,
     checked_numbers,
-    require,
 )
 
 
@@ -130,11 +133,11 @@ def solve_planar(
     gap: GapFunction,
     squeeze_number: Dimensionless,
     *,
-    aspect_ratio: Dimensionless = 1.0,
+    aspect_ratio: Annotated[Dimensionless, Above(0.0)] = 1.0,
     symmetric: bool | None = None,
     cells: tuple[int, int] | None = None,
     gas: FilmGas = ISOTHERMAL,
-    tolerance: Dimensionless = 5e-3,
+    tolerance: Annotated[Dimensionless, AtLeast(1e-5), AtMost(0.5)] = 5e-3,
 ) -> FilmPlanar:
     """The periodic film under any gap H(X, Y, T) of period 2π, to `tolerance` of W − 1.
 
@@ -151,8 +154,6 @@ def solve_planar(
     down to 1e-5 of it. Sources: Gross (1962); Blech, 10.1115/1.3254692 for the linear limit.
     """
     require_film(squeeze_number, gas.polytropic_exponent, gas.knudsen_number)
-    require("aspect_ratio", aspect_ratio, above=0.0)
-    require("tolerance", tolerance, at_least=1e-5, at_most=0.5)
     if shape == "disc" and aspect_ratio != 1.0:
         raise InputError(f"a disc has aspect_ratio 1, not {aspect_ratio}; ask for an ellipse")
     announce(row_block, "film solver in the plane", 3)

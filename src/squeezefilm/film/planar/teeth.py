@@ -7,6 +7,7 @@ the air in a slot is at ambient pressure, and the film on each tooth is a strip 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
@@ -14,7 +15,13 @@ from squeezefilm.errors import InputError
 from squeezefilm.film.planar.film import FilmPlanar, solve_planar
 from squeezefilm.film.planar.gap import GapFunction, PlanarGap
 from squeezefilm.film.records import ISOTHERMAL, FilmGas
-from squeezefilm.quantities import Dimensionless, FloatArray, checked_numbers, require
+from squeezefilm.quantities import (
+    Above,
+    AtMost,
+    Dimensionless,
+    FloatArray,
+    checked_numbers,
+)
 
 _PHASES = 5
 
@@ -54,8 +61,8 @@ def compare_teeth(
     squeeze_number: Dimensionless,
     gap: PlanarGap,
     *,
-    tooth_width: Dimensionless,
-    tooth_pitch: Dimensionless,
+    tooth_width: Annotated[Dimensionless, Above(0.0), AtMost(1.0)],
+    tooth_pitch: Annotated[Dimensionless, Above(0.0)],
     aspect_ratio: Dimensionless = 1.0,
     gas: FilmGas = ISOTHERMAL,
     tolerance: Dimensionless = 1e-2,
@@ -71,8 +78,6 @@ def compare_teeth(
     Raises what `solve_planar` raises, and `InputError` for a tooth wider than its pitch.
     An estimate: the flow along a slot is taken as free, and the finger as plane.
     """
-    require("tooth_width", tooth_width, above=0.0, at_most=1.0)
-    require("tooth_pitch", tooth_pitch, above=0.0)
     if tooth_width > tooth_pitch:
         raise InputError(
             f"tooth_width = {tooth_width:.4g} exceeds tooth_pitch = {tooth_pitch:.4g}; "

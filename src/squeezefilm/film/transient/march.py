@@ -9,7 +9,7 @@ have no period. P = p/p0, H = h/H0, T = ωt.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
 
@@ -29,6 +29,8 @@ from squeezefilm.film.transient.kernel import (
     march,
 )
 from squeezefilm.quantities import (
+    Above,
+    AtLeast,
     Dimensionless,
     DimensionlessArray,
     DimensionlessLike,
@@ -97,11 +99,11 @@ def solve_transient(
     end: Dimensionless,
     *,
     start: Dimensionless = 0.0,
-    steps: int = 1000,
-    cells: int = 64,
+    steps: Annotated[int, AtLeast(1)] = 1000,
+    cells: Annotated[int, AtLeast(4)] = 64,
     shape: Shape = "strip",
     gas: FilmGas = ISOTHERMAL,
-    initial_pressure: DimensionlessLike = 1.0,
+    initial_pressure: Annotated[DimensionlessLike, Above(0.0)] = 1.0,
     snapshots: int = 11,
     scheme: Scheme = "bdf2",
 ) -> FilmTransient:
@@ -124,10 +126,7 @@ def solve_transient(
     check_film(shape, squeeze_number, gas.polytropic_exponent, gas.knudsen_number)
     announce(march, "film solver in time", 4)
     require("end", end, above=start)
-    require("steps", steps, at_least=1)
-    require("cells", cells, at_least=4)
     require("snapshots", snapshots, at_least=0, at_most=steps + 1)
-    require("initial_pressure", initial_pressure, above=0.0)
     if np.shape(initial_pressure) not in ((), (cells,)):
         raise InputError(
             f"initial_pressure has the shape {np.shape(initial_pressure)}; give one number, or one "

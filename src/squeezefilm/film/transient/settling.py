@@ -7,6 +7,7 @@ of one period onto the next is accelerated (Anderson mixing); its fixed point is
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Annotated
 
 import numpy as np
 
@@ -23,6 +24,7 @@ from squeezefilm.film.transient.march import (
     stage_times,
 )
 from squeezefilm.quantities import (
+    AtLeast,
     Dimensionless,
     DimensionlessArray,
     FloatArray,
@@ -100,13 +102,13 @@ def settle_to_periodic(
     *,
     shape: Shape = "strip",
     tolerance: Dimensionless | None = 1e-3,
-    cells: int = 24,
-    steps: int = 32,
+    cells: Annotated[int, AtLeast(4)] = 24,
+    steps: Annotated[int, AtLeast(4)] = 32,
     gas: FilmGas = ISOTHERMAL,
     scheme: Scheme = "bdf2",
     accelerate: bool = True,
     settled: Dimensionless = 1e-10,
-    max_periods: int = 2000,
+    max_periods: Annotated[int, AtLeast(1)] = 2000,
     max_cells: int = 1600,
 ) -> FilmSettled:
     """The periodic state of the film under a gap H(X, T) of period 2π, by marching in time.
@@ -124,9 +126,6 @@ def settle_to_periodic(
     """
     check_film(shape, squeeze_number, gas.polytropic_exponent, gas.knudsen_number)
     announce(march, "film solver in time", 4)
-    require("cells", cells, at_least=4)
-    require("steps", steps, at_least=4)
-    require("max_periods", max_periods, at_least=1)
     # Less than rounding leaves no march reaches.
     require("settled", settled, at_least=1e-14)
     if tolerance is not None:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from squeezefilm.errors import InputError, OutOfRangeError
 from squeezefilm.hard_limits import NODAL_LINES, require_within
 from squeezefilm.plate.laminate import Laminate
 from squeezefilm.quantities import (
+    Above,
     FloatArray,
     Hertz,
     HertzLike,
@@ -30,7 +31,6 @@ from squeezefilm.quantities import (
     checked_numbers,
     closed_form,
     format_quantity,
-    require,
 )
 
 BeamTheory = Literal["euler_bernoulli", "timoshenko"]
@@ -68,13 +68,14 @@ def euler_bernoulli_half_wavelength(
 
 
 @checked_numbers
-def timoshenko_frequency(half_wavelength: MetreLike, section: Laminate) -> HertzLike:
+def timoshenko_frequency(
+    half_wavelength: Annotated[MetreLike, Above(0.0)], section: Laminate
+) -> HertzLike:
     """The frequency (Hz) of a flexural wave of given half wavelength in a Timoshenko beam.
 
     The lower branch of  MJ ω⁴ − ω²[M S + k²(M G + S J)] + S G k⁴ = 0  with k = π/(λ/2). Broadcasts.
     Valid for λ/2 above about two thicknesses. Source: Timoshenko 1921.
     """
-    require("half_wavelength", half_wavelength, Unit("m"), above=0)
     G, M = section.bending_stiffness, section.mass_per_area
     S, J = section.shear_stiffness, section.rotary_inertia
     k2 = (np.pi / np.asarray(half_wavelength, dtype=float)) ** 2
@@ -147,7 +148,7 @@ def _determinant(
 @checked_numbers
 def free_beam_mode(
     section: Laminate,
-    length: Metre,
+    length: Annotated[Metre, Above(0.0)],
     nodal_lines: int,
     theory: BeamTheory = "timoshenko",
     points: int = 2001,
@@ -160,7 +161,6 @@ def free_beam_mode(
     """
     from scipy.optimize import brentq
 
-    require("length", length, Unit("m"), above=0)
     if nodal_lines < 2:
         raise InputError(
             f"nodal_lines = {nodal_lines}: a free beam bends with at least 2; fewer is rigid motion"

@@ -15,6 +15,7 @@ from squeezefilm.materials import ElasticMaterial, Piezoceramic, isotropic_stiff
 from squeezefilm.quantities import (
     Above,
     AtLeast,
+    AtMost,
     Below,
     Dimensionless,
     FloatArray,
@@ -110,14 +111,15 @@ def piezoceramic_solid(
 
 
 @checked_numbers
-def stiff_teeth(solid: RingSolid, fill: Dimensionless) -> RingSolid:
+def stiff_teeth(
+    solid: RingSolid, fill: Annotated[Dimensionless, Above(0.0), AtMost(1.0)]
+) -> RingSolid:
     """A layer of radial teeth, smeared, at its upper bound: everything times `fill`.
 
     `fill` is the share of the circumference that is metal. A smooth motion of the filled layer is
     admissible for the teeth, so (Rayleigh) a frequency computed with this layer is not below the
     true one of a ring with many teeth per half wave.
     """
-    require("fill", fill, above=0, at_most=1)
     return RingSolid(
         f"{solid.name} teeth, stiff",
         fill * solid.stiffness,
@@ -127,7 +129,9 @@ def stiff_teeth(solid: RingSolid, fill: Dimensionless) -> RingSolid:
 
 
 @checked_numbers
-def soft_teeth(solid: RingSolid, fill: Dimensionless) -> RingSolid:
+def soft_teeth(
+    solid: RingSolid, fill: Annotated[Dimensionless, Above(0.0), AtMost(1.0)]
+) -> RingSolid:
     """A layer of radial teeth, smeared, at its lower bound: no hoop stiffness at all.
 
     Each tooth is solid in r and z with its flanks free (plane stress in θ), stands upright and
@@ -139,7 +143,6 @@ def soft_teeth(solid: RingSolid, fill: Dimensionless) -> RingSolid:
     Radial stiffness cannot be dropped as well: a tooth is one piece from the inner to the outer
     edge, and without it the layer has waves of any shortness at any frequency.
     """
-    require("fill", fill, above=0, at_most=1)
     compliance = np.linalg.inv(solid.stiffness)
     meridian = np.ix_([0, 2], [0, 2])
     stiffness = np.zeros((6, 6))

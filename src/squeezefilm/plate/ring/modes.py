@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Annotated
 
 import numpy as np
 from scipy import sparse
@@ -19,6 +20,9 @@ from squeezefilm.errors import ConvergenceError, InputError
 from squeezefilm.plate.ring.elements import HarmonicSystem, harmonic_system, ring_mesh
 from squeezefilm.plate.ring.section import AnnularSection, SectorDrive
 from squeezefilm.quantities import (
+    Above,
+    AtLeast,
+    AtMost,
     ComplexArray,
     Dimensionless,
     DimensionlessArray,
@@ -31,7 +35,6 @@ from squeezefilm.quantities import (
     MetreArray,
     MetrePerVolt,
     NewtonPerVolt,
-    Unit,
     checked_numbers,
     require,
 )
@@ -90,9 +93,10 @@ class AnnularMode:
         return self.quality_factor * self.modal_force(drive) / stiffness
 
     @checked_numbers
-    def coupling_coefficient(self, drive: SectorDrive, capacitance: Farad) -> Dimensionless:
+    def coupling_coefficient(
+        self, drive: SectorDrive, capacitance: Annotated[Farad, Above(0.0)]
+    ) -> Dimensionless:
         """Effective coupling k of the mode on `drive`: k² = F²/(F² + ω² M C), with C clamped."""
-        require("capacitance", capacitance, Unit("F"), above=0)
         stiffness = (2 * math.pi * self.frequency) ** 2 * self.modal_mass
         force = self.modal_force(drive)
         return force / math.sqrt(force**2 + stiffness * capacitance)
@@ -101,11 +105,11 @@ class AnnularMode:
 @checked_numbers
 def annular_modes(
     section: AnnularSection,
-    harmonic: int,
+    harmonic: Annotated[int, AtLeast(0)],
     *,
-    near: Hertz = 0.0,
-    count: int = 4,
-    degree: int = DEFAULT_DEGREE,
+    near: Annotated[Hertz, AtLeast(0.0)] = 0.0,
+    count: Annotated[int, AtLeast(1)] = 4,
+    degree: Annotated[int, AtLeast(3), AtMost(12)] = DEFAULT_DEGREE,
     quality_factor: Dimensionless | None = None,
 ) -> tuple[AnnularMode, ...]:
     """The `count` modes of one Fourier harmonic nearest to a frequency, in rising order.
@@ -117,10 +121,6 @@ def annular_modes(
     Raises `InputError` for a harmonic or degree that cannot be, or if no Q can be found;
     `ConvergenceError` if the eigenvalues do not converge.
     """
-    require("harmonic", harmonic, at_least=0)
-    require("degree", degree, at_least=3, at_most=12)
-    require("count", count, at_least=1)
-    require("near", near, Unit("Hz"), at_least=0)
     if quality_factor is not None:
         require("quality_factor", quality_factor, above=0.5)
     mesh = ring_mesh(section)
@@ -188,7 +188,7 @@ def clamped_capacitance(section: AnnularSection, drive: SectorDrive) -> Farad:
 def annular_admittance(
     section: AnnularSection,
     drive: SectorDrive,
-    frequency: HertzArray,
+    frequency: Annotated[HertzArray, Above(0.0)],
     *,
     harmonics: Sequence[int],
     quality_factor: Dimensionless | None = None,
@@ -203,7 +203,6 @@ def annular_admittance(
     Damping is structural; the ceramic's dielectric loss is left out.
     Raises `InputError` for an empty list of harmonics or frequencies that are not positive.
     """
-    require("frequency", frequency, Unit("Hz"), above=0)
     if not len(harmonics):
         raise InputError("harmonics is empty; name at least the one of the mode wanted")
     omega = 2 * np.pi * frequency

@@ -181,14 +181,14 @@ class SectorDrive:
 
 
 @checked_numbers
-def alternate_sectors(count: int, width: Radian, start: Radian = 0.0) -> SectorDrive:
+def alternate_sectors(
+    count: Annotated[int, AtLeast(1)], width: Annotated[Radian, Above(0.0)], start: Radian = 0.0
+) -> SectorDrive:
     """`count` neighbouring sectors of one width, of alternate poling: the channel of a motor.
 
     A motor in B(0, m) has sectors of π/m; its one channel has fewer than 2m of them, since the
     other channel and the gaps between the two take the rest.
     """
-    require("count", count, at_least=1)
-    require("width", width, Unit("rad"), above=0)
     return SectorDrive(
         tuple(
             (start + k * width, start + (k + 1) * width, 1 if k % 2 == 0 else -1)

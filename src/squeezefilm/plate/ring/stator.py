@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import math
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Annotated, Literal
 
 from scipy.optimize import brentq
 
@@ -25,6 +25,8 @@ from squeezefilm.plate.ring.section import (
     alternate_sectors,
 )
 from squeezefilm.quantities import (
+    Above,
+    AtLeast,
     Dimensionless,
     Hertz,
     Metre,
@@ -109,7 +111,7 @@ class StatorFit:
 @checked_numbers
 def stator_section(
     mean_diameter: Metre,
-    ring_thickness: Metre,
+    ring_thickness: Annotated[Metre, Above(0.0)],
     assumptions: StatorAssumptions,
     tooth_model: ToothModel,
 ) -> AnnularSection:
@@ -122,7 +124,6 @@ def stator_section(
     """
     a = assumptions
     require("outer_diameter", a.outer_diameter, _M, above=mean_diameter, below=2 * mean_diameter)
-    require("ring_thickness", ring_thickness, _M, above=0)
     require("tooth_height", a.tooth_height, _M, at_least=0)
     require("web_thickness", a.web_thickness, _M, at_least=0, at_most=ring_thickness)
     radial_width, loss_factor = a.outer_diameter - mean_diameter, 1 / a.quality_factor
@@ -149,12 +150,12 @@ def stator_section(
 
 @checked_numbers
 def fit_stator(
-    frequency: Hertz = 40.5e3,
-    wavelength: Metre = 18.7e-3,
-    waves: int = 9,
+    frequency: Annotated[Hertz, Above(0.0)] = 40.5e3,
+    wavelength: Annotated[Metre, Above(0.0)] = 18.7e-3,
+    waves: Annotated[int, AtLeast(2)] = 9,
     assumptions: StatorAssumptions | None = None,
     *,
-    thinnest: Metre = 0.3e-3,
+    thinnest: Annotated[Metre, Above(0.0)] = 0.3e-3,
     thickest: Metre = 10e-3,
     degree: int = DEFAULT_DEGREE,
 ) -> StatorFit:
@@ -166,10 +167,6 @@ def fit_stator(
     Raises `UnreachableError` if no thickness between `thinnest` and `thickest` has the frequency.
     """
     a = assumptions or StatorAssumptions()
-    require("frequency", frequency, _HZ, above=0)
-    require("wavelength", wavelength, _M, above=0)
-    require("waves", waves, at_least=2)
-    require("thinnest", thinnest, _M, above=0)
     start = max(thinnest, a.web_thickness)  # a ring is no thinner than its web
     require("thickest", thickest, _M, above=start)
     mean_diameter = waves * wavelength / math.pi

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 from scipy.sparse.linalg import LinearOperator, eigsh, splu
@@ -19,6 +20,9 @@ from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.shear.elements import Axis, ShearSystem, shear_system
 from squeezefilm.plate.shear.section import ShearLayout, shear_layout
 from squeezefilm.quantities import (
+    Above,
+    AtLeast,
+    AtMost,
     Dimensionless,
     DimensionlessArray,
     FloatArray,
@@ -76,12 +80,13 @@ class ShearMode:
         return self.frequency == 0
 
     @checked_numbers
-    def amplitude_per_volt(self, quality_factor: Dimensionless) -> MetrePerVolt:
+    def amplitude_per_volt(
+        self, quality_factor: Annotated[Dimensionless, Above(0.5)]
+    ) -> MetrePerVolt:
         """Zero-to-peak deflection at the plate's highest point, per volt at resonance (m/V).
 
         Q F / (ω² M): one mode, structural damping. Raises `InputError` for a rigid-body mode.
         """
-        require("quality_factor", quality_factor, above=0.5)
         if self.is_rigid:
             raise InputError("a rigid-body motion has no resonance; choose an elastic mode")
         omega2 = (2 * math.pi * self.frequency) ** 2
@@ -109,9 +114,9 @@ class ShearMode:
 def shear_modes(
     plate: RectangularPlate | ShearLayout,
     near: Hertz,
-    count: int = 8,
+    count: Annotated[int, AtLeast(1)] = 8,
     *,
-    degree: int = DEFAULT_DEGREE,
+    degree: Annotated[int, AtLeast(3), AtMost(14)] = DEFAULT_DEGREE,
     parities: tuple[tuple[int, int], ...] | None = None,
     induced_potential: bool = True,
 ) -> tuple[ShearMode, ...]:
@@ -124,8 +129,6 @@ def shear_modes(
     `ConvergenceError` if the eigenvalues do not converge.
     """
     require("near", near, Unit("Hz"), at_least=0, at_most=FREQUENCY.most)
-    require("count", count, at_least=1)
-    require("degree", degree, at_least=3, at_most=14)
     layout = (
         plate
         if isinstance(plate, ShearLayout)

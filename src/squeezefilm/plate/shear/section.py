@@ -6,6 +6,7 @@ Lengths z are taken from the substrate's mid-plane, positive towards the free (t
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
@@ -13,13 +14,12 @@ from squeezefilm.materials import VACUUM_PERMITTIVITY, ElasticMaterial, Piezocer
 from squeezefilm.plate.laminate import SHEAR_CORRECTION
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.quantities import (
+    Above,
     CoulombPerSquareMetre,
     FloatArray,
     Metre,
     NewtonPerMetre,
-    Unit,
     checked_numbers,
-    require,
 )
 
 _SAME = 1e-9
@@ -76,9 +76,10 @@ class ShearLayout:
 
 
 @checked_numbers
-def isotropic_section(material: ElasticMaterial, thickness: Metre) -> ShearSection:
+def isotropic_section(
+    material: ElasticMaterial, thickness: Annotated[Metre, Above(0.0)]
+) -> ShearSection:
     """A bare plate of one material (plane stress, Reissner's shear factor 5/6)."""
-    require("thickness", thickness, Unit("m"), above=0)
     reduced = _plane_stress(material.plane_strain_modulus, material.poisson_ratio)
     return ShearSection(
         membrane=reduced * thickness,
@@ -94,7 +95,7 @@ def monomorph_section(
     substrate: ElasticMaterial,
     thickness: Metre,
     ceramic: Piezoceramic,
-    ceramic_thickness: Metre,
+    ceramic_thickness: Annotated[Metre, Above(0.0)],
     *,
     induced_potential: bool = True,
 ) -> ShearSection:
@@ -106,7 +107,6 @@ def monomorph_section(
     Valid for layers thin against the wavelength; source: classical lamination with Mindlin's shear
     (1951, 10.1115/1.4010217), shear factor 5/6 for the sum of the layers.
     """
-    require("ceramic_thickness", ceramic_thickness, Unit("m"), above=0)
     bare = isotropic_section(substrate, thickness)
     reduced = _plane_stress(ceramic.in_plane_stiffness, ceramic.in_plane_poisson_ratio)
     h = ceramic_thickness
@@ -152,10 +152,10 @@ def shear_layout(plate: RectangularPlate, *, induced_potential: bool = True) -> 
 
 
 @checked_numbers
-def uniform_shear_layout(length: Metre, width: Metre, section: ShearSection) -> ShearLayout:
+def uniform_shear_layout(
+    length: Annotated[Metre, Above(0.0)], width: Annotated[Metre, Above(0.0)], section: ShearSection
+) -> ShearLayout:
     """A plate of one section, without drive."""
-    require("length", length, Unit("m"), above=0)
-    require("width", width, Unit("m"), above=0)
     one = np.zeros((1, 1))
     return ShearLayout(
         np.array([0.0, length]), np.array([0.0, width]), (section,), one.astype(int), one

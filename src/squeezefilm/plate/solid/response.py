@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import ClassVar
+from typing import Annotated, ClassVar
 
 import numpy as np
 
@@ -25,6 +25,7 @@ from squeezefilm.plate.solid.reduced import (
 from squeezefilm.plate.solid.resolution import NORMAL, Resolution
 from squeezefilm.plate.solid.symmetry import all_classes, drive_classes, drive_signs
 from squeezefilm.quantities import (
+    AtLeast,
     ComplexArray,
     Dimensionless,
     FloatArray,
@@ -112,12 +113,11 @@ class HarmonicResponse(SolvedAgain):
 
     @checked_numbers
     def line(
-        self, at: int, points: int = 201, y: Metre | None = None
+        self, at: int, points: Annotated[int, AtLeast(1)] = 201, y: Metre | None = None
     ) -> tuple[MetreArray, ComplexArray]:
         """w per volt (m/V) along the plate's length at frequency number `at`; by default on the
         centreline."""
         require("at", at, at_least=-self.frequencies.size, at_most=self.frequencies.size - 1)
-        require("points", points, at_least=1)
         x = np.linspace(0, self.plate.length, points)
         across = self.plate.width / 2 if y is None else y
         values = surface_values(self._parts, x, np.array([across]), self._top)[:, :, 0]

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import dataclasses
 import functools
+from typing import Annotated
 
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import FREQUENCY
@@ -25,7 +26,16 @@ from squeezefilm.plate.solid.modes import Label, PlateModes, check_band
 from squeezefilm.plate.solid.refined_modes import RefinedModes, refined_modes, with_label
 from squeezefilm.plate.solid.symmetry import Parity, all_classes, drive_classes
 from squeezefilm.progress import ShareProgress
-from squeezefilm.quantities import Dimensionless, Hertz, Unit, checked_numbers, require
+from squeezefilm.quantities import (
+    Above,
+    AtLeast,
+    Below,
+    Dimensionless,
+    Hertz,
+    Unit,
+    checked_numbers,
+    require,
+)
 
 # So many modes of a class are looked at around the guess of a mode that is asked for by its lines.
 _WIDTHS = (8, 24)
@@ -38,8 +48,8 @@ def solve_modes(
     near: Hertz | None = None,
     band: tuple[Hertz, Hertz] | None = None,
     mode: Label | None = None,
-    count: int = 6,
-    tolerance: Dimensionless = 1e-3,
+    count: Annotated[int, AtLeast(1)] = 6,
+    tolerance: Annotated[Dimensionless, Above(0.0), Below(1.0)] = 1e-3,
     driven_only: bool = False,
     progress: ShareProgress | None = None,
 ) -> PlateModes:
@@ -62,8 +72,6 @@ def solve_modes(
     """
     if sum(option is not None for option in (near, band, mode)) > 1:
         raise InputError("give one of near, band and mode; they choose the modes in different ways")
-    require("tolerance", tolerance, above=0, below=1)
-    require("count", count, at_least=1)
     if near is not None:
         require("near", near, Unit("Hz"), above=0, at_most=FREQUENCY.most)
     if band is not None:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import functools
 from dataclasses import dataclass, field
+from typing import Annotated
 
 import numpy as np
 
@@ -17,6 +18,7 @@ from squeezefilm.plate.solid.response import HarmonicResponse, harmonic_response
 from squeezefilm.plate.solid.solve import solve_modes
 from squeezefilm.progress import ShareProgress
 from squeezefilm.quantities import (
+    AtLeast,
     Dimensionless,
     FloatArray,
     Hertz,
@@ -42,13 +44,14 @@ _MODES = 0.5
 
 @checked_numbers
 def response_frequencies(
-    frequency: Hertz, quality_factor: Dimensionless, points: int = RESPONSE_POINTS
+    frequency: Hertz,
+    quality_factor: Dimensionless,
+    points: Annotated[int, AtLeast(2)] = RESPONSE_POINTS,
 ) -> FloatArray:
     """Frequencies (Hz) around a resonance, ±8/Q, dense where the curve turns within f/Q.
 
     Raises `InputError` for fewer than 2 points.
     """
-    require("points", points, at_least=2)
     span = min(max(8 / quality_factor, 0.02), 0.5)
     near = np.sinh(np.linspace(-4, 4, points)) / np.sinh(4)
     return np.asarray(frequency * (1 + span * near))

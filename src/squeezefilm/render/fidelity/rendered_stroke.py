@@ -9,12 +9,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import RENDER_STEPS, require_motion
 from squeezefilm.quantities import (
+    Above,
     Dimensionless,
     DimensionlessArray,
     FloatArray,
@@ -22,7 +24,6 @@ from squeezefilm.quantities import (
     MetreArray,
     MetrePerSecondArray,
     SecondArray,
-    Unit,
     checked_numbers,
     require,
     returned,
@@ -96,7 +97,7 @@ def rendered_stroke(
     compensation: Compensation = "none",
     sensor: SensorModel | None = None,
     estimator: MotionEstimator | None = None,
-    control_rate: Hertz = 20e3,
+    control_rate: Annotated[Hertz, Above(0.0)] = 20e3,
     seed: int = 0,
 ) -> RenderedStroke:
     """Render a stroke over a texture as a loop would.
@@ -122,7 +123,6 @@ def rendered_stroke(
             steps, an estimator without a sensor, or a texture or friction that does not return
             one finite value at least 0 per sample.
     """
-    require("control_rate", control_rate, Unit("Hz"), above=0.0)
     if sensor is None and estimator is not None:
         raise InputError("an estimator needs a sensor to listen to; give a sensor as well")
     rounded = trajectory.duration * control_rate * (1 + 1e-12)

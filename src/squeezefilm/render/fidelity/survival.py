@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from squeezefilm.errors import InputError
 from squeezefilm.quantities import (
+    Above,
     Dimensionless,
     DimensionlessArray,
     FloatArray,
@@ -137,7 +138,7 @@ class FidelityTable:
 
 @checked_numbers
 def fidelity_table(
-    time_constant: Second,
+    time_constant: Annotated[Second, Above(0.0)],
     relative_friction: RelativeFriction,
     *,
     low: Metre,
@@ -167,7 +168,6 @@ def fidelity_table(
         InputError: a value outside its range, no period or no speed, or a friction that doesn't
             change between `low` and `high`.
     """
-    require("time_constant", time_constant, Unit("s"), above=0.0)
     periods = _axis("spatial_periods", spatial_periods, Unit("m"))
     columns = _axis("speeds", speeds, Unit("m/s"))
     finest = np.asarray(finest_period(columns, time_constant, kept, shape))

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
 from squeezefilm.errors import InputError
 from squeezefilm.quantities import (
+    Above,
     DimensionlessArray,
     FloatArray,
     Hertz,
@@ -80,7 +82,7 @@ class FrictionTrace:
 def friction_trace(
     texture: Texture,
     stroke: Stroke,
-    time_constant: Second,
+    time_constant: Annotated[Second, Above(0.0)],
     relative_friction: RelativeFriction,
     sample_rate: Hertz | None = None,
 ) -> FrictionTrace:
@@ -108,7 +110,6 @@ def friction_trace(
             more than 20 million samples, a texture or friction whose values are not finite, are
             negative or have another shape than what they were given.
     """
-    require("time_constant", time_constant, Unit("s"), above=0.0)
     if isinstance(texture, Composable) and texture.quantity != "amplitude":
         raise InputError(
             f"a texture of {texture.quantity} commands no amplitude; pass "

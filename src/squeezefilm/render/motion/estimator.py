@@ -211,7 +211,7 @@ def estimate_motion(
     estimator: MotionEstimator,
     stream: SensorStream,
     render: SecondArray,
-    ahead: Second = 0.0,
+    ahead: Annotated[Second, AtLeast(0.0)] = 0.0,
 ) -> MotionEstimate:
     """The finger's motion at each render time, from the samples that had arrived by then.
 
@@ -228,7 +228,6 @@ def estimate_motion(
     Raises:
         InputError: render times that are empty, not finite or falling, or `ahead` below 0.
     """
-    require("ahead", ahead, Unit("s"), at_least=0.0)
     times = np.ascontiguousarray(render, dtype=float)
     if times.ndim != 1 or times.size == 0 or bool(np.any(np.diff(times) < 0)):
         raise InputError(

@@ -135,8 +135,8 @@ class SensorStream:
 def sensor_stream(
     sensor: SensorModel,
     position: Callable[[SecondArray], MetreArray],
-    duration: Second,
-    seed: int,
+    duration: Annotated[Second, Above(0.0)],
+    seed: Annotated[int, AtLeast(0)],
     start: Second = 0.0,
 ) -> SensorStream:
     """What a sensor reports of a motion between `start` and `start + duration`.
@@ -155,8 +155,6 @@ def sensor_stream(
         InputError: a duration not above 0, more than 20 million samples, or positions that are
             not finite or have another shape than the times.
     """
-    require("duration", duration, Unit("s"), above=0.0)
-    require("seed", seed, at_least=0)
     steps = duration * sensor.rate * (1 + 1e-12)
     require_motion(MOTION_SAMPLES, steps + 2, duration, sensor.rate)
     count = math.floor(steps) + 1

@@ -17,6 +17,7 @@ from squeezefilm.hard_limits import (
     STROKE_START,
 )
 from squeezefilm.quantities import (
+    Above,
     AtLeast,
     FloatArray,
     Hertz,
@@ -102,7 +103,7 @@ class Stroke:
         return np.asarray(path), np.minimum(np.floor(path / self.length), self.passes - 1)
 
     @checked_numbers
-    def sampled(self, rate: Hertz) -> tuple[SecondArray, MetreArray]:
+    def sampled(self, rate: Annotated[Hertz, Above(0.0)]) -> tuple[SecondArray, MetreArray]:
         """Times 0, 1/rate, 2/rate … within the stroke (s), and the positions at them (m).
 
         The last sample lies less than 1/rate before the stroke's end.
@@ -111,7 +112,6 @@ class Stroke:
             InputError: a rate that is not above 0, too low for two samples, or so high that the
                 stroke would take more than 20 million samples.
         """
-        require("rate", rate, Unit("Hz"), above=0.0)
         steps = self.duration * rate * (1 + _ROUNDING)
         if not 1 <= steps < MOTION_SAMPLES.most:
             lowest = format_quantity(1 / self.duration, Unit("Hz"))

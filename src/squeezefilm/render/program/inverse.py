@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
 from squeezefilm.errors import InputError
 from squeezefilm.quantities import (
+    Above,
+    AtLeast,
+    AtMost,
     Dimensionless,
     DimensionlessArray,
     DimensionlessLike,
@@ -52,10 +56,10 @@ class FrictionInverse:
     def from_function(
         cls,
         relative_friction: Callable[[MetreArray], DimensionlessArray],
-        largest_amplitude: Metre,
+        largest_amplitude: Annotated[Metre, Above(0.0), AtMost(1e-3)],
         *,
         knots: int = 257,
-        rise_allowed: Dimensionless = 1e-9,
+        rise_allowed: Annotated[Dimensionless, AtLeast(0.0), AtMost(0.1)] = 1e-9,
     ) -> FrictionInverse:
         """The inverse of a friction law up to an amplitude.
 
@@ -71,10 +75,8 @@ class FrictionInverse:
             InputError: a value outside its range, or a friction that is not finite, is not 1 at
                 rest or rises with amplitude.
         """
-        require("largest_amplitude", largest_amplitude, _METRE, above=0.0, at_most=1e-3)
         if not isinstance(knots, int) or not 3 <= knots <= _MOST_KNOTS:
             raise InputError(f"knots = {knots!r} cannot be used: it must be 3 to {_MOST_KNOTS}")
-        require("rise_allowed", rise_allowed, at_least=0.0, at_most=0.1)
         fine = np.linspace(0.0, largest_amplitude, 4 * (knots - 1) + 1)
         values = relative_friction(fine)
         found = returned("relative_friction", values, fine, "one value per amplitude")

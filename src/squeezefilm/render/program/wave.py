@@ -26,17 +26,18 @@ from squeezefilm.quantities import (
     MetreArray,
     MetreLike,
     checked_numbers,
-    require,
 )
 from squeezefilm.render.program.inverse import FrictionInverse
-from squeezefilm.render.texture.coordinate import FARTHEST, METRE, X_AXIS, Coordinate, FromPoint
+from squeezefilm.render.texture.coordinate import FARTHEST, X_AXIS, Coordinate, FromPoint
 
 _MOST_FACTORS = 65_536
 
 
 @checked_numbers
 def wave_factor(
-    position: MetreLike, half_wavelength: Metre, contact_length: Metre = 0.0
+    position: MetreLike,
+    half_wavelength: Annotated[Metre, Above(0.0), AtMost(FARTHEST)],
+    contact_length: Annotated[Metre, AtLeast(0.0), AtMost(FARTHEST)] = 0.0,
 ) -> DimensionlessArray:
     """Mean of |cos(πx/half_wavelength)| over a contact centred at `position` (1), in its shape.
 
@@ -49,8 +50,6 @@ def wave_factor(
         InputError: a position that is not finite, a half wavelength not above 0, a negative
             contact.
     """
-    require("half_wavelength", half_wavelength, METRE, above=0.0, at_most=FARTHEST)
-    require("contact_length", contact_length, METRE, at_least=0.0, at_most=FARTHEST)
     u = math.pi * np.asarray(position, dtype=float) / half_wavelength
     half = 0.5 * math.pi * contact_length / half_wavelength
     # Below this width the difference loses more to rounding than the point does to its width.
@@ -98,7 +97,7 @@ class WaveCompensation:
         half_wavelength: Metre,
         contact_length: Metre,
         *,
-        least: Dimensionless = 0.1,
+        least: Annotated[Dimensionless, Above(0.0), AtMost(1.0)] = 0.1,
         along: Coordinate = X_AXIS,
         count: int = 256,
     ) -> WaveCompensation:
@@ -109,7 +108,6 @@ class WaveCompensation:
         Raises:
             InputError: a value outside its range.
         """
-        require("least", least, above=0.0, at_most=1.0)
         if not 2 <= count <= _MOST_FACTORS:
             raise InputError(f"count = {count} cannot be used: it must be 2 to {_MOST_FACTORS}")
         places = np.arange(count) / count * half_wavelength
@@ -126,7 +124,7 @@ class WaveCompensation:
         inverse: FrictionInverse,
         half_wavelength: Metre,
         *,
-        least: Dimensionless = 0.1,
+        least: Annotated[Dimensionless, Above(0.0), AtMost(1.0)] = 0.1,
         along: Coordinate = X_AXIS,
     ) -> WaveCompensation:
         """From the friction of a pad that crosses the wave at one drive, computed or measured.
@@ -141,7 +139,6 @@ class WaveCompensation:
         """
         places = np.asarray(position, dtype=float)
         friction = np.asarray(relative_friction, dtype=float)
-        require("least", least, above=0.0, at_most=1.0)
         even = np.arange(places.size) / max(places.size, 1) * half_wavelength
         if places.ndim != 1 or places.shape != friction.shape or places.size < 4:
             raise InputError("position and relative_friction must be two lists of one length, ≥ 4")

@@ -18,12 +18,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Annotated
 
 import numba
 import numpy as np
 
 from squeezefilm.errors import InputError
 from squeezefilm.quantities import (
+    Above,
     Array,
     Dimensionless,
     DimensionlessLike,
@@ -102,9 +104,9 @@ def _resonate(
 @checked_numbers
 def resonator_response(
     drive: MetreArray,
-    sample_rate: Hertz,
-    frequency: Hertz,
-    quality_factor: Dimensionless,
+    sample_rate: Annotated[Hertz, Above(0.0)],
+    frequency: Annotated[Hertz, Above(0.0)],
+    quality_factor: Annotated[Dimensionless, Above(0.5)],
 ) -> tuple[MetreArray, MetreArray]:
     """Displacement x and quadrature ẋ/ω0 of a resonator at rest before, at each held sample (m).
 
@@ -115,9 +117,6 @@ def resonator_response(
         InputError: a drive that is empty or not finite, a rate or frequency not above 0, or a
             quality factor not above ½ (no resonance).
     """
-    require("sample_rate", sample_rate, Unit("Hz"), above=0.0)
-    require("frequency", frequency, Unit("Hz"), above=0.0)
-    require("quality_factor", quality_factor, above=0.5)
     held = one_row("drive", drive)
     # In units of 1/ω0: x' = y, y' = −x − y/Q + u/Q. Damped rotation, in closed form.
     turn = 2 * math.pi * frequency / sample_rate
@@ -174,7 +173,7 @@ def carrier_trace(
     quality_factor: Dimensionless,
     *,
     resonance_frequency: Hertz | None = None,
-    sample_rate: Hertz = DAC_RATE,
+    sample_rate: Annotated[Hertz, Above(0.0)] = DAC_RATE,
     phase: Radian = 0.0,
     hold_compensated: bool = True,
 ) -> CarrierTrace:
@@ -194,7 +193,6 @@ def carrier_trace(
     Raises:
         InputError: a value outside its range.
     """
-    require("sample_rate", sample_rate, Unit("Hz"), above=0.0)
     require("frequency", frequency, Unit("Hz"), above=0.0, below=sample_rate / 2)
     levels = _levels(command, samples_per_command)
     own = frequency if resonance_frequency is None else resonance_frequency

@@ -29,6 +29,7 @@ import numpy as np
 
 from squeezefilm.quantities import (
     Above,
+    AtLeast,
     Dimensionless,
     FloatArray,
     Hertz,
@@ -97,8 +98,8 @@ class DrivenEnvelope:
         cls,
         quality_factor: Dimensionless,
         frequency: Hertz,
-        amplitude_per_volt: MetrePerVolt,
-        voltage_limit: Volt,
+        amplitude_per_volt: Annotated[MetrePerVolt, Above(0.0)],
+        voltage_limit: Annotated[Volt, Above(0.0)],
         braking: bool = False,
     ) -> DrivenEnvelope:
         """The envelope of a linear resonator at resonance, driven with up to `voltage_limit` (V).
@@ -108,8 +109,6 @@ class DrivenEnvelope:
         Raises:
             InputError: a value that is not above 0.
         """
-        require("amplitude_per_volt", amplitude_per_volt, Unit("m/V"), above=0.0)
-        require("voltage_limit", voltage_limit, Unit("V"), above=0.0)
         time_constant = float(envelope_time_constant(quality_factor, frequency))
         return cls(time_constant, time_constant, amplitude_per_volt * voltage_limit, braking)
 
@@ -119,9 +118,8 @@ class DrivenEnvelope:
         return -self.amplitude_limit if self.braking else 0.0
 
     @checked_numbers
-    def parameters(self, time_step: Second) -> FloatArray:
+    def parameters(self, time_step: Annotated[Second, Above(0.0)]) -> FloatArray:
         """What the compiled steps need at a time step (s): shape (4,), see the kernel."""
-        require("time_step", time_step, Unit("s"), above=0.0)
         return np.array(
             [
                 math.exp(-time_step / self.rise_time_constant),
@@ -186,9 +184,8 @@ class CompensatedDrive:
     model: str
 
     @checked_numbers
-    def voltage(self, amplitude_per_volt: MetrePerVolt) -> FloatArray:
+    def voltage(self, amplitude_per_volt: Annotated[MetrePerVolt, Above(0.0)]) -> FloatArray:
         """The drive's voltage amplitude at each sample (V); negative in inverted phase."""
-        require("amplitude_per_volt", amplitude_per_volt, Unit("m/V"), above=0.0)
         return np.asarray(self.command / amplitude_per_volt)
 
 
@@ -245,7 +242,9 @@ def compensated_drive(
 
 @checked_numbers
 def preview_samples(
-    envelope: DrivenEnvelope, time_step: Second, preview: Second | None = None
+    envelope: DrivenEnvelope,
+    time_step: Annotated[Second, Above(0.0)],
+    preview: Second | None = None,
 ) -> int:
     """How many samples a preview (s; three time constants without one) looks ahead.
 
@@ -255,12 +254,10 @@ def preview_samples(
     slowest = max(envelope.rise_time_constant, envelope.fall_time_constant)
     span = _PREVIEW_TIME_CONSTANTS * slowest if preview is None else preview
     require("preview", span, Unit("s"), above=0.0)
-    require("time_step", time_step, Unit("s"), above=0.0)
     return max(1, math.ceil(span / time_step - 1e-9))
 
 
 @checked_numbers
-def preview_work(samples: int) -> FloatArray:
+def preview_work(samples: Annotated[int, AtLeast(0)]) -> FloatArray:
     """Working memory of `previewed_step` for so many samples ahead, shape (5, 2·samples + 2)."""
-    require("samples", samples, at_least=0)
     return np.zeros((5, 2 * samples + 2))

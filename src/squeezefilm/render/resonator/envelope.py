@@ -13,12 +13,14 @@ open-loop; a control loop or an inverse filter in front shortens τ while the vo
 from __future__ import annotations
 
 import math
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
 
 from squeezefilm.errors import InputError
 from squeezefilm.quantities import (
+    Above,
+    Below,
     DimensionlessLike,
     HertzLike,
     MetreArray,
@@ -26,7 +28,6 @@ from squeezefilm.quantities import (
     MetrePerSecondLike,
     Second,
     SecondLike,
-    Unit,
     checked_numbers,
     closed_form,
     require,
@@ -60,7 +61,7 @@ def square_swing_kept(
     spatial_period: MetreLike,
     speed: MetrePerSecondLike,
     time_constant: SecondLike,
-    duty: DimensionlessLike = 0.5,
+    duty: Annotated[DimensionlessLike, Above(0.0), Below(1.0)] = 0.5,
 ) -> DimensionlessLike:
     """Swing of amplitude left of a square grating, divided by the swing commanded (1).
 
@@ -73,7 +74,6 @@ def square_swing_kept(
     which is tanh(T/(4τ)) at d = ½. All arguments (m, m/s, s, 1) broadcast. Raises `InputError`
     for a period, speed or time constant not above 0, or a duty not between 0 and 1.
     """
-    require("duty", duty, above=0.0, below=1.0)
     periods = spatial_period / (speed * time_constant)
     # expm1 keeps its digits where T ≪ τ, and unlike sinh cannot overflow where T ≫ τ.
     kept: DimensionlessLike = (
@@ -154,8 +154,8 @@ def one_row(name: str, values: MetreArray) -> MetreArray:
 @checked_numbers
 def envelope_response(
     command: MetreArray,
-    time_step: Second,
-    time_constant: Second,
+    time_step: Annotated[Second, Above(0.0)],
+    time_constant: Annotated[Second, Above(0.0)],
     initial: MetreLike = 0.0,
 ) -> MetreArray:
     """Vibration amplitude of the resonator under a stepwise command (m, zero-to-peak).
@@ -170,8 +170,6 @@ def envelope_response(
         InputError: a command that is empty or not finite, a step or time constant not above 0, or
             an `initial` that does not broadcast to the leading axes.
     """
-    require("time_step", time_step, Unit("s"), above=0.0)
-    require("time_constant", time_constant, Unit("s"), above=0.0)
     steps = np.asarray(command, dtype=float)
     if steps.ndim == 0 or steps.size == 0:
         raise InputError(

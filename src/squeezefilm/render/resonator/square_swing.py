@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
 
 from squeezefilm.errors import OutOfRangeError
 from squeezefilm.quantities import (
+    Above,
+    Below,
     Dimensionless,
     DimensionlessLike,
     Metre,
@@ -25,8 +27,8 @@ from squeezefilm.render.resonator.compensation import DrivenEnvelope
 
 @checked_numbers
 def square_swing_compensated(
-    spatial_period: MetreLike,
-    speed: MetrePerSecondLike,
+    spatial_period: Annotated[MetreLike, Above(0.0)],
+    speed: Annotated[MetrePerSecondLike, Above(0.0)],
     envelope: DrivenEnvelope,
     low: Metre,
     high: Metre,
@@ -47,8 +49,6 @@ def square_swing_compensated(
     Raises:
         InputError: a period or speed not above 0, or not 0 ≤ low < high ≤ limit.
     """
-    require("spatial_period", spatial_period, Unit("m"), above=0.0)
-    require("speed", speed, Unit("m/s"), above=0.0)
     require("low", low, Unit("m"), at_least=0.0, below=high)
     require("high", high, Unit("m"), at_most=envelope.amplitude_limit)
     half = np.asarray(spatial_period, dtype=float) / (2 * np.asarray(speed, dtype=float))
@@ -74,7 +74,7 @@ def fastest_compensated_speed(
     low: Metre,
     high: Metre,
     compensation: Literal["none", "inverse"] = "inverse",
-    kept: Dimensionless = 0.9,
+    kept: Annotated[Dimensionless, Above(0.0), Below(1.0)] = 0.9,
 ) -> MetrePerSecond:
     """Fastest finger (m/s) under which a square grating keeps a share `kept` of its swing.
 
@@ -83,7 +83,6 @@ def fastest_compensated_speed(
     Raises:
         InputError: see `square_swing_compensated`, or a share not between 0 and 1.
     """
-    require("kept", kept, above=0.0, below=1.0)
     from scipy.optimize import brentq
 
     unit = spatial_period / max(envelope.rise_time_constant, envelope.fall_time_constant)

@@ -114,7 +114,13 @@ class Square(_Grating, Composable):
     @reads_text
     @checked_numbers
     def from_groove_and_ridge(
-        cls, groove: Metre, ridge: Metre, *, low: Metre, high: Metre, phase: Radian = 0.0
+        cls,
+        groove: Annotated[Metre, Above(0.0)],
+        ridge: Annotated[Metre, Above(0.0)],
+        *,
+        low: Metre,
+        high: Metre,
+        phase: Radian = 0.0,
     ) -> Square:
         """The grating whose grooves (at `high`) and ridges (at `low`) have these widths (m).
 
@@ -124,8 +130,6 @@ class Square(_Grating, Composable):
         Raises:
             InputError: a width that is not above 0, or a value outside its range.
         """
-        require("groove", groove, METRE, above=0.0)
-        require("ridge", ridge, METRE, above=0.0)
         period = groove + ridge
         return cls(period, low, high, duty=groove / period, phase=phase)
 

@@ -241,9 +241,10 @@ class Band(Pattern):
     @classmethod
     @reads_text
     @checked_numbers
-    def disc(cls, x: Metre, y: Metre, radius: Metre, fade: Metre = 0.0) -> Band:
+    def disc(
+        cls, x: Metre, y: Metre, radius: Annotated[Metre, Above(0.0)], fade: Metre = 0.0
+    ) -> Band:
         """1 within `radius` (m) of the point (`x`, `y`) (m)."""
-        require("radius", radius, METRE, above=0.0)
         return cls(-radius, radius, fade, FromPoint(x, y))
 
     def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
