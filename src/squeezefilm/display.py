@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated, ClassVar
 
+from squeezefilm import quantities as si
 from squeezefilm.config.provenance import Provenance
 from squeezefilm.contact.finger.fingertip import Finger
 from squeezefilm.device.wire.safety import HIGHEST_VOLTAGE, TOUCH_VOLTAGE, Limits
@@ -15,40 +16,24 @@ from squeezefilm.from_text import ReadBy
 from squeezefilm.hard_limits import ROUGHNESS
 from squeezefilm.materials import Gas
 from squeezefilm.plate.layout import Actuator
-from squeezefilm.quantities import (
-    Above,
-    AtLeast,
-    AtMost,
-    Dimensionless,
-    Hertz,
-    Metre,
-    Second,
-    SquareVoltSecond,
-    Unit,
-    Volt,
-    VoltPerSecond,
-    checked_numbers,
-    did_you_mean,
-    require,
-)
 from squeezefilm.results import Result, write_whole
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True)
 class Surface:
     """A surface the finger touches: its average roughness and its friction without vibration."""
 
     name: str
-    roughness: Annotated[Metre, ROUGHNESS]
-    friction_coefficient: Annotated[Dimensionless, Above(0), AtMost(10)]
+    roughness: Annotated[si.Metre, ROUGHNESS]
+    friction_coefficient: Annotated[si.Dimensionless, si.Above(0), si.AtMost(10)]
 
 
 _SECONDS_OF_HEAT = 10.0
 _FREQUENCY_WINDOW = 0.05
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True)
 class Drive:
     """The electrical drive: the voltage's amplitude (zero-to-peak) at resonance, and its limits.
@@ -70,17 +55,17 @@ class Drive:
         InputError: a value outside its range; `limits` checks how they fit each other.
     """
 
-    voltage: Annotated[Volt, AtLeast(0), AtMost(HIGHEST_VOLTAGE)]
+    voltage: Annotated[si.Volt, si.AtLeast(0), si.AtMost(HIGHEST_VOLTAGE)]
     insulation: str = ""
-    slew: Annotated[VoltPerSecond, AtLeast(0)] | None = None
-    continuous_voltage: Annotated[Volt, AtLeast(0)] | None = None
-    heat: Annotated[SquareVoltSecond, AtLeast(0)] | None = None
-    lowest_frequency: Annotated[Hertz, AtLeast(0)] | None = None
-    highest_frequency: Annotated[Hertz, AtLeast(0)] | None = None
-    duty: Annotated[Dimensionless, AtLeast(0.001), AtMost(1)] = 1.0
-    duty_window: Annotated[Second, AtLeast(0.001), AtMost(3600)] = 10.0
+    slew: Annotated[si.VoltPerSecond, si.AtLeast(0)] | None = None
+    continuous_voltage: Annotated[si.Volt, si.AtLeast(0)] | None = None
+    heat: Annotated[si.SquareVoltSecond, si.AtLeast(0)] | None = None
+    lowest_frequency: Annotated[si.Hertz, si.AtLeast(0)] | None = None
+    highest_frequency: Annotated[si.Hertz, si.AtLeast(0)] | None = None
+    duty: Annotated[si.Dimensionless, si.AtLeast(0.001), si.AtMost(1)] = 1.0
+    duty_window: Annotated[si.Second, si.AtLeast(0.001), si.AtMost(3600)] = 10.0
 
-    def limits(self, frequency: Hertz, voltage: Volt | None = None) -> Limits:
+    def limits(self, frequency: si.Hertz, voltage: si.Volt | None = None) -> Limits:
         """What a device may be asked for at a carrier near `frequency` (Hz).
 
         `voltage` (V) asks for less than the drive's own. What the drive does not say is assumed:
@@ -91,7 +76,7 @@ class Drive:
                 that contradict each other.
         """
         most = self.voltage if voltage is None else voltage
-        require("voltage", most, Unit("V"), above=0, at_most=self.voltage)
+        si.require("voltage", most, si.Unit("V"), above=0, at_most=self.voltage)
         continuous = self.voltage if self.continuous_voltage is None else self.continuous_voltage
         return Limits(
             voltage=most,
@@ -161,11 +146,11 @@ class Display(Result):
             if surface.name == name:
                 return surface
         raise InputError(
-            f"display '{self.name}' has no surface '{name}'.{did_you_mean(name, known)} "
+            f"display '{self.name}' has no surface '{name}'.{si.did_you_mean(name, known)} "
             f"It has: {', '.join(known)}"
         )
 
-    def limits(self, frequency: Hertz, voltage: Volt | None = None, *, twin: bool) -> Limits:
+    def limits(self, frequency: si.Hertz, voltage: si.Volt | None = None, *, twin: bool) -> Limits:
         """What this display's device, or its twin, may be asked for. See `Drive.limits`.
 
         Raises:
@@ -174,7 +159,7 @@ class Display(Result):
         self.require_insulation(voltage, twin=twin)
         return self.drive.limits(frequency, voltage)
 
-    def require_insulation(self, voltage: Volt | None = None, *, twin: bool) -> None:
+    def require_insulation(self, voltage: si.Volt | None = None, *, twin: bool) -> None:
         """Refuse more than 42 V (`voltage`, or the drive's own) without insulation at the touched
         side. One that is marked as assumed is nobody's claim yet: nobody can touch a twin, so there
         it counts, and for no other device.

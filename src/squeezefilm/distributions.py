@@ -6,13 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import DimensionlessArray, FloatArray, checked_numbers, require
 
 _WIDEST = 3.0  # standard deviations kept of a normal distribution
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True)
 class Normal:
     """A normal distribution cut at three standard deviations, in the unit of its quantity.
@@ -24,10 +24,10 @@ class Normal:
     standard_deviation: float
 
     def __post_init__(self) -> None:
-        require("uncertainty", self.standard_deviation, above=0)
+        si.require("uncertainty", self.standard_deviation, above=0)
 
-    @checked_numbers
-    def quantile(self, p: DimensionlessArray) -> FloatArray:
+    @si.checked_numbers
+    def quantile(self, p: si.DimensionlessArray) -> si.FloatArray:
         """The values (in the quantity's unit, the shape of `p`) not exceeded with probability p."""
         from scipy.special import ndtr, ndtri
 
@@ -42,7 +42,7 @@ class Normal:
         return self.mean - reach, self.mean + reach
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True)
 class Uniform:
     """Anywhere between two values alike. Raises `InputError` unless low < high."""
@@ -57,8 +57,8 @@ class Uniform:
                 quantity="range",
             )
 
-    @checked_numbers
-    def quantile(self, p: DimensionlessArray) -> FloatArray:
+    @si.checked_numbers
+    def quantile(self, p: si.DimensionlessArray) -> si.FloatArray:
         """The values (in the quantity's unit, the shape of `p`) not exceeded with probability p."""
         return self.low + (self.high - self.low) * np.asarray(p, dtype=float)
 

@@ -15,8 +15,8 @@ from dataclasses import dataclass
 from pathlib import PurePath
 from typing import Annotated, Any, TypeVar
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import QuantityError
-from squeezefilm.quantities import Unit, parse_quantity
 
 _Callable = TypeVar("_Callable", bound=Callable[..., Any])
 _Reader = Callable[[str, Any], Any]
@@ -80,10 +80,10 @@ def _reader(annotation: Any) -> _Reader:
     return functools.partial(_quantities, mark)
 
 
-def _marks(annotation: Any) -> Iterator[Unit | ReadBy]:
+def _marks(annotation: Any) -> Iterator[si.Unit | ReadBy]:
     """The units and readers in an annotation, within unions and sequences too."""
     if typing.get_origin(annotation) is Annotated:
-        yield from (mark for mark in annotation.__metadata__ if isinstance(mark, Unit | ReadBy))
+        yield from (mark for mark in annotation.__metadata__ if isinstance(mark, si.Unit | ReadBy))
     for part in typing.get_args(annotation):
         yield from _marks(part)
 
@@ -92,7 +92,7 @@ def _named(by: ReadBy, _: str, value: Any) -> Any:
     return by.read(value) if isinstance(value, str | PurePath) else value
 
 
-def _quantities(unit: Unit | None, name: str, value: Any) -> Any:
+def _quantities(unit: si.Unit | None, name: str, value: Any) -> Any:
     if unit is None:
         return value
     if isinstance(value, list | tuple):
@@ -102,6 +102,6 @@ def _quantities(unit: Unit | None, name: str, value: Any) -> Any:
     if not isinstance(value, str):
         return value
     try:
-        return parse_quantity(value, unit)
+        return si.parse_quantity(value, unit)
     except QuantityError as error:
         raise QuantityError(f"{name}: {error}", quantity=name) from error

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import FloatLike, Unit, format_quantity
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,7 +24,7 @@ class HardLimit:
     name: str
     least: float
     most: float
-    unit: Unit
+    unit: si.Unit
     reason: str
 
     @property
@@ -34,13 +34,13 @@ class HardLimit:
             f"at least {_shown(self.least, self.unit)} and at most {_shown(self.most, self.unit)}"
         )
 
-    def refuse_outside(self, asked: FloatLike, quantity: str) -> None:
+    def refuse_outside(self, asked: si.FloatLike, quantity: str) -> None:
         """`require_within` for what an annotation bounds: ``Annotated[Metre, SIDE]``."""
         require_within(self, asked, quantity)
 
 
 def require_within(
-    limit: HardLimit, asked: FloatLike, quantity: str | None = None, *, enough: str = ""
+    limit: HardLimit, asked: si.FloatLike, quantity: str | None = None, *, enough: str = ""
 ) -> None:
     """Refuse a value (SI; scalar or array) outside a hard limit.
 
@@ -67,21 +67,21 @@ def require_motion(limit: HardLimit, steps: float, duration: float, rate: float)
     `duration` (s) and `rate` (Hz) are what makes them. Raises `InputError`, saying from which to
     which duration would do.
     """
-    least, most = (format_quantity(count / rate, _S) for count in (limit.least, limit.most))
-    shown, pace = format_quantity(duration, _S), format_quantity(rate, _HZ)
+    least, most = (si.format_quantity(count / rate, _S) for count in (limit.least, limit.most))
+    shown, pace = si.format_quantity(duration, _S), si.format_quantity(rate, _HZ)
     enough = f"the motion takes {shown} at {pace}, and from {least} to {most} would do: make it"
     enough += " shorter or faster" if steps > limit.most else " longer or slower"
     require_within(limit, float(np.floor(steps)), enough=enough)
 
 
-def _shown(value: float, unit: Unit) -> str:
+def _shown(value: float, unit: si.Unit) -> str:
     """Counts are written out, other numbers with four digits and their unit."""
     if unit == _ONE and float(value).is_integer() and abs(value) < 1e15:
         return f"{int(value):,}".replace(",", " ")
-    return format_quantity(value, unit)
+    return si.format_quantity(value, unit)
 
 
-_ONE, _M, _HZ, _S, _N, _PA = (Unit(symbol) for symbol in ("1", "m", "Hz", "s", "N", "Pa"))
+_ONE, _M, _HZ, _S, _N, _PA = (si.Unit(symbol) for symbol in ("1", "m", "Hz", "s", "N", "Pa"))
 _SLIP = "anything outside is a slip of unit"
 
 # --- sizes of what is described ---------------------------------------------------------------
@@ -91,18 +91,18 @@ PLACE = HardLimit("a distance from an edge", 0.0, 10.0, _M, "no body is larger; 
 LAYER = HardLimit("the thickness of a layer", 1e-8, 1.0, _M, "thin films to blocks; " + _SLIP)
 MODULUS = HardLimit("a modulus", 1e-2, 1e13, _PA, "next to nothing to beyond diamond; " + _SLIP)
 SHEAR_MODULUS = HardLimit("a shear modulus", 0.0, 1e13, _PA, "up to beyond diamond; " + _SLIP)
-DENSITY = HardLimit("a density", 1.0, 1e5, Unit("kg/m3"), "aerogel to beyond osmium; " + _SLIP)
+DENSITY = HardLimit("a density", 1.0, 1e5, si.Unit("kg/m3"), "aerogel to beyond osmium; " + _SLIP)
 QUALITY = HardLimit("a quality factor", 0.501, 1e8, _ONE, "from no resonance to beyond quartz")
-COMPLIANCE = HardLimit("a compliance", 1e-14, 1e-3, Unit("m2/N"), "of any solid; " + _SLIP)
-CROSS_COMPLIANCE = HardLimit("a compliance", -1e-3, 1e-3, Unit("m2/N"), "of any solid; " + _SLIP)
+COMPLIANCE = HardLimit("a compliance", 1e-14, 1e-3, si.Unit("m2/N"), "of any solid; " + _SLIP)
+CROSS_COMPLIANCE = HardLimit("a compliance", -1e-3, 1e-3, si.Unit("m2/N"), "of any solid; " + _SLIP)
 CHARGE_COEFFICIENT = HardLimit(
-    "a charge coefficient", -1e-6, 1e-6, Unit("m/V"), "beyond any ceramic or crystal; " + _SLIP
+    "a charge coefficient", -1e-6, 1e-6, si.Unit("m/V"), "beyond any ceramic or crystal; " + _SLIP
 )
 STRESS_COEFFICIENT = HardLimit(
-    "a stress coefficient", -1e4, 1e4, Unit("C/m2"), "beyond any ceramic or crystal; " + _SLIP
+    "a stress coefficient", -1e4, 1e4, si.Unit("C/m2"), "beyond any ceramic or crystal; " + _SLIP
 )
 PERMITTIVITY = HardLimit("a relative permittivity", 1.0, 1e7, _ONE, "vacuum to beyond any ceramic")
-RESISTANCE = HardLimit("a resistance", 1e-6, 1e15, Unit("ohm"), "a busbar to the best insulator")
+RESISTANCE = HardLimit("a resistance", 1e-6, 1e15, si.Unit("ohm"), "a busbar to the best insulator")
 FREQUENCY = HardLimit("a frequency", 1.0, 1e9, _HZ, "of a vibration in a solid; " + _SLIP)
 ROUGHNESS = HardLimit("a roughness", 1e-11, 1e-3, _M, "below an atom to a rasp; " + _SLIP)
 SKIN_ROUGHNESS = HardLimit("a skin's roughness", 0.0, 1e-3, _M, "none to a rasp; " + _SLIP)
@@ -112,19 +112,19 @@ RIDGE_PERIOD = HardLimit("a ridge's period", 1e-6, 1.0, _M, "a hair to a forearm
 DECAY_LENGTH = HardLimit("a decay length", 1e-11, 1e-3, _M, "below an atom to a rasp; " + _SLIP)
 FORCE = HardLimit("a force", 1e-6, 1e4, _N, "a fly to a car's jack; " + _SLIP)
 PRESSURE = HardLimit("a pressure", 1e-3, 1e10, _PA, "a high vacuum to a press; " + _SLIP)
-VISCOSITY = HardLimit("a viscosity", 1e-8, 1e3, Unit("Pa*s"), "below any gas to honey; " + _SLIP)
-GAS_DENSITY = HardLimit("a gas's density", 1e-9, 1e4, Unit("kg/m3"), "of any gas; " + _SLIP)
-SOUND_SPEED = HardLimit("a speed of sound", 10.0, 1e5, Unit("m/s"), "of any gas; " + _SLIP)
+VISCOSITY = HardLimit("a viscosity", 1e-8, 1e3, si.Unit("Pa*s"), "below any gas to honey; " + _SLIP)
+GAS_DENSITY = HardLimit("a gas's density", 1e-9, 1e4, si.Unit("kg/m3"), "of any gas; " + _SLIP)
+SOUND_SPEED = HardLimit("a speed of sound", 10.0, 1e5, si.Unit("m/s"), "of any gas; " + _SLIP)
 FREE_PATH = HardLimit("a mean free path", 1e-18, 1e3, _M, "none, in effect, to a vacuum; " + _SLIP)
 VIBRATION = HardLimit("a vibration's amplitude", 0.0, 1e-3, _M, "no plate survives more")
-PAD_STIFFNESS = HardLimit("a stiffness", 1e-3, 1e9, Unit("N/m"), "of a fingertip; " + _SLIP)
-PAD_DAMPING = HardLimit("a damping", 0.0, 1e6, Unit("N*s/m"), "of a fingertip; " + _SLIP)
-PAD_MASS = HardLimit("a mass", 1e-9, 1e3, Unit("kg"), "of a fingertip; " + _SLIP)
-SKIN_MASS = HardLimit("a mass per area", 1e-6, 1e9, Unit("kg/m2"), "up to one that stands still")
-SKIN_STIFFNESS = HardLimit("a stiffness per area", 0.0, 1e15, Unit("Pa/m"), "of skin; " + _SLIP)
-SKIN_DAMPING = HardLimit("a damping per area", 0.0, 1e12, Unit("Pa*s/m"), "of skin; " + _SLIP)
+PAD_STIFFNESS = HardLimit("a stiffness", 1e-3, 1e9, si.Unit("N/m"), "of a fingertip; " + _SLIP)
+PAD_DAMPING = HardLimit("a damping", 0.0, 1e6, si.Unit("N*s/m"), "of a fingertip; " + _SLIP)
+PAD_MASS = HardLimit("a mass", 1e-9, 1e3, si.Unit("kg"), "of a fingertip; " + _SLIP)
+SKIN_MASS = HardLimit("a mass per area", 1e-6, 1e9, si.Unit("kg/m2"), "up to one that stands still")
+SKIN_STIFFNESS = HardLimit("a stiffness per area", 0.0, 1e15, si.Unit("Pa/m"), "of skin; " + _SLIP)
+SKIN_DAMPING = HardLimit("a damping per area", 0.0, 1e12, si.Unit("Pa*s/m"), "of skin; " + _SLIP)
 FINGER_SPEED = HardLimit(
-    "a finger's speed", 1e-9, 5.0, Unit("m/s"), "from standing still to faster than any hand"
+    "a finger's speed", 1e-9, 5.0, si.Unit("m/s"), "from standing still to faster than any hand"
 )
 STROKE_LENGTH = HardLimit("a stroke's length", 1e-9, 10.0, _M, "no surface is longer; " + _SLIP)
 PASS_DURATION = HardLimit("a pass's duration", 1e-6, 1e9, _S, "a pass may take thirty years")

@@ -10,6 +10,7 @@ from typing import Annotated, Literal
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import ContradictionError, ContradictionWarning
 from squeezefilm.hard_limits import (
     CHARGE_COEFFICIENT,
@@ -26,28 +27,13 @@ from squeezefilm.hard_limits import (
     VISCOSITY,
     require_within,
 )
-from squeezefilm.quantities import (
-    Above,
-    Below,
-    CoulombPerSquareMetre,
-    Dimensionless,
-    FaradPerMetre,
-    FloatArray,
-    KilogramPerCubicMetre,
-    Metre,
-    MetrePerVolt,
-    Pascal,
-    PascalSecond,
-    SquareMetrePerNewton,
-    checked_numbers,
-)
 
 PiezoDataSet = Literal["from_d31", "printed_e31"]
 
-VACUUM_PERMITTIVITY: FaradPerMetre = 8.8541878128e-12
+VACUUM_PERMITTIVITY: si.FaradPerMetre = 8.8541878128e-12
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True)
 class ElasticMaterial:
     """An isotropic, linear elastic substrate.
@@ -56,24 +42,24 @@ class ElasticMaterial:
     """
 
     name: str
-    young_modulus: Annotated[Pascal, MODULUS]
-    poisson_ratio: Annotated[Dimensionless, Above(-1), Below(0.5)]
-    density: Annotated[KilogramPerCubicMetre, DENSITY]
-    quality_factor: Annotated[Dimensionless, QUALITY] | None = None
+    young_modulus: Annotated[si.Pascal, MODULUS]
+    poisson_ratio: Annotated[si.Dimensionless, si.Above(-1), si.Below(0.5)]
+    density: Annotated[si.KilogramPerCubicMetre, DENSITY]
+    quality_factor: Annotated[si.Dimensionless, QUALITY] | None = None
 
     @property
-    def shear_modulus(self) -> Pascal:
+    def shear_modulus(self) -> si.Pascal:
         """E / 2(1 + ν)."""
         return self.young_modulus / (2 * (1 + self.poisson_ratio))
 
     @property
-    def plane_strain_modulus(self) -> Pascal:
+    def plane_strain_modulus(self) -> si.Pascal:
         """E / (1 − ν²): the stiffness of a strip that cannot contract across its width."""
         return self.young_modulus / (1 - self.poisson_ratio**2)
 
 
-@checked_numbers
-def isotropic_stiffness(young_modulus: Pascal, poisson_ratio: Dimensionless) -> FloatArray:
+@si.checked_numbers
+def isotropic_stiffness(young_modulus: si.Pascal, poisson_ratio: si.Dimensionless) -> si.FloatArray:
     """The 6 × 6 stiffness (Pa) of an isotropic solid; Voigt order xx, yy, zz, yz, xz, xy."""
     s = np.zeros((6, 6))
     s[:3, :3] = -poisson_ratio / young_modulus
@@ -82,7 +68,7 @@ def isotropic_stiffness(young_modulus: Pascal, poisson_ratio: Dimensionless) -> 
     return np.asarray(np.linalg.inv(s))
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True)
 class PiezoConstants:
     """The full set of constants of a ceramic poled along z (class 6mm).
@@ -93,22 +79,22 @@ class PiezoConstants:
     within 3 %, or a `ContradictionError` names both.
     """
 
-    compliance_11: Annotated[SquareMetrePerNewton, COMPLIANCE]
-    compliance_12: Annotated[SquareMetrePerNewton, CROSS_COMPLIANCE]
-    compliance_13: Annotated[SquareMetrePerNewton, CROSS_COMPLIANCE]
-    compliance_33: Annotated[SquareMetrePerNewton, COMPLIANCE]
-    compliance_44: Annotated[SquareMetrePerNewton, COMPLIANCE]
-    compliance_66: Annotated[SquareMetrePerNewton, COMPLIANCE]
-    charge_coefficient_31: Annotated[MetrePerVolt, CHARGE_COEFFICIENT]
-    charge_coefficient_33: Annotated[MetrePerVolt, CHARGE_COEFFICIENT]
-    charge_coefficient_15: Annotated[MetrePerVolt, CHARGE_COEFFICIENT]
-    clamped_permittivity_11: Annotated[Dimensionless, PERMITTIVITY]
-    clamped_permittivity_33: Annotated[Dimensionless, PERMITTIVITY]
-    free_permittivity_11: Dimensionless | None = None
-    free_permittivity_33: Dimensionless | None = None
-    stress_coefficient_31: CoulombPerSquareMetre | None = None
-    stress_coefficient_33: CoulombPerSquareMetre | None = None
-    stress_coefficient_15: CoulombPerSquareMetre | None = None
+    compliance_11: Annotated[si.SquareMetrePerNewton, COMPLIANCE]
+    compliance_12: Annotated[si.SquareMetrePerNewton, CROSS_COMPLIANCE]
+    compliance_13: Annotated[si.SquareMetrePerNewton, CROSS_COMPLIANCE]
+    compliance_33: Annotated[si.SquareMetrePerNewton, COMPLIANCE]
+    compliance_44: Annotated[si.SquareMetrePerNewton, COMPLIANCE]
+    compliance_66: Annotated[si.SquareMetrePerNewton, COMPLIANCE]
+    charge_coefficient_31: Annotated[si.MetrePerVolt, CHARGE_COEFFICIENT]
+    charge_coefficient_33: Annotated[si.MetrePerVolt, CHARGE_COEFFICIENT]
+    charge_coefficient_15: Annotated[si.MetrePerVolt, CHARGE_COEFFICIENT]
+    clamped_permittivity_11: Annotated[si.Dimensionless, PERMITTIVITY]
+    clamped_permittivity_33: Annotated[si.Dimensionless, PERMITTIVITY]
+    free_permittivity_11: si.Dimensionless | None = None
+    free_permittivity_33: si.Dimensionless | None = None
+    stress_coefficient_31: si.CoulombPerSquareMetre | None = None
+    stress_coefficient_33: si.CoulombPerSquareMetre | None = None
+    stress_coefficient_15: si.CoulombPerSquareMetre | None = None
 
     def __post_init__(self) -> None:
         if np.linalg.eigvalsh(self.compliance_matrix)[0] <= 0:
@@ -141,7 +127,7 @@ class PiezoConstants:
                 )
 
     @property
-    def compliance_matrix(self) -> FloatArray:
+    def compliance_matrix(self) -> si.FloatArray:
         """s at constant field, 6 × 6 (m²/N)."""
         s = np.zeros((6, 6))
         s[0, 0] = s[1, 1] = self.compliance_11
@@ -153,12 +139,12 @@ class PiezoConstants:
         return s
 
     @property
-    def stiffness_matrix(self) -> FloatArray:
+    def stiffness_matrix(self) -> si.FloatArray:
         """c at constant field, 6 × 6 (Pa)."""
         return np.asarray(np.linalg.inv(self.compliance_matrix))
 
     @property
-    def charge_matrix(self) -> FloatArray:
+    def charge_matrix(self) -> si.FloatArray:
         """d, 3 × 6 (m/V)."""
         d = np.zeros((3, 6))
         d[2, 0] = d[2, 1] = self.charge_coefficient_31
@@ -167,18 +153,18 @@ class PiezoConstants:
         return d
 
     @property
-    def stress_matrix(self) -> FloatArray:
+    def stress_matrix(self) -> si.FloatArray:
         """e = d c, 3 × 6 (C/m²)."""
         return self.charge_matrix @ self.stiffness_matrix
 
     @property
-    def permittivity_matrix(self) -> FloatArray:
+    def permittivity_matrix(self) -> si.FloatArray:
         """ε at constant strain, 3 × 3 (F/m)."""
         one, three = self.clamped_permittivity_11, self.clamped_permittivity_33
         return VACUUM_PERMITTIVITY * np.diag([one, one, three])
 
     @property
-    def free_permittivity_matrix(self) -> FloatArray:
+    def free_permittivity_matrix(self) -> si.FloatArray:
         """ε at constant stress = ε at constant strain + e dᵀ, 3 × 3 (F/m)."""
         return self.permittivity_matrix + self.stress_matrix @ self.charge_matrix.T
 
@@ -192,7 +178,7 @@ _PZT_5H = {
 }  # fmt: skip
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True)
 class Piezoceramic:
     """A thin ceramic plate poled through its thickness, working in its plane (the 31 effect).
@@ -205,14 +191,14 @@ class Piezoceramic:
     """
 
     name: str
-    in_plane_stiffness: Annotated[Pascal, MODULUS]
-    in_plane_poisson_ratio: Annotated[Dimensionless, Above(-1), Below(0.5)]
-    shear_modulus: Annotated[Pascal, MODULUS]
-    density: Annotated[KilogramPerCubicMetre, DENSITY]
-    charge_coefficient: Annotated[MetrePerVolt, CHARGE_COEFFICIENT]
-    relative_permittivity: Annotated[Dimensionless, PERMITTIVITY]
-    quality_factor: Annotated[Dimensionless, QUALITY]
-    stress_coefficient: Annotated[CoulombPerSquareMetre, STRESS_COEFFICIENT] | None = None
+    in_plane_stiffness: Annotated[si.Pascal, MODULUS]
+    in_plane_poisson_ratio: Annotated[si.Dimensionless, si.Above(-1), si.Below(0.5)]
+    shear_modulus: Annotated[si.Pascal, MODULUS]
+    density: Annotated[si.KilogramPerCubicMetre, DENSITY]
+    charge_coefficient: Annotated[si.MetrePerVolt, CHARGE_COEFFICIENT]
+    relative_permittivity: Annotated[si.Dimensionless, PERMITTIVITY]
+    quality_factor: Annotated[si.Dimensionless, QUALITY]
+    stress_coefficient: Annotated[si.CoulombPerSquareMetre, STRESS_COEFFICIENT] | None = None
     data_set: PiezoDataSet = "from_d31"
     constants: PiezoConstants | None = None
 
@@ -245,17 +231,17 @@ class Piezoceramic:
                 )
 
     @property
-    def compliance_11(self) -> SquareMetrePerNewton:
+    def compliance_11(self) -> si.SquareMetrePerNewton:
         """s11 = 1 / (c11_p (1 − ν_p²)) with ν_p = −s12/s11."""
         return 1 / (self.in_plane_stiffness * (1 - self.in_plane_poisson_ratio**2))
 
     @property
-    def stress_coefficient_from_d31(self) -> CoulombPerSquareMetre:
+    def stress_coefficient_from_d31(self) -> si.CoulombPerSquareMetre:
         """The effective in-plane e31 = d31 / (s11 + s12) of a plate free across its thickness."""
         return self.charge_coefficient / (self.compliance_11 * (1 - self.in_plane_poisson_ratio))
 
     @property
-    def effective_stress_coefficient(self) -> CoulombPerSquareMetre:
+    def effective_stress_coefficient(self) -> si.CoulombPerSquareMetre:
         """The effective in-plane e31 of the data set that is believed."""
         if self.data_set == "printed_e31" and self.stress_coefficient is not None:
             return self.stress_coefficient
@@ -332,18 +318,18 @@ class Piezoceramic:
         warnings.warn(message, ContradictionWarning, stacklevel=2)
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True)
 class Gas:
     """The gas between finger and surface, at ambient pressure."""
 
-    viscosity: Annotated[PascalSecond, VISCOSITY]
-    ambient_pressure: Annotated[Pascal, PRESSURE]
-    density: Annotated[KilogramPerCubicMetre, GAS_DENSITY]
-    mean_free_path: Annotated[Metre, FREE_PATH]
+    viscosity: Annotated[si.PascalSecond, VISCOSITY]
+    ambient_pressure: Annotated[si.Pascal, PRESSURE]
+    density: Annotated[si.KilogramPerCubicMetre, GAS_DENSITY]
+    mean_free_path: Annotated[si.Metre, FREE_PATH]
 
-    @checked_numbers
-    def at_pressure(self, ambient_pressure: Pascal) -> Gas:
+    @si.checked_numbers
+    def at_pressure(self, ambient_pressure: si.Pascal) -> Gas:
         """The same gas at the same temperature under another ambient pressure (Pa).
 
         Density goes with the pressure, the mean free path with its inverse; the viscosity stays

@@ -20,8 +20,8 @@ from typing import Any, ClassVar
 import numpy as np
 
 from squeezefilm import __version__
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import Unit, format_quantity, unit_of
 
 _BINARY = getattr(os, "O_BINARY", 0)  # Windows would turn line ends into its own
 
@@ -37,7 +37,7 @@ def to_json(value: Any) -> Any:
         hints = typing.get_type_hints(type(value), include_extras=True)
         out: dict[str, Any] = {}
         for field in dataclasses.fields(value):
-            unit = unit_of(hints[field.name])
+            unit = si.unit_of(hints[field.name])
             key = field.name + (unit.suffix if unit is not None else "")
             out[key] = to_json(getattr(value, field.name))
         return out
@@ -123,22 +123,22 @@ class Result:
                 yield path, _in_words(value, _unit_of_attribute(type(owner), name))
 
 
-def _unit_of_attribute(owner: type, name: str) -> Unit | None:
+def _unit_of_attribute(owner: type, name: str) -> si.Unit | None:
     """The unit in the annotation of a field, or of what a property returns."""
     found = inspect.getattr_static(owner, name, None)
     function = found.fget if isinstance(found, property) else getattr(found, "func", None)
     if function is not None:
-        return unit_of(typing.get_type_hints(function, include_extras=True).get("return"))
-    return unit_of(typing.get_type_hints(owner, include_extras=True).get(name))
+        return si.unit_of(typing.get_type_hints(function, include_extras=True).get("return"))
+    return si.unit_of(typing.get_type_hints(owner, include_extras=True).get(name))
 
 
-def _in_words(value: Any, unit: Unit | None) -> str:
+def _in_words(value: Any, unit: si.Unit | None) -> str:
     if isinstance(value, list | tuple):
         return " to ".join(_in_words(one, unit) for one in value)
     if isinstance(value, typing.Mapping):
         return ", ".join(f"{key} {_in_words(one, unit)}" for key, one in value.items())
     if isinstance(value, float | np.floating):
-        return format_quantity(float(value), unit or Unit("1"))
+        return si.format_quantity(float(value), unit or si.Unit("1"))
     return str(value)
 
 

@@ -8,6 +8,7 @@ import itertools
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
+from squeezefilm import quantities as si
 from squeezefilm.analysis.curves import (
     FrequencyResponse,
     FrictionCurve,
@@ -42,7 +43,6 @@ from squeezefilm.plate.shear.modes import shear_mode
 from squeezefilm.plate.solid.working import solid_mode
 from squeezefilm.plate.working_mode import PlateTheory
 from squeezefilm.progress import SayProgress
-from squeezefilm.quantities import Hertz, Metre, Newton, Second, Volt
 from squeezefilm.render.fidelity.survival import FidelityTable, fidelity_table
 from squeezefilm.render.fidelity.trace import FrictionTrace, friction_trace
 from squeezefilm.render.motion.stroke import Stroke
@@ -57,9 +57,9 @@ class OtherModel:
     is used for the frequency only."""
 
     model: str
-    resonance_frequency: Hertz
-    half_wavelength: Metre | None
-    vibration_amplitude: Metre | None
+    resonance_frequency: si.Hertz
+    half_wavelength: si.Metre | None
+    vibration_amplitude: si.Metre | None
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -68,8 +68,8 @@ class Analysis(Result):
 
     display: Display
     prediction: Prediction
-    envelope_time_constant: Second
-    envelope_bandwidth: Hertz
+    envelope_time_constant: si.Second
+    envelope_bandwidth: si.Hertz
     other_models: tuple[OtherModel, ...]
     response: FrequencyResponse
     pressure: tuple[PressureProfile, ...]
@@ -140,10 +140,10 @@ class Analysis(Result):
 def analyze(
     display: NamedDisplay,
     *,
-    voltage: Volt | None = None,
-    frequency: Hertz | None = None,
-    vibration_amplitude: Metre | None = None,
-    normal_force: Newton | None = None,
+    voltage: si.Volt | None = None,
+    frequency: si.Hertz | None = None,
+    vibration_amplitude: si.Metre | None = None,
+    normal_force: si.Newton | None = None,
     surface: str | None = None,
     theory: PlateTheory | None = None,
     model: FrictionModel | None = None,
@@ -273,7 +273,7 @@ def _other_models(display: Display, prediction: Prediction) -> tuple[OtherModel,
 
 
 def _textures(
-    prediction: Prediction, tau: Second
+    prediction: Prediction, tau: si.Second
 ) -> tuple[FrictionTrace | None, FidelityTable | None]:
     high = prediction.vibration_amplitude
     if prediction.relative_friction == 1:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.analysis.claims.procedure import PAPER_HALF_WAVELENGTHS, friction_criterion
 from squeezefilm.chain.friction import FrictionLaw, FrictionModel, friction_law
 from squeezefilm.chain.prediction import Prediction
@@ -14,24 +15,16 @@ from squeezefilm.display import Display, Surface
 from squeezefilm.errors import UnreachableError
 from squeezefilm.film.closed.limits import mean_pressure_profile
 from squeezefilm.plate.solid.working import response_frequencies
-from squeezefilm.quantities import (
-    Dimensionless,
-    DimensionlessArray,
-    HertzArray,
-    Metre,
-    MetreArray,
-    MetrePerVoltArray,
-)
 
-PAPER_CRITERION: Dimensionless = 0.7
+PAPER_CRITERION: si.Dimensionless = 0.7
 
 
 @dataclass(frozen=True, eq=False)
 class FrequencyResponse:
     """Amplitude per volt against frequency, at the largest interior lobe of the working mode."""
 
-    frequency: HertzArray
-    amplitude_per_volt: MetrePerVoltArray
+    frequency: si.HertzArray
+    amplitude_per_volt: si.MetrePerVoltArray
     model: str
 
 
@@ -42,9 +35,9 @@ class PressureProfile:
     `thickness` is the mean gap along the contact, `mean_pressure` the period mean over ambient.
     """
 
-    position: MetreArray
-    thickness: MetreArray
-    mean_pressure: DimensionlessArray
+    position: si.MetreArray
+    thickness: si.MetreArray
+    mean_pressure: si.DimensionlessArray
     model: str
 
 
@@ -57,11 +50,11 @@ class FrictionCurve:
     """
 
     surface: str
-    roughness: Metre
-    amplitude: MetreArray
-    relative_friction: DimensionlessArray
-    amplitude_for_criterion: Metre | None
-    zero_friction_amplitude: Metre | None
+    roughness: si.Metre
+    amplitude: si.MetreArray
+    relative_friction: si.DimensionlessArray
+    amplitude_for_criterion: si.Metre | None
+    zero_friction_amplitude: si.Metre | None
     model: str
 
 
@@ -69,10 +62,10 @@ class FrictionCurve:
 class WavelengthCurve:
     """Relative friction against amplitude at one half wavelength: one curve of Fig 11."""
 
-    half_wavelength: Metre
-    amplitude: MetreArray
-    relative_friction: DimensionlessArray
-    amplitude_for_criterion: Metre
+    half_wavelength: si.Metre
+    amplitude: si.MetreArray
+    relative_friction: si.DimensionlessArray
+    amplitude_for_criterion: si.Metre
     model: str
 
 
@@ -131,7 +124,7 @@ def friction_curve(
     )
 
 
-def _reached(law: FrictionLaw, relative_friction: Dimensionless) -> Metre | None:
+def _reached(law: FrictionLaw, relative_friction: si.Dimensionless) -> si.Metre | None:
     try:
         return law.amplitude_for(relative_friction)
     except UnreachableError:

@@ -8,11 +8,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
+from squeezefilm import quantities as si
 from squeezefilm.display import Display, NamedDisplay
 from squeezefilm.distributions import Distribution, Uniform
 from squeezefilm.errors import InputError
 from squeezefilm.from_text import reads_text
-from squeezefilm.quantities import Unit, did_you_mean, parse_quantity, unit_of
 
 Origin = Literal["given", "assumed"]
 
@@ -30,7 +30,7 @@ class Parameter:
 
     path: str
     nominal: float
-    unit: Unit
+    unit: si.Unit
     distribution: Distribution
     origin: Origin
     source: str
@@ -75,7 +75,7 @@ def uncertain_parameters(
     found[SKIN_COMPLIANCE] = Parameter(
         SKIN_COMPLIANCE,
         1.0,
-        Unit("1"),
+        si.Unit("1"),
         Uniform(0.0, 1.0),
         "assumed",
         "between all ridges at one mean gap (0) and each at its own balance (1)",
@@ -93,14 +93,14 @@ def _matters(path: str, surface: int, driven: bool) -> bool:
     return head[0] in ("finger", "gas")
 
 
-def value_at(display: Display, path: str) -> tuple[float, Unit]:
+def value_at(display: Display, path: str) -> tuple[float, si.Unit]:
     """The value at a dotted path of a display, such as ``surfaces.0.roughness``, and its unit.
 
     Raises `InputError` for a path that leads to no number.
     """
     owner, name = _place(display, path)
     hints = typing.get_type_hints(type(owner), include_extras=True)
-    return float(getattr(owner, name)), unit_of(hints[name]) or Unit("1")
+    return float(getattr(owner, name)), si.unit_of(hints[name]) or si.Unit("1")
 
 
 def _place(display: Display, path: str) -> tuple[Any, str]:
@@ -126,7 +126,7 @@ def _inside(owner: Any, part: str, path: str) -> Any:
     )
     if part not in known:
         raise InputError(
-            f"a display has no '{path}': there is no '{part}'.{did_you_mean(part, known)} "
+            f"a display has no '{path}': there is no '{part}'.{si.did_you_mean(part, known)} "
             f"There are: {', '.join(known) or 'no parts'}"
         )
     return owner[int(part)] if isinstance(owner, tuple) else getattr(owner, part)
@@ -144,7 +144,7 @@ def replaced(display: NamedDisplay, values: Mapping[str, float | str]) -> Displa
         value = given
         if isinstance(given, str):
             hints = typing.get_type_hints(type(owner), include_extras=True)
-            value = parse_quantity(given, unit_of(hints[name]) or Unit("1"))
+            value = si.parse_quantity(given, si.unit_of(hints[name]) or si.Unit("1"))
         node = tree
         *heads, last = path.split(".")
         for part in heads:

@@ -7,21 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.chain.prediction import Prediction
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import (
-    Dimensionless,
-    DimensionlessArray,
-    Metre,
-    MetreArray,
-    MetrePerSecond,
-    MetrePerSecondArray,
-    Second,
-    SecondArray,
-    Unit,
-    Volt,
-    require,
-)
 from squeezefilm.render.fidelity.rendered_stroke import rendered_stroke
 from squeezefilm.render.fidelity.report import FidelityReport, fidelity_report
 from squeezefilm.render.fidelity.trace import RelativeFriction
@@ -58,7 +46,7 @@ DRIVE_LAWS: tuple[DriveLaw, ...] = (
 
 def driven_envelope(
     prediction: Prediction,
-    voltage_limit: Volt | None = None,
+    voltage_limit: si.Volt | None = None,
     braking: bool = False,
     with_finger: bool = False,
 ) -> DrivenEnvelope:
@@ -109,23 +97,23 @@ class TextureSurvival:
     """
 
     name: str
-    time_constant: Second
-    level: Dimensionless
-    kept: Dimensionless
+    time_constant: si.Second
+    level: si.Dimensionless
+    kept: si.Dimensionless
     laws: tuple[DriveLaw, ...]
-    speeds: MetrePerSecondArray
-    finest_period: MetreArray
-    gain: DimensionlessArray
-    bound: DimensionlessArray
+    speeds: si.MetrePerSecondArray
+    finest_period: si.MetreArray
+    gain: si.DimensionlessArray
+    bound: si.DimensionlessArray
     model: str = "first-order envelope at resonance, duty ½, closed forms"
 
 
 def texture_survival(
     name: str,
     envelope: DrivenEnvelope,
-    level: Dimensionless = 0.8,
-    kept: Dimensionless = 0.9,
-    speeds: Sequence[MetrePerSecond] | None = None,
+    level: si.Dimensionless = 0.8,
+    kept: si.Dimensionless = 0.9,
+    speeds: Sequence[si.MetrePerSecond] | None = None,
 ) -> TextureSurvival:
     """Finest surviving period against speed for each of `DRIVE_LAWS`; see `TextureSurvival`.
 
@@ -136,9 +124,9 @@ def texture_survival(
         InputError: a level not above 0 or above 1, a share not between 0 and 1, or a speed not
             above 0.
     """
-    require("level", level, above=0.0, at_most=1.0)
+    si.require("level", level, above=0.0, at_most=1.0)
     row = np.geomspace(0.01, 0.4, 41) if speeds is None else np.array(speeds, dtype=float)
-    require("speeds", row, Unit("m/s"), above=0.0)
+    si.require("speeds", row, si.Unit("m/s"), above=0.0)
     high = level * envelope.amplitude_limit
     per_metre, bound = [], []
     for law in DRIVE_LAWS:
@@ -178,20 +166,20 @@ class CompensatedGrating:
     """
 
     envelope: DrivenEnvelope
-    spatial_period: Metre
-    speed: MetrePerSecond
-    level: Dimensionless
+    spatial_period: si.Metre
+    speed: si.MetrePerSecond
+    level: si.Dimensionless
     laws: tuple[DriveLaw, ...]
-    time: SecondArray
+    time: si.SecondArray
     drives: tuple[CompensatedDrive, ...]
-    swing_kept: DimensionlessArray
+    swing_kept: si.DimensionlessArray
 
 
 def compensated_grating(
     envelope: DrivenEnvelope,
-    spatial_period: Metre = 0.4e-3,
-    speed: MetrePerSecond | None = None,
-    level: Dimensionless = 0.8,
+    spatial_period: si.Metre = 0.4e-3,
+    speed: si.MetrePerSecond | None = None,
+    level: si.Dimensionless = 0.8,
 ) -> CompensatedGrating:
     """A square grating from 0 to `level` of full amplitude under each of `DRIVE_LAWS`, simulated.
 
@@ -200,12 +188,12 @@ def compensated_grating(
     Raises:
         InputError: a period or speed not above 0, or a level not above 0 or above 1.
     """
-    require("level", level, above=0.0, at_most=1.0)
-    require("spatial_period", spatial_period, Unit("m"), above=0.0)
+    si.require("level", level, above=0.0, at_most=1.0)
+    si.require("spatial_period", spatial_period, si.Unit("m"), above=0.0)
     high = level * envelope.amplitude_limit
     bare = fastest_compensated_speed(spatial_period, envelope, 0.0, high, "none")
     at = 2 * bare if speed is None else speed
-    require("speed", at, Unit("m/s"), above=0.0)
+    si.require("speed", at, si.Unit("m/s"), above=0.0)
     step = spatial_period / at / _STEPS_PER_PERIOD
     # Enough periods to settle from rest, whatever the ratio of period to time constant.
     settling = 20 * max(envelope.rise_time_constant, envelope.fall_time_constant)
@@ -249,16 +237,16 @@ class SensorContrast:
 
     trajectory: Trajectory
     sensors: tuple[SensorModel | None, ...]
-    spatial_periods: MetreArray
+    spatial_periods: si.MetreArray
     reports: tuple[tuple[FidelityReport, ...], ...]
-    contrast_kept: DimensionlessArray
+    contrast_kept: si.DimensionlessArray
 
 
 def sensor_contrast(
     envelope: DrivenEnvelope,
     relative_friction: RelativeFriction,
-    level: Dimensionless = 0.8,
-    spatial_periods: Sequence[Metre] | None = None,
+    level: si.Dimensionless = 0.8,
+    spatial_periods: Sequence[si.Metre] | None = None,
     sensors: Sequence[SensorModel | None] = (*SENSORS.values(), None),
     trajectory: Trajectory | None = None,
     seed: int = 0,
@@ -271,7 +259,7 @@ def sensor_contrast(
     Raises:
         InputError: see `rendered_stroke` and `fidelity_report`.
     """
-    require("level", level, above=0.0, at_most=1.0)
+    si.require("level", level, above=0.0, at_most=1.0)
     hand = MinimumJerkStroke(passes=20) if trajectory is None else trajectory
     periods = (
         np.geomspace(0.25e-3, 8e-3, 16) if spatial_periods is None else np.array(spatial_periods)

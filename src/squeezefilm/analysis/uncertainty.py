@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.analysis.parameters import (
     SKIN_COMPLIANCE,
     Parameter,
@@ -25,16 +26,8 @@ from squeezefilm.plate.beam.response import beam_response
 from squeezefilm.plate.layout import AnnularStator, RectangularPlate
 from squeezefilm.plate.working_mode import working_mode
 from squeezefilm.progress import SayProgress
-from squeezefilm.quantities import (
-    Dimensionless,
-    DimensionlessArray,
-    FloatArray,
-    Metre,
-    MetreArray,
-    format_quantity,
-)
 
-LEVEL: Dimensionless = 0.9
+LEVEL: si.Dimensionless = 0.9
 _MOST_FAILED = 0.05
 
 
@@ -46,10 +39,10 @@ class Influence:
     """
 
     parameter: Parameter
-    first_order: Dimensionless
-    first_order_error: Dimensionless
-    total: Dimensionless
-    total_error: Dimensionless
+    first_order: si.Dimensionless
+    first_order_error: si.Dimensionless
+    total: si.Dimensionless
+    total_error: si.Dimensionless
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,12 +54,12 @@ class UncertainFriction:
     balance (asperities pressed through) and are left out, with the whole row of the design.
     """
 
-    nominal: Dimensionless
-    median: Dimensionless
-    interval: tuple[Dimensionless, Dimensionless]
-    level: Dimensionless
-    samples: DimensionlessArray
-    amplitudes: MetreArray
+    nominal: si.Dimensionless
+    median: si.Dimensionless
+    interval: tuple[si.Dimensionless, si.Dimensionless]
+    level: si.Dimensionless
+    samples: si.DimensionlessArray
+    amplitudes: si.MetreArray
     influences: tuple[Influence, ...]
     failed: int
     evaluations: int
@@ -98,7 +91,7 @@ class UncertainFriction:
                     "first_order_error": item.first_order_error,
                     "distribution": item.parameter.origin,
                     "range": [
-                        format_quantity(value, item.parameter.unit)
+                        si.format_quantity(value, item.parameter.unit)
                         for value in item.parameter.distribution.support
                     ],
                     "source": item.parameter.source,
@@ -172,7 +165,7 @@ def _problem(parameters: tuple[Parameter, ...]) -> dict[str, Any]:
     }
 
 
-def _saltelli_points(parameters: tuple[Parameter, ...], samples: int, seed: int) -> FloatArray:
+def _saltelli_points(parameters: tuple[Parameter, ...], samples: int, seed: int) -> si.FloatArray:
     """The design's points in the unit cube, shape (samples · (parameters + 2), parameters)."""
     from SALib.sample import sobol
 
@@ -182,7 +175,7 @@ def _saltelli_points(parameters: tuple[Parameter, ...], samples: int, seed: int)
     return np.asarray(points)
 
 
-def _quantiles(parameters: tuple[Parameter, ...], points: FloatArray) -> FloatArray:
+def _quantiles(parameters: tuple[Parameter, ...], points: si.FloatArray) -> si.FloatArray:
     """The parameters' values at points of the unit cube; a column for each."""
     return np.column_stack(
         [item.distribution.quantile(points[:, k]) for k, item in enumerate(parameters)]
@@ -190,7 +183,7 @@ def _quantiles(parameters: tuple[Parameter, ...], points: FloatArray) -> FloatAr
 
 
 def _influences(
-    parameters: tuple[Parameter, ...], friction: DimensionlessArray, seed: int
+    parameters: tuple[Parameter, ...], friction: si.DimensionlessArray, seed: int
 ) -> tuple[Influence, ...]:
     """What each parameter explains of the design's frictions, shape (samples, parameters + 2); the
     most important first."""
@@ -220,17 +213,17 @@ class FrictionBand:
     more than half of them have no load balance.
     """
 
-    amplitude: MetreArray
-    low: DimensionlessArray
-    high: DimensionlessArray
-    level: Dimensionless
+    amplitude: si.MetreArray
+    low: si.DimensionlessArray
+    high: si.DimensionlessArray
+    level: si.Dimensionless
     samples: int
 
 
 def friction_band(
     display: Display,
     prediction: Prediction,
-    amplitude: MetreArray,
+    amplitude: si.MetreArray,
     *,
     samples: int = 64,
     seed: int = 1,
@@ -273,9 +266,9 @@ def _evaluate(
     display: Display,
     prediction: Prediction,
     parameters: tuple[Parameter, ...],
-    values: FloatArray,
+    values: si.FloatArray,
     tell: SayProgress,
-) -> tuple[DimensionlessArray, MetreArray]:
+) -> tuple[si.DimensionlessArray, si.MetreArray]:
     friction = np.full(len(values), np.nan)
     amplitude = np.full(len(values), np.nan)
     scale = _Amplitude(display, prediction)
@@ -292,7 +285,7 @@ def _evaluate(
 
 
 def _changes(
-    parameters: tuple[Parameter, ...], values: FloatArray
+    parameters: tuple[Parameter, ...], values: si.FloatArray
 ) -> Iterator[tuple[dict[str, float], float]]:
     """Of each sample: values by their path in the display, and the skin's compliance."""
     compliance = [item.path for item in parameters].index(SKIN_COMPLIANCE)
@@ -316,7 +309,7 @@ def _law(display: Display, prediction: Prediction) -> FrictionLaw:
 
 
 def _one(
-    display: Display, prediction: Prediction, free_amplitude: Metre, compliance: float
+    display: Display, prediction: Prediction, free_amplitude: si.Metre, compliance: float
 ) -> tuple[float, float]:
     p, law = prediction, _law(display, prediction)
     amplitude = free_amplitude
@@ -342,7 +335,7 @@ class _Amplitude:
         self.free = prediction.touch.free_amplitude
         self.reference = self._per_volt(display) if prediction.voltage is not None else 1.0
 
-    def __call__(self, display: Display) -> Metre:
+    def __call__(self, display: Display) -> si.Metre:
         free = self.free * self._volts(display)
         here, nominal = display.actuator, self.nominal.actuator
         if self.prediction.voltage is None or here == nominal:

@@ -7,19 +7,19 @@ from typing import Literal
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.analysis.curves import PAPER_CRITERION, FrictionCurve
 from squeezefilm.analysis.film.models import FilmComparison
 from squeezefilm.chain.prediction import Prediction
 from squeezefilm.display import Display
-from squeezefilm.quantities import Dimensionless, Metre
 from squeezefilm.render.fidelity.survival import FidelityTable
 
 # Below this drop of the relative friction a difference is not noticed: Fehlberg 2022 reports about
 # 0.2; the paper asks for 0.3.
-NOTICED_DIFFERENCE: Dimensionless = 0.2
+NOTICED_DIFFERENCE: si.Dimensionless = 0.2
 
 # Published displays reach about 3 µm; three times that is beyond doubt.
-PLAUSIBLE_AMPLITUDE: Metre = 10e-6
+PLAUSIBLE_AMPLITUDE: si.Metre = 10e-6
 
 
 @dataclass(frozen=True)

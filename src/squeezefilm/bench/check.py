@@ -13,23 +13,23 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.bench.conversation import Conversation
 from squeezefilm.device.machine.playing import CLOCK
 from squeezefilm.device.wire import messages as m
 from squeezefilm.device.wire.safety import Limits
 from squeezefilm.device.wire.states import Fault, Reason, State
 from squeezefilm.errors import DeviceError
-from squeezefilm.quantities import Hertz, Second, Volt
 from squeezefilm.session.play.plan import REPORT_PERIOD
 
-TEST_VOLTAGE: Volt = 1.0
+TEST_VOLTAGE: si.Volt = 1.0
 """The most that a check may ask of a device."""
-ZERO_WITHIN: Second = 60e-3
+ZERO_WITHIN: si.Second = 60e-3
 """From the last accepted frame to an output at zero, on the device's clock."""
-SLOWEST_ROUND_TRIP: Second = 25e-3
+SLOWEST_ROUND_TRIP: si.Second = 25e-3
 """Half of the watchdog's patience: one lost frame must not stop the device."""
 _ECHOES = 300
-_KEEP_ALIVE: Second = 20e-3
+_KEEP_ALIVE: si.Second = 20e-3
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,10 +61,10 @@ class DeviceCheck:
 
 def check_device(
     talk: Conversation,
-    frequency: Hertz,
+    frequency: si.Hertz,
     *,
     drive: str,
-    window: tuple[Hertz, Hertz] | None = None,
+    window: tuple[si.Hertz, si.Hertz] | None = None,
     loop: Callable[[], CheckResult] | None = None,
     progress: Callable[[str], None] | None = None,
 ) -> DeviceCheck:
@@ -133,7 +133,7 @@ def link_checks(talk: Conversation, echoes: int = _ECHOES) -> list[CheckResult]:
     ]
 
 
-def reading_checks(talk: Conversation, duration: Second = 0.5) -> list[CheckResult]:
+def reading_checks(talk: Conversation, duration: si.Second = 0.5) -> list[CheckResult]:
     """Readings as often as asked for, on a clock that runs with this one, of a finger sensor."""
     talk.ask(m.Report(round(REPORT_PERIOD * 1e6)))
     start = talk.clock()
@@ -184,7 +184,7 @@ def reading_checks(talk: Conversation, duration: Second = 0.5) -> list[CheckResu
     ]
 
 
-def limit_checks(talk: Conversation, limits: Limits, frequency: Hertz) -> list[CheckResult]:
+def limit_checks(talk: Conversation, limits: Limits, frequency: si.Hertz) -> list[CheckResult]:
     """What lies outside the limits is refused whole, and the output stays at zero."""
     first = talk.ask(m.KeepAlive())
     token = 0 if first is None else first.token
@@ -215,7 +215,7 @@ def limit_checks(talk: Conversation, limits: Limits, frequency: Hertz) -> list[C
     return results
 
 
-def stop_check(talk: Conversation, frequency: Hertz) -> CheckResult:
+def stop_check(talk: Conversation, frequency: si.Hertz) -> CheckResult:
     """Stop is taken in OFF, ARMED, PLAYING and FAULT, whatever its sequence number."""
     refused = []
 
@@ -245,7 +245,7 @@ def stop_check(talk: Conversation, frequency: Hertz) -> CheckResult:
     )
 
 
-def watchdog_checks(talk: Conversation, frequency: Hertz) -> list[CheckResult]:
+def watchdog_checks(talk: Conversation, frequency: si.Hertz) -> list[CheckResult]:
     """Silence takes the output to zero within 60 ms of the last frame, and is latched."""
     talk.ask(m.Report(round(REPORT_PERIOD * 1e6)))
     _arm(talk)
@@ -323,7 +323,7 @@ def _begin(talk: Conversation, limits: Limits) -> None:
         )
 
 
-STOP_TIME: Second = 20e-3
+STOP_TIME: si.Second = 20e-3
 """For which an output that is stopping is given time to reach zero."""
 
 
@@ -348,7 +348,7 @@ def _arm(talk: Conversation) -> None:
         talk.ask(m.Arm(found.token))
 
 
-def _start(talk: Conversation, frequency: Hertz) -> None:
+def _start(talk: Conversation, frequency: si.Hertz) -> None:
     talk.ask(m.Start(round(frequency * 1e3)))
 
 
@@ -394,5 +394,5 @@ def _result(name: str, passed: bool, measured: str, allowed: str, advice: str) -
     return CheckResult(name, bool(passed), measured, allowed, "" if passed else advice)
 
 
-def _ms(value: Second) -> str:
+def _ms(value: si.Second) -> str:
     return f"{1e3 * value:.3g} ms"

@@ -11,21 +11,21 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from squeezefilm import quantities as si
 from squeezefilm.device.wire import messages as m
 from squeezefilm.device.wire.frames import Deframer, Frame
-from squeezefilm.quantities import Second
 
 if TYPE_CHECKING:
     from squeezefilm.device.wire.streams import ByteStream
 
-_STEP: Second = 0.2e-3
+_STEP: si.Second = 0.2e-3
 
 
 @dataclass(frozen=True, slots=True)
 class Heard:
     """A message that came from the device, and when (s, host clock)."""
 
-    time: Second
+    time: si.Second
     message: m.Message
 
 
@@ -38,8 +38,8 @@ class Conversation:
     """
 
     stream: ByteStream
-    clock: Callable[[], Second]
-    wait: Callable[[Second], None]
+    clock: Callable[[], si.Second]
+    wait: Callable[[si.Second], None]
     sequence: int = 0
     heard: list[Heard] = field(default_factory=list)
     unknown: int = 0
@@ -76,7 +76,7 @@ class Conversation:
         self.heard += came
         return came
 
-    def answer(self, sequence: int, timeout: Second = 0.5) -> m.Status | None:
+    def answer(self, sequence: int, timeout: si.Second = 0.5) -> m.Status | None:
         """The status that answers a sequence number, or None if none comes in time."""
         end = self.clock() + timeout
         while True:
@@ -88,11 +88,11 @@ class Conversation:
                 return None
             self.wait(_STEP)
 
-    def ask(self, message: m.Message, timeout: Second = 0.5) -> m.Status | None:
+    def ask(self, message: m.Message, timeout: si.Second = 0.5) -> m.Status | None:
         """Send a message and wait for its answer; None if none comes."""
         return self.answer(self.send(message), timeout)
 
-    def listen_for(self, duration: Second, keep_alive: Second = math.inf) -> list[Heard]:
+    def listen_for(self, duration: si.Second, keep_alive: si.Second = math.inf) -> list[Heard]:
         """What comes within a time (s), feeding the watchdog every `keep_alive` (s)."""
         start = self.clock()
         came: list[Heard] = []

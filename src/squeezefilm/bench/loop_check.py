@@ -9,8 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.bench.check import CheckResult
-from squeezefilm.quantities import Dimensionless, Hertz, Second
 from squeezefilm.render.motion.estimator import MotionEstimator
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ
 from squeezefilm.render.program.lowering import lower
@@ -20,18 +20,18 @@ from squeezefilm.session.loop.lateness import Lateness
 from squeezefilm.session.loop.plan import DriveTable, LoopPlan
 from squeezefilm.session.loop.process import LoopProcess
 
-LEAST_MADE: Dimensionless = 0.99
-LOOP_SECONDS: Second = 3.0
+LEAST_MADE: si.Dimensionless = 0.99
+LOOP_SECONDS: si.Second = 3.0
 
 
-def check_loop(rate: Hertz, duration: Second = LOOP_SECONDS) -> CheckResult:
+def check_loop(rate: si.Hertz, duration: si.Second = LOOP_SECONDS) -> CheckResult:
     """Run a loop at a rate (Hz) for some seconds, nothing played, and judge it."""
     before = stolen_time()
     lateness = loop_lateness(rate, duration)
     return loop_result(lateness, stolen_time() - before)
 
 
-def loop_lateness(rate: Hertz, duration: Second) -> Lateness:
+def loop_lateness(rate: si.Hertz, duration: si.Second) -> Lateness:
     """How late this computer's loop is at a rate (Hz), over some seconds; nothing is played."""
     square = Square(spatial_period=2e-3, low=0.0, high=1e-6)
     plan = LoopPlan(
@@ -53,7 +53,7 @@ def loop_lateness(rate: Hertz, duration: Second) -> Lateness:
     return loop.report().lateness
 
 
-def stolen_time() -> Second:
+def stolen_time() -> si.Second:
     """For how long a virtual computer's host has taken processors away since it started (s).
 
     0 where the system does not tell. Source: Linux, proc_stat(5), "steal".
@@ -63,7 +63,7 @@ def stolen_time() -> Second:
     return 0.0
 
 
-def loop_result(lateness: Lateness, stolen: Second) -> CheckResult:
+def loop_result(lateness: Lateness, stolen: si.Second) -> CheckResult:
     """Judge a loop by its ticks; `stolen` (s) is what the computer's host took meanwhile.
 
     Ticks that were lost are lost, whoever was to blame; where it may have been the host, that is

@@ -15,6 +15,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.arguments import called_with
 from squeezefilm.bench.check import DeviceCheck, check_device
 from squeezefilm.bench.conversation import Conversation
@@ -31,16 +32,6 @@ from squeezefilm.errors import InputError
 from squeezefilm.formats.trajectories import motion_from, read_trajectory
 from squeezefilm.from_text import reads_text
 from squeezefilm.progress import SayProgress
-from squeezefilm.quantities import (
-    FloatArray,
-    Hertz,
-    Metre,
-    MetrePerVolt,
-    Second,
-    Unit,
-    Volt,
-    require,
-)
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ, SensorModel, sensor_named
 from squeezefilm.results import Result, stamp
 from squeezefilm.session.play.plan import PlayView
@@ -55,9 +46,9 @@ TRUTH_NAME = "truth.csv"
 JUDGING = "the record"
 """The step told of after playing; until then nothing of it can be shown."""
 STROKE = "60 mm/s over 4 cm"
-DURATION: Second = 4.0
-_MARGIN: Metre = 2e-3
-_REPLAY_PERIOD: Second = 1e-3
+DURATION: si.Second = 4.0
+_MARGIN: si.Metre = 2e-3
+_REPLAY_PERIOD: si.Second = 1e-3
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -92,17 +83,17 @@ class PlayRequest:
     sensor: str = "device"
     mode: str = "stream"
     stroke: str = STROKE
-    duration: Second = DURATION
-    rate: Hertz = 5e3
-    voltage: Volt | None = None
+    duration: si.Second = DURATION
+    rate: si.Hertz = 5e3
+    voltage: si.Volt | None = None
     surface: str | None = None
     compensation: str = "none"
-    amplitude_per_pickup: MetrePerVolt | None = None
+    amplitude_per_pickup: si.MetrePerVolt | None = None
     bench_only: bool = False
     out: str | Path | None = None
     seed: int = 0
     show: Callable[[PlayView], None] | None = None
-    tap: Callable[[FloatArray], None] | None = None
+    tap: Callable[[si.FloatArray], None] | None = None
     progress: SayProgress | None = None
 
 
@@ -138,7 +129,7 @@ def play_texture(asked: PlayRequest) -> PlayResult:
     """
     tell = asked.progress or (lambda _: None)
     texture = TextureFile.of(asked.texture)
-    require("duration", asked.duration, Unit("s"), above=0.0, at_most=86_400.0)
+    si.require("duration", asked.duration, si.Unit("s"), above=0.0, at_most=86_400.0)
     display = load_display(asked.target)
     eyes, pickup = _eyes(asked.sensor), PickupModel(kind="sensing_patch")
     settings = TwinSettings(seed=asked.seed, sensor=eyes, pickup=pickup)
@@ -169,7 +160,7 @@ def play_texture(asked: PlayRequest) -> PlayResult:
     return PlayResult(outcome, judged, kept)
 
 
-def _way(display: Display, stroke: str) -> tuple[Metre, Metre]:
+def _way(display: Display, stroke: str) -> tuple[si.Metre, si.Metre]:
     """From where to where (m) a twin's finger goes; it must stay on the display."""
     finger = FingerMotion.of(motion_from(stroke), 1e3)
     require_on_display(display.actuator, finger)
@@ -214,7 +205,7 @@ def check_drive(
     drive: str,
     target: str | Path,
     *,
-    rate: Hertz = 5e3,
+    rate: si.Hertz = 5e3,
     progress: SayProgress | None = None,
 ) -> DeviceCheck:
     """Check a device, or a twin of a display, and this computer's loop at a rate (Hz).
@@ -281,7 +272,7 @@ def _eyes(sensor: str) -> SensorModel:
     return sensor_named(sensor)
 
 
-def _replay(sensor: str) -> Callable[[Callable[[], Second]], ReplaySensor] | None:
+def _replay(sensor: str) -> Callable[[Callable[[], si.Second]], ReplaySensor] | None:
     """Makes the sensor that plays a recorded motion by the loop's clock, at 1 kHz."""
     if not sensor.startswith("replay:"):
         return None

@@ -15,22 +15,11 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.bench.setup import PlaySetup
 from squeezefilm.chain.played_texture import single_period
 from squeezefilm.errors import InputError
 from squeezefilm.formats.traces import table_from_csv
-from squeezefilm.quantities import (
-    Dimensionless,
-    DimensionlessArray,
-    FloatArray,
-    Metre,
-    MetreArray,
-    MetreLike,
-    MetrePerSecondLike,
-    Second,
-    SecondArray,
-    SecondLike,
-)
 from squeezefilm.render.fidelity.rendered_stroke import RenderedStroke
 from squeezefilm.render.fidelity.report import FidelityReport, fidelity_report
 from squeezefilm.render.program.renderer import render
@@ -38,10 +27,10 @@ from squeezefilm.results import Result, to_json
 from squeezefilm.session.loop import rows as column
 from squeezefilm.session.record.trace import Trace
 
-_SMOOTHING: Second = 20e-3
+_SMOOTHING: si.Second = 20e-3
 _STILL = 0.15
 # A pass that is shorter than this says nothing of a texture.
-_SHORTEST_PASS: Metre = 3e-3
+_SHORTEST_PASS: si.Metre = 3e-3
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -53,12 +42,12 @@ class PlayedWay:
     who saw it.
     """
 
-    time: SecondArray
-    x: MetreArray
-    wanted: MetreArray
-    amplitude: MetreArray
-    relative_friction_wanted: DimensionlessArray
-    relative_friction_rendered: DimensionlessArray
+    time: si.SecondArray
+    x: si.MetreArray
+    wanted: si.MetreArray
+    amplitude: si.MetreArray
+    relative_friction_wanted: si.DimensionlessArray
+    relative_friction_rendered: si.DimensionlessArray
     source: str
 
 
@@ -75,8 +64,8 @@ class Judged:
 class LagSummary:
     """How far the finger goes between a sample and the command that rests on it (m)."""
 
-    median: Metre
-    p99: Metre
+    median: si.Metre
+    p99: si.Metre
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -100,7 +89,7 @@ class PlayedSession(Result):
     trace: Trace
     by_record: Judged
     by_truth: Judged | None
-    position_error: Metre | None
+    position_error: si.Metre | None
     lag: LagSummary | None
     flags: Mapping[str, int]
     device_events: tuple[Mapping[str, Any], ...]
@@ -228,7 +217,7 @@ def recorded_way(setup: PlaySetup, trace: Trace) -> PlayedWay:
     return _way(setup, when, place, pace, amplitude, friction, source)
 
 
-def _true_way(setup: PlaySetup, trace: Trace, truth: Path, offset: Second) -> PlayedWay:
+def _true_way(setup: PlaySetup, trace: Trace, truth: Path, offset: si.Second) -> PlayedWay:
     table = table_from_csv(truth)
     time = table.column("time_s") + offset
     touching = table.column("normal_force_N") > 0.0
@@ -250,7 +239,7 @@ def _end_fields(trace: Trace) -> Mapping[str, Any]:
     return next((event.fields for event in reversed(trace.events) if event.kind == "end"), {})
 
 
-def _played_until(trace: Trace) -> Second:
+def _played_until(trace: Trace) -> si.Second:
     """When the session began to end (s); after it nothing was to be rendered."""
     fields = _end_fields(trace)
     found = fields.get("faded_at_s")
@@ -260,11 +249,11 @@ def _played_until(trace: Trace) -> Second:
 
 def _way(
     setup: PlaySetup,
-    time: SecondArray,
-    x: MetreArray,
-    speed: FloatArray,
-    amplitude: MetreArray,
-    friction: DimensionlessArray,
+    time: si.SecondArray,
+    x: si.MetreArray,
+    speed: si.FloatArray,
+    amplitude: si.MetreArray,
+    friction: si.DimensionlessArray,
     source: str,
 ) -> PlayedWay:
     wanted = np.zeros(0)
@@ -278,20 +267,20 @@ class _Recorded:
     """A texture by its name, and a motion by its samples, as a fidelity report shows them."""
 
     name: str
-    spatial_period: Metre | None
-    duration: Second
-    time: SecondArray
-    x: MetreArray
+    spatial_period: si.Metre | None
+    duration: si.Second
+    time: si.SecondArray
+    x: si.MetreArray
 
     def __repr__(self) -> str:
         return self.name
 
     def __call__(
-        self, x: MetreLike, _: MetreLike, v: MetrePerSecondLike, t: SecondLike, /
-    ) -> MetreArray:
+        self, x: si.MetreLike, _: si.MetreLike, v: si.MetrePerSecondLike, t: si.SecondLike, /
+    ) -> si.MetreArray:
         raise InputError("a recorded texture has been asked already; ask the one it was made from")
 
-    def position(self, t: SecondLike, /) -> MetreArray:
+    def position(self, t: si.SecondLike, /) -> si.MetreArray:
         """Where the finger was (m)."""
         return np.asarray(np.interp(t, self.time, self.x))
 
@@ -337,7 +326,7 @@ def _judge(setup: PlaySetup, way: PlayedWay) -> Judged:
         return Judged(way, None, str(error))
 
 
-def _moving(way: PlayedWay) -> FloatArray:
+def _moving(way: PlayedWay) -> si.FloatArray:
     """Indices of samples at which the finger goes steadily one way: strictly, pass by pass.
 
     A recorded place has noise; where the smoothed one turns, a pass ends.
@@ -366,7 +355,7 @@ def _moving(way: PlayedWay) -> FloatArray:
     return np.concatenate(kept) if kept else np.zeros(0, dtype=np.int64)
 
 
-def _position_error(trace: Trace, truth: PlayedWay) -> Metre | None:
+def _position_error(trace: Trace, truth: PlayedWay) -> si.Metre | None:
     rows = trace.rows
     known = np.isfinite(rows[:, column.X])
     if truth.time.size < 2:
@@ -383,7 +372,7 @@ def _judged_json(judged: Judged) -> dict[str, Any]:
     way = judged.way
     error = way.relative_friction_rendered - way.relative_friction_wanted
     finite = error[np.isfinite(error)]
-    rms: Dimensionless = float(np.sqrt(np.mean(finite**2))) if finite.size else math.nan
+    rms: si.Dimensionless = float(np.sqrt(np.mean(finite**2))) if finite.size else math.nan
     return {
         "source": way.source,
         "samples": int(way.time.size),

@@ -14,29 +14,20 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.device.host import DeviceHost
 from squeezefilm.device.wire.messages import Reading
 from squeezefilm.device.wire.safety import Limits
 from squeezefilm.errors import DeviceError
-from squeezefilm.quantities import (
-    Dimensionless,
-    FloatArray,
-    Hertz,
-    HertzArray,
-    Second,
-    Unit,
-    Volt,
-    require,
-)
 from squeezefilm.session.play.plan import REPORT_PERIOD
 
 READINGS = 16
 """Readings averaged at each carrier."""
-PROMINENCE: Dimensionless = 1.1
+PROMINENCE: si.Dimensionless = 1.1
 """A resonance is at least so many times what is read at the ends of the sweep."""
-LIFT_LIMIT: Second = 10.0
+LIFT_LIMIT: si.Second = 10.0
 """How long a finger may stay on the plate before the sweep is given up."""
-_DEAF_LIMIT: Second = 0.5
+_DEAF_LIMIT: si.Second = 0.5
 _MICROVOLT = 1e-6
 
 
@@ -47,13 +38,13 @@ class ResonanceSweep:
     `touched` says whether the device's sensor saw a finger at any of them.
     """
 
-    carriers: HertzArray
-    pickup: FloatArray
-    voltage: Volt
+    carriers: si.HertzArray
+    pickup: si.FloatArray
+    voltage: si.Volt
     touched: bool
 
     @property
-    def peak(self) -> tuple[Hertz, Volt]:
+    def peak(self) -> tuple[si.Hertz, si.Volt]:
         """The resonance (Hz) and the pickup's amplitude there (V), see `peak`.
 
         NaN where nothing stands out over the sweep's ends: far from its resonance a plate answers
@@ -67,11 +58,11 @@ class ResonanceSweep:
 def sweep_resonance(
     host: DeviceHost,
     limits: Limits,
-    carriers: HertzArray,
-    voltage: Volt,
+    carriers: si.HertzArray,
+    voltage: si.Volt,
     *,
-    settle: Second,
-    wait: Callable[[Second], None] = time.sleep,
+    settle: si.Second,
+    wait: Callable[[si.Second], None] = time.sleep,
 ) -> ResonanceSweep | None:
     """Sweep the carrier; None where the device has no pickup. Leaves it OFF.
 
@@ -87,12 +78,12 @@ def sweep_resonance(
         InputError: a carrier or voltage outside the limits.
         DeviceError: a device that refuses, faults or goes silent, or a finger that stays on it.
     """
-    require("voltage", voltage, Unit("V"), above=0.0, at_most=limits.voltage)
+    si.require("voltage", voltage, si.Unit("V"), above=0.0, at_most=limits.voltage)
     for carrier in (float(carriers[0]), float(carriers[-1])):
-        require(
+        si.require(
             "carriers",
             carrier,
-            Unit("Hz"),
+            si.Unit("Hz"),
             at_least=limits.lowest_frequency,
             at_most=limits.highest_frequency,
         )
@@ -117,11 +108,11 @@ def sweep_resonance(
         raise
     host.stop()
     host.report(0.0)
-    signal: FloatArray = np.sqrt(np.maximum(squares - floor, 0.0))
+    signal: si.FloatArray = np.sqrt(np.maximum(squares - floor, 0.0))
     return ResonanceSweep(carriers, signal, voltage, touched)
 
 
-def peak(x: FloatArray, y: FloatArray) -> tuple[float, float]:
+def peak(x: si.FloatArray, y: si.FloatArray) -> tuple[float, float]:
     """Place and height of the vertex of the parabola through the largest value and its
     neighbours; NaN where it lies at an end, so that nothing says where the peak is.
 
@@ -137,7 +128,7 @@ def peak(x: FloatArray, y: FloatArray) -> tuple[float, float]:
     return float(x[top]) + shift * step, middle - 0.25 * (left - right) * shift
 
 
-def _wait_for_lifting(host: DeviceHost, wait: Callable[[Second], None]) -> None:
+def _wait_for_lifting(host: DeviceHost, wait: Callable[[si.Second], None]) -> None:
     end = host.link.clock() + LIFT_LIMIT
     while any(one.touching for one in _readings(host, 1, wait)):
         if host.link.clock() > end:
@@ -148,7 +139,7 @@ def _wait_for_lifting(host: DeviceHost, wait: Callable[[Second], None]) -> None:
 
 
 def _mean_square(
-    host: DeviceHost, settle: Second, wait: Callable[[Second], None]
+    host: DeviceHost, settle: si.Second, wait: Callable[[si.Second], None]
 ) -> tuple[float, bool]:
     """Mean square of the pickup's amplitude (V²) after settling, and whether a finger was there."""
     end = host.link.clock() + settle
@@ -162,7 +153,7 @@ def _mean_square(
     return float(np.mean([(one.pickup * _MICROVOLT) ** 2 for one in heard])), touched
 
 
-def _readings(host: DeviceHost, count: int, wait: Callable[[Second], None]) -> list[Reading]:
+def _readings(host: DeviceHost, count: int, wait: Callable[[si.Second], None]) -> list[Reading]:
     heard: list[Reading] = []
     end = host.link.clock() + _DEAF_LIMIT
     while len(heard) < count:

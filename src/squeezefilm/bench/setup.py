@@ -6,20 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.chain.prediction import Prediction, predict
 from squeezefilm.device.wire.messages import LONGEST_TILE
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError
 from squeezefilm.film.compiled import announce
-from squeezefilm.quantities import (
-    DimensionlessArray,
-    Hertz,
-    Metre,
-    MetreArray,
-    MetrePerVolt,
-    Second,
-    Volt,
-)
 from squeezefilm.render.motion.estimator import MotionEstimator
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ, SensorModel
 from squeezefilm.render.program.inverse import FrictionInverse
@@ -32,11 +24,11 @@ from squeezefilm.session.play.plan import PlayPlan
 from squeezefilm.session.play.tile import TextureTile, tile_of
 from squeezefilm.texture_file import TextureFile
 
-OUTPUT_DELAY: Second = 6e-3
+OUTPUT_DELAY: si.Second = 6e-3
 """From a tick to its command at the plate: the player's pause, a block's length, the link and what
 its jitter may be (assumed; commands that come later than this are counted, and not played)."""
-_FINEST_PITCH: Metre = 1e-6
-_LONGEST_TILE_WAY: Metre = 0.1
+_FINEST_PITCH: si.Metre = 1e-6
+_LONGEST_TILE_WAY: si.Metre = 0.1
 
 
 @dataclass(frozen=True)
@@ -51,8 +43,8 @@ class KnownDevice:
     """
 
     sensor: SensorModel = LVDT_10_KHZ
-    amplitude_per_pickup: MetrePerVolt | None = None
-    way: tuple[Metre, Metre] | None = None
+    amplitude_per_pickup: si.MetrePerVolt | None = None
+    way: tuple[si.Metre, si.Metre] | None = None
     twin: bool = False
 
 
@@ -84,7 +76,7 @@ class PlaySetup:
         """What the texture is called."""
         return self.texture.title or f"a texture of {self.texture.texture.quantity}"
 
-    def friction(self, amplitude: MetreArray) -> DimensionlessArray:
+    def friction(self, amplitude: si.MetreArray) -> si.DimensionlessArray:
         """Relative friction (1) by the display's law at amplitudes (m), held beyond the largest."""
         held = np.where(np.isfinite(amplitude), amplitude, np.nan)
         return np.interp(held, self.inverse.amplitude, self.inverse.relative_friction)
@@ -95,9 +87,9 @@ def play_setup(
     texture: TextureFile,
     *,
     device: KnownDevice = _NOTHING_KNOWN,
-    voltage: Volt | None = None,
+    voltage: si.Volt | None = None,
     surface: str | None = None,
-    rate: Hertz = 5e3,
+    rate: si.Hertz = 5e3,
     compensation: str = "none",
     mode: str = "stream",
 ) -> PlaySetup:
@@ -164,7 +156,7 @@ def _program(texture: TextureFile, prediction: Prediction) -> Program:
     )
 
 
-def _tile(loop: LoopPlan, way: tuple[Metre, Metre] | None) -> TextureTile:
+def _tile(loop: LoopPlan, way: tuple[si.Metre, si.Metre] | None) -> TextureTile:
     first, last = (0.0, _LONGEST_TILE_WAY) if way is None else way
     if not last > first:
         raise InputError(f"a tile from {first:g} m to {last:g} m covers nothing; exchange them")

@@ -11,6 +11,7 @@ from typing import Annotated, Literal, cast, get_args
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.contact.finger.fingertip import Finger
 from squeezefilm.contact.sharing import paper
 from squeezefilm.contact.sharing.film_load import FilmLoad, FilmModel, film_load
@@ -28,24 +29,6 @@ from squeezefilm.errors import InputError, OutOfRangeError, UnreachableError
 from squeezefilm.film.closed.limits import PaperModel, contact_mean_pressure
 from squeezefilm.film.gap import PaperGap
 from squeezefilm.materials import Gas
-from squeezefilm.quantities import (
-    Above,
-    AtLeast,
-    AtMost,
-    Dimensionless,
-    DimensionlessArray,
-    DimensionlessLike,
-    Hertz,
-    Metre,
-    MetreArray,
-    MetreLike,
-    MetrePerSecond,
-    Newton,
-    Unit,
-    checked_numbers,
-    format_quantity,
-    require,
-)
 
 FrictionModel = Literal[
     "paper2008",
@@ -61,7 +44,7 @@ FRICTION_MODELS: tuple[FrictionModel, ...] = get_args(FrictionModel)
 DEFAULT_MODEL: FrictionModel = "partial-levitation"
 """Film and asperities share the load, each ridge at its own balance (decision 0005)."""
 
-HIGHEST_AMPLITUDE: Metre = 50e-6
+HIGHEST_AMPLITUDE: si.Metre = 50e-6
 
 
 def is_solved(model: FrictionModel) -> bool:
@@ -74,7 +57,7 @@ def shares_load(model: FrictionModel) -> bool:
     return model.startswith("partial-levitation")
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, eq=False)
 class FrictionLimits:
     """µ′/µ (dimensionless) at amplitudes (m) in the two limits of the skin, and their spread.
@@ -83,12 +66,12 @@ class FrictionLimits:
     ridges tied to one mean gap.
     """
 
-    amplitude: MetreArray
-    own: DimensionlessArray
-    one_gap: DimensionlessArray
+    amplitude: si.MetreArray
+    own: si.DimensionlessArray
+    one_gap: si.DimensionlessArray
 
     @property
-    def spread(self) -> DimensionlessArray:
+    def spread(self) -> si.DimensionlessArray:
         """Their difference (dimensionless), which belongs in the uncertainty of µ′/µ."""
         return np.abs(self.own - self.one_gap)
 
@@ -100,11 +83,11 @@ class FrictionTable:
     Linear between `amplitude`, rising from 0 (m), and `relative_friction` there (1).
     """
 
-    amplitude: MetreArray
-    relative_friction: DimensionlessArray
+    amplitude: si.MetreArray
+    relative_friction: si.DimensionlessArray
 
-    @checked_numbers
-    def __call__(self, amplitude: MetreArray) -> DimensionlessArray:
+    @si.checked_numbers
+    def __call__(self, amplitude: si.MetreArray) -> si.DimensionlessArray:
         """µ′/µ at amplitudes (m). Raises `OutOfRangeError` outside of the table."""
         values, highest = np.asarray(amplitude, dtype=float), float(self.amplitude[-1])
         # A hair of slack: an exponential envelope may overshoot its target by rounding.
@@ -117,7 +100,7 @@ class FrictionTable:
         return np.asarray(np.interp(values, self.amplitude, self.relative_friction))
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True)
 class FrictionLaw:
     """µ′/µ as a function of the vibration amplitude, at one frequency and force, by one model.
@@ -132,23 +115,23 @@ class FrictionLaw:
     surface: Surface
     finger: Finger
     gas: Gas
-    half_wavelength: Annotated[Metre, Above(0)]
-    frequency: Annotated[Hertz, Above(0)]
-    normal_force: Annotated[Newton, Above(0)]
+    half_wavelength: Annotated[si.Metre, si.Above(0)]
+    frequency: Annotated[si.Hertz, si.Above(0)]
+    normal_force: Annotated[si.Newton, si.Above(0)]
     model: FrictionModel
-    position: Metre = 0.0
+    position: si.Metre = 0.0
 
     def __post_init__(self) -> None:
         if self.position and not shares_load(self.model):
             raise InputError(
-                f"position = {format_quantity(self.position, Unit('m'))} from the antinode: the "
-                f"model '{self.model}' knows the finger over an antinode only; ask a "
+                f"position = {si.format_quantity(self.position, si.Unit('m'))} from the antinode: "
+                f"the model '{self.model}' knows the finger over an antinode only; ask a "
                 "partial-levitation model",
                 quantity="position",
             )
 
-    @checked_numbers
-    def gap(self, amplitude: MetreLike) -> PaperGap:
+    @si.checked_numbers
+    def gap(self, amplitude: si.MetreLike) -> PaperGap:
         """The gap at an amplitude (m), antinode and groove at the centre of the contact."""
         return PaperGap(
             roughness=self.surface.roughness,
@@ -159,8 +142,8 @@ class FrictionLaw:
             contact_length=self.finger.contact_length,
         )
 
-    @checked_numbers
-    def load(self, amplitude: Metre) -> FilmLoad:
+    @si.checked_numbers
+    def load(self, amplitude: si.Metre) -> FilmLoad:
         """What the film carries at an amplitude (m), with its error. See `film_load`."""
         if self.model == "paper2008-printed":
             over = float(contact_mean_pressure(self.gap(amplitude), "paper2008-printed")) - 1
@@ -176,10 +159,10 @@ class FrictionLaw:
             plateau_width=self.finger.plateau_width,
         )
 
-    @checked_numbers
+    @si.checked_numbers
     def sharing(
         self,
-        amplitude: MetreLike,
+        amplitude: si.MetreLike,
         limit: Limit | None = None,
         *,
         posture: PadPosture | None = None,
@@ -210,8 +193,8 @@ class FrictionLaw:
             skin=finger.skin if yielding else None,
         )
 
-    @checked_numbers
-    def limits(self, amplitude: MetreLike) -> FrictionLimits:
+    @si.checked_numbers
+    def limits(self, amplitude: si.MetreLike) -> FrictionLimits:
         """µ′/µ in both limits of partial levitation at amplitudes (m), whatever the model."""
         a = np.atleast_1d(np.asarray(amplitude, dtype=float))
         own, tied = (
@@ -220,13 +203,13 @@ class FrictionLaw:
         )
         return FrictionLimits(a, own, tied)
 
-    @checked_numbers
-    def tapped(self, amplitude: MetreLike, speed: MetrePerSecond) -> DimensionlessArray:
+    @si.checked_numbers
+    def tapped(self, amplitude: si.MetreLike, speed: si.MetrePerSecond) -> si.DimensionlessArray:
         """µ′/µ by the competing mechanism, intermittent contact without gas, at amplitudes (m) and
         a finger speed (m/s), whatever the model: the mean over the ridges. See `contact.tapping`.
         """
         swings = np.atleast_1d(amplitude)
-        require("amplitude", swings, Unit("m"), at_least=0, axes=1)
+        si.require("amplitude", swings, si.Unit("m"), at_least=0, axes=1)
         finger = self.finger
         pressure = finger.plateau_pressure(self.normal_force)
         decay = finger.asperity_law(self.surface.roughness).decay_length
@@ -247,7 +230,7 @@ class FrictionLaw:
         each = np.array([[tap(float(a * k)) for k in kinds] for a in swings])
         return np.asarray(each @ (counts / points.size))
 
-    def _shared_load(self, amplitude: Metre) -> FilmLoad:
+    def _shared_load(self, amplitude: si.Metre) -> FilmLoad:
         shared = self.sharing(amplitude)
         # Over the whole contact, grooves included, as the other models have it.
         share = self.finger.plateau_width / self.finger.ridge_period
@@ -262,13 +245,13 @@ class FrictionLaw:
             f"film within {table.relative_error:.1e}",
         )
 
-    @checked_numbers
-    def at(self, amplitude: Metre) -> Dimensionless:
+    @si.checked_numbers
+    def at(self, amplitude: si.Metre) -> si.Dimensionless:
         """µ′/µ (dimensionless, 0 to 1) at one amplitude (m)."""
         return float(self.curve(np.array([amplitude]))[0])
 
-    @checked_numbers
-    def curve(self, amplitude: MetreArray) -> DimensionlessArray:
+    @si.checked_numbers
+    def curve(self, amplitude: si.MetreArray) -> si.DimensionlessArray:
         """µ′/µ (dimensionless, 0 to 1) at an array of amplitudes (m), same shape (1-D)."""
         ambient = self.gas.ambient_pressure
         if not is_solved(self.model):
@@ -282,8 +265,8 @@ class FrictionLaw:
         pressures = np.array([1 + self.load(float(a)).over_pressure for a in np.ravel(amplitude)])
         return np.asarray(self._shared(pressures))
 
-    @checked_numbers
-    def under(self, load: FilmLoad, amplitude: Metre) -> Dimensionless:
+    @si.checked_numbers
+    def under(self, load: FilmLoad, amplitude: si.Metre) -> si.Dimensionless:
         """µ′/µ (dimensionless) with a film already solved at an amplitude (m), as `load` has it."""
         if not is_solved(self.model):
             return self.at(amplitude)
@@ -294,7 +277,7 @@ class FrictionLaw:
             return float(np.clip(1 - carried / self.normal_force, 0.0, 1.0))
         return float(self._shared(1 + load.over_pressure))
 
-    def _shared(self, mean_pressure: DimensionlessLike) -> DimensionlessLike:
+    def _shared(self, mean_pressure: si.DimensionlessLike) -> si.DimensionlessLike:
         return paper.relative_friction_from_pressure(
             mean_pressure,
             self.normal_force,
@@ -306,10 +289,10 @@ class FrictionLaw:
     def _closed_form(self) -> PaperModel:
         return "paper2008-printed" if self.model == "paper2008-printed" else "paper2008"
 
-    @checked_numbers
+    @si.checked_numbers
     def amplitude_for(
-        self, relative_friction: Annotated[Dimensionless, AtLeast(0.0), AtMost(1.0)]
-    ) -> Metre:
+        self, relative_friction: Annotated[si.Dimensionless, si.AtLeast(0.0), si.AtMost(1.0)]
+    ) -> si.Metre:
         """The least amplitude (m, zero-to-peak) that brings µ′/µ down to a wanted value.
 
         Raises `InputError` for a value outside [0, 1] and `UnreachableError` where no amplitude up
@@ -325,7 +308,7 @@ class FrictionLaw:
             )
         return self._search(relative_friction)
 
-    def _search(self, wanted: Dimensionless) -> Metre:
+    def _search(self, wanted: si.Dimensionless) -> si.Metre:
         from scipy.optimize import brentq
 
         if wanted == 1:
@@ -349,13 +332,13 @@ class FrictionLaw:
             low, least = float(high), min(least, left + wanted)
         raise UnreachableError(
             f"relative_friction = {wanted:.4g} is not reached by any vibration amplitude up to "
-            f"{format_quantity(HIGHEST_AMPLITUDE, Unit('m'))}: the model '{self.model}' gives "
-            f"{least:.4g} at the least; press less, take a smoother surface or ask for less"
+            f"{si.format_quantity(HIGHEST_AMPLITUDE, si.Unit('m'))}: the model '{self.model}' "
+            f"gives {least:.4g} at the least; press less, take a smoother surface or ask for less"
         )
 
-    @checked_numbers
+    @si.checked_numbers
     def table(
-        self, highest_amplitude: Annotated[Metre, Above(0.0)], points: int | None = None
+        self, highest_amplitude: Annotated[si.Metre, si.Above(0.0)], points: int | None = None
     ) -> FrictionTable:
         """The law as a fast function: a table, linear between its points, for many samples.
 
@@ -364,7 +347,7 @@ class FrictionLaw:
         paper's devices.
         """
         if points is not None:
-            require("points", points, at_least=2)
+            si.require("points", points, at_least=2)
         count = points or (65 if is_solved(self.model) else 257)
         # Denser at small amplitudes, where the law bends within the roughness.
         grid = highest_amplitude * np.linspace(0.0, 1.0, count) ** 2
@@ -378,16 +361,16 @@ class FrictionLaw:
         return FrictionTable(grid, law)
 
 
-@checked_numbers
+@si.checked_numbers
 def friction_law(
     display: Display,
-    half_wavelength: Metre,
-    frequency: Hertz,
+    half_wavelength: si.Metre,
+    frequency: si.Hertz,
     *,
     surface: Surface | None = None,
-    normal_force: Newton | None = None,
+    normal_force: si.Newton | None = None,
     model: FrictionModel = DEFAULT_MODEL,
-    position: Metre = 0.0,
+    position: si.Metre = 0.0,
 ) -> FrictionLaw:
     """The friction law of a display; surface and force default to the display's own, the pad to an
     antinode."""

@@ -13,23 +13,10 @@ from typing import Any
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import RENDER_STEPS, require_motion
 from squeezefilm.plate.layout import Actuator, AnnularStator, DiscPlate, RectangularPlate
-from squeezefilm.quantities import (
-    Dimensionless,
-    DimensionlessArray,
-    FloatArray,
-    Metre,
-    MetreArray,
-    MetreLike,
-    MetrePerSecondArray,
-    MetrePerSecondLike,
-    SecondArray,
-    SecondLike,
-    Unit,
-    format_quantity,
-)
 from squeezefilm.render.motion.finger_path import FingerPath, OverPath
 from squeezefilm.render.motion.minimum_jerk import MinimumJerkStroke, Trajectory
 from squeezefilm.render.motion.stroke import Stroke
@@ -41,7 +28,7 @@ from squeezefilm.render.texture.composition import Composable
 from squeezefilm.render.texture.image import Image
 from squeezefilm.render.texture.pattern import SpeedScaled
 
-_METRE = Unit("m")
+_METRE = si.Unit("m")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -53,11 +40,11 @@ class FingerMotion:
     """
 
     trajectory: Trajectory
-    time: SecondArray
-    way: MetreArray
-    x: MetreArray
-    y: MetreArray
-    speed: MetrePerSecondArray
+    time: si.SecondArray
+    way: si.MetreArray
+    x: si.MetreArray
+    y: si.MetreArray
+    speed: si.MetrePerSecondArray
     path: FingerPath | None
 
     @classmethod
@@ -94,16 +81,21 @@ class PlayedTexture:
     program: Program
     inverse: FrictionInverse
     motion: FingerMotion
-    friction_coefficient: Dimensionless
+    friction_coefficient: si.Dimensionless
     compensation: WaveCompensation | None = None
-    spatial_period: Metre | None = None
+    spatial_period: si.Metre | None = None
 
     def __repr__(self) -> str:
         return self.name
 
     def __call__(
-        self, way: MetreLike, _: MetreLike, speed: MetrePerSecondLike, time: SecondLike, /
-    ) -> MetreArray:
+        self,
+        way: si.MetreLike,
+        _: si.MetreLike,
+        speed: si.MetrePerSecondLike,
+        time: si.SecondLike,
+        /,
+    ) -> si.MetreArray:
         """The amplitude wanted (m), in the shape of `way`."""
         x, y = self.place(way)
         t = np.maximum(np.broadcast_to(np.asarray(time, dtype=float), x.shape), 0.0)
@@ -115,19 +107,19 @@ class PlayedTexture:
             amplitude = amplitude / self.compensation.factor(x, y)
         return np.minimum(amplitude, self.program.largest_amplitude)
 
-    def place(self, way: MetreLike) -> tuple[MetreArray, MetreArray]:
+    def place(self, way: si.MetreLike) -> tuple[si.MetreArray, si.MetreArray]:
         """x and y (m) where the loop's coordinate is `way`."""
         if self.motion.path is None:
             return np.asarray(way, dtype=float), np.zeros(np.shape(way))
         return self.motion.path.place_after(way)
 
-    def friction(self, values: FloatArray) -> DimensionlessArray:
+    def friction(self, values: si.FloatArray) -> si.DimensionlessArray:
         """Relative friction asked for by values of the texture in a frictional quantity (1)."""
         if self.program.quantity == "friction_reduction":
             return np.asarray(1.0 - values / self.friction_coefficient)
         return values
 
-    def amplitude(self, values: FloatArray) -> MetreArray:
+    def amplitude(self, values: si.FloatArray) -> si.MetreArray:
         """The amplitude (m) that makes values of the texture, as near as the display can."""
         if self.program.quantity == "amplitude":
             return np.clip(values, 0.0, self.program.largest_amplitude)
@@ -135,7 +127,7 @@ class PlayedTexture:
         return self.inverse.amplitude_for(wanted)
 
 
-def single_period(texture: Composable, motion: Stroke | None = None) -> Metre | None:
+def single_period(texture: Composable, motion: Stroke | None = None) -> si.Metre | None:
     """The spatial period of a grating along x (m); None for any other texture.
 
     One that stretches with the speed has a period where the speed is steady, under a `Stroke`.
@@ -173,10 +165,11 @@ def require_on_image(texture: Composable, motion: FingerMotion) -> None:
             k = int(np.flatnonzero(beyond)[0])
             raise InputError(
                 f"the stroke leaves the image: at {motion.time[k]:.4g} s the finger is at x = "
-                f"{format_quantity(float(motion.x[k]), _METRE)}, y = "
-                f"{format_quantity(float(motion.y[k]), _METRE)}, and the image ends at x = "
-                f"{format_quantity(image.left, _METRE)} to {format_quantity(right, _METRE)}, y = "
-                f"{format_quantity(image.bottom, _METRE)} to {format_quantity(top, _METRE)}; "
+                f"{si.format_quantity(float(motion.x[k]), _METRE)}, y = "
+                f"{si.format_quantity(float(motion.y[k]), _METRE)}, and the image ends at x = "
+                f"{si.format_quantity(image.left, _METRE)} to {si.format_quantity(right, _METRE)}, "
+                f"y = {si.format_quantity(image.bottom, _METRE)} to "
+                f"{si.format_quantity(top, _METRE)}; "
                 'shorten the stroke, move the image (left, bottom), or say outside = "zero" or '
                 '"repeat"'
             )
@@ -208,7 +201,7 @@ def require_on_display(actuator: Actuator, motion: FingerMotion) -> None:
             )
         return
     if isinstance(actuator, DiscPlate):
-        room: tuple[Metre, Metre] = (actuator.diameter, actuator.diameter)
+        room: tuple[si.Metre, si.Metre] = (actuator.diameter, actuator.diameter)
     elif isinstance(actuator, RectangularPlate):
         room = (actuator.length, actuator.width)
     else:
@@ -216,6 +209,6 @@ def require_on_display(actuator: Actuator, motion: FingerMotion) -> None:
     for name, used, there in (("x", width, room[0]), ("y", height, room[1])):
         if used > there * (1 + 1e-9):
             raise InputError(
-                f"the stroke covers {format_quantity(used, _METRE)} along {name}, and the surface "
-                f"has {format_quantity(there, _METRE)}; shorten the stroke"
+                f"the stroke covers {si.format_quantity(used, _METRE)} along {name}, and the "
+                f"surface has {si.format_quantity(there, _METRE)}; shorten the stroke"
             )

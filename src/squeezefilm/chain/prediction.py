@@ -15,6 +15,7 @@ from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.chain.friction import (
     DEFAULT_MODEL,
     FrictionLaw,
@@ -40,18 +41,6 @@ from squeezefilm.from_text import reads_text
 from squeezefilm.plate.beam.response import beam_doubt
 from squeezefilm.plate.layout import Actuator, RectangularPlate
 from squeezefilm.plate.working_mode import PlateTheory, WorkingMode, working_mode
-from squeezefilm.quantities import (
-    Dimensionless,
-    Hertz,
-    Metre,
-    MetrePerVolt,
-    Newton,
-    Second,
-    Unit,
-    Volt,
-    checked_numbers,
-    require,
-)
 from squeezefilm.render.program.inverse import FrictionInverse
 from squeezefilm.render.resonator.envelope import envelope_time_constant
 from squeezefilm.results import Result, to_json
@@ -73,23 +62,23 @@ class Prediction(Result):
 
     display: str
     surface: Surface
-    voltage: Volt | None
-    frequency: Hertz
-    normal_force: Newton
+    voltage: si.Volt | None
+    frequency: si.Hertz
+    normal_force: si.Newton
     mode: WorkingMode
     amplitude_model: str
-    vibration_amplitude: Metre
+    vibration_amplitude: si.Metre
     touch: Touch
     model: FrictionModel
     law: FrictionLaw
-    squeeze_number: Dimensionless
-    mean_pressure: Dimensionless
-    mean_pressure_error: Dimensionless
-    relative_friction: Dimensionless
-    relative_friction_limits: tuple[Dimensionless, Dimensionless] | None
-    friction_coefficient: Dimensionless
-    friction_reduction: Dimensionless
-    tangential_force: Newton
+    squeeze_number: si.Dimensionless
+    mean_pressure: si.Dimensionless
+    mean_pressure_error: si.Dimensionless
+    relative_friction: si.Dimensionless
+    relative_friction_limits: tuple[si.Dimensionless, si.Dimensionless] | None
+    friction_coefficient: si.Dimensionless
+    friction_reduction: si.Dimensionless
+    tangential_force: si.Newton
     validity: FilmValidity
     warnings: tuple[str, ...]
     _shown: ClassVar[str] = (
@@ -111,7 +100,7 @@ class Prediction(Result):
         return FrictionInverse.from_function(self.friction, self.vibration_amplitude)
 
     @property
-    def envelope_time_constant(self) -> Second:
+    def envelope_time_constant(self) -> si.Second:
         """Of the resonator's envelope without a finger (s)."""
         mode = self.mode
         return float(envelope_time_constant(mode.quality_factor, mode.resonance_frequency))
@@ -148,16 +137,16 @@ class Prediction(Result):
 
 
 @reads_text
-@checked_numbers
+@si.checked_numbers
 def predict(
     display: NamedDisplay,
     *,
-    voltage: Volt | None = None,
-    frequency: Hertz | None = None,
-    normal_force: Newton | None = None,
+    voltage: si.Volt | None = None,
+    frequency: si.Hertz | None = None,
+    normal_force: si.Newton | None = None,
     surface: str | None = None,
-    vibration_amplitude: Metre | None = None,
-    position: Metre = 0.0,
+    vibration_amplitude: si.Metre | None = None,
+    position: si.Metre = 0.0,
     theory: PlateTheory | None = None,
     model: FrictionModel | None = None,
     strict: bool = False,
@@ -179,7 +168,7 @@ def predict(
     if vibration_amplitude is not None and voltage is not None:
         raise InputError("a voltage and an amplitude were both given; give one of them")
     force = display.finger.normal_force if normal_force is None else normal_force
-    require("normal_force", force, Unit("N"), above=0)
+    si.require("normal_force", force, si.Unit("N"), above=0)
     where = display.surface(surface)
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
@@ -206,9 +195,9 @@ class _Drive(NamedTuple):
     """A plate that vibrates without a finger: its voltage where that is known, and what made the
     amplitude."""
 
-    frequency: Hertz
-    voltage: Volt | None
-    amplitude: Metre
+    frequency: si.Hertz
+    voltage: si.Volt | None
+    amplitude: si.Metre
     source: str
 
 
@@ -221,25 +210,25 @@ class _Felt(NamedTuple):
     touch: Touch
     validity: FilmValidity
     load: FilmLoad
-    relative_friction: Dimensionless
-    limits: tuple[Dimensionless, Dimensionless] | None
+    relative_friction: si.Dimensionless
+    limits: tuple[si.Dimensionless, si.Dimensionless] | None
 
 
 def _drive(
     display: Display,
     mode: WorkingMode,
-    frequency: Hertz | None,
-    voltage: Volt | None,
-    vibration_amplitude: Metre | None,
+    frequency: si.Hertz | None,
+    voltage: si.Volt | None,
+    vibration_amplitude: si.Metre | None,
 ) -> _Drive:
     """The vibration at a voltage, the display's own by default, or the one given."""
     frequency = mode.resonance_frequency if frequency is None else frequency
-    require("frequency", frequency, Unit("Hz"), above=0)
+    si.require("frequency", frequency, si.Unit("Hz"), above=0)
     if vibration_amplitude is not None:
-        require("vibration_amplitude", vibration_amplitude, Unit("m"), at_least=0)
+        si.require("vibration_amplitude", vibration_amplitude, si.Unit("m"), at_least=0)
         return _Drive(frequency, None, vibration_amplitude, "given")
     volts = display.drive.voltage if voltage is None else voltage
-    require("voltage", volts, Unit("V"), at_least=0)
+    si.require("voltage", volts, si.Unit("V"), at_least=0)
     return _Drive(frequency, volts, float(volts * _per_volt(mode, frequency)), mode.model)
 
 
@@ -336,17 +325,17 @@ def _prediction(display: Display, felt: _Felt, doubts: list[str]) -> Prediction:
 
 
 @reads_text
-@checked_numbers
+@si.checked_numbers
 def voltage_for_friction(
     display: NamedDisplay,
-    relative_friction: Dimensionless,
+    relative_friction: si.Dimensionless,
     *,
-    frequency: Hertz | None = None,
-    normal_force: Newton | None = None,
+    frequency: si.Hertz | None = None,
+    normal_force: si.Newton | None = None,
     surface: str | None = None,
     theory: PlateTheory | None = None,
     model: FrictionModel | None = None,
-) -> tuple[Volt, Metre]:
+) -> tuple[si.Volt, si.Metre]:
     """The voltage (V, zero-to-peak) that brings µ′/µ down to a wanted value, and its amplitude (m).
 
     The inverse of `predict`, the finger's damping and detuning included; linear in the voltage up
@@ -355,7 +344,7 @@ def voltage_for_friction(
     """
     mode = _mode(display.actuator, theory, False)
     drive_frequency = mode.resonance_frequency if frequency is None else frequency
-    require("frequency", drive_frequency, Unit("Hz"), above=0)
+    si.require("frequency", drive_frequency, si.Unit("Hz"), above=0)
     law = friction_law(
         display,
         mode.half_wavelength,
@@ -377,7 +366,7 @@ def voltage_for_friction(
     return float(volts), amplitude
 
 
-def _per_volt(mode: WorkingMode, frequency: Hertz) -> MetrePerVolt:
+def _per_volt(mode: WorkingMode, frequency: si.Hertz) -> si.MetrePerVolt:
     """The amplitude per volt (m/V) without a finger; off resonance with the mode's neighbours."""
     if frequency == mode.resonance_frequency:
         return mode.amplitude_per_volt

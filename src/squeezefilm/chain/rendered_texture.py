@@ -12,6 +12,7 @@ from typing import Any, ClassVar, cast
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.arguments import called_with
 from squeezefilm.chain.friction import FrictionModel
 from squeezefilm.chain.played_texture import (
@@ -31,16 +32,6 @@ from squeezefilm.errors import InputError
 from squeezefilm.formats.trajectories import Motion, NamedMotion
 from squeezefilm.from_text import reads_text
 from squeezefilm.progress import SayProgress
-from squeezefilm.quantities import (
-    Dimensionless,
-    DimensionlessArray,
-    FloatArray,
-    Hertz,
-    Newton,
-    Second,
-    Volt,
-    require_one_of,
-)
 from squeezefilm.render.fidelity.rendered_stroke import RenderedStroke, rendered_stroke
 from squeezefilm.render.fidelity.report import FidelityReport, fidelity_report
 from squeezefilm.render.fidelity.spectral_lines import strongest_lines
@@ -55,7 +46,7 @@ from squeezefilm.render.resonator.envelope import envelope_time_constant
 from squeezefilm.results import Result, stamp, to_json
 from squeezefilm.texture_file import NamedTexture, TextureFile
 
-CONTROL_RATE: Hertz = 19.2e3
+CONTROL_RATE: si.Hertz = 19.2e3
 """Of the loop (Hz): commands to which a converter of 192 kHz gives ten samples each."""
 
 
@@ -85,8 +76,8 @@ class RenderAnalysis(Result):
     stroke: RenderedStroke
     finger: FingerMotion
     wave: Wave
-    factor: DimensionlessArray
-    asked: DimensionlessArray
+    factor: si.DimensionlessArray
+    asked: si.DimensionlessArray
     counters: Counters
     force: Sliding
     fidelity: FidelityReport | None
@@ -97,13 +88,13 @@ class RenderAnalysis(Result):
     )
 
     @property
-    def rms_error(self) -> Dimensionless:
+    def rms_error(self) -> si.Dimensionless:
         """RMS over the stroke of the relative friction rendered minus the one asked for (1)."""
         miss = self.stroke.relative_friction_rendered - self.asked
         return float(np.sqrt(np.mean(miss**2)))
 
     @property
-    def time_constant(self) -> Second:
+    def time_constant(self) -> si.Second:
         """Of the resonator's envelope with the finger on it (s)."""
         return self.stroke.envelope.rise_time_constant
 
@@ -115,10 +106,10 @@ class RenderAnalysis(Result):
         """The motion as JSON can have it."""
         return to_json(self.motion)
 
-    def columns(self) -> dict[str, FloatArray]:
+    def columns(self) -> dict[str, si.FloatArray]:
         """Every step of the loop, units in the names."""
         stroke, finger, force = self.stroke, self.finger, self.force
-        columns: dict[str, FloatArray] = {
+        columns: dict[str, si.FloatArray] = {
             "time_s": stroke.time,
             "position_x_m": finger.x,
             "position_y_m": finger.y,
@@ -212,15 +203,15 @@ class RenderRequest:
     texture: NamedTexture
     motion: NamedMotion
     _: KW_ONLY
-    voltage: Volt | None = None
-    normal_force: Newton | None = None
+    voltage: si.Volt | None = None
+    normal_force: si.Newton | None = None
     surface: str | None = None
     model: FrictionModel | None = None
     sensor: str | SensorModel | None = None
     compensation: str = "none"
     braking: bool = False
     wave: str = "ignored"
-    control_rate: Hertz = CONTROL_RATE
+    control_rate: si.Hertz = CONTROL_RATE
     seed: int = 0
     progress: SayProgress | None = None
 
@@ -268,8 +259,8 @@ def render_texture(asked: RenderRequest) -> RenderAnalysis:
     tell = asked.progress or (lambda _: None)
     display, motion = asked.display, asked.motion
     texture = TextureFile.of(asked.texture)
-    require_one_of("compensation", asked.compensation, COMPENSATIONS)
-    require_one_of("wave", asked.wave, WAVES)
+    si.require_one_of("compensation", asked.compensation, COMPENSATIONS)
+    si.require_one_of("wave", asked.wave, WAVES)
     eyes = sensor_named(asked.sensor) if isinstance(asked.sensor, str) else asked.sensor
     finger = FingerMotion.of(motion, asked.control_rate)
     require_on_display(display.actuator, finger)

@@ -7,6 +7,7 @@ from typing import Literal, get_args
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.chain.friction import FrictionTable, shares_load
 from squeezefilm.chain.played_texture import FingerMotion
 from squeezefilm.chain.prediction import Prediction
@@ -15,7 +16,6 @@ from squeezefilm.contact.sharing.pad import friction_ripple
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError
 from squeezefilm.plate.layout import DiscPlate, RectangularPlate
-from squeezefilm.quantities import Dimensionless, DimensionlessArray, Hertz, MetreArray
 from squeezefilm.render.program.inverse import FrictionInverse
 from squeezefilm.render.program.wave import WaveCompensation
 from squeezefilm.render.texture.coordinate import AlongX, AlongY
@@ -28,7 +28,7 @@ WAVES: tuple[Wave, ...] = get_args(Wave)
 _BETTER = 1.5
 
 
-def resonance_with_finger(p: Prediction) -> tuple[Dimensionless, Hertz]:
+def resonance_with_finger(p: Prediction) -> tuple[si.Dimensionless, si.Hertz]:
     """Quality factor and resonance (Hz) with the finger on the mode, where that is known."""
     if p.touch.mode is None:
         return p.mode.quality_factor, p.mode.resonance_frequency
@@ -99,13 +99,13 @@ class UnderPad:
         """By what the renderer drives harder, None where it does not."""
         return self.factors if self.wave == "compensated" else None
 
-    def reached(self, amplitude: MetreArray) -> DimensionlessArray:
+    def reached(self, amplitude: si.MetreArray) -> si.DimensionlessArray:
         """Relative friction (1) where the renderer asks for amplitudes (m)."""
         if self.wave == "compensated":
             return self.felt(amplitude / self.centred)
         return self.friction(amplitude)
 
-    def factor(self, finger: FingerMotion) -> DimensionlessArray:
+    def factor(self, finger: FingerMotion) -> si.DimensionlessArray:
         """The amplitude along the way over that of an antinode (1)."""
         if self.factors is None:
             return np.ones(finger.time.size)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.contact.finger.fingerpad import FingerpadDynamics
 from squeezefilm.contact.finger.occlusion import Occlusion
 from squeezefilm.contact.sliding.dry_friction import DryFriction
@@ -16,7 +17,6 @@ from squeezefilm.contact.sliding.skin_vibration import (
     texture_frequency,
 )
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import Dimensionless, Metre, Newton, NewtonLike, Second, Unit, require
 from squeezefilm.render.fidelity.trace import FrictionTrace
 from squeezefilm.render.motion.stroke import Stroke
 from squeezefilm.render.texture.gratings import Sine, Square
@@ -37,12 +37,12 @@ class StrokeForce:
     """
 
     trace: FrictionTrace
-    friction_coefficient: Dimensionless
-    normal_force: Newton
+    friction_coefficient: si.Dimensionless
+    normal_force: si.Newton
     motion: Sliding
 
     @property
-    def settled(self) -> Second:
+    def settled(self) -> si.Second:
         """When the skin has forgotten the start of the stroke (s).
 
         The pad has been stretched until it slides, and five of its slower time constants have
@@ -66,7 +66,7 @@ class StrokeForce:
         return first_pass_vibration(self.motion, stroke, texture.spatial_period, harmonics)
 
 
-def settled_after(motion: Sliding) -> Second:
+def settled_after(motion: Sliding) -> si.Second:
     """When a pad that began relaxed has been stretched until it slides, and five of its slower time
     constants have passed (s)."""
     free = np.flatnonzero(~motion.sticking)
@@ -75,7 +75,7 @@ def settled_after(motion: Sliding) -> Second:
 
 
 def first_pass_vibration(
-    motion: Sliding, stroke: Stroke, spatial_period: Metre, harmonics: int
+    motion: Sliding, stroke: Stroke, spatial_period: si.Metre, harmonics: int
 ) -> SkinVibration:
     """Spectra of the skin in the settled part of a stroke's first pass, with the lines of a period.
 
@@ -92,8 +92,8 @@ def first_pass_vibration(
 
 def stroke_force(
     trace: FrictionTrace,
-    friction_coefficient: Dimensionless,
-    normal_force: NewtonLike,
+    friction_coefficient: si.Dimensionless,
+    normal_force: si.NewtonLike,
     fingerpad: FingerpadDynamics | None = None,
     law: DryFriction | None = None,
     occlusion: Occlusion | None = None,
@@ -114,8 +114,8 @@ def stroke_force(
         InputError: a value outside its range, or a normal force of another shape.
         ConvergenceError: see `slide`.
     """
-    require("friction_coefficient", friction_coefficient, at_least=0.0)
-    require("normal_force", normal_force, Unit("N"), at_least=0.0)
+    si.require("friction_coefficient", friction_coefficient, at_least=0.0)
+    si.require("normal_force", normal_force, si.Unit("N"), at_least=0.0)
     motion = slide(
         trace.position,
         1 / trace.sample_rate,

@@ -6,24 +6,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.chain.friction import FrictionLaw
 from squeezefilm.contact.finger.load import finger_stiffness, interface_stiffness
 from squeezefilm.contact.sharing.pad import Limit, PadFriction
 from squeezefilm.errors import ConvergenceError
 from squeezefilm.plate.loaded_mode import LoadedMode, loaded_mode, mean_square_wave
 from squeezefilm.plate.working_mode import WorkingMode
-from squeezefilm.quantities import (
-    ComplexArray,
-    Dimensionless,
-    Metre,
-    MetreArray,
-    MetreLike,
-    checked_numbers,
-)
 
 _MOST_STEPS = 40
 _TOLERANCE = 1e-8  # of the amplitude
-_LEAST_AMPLITUDE: Metre = 1e-12
+_LEAST_AMPLITUDE: si.Metre = 1e-12
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,19 +28,19 @@ class Touch:
     to change nothing; `sharing` None where the surface stands still.
     """
 
-    free_amplitude: Metre
-    amplitude: Metre
+    free_amplitude: si.Metre
+    amplitude: si.Metre
     mode: LoadedMode | None
     sharing: PadFriction | None
 
     @property
-    def kept(self) -> Dimensionless:
+    def kept(self) -> si.Dimensionless:
         """The amplitude with the finger over the one without (1 at rest)."""
         return self.amplitude / self.free_amplitude if self.free_amplitude > 0 else 1.0
 
 
-@checked_numbers
-def touch(mode: WorkingMode, law: FrictionLaw, free_amplitude: Metre) -> Touch:
+@si.checked_numbers
+def touch(mode: WorkingMode, law: FrictionLaw, free_amplitude: si.Metre) -> Touch:
     """The vibration with a finger on it, whose load depends on the amplitude: solved to 1e-8.
 
     The finger rests where the law has it, film and asperities in the balance of the law (partial
@@ -85,8 +78,8 @@ def touch(mode: WorkingMode, law: FrictionLaw, free_amplitude: Metre) -> Touch:
     )
 
 
-@checked_numbers
-def kept_at(mode: WorkingMode, law: FrictionLaw, amplitude: Metre) -> Dimensionless:
+@si.checked_numbers
+def kept_at(mode: WorkingMode, law: FrictionLaw, amplitude: si.Metre) -> si.Dimensionless:
     """The amplitude with the finger over the one without, where the former is known (m)."""
     if mode.modal_mass is None or amplitude < _LEAST_AMPLITUDE:
         return 1.0
@@ -96,11 +89,11 @@ def kept_at(mode: WorkingMode, law: FrictionLaw, amplitude: Metre) -> Dimensionl
     return loaded.amplitude_ratio(law.frequency) / free.amplitude_ratio(law.frequency)
 
 
-@checked_numbers
-def load_ratios(mode: WorkingMode, law: FrictionLaw, amplitude: MetreArray) -> ComplexArray:
+@si.checked_numbers
+def load_ratios(mode: WorkingMode, law: FrictionLaw, amplitude: si.MetreArray) -> si.ComplexArray:
     """The finger's modal stiffness over the mode's own, δ (complex), at amplitudes with the finger
     on (m), shape (n,). Zero where the modal mass is not known: the finger is left out."""
-    found: ComplexArray = np.zeros(np.shape(amplitude), dtype=complex)
+    found: si.ComplexArray = np.zeros(np.shape(amplitude), dtype=complex)
     if mode.modal_mass is None:
         return found
     gaps = _sharing(law, amplitude).mean_gap
@@ -109,13 +102,13 @@ def load_ratios(mode: WorkingMode, law: FrictionLaw, amplitude: MetreArray) -> C
     return found
 
 
-def _sharing(law: FrictionLaw, amplitude: MetreLike) -> PadFriction:
+def _sharing(law: FrictionLaw, amplitude: si.MetreLike) -> PadFriction:
     limit: Limit = "one-gap" if law.model == "partial-levitation-one-gap" else "own"
     return law.sharing(amplitude, limit)
 
 
 def _loaded(
-    mode: WorkingMode, modal_mass: float, law: FrictionLaw, amplitude: Metre, mean_gap: Metre
+    mode: WorkingMode, modal_mass: float, law: FrictionLaw, amplitude: si.Metre, mean_gap: si.Metre
 ) -> LoadedMode:
     finger = law.finger
     share = finger.plateau_width / finger.ridge_period

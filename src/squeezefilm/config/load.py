@@ -12,6 +12,7 @@ from typing import Any, TypeVar, Union
 
 from pydantic import BaseModel, ValidationError
 
+from squeezefilm import quantities as si
 from squeezefilm.config.lines import locate
 from squeezefilm.config.provenance import (
     Spread,
@@ -24,7 +25,6 @@ from squeezefilm.config.schema import family, model_of, reads_from_file
 from squeezefilm.distributions import Distribution
 from squeezefilm.errors import ConfigError, InputError
 from squeezefilm.hard_limits import DESCRIPTION_BYTES
-from squeezefilm.quantities import did_you_mean, unit_of
 from squeezefilm.regular_file import read_regular_text
 
 T = TypeVar("T")
@@ -95,7 +95,7 @@ def _distribution(
     for part in parts[:-1]:
         owner = owner[int(part)] if isinstance(owner, tuple) else getattr(owner, part)
     try:
-        unit = unit_of(typing.get_type_hints(type(owner), include_extras=True)[parts[-1]])
+        unit = si.unit_of(typing.get_type_hints(type(owner), include_extras=True)[parts[-1]])
         if unit is None:
             raise InputError("this is no quantity and has no uncertainty; leave it out")
         return distribution_of(getattr(owner, parts[-1]), unit, spread)
@@ -220,7 +220,7 @@ def _message(item: Any, path: Sequence[str | int], owner: type[Any]) -> str:
     known = [field.name for field in dataclasses.fields(owner) if reads_from_file(field)]
     kind = item["type"]
     if kind == "extra_forbidden":
-        hint = did_you_mean(str(path[-1]), known)
+        hint = si.did_you_mean(str(path[-1]), known)
         return f"unknown key '{path[-1]}'.{hint} Allowed here: {', '.join(known)}"
     if kind == "missing":
         article = "an" if owner.__name__[0] in "AEIO" else "a"
@@ -229,7 +229,7 @@ def _message(item: Any, path: Sequence[str | int], owner: type[Any]) -> str:
     if kind == "union_tag_invalid":
         tag = str(item["ctx"]["tag"])
         allowed = [part.strip(" '") for part in str(item["ctx"]["expected_tags"]).split(",")]
-        return f"type = '{tag}' is not known.{did_you_mean(tag, allowed)} Allowed: " + ", ".join(
+        return f"type = '{tag}' is not known.{si.did_you_mean(tag, allowed)} Allowed: " + ", ".join(
             allowed
         )
     if kind == "union_tag_not_found":

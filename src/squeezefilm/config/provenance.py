@@ -14,9 +14,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from squeezefilm import quantities as si
 from squeezefilm.distributions import Distribution, Normal, Uniform
 from squeezefilm.errors import ConfigError, InputError
-from squeezefilm.quantities import Unit, format_quantity, parse_quantity
 
 
 def read_only(values: Mapping[str, Any]) -> types.MappingProxyType[str, Any]:
@@ -93,25 +93,25 @@ def _spread(node: Mapping[str, Any], path: str) -> Spread | None:
     return spread[0], spread[1]
 
 
-def distribution_of(value: float, unit: Unit, spread: Spread) -> Distribution:
+def distribution_of(value: float, unit: si.Unit, spread: Spread) -> Distribution:
     """What a spread means for a value in a unit. Raises `InputError` for one that cannot be."""
     if isinstance(spread, tuple):
-        low, high = (parse_quantity(text, unit) for text in spread)
+        low, high = (si.parse_quantity(text, unit) for text in spread)
         found: Distribution = Uniform(low, high)
         if not low <= value <= high:
             raise InputError(
                 f"range = [{spread[0]}, {spread[1]}] leaves out the value "
-                f"{format_quantity(value, unit)} itself; make it wider"
+                f"{si.format_quantity(value, unit)} itself; make it wider"
             )
     elif spread.strip().endswith("%"):
-        share = parse_quantity(spread.strip().removesuffix("%").strip(), Unit("1")) / 100
+        share = si.parse_quantity(spread.strip().removesuffix("%").strip(), si.Unit("1")) / 100
         found = Normal(value, share * abs(value))
     else:
-        found = Normal(value, parse_quantity(spread, unit))
+        found = Normal(value, si.parse_quantity(spread, unit))
     if value > 0 and found.support[0] <= 0:
         raise InputError(
-            f"uncertainty = {spread!r} lets {format_quantity(value, unit)} become negative within "
-            "three standard deviations; give a range instead"
+            f"uncertainty = {spread!r} lets {si.format_quantity(value, unit)} become negative "
+            "within three standard deviations; give a range instead"
         )
     return found
 

@@ -14,20 +14,20 @@ from typing import Annotated, Any, Literal, Union
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, create_model
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import QuantityError
-from squeezefilm.quantities import Unit, format_quantity, parse_quantity, unit_of
 
 
-def _reads(unit: Unit) -> Callable[[Any], Any]:
+def _reads(unit: si.Unit) -> Callable[[Any], Any]:
     def read(value: Any) -> float:
         if isinstance(value, str):
-            return parse_quantity(value, unit)
+            return si.parse_quantity(value, unit)
         if isinstance(value, bool) or not isinstance(value, int | float):
             raise QuantityError(
-                f'{value!r} is no quantity; write a text like "{format_quantity(2.0, unit)}"'
+                f'{value!r} is no quantity; write a text like "{si.format_quantity(2.0, unit)}"'
             )
         # Only a number without dimension may stand bare; parse_quantity says so otherwise.
-        return parse_quantity(repr(value), unit)
+        return si.parse_quantity(repr(value), unit)
 
     return read
 
@@ -38,7 +38,7 @@ def _field_type(annotation: Any) -> Any:
     origin, parts = typing.get_origin(annotation), typing.get_args(annotation)
     if origin is tuple and len(parts) == 2 and parts[1] is Ellipsis:
         return list[_field_type(parts[0])]  # type: ignore[misc]
-    if (unit := unit_of(annotation)) is not None:
+    if (unit := si.unit_of(annotation)) is not None:
         optional = type(None) in typing.get_args(annotation)
         number = Annotated[float, BeforeValidator(_reads(unit))]
         return (number | None) if optional else number

@@ -9,11 +9,11 @@ import typing
 from decimal import Decimal
 from typing import Any
 
+from squeezefilm import quantities as si
 from squeezefilm.config.scan import DEEPEST
 from squeezefilm.config.schema import reads_from_file
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import DESCRIPTION_BYTES, require_within
-from squeezefilm.quantities import Unit, format_quantity, parse_quantity, unit_of
 
 _Path = tuple[str, ...]
 
@@ -107,14 +107,14 @@ def _inline(item: Any, hint: Any) -> str:
         return "true" if item else "false"
     if isinstance(item, str):
         return json.dumps(item, ensure_ascii=False).replace("\x7f", "\\u007f")
-    if isinstance(item, int | float) and (unit := unit_of(hint)) is not None:
+    if isinstance(item, int | float) and (unit := si.unit_of(hint)) is not None:
         return _quantity(float(item), unit)
     if isinstance(item, int):
         return str(item)
     raise InputError(f"{item!r} has no unit or no place in a TOML file and cannot be written")
 
 
-def _quantity(value: float, unit: Unit) -> str:
+def _quantity(value: float, unit: si.Unit) -> str:
     if not math.isfinite(value):
         raise InputError(f"{value!r} is not finite and cannot be written")
     if unit.symbol == "1":
@@ -122,7 +122,7 @@ def _quantity(value: float, unit: Unit) -> str:
     # The shortest digits that mean this float mean it in any decimal multiple of its unit too;
     # but a unit that is not scaled is rounded from the float itself, which may round elsewhere.
     digits = len(Decimal(repr(value)).as_tuple().digits)
-    text = format_quantity(value, unit, digits=digits)
-    if parse_quantity(text, unit) != value:
+    text = si.format_quantity(value, unit, digits=digits)
+    if si.parse_quantity(text, unit) != value:
         text = f"{value!r} {unit.symbol}"
     return f'"{text}"'

@@ -19,22 +19,10 @@ from typing import Annotated, Literal, get_args
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.contact.records import CompiledAsperities
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import DECAY_LENGTH, PRESSURE
-from squeezefilm.quantities import (
-    Above,
-    Dimensionless,
-    DimensionlessLike,
-    FloatArray,
-    Metre,
-    MetreLike,
-    Pascal,
-    PascalLike,
-    checked_numbers,
-    closed_form,
-    require,
-)
 
 AsperityHeights = Literal["exponential", "gaussian"]
 ASPERITY_HEIGHTS: tuple[AsperityHeights, ...] = get_args(AsperityHeights)
@@ -47,10 +35,13 @@ _LOWEST, _HIGHEST = -8.0, 20.0
 _TERMS = 48
 
 
-@closed_form(positive="reference_pressure decay_length")
+@si.closed_form(positive="reference_pressure decay_length")
 def exponential_pressure(
-    gap: MetreLike, reference_pressure: Pascal, reference_gap: Metre, decay_length: Metre
-) -> PascalLike:
+    gap: si.MetreLike,
+    reference_pressure: si.Pascal,
+    reference_gap: si.Metre,
+    decay_length: si.Metre,
+) -> si.PascalLike:
     """p_a = p_ref exp(−(h − h_ref)/λ_r), in Pa, at a gap h (m); broadcasts.
 
     Greenwood–Williamson with exponentially distributed heights. Holds for gaps of some λ_r, where
@@ -59,14 +50,14 @@ def exponential_pressure(
     return reference_pressure * np.exp(-(gap - reference_gap) / decay_length)
 
 
-@checked_numbers
+@si.checked_numbers
 def exponential_mean_pressure(
-    mean_gap: MetreLike,
-    amplitude: MetreLike,
-    reference_pressure: Pascal,
-    reference_gap: Metre,
-    decay_length: Metre,
-) -> PascalLike:
+    mean_gap: si.MetreLike,
+    amplitude: si.MetreLike,
+    reference_pressure: si.Pascal,
+    reference_gap: si.Metre,
+    decay_length: si.Metre,
+) -> si.PascalLike:
     """⟨p_a(u − a cos T)⟩ = p_ref exp(−(u − h_ref)/λ_r) I0(a/λ_r), in Pa; broadcasts.
 
     The mean over a period of `exponential_pressure`; I0 is the modified Bessel function.
@@ -78,8 +69,8 @@ def exponential_mean_pressure(
     return np.asarray(pressure * i0e(np.asarray(amplitude) / decay_length))[()]
 
 
-@checked_numbers
-def gaussian_overlap(separation: DimensionlessLike) -> DimensionlessLike:
+@si.checked_numbers
+def gaussian_overlap(separation: si.DimensionlessLike) -> si.DimensionlessLike:
     """F(t) = ∫_t^∞ (z − t)^{3/2} exp(−z²/2)/√(2π) dz (dimensionless) for t from −8 to 20.
 
     The parabolic cylinder function: F = Γ(5/2)/√(2π) exp(−t²/4) D_{−5/2}(t). Broadcasts.
@@ -87,14 +78,14 @@ def gaussian_overlap(separation: DimensionlessLike) -> DimensionlessLike:
     from scipy.special import pbdv
 
     t = np.asarray(separation, dtype=float)
-    require("separation", t, at_least=_LOWEST, at_most=_HIGHEST)
+    si.require("separation", t, at_least=_LOWEST, at_most=_HIGHEST)
     return np.asarray(
         math.gamma(2.5) / math.sqrt(2 * math.pi) * np.exp(-(t**2) / 4) * pbdv(-2.5, t)[0]
     )[()]
 
 
 @lru_cache(maxsize=1)
-def _gaussian_coefficients() -> FloatArray:
+def _gaussian_coefficients() -> si.FloatArray:
     """Chebyshev coefficients of ln F over the tabulated range, for the compiled code."""
     from numpy.polynomial import chebyshev
 
@@ -104,7 +95,7 @@ def _gaussian_coefficients() -> FloatArray:
     return np.asarray(chebyshev.chebfit(nodes, values, _TERMS - 1))
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True)
 class AsperityLaw:
     """The pressure that asperities carry at a gap, independent of load and frequency.
@@ -114,13 +105,13 @@ class AsperityLaw:
     heights ("gaussian").
     """
 
-    reference_pressure: Annotated[Pascal, PRESSURE] = 5e3
-    reference_gap: Annotated[Metre, DECAY_LENGTH] = 2e-6
-    decay_length: Annotated[Metre, DECAY_LENGTH] = 0.6e-6
+    reference_pressure: Annotated[si.Pascal, PRESSURE] = 5e3
+    reference_gap: Annotated[si.Metre, DECAY_LENGTH] = 2e-6
+    decay_length: Annotated[si.Metre, DECAY_LENGTH] = 0.6e-6
     heights: AsperityHeights = "exponential"
 
-    @checked_numbers
-    def pressure(self, gap: MetreLike) -> PascalLike:
+    @si.checked_numbers
+    def pressure(self, gap: si.MetreLike) -> si.PascalLike:
         """p_a (Pa) at a gap (m); broadcasts."""
         if self.heights == "exponential":
             return exponential_pressure(
@@ -133,8 +124,8 @@ class AsperityLaw:
         overlap = np.where(separation <= _HIGHEST, overlap, 0.0)
         return np.asarray(self.reference_pressure * overlap / reference)[()]
 
-    @checked_numbers
-    def mean_pressure(self, mean_gap: MetreLike, amplitude: MetreLike) -> PascalLike:
+    @si.checked_numbers
+    def mean_pressure(self, mean_gap: si.MetreLike, amplitude: si.MetreLike) -> si.PascalLike:
         """⟨p_a(u − a cos T)⟩ over a period (Pa); broadcasts.
 
         Closed form (I0) for exponential heights; for Gaussian ones the trapezoidal rule over the
@@ -153,8 +144,8 @@ class AsperityLaw:
         gap = u[..., None] - a[..., None] * phase
         return np.asarray(np.mean(self.pressure(gap), axis=-1))[()]
 
-    @checked_numbers
-    def gap_for(self, pressure: Annotated[Pascal, Above(0.0)]) -> Metre:
+    @si.checked_numbers
+    def gap_for(self, pressure: Annotated[si.Pascal, si.Above(0.0)]) -> si.Metre:
         """The gap (m) at which the asperities alone, at rest, carry a pressure (Pa).
 
         Below zero where they would be crushed: the law does not hold there. Raises `InputError`
@@ -179,8 +170,8 @@ class AsperityLaw:
             )
         return float(brentq(excess, _LOWEST, _HIGHEST)) * self.decay_length
 
-    @checked_numbers
-    def scaled(self, factor: Annotated[Dimensionless, Above(0.0)]) -> AsperityLaw:
+    @si.checked_numbers
+    def scaled(self, factor: Annotated[si.Dimensionless, si.Above(0.0)]) -> AsperityLaw:
         """The law of a geometrically similar interface, all heights times `factor` (> 0)."""
         return AsperityLaw(
             self.reference_pressure,

@@ -4,21 +4,21 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from squeezefilm.quantities import FloatArray, IntArray
+from squeezefilm import quantities as si
 
 
 class CompiledAsperities(NamedTuple):
     """A law of asperities: the number of its kind, its constants, its table."""
 
     kind: int
-    constants: FloatArray
-    table: FloatArray
+    constants: si.FloatArray
+    table: si.FloatArray
 
 
 class CompiledFilms(NamedTuple):
     """A table of films: scales, edges of the rows, which panels are solved, their coefficients."""
 
-    scale: FloatArray
-    edges: FloatArray
-    built: IntArray
-    panels: FloatArray
+    scale: si.FloatArray
+    edges: si.FloatArray
+    built: si.IntArray
+    panels: si.FloatArray

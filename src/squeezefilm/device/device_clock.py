@@ -11,13 +11,13 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from squeezefilm import quantities as si
 from squeezefilm.device.machine.playing import CLOCK
-from squeezefilm.quantities import Dimensionless, Second
 
-WORST_DRIFT: Dimensionless = 200e-6
+WORST_DRIFT: si.Dimensionless = 200e-6
 """Relative rate between the clocks that is allowed for; a quartz has below 100e-6."""
 # The device counts whole µs: bounds may cross by that much and contradict nothing.
-_RESOLUTION: Second = 2e-6
+_RESOLUTION: si.Second = 2e-6
 
 
 @dataclass(slots=True)
@@ -28,11 +28,11 @@ class DeviceClock:
     clock then. They may come out of order by less than 35 minutes.
     """
 
-    lowest: Second = -math.inf
-    highest: Second = math.inf
+    lowest: si.Second = -math.inf
+    highest: si.Second = math.inf
     _unwrapped: int = 0
     _last: int | None = None
-    _widened: Second = -math.inf
+    _widened: si.Second = -math.inf
 
     @property
     def known(self) -> bool:
@@ -40,16 +40,16 @@ class DeviceClock:
         return math.isfinite(self.lowest) and math.isfinite(self.highest)
 
     @property
-    def error(self) -> Second:
+    def error(self) -> si.Second:
         """How far the offset may be off (s); infinite before a round trip."""
         return (self.highest - self.lowest) / 2
 
     @property
-    def offset(self) -> Second:
+    def offset(self) -> si.Second:
         """Host minus device (s), the middle of its bounds; not finite before a round trip."""
         return (self.highest + self.lowest) / 2
 
-    def unwrapped(self, device: int) -> Second:
+    def unwrapped(self, device: int) -> si.Second:
         """The device's time (s) of a stamp (µs, 32 bits), which never wraps."""
         if self._last is None:
             self._unwrapped = device
@@ -59,7 +59,7 @@ class DeviceClock:
         self._last = device
         return self._unwrapped * 1e-6
 
-    def answered(self, sent: Second, device: int, heard: Second) -> None:
+    def answered(self, sent: si.Second, device: int, heard: si.Second) -> None:
         """A frame sent at `sent` (s) was answered at `device` (µs); heard at `heard` (s)."""
         self.heard(device, heard)
         time = self._unwrapped * 1e-6
@@ -70,7 +70,7 @@ class DeviceClock:
             # The clocks drift faster than allowed, or one was set: believe the newest alone.
             self.lowest, self.highest = sent - time, heard - time
 
-    def heard(self, device: int, heard: Second) -> None:
+    def heard(self, device: int, heard: si.Second) -> None:
         """A message stamped `device` (µs) was heard at `heard` (s)."""
         time = self.unwrapped(device)
         if heard > self._widened:
@@ -83,10 +83,10 @@ class DeviceClock:
             self.lowest = -math.inf
         self.lowest = min(self.lowest, self.highest)
 
-    def device_time(self, host: Second) -> Second:
+    def device_time(self, host: si.Second) -> si.Second:
         """The device's unwrapped time (s) at a time of the host (s)."""
         return host - self.offset
 
-    def stamp(self, device: Second) -> int:
+    def stamp(self, device: si.Second) -> int:
         """The 32 bits of µs of an unwrapped time of the device (s)."""
         return round(device * 1e6) & CLOCK

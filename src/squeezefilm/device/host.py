@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.device.device_clock import DeviceClock
 from squeezefilm.device.machine.playing import CLOCK
 from squeezefilm.device.machine.reports import LONGEST_REPORT, SHORTEST_REPORT
@@ -25,11 +26,10 @@ from squeezefilm.device.wire.link import Link, refusal
 from squeezefilm.device.wire.safety import HIGHEST_VOLTAGE, Limits
 from squeezefilm.device.wire.states import Fault, Reason, State
 from squeezefilm.errors import DeviceError, InputError
-from squeezefilm.quantities import FloatArray, Hertz, Metre, Second, Unit, Volt
 
 MOST_READINGS = 10_000
 """Readings kept for those who have not read them yet."""
-_ZERO_LIMIT: Second = 0.2
+_ZERO_LIMIT: si.Second = 0.2
 _HARMLESS = (Reason.STATE, Reason.SEQUENCE, Reason.FULL)
 _MICRO = 1e6
 
@@ -104,19 +104,19 @@ class DeviceHost:
         """OFF → ARMED, with the newest token. Raises `DeviceError`."""
         self.link.request(m.Arm(self.link.request(m.KeepAlive()).token))
 
-    def start(self, frequency: Hertz) -> None:
+    def start(self, frequency: si.Hertz) -> None:
         """ARMED → PLAYING at a carrier frequency (Hz), silent.
 
         Raises `InputError` for one outside the limits, and `DeviceError`.
         """
         self.link.request(m.Start(self._carrier(frequency)))
 
-    def set_frequency(self, frequency: Hertz) -> None:
+    def set_frequency(self, frequency: si.Hertz) -> None:
         """Move the carrier (Hz). Raises as `start`."""
         self.link.request(m.SetFrequency(self._carrier(frequency)))
 
     def play(
-        self, levels: Sequence[Volt] | FloatArray, period: Second, start: int | None = None
+        self, levels: Sequence[si.Volt] | si.FloatArray, period: si.Second, start: int | None = None
     ) -> None:
         """Play amplitudes (V), shape (n ≤ 56,), one every `period` (s); does not wait.
 
@@ -133,21 +133,23 @@ class DeviceHost:
             DeviceError: the device is gone.
         """
         values = self._volts(levels)
-        microseconds = round(_MICRO * number("period", period, Unit("s"), 1e-6, 65.535e-3))
+        microseconds = round(_MICRO * number("period", period, si.Unit("s"), 1e-6, 65.535e-3))
         if start is None:
             self.link.send(m.Envelope(microseconds, values))
         else:
             first = whole_number("start", start) & CLOCK
             self.link.send(m.TimedEnvelope(first, microseconds, values))
 
-    def play_at(self, x: Metre) -> None:
+    def play_at(self, x: si.Metre) -> None:
         """Play the tile at `x` (m); does not wait.
 
         Raises `InputError` for a place beyond 2147 m, and `DeviceError` if the device is gone.
         """
-        self.link.send(m.Position(round(_MICRO * number("x", x, Unit("m"), -2147.0, 2147.0))))
+        self.link.send(m.Position(round(_MICRO * number("x", x, si.Unit("m"), -2147.0, 2147.0))))
 
-    def load_tile(self, origin: Metre, pitch: Metre, levels: Sequence[Volt] | FloatArray) -> None:
+    def load_tile(
+        self, origin: si.Metre, pitch: si.Metre, levels: Sequence[si.Volt] | si.FloatArray
+    ) -> None:
         """Load amplitudes (V), shape (n,), from `origin` (m), `pitch` (m) apart, in whole µm.
 
         Raises:
@@ -156,8 +158,8 @@ class DeviceHost:
             DeviceError: the device refused or did not answer; the tile is then not complete.
         """
         values = self._volts(levels)
-        first_place = round(_MICRO * number("origin", origin, Unit("m"), -2147.0, 2147.0))
-        apart = round(_MICRO * number("pitch", pitch, Unit("m"), 1e-6, 2147.0))
+        first_place = round(_MICRO * number("origin", origin, si.Unit("m"), -2147.0, 2147.0))
+        apart = round(_MICRO * number("pitch", pitch, si.Unit("m"), 1e-6, 2147.0))
         if not 1 <= len(values) <= m.LONGEST_TILE:
             raise InputError(
                 f"a tile of {len(values)} amplitudes; 1 to {m.LONGEST_TILE} fit; use a wider pitch",
@@ -171,21 +173,23 @@ class DeviceHost:
         """Play the tile at the device's own sensor. Raises `DeviceError`."""
         self.link.request(m.Follow())
 
-    def report(self, period: Second) -> None:
+    def report(self, period: si.Second) -> None:
         """A reading every `period` (s), at least 200 µs; none for 0.
 
         Raises `InputError` for another period, and `DeviceError`.
         """
-        seconds = number("period", period, Unit("s"), 0.0, LONGEST_REPORT / _MICRO)
+        seconds = number("period", period, si.Unit("s"), 0.0, LONGEST_REPORT / _MICRO)
         if seconds > 0.0:
-            number("period", period, Unit("s"), SHORTEST_REPORT / _MICRO, LONGEST_REPORT / _MICRO)
+            number(
+                "period", period, si.Unit("s"), SHORTEST_REPORT / _MICRO, LONGEST_REPORT / _MICRO
+            )
         self.link.request(m.Report(round(_MICRO * seconds)))
 
     def keep_alive(self) -> None:
         """Feed the watchdog now; does not wait."""
         self.link.send(m.KeepAlive())
 
-    def pump(self, now: Second | None = None) -> None:
+    def pump(self, now: si.Second | None = None) -> None:
         """Hear the device and feed its watchdog if nothing was said for 15 ms; never waits.
 
         `now` is the host's time where the caller has it already; it is not needed.
@@ -241,7 +245,7 @@ class DeviceHost:
             if self._opened and name in _ASYNCHRONOUS and status.reason not in _HARMLESS:
                 raise refusal(name, status)
 
-    def _volts(self, levels: Any) -> tuple[Volt, ...]:
+    def _volts(self, levels: Any) -> tuple[si.Volt, ...]:
         """Amplitudes within the limits, once those are set, and within the wire's before."""
         highest = HIGHEST_VOLTAGE if self._limits is None else self._limits.voltage
         # What was computed from a limit, and the limit itself as binary32, may be above it by a
@@ -249,11 +253,11 @@ class DeviceHost:
         volts = amplitudes(levels, highest * (1 + 1e-9)).astype(np.float32)
         return tuple(np.minimum(volts, binary32_below(highest)).tolist())
 
-    def _carrier(self, frequency: Hertz) -> int:
+    def _carrier(self, frequency: si.Hertz) -> int:
         limits = self._limits
         lowest = 1.0 if limits is None else limits.lowest_frequency
         highest = 1e6 if limits is None else limits.highest_frequency
-        return round(1e3 * number("frequency", frequency, Unit("Hz"), lowest, highest))
+        return round(1e3 * number("frequency", frequency, si.Unit("Hz"), lowest, highest))
 
     def _ask_info(self) -> m.Info:
         self.info = None

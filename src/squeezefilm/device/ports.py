@@ -9,16 +9,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Protocol
 
-from squeezefilm.quantities import FloatArray, Metre, Second
+from squeezefilm import quantities as si
 
 
 @dataclass(frozen=True, slots=True)
 class FingerSample:
     """Where the finger was (m, in the plate's axes), when (s, device clock), if it touched."""
 
-    time: Second
-    x: Metre
-    y: Metre
+    time: si.Second
+    x: si.Metre
+    y: si.Metre
     touching: bool
 
 
@@ -33,7 +33,7 @@ class Sensor(Protocol):
 class Pickup(Protocol):
     """Vibration feedback: motional current, a sensing patch, or a vibrometer."""
 
-    def read(self, block: FloatArray) -> int:
+    def read(self, block: si.FloatArray) -> int:
         """Fill `block`, shape (n,), with the newest readings; returns how many were there."""
         ...
 
@@ -46,6 +46,6 @@ class Drive(Protocol):
         """Whether the output goes to zero on its own within 60 ms when the host falls silent."""
         ...
 
-    def write(self, block: FloatArray) -> int:
+    def write(self, block: si.FloatArray) -> int:
         """Play the amplitudes (V, zero-to-peak) in `block`, shape (n,); returns how many fitted."""
         ...

@@ -8,9 +8,9 @@ from time import monotonic
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.device.ports import FingerSample
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import FloatArray, MetreArray, Second, SecondArray, Unit, require
 
 
 class ReplaySensor:
@@ -32,11 +32,11 @@ class ReplaySensor:
 
     def __init__(
         self,
-        time: SecondArray,
-        x: MetreArray,
-        y: MetreArray,
-        touching: FloatArray | None = None,
-        clock: Callable[[], Second] = monotonic,
+        time: si.SecondArray,
+        x: si.MetreArray,
+        y: si.MetreArray,
+        touching: si.FloatArray | None = None,
+        clock: Callable[[], si.Second] = monotonic,
     ) -> None:
         if touching is None:
             touching = np.ones(np.shape(time))
@@ -48,9 +48,9 @@ class ReplaySensor:
                 "a recording needs time, x, y and touching of one shape (n,) with n at least 1; "
                 f"these have shapes {sorted(shapes)}"
             )
-        require("time", self._time, Unit("s"))
-        require("x", self._x, Unit("m"))
-        require("y", self._y, Unit("m"))
+        si.require("time", self._time, si.Unit("s"))
+        si.require("x", self._x, si.Unit("m"))
+        si.require("y", self._y, si.Unit("m"))
         if np.any(np.diff(self._time) <= 0):
             at = int(np.argmax(np.diff(self._time) <= 0)) + 1
             raise InputError(

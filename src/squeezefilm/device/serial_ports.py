@@ -9,17 +9,17 @@ import math
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.device.host import DeviceHost
 from squeezefilm.device.machine.playing import LONGEST_QUEUE, MOST_AHEAD
 from squeezefilm.device.ports import FingerSample
 from squeezefilm.device.wire.arguments import number
 from squeezefilm.device.wire.messages import MOST_LEVELS, PICKUP_PRESENT, SENSOR_PRESENT
 from squeezefilm.errors import DeviceError
-from squeezefilm.quantities import Dimensionless, FloatArray, Second, Unit
 
-LEAD: Second = 5e-3
+LEAD: si.Second = 5e-3
 """How far ahead of its time an amplitude is sent: the jitter of the line that leaves no gap."""
-STEERING: Dimensionless = 1e-3
+STEERING: si.Dimensionless = 1e-3
 """Relative rate at which the stream follows the clocks' drift and better knowledge of them."""
 
 
@@ -36,10 +36,10 @@ class SerialDrive:
             most half of what the device's queue holds.
     """
 
-    def __init__(self, host: DeviceHost, period: Second, lead: Second = LEAD) -> None:
-        self.host, self.period = host, number("period", period, Unit("s"), 20e-6, 65e-3)
+    def __init__(self, host: DeviceHost, period: si.Second, lead: si.Second = LEAD) -> None:
+        self.host, self.period = host, number("period", period, si.Unit("s"), 20e-6, 65e-3)
         most = max(self.period, min(0.5, LONGEST_QUEUE * self.period / 2))
-        self.lead = number("lead", lead, Unit("s"), 0.0, most)
+        self.lead = number("lead", lead, si.Unit("s"), 0.0, most)
         self.gaps = 0
         self._next = self._end = math.nan
 
@@ -48,7 +48,7 @@ class SerialDrive:
         """True: the device's watchdog takes the output to zero within 60 ms."""
         return True
 
-    def write(self, block: FloatArray) -> int:
+    def write(self, block: si.FloatArray) -> int:
         """Queue the amplitudes (V, zero-to-peak) in `block`, shape (n,); returns how many fitted.
 
         Raises:
@@ -112,7 +112,7 @@ class DevicePickup:
         self.host = host
         self._heard = host.readings_heard
 
-    def read(self, block: FloatArray) -> int:
+    def read(self, block: si.FloatArray) -> int:
         """Fill `block`, shape (n,), with the newest readings since the last call; how many.
 
         Raises:

@@ -14,37 +14,24 @@ from typing import Annotated
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import (
-    Above,
-    AtLeast,
-    Dimensionless,
-    DimensionlessLike,
-    HertzLike,
-    Metre,
-    MetreLike,
-    Pascal,
-    PascalSecond,
-    SecondLike,
-    checked_numbers,
-    closed_form,
-)
 
 
-@closed_form(
+@si.closed_form(
     positive="frequency ridge_period wavelength",
     nonnegative="roughness vibration_amplitude ridge_amplitude",
 )
 def film_thickness(
-    x: MetreLike,
-    time: SecondLike,
-    frequency: HertzLike,
-    roughness: Metre,
-    vibration_amplitude: MetreLike,
-    ridge_amplitude: Metre,
-    ridge_period: Metre,
-    wavelength: Metre,
-) -> MetreLike:
+    x: si.MetreLike,
+    time: si.SecondLike,
+    frequency: si.HertzLike,
+    roughness: si.Metre,
+    vibration_amplitude: si.MetreLike,
+    ridge_amplitude: si.Metre,
+    ridge_period: si.Metre,
+    wavelength: si.Metre,
+) -> si.MetreLike:
     """The film thickness h(x, t) in m, paper eq 1 corrected: the roughness does not oscillate.
 
     h = h_r + h_vib [1 + cos ωt cos(2πx/λ)] + h_e [1 + cos(2πx/L)]; x = 0 is an antinode of the
@@ -55,20 +42,20 @@ def film_thickness(
     return roughness + vibration_amplitude * (1 + wave) + ridge_amplitude * (1 + ridges)
 
 
-@closed_form(
+@si.closed_form(
     positive="frequency ridge_period wavelength",
     nonnegative="roughness vibration_amplitude ridge_amplitude",
 )
 def film_thickness_printed(
-    x: MetreLike,
-    time: SecondLike,
-    frequency: HertzLike,
-    roughness: Metre,
-    vibration_amplitude: MetreLike,
-    ridge_amplitude: Metre,
-    ridge_period: Metre,
-    wavelength: Metre,
-) -> MetreLike:
+    x: si.MetreLike,
+    time: si.SecondLike,
+    frequency: si.HertzLike,
+    roughness: si.Metre,
+    vibration_amplitude: si.MetreLike,
+    ridge_amplitude: si.Metre,
+    ridge_period: si.Metre,
+    wavelength: si.Metre,
+) -> si.MetreLike:
     """The film thickness h(x, t) in m, paper eq 1 as printed; `film_thickness` is the correct one.
 
     h = (h_vib + h_r)[1 + cos ωt cos(2πx/λ)] + h_e [1 + cos(2πx/L)]: the roughness oscillates with
@@ -79,14 +66,14 @@ def film_thickness_printed(
     return (vibration_amplitude + roughness) * (1 + wave) + ridge_amplitude * (1 + ridges)
 
 
-@closed_form(positive="frequency length film_thickness viscosity ambient_pressure")
+@si.closed_form(positive="frequency length film_thickness viscosity ambient_pressure")
 def squeeze_number(
-    frequency: HertzLike,
-    length: MetreLike,
-    film_thickness: MetreLike,
-    viscosity: PascalSecond,
-    ambient_pressure: Pascal,
-) -> DimensionlessLike:
+    frequency: si.HertzLike,
+    length: si.MetreLike,
+    film_thickness: si.MetreLike,
+    viscosity: si.PascalSecond,
+    ambient_pressure: si.Pascal,
+) -> si.DimensionlessLike:
     """The squeeze number σ = 12 η ω ℓ² / (p0 h²) (dimensionless) with ω = 2π frequency; broadcasts.
 
     `length` is the strip's width, the disc's radius or the rectangle's shorter side; the paper
@@ -96,14 +83,14 @@ def squeeze_number(
     return 12 * viscosity * omega * length**2 / (ambient_pressure * film_thickness**2)
 
 
-@closed_form(positive="frequency length film_thickness viscosity ambient_pressure")
+@si.closed_form(positive="frequency length film_thickness viscosity ambient_pressure")
 def squeeze_number_printed(
-    frequency: HertzLike,
-    length: MetreLike,
-    film_thickness: MetreLike,
-    viscosity: PascalSecond,
-    ambient_pressure: Pascal,
-) -> DimensionlessLike:
+    frequency: si.HertzLike,
+    length: si.MetreLike,
+    film_thickness: si.MetreLike,
+    viscosity: si.PascalSecond,
+    ambient_pressure: si.Pascal,
+) -> si.DimensionlessLike:
     """Paper eq 4 as printed, 12 η ω l0 / (p0 H0²): not dimensionless (it is in 1/m).
 
     Kept to show the misprint: `tests/dimensions` asserts that it fails. Use `squeeze_number`.
@@ -112,14 +99,14 @@ def squeeze_number_printed(
     return 12 * viscosity * omega * length / (ambient_pressure * film_thickness**2)
 
 
-@closed_form(positive="squeeze_number length film_thickness viscosity ambient_pressure")
+@si.closed_form(positive="squeeze_number length film_thickness viscosity ambient_pressure")
 def frequency_for_squeeze_number(
-    squeeze_number: DimensionlessLike,
-    length: MetreLike,
-    film_thickness: MetreLike,
-    viscosity: PascalSecond,
-    ambient_pressure: Pascal,
-) -> HertzLike:
+    squeeze_number: si.DimensionlessLike,
+    length: si.MetreLike,
+    film_thickness: si.MetreLike,
+    viscosity: si.PascalSecond,
+    ambient_pressure: si.Pascal,
+) -> si.HertzLike:
     """The frequency (Hz) at which a film has a wanted squeeze number: the paper's criterion σ ≥ 10.
 
     f = σ p0 h² / (24π η ℓ²), the inverse of `squeeze_number`; broadcasts. That σ = 10 makes the
@@ -129,7 +116,7 @@ def frequency_for_squeeze_number(
     return pressure / (24 * np.pi * viscosity * length**2)
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, eq=False)
 class PaperGap:
     """The gap of the paper's model; lengths in m, the vibration amplitude a scalar or 1-D array.
@@ -143,14 +130,14 @@ class PaperGap:
     corrected gap closes at an antinode over a ridge, and the paper's pressure is infinite there.
     """
 
-    roughness: Annotated[Metre, Above(0)]
-    vibration_amplitude: Annotated[MetreLike, AtLeast(0)]
-    ridge_amplitude: Annotated[Metre, AtLeast(0)]
-    ridge_period: Annotated[Metre, Above(0)]
-    wavelength: Annotated[Metre, Above(0)]
-    contact_length: Annotated[Metre, Above(0)]
-    wave_offset: Metre = 0.0
-    ridge_offset: Metre = 0.0
+    roughness: Annotated[si.Metre, si.Above(0)]
+    vibration_amplitude: Annotated[si.MetreLike, si.AtLeast(0)]
+    ridge_amplitude: Annotated[si.Metre, si.AtLeast(0)]
+    ridge_period: Annotated[si.Metre, si.Above(0)]
+    wavelength: Annotated[si.Metre, si.Above(0)]
+    contact_length: Annotated[si.Metre, si.Above(0)]
+    wave_offset: si.Metre = 0.0
+    ridge_offset: si.Metre = 0.0
 
     def __post_init__(self) -> None:
         if np.ndim(self.vibration_amplitude) > 1:
@@ -159,43 +146,43 @@ class PaperGap:
                 "give a number or a one-dimensional array"
             )
 
-    @checked_numbers
-    def with_amplitude(self, vibration_amplitude: MetreLike) -> PaperGap:
+    @si.checked_numbers
+    def with_amplitude(self, vibration_amplitude: si.MetreLike) -> PaperGap:
         """The same gap at another vibration amplitude (m, scalar or 1-D array)."""
         return dataclasses.replace(self, vibration_amplitude=vibration_amplitude)
 
     @property
-    def reference_thickness(self) -> MetreLike:
+    def reference_thickness(self) -> si.MetreLike:
         """H0 = h_r + h_vib + h_e in m."""
         return self.roughness + self.vibration_amplitude + self.ridge_amplitude
 
     @property
-    def crest_thickness(self) -> MetreLike:
+    def crest_thickness(self) -> si.MetreLike:
         """The mean thickness over a ridge crest, h_r + h_vib, in m."""
         return self.roughness + self.vibration_amplitude
 
     @property
-    def amplitude_ratio(self) -> DimensionlessLike:
+    def amplitude_ratio(self) -> si.DimensionlessLike:
         """ε = h_vib/H0 (dimensionless)."""
         return self.vibration_amplitude / self.reference_thickness
 
     @property
-    def amplitude_ratio_printed(self) -> DimensionlessLike:
+    def amplitude_ratio_printed(self) -> si.DimensionlessLike:
         """ε = (h_vib + h_r)/H0 as the paper prints it below eq 2 (dimensionless)."""
         return self.crest_thickness / self.reference_thickness
 
     @property
-    def ridge_ratio(self) -> DimensionlessLike:
+    def ridge_ratio(self) -> si.DimensionlessLike:
         """δ = h_e/H0 (dimensionless)."""
         return self.ridge_amplitude / self.reference_thickness
 
     @property
-    def wave_number(self) -> Dimensionless:
+    def wave_number(self) -> si.Dimensionless:
         """k1 = 2π l0/λ (dimensionless)."""
         return 2 * np.pi * self.contact_length / self.wavelength
 
     @property
-    def ridge_number(self) -> Dimensionless:
+    def ridge_number(self) -> si.Dimensionless:
         """k2 = 2π l0/L (dimensionless)."""
         return 2 * np.pi * self.contact_length / self.ridge_period
 
@@ -204,12 +191,12 @@ class PaperGap:
         """Whether antinode and groove lie at the centre of the contact, as in the paper."""
         return self.wave_offset == 0 and self.ridge_offset == 0
 
-    @checked_numbers
-    def wave_phase(self, X: DimensionlessLike) -> DimensionlessLike:
+    @si.checked_numbers
+    def wave_phase(self, X: si.DimensionlessLike) -> si.DimensionlessLike:
         """The argument of the wave's cosine at X = x/l0 (rad)."""
         return self.wave_number * (X - self.wave_offset / self.contact_length)
 
-    @checked_numbers
-    def ridge_phase(self, X: DimensionlessLike) -> DimensionlessLike:
+    @si.checked_numbers
+    def ridge_phase(self, X: si.DimensionlessLike) -> si.DimensionlessLike:
         """The argument of the ridges' cosine at X = x/l0 (rad)."""
         return self.ridge_number * (X - self.ridge_offset / self.contact_length)

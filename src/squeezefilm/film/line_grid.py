@@ -11,26 +11,26 @@ from typing import Literal
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import GeometryError, InputError
-from squeezefilm.quantities import FloatArray, require
 
 Shape = Literal["strip", "disc"]
-Gap = Callable[[FloatArray, FloatArray], FloatArray]
+Gap = Callable[[si.FloatArray, si.FloatArray], si.FloatArray]
 """H(X, T): takes arrays X (1, cells) and T (times, 1), returns what broadcasts with both."""
-Profile = Callable[[FloatArray], FloatArray]
+Profile = Callable[[si.FloatArray], si.FloatArray]
 
 
 @dataclass(frozen=True)
 class LineGrid:
     """Finite volumes on a line: `centre` (N,), `face` and `conductance` (N+1,), `volume` (N,)."""
 
-    centre: FloatArray
-    face: FloatArray
-    volume: FloatArray
-    conductance: FloatArray
+    centre: si.FloatArray
+    face: si.FloatArray
+    volume: si.FloatArray
+    conductance: si.FloatArray
 
 
-def edge_graded(count: int, layer: float) -> FloatArray:
+def edge_graded(count: int, layer: float) -> si.FloatArray:
     """`count` + 1 points from 0 to 1, denser towards 1: half of them lie within `layer` of 1.
 
     The map is smooth, so that second-order differences on it stay second order.
@@ -47,7 +47,7 @@ def edge_layer(squeeze_number: float, least: float = 2e-3) -> float:
     return float(min(0.5, max(4.0 / np.sqrt(squeeze_number), least)))
 
 
-def refined_line(line: FloatArray, mean_gap: Profile) -> FloatArray:
+def refined_line(line: si.FloatArray, mean_gap: Profile) -> si.FloatArray:
     """As many points as `line`, drawn also to where the mean gap is small.
 
     The density added goes with 1/√H: over a crest, where H = a + b x², that is the map x ~ sinh s,
@@ -91,15 +91,15 @@ def line_grid(
 
 def uniform_gap(excursion_ratio: float) -> Gap:
     """The gap H = 1 + ε cos T of two flat surfaces."""
-    require("excursion_ratio", excursion_ratio, above=0.0, below=1.0)
+    si.require("excursion_ratio", excursion_ratio, above=0.0, below=1.0)
 
-    def gap(X: FloatArray, T: FloatArray) -> FloatArray:
+    def gap(X: si.FloatArray, T: si.FloatArray) -> si.FloatArray:
         return 1.0 + excursion_ratio * np.cos(T)
 
     return gap
 
 
-def gap_table(gap: Gap, X: FloatArray, T: FloatArray) -> FloatArray:
+def gap_table(gap: Gap, X: si.FloatArray, T: si.FloatArray) -> si.FloatArray:
     """H at every time and place, (times, places), checked: finite and open."""
     shape = (T.size, X.size)
     try:
@@ -124,6 +124,6 @@ def gap_table(gap: Gap, X: FloatArray, T: FloatArray) -> FloatArray:
     return np.ascontiguousarray(H)
 
 
-def mean_over(gap: Gap, T: FloatArray) -> Profile:
+def mean_over(gap: Gap, T: si.FloatArray) -> Profile:
     """The gap's mean over the times `T`, as a function of X."""
     return lambda X: np.asarray(gap_table(gap, X, T).mean(axis=0))

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from squeezefilm import quantities as si
 from squeezefilm.film.slip import slip_law
-from squeezefilm.quantities import Dimensionless, checked_numbers
 
 
 class Gas(NamedTuple):
@@ -17,15 +17,15 @@ class Gas(NamedTuple):
     law: int
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True)
 class FilmGas:
     """How a film's gas answers: `polytropic_exponent` from 1 (isothermal) to 5/3, `knudsen_number`
     the free path at ambient pressure over H0, used locally as Kn/(P H) in the law `slip` (see
     `flow_factor`)."""
 
-    polytropic_exponent: Dimensionless = 1.0
-    knudsen_number: Dimensionless = 0.0
+    polytropic_exponent: si.Dimensionless = 1.0
+    knudsen_number: si.Dimensionless = 0.0
     slip: str = "first"
 
     def compiled(self) -> Gas:

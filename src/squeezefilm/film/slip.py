@@ -5,8 +5,8 @@
 
 from __future__ import annotations
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import did_you_mean, require
 
 NO_SLIP, FIRST, SECOND, FUKUI_KANEKO, VEIJOLA = range(5)
 
@@ -24,10 +24,10 @@ def slip_law(slip: str, knudsen_number: float) -> int:
 
     Raises `InputError` for an unknown name or a Knudsen number that is negative or not finite.
     """
-    require("knudsen_number", knudsen_number, at_least=0.0)
+    si.require("knudsen_number", knudsen_number, at_least=0.0)
     if slip not in SLIP_LAWS:
         raise InputError(
-            f"slip = '{slip}' is no slip law.{did_you_mean(slip, SLIP_LAWS)} "
+            f"slip = '{slip}' is no slip law.{si.did_you_mean(slip, SLIP_LAWS)} "
             f"Use one of {', '.join(SLIP_LAWS)}"
         )
     return SLIP_LAWS[slip] if knudsen_number > 0.0 else NO_SLIP

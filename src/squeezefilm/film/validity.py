@@ -8,43 +8,29 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError, OutOfRangeError, OutOfRangeWarning
 from squeezefilm.film.closed.linear import relative_stiffness
 from squeezefilm.film.gap import PaperGap, squeeze_number
 from squeezefilm.materials import Gas
-from squeezefilm.quantities import (
-    Dimensionless,
-    DimensionlessLike,
-    Hertz,
-    HertzLike,
-    KilogramPerCubicMetre,
-    Metre,
-    MetreLike,
-    Pascal,
-    PascalSecond,
-    Unit,
-    checked_numbers,
-    closed_form,
-    format_quantity,
-)
 
-INERTIA_LIMIT: Dimensionless = 2.0
+INERTIA_LIMIT: si.Dimensionless = 2.0
 """Reduced Reynolds number up to which inertia, about Re/10 of the viscous drag, is left out."""
 
-SLIP_LIMIT: Dimensionless = 0.02
+SLIP_LIMIT: si.Dimensionless = 0.02
 """Knudsen number above which slip, which widens the flow by 6 Kn, counts (12 %)."""
 
-ASYMPTOTE_SQUEEZE_NUMBER: Dimensionless = 200.0
+ASYMPTOTE_SQUEEZE_NUMBER: si.Dimensionless = 200.0
 """Squeeze number from which a smooth strip has 90 % of its asymptotic over-pressure: 1 − √(2/σ)."""
 
 
-@closed_form(positive="density frequency film_thickness viscosity")
+@si.closed_form(positive="density frequency film_thickness viscosity")
 def reduced_reynolds_number(
-    density: KilogramPerCubicMetre,
-    frequency: HertzLike,
-    film_thickness: MetreLike,
-    viscosity: PascalSecond,
-) -> DimensionlessLike:
+    density: si.KilogramPerCubicMetre,
+    frequency: si.HertzLike,
+    film_thickness: si.MetreLike,
+    viscosity: si.PascalSecond,
+) -> si.DimensionlessLike:
     """Inertia over viscous drag, Re = ρ ω h²/η (dimensionless), ω = 2π frequency; broadcasts.
 
     The Reynolds equation wants Re ≲ 2 (air at 40 kHz: h ≲ 10 µm); it is also, but for the Prandtl
@@ -53,8 +39,10 @@ def reduced_reynolds_number(
     return density * (2 * np.pi * frequency) * film_thickness**2 / viscosity
 
 
-@closed_form(positive="mean_free_path film_thickness")
-def knudsen_number(mean_free_path: MetreLike, film_thickness: MetreLike) -> DimensionlessLike:
+@si.closed_form(positive="mean_free_path film_thickness")
+def knudsen_number(
+    mean_free_path: si.MetreLike, film_thickness: si.MetreLike
+) -> si.DimensionlessLike:
     """Kn = mean free path / thickness (dimensionless), at ambient pressure; broadcasts.
 
     Slip widens the flow by 6 Kn: it counts above Kn ≈ 0.02 (air: below some 3 µm). First-order
@@ -63,17 +51,17 @@ def knudsen_number(mean_free_path: MetreLike, film_thickness: MetreLike) -> Dime
     return mean_free_path / film_thickness
 
 
-@closed_form(
+@si.closed_form(
     positive="frequency ridge_amplitude ridge_period film_thickness viscosity ambient_pressure"
 )
 def crest_squeeze_number(
-    frequency: HertzLike,
-    ridge_amplitude: Metre,
-    ridge_period: Metre,
-    film_thickness: MetreLike,
-    viscosity: PascalSecond,
-    ambient_pressure: Pascal,
-) -> DimensionlessLike:
+    frequency: si.HertzLike,
+    ridge_amplitude: si.Metre,
+    ridge_period: si.Metre,
+    film_thickness: si.MetreLike,
+    viscosity: si.PascalSecond,
+    ambient_pressure: si.Pascal,
+) -> si.DimensionlessLike:
     """The local squeeze number of the film over a sinusoidal ridge's crest (dimensionless).
 
     12 η ω ℓ²/(p0 h²) with ℓ² = 2 h R the square of the crest's half width at twice the gap h,
@@ -85,8 +73,8 @@ def crest_squeeze_number(
     return 24 * viscosity * omega * radius / (ambient_pressure * film_thickness)
 
 
-@checked_numbers
-def asymptotic_fraction(squeeze_number: DimensionlessLike) -> DimensionlessLike:
+@si.checked_numbers
+def asymptotic_fraction(squeeze_number: si.DimensionlessLike) -> si.DimensionlessLike:
     """The share of the over-pressure of σ → ∞ that a smooth strip has at σ (dimensionless).
 
     fk(σ), exact as ε → 0; finite amplitude raises it (at σ = 10 from 0.41 to 0.45 at ε = 0.5 and
@@ -100,9 +88,9 @@ class ValidityCheck:
     """One assumption: its number, the range where it holds (None: no bound) and a sentence."""
 
     name: str
-    value: Dimensionless
-    low: Dimensionless | None
-    high: Dimensionless | None
+    value: si.Dimensionless
+    low: si.Dimensionless | None
+    high: si.Dimensionless | None
     sentence: str
 
     @property
@@ -121,8 +109,8 @@ class FilmValidity:
     squeeze number reaches.
     """
 
-    squeeze_number: Dimensionless
-    asymptotic_fraction: Dimensionless
+    squeeze_number: si.Dimensionless
+    asymptotic_fraction: si.Dimensionless
     checks: tuple[ValidityCheck, ...]
 
     @property
@@ -144,9 +132,9 @@ class FilmValidity:
         raise InputError(f"there is no check '{name}'; there are {allowed}")
 
 
-@checked_numbers
+@si.checked_numbers
 def film_validity(
-    gap: PaperGap, frequency: Hertz, gas: Gas, *, strict: bool = False
+    gap: PaperGap, frequency: si.Hertz, gas: Gas, *, strict: bool = False
 ) -> FilmValidity:
     """How far a film vibrating at `frequency` (Hz) is from where the σ → ∞ model holds.
 
@@ -159,8 +147,8 @@ def film_validity(
     if np.ndim(gap.vibration_amplitude) != 0:
         raise InputError("the validity of a film wants a single vibration amplitude, not an array")
     thickness = float(gap.crest_thickness)
-    here = f"over a gap of {format_quantity(thickness, Unit('m'), 3)}"
-    drive = format_quantity(frequency, Unit("Hz"), 3)
+    here = f"over a gap of {si.format_quantity(thickness, si.Unit('m'), 3)}"
+    drive = si.format_quantity(frequency, si.Unit("Hz"), 3)
     sigma = float(
         squeeze_number(
             frequency,
@@ -204,7 +192,7 @@ def film_validity(
 
 
 def _inertia(reynolds: float, where: str, thickness: float) -> ValidityCheck:
-    thickest = format_quantity(thickness * math.sqrt(INERTIA_LIMIT / reynolds), Unit("m"), 3)
+    thickest = si.format_quantity(thickness * math.sqrt(INERTIA_LIMIT / reynolds), si.Unit("m"), 3)
     verdict = (
         "the isothermal, viscous Reynolds equation holds"
         if reynolds <= INERTIA_LIMIT
@@ -217,7 +205,7 @@ def _inertia(reynolds: float, where: str, thickness: float) -> ValidityCheck:
 
 
 def _slip(knudsen: float, where: str, mean_free_path: float) -> ValidityCheck:
-    thinnest = format_quantity(mean_free_path / SLIP_LIMIT, Unit("m"), 3)
+    thinnest = si.format_quantity(mean_free_path / SLIP_LIMIT, si.Unit("m"), 3)
     verdict = (
         "slip can be left out"
         if knudsen <= SLIP_LIMIT

@@ -23,23 +23,8 @@ from typing import Annotated, Any
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import (
-    Above,
-    AtLeast,
-    AtMost,
-    Dimensionless,
-    DimensionlessArray,
-    FloatArray,
-    Hertz,
-    Metre,
-    MetreArray,
-    MetrePerSecond,
-    Unit,
-    Volt,
-    checked_numbers,
-    require,
-)
 from squeezefilm.render.texture.composition import Composable, require_texture
 from squeezefilm.render.texture.coordinate import AlongX
 from squeezefilm.render.texture.levels import RelativeFriction
@@ -47,7 +32,7 @@ from squeezefilm.render.texture.shapes import SineWave, SquareWave
 
 VERSION, PROFILE, LEVEL, TIMESCALE = "2023", "Main", 1, 1000
 MICRO, MILLI = -6, -3
-LONGEST: Metre = 1.0
+LONGEST: si.Metre = 1.0
 """Way that one export may cover (m)."""
 
 _MOST_KEYFRAMES = 65_535
@@ -58,11 +43,11 @@ _ELSEWHERE_Y = (-0.011_37, 0.002_71, 0.017_93)
 _ELSEWHERE_V = (-0.08, 0.021_3, 0.167)
 _ELSEWHERE_T = (0.113_7, 0.971_3)
 
-ToFriction = Callable[[FloatArray], DimensionlessArray]
+ToFriction = Callable[[si.FloatArray], si.DimensionlessArray]
 """Values of a texture, in its quantity → relative friction (1)."""
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class ReferenceDevice:
     """What an export says of the display it was made for.
@@ -72,10 +57,10 @@ class ReferenceDevice:
     """
 
     name: str
-    resonance_frequency: Hertz
-    maximum_voltage: Volt
-    maximum_displacement: Metre
-    maximum_amplitude: Dimensionless = 1.0
+    resonance_frequency: si.Hertz
+    maximum_voltage: si.Volt
+    maximum_displacement: si.Metre
+    maximum_amplitude: si.Dimensionless = 1.0
 
     def document(self) -> dict[str, Any]:
         """As the format has it. Displays work at one frequency: least, largest and resonance."""
@@ -103,21 +88,21 @@ class HjifExport:
 
     document: dict[str, Any]
     lost: tuple[str, ...]
-    rms_error: Dimensionless
-    largest_error: Dimensionless
+    rms_error: si.Dimensionless
+    largest_error: si.Dimensionless
 
 
-@checked_numbers
+@si.checked_numbers
 def hjif_of(
     texture: Composable,
-    start: Annotated[Metre, AtLeast(-10.0), AtMost(10.0)],
-    end: Metre,
+    start: Annotated[si.Metre, si.AtLeast(-10.0), si.AtMost(10.0)],
+    end: si.Metre,
     *,
     device: ReferenceDevice,
     title: str = "",
     to_friction: ToFriction | None = None,
-    speed: Annotated[MetrePerSecond, Above(0.0)] = 0.08,
-    tolerance: Annotated[Dimensionless, Above(0.0), AtMost(0.1)] = 1e-4,
+    speed: Annotated[si.MetrePerSecond, si.Above(0.0)] = 0.08,
+    tolerance: Annotated[si.Dimensionless, si.Above(0.0), si.AtMost(0.1)] = 1e-4,
 ) -> HjifExport:
     """A texture along x from `start` to `end` (m, y = 0) as a document of MPEG haptics.
 
@@ -135,7 +120,7 @@ def hjif_of(
             `to_friction`, a friction beyond 0 to 1, or more than 65 535 keyframes.
     """
     require_texture("texture", texture)
-    require("end", end, Unit("m"), above=start, at_most=start + LONGEST)
+    si.require("end", end, si.Unit("m"), above=start, at_most=start + LONGEST)
     if to_friction is None and texture.quantity != "relative_friction":
         raise InputError(
             f"a texture of {texture.quantity} is no friction yet; pass to_friction, the display's "
@@ -143,7 +128,9 @@ def hjif_of(
         )
     known = to_friction or (lambda values: values)
 
-    def friction(x: FloatArray, y: float = 0.0, v: float = speed, t: float = 0.0) -> FloatArray:
+    def friction(
+        x: si.FloatArray, y: float = 0.0, v: float = speed, t: float = 0.0
+    ) -> si.FloatArray:
         return np.asarray(known(texture(x, y, v, t)), dtype=float)
 
     lost = _lost(friction, start, end, texture)
@@ -162,11 +149,11 @@ def hjif_of(
 
 
 def _lost(
-    friction: Callable[..., FloatArray], start: Metre, end: Metre, texture: Composable
+    friction: Callable[..., si.FloatArray], start: si.Metre, end: si.Metre, texture: Composable
 ) -> list[str]:
     x = np.linspace(start, end, 2001)
     here = friction(x)
-    require("relative friction", here, at_least=0.0, at_most=1.0)
+    si.require("relative friction", here, at_least=0.0, at_most=1.0)
     found = [f"the texture goes on outside of {start:.6g} to {end:.6g} m"]
     for what, others in (
         ("across the line (y)", [friction(x, y=y) for y in _ELSEWHERE_Y]),
@@ -184,7 +171,7 @@ def _lost(
     return found
 
 
-def _wave(texture: Composable, start: Metre, end: Metre) -> list[dict[str, Any]] | None:
+def _wave(texture: Composable, start: si.Metre, end: si.Metre) -> list[dict[str, Any]] | None:
     """Bands of a grating that the format has a wave for; None for any other texture."""
     if not isinstance(texture, RelativeFriction):
         return None
@@ -218,7 +205,7 @@ def _wave(texture: Composable, start: Metre, end: Metre) -> list[dict[str, Any]]
 
 
 def _keyframes(
-    friction: Callable[..., FloatArray], first: int, last: int, tolerance: float
+    friction: Callable[..., si.FloatArray], first: int, last: int, tolerance: float
 ) -> dict[str, Any]:
     places = np.arange(first, last + 1)
     values = friction(places * 1e-6)
@@ -235,7 +222,7 @@ def _keyframes(
     return _band("Curve", _effect(first, keyframes), 0)
 
 
-def _thinned(values: FloatArray, tolerance: float) -> np.ndarray[Any, np.dtype[np.int64]]:
+def _thinned(values: si.FloatArray, tolerance: float) -> np.ndarray[Any, np.dtype[np.int64]]:
     """Samples to keep so that straight lines between them miss none by more than `tolerance`
     (Ramer, Douglas and Peucker, with the distance taken along the value)."""
     keep = np.zeros(values.size, dtype=bool)
@@ -318,12 +305,12 @@ def _document(
 
 
 def _errors(
-    document: dict[str, Any], friction: Callable[..., FloatArray], start: Metre, end: Metre
+    document: dict[str, Any], friction: Callable[..., si.FloatArray], start: si.Metre, end: si.Metre
 ) -> tuple[float, float]:
     from squeezefilm.formats.hjif_read import friction_along
 
     # Irrational steps, so that samples don't fall on keyframes or edges in any regular way.
     count = 20_011
-    inside: MetreArray = start + (end - start) * np.mod(np.arange(1, count) * 0.6180339887, 1.0)
+    inside: si.MetreArray = start + (end - start) * np.mod(np.arange(1, count) * 0.6180339887, 1.0)
     miss = np.abs(friction_along(document, inside) - friction(inside))
     return float(np.sqrt(np.mean(miss**2))), float(np.max(miss))

@@ -16,23 +16,17 @@ from typing import Any
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.config.scan import require_quick_json
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import HJIF_BYTES
-from squeezefilm.quantities import (
-    DimensionlessArray,
-    FloatArray,
-    Metre,
-    MetreArray,
-    checked_numbers,
-)
 from squeezefilm.regular_file import read_regular_text
 from squeezefilm.render.texture.image import LARGEST_PIXEL, MOST_PIXELS, Image
 from squeezefilm.render.texture.levels import RelativeFriction
 from squeezefilm.render.texture.pattern import Pattern
 from squeezefilm.render.texture.shapes import SineWave, SquareWave
 
-_COARSE: Metre = 10e-6
+_COARSE: si.Metre = 10e-6
 _SIGNALS = ("Sine", "Square", "Triangle", "SawToothUp", "SawToothDown")
 _NEEDED: dict[str, dict[str, type | tuple[type, ...]]] = {
     "experience": {
@@ -65,8 +59,8 @@ class HjifImport:
     """A texture of a file: friction along x from `start` to `end` (m), and what was left out."""
 
     texture: RelativeFriction
-    start: Metre
-    end: Metre
+    start: si.Metre
+    end: si.Metre
     lost: tuple[str, ...]
 
 
@@ -74,7 +68,7 @@ class HjifImport:
 class _Line:
     """The effects of a file's first friction channel: each with its band, and the scale."""
 
-    unit: Metre
+    unit: si.Metre
     scale: float
     effects: tuple[tuple[dict[str, Any], dict[str, Any]], ...]
     lost: tuple[str, ...]
@@ -197,8 +191,8 @@ def texture_of_hjif(document: Any) -> HjifImport:
     return HjifImport(RelativeFriction(image, low, high), start, end, tuple(lost))
 
 
-@checked_numbers
-def friction_along(document: Any, x: MetreArray) -> DimensionlessArray:
+@si.checked_numbers
+def friction_along(document: Any, x: si.MetreArray) -> si.DimensionlessArray:
     """The friction of a document at places along its way (1), in the shape of `x` (m).
 
     0 outside of its effects. Raises `InputError` as `texture_of_hjif` does.
@@ -264,7 +258,7 @@ def _effects(
                 yield band, whole
 
 
-def _extent(line: _Line) -> tuple[Metre, Metre]:
+def _extent(line: _Line) -> tuple[si.Metre, si.Metre]:
     starts, ends = [], []
     for _, effect in line.effects:
         last = max(key.get("relative_position", 0) for key in effect["keyframes"])
@@ -278,7 +272,7 @@ def _extent(line: _Line) -> tuple[Metre, Metre]:
     return start, end
 
 
-def _keys(effect: dict[str, Any]) -> tuple[FloatArray, FloatArray]:
+def _keys(effect: dict[str, Any]) -> tuple[si.FloatArray, si.FloatArray]:
     keys = [key for key in effect["keyframes"] if "amplitude_modulation" in key]
     places = np.array([float(key.get("relative_position", 0)) for key in keys])
     values = np.array([float(key["amplitude_modulation"]) for key in keys])
@@ -286,7 +280,7 @@ def _keys(effect: dict[str, Any]) -> tuple[FloatArray, FloatArray]:
     return places[order], values[order]
 
 
-def _along(line: _Line, x: MetreArray) -> DimensionlessArray:
+def _along(line: _Line, x: si.MetreArray) -> si.DimensionlessArray:
     total = np.zeros(x.shape)
     for band, effect in line.effects:
         way = x / line.unit - effect["position"]
@@ -310,14 +304,14 @@ def _along(line: _Line, x: MetreArray) -> DimensionlessArray:
     return line.scale * total
 
 
-def _cubic(way: FloatArray, places: FloatArray, values: FloatArray) -> FloatArray:
+def _cubic(way: si.FloatArray, places: si.FloatArray, values: si.FloatArray) -> si.FloatArray:
     k = np.clip(np.searchsorted(places, way, side="right") - 1, 0, places.size - 2)
     width = np.where(places[k + 1] > places[k], places[k + 1] - places[k], 1.0)
     s = np.clip((way - places[k]) / width, 0.0, 1.0)
     return np.asarray(values[k] + (values[k + 1] - values[k]) * s * s * (3 - 2 * s))
 
 
-def _signal(name: str, cycles: FloatArray) -> FloatArray:
+def _signal(name: str, cycles: si.FloatArray) -> si.FloatArray:
     share = cycles - np.floor(cycles)
     if name == "Sine":
         return np.sin(2 * math.pi * cycles)

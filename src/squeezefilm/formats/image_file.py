@@ -15,21 +15,15 @@ from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath, PureWindowsPath
 from typing import Annotated, Any, Literal
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.formats.pictures import read_picture
-from squeezefilm.quantities import (
-    AtLeast,
-    AtMost,
-    FloatArray,
-    Metre,
-    checked_numbers,
-)
 from squeezefilm.render.opcodes import Assembler
 from squeezefilm.render.texture.image import Image
 from squeezefilm.render.texture.pattern import Pattern
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class ImageFile(Pattern):
     """An image whose pixels are in a PNG file; `image` reads them. See `Image` for the rest.
@@ -45,9 +39,9 @@ class ImageFile(Pattern):
     """
 
     file: str
-    pixel: Annotated[Metre, AtLeast(1e-06), AtMost(0.1)]
-    left: Metre = 0.0
-    bottom: Metre = 0.0
+    pixel: Annotated[si.Metre, si.AtLeast(1e-06), si.AtMost(0.1)]
+    left: si.Metre = 0.0
+    bottom: si.Metre = 0.0
     outside: Literal["hold", "repeat", "zero"] = "hold"
     type: Literal["image_file"] = field(default="image_file", repr=False)
 
@@ -87,7 +81,9 @@ class ImageFile(Pattern):
             values, self.pixel, left=self.left, bottom=self.bottom, outside=self.outside
         )
 
-    def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
+    def _values(
+        self, x: si.FloatArray, y: si.FloatArray, v: si.FloatArray, t: si.FloatArray
+    ) -> si.FloatArray:
         raise self._unread()
 
     def _lower(self, assembler: Assembler) -> None:

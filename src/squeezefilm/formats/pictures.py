@@ -14,9 +14,9 @@ from pathlib import Path
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import PICTURE_BYTES
-from squeezefilm.quantities import DimensionlessArray
 from squeezefilm.regular_file import read_regular
 from squeezefilm.render.texture.image import MOST_PIXELS
 
@@ -30,7 +30,7 @@ _KINDS = {
 }
 
 
-def read_picture(path: str | Path) -> DimensionlessArray:
+def read_picture(path: str | Path) -> si.DimensionlessArray:
     """The values of a PNG, 0 (black) to 1 (white), shape (rows, columns), the top row first.
 
     Raises:
@@ -40,7 +40,7 @@ def read_picture(path: str | Path) -> DimensionlessArray:
     return picture_from(read_regular(path, PICTURE_BYTES, "a PNG"), str(path))
 
 
-def picture_from(data: bytes, name: str = "the picture") -> DimensionlessArray:
+def picture_from(data: bytes, name: str = "the picture") -> si.DimensionlessArray:
     """The values in the bytes of a PNG; `name` is what messages call it. See `read_picture`."""
     if data[:8] != _SIGNATURE or data[12:16] != b"IHDR" or len(data) < 33:
         raise InputError(f"{name} is no PNG; save it as a greyscale PNG of 8 or 16 bits")

@@ -22,9 +22,9 @@ from typing import Any
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import ConfigError, InputError
 from squeezefilm.hard_limits import TABLE_BYTES
-from squeezefilm.quantities import FloatArray, checked_numbers
 from squeezefilm.regular_file import read_regular, read_regular_text
 
 _NAME = re.compile(r"[a-z][A-Za-z0-9_.]*")
@@ -32,7 +32,7 @@ _JSON_TEXT = re.compile(r'"(?:[^"\\]|\\.)*"')
 _KEY = b"squeezefilm"
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, slots=True, eq=False)
 class Table:
     """Columns of equal length by name (`position_m`, …), and where they are from.
@@ -43,7 +43,7 @@ class Table:
         InputError: no column, columns of different lengths, or a name that is no identifier.
     """
 
-    columns: Mapping[str, FloatArray]
+    columns: Mapping[str, si.FloatArray]
     metadata: Mapping[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -60,7 +60,7 @@ class Table:
             if np.any(np.isinf(column)):
                 raise InputError(f"the column '{name}' holds an infinity, which no table keeps")
 
-    def column(self, name: str) -> FloatArray:
+    def column(self, name: str) -> si.FloatArray:
         """The column of that name. Raises `InputError` if there is none."""
         if name not in self.columns:
             raise InputError(f"there is no column '{name}'; there are {', '.join(self.columns)}")
@@ -179,7 +179,7 @@ def table_from_parquet(path: str | Path) -> Table:
         raise InputError(f"{path} is no table of numbers in Parquet: {error}") from error
 
 
-def _floats(column: Any) -> FloatArray:
+def _floats(column: Any) -> si.FloatArray:
     return np.asarray(column.to_numpy(), dtype=float)
 
 

@@ -19,18 +19,11 @@ from typing import Annotated
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import ConfigError, InputError
 from squeezefilm.formats.traces import Table, table_from_csv, text_of_file
 from squeezefilm.from_text import ReadBy
 from squeezefilm.hard_limits import FINGER_SPEED
-from squeezefilm.quantities import (
-    Metre,
-    MetreArray,
-    SecondArray,
-    Unit,
-    did_you_mean,
-    parse_quantity,
-)
 from squeezefilm.render.motion.finger_path import FingerPath
 from squeezefilm.render.motion.minimum_jerk import MinimumJerkStroke
 from squeezefilm.render.motion.stroke import Stroke
@@ -71,7 +64,7 @@ def read_trajectory(path: str | Path) -> FingerPath:
     for name in table.columns:
         if name not in _COLUMNS:
             raise ConfigError(
-                f"the column '{name}' is not known.{did_you_mean(name, _COLUMNS)} Allowed: "
+                f"the column '{name}' is not known.{si.did_you_mean(name, _COLUMNS)} Allowed: "
                 "time_s, x_m and, in the plane, y_m",
                 file=path,
                 line=first - 1,
@@ -125,7 +118,7 @@ def _checked(table: Table, path: str | Path) -> FingerPath:
 
 
 def _require_slow(
-    time: SecondArray, x: MetreArray, y: MetreArray, path: str | Path, first: int
+    time: si.SecondArray, x: si.MetreArray, y: si.MetreArray, path: str | Path, first: int
 ) -> None:
     speed = np.hypot(np.diff(x), np.diff(y)) / np.diff(time)
     fast = np.flatnonzero(speed > FINGER_SPEED.most)
@@ -184,7 +177,7 @@ def stroke_from_text(text: str) -> Motion:
     )
 
 
-def _slanted(stroke: Stroke, y: Metre, angle: float) -> FingerPath:
+def _slanted(stroke: Stroke, y: si.Metre, angle: float) -> FingerPath:
     turns = np.arange(stroke.passes + 1)
     along = np.where(turns % 2 == 1, 1.0, 0.0) * np.float64(stroke.length)
     return FingerPath(
@@ -196,6 +189,6 @@ def _slanted(stroke: Stroke, y: Metre, angle: float) -> FingerPath:
 
 def _quantity(words: str, unit: str, text: str) -> float:
     try:
-        return parse_quantity(words.strip(), Unit(unit))
+        return si.parse_quantity(words.strip(), si.Unit(unit))
     except InputError as error:
         raise InputError(f"the stroke '{text}': {error}") from error

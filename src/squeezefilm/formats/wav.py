@@ -17,19 +17,9 @@ from typing import Annotated, Any, Literal, get_args
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import WAVE_BYTES
-from squeezefilm.quantities import (
-    Above,
-    AtLeast,
-    AtMost,
-    FloatArray,
-    Hertz,
-    Unit,
-    checked_numbers,
-    require,
-    require_one_of,
-)
 from squeezefilm.regular_file import read_regular
 
 Encoding = Literal["float32", "int16", "int24"]
@@ -45,7 +35,7 @@ _WIDTH = {"float32": 4, "int16": 2, "int24": 3}
 _LONGEST_NOTE = 1_000_000
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, slots=True, eq=False)
 class Waveform:
     """One channel of samples of a physical quantity.
@@ -61,20 +51,22 @@ class Waveform:
         InputError: a value outside its range, or samples beyond full scale (none is clipped).
     """
 
-    samples: FloatArray
-    sample_rate: Annotated[Hertz, AtLeast(1.0), AtMost(10000000.0)]
+    samples: si.FloatArray
+    sample_rate: Annotated[si.Hertz, si.AtLeast(1.0), si.AtMost(10000000.0)]
     unit: Literal["m", "V"]
-    full_scale: Annotated[float, Above(0.0)]
+    full_scale: Annotated[float, si.Above(0.0)]
     metadata: Mapping[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        unit = Unit(self.unit)
+        unit = si.Unit(self.unit)
         if self.samples.ndim != 1 or self.samples.size == 0:
             raise InputError(
                 f"samples of shape {self.samples.shape} are no sound of one channel; give a list "
                 "of at least one"
             )
-        require("samples", self.samples, unit, at_least=-self.full_scale, at_most=self.full_scale)
+        si.require(
+            "samples", self.samples, unit, at_least=-self.full_scale, at_most=self.full_scale
+        )
         if self.sample_rate != round(self.sample_rate):
             raise InputError(
                 f"sample_rate = {self.sample_rate!r} Hz cannot be written: a WAV file has a whole "
@@ -91,7 +83,7 @@ def wav_bytes(waveform: Waveform, encoding: Encoding = "float32") -> bytes:
     Raises:
         InputError: an unknown encoding, or more samples than such a file can hold.
     """
-    require_one_of("encoding", encoding, ENCODINGS)
+    si.require_one_of("encoding", encoding, ENCODINGS)
     width = _WIDTH[encoding]
     if waveform.samples.size * width > _MOST_BYTES:
         raise InputError(

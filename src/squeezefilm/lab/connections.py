@@ -15,12 +15,12 @@ from uvicorn.protocols.http.h11_impl import H11Protocol
 from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
 from websockets.http11 import Request
 
-from squeezefilm.quantities import Second
+from squeezefilm import quantities as si
 
-SLOWEST_REQUEST: Second = 10.0
+SLOWEST_REQUEST: si.Second = 10.0
 CLOSE = "squeezefilm.close"
 """The name in a websocket's scope, below its extensions, of its `PageProtocol.refuse`."""
-_LAST_WORD: Second = 2.0
+_LAST_WORD: si.Second = 2.0
 _NO_TEXT = "a message that is not UTF-8 text"
 
 

@@ -17,7 +17,7 @@ from collections import Counter
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from squeezefilm.quantities import Second
+from squeezefilm import quantities as si
 
 if TYPE_CHECKING:
     import ssl
@@ -26,13 +26,13 @@ MOST_OPEN = 180
 """Connections of one listener at once; one page has up to seven."""
 MOST_OF_ADDRESS = 32
 """Connections that one tablet may have at once."""
-SLOWEST_HANDSHAKE: Second = 5.0
+SLOWEST_HANDSHAKE: si.Second = 5.0
 """For a whole TLS handshake."""
 
 _RESERVED = 160  # descriptors for files, databases, devices and the processes that compute
 _FEWEST = 16
-_RETRY: Second = 0.2
-_QUIET: Second = 60.0  # between two lines in the log
+_RETRY: si.Second = 0.2
+_QUIET: si.Second = 60.0  # between two lines in the log
 _LOG = logging.getLogger("squeezefilm.lab")
 
 

@@ -17,14 +17,14 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Literal
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import Second
 
 Role = Literal["experimenter", "participant"]
 
-LINK_LIFE: Second = 600.0
-SESSION_LIFE: Second = 12 * 3600.0
-CODE_LIFE: Second = 120.0
+LINK_LIFE: si.Second = 600.0
+SESSION_LIFE: si.Second = 12 * 3600.0
+CODE_LIFE: si.Second = 120.0
 MOST_SESSIONS = 64
 MOST_WRONG_CODES = 5
 """Wrong codes after which pairing is closed until the experimenter opens it again."""
@@ -37,7 +37,7 @@ class Session:
     secret: str
     role: Role
     station: str
-    until: Second
+    until: si.Second
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +45,7 @@ class _Link:
     role: Role
     station: str
     home: str
-    until: Second
+    until: si.Second
 
 
 @dataclass(slots=True)

@@ -10,12 +10,12 @@ from collections.abc import Callable
 
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
+from squeezefilm import quantities as si
 from squeezefilm.lab.connections import CLOSE
-from squeezefilm.quantities import Second
 
 MOST_UNREAD = 256
 """Messages that may wait for one page."""
-SLOWEST_PAGE: Second = 10.0
+SLOWEST_PAGE: si.Second = 10.0
 """For a page to take one message."""
 _TOO_SLOW = "this page did not read what the lab said to it; reload it"
 

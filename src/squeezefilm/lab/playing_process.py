@@ -20,16 +20,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError, SqueezefilmError
-from squeezefilm.quantities import FloatArray, Second
 from squeezefilm.results import to_json
 
 if TYPE_CHECKING:
     from squeezefilm.session.play.plan import PlayView
 
-ROW_PERIOD: Second = 2e-3
+ROW_PERIOD: si.Second = 2e-3
 """Between two rows that the page's scope gets; the record has them all."""
-_STOP_LIMIT: Second = 5.0
+_STOP_LIMIT: si.Second = 5.0
 
 _STOPPED_BEFORE = "stopped before anything was played"
 
@@ -46,7 +46,7 @@ class DeviceWork:
     mode: str
     stroke: str
     sensor: str
-    duration: Second
+    duration: si.Second
     voltage: float | None
     compensation: str
     out: str
@@ -136,7 +136,7 @@ class _Watched:
         self.stage = text
         self._tell({"type": "device progress", "text": text})
 
-    def tap(self, rows: FloatArray) -> None:
+    def tap(self, rows: si.FloatArray) -> None:
         """The newest rows, as many as a page can draw."""
         from squeezefilm.session.loop.rows import COLUMNS
 

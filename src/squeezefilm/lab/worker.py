@@ -21,8 +21,8 @@ from multiprocessing.connection import Connection
 from multiprocessing.context import SpawnProcess
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import SqueezefilmError
-from squeezefilm.quantities import Second
 
 if TYPE_CHECKING:
     from starlette.websockets import WebSocket
@@ -31,7 +31,7 @@ T = TypeVar("T")
 
 LARGEST_MEMORY = 2 * 1024**3
 """Bytes of data that a process which computes may hold."""
-GRACE: Second = 2.0
+GRACE: si.Second = 2.0
 """How long work goes on that newer work wants to replace."""
 PAGE: ContextVar[WebSocket] = ContextVar("page")
 """The page whose message is being answered."""
@@ -40,7 +40,7 @@ _SPAWN = multiprocessing.get_context("spawn")
 
 Told = Callable[[str, float], None]
 """Hears how far a piece of work is: a text and the share that is done (0 to 1)."""
-_TELL_EVERY: Second = 0.1
+_TELL_EVERY: si.Second = 0.1
 
 
 class SupersededError(Exception):
@@ -112,7 +112,7 @@ class Busy:
     Work that takes longer than `longest` (s) is ended.
     """
 
-    def __init__(self, longest: Second) -> None:
+    def __init__(self, longest: si.Second) -> None:
         self._longest = longest
         self._process: _Process | None = None
         self._turn = asyncio.Lock()

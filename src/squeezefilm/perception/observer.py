@@ -13,35 +13,17 @@ from typing import Annotated
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.config.provenance import Provenance
 from squeezefilm.contact.finger.fingertip import Moisture
 from squeezefilm.errors import InputError
 from squeezefilm.from_text import ReadBy
-from squeezefilm.quantities import (
-    Above,
-    AtLeast,
-    AtMost,
-    Below,
-    Dimensionless,
-    DimensionlessLike,
-    Hertz,
-    HertzLike,
-    Metre,
-    MetrePerSecond,
-    Newton,
-    Pascal,
-    Radian,
-    Second,
-    Unit,
-    checked_numbers,
-    require,
-)
 
 _MOST_FINGERS = 64
 _FINGERS_STREAM = 71
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True)
 class SensoryChannel:
     """One kind of mechanoreceptor as a band-pass of skin displacement with a threshold.
@@ -58,15 +40,15 @@ class SensoryChannel:
     """
 
     name: str
-    low: Annotated[Hertz, AtLeast(0.0)]
-    high: Hertz
-    threshold: Annotated[Metre, Above(0.0)]
+    low: Annotated[si.Hertz, si.AtLeast(0.0)]
+    high: si.Hertz
+    threshold: Annotated[si.Metre, si.Above(0.0)]
     spatial: bool = False
 
     def __post_init__(self) -> None:
-        require("high", self.high, Unit("Hz"), above=self.low)
+        si.require("high", self.high, si.Unit("Hz"), above=self.low)
 
-    def gain(self, frequency: HertzLike) -> DimensionlessLike:
+    def gain(self, frequency: si.HertzLike) -> si.DimensionlessLike:
         """Share of a displacement's amplitude that passes, at frequencies (Hz): second-order
         slopes on both sides, 1/√2 at the corners. The shape is assumed."""
         f = np.asarray(frequency, dtype=float)
@@ -81,14 +63,14 @@ class SensoryChannel:
 class FingerClass:
     """A finger and how it moves: what differs between people before the senses."""
 
-    contact_length: Metre
-    ridge_angle: Radian
+    contact_length: si.Metre
+    ridge_angle: si.Radian
     moisture: Moisture
-    normal_force: Newton
-    speed: MetrePerSecond
+    normal_force: si.Newton
+    speed: si.MetrePerSecond
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True)
 class Observer:
     """Everything a simulated participant is made of.
@@ -130,35 +112,35 @@ class Observer:
     name: str
     title: str
     channels: tuple[SensoryChannel, ...]
-    friction_weber_fraction: Annotated[Dimensionless, Above(0.0)]
-    indentation_weber_fraction: Annotated[Dimensionless, Above(0.0)]
-    period_weber_fraction: Annotated[Dimensionless, Above(0.0)]
-    period_spread: Annotated[Dimensionless, AtLeast(0.0)]
-    harmonic_weight: Annotated[Dimensionless, Above(0.0), Below(1.0)]
-    harmonics: Annotated[int, AtLeast(1), AtMost(20)]
-    candidates: Annotated[int, AtLeast(1), AtMost(20)]
-    detection_criterion: Annotated[Dimensionless, AtLeast(0.0)]
-    lapse_rate: Annotated[Dimensionless, AtLeast(0.0), AtMost(1.0)]
-    lapse_spread: Annotated[Dimensionless, AtLeast(0.0)]
-    learning_excess: Annotated[Dimensionless, AtLeast(0.0)]
-    learning_trials: Annotated[Dimensionless, Above(0.0)]
-    contact_length: Annotated[Metre, Above(0.0)]
-    contact_spread: Annotated[Dimensionless, AtLeast(0.0)]
-    contact_aspect: Annotated[Dimensionless, Above(0.0)]
-    finger_orientation: Annotated[Radian, AtLeast(-4), AtMost(4)]
-    dry_share: Annotated[Dimensionless, AtLeast(0.0), AtMost(1.0)]
-    moist_share: Dimensionless
-    speed: Annotated[MetrePerSecond, Above(0.0)]
-    speed_spread: Annotated[Dimensionless, AtLeast(0.0)]
-    normal_force: Annotated[Newton, Above(0.0)]
-    force_spread: Annotated[Dimensionless, AtLeast(0.0)]
-    stroke_length: Annotated[Metre, Above(0.0)]
-    passes: Annotated[int, AtLeast(1), AtMost(100)]
-    skin_modulus: Annotated[Pascal, Above(0.0)]
-    finger_classes: Annotated[int, AtLeast(1), AtMost(_MOST_FINGERS)]
-    response_time: Annotated[Second, Above(0.0)]
-    response_time_spread: Annotated[Dimensionless, AtLeast(0.0)]
-    doubt_time: Annotated[Second, AtLeast(0.0)]
+    friction_weber_fraction: Annotated[si.Dimensionless, si.Above(0.0)]
+    indentation_weber_fraction: Annotated[si.Dimensionless, si.Above(0.0)]
+    period_weber_fraction: Annotated[si.Dimensionless, si.Above(0.0)]
+    period_spread: Annotated[si.Dimensionless, si.AtLeast(0.0)]
+    harmonic_weight: Annotated[si.Dimensionless, si.Above(0.0), si.Below(1.0)]
+    harmonics: Annotated[int, si.AtLeast(1), si.AtMost(20)]
+    candidates: Annotated[int, si.AtLeast(1), si.AtMost(20)]
+    detection_criterion: Annotated[si.Dimensionless, si.AtLeast(0.0)]
+    lapse_rate: Annotated[si.Dimensionless, si.AtLeast(0.0), si.AtMost(1.0)]
+    lapse_spread: Annotated[si.Dimensionless, si.AtLeast(0.0)]
+    learning_excess: Annotated[si.Dimensionless, si.AtLeast(0.0)]
+    learning_trials: Annotated[si.Dimensionless, si.Above(0.0)]
+    contact_length: Annotated[si.Metre, si.Above(0.0)]
+    contact_spread: Annotated[si.Dimensionless, si.AtLeast(0.0)]
+    contact_aspect: Annotated[si.Dimensionless, si.Above(0.0)]
+    finger_orientation: Annotated[si.Radian, si.AtLeast(-4), si.AtMost(4)]
+    dry_share: Annotated[si.Dimensionless, si.AtLeast(0.0), si.AtMost(1.0)]
+    moist_share: si.Dimensionless
+    speed: Annotated[si.MetrePerSecond, si.Above(0.0)]
+    speed_spread: Annotated[si.Dimensionless, si.AtLeast(0.0)]
+    normal_force: Annotated[si.Newton, si.Above(0.0)]
+    force_spread: Annotated[si.Dimensionless, si.AtLeast(0.0)]
+    stroke_length: Annotated[si.Metre, si.Above(0.0)]
+    passes: Annotated[int, si.AtLeast(1), si.AtMost(100)]
+    skin_modulus: Annotated[si.Pascal, si.Above(0.0)]
+    finger_classes: Annotated[int, si.AtLeast(1), si.AtMost(_MOST_FINGERS)]
+    response_time: Annotated[si.Second, si.Above(0.0)]
+    response_time_spread: Annotated[si.Dimensionless, si.AtLeast(0.0)]
+    doubt_time: Annotated[si.Second, si.AtLeast(0.0)]
     provenance: Mapping[str, Provenance] = field(
         default_factory=dict, metadata={"loader": True}, compare=False, repr=False
     )
@@ -166,7 +148,7 @@ class Observer:
     def __post_init__(self) -> None:
         if not self.channels:
             raise InputError("channels is empty; give at least one", quantity="channels")
-        require("moist_share", self.moist_share, at_least=0.0, at_most=1.0 - self.dry_share)
+        si.require("moist_share", self.moist_share, at_least=0.0, at_most=1.0 - self.dry_share)
 
     def fingers(self) -> tuple[FingerClass, ...]:
         """The finger classes: a Latin hypercube over what people differ in, always the same.
@@ -194,7 +176,7 @@ class Observer:
             for i in range(count)
         )
 
-    def _moisture(self, share: Dimensionless) -> Moisture:
+    def _moisture(self, share: si.Dimensionless) -> Moisture:
         if share < self.dry_share:
             return "dry"
         return "moist" if share >= 1.0 - self.moist_share else "normal"

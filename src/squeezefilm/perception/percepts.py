@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.chain.rendered_texture import RenderAnalysis, render_texture
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError
@@ -28,20 +29,11 @@ from squeezefilm.perception.senses import (
     line_amplitudes,
 )
 from squeezefilm.perception.stimuli import Grating, Stimulus
-from squeezefilm.quantities import (
-    FloatArray,
-    Hertz,
-    Metre,
-    MetreArray,
-    Pascal,
-    Unit,
-    require,
-)
 from squeezefilm.render.motion.minimum_jerk import MinimumJerkStroke
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ, SensorModel
 from squeezefilm.texture_file import TextureFile
 
-CONTROL_RATE: Hertz = 9.6e3
+CONTROL_RATE: si.Hertz = 9.6e3
 _SEED = 0
 _FEWEST_STEPS = 64
 
@@ -73,7 +65,7 @@ class Percept:
 
     evidence: Evidence
     candidates: Candidates
-    mean_displacement: Metre
+    mean_displacement: si.Metre
 
 
 def percept(
@@ -120,7 +112,7 @@ def percept(
 def grating_percept(grating: Grating, observer: Observer, finger: FingerClass) -> Percept:
     """What a finger gets of a real grating, with the same exploration and channels."""
     stroke = exploration(observer, finger)
-    way: MetreArray = np.arange(SETTLING, observer.stroke_length, SPACING)
+    way: si.MetreArray = np.arange(SETTLING, observer.stroke_length, SPACING)
     depth = indentation(grating, _pressure(finger), observer.skin_modulus)
     # Grooves from 0 to groove_width of each period, edges shared between samples.
     profile = depth * _share_in_groove(way, grating)
@@ -139,14 +131,14 @@ def grating_percept(grating: Grating, observer: Observer, finger: FingerClass) -
     return Percept(found, candidates(observer, found), 0.5 * depth)
 
 
-def indentation(grating: Grating, pressure: Pascal, modulus: Pascal) -> Metre:
+def indentation(grating: Grating, pressure: si.Pascal, modulus: si.Pascal) -> si.Metre:
     """How deep the skin bulges into the grooves (m): p g/E*, at most the ridge's height.
 
     The opening of a plane crack of width g under a pressure p (Pa) in a half-space of plane-strain
     modulus E* (Pa): a slit between two punches, small depths.
     """
-    require("pressure", pressure, Unit("Pa"), above=0.0)
-    require("modulus", modulus, Unit("Pa"), above=0.0)
+    si.require("pressure", pressure, si.Unit("Pa"), above=0.0)
+    si.require("modulus", modulus, si.Unit("Pa"), above=0.0)
     return min(grating.ridge_height, pressure * grating.groove_width / modulus)
 
 
@@ -170,26 +162,26 @@ def _with_finger(display: Display, finger: FingerClass) -> Display:
     )
 
 
-def _pressure(finger: FingerClass) -> Pascal:
+def _pressure(finger: FingerClass) -> si.Pascal:
     return finger.normal_force / finger.contact_length**2
 
 
-def _share_in_groove(way: MetreArray, grating: Grating) -> MetreArray:
+def _share_in_groove(way: si.MetreArray, grating: Grating) -> si.MetreArray:
     """Share of the sample about each place that lies over a groove (1)."""
 
-    def under(x: MetreArray) -> MetreArray:
+    def under(x: si.MetreArray) -> si.MetreArray:
         whole = np.floor(x / grating.period)
         rest = np.minimum(x - whole * grating.period, grating.groove_width)
-        covered: MetreArray = whole * grating.groove_width + rest
+        covered: si.MetreArray = whole * grating.groove_width + rest
         return covered
 
-    share: MetreArray = (under(way + SPACING / 2) - under(way - SPACING / 2)) / SPACING
+    share: si.MetreArray = (under(way + SPACING / 2) - under(way - SPACING / 2)) / SPACING
     return share
 
 
 def along_way(
-    way: MetreArray, values: FloatArray, observer: Observer, forth: tuple[float, float]
-) -> FloatArray:
+    way: si.MetreArray, values: si.FloatArray, observer: Observer, forth: tuple[float, float]
+) -> si.FloatArray:
     """Values of each control step on an even way, shape (passes, samples).
 
     Args:
@@ -198,7 +190,7 @@ def along_way(
         observer: whose exploration it is.
         forth: signs that values take in passes there and in passes back.
     """
-    even: MetreArray = np.arange(SETTLING, observer.stroke_length, SPACING)
+    even: si.MetreArray = np.arange(SETTLING, observer.stroke_length, SPACING)
     per_pass = (way.size - 1) / observer.passes
     if per_pass < _FEWEST_STEPS:
         raise InputError(

@@ -20,41 +20,30 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.perception.observer import Observer
-from squeezefilm.quantities import (
-    ComplexArray,
-    Dimensionless,
-    DimensionlessArray,
-    FloatArray,
-    Metre,
-    MetreArray,
-    MetrePerSecondArray,
-    PerMetre,
-    Unit,
-    require,
-)
 
-FINEST_PERIOD: Metre = 0.25e-3
-COARSEST_PERIOD: Metre = 20e-3
+FINEST_PERIOD: si.Metre = 0.25e-3
+COARSEST_PERIOD: si.Metre = 20e-3
 """Periods that may be perceived; half the stroke of 4 cm is the longest that repeats in it."""
 
-SPACING: Metre = 25e-6
+SPACING: si.Metre = 25e-6
 """Of the samples along the way."""
 
 # Lines are looked for down to the harmonics of the finest period, where a step is a third of the
 # half-width that a stroke of 4 cm gives a line. By falling between two steps a line seems fainter
 # by at most 2 % at 0.4 mm, 5 % at 0.25 mm and (a harmonic only) 32 % at 0.1 mm.
-_FINEST_LINE: Metre = 0.1e-3
+_FINEST_LINE: si.Metre = 0.1e-3
 _LOG_STEP = 0.004
 # A pass begins with the pad being stretched: this much of it is not looked at.
-SETTLING: Metre = 2e-3
+SETTLING: si.Metre = 2e-3
 D_PRIME_OF_75 = 0.9538725524
 # A rhythm below this is none: it would never reach a criterion but by noise alone.
 _FAINTEST = 0.05
 _SPATIAL_SLOPE = 4.25e3
-_SPATIAL_ZERO: Metre = 0.55e-3
-_SPATIAL_LEAST: Metre = 0.7e-3
-_SPATIAL_MOST: Metre = 3e-3
+_SPATIAL_ZERO: si.Metre = 0.55e-3
+_SPATIAL_LEAST: si.Metre = 0.7e-3
+_SPATIAL_MOST: si.Metre = 3e-3
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -68,12 +57,12 @@ class Evidence:
         rhythm: d′ of a rhythm of each period (1), shape (n,).
     """
 
-    period: MetreArray
-    amplitude: MetreArray
-    by_channel: DimensionlessArray
-    rhythm: DimensionlessArray
+    period: si.MetreArray
+    amplitude: si.MetreArray
+    by_channel: si.DimensionlessArray
+    rhythm: si.DimensionlessArray
 
-    def at(self, period: Metre) -> Dimensionless:
+    def at(self, period: si.Metre) -> si.Dimensionless:
         """d′ of the rhythm of a period (m) (1)."""
         return float(np.interp(math.log(period), np.log(self.period), self.rhythm))
 
@@ -85,18 +74,18 @@ class Candidates:
     `period` (m) and `d_prime` (1) have the same shape (…, candidates).
     """
 
-    period: MetreArray
-    d_prime: DimensionlessArray
+    period: si.MetreArray
+    d_prime: si.DimensionlessArray
 
 
-def line_periods() -> MetreArray:
+def line_periods() -> si.MetreArray:
     """The spatial periods (m) at which lines are looked for, in steps of 0.4 %."""
     count = math.floor(math.log(COARSEST_PERIOD / _FINEST_LINE) / _LOG_STEP) + 1
-    periods: MetreArray = _FINEST_LINE * np.exp(_LOG_STEP * np.arange(count))
+    periods: si.MetreArray = _FINEST_LINE * np.exp(_LOG_STEP * np.arange(count))
     return periods
 
 
-def line_amplitudes(passes: MetreArray) -> MetreArray:
+def line_amplitudes(passes: si.MetreArray) -> si.MetreArray:
     """Amplitudes of lines at `line_periods` (m), of displacements (m) along one or more passes.
 
     Args:
@@ -111,18 +100,18 @@ def line_amplitudes(passes: MetreArray) -> MetreArray:
     tilt = (passes @ (window * along)) / np.sum(window * along**2)
     changing = passes - level[:, None] - tilt[:, None] * along
     lines = (changing * window) @ _waves(count)
-    amplitude: MetreArray = 2.0 * np.sqrt(np.mean(np.abs(lines) ** 2, axis=0))
+    amplitude: si.MetreArray = 2.0 * np.sqrt(np.mean(np.abs(lines) ** 2, axis=0))
     return amplitude
 
 
 @functools.lru_cache(maxsize=4)
-def _waves(count: int) -> ComplexArray:
+def _waves(count: int) -> si.ComplexArray:
     way = SPACING * np.arange(count)
-    waves: ComplexArray = np.exp(-2j * math.pi * np.outer(way, 1.0 / line_periods()))
+    waves: si.ComplexArray = np.exp(-2j * math.pi * np.outer(way, 1.0 / line_periods()))
     return waves
 
 
-def channel_gains(observer: Observer, speed: MetrePerSecondArray) -> DimensionlessArray:
+def channel_gains(observer: Observer, speed: si.MetrePerSecondArray) -> si.DimensionlessArray:
     """Root mean square of each channel's gain at each line over the speeds of a stroke (m/s).
 
     `speed` has any shape, one value per sample of way; the result has shape (channels, n).
@@ -137,12 +126,12 @@ def channel_gains(observer: Observer, speed: MetrePerSecondArray) -> Dimensionle
 
 def evidence(
     observer: Observer,
-    amplitude: MetreArray,
-    gains: DimensionlessArray,
-    mean_displacement: Metre,
-    weber_fraction: Dimensionless,
-    pattern_period: Metre | None = None,
-    groove_width: Metre = 0.0,
+    amplitude: si.MetreArray,
+    gains: si.DimensionlessArray,
+    mean_displacement: si.Metre,
+    weber_fraction: si.Dimensionless,
+    pattern_period: si.Metre | None = None,
+    groove_width: si.Metre = 0.0,
 ) -> Evidence:
     """The evidence for rhythms in line amplitudes.
 
@@ -155,7 +144,7 @@ def evidence(
         pattern_period, groove_width: of a real grating (m): its pattern in the skin then takes the
             place of what spatial channels see of lines.
     """
-    require("mean_displacement", mean_displacement, Unit("m"), at_least=0.0)
+    si.require("mean_displacement", mean_displacement, si.Unit("m"), at_least=0.0)
     masked = 2.0 / math.pi * weber_fraction * mean_displacement / D_PRIME_OF_75
     noise = np.array([math.hypot(one.threshold, masked) for one in observer.channels])
     d_prime = gains * amplitude / noise[:, None]
@@ -168,7 +157,7 @@ def evidence(
     return Evidence(periods, amplitude, d_prime, rhythm)
 
 
-def _rhythm(observer: Observer, power: DimensionlessArray) -> DimensionlessArray:
+def _rhythm(observer: Observer, power: si.DimensionlessArray) -> si.DimensionlessArray:
     log_period, found = np.log(line_periods()), np.zeros_like(power)
     for harmonic in range(1, observer.harmonics + 1):
         share = observer.harmonic_weight ** (2 * (harmonic - 1))
@@ -176,15 +165,15 @@ def _rhythm(observer: Observer, power: DimensionlessArray) -> DimensionlessArray
     return np.asarray(np.sqrt(found))
 
 
-def _line_width(observer: Observer) -> PerMetre:
+def _line_width(observer: Observer) -> si.PerMetre:
     """From the middle of a line to its first zero under a Hann window (1/m)."""
     return 2.0 / (observer.stroke_length - SETTLING)
 
 
-def spatial_sensitivity(groove_width: Metre) -> Dimensionless:
+def spatial_sensitivity(groove_width: si.Metre) -> si.Dimensionless:
     """d′ of a grating's pattern in resting skin: 4.25 (g − 0.55) with g in mm, for g > 0.7 mm, 0
     below (Johnson and Phillips 1981). Held at its value of 3 mm beyond, which is assumed."""
-    require("groove_width", groove_width, Unit("m"), at_least=0.0)
+    si.require("groove_width", groove_width, si.Unit("m"), at_least=0.0)
     if groove_width <= _SPATIAL_LEAST:
         return 0.0
     return _SPATIAL_SLOPE * (min(groove_width, _SPATIAL_MOST) - _SPATIAL_ZERO)
@@ -199,8 +188,8 @@ def candidates(observer: Observer, found: Evidence) -> Candidates:
     per_metre, width = 1.0 / found.period, _line_width(observer)
     power = np.sum(found.by_channel**2, axis=0)
     inside = found.period >= FINEST_PERIOD
-    periods: FloatArray = np.full(observer.candidates, FINEST_PERIOD)
-    d_prime: FloatArray = np.full(observer.candidates, -np.inf)
+    periods: si.FloatArray = np.full(observer.candidates, FINEST_PERIOD)
+    d_prime: si.FloatArray = np.full(observer.candidates, -np.inf)
     for k in range(observer.candidates):
         rhythm = np.where(inside, _rhythm(observer, power), 0.0)
         best = int(np.argmax(rhythm))

@@ -11,18 +11,8 @@ import dataclasses
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import (
-    Above,
-    AtLeast,
-    AtMost,
-    Below,
-    Dimensionless,
-    Metre,
-    Radian,
-    Unit,
-    checked_numbers,
-)
 from squeezefilm.render.texture.composition import Composable
 from squeezefilm.render.texture.coordinate import FARTHEST, AlongDirection, Length
 from squeezefilm.render.texture.levels import RelativeFriction
@@ -34,30 +24,30 @@ Waveform = Literal["square", "sine", "constant"]
 Varied = Literal["spatial_period", "friction_depth", "ridge_share", "orientation"]
 """What an adaptive method may vary of a stimulus."""
 
-_METRE = Unit("m")
+_METRE = si.Unit("m")
 
 
 class _Periodic:
     """What virtual and real gratings share: grooves and ridges."""
 
-    spatial_period: Metre
+    spatial_period: si.Metre
     period_means: PeriodMeans
-    ridge_share: Dimensionless
+    ridge_share: si.Dimensionless
 
     @property
-    def period(self) -> Metre:
+    def period(self) -> si.Metre:
         """Groove plus ridge (m), whatever `spatial_period` means."""
         if self.period_means == "period":
             return self.spatial_period
         return self.spatial_period / (1.0 - self.ridge_share)
 
     @property
-    def groove_width(self) -> Metre:
+    def groove_width(self) -> si.Metre:
         """Width of a groove (m): period × (1 − ridge share)."""
         return self.period * (1.0 - self.ridge_share)
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True)
 class Stimulus(_Periodic):
     """A virtual grating: friction low in its grooves, high on its ridges.
@@ -82,10 +72,10 @@ class Stimulus(_Periodic):
     spatial_period: Length
     period_means: PeriodMeans
     waveform: Waveform = "square"
-    ridge_share: Annotated[Dimensionless, Above(0), Below(1)] = 0.5
-    orientation: Annotated[Radian, AtLeast(-10.0), AtMost(10.0)] = 0.0
-    low: Annotated[Dimensionless, AtLeast(0.0), AtMost(1.0)] = 0.7
-    high: Annotated[Dimensionless, Above(0.0), AtMost(1.0)] = 1.0
+    ridge_share: Annotated[si.Dimensionless, si.Above(0), si.Below(1)] = 0.5
+    orientation: Annotated[si.Radian, si.AtLeast(-10.0), si.AtMost(10.0)] = 0.0
+    low: Annotated[si.Dimensionless, si.AtLeast(0.0), si.AtMost(1.0)] = 0.7
+    high: Annotated[si.Dimensionless, si.Above(0.0), si.AtMost(1.0)] = 1.0
     texture: str = ""
     matches: str = ""
 
@@ -105,7 +95,7 @@ class Stimulus(_Periodic):
             )
 
     @property
-    def friction_depth(self) -> Dimensionless:
+    def friction_depth(self) -> si.Dimensionless:
         """high − low, in parts of the friction without vibration (1); 0 if constant."""
         return 0.0 if self.waveform == "constant" else self.high - self.low
 
@@ -146,7 +136,7 @@ class Stimulus(_Periodic):
         return dataclasses.replace(self, name=name, matches="", **changed)
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True)
 class Grating(_Periodic):
     """A real grating that is touched for comparison, like the paper's etched copper boards.
@@ -167,10 +157,10 @@ class Grating(_Periodic):
     name: str
     spatial_period: Length
     period_means: PeriodMeans
-    ridge_share: Annotated[Dimensionless, Above(0), Below(1)] = 0.5
-    ridge_height: Annotated[Metre, Above(0.0), AtMost(0.01)] = 70e-6
-    length: Annotated[Metre, Above(0.0), AtMost(FARTHEST)] = 0.13
-    width: Annotated[Metre, Above(0.0), AtMost(FARTHEST)] = 7e-3
+    ridge_share: Annotated[si.Dimensionless, si.Above(0), si.Below(1)] = 0.5
+    ridge_height: Annotated[si.Metre, si.Above(0.0), si.AtMost(0.01)] = 70e-6
+    length: Annotated[si.Metre, si.Above(0.0), si.AtMost(FARTHEST)] = 0.13
+    width: Annotated[si.Metre, si.Above(0.0), si.AtMost(FARTHEST)] = 7e-3
     material: str = "copper"
 
     def __post_init__(self) -> None:

@@ -6,32 +6,23 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from squeezefilm.quantities import (
-    ComplexArray,
-    Dimensionless,
-    Farad,
-    Henry,
-    Hertz,
-    HertzArray,
-    Ohm,
-    checked_numbers,
-)
+from squeezefilm import quantities as si
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True)
 class EquivalentCircuit:
     """Butterworth–Van Dyke: C0 parallel to a series of R1, L1 and C1, near one resonance."""
 
-    frequency: Hertz
-    quality_factor: Dimensionless
-    static_capacitance: Farad
-    motional_resistance: Ohm
-    motional_inductance: Henry
-    motional_capacitance: Farad
+    frequency: si.Hertz
+    quality_factor: si.Dimensionless
+    static_capacitance: si.Farad
+    motional_resistance: si.Ohm
+    motional_inductance: si.Henry
+    motional_capacitance: si.Farad
 
-    @checked_numbers
-    def admittance(self, frequency: HertzArray) -> ComplexArray:
+    @si.checked_numbers
+    def admittance(self, frequency: si.HertzArray) -> si.ComplexArray:
         """Y (S) of the circuit at frequencies (Hz)."""
         omega = 2 * np.pi * np.asarray(frequency, dtype=float)
         series = (

@@ -10,38 +10,26 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.plate.layout import RectangularPlate
-from squeezefilm.quantities import (
-    Above,
-    Kilogram,
-    KilogramPerCubicMetre,
-    KilogramPerSquareMetre,
-    Metre,
-    NewtonMetre,
-    NewtonPerMetre,
-    NewtonPerVolt,
-    Pascal,
-    checked_numbers,
-    require,
-)
 
 CrossSection = Literal["paper", "plane_stress", "plane_strain"]
 SHEAR_CORRECTION = 5 / 6
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True)
 class Layer:
     """One layer of a laminate: its thickness, bending modulus, shear modulus and density."""
 
-    thickness: Annotated[Metre, Above(0)]
-    modulus: Annotated[Pascal, Above(0)]
-    shear_modulus: Annotated[Pascal, Above(0)]
-    density: Annotated[KilogramPerCubicMetre, Above(0)]
+    thickness: Annotated[si.Metre, si.Above(0)]
+    modulus: Annotated[si.Pascal, si.Above(0)]
+    shear_modulus: Annotated[si.Pascal, si.Above(0)]
+    density: Annotated[si.KilogramPerCubicMetre, si.Above(0)]
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True)
 class Laminate:
     """The section constants of a laminate per unit width.
@@ -51,17 +39,17 @@ class Laminate:
     from the free face.
     """
 
-    neutral_axis: Metre
-    bending_stiffness: NewtonMetre
-    mass_per_area: KilogramPerSquareMetre
-    rotary_inertia: Kilogram
-    shear_stiffness: NewtonPerMetre
+    neutral_axis: si.Metre
+    bending_stiffness: si.NewtonMetre
+    mass_per_area: si.KilogramPerSquareMetre
+    rotary_inertia: si.Kilogram
+    shear_stiffness: si.NewtonPerMetre
     layers: tuple[Layer, ...]
 
-    @checked_numbers
-    def moment_arm(self, layer: int) -> Metre:
+    @si.checked_numbers
+    def moment_arm(self, layer: int) -> si.Metre:
         """The distance of a layer's mid-plane from the neutral axis, positive upwards."""
-        require("layer", layer, at_least=0, at_most=len(self.layers) - 1)
+        si.require("layer", layer, at_least=0, at_most=len(self.layers) - 1)
         below = sum(other.thickness for other in self.layers[:layer])
         return below + self.layers[layer].thickness / 2 - self.neutral_axis
 
@@ -129,7 +117,7 @@ def plate_laminate(
 
 def moment_per_volt(
     plate: RectangularPlate, section: Laminate, cross_section: CrossSection = "plane_strain"
-) -> NewtonPerVolt:
+) -> si.NewtonPerVolt:
     """The bending moment per unit width that one volt makes: e31 × arm of the ceramic (N/V).
 
     From M = ∫ e31 E z dz with E = V/h_p over the ceramic's thickness h_p. A strip free across its

@@ -6,19 +6,10 @@ from dataclasses import dataclass, replace
 from typing import Annotated, Literal, TypeVar
 
 from squeezefilm import hard_limits as hard
+from squeezefilm import quantities as si
 from squeezefilm.errors import GeometryError, InputError
 from squeezefilm.materials import ElasticMaterial, Piezoceramic
 from squeezefilm.plate.round_layout import AnnularStator, DiscPlate, GlueLayer
-from squeezefilm.quantities import (
-    Dimensionless,
-    Metre,
-    Ohm,
-    Pascal,
-    SquareMetre,
-    Unit,
-    checked_numbers,
-    format_quantity,
-)
 
 __all__ = [
     "Actuator",
@@ -35,7 +26,7 @@ __all__ = [
     "turned",
 ]
 
-_M = Unit("m")
+_M = si.Unit("m")
 
 
 Face = Literal["bottom", "top"]
@@ -43,7 +34,7 @@ Electrode = Literal["driven", "shorted", "open", "shunted"]
 Edge = Literal["left", "right", "front", "back"]
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True)
 class CeramicPatch:
     """One rectangular ceramic on a face of the plate.
@@ -54,16 +45,16 @@ class CeramicPatch:
     ceramic is poled away from the plate; like polarity it turns the sign of the response.
     """
 
-    x: Annotated[Metre, hard.PLACE]
-    y: Annotated[Metre, hard.PLACE]
-    length: Annotated[Metre, hard.SIDE]
-    width: Annotated[Metre, hard.SIDE]
-    thickness: Annotated[Metre, hard.LAYER]
+    x: Annotated[si.Metre, hard.PLACE]
+    y: Annotated[si.Metre, hard.PLACE]
+    length: Annotated[si.Metre, hard.SIDE]
+    width: Annotated[si.Metre, hard.SIDE]
+    thickness: Annotated[si.Metre, hard.LAYER]
     polarity: Literal[1, -1] = 1
     face: Face = "bottom"
     electrode: Electrode = "driven"
     poling: Literal[1, -1] = 1
-    shunt_resistance: Annotated[Ohm, hard.RESISTANCE] | None = None
+    shunt_resistance: Annotated[si.Ohm, hard.RESISTANCE] | None = None
 
     def __post_init__(self) -> None:
         if (self.electrode == "shunted") != (self.shunt_resistance is not None):
@@ -74,7 +65,7 @@ class CeramicPatch:
             )
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True)
 class FoamSupport:
     """A strip of foam or gasket under (or over) the plate, as springs spread over a rectangle.
@@ -85,14 +76,14 @@ class FoamSupport:
     the support at a nodal line. Foam under a ceramic is not provided.
     """
 
-    x: Annotated[Metre, hard.PLACE]
-    y: Annotated[Metre, hard.PLACE]
-    length: Annotated[Metre, hard.SIDE]
-    width: Annotated[Metre, hard.SIDE]
-    thickness: Annotated[Metre, hard.LAYER]
-    young_modulus: Annotated[Pascal, hard.MODULUS]
-    quality_factor: Annotated[Dimensionless, hard.QUALITY] = 3.0
-    shear_modulus: Annotated[Pascal, hard.SHEAR_MODULUS] | None = None
+    x: Annotated[si.Metre, hard.PLACE]
+    y: Annotated[si.Metre, hard.PLACE]
+    length: Annotated[si.Metre, hard.SIDE]
+    width: Annotated[si.Metre, hard.SIDE]
+    thickness: Annotated[si.Metre, hard.LAYER]
+    young_modulus: Annotated[si.Pascal, hard.MODULUS]
+    quality_factor: Annotated[si.Dimensionless, hard.QUALITY] = 3.0
+    shear_modulus: Annotated[si.Pascal, hard.SHEAR_MODULUS] | None = None
     face: Face = "bottom"
 
     @property
@@ -103,14 +94,14 @@ class FoamSupport:
         return along, along, self.young_modulus / self.thickness
 
 
-@checked_numbers
+@si.checked_numbers
 def rim_supports(
-    length: Metre,
-    width: Metre,
-    strip: Metre,
-    thickness: Metre,
-    young_modulus: Pascal,
-    quality_factor: Dimensionless = 3.0,
+    length: si.Metre,
+    width: si.Metre,
+    strip: si.Metre,
+    thickness: si.Metre,
+    young_modulus: si.Pascal,
+    quality_factor: si.Dimensionless = 3.0,
     face: Face = "bottom",
 ) -> tuple[FoamSupport, ...]:
     """Four strips of foam of breadth `strip` around the rim of a plate of `length` × `width`."""
@@ -129,7 +120,7 @@ def rim_supports(
 _Part = TypeVar("_Part", CeramicPatch, FoamSupport)
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True)
 class RectangularPlate:
     """A rectangular plate with ceramics bonded to its faces.
@@ -143,11 +134,11 @@ class RectangularPlate:
     Raises `GeometryError` for ceramics that overlap each other or overhang the plate.
     """
 
-    length: Annotated[Metre, hard.SIDE]
-    width: Annotated[Metre, hard.SIDE]
-    thickness: Annotated[Metre, hard.LAYER]
+    length: Annotated[si.Metre, hard.SIDE]
+    width: Annotated[si.Metre, hard.SIDE]
+    thickness: Annotated[si.Metre, hard.LAYER]
     nodal_lines: Annotated[int, hard.NODAL_LINES]
-    quality_factor: Annotated[Dimensionless, hard.QUALITY]
+    quality_factor: Annotated[si.Dimensionless, hard.QUALITY]
     substrate: ElasticMaterial
     ceramic: Piezoceramic
     patches: tuple[CeramicPatch, ...]
@@ -179,8 +170,8 @@ class RectangularPlate:
                 if start + extent > limit + 1e-9:
                     raise GeometryError(
                         f"{name} overhangs the plate: it ends at "
-                        f"{format_quantity(start + extent, _M)} along its {axis}, the plate at "
-                        f"{format_quantity(limit, _M)}; move it or make it shorter"
+                        f"{si.format_quantity(start + extent, _M)} along its {axis}, the plate at "
+                        f"{si.format_quantity(limit, _M)}; move it or make it shorter"
                     )
 
     def _check_overlap(self) -> None:
@@ -203,12 +194,12 @@ class RectangularPlate:
         return (self.nodal_lines, 0) if self.lines_across == "length" else (0, self.nodal_lines)
 
     @property
-    def area(self) -> SquareMetre:
+    def area(self) -> si.SquareMetre:
         """The surface a finger can explore."""
         return self.length * self.width
 
     @property
-    def ceramic_thickness(self) -> Metre:
+    def ceramic_thickness(self) -> si.Metre:
         """The ceramics' thickness, their mean by area where they differ: for laminates and
         drawings; the solid model takes each patch's own."""
         area = sum(patch.length * patch.width for patch in self.patches)
@@ -217,7 +208,7 @@ class RectangularPlate:
         return self.patches[0].thickness if same else volume / area
 
     @property
-    def coverage(self) -> Dimensionless:
+    def coverage(self) -> si.Dimensionless:
         """The area of all ceramics over that of one face."""
         return sum(patch.length * patch.width for patch in self.patches) / self.area
 
@@ -247,7 +238,7 @@ def _overlap(a: CeramicPatch | FoamSupport, b: CeramicPatch | FoamSupport) -> st
     x = min(a.x + a.length, b.x + b.length) - max(a.x, b.x)
     y = min(a.y + a.width, b.y + b.width) - max(a.y, b.y)
     if x > 1e-9 and y > 1e-9:
-        return f"{format_quantity(x, _M)} × {format_quantity(y, _M)}"
+        return f"{si.format_quantity(x, _M)} × {si.format_quantity(y, _M)}"
     return None
 
 

@@ -7,22 +7,10 @@ from typing import Annotated
 
 import numpy as np
 
-from squeezefilm.quantities import (
-    Above,
-    AtLeast,
-    AtMost,
-    Dimensionless,
-    Hertz,
-    Kilogram,
-    Metre,
-    SquareMetre,
-    Unit,
-    checked_numbers,
-    require,
-)
+from squeezefilm import quantities as si
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True)
 class LoadedMode:
     """One mode with a load on it: its new resonance and quality factor.
@@ -30,23 +18,23 @@ class LoadedMode:
     `load_ratio` δ is the load's modal stiffness over the mode's own, complex.
     """
 
-    free_frequency: Hertz
-    free_quality_factor: Dimensionless
+    free_frequency: si.Hertz
+    free_quality_factor: si.Dimensionless
     load_ratio: complex
 
     @property
-    def resonance_frequency(self) -> Hertz:
+    def resonance_frequency(self) -> si.Hertz:
         """f0 √(1 + Re δ) (Hz)."""
         return float(self.free_frequency * np.sqrt(1 + self.load_ratio.real))
 
     @property
-    def quality_factor(self) -> Dimensionless:
+    def quality_factor(self) -> si.Dimensionless:
         """(1 + Re δ)/(1/Q + Im δ)."""
         loss = 1 / self.free_quality_factor + self.load_ratio.imag
         return float((1 + self.load_ratio.real) / loss)
 
-    @checked_numbers
-    def amplitude_ratio(self, frequency: Annotated[Hertz, Above(0.0)]) -> Dimensionless:
+    @si.checked_numbers
+    def amplitude_ratio(self, frequency: Annotated[si.Hertz, si.Above(0.0)]) -> si.Dimensionless:
         """The amplitude at a frequency (Hz), over that of the free mode at its resonance.
 
         1/(Q |1 + i/Q + δ − (f/f0)²|): of this mode alone. Raises `InputError` unless f > 0.
@@ -55,26 +43,26 @@ class LoadedMode:
         return float(1 / abs(Q * (1 + self.load_ratio - x**2) + 1j))
 
 
-@checked_numbers
+@si.checked_numbers
 def mean_square_wave(
-    half_wavelength: Annotated[Metre, Above(0.0)],
-    contact_length: Annotated[Metre, Above(0.0)],
-    position: Metre = 0.0,
-) -> Dimensionless:
+    half_wavelength: Annotated[si.Metre, si.Above(0.0)],
+    contact_length: Annotated[si.Metre, si.Above(0.0)],
+    position: si.Metre = 0.0,
+) -> si.Dimensionless:
     """⟨cos²(πx/half_wavelength)⟩ over a contact centred `position` (m) from an antinode."""
     k = 2 * np.pi / half_wavelength
     reach = k * contact_length / 2
     return float((1 + np.cos(k * position) * np.sin(reach) / reach) / 2)
 
 
-@checked_numbers
+@si.checked_numbers
 def loaded_mode(
-    frequency: Annotated[Hertz, Above(0.0)],
-    quality_factor: Annotated[Dimensionless, Above(0.0)],
-    modal_mass: Annotated[Kilogram, Above(0.0)],
+    frequency: Annotated[si.Hertz, si.Above(0.0)],
+    quality_factor: Annotated[si.Dimensionless, si.Above(0.0)],
+    modal_mass: Annotated[si.Kilogram, si.Above(0.0)],
     stiffness_per_area: complex,
-    area: Annotated[SquareMetre, Above(0.0)],
-    mean_square: Annotated[Dimensionless, AtLeast(0.0), AtMost(1.0)],
+    area: Annotated[si.SquareMetre, si.Above(0.0)],
+    mean_square: Annotated[si.Dimensionless, si.AtLeast(0.0), si.AtMost(1.0)],
 ) -> LoadedMode:
     """A mode of `frequency` (Hz) and Q that moves `modal_mass` (kg, for unit amplitude at an
     antinode), with a load of complex `stiffness_per_area` (Pa/m) on `area` (m²), over which the
@@ -85,6 +73,6 @@ def loaded_mode(
     Raises `InputError` for a frequency, Q, mass or area that is not above 0, or a load with gain
     (negative loss).
     """
-    require("the load's loss", stiffness_per_area.imag, Unit("Pa/m"), at_least=0)
+    si.require("the load's loss", stiffness_per_area.imag, si.Unit("Pa/m"), at_least=0)
     own = modal_mass * (2 * np.pi * frequency) ** 2
     return LoadedMode(frequency, quality_factor, stiffness_per_area * area * mean_square / own)

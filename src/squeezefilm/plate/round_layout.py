@@ -8,39 +8,26 @@ from dataclasses import dataclass
 from typing import Annotated, Literal
 
 from squeezefilm import hard_limits as hard
+from squeezefilm import quantities as si
 from squeezefilm.errors import GeometryError, InputError
 from squeezefilm.materials import ElasticMaterial, Piezoceramic
-from squeezefilm.quantities import (
-    Above,
-    Below,
-    Dimensionless,
-    Hertz,
-    KilogramPerCubicMetre,
-    Metre,
-    Pascal,
-    Unit,
-    Volt,
-    checked_numbers,
-    format_quantity,
-    require,
-)
 
-_M = Unit("m")
+_M = si.Unit("m")
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True)
 class GlueLayer:
     """The glue between every ceramic and the plate, as an isotropic layer."""
 
-    thickness: Annotated[Metre, hard.LAYER]
-    young_modulus: Annotated[Pascal, hard.MODULUS]
-    poisson_ratio: Annotated[Dimensionless, Above(-1), Below(0.5)] = 0.38
-    density: Annotated[KilogramPerCubicMetre, hard.DENSITY] = 1150.0
-    quality_factor: Annotated[Dimensionless, hard.QUALITY] = 20.0
+    thickness: Annotated[si.Metre, hard.LAYER]
+    young_modulus: Annotated[si.Pascal, hard.MODULUS]
+    poisson_ratio: Annotated[si.Dimensionless, si.Above(-1), si.Below(0.5)] = 0.38
+    density: Annotated[si.KilogramPerCubicMetre, hard.DENSITY] = 1150.0
+    quality_factor: Annotated[si.Dimensionless, hard.QUALITY] = 20.0
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True)
 class AnnularStator:
     """The ring of an ultrasonic motor fed on one channel: a standing wave of known frequency and
@@ -48,45 +35,45 @@ class AnnularStator:
     The surface may be toothed: `tooth_pitch` along the circumference, slots of `slot_width`.
     """
 
-    mean_diameter: Annotated[Metre, hard.SIDE]
-    radial_width: Annotated[Metre, hard.SIDE]
-    wavelength: Annotated[Metre, hard.SIDE]
-    resonance_frequency: Annotated[Hertz, hard.FREQUENCY]
-    quality_factor: Annotated[Dimensionless, hard.QUALITY]
-    reference_amplitude: Annotated[Metre, Above(0), hard.VIBRATION]
-    reference_voltage: Annotated[Volt, Above(0)]
-    tooth_pitch: Metre | None = None
-    slot_width: Metre | None = None
+    mean_diameter: Annotated[si.Metre, hard.SIDE]
+    radial_width: Annotated[si.Metre, hard.SIDE]
+    wavelength: Annotated[si.Metre, hard.SIDE]
+    resonance_frequency: Annotated[si.Hertz, hard.FREQUENCY]
+    quality_factor: Annotated[si.Dimensionless, hard.QUALITY]
+    reference_amplitude: Annotated[si.Metre, si.Above(0), hard.VIBRATION]
+    reference_voltage: Annotated[si.Volt, si.Above(0)]
+    tooth_pitch: si.Metre | None = None
+    slot_width: si.Metre | None = None
     type: Literal["annular_stator"] = "annular_stator"
 
     def __post_init__(self) -> None:
         if self.radial_width >= self.mean_diameter:
             raise GeometryError(
-                f"radial_width = {format_quantity(self.radial_width, _M)} is not smaller than "
-                f"mean_diameter = {format_quantity(self.mean_diameter, _M)}; a ring needs a hole"
+                f"radial_width = {si.format_quantity(self.radial_width, _M)} is not smaller than "
+                f"mean_diameter = {si.format_quantity(self.mean_diameter, _M)}; a ring needs a hole"
             )
         if (self.tooth_pitch is None) != (self.slot_width is None):
             raise GeometryError(
                 "tooth_pitch and slot_width belong together; give both, or neither for a plain ring"
             )
         if self.tooth_pitch is not None and self.slot_width is not None:
-            require("tooth_pitch", self.tooth_pitch, _M, above=0)
-            require("slot_width", self.slot_width, _M, above=0, below=self.tooth_pitch)
+            si.require("tooth_pitch", self.tooth_pitch, _M, above=0)
+            si.require("slot_width", self.slot_width, _M, above=0, below=self.tooth_pitch)
         waves = self.wavelengths_around
         if abs(waves - round(waves)) > 0.05 or round(waves) < 1:
             raise GeometryError(
-                f"{waves:.2f} wavelengths of {format_quantity(self.wavelength, _M)} fit on the "
-                f"mean diameter of {format_quantity(self.mean_diameter, _M)}; a standing wave "
+                f"{waves:.2f} wavelengths of {si.format_quantity(self.wavelength, _M)} fit on the "
+                f"mean diameter of {si.format_quantity(self.mean_diameter, _M)}; a standing wave "
                 "needs a whole number (within 0.05)"
             )
 
     @property
-    def wavelengths_around(self) -> Dimensionless:
+    def wavelengths_around(self) -> si.Dimensionless:
         """How many wavelengths fit on the mean circumference."""
         return math.pi * self.mean_diameter / self.wavelength
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True)
 class DiscPlate:
     """A disc (or an annulus, with an `inner_diameter`) with a ceramic disc or ring bonded below.
@@ -100,15 +87,15 @@ class DiscPlate:
     Raises `GeometryError` for a ceramic that overhangs, `InputError` for sectors that do not fit.
     """
 
-    diameter: Annotated[Metre, hard.SIDE]
-    thickness: Annotated[Metre, hard.LAYER]
-    quality_factor: Annotated[Dimensionless, hard.QUALITY]
+    diameter: Annotated[si.Metre, hard.SIDE]
+    thickness: Annotated[si.Metre, hard.LAYER]
+    quality_factor: Annotated[si.Dimensionless, hard.QUALITY]
     substrate: ElasticMaterial
     ceramic: Piezoceramic
-    ceramic_outer_diameter: Annotated[Metre, hard.SIDE]
-    ceramic_thickness: Annotated[Metre, hard.LAYER]
-    inner_diameter: Metre = 0.0
-    ceramic_inner_diameter: Metre = 0.0
+    ceramic_outer_diameter: Annotated[si.Metre, hard.SIDE]
+    ceramic_thickness: Annotated[si.Metre, hard.LAYER]
+    inner_diameter: si.Metre = 0.0
+    ceramic_inner_diameter: si.Metre = 0.0
     nodal_circles: Annotated[int, hard.NODAL_CIRCLES] = 1
     nodal_diameters: Annotated[int, hard.NODAL_CIRCLES] = 0
     sectors: int = 0
@@ -116,8 +103,8 @@ class DiscPlate:
     type: Literal["disc"] = "disc"
 
     def __post_init__(self) -> None:
-        require("inner_diameter", self.inner_diameter, _M, at_least=0, below=self.diameter)
-        require(
+        si.require("inner_diameter", self.inner_diameter, _M, at_least=0, below=self.diameter)
+        si.require(
             "ceramic_inner_diameter",
             self.ceramic_inner_diameter,
             _M,
@@ -148,15 +135,15 @@ class DiscPlate:
     def _check_ceramic(self) -> None:
         if self.ceramic_outer_diameter > self.diameter + 1e-9:
             raise GeometryError(
-                f"the ceramic of {format_quantity(self.ceramic_outer_diameter, _M)} overhangs the "
-                f"disc of {format_quantity(self.diameter, _M)}; make it smaller",
+                f"the ceramic of {si.format_quantity(self.ceramic_outer_diameter, _M)} overhangs "
+                f"the disc of {si.format_quantity(self.diameter, _M)}; make it smaller",
                 quantity="ceramic_outer_diameter",
             )
         if self.ceramic_inner_diameter < self.inner_diameter - 1e-9:
             raise GeometryError(
                 f"the ceramic begins at a diameter of "
-                f"{format_quantity(self.ceramic_inner_diameter, _M)} and overhangs the hole of "
-                f"{format_quantity(self.inner_diameter, _M)}; give it a larger "
+                f"{si.format_quantity(self.ceramic_inner_diameter, _M)} and overhangs the hole of "
+                f"{si.format_quantity(self.inner_diameter, _M)}; give it a larger "
                 "ceramic_inner_diameter",
                 quantity="ceramic_inner_diameter",
             )

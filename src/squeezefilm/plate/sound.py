@@ -17,30 +17,14 @@ from typing import Annotated, Literal
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import SOUND_SPEED, require_within
-from squeezefilm.quantities import (
-    Above,
-    AtLeast,
-    ComplexArray,
-    Dimensionless,
-    FloatArray,
-    Hertz,
-    KilogramPerCubicMetre,
-    Metre,
-    MetreArray,
-    MetrePerSecond,
-    Radian,
-    Unit,
-    checked_numbers,
-    format_quantity,
-    require,
-)
 
 REFERENCE_PRESSURE = 20e-6
 """0 dB of sound pressure level in air, r.m.s., in Pa (ISO 1683)."""
 
-DISTANCES: tuple[Metre, ...] = (0.3, 0.5, 1.0)
+DISTANCES: tuple[si.Metre, ...] = (0.3, 0.5, 1.0)
 """Where levels are given unless asked otherwise: a bent head, a seated user, a bystander."""
 
 _COARSEST = 4
@@ -56,8 +40,8 @@ class ExposureGuidance:
     """
 
     level_dB: float
-    low: Hertz
-    high: Hertz
+    low: si.Hertz
+    high: si.Hertz
     audience: Literal["public", "occupational"]
     source: str
     evidence: str
@@ -95,9 +79,10 @@ GUIDANCE = (
 """Published guidance, one entry per band and audience; the reviews call its basis thin."""
 
 
-@checked_numbers
+@si.checked_numbers
 def exposure_guidance(
-    frequency: Annotated[Hertz, Above(0.0)], audience: Literal["public", "occupational"] = "public"
+    frequency: Annotated[si.Hertz, si.Above(0.0)],
+    audience: Literal["public", "occupational"] = "public",
 ) -> ExposureGuidance | None:
     """The guidance for a tone, or None where there is none."""
     for entry in GUIDANCE:
@@ -106,29 +91,29 @@ def exposure_guidance(
     return None
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, eq=False)
 class RadiatingSurface:
     """A flat surface cut into points: positions (n, 2) in m, areas (n,) in m², normal velocity
     (n,) in m/s, zero-to-peak and complex, all at one frequency."""
 
-    frequency: Hertz
-    position: MetreArray
-    area: FloatArray
-    velocity: ComplexArray
+    frequency: si.Hertz
+    position: si.MetreArray
+    area: si.FloatArray
+    velocity: si.ComplexArray
 
     @property
-    def extent(self) -> Metre:
+    def extent(self) -> si.Metre:
         """The largest distance of a point from the middle."""
         return float(np.hypot(*self.position.T).max())
 
 
-@checked_numbers
+@si.checked_numbers
 def rectangular_surface(
-    x: MetreArray,
-    y: MetreArray,
-    velocity: ComplexArray,
-    frequency: Annotated[Hertz, Above(0.0)],
+    x: si.MetreArray,
+    y: si.MetreArray,
+    velocity: si.ComplexArray,
+    frequency: Annotated[si.Hertz, si.Above(0.0)],
     sound_speed: float = 343.2,
 ) -> RadiatingSurface:
     """A plate's surface from its velocity (len(x), len(y)) on a rising grid (trapezoidal rule).
@@ -155,12 +140,12 @@ def rectangular_surface(
     return RadiatingSurface(frequency, grid.reshape(-1, 2), area.ravel(), values.ravel())
 
 
-@checked_numbers
+@si.checked_numbers
 def ring_surface(
-    radius: Annotated[MetreArray, AtLeast(0.0)],
-    velocity: ComplexArray,
-    harmonic: Annotated[int, AtLeast(0)],
-    frequency: Annotated[Hertz, Above(0.0)],
+    radius: Annotated[si.MetreArray, si.AtLeast(0.0)],
+    velocity: si.ComplexArray,
+    harmonic: Annotated[int, si.AtLeast(0)],
+    frequency: Annotated[si.Hertz, si.Above(0.0)],
     sound_speed: float = 343.2,
 ) -> RadiatingSurface:
     """A ring's or disc's surface moving with `velocity` (r) × cos(`harmonic` × θ).
@@ -190,14 +175,14 @@ def ring_surface(
     return RadiatingSurface(frequency, position.reshape(-1, 2), area.ravel(), moving.ravel())
 
 
-@checked_numbers
+@si.checked_numbers
 def sound_pressure(
     surface: RadiatingSurface,
-    points: MetreArray,
+    points: si.MetreArray,
     *,
-    density: Annotated[KilogramPerCubicMetre, Above(0.0)] = 1.204,
-    sound_speed: MetrePerSecond = 343.2,
-) -> ComplexArray:
+    density: Annotated[si.KilogramPerCubicMetre, si.Above(0.0)] = 1.204,
+    sound_speed: si.MetrePerSecond = 343.2,
+) -> si.ComplexArray:
     """Complex sound pressure (Pa, zero-to-peak) at `points` (..., 3) above the surface (z > 0).
 
     p = iωρ/2π ∫ v exp(−ikR)/R dS, lossless. Raises `InputError` for a point not above the plane.
@@ -206,7 +191,7 @@ def sound_pressure(
     points = np.asarray(points, dtype=float)
     if points.shape[-1:] != (3,):
         raise InputError(f"points has the shape {points.shape}; its last axis must be x, y and z")
-    require("height of the point", points[..., 2], Unit("m"), at_least=0)
+    si.require("height of the point", points[..., 2], si.Unit("m"), at_least=0)
     flat = points.reshape(-1, 3)
     omega = 2 * math.pi * surface.frequency
     strength = surface.velocity * surface.area
@@ -216,15 +201,15 @@ def sound_pressure(
         part = flat[start : start + rows]
         across = ((part[:, None, :2] - surface.position[None]) ** 2).sum(axis=-1)
         distance = np.sqrt(across + part[:, None, 2] ** 2)
-        require("distance", distance, Unit("m"), above=0)
+        si.require("distance", distance, si.Unit("m"), above=0)
         kernel = np.exp(-1j * (omega / sound_speed) * distance) / distance
         pressure[start : start + rows] = kernel @ strength
     return (1j * omega * density / (2 * math.pi) * pressure).reshape(points.shape[:-1])
 
 
-def pressure_level(pressure: ComplexArray) -> FloatArray:
+def pressure_level(pressure: si.ComplexArray) -> si.FloatArray:
     """Sound pressure level (dB re 20 µPa) of zero-to-peak pressures (Pa)."""
-    level: FloatArray = 20 * np.log10(np.maximum(np.abs(pressure), 1e-30) / math.sqrt(2) / 20e-6)
+    level: si.FloatArray = 20 * np.log10(np.maximum(np.abs(pressure), 1e-30) / math.sqrt(2) / 20e-6)
     return level
 
 
@@ -240,14 +225,14 @@ class SoundField:
     `guidance` is what the levels are compared with, if there is any for the frequency.
     """
 
-    frequency: Hertz
-    distances: tuple[Metre, ...]
+    frequency: si.Hertz
+    distances: tuple[si.Metre, ...]
     sound_pressure_level_dB: tuple[float, ...]
-    polar: tuple[Radian, ...]
-    azimuth: tuple[Radian, ...]
-    polar_angles: FloatArray
-    azimuths: FloatArray
-    levels_dB: FloatArray
+    polar: tuple[si.Radian, ...]
+    azimuth: tuple[si.Radian, ...]
+    polar_angles: si.FloatArray
+    azimuths: si.FloatArray
+    levels_dB: si.FloatArray
     radiated_power: float
     directivity_dB: float
     guidance: ExposureGuidance | None
@@ -261,14 +246,14 @@ class SoundField:
         return tuple(level - self.guidance.level_dB for level in self.sound_pressure_level_dB)
 
 
-@checked_numbers
+@si.checked_numbers
 def sound_field(
     surface: RadiatingSurface,
-    distances: tuple[Metre, ...] = DISTANCES,
+    distances: tuple[si.Metre, ...] = DISTANCES,
     *,
-    absorption_dB_per_m: Annotated[Dimensionless, AtLeast(0.0)] = 0.0,
-    density: KilogramPerCubicMetre = 1.204,
-    sound_speed: MetrePerSecond = 343.2,
+    absorption_dB_per_m: Annotated[si.Dimensionless, si.AtLeast(0.0)] = 0.0,
+    density: si.KilogramPerCubicMetre = 1.204,
+    sound_speed: si.MetrePerSecond = 343.2,
     audience: Literal["public", "occupational"] = "public",
 ) -> SoundField:
     """Sound pressure levels at distances from the surface's middle, over all directions.
@@ -281,14 +266,14 @@ def sound_field(
     require_within(SOUND_SPEED, sound_speed, "sound_speed")
     if not distances:
         raise InputError("distances is empty; name at least one", quantity="distances")
-    require("distances", distances, Unit("m"), above=surface.extent)
+    si.require("distances", distances, si.Unit("m"), above=surface.extent)
     # A lobe is about a wavelength over the extent wide: look at it at least four times.
     lobe = sound_speed / surface.frequency / (2 * surface.extent)
     steps = max(36, math.ceil(2 * math.pi / lobe))
     polar = np.linspace(0, math.pi / 2, max(36, steps // 2) + 1)
     azimuth = 2 * math.pi * np.arange(steps) / steps
 
-    def at(distance: float, theta: FloatArray, phi: FloatArray) -> FloatArray:
+    def at(distance: float, theta: si.FloatArray, phi: si.FloatArray) -> si.FloatArray:
         up = np.cos(theta) * distance
         out = np.sin(theta) * distance
         points = np.stack([out * np.cos(phi), out * np.sin(phi), np.maximum(up, 0)], axis=-1)
@@ -319,10 +304,10 @@ def sound_field(
 
 
 def _loudest(
-    at: Callable[[FloatArray, FloatArray], FloatArray],
-    level: FloatArray,
-    polar: FloatArray,
-    azimuth: FloatArray,
+    at: Callable[[si.FloatArray, si.FloatArray], si.FloatArray],
+    level: si.FloatArray,
+    polar: si.FloatArray,
+    azimuth: si.FloatArray,
 ) -> tuple[float, float, float]:
     """The highest level (dB) and its direction (rad): the best of a grid, looked around thrice."""
     i, j = np.unravel_index(int(np.argmax(level)), level.shape)
@@ -349,11 +334,11 @@ def _power(
     cosine, weight = (cosine + 1) / 2, weight / 2
     phi = 2 * math.pi * np.arange(2 * count) / (2 * count)
 
-    def intensity(theta: FloatArray, phi: FloatArray) -> FloatArray:
+    def intensity(theta: si.FloatArray, phi: si.FloatArray) -> si.FloatArray:
         towards = np.sin(theta)[..., None] * np.stack([np.cos(phi), np.sin(phi)], axis=-1)
         phase = np.exp(1j * k * (towards @ surface.position.T))
         far = density * surface.frequency * np.abs(phase @ (surface.velocity * surface.area))
-        result: FloatArray = far**2 / (2 * density * sound_speed)
+        result: si.FloatArray = far**2 / (2 * density * sound_speed)
         return result
 
     around = np.stack([intensity(np.full(phi.size, t), phi) for t in np.arccos(cosine)])
@@ -365,7 +350,7 @@ def _power(
     return power, 10 * math.log10(4 * math.pi * max(peak.max(), around.max()) / power)
 
 
-def _trapezoid(line: FloatArray) -> FloatArray:
+def _trapezoid(line: si.FloatArray) -> si.FloatArray:
     weight = np.zeros_like(line)
     weight[:-1] += np.diff(line) / 2
     weight[1:] += np.diff(line) / 2
@@ -373,12 +358,12 @@ def _trapezoid(line: FloatArray) -> FloatArray:
 
 
 def _require_fine(name: str, step: float, frequency: float, sound_speed: float) -> None:
-    require("sound_speed", sound_speed, Unit("m/s"), above=0)
+    si.require("sound_speed", sound_speed, si.Unit("m/s"), above=0)
     longest = sound_speed / frequency / _COARSEST
     if step > longest:
         raise InputError(
-            f"{name} has steps of {format_quantity(step, Unit('m'))}; at "
-            f"{format_quantity(frequency, Unit('Hz'))} they must be at most "
-            f"{format_quantity(longest, Unit('m'))} (a quarter of the wave in air)",
+            f"{name} has steps of {si.format_quantity(step, si.Unit('m'))}; at "
+            f"{si.format_quantity(frequency, si.Unit('Hz'))} they must be at most "
+            f"{si.format_quantity(longest, si.Unit('m'))} (a quarter of the wave in air)",
             quantity=name,
         )

@@ -11,6 +11,7 @@ from typing import Literal, get_args
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import OutOfRangeError
 from squeezefilm.plate.beam.response import BeamResponse, beam_response
 from squeezefilm.plate.laminate import CrossSection
@@ -22,36 +23,19 @@ from squeezefilm.plate.ring.body import (
     surface_profile,
 )
 from squeezefilm.plate.solid.working import SolidMode, solid_mode
-from squeezefilm.quantities import (
-    Dimensionless,
-    DimensionlessLike,
-    FloatArray,
-    Hertz,
-    HertzArray,
-    HertzLike,
-    Kilogram,
-    Metre,
-    MetreArray,
-    MetrePerVolt,
-    MetrePerVoltArray,
-    MetrePerVoltLike,
-    checked_numbers,
-    closed_form,
-    require_one_of,
-)
 
 
-@closed_form(positive="frequency resonance_frequency quality_factor")
+@si.closed_form(positive="frequency resonance_frequency quality_factor")
 def resonance_factor(
-    frequency: HertzLike, resonance_frequency: Hertz, quality_factor: Dimensionless
-) -> DimensionlessLike:
+    frequency: si.HertzLike, resonance_frequency: si.Hertz, quality_factor: si.Dimensionless
+) -> si.DimensionlessLike:
     """The amplitude off resonance relative to the one at resonance, of one mode; broadcasts.
 
     1 / √(Q²(1 − (f/f0)²)² + 1) for structural damping 1/Q. Valid near the mode, where the others
     add little.
     """
     ratio = (frequency / resonance_frequency) ** 2
-    factor: DimensionlessLike = 1 / np.sqrt(quality_factor**2 * (1 - ratio) ** 2 + 1)
+    factor: si.DimensionlessLike = 1 / np.sqrt(quality_factor**2 * (1 - ratio) ** 2 + 1)
     return factor
 
 
@@ -63,9 +47,9 @@ PLATE_THEORIES: tuple[PlateTheory, ...] = get_args(PlateTheory)
 class ModeLine:
     """The mode along the plate's length: deflection, 1 at the largest interior lobe."""
 
-    position: MetreArray
-    deflection: FloatArray
-    nodal_positions: MetreArray
+    position: si.MetreArray
+    deflection: si.FloatArray
+    nodal_positions: si.MetreArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,19 +63,19 @@ class WorkingMode:
     """
 
     label: str
-    resonance_frequency: Hertz
-    half_wavelength: Metre
-    quality_factor: Dimensionless
-    amplitude_per_volt: MetrePerVolt
+    resonance_frequency: si.Hertz
+    half_wavelength: si.Metre
+    quality_factor: si.Dimensionless
+    amplitude_per_volt: si.MetrePerVolt
     model: str
-    frequency_error: Hertz | None = None
-    modal_mass: Kilogram | None = None
+    frequency_error: si.Hertz | None = None
+    modal_mass: si.Kilogram | None = None
     line: ModeLine | None = None
     solid: SolidMode | None = None
     beam: BeamResponse | None = None
 
-    @checked_numbers
-    def amplitude_per_volt_at(self, frequency: HertzLike) -> MetrePerVoltLike:
+    @si.checked_numbers
+    def amplitude_per_volt_at(self, frequency: si.HertzLike) -> si.MetrePerVoltLike:
         """Zero-to-peak amplitude per volt (m/V) at a frequency near resonance.
 
         Of this mode alone, with structural damping; see `response` for what its neighbours add.
@@ -100,8 +84,8 @@ class WorkingMode:
             frequency, self.resonance_frequency, self.quality_factor
         )
 
-    @checked_numbers
-    def response(self, frequency: HertzArray) -> MetrePerVoltArray:
+    @si.checked_numbers
+    def response(self, frequency: si.HertzArray) -> si.MetrePerVoltArray:
         """Zero-to-peak amplitude per volt (m/V) at frequencies (Hz), with the neighbouring modes
         where the model has them."""
         wanted = np.asarray(frequency, dtype=float)
@@ -135,7 +119,7 @@ def working_mode(
         )
     if isinstance(actuator, DiscPlate):
         return _disc(actuator)
-    require_one_of("theory", theory, PLATE_THEORIES)
+    si.require_one_of("theory", theory, PLATE_THEORIES)
     if theory == "solid":
         solid = solid_mode(actuator)
         return WorkingMode(
@@ -195,12 +179,12 @@ def _diameter(disc: DiscPlate) -> ModeLine:
     return ModeLine(position, deflection, np.concatenate([-circles[::-1], circles]))
 
 
-def _beam_mass(beam: BeamResponse) -> Kilogram:
+def _beam_mass(beam: BeamResponse) -> si.Kilogram:
     """The modal mass for the largest interior lobe of the beam, all across the width."""
     return beam.mode.modal_mass_per_width * beam.plate.width / _beam_lobe(beam)[1] ** 2
 
 
-def _beam_lobe(beam: BeamResponse) -> tuple[Metre, float]:
+def _beam_lobe(beam: BeamResponse) -> tuple[si.Metre, float]:
     """Where the largest lobe between the outermost nodal lines is, and how far it goes."""
     shape = beam.mode
     x, nodes = shape.position, shape.nodal_positions

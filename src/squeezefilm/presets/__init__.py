@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import ConfigError
-from squeezefilm.quantities import did_you_mean
 
 _FOLDER = Path(__file__).parent
 _NOT_DISPLAYS = {"claims"}
@@ -26,7 +26,7 @@ def path(name: str) -> Path:
     """The TOML file of a preset display. Raises `ConfigError` for a name that is not known."""
     if name not in display_names():
         raise ConfigError(
-            f"there is no preset '{name}'.{did_you_mean(name, display_names())} "
+            f"there is no preset '{name}'.{si.did_you_mean(name, display_names())} "
             f"Presets: {', '.join(display_names())}"
         )
     return _FOLDER / f"{name}.toml"
@@ -83,7 +83,7 @@ def _resolved(name_or_path: str | Path, kind: str, known: tuple[str, ...], folde
     if looks_like_name and not _exists(candidate):
         kinds = "Studies" if kind == "study" else f"{kind.capitalize()}s"
         raise ConfigError(
-            f"'{text[:100]}' is neither a file nor a {kind}.{did_you_mean(text, known)} "
+            f"'{text[:100]}' is neither a file nor a {kind}.{si.did_you_mean(text, known)} "
             f"{kinds}: {', '.join(known)}"
         )
     return candidate

@@ -55,8 +55,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import FloatArray, checked_numbers
 
 VERSION = 1
 """Version of the instructions and of the program's layout."""
@@ -108,13 +108,13 @@ LARGEST_TABLES = 4_000_000
 """What a program may take: values on the stack, numbers of code, numbers of tables."""
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(slots=True)
 class Assembler:
     """Collects instructions and tables, and watches the stack. Not thread-safe; use it once."""
 
     code: list[float] = field(default_factory=list)
-    tables: list[FloatArray] = field(default_factory=list)
+    tables: list[si.FloatArray] = field(default_factory=list)
     depth: int = 0
     deepest: int = 0
     _table_length: int = 0
@@ -137,7 +137,7 @@ class Assembler:
                 f"of code; at most {DEEPEST_STACK} and {LONGEST_CODE} can be rendered; nest less"
             )
 
-    def table(self, values: FloatArray) -> float:
+    def table(self, values: si.FloatArray) -> float:
         """Append a table of numbers; returns where it begins among the tables.
 
         Raises:

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from squeezefilm import quantities as si
 from squeezefilm.analysis.analyze import Analysis
 from squeezefilm.analysis.film.command import FilmAnswer, FilmMap
 from squeezefilm.analysis.friction.command import FrictionAnalysis
@@ -24,7 +25,6 @@ from squeezefilm.chain.prediction import Prediction
 from squeezefilm.chain.rendered_texture import RenderAnalysis
 from squeezefilm.chain.stroke_force import StrokeForce
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import did_you_mean
 from squeezefilm.render.texture.composition import Composable
 from squeezefilm.report import film_map
 from squeezefilm.report.display.figures import FIGURES
@@ -161,8 +161,8 @@ def plot(result: Any, figure: str | None = None) -> Figure:
         name = next(iter(figures)) if figure is None else figure
         if name not in figures:
             raise InputError(
-                f"a {type(result).__name__} has no figure '{name}'.{did_you_mean(name, figures)} "
-                f"It has: {', '.join(figures)}"
+                f"a {type(result).__name__} has no figure "
+                f"'{name}'.{si.did_you_mean(name, figures)} It has: {', '.join(figures)}"
             )
         drawn = figures[name](result)
     # Reports put figures on a ground of their own; alone, a figure brings one.

@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 
 import numba
 
-from squeezefilm.quantities import Array
+from squeezefilm import quantities as si
 
 # What keeps the amplifier from giving the voltage wanted.
 WITHIN, RAIL, SLEW, CURRENT = range(4)
@@ -29,9 +29,9 @@ class Fingers(NamedTuple):
     """Relative friction and the load δ on the mode, shape (forces, points), under forces (N) and at
     amplitudes (m) of highest·(j/(points − 1))²."""
 
-    forces: Array
-    friction: Array
-    load: Array
+    forces: si.Array
+    friction: si.Array
+    load: si.Array
     highest: float
 
 
@@ -78,7 +78,7 @@ def table_place(force: float, amplitude: float, fingers: Fingers) -> Any:
 
 
 @numba.njit(cache=True, nogil=True)
-def between(table: Array, i: int, p: float, j: int, q: float) -> Any:
+def between(table: si.Array, i: int, p: float, j: int, q: float) -> Any:
     """A table's value between four of its points."""
     low = table[i, j] + q * (table[i, j + 1] - table[i, j])
     high = table[i + 1, j] + q * (table[i + 1, j + 1] - table[i + 1, j])

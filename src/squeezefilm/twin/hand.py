@@ -15,20 +15,9 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.formats.trajectories import Motion, motion_from
-from squeezefilm.quantities import (
-    Above,
-    Array,
-    AtLeast,
-    AtMost,
-    FloatArray,
-    Newton,
-    Second,
-    Unit,
-    checked_numbers,
-    require,
-)
 from squeezefilm.render.motion.finger_path import FingerPath
 
 EXPLORING = "60 mm in 0.75 s"
@@ -36,13 +25,13 @@ EXPLORING = "60 mm in 0.75 s"
 0.64 N (Smith, Gosselin and Houde 2002, s00221-002-1240-4)."""
 FOR_EVER = -1
 _MOST_SAMPLES = 2_000_000
-_LONGEST: Second = 86_400.0
+_LONGEST: si.Second = 86_400.0
 
 # Places in the plan's array, all µs but the last two.
 BEGIN, PASS, LIFT, REPEATS, PRESS, SAMPLE, MIRRORED = range(7)
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class Hand:
     """A finger led along a motion.
@@ -60,18 +49,18 @@ class Hand:
     """
 
     motion: Motion
-    normal_force: Annotated[Newton, Above(0.0), AtMost(20.0)] = 0.5
-    begin: Annotated[Second, AtLeast(0.0), AtMost(_LONGEST)] = 0.1
+    normal_force: Annotated[si.Newton, si.Above(0.0), si.AtMost(20.0)] = 0.5
+    begin: Annotated[si.Second, si.AtLeast(0.0), si.AtMost(_LONGEST)] = 0.1
     repeats: int | None = None
-    lift: Annotated[Second, AtLeast(0.0), AtMost(_LONGEST)] = 0.0
-    press: Annotated[Second, AtLeast(1e-06), AtMost(_LONGEST)] = 0.05
+    lift: Annotated[si.Second, si.AtLeast(0.0), si.AtMost(_LONGEST)] = 0.0
+    press: Annotated[si.Second, si.AtLeast(1e-06), si.AtMost(_LONGEST)] = 0.05
 
     def __post_init__(self) -> None:
-        require("the motion's duration", self.motion.duration, Unit("s"), at_most=_LONGEST)
+        si.require("the motion's duration", self.motion.duration, si.Unit("s"), at_most=_LONGEST)
         if self.repeats is not None and self.repeats < 1:
             raise InputError(f"repeats = {self.repeats} must be at least 1; None is for ever")
 
-    def path(self, tick: int) -> tuple[FloatArray, NDArray[np.int64]]:
+    def path(self, tick: int) -> tuple[si.FloatArray, NDArray[np.int64]]:
         """One motion as places (m), shape (2, n), and the plan, shape (7,), for `wanted`.
 
         `tick` (µs) is the time between places, longer where they would be more than two million.
@@ -111,7 +100,7 @@ def hand_from(stroke: str | Path = EXPLORING, **how: Any) -> Hand:
 
 
 @numba.njit(cache=True, nogil=True)
-def wanted(time: int, places: Array, plan: Array) -> Any:
+def wanted(time: int, places: si.Array, plan: si.Array) -> Any:
     """x, y (m), and the force over the full one (1), that the hand wants at a time (µs)."""
     since = time - plan[BEGIN]
     last = places.shape[1] - 1

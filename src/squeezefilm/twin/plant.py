@@ -13,10 +13,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from squeezefilm import quantities as si
 from squeezefilm.contact.sliding.march import substeps
 from squeezefilm.errors import InputError
 from squeezefilm.film.compiled import announce
-from squeezefilm.quantities import Ampere, FloatArray, Hertz, Metre, MetrePerVolt, Newton, Volt
 from squeezefilm.twin import plant_kernel as k
 from squeezefilm.twin.chance import gaussian
 from squeezefilm.twin.envelope_step import Fingers
@@ -113,27 +113,27 @@ class Plant:
         return complex(self._s[k.Z_RE], self._s[k.Z_IM])
 
     @property
-    def amplitude(self) -> Metre:
+    def amplitude(self) -> si.Metre:
         """Of the vibration (m, zero-to-peak, at an antinode)."""
         return abs(self.envelope)
 
     @property
-    def resonance_frequency(self) -> Hertz:
+    def resonance_frequency(self) -> si.Hertz:
         """Where the plate's own resonance is now, without the finger (Hz)."""
         return float(self._s[k.RESONANCE])
 
     @property
-    def voltage(self) -> Volt:
+    def voltage(self) -> si.Volt:
         """On the plate (V, peak), what limits allow."""
         return float(self._s[k.VOLTAGE])
 
     @property
-    def current(self) -> Ampere:
+    def current(self) -> si.Ampere:
         """From the amplifier (A, peak)."""
         return float(self._s[k.CURRENT_A])
 
     @property
-    def tangential_force(self) -> Newton:
+    def tangential_force(self) -> si.Newton:
         """Of the friction between skin and surface (N), positive while the skin goes to +x."""
         return float(self._s[k.FRICTION])
 
@@ -149,7 +149,7 @@ class Plant:
         return round(x * 1e6), round(y * 1e6), bool(self._n[k.SEEN_TOUCHING])
 
     @cached_property
-    def pickup_calibration(self) -> MetrePerVolt:
+    def pickup_calibration(self) -> si.MetrePerVolt:
         """Vibration amplitude per signal of the pickup (m/V), at the predicted resonance."""
         pickup = self.settings.pickup
         if pickup.kind == "sensing_patch":
@@ -176,7 +176,7 @@ class Plant:
         return round(abs(signal) * 1e6)
 
 
-def _path(hand: Hand | None, tick: int) -> tuple[FloatArray, NDArray[np.int64]]:
+def _path(hand: Hand | None, tick: int) -> tuple[si.FloatArray, NDArray[np.int64]]:
     if hand is not None:
         return hand.path(tick)
     # A hand that never begins.
@@ -184,7 +184,7 @@ def _path(hand: Hand | None, tick: int) -> tuple[FloatArray, NDArray[np.int64]]:
     return np.zeros((2, 2)), plan
 
 
-def _constants(point: WorkingPoint, settings: TwinSettings, hand: Hand | None) -> FloatArray:
+def _constants(point: WorkingPoint, settings: TwinSettings, hand: Hand | None) -> si.FloatArray:
     display, mode, finger = point.display, point.mode, point.display.finger
     drift, amplifier, arm = settings.drift, settings.amplifier, settings.arm
     sensor, dry, pad = settings.sensor, settings.dry, finger.fingerpad

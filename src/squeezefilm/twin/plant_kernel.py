@@ -21,9 +21,9 @@ from typing import NamedTuple
 import numba
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.contact.sliding.kernel import Drive, Ground, Law, Track, slide_march
 from squeezefilm.contact.sliding.skin_motion import Forces, Skin, slide_by, transition
-from squeezefilm.quantities import Array
 from squeezefilm.twin.chance import gaussian, uniform
 from squeezefilm.twin.envelope_step import (
     CURRENT,
@@ -142,20 +142,20 @@ _NOISE_X, _NOISE_Y, _DELAY, _LOSS = 1, 2, 3, 4
 class State(NamedTuple):
     """State, counts and constants, at the places that are named above."""
 
-    state: Array
-    counts: Array
-    constants: Array
+    state: si.Array
+    counts: si.Array
+    constants: si.Array
 
 
 class Path(NamedTuple):
     """The hand's places and its plan, as `hand.wanted` takes them."""
 
-    places: Array
-    plan: Array
+    places: si.Array
+    plan: si.Array
 
 
 @numba.njit(cache=True, nogil=True)
-def resonance(time: int, warmth: float, c: Array) -> float:
+def resonance(time: int, warmth: float, c: si.Array) -> float:
     """The plate's resonance frequency (Hz) at a time (µs) and a self-heating (K)."""
     period = np.int64(c[C_PERIOD])
     turn = 2.0 * math.pi * ((time % period) / period)
@@ -166,7 +166,7 @@ def resonance(time: int, warmth: float, c: Array) -> float:
 
 @numba.njit(cache=True, nogil=True)
 def _sense(
-    t0: int, h_us: int, x0: float, y0: float, plant: State, ring: Array, touching: bool
+    t0: int, h_us: int, x0: float, y0: float, plant: State, ring: si.Array, touching: bool
 ) -> None:
     s, n, c = plant
     seed = int(c[C_SEED])
@@ -203,7 +203,7 @@ def _sense(
 
 
 @numba.njit(cache=True, nogil=True)
-def _follow(h: float, x0: float, x1: float, y0: float, y1: float, s: Array, c: Array) -> None:
+def _follow(h: float, x0: float, x1: float, y0: float, y1: float, s: si.Array, c: si.Array) -> None:
     """The finger's bone after a step in which the arm's wanted place goes from 0 to 1."""
     d, k = c[C_DAMPING], c[C_STIFFNESS]
     arm = Skin(c[C_MASS], d, k)
@@ -252,8 +252,8 @@ def advance(
     plant: State,
     fingers: Fingers,
     path: Path,
-    ring: Array,
-    truth: Array,
+    ring: si.Array,
+    truth: si.Array,
 ) -> int:
     """Advance to `until` (µs) at a level (µV) and a carrier frequency (mHz).
 

@@ -30,6 +30,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import IO
 
+from squeezefilm import quantities as si
 from squeezefilm.device.priority import (
     PLAYERS_PRIORITY,
     collect_garbage_first,
@@ -38,7 +39,6 @@ from squeezefilm.device.priority import (
 from squeezefilm.device.wire import messages as m
 from squeezefilm.display import load_display
 from squeezefilm.errors import InputError, SqueezefilmError
-from squeezefilm.quantities import Newton, Second
 from squeezefilm.twin.device import TwinDevice
 from squeezefilm.twin.hand import EXPLORING, Hand, hand_from
 from squeezefilm.twin.settings import TwinSettings, load_settings
@@ -49,7 +49,7 @@ _MOST_BYTES = 4096
 _HELD_UP = 20_000  # µs behind the wall clock, from which on the process was held up
 _SLICE = 1_000  # µs of catching up at once
 _READS_WITHIN = 5_000  # µs after which a host that is not held up has read what it was told
-START_LIMIT: Second = 120.0
+START_LIMIT: si.Second = 120.0
 """How long a twin may take to start: it solves its plate and compiles."""
 
 
@@ -318,9 +318,9 @@ def running_twin(
     settings: str | Path | None = None,
     *,
     stroke: str = EXPLORING,
-    normal_force: Newton = 0.5,
+    normal_force: si.Newton = 0.5,
     truth: Path | None = None,
-    start_limit: Second = START_LIMIT,
+    start_limit: si.Second = START_LIMIT,
     strict: bool = False,
 ) -> Iterator[str]:
     """A twin in a process of its own; yields the name of its serial port.
@@ -358,7 +358,7 @@ def running_twin(
                 twin.stdout.close()
 
 
-def _port_of(twin: subprocess.Popen[bytes], said: IO[bytes], limit: Second) -> str:
+def _port_of(twin: subprocess.Popen[bytes], said: IO[bytes], limit: si.Second) -> str:
     assert twin.stdout is not None
     there, _, _ = select.select([twin.stdout], [], [], limit)
     line = twin.stdout.readline().decode().strip() if there else ""

@@ -10,34 +10,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Literal
 
+from squeezefilm import quantities as si
 from squeezefilm.contact.sliding.dry_friction import DryFriction
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import (
-    Above,
-    Ampere,
-    AtLeast,
-    AtMost,
-    Below,
-    Dimensionless,
-    Farad,
-    Kelvin,
-    Kilogram,
-    NewtonPerMetre,
-    NewtonSecondPerMetre,
-    Ohm,
-    Second,
-    Unit,
-    Volt,
-    VoltPerSecond,
-    checked_numbers,
-    require,
-)
 from squeezefilm.render.motion.sensor import TOUCH_PANEL_240_HZ, SensorModel
 
-PerKelvin = Annotated[float, Unit("1/K")]
-PerSecond = Annotated[float, Unit("1/s")]
-KelvinPerWatt = Annotated[float, Unit("K/W")]
-VoltPerMetre = Annotated[float, Unit("V/m")]
+PerKelvin = Annotated[float, si.Unit("1/K")]
+PerSecond = Annotated[float, si.Unit("1/s")]
+KelvinPerWatt = Annotated[float, si.Unit("K/W")]
+VoltPerMetre = Annotated[float, si.Unit("V/m")]
 ASSUMED = "assumed"
 # Frozen, so that all settings may share it.
 _COULOMB = DryFriction()
@@ -45,7 +26,7 @@ _COULOMB = DryFriction()
 PickupKind = Literal["motional_current", "sensing_patch", "none"]
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class PlateDrift:
     """How a plate's resonance departs from the predicted one, f0 (1 + offset + …).
@@ -66,22 +47,22 @@ class PlateDrift:
         InputError: a value outside its range.
     """
 
-    offset: Annotated[Dimensionless, Above(-0.5), Below(0.5)] = 0.0
-    ageing: Annotated[PerSecond, AtLeast(-1e-06), AtMost(1e-06)] = 0.0
+    offset: Annotated[si.Dimensionless, si.Above(-0.5), si.Below(0.5)] = 0.0
+    ageing: Annotated[PerSecond, si.AtLeast(-1e-06), si.AtMost(1e-06)] = 0.0
     temperature_coefficient: PerKelvin = -1e-4
-    ambient_swing: Annotated[Kelvin, AtLeast(0.0), AtMost(50.0)] = 1.0
-    ambient_period: Annotated[Second, AtLeast(1.0), AtMost(1000000.0)] = 3600.0
-    thermal_resistance: Annotated[KelvinPerWatt, AtLeast(0.0)] = 12.0
-    thermal_time: Annotated[Second, Above(0.0)] = 480.0
-    quality_factor_ratio: Annotated[Dimensionless, Above(0.0), AtMost(10.0)] = 1.0
+    ambient_swing: Annotated[si.Kelvin, si.AtLeast(0.0), si.AtMost(50.0)] = 1.0
+    ambient_period: Annotated[si.Second, si.AtLeast(1.0), si.AtMost(1000000.0)] = 3600.0
+    thermal_resistance: Annotated[KelvinPerWatt, si.AtLeast(0.0)] = 12.0
+    thermal_time: Annotated[si.Second, si.Above(0.0)] = 480.0
+    quality_factor_ratio: Annotated[si.Dimensionless, si.Above(0.0), si.AtMost(10.0)] = 1.0
     evidence: str = ASSUMED
 
     def __post_init__(self) -> None:
         coefficient = self.temperature_coefficient
-        require("temperature_coefficient", coefficient, Unit("1/K"), above=-1e-2, below=1e-2)
+        si.require("temperature_coefficient", coefficient, si.Unit("1/K"), above=-1e-2, below=1e-2)
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class Amplifier:
     """What an amplifier can give to the plate's capacitance and motional branch.
@@ -100,16 +81,16 @@ class Amplifier:
         InputError: a value outside its range.
     """
 
-    gain: Annotated[Dimensionless, Above(0.0), AtMost(1000.0)] = 1.0
-    highest_voltage: Annotated[Volt, Above(0.0)] = 400.0
-    highest_current: Annotated[Ampere, Above(0.0)] = 2.0
-    slew_rate: Annotated[VoltPerSecond, Above(0.0)] = 1e8
-    capacitance: Annotated[Farad, Above(0.0)] | None = None
-    loss_tangent: Annotated[Dimensionless, AtLeast(0.0)] = 0.02
+    gain: Annotated[si.Dimensionless, si.Above(0.0), si.AtMost(1000.0)] = 1.0
+    highest_voltage: Annotated[si.Volt, si.Above(0.0)] = 400.0
+    highest_current: Annotated[si.Ampere, si.Above(0.0)] = 2.0
+    slew_rate: Annotated[si.VoltPerSecond, si.Above(0.0)] = 1e8
+    capacitance: Annotated[si.Farad, si.Above(0.0)] | None = None
+    loss_tangent: Annotated[si.Dimensionless, si.AtLeast(0.0)] = 0.02
     evidence: str = ASSUMED
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class Arm:
     """The arm that leads the finger: mass, spring and damper between finger and wanted place.
@@ -123,13 +104,13 @@ class Arm:
         InputError: a value outside its range.
     """
 
-    mass: Annotated[Kilogram, Above(0.0)] = 0.1
-    stiffness: Annotated[NewtonPerMetre, Above(0.0)] = 500.0
-    damping: Annotated[NewtonSecondPerMetre, AtLeast(0.0)] = 12.0
+    mass: Annotated[si.Kilogram, si.Above(0.0)] = 0.1
+    stiffness: Annotated[si.NewtonPerMetre, si.Above(0.0)] = 500.0
+    damping: Annotated[si.NewtonSecondPerMetre, si.AtLeast(0.0)] = 12.0
     evidence: str = ASSUMED
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class PickupModel:
     """How the device hears the vibration, as an amplitude at its input.
@@ -148,14 +129,14 @@ class PickupModel:
     """
 
     kind: PickupKind = "motional_current"
-    shunt: Annotated[Ohm, Above(0.0)] = 10.0
-    sensitivity: Annotated[VoltPerMetre, Above(0.0)] = 5e5
-    feedthrough: Annotated[Dimensionless, AtLeast(0.0)] = 0.0
-    noise: Annotated[Volt, AtLeast(0.0)] = 1e-3
+    shunt: Annotated[si.Ohm, si.Above(0.0)] = 10.0
+    sensitivity: Annotated[VoltPerMetre, si.Above(0.0)] = 5e5
+    feedthrough: Annotated[si.Dimensionless, si.AtLeast(0.0)] = 0.0
+    noise: Annotated[si.Volt, si.AtLeast(0.0)] = 1e-3
     evidence: str = ASSUMED
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class TwinSettings:
     """Everything a twin assumes beyond the display's own description.
@@ -176,12 +157,12 @@ class TwinSettings:
         InputError: a value outside its range.
     """
 
-    seed: Annotated[int, AtLeast(0), Below(2**53)] = 1
-    tick: Annotated[Second, AtLeast(1e-05), AtMost(0.001)] = 100e-6
-    steps_per_tick: Annotated[int, AtLeast(1), AtMost(100)] = 2
-    truth_period: Second = 1e-3
-    truth_rows: Annotated[int, AtLeast(1)] = 200_000
-    highest_amplitude_ratio: Dimensionless = 2.0
+    seed: Annotated[int, si.AtLeast(0), si.Below(2**53)] = 1
+    tick: Annotated[si.Second, si.AtLeast(1e-05), si.AtMost(0.001)] = 100e-6
+    steps_per_tick: Annotated[int, si.AtLeast(1), si.AtMost(100)] = 2
+    truth_period: si.Second = 1e-3
+    truth_rows: Annotated[int, si.AtLeast(1)] = 200_000
+    highest_amplitude_ratio: si.Dimensionless = 2.0
     drift: PlateDrift = PlateDrift()
     amplifier: Amplifier = Amplifier()
     arm: Arm = Arm()
@@ -190,9 +171,9 @@ class TwinSettings:
     dry: DryFriction = _COULOMB
 
     def __post_init__(self) -> None:
-        require("truth_period", self.truth_period, Unit("s"), at_least=self.tick)
+        si.require("truth_period", self.truth_period, si.Unit("s"), at_least=self.tick)
         ratio = self.highest_amplitude_ratio
-        require("highest_amplitude_ratio", ratio, above=0.0, at_most=100.0)
+        si.require("highest_amplitude_ratio", ratio, above=0.0, at_most=100.0)
         if not _whole(self.tick * 1e6):
             raise InputError(f"tick = {self.tick:g} s must be a whole number of microseconds")
         if self.tick_us % self.steps_per_tick:

@@ -7,8 +7,8 @@ from typing import TextIO
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import FloatArray
 from squeezefilm.twin.plant_kernel import COLUMNS
 
 
@@ -33,7 +33,7 @@ class TruthRecord:
                 ) from error
             self._file.write(",".join(COLUMNS) + "\n")
 
-    def append(self, rows: FloatArray) -> None:
+    def append(self, rows: si.FloatArray) -> None:
         """Add rows, shape (n, columns)."""
         if self._file is not None:
             lines = (",".join(repr(float(v)) for v in row) for row in rows)
@@ -51,14 +51,14 @@ class TruthRecord:
         return self._written
 
     @property
-    def rows(self) -> FloatArray:
+    def rows(self) -> si.FloatArray:
         """The rows kept, oldest first, shape (n, columns); a copy."""
         size = self._rows.shape[0]
         if self._written <= size:
             return self._rows[: self._written].copy()
         return np.roll(self._rows, -(self._written % size), axis=0)
 
-    def column(self, name: str) -> FloatArray:
+    def column(self, name: str) -> si.FloatArray:
         """One column of the rows kept. Raises `InputError` for another name."""
         if name not in COLUMNS:
             raise InputError(f"the truth has no column '{name}'; it has {', '.join(COLUMNS)}")

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.chain.friction import FrictionLaw, friction_law
 from squeezefilm.chain.touch import load_ratios
 from squeezefilm.display import Display
@@ -15,25 +16,14 @@ from squeezefilm.errors import InputError, OutOfRangeError
 from squeezefilm.plate.beam.response import patch_capacitance
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.working_mode import WorkingMode, working_mode
-from squeezefilm.quantities import (
-    ComplexArray,
-    DimensionlessArray,
-    Farad,
-    FloatArray,
-    Metre,
-    NewtonArray,
-    NewtonPerVolt,
-    Unit,
-    format_quantity,
-)
 from squeezefilm.twin.settings import TwinSettings
 
 _log = logging.getLogger(__name__)
 
-FORCES: FloatArray = np.array([0.05, 0.1, 0.2, 0.35, 0.5, 0.7, 1.0, 1.5, 2.5, 5.0])
+FORCES: si.FloatArray = np.array([0.05, 0.1, 0.2, 0.35, 0.5, 0.7, 1.0, 1.5, 2.5, 5.0])
 """Normal forces (N) at which friction and load are tabulated; linear between, held beyond."""
 POINTS = 129
-OTHER_CAPACITANCE: Farad = 20e-9
+OTHER_CAPACITANCE: si.Farad = 20e-9
 """Where neither settings nor layout say (assumed)."""
 OTHER_COUPLING = 0.1
 """Effective coupling coefficient where the modal mass is not known (assumed)."""
@@ -57,16 +47,16 @@ class WorkingPoint:
 
     display: Display
     mode: WorkingMode
-    forces: NewtonArray
-    highest_amplitude: Metre
-    relative_friction: DimensionlessArray
-    load: ComplexArray
-    capacitance: Farad
-    force_factor: NewtonPerVolt
+    forces: si.NewtonArray
+    highest_amplitude: si.Metre
+    relative_friction: si.DimensionlessArray
+    load: si.ComplexArray
+    capacitance: si.Farad
+    force_factor: si.NewtonPerVolt
     evidence: tuple[str, ...]
 
     @property
-    def amplitudes(self) -> FloatArray:
+    def amplitudes(self) -> si.FloatArray:
         """Of the tables' columns (m)."""
         count = self.load.shape[1]
         return np.asarray(self.highest_amplitude * (np.arange(count) / (count - 1)) ** 2)
@@ -101,7 +91,7 @@ def working_point(
         capacitance = patch_capacitance(display.actuator)
     elif capacitance is None:
         capacitance = OTHER_CAPACITANCE
-        evidence.append(f"capacitance assumed: {format_quantity(capacitance, Unit('F'))}")
+        evidence.append(f"capacitance assumed: {si.format_quantity(capacitance, si.Unit('F'))}")
     omega = 2 * math.pi * mode.resonance_frequency
     if mode.modal_mass is not None:
         factor = mode.amplitude_per_volt * mode.modal_mass * omega**2 / mode.quality_factor
@@ -120,8 +110,8 @@ def working_point(
 
 
 def _tables(
-    display: Display, mode: WorkingMode, highest: Metre
-) -> tuple[Metre, DimensionlessArray, ComplexArray]:
+    display: Display, mode: WorkingMode, highest: si.Metre
+) -> tuple[si.Metre, si.DimensionlessArray, si.ComplexArray]:
     """Friction and load up to the amplitude (m) that can be solved, at most `highest`."""
     for _ in range(12):
         grid = highest * (np.arange(POINTS) / (POINTS - 1)) ** 2
@@ -136,7 +126,7 @@ def _tables(
             highest *= 0.7
     raise OutOfRangeError(
         f"no friction law could be tabulated for '{display.name}'; its gap closes at "
-        f"{format_quantity(highest, Unit('m'))} already"
+        f"{si.format_quantity(highest, si.Unit('m'))} already"
     )
 
 

@@ -8,13 +8,13 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from squeezefilm import presets
+from squeezefilm import quantities as si
 from squeezefilm.analysis.claims import contact as contact_claims
 from squeezefilm.analysis.claims.procedure import Design
 from squeezefilm.analysis.claims.prototype import PrototypeStudy, prototype_study
 from squeezefilm.analysis.claims.values import CLAIM_VALUES, ClaimValue, paper_design
 from squeezefilm.config import load
 from squeezefilm.errors import ConfigError
-from squeezefilm.quantities import did_you_mean
 from squeezefilm.results import stamp, to_json
 
 # Registers what it computes; named so that the import is no accident.
@@ -146,7 +146,8 @@ def reproduce(
             progress(f"claim {claim.id}")
         if claim.id not in CLAIM_VALUES:
             raise ConfigError(
-                f"nothing computes the claim '{claim.id}'.{did_you_mean(claim.id, CLAIM_VALUES)}",
+                "nothing computes the claim "
+                f"'{claim.id}'.{si.did_you_mean(claim.id, CLAIM_VALUES)}",
                 file=presets.claims_path(),
             )
         results.append(judge(claim, CLAIM_VALUES[claim.id]()))

@@ -12,6 +12,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
 
+from squeezefilm import quantities as si
 from squeezefilm.analysis.claims.values import ClaimValue, value_of
 from squeezefilm.contact.finger.fingertip import Finger
 from squeezefilm.contact.finger.skin import Skin
@@ -19,7 +20,6 @@ from squeezefilm.contact.sharing.balance import share_load
 from squeezefilm.contact.sharing.gas_table import film_table
 from squeezefilm.contact.sharing.tapping import tapping_friction
 from squeezefilm.materials import Gas
-from squeezefilm.quantities import Dimensionless, Hertz, Metre, Pascal
 
 
 def _evidence() -> Mapping[str, str]:
@@ -45,23 +45,23 @@ class FrozenContact:
 
     finger: Finger = field(default_factory=lambda: Finger(10e-3, 50e-6, 350e-6, 0.5))
     gas: Gas = field(default_factory=lambda: Gas(1.85e-5, 1e5, 1.2, 67e-9))
-    frequency: Hertz = 40.5e3
-    amplitude: Metre = 2e-6
-    roughness: Metre = 0.6e-6
-    plateau_pressure: Pascal = 5e3
+    frequency: si.Hertz = 40.5e3
+    amplitude: si.Metre = 2e-6
+    roughness: si.Metre = 0.6e-6
+    plateau_pressure: si.Pascal = 5e3
     evidence: Mapping[str, str] = field(default_factory=_evidence)
 
     def relative_friction(
         self,
         *,
-        frequency: Hertz | None = None,
-        amplitude: Metre | None = None,
-        roughness: Metre | None = None,
-        ambient_pressure: Pascal | None = None,
-        plateau_pressure: Pascal | None = None,
+        frequency: si.Hertz | None = None,
+        amplitude: si.Metre | None = None,
+        roughness: si.Metre | None = None,
+        ambient_pressure: si.Pascal | None = None,
+        plateau_pressure: si.Pascal | None = None,
         slip: str = "first",
         skin: Skin | None = None,
-    ) -> Dimensionless:
+    ) -> si.Dimensionless:
         """µ′/µ with what is given changed and all else as it is frozen."""
         gas = self.gas if ambient_pressure is None else self.gas.at_pressure(ambient_pressure)
         table = film_table(frequency or self.frequency, self.finger.plateau_width, gas, slip)

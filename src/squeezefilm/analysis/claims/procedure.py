@@ -12,6 +12,7 @@ from typing import Annotated
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.contact.sharing.paper import vibration_amplitude_for
 from squeezefilm.errors import InputError, UnreachableError
 from squeezefilm.film.gap import PaperGap, frequency_for_squeeze_number
@@ -21,25 +22,9 @@ from squeezefilm.plate.beam.modes import (
     timoshenko_frequency,
 )
 from squeezefilm.plate.laminate import Laminate
-from squeezefilm.quantities import (
-    Above,
-    AtLeast,
-    AtMost,
-    Dimensionless,
-    Hertz,
-    Metre,
-    MetreArray,
-    Newton,
-    Pascal,
-    PascalSecond,
-    SquareMetre,
-    Unit,
-    checked_numbers,
-    format_quantity,
-)
 
-MEAN_EXPLORED_AREA: SquareMetre = 28.18e-4
-LARGEST_EXPLORED_AREA: SquareMetre = 128.37e-4
+MEAN_EXPLORED_AREA: si.SquareMetre = 28.18e-4
+LARGEST_EXPLORED_AREA: si.SquareMetre = 128.37e-4
 PAPER_HALF_WAVELENGTHS = (7.5e-3, 10e-3, 12.5e-3, 15e-3)
 _NO_ASYMPTOTE_YET = (
     "σ ≥ 10 does not make the asymptote hold: there a smooth film reaches less than half of the "
@@ -47,7 +32,7 @@ _NO_ASYMPTOTE_YET = (
 )
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True)
 class Requirements:
     """What a display of the paper's kind must do. The defaults are the paper's.
@@ -57,14 +42,14 @@ class Requirements:
     `frequency_amplitude` and `roughness`.
     """
 
-    smallest_area: Annotated[SquareMetre, Above(0)] = MEAN_EXPLORED_AREA
-    largest_area: Annotated[SquareMetre, Above(0)] = LARGEST_EXPLORED_AREA
-    squeeze_number: Annotated[Dimensionless, Above(0)] = 10.0
-    frequency_amplitude: Annotated[Metre, Above(0)] = 3e-6
-    relative_friction: Annotated[Dimensionless, AtLeast(0), AtMost(1)] = 0.7
-    ceramic_length: Annotated[Metre, Above(0)] = 11e-3
-    ceramic_gap: Annotated[Metre, Above(0)] = 1e-3
-    width: Annotated[Metre, Above(0)] = 49e-3
+    smallest_area: Annotated[si.SquareMetre, si.Above(0)] = MEAN_EXPLORED_AREA
+    largest_area: Annotated[si.SquareMetre, si.Above(0)] = LARGEST_EXPLORED_AREA
+    squeeze_number: Annotated[si.Dimensionless, si.Above(0)] = 10.0
+    frequency_amplitude: Annotated[si.Metre, si.Above(0)] = 3e-6
+    relative_friction: Annotated[si.Dimensionless, si.AtLeast(0), si.AtMost(1)] = 0.7
+    ceramic_length: Annotated[si.Metre, si.Above(0)] = 11e-3
+    ceramic_gap: Annotated[si.Metre, si.Above(0)] = 1e-3
+    width: Annotated[si.Metre, si.Above(0)] = 49e-3
 
     def __post_init__(self) -> None:
         if self.smallest_area > self.largest_area:
@@ -79,29 +64,29 @@ class Design:
     amplitude up to 50 µm reaches the wanted friction.
     """
 
-    lowest_frequency: Hertz
-    longest_half_wavelength_euler: Metre
-    longest_half_wavelength_timoshenko: Metre
-    half_wavelengths: MetreArray
-    amplitudes: MetreArray
+    lowest_frequency: si.Hertz
+    longest_half_wavelength_euler: si.Metre
+    longest_half_wavelength_timoshenko: si.Metre
+    half_wavelengths: si.MetreArray
+    amplitudes: si.MetreArray
     ceramics: int
-    length: Metre
-    width: Metre
-    area: SquareMetre
+    length: si.Metre
+    width: si.Metre
+    area: si.SquareMetre
     nodal_lines: int
-    half_wavelength: Metre
-    resonance_frequency: Hertz
-    required_amplitude: Metre
+    half_wavelength: si.Metre
+    resonance_frequency: si.Hertz
+    required_amplitude: si.Metre
     contradictions: tuple[str, ...]
 
 
 def friction_criterion(
     gap: PaperGap,
-    half_wavelengths: MetreArray | tuple[float, ...],
-    relative_friction: Dimensionless,
-    normal_force: Newton,
-    ambient_pressure: Pascal,
-) -> MetreArray:
+    half_wavelengths: si.MetreArray | tuple[float, ...],
+    relative_friction: si.Dimensionless,
+    normal_force: si.Newton,
+    ambient_pressure: si.Pascal,
+) -> si.MetreArray:
     """The amplitude (m, zero-to-peak) that reaches a relative friction at each half wavelength (m).
 
     The paper's Fig 11; NaN where it is out of reach, see
@@ -129,9 +114,9 @@ def friction_criterion(
 def design_plate(
     section: Laminate,
     gap: PaperGap,
-    viscosity: PascalSecond,
-    ambient_pressure: Pascal,
-    normal_force: Newton,
+    viscosity: si.PascalSecond,
+    ambient_pressure: si.Pascal,
+    normal_force: si.Newton,
     requirements: Requirements | None = None,
 ) -> Design:
     """The plate that the paper's procedure leads to, for one laminate and one finger.
@@ -188,7 +173,7 @@ def design_plate(
     )
 
 
-def _against_division(length: Metre, lines: int, half: Metre) -> str:
+def _against_division(length: si.Metre, lines: int, half: si.Metre) -> str:
     """That a free plate's half wavelength is not its length over its nodal lines."""
     return (
         f"a free plate of {length * 1e3:.4g} mm with {lines} nodal lines has λ/2 = "
@@ -196,7 +181,7 @@ def _against_division(length: Metre, lines: int, half: Metre) -> str:
     )
 
 
-def _against_rising(halves: MetreArray, amplitudes: MetreArray) -> str:
+def _against_rising(halves: si.MetreArray, amplitudes: si.MetreArray) -> str:
     """How the amplitude of the friction criterion goes with the half wavelength."""
     falling = bool(np.all(np.diff(amplitudes[np.argsort(halves)]) < 0))
     return (
@@ -209,7 +194,7 @@ def _against_rising(halves: MetreArray, amplitudes: MetreArray) -> str:
     )
 
 
-def _ceramics(wants: Requirements) -> tuple[int, Metre]:
+def _ceramics(wants: Requirements) -> tuple[int, si.Metre]:
     """The number of ceramics, and the plate's length (m); `InputError` for too large a plate."""
     pitch = wants.ceramic_length + wants.ceramic_gap
     ceramics = math.ceil((wants.smallest_area / wants.width + wants.ceramic_gap) / pitch)
@@ -219,18 +204,18 @@ def _ceramics(wants: Requirements) -> tuple[int, Metre]:
     area = length * wants.width
     if area > wants.largest_area:
         raise InputError(
-            f"{ceramics} ceramics of {format_quantity(wants.ceramic_length, Unit('m'))} make a "
-            f"plate of {area * 1e4:.4g} cm2, above the largest explored area of "
+            f"{ceramics} ceramics of {si.format_quantity(wants.ceramic_length, si.Unit('m'))} make "
+            f"a plate of {area * 1e4:.4g} cm2, above the largest explored area of "
             f"{wants.largest_area * 1e4:.4g} cm2; use fewer, shorter or narrower ones"
         )
     return ceramics, length
 
 
-def _list(values: MetreArray, scale: float = 1e6) -> str:
+def _list(values: si.MetreArray, scale: float = 1e6) -> str:
     return "/".join(f"{value * scale:.3g}" for value in values)
 
 
-def _timoshenko_half_wavelength(frequency: Hertz, section: Laminate) -> Metre:
+def _timoshenko_half_wavelength(frequency: si.Hertz, section: Laminate) -> si.Metre:
     from scipy.optimize import brentq
 
     thickness = sum(layer.thickness for layer in section.layers)

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.analysis.plate.sensitivity import (
     SensitivityTable,
     WorkingPoint,
@@ -29,22 +30,21 @@ from squeezefilm.display import load_display
 from squeezefilm.errors import SqueezefilmError
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.progress import SayProgress
-from squeezefilm.quantities import Dimensionless, Hertz, Metre, Unit, Volt, format_quantity
 
-MODAL_FREQUENCY: Hertz = 35.6e3  # section 3.1.3, Fig 13
-HARMONIC_FREQUENCY: Hertz = 34.77e3  # section 3.1.3, Fig 14
-HARMONIC_AMPLITUDE: Metre = 3.2e-6
-MEASURED_FREQUENCY: Hertz = 30.5e3  # section 3.2.1
-MEASURED_AMPLITUDE: Metre = 1.15e-6
-DRIVE_VOLTAGE: Volt = 15.0
+MODAL_FREQUENCY: si.Hertz = 35.6e3  # section 3.1.3, Fig 13
+HARMONIC_FREQUENCY: si.Hertz = 34.77e3  # section 3.1.3, Fig 14
+HARMONIC_AMPLITUDE: si.Metre = 3.2e-6
+MEASURED_FREQUENCY: si.Hertz = 30.5e3  # section 3.2.1
+MEASURED_AMPLITUDE: si.Metre = 1.15e-6
+DRIVE_VOLTAGE: si.Volt = 15.0
 
 NEIGHBOURS = ((6, 0), (7, 0), (9, 0))
 
 # How well each could be measured: a resonance of Q 60 to a tenth of its half-power width, an
 # amplitude with a vibrometer at a known point, a quality factor from that width.
-RATIO_ACCURACY: Dimensionless = 0.002
-OPEN_ACCURACY: Dimensionless = 0.002
-AMPLITUDE_ACCURACY: Dimensionless = 0.1
+RATIO_ACCURACY: si.Dimensionless = 0.002
+OPEN_ACCURACY: si.Dimensionless = 0.002
+AMPLITUDE_ACCURACY: si.Dimensionless = 0.1
 
 
 @dataclass(frozen=True)
@@ -61,15 +61,15 @@ class Explanation:
     name: str
     free: str
     value: str
-    frequency: Hertz
+    frequency: si.Hertz
     neighbour_ratios: tuple[float, ...]
-    open_shift: Dimensionless
-    amplitude: Metre
-    quality_factor: Dimensionless
-    quality_factor_for_measured: Dimensionless
+    open_shift: si.Dimensionless
+    amplitude: si.Metre
+    quality_factor: si.Dimensionless
+    quality_factor_for_measured: si.Dimensionless
 
     @property
-    def amplitude_for_q_60(self) -> Metre:
+    def amplitude_for_q_60(self) -> si.Metre:
         """The amplitude at 15 V if the whole had a quality factor of 60: what an amplitude tells
         once Q is measured too."""
         return self.amplitude * 60 / self.quality_factor
@@ -132,7 +132,7 @@ def _softer(plate: RectangularPlate, value: float) -> RectangularPlate:
 _Make = Callable[[RectangularPlate, float], RectangularPlate]
 
 
-def _glued(thickness: Metre) -> _Make:
+def _glued(thickness: si.Metre) -> _Make:
     return lambda plate, value: with_glue(plate, thickness, value)
 
 
@@ -198,7 +198,7 @@ def _explained(
         working_point(solved, label, amplitude=False).frequency / point.frequency
         for label in NEIGHBOURS
     )
-    text = f"{root:.3f}" if unit == "1" else format_quantity(root, Unit(unit), 3)
+    text = f"{root:.3f}" if unit == "1" else si.format_quantity(root, si.Unit(unit), 3)
     text = f"{root:.0f} {unit}" if unit == "kg/m3" else text
     return Explanation(
         name,

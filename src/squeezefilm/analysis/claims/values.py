@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.analysis.claims.procedure import (
     PAPER_HALF_WAVELENGTHS,
     Design,
@@ -42,10 +43,9 @@ from squeezefilm.plate.beam.modes import euler_bernoulli_half_wavelength, timosh
 from squeezefilm.plate.beam.response import beam_response
 from squeezefilm.plate.laminate import Laminate, plate_laminate
 from squeezefilm.plate.layout import AnnularStator, RectangularPlate
-from squeezefilm.quantities import Metre
 
-PRINTED_HALF_WAVELENGTH: Metre = 10.37e-3
-PRINTED_WIDTH: Metre = 50e-3  # section 3.1.1 chooses b = 50 mm, section 3.1.2 ends at 49 mm
+PRINTED_HALF_WAVELENGTH: si.Metre = 10.37e-3
+PRINTED_WIDTH: si.Metre = 50e-3  # section 3.1.1 chooses b = 50 mm, section 3.1.2 ends at 49 mm
 
 
 @dataclass(frozen=True)
@@ -88,7 +88,9 @@ def _plate() -> RectangularPlate:
     return actuator
 
 
-def _gap(amplitude: Metre, roughness: Metre = 0.6e-6, half_wavelength: Metre = 9.35e-3) -> PaperGap:
+def _gap(
+    amplitude: si.Metre, roughness: si.Metre = 0.6e-6, half_wavelength: si.Metre = 9.35e-3
+) -> PaperGap:
     display = _stator()
     surface = dataclasses.replace(display.surface(), roughness=roughness)
     law = friction_law(display, half_wavelength, 40.5e3, surface=surface, model="paper2008")

@@ -9,6 +9,7 @@ from typing import Annotated, Any, ClassVar
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.film.periodic.film import solve_disc, solve_profile, solve_strip
 from squeezefilm.film.periodic.profile import GapFunction, GapProfile
@@ -17,32 +18,26 @@ from squeezefilm.film.planar.film import FilmPlanar, solve_ellipse, solve_rectan
 from squeezefilm.film.records import FilmGas
 from squeezefilm.from_text import reads_text
 from squeezefilm.hard_limits import ASPECT
-from squeezefilm.quantities import (
-    Dimensionless,
-    DimensionlessArray,
-    checked_numbers,
-    require_one_of,
-)
 from squeezefilm.results import Result, stamp, to_json
 
 SHAPES = ("strip", "disc", "rectangle", "ellipse")
 _LINES = ("strip", "disc")
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True)
 class FilmRequest:
     """A film of plain shape and uniform gap H = 1 + ε cos T; `tolerance` is relative, on W − 1."""
 
     shape: str = "strip"
-    aspect_ratio: Annotated[Dimensionless, ASPECT] = 1.0
-    polytropic_exponent: Dimensionless = 1.0
-    knudsen_number: Dimensionless = 0.0
+    aspect_ratio: Annotated[si.Dimensionless, ASPECT] = 1.0
+    polytropic_exponent: si.Dimensionless = 1.0
+    knudsen_number: si.Dimensionless = 0.0
     slip: str = "first"
-    tolerance: Dimensionless = 1e-3
+    tolerance: si.Dimensionless = 1e-3
 
     def __post_init__(self) -> None:
-        require_one_of("shape", self.shape, SHAPES)
+        si.require_one_of("shape", self.shape, SHAPES)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -52,14 +47,14 @@ class FilmAnswer(Result):
 
     `film` has its pressure at every place and time."""
 
-    squeeze_number: Dimensionless
-    excursion_ratio: Dimensionless
+    squeeze_number: si.Dimensionless
+    excursion_ratio: si.Dimensionless
     request: FilmRequest
-    mean_load: Dimensionless
-    over_pressure: Dimensionless
-    over_pressure_error: Dimensionless
-    stiffness_relative: Dimensionless
-    damping_relative: Dimensionless
+    mean_load: si.Dimensionless
+    over_pressure: si.Dimensionless
+    over_pressure_error: si.Dimensionless
+    stiffness_relative: si.Dimensionless
+    damping_relative: si.Dimensionless
     iterations: int
     residual: float
     status: str
@@ -90,12 +85,12 @@ class FilmMap:
     """Over-pressure, its error and the force's first harmonic over σ (rows) and ε (columns)."""
 
     request: FilmRequest
-    squeeze_number: DimensionlessArray
-    excursion_ratio: DimensionlessArray
-    over_pressure: DimensionlessArray
-    over_pressure_error: DimensionlessArray
-    stiffness_relative: DimensionlessArray
-    damping_relative: DimensionlessArray
+    squeeze_number: si.DimensionlessArray
+    excursion_ratio: si.DimensionlessArray
+    over_pressure: si.DimensionlessArray
+    over_pressure_error: si.DimensionlessArray
+    stiffness_relative: si.DimensionlessArray
+    damping_relative: si.DimensionlessArray
     model: str
 
     def summary(self) -> dict[str, Any]:
@@ -105,15 +100,15 @@ class FilmMap:
 
 @reads_text
 def solve_film(
-    squeeze_number: Dimensionless,
-    gap: Dimensionless | GapProfile | GapFunction,
+    squeeze_number: si.Dimensionless,
+    gap: si.Dimensionless | GapProfile | GapFunction,
     *,
     shape: str = "strip",
-    aspect_ratio: Dimensionless = 1.0,
-    polytropic_exponent: Dimensionless = 1.0,
-    knudsen_number: Dimensionless = 0.0,
+    aspect_ratio: si.Dimensionless = 1.0,
+    polytropic_exponent: si.Dimensionless = 1.0,
+    knudsen_number: si.Dimensionless = 0.0,
     slip: str = "first",
-    tolerance: Dimensionless = 1e-3,
+    tolerance: si.Dimensionless = 1e-3,
 ) -> FilmAnswer:
     """One film. σ is on the width of a strip, the radius of a disc, the X side of a rectangle or
     the X semi-axis of an ellipse.
@@ -152,7 +147,10 @@ def solve_film(
 
 
 def _answer(
-    film: FilmSolution | FilmPlanar, excursion: Dimensionless, request: FilmRequest, own: str = ""
+    film: FilmSolution | FilmPlanar,
+    excursion: si.Dimensionless,
+    request: FilmRequest,
+    own: str = "",
 ) -> FilmAnswer:
     return FilmAnswer(
         squeeze_number=film.squeeze_number,

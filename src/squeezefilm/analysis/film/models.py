@@ -6,19 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.chain.friction import FrictionLaw, friction_law
 from squeezefilm.chain.prediction import Prediction
 from squeezefilm.contact.sharing.film_load import DESCRIPTIONS, FILM_MODELS, FilmModel, is_still
 from squeezefilm.display import Display
 from squeezefilm.errors import SqueezefilmError
 from squeezefilm.plate.layout import AnnularStator
-from squeezefilm.quantities import (
-    Dimensionless,
-    DimensionlessArray,
-    Metre,
-    MetreArray,
-    Pascal,
-)
 
 
 @dataclass(frozen=True)
@@ -28,10 +22,10 @@ class FilmResult:
 
     model: FilmModel
     description: str
-    over_pressure: Dimensionless
-    over_pressure_error: Dimensionless
-    load_share: Dimensionless
-    relative_friction: Dimensionless
+    over_pressure: si.Dimensionless
+    over_pressure_error: si.Dimensionless
+    load_share: si.Dimensionless
+    relative_friction: si.Dimensionless
     status: str
 
 
@@ -40,8 +34,8 @@ class FilmCurve:
     """The share of the load that one film would carry against the vibration amplitude."""
 
     model: FilmModel
-    amplitude: MetreArray
-    load_share: DimensionlessArray
+    amplitude: si.MetreArray
+    load_share: si.DimensionlessArray
 
 
 @dataclass(frozen=True)
@@ -49,11 +43,11 @@ class ToothResult:
     """Whether a toothed surface matters: over-pressure over ambient on a toothed and on a
     continuous surface, for the paper's ridges and for a plateau."""
 
-    tooth_pitch: Metre
-    slot_width: Metre
-    continuous: Dimensionless
-    toothed: Dimensionless
-    ratio: Dimensionless
+    tooth_pitch: si.Metre
+    slot_width: si.Metre
+    continuous: si.Dimensionless
+    toothed: si.Dimensionless
+    ratio: si.Dimensionless
     sentence: str
 
 
@@ -61,10 +55,10 @@ class ToothResult:
 class PlateauBalance:
     """The mean gap at which plateaus of the film at an antinode carry the finger alone."""
 
-    mean_gap: Metre
-    mean_gap_error: Metre
-    least_gap: Metre
-    plateau_pressure: Pascal
+    mean_gap: si.Metre
+    mean_gap_error: si.Metre
+    least_gap: si.Metre
+    plateau_pressure: si.Pascal
     sentence: str
 
 
@@ -127,7 +121,7 @@ def compare_film_models(display: Display, prediction: Prediction) -> FilmCompari
 
 
 def _result(
-    law: FrictionLaw, model: FilmModel, amplitude: Metre, pressure: Dimensionless
+    law: FrictionLaw, model: FilmModel, amplitude: si.Metre, pressure: si.Dimensionless
 ) -> FilmResult:
     """One film at one amplitude; NaN with the reason where it cannot be solved, so that the others
     can still be compared."""

@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.analysis.friction.models import ModelCurve, model_curves
 from squeezefilm.analysis.uncertainty import UncertainFriction, uncertain_friction
 from squeezefilm.arguments import called_with
@@ -19,21 +20,9 @@ from squeezefilm.display import Display, NamedDisplay
 from squeezefilm.errors import OutOfRangeError
 from squeezefilm.from_text import reads_text
 from squeezefilm.progress import SayProgress
-from squeezefilm.quantities import (
-    Dimensionless,
-    DimensionlessArray,
-    Hertz,
-    Metre,
-    MetreArray,
-    MetrePerSecond,
-    Newton,
-    NewtonArray,
-    Pascal,
-    Volt,
-)
 from squeezefilm.results import Result, stamp, to_json
 
-EXPLORING_SPEED: MetrePerSecond = 0.08
+EXPLORING_SPEED: si.MetrePerSecond = 0.08
 """Between 77 and 86 mm/s: Smith, Gosselin and Houde 2002, 10.1007/s00221-002-1240-4."""
 
 
@@ -44,9 +33,9 @@ class FrictionMap:
     NaN where the asperities are pressed through.
     """
 
-    amplitude: MetreArray
-    normal_force: NewtonArray
-    relative_friction: DimensionlessArray
+    amplitude: si.MetreArray
+    normal_force: si.NewtonArray
+    relative_friction: si.DimensionlessArray
     model: str
 
 
@@ -54,9 +43,9 @@ class FrictionMap:
 class Wanted:
     """What a wanted friction takes: amplitude with the finger on it (m) and voltage (V)."""
 
-    relative_friction: Dimensionless
-    vibration_amplitude: Metre
-    voltage: Volt
+    relative_friction: si.Dimensionless
+    vibration_amplitude: si.Metre
+    voltage: si.Volt
 
 
 @dataclass(frozen=True)
@@ -64,8 +53,8 @@ class Tapping:
     """What the competing mechanism alone would leave: intermittent contact without gas, for a
     finger speed (m/s). It needs sliding, and fades with speed; partial levitation does not."""
 
-    speed: MetrePerSecond
-    relative_friction: Dimensionless
+    speed: si.MetrePerSecond
+    relative_friction: si.Dimensionless
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -148,16 +137,16 @@ class FrictionRequest:
 
     display: NamedDisplay
     _: KW_ONLY
-    voltage: Volt | None = None
-    frequency: Hertz | None = None
-    vibration_amplitude: Metre | None = None
-    normal_force: Newton | None = None
+    voltage: si.Volt | None = None
+    frequency: si.Hertz | None = None
+    vibration_amplitude: si.Metre | None = None
+    normal_force: si.Newton | None = None
     surface: str | None = None
     model: FrictionModel | None = None
-    position: Metre = 0.0
-    speed: MetrePerSecond = EXPLORING_SPEED
-    ambient_pressure: Pascal | None = None
-    wanted_friction: Dimensionless | None = None
+    position: si.Metre = 0.0
+    speed: si.MetrePerSecond = EXPLORING_SPEED
+    ambient_pressure: si.Pascal | None = None
+    wanted_friction: si.Dimensionless | None = None
     samples: int = 64
     seed: int = 1
     points: int = 40

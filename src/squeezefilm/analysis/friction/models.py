@@ -6,11 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.chain.friction import FrictionModel, friction_law, shares_load
 from squeezefilm.chain.prediction import Prediction
 from squeezefilm.display import Display
 from squeezefilm.errors import SqueezefilmError
-from squeezefilm.quantities import Dimensionless, DimensionlessArray, Metre, MetreArray
 
 # The paper's model, the films of the paper's gap, and what shares the load; the cheap ones finely.
 COMPARED: tuple[tuple[FrictionModel, int], ...] = (
@@ -27,10 +27,10 @@ class ModelCurve:
     """µ′/µ against vibration amplitude by one model; NaN beyond what it can do."""
 
     model: FrictionModel
-    amplitude: MetreArray
-    relative_friction: DimensionlessArray
+    amplitude: si.MetreArray
+    relative_friction: si.DimensionlessArray
 
-    def at(self, amplitude: Metre) -> Dimensionless | None:
+    def at(self, amplitude: si.Metre) -> si.Dimensionless | None:
         """µ′/µ at an amplitude (m) by linear interpolation; None beyond the curve."""
         if not self.amplitude[0] <= amplitude <= self.amplitude[-1]:
             return None

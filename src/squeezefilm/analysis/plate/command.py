@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.analysis.plate.sensitivity import SensitivityTable, plate_sensitivity
 from squeezefilm.analysis.plate.tracking import (
     ModeTracks,
@@ -33,18 +34,6 @@ from squeezefilm.plate.solid.response import HarmonicResponse, harmonic_response
 from squeezefilm.plate.solid.solve import solve_modes
 from squeezefilm.plate.sound import SoundField, rectangular_surface, sound_field
 from squeezefilm.progress import SayProgress
-from squeezefilm.quantities import (
-    ComplexArray,
-    Dimensionless,
-    FloatArray,
-    Hertz,
-    HertzArray,
-    Metre,
-    MetreArray,
-    MetrePerVolt,
-    Unit,
-    format_quantity,
-)
 from squeezefilm.results import Result, stamp, to_json
 
 
@@ -55,13 +44,13 @@ class ModeRow:
     alone, effective coupling, modal force (N/V for unit modal mass)."""
 
     label: str
-    frequency: Hertz
-    frequency_error: Hertz
-    quality_factor: Dimensionless
-    amplitude_per_volt: MetrePerVolt
-    coupling: Dimensionless
+    frequency: si.Hertz
+    frequency_error: si.Hertz
+    quality_factor: si.Dimensionless
+    amplitude_per_volt: si.MetrePerVolt
+    coupling: si.Dimensionless
     modal_force: float
-    half_wavelength: Metre | None
+    half_wavelength: si.Metre | None
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -76,12 +65,12 @@ class PlateAnalysis(Result):
     rows: tuple[ModeRow, ...]
     working: ModeRow
     response: HarmonicResponse
-    amplitude_per_volt: MetrePerVolt
-    centreline_per_volt: MetrePerVolt
+    amplitude_per_volt: si.MetrePerVolt
+    centreline_per_volt: si.MetrePerVolt
     circuit: EquivalentCircuit | None
-    beam_frequency: Hertz
-    beam_amplitude_per_volt: MetrePerVolt
-    shear_frequency: Hertz | None
+    beam_frequency: si.Hertz
+    beam_amplitude_per_volt: si.MetrePerVolt
+    shear_frequency: si.Hertz | None
     sound: SoundField
     sensitivities: SensitivityTable | None = None
     tracks: ModeTracks | None = None
@@ -158,7 +147,7 @@ def analyze_plate(
     display: Display,
     *,
     mode: tuple[int, int] | None = None,
-    band: tuple[Hertz, Hertz] | None = None,
+    band: tuple[si.Hertz, si.Hertz] | None = None,
     points: int = 200,
     sensitivity: bool = False,
     track: TrackRequest | None = None,
@@ -232,7 +221,9 @@ def _driven_plate(display: Display) -> RectangularPlate:
     return plate
 
 
-def sweep_around(frequency: Hertz, quality_factor: Dimensionless, points: int) -> HertzArray:
+def sweep_around(
+    frequency: si.Hertz, quality_factor: si.Dimensionless, points: int
+) -> si.HertzArray:
     """Frequencies (Hz) over ±4/Q about a resonance, 1 % at the least, shape (points,).
 
     They are dense near the peak, where the curve turns within f/Q.
@@ -244,7 +235,7 @@ def sweep_around(frequency: Hertz, quality_factor: Dimensionless, points: int) -
 
 def _centreline_per_volt(
     response: HarmonicResponse, alone: PlateModes, label: tuple[int, int]
-) -> MetrePerVolt:
+) -> si.MetrePerVolt:
     """The largest amplitude on the centre line at resonance, between the mode's outer nodes."""
     x, line = centre_scan(response, response.resonance, label)
     nodes = zero_crossings(x, centre_profile(alone.shapes[alone.index(label)], alone, x, label))
@@ -252,7 +243,7 @@ def _centreline_per_volt(
     return float(np.max(np.abs(line)[inside]))
 
 
-def _sound(display: Display, response: HarmonicResponse, frequency: Hertz) -> SoundField:
+def _sound(display: Display, response: HarmonicResponse, frequency: si.Hertz) -> SoundField:
     """The sound of the plate's face alone, in a baffle, at the display's voltage."""
     plate = response.plate
     x, y = np.linspace(0, plate.length, 84), np.linspace(0, plate.width, 50)
@@ -267,7 +258,7 @@ def scan_axis(label: tuple[int, int]) -> int:
 
 def centre_scan(
     response: HarmonicResponse, at: int, label: tuple[int, int], points: int = 201
-) -> tuple[MetreArray, ComplexArray]:
+) -> tuple[si.MetreArray, si.ComplexArray]:
     """Position and w per volt (m/V) at frequency number `at` along the middle of the plate, across
     the nodal lines of the mode."""
     plate = response.plate
@@ -278,15 +269,17 @@ def centre_scan(
 
 
 def centre_profile(
-    shape: FloatArray, modes: PlateModes, position: MetreArray, label: tuple[int, int]
-) -> FloatArray:
+    shape: si.FloatArray, modes: PlateModes, position: si.MetreArray, label: tuple[int, int]
+) -> si.FloatArray:
     """The profile of a mode's shape across its nodal lines, at `position` (m)."""
     axis = scan_axis(label)
     own = (modes.x, modes.y)[axis]
     return np.asarray(np.interp(position, own, profiles(shape)[axis]))
 
 
-def _shear_frequency(plate: RectangularPlate, label: tuple[int, int], near: Hertz) -> Hertz | None:
+def _shear_frequency(
+    plate: RectangularPlate, label: tuple[int, int], near: si.Hertz
+) -> si.Hertz | None:
     """The same mode by the screening model; None where it has no such mode nearby."""
     try:
         return shear_mode(plate, label, near).frequency
@@ -311,17 +304,17 @@ def _row(modes: PlateModes, index: int) -> ModeRow:
     )
 
 
-def parse_band(text: str) -> tuple[Hertz, Hertz]:
+def parse_band(text: str) -> tuple[si.Hertz, si.Hertz]:
     """A band from text such as ``"25 kHz:45 kHz"``. Raises `InputError` for anything else."""
     from squeezefilm.quantities import parse_quantity
 
     parts = text.split(":")
     if len(parts) != 2:
         raise InputError(f"--band '{text}' is no band; write two frequencies: 25 kHz:45 kHz")
-    low, high = (parse_quantity(part.strip(), Unit("Hz")) for part in parts)
+    low, high = (parse_quantity(part.strip(), si.Unit("Hz")) for part in parts)
     if low >= high:
         raise InputError(
-            f"--band runs from {format_quantity(low, Unit('Hz'))} down to "
-            f"{format_quantity(high, Unit('Hz'))}; write the lower frequency first"
+            f"--band runs from {si.format_quantity(low, si.Unit('Hz'))} down to "
+            f"{si.format_quantity(high, si.Unit('Hz'))}; write the lower frequency first"
         )
     return low, high

@@ -7,6 +7,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.analysis.plate.command import ModeRow, sound_summary, sweep_around
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError
@@ -30,15 +31,6 @@ from squeezefilm.plate.ring.response import (
 from squeezefilm.plate.solid.modes import check_band
 from squeezefilm.plate.sound import SoundField, ring_surface, sound_field
 from squeezefilm.progress import SayProgress
-from squeezefilm.quantities import (
-    Farad,
-    Hertz,
-    Metre,
-    MetreArray,
-    MetrePerVolt,
-    Unit,
-    format_quantity,
-)
 from squeezefilm.results import Result, stamp, to_json
 
 _MOST_HARMONICS = 60
@@ -60,23 +52,23 @@ class RingAnalysis(Result):
     mode: AnnularMode
     working: ModeRow
     half_wavelength_along: Direction
-    circles: MetreArray
+    circles: si.MetreArray
     response: RingResponse
     circuit: EquivalentCircuit | None
     sound: SoundField
-    described_amplitude_per_volt: MetrePerVolt | None
+    described_amplitude_per_volt: si.MetrePerVolt | None
     _shown: ClassVar[str] = (
         "display.name working.label working.frequency working.quality_factor amplitude_per_volt "
         "model"
     )
 
     @property
-    def amplitude_per_volt(self) -> MetrePerVolt:
+    def amplitude_per_volt(self) -> si.MetrePerVolt:
         """At the surface's highest antinode, at resonance."""
         return float(self.response.maximum[self.response.resonance])
 
     @property
-    def centreline_per_volt(self) -> MetrePerVolt:
+    def centreline_per_volt(self) -> si.MetrePerVolt:
         """At an antinode of the mean circumference; without nodal diameters in the middle lobe."""
         w = np.abs(self.response.motion[self.response.resonance])
         if self.mode.harmonic:
@@ -85,7 +77,7 @@ class RingAnalysis(Result):
         return float(np.max(w[self.response.radius <= first]))
 
     @property
-    def scan_radius(self) -> Metre:
+    def scan_radius(self) -> si.Metre:
         """Where the scan around is taken: the mean radius of the surface."""
         return float(np.mean(self.body.section.surface_radii))
 
@@ -153,7 +145,7 @@ def analyze_ring(
     display: Display,
     *,
     mode: tuple[int, int] | None = None,
-    band: tuple[Hertz, Hertz] | None = None,
+    band: tuple[si.Hertz, si.Hertz] | None = None,
     points: int = 200,
     progress: SayProgress | None = None,
 ) -> RingAnalysis:
@@ -204,7 +196,7 @@ def analyze_ring(
     )
 
 
-def mode_row(body: RingBody, mode: AnnularMode, capacitance: Farad) -> ModeRow:
+def mode_row(body: RingBody, mode: AnnularMode, capacitance: si.Farad) -> ModeRow:
     """One line of the table of modes; the modal force is that of unit modal mass (N/(V √kg)).
 
     The amplitude is that of u_z on the surface, which modes in the plane hardly move; the coupling
@@ -224,7 +216,7 @@ def mode_row(body: RingBody, mode: AnnularMode, capacitance: Farad) -> ModeRow:
 
 
 def modes_in_band(
-    body: RingBody, band: tuple[Hertz, Hertz], progress: SayProgress | None = None
+    body: RingBody, band: tuple[si.Hertz, si.Hertz], progress: SayProgress | None = None
 ) -> tuple[AnnularMode, ...]:
     """All elastic modes of a body in a band (Hz), rising; each stands for its two orientations.
 
@@ -255,10 +247,10 @@ def modes_in_band(
         if m > body.label[1] and all(x.frequency > high for x in modes):
             break
     if not found:
-        hertz = Unit("Hz")
+        hertz = si.Unit("Hz")
         raise InputError(
-            f"no mode lies between {format_quantity(low, hertz)} and "
-            f"{format_quantity(high, hertz)}; widen the band, or leave it out for the modes "
+            f"no mode lies between {si.format_quantity(low, hertz)} and "
+            f"{si.format_quantity(high, hertz)}; widen the band, or leave it out for the modes "
             "around the working mode",
             quantity="band",
         )

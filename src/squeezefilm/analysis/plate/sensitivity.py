@@ -14,6 +14,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.materials import Piezoceramic
 from squeezefilm.plate.layout import GlueLayer, RectangularPlate
@@ -22,22 +23,13 @@ from squeezefilm.plate.solid.response import harmonic_response
 from squeezefilm.plate.solid.solve import solve_modes
 from squeezefilm.plate.solid.symmetry import drive_signs
 from squeezefilm.progress import SayProgress
-from squeezefilm.quantities import (
-    Dimensionless,
-    Hertz,
-    Metre,
-    MetrePerVolt,
-    Pascal,
-    Unit,
-    format_quantity,
-)
 
 Quantity = Literal["frequency", "amplitude"]
 
 # Less alike than this (modal assurance criterion) is another mode under the same label.
 _ALIKE = 0.6
 _POINTS = 61
-LOSSLESS: Dimensionless = 1e5
+LOSSLESS: si.Dimensionless = 1e5
 """The quality factor that stands for a substrate without losses of its own."""
 
 
@@ -48,11 +40,11 @@ class WorkingPoint:
     factor, and the frequency with the drive's terminals open."""
 
     label: Label
-    frequency: Hertz
-    frequency_error: Hertz
-    amplitude_per_volt: MetrePerVolt | None
-    quality_factor: Dimensionless
-    open_frequency: Hertz
+    frequency: si.Hertz
+    frequency_error: si.Hertz
+    amplitude_per_volt: si.MetrePerVolt | None
+    quality_factor: si.Dimensionless
+    open_frequency: si.Hertz
 
 
 @dataclass(frozen=True)
@@ -73,11 +65,11 @@ class Sensitivity:
 
     name: str
     change: str
-    frequency: Hertz
-    frequency_shift: Dimensionless
-    amplitude_per_volt: MetrePerVolt | None
-    amplitude_shift: Dimensionless | None
-    likeness: Dimensionless
+    frequency: si.Hertz
+    frequency_shift: si.Dimensionless
+    amplitude_per_volt: si.MetrePerVolt | None
+    amplitude_shift: si.Dimensionless | None
+    likeness: si.Dimensionless
 
 
 @dataclass(frozen=True)
@@ -95,7 +87,9 @@ def _solved(plate: RectangularPlate, label: Label) -> PlateModes:
 
 
 @functools.lru_cache(maxsize=256)
-def _amplitude(plate: RectangularPlate, frequency: Hertz, quality: Dimensionless) -> MetrePerVolt:
+def _amplitude(
+    plate: RectangularPlate, frequency: si.Hertz, quality: si.Dimensionless
+) -> si.MetrePerVolt:
     # Dense near the peak, where the curve turns within f/Q; the harmonic mesh is another one, so
     # the peak need not lie at the middle exactly.
     near = np.sinh(np.linspace(-3, 3, _POINTS)) / np.sinh(3)
@@ -239,14 +233,14 @@ _Setter = Callable[..., RectangularPlate]
 def _text(value: float, unit: str) -> str:
     if unit == "1":
         return f"{value:.3g}"
-    return format_quantity(value, Unit(unit), 4).replace(" um", " µm").replace("m3", "m³")
+    return si.format_quantity(value, si.Unit(unit), 4).replace(" um", " µm").replace("m3", "m³")
 
 
 def _substrate(plate: RectangularPlate, **values: float) -> RectangularPlate:
     return dataclasses.replace(plate, substrate=dataclasses.replace(plate.substrate, **values))  # type: ignore[arg-type]
 
 
-def with_young_modulus(plate: RectangularPlate, value: Pascal) -> RectangularPlate:
+def with_young_modulus(plate: RectangularPlate, value: si.Pascal) -> RectangularPlate:
     """The plate with another Young's modulus of its substrate."""
     return _substrate(plate, young_modulus=value)
 
@@ -256,23 +250,23 @@ def with_density(plate: RectangularPlate, value: float) -> RectangularPlate:
     return _substrate(plate, density=value)
 
 
-def with_poisson_ratio(plate: RectangularPlate, value: Dimensionless) -> RectangularPlate:
+def with_poisson_ratio(plate: RectangularPlate, value: si.Dimensionless) -> RectangularPlate:
     """The plate with another Poisson's ratio of its substrate."""
     return _substrate(plate, poisson_ratio=value)
 
 
-def with_thickness(plate: RectangularPlate, value: Metre) -> RectangularPlate:
+def with_thickness(plate: RectangularPlate, value: si.Metre) -> RectangularPlate:
     """The plate with another thickness of its substrate."""
     return dataclasses.replace(plate, thickness=value)
 
 
-def with_ceramic_thickness(plate: RectangularPlate, value: Metre) -> RectangularPlate:
+def with_ceramic_thickness(plate: RectangularPlate, value: si.Metre) -> RectangularPlate:
     """The plate with another thickness of all its ceramics."""
     patches = tuple(dataclasses.replace(patch, thickness=value) for patch in plate.patches)
     return dataclasses.replace(plate, patches=patches)
 
 
-def with_ceramic_stiffness(plate: RectangularPlate, share: Dimensionless) -> RectangularPlate:
+def with_ceramic_stiffness(plate: RectangularPlate, share: si.Dimensionless) -> RectangularPlate:
     """The plate with all stiffnesses of its ceramic multiplied, d31 (or the printed e31) kept."""
     ceramic = plate.ceramic
     constants = ceramic.constants
@@ -316,12 +310,14 @@ def with_open_ceramics(plate: RectangularPlate) -> RectangularPlate:
     return dataclasses.replace(plate, patches=patches)
 
 
-def with_glue(plate: RectangularPlate, thickness: Metre, young_modulus: Pascal) -> RectangularPlate:
+def with_glue(
+    plate: RectangularPlate, thickness: si.Metre, young_modulus: si.Pascal
+) -> RectangularPlate:
     """The plate with a glue line of this thickness and Young's modulus (losses as `GlueLayer`)."""
     return dataclasses.replace(plate, glue=GlueLayer(thickness, young_modulus))
 
 
-def with_quality_factor(plate: RectangularPlate, value: Dimensionless) -> RectangularPlate:
+def with_quality_factor(plate: RectangularPlate, value: si.Dimensionless) -> RectangularPlate:
     """The plate with another quality factor of the whole assembly."""
     return dataclasses.replace(plate, quality_factor=value)
 

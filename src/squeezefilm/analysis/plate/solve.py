@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from squeezefilm import quantities as si
 from squeezefilm.analysis.plate.command import PlateAnalysis, analyze_plate
 from squeezefilm.analysis.plate.ring import RingAnalysis, analyze_ring
 from squeezefilm.analysis.plate.tracking import TrackRequest
@@ -11,7 +12,6 @@ from squeezefilm.display import NamedDisplay
 from squeezefilm.errors import InputError
 from squeezefilm.from_text import reads_text
 from squeezefilm.plate.layout import RectangularPlate
-from squeezefilm.quantities import Hertz
 
 
 @reads_text
@@ -19,7 +19,7 @@ def solve_plate(
     display: NamedDisplay,
     *,
     mode: tuple[int, int] | None = None,
-    band: tuple[Hertz, Hertz] | None = None,
+    band: tuple[si.Hertz, si.Hertz] | None = None,
     points: int = 200,
     sensitivity: bool = False,
     track: TrackRequest | None = None,

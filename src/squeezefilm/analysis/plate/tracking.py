@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.analysis.plate.sensitivity import (
     with_ceramic_thickness,
     with_density,
@@ -27,16 +28,6 @@ from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.solid.modes import Label, PlateModes
 from squeezefilm.plate.solid.solve import solve_modes
 from squeezefilm.progress import SayProgress
-from squeezefilm.quantities import (
-    Dimensionless,
-    FloatArray,
-    HertzArray,
-    Unit,
-    checked_numbers,
-    did_you_mean,
-    format_quantity,
-    parse_quantity,
-)
 
 _ALIKE = 0.6  # below it the step is halved
 _LOST = 0.4  # below it, at the smallest step, the mode is given up
@@ -60,23 +51,23 @@ _Set = Callable[[RectangularPlate, float], RectangularPlate]
 # By value: the modes there, which of them each tracked one is, and how alike it is.
 _Steps = dict[float, tuple[PlateModes, list[int | None], list[float]]]
 
-PARAMETERS: dict[str, tuple[Unit, _Get, _Set]] = {
-    "ceramic_thickness": (Unit("m"), lambda p: p.ceramic_thickness, with_ceramic_thickness),
-    "thickness": (Unit("m"), lambda p: p.thickness, with_thickness),
-    "young_modulus": (Unit("Pa"), lambda p: p.substrate.young_modulus, with_young_modulus),
-    "density": (Unit("kg/m3"), lambda p: p.substrate.density, with_density),
-    "poisson_ratio": (Unit("1"), lambda p: p.substrate.poisson_ratio, with_poisson_ratio),
+PARAMETERS: dict[str, tuple[si.Unit, _Get, _Set]] = {
+    "ceramic_thickness": (si.Unit("m"), lambda p: p.ceramic_thickness, with_ceramic_thickness),
+    "thickness": (si.Unit("m"), lambda p: p.thickness, with_thickness),
+    "young_modulus": (si.Unit("Pa"), lambda p: p.substrate.young_modulus, with_young_modulus),
+    "density": (si.Unit("kg/m3"), lambda p: p.substrate.density, with_density),
+    "poisson_ratio": (si.Unit("1"), lambda p: p.substrate.poisson_ratio, with_poisson_ratio),
     "glue_thickness": (
-        Unit("m"), lambda p: 0.0 if p.glue is None else p.glue.thickness, _set_glue_thickness,
+        si.Unit("m"), lambda p: 0.0 if p.glue is None else p.glue.thickness, _set_glue_thickness,
     ),
     "glue_young_modulus": (
-        Unit("Pa"), lambda p: 0.0 if p.glue is None else p.glue.young_modulus, _set_glue_modulus,
+        si.Unit("Pa"), lambda p: 0.0 if p.glue is None else p.glue.young_modulus, _set_glue_modulus,
     ),
 }  # fmt: skip
 """What `track_modes` can vary: unit, how to read it, how to set it."""
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True)
 class TrackRequest:
     """A parameter of `PARAMETERS`, its first and last value (SI) and the number of values."""
@@ -90,7 +81,7 @@ class TrackRequest:
         if self.parameter not in PARAMETERS:
             raise InputError(
                 f"--track '{self.parameter}' cannot be varied."
-                f"{did_you_mean(self.parameter, PARAMETERS)} Allowed: {', '.join(PARAMETERS)}",
+                f"{si.did_you_mean(self.parameter, PARAMETERS)} Allowed: {', '.join(PARAMETERS)}",
                 quantity="track",
             )
         if not self.start < self.stop:
@@ -104,8 +95,8 @@ class ModeTrack:
     it was lost), and how alike it was to the value before or to the beginning (the larger)."""
 
     label: str
-    frequency: HertzArray
-    likeness: FloatArray
+    frequency: si.HertzArray
+    likeness: si.FloatArray
     driven: bool
 
 
@@ -116,16 +107,16 @@ class ModeTracks:
 
     parameter: str
     unit: str
-    values: FloatArray
+    values: si.FloatArray
     own: float
     begun: float
     tracks: tuple[ModeTrack, ...]
-    least_likeness: Dimensionless
+    least_likeness: si.Dimensionless
 
 
 def parse_track(parameter: str, start: str | None, stop: str | None, values: int) -> TrackRequest:
     """A request from texts such as ``"0.5 mm"``. Raises `InputError` for anything else."""
-    unit = PARAMETERS[parameter][0] if parameter in PARAMETERS else Unit("1")
+    unit = PARAMETERS[parameter][0] if parameter in PARAMETERS else si.Unit("1")
     if start is None or stop is None:
         raise InputError('--track needs --from and --to, like --from "0.5 mm" --to "1.5 mm"')
     if parameter not in PARAMETERS:
@@ -135,7 +126,9 @@ def parse_track(parameter: str, start: str | None, stop: str | None, values: int
             return TrackRequest(parameter, float(start), float(stop), values)
         except ValueError as error:
             raise InputError(f"--from and --to of {parameter} are plain numbers") from error
-    return TrackRequest(parameter, parse_quantity(start, unit), parse_quantity(stop, unit), values)
+    return TrackRequest(
+        parameter, si.parse_quantity(start, unit), si.parse_quantity(stop, unit), values
+    )
 
 
 def track_modes(
@@ -211,7 +204,7 @@ def check_track(plate: RectangularPlate, request: TrackRequest) -> None:
         PARAMETERS[request.parameter][2](plate, end)
 
 
-def likeness(before: PlateModes, after: PlateModes) -> FloatArray:
+def likeness(before: PlateModes, after: PlateModes) -> si.FloatArray:
     """How alike each mode of one plate moves to each of another, shape (before, after): 1 for the
     same motion of both faces in all three directions, 0 for orthogonal ones.
 
@@ -219,7 +212,7 @@ def likeness(before: PlateModes, after: PlateModes) -> FloatArray:
     the plane.
     """
 
-    def motions(modes: PlateModes) -> FloatArray:
+    def motions(modes: PlateModes) -> si.FloatArray:
         x = np.linspace(0, modes.plate.length, _GRID[0])
         y = np.linspace(0, modes.plate.width, _GRID[1])
         faces = (0.0, modes.plate.thickness)
@@ -233,7 +226,7 @@ def likeness(before: PlateModes, after: PlateModes) -> FloatArray:
     return np.asarray((motions(before) @ motions(after).T) ** 2)
 
 
-def _assignment(alike: FloatArray) -> list[int]:
+def _assignment(alike: si.FloatArray) -> list[int]:
     """For each row the column that it is given, none given twice; −1 where there are not enough."""
     from scipy.optimize import linear_sum_assignment
 
@@ -242,8 +235,8 @@ def _assignment(alike: FloatArray) -> list[int]:
     return [given.get(row, -1) for row in range(alike.shape[0])]
 
 
-def _shown(value: float, unit: Unit) -> str:
-    return f"{value:.4g}" if unit.symbol == "1" else format_quantity(value, unit)
+def _shown(value: float, unit: si.Unit) -> str:
+    return f"{value:.4g}" if unit.symbol == "1" else si.format_quantity(value, unit)
 
 
 def _centre(plate: RectangularPlate, request: TrackRequest, value: float, label: Label) -> float:

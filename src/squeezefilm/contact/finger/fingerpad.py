@@ -13,34 +13,14 @@ from typing import Annotated, Any, cast
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.hard_limits import (
     PAD_DAMPING,
     PAD_MASS,
     PAD_STIFFNESS,
 )
-from squeezefilm.quantities import (
-    ComplexArray,
-    Dimensionless,
-    DimensionlessComplexLike,
-    DimensionlessLike,
-    Hertz,
-    HertzLike,
-    Kilogram,
-    KilogramLike,
-    MetrePerSecondLike,
-    NewtonLike,
-    NewtonPerMetre,
-    NewtonPerMetreLike,
-    NewtonSecondPerMetre,
-    NewtonSecondPerMetreLike,
-    Second,
-    SecondLike,
-    Unit,
-    checked_numbers,
-    closed_form,
-)
 
-MetrePerNewtonComplexLike = Annotated[complex | ComplexArray, Unit("m/N")]
+MetrePerNewtonComplexLike = Annotated[complex | si.ComplexArray, si.Unit("m/N")]
 
 EVIDENCE = {
     "stiffness": "unverified default, from memory: about 1 N/mm",
@@ -50,7 +30,7 @@ EVIDENCE = {
 """Where the defaults of `FingerpadDynamics` come from: none was read in a source or measured."""
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class FingerpadDynamics:
     """The lumped tangential dynamics of a fingerpad.
@@ -68,22 +48,22 @@ class FingerpadDynamics:
         InputError: a value outside its range.
     """
 
-    stiffness: Annotated[NewtonPerMetre, PAD_STIFFNESS] = 1000.0
-    damping: Annotated[NewtonSecondPerMetre, PAD_DAMPING] = 1.0
-    mass: Annotated[Kilogram, PAD_MASS] = 1.5e-4
+    stiffness: Annotated[si.NewtonPerMetre, PAD_STIFFNESS] = 1000.0
+    damping: Annotated[si.NewtonSecondPerMetre, PAD_DAMPING] = 1.0
+    mass: Annotated[si.Kilogram, PAD_MASS] = 1.5e-4
 
     @property
-    def resonance_frequency(self) -> Hertz:
+    def resonance_frequency(self) -> si.Hertz:
         """Undamped resonance frequency of the sliding skin (Hz)."""
         return float(skin_resonance_frequency(self.stiffness, self.mass))
 
     @property
-    def damping_ratio(self) -> Dimensionless:
+    def damping_ratio(self) -> si.Dimensionless:
         """Damping over critical damping (1); 1.3 with the defaults: the skin does not ring."""
         return float(skin_damping_ratio(self.stiffness, self.damping, self.mass))
 
     @property
-    def settling_time_constant(self) -> Second:
+    def settling_time_constant(self) -> si.Second:
         """Slower time constant of the sliding skin (s); infinite without damping."""
         if self.damping == 0:
             return math.inf
@@ -95,35 +75,37 @@ class FingerpadDynamics:
         return (decay + math.sqrt(split)) * self.mass / self.stiffness
 
 
-@closed_form(positive="stiffness mass")
-def skin_resonance_frequency(stiffness: NewtonPerMetreLike, mass: KilogramLike) -> HertzLike:
+@si.closed_form(positive="stiffness mass")
+def skin_resonance_frequency(
+    stiffness: si.NewtonPerMetreLike, mass: si.KilogramLike
+) -> si.HertzLike:
     """Undamped resonance frequency of the skin on its spring (Hz): √(k/m)/2π.
 
     `stiffness` (N/m) and `mass` (kg) broadcast. Raises `InputError` unless both are above 0.
     """
-    frequency: HertzLike = np.sqrt(stiffness / mass) / (2 * math.pi)
+    frequency: si.HertzLike = np.sqrt(stiffness / mass) / (2 * math.pi)
     return frequency
 
 
-@closed_form(positive="stiffness mass", nonnegative="damping")
+@si.closed_form(positive="stiffness mass", nonnegative="damping")
 def skin_damping_ratio(
-    stiffness: NewtonPerMetreLike, damping: NewtonSecondPerMetreLike, mass: KilogramLike
-) -> DimensionlessLike:
+    stiffness: si.NewtonPerMetreLike, damping: si.NewtonSecondPerMetreLike, mass: si.KilogramLike
+) -> si.DimensionlessLike:
     """Damping of the skin over critical damping (1): c/(2√(k m)); below 1 it rings.
 
     `stiffness` (N/m), `damping` (N·s/m) and `mass` (kg) broadcast. Raises `InputError` for a
     stiffness or mass not above 0 or a negative damping.
     """
-    ratio: DimensionlessLike = damping / (2 * np.sqrt(stiffness * mass))
+    ratio: si.DimensionlessLike = damping / (2 * np.sqrt(stiffness * mass))
     return ratio
 
 
-@closed_form(positive="stiffness mass", nonnegative="damping frequency")
+@si.closed_form(positive="stiffness mass", nonnegative="damping frequency")
 def skin_displacement_per_friction(
-    frequency: HertzLike,
-    stiffness: NewtonPerMetreLike,
-    damping: NewtonSecondPerMetreLike,
-    mass: KilogramLike,
+    frequency: si.HertzLike,
+    stiffness: si.NewtonPerMetreLike,
+    damping: si.NewtonSecondPerMetreLike,
+    mass: si.KilogramLike,
 ) -> MetrePerNewtonComplexLike:
     """Complex skin displacement per friction force modulated at a frequency (m/N), sliding.
 
@@ -136,13 +118,13 @@ def skin_displacement_per_friction(
     return cast(MetrePerNewtonComplexLike, response)
 
 
-@closed_form(positive="stiffness mass", nonnegative="damping frequency")
+@si.closed_form(positive="stiffness mass", nonnegative="damping frequency")
 def friction_transmitted(
-    frequency: HertzLike,
-    stiffness: NewtonPerMetreLike,
-    damping: NewtonSecondPerMetreLike,
-    mass: KilogramLike,
-) -> DimensionlessComplexLike:
+    frequency: si.HertzLike,
+    stiffness: si.NewtonPerMetreLike,
+    damping: si.NewtonSecondPerMetreLike,
+    mass: si.KilogramLike,
+) -> si.DimensionlessComplexLike:
     """Complex force at the bone per friction force modulated at a frequency (1), sliding.
 
     (k + icω)/(k − mω² + icω), ω = 2πf: 1 for slow changes, beyond the resonance the mass keeps
@@ -152,13 +134,13 @@ def friction_transmitted(
     omega = 2 * math.pi * frequency
     path = stiffness + 1j * damping * omega
     transmitted: Any = path / (path - mass * omega**2)
-    return cast(DimensionlessComplexLike, transmitted)
+    return cast(si.DimensionlessComplexLike, transmitted)
 
 
-@closed_form(positive="stiffness speed", nonnegative="friction_drop")
+@si.closed_form(positive="stiffness speed", nonnegative="friction_drop")
 def stick_duration(
-    friction_drop: NewtonLike, stiffness: NewtonPerMetreLike, speed: MetrePerSecondLike
-) -> SecondLike:
+    friction_drop: si.NewtonLike, stiffness: si.NewtonPerMetreLike, speed: si.MetrePerSecondLike
+) -> si.SecondLike:
     """How long an *undamped* skin sticks between two slips at a constant speed (s): 2Δ/(kv).
 
     The classical belt oscillator: the spring is stretched from F_kinetic − Δ to F_static, where Δ
@@ -168,13 +150,13 @@ def stick_duration(
     return 2 * friction_drop / (stiffness * speed)
 
 
-@closed_form(positive="stiffness mass speed", nonnegative="friction_drop")
+@si.closed_form(positive="stiffness mass speed", nonnegative="friction_drop")
 def slip_duration(
-    friction_drop: NewtonLike,
-    stiffness: NewtonPerMetreLike,
-    mass: KilogramLike,
-    speed: MetrePerSecondLike,
-) -> SecondLike:
+    friction_drop: si.NewtonLike,
+    stiffness: si.NewtonPerMetreLike,
+    mass: si.KilogramLike,
+    speed: si.MetrePerSecondLike,
+) -> si.SecondLike:
     """How long an *undamped* skin slips between two sticks (s): (2/ω)(π − arctan(Δω/(kv))).
 
     With ω = √(k/m) and Δ = F_static − F_kinetic, `friction_drop` (N): half a period for a great
@@ -184,5 +166,5 @@ def slip_duration(
     """
     omega = np.sqrt(stiffness / mass)
     angle = math.pi - np.arctan(friction_drop * omega / (stiffness * speed))
-    duration: SecondLike = 2 / omega * angle
+    duration: si.SecondLike = 2 / omega * angle
     return duration

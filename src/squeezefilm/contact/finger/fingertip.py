@@ -8,6 +8,7 @@ from typing import Annotated, Literal, get_args
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.contact.asperities import AsperityLaw
 from squeezefilm.contact.finger.fingerpad import FingerpadDynamics
 from squeezefilm.contact.finger.skin import Skin
@@ -21,20 +22,6 @@ from squeezefilm.hard_limits import (
     ROUGHNESS,
     SKIN_ROUGHNESS,
     require_within,
-)
-from squeezefilm.quantities import (
-    AtLeast,
-    AtMost,
-    Dimensionless,
-    FloatLike,
-    Metre,
-    Newton,
-    Pascal,
-    Radian,
-    SquareMetre,
-    Unit,
-    checked_numbers,
-    format_quantity,
 )
 
 Moisture = Literal["dry", "normal", "moist"]
@@ -51,7 +38,7 @@ FRICTION_OF_MOISTURE: dict[Moisture, float] = {"dry": 0.6, "normal": 1.0, "moist
 _ASPERITIES, _SKIN, _FINGERPAD = AsperityLaw(), Skin(), FingerpadDynamics()
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True)
 class Finger:
     """A fingertip resting on the surface.
@@ -71,17 +58,17 @@ class Finger:
     assumed and illustrative: they control the friction predicted, so give your own where you can.
     """
 
-    contact_length: Annotated[Metre, CONTACT_LENGTH]
-    ridge_amplitude: Annotated[Metre, RIDGE_AMPLITUDE]
-    ridge_period: Annotated[Metre, RIDGE_PERIOD]
-    normal_force: Annotated[Newton, FORCE]
-    plateau_width: Annotated[Metre, RIDGE_PERIOD] = 250e-6
-    contact_area_exponent: Annotated[Dimensionless, AtLeast(0), AtMost(1)] = 0.0
-    contact_area_force: Annotated[Newton, FORCE] | None = None
-    ridge_angle: Annotated[Radian, AtLeast(-math.pi), AtMost(math.pi)] = 0.0
+    contact_length: Annotated[si.Metre, CONTACT_LENGTH]
+    ridge_amplitude: Annotated[si.Metre, RIDGE_AMPLITUDE]
+    ridge_period: Annotated[si.Metre, RIDGE_PERIOD]
+    normal_force: Annotated[si.Newton, FORCE]
+    plateau_width: Annotated[si.Metre, RIDGE_PERIOD] = 250e-6
+    contact_area_exponent: Annotated[si.Dimensionless, si.AtLeast(0), si.AtMost(1)] = 0.0
+    contact_area_force: Annotated[si.Newton, FORCE] | None = None
+    ridge_angle: Annotated[si.Radian, si.AtLeast(-math.pi), si.AtMost(math.pi)] = 0.0
     asperities: AsperityLaw = _ASPERITIES
-    asperity_roughness: Annotated[Metre, ROUGHNESS] = 0.6e-6
-    skin_roughness: Annotated[Metre, SKIN_ROUGHNESS] = 0.6e-6
+    asperity_roughness: Annotated[si.Metre, ROUGHNESS] = 0.6e-6
+    skin_roughness: Annotated[si.Metre, SKIN_ROUGHNESS] = 0.6e-6
     skin: Skin = _SKIN
     fingerpad: FingerpadDynamics = _FINGERPAD
     moisture: Moisture = "normal"
@@ -90,24 +77,24 @@ class Finger:
         _require_ridges(self.contact_length, self.ridge_period)
         if self.plateau_width > self.ridge_period:
             raise InputError(
-                f"plateau_width = {format_quantity(self.plateau_width, Unit('m'))} is wider than "
-                f"the ridge_period of {format_quantity(self.ridge_period, Unit('m'))}; make it "
-                "narrower",
+                f"plateau_width = {si.format_quantity(self.plateau_width, si.Unit('m'))} is wider "
+                f"than the ridge_period of {si.format_quantity(self.ridge_period, si.Unit('m'))}; "
+                "make it narrower",
                 quantity="plateau_width",
             )
 
     @property
-    def mean_pressure(self) -> Pascal:
+    def mean_pressure(self) -> si.Pascal:
         """P_f = F / l0² (paper eq 13)."""
         return self.normal_force / self.contact_length**2
 
     @property
-    def ridge_height(self) -> Metre:
+    def ridge_height(self) -> si.Metre:
         """From groove to crest, 2 h_e."""
         return 2 * self.ridge_amplitude
 
-    @checked_numbers
-    def contact_area(self, normal_force: Newton | None = None) -> SquareMetre:
+    @si.checked_numbers
+    def contact_area(self, normal_force: si.Newton | None = None) -> si.SquareMetre:
         """A = l0² (F/F_ref)^exponent under a force (N; None: the finger's own)."""
         force = self.normal_force if normal_force is None else normal_force
         require_within(FORCE, force, "normal_force")
@@ -116,19 +103,19 @@ class Finger:
         _require_ridges(math.sqrt(area), self.ridge_period)
         return area
 
-    @checked_numbers
-    def plateau_pressure(self, normal_force: Newton | None = None) -> Pascal:
+    @si.checked_numbers
+    def plateau_pressure(self, normal_force: si.Newton | None = None) -> si.Pascal:
         """p_plateau = F L/(A w): what a flattened ridge carries in the mean."""
         force = self.normal_force if normal_force is None else normal_force
         return force / self.contact_area(force) * self.ridge_period / self.plateau_width
 
-    @checked_numbers
-    def asperity_law(self, surface_roughness: Annotated[Metre, AtLeast(0.0)]) -> AsperityLaw:
+    @si.checked_numbers
+    def asperity_law(self, surface_roughness: Annotated[si.Metre, si.AtLeast(0.0)]) -> AsperityLaw:
         """What the asperities of this skin carry on a surface of a roughness (m).
 
         Heights add as independent ones do; the moisture scales the pressure.
         """
-        here: FloatLike = np.hypot(self.skin_roughness, surface_roughness)
+        here: si.FloatLike = np.hypot(self.skin_roughness, surface_roughness)
         there = float(np.hypot(self.skin_roughness, self.asperity_roughness))
         if not here > 0:
             raise InputError("a perfectly smooth skin on a perfectly smooth surface has no law")
@@ -141,13 +128,13 @@ class Finger:
         )
 
     @property
-    def friction_factor(self) -> Dimensionless:
+    def friction_factor(self) -> si.Dimensionless:
         """The unexcited friction over that of normally moist skin (assumed)."""
         return FRICTION_OF_MOISTURE[self.moisture]
 
 
-def _require_ridges(side: Metre, period: Metre) -> None:
+def _require_ridges(side: si.Metre, period: si.Metre) -> None:
     """Refuse a contact with more ridges than can be worked on."""
-    shown, finest = (format_quantity(one, Unit("m")) for one in (side, side / RIDGES.most))
+    shown, finest = (si.format_quantity(one, si.Unit("m")) for one in (side, side / RIDGES.most))
     enough = f"a contact of {shown} may have a ridge_period of {finest} or more"
     require_within(RIDGES, side // period, enough=enough)

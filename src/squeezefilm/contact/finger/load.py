@@ -12,29 +12,22 @@ from typing import Annotated
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.contact.asperities import AsperityLaw
 from squeezefilm.contact.finger.skin import Skin
 from squeezefilm.film.closed.linear import relative_damping, relative_stiffness
 from squeezefilm.film.gap import squeeze_number
 from squeezefilm.materials import Gas
-from squeezefilm.quantities import (
-    Above,
-    AtLeast,
-    AtMost,
-    Hertz,
-    Metre,
-    checked_numbers,
-)
 
 _PHASES = np.cos(2 * np.pi * np.arange(64) / 64)
 
 
-@checked_numbers
+@si.checked_numbers
 def interface_stiffness(
-    mean_gap: Annotated[Metre, Above(0.0)],
-    amplitude: Annotated[Metre, AtLeast(0.0)],
-    plateau_width: Metre,
-    frequency: Hertz,
+    mean_gap: Annotated[si.Metre, si.Above(0.0)],
+    amplitude: Annotated[si.Metre, si.AtLeast(0.0)],
+    plateau_width: si.Metre,
+    frequency: si.Hertz,
     gas: Gas,
     asperities: AsperityLaw,
 ) -> complex:
@@ -56,12 +49,12 @@ def interface_stiffness(
     return film + 2 * float(np.mean(pressure * _PHASES)) / swing
 
 
-@checked_numbers
+@si.checked_numbers
 def finger_stiffness(
     interface: complex,
     skin: Skin,
-    frequency: Hertz,
-    plateau_share: Annotated[float, AtLeast(0.0), AtMost(1.0)],
+    frequency: si.Hertz,
+    plateau_share: Annotated[float, si.AtLeast(0.0), si.AtMost(1.0)],
 ) -> complex:
     """What the plate feels of a finger, per area of contact (Pa/m, complex): K_i D/(K_i + D) on the
     plateaus, which are `plateau_share` (0 to 1) of the contact; grooves are left out.

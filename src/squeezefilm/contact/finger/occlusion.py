@@ -7,16 +7,7 @@ from typing import Annotated
 
 import numpy as np
 
-from squeezefilm.quantities import (
-    Above,
-    AtLeast,
-    Dimensionless,
-    DimensionlessLike,
-    Second,
-    SecondLike,
-    checked_numbers,
-    closed_form,
-)
+from squeezefilm import quantities as si
 
 EVIDENCE = {
     "time_constant": "first-order kinetics of the junction area on glass, saturated 'typically "
@@ -26,7 +17,7 @@ EVIDENCE = {
 """Where the defaults of `Occlusion` come from."""
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class Occlusion:
     """Friction that grows with the time a finger has been on a smooth, impermeable surface.
@@ -45,24 +36,24 @@ class Occlusion:
         InputError: a value outside its range.
     """
 
-    rise: Annotated[Dimensionless, Above(-1.0)] = 0.5
-    time_constant: Annotated[Second, Above(0.0)] = 20.0 / 3.0
-    contact_time: Annotated[Second, AtLeast(0.0)] = 0.0
+    rise: Annotated[si.Dimensionless, si.Above(-1.0)] = 0.5
+    time_constant: Annotated[si.Second, si.Above(0.0)] = 20.0 / 3.0
+    contact_time: Annotated[si.Second, si.AtLeast(0.0)] = 0.0
 
-    @checked_numbers
-    def factor(self, time: SecondLike) -> DimensionlessLike:
+    @si.checked_numbers
+    def factor(self, time: si.SecondLike) -> si.DimensionlessLike:
         """What the friction coefficient is multiplied by, `time` after the motion starts (1)."""
         return occlusion_factor(self.contact_time + time, self.rise, self.time_constant)
 
 
-@closed_form(positive="time_constant", nonnegative="contact_time")
+@si.closed_form(positive="time_constant", nonnegative="contact_time")
 def occlusion_factor(
-    contact_time: SecondLike, rise: DimensionlessLike, time_constant: SecondLike
-) -> DimensionlessLike:
+    contact_time: si.SecondLike, rise: si.DimensionlessLike, time_constant: si.SecondLike
+) -> si.DimensionlessLike:
     """Friction over that of a fresh contact (1): 1 + rise (1 − exp(−t/τ)).
 
     Arguments (s, 1, s) broadcast. Raises `InputError` for a negative contact time or a time
     constant not above 0.
     """
-    factor: DimensionlessLike = 1 - rise * np.expm1(-contact_time / time_constant)
+    factor: si.DimensionlessLike = 1 - rise * np.expm1(-contact_time / time_constant)
     return factor

@@ -12,23 +12,15 @@ from typing import Annotated
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.hard_limits import (
     SKIN_DAMPING,
     SKIN_MASS,
     SKIN_STIFFNESS,
 )
-from squeezefilm.quantities import (
-    Above,
-    Hertz,
-    KilogramPerSquareMetre,
-    Pascal,
-    PascalPerMetre,
-    PascalSecondPerMetre,
-    checked_numbers,
-)
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True)
 class Skin:
     """Mass, stiffness and damping of the skin per area, at ultrasonic frequency.
@@ -37,12 +29,12 @@ class Skin:
     damping, which at 40 kHz are taken to be below its inertia (0.2 MPa/µm).
     """
 
-    mass_per_area: Annotated[KilogramPerSquareMetre, SKIN_MASS] = 3.3
-    stiffness_per_area: Annotated[PascalPerMetre, SKIN_STIFFNESS] = 0.0
-    damping_per_area: Annotated[PascalSecondPerMetre, SKIN_DAMPING] = 0.0
+    mass_per_area: Annotated[si.KilogramPerSquareMetre, SKIN_MASS] = 3.3
+    stiffness_per_area: Annotated[si.PascalPerMetre, SKIN_STIFFNESS] = 0.0
+    damping_per_area: Annotated[si.PascalSecondPerMetre, SKIN_DAMPING] = 0.0
 
-    @checked_numbers
-    def dynamic_stiffness(self, frequency: Annotated[Hertz, Above(0.0)]) -> complex:
+    @si.checked_numbers
+    def dynamic_stiffness(self, frequency: Annotated[si.Hertz, si.Above(0.0)]) -> complex:
         """k − m ω² + iωc in Pa/m, ω = 2π frequency."""
         omega = 2 * np.pi * frequency
         return complex(
@@ -50,7 +42,7 @@ class Skin:
             self.damping_per_area * omega,
         )
 
-    @checked_numbers
-    def displacement(self, pressure: Pascal, frequency: Hertz) -> float:
+    @si.checked_numbers
+    def displacement(self, pressure: si.Pascal, frequency: si.Hertz) -> float:
         """How far (m, amplitude) an alternating pressure (Pa, amplitude) moves the skin."""
         return float(pressure / abs(self.dynamic_stiffness(frequency)))

@@ -14,28 +14,12 @@ from typing import Annotated, Any
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.contact.asperities import AsperityLaw
 from squeezefilm.contact.finger.skin import Skin
 from squeezefilm.contact.sharing.gas_table import DEEPEST_EXCURSION, FilmTable
 from squeezefilm.errors import ConvergenceError, OutOfRangeError
 from squeezefilm.film.compiled import announce
-from squeezefilm.quantities import (
-    Above,
-    AtLeast,
-    AtMost,
-    DimensionlessArray,
-    FloatArray,
-    Metre,
-    MetreArray,
-    MetreLike,
-    Pascal,
-    PascalArray,
-    PascalLike,
-    Unit,
-    checked_numbers,
-    format_quantity,
-    require,
-)
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,36 +32,36 @@ class LoadSharing:
     bound leaves of doubt in µ′/µ.
     """
 
-    amplitude: MetreArray
-    plateau_pressure: PascalArray
-    mean_gap: MetreArray
-    gas_pressure: PascalArray
-    asperity_pressure: PascalArray
-    gap_amplitude: MetreArray
-    skin_amplitude: MetreArray
-    residual: DimensionlessArray
+    amplitude: si.MetreArray
+    plateau_pressure: si.PascalArray
+    mean_gap: si.MetreArray
+    gas_pressure: si.PascalArray
+    asperity_pressure: si.PascalArray
+    gap_amplitude: si.MetreArray
+    skin_amplitude: si.MetreArray
+    residual: si.DimensionlessArray
     film_error: float
-    steps: FloatArray
+    steps: si.FloatArray
     asperities: AsperityLaw
     model: str
 
     @property
-    def relative_friction(self) -> DimensionlessArray:
+    def relative_friction(self) -> si.DimensionlessArray:
         """µ′/µ: the asperities' share of the load (dimensionless)."""
         return self.asperity_pressure / (self.asperity_pressure + self.gas_pressure)
 
     @property
-    def relative_friction_error(self) -> DimensionlessArray:
+    def relative_friction_error(self) -> si.DimensionlessArray:
         """The bound on the error of µ′/µ: that of the film times the gas's share."""
         return self.film_error * (1 - self.relative_friction) + np.abs(self.residual)
 
 
-@checked_numbers
+@si.checked_numbers
 def share_load(
     table: FilmTable,
     asperities: AsperityLaw,
-    amplitude: Annotated[MetreLike, AtLeast(0.0), AtMost(1e-4)],
-    plateau_pressure: Annotated[PascalLike, Above(0.0)],
+    amplitude: Annotated[si.MetreLike, si.AtLeast(0.0), si.AtMost(1e-4)],
+    plateau_pressure: Annotated[si.PascalLike, si.Above(0.0)],
     *,
     skin: Skin | None = None,
 ) -> LoadSharing:
@@ -132,11 +116,11 @@ class TiedSharing:
     `gas_pressure` and `asperity_pressure` are means over all plateaus and the period (Pa).
     """
 
-    amplitude: MetreArray
-    plateau_pressure: Pascal
-    mean_gap: Metre
-    gas_pressure: Pascal
-    asperity_pressure: Pascal
+    amplitude: si.MetreArray
+    plateau_pressure: si.Pascal
+    mean_gap: si.Metre
+    gas_pressure: si.Pascal
+    asperity_pressure: si.Pascal
     residual: float
     film_error: float
     model: str
@@ -152,14 +136,14 @@ class TiedSharing:
         return self.film_error * (1 - self.relative_friction) + abs(self.residual)
 
 
-@checked_numbers
+@si.checked_numbers
 def share_load_tied(
     table: FilmTable,
     asperities: AsperityLaw,
-    amplitude: Annotated[MetreArray, AtLeast(0.0), AtMost(1e-4)],
-    plateau_pressure: Annotated[Pascal, Above(0.0)],
+    amplitude: Annotated[si.MetreArray, si.AtLeast(0.0), si.AtMost(1e-4)],
+    plateau_pressure: Annotated[si.Pascal, si.Above(0.0)],
     *,
-    offset: MetreArray | None = None,
+    offset: si.MetreArray | None = None,
     skin: Skin | None = None,
 ) -> TiedSharing:
     """Plateaus tied to one mean gap u (ridge i at u + offset[i]) that carry a mean pressure (Pa).
@@ -171,7 +155,7 @@ def share_load_tied(
     announce(kernel.balance, "load balance", 20)
     a = np.ascontiguousarray(np.ravel(amplitude), dtype=float)
     shift = np.zeros_like(a) if offset is None else np.ascontiguousarray(offset, dtype=float)
-    require("offset", shift, Unit("m"), at_least=-1e-4, at_most=1e-4)
+    si.require("offset", shift, si.Unit("m"), at_least=-1e-4, at_most=1e-4)
     row = np.zeros(kernel.COLUMNS)
     solve: Any = kernel.balance
     law, impedance = asperities.compiled(), _impedance(skin, table)
@@ -193,7 +177,7 @@ def share_load_tied(
     )
 
 
-def _impedance(skin: Skin | None, table: FilmTable) -> FloatArray:
+def _impedance(skin: Skin | None, table: FilmTable) -> si.FloatArray:
     if skin is None:
         return np.zeros(3)
     D = skin.dynamic_stiffness(table.frequency)
@@ -208,7 +192,7 @@ def _model(table: FilmTable, asperities: AsperityLaw, skin: Skin | None, tie: st
     )
 
 
-def _refuse(rows: FloatArray, amplitude: FloatArray, pressure: FloatArray) -> None:
+def _refuse(rows: si.FloatArray, amplitude: si.FloatArray, pressure: si.FloatArray) -> None:
     from squeezefilm.contact.sharing import kernel
 
     bad = np.flatnonzero(rows[:, kernel.STATUS] != kernel.BALANCED)
@@ -217,8 +201,8 @@ def _refuse(rows: FloatArray, amplitude: FloatArray, pressure: FloatArray) -> No
     at = int(bad[0])
     status = int(rows[at, kernel.STATUS])
     asked = (
-        f"a plateau under {format_quantity(pressure[at], Unit('Pa'))} at an amplitude of "
-        f"{format_quantity(amplitude[at], Unit('m'))}"
+        f"a plateau under {si.format_quantity(pressure[at], si.Unit('Pa'))} at an amplitude of "
+        f"{si.format_quantity(amplitude[at], si.Unit('m'))}"
     )
     if status == kernel.PRESSED_THROUGH:
         raise OutOfRangeError(

@@ -13,18 +13,11 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.film.closed.limits import contact_mean_pressure
 from squeezefilm.film.gap import PaperGap, squeeze_number
 from squeezefilm.materials import Gas
-from squeezefilm.quantities import (
-    Dimensionless,
-    Hertz,
-    Metre,
-    Unit,
-    checked_numbers,
-    require,
-)
 
 if TYPE_CHECKING:
     from squeezefilm.film.periodic.solution import FilmSolution
@@ -47,11 +40,11 @@ DESCRIPTIONS: dict[FilmModel, str] = {
     "film-smooth": "a finger without ridges",
 }
 
-DEFAULT_PLATEAU_WIDTH: Metre = 250e-6
+DEFAULT_PLATEAU_WIDTH: si.Metre = 250e-6
 
 # The over-pressure goes with the square of the relative amplitude: below this it is at most 1e-8
 # of ambient, a millionth of a finger's pressure, and the solvers would work on rounding.
-STILL: Dimensionless = 1e-4
+STILL: si.Dimensionless = 1e-4
 
 
 @dataclass(frozen=True)
@@ -63,20 +56,20 @@ class FilmLoad:
     """
 
     model: str
-    over_pressure: Dimensionless
-    error: Dimensionless
-    squeeze_number: Dimensionless
+    over_pressure: si.Dimensionless
+    error: si.Dimensionless
+    squeeze_number: si.Dimensionless
     status: str
 
 
-@checked_numbers
+@si.checked_numbers
 def film_load(
     gap: PaperGap,
-    frequency: Hertz,
+    frequency: si.Hertz,
     gas: Gas,
     model: FilmModel = "film-sealed",
     *,
-    plateau_width: Metre = DEFAULT_PLATEAU_WIDTH,
+    plateau_width: si.Metre = DEFAULT_PLATEAU_WIDTH,
     slip: str = "first",
     tolerance: float = 1e-3,
 ) -> FilmLoad:
@@ -120,7 +113,7 @@ def is_still(gap: PaperGap) -> bool:
     return float(gap.vibration_amplitude) < STILL * float(gap.roughness)
 
 
-def _sigma(gap: PaperGap, frequency: Hertz, gas: Gas) -> float:
+def _sigma(gap: PaperGap, frequency: si.Hertz, gas: Gas) -> float:
     return float(
         squeeze_number(
             frequency,
@@ -132,10 +125,10 @@ def _sigma(gap: PaperGap, frequency: Hertz, gas: Gas) -> float:
     )
 
 
-@checked_numbers
+@si.checked_numbers
 def line_film(
     gap: PaperGap,
-    frequency: Hertz,
+    frequency: si.Hertz,
     gas: Gas,
     *,
     ridges: bool = True,
@@ -171,7 +164,7 @@ def line_film(
     )
 
 
-def _open(gap: PaperGap, frequency: Hertz, gas: Gas, slip: str, tolerance: float) -> FilmLoad:
+def _open(gap: PaperGap, frequency: si.Hertz, gas: Gas, slip: str, tolerance: float) -> FilmLoad:
     from squeezefilm.film.planar.film import solve_rectangle
     from squeezefilm.film.records import FilmGas
 
@@ -203,15 +196,15 @@ def ridge_positions(gap: PaperGap) -> tuple[float, ...]:
 
 def _plateaus(
     gap: PaperGap,
-    frequency: Hertz,
+    frequency: si.Hertz,
     gas: Gas,
-    plateau_width: Metre,
+    plateau_width: si.Metre,
     slip: str,
     tolerance: float,
 ) -> FilmLoad:
     from squeezefilm.film.periodic.batch import solve_films
 
-    require("plateau_width", plateau_width, Unit("m"), above=0, at_most=gap.ridge_period)
+    si.require("plateau_width", plateau_width, si.Unit("m"), above=0, at_most=gap.ridge_period)
     crest = float(gap.crest_thickness)
     sigma = float(
         squeeze_number(frequency, plateau_width, crest, gas.viscosity, gas.ambient_pressure)

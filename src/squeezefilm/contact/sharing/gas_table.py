@@ -15,24 +15,14 @@ from functools import lru_cache
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.contact.records import CompiledFilms
 from squeezefilm.errors import ConvergenceError
 from squeezefilm.film.periodic.batch import solve_films
 from squeezefilm.film.slip import slip_law
 from squeezefilm.materials import Gas
-from squeezefilm.quantities import (
-    Dimensionless,
-    FloatArray,
-    Hertz,
-    Metre,
-    MetreLike,
-    PascalLike,
-    Unit,
-    checked_numbers,
-    require,
-)
 
-DEEPEST_EXCURSION: Dimensionless = 0.985
+DEEPEST_EXCURSION: si.Dimensionless = 0.985
 """The deepest excursion a/u the table holds; the gap then closes to 1.5 % of its mean."""
 
 _SHALLOWEST = 3e-3
@@ -49,7 +39,7 @@ def default_tolerance(slip: str) -> float:
     return 5e-4 if slip in _SMOOTH_LAWS else 5e-3
 
 
-@checked_numbers
+@si.checked_numbers
 class FilmTable:
     """The film of a plateau at one frequency, width and gas, over mean gap and amplitude.
 
@@ -61,23 +51,23 @@ class FilmTable:
 
     def __init__(
         self,
-        frequency: Hertz,
-        width: Metre,
+        frequency: si.Hertz,
+        width: si.Metre,
         gas: Gas,
         slip: str = "first",
         tolerance: float | None = None,
     ) -> None:
         tolerance = default_tolerance(slip) if tolerance is None else tolerance
-        require("frequency", frequency, Unit("Hz"), above=0)
-        require("width", width, Unit("m"), above=0)
-        require("tolerance", tolerance, at_least=1e-6, at_most=1e-2)
+        si.require("frequency", frequency, si.Unit("Hz"), above=0)
+        si.require("width", width, si.Unit("m"), above=0)
+        si.require("tolerance", tolerance, at_least=1e-6, at_most=1e-2)
         slip_law(slip, 1.0)
         self.frequency, self.width, self.gas = frequency, width, gas
         self.slip, self.tolerance = slip, tolerance
-        self.length: Metre = width * float(
+        self.length: si.Metre = width * float(
             np.sqrt(24 * np.pi * gas.viscosity * frequency / gas.ambient_pressure)
         )
-        self.error: Dimensionless | None = None
+        self.error: si.Dimensionless | None = None
         self.solved = 0
         self._nodes = _START
         self._scale = np.array([self.length, gas.ambient_pressure, float(_FIRST_COLUMN)])
@@ -97,12 +87,12 @@ class FilmTable:
         return CompiledFilms(self._scale, self._edges, self._built, self._panels)
 
     @property
-    def relative_error(self) -> Dimensionless:
+    def relative_error(self) -> si.Dimensionless:
         """The bound on the relative error of the over-pressure; 0 where no film was needed."""
         return 0.0 if self.error is None else self.error
 
-    @checked_numbers
-    def over_pressure(self, mean_gap: MetreLike, amplitude: MetreLike) -> PascalLike:
+    @si.checked_numbers
+    def over_pressure(self, mean_gap: si.MetreLike, amplitude: si.MetreLike) -> si.PascalLike:
         """⟨p_gas⟩ − p0 (Pa), mean over plateau and period; broadcasts.
 
         Raises `InputError` for an amplitude above 0.985 of the gap or a gap off the table.
@@ -110,11 +100,11 @@ class FilmTable:
         from squeezefilm.contact.sharing.kernel import film_value
 
         u, a = np.broadcast_arrays(np.asarray(mean_gap, float), np.asarray(amplitude, float))
-        require("mean_gap", u, Unit("m"), above=0)
-        require("amplitude", a, Unit("m"), at_least=0)
-        require("amplitude / mean_gap", a / u, at_most=DEEPEST_EXCURSION)
+        si.require("mean_gap", u, si.Unit("m"), above=0)
+        si.require("amplitude", a, si.Unit("m"), at_least=0)
+        si.require("amplitude / mean_gap", a / u, at_most=DEEPEST_EXCURSION)
         lowest, highest = np.exp([_FIRST_COLUMN, _FIRST_COLUMN + _COLUMNS]) * self.length
-        require("mean_gap", u, Unit("m"), at_least=float(lowest), below=float(highest))
+        si.require("mean_gap", u, si.Unit("m"), at_least=float(lowest), below=float(highest))
         out = np.empty(u.size)
         for k, (gap, swing) in enumerate(zip(u.ravel().tolist(), a.ravel().tolist(), strict=True)):
             value, lack = film_value(0, gap, swing, self.compiled)
@@ -196,7 +186,7 @@ class FilmTable:
         return error
 
 
-def _coefficients(values: FloatArray) -> FloatArray:
+def _coefficients(values: si.FloatArray) -> si.FloatArray:
     """Chebyshev coefficients from values at the Lobatto nodes of both directions."""
     from scipy.fft import dct
 
@@ -211,10 +201,14 @@ def _coefficients(values: FloatArray) -> FloatArray:
     return np.ascontiguousarray(result)
 
 
-@checked_numbers
+@si.checked_numbers
 @lru_cache(maxsize=256)
 def film_table(
-    frequency: Hertz, width: Metre, gas: Gas, slip: str = "first", tolerance: float | None = None
+    frequency: si.Hertz,
+    width: si.Metre,
+    gas: Gas,
+    slip: str = "first",
+    tolerance: float | None = None,
 ) -> FilmTable:
     """The table of a plateau's film (kept, so that each is solved once). See `FilmTable`."""
     return FilmTable(frequency, width, gas, slip, tolerance)

@@ -11,8 +11,8 @@ import math
 import numpy as np
 from numba import njit
 
+from squeezefilm import quantities as si
 from squeezefilm.contact.records import CompiledAsperities, CompiledFilms
-from squeezefilm.quantities import FloatArray
 
 BALANCED, NEEDS_PANEL, PRESSED_THROUGH, OUT_OF_TABLE, UNSETTLED = range(5)
 """What became of a balance."""
@@ -50,7 +50,7 @@ def bessel(order: int, z: float) -> float:
 
 
 @njit(nogil=True, cache=True, error_model="numpy")
-def _gaussian(h: float, law: FloatArray, table: FloatArray) -> float:
+def _gaussian(h: float, law: si.FloatArray, table: si.FloatArray) -> float:
     t = h / law[2]
     x = (2.0 * t - law[3] - law[4]) / (law[4] - law[3])
     if x > 1.0:
@@ -86,7 +86,7 @@ def asperity_mean(asperities: CompiledAsperities, u: float, a: float) -> tuple[f
 
 
 @njit(nogil=True, cache=True, error_model="numpy")
-def _panel_value(c: FloatArray, xi: float, eta: float) -> float:
+def _panel_value(c: si.FloatArray, xi: float, eta: float) -> float:
     """A two-dimensional Chebyshev sum by Clenshaw's recurrence, along η for each row, then ξ."""
     b1, b2 = 0.0, 0.0
     for i in range(c.shape[0] - 1, -1, -1):
@@ -132,7 +132,11 @@ def film_value(which: int, u: float, a: float, films: CompiledFilms) -> tuple[fl
 
 @njit(nogil=True, cache=True, error_model="numpy")
 def _swing(
-    a: float, u: float, impedance: FloatArray, asperities: CompiledAsperities, films: CompiledFilms
+    a: float,
+    u: float,
+    impedance: si.FloatArray,
+    asperities: CompiledAsperities,
+    films: CompiledFilms,
 ) -> tuple[float, float, int]:
     """Amplitudes of gap and skin (m) where the skin yields to the alternating pressure.
 
@@ -185,9 +189,9 @@ def _swing(
 @njit(nogil=True, cache=True, error_model="numpy")
 def _carried(
     u: float,
-    amplitudes: FloatArray,
-    offsets: FloatArray,
-    impedance: FloatArray,
+    amplitudes: si.FloatArray,
+    offsets: si.FloatArray,
+    impedance: si.FloatArray,
     asperities: CompiledAsperities,
     films: CompiledFilms,
 ) -> tuple[float, float, float, float, int]:
@@ -211,13 +215,13 @@ def _carried(
 
 @njit(nogil=True, cache=True, error_model="numpy")
 def balance(
-    amplitudes: FloatArray,
-    offsets: FloatArray,
+    amplitudes: si.FloatArray,
+    offsets: si.FloatArray,
     pressure: float,
-    impedance: FloatArray,
+    impedance: si.FloatArray,
     asperities: CompiledAsperities,
     films: CompiledFilms,
-    out: FloatArray,
+    out: si.FloatArray,
 ) -> None:
     """The mean gap u at which ridges tied together carry a mean pressure (Pa), into `out`.
 
@@ -305,12 +309,12 @@ def balance(
 
 @njit(nogil=True, cache=True, error_model="numpy")
 def balance_rows(
-    amplitude: FloatArray,
-    pressure: FloatArray,
-    impedance: FloatArray,
+    amplitude: si.FloatArray,
+    pressure: si.FloatArray,
+    impedance: si.FloatArray,
     asperities: CompiledAsperities,
     films: CompiledFilms,
-    out: FloatArray,
+    out: si.FloatArray,
 ) -> int:
     """Each plateau at its own balance; returns the first panel lacking, or −1.
 

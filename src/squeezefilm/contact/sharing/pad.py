@@ -13,39 +13,20 @@ from typing import Annotated, Literal
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.contact.asperities import AsperityLaw
 from squeezefilm.contact.finger.fingertip import Finger
 from squeezefilm.contact.finger.skin import Skin
 from squeezefilm.contact.sharing.balance import share_load, share_load_tied
 from squeezefilm.contact.sharing.gas_table import FilmTable
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import (
-    Above,
-    AtLeast,
-    AtMost,
-    Below,
-    Dimensionless,
-    DimensionlessArray,
-    FloatArray,
-    Metre,
-    MetreArray,
-    MetreLike,
-    Newton,
-    Pascal,
-    PascalArray,
-    Radian,
-    Unit,
-    checked_numbers,
-    format_quantity,
-    require,
-)
 
 Limit = Literal["own", "one-gap"]
 
 _MOST_RIDGES = 100_000
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, eq=False)
 class PadPosture:
     """How the pad lies on the wave.
@@ -55,9 +36,9 @@ class PadPosture:
     angle (rad) by which the pad as a whole leans against the surface (limit "one-gap").
     """
 
-    position: Metre = 0.0
-    pressure_tilt: Annotated[Dimensionless, Above(-1), Below(1)] = 0.0
-    gap_tilt: Annotated[Radian, AtLeast(-0.01), AtMost(0.01)] = 0.0
+    position: si.Metre = 0.0
+    pressure_tilt: Annotated[si.Dimensionless, si.Above(-1), si.Below(1)] = 0.0
+    gap_tilt: Annotated[si.Radian, si.AtLeast(-0.01), si.AtMost(0.01)] = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,29 +51,29 @@ class PadFriction:
     `relative_friction_error` bounds what the film table's error does to µ′/µ.
     """
 
-    amplitude: MetreArray
-    mean_gap: MetreArray
-    film_pressure: PascalArray
-    asperity_pressure: PascalArray
-    relative_friction_error: DimensionlessArray
-    residual: Dimensionless
+    amplitude: si.MetreArray
+    mean_gap: si.MetreArray
+    film_pressure: si.PascalArray
+    asperity_pressure: si.PascalArray
+    relative_friction_error: si.DimensionlessArray
+    residual: si.Dimensionless
     ridge_points: int
     limit: Limit
     model: str
 
     @property
-    def relative_friction(self) -> DimensionlessArray:
+    def relative_friction(self) -> si.DimensionlessArray:
         """µ′/µ: the asperities' share of the load (dimensionless)."""
         return self.asperity_pressure / (self.asperity_pressure + self.film_pressure)
 
     @property
-    def film_share(self) -> DimensionlessArray:
+    def film_share(self) -> si.DimensionlessArray:
         """The film's share of the load (dimensionless), 1 − µ′/µ."""
         return self.film_pressure / (self.asperity_pressure + self.film_pressure)
 
 
-@checked_numbers
-def ridge_points(finger: Finger, contact_length: Metre | None = None) -> FloatArray:
+@si.checked_numbers
+def ridge_points(finger: Finger, contact_length: si.Metre | None = None) -> si.FloatArray:
     """Where along the wave (m from the pad's centre) the ridges are sampled, each point alike.
 
     Ridges stand at (i + ½) L along their normal; with ridge_angle 0 each has one x. At an angle
@@ -100,8 +81,8 @@ def ridge_points(finger: Finger, contact_length: Metre | None = None) -> FloatAr
     finer. Raises `InputError` where the contact holds no ridge.
     """
     side = finger.contact_length if contact_length is None else contact_length
-    require("contact_length", side, Unit("m"), above=0)
-    require("ridges in the contact", side / finger.ridge_period, at_most=_MOST_RIDGES)
+    si.require("contact_length", side, si.Unit("m"), above=0)
+    si.require("ridges in the contact", side / finger.ridge_period, at_most=_MOST_RIDGES)
     half, period, angle = side / 2, finger.ridge_period, finger.ridge_angle
     reach = half * (abs(np.cos(angle)) + abs(np.sin(angle)))
     count = int(np.floor(reach / period + 0.5))
@@ -115,20 +96,20 @@ def ridge_points(finger: Finger, contact_length: Metre | None = None) -> FloatAr
         points = x[(np.abs(x) <= half) & (np.abs(y) <= half)]
     if points.size == 0:
         raise InputError(
-            f"a contact of {format_quantity(side, Unit('m'))} holds no ridge of period "
-            f"{format_quantity(period, Unit('m'))}; make the contact longer"
+            f"a contact of {si.format_quantity(side, si.Unit('m'))} holds no ridge of period "
+            f"{si.format_quantity(period, si.Unit('m'))}; make the contact longer"
         )
     return np.asarray(points, dtype=float)
 
 
-@checked_numbers
+@si.checked_numbers
 def pad_friction(
     table: FilmTable,
     asperities: AsperityLaw,
-    amplitude: MetreLike,
-    half_wavelength: Annotated[Metre, Above(0.0)],
-    points: MetreArray,
-    plateau_pressure: Pascal,
+    amplitude: si.MetreLike,
+    half_wavelength: Annotated[si.Metre, si.Above(0.0)],
+    points: si.MetreArray,
+    plateau_pressure: si.Pascal,
     *,
     limit: Limit = "own",
     posture: PadPosture | None = None,
@@ -183,7 +164,7 @@ def pad_friction(
     )
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, eq=False)
 class FrictionRipple:
     """What a pad feels of the standing wave itself as it moves along it at constant amplitude.
@@ -192,31 +173,31 @@ class FrictionRipple:
     `ripple`, from least to most over the mean (dimensionless).
     """
 
-    position: MetreArray
-    relative_friction: DimensionlessArray
-    contact_length: Metre
-    half_wavelength: Metre
+    position: si.MetreArray
+    relative_friction: si.DimensionlessArray
+    contact_length: si.Metre
+    half_wavelength: si.Metre
 
     @property
-    def mean(self) -> Dimensionless:
+    def mean(self) -> si.Dimensionless:
         """The mean of µ′/µ over half a wavelength."""
         return float(np.mean(self.relative_friction))
 
     @property
-    def ripple(self) -> Dimensionless:
+    def ripple(self) -> si.Dimensionless:
         """(max − min)/mean of µ′/µ; its period in space is half the wavelength."""
         return float(np.ptp(self.relative_friction)) / self.mean
 
 
-@checked_numbers
+@si.checked_numbers
 def friction_ripple(
     table: FilmTable,
     asperities: AsperityLaw,
-    amplitude: Metre,
-    half_wavelength: Metre,
+    amplitude: si.Metre,
+    half_wavelength: si.Metre,
     finger: Finger,
     *,
-    normal_force: Newton | None = None,
+    normal_force: si.Newton | None = None,
     limit: Limit = "own",
     positions: int = 24,
 ) -> FrictionRipple:

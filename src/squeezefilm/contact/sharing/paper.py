@@ -11,26 +11,10 @@ from typing import Annotated, Any
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import UnreachableError
 from squeezefilm.film.closed.limits import PAPER_MODELS, PaperModel, contact_mean_pressure
 from squeezefilm.film.gap import PaperGap
-from squeezefilm.quantities import (
-    Above,
-    AtLeast,
-    AtMost,
-    Dimensionless,
-    DimensionlessLike,
-    Metre,
-    MetreLike,
-    Newton,
-    NewtonLike,
-    Pascal,
-    PascalLike,
-    Unit,
-    checked_numbers,
-    closed_form,
-    format_quantity,
-)
 
 __all__ = [
     "PAPER_MODELS",
@@ -45,19 +29,19 @@ __all__ = [
 ]
 
 
-@closed_form(positive="normal_force contact_length")
-def finger_pressure(normal_force: NewtonLike, contact_length: MetreLike) -> PascalLike:
+@si.closed_form(positive="normal_force contact_length")
+def finger_pressure(normal_force: si.NewtonLike, contact_length: si.MetreLike) -> si.PascalLike:
     """The mean pressure of the finger P_f = F/l0² in Pa, paper eq 13; broadcasts."""
     return normal_force / contact_length**2
 
 
-@closed_form(positive="mean_pressure normal_force contact_length ambient_pressure")
+@si.closed_form(positive="mean_pressure normal_force contact_length ambient_pressure")
 def relative_friction_from_pressure(
-    mean_pressure: DimensionlessLike,
-    normal_force: NewtonLike,
-    contact_length: MetreLike,
-    ambient_pressure: PascalLike,
-) -> DimensionlessLike:
+    mean_pressure: si.DimensionlessLike,
+    normal_force: si.NewtonLike,
+    contact_length: si.MetreLike,
+    ambient_pressure: si.PascalLike,
+) -> si.DimensionlessLike:
     """µ′/µ = max(0, 1 − (⟨P̄⟩ − 1) p0 l0²/F) (dimensionless), paper eq 14 corrected; broadcasts.
 
     `mean_pressure` is ⟨P̄⟩ over ambient, so the finger's pressure must be taken over ambient too;
@@ -68,10 +52,10 @@ def relative_friction_from_pressure(
     return np.maximum(0.0, 1 - over_pressure / normal_force)
 
 
-@closed_form(positive="mean_pressure finger_pressure")
+@si.closed_form(positive="mean_pressure finger_pressure")
 def relative_friction_from_pressure_printed(
-    mean_pressure: DimensionlessLike, finger_pressure: PascalLike
-) -> DimensionlessLike:
+    mean_pressure: si.DimensionlessLike, finger_pressure: si.PascalLike
+) -> si.DimensionlessLike:
     """Paper eq 14 as printed, 1 − (P∞ − 1)/P_f with P∞ over ambient and P_f in Pa (eq 13).
 
     Not dimensionless, and practically 1 in SI units: `tests/dimensions` asserts that it fails.
@@ -80,7 +64,7 @@ def relative_friction_from_pressure_printed(
     return 1 - (mean_pressure - 1) / finger_pressure
 
 
-def mean_pressure(gap: PaperGap, model: PaperModel = "paper2008") -> DimensionlessLike:
+def mean_pressure(gap: PaperGap, model: PaperModel = "paper2008") -> si.DimensionlessLike:
     """⟨P̄⟩ over contact and period, over ambient (dimensionless): the paper's P_moy.
 
     Scalar, or one value for each amplitude; see `film.closed.limits.contact_mean_pressure`. The
@@ -96,13 +80,13 @@ def _unclipped(gap: PaperGap, force: Any, ambient: float, model: PaperModel) -> 
     return 1 - over_pressure / (pressure if model == "paper2008-printed" else pressure / ambient)
 
 
-@checked_numbers
+@si.checked_numbers
 def relative_friction(
     gap: PaperGap,
-    normal_force: Annotated[NewtonLike, Above(0.0)],
-    ambient_pressure: Annotated[Pascal, Above(0.0)],
+    normal_force: Annotated[si.NewtonLike, si.Above(0.0)],
+    ambient_pressure: Annotated[si.Pascal, si.Above(0.0)],
     model: PaperModel = "paper2008",
-) -> DimensionlessLike:
+) -> si.DimensionlessLike:
     """The relative friction µ′/µ (dimensionless) of the paper's model at the amplitude(s) of `gap`.
 
     Scalar, or one value for each amplitude; `normal_force` in N broadcasts against them. The
@@ -116,16 +100,16 @@ def relative_friction(
     return value if np.ndim(value) else float(value)
 
 
-@checked_numbers
+@si.checked_numbers
 def vibration_amplitude_for(
-    relative_friction: Annotated[Dimensionless, AtLeast(0.0), AtMost(1.0)],
+    relative_friction: Annotated[si.Dimensionless, si.AtLeast(0.0), si.AtMost(1.0)],
     gap: PaperGap,
-    normal_force: Annotated[Newton, Above(0.0)],
-    ambient_pressure: Annotated[Pascal, Above(0.0)],
+    normal_force: Annotated[si.Newton, si.Above(0.0)],
+    ambient_pressure: Annotated[si.Pascal, si.Above(0.0)],
     model: PaperModel = "paper2008",
     *,
-    highest: Annotated[Metre, AtLeast(1e-12)] = 50e-6,
-) -> Metre:
+    highest: Annotated[si.Metre, si.AtLeast(1e-12)] = 50e-6,
+) -> si.Metre:
     """The least vibration amplitude (m, zero-to-peak) that brings µ′/µ down to a wanted value.
 
     `relative_friction` in [0, 1]; the amplitude in `gap` is disregarded. Searched up to `highest`
@@ -143,11 +127,11 @@ def vibration_amplitude_for(
     below = np.flatnonzero(values <= 0)
     if below.size == 0:
         best = int(np.argmin(values))
-        closest = format_quantity(float(amplitudes[best]), Unit("m"))
+        closest = si.format_quantity(float(amplitudes[best]), si.Unit("m"))
         raise UnreachableError(
             f"relative_friction = {relative_friction:.4g} is not reached by any vibration "
-            f"amplitude up to {format_quantity(highest, Unit('m'))}: the model '{model}' gives "
-            f"{values[best] + relative_friction:.4g} at {closest}"
+            f"amplitude up to {si.format_quantity(highest, si.Unit('m'))}: the model '{model}' "
+            f"gives {values[best] + relative_friction:.4g} at {closest}"
             " at the least; press less, take a smoother surface or ask for less"
         )
     index = int(below[0])
@@ -157,13 +141,13 @@ def vibration_amplitude_for(
     return float(brentq(excess, low, high, xtol=1e-16, rtol=1e-12))
 
 
-@checked_numbers
+@si.checked_numbers
 def zero_friction_amplitude(
     gap: PaperGap,
-    normal_force: Newton,
-    ambient_pressure: Pascal,
+    normal_force: si.Newton,
+    ambient_pressure: si.Pascal,
     model: PaperModel = "paper2008",
-) -> Metre:
+) -> si.Metre:
     """The vibration amplitude (m) at which the model's film carries the finger and µ′/µ is zero.
 
     Raises as `vibration_amplitude_for`, of which it is the case 0.

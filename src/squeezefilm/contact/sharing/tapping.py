@@ -23,41 +23,24 @@ from typing import Annotated
 
 import numpy as np
 
-from squeezefilm.quantities import (
-    Above,
-    AtLeast,
-    Dimensionless,
-    DimensionlessLike,
-    Hertz,
-    HertzLike,
-    Metre,
-    MetreLike,
-    MetrePerSecond,
-    MetrePerSecondLike,
-    Pascal,
-    PascalPerMetre,
-    Unit,
-    checked_numbers,
-    closed_form,
-    require,
-)
+from squeezefilm import quantities as si
 
-MINDLIN_RATIO: Dimensionless = 2 / 3
+MINDLIN_RATIO: si.Dimensionless = 2 / 3
 """Tangential over normal contact stiffness 2(1 − ν)/(2 − ν) of an incompressible body."""
 
-ASPERITY_DECAY: Metre = 0.6e-6
+ASPERITY_DECAY: si.Metre = 0.6e-6
 """λ_r of the default asperities, over which their pressure falls by e (assumed)."""
 
 _PHASES = 4096
 
 
-@closed_form(positive="friction_coefficient amplitude frequency speed")
+@si.closed_form(positive="friction_coefficient amplitude frequency speed")
 def tapping_number(
-    friction_coefficient: DimensionlessLike,
-    amplitude: MetreLike,
-    frequency: HertzLike,
-    speed: MetrePerSecondLike,
-) -> DimensionlessLike:
+    friction_coefficient: si.DimensionlessLike,
+    amplitude: si.MetreLike,
+    frequency: si.HertzLike,
+    speed: si.MetrePerSecondLike,
+) -> si.DimensionlessLike:
     """ψ = µ a ω/U (dimensionless): how the plate's speed compares with the finger's; broadcasts.
 
     Where it is large, the shear of a tap stays below slip: friction falls with amplitude, frequency
@@ -75,26 +58,27 @@ class Tapping:
     does not reach slip. `intermittent` is False where the skin never leaves the plate.
     """
 
-    relative_friction: Dimensionless
-    contact_fraction: Dimensionless
-    penetration: Metre
-    tapping_number: Dimensionless
+    relative_friction: si.Dimensionless
+    contact_fraction: si.Dimensionless
+    penetration: si.Metre
+    tapping_number: si.Dimensionless
     intermittent: bool
-    amplitude: Metre
-    frequency: Hertz
-    speed: MetrePerSecond
-    pressure: Pascal
+    amplitude: si.Metre
+    frequency: si.Hertz
+    speed: si.MetrePerSecond
+    pressure: si.Pascal
     model: str = "intermittent contact, spring and Coulomb slider, no gas"
 
     @property
-    def shear_release(self) -> Dimensionless:
+    def shear_release(self) -> si.Dimensionless:
         """1 − µ′/µ (dimensionless)."""
         return 1 - self.relative_friction
 
 
-@checked_numbers
+@si.checked_numbers
 def contact_angle(
-    amplitude: Annotated[Metre, AtLeast(0.0)], rest_penetration: Annotated[Metre, Above(0.0)]
+    amplitude: Annotated[si.Metre, si.AtLeast(0.0)],
+    rest_penetration: Annotated[si.Metre, si.Above(0.0)],
 ) -> float:
     """Half the phase (rad) in contact, θ0, at which taps of a linear skin carry the load.
 
@@ -109,16 +93,16 @@ def contact_angle(
     return float(brentq(lambda t: np.sin(t) - t * np.cos(t) - wanted, 0.0, np.pi, xtol=1e-14))
 
 
-@checked_numbers
+@si.checked_numbers
 def tapping_friction(
-    amplitude: Annotated[Metre, AtLeast(0.0)],
-    frequency: Annotated[Hertz, Above(0.0)],
-    speed: Annotated[MetrePerSecond, Above(0.0)],
-    pressure: Annotated[Pascal, Above(0.0)],
+    amplitude: Annotated[si.Metre, si.AtLeast(0.0)],
+    frequency: Annotated[si.Hertz, si.Above(0.0)],
+    speed: Annotated[si.MetrePerSecond, si.Above(0.0)],
+    pressure: Annotated[si.Pascal, si.Above(0.0)],
     *,
-    friction_coefficient: Annotated[Dimensionless, Above(0.0)] = 0.9,
-    normal_stiffness: PascalPerMetre | None = None,
-    stiffness_ratio: Annotated[Dimensionless, Above(0.0)] = MINDLIN_RATIO,
+    friction_coefficient: Annotated[si.Dimensionless, si.Above(0.0)] = 0.9,
+    normal_stiffness: si.PascalPerMetre | None = None,
+    stiffness_ratio: Annotated[si.Dimensionless, si.Above(0.0)] = MINDLIN_RATIO,
 ) -> Tapping:
     """Friction of a patch of skin under a mean `pressure` (Pa), tapped at `amplitude` (m).
 
@@ -130,7 +114,7 @@ def tapping_friction(
     """
     if normal_stiffness is None:
         normal_stiffness = pressure / ASPERITY_DECAY
-    require("normal_stiffness", normal_stiffness, Unit("Pa/m"), above=0)
+    si.require("normal_stiffness", normal_stiffness, si.Unit("Pa/m"), above=0)
     rest = pressure / normal_stiffness
     half = contact_angle(amplitude, rest)
     intermittent = half < np.pi

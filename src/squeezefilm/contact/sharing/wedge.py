@@ -9,28 +9,20 @@ from __future__ import annotations
 
 import numpy as np
 
-from squeezefilm.quantities import (
-    DimensionlessLike,
-    HertzLike,
-    MetreLike,
-    MetrePerSecondLike,
-    PascalLike,
-    PascalSecond,
-    closed_form,
-)
+from squeezefilm import quantities as si
 
 
-@closed_form(
+@si.closed_form(
     positive="speed width mean_gap viscosity closing", nonnegative="amplitude"
 )  # closing → 0 is a parallel plateau, which carries nothing
 def wedge_pressure(
-    speed: MetrePerSecondLike,
-    width: MetreLike,
-    mean_gap: MetreLike,
-    amplitude: MetreLike,
-    closing: DimensionlessLike,
-    viscosity: PascalSecond,
-) -> PascalLike:
+    speed: si.MetrePerSecondLike,
+    width: si.MetreLike,
+    mean_gap: si.MetreLike,
+    amplitude: si.MetreLike,
+    closing: si.DimensionlessLike,
+    viscosity: si.PascalSecond,
+) -> si.PascalLike:
     """The mean pressure (Pa) under a leaning plateau that slides; broadcasts.
 
     p = 6 η U w/h² · [ln(1 + n) − 2n/(2 + n)]/n², h the gap at its narrow edge and h (1 + n) at
@@ -43,10 +35,10 @@ def wedge_pressure(
     return 6 * viscosity * speed * width * mean_square * shape
 
 
-@closed_form(positive="speed width frequency")
+@si.closed_form(positive="speed width frequency")
 def sliding_ratio(
-    speed: MetrePerSecondLike, width: MetreLike, frequency: HertzLike
-) -> DimensionlessLike:
+    speed: si.MetrePerSecondLike, width: si.MetreLike, frequency: si.HertzLike
+) -> si.DimensionlessLike:
     """U/(ω w) (dimensionless): how far a finger slides in 1/ω over the plateau's width; broadcasts.
 
     Its square is how much sliding changes the load of a symmetric plateau.

@@ -8,28 +8,11 @@ from typing import Annotated
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import (
-    Above,
-    AtLeast,
-    AtMost,
-    Dimensionless,
-    DimensionlessArray,
-    DimensionlessLike,
-    FloatArray,
-    Metre,
-    MetreArray,
-    MetrePerSecond,
-    Newton,
-    NewtonLike,
-    Unit,
-    checked_numbers,
-    format_quantity,
-    require,
-)
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class DryFriction:
     """Coulomb's law, set-valued at rest, with three options that each default to off.
@@ -56,30 +39,30 @@ class DryFriction:
         InputError: a value outside its range.
     """
 
-    static_ratio: Annotated[Dimensionless, AtLeast(1.0)] = 1.0
-    stribeck_speed: Annotated[MetrePerSecond, AtLeast(0.0)] = 0.0
-    load_exponent: Annotated[Dimensionless, Above(0.0), AtMost(1.0)] = 1.0
-    reference_force: Annotated[Newton, Above(0.0)] = 1.0
+    static_ratio: Annotated[si.Dimensionless, si.AtLeast(1.0)] = 1.0
+    stribeck_speed: Annotated[si.MetrePerSecond, si.AtLeast(0.0)] = 0.0
+    load_exponent: Annotated[si.Dimensionless, si.Above(0.0), si.AtMost(1.0)] = 1.0
+    reference_force: Annotated[si.Newton, si.Above(0.0)] = 1.0
 
-    @checked_numbers
+    @si.checked_numbers
     def kinetic_force(
         self,
-        friction_coefficient: Annotated[DimensionlessLike, AtLeast(0.0)],
-        normal_force: Annotated[NewtonLike, AtLeast(0.0)],
-    ) -> NewtonLike:
+        friction_coefficient: Annotated[si.DimensionlessLike, si.AtLeast(0.0)],
+        normal_force: Annotated[si.NewtonLike, si.AtLeast(0.0)],
+    ) -> si.NewtonLike:
         """Friction force of fast sliding (N) under a normal force (N); both broadcast.
 
         Raises:
             InputError: a negative or infinite coefficient or force.
         """
         relative = np.asarray(normal_force, dtype=float) / self.reference_force
-        force: NewtonLike = (
+        force: si.NewtonLike = (
             friction_coefficient * self.reference_force * relative**self.load_exponent
         )
         return force
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, slots=True, eq=False)
 class FrictionProfile:
     """Friction that belongs to places of the surface: a factor by skin position, linear between.
@@ -96,9 +79,9 @@ class FrictionProfile:
         InputError: a value outside its range or fewer than two values.
     """
 
-    start: Metre
-    spacing: Annotated[Metre, Above(0.0)]
-    relative_friction: Annotated[DimensionlessArray, AtLeast(0.0)]
+    start: si.Metre
+    spacing: Annotated[si.Metre, si.Above(0.0)]
+    relative_friction: Annotated[si.DimensionlessArray, si.AtLeast(0.0)]
 
     def __post_init__(self) -> None:
         if np.ndim(self.relative_friction) != 1 or np.size(self.relative_friction) < 2:
@@ -109,14 +92,17 @@ class FrictionProfile:
             )
 
     @property
-    def end(self) -> Metre:
+    def end(self) -> si.Metre:
         """Place of the last value (m)."""
         return self.start + self.spacing * (np.size(self.relative_friction) - 1)
 
 
-@checked_numbers
+@si.checked_numbers
 def sampled_profile(
-    relative_friction: Callable[[MetreArray], FloatArray], start: Metre, end: Metre, points: int
+    relative_friction: Callable[[si.MetreArray], si.FloatArray],
+    start: si.Metre,
+    end: si.Metre,
+    points: int,
 ) -> FrictionProfile:
     """A `FrictionProfile` from a function of place (m) → factor (1), at evenly spaced points.
 
@@ -124,7 +110,7 @@ def sampled_profile(
         InputError: an end not beyond the start, fewer than two points, or values that a
             `FrictionProfile` refuses.
     """
-    require("end", end, Unit("m"), above=start)
+    si.require("end", end, si.Unit("m"), above=start)
     if points < 2:
         raise InputError(f"points = {points} cannot be used: it must be at least 2")
     places = np.linspace(start, end, points)
@@ -132,6 +118,6 @@ def sampled_profile(
     if values.shape != places.shape:
         raise InputError(
             f"relative_friction returned values of shape {values.shape} where {places.shape} was "
-            f"given from {format_quantity(start, Unit('m'))} on; it must return one per place"
+            f"given from {si.format_quantity(start, si.Unit('m'))} on; it must return one per place"
         )
     return FrictionProfile(start, (end - start) / (points - 1), values)

@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numba
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.contact.sliding.skin_motion import (
     HALVINGS,
     Forces,
@@ -24,7 +25,6 @@ from squeezefilm.contact.sliding.skin_motion import (
     slide_by,
     transition,
 )
-from squeezefilm.quantities import Array
 
 # Slip starts and ends that one sample interval may hold before the march gives up.
 MOST_EVENTS = 200
@@ -38,10 +38,10 @@ class Drive(NamedTuple):
     kinetic friction force before the ground's factor (n,), the time between samples (s), and the
     parts in which an interval is marched."""
 
-    bone: Array
-    speed_in: Array
-    speed_out: Array
-    limit: Array
+    bone: si.Array
+    speed_in: si.Array
+    speed_out: si.Array
+    limit: si.Array
     time_step: float
     substeps: int
 
@@ -58,7 +58,7 @@ class Ground(NamedTuple):
 
     start: float
     spacing: float
-    factor: Array
+    factor: si.Array
 
 
 class Track(NamedTuple):
@@ -69,17 +69,17 @@ class Track(NamedTuple):
     law at the middle of a substep (over the limit there).
     """
 
-    position: Array
-    speed: Array
-    friction: Array
-    bone_force: Array
-    stuck: Array
-    work: Array
-    account: Array
+    position: si.Array
+    speed: si.Array
+    friction: si.Array
+    bone_force: si.Array
+    stuck: si.Array
+    work: si.Array
+    account: si.Array
 
 
 @numba.njit(cache=True, nogil=True)
-def at_place(place: float, start: float, spacing: float, profile: Array) -> float:
+def at_place(place: float, start: float, spacing: float, profile: si.Array) -> float:
     """The ground's factor (linear between its points, held beyond its ends) at a place (m)."""
     if profile.size == 1:
         return float(profile[0])

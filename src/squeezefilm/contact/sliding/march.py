@@ -21,6 +21,7 @@ from typing import Annotated
 import numpy as np
 from numpy.typing import NDArray
 
+from squeezefilm import quantities as si
 from squeezefilm.contact.finger.fingerpad import FingerpadDynamics
 from squeezefilm.contact.finger.occlusion import Occlusion
 from squeezefilm.contact.sliding.dry_friction import DryFriction, FrictionProfile
@@ -34,28 +35,9 @@ from squeezefilm.contact.sliding.kernel import (
 )
 from squeezefilm.contact.sliding.skin_motion import Skin
 from squeezefilm.errors import ConvergenceError, InputError, OutOfRangeError
-from squeezefilm.quantities import (
-    Above,
-    Dimensionless,
-    DimensionlessLike,
-    FloatArray,
-    Joule,
-    Metre,
-    MetreArray,
-    MetrePerSecond,
-    MetrePerSecondArray,
-    NewtonArray,
-    NewtonLike,
-    Second,
-    SecondArray,
-    Unit,
-    checked_numbers,
-    format_quantity,
-    require,
-)
 
-JouleArray = Annotated[FloatArray, Unit("J")]
-MetrePerSquareSecondArray = Annotated[FloatArray, Unit("m/s2")]
+JouleArray = Annotated[si.FloatArray, si.Unit("J")]
+MetrePerSquareSecondArray = Annotated[si.FloatArray, si.Unit("m/s2")]
 
 # Of the shortest time of the skin; far below it, a substep holds at most one slip.
 _SUBSTEP = 0.25
@@ -94,26 +76,26 @@ class Sliding:
 
     fingerpad: FingerpadDynamics
     law: DryFriction
-    time_step: Second
-    time: SecondArray
-    bone_position: MetreArray
-    skin_position: MetreArray
-    skin_speed: MetrePerSecondArray
-    friction_force: NewtonArray
-    bone_force: NewtonArray
-    friction_limit: NewtonArray
+    time_step: si.Second
+    time: si.SecondArray
+    bone_position: si.MetreArray
+    skin_position: si.MetreArray
+    skin_speed: si.MetrePerSecondArray
+    friction_force: si.NewtonArray
+    bone_force: si.NewtonArray
+    friction_limit: si.NewtonArray
     sticking: NDArray[np.bool_]
     bone_work: JouleArray
     friction_loss: JouleArray
     damping_loss: JouleArray
     stored_energy: JouleArray
-    stuck_share: Dimensionless
+    stuck_share: si.Dimensionless
     slips: int
-    friction_law_error: Dimensionless
+    friction_law_error: si.Dimensionless
     model: str = "one mass on spring and damper, set-valued Coulomb friction, event-driven"
 
     @property
-    def stretch(self) -> MetreArray:
+    def stretch(self) -> si.MetreArray:
         """Skin position relative to the bone (m): negative when dragged back on a way along +x."""
         return self.skin_position - self.bone_position
 
@@ -123,7 +105,7 @@ class Sliding:
         return (self.bone_force - self.friction_force) / self.fingerpad.mass
 
     @property
-    def energy_residual(self) -> Joule:
+    def energy_residual(self) -> si.Joule:
         """Largest failure of the balance work = stored + friction + damping at any time (J).
 
         Work and losses are integrated on their own, so this judges the march; it does not judge
@@ -135,19 +117,19 @@ class Sliding:
         )
 
 
-@checked_numbers
+@si.checked_numbers
 def slide(
-    bone_position: MetreArray,
-    time_step: Annotated[Second, Above(0.0)],
-    friction_coefficient: DimensionlessLike,
-    normal_force: NewtonLike,
+    bone_position: si.MetreArray,
+    time_step: Annotated[si.Second, si.Above(0.0)],
+    friction_coefficient: si.DimensionlessLike,
+    normal_force: si.NewtonLike,
     fingerpad: FingerpadDynamics | None = None,
     law: DryFriction | None = None,
     *,
     occlusion: Occlusion | None = None,
     profile: FrictionProfile | None = None,
-    initial_stretch: Metre = 0.0,
-    initial_speed: MetrePerSecond = 0.0,
+    initial_stretch: si.Metre = 0.0,
+    initial_speed: si.MetrePerSecond = 0.0,
 ) -> Sliding:
     """The tangential force and the skin's motion as the bone moves over a surface.
 
@@ -191,7 +173,7 @@ def slide(
     return _sliding(pad, law, time_step, bone, limit, track)
 
 
-def _checked_bone(bone_position: MetreArray) -> FloatArray:
+def _checked_bone(bone_position: si.MetreArray) -> si.FloatArray:
     bone = np.ascontiguousarray(bone_position, dtype=float)
     if bone.ndim != 1 or bone.size < 2:
         raise InputError(
@@ -203,9 +185,9 @@ def _checked_bone(bone_position: MetreArray) -> FloatArray:
 
 
 def _march(
-    bone: FloatArray,
+    bone: si.FloatArray,
     time_step: float,
-    limit: FloatArray,
+    limit: si.FloatArray,
     pad: FingerpadDynamics,
     law: DryFriction,
     profile: FrictionProfile | None,
@@ -227,7 +209,8 @@ def _march(
     if done < bone.size:
         raise ConvergenceError(
             f"the skin started and stopped more than {MOST_EVENTS} times within the time step "
-            f"after t = {format_quantity(done * time_step, Unit('s'))}; take a shorter time_step",
+            f"after t = {si.format_quantity(done * time_step, si.Unit('s'))}; take a shorter "
+            "time_step",
             partial=track.position[: done + 1],
             iterations=MOST_EVENTS,
         )
@@ -237,8 +220,8 @@ def _sliding(
     pad: FingerpadDynamics,
     law: DryFriction,
     time_step: float,
-    bone: FloatArray,
-    limit: FloatArray,
+    bone: si.FloatArray,
+    limit: si.FloatArray,
     track: Track,
 ) -> Sliding:
     """What was marched, with its energies."""
@@ -266,17 +249,17 @@ def _sliding(
     )
 
 
-@checked_numbers
+@si.checked_numbers
 def interval_speeds(
-    bone: MetreArray, time_step: Annotated[Second, Above(0.0)]
-) -> tuple[MetrePerSecondArray, MetrePerSecondArray]:
+    bone: si.MetreArray, time_step: Annotated[si.Second, si.Above(0.0)]
+) -> tuple[si.MetrePerSecondArray, si.MetrePerSecondArray]:
     """Speed of the bone at the start and the end of each interval (m/s), shape (n−1,) each.
 
     The parabola through both samples whose acceleration is the smaller of those to the left and
     to the right, and 0 where they differ in sign: second order on smooth motion, and a motion in
     straight pieces that meet at samples keeps its corners.
     """
-    require("bone", bone, Unit("m"), axes=1)
+    si.require("bone", bone, si.Unit("m"), axes=1)
     mean = np.diff(bone) / time_step
     change = np.diff(mean)
     if not change.size:
@@ -290,7 +273,7 @@ def interval_speeds(
     return mean - half, mean + half
 
 
-def _over_time(name: str, values: NewtonLike | DimensionlessLike, n: int) -> FloatArray:
+def _over_time(name: str, values: si.NewtonLike | si.DimensionlessLike, n: int) -> si.FloatArray:
     array = np.asarray(values, dtype=float)
     if array.shape not in ((), (n,)):
         raise InputError(
@@ -301,8 +284,10 @@ def _over_time(name: str, values: NewtonLike | DimensionlessLike, n: int) -> Flo
     return np.broadcast_to(array, (n,))
 
 
-@checked_numbers
-def substeps(time_step: Second, pad: FingerpadDynamics, law: DryFriction, strongest: float) -> int:
+@si.checked_numbers
+def substeps(
+    time_step: si.Second, pad: FingerpadDynamics, law: DryFriction, strongest: float
+) -> int:
     """Parts of a step (s) short enough for the skin, and for friction that falls with speed.
 
     `strongest` is the largest friction force (N). Raises `InputError` for more than 1000 parts.
@@ -314,17 +299,20 @@ def substeps(time_step: Second, pad: FingerpadDynamics, law: DryFriction, strong
         count = max(count, math.ceil(time_step * growth / _STRIBECK_SUBSTEP))
     if count > _MOST_SUBSTEPS:
         raise InputError(
-            f"time_step = {format_quantity(time_step, Unit('s'))} would need {count} parts of a "
-            f"step where {_MOST_SUBSTEPS} are allowed: shorten it, or raise stribeck_speed or mass"
+            f"time_step = {si.format_quantity(time_step, si.Unit('s'))} would need {count} parts "
+            f"of a step where {_MOST_SUBSTEPS} are allowed: shorten it, or raise stribeck_speed or "
+            "mass"
         )
     return max(count, 1)
 
 
-def _factor_at(position: MetreArray, profile: FrictionProfile) -> FloatArray:
+def _factor_at(position: si.MetreArray, profile: FrictionProfile) -> si.FloatArray:
     """The profile at the skin's places; raises `OutOfRangeError` where it does not reach."""
     low, high = float(position.min()), float(position.max())
     if low < profile.start or high > profile.end:
-        ends = [format_quantity(x, Unit("m")) for x in (low, high, profile.start, profile.end)]
+        ends = [
+            si.format_quantity(x, si.Unit("m")) for x in (low, high, profile.start, profile.end)
+        ]
         raise OutOfRangeError(
             f"the skin moved from {ends[0]} to {ends[1]}, and the profile covers {ends[2]} to "
             f"{ends[3]}; extend it (the skin leads and trails the bone by its stretch)"

@@ -8,29 +8,13 @@ from typing import Annotated
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.contact.sliding.march import MetrePerSquareSecondArray, Sliding
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import (
-    Above,
-    FloatArray,
-    Hertz,
-    HertzArray,
-    HertzLike,
-    MetreArray,
-    MetreLike,
-    MetrePerSecondLike,
-    NewtonArray,
-    Second,
-    Unit,
-    checked_numbers,
-    closed_form,
-    format_quantity,
-    require,
-)
 
-SquareMetrePerHertzArray = Annotated[FloatArray, Unit("m2*s")]
-AccelerationPsdArray = Annotated[FloatArray, Unit("m2/s3")]
-SquareNewtonPerHertzArray = Annotated[FloatArray, Unit("N2*s")]
+SquareMetrePerHertzArray = Annotated[si.FloatArray, si.Unit("m2*s")]
+AccelerationPsdArray = Annotated[si.FloatArray, si.Unit("m2/s3")]
+SquareNewtonPerHertzArray = Annotated[si.FloatArray, si.Unit("N2*s")]
 
 # Segments overlap by half: 8 of them still show a line a hundredth of the window's width apart.
 _SEGMENTS = 8
@@ -57,22 +41,22 @@ class SkinVibration:
         force_amplitude: at the harmonics (N), shape (harmonics,).
     """
 
-    start: Second
-    end: Second
-    fundamental: Hertz
-    frequency: HertzArray
+    start: si.Second
+    end: si.Second
+    fundamental: si.Hertz
+    frequency: si.HertzArray
     displacement_psd: SquareMetrePerHertzArray
     acceleration_psd: AccelerationPsdArray
     force_psd: SquareNewtonPerHertzArray
-    harmonic_frequency: HertzArray
-    displacement_amplitude: MetreArray
+    harmonic_frequency: si.HertzArray
+    displacement_amplitude: si.MetreArray
     acceleration_amplitude: MetrePerSquareSecondArray
-    force_amplitude: NewtonArray
+    force_amplitude: si.NewtonArray
     model: str = "Welch, Hann window, half overlap; lines by least squares over whole periods"
 
 
-@closed_form(positive="speed spatial_period")
-def texture_frequency(speed: MetrePerSecondLike, spatial_period: MetreLike) -> HertzLike:
+@si.closed_form(positive="speed spatial_period")
+def texture_frequency(speed: si.MetrePerSecondLike, spatial_period: si.MetreLike) -> si.HertzLike:
     """Temporal frequency at which a grating passes under a finger (Hz): speed/spatial_period.
 
     Arguments (m/s, m) broadcast. Raises `InputError` unless both are above 0.
@@ -80,14 +64,14 @@ def texture_frequency(speed: MetrePerSecondLike, spatial_period: MetreLike) -> H
     return speed / spatial_period
 
 
-@checked_numbers
+@si.checked_numbers
 def skin_vibration(
     motion: Sliding,
-    fundamental: Hertz,
+    fundamental: si.Hertz,
     harmonics: int = 5,
     *,
-    start: Second = 0.0,
-    end: Second | None = None,
+    start: si.Second = 0.0,
+    end: si.Second | None = None,
 ) -> SkinVibration:
     """Spectra of a sliding skin, and its amplitudes at a texture's frequency and harmonics.
 
@@ -103,11 +87,11 @@ def skin_vibration(
         InputError: a window that is outside the motion, shorter than 16 samples or than two
             periods of the fundamental, or a fundamental not below half the sample rate.
     """
-    require("fundamental", fundamental, Unit("Hz"), above=0.0, below=0.5 / motion.time_step)
+    si.require("fundamental", fundamental, si.Unit("Hz"), above=0.0, below=0.5 / motion.time_step)
     last = float(motion.time[-1])
-    require("start", start, Unit("s"), at_least=0.0, below=last)
+    si.require("start", start, si.Unit("s"), at_least=0.0, below=last)
     stop = last if end is None else end
-    require("end", stop, Unit("s"), above=start, at_most=last * (1 + 1e-12))
+    si.require("end", stop, si.Unit("s"), above=start, at_most=last * (1 + 1e-12))
     if harmonics < 1:
         raise InputError(f"harmonics = {harmonics} cannot be used: it must be at least 1")
     signals = _window(motion, start, stop, fundamental)
@@ -120,7 +104,7 @@ def skin_vibration(
     frequency, density = welch(
         signals, 1 / motion.time_step, "hann", nperseg=length, detrend=detrend
     )
-    lines: HertzArray = fundamental * np.arange(1.0, harmonics + 1)
+    lines: si.HertzArray = fundamental * np.arange(1.0, harmonics + 1)
     lines = lines[lines < 0.5 / motion.time_step]
     amplitude = line_amplitudes(signals, motion.time_step, lines)
     return SkinVibration(
@@ -138,7 +122,7 @@ def skin_vibration(
     )
 
 
-def _window(motion: Sliding, start: float, stop: float, fundamental: float) -> FloatArray:
+def _window(motion: Sliding, start: float, stop: float, fundamental: float) -> si.FloatArray:
     """Stretch, acceleration and force at the bone between two times (s), shape (3, samples).
 
     Raises `InputError` where that is too little for spectra.
@@ -146,30 +130,30 @@ def _window(motion: Sliding, start: float, stop: float, fundamental: float) -> F
     inside = slice(
         math.ceil(start / motion.time_step - 1e-9), math.floor(stop / motion.time_step + 1e-9) + 1
     )
-    signals: FloatArray = np.array([motion.stretch, motion.skin_acceleration, motion.bone_force])[
-        :, inside
-    ]
+    signals: si.FloatArray = np.array(
+        [motion.stretch, motion.skin_acceleration, motion.bone_force]
+    )[:, inside]
     periods = signals.shape[1] * motion.time_step * fundamental
     if signals.shape[1] < _FEWEST or periods < 2:
         raise InputError(
-            f"a window of {format_quantity(stop - start, Unit('s'))} with {signals.shape[1]} "
+            f"a window of {si.format_quantity(stop - start, si.Unit('s'))} with {signals.shape[1]} "
             f"samples is too short: give at least {_FEWEST} samples and two periods of "
-            f"{format_quantity(1 / fundamental, Unit('s'))}"
+            f"{si.format_quantity(1 / fundamental, si.Unit('s'))}"
         )
     return signals
 
 
-@checked_numbers
+@si.checked_numbers
 def line_amplitudes(
-    signals: FloatArray, time_step: Annotated[Second, Above(0.0)], lines: HertzArray
-) -> FloatArray:
+    signals: si.FloatArray, time_step: Annotated[si.Second, si.Above(0.0)], lines: si.HertzArray
+) -> si.FloatArray:
     """Zero-to-peak amplitudes of sines at the frequencies `lines` (Hz) in signals (…, samples).
 
     Least squares of a line in time and all the sines together over as many whole periods of the
     first line as fit, so that neither a drift nor the window's ends leak into them. The result has
     shape (…, lines) and the unit of the signals.
     """
-    require("lines", lines, Unit("Hz"), above=0, axes=1)
+    si.require("lines", lines, si.Unit("Hz"), above=0, axes=1)
     periods = signals.shape[-1] * time_step * lines[0]
     if not 1 <= periods + 1e-9 <= signals.shape[-1] / 2:
         raise InputError(

@@ -10,17 +10,17 @@ from typing import Any
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.device.wire.safety import HIGHEST_VOLTAGE
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import FloatArray, Unit, Volt, require
 
 
-def number(name: str, value: Any, unit: Unit, at_least: float, at_most: float) -> float:
+def number(name: str, value: Any, unit: si.Unit, at_least: float, at_most: float) -> float:
     """One finite number between two bounds in SI. Raises `InputError` for anything else."""
     array = _numbers(name, value, 0, f"one number in {unit.symbol}")
     # Every command of a loop in real time comes here: what is in order costs no more than this.
     if not at_least <= array <= at_most:
-        require(name, array, unit, at_least=at_least, at_most=at_most)
+        si.require(name, array, unit, at_least=at_least, at_most=at_most)
     return float(array)
 
 
@@ -32,14 +32,14 @@ def whole_number(name: str, value: Any) -> int:
         raise InputError(f"{name} is {value!r}; give a whole number", quantity=name) from error
 
 
-def amplitudes(levels: Any, at_most: Volt = HIGHEST_VOLTAGE) -> FloatArray:
+def amplitudes(levels: Any, at_most: si.Volt = HIGHEST_VOLTAGE) -> si.FloatArray:
     """Amplitudes (V, zero-to-peak), shape (n,), each from 0 to `at_most`.
 
     Raises `InputError` for anything else.
     """
     array = _numbers("levels", levels, 1, "a row of amplitudes in V")
     if not (array.size and array.min() >= 0.0 and array.max() <= at_most):
-        require("levels", array, Unit("V"), at_least=0.0, at_most=at_most)
+        si.require("levels", array, si.Unit("V"), at_least=0.0, at_most=at_most)
     return array
 
 
@@ -50,7 +50,7 @@ def binary32_below(values: Any) -> np.ndarray[Any, np.dtype[np.float32]]:
     return np.where(near > exact, np.nextafter(near, np.float32(0)), near).astype(np.float32)
 
 
-def _numbers(name: str, value: Any, dimensions: int, wanted: str) -> FloatArray:
+def _numbers(name: str, value: Any, dimensions: int, wanted: str) -> si.FloatArray:
     try:
         array = np.asarray(value)
     except ValueError:  # rows of different lengths

@@ -14,6 +14,7 @@ from collections import OrderedDict, deque
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from squeezefilm import quantities as si
 from squeezefilm.device.device_clock import DeviceClock
 from squeezefilm.device.machine.playing import until
 from squeezefilm.device.wire import messages as m
@@ -21,15 +22,14 @@ from squeezefilm.device.wire.frames import Deframer, Frame
 from squeezefilm.device.wire.states import Fault, Reason, State
 from squeezefilm.device.wire.streams import ByteStream
 from squeezefilm.errors import DeviceError
-from squeezefilm.quantities import Second
 
-KEEP_ALIVE_PERIOD: Second = 15e-3
+KEEP_ALIVE_PERIOD: si.Second = 15e-3
 """Silence of the host after which a keep alive is due; the watchdog waits 50 ms."""
-ANSWER_LIMIT: Second = 1.0
+ANSWER_LIMIT: si.Second = 1.0
 """After which an answer counts as lost."""
-TIMEOUT: Second = 1.0
+TIMEOUT: si.Second = 1.0
 ATTEMPTS = 8
-_PAUSE: Second = 0.2e-3
+_PAUSE: si.Second = 0.2e-3
 
 WORDS: dict[Reason, str] = {
     Reason.ACCEPTED: "it was accepted",
@@ -75,11 +75,11 @@ class LinkStatistics:
     stale: int = 0
     missed: int = 0
     readings: int = 0
-    shortest_round_trip: Second = math.nan
-    mean_round_trip: Second = math.nan
-    longest_round_trip: Second = math.nan
+    shortest_round_trip: si.Second = math.nan
+    mean_round_trip: si.Second = math.nan
+    longest_round_trip: si.Second = math.nan
 
-    def count_round_trip(self, duration: Second) -> None:
+    def count_round_trip(self, duration: si.Second) -> None:
         """One more answer, after `duration` (s)."""
         self.answered += 1
         if self.answered == 1:
@@ -101,8 +101,8 @@ class Link:
     def __init__(
         self,
         stream: ByteStream,
-        clock: Callable[[], Second] = time.monotonic,
-        wait: Callable[[Second], None] = time.sleep,
+        clock: Callable[[], si.Second] = time.monotonic,
+        wait: Callable[[si.Second], None] = time.sleep,
     ) -> None:
         self.stream, self.clock, self.wait = stream, clock, wait
         self.device_clock = DeviceClock()
@@ -111,7 +111,7 @@ class Link:
         self._statistics = LinkStatistics()
         self._deframer = Deframer()
         self._sequence = 0
-        self._asked: dict[int, tuple[Second, str]] = {}
+        self._asked: dict[int, tuple[si.Second, str]] = {}
         self._sent_at = -math.inf
         self._heard: int | None = None
         self._recent: OrderedDict[int, bytes] = OrderedDict()
@@ -152,7 +152,7 @@ class Link:
         self._statistics.sent += 1
         return sequence
 
-    def keep_alive(self, period: Second = KEEP_ALIVE_PERIOD) -> None:
+    def keep_alive(self, period: si.Second = KEEP_ALIVE_PERIOD) -> None:
         """Send a keep alive if nothing was sent for `period` (s)."""
         if self.clock() - self._sent_at >= period:
             self.send(m.KeepAlive())
@@ -163,7 +163,7 @@ class Link:
         came, self._unpolled = self._unpolled, []
         return came
 
-    def request(self, message: m.Message, timeout: Second = TIMEOUT) -> m.Status:
+    def request(self, message: m.Message, timeout: si.Second = TIMEOUT) -> m.Status:
         """Send a message and wait for its status; the watchdog is fed meanwhile.
 
         Without an answer it is sent again, with a new number, up to 8 times in all. What must not
@@ -206,7 +206,7 @@ class Link:
             "power and its cable, and whether the port is the right one"
         )
 
-    def _answer(self, sequence: int, timeout: Second) -> m.Status | None:
+    def _answer(self, sequence: int, timeout: si.Second) -> m.Status | None:
         end = self.clock() + timeout
         while True:
             for status in self._hear():
@@ -261,7 +261,7 @@ class Link:
         self._heard = frame.sequence
         return False
 
-    def _take_status(self, status: m.Status, now: Second) -> None:
+    def _take_status(self, status: m.Status, now: si.Second) -> None:
         # By the host's own numbers: the device's clock falls where it was restarted.
         ahead = 0
         if self.status is not None:
@@ -276,7 +276,7 @@ class Link:
             self._statistics.refused += 1
             self.refusals.append((name, status))
 
-    def _take_reading(self, reading: m.Reading, now: Second) -> bool:
+    def _take_reading(self, reading: m.Reading, now: si.Second) -> bool:
         newest = self._newest_reading
         if newest is not None and until(reading.time, newest) <= 0:
             self._statistics.stale += 1

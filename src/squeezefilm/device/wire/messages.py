@@ -12,11 +12,11 @@ import struct
 from dataclasses import dataclass, fields
 from typing import Any, ClassVar, Self
 
+from squeezefilm import quantities as si
 from squeezefilm.device.wire.arguments import amplitudes, binary32_below
 from squeezefilm.device.wire.frames import Frame
 from squeezefilm.device.wire.safety import Limits
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import Volt
 
 MOST_LEVELS = 56
 """Amplitudes that fit one frame."""
@@ -75,9 +75,9 @@ class SetLimits(Message):
 
     TYPE: ClassVar[int] = 0x03
     LAYOUT: ClassVar[struct.Struct] = struct.Struct("<fIfIIIHIB")
-    voltage: Volt
+    voltage: si.Volt
     slew: int
-    continuous_voltage: Volt
+    continuous_voltage: si.Volt
     heat: int
     lowest_frequency: int
     highest_frequency: int
@@ -140,7 +140,7 @@ class Envelope(_Levels):
 
     TYPE: ClassVar[int] = 0x07
     period: int
-    levels: tuple[Volt, ...]
+    levels: tuple[si.Volt, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -160,7 +160,7 @@ class TileData(_Levels):
 
     TYPE: ClassVar[int] = 0x09
     first: int
-    levels: tuple[Volt, ...]
+    levels: tuple[si.Volt, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -221,7 +221,7 @@ class TimedEnvelope(Message):
     TYPE: ClassVar[int] = 0x10
     start: int
     period: int
-    levels: tuple[Volt, ...]
+    levels: tuple[si.Volt, ...]
 
     def payload(self) -> bytes:
         """The payload's bytes. Raises `InputError` for too many, or what is no amplitude."""

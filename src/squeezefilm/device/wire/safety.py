@@ -9,30 +9,20 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated
 
+from squeezefilm import quantities as si
 from squeezefilm.device.ports import Drive
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import (
-    AtLeast,
-    AtMost,
-    Dimensionless,
-    Hertz,
-    Second,
-    SquareVoltSecond,
-    Volt,
-    VoltPerSecond,
-    checked_numbers,
-)
 
-TOUCH_VOLTAGE: Volt = 42.0
+TOUCH_VOLTAGE: si.Volt = 42.0
 """Peak voltage above which a display must name the insulation on the side that is touched."""
-HIGHEST_VOLTAGE: Volt = 2000.0
-WATCHDOG: Second = 50e-3
+HIGHEST_VOLTAGE: si.Volt = 2000.0
+WATCHDOG: si.Second = 50e-3
 """Silence after which a device stops by itself."""
-STOP_RAMP: Second = 10e-3
+STOP_RAMP: si.Second = 10e-3
 """Longest time in which a device's output goes to zero; `slew` must be fast enough for it."""
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class Limits:
     """What a device never exceeds. All voltages are zero-to-peak amplitudes of the carrier.
@@ -46,14 +36,14 @@ class Limits:
         InputError: a limit outside what the wire carries, or limits that contradict each other.
     """
 
-    voltage: Annotated[Volt, AtLeast(0.001), AtMost(HIGHEST_VOLTAGE)]
-    slew: Annotated[VoltPerSecond, AtLeast(1), AtMost(1000000000.0)]
-    continuous_voltage: Annotated[Volt, AtLeast(0)]
-    heat: Annotated[SquareVoltSecond, AtLeast(0), AtMost(4000000.0)]
-    lowest_frequency: Annotated[Hertz, AtLeast(1), AtMost(1000000.0)]
-    highest_frequency: Annotated[Hertz, AtMost(1000000.0)]
-    duty: Annotated[Dimensionless, AtLeast(0.001), AtMost(1)] = 1.0
-    duty_window: Annotated[Second, AtLeast(0.001), AtMost(3600)] = 10.0
+    voltage: Annotated[si.Volt, si.AtLeast(0.001), si.AtMost(HIGHEST_VOLTAGE)]
+    slew: Annotated[si.VoltPerSecond, si.AtLeast(1), si.AtMost(1000000000.0)]
+    continuous_voltage: Annotated[si.Volt, si.AtLeast(0)]
+    heat: Annotated[si.SquareVoltSecond, si.AtLeast(0), si.AtMost(4000000.0)]
+    lowest_frequency: Annotated[si.Hertz, si.AtLeast(1), si.AtMost(1000000.0)]
+    highest_frequency: Annotated[si.Hertz, si.AtMost(1000000.0)]
+    duty: Annotated[si.Dimensionless, si.AtLeast(0.001), si.AtMost(1)] = 1.0
+    duty_window: Annotated[si.Second, si.AtLeast(0.001), si.AtMost(3600)] = 10.0
     insulation: str = ""
 
     def __post_init__(self) -> None:

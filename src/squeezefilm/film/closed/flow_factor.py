@@ -11,14 +11,14 @@ from typing import Annotated
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.film.slip import slip_law
-from squeezefilm.quantities import AtLeast, DimensionlessLike, FloatLike, checked_numbers
 
 
-@checked_numbers
+@si.checked_numbers
 def flow_factor(
-    local_knudsen_number: Annotated[DimensionlessLike, AtLeast(0.0)], slip: str = "first"
-) -> FloatLike:
+    local_knudsen_number: Annotated[si.DimensionlessLike, si.AtLeast(0.0)], slip: str = "first"
+) -> si.FloatLike:
     """The factor φ by which slip raises the flow of a film at a local Knudsen number λ/h.
 
     - ``"first"``: 1 + 6 Kn, Burgdorfer 1959 (J. Basic Eng. 81, 94); good below Kn ≈ 0.1.

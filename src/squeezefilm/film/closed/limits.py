@@ -13,28 +13,18 @@ from typing import Annotated, Any, Literal
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import ConvergenceError, InputError, OutOfRangeError
 from squeezefilm.film.gap import PaperGap
-from squeezefilm.quantities import (
-    AtLeast,
-    AtMost,
-    Below,
-    Dimensionless,
-    DimensionlessArray,
-    DimensionlessLike,
-    FloatArray,
-    checked_numbers,
-    closed_form,
-    require,
-    require_valid,
-)
 
 PaperModel = Literal["paper2008", "paper2008-printed"]
 PAPER_MODELS: tuple[PaperModel, ...] = ("paper2008", "paper2008-printed")
 
 
-@closed_form(nonnegative="amplitude_ratio")
-def asymptotic_load(amplitude_ratio: Annotated[DimensionlessLike, Below(1.0)]) -> DimensionlessLike:
+@si.closed_form(nonnegative="amplitude_ratio")
+def asymptotic_load(
+    amplitude_ratio: Annotated[si.DimensionlessLike, si.Below(1.0)],
+) -> si.DimensionlessLike:
     """The mean load W over p0 A of a uniform isothermal film as σ → ∞ (dimensionless); broadcasts.
 
     W = √((1 + 1.5 ε²)/(1 − ε²)), any planform, ε = amplitude over mean gap below 1. Source: Salbu
@@ -43,10 +33,11 @@ def asymptotic_load(amplitude_ratio: Annotated[DimensionlessLike, Below(1.0)]) -
     return np.sqrt((1 + 1.5 * amplitude_ratio**2) / (1 - amplitude_ratio**2))
 
 
-@closed_form(nonnegative="amplitude_ratio", positive="polytropic_exponent")
+@si.closed_form(nonnegative="amplitude_ratio", positive="polytropic_exponent")
 def asymptotic_load_polytropic(
-    amplitude_ratio: Annotated[DimensionlessLike, Below(1.0)], polytropic_exponent: Dimensionless
-) -> DimensionlessLike:
+    amplitude_ratio: Annotated[si.DimensionlessLike, si.Below(1.0)],
+    polytropic_exponent: si.Dimensionless,
+) -> si.DimensionlessLike:
     """The mean load W over p0 A of a uniform polytropic film as σ → ∞ (dimensionless); broadcasts.
 
     Ψ = [⟨H³⟩/⟨H^(2−n)⟩]^(1/(n+1)) and W = Ψⁿ ⟨H⁻ⁿ⟩ with H = 1 + ε cos T; the means are
@@ -54,31 +45,31 @@ def asymptotic_load_polytropic(
     """
     from scipy.special import hyp2f1
 
-    require("polytropic_exponent", polytropic_exponent, at_least=1, at_most=5 / 3)
+    si.require("polytropic_exponent", polytropic_exponent, at_least=1, at_most=5 / 3)
     n = polytropic_exponent
 
     def mean_power(p: float) -> Any:
         return hyp2f1(-p / 2, (1 - p) / 2, 1, np.square(amplitude_ratio))
 
     psi = ((1 + 1.5 * np.square(amplitude_ratio)) / mean_power(2 - n)) ** (1 / (n + 1))
-    value: DimensionlessLike = psi**n * mean_power(-n)
+    value: si.DimensionlessLike = psi**n * mean_power(-n)
     return value
 
 
-@closed_form(nonnegative="amplitude_ratio", positive="edge_to_area")
+@si.closed_form(nonnegative="amplitude_ratio", positive="edge_to_area")
 def edge_layer_coefficient(
-    amplitude_ratio: DimensionlessLike,
-    edge_to_area: Dimensionless = 2.0,
+    amplitude_ratio: si.DimensionlessLike,
+    edge_to_area: si.Dimensionless = 2.0,
     *,
     strict: bool = True,
-) -> DimensionlessLike:
+) -> si.DimensionlessLike:
     """C(ε) of W = W∞ − C/√σ to second order in ε: (5√2/8) ε² × edge length · ℓ / area.
 
     From W = 1 + (5/4) ε² fk and fk → 1 − (edge·ℓ/area)/√(2σ). `edge_to_area` is 2 for a strip
     (ℓ its width) and a disc (its radius), 4 for a square (its side). Isothermal, no slip. Exact as
     ε → 0; 6 % low at ε = 0.5. Beyond ε = 0.3 raises `OutOfRangeError`, or warns if not `strict`.
     """
-    require_valid(
+    si.require_valid(
         "amplitude_ratio",
         amplitude_ratio,
         0,
@@ -86,25 +77,25 @@ def edge_layer_coefficient(
         "the second-order edge layer coefficient holds within 3 %",
         strict=strict,
     )
-    value: DimensionlessLike = 5 * np.sqrt(2) / 8 * amplitude_ratio**2 * edge_to_area
+    value: si.DimensionlessLike = 5 * np.sqrt(2) / 8 * amplitude_ratio**2 * edge_to_area
     return value
 
 
-@closed_form(nonnegative="amplitude_ratio", positive="squeeze_number edge_to_area")
+@si.closed_form(nonnegative="amplitude_ratio", positive="squeeze_number edge_to_area")
 def edge_layer_load(
-    amplitude_ratio: DimensionlessLike,
-    squeeze_number: DimensionlessLike,
-    edge_to_area: Dimensionless = 2.0,
+    amplitude_ratio: si.DimensionlessLike,
+    squeeze_number: si.DimensionlessLike,
+    edge_to_area: si.Dimensionless = 2.0,
     *,
     strict: bool = True,
-) -> DimensionlessLike:
+) -> si.DimensionlessLike:
     """The mean load W over p0 A at large finite σ (dimensionless), W∞ − C(ε)/√σ; broadcasts.
 
     C from `edge_layer_coefficient`, whose ε ≤ 0.3 applies. Valid for σ ≥ 50 (edge layers thinner
     than a fifth of the width, over-pressure within 1 % on a strip; a disc or rectangle leaves
     O(1/σ) besides). Outside, raises `OutOfRangeError`, or warns if not `strict`.
     """
-    require_valid(
+    si.require_valid(
         "squeeze_number",
         squeeze_number,
         50,
@@ -116,15 +107,15 @@ def edge_layer_load(
     return asymptotic_load(amplitude_ratio) - coefficient / np.sqrt(squeeze_number)
 
 
-@closed_form(nonnegative="amplitude_ratio ridge_ratio", positive="wave_number ridge_number")
+@si.closed_form(nonnegative="amplitude_ratio ridge_ratio", positive="wave_number ridge_number")
 def paper_pressure(
-    X: DimensionlessLike,
-    T: DimensionlessLike,
-    amplitude_ratio: DimensionlessLike,
-    ridge_ratio: DimensionlessLike,
-    wave_number: Dimensionless,
-    ridge_number: Dimensionless,
-) -> DimensionlessLike:
+    X: si.DimensionlessLike,
+    T: si.DimensionlessLike,
+    amplitude_ratio: si.DimensionlessLike,
+    ridge_ratio: si.DimensionlessLike,
+    wave_number: si.Dimensionless,
+    ridge_number: si.Dimensionless,
+) -> si.DimensionlessLike:
     """The pressure P(X, T) over ambient as σ → ∞, paper eq 11 corrected; broadcasts.
 
     P = (a/a_B) √(a_B² + 1.5 b_B²) / (a + b cos T), a = 1 + δ cos k2X, b = ε cos k1X, B at
@@ -136,20 +127,20 @@ def paper_pressure(
     b = amplitude_ratio * np.cos(wave_number * X)
     a_edge = 1 + ridge_ratio * np.cos(ridge_number / 2)
     b_edge = amplitude_ratio * np.cos(wave_number / 2)
-    value: DimensionlessLike = (
+    value: si.DimensionlessLike = (
         a / a_edge * np.sqrt(a_edge**2 + 1.5 * b_edge**2) / (a + b * np.cos(T))
     )
     return value
 
 
-@closed_form(nonnegative="amplitude_ratio ridge_ratio", positive="wave_number ridge_number")
+@si.closed_form(nonnegative="amplitude_ratio ridge_ratio", positive="wave_number ridge_number")
 def paper_mean_pressure(
-    X: DimensionlessLike,
-    amplitude_ratio: DimensionlessLike,
-    ridge_ratio: DimensionlessLike,
-    wave_number: Dimensionless,
-    ridge_number: Dimensionless,
-) -> DimensionlessLike:
+    X: si.DimensionlessLike,
+    amplitude_ratio: si.DimensionlessLike,
+    ridge_ratio: si.DimensionlessLike,
+    wave_number: si.Dimensionless,
+    ridge_number: si.Dimensionless,
+) -> si.DimensionlessLike:
     """The mean over a period of `paper_pressure`, P̄(X) over ambient, paper eq 12 corrected.
 
     P̄ = (a/a_B) √(a_B² + 1.5 b_B²) / √(a² − b²); letters, range and errors as `paper_pressure`.
@@ -159,21 +150,21 @@ def paper_mean_pressure(
     b = amplitude_ratio * np.cos(wave_number * X)
     a_edge = 1 + ridge_ratio * np.cos(ridge_number / 2)
     b_edge = amplitude_ratio * np.cos(wave_number / 2)
-    value: DimensionlessLike = (
+    value: si.DimensionlessLike = (
         a / a_edge * np.sqrt(a_edge**2 + 1.5 * b_edge**2) / np.sqrt(a**2 - b**2)
     )
     return value
 
 
-@closed_form(nonnegative="amplitude_ratio ridge_ratio", positive="wave_number ridge_number")
+@si.closed_form(nonnegative="amplitude_ratio ridge_ratio", positive="wave_number ridge_number")
 def paper_pressure_printed(
-    X: DimensionlessLike,
-    T: DimensionlessLike,
-    amplitude_ratio: DimensionlessLike,
-    ridge_ratio: DimensionlessLike,
-    wave_number: Dimensionless,
-    ridge_number: Dimensionless,
-) -> DimensionlessLike:
+    X: si.DimensionlessLike,
+    T: si.DimensionlessLike,
+    amplitude_ratio: si.DimensionlessLike,
+    ridge_ratio: si.DimensionlessLike,
+    wave_number: si.Dimensionless,
+    ridge_number: si.Dimensionless,
+) -> si.DimensionlessLike:
     """Paper eq 11 as printed, over ambient: the film vibrates by ε cos(k1/2) everywhere.
 
     Printed: cos(k1/2) where cos(k1 X) belongs. Kept to reproduce the paper; use `paper_pressure`.
@@ -184,18 +175,18 @@ def paper_pressure_printed(
     b_edge = amplitude_ratio * np.cos(wave_number / 2)
     gap = a + b_edge * np.cos(T)
     _require_positive("the printed gap a + ε cos(k1/2) cos T", gap)
-    value: DimensionlessLike = a * np.sqrt(a_edge**2 + 1.5 * b_edge**2) / (a_edge * gap)
+    value: si.DimensionlessLike = a * np.sqrt(a_edge**2 + 1.5 * b_edge**2) / (a_edge * gap)
     return value
 
 
-@closed_form(nonnegative="amplitude_ratio ridge_ratio", positive="wave_number ridge_number")
+@si.closed_form(nonnegative="amplitude_ratio ridge_ratio", positive="wave_number ridge_number")
 def paper_mean_pressure_printed(
-    X: DimensionlessLike,
-    amplitude_ratio: DimensionlessLike,
-    ridge_ratio: DimensionlessLike,
-    wave_number: Dimensionless,
-    ridge_number: Dimensionless,
-) -> DimensionlessLike:
+    X: si.DimensionlessLike,
+    amplitude_ratio: si.DimensionlessLike,
+    ridge_ratio: si.DimensionlessLike,
+    wave_number: si.Dimensionless,
+    ridge_number: si.Dimensionless,
+) -> si.DimensionlessLike:
     """Paper eq 12 as printed, over ambient: √(a² − ε² cos(k1/2)) in the denominator.
 
     Printed: cos(k1/2) where cos²(k1 X) belongs. Kept to reproduce the paper; use
@@ -206,7 +197,7 @@ def paper_mean_pressure_printed(
     b_edge = amplitude_ratio * np.cos(wave_number / 2)
     radicand = a**2 - amplitude_ratio**2 * np.cos(wave_number / 2)
     _require_positive("the printed a² − ε² cos(k1/2)", radicand)
-    value: DimensionlessLike = (
+    value: si.DimensionlessLike = (
         a * np.sqrt(a_edge**2 + 1.5 * b_edge**2) / (a_edge * np.sqrt(radicand))
     )
     return value
@@ -224,7 +215,7 @@ def _require_positive(what: str, value: Any) -> None:
         )
 
 
-def _column(value: DimensionlessLike) -> Any:
+def _column(value: si.DimensionlessLike) -> Any:
     """A scalar as it is, an array of amplitudes as a column, so that positions run along rows."""
     return np.asarray(value, dtype=float)[..., np.newaxis]
 
@@ -247,12 +238,12 @@ def _inverse_cube_integral(theta: Any, delta: Any) -> Any:
     return E - 2 * delta * np.sin(E) + delta**2 * (E / 2 + np.sin(2 * E) / 4)
 
 
-@checked_numbers
+@si.checked_numbers
 def mean_pressure_profile(
-    X: Annotated[DimensionlessLike, AtLeast(-0.5), AtMost(0.5)],
+    X: Annotated[si.DimensionlessLike, si.AtLeast(-0.5), si.AtMost(0.5)],
     gap: PaperGap,
     model: PaperModel = "paper2008",
-) -> DimensionlessArray:
+) -> si.DimensionlessArray:
     """The mean over a period of the pressure over ambient, P̄(X), as σ → ∞ (dimensionless).
 
     `X` = x/l0 in [-1/2, 1/2], of any shape for a single amplitude; for an array of A amplitudes X
@@ -297,7 +288,7 @@ def mean_pressure_profile(
     return np.asarray(a * np.sqrt(v_l + (v_r - v_l) * share) / np.sqrt(a**2 - b**2))
 
 
-def _panels(gap: PaperGap) -> tuple[FloatArray, float]:
+def _panels(gap: PaperGap) -> tuple[si.FloatArray, float]:
     """Panel edges in the eccentric anomaly, and its eccentricity, that resolve the ridge crests.
 
     Over a crest the pressure has complex singularities at a distance √(2(1−δ−ε)/δ) in phase; an
@@ -318,10 +309,10 @@ def _panels(gap: PaperGap) -> tuple[FloatArray, float]:
     return np.unique(np.concatenate([[low], inner, [high]])), e
 
 
-@checked_numbers
+@si.checked_numbers
 def contact_mean_pressure(
     gap: PaperGap, model: PaperModel = "paper2008", *, tolerance: float = 1e-10
-) -> DimensionlessLike:
+) -> si.DimensionlessLike:
     """The mean ⟨P̄⟩ over the contact of `mean_pressure_profile`; scalar, or (A,) as the amplitudes.
 
     Composite Gauss–Legendre quadrature between ridge crests, grooves, antinodes and nodes, with

@@ -15,23 +15,8 @@ from typing import Any, Literal
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import (
-    Dimensionless,
-    DimensionlessComplexLike,
-    DimensionlessLike,
-    HertzLike,
-    MetreLike,
-    NewtonPerMetreLike,
-    NewtonSecondPerMetreLike,
-    Pascal,
-    PascalSecond,
-    SquareMetre,
-    checked_numbers,
-    closed_form,
-    require,
-    require_valid,
-)
 
 Planform = Literal["strip", "disc", "rectangle"]
 PLANFORMS: tuple[Planform, ...] = ("strip", "disc", "rectangle")
@@ -108,34 +93,34 @@ def _rectangle(sigma: Any, beta: float) -> Any:
 
 
 def _aspect(aspect_ratio: float) -> None:
-    require("aspect_ratio", aspect_ratio, above=0, at_most=1)
+    si.require("aspect_ratio", aspect_ratio, above=0, at_most=1)
 
 
-@closed_form(nonnegative="squeeze_number")
-def strip_force(squeeze_number: DimensionlessLike) -> DimensionlessComplexLike:
+@si.closed_form(nonnegative="squeeze_number")
+def strip_force(squeeze_number: si.DimensionlessLike) -> si.DimensionlessComplexLike:
     """The complex force −fk − i fd on a long strip over p0 A ε (dimensionless); broadcasts.
 
     fk + i fd = 1 − tanh z / z, z = √(iσ)/2, σ on the width. Relative error of either part below
     1e-12 for every σ ≥ 0 (fd underflows nowhere, fk only where σ² does).
     """
-    value: DimensionlessComplexLike = -_strip(squeeze_number)
+    value: si.DimensionlessComplexLike = -_strip(squeeze_number)
     return value
 
 
-@closed_form(nonnegative="squeeze_number")
-def disc_force(squeeze_number: DimensionlessLike) -> DimensionlessComplexLike:
+@si.closed_form(nonnegative="squeeze_number")
+def disc_force(squeeze_number: si.DimensionlessLike) -> si.DimensionlessComplexLike:
     """The complex force −fk − i fd on a disc over p0 A ε (dimensionless); broadcasts.
 
     −1 + 2 I1(s)/(s I0(s)), s = √(iσ), σ on the radius. Accuracy as `strip_force`.
     """
-    value: DimensionlessComplexLike = -_disc(squeeze_number)
+    value: si.DimensionlessComplexLike = -_disc(squeeze_number)
     return value
 
 
-@closed_form(nonnegative="squeeze_number", positive="aspect_ratio")
+@si.closed_form(nonnegative="squeeze_number", positive="aspect_ratio")
 def rectangle_force(
-    squeeze_number: DimensionlessLike, aspect_ratio: Dimensionless
-) -> DimensionlessComplexLike:
+    squeeze_number: si.DimensionlessLike, aspect_ratio: si.Dimensionless
+) -> si.DimensionlessComplexLike:
     """The complex force −fk − i fd on a rectangle over p0 A ε (dimensionless); broadcasts over σ.
 
     σ on the shorter side, aspect_ratio = shorter/longer side in (0, 1]; 0 is the strip. Blech's
@@ -143,7 +128,7 @@ def rectangle_force(
     below 1e-9. Raises `InputError` for an aspect ratio outside (0, 1].
     """
     _aspect(aspect_ratio)
-    value: DimensionlessComplexLike = -_rectangle(squeeze_number, aspect_ratio)
+    value: si.DimensionlessComplexLike = -_rectangle(squeeze_number, aspect_ratio)
     return value
 
 
@@ -163,20 +148,20 @@ def _plain(value: Any) -> Any:
 
 
 def _effective(sigma: Any, n: float, knudsen: Any) -> Any:
-    require("polytropic_exponent", n, at_least=1, at_most=5 / 3)
+    si.require("polytropic_exponent", n, at_least=1, at_most=5 / 3)
     return sigma / (n * (1 + 6 * knudsen))
 
 
-@closed_form(
+@si.closed_form(
     nonnegative="squeeze_number knudsen_number", positive="polytropic_exponent aspect_ratio"
 )
 def relative_stiffness(
-    squeeze_number: DimensionlessLike,
+    squeeze_number: si.DimensionlessLike,
     planform: Planform = "strip",
-    aspect_ratio: Dimensionless = 1.0,
-    polytropic_exponent: Dimensionless = 1.0,
-    knudsen_number: DimensionlessLike = 0.0,
-) -> DimensionlessLike:
+    aspect_ratio: si.Dimensionless = 1.0,
+    polytropic_exponent: si.Dimensionless = 1.0,
+    knudsen_number: si.DimensionlessLike = 0.0,
+) -> si.DimensionlessLike:
     """The film's stiffness over p0 A/h: n fk(σ / (n (1 + 6 Kn))) (dimensionless); broadcasts.
 
     Small amplitudes; first-order slip, Kn up to about 0.1; n from 1 (isothermal) to 1.4 (air,
@@ -184,90 +169,93 @@ def relative_stiffness(
     for an unknown planform, n outside 1 to 5/3 or an aspect ratio outside (0, 1].
     """
     sigma = _effective(squeeze_number, polytropic_exponent, knudsen_number)
-    value: DimensionlessLike = _plain(
+    value: si.DimensionlessLike = _plain(
         polytropic_exponent * np.real(_force(planform, sigma, aspect_ratio))
     )
     return value
 
 
-@closed_form(
+@si.closed_form(
     nonnegative="squeeze_number knudsen_number", positive="polytropic_exponent aspect_ratio"
 )
 def relative_damping(
-    squeeze_number: DimensionlessLike,
+    squeeze_number: si.DimensionlessLike,
     planform: Planform = "strip",
-    aspect_ratio: Dimensionless = 1.0,
-    polytropic_exponent: Dimensionless = 1.0,
-    knudsen_number: DimensionlessLike = 0.0,
-) -> DimensionlessLike:
+    aspect_ratio: si.Dimensionless = 1.0,
+    polytropic_exponent: si.Dimensionless = 1.0,
+    knudsen_number: si.DimensionlessLike = 0.0,
+) -> si.DimensionlessLike:
     """The film's damping times ω over p0 A/h: n fd(σ / (n (1 + 6 Kn))) (dimensionless).
 
     Arguments, range and errors as `relative_stiffness`; broadcasts.
     """
     sigma = _effective(squeeze_number, polytropic_exponent, knudsen_number)
-    value: DimensionlessLike = _plain(
+    value: si.DimensionlessLike = _plain(
         polytropic_exponent * np.imag(_force(planform, sigma, aspect_ratio))
     )
     return value
 
 
-@closed_form(nonnegative="squeeze_number")
-def strip_damping_low_squeeze(squeeze_number: DimensionlessLike) -> DimensionlessLike:
+@si.closed_form(nonnegative="squeeze_number")
+def strip_damping_low_squeeze(squeeze_number: si.DimensionlessLike) -> si.DimensionlessLike:
     """fd → σ/12 of a strip as σ → 0 (dimensionless), n = 1; the error is 0.0101 σ² of it.
 
     A purely viscous damper: the gas does not compress."""
     return squeeze_number / 12
 
 
-@closed_form(nonnegative="squeeze_number")
-def strip_stiffness_low_squeeze(squeeze_number: DimensionlessLike) -> DimensionlessLike:
+@si.closed_form(nonnegative="squeeze_number")
+def strip_stiffness_low_squeeze(squeeze_number: si.DimensionlessLike) -> si.DimensionlessLike:
     """fk → σ²/120 of a strip as σ → 0 (dimensionless), n = 1; the error is
     0.0103 σ² of it."""
     return squeeze_number**2 / 120
 
 
-@closed_form(nonnegative="squeeze_number")
-def disc_damping_low_squeeze(squeeze_number: DimensionlessLike) -> DimensionlessLike:
+@si.closed_form(nonnegative="squeeze_number")
+def disc_damping_low_squeeze(squeeze_number: si.DimensionlessLike) -> si.DimensionlessLike:
     """fd → σ/8 of a disc as σ → 0 (dimensionless), n = 1."""
     return squeeze_number / 8
 
 
-@closed_form(nonnegative="squeeze_number")
-def disc_stiffness_low_squeeze(squeeze_number: DimensionlessLike) -> DimensionlessLike:
+@si.closed_form(nonnegative="squeeze_number")
+def disc_stiffness_low_squeeze(squeeze_number: si.DimensionlessLike) -> si.DimensionlessLike:
     """fk → σ²/48 of a disc as σ → 0 (dimensionless), n = 1."""
     return squeeze_number**2 / 48
 
 
-@closed_form(positive="area film_thickness ambient_pressure", nonnegative="relative_stiffness")
+@si.closed_form(positive="area film_thickness ambient_pressure", nonnegative="relative_stiffness")
 def film_stiffness(
-    relative_stiffness: DimensionlessLike,
-    area: SquareMetre,
-    film_thickness: MetreLike,
-    ambient_pressure: Pascal,
-) -> NewtonPerMetreLike:
+    relative_stiffness: si.DimensionlessLike,
+    area: si.SquareMetre,
+    film_thickness: si.MetreLike,
+    ambient_pressure: si.Pascal,
+) -> si.NewtonPerMetreLike:
     """The film's dynamic stiffness p0 A fk / h in N/m; broadcasts. Small amplitudes."""
     return relative_stiffness * ambient_pressure * area / film_thickness
 
 
-@closed_form(
+@si.closed_form(
     positive="area film_thickness ambient_pressure frequency", nonnegative="relative_damping"
 )
 def film_damping(
-    relative_damping: DimensionlessLike,
-    area: SquareMetre,
-    film_thickness: MetreLike,
-    ambient_pressure: Pascal,
-    frequency: HertzLike,
-) -> NewtonSecondPerMetreLike:
+    relative_damping: si.DimensionlessLike,
+    area: si.SquareMetre,
+    film_thickness: si.MetreLike,
+    ambient_pressure: si.Pascal,
+    frequency: si.HertzLike,
+) -> si.NewtonSecondPerMetreLike:
     """The film's damping coefficient p0 A fd / (h ω) in N·s/m; broadcasts. Small amplitudes."""
     omega = 2 * np.pi * frequency
     return relative_damping * ambient_pressure * area / (film_thickness * omega)
 
 
-@closed_form(positive="viscosity area length film_thickness")
+@si.closed_form(positive="viscosity area length film_thickness")
 def incompressible_strip_damping(
-    viscosity: PascalSecond, area: SquareMetre, length: MetreLike, film_thickness: MetreLike
-) -> NewtonSecondPerMetreLike:
+    viscosity: si.PascalSecond,
+    area: si.SquareMetre,
+    length: si.MetreLike,
+    film_thickness: si.MetreLike,
+) -> si.NewtonSecondPerMetreLike:
     """The damping coefficient η A ℓ²/h³ in N·s/m of a strip of width ℓ at low squeeze number.
 
     The limit of `film_damping` as σ → 0, where the gas does not compress; broadcasts.
@@ -275,10 +263,10 @@ def incompressible_strip_damping(
     return viscosity * area * length**2 / film_thickness**3
 
 
-@checked_numbers
+@si.checked_numbers
 def crossover_squeeze_number(
-    planform: Planform = "strip", aspect_ratio: Dimensionless = 1.0
-) -> Dimensionless:
+    planform: Planform = "strip", aspect_ratio: si.Dimensionless = 1.0
+) -> si.Dimensionless:
     """The squeeze number at which fk = fd (dimensionless): below it the film damps, above it
     springs. Strip 10.134, disc 6.233 (on the radius), square 21.635 (on the side).
 
@@ -293,20 +281,20 @@ def crossover_squeeze_number(
     return float(np.exp(brentq(difference, np.log(0.1), np.log(1e4), xtol=1e-13, rtol=1e-13)))
 
 
-@closed_form(
+@si.closed_form(
     nonnegative="amplitude_ratio squeeze_number knudsen_number",
     positive="polytropic_exponent aspect_ratio",
 )
 def second_order_mean_load(
-    amplitude_ratio: DimensionlessLike,
-    squeeze_number: DimensionlessLike,
+    amplitude_ratio: si.DimensionlessLike,
+    squeeze_number: si.DimensionlessLike,
     planform: Planform = "strip",
-    aspect_ratio: Dimensionless = 1.0,
-    polytropic_exponent: Dimensionless = 1.0,
-    knudsen_number: DimensionlessLike = 0.0,
+    aspect_ratio: si.Dimensionless = 1.0,
+    polytropic_exponent: si.Dimensionless = 1.0,
+    knudsen_number: si.DimensionlessLike = 0.0,
     *,
     strict: bool = True,
-) -> DimensionlessLike:
+) -> si.DimensionlessLike:
     """The mean load W over p0 A of a rigid surface over a uniform gap, to second order in ε.
 
     W = 1 + ε² n fk(σ/(n g)) [5/4 + 6 Kn − (3/2) Kn (1 − n)] / g with g = 1 + 6 Kn: 1 + (5/4) ε² n
@@ -324,8 +312,8 @@ def second_order_mean_load(
     fk = np.real(_force(planform, sigma, aspect_ratio))
     amplitude, springs = np.broadcast_arrays(amplitude_ratio, fk >= 0.4)
     holds = "the second order in ε keeps the over-pressure within some 10 %"
-    require_valid("amplitude_ratio", amplitude[springs], 0, 0.3, holds, strict=strict)
-    require_valid(
+    si.require_valid("amplitude_ratio", amplitude[springs], 0, 0.3, holds, strict=strict)
+    si.require_valid(
         "amplitude_ratio",
         amplitude[~springs],
         0,
@@ -333,8 +321,10 @@ def second_order_mean_load(
         f"{holds} for a film that leaks (fk < 0.4)",
         strict=strict,
     )
-    require_valid("knudsen_number", knudsen_number, 0, 0.1, "first-order slip holds", strict=strict)
+    si.require_valid(
+        "knudsen_number", knudsen_number, 0, 0.1, "first-order slip holds", strict=strict
+    )
     slip = 1.25 + 6 * knudsen_number - 1.5 * knudsen_number * (1 - polytropic_exponent)
     order = polytropic_exponent * fk * slip / (1 + 6 * knudsen_number)
-    value: DimensionlessLike = _plain(1 + amplitude_ratio**2 * order)
+    value: si.DimensionlessLike = _plain(1 + amplitude_ratio**2 * order)
     return value

@@ -8,23 +8,9 @@ from typing import Annotated
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import ConvergenceError, OutOfRangeError, UnreachableError
 from squeezefilm.film.periodic.batch import FilmBatch, solve_films
-from squeezefilm.quantities import (
-    Above,
-    AtLeast,
-    AtMost,
-    Dimensionless,
-    FloatArray,
-    Hertz,
-    Metre,
-    Pascal,
-    PascalSecond,
-    Unit,
-    checked_numbers,
-    format_quantity,
-    require_one_of,
-)
 
 MAX_EXCURSION = 0.95
 """The deepest excursion the balance uses; the least gap is then 5 % of the mean gap."""
@@ -35,7 +21,7 @@ _SEARCHED = 24
 _STEPS = 30
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True)
 class VibratedFilm:
     """A film of fixed size and motion, whatever its mean gap h0: amplitude a (m, zero to peak),
@@ -45,18 +31,18 @@ class VibratedFilm:
     Raises `InputError` for what no film has.
     """
 
-    amplitude: Annotated[Metre, Above(0.0)]
-    frequency: Annotated[Hertz, Above(0.0)]
-    length: Annotated[Metre, Above(0.0)]
-    viscosity: Annotated[PascalSecond, Above(0.0)] = 1.81e-5
-    ambient_pressure: Annotated[Pascal, Above(0.0)] = 101325.0
-    polytropic_exponent: Dimensionless = 1.0
-    mean_free_path: Annotated[Metre, AtLeast(0.0)] = 0.0
+    amplitude: Annotated[si.Metre, si.Above(0.0)]
+    frequency: Annotated[si.Hertz, si.Above(0.0)]
+    length: Annotated[si.Metre, si.Above(0.0)]
+    viscosity: Annotated[si.PascalSecond, si.Above(0.0)] = 1.81e-5
+    ambient_pressure: Annotated[si.Pascal, si.Above(0.0)] = 101325.0
+    polytropic_exponent: si.Dimensionless = 1.0
+    mean_free_path: Annotated[si.Metre, si.AtLeast(0.0)] = 0.0
     slip: str = "first"
     shape: str = "strip"
 
     def __post_init__(self) -> None:
-        require_one_of("shape", self.shape, ("strip", "disc"))
+        si.require_one_of("shape", self.shape, ("strip", "disc"))
 
 
 @dataclass(frozen=True)
@@ -67,16 +53,16 @@ class LoadBalance:
     its estimated error; `static_stiffness` is −d(load)/d(mean gap), in Pa/m.
     """
 
-    mean_gap: Metre
-    mean_gap_error: Metre
-    least_gap: Metre
-    mean_load_pressure: Pascal
-    mean_load_pressure_error: Pascal
+    mean_gap: si.Metre
+    mean_gap_error: si.Metre
+    least_gap: si.Metre
+    mean_load_pressure: si.Pascal
+    mean_load_pressure_error: si.Pascal
     static_stiffness: float
-    squeeze_number: Dimensionless
-    excursion_ratio: Dimensionless
-    knudsen_number: Dimensionless
-    load: Pascal
+    squeeze_number: si.Dimensionless
+    excursion_ratio: si.Dimensionless
+    knudsen_number: si.Dimensionless
+    load: si.Pascal
     film: VibratedFilm
     model: str
     iterations: int
@@ -93,17 +79,17 @@ class LevitationLimit:
     Salbu's value there, an upper bound.
     """
 
-    load: Pascal
-    load_error: Pascal
-    load_infinite_sigma: Pascal
-    mean_gap: Metre
-    least_gap: Metre
-    squeeze_number: Dimensionless
-    excursion_ratio: Dimensionless
+    load: si.Pascal
+    load_error: si.Pascal
+    load_infinite_sigma: si.Pascal
+    mean_gap: si.Metre
+    least_gap: si.Metre
+    squeeze_number: si.Dimensionless
+    excursion_ratio: si.Dimensionless
     model: str
 
 
-def _squeeze_number(film: VibratedFilm, excursion_ratio: FloatArray) -> FloatArray:
+def _squeeze_number(film: VibratedFilm, excursion_ratio: si.FloatArray) -> si.FloatArray:
     """σ = 12 η ω l²/(p0 h0²) at ε = a/h0."""
     scale = 12.0 * film.viscosity * 2.0 * math.pi * film.frequency * film.length**2
     scale = scale / (film.ambient_pressure * film.amplitude**2)
@@ -111,7 +97,7 @@ def _squeeze_number(film: VibratedFilm, excursion_ratio: FloatArray) -> FloatArr
 
 
 def _solved(
-    film: VibratedFilm, excursion_ratio: FloatArray, tolerance: float, *, strict: bool = True
+    film: VibratedFilm, excursion_ratio: si.FloatArray, tolerance: float, *, strict: bool = True
 ) -> FilmBatch:
     return solve_films(
         _squeeze_number(film, excursion_ratio),
@@ -126,12 +112,12 @@ def _solved(
     )
 
 
-@checked_numbers
+@si.checked_numbers
 def mean_gap_for_load(
     film: VibratedFilm,
-    load: Annotated[Pascal, Above(0.0)],
+    load: Annotated[si.Pascal, si.Above(0.0)],
     *,
-    tolerance: Annotated[float, AtLeast(1e-6), AtMost(0.1)] = 1e-3,
+    tolerance: Annotated[float, si.AtLeast(1e-6), si.AtMost(0.1)] = 1e-3,
 ) -> LoadBalance:
     """The mean gap h0 at which a vibrated film carries a mean pressure load.
 
@@ -162,13 +148,15 @@ def mean_gap_for_load(
         model=found.films.model,
         iterations=solves,
         status=(
-            f"balanced: {format_quantity(pressure, Unit('Pa'))} at a mean gap of "
-            f"{format_quantity(gap, Unit('m'))} after {solves} film solves"
+            f"balanced: {si.format_quantity(pressure, si.Unit('Pa'))} at a mean gap of "
+            f"{si.format_quantity(gap, si.Unit('m'))} after {solves} film solves"
         ),
     )
 
 
-def _searched(film: VibratedFilm, load: float, tolerance: float) -> tuple[FloatArray, FloatArray]:
+def _searched(
+    film: VibratedFilm, load: float, tolerance: float
+) -> tuple[si.FloatArray, si.FloatArray]:
     """Rising excursion ratios between which the load (Pa) is carried, and rough over-pressures
     there; raises `UnreachableError` for none."""
     wanted = load / film.ambient_pressure
@@ -188,10 +176,11 @@ def _searched(film: VibratedFilm, load: float, tolerance: float) -> tuple[FloatA
         which, at = ("more", 1) if wanted > ends[1] else ("less", 0)
         gap = film.amplitude / grid[[0, -1]][at]
         raise UnreachableError(
-            f"load = {format_quantity(load, Unit('Pa'))} is {which} than the film carries at "
-            f"excursion_ratio {grid[[0, -1]][at]:g} (mean gap {format_quantity(gap, Unit('m'))}): "
-            f"{format_quantity(ends[at] * film.ambient_pressure, Unit('Pa'))}. Change the "
-            f"amplitude, the frequency or the length"
+            f"load = {si.format_quantity(load, si.Unit('Pa'))} is {which} than the film carries at "
+            f"excursion_ratio {grid[[0, -1]][at]:g} (mean gap "
+            f"{si.format_quantity(gap, si.Unit('m'))}): "
+            f"{si.format_quantity(ends[at] * film.ambient_pressure, si.Unit('Pa'))}. Change the "
+            "amplitude, the frequency or the length"
         )
     return grid, rough
 
@@ -201,7 +190,7 @@ class _Balanced:
     """Films at three excursion ratios, the middle one of which carries the load but for `miss` (in
     its logarithm), and d ln(over-pressure)/d ln ε between them."""
 
-    excursion_ratio: FloatArray
+    excursion_ratio: si.FloatArray
     films: FilmBatch
     slope: float
     miss: float
@@ -209,7 +198,7 @@ class _Balanced:
 
 
 def _balanced(
-    film: VibratedFilm, load: float, grid: FloatArray, rough: FloatArray, tolerance: float
+    film: VibratedFilm, load: float, grid: si.FloatArray, rough: si.FloatArray, tolerance: float
 ) -> _Balanced:
     """The secant in logarithms inside a bracket: the over-pressure is nearly a power of ε there."""
     aim = math.log(load / film.ambient_pressure)
@@ -236,7 +225,7 @@ def _balanced(
         guess = ahead if low <= ahead <= high else 0.5 * (low + high)
         step = min(step, max(abs(ahead - guess), 2e-3))
     raise ConvergenceError(
-        f"the load balance missed {format_quantity(load, Unit('Pa'))} by a factor "
+        f"the load balance missed {si.format_quantity(load, si.Unit('Pa'))} by a factor "
         f"{math.exp(miss):.6g} after {_STEPS} steps; ask a larger tolerance",
         partial=batch,
         residual=abs(miss),
@@ -244,11 +233,13 @@ def _balanced(
     )
 
 
-@checked_numbers
+@si.checked_numbers
 def levitation_limit(
     film: VibratedFilm,
     *,
-    excursion_ratio: Annotated[Dimensionless, AtLeast(0.1), AtMost(MAX_EXCURSION)] = MAX_EXCURSION,
+    excursion_ratio: Annotated[
+        si.Dimensionless, si.AtLeast(0.1), si.AtMost(MAX_EXCURSION)
+    ] = MAX_EXCURSION,
     tolerance: float = 5e-3,
 ) -> LevitationLimit:
     """The highest load a film carries before its gap closes to (1 − ε) of its mean.

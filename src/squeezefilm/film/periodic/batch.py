@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import ConvergenceError, InputError
 from squeezefilm.film.compiled import announce
 from squeezefilm.film.periodic.records import Resolution
@@ -26,15 +27,6 @@ from squeezefilm.film.records import Aim
 from squeezefilm.film.slip import slip_law
 from squeezefilm.film.solved_range import require_film
 from squeezefilm.progress import CountProgress
-from squeezefilm.quantities import (
-    DimensionlessArray,
-    DimensionlessLike,
-    FloatArray,
-    IntArray,
-    checked_numbers,
-    require,
-    require_one_of,
-)
 
 if TYPE_CHECKING:
     from squeezefilm.film.periodic.uniform import Films
@@ -55,19 +47,19 @@ class FilmBatch:
     damping are those of the first force harmonic, −(stiffness + i damping)·p0·A·ε.
     """
 
-    mean_load: DimensionlessArray
-    over_pressure: DimensionlessArray
-    over_pressure_error: DimensionlessArray
-    stiffness_relative: DimensionlessArray
-    damping_relative: DimensionlessArray
-    iterations: IntArray
-    residual: DimensionlessArray
-    cells: IntArray
-    times: IntArray
-    squeeze_number: DimensionlessArray
-    excursion_ratio: DimensionlessArray
-    polytropic_exponent: DimensionlessArray
-    knudsen_number: DimensionlessArray
+    mean_load: si.DimensionlessArray
+    over_pressure: si.DimensionlessArray
+    over_pressure_error: si.DimensionlessArray
+    stiffness_relative: si.DimensionlessArray
+    damping_relative: si.DimensionlessArray
+    iterations: si.IntArray
+    residual: si.DimensionlessArray
+    cells: si.IntArray
+    times: si.IntArray
+    squeeze_number: si.DimensionlessArray
+    excursion_ratio: si.DimensionlessArray
+    polytropic_exponent: si.DimensionlessArray
+    knudsen_number: si.DimensionlessArray
     slip: str
     shape: str
     tolerance: float
@@ -85,26 +77,26 @@ def compiled() -> Any:
 
 
 def check_film(
-    squeeze_number: DimensionlessLike,
-    excursion_ratio: DimensionlessLike,
-    polytropic_exponent: DimensionlessLike,
-    knudsen_number: DimensionlessLike,
+    squeeze_number: si.DimensionlessLike,
+    excursion_ratio: si.DimensionlessLike,
+    polytropic_exponent: si.DimensionlessLike,
+    knudsen_number: si.DimensionlessLike,
     tolerance: float,
 ) -> None:
     """Refuse inputs that no film has; raises `InputError` with the offending value."""
     require_film(squeeze_number, polytropic_exponent, knudsen_number)
-    require("excursion_ratio", excursion_ratio, above=-1.0, below=1.0)
-    require("tolerance", tolerance, at_least=1e-9, at_most=0.05)
+    si.require("excursion_ratio", excursion_ratio, above=-1.0, below=1.0)
+    si.require("tolerance", tolerance, at_least=1e-9, at_most=0.05)
 
 
-@checked_numbers
+@si.checked_numbers
 def solve_films(
-    squeeze_number: DimensionlessLike,
-    excursion_ratio: DimensionlessLike,
+    squeeze_number: si.DimensionlessLike,
+    excursion_ratio: si.DimensionlessLike,
     *,
     shape: str = "strip",
-    polytropic_exponent: DimensionlessLike = 1.0,
-    knudsen_number: DimensionlessLike = 0.0,
+    polytropic_exponent: si.DimensionlessLike = 1.0,
+    knudsen_number: si.DimensionlessLike = 0.0,
     slip: str = "first",
     tolerance: float = 5e-3,
     workers: int | None = None,
@@ -120,7 +112,7 @@ def solve_films(
     `ConvergenceError` carrying the batch as `partial`; without, its error estimate shows it (NaN
     where nothing converged).
     """
-    require_one_of("shape", shape, ("strip", "disc"))
+    si.require_one_of("shape", shape, ("strip", "disc"))
     check_film(squeeze_number, excursion_ratio, polytropic_exponent, knudsen_number, tolerance)
     law = slip_law(slip, float(np.max(knudsen_number)))
     if workers is not None and workers < 1:
@@ -149,7 +141,7 @@ def solve_films(
     return batch
 
 
-def _broadcast(*values: DimensionlessLike) -> Sequence[FloatArray]:
+def _broadcast(*values: si.DimensionlessLike) -> Sequence[si.FloatArray]:
     """The inputs in one shape; raises `InputError` where they have none in common."""
     try:
         return np.broadcast_arrays(*(np.asarray(value, dtype=float) for value in values))
@@ -161,9 +153,9 @@ class _Solved(NamedTuple):
     """Result rows (columns in `uniform`), indices of cells and times, and which met the
     tolerance."""
 
-    rows: FloatArray
-    cells: IntArray
-    times: IntArray
+    rows: si.FloatArray
+    cells: si.IntArray
+    times: si.IntArray
     met: NDArray[np.bool_]
 
 
@@ -208,7 +200,7 @@ def solve_all(
     progress: CountProgress | None = None,
     least_cells: int = 4,
     least_times: int = 5,
-    keep: FloatArray | None = None,
+    keep: si.FloatArray | None = None,
 ) -> _Solved:
     """Solve films, refining those that miss the tolerance.
 
@@ -235,7 +227,7 @@ def solve_all(
         np.zeros(total),
         np.zeros(total, dtype=bool),
     )
-    pending: IntArray = np.arange(total)
+    pending: si.IntArray = np.arange(total)
     pool = ThreadPoolExecutor(workers) if workers > 1 and total > 64 else None
     with pool or nullcontext():
         for turn in range(1, ROUNDS + 1):
@@ -264,9 +256,9 @@ class _Work:
     aim: Aim
     workers: int
     progress: CountProgress | None
-    keep: FloatArray
-    rows: FloatArray
-    spent: FloatArray
+    keep: si.FloatArray
+    rows: si.FloatArray
+    spent: si.FloatArray
     met: NDArray[np.bool_]
 
     def tell(self) -> None:
@@ -275,7 +267,7 @@ class _Work:
             self.progress(int(np.count_nonzero(self.met)), len(self.met))
 
     def solve(
-        self, group: IntArray, resolution: Resolution, pool: ThreadPoolExecutor | None
+        self, group: si.IntArray, resolution: Resolution, pool: ThreadPoolExecutor | None
     ) -> None:
         """Solve the films of the indices `group` on one resolution, in portions."""
         u, whole = compiled(), self.films
@@ -295,8 +287,12 @@ class _Work:
 
 
 def _refine(
-    rows: FloatArray, tolerance: float, pending: IntArray, cells: IntArray, times: IntArray
-) -> IntArray:
+    rows: si.FloatArray,
+    tolerance: float,
+    pending: si.IntArray,
+    cells: si.IntArray,
+    times: si.IntArray,
+) -> si.IntArray:
     """Give pending films the cells and times that they lack, in place; those to solve again."""
     u = compiled()
     allowed = tolerance * np.abs(rows[pending, u.OVER])

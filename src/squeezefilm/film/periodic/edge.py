@@ -7,8 +7,8 @@ from typing import Annotated
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.film.periodic.batch import solve_films
-from squeezefilm.quantities import AtLeast, AtMost, Dimensionless, checked_numbers, require
 
 _SIGMA = 3600.0
 
@@ -17,20 +17,20 @@ _SIGMA = 3600.0
 class EdgeLayer:
     """C(ε) of W = W∞ − C/√σ for a strip with two edges, W∞, and the error of C."""
 
-    constant: Dimensionless
-    constant_error: Dimensionless
-    asymptotic_load: Dimensionless
-    excursion_ratio: Dimensionless
-    polytropic_exponent: Dimensionless
+    constant: si.Dimensionless
+    constant_error: si.Dimensionless
+    asymptotic_load: si.Dimensionless
+    excursion_ratio: si.Dimensionless
+    polytropic_exponent: si.Dimensionless
     model: str
 
 
-@checked_numbers
+@si.checked_numbers
 def edge_layer(
-    excursion_ratio: Dimensionless,
+    excursion_ratio: si.Dimensionless,
     *,
-    polytropic_exponent: Dimensionless = 1.0,
-    relative_accuracy: Annotated[float, AtLeast(1e-6), AtMost(1e-2)] = 1e-5,
+    polytropic_exponent: si.Dimensionless = 1.0,
+    relative_accuracy: Annotated[float, si.AtLeast(1e-6), si.AtMost(1e-2)] = 1e-5,
 ) -> EdgeLayer:
     """The edge-layer constant C(ε) of a strip without slip: W = W∞ − C/√σ as σ → ∞.
 
@@ -43,8 +43,8 @@ def edge_layer(
     Raises `InputError` for an ε of 0 (C is 0 there and has no relative accuracy), |ε| > 0.95 or an
     n outside 1 to 5/3.
     """
-    require("excursion_ratio", abs(excursion_ratio), at_least=1e-3, at_most=0.95)
-    require("polytropic_exponent", polytropic_exponent, at_least=1.0, at_most=5.0 / 3.0)
+    si.require("excursion_ratio", abs(excursion_ratio), at_least=1e-3, at_most=0.95)
+    si.require("polytropic_exponent", polytropic_exponent, at_least=1.0, at_most=5.0 / 3.0)
     n = polytropic_exponent
     H = 1.0 + excursion_ratio * np.cos(2.0 * np.pi * np.arange(512) / 512)
     psi = (np.mean(H**3) / np.mean(H ** (2.0 - n))) ** (1.0 / (n + 1.0))

@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.film.compiled import announce
 from squeezefilm.film.periodic.batch import (
@@ -41,16 +42,15 @@ from squeezefilm.film.periodic.resolution import (
 from squeezefilm.film.periodic.solution import Asked, FilmSolution, Found, assembled
 from squeezefilm.film.records import Aim, Gas
 from squeezefilm.film.slip import slip_law
-from squeezefilm.quantities import ComplexArray, Dimensionless, FloatArray, checked_numbers
 
 
-@checked_numbers
+@si.checked_numbers
 def solve_strip(
-    squeeze_number: Dimensionless,
-    excursion_ratio: Dimensionless,
+    squeeze_number: si.Dimensionless,
+    excursion_ratio: si.Dimensionless,
     *,
-    polytropic_exponent: Dimensionless = 1.0,
-    knudsen_number: Dimensionless = 0.0,
+    polytropic_exponent: si.Dimensionless = 1.0,
+    knudsen_number: si.Dimensionless = 0.0,
     slip: str = "first",
     tolerance: float = 5e-3,
 ) -> FilmSolution:
@@ -78,13 +78,13 @@ def solve_strip(
     )
 
 
-@checked_numbers
+@si.checked_numbers
 def solve_disc(
-    squeeze_number: Dimensionless,
-    excursion_ratio: Dimensionless,
+    squeeze_number: si.Dimensionless,
+    excursion_ratio: si.Dimensionless,
     *,
-    polytropic_exponent: Dimensionless = 1.0,
-    knudsen_number: Dimensionless = 0.0,
+    polytropic_exponent: si.Dimensionless = 1.0,
+    knudsen_number: si.Dimensionless = 0.0,
     slip: str = "first",
     tolerance: float = 5e-3,
 ) -> FilmSolution:
@@ -142,13 +142,13 @@ def _solve_uniform(asked: Asked) -> FilmSolution:
     return assembled(asked, found, levels, harmonics, x, shift, strip, eps)
 
 
-@checked_numbers
+@si.checked_numbers
 def solve_profile(
-    squeeze_number: Dimensionless,
-    profile: GapProfile | Callable[[FloatArray, FloatArray], ArrayLike],
+    squeeze_number: si.Dimensionless,
+    profile: GapProfile | Callable[[si.FloatArray, si.FloatArray], ArrayLike],
     *,
-    polytropic_exponent: Dimensionless = 1.0,
-    knudsen_number: Dimensionless = 0.0,
+    polytropic_exponent: si.Dimensionless = 1.0,
+    knudsen_number: si.Dimensionless = 0.0,
     slip: str = "first",
     tolerance: float = 5e-3,
     field: bool = True,
@@ -188,16 +188,16 @@ class _ProfileGrid(NamedTuple):
     and faces, the result row, and p on the two finer grids, one after the other."""
 
     resolution: Resolution
-    x: FloatArray
-    slope: FloatArray
-    harmonics: ComplexArray
-    row: FloatArray
-    keep: FloatArray
+    x: si.FloatArray
+    slope: si.FloatArray
+    harmonics: si.ComplexArray
+    row: si.FloatArray
+    keep: si.FloatArray
 
-    def levels(self, closed: bool) -> list[tuple[FloatArray, FloatArray]]:
+    def levels(self, closed: bool) -> list[tuple[si.FloatArray, si.FloatArray]]:
         """p at the nodes of the two finer grids, edges included, and their shares of the area."""
         cells, times = self.resolution.cells, self.resolution.times
-        levels: list[tuple[FloatArray, FloatArray]] = []
+        levels: list[tuple[si.FloatArray, si.FloatArray]] = []
         start = 0
         for m in (cells // 2, cells):
             unknowns = m if closed else m - 1

@@ -18,6 +18,7 @@ from typing import NamedTuple
 
 from numba import njit
 
+from squeezefilm import quantities as si
 from squeezefilm.film.periodic.lanes import (
     add,
     broadcast,
@@ -36,7 +37,6 @@ from squeezefilm.film.periodic.records import Cells, Gap, Room, Times
 from squeezefilm.film.records import Aim, Gas
 from squeezefilm.film.slip import NO_SLIP
 from squeezefilm.film.slip_kernel import slip_factor
-from squeezefilm.quantities import FloatArray
 
 # `reassoc` and `contract` only: NaN must stay visible, so `nnan` and `ninf` stay off.
 _FAST = {"reassoc", "contract", "arcp", "nsz"}
@@ -56,7 +56,7 @@ class _Flow(NamedTuple):
 
 
 @njit(nogil=True, cache=True, fastmath=_FAST, error_model="numpy")
-def _invert(S: FloatArray, start: int, nt: int, ntp: int, mask: FloatArray) -> None:
+def _invert(S: si.FloatArray, start: int, nt: int, ntp: int, mask: si.FloatArray) -> None:
     """Invert the nt × nt block at `start` in place, without pivoting.
 
     The blocks are a positive diagonal plus an antisymmetric matrix (up to diagonal scaling), for
@@ -91,11 +91,11 @@ def _invert(S: FloatArray, start: int, nt: int, ntp: int, mask: FloatArray) -> N
 
 @njit(nogil=True, cache=True, fastmath=_FAST, error_model="numpy")
 def _apply(
-    S: FloatArray,
+    S: si.FloatArray,
     start: int,
     nt: int,
     ntp: int,
-    work: FloatArray,
+    work: si.FloatArray,
     at: int,
     to: int,
     accumulate: bool,
@@ -112,11 +112,11 @@ def _apply(
 def _coefficients(
     m: int,
     ntp: int,
-    g: FloatArray,
+    g: si.FloatArray,
     gap: Gap,
     gas: Gas,
-    p: FloatArray,
-    work: FloatArray,
+    p: si.FloatArray,
+    work: si.FloatArray,
     flow: _Flow,
 ) -> None:
     """Fill the rows of `flow` at p: the slope of the flux F is −∂F/∂M left of the face, ∂F/∂M right
@@ -191,7 +191,7 @@ def _coefficients(
 
 @njit(nogil=True, cache=True, fastmath=_FAST, error_model="numpy")
 def newton(
-    m: int, times: Times, cells: Cells, gap: Gap, gas: Gas, p: FloatArray, room: Room, aim: Aim
+    m: int, times: Times, cells: Cells, gap: Gap, gas: Gas, p: si.FloatArray, room: Room, aim: Aim
 ) -> tuple[float, int, float]:
     """Improve p (m rows of times) in place; return the over-pressure, iterations, last residual.
 
@@ -312,7 +312,7 @@ def newton(
 
 
 @njit(nogil=True, cache=True, fastmath=_FAST, error_model="numpy")
-def prolong(coarse: FloatArray, m: int, ntp: int, closed: bool, fine: FloatArray) -> None:
+def prolong(coarse: si.FloatArray, m: int, ntp: int, closed: bool, fine: si.FloatArray) -> None:
     """Carry m rows of p to the grid with twice the cells, by cubics.
 
     With `closed`, node 0 is a plane of symmetry and the edge follows node m − 1 (2m rows come

@@ -10,15 +10,15 @@ from typing import Annotated
 import numpy as np
 from numpy.typing import ArrayLike
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import GeometryError, InputError
-from squeezefilm.quantities import Above, Below, ComplexArray, FloatArray, checked_numbers, require
 
 _TIMES = 128
 _MOST_ORDERS = 40
 _NEGLIGIBLE = 1e-12
 
-Harmonics = Callable[[FloatArray], ComplexArray]
-GapFunction = Callable[[FloatArray, FloatArray], ArrayLike]
+Harmonics = Callable[[si.FloatArray], si.ComplexArray]
+GapFunction = Callable[[si.FloatArray, si.FloatArray], ArrayLike]
 """H(X, T) at places and times that broadcast."""
 
 
@@ -41,7 +41,7 @@ class GapProfile:
     mean_depth: float = field(init=False)
     features: float = field(init=False)
     orders: int = field(init=False)
-    _map: tuple[FloatArray, FloatArray, FloatArray] = field(init=False, repr=False)
+    _map: tuple[si.FloatArray, si.FloatArray, si.FloatArray] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         x = np.linspace(-0.5, 0.5, 2049)
@@ -76,11 +76,11 @@ class GapProfile:
         put(self, "orders", len(h))
         put(self, "_map", self._density(max(1024, int(128 * waves))))
 
-    def gap(self, X: ArrayLike, T: ArrayLike) -> FloatArray:
+    def gap(self, X: ArrayLike, T: ArrayLike) -> si.FloatArray:
         """H at positions X and times T, shape (len(X), len(T))."""
         return evaluate(self.harmonics(np.atleast_1d(np.asarray(X, float))), np.atleast_1d(T))
 
-    def _density(self, cells: int) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def _density(self, cells: int) -> tuple[si.FloatArray, si.FloatArray, si.FloatArray]:
         """Knots X, the cumulated density of grid points there, and the density.
 
         The pressure turns where the gap is small: 60 % of the points go by 1/H, the others
@@ -94,7 +94,7 @@ class GapProfile:
         cumulated = np.concatenate([[0.0], np.cumsum(parts)]) - 0.5
         return x[::2], cumulated, density[::2]
 
-    def grid(self, xi: FloatArray, grading: float) -> tuple[FloatArray, FloatArray]:
+    def grid(self, xi: si.FloatArray, grading: float) -> tuple[si.FloatArray, si.FloatArray]:
         """X and dX/dξ for ξ in [−1, 1], graded to the edges and to where the gap is small."""
         knots, cumulated, density = self._map
         eta = 0.5 * xi * (1.0 + grading * (1.0 - xi * xi))
@@ -115,7 +115,7 @@ class GapProfile:
 @lru_cache(maxsize=16)
 def sampled_grid(
     profile: GapProfile, cells: int, closed: bool, grading: float
-) -> tuple[FloatArray, FloatArray, ComplexArray]:
+) -> tuple[si.FloatArray, si.FloatArray, si.ComplexArray]:
     """X, dX/dξ and the gap's harmonics at the 2·cells + 1 nodes and faces; kept for sweeps.
 
     `closed`: from the plane of symmetry to the edge, otherwise from edge to edge.
@@ -127,14 +127,14 @@ def sampled_grid(
     return x, slope, harmonics
 
 
-def evaluate(harmonics: ComplexArray, times: ArrayLike) -> FloatArray:
+def evaluate(harmonics: si.ComplexArray, times: ArrayLike) -> si.FloatArray:
     """Re Σ h_k e^{ikT}, shape (positions, times)."""
     orders = np.arange(len(harmonics))
     wave = np.exp(1j * np.outer(orders, np.asarray(times, float)))
     return np.asarray((harmonics.T @ wave).real)
 
 
-def _extrema(values: FloatArray) -> int:
+def _extrema(values: si.FloatArray) -> int:
     rise = np.diff(values)
     rise = rise[np.abs(rise) > 1e-9 * (np.abs(values).max() + 1e-300)]
     return int(np.count_nonzero(rise[1:] * rise[:-1] < 0.0))
@@ -153,7 +153,7 @@ class _Flexural:
     ridge_wavenumber: float
     tilt: float
 
-    def __call__(self, x: FloatArray) -> ComplexArray:
+    def __call__(self, x: si.FloatArray) -> si.ComplexArray:
         ridges = self.ridge_depth * np.cos(self.ridge_wavenumber * x)
         wave = self.excursion_ratio * np.cos(self.wavenumber * x)
         return np.array([1.0 + 2.0 * self.tilt * x + ridges, wave], dtype=complex)
@@ -166,7 +166,7 @@ class _Given:
     gap: GapFunction
     orders: int
 
-    def __call__(self, x: FloatArray) -> ComplexArray:
+    def __call__(self, x: si.FloatArray) -> si.ComplexArray:
         times = 2.0 * np.pi * np.arange(_TIMES) / _TIMES
         h = np.fft.rfft(_sampled(self.gap, x, times), axis=1)[:, : self.orders].T / _TIMES
         h[1:] *= 2.0
@@ -177,23 +177,23 @@ class _Given:
 class _Splined:
     """Harmonics at places X, cubic splines between them."""
 
-    position: FloatArray
-    spectrum: ComplexArray
+    position: si.FloatArray
+    spectrum: si.ComplexArray
 
-    def __call__(self, x: FloatArray) -> ComplexArray:
+    def __call__(self, x: si.FloatArray) -> si.ComplexArray:
         from scipy.interpolate import CubicSpline
 
         return np.asarray(CubicSpline(self.position, self.spectrum, axis=1)(x), dtype=complex)
 
 
-def _sampled(gap: GapFunction, x: FloatArray, times: FloatArray) -> FloatArray:
+def _sampled(gap: GapFunction, x: si.FloatArray, times: si.FloatArray) -> si.FloatArray:
     given = np.asarray(gap(x[:, None], times[None, :]), dtype=float)
     return np.array(np.broadcast_to(given, (len(x), len(times))))
 
 
-@checked_numbers
+@si.checked_numbers
 def flexural_profile(
-    excursion_ratio: Annotated[float, Above(-1.0), Below(1.0)],
+    excursion_ratio: Annotated[float, si.Above(-1.0), si.Below(1.0)],
     *,
     wavenumber: float = 0.0,
     ridge_depth: float = 0.0,
@@ -213,7 +213,7 @@ def flexural_profile(
         ("ridge_wavenumber", ridge_wavenumber),
         ("tilt", tilt),
     ):
-        require(name, value)
+        si.require(name, value)
 
     harmonics = _Flexural(excursion_ratio, wavenumber, ridge_depth, ridge_wavenumber, tilt)
     text = f"flexural profile ε = {excursion_ratio:.4g}, k1 = {wavenumber:.4g}"
@@ -263,7 +263,7 @@ def profile_from_samples(
             f"used: H needs shape (len(X), len(T)), at least 4 positions and 3 times"
         )
     for name, values in (("X", x), ("T", t), ("H", h)):
-        require(name, values)
+        si.require(name, values)
     if np.any(np.diff(x) <= 0.0) or abs(x[0] + 0.5) > 1e-9 or abs(x[-1] - 0.5) > 1e-9:
         raise InputError(
             f"X runs from {x[0]:.6g} to {x[-1]:.6g}: it must rise strictly from -0.5 to 0.5"
@@ -298,7 +298,7 @@ def profile_from_samples(
 
 
 def _check_periodic(
-    now: FloatArray, later: FloatArray, x: FloatArray, t: FloatArray, description: str
+    now: si.FloatArray, later: si.FloatArray, x: si.FloatArray, t: si.FloatArray, description: str
 ) -> None:
     if not (np.all(np.isfinite(now)) and np.all(np.isfinite(later))):
         raise InputError(f"the gap of {description} has values that are not finite (NaN or inf)")

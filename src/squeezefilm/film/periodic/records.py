@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from squeezefilm.quantities import FloatArray
+from squeezefilm import quantities as si
 
 
 class Times(NamedTuple):
@@ -13,34 +13,34 @@ class Times(NamedTuple):
 
     number: int
     row: int
-    derivative: FloatArray
-    mask: FloatArray
+    derivative: si.FloatArray
+    mask: si.FloatArray
 
 
 class Cells(NamedTuple):
     """Conductance of the faces, σ × volume of the cells, and the share of the area of each node."""
 
-    conductance: FloatArray
-    volume: FloatArray
-    share: FloatArray
+    conductance: si.FloatArray
+    volume: si.FloatArray
+    share: si.FloatArray
 
 
 class Gap(NamedTuple):
     """The gap at nodes and faces, its cube there, and the weights of p in the mean load; rows of
     times with `stride` from one node to the next, 0 where the gap does not depend on position."""
 
-    node: FloatArray
-    face: FloatArray
-    face_cubed: FloatArray
-    weight: FloatArray
+    node: si.FloatArray
+    face: si.FloatArray
+    face_cubed: si.FloatArray
+    weight: si.FloatArray
     stride: int
 
 
 class Room(NamedTuple):
     """Memory for a solve: rows of times, and the inverses of the diagonal blocks."""
 
-    rows: FloatArray
-    blocks: FloatArray
+    rows: si.FloatArray
+    blocks: si.FloatArray
 
 
 class Resolution(NamedTuple):

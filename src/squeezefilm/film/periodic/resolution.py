@@ -11,8 +11,8 @@ from functools import lru_cache
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.film.periodic.records import Resolution, Times
-from squeezefilm.quantities import FloatArray, IntArray
 
 CELLS = np.array([4, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512, 768])
 TIMES = np.array([5, 7, 9, 11, 13, 15, 19, 23, 27, 31, 39, 47, 63, 79, 95, 127, 159])
@@ -47,13 +47,13 @@ def resolution_of(cells: int, times: int) -> Resolution:
 
 
 def first_guess(
-    squeeze_number: FloatArray,
-    excursion_ratio: FloatArray,
-    knudsen_number: FloatArray,
+    squeeze_number: si.FloatArray,
+    excursion_ratio: si.FloatArray,
+    knudsen_number: si.FloatArray,
     tolerance: float,
     least_cells: int = 4,
     least_times: int = 5,
-) -> tuple[IntArray, IntArray]:
+) -> tuple[si.IntArray, si.IntArray]:
     """Indices into `CELLS` and `TIMES` that probably meet a relative tolerance on W − 1."""
     sigma = squeeze_number / (1.0 + 6.0 * knudsen_number)
     layer = np.sqrt(np.sqrt(1.0 + sigma / 60.0))
@@ -79,8 +79,12 @@ def first_guess(
 
 
 def refined(
-    cells: IntArray, times: IntArray, space: FloatArray, time: FloatArray, allowed: FloatArray
-) -> tuple[IntArray, IntArray]:
+    cells: si.IntArray,
+    times: si.IntArray,
+    space: si.FloatArray,
+    time: si.FloatArray,
+    allowed: si.FloatArray,
+) -> tuple[si.IntArray, si.IntArray]:
     """The next indices for cases whose errors in space and time exceed what is allowed.
 
     A case that gave no numbers at all (NaN) had too few times for a deep excursion.

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import ConvergenceError
 from squeezefilm.film.periodic.profile import GapProfile, evaluate
-from squeezefilm.quantities import ComplexArray, Dimensionless, DimensionlessArray, FloatArray
 
 _FIELD_TIMES = 64
 _HARMONICS = 8
@@ -28,17 +28,17 @@ class FilmSolution:
     `over_pressure_error` estimates the absolute error of `over_pressure` = W − 1.
     """
 
-    mean_load: Dimensionless
-    over_pressure: Dimensionless
-    over_pressure_error: Dimensionless
-    stiffness_relative: Dimensionless
-    damping_relative: Dimensionless
-    force_harmonics: ComplexArray
-    position: DimensionlessArray
-    time: DimensionlessArray
-    gap: DimensionlessArray
-    pressure: DimensionlessArray
-    mean_pressure: DimensionlessArray
+    mean_load: si.Dimensionless
+    over_pressure: si.Dimensionless
+    over_pressure_error: si.Dimensionless
+    stiffness_relative: si.Dimensionless
+    damping_relative: si.Dimensionless
+    force_harmonics: si.ComplexArray
+    position: si.DimensionlessArray
+    time: si.DimensionlessArray
+    gap: si.DimensionlessArray
+    pressure: si.DimensionlessArray
+    mean_pressure: si.DimensionlessArray
     iterations: int
     residual: float
     cells: int
@@ -46,10 +46,10 @@ class FilmSolution:
     status: str
     model: str
     shape: str
-    squeeze_number: Dimensionless
-    excursion_ratio: Dimensionless
-    polytropic_exponent: Dimensionless
-    knudsen_number: Dimensionless
+    squeeze_number: si.Dimensionless
+    excursion_ratio: si.Dimensionless
+    polytropic_exponent: si.Dimensionless
+    knudsen_number: si.Dimensionless
     slip: str
     tolerance: float
     profile: GapProfile | None
@@ -103,9 +103,9 @@ class Found:
 def assembled(
     asked: Asked,
     found: Found,
-    levels: list[tuple[FloatArray, FloatArray]],
-    harmonics: ComplexArray,
-    x: FloatArray,
+    levels: list[tuple[si.FloatArray, si.FloatArray]],
+    harmonics: si.ComplexArray,
+    x: si.FloatArray,
     shift: float,
     mirrored: bool,
     excursion: float,
@@ -174,8 +174,11 @@ def _not_converged(partial: FilmSolution) -> ConvergenceError:
 
 
 def _field(
-    levels: list[tuple[FloatArray, FloatArray]], harmonics: ComplexArray, times: int, n: float
-) -> tuple[FloatArray, FloatArray, FloatArray, ComplexArray]:
+    levels: list[tuple[si.FloatArray, si.FloatArray]],
+    harmonics: si.ComplexArray,
+    times: int,
+    n: float,
+) -> tuple[si.FloatArray, si.FloatArray, si.FloatArray, si.ComplexArray]:
     """Times, gap, P − 1 on the finest grid, and the harmonics of the area mean of P − 1."""
     count = max(_FIELD_TIMES, 2 * times)
     T = 2.0 * np.pi * np.arange(count) / count
@@ -185,7 +188,7 @@ def _field(
     p, share = levels[1]
     powered = gap**n
 
-    def resampled(values: FloatArray, every: int) -> FloatArray:
+    def resampled(values: si.FloatArray, every: int) -> si.FloatArray:
         psi = values * gap_nodes[::every] ** n
         spectrum = np.zeros((len(psi), count // 2 + 1), dtype=complex)
         spectrum[:, : times // 2 + 1] = np.fft.rfft(psi, axis=1) * (count / times)

@@ -13,10 +13,10 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+from squeezefilm import quantities as si
 from squeezefilm.film.periodic.kernel import newton, prolong
 from squeezefilm.film.periodic.records import Cells, Gap, Resolution, Room
 from squeezefilm.film.records import Aim, Gas
-from squeezefilm.quantities import FloatArray
 
 STRIP, DISC = 0, 1
 
@@ -44,10 +44,10 @@ def load_weights(
     ntp: int,
     eps: float,
     n: float,
-    H: FloatArray,
-    w: FloatArray,
-    c: FloatArray,
-    s: FloatArray,
+    H: si.FloatArray,
+    w: si.FloatArray,
+    c: si.FloatArray,
+    s: si.FloatArray,
 ) -> None:
     """Weights of p at the nt times for the mean force and its first harmonic.
 
@@ -100,7 +100,13 @@ def load_weights(
 
 @njit(nogil=True, cache=True, error_model="numpy")
 def grid(
-    m: int, shape: int, sigma: float, a: float, g: FloatArray, vol: FloatArray, share: FloatArray
+    m: int,
+    shape: int,
+    sigma: float,
+    a: float,
+    g: si.FloatArray,
+    vol: si.FloatArray,
+    share: si.FloatArray,
 ) -> None:
     """Face conductances, σ × volumes and shares of the area for m cells between centre and edge.
 
@@ -130,7 +136,7 @@ def grid(
 
 
 @njit(nogil=True, cache=True, error_model="numpy")
-def gap(nt: int, ntp: int, eps: float, H: FloatArray, H3: FloatArray) -> None:
+def gap(nt: int, ntp: int, eps: float, H: si.FloatArray, H3: si.FloatArray) -> None:
     """H = 1 + ε cos T at the nt times, and its cube; 1 in the padding."""
     for t in range(ntp):
         H[t] = 1.0 + eps * math.cos(2.0 * math.pi * t / nt) if t < nt else 1.0
@@ -176,10 +182,10 @@ class Films(NamedTuple):
     """Many films of one shape and law of slip: squeeze number, excursion ratio, polytropic exponent
     and Knudsen number of each."""
 
-    squeeze_number: FloatArray
-    excursion_ratio: FloatArray
-    polytropic_exponent: FloatArray
-    knudsen_number: FloatArray
+    squeeze_number: si.FloatArray
+    excursion_ratio: si.FloatArray
+    polytropic_exponent: si.FloatArray
+    knudsen_number: si.FloatArray
     law: int
     shape: int
 
@@ -191,8 +197,8 @@ def solve_rows(
     films: Films,
     resolution: Resolution,
     aim: Aim,
-    out: FloatArray,
-    keep: FloatArray,
+    out: si.FloatArray,
+    keep: si.FloatArray,
 ) -> None:
     """Fill rows start:stop of `out` for the films of those rows, all with the same resolution.
 

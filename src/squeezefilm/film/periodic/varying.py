@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+from squeezefilm import quantities as si
 from squeezefilm.film.periodic.kernel import newton, prolong
 from squeezefilm.film.periodic.records import Cells, Gap, Resolution, Room
 from squeezefilm.film.periodic.uniform import (
@@ -31,11 +32,10 @@ from squeezefilm.film.periodic.uniform import (
     space_error,
 )
 from squeezefilm.film.records import Aim, Gas
-from squeezefilm.quantities import FloatArray
 
 
 @njit(nogil=True, cache=True, error_model="numpy")
-def _gaps(even: FloatArray, odd: FloatArray, nt: int, ntp: int, out: FloatArray) -> None:
+def _gaps(even: si.FloatArray, odd: si.FloatArray, nt: int, ntp: int, out: si.FloatArray) -> None:
     """H at all points (rows) and nt times from cosine and sine coefficients; padding 1."""
     orders, points = even.shape
     for t in range(ntp):
@@ -54,14 +54,14 @@ def _gaps(even: FloatArray, odd: FloatArray, nt: int, ntp: int, out: FloatArray)
 
 @njit(nogil=True, cache=True, error_model="numpy")
 def _weights(
-    even: FloatArray,
-    odd: FloatArray,
+    even: si.FloatArray,
+    odd: si.FloatArray,
     n: float,
     nt: int,
     ntp: int,
     fine: int,
-    H: FloatArray,
-    out: FloatArray,
+    H: si.FloatArray,
+    out: si.FloatArray,
 ) -> None:
     """Weights of p at the nt times in the mean force over `fine` times, for every other point.
 
@@ -110,9 +110,9 @@ class Profile(NamedTuple):
     excursion; and whether it is half the domain, from a plane of symmetry at X = 0 to the edge.
     """
 
-    slope: FloatArray
-    even: FloatArray
-    odd: FloatArray
+    slope: si.FloatArray
+    even: si.FloatArray
+    odd: si.FloatArray
     depth: float
     closed: bool
 
@@ -125,8 +125,8 @@ def solve_varying(
     resolution: Resolution,
     fine: tuple[int, int],
     aim: Aim,
-    out: FloatArray,
-    keep: FloatArray,
+    out: si.FloatArray,
+    keep: si.FloatArray,
 ) -> None:
     """Fill one result row and `keep` (p on the two finer grids, one after the other).
 

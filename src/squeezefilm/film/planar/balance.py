@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import lapack
 
+from squeezefilm import quantities as si
 from squeezefilm.film.planar.gap import GapFunction, gap_values
 from squeezefilm.film.planar.grid import PlanarGrid
 from squeezefilm.film.planar.kernel import (
@@ -23,7 +24,6 @@ from squeezefilm.film.planar.kernel import (
     take_off,
 )
 from squeezefilm.film.records import Gas
-from squeezefilm.quantities import ComplexArray, FloatArray
 
 _OVERSAMPLE = 6
 
@@ -44,22 +44,22 @@ class Balance:
     """A periodic state on one grid: `gas` m (nodes, times), mean pressure per node, loads."""
 
     grid: PlanarGrid
-    gas: FloatArray
+    gas: si.FloatArray
     over_pressure: float
-    mean_pressure: FloatArray
-    harmonics: ComplexArray
+    mean_pressure: si.FloatArray
+    harmonics: si.ComplexArray
     residual: float
     iterations: int
     factorizations: int
     converged: bool
 
 
-def times(count: int) -> FloatArray:
+def times(count: int) -> si.FloatArray:
     """The collocation times of `count` points over a period."""
     return 2 * np.pi * np.arange(count) / count
 
 
-def derivative(count: int) -> FloatArray:
+def derivative(count: int) -> si.FloatArray:
     """The spectral derivative on an odd number of points over a period."""
     k = np.arange(count)
     d = k[:, None] - k[None, :]
@@ -68,7 +68,7 @@ def derivative(count: int) -> FloatArray:
     return np.where(d == 0, 0.0, 0.5 * (-1.0) ** d / sine)
 
 
-def resampled(values: FloatArray, count: int) -> FloatArray:
+def resampled(values: si.FloatArray, count: int) -> si.FloatArray:
     """Values (…, odd times) as the same trigonometric polynomial on `count` times (or cut)."""
     have = values.shape[-1]
     if have == count:
@@ -107,7 +107,7 @@ class _Factors:
             inverse, _ = lapack.dgetri(lu, pivots, overwrite_lu=1)
             self.inverse[i] = inverse
 
-    def solve(self, right: FloatArray) -> FloatArray:
+    def solve(self, right: si.FloatArray) -> si.FloatArray:
         rows, size = self.inverse.shape[:2]
         y = right.reshape(rows, size).copy()
         for i in range(1, rows):
@@ -143,7 +143,7 @@ class Balancer:
         self._factors = _Factors(grid, count)
         self._fresh = False
 
-    def _assemble(self, m: FloatArray) -> Balances:
+    def _assemble(self, m: si.FloatArray) -> Balances:
         rows, columns = (
             (size, self.count)
             for size in (self.grid.row_conductance.size, self.grid.column_from.size)
@@ -153,14 +153,14 @@ class Balancer:
         assemble(m, self.gaps, self.faces, self.storage, self.gas, out)
         return out
 
-    def starts(self) -> list[FloatArray]:
+    def starts(self) -> list[si.FloatArray]:
         """Two guesses: gas at rest (P = 1), and gas that cannot follow at all (m constant)."""
         n, H = self.film.polytropic_exponent, self.gaps[: self.grid.X.size]
         fine = gap_values(self.film.gap, self.grid.X, self.grid.Y, times(32))
         still = (np.mean(fine**3, axis=1) / np.mean(fine ** (2 - n), axis=1)) ** (1 / (n + 1))
         return [H.copy(), np.ascontiguousarray(np.broadcast_to(still[:, None], H.shape))]
 
-    def solve(self, start: FloatArray | None, tolerance: float, limit: int = 30) -> Balance:
+    def solve(self, start: si.FloatArray | None, tolerance: float, limit: int = 30) -> Balance:
         """Newton from `start` (or the better of `starts`) until a step changes no m by more than
         `tolerance` (relative). Not converged is reported, not raised."""
         if start is None:
@@ -199,7 +199,7 @@ class Balancer:
         return self._report(m, change, made, factored, good)
 
     def _report(
-        self, m: FloatArray, change: float, made: int, factored: int, good: bool
+        self, m: si.FloatArray, change: float, made: int, factored: int, good: bool
     ) -> Balance:
         grid, n = self.grid, self.film.polytropic_exponent
         count = max(_OVERSAMPLE * self.count, 48)

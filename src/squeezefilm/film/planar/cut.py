@@ -9,14 +9,14 @@ from __future__ import annotations
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.film.planar.grid import PlanarGrid
-from squeezefilm.quantities import FloatArray, IntArray
 
 _Mask = np.ndarray[tuple[int, ...], np.dtype[np.bool_]]
 
 
 def cut_ellipse_grid(
-    x: FloatArray, y: FloatArray, aspect_ratio: float, *, quarter: bool = True
+    x: si.FloatArray, y: si.FloatArray, aspect_ratio: float, *, quarter: bool = True
 ) -> PlanarGrid:
     """The ellipse X² + (Y/aspect)² ≤ 1 on lines; `x`, `y` as in `rectangle_grid`, to its ends.
 
@@ -56,8 +56,8 @@ def cut_ellipse_grid(
 
 
 def _edges(
-    x: FloatArray, y: FloatArray, aspect_ratio: float, inside: _Mask, quarter: bool
-) -> tuple[IntArray, FloatArray, FloatArray, FloatArray]:
+    x: si.FloatArray, y: si.FloatArray, aspect_ratio: float, inside: _Mask, quarter: bool
+) -> tuple[si.IntArray, si.FloatArray, si.FloatArray, si.FloatArray]:
     """Node, X, Y and conductance of the faces between a line's last node and its end, and of one
     for every node outside, which holds it at ambient pressure."""
     X, Y = np.meshgrid(x[1::2], y[1::2], indexing="ij")
@@ -92,8 +92,8 @@ def _edges(
 
 
 def _areas(
-    x: FloatArray, y: FloatArray, aspect_ratio: float, inside: _Mask, quarter: bool
-) -> FloatArray:
+    x: si.FloatArray, y: si.FloatArray, aspect_ratio: float, inside: _Mask, quarter: bool
+) -> si.FloatArray:
     """The ellipse's area shared out: whole cells within, a strip's rest to its last node."""
     u = np.clip(x[::2], -1.0, 1.0)
     # Area under the upper arc between two lines, from its antiderivative.

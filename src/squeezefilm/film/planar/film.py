@@ -11,6 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import ConvergenceError, InputError
 from squeezefilm.film.compiled import announce
 from squeezefilm.film.planar.balance import Film
@@ -19,15 +20,6 @@ from squeezefilm.film.planar.kernel import row_block
 from squeezefilm.film.planar.ladder import RUNGS, Climb, Ladder, PlanarShape, climb_to
 from squeezefilm.film.records import ISOTHERMAL, FilmGas
 from squeezefilm.film.solved_range import require_film
-from squeezefilm.quantities import (
-    Above,
-    AtLeast,
-    AtMost,
-    ComplexArray,
-    Dimensionless,
-    DimensionlessArray,
-    checked_numbers,
-)
 
 
 @dataclass(frozen=True)
@@ -43,44 +35,44 @@ class FilmPlanar:
     of the gas in Newton's method.
     """
 
-    mean_load: Dimensionless
-    over_pressure: Dimensionless
-    over_pressure_error: Dimensionless
-    stiffness_relative: Dimensionless
-    damping_relative: Dimensionless
-    force_harmonics: ComplexArray
-    X: DimensionlessArray
-    Y: DimensionlessArray
-    area: DimensionlessArray
-    mean_pressure: DimensionlessArray
+    mean_load: si.Dimensionless
+    over_pressure: si.Dimensionless
+    over_pressure_error: si.Dimensionless
+    stiffness_relative: si.Dimensionless
+    damping_relative: si.Dimensionless
+    force_harmonics: si.ComplexArray
+    X: si.DimensionlessArray
+    Y: si.DimensionlessArray
+    area: si.DimensionlessArray
+    mean_pressure: si.DimensionlessArray
     rows: int
     columns: int
     quarter: bool
     time_points: int
     iterations: int
-    residual: Dimensionless
+    residual: si.Dimensionless
     status: str
     shape: PlanarShape
-    aspect_ratio: Dimensionless
+    aspect_ratio: si.Dimensionless
     gap: GapFunction
-    squeeze_number: Dimensionless
-    polytropic_exponent: Dimensionless
-    knudsen_number: Dimensionless
+    squeeze_number: si.Dimensionless
+    polytropic_exponent: si.Dimensionless
+    knudsen_number: si.Dimensionless
     slip: str
-    tolerance: Dimensionless
+    tolerance: si.Dimensionless
 
 
-@checked_numbers
+@si.checked_numbers
 def solve_rectangle(
-    squeeze_number: Dimensionless,
-    excursion_ratio: Dimensionless,
-    aspect_ratio: Dimensionless = 1.0,
+    squeeze_number: si.Dimensionless,
+    excursion_ratio: si.Dimensionless,
+    aspect_ratio: si.Dimensionless = 1.0,
     *,
-    wave_number: Dimensionless = 0.0,
-    ridge_height: Dimensionless = 0.0,
-    ridge_wave_number: Dimensionless = 0.0,
+    wave_number: si.Dimensionless = 0.0,
+    ridge_height: si.Dimensionless = 0.0,
+    ridge_wave_number: si.Dimensionless = 0.0,
     gas: FilmGas = ISOTHERMAL,
-    tolerance: Dimensionless = 5e-3,
+    tolerance: si.Dimensionless = 5e-3,
 ) -> FilmPlanar:
     """The periodic film under X ∈ [−½, ½], Y ∈ [−aspect/2, aspect/2], all sides open.
 
@@ -99,17 +91,17 @@ def solve_rectangle(
     )
 
 
-@checked_numbers
+@si.checked_numbers
 def solve_ellipse(
-    squeeze_number: Dimensionless,
-    excursion_ratio: Dimensionless,
-    aspect_ratio: Dimensionless = 1.0,
+    squeeze_number: si.Dimensionless,
+    excursion_ratio: si.Dimensionless,
+    aspect_ratio: si.Dimensionless = 1.0,
     *,
-    wave_number: Dimensionless = 0.0,
-    ridge_height: Dimensionless = 0.0,
-    ridge_wave_number: Dimensionless = 0.0,
+    wave_number: si.Dimensionless = 0.0,
+    ridge_height: si.Dimensionless = 0.0,
+    ridge_wave_number: si.Dimensionless = 0.0,
     gas: FilmGas = ISOTHERMAL,
-    tolerance: Dimensionless = 5e-3,
+    tolerance: si.Dimensionless = 5e-3,
 ) -> FilmPlanar:
     """The periodic film under the ellipse X² + (Y/aspect)² ≤ 1, such as a finger pad.
 
@@ -127,17 +119,17 @@ def solve_ellipse(
     )
 
 
-@checked_numbers
+@si.checked_numbers
 def solve_planar(
     shape: PlanarShape,
     gap: GapFunction,
-    squeeze_number: Dimensionless,
+    squeeze_number: si.Dimensionless,
     *,
-    aspect_ratio: Annotated[Dimensionless, Above(0.0)] = 1.0,
+    aspect_ratio: Annotated[si.Dimensionless, si.Above(0.0)] = 1.0,
     symmetric: bool | None = None,
     cells: tuple[int, int] | None = None,
     gas: FilmGas = ISOTHERMAL,
-    tolerance: Annotated[Dimensionless, AtLeast(1e-5), AtMost(0.5)] = 5e-3,
+    tolerance: Annotated[si.Dimensionless, si.AtLeast(1e-5), si.AtMost(0.5)] = 5e-3,
 ) -> FilmPlanar:
     """The periodic film under any gap H(X, Y, T) of period 2π, to `tolerance` of W − 1.
 

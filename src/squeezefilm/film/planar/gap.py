@@ -8,26 +8,17 @@ from typing import Annotated
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import GeometryError, InputError
-from squeezefilm.quantities import (
-    Above,
-    AtLeast,
-    AtMost,
-    Below,
-    Dimensionless,
-    DimensionlessLike,
-    FloatArray,
-    checked_numbers,
-)
 
 # A thousand waves on the surface; some twenty cells a wave make a grid of it.
 _HIGHEST_WAVE_NUMBER = 2000 * np.pi
 
-GapFunction = Callable[[FloatArray, FloatArray, FloatArray], FloatArray]
+GapFunction = Callable[[si.FloatArray, si.FloatArray, si.FloatArray], si.FloatArray]
 """H(X, Y, T): takes X and Y (places, 1) and T (1, times), returns what broadcasts with them."""
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True)
 class PlanarGap:
     """H = 1 + ε cos(k1 X) cos T + δ cos(k2 X): a standing wave under static ridges.
@@ -38,26 +29,30 @@ class PlanarGap:
     Raises `InputError` for values out of range, `GeometryError` where the gap would close.
     """
 
-    excursion_ratio: Annotated[Dimensionless, Above(0.0), Below(1.0)]
-    wave_number: Annotated[Dimensionless, AtLeast(0.0), AtMost(_HIGHEST_WAVE_NUMBER)] = 0.0
-    ridge_height: Annotated[Dimensionless, AtLeast(0.0), Below(1.0)] = 0.0
-    ridge_wave_number: Annotated[Dimensionless, AtLeast(0.0), AtMost(_HIGHEST_WAVE_NUMBER)] = 0.0
+    excursion_ratio: Annotated[si.Dimensionless, si.Above(0.0), si.Below(1.0)]
+    wave_number: Annotated[si.Dimensionless, si.AtLeast(0.0), si.AtMost(_HIGHEST_WAVE_NUMBER)] = 0.0
+    ridge_height: Annotated[si.Dimensionless, si.AtLeast(0.0), si.Below(1.0)] = 0.0
+    ridge_wave_number: Annotated[
+        si.Dimensionless, si.AtLeast(0.0), si.AtMost(_HIGHEST_WAVE_NUMBER)
+    ] = 0.0
 
-    @checked_numbers
+    @si.checked_numbers
     def __call__(
-        self, X: DimensionlessLike, Y: DimensionlessLike, T: DimensionlessLike
-    ) -> FloatArray:
+        self, X: si.DimensionlessLike, Y: si.DimensionlessLike, T: si.DimensionlessLike
+    ) -> si.FloatArray:
         """H at places X, Y and times T, broadcast."""
         return self._at(np.asarray(X), np.asarray(Y), np.asarray(T))
 
-    def _at(self, X: FloatArray, Y: FloatArray, T: FloatArray) -> FloatArray:
+    def _at(self, X: si.FloatArray, Y: si.FloatArray, T: si.FloatArray) -> si.FloatArray:
         """The same for a grid's own places and times, of which it is called dozens of times."""
         wave = np.cos(self.wave_number * X) * np.cos(T)
         ridges = np.cos(self.ridge_wave_number * X)
         return np.asarray(1.0 + self.excursion_ratio * wave + self.ridge_height * ridges)
 
 
-def gap_values(gap: GapFunction, X: FloatArray, Y: FloatArray, T: FloatArray) -> FloatArray:
+def gap_values(
+    gap: GapFunction, X: si.FloatArray, Y: si.FloatArray, T: si.FloatArray
+) -> si.FloatArray:
     """H at every place and time, (places, times), checked: finite and open."""
     shape = (X.size, T.size)
     values = gap._at if isinstance(gap, PlanarGap) else gap
@@ -84,7 +79,7 @@ def gap_values(gap: GapFunction, X: FloatArray, Y: FloatArray, T: FloatArray) ->
     )
 
 
-def require_periodic(gap: GapFunction, X: FloatArray, Y: FloatArray) -> None:
+def require_periodic(gap: GapFunction, X: si.FloatArray, Y: si.FloatArray) -> None:
     """Refuse a gap that is not 2π-periodic in T."""
     T = np.array([0.0, 1.0, 2.5, 4.5])
     now, later = gap_values(gap, X, Y, T), gap_values(gap, X, Y, T + 2 * np.pi)

@@ -15,8 +15,8 @@ from typing import Literal
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.film.line_grid import edge_graded, edge_layer
-from squeezefilm.quantities import FloatArray, IntArray, require
 
 _Sides = Literal["open", "turn", "segment"]
 """Where columns end: at ambient gas, or in each other, with no line or one between two foci."""
@@ -35,21 +35,21 @@ class PlanarGrid:
     rows: int
     columns: int
     quarter: bool
-    X: FloatArray
-    Y: FloatArray
-    area: FloatArray
-    row_X: FloatArray
-    row_Y: FloatArray
-    row_conductance: FloatArray
-    column_from: IntArray
-    column_to: IntArray
-    column_X: FloatArray
-    column_Y: FloatArray
-    column_conductance: FloatArray
-    edge_node: IntArray
-    edge_X: FloatArray
-    edge_Y: FloatArray
-    edge_conductance: FloatArray
+    X: si.FloatArray
+    Y: si.FloatArray
+    area: si.FloatArray
+    row_X: si.FloatArray
+    row_Y: si.FloatArray
+    row_conductance: si.FloatArray
+    column_from: si.IntArray
+    column_to: si.IntArray
+    column_X: si.FloatArray
+    column_Y: si.FloatArray
+    column_conductance: si.FloatArray
+    edge_node: si.IntArray
+    edge_X: si.FloatArray
+    edge_Y: si.FloatArray
+    edge_conductance: si.FloatArray
 
 
 @dataclass(frozen=True)
@@ -61,13 +61,13 @@ class _Lines:
     `across_columns(u)` multiplies Δu/Δv.
     """
 
-    u: FloatArray
-    v: FloatArray
-    place: Callable[[FloatArray, FloatArray], tuple[FloatArray, FloatArray]]
-    across_rows: Callable[[FloatArray], FloatArray]
-    across_columns: Callable[[FloatArray], FloatArray]
+    u: si.FloatArray
+    v: si.FloatArray
+    place: Callable[[si.FloatArray, si.FloatArray], tuple[si.FloatArray, si.FloatArray]]
+    across_rows: Callable[[si.FloatArray], si.FloatArray]
+    across_columns: Callable[[si.FloatArray], si.FloatArray]
 
-    def at(self, a: FloatArray, b: FloatArray) -> tuple[FloatArray, FloatArray]:
+    def at(self, a: si.FloatArray, b: si.FloatArray) -> tuple[si.FloatArray, si.FloatArray]:
         """X and Y where some lines cross, row by row."""
         x, y = self.place(a[:, None], b[None, :])
         shape = (a.size, b.size)
@@ -77,12 +77,12 @@ class _Lines:
         )
 
     @property
-    def weight(self) -> FloatArray:
+    def weight(self) -> si.FloatArray:
         """Per row, what multiplies 1/Δv in the conductance of a face within it."""
         return self.across_columns(self.u[1::2]) * np.diff(self.u[::2])
 
 
-def _build(lines: _Lines, area: FloatArray, sides: _Sides, *, quarter: bool) -> PlanarGrid:
+def _build(lines: _Lines, area: si.FloatArray, sides: _Sides, *, quarter: bool) -> PlanarGrid:
     """A grid from its coordinate lines. The last row is always open; on a quarter the first row
     and the first column are walls."""
     u_face, u_node, v_face, v_node = lines.u[::2], lines.u[1::2], lines.v[::2], lines.v[1::2]
@@ -116,8 +116,8 @@ def _build(lines: _Lines, area: FloatArray, sides: _Sides, *, quarter: bool) -> 
 
 
 def _faces_within_rows(
-    lines: _Lines, index: IntArray, sides: _Sides
-) -> list[tuple[IntArray, IntArray, FloatArray, FloatArray, FloatArray]]:
+    lines: _Lines, index: si.IntArray, sides: _Sides
+) -> list[tuple[si.IntArray, si.IntArray, si.FloatArray, si.FloatArray, si.FloatArray]]:
     """Nodes from and to, X, Y and conductance of the faces between columns, joins included."""
     u_node, v_face, v_node, weight = lines.u[1::2], lines.v[::2], lines.v[1::2], lines.weight
     col_X, col_Y = lines.at(u_node, v_face[1:-1])
@@ -138,8 +138,8 @@ def _faces_within_rows(
 
 
 def _edges(
-    lines: _Lines, index: IntArray, sides: _Sides, *, quarter: bool
-) -> list[tuple[IntArray, FloatArray, FloatArray, FloatArray]]:
+    lines: _Lines, index: si.IntArray, sides: _Sides, *, quarter: bool
+) -> list[tuple[si.IntArray, si.FloatArray, si.FloatArray, si.FloatArray]]:
     """Node, X, Y and conductance of the faces on every side that is open."""
     u_face, u_node, v_face, v_node = lines.u[::2], lines.u[1::2], lines.v[::2], lines.v[1::2]
     dv, weight = np.diff(v_face), lines.weight
@@ -159,7 +159,7 @@ def _edges(
 
 def graded_line(
     count: int, half: float, squeeze_number: float, *, mirror: bool, least: float = 2e-3
-) -> FloatArray:
+) -> si.FloatArray:
     """2 count + 1 points (faces and nodes in turn) from 0 or −half to half, graded to the edge.
 
     `squeeze_number` is on the length that `half` is measured in. `least` bounds from below the
@@ -172,7 +172,7 @@ def graded_line(
     return np.concatenate([-fine[:0:-1], fine])
 
 
-def rectangle_grid(x: FloatArray, y: FloatArray, *, quarter: bool = True) -> PlanarGrid:
+def rectangle_grid(x: si.FloatArray, y: si.FloatArray, *, quarter: bool = True) -> PlanarGrid:
     """A rectangle with open sides; `x`, `y` give faces and nodes in turn (2 cells + 1,).
 
     On a quarter both start at 0, which is then a line of symmetry. Rows lie along X.
@@ -182,7 +182,7 @@ def rectangle_grid(x: FloatArray, y: FloatArray, *, quarter: bool = True) -> Pla
     return _build(lines, area, "open", quarter=quarter)
 
 
-def _turn(count: int, quarter: bool) -> FloatArray:
+def _turn(count: int, quarter: bool) -> si.FloatArray:
     return np.asarray(np.linspace(0.0, np.pi / 2 if quarter else 2 * np.pi, 2 * count + 1))
 
 
@@ -219,7 +219,7 @@ def ellipse_grid(
     They are conformal: the metric drops out of every conductance. The rows are spaced along the
     minor axis as the disc's along its radius, so that aspect → 1 passes into the disc.
     """
-    require("aspect_ratio", aspect_ratio, above=0.0)
+    si.require("aspect_ratio", aspect_ratio, above=0.0)
     tall = aspect_ratio > 1.0
     major, minor = max(1.0, aspect_ratio), min(1.0, aspect_ratio)
     if major / minor - 1.0 < 1e-6:
@@ -234,7 +234,7 @@ def ellipse_grid(
         + np.diff(u)[:, None] * np.diff(v / 2 - np.sin(2 * v) / 4)
     )
 
-    def place(a: FloatArray, b: FloatArray) -> tuple[FloatArray, FloatArray]:
+    def place(a: si.FloatArray, b: si.FloatArray) -> tuple[si.FloatArray, si.FloatArray]:
         along, across = focus * np.cosh(a) * np.cos(b), focus * np.sinh(a) * np.sin(b)
         return (across, along) if tall else (along, across)
 

@@ -12,9 +12,9 @@ from typing import NamedTuple
 import numba
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.film.mobility import mobility
 from squeezefilm.film.records import Gas
-from squeezefilm.quantities import Array
 
 
 class Faces(NamedTuple):
@@ -22,19 +22,19 @@ class Faces(NamedTuple):
     join and their conductances, as `PlanarGrid` has them."""
 
     columns: int
-    row_conductance: Array
-    column_from: Array
-    column_to: Array
-    column_conductance: Array
-    edge_node: Array
-    edge_conductance: Array
+    row_conductance: si.Array
+    column_from: si.Array
+    column_to: si.Array
+    column_conductance: si.Array
+    edge_node: si.Array
+    edge_conductance: si.Array
 
 
 class Storage(NamedTuple):
     """σ · area of the nodes, and the derivative in time (times, times)."""
 
-    weight: Array
-    derivative: Array
+    weight: si.Array
+    derivative: si.Array
 
 
 class Balances(NamedTuple):
@@ -44,17 +44,17 @@ class Balances(NamedTuple):
     `*_up` (faces, times) is ∂(from)/∂m(to), `*_down` ∂(to)/∂m(from).
     """
 
-    residual: Array
-    diagonal: Array
-    row_up: Array
-    row_down: Array
-    column_up: Array
-    column_down: Array
+    residual: si.Array
+    diagonal: si.Array
+    row_up: si.Array
+    row_down: si.Array
+    column_up: si.Array
+    column_down: si.Array
 
 
 @numba.njit(cache=True, nogil=True)
 def assemble(
-    m: Array, gaps: Array, faces: Faces, storage: Storage, gas: Gas, balance: Balances
+    m: si.Array, gaps: si.Array, faces: Faces, storage: Storage, gas: Gas, balance: Balances
 ) -> None:
     """Fill `balance` at the gas m, shape (nodes, times).
 
@@ -116,7 +116,13 @@ def assemble(
 
 @numba.njit(cache=True, nogil=True)
 def row_block(
-    weight: Array, D: Array, diagonal: Array, within: Array, up: Array, down: Array, block: Array
+    weight: si.Array,
+    D: si.Array,
+    diagonal: si.Array,
+    within: si.Array,
+    up: si.Array,
+    down: si.Array,
+    block: si.Array,
 ) -> None:
     """The dense Jacobian block of one row: its nodes, all their times.
 
@@ -142,7 +148,7 @@ def row_block(
 
 
 @numba.njit(cache=True, nogil=True)
-def take_off(block: Array, down: Array, inverse: Array, up: Array) -> None:
+def take_off(block: si.Array, down: si.Array, inverse: si.Array, up: si.Array) -> None:
     """block −= diag(down) · inverse · diag(up)."""
     n = block.shape[0]
     for i in range(n):

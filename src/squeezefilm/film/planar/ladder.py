@@ -12,6 +12,7 @@ from typing import Literal
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.film.line_grid import refined_line
 from squeezefilm.film.planar.balance import Balance, Balancer, Film, resampled
@@ -25,7 +26,6 @@ from squeezefilm.film.planar.grid import (
     rectangle_grid,
 )
 from squeezefilm.hard_limits import PLANAR_MEMORY, require_within
-from squeezefilm.quantities import ComplexArray, FloatArray, require
 
 PlanarShape = Literal["rectangle", "disc", "ellipse"]
 RUNGS = (2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64)
@@ -58,7 +58,7 @@ class Ladder:
             waves = max(2.0 * gap.wave_number, 1.5 * ridges) / (2 * np.pi)
             self.cut = shape != "rectangle" and ridges > np.pi
         if cells is not None:
-            require("cells", np.array(cells), at_least=2)
+            si.require("cells", np.array(cells), at_least=2)
             # Even, because the full ellipse joins opposite columns.
             self._base = (cells[0] / 2, 2 * round(cells[1] / 4) or 1)
         elif shape == "rectangle":
@@ -128,7 +128,7 @@ class Ladder:
         y = refined_line(y, lambda Y: self._mean_gap(0.0 * Y, Y))
         return rectangle_grid(x, y, quarter=self.quarter)
 
-    def _mean_gap(self, X: FloatArray, Y: FloatArray) -> FloatArray:
+    def _mean_gap(self, X: si.FloatArray, Y: si.FloatArray) -> si.FloatArray:
         T = 2 * np.pi * np.arange(4) / 4
         return np.asarray(gap_values(self.film.gap, X, Y, T).mean(axis=1))
 
@@ -139,7 +139,7 @@ class Extrapolated:
 
     over_pressure: float
     error: float
-    harmonics: ComplexArray
+    harmonics: si.ComplexArray
 
 
 @dataclass(frozen=True)
@@ -195,7 +195,7 @@ class _Climber:
     accuracy: float = 1e-7
     iterations: int = 0
 
-    def solved(self, rung: int, count: int, start: FloatArray | None) -> Balance:
+    def solved(self, rung: int, count: int, start: si.FloatArray | None) -> Balance:
         """One rung at `count` times, from a start."""
         grid = self.ladder.grid(rung)
         state = _solve_or_continue(self.ladder.film, grid, count, start, self.accuracy)
@@ -263,10 +263,10 @@ class _Climber:
         return Climb(best, states[-1], self.iterations, False, status)
 
 
-def _richardson(states: list[Balance]) -> tuple[float, ComplexArray, float]:
+def _richardson(states: list[Balance]) -> tuple[float, si.ComplexArray, float]:
     """Over-pressure and harmonics extrapolated from the last two rungs, and the error in space."""
 
-    def extrapolated(place: int) -> tuple[float, ComplexArray]:
+    def extrapolated(place: int) -> tuple[float, si.ComplexArray]:
         gain = (RUNGS[place] / RUNGS[place - 1]) ** 2 - 1.0
         fine, coarse = states[place], states[place - 1]
         return (
@@ -285,14 +285,14 @@ def _richardson(states: list[Balance]) -> tuple[float, ComplexArray, float]:
     return value, harmonics, trend + chance * abs(value - states[-1].over_pressure)
 
 
-def _irregular(states: list[Balance]) -> tuple[float, ComplexArray, float]:
+def _irregular(states: list[Balance]) -> tuple[float, si.ComplexArray, float]:
     """The last rung as it is: an error that jumps with the grid cannot be extrapolated."""
     fine = states[-1]
     steps = [abs(fine.over_pressure - state.over_pressure) for state in states[-3:-1]]
     return fine.over_pressure, fine.harmonics, 1.3 * max(steps[1], 0.5 * steps[0])
 
 
-def _moved(film: Film, state: Balance, grid: PlanarGrid) -> FloatArray:
+def _moved(film: Film, state: Balance, grid: PlanarGrid) -> si.FloatArray:
     """The gas of `state` on another grid of the same map: P^{1/n} = m/H is smooth in space."""
     count = state.gas.shape[1]
     T = 2 * np.pi * np.arange(count) / count
@@ -303,7 +303,7 @@ def _moved(film: Film, state: Balance, grid: PlanarGrid) -> FloatArray:
     return field.reshape(-1, count) * gap_values(film.gap, grid.X, grid.Y, T)
 
 
-def _stretched(field: FloatArray, axis: int, size: int) -> FloatArray:
+def _stretched(field: si.FloatArray, axis: int, size: int) -> si.FloatArray:
     have = field.shape[axis]
     at = np.clip((np.arange(size) + 0.5) * have / size - 0.5, 0.0, have - 1.0)
     left = np.minimum(at.astype(np.int64), max(have - 2, 0))
@@ -315,7 +315,7 @@ def _stretched(field: FloatArray, axis: int, size: int) -> FloatArray:
 
 
 def _solve_or_continue(
-    film: Film, grid: PlanarGrid, count: int, start: FloatArray | None, accuracy: float
+    film: Film, grid: PlanarGrid, count: int, start: si.FloatArray | None, accuracy: float
 ) -> Balance:
     """Newton's method; where it fails, by way of smaller motions about the same mean gap."""
     state = Balancer(film, grid, count).solve(start, accuracy)
@@ -326,7 +326,9 @@ def _solve_or_continue(
     spent, gas = state.iterations, None
     for part in (0.25, 0.5, 0.7, 0.85, 0.95, 1.0):
 
-        def smaller(X: FloatArray, Y: FloatArray, t: FloatArray, part: float = part) -> FloatArray:
+        def smaller(
+            X: si.FloatArray, Y: si.FloatArray, t: si.FloatArray, part: float = part
+        ) -> si.FloatArray:
             mean = np.mean([gap(X, Y, np.full((1, 1), s)) for s in T], axis=0)
             return np.asarray(mean + part * (gap(X, Y, t) - mean))
 

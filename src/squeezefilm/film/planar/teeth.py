@@ -11,17 +11,11 @@ from typing import Annotated
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.film.planar.film import FilmPlanar, solve_planar
 from squeezefilm.film.planar.gap import GapFunction, PlanarGap
 from squeezefilm.film.records import ISOTHERMAL, FilmGas
-from squeezefilm.quantities import (
-    Above,
-    AtMost,
-    Dimensionless,
-    FloatArray,
-    checked_numbers,
-)
 
 _PHASES = 5
 
@@ -34,12 +28,12 @@ class ToothedFilm:
     `tooth_squeeze_number` is σ on the tooth's width.
     """
 
-    continuous: Dimensionless
-    toothed: Dimensionless
-    ratio: Dimensionless
-    tooth_squeeze_number: Dimensionless
-    tooth_width: Dimensionless
-    tooth_pitch: Dimensionless
+    continuous: si.Dimensionless
+    toothed: si.Dimensionless
+    ratio: si.Dimensionless
+    tooth_squeeze_number: si.Dimensionless
+    tooth_width: si.Dimensionless
+    tooth_pitch: si.Dimensionless
     surface: FilmPlanar
     status: str
 
@@ -49,23 +43,23 @@ def _tooth_gap(gap: PlanarGap, excursion: float, width: float, shift: float) -> 
     if gap.ridge_height == 0.0:
         return PlanarGap(excursion)
 
-    def on_tooth(X: FloatArray, Y: FloatArray, T: FloatArray) -> FloatArray:
+    def on_tooth(X: si.FloatArray, Y: si.FloatArray, T: si.FloatArray) -> si.FloatArray:
         ridges = gap.ridge_height * np.cos(wave_number * X + shift)
         return np.asarray(1.0 + excursion * np.cos(T) + ridges)
 
     return on_tooth
 
 
-@checked_numbers
+@si.checked_numbers
 def compare_teeth(
-    squeeze_number: Dimensionless,
+    squeeze_number: si.Dimensionless,
     gap: PlanarGap,
     *,
-    tooth_width: Annotated[Dimensionless, Above(0.0), AtMost(1.0)],
-    tooth_pitch: Annotated[Dimensionless, Above(0.0)],
-    aspect_ratio: Dimensionless = 1.0,
+    tooth_width: Annotated[si.Dimensionless, si.Above(0.0), si.AtMost(1.0)],
+    tooth_pitch: Annotated[si.Dimensionless, si.Above(0.0)],
+    aspect_ratio: si.Dimensionless = 1.0,
     gas: FilmGas = ISOTHERMAL,
-    tolerance: Dimensionless = 1e-2,
+    tolerance: si.Dimensionless = 1e-2,
 ) -> ToothedFilm:
     """The over-pressure under a rectangular finger on a toothed surface, against a smooth one.
 

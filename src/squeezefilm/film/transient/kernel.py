@@ -12,24 +12,24 @@ from typing import Any, NamedTuple
 import numba
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.film.mobility import mobility
 from squeezefilm.film.records import Aim, Gas
-from squeezefilm.quantities import Array
 
 
 class Line(NamedTuple):
     """Volume of the cells (N,) and conductance of the faces (N+1,): 0 at a wall or a line of
     symmetry."""
 
-    volume: Array
-    conductance: Array
+    volume: si.Array
+    conductance: si.Array
 
 
 class Gaps(NamedTuple):
     """The gap in cells (N,) and at faces (N+1,), or with a row of them for every stage."""
 
-    cell: Array
-    face: Array
+    cell: si.Array
+    face: si.Array
 
 
 class Pace(NamedTuple):
@@ -44,14 +44,21 @@ class Track(NamedTuple):
     """What a march writes: the load after each step, and into row `keep[k]` of `field` the pressure
     after step k, nowhere for −1."""
 
-    load: Array
-    field: Array
-    keep: Array
+    load: si.Array
+    field: si.Array
+    keep: si.Array
 
 
 @numba.njit(cache=True, nogil=True)
 def implicit_stage(
-    m: Array, held: Array, gap: Gaps, line: Line, step: float, gas: Gas, aim: Aim, outflow: Array
+    m: si.Array,
+    held: si.Array,
+    gap: Gaps,
+    line: Line,
+    step: float,
+    gas: Gas,
+    aim: Aim,
+    outflow: si.Array,
 ) -> Any:
     """Solve volume (m − held) = step · (net inflow at m) for m, by Newton with one sweep a step.
 
@@ -141,7 +148,14 @@ BACKWARD_EULER, SDIRK2, BDF2 = 1, 2, 3
 
 @numba.njit(cache=True, nogil=True)
 def march(
-    m: Array, before: Array, gaps: Gaps, line: Line, pace: Pace, gas: Gas, aim: Aim, track: Track
+    m: si.Array,
+    before: si.Array,
+    gaps: Gaps,
+    line: Line,
+    pace: Pace,
+    gas: Gas,
+    aim: Aim,
+    track: Track,
 ) -> Any:
     """March `m` in place over as many steps as the track's load is long.
 

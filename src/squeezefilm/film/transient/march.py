@@ -13,6 +13,7 @@ from typing import Annotated, Literal
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import ConvergenceError, InputError
 from squeezefilm.film.compiled import announce
 from squeezefilm.film.line_grid import Gap, LineGrid, Shape, gap_table, line_grid, mean_over
@@ -27,18 +28,6 @@ from squeezefilm.film.transient.kernel import (
     Pace,
     Track,
     march,
-)
-from squeezefilm.quantities import (
-    Above,
-    AtLeast,
-    Dimensionless,
-    DimensionlessArray,
-    DimensionlessLike,
-    FloatArray,
-    IntArray,
-    checked_numbers,
-    require,
-    require_one_of,
 )
 
 Scheme = Literal["bdf2", "sdirk2", "backward_euler"]
@@ -58,52 +47,54 @@ class FilmTransient:
     as the scheme counts it (BDF2 balances (3 m − m one step before)/2).
     """
 
-    time: DimensionlessArray
-    load: DimensionlessArray
-    position: DimensionlessArray
-    snapshot_time: DimensionlessArray
-    pressure: DimensionlessArray
-    mass_residual: Dimensionless
-    residual: Dimensionless
+    time: si.DimensionlessArray
+    load: si.DimensionlessArray
+    position: si.DimensionlessArray
+    snapshot_time: si.DimensionlessArray
+    pressure: si.DimensionlessArray
+    mass_residual: si.Dimensionless
+    residual: si.Dimensionless
     iterations: int
     status: str
-    squeeze_number: Dimensionless
-    polytropic_exponent: Dimensionless
-    knudsen_number: Dimensionless
+    squeeze_number: si.Dimensionless
+    polytropic_exponent: si.Dimensionless
+    knudsen_number: si.Dimensionless
     slip: str
     shape: Shape
     scheme: Scheme
 
 
-def stage_times(scheme: str) -> FloatArray:
+def stage_times(scheme: str) -> si.FloatArray:
     """Where in a step (0 to 1) a scheme asks for the gap."""
-    require_one_of("scheme", scheme, SCHEMES)
+    si.require_one_of("scheme", scheme, SCHEMES)
     return np.array([1.0 - np.sqrt(0.5), 1.0] if scheme == "sdirk2" else [1.0])
 
 
 def check_film(shape: str, sigma: float, n: float, knudsen: float) -> None:
     """Refuse a shape that is not known and numbers out of range."""
     require_film(sigma, n, knudsen)
-    require_one_of("shape", shape, ("strip", "disc"))
+    si.require_one_of("shape", shape, ("strip", "disc"))
 
 
-def _gas_balanced(volume: FloatArray, m: FloatArray, before: FloatArray, scheme: Scheme) -> float:
+def _gas_balanced(
+    volume: si.FloatArray, m: si.FloatArray, before: si.FloatArray, scheme: Scheme
+) -> float:
     """The gas whose change over a step is exactly what the scheme lets flow in."""
     return float(volume @ (1.5 * m - 0.5 * before if scheme == "bdf2" else m))
 
 
-@checked_numbers
+@si.checked_numbers
 def solve_transient(
     gap: Gap,
-    squeeze_number: Dimensionless,
-    end: Dimensionless,
+    squeeze_number: si.Dimensionless,
+    end: si.Dimensionless,
     *,
-    start: Dimensionless = 0.0,
-    steps: Annotated[int, AtLeast(1)] = 1000,
-    cells: Annotated[int, AtLeast(4)] = 64,
+    start: si.Dimensionless = 0.0,
+    steps: Annotated[int, si.AtLeast(1)] = 1000,
+    cells: Annotated[int, si.AtLeast(4)] = 64,
     shape: Shape = "strip",
     gas: FilmGas = ISOTHERMAL,
-    initial_pressure: Annotated[DimensionlessLike, Above(0.0)] = 1.0,
+    initial_pressure: Annotated[si.DimensionlessLike, si.Above(0.0)] = 1.0,
     snapshots: int = 11,
     scheme: Scheme = "bdf2",
 ) -> FilmTransient:
@@ -125,8 +116,8 @@ def solve_transient(
     """
     check_film(shape, squeeze_number, gas.polytropic_exponent, gas.knudsen_number)
     announce(march, "film solver in time", 4)
-    require("end", end, above=start)
-    require("snapshots", snapshots, at_least=0, at_most=steps + 1)
+    si.require("end", end, above=start)
+    si.require("snapshots", snapshots, at_least=0, at_most=steps + 1)
     if np.shape(initial_pressure) not in ((), (cells,)):
         raise InputError(
             f"initial_pressure has the shape {np.shape(initial_pressure)}; give one number, or one "
@@ -158,7 +149,7 @@ class _Asked:
         return (self.end - self.start) / self.steps
 
     @property
-    def time(self) -> FloatArray:
+    def time(self) -> si.FloatArray:
         """The ends of the steps (rad), the start before them (steps + 1,)."""
         return self.start + self.time_step * np.arange(self.steps + 1, dtype=np.float64)
 
@@ -175,7 +166,7 @@ class _Marched:
     iterations: int
 
 
-def _followed(asked: _Asked, pressure: FloatArray, kept: IntArray) -> FilmTransient:
+def _followed(asked: _Asked, pressure: si.FloatArray, kept: si.IntArray) -> FilmTransient:
     """The film from a `pressure` in each cell, its field after the steps `kept`."""
     gas, time = asked.gas.compiled(), asked.time
     over = np.linspace(asked.start, asked.end, 9)
@@ -224,7 +215,7 @@ def _followed(asked: _Asked, pressure: FloatArray, kept: IntArray) -> FilmTransi
     return result
 
 
-def _marched(asked: _Asked, gas: Gas, grid: LineGrid, m: FloatArray, track: Track) -> _Marched:
+def _marched(asked: _Asked, gas: Gas, grid: LineGrid, m: si.FloatArray, track: Track) -> _Marched:
     """March on from the gas `m`, which is changed, to the end or to a step that fails."""
     dt, time, scheme = asked.time_step, asked.time, asked.scheme
     line = Line(grid.volume, grid.conductance)
@@ -235,7 +226,7 @@ def _marched(asked: _Asked, gas: Gas, grid: LineGrid, m: FloatArray, track: Trac
         # BDF2 needs one step to start from; the one-step SDIRK2 of the same order makes it.
         how: Scheme = "sdirk2" if scheme == "bdf2" and done == 0 else scheme
         count = 1 if how != scheme else min(chunk, asked.steps - done)
-        at: FloatArray = (time[done : done + count, None] + dt * stage_times(how)).ravel()
+        at: si.FloatArray = (time[done : done + count, None] + dt * stage_times(how)).ravel()
         held = _gas_balanced(grid.volume, m, before, how)
         now = slice(done + 1, done + count + 1)
         lost, change, made, reached = march(

@@ -11,6 +11,7 @@ from typing import Annotated
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import ConvergenceError
 from squeezefilm.film.compiled import announce
 from squeezefilm.film.line_grid import Gap, Shape, gap_table, line_grid, mean_over
@@ -22,14 +23,6 @@ from squeezefilm.film.transient.march import (
     Scheme,
     check_film,
     stage_times,
-)
-from squeezefilm.quantities import (
-    AtLeast,
-    Dimensionless,
-    DimensionlessArray,
-    FloatArray,
-    checked_numbers,
-    require,
 )
 
 _MEMORY = 8
@@ -48,23 +41,23 @@ class FilmSettled:
     gas held.
     """
 
-    mean_load: Dimensionless
-    over_pressure: Dimensionless
-    over_pressure_error: Dimensionless
-    time: DimensionlessArray
-    load: DimensionlessArray
-    position: DimensionlessArray
-    pressure: DimensionlessArray
-    residual: Dimensionless
-    mass_residual: Dimensionless
+    mean_load: si.Dimensionless
+    over_pressure: si.Dimensionless
+    over_pressure_error: si.Dimensionless
+    time: si.DimensionlessArray
+    load: si.DimensionlessArray
+    position: si.DimensionlessArray
+    pressure: si.DimensionlessArray
+    residual: si.Dimensionless
+    mass_residual: si.Dimensionless
     periods: int
     iterations: int
     cells: int
     steps: int
     status: str
-    squeeze_number: Dimensionless
-    polytropic_exponent: Dimensionless
-    knudsen_number: Dimensionless
+    squeeze_number: si.Dimensionless
+    polytropic_exponent: si.Dimensionless
+    knudsen_number: si.Dimensionless
     slip: str
     shape: Shape
     scheme: Scheme
@@ -74,10 +67,10 @@ class _Mixer:
     """Anderson mixing of a map's iterates: from x and G(x), the next x to try."""
 
     def __init__(self) -> None:
-        self._x: list[FloatArray] = []
-        self._f: list[FloatArray] = []
+        self._x: list[si.FloatArray] = []
+        self._f: list[si.FloatArray] = []
 
-    def next(self, x: FloatArray, image: FloatArray) -> FloatArray:
+    def next(self, x: si.FloatArray, image: si.FloatArray) -> si.FloatArray:
         self._x.append(x)
         self._f.append((image - x).ravel())
         del self._x[: -_MEMORY - 1], self._f[: -_MEMORY - 1]
@@ -95,20 +88,20 @@ class _Mixer:
         return image
 
 
-@checked_numbers
+@si.checked_numbers
 def settle_to_periodic(
     gap: Gap,
-    squeeze_number: Dimensionless,
+    squeeze_number: si.Dimensionless,
     *,
     shape: Shape = "strip",
-    tolerance: Dimensionless | None = 1e-3,
-    cells: Annotated[int, AtLeast(4)] = 24,
-    steps: Annotated[int, AtLeast(4)] = 32,
+    tolerance: si.Dimensionless | None = 1e-3,
+    cells: Annotated[int, si.AtLeast(4)] = 24,
+    steps: Annotated[int, si.AtLeast(4)] = 32,
     gas: FilmGas = ISOTHERMAL,
     scheme: Scheme = "bdf2",
     accelerate: bool = True,
-    settled: Dimensionless = 1e-10,
-    max_periods: Annotated[int, AtLeast(1)] = 2000,
+    settled: si.Dimensionless = 1e-10,
+    max_periods: Annotated[int, si.AtLeast(1)] = 2000,
     max_cells: int = 1600,
 ) -> FilmSettled:
     """The periodic state of the film under a gap H(X, T) of period 2π, by marching in time.
@@ -127,12 +120,12 @@ def settle_to_periodic(
     check_film(shape, squeeze_number, gas.polytropic_exponent, gas.knudsen_number)
     announce(march, "film solver in time", 4)
     # Less than rounding leaves no march reaches.
-    require("settled", settled, at_least=1e-14)
+    si.require("settled", settled, at_least=1e-14)
     if tolerance is not None:
-        require("tolerance", tolerance, at_least=1e-9)
+        si.require("tolerance", tolerance, at_least=1e-9)
     asked = _Settling(gap, squeeze_number, shape, gas, scheme, accelerate, settled, max_periods)
     history: list[FilmSettled] = []
-    guess: tuple[FloatArray, FloatArray] | None = None
+    guess: tuple[si.FloatArray, si.FloatArray] | None = None
     while True:
         result, guess = _settle(asked, cells, steps, guess)
         history.append(result)
@@ -188,7 +181,7 @@ class _Settled:
     """Where a march ended: the gas held now and, for `bdf2`, a step before (rows × cells), the
     largest relative change of the last period, the gas lost over it, and the effort."""
 
-    gas: FloatArray
+    gas: si.FloatArray
     change: float
     lost: float
     periods: int
@@ -196,8 +189,8 @@ class _Settled:
 
 
 def _settle(
-    asked: _Settling, cells: int, steps: int, guess: tuple[FloatArray, FloatArray] | None
-) -> tuple[FilmSettled, tuple[FloatArray, FloatArray]]:
+    asked: _Settling, cells: int, steps: int, guess: tuple[si.FloatArray, si.FloatArray] | None
+) -> tuple[FilmSettled, tuple[si.FloatArray, si.FloatArray]]:
     """The film on one grid, and its gas there as a guess for the next; raises `ConvergenceError`
     with that film where it does not settle."""
     sigma, gas = asked.squeeze_number, asked.gas
@@ -251,7 +244,7 @@ def _settle(
     return result, (grid.centre, ended.gas[:2])
 
 
-def _rough(H: FloatArray, stages: int, n: float, part: float) -> FloatArray:
+def _rough(H: si.FloatArray, stages: int, n: float, part: float) -> si.FloatArray:
     """The gas to start from, now and a step before: `part` of the way from gas at rest to gas that
     cannot follow, whose m is constant in time, so that ⟨H³ P^{1/n} ∂P⟩ = 0 gives its value."""
     mean = (np.mean(H**3, axis=0) / np.mean(H ** (2 - n), axis=0)) ** (1 / (n + 1))
@@ -259,7 +252,7 @@ def _rough(H: FloatArray, stages: int, n: float, part: float) -> FloatArray:
     return np.stack([still + (mean - still) * part, H[-1 - stages] * (1 - part) + mean * part])
 
 
-def _marched(asked: _Settling, x: FloatArray, gaps: Gaps, line: Line, track: Track) -> _Settled:
+def _marched(asked: _Settling, x: si.FloatArray, gaps: Gaps, line: Line, track: Track) -> _Settled:
     """March period after period from the gas `x` until it repeats, or the periods are spent."""
     steps = track.load.size
     pace = Pace(2 * np.pi / steps, float(asked.squeeze_number), SCHEMES[asked.scheme])

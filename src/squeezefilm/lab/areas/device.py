@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from pydantic import Field
 
 from squeezefilm import presets
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.lab import playing_process as device_process
 from squeezefilm.lab.designing.form import name_of
@@ -17,7 +18,6 @@ from squeezefilm.lab.designing.program import title_of
 from squeezefilm.lab.files import existing
 from squeezefilm.lab.playing_process import DeviceSession, DeviceWork
 from squeezefilm.lab.wire import LONGEST_TEXT, Answer, Request
-from squeezefilm.quantities import Unit, parse_quantity
 from squeezefilm.results import write_whole
 
 if TYPE_CHECKING:
@@ -93,8 +93,8 @@ class DeviceArea:
     async def _play(self, asked: PlayDevice) -> Answer:
         if not asked.armed:
             raise InputError("the device is not armed; arm it on the page first")
-        duration = parse_quantity(asked.duration, Unit("s"))
-        voltage = None if asked.voltage is None else parse_quantity(asked.voltage, Unit("V"))
+        duration = si.parse_quantity(asked.duration, si.Unit("s"))
+        voltage = None if asked.voltage is None else si.parse_quantity(asked.voltage, si.Unit("V"))
         name = datetime.now(UTC).strftime("%Y%m%dT%H%M%S")
         work = DeviceWork(
             display=str(await _display(self._lab, asked.display)),

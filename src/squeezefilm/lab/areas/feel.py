@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING, Literal
 from pydantic import Field
 
 from squeezefilm import presets
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.lab.designing import program as feel
 from squeezefilm.lab.files import existing, fresh
 from squeezefilm.lab.wire import LONGEST_TEXT, Answer, Request
-from squeezefilm.quantities import Unit, parse_quantity
 from squeezefilm.results import write_whole
 from squeezefilm.texture_file import load_texture
 
@@ -122,7 +122,7 @@ class FeelArea:
         except binascii.Error as error:
             raise InputError("the picture's data are no base64; drop it again") from error
         rows, columns = await self._quick.do(None, feel.pixels_of, data, asked.name)
-        pixel = parse_quantity(asked.pixel, Unit("m"))
+        pixel = si.parse_quantity(asked.pixel, si.Unit("m"))
         if not 1e-6 <= pixel <= 0.1:
             raise InputError(f"a pixel of {asked.pixel}: it may have 1 um to 10 cm")
         self._folder.mkdir(exist_ok=True)

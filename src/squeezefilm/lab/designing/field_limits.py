@@ -11,11 +11,11 @@ import math
 from collections.abc import Callable
 from typing import Any
 
+from squeezefilm import quantities as si
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError, SqueezefilmError
 from squeezefilm.hard_limits import HardLimit
 from squeezefilm.lab.designing.form import choices, display_of, stated
-from squeezefilm.quantities import Unit, bounds_of, format_quantity, unit_of
 from squeezefilm.report.kit.numbers import leaves
 
 _FAR = 1e9
@@ -38,7 +38,7 @@ def allowed(text: str, path: str) -> str:
     if found is None:
         raise InputError(f"the display has no value at '{path[:200]}'; open it again")
     place, value, annotation, _ = found
-    unit = unit_of(stated(annotation))
+    unit = si.unit_of(stated(annotation))
     whole = isinstance(value, int) and not isinstance(value, bool)
     if (unit is None and not whole) or choices(stated(annotation)):
         return ""
@@ -62,7 +62,7 @@ _End = tuple[float, bool]  # the last value, and whether it fits itself
 
 def _stated_ends(annotation: Any) -> tuple[_End | None, _End | None]:
     """The least and the most that an annotation allows."""
-    bounds, limits = bounds_of(annotation)
+    bounds, limits = si.bounds_of(annotation)
     hard = [one for one in limits if isinstance(one, HardLimit)]
     low = [(bounds[name], name == "at_least") for name in ("above", "at_least") if name in bounds]
     high = [(bounds[name], name == "at_most") for name in ("below", "at_most") if name in bounds]
@@ -139,11 +139,11 @@ def _limit(fits: Callable[[float], bool], value: float, step: float, *, whole: b
     return round_one, fits(round_one)
 
 
-def _words(below: _End | None, above: _End | None, unit: Unit | None) -> str:
+def _words(below: _End | None, above: _End | None, unit: si.Unit | None) -> str:
     def text(number: float) -> str:
         if unit is None or unit.symbol == "1":
             return f"{number:.6g}"
-        return format_quantity(number, unit, digits=6)
+        return si.format_quantity(number, unit, digits=6)
 
     if below is None and above is None:
         return "any number"

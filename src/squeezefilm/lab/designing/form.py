@@ -14,9 +14,9 @@ import tomlkit
 from tomlkit.exceptions import TOMLKitError
 
 from squeezefilm import config, presets
+from squeezefilm import quantities as si
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import Unit, format_quantity, unit_of
 from squeezefilm.report.kit.numbers import leaves
 
 LONGEST_VALUE = 2000
@@ -52,7 +52,7 @@ def form(text: str) -> list[dict[str, Any]]:
         hint = stated(annotation)
         dotted = ".".join(str(part) for part in path)
         origin = display.provenance.get(dotted)
-        unit = unit_of(hint)
+        unit = si.unit_of(hint)
         rows.append(
             {
                 "path": dotted,
@@ -137,17 +137,19 @@ def _written(value: str, row: dict[str, Any]) -> Any:
     return value
 
 
-def _text(value: Any, unit: Unit | None) -> str:
+def _text(value: Any, unit: si.Unit | None) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
     if unit is not None and isinstance(value, int | float):
-        return repr(value) if unit.symbol == "1" else format_quantity(float(value), unit, digits=6)
+        return (
+            repr(value) if unit.symbol == "1" else si.format_quantity(float(value), unit, digits=6)
+        )
     return str(value)
 
 
 def stated(hint: Any) -> Any:
     """What a value may be where it is stated: `X` of ``X | None``; a quantity knows itself."""
-    if typing.get_origin(hint) in (Union, types.UnionType) and unit_of(hint) is None:
+    if typing.get_origin(hint) in (Union, types.UnionType) and si.unit_of(hint) is None:
         return next(one for one in typing.get_args(hint) if one is not type(None))
     return hint
 

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.analysis.uncertainty import friction_band
 from squeezefilm.chain.prediction import Prediction, predict
 from squeezefilm.display import Display
@@ -21,7 +22,6 @@ from squeezefilm.lab.designing.form import display_of, edited, form
 from squeezefilm.lab.worker import tell
 from squeezefilm.plate.layout import Actuator, AnnularStator, DiscPlate, RectangularPlate
 from squeezefilm.plate.solid.working import response_frequencies, solid_mode
-from squeezefilm.quantities import FloatArray, Unit, parse_quantity, require_one_of
 from squeezefilm.results import stamp, to_json
 
 QUALITIES = ("screening", "solved")
@@ -146,20 +146,24 @@ def predicted(display: Display, quality: str, point: WorkingPoint) -> Prediction
 
     Raises `InputError` as `designed` does.
     """
-    require_one_of("quality", quality, QUALITIES)
+    si.require_one_of("quality", quality, QUALITIES)
     plate = isinstance(display.actuator, RectangularPlate)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         return predict(
             display,
-            voltage=None if point.voltage is None else parse_quantity(point.voltage, Unit("V")),
-            normal_force=None if point.force is None else parse_quantity(point.force, Unit("N")),
+            voltage=None
+            if point.voltage is None
+            else si.parse_quantity(point.voltage, si.Unit("V")),
+            normal_force=None
+            if point.force is None
+            else si.parse_quantity(point.force, si.Unit("N")),
             surface=point.surface,
             theory=("timoshenko" if quality == "screening" else "solid") if plate else None,
         )
 
 
-def _paper(p: Prediction, amplitude: FloatArray) -> FloatArray:
+def _paper(p: Prediction, amplitude: si.FloatArray) -> si.FloatArray:
     try:
         return dataclasses.replace(p.law, model="paper2008").curve(amplitude)
     except SqueezefilmError:

@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.chain.prediction import Prediction
 from squeezefilm.chain.rendered_texture import lowered
 from squeezefilm.chain.standing_wave import resonance_with_finger, wave_factors
@@ -23,7 +24,6 @@ from squeezefilm.formats.pictures import picture_from
 from squeezefilm.lab.designing.form import display_of
 from squeezefilm.lab.designing.numbers import WorkingPoint, predicted
 from squeezefilm.plate.layout import Actuator, DiscPlate, RectangularPlate
-from squeezefilm.quantities import FloatArray, Metre
 from squeezefilm.render.program.lowering import Program
 from squeezefilm.render.program.renderer import render
 from squeezefilm.results import stamp, to_json
@@ -41,7 +41,7 @@ class _Ready:
     display: Display
     texture: TextureFile
     prediction: Prediction
-    friction: Callable[[FloatArray], FloatArray]
+    friction: Callable[[si.FloatArray], si.FloatArray]
     program: Program
 
 
@@ -161,7 +161,7 @@ def parity(
     }
 
 
-def _size(actuator: Actuator) -> tuple[Metre, Metre]:
+def _size(actuator: Actuator) -> tuple[si.Metre, si.Metre]:
     """What there is to touch: along the wave, and across it."""
     if isinstance(actuator, RectangularPlate):
         return actuator.length, actuator.width

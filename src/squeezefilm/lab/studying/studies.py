@@ -11,10 +11,10 @@ from pathlib import Path
 from typing import Any
 
 from squeezefilm import presets
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.lab.files import existing, fresh
 from squeezefilm.perception.stimuli import Stimulus
-from squeezefilm.quantities import require_one_of
 from squeezefilm.results import to_json
 from squeezefilm.study.conduct.exposure import Exposure
 from squeezefilm.study.conduct.run import Response, StudyRun
@@ -323,7 +323,7 @@ class Studies:
 
     def export(self, name: str, format: str) -> dict[str, Any]:
         """Export a study beside its file."""
-        require_one_of("format", format, ("csv", "psych-ds", "bids"))
+        si.require_one_of("format", format, ("csv", "psych-ds", "bids"))
         path = export_study(self.store(name), format)  # type: ignore[arg-type] # checked above
         return {"folder": str(path.relative_to(self.folder.parent))}
 

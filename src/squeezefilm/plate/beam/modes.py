@@ -13,64 +13,49 @@ from typing import Annotated, Any, Literal
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError, OutOfRangeError
 from squeezefilm.hard_limits import NODAL_LINES, require_within
 from squeezefilm.plate.laminate import Laminate
-from squeezefilm.quantities import (
-    Above,
-    FloatArray,
-    Hertz,
-    HertzLike,
-    KilogramPerMetre,
-    KilogramPerSquareMetre,
-    Metre,
-    MetreArray,
-    MetreLike,
-    NewtonMetre,
-    Unit,
-    checked_numbers,
-    closed_form,
-    format_quantity,
-)
 
 BeamTheory = Literal["euler_bernoulli", "timoshenko"]
 
 
-@closed_form(positive="half_wavelength bending_stiffness mass_per_area")
+@si.closed_form(positive="half_wavelength bending_stiffness mass_per_area")
 def euler_bernoulli_frequency(
-    half_wavelength: MetreLike,
-    bending_stiffness: NewtonMetre,
-    mass_per_area: KilogramPerSquareMetre,
-) -> HertzLike:
+    half_wavelength: si.MetreLike,
+    bending_stiffness: si.NewtonMetre,
+    mass_per_area: si.KilogramPerSquareMetre,
+) -> si.HertzLike:
     """The frequency (Hz) of a flexural wave of given half wavelength; broadcasts.
 
     f = (1/2π) (π/(λ/2))² √(G/M): paper eq 15 corrected (it prints ω as f_n). Overestimates from
     λ/2 of some ten thicknesses downwards, where shear and rotation count.
     """
-    frequency: HertzLike = (np.pi / half_wavelength) ** 2 * np.sqrt(
+    frequency: si.HertzLike = (np.pi / half_wavelength) ** 2 * np.sqrt(
         bending_stiffness / mass_per_area
     )
     return frequency / (2 * np.pi)
 
 
-@closed_form(positive="frequency bending_stiffness mass_per_area")
+@si.closed_form(positive="frequency bending_stiffness mass_per_area")
 def euler_bernoulli_half_wavelength(
-    frequency: HertzLike,
-    bending_stiffness: NewtonMetre,
-    mass_per_area: KilogramPerSquareMetre,
-) -> MetreLike:
+    frequency: si.HertzLike,
+    bending_stiffness: si.NewtonMetre,
+    mass_per_area: si.KilogramPerSquareMetre,
+) -> si.MetreLike:
     """The half wavelength (m) of a flexural wave of given frequency; the inverse of
     `euler_bernoulli_frequency`, with its range."""
-    half_wavelength: MetreLike = np.sqrt(
+    half_wavelength: si.MetreLike = np.sqrt(
         np.pi / (2 * frequency) * np.sqrt(bending_stiffness / mass_per_area)
     )
     return half_wavelength
 
 
-@checked_numbers
+@si.checked_numbers
 def timoshenko_frequency(
-    half_wavelength: Annotated[MetreLike, Above(0.0)], section: Laminate
-) -> HertzLike:
+    half_wavelength: Annotated[si.MetreLike, si.Above(0.0)], section: Laminate
+) -> si.HertzLike:
     """The frequency (Hz) of a flexural wave of given half wavelength in a Timoshenko beam.
 
     The lower branch of  MJ ω⁴ − ω²[M S + k²(M G + S J)] + S G k⁴ = 0  with k = π/(λ/2). Broadcasts.
@@ -98,22 +83,22 @@ class BeamMode:
 
     theory: BeamTheory
     nodal_lines: int
-    frequency: Hertz
-    half_wavelength: Metre
-    length: Metre
-    position: MetreArray
-    deflection: FloatArray
-    rotation: FloatArray
-    nodal_positions: MetreArray
-    modal_mass_per_width: KilogramPerMetre
+    frequency: si.Hertz
+    half_wavelength: si.Metre
+    length: si.Metre
+    position: si.MetreArray
+    deflection: si.FloatArray
+    rotation: si.FloatArray
+    nodal_positions: si.MetreArray
+    modal_mass_per_width: si.KilogramPerMetre
 
-    @checked_numbers
-    def deflection_at(self, x: FloatArray | float) -> FloatArray:
+    @si.checked_numbers
+    def deflection_at(self, x: si.FloatArray | float) -> si.FloatArray:
         """The scaled deflection at positions x (m)."""
         return np.asarray(np.interp(x, self.position, self.deflection))
 
-    @checked_numbers
-    def rotation_at(self, x: FloatArray | float) -> FloatArray:
+    @si.checked_numbers
+    def rotation_at(self, x: si.FloatArray | float) -> si.FloatArray:
         """The section's rotation (rad per metre of scaled deflection) at positions x (m)."""
         return np.asarray(np.interp(x, self.position, self.rotation))
 
@@ -145,10 +130,10 @@ def _determinant(
     return (alpha**2 + m) * alpha * c * th + (m - beta**2) * s * beta
 
 
-@checked_numbers
+@si.checked_numbers
 def free_beam_mode(
     section: Laminate,
-    length: Annotated[Metre, Above(0.0)],
+    length: Annotated[si.Metre, si.Above(0.0)],
     nodal_lines: int,
     theory: BeamTheory = "timoshenko",
     points: int = 2001,
@@ -185,8 +170,8 @@ def free_beam_mode(
     brackets = np.flatnonzero(signs[:-1] != signs[1:])
     if brackets.size < wanted:
         raise OutOfRangeError(
-            f"a mode with {nodal_lines} nodal lines on {format_quantity(length, Unit('m'))} lies "
-            "above the cut-off frequency of the Timoshenko beam; ask for fewer nodal lines"
+            f"a mode with {nodal_lines} nodal lines on {si.format_quantity(length, si.Unit('m'))} "
+            "lies above the cut-off frequency of the Timoshenko beam; ask for fewer nodal lines"
         )
     at = brackets[wanted - 1]
     omega = float(

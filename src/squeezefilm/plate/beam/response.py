@@ -9,6 +9,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError, OutOfRangeError
 from squeezefilm.materials import VACUUM_PERMITTIVITY
 from squeezefilm.plate.beam.modes import BeamMode, BeamTheory, free_beam_mode
@@ -20,32 +21,15 @@ from squeezefilm.plate.laminate import (
     plate_laminate,
 )
 from squeezefilm.plate.layout import DiscPlate, RectangularPlate, turned
-from squeezefilm.quantities import (
-    ComplexArray,
-    Dimensionless,
-    Farad,
-    Hertz,
-    HertzArray,
-    Kilogram,
-    Metre,
-    MetreArray,
-    MetrePerVolt,
-    MetrePerVoltArray,
-    NewtonPerVolt,
-    Unit,
-    checked_numbers,
-    closed_form,
-    require,
-)
 
 
-@closed_form(positive="modal_mass frequency quality_factor")
+@si.closed_form(positive="modal_mass frequency quality_factor")
 def resonant_amplitude_per_volt(
-    modal_force: NewtonPerVolt,
-    modal_mass: Kilogram,
-    frequency: Hertz,
-    quality_factor: Dimensionless,
-) -> MetrePerVolt:
+    modal_force: si.NewtonPerVolt,
+    modal_mass: si.Kilogram,
+    frequency: si.Hertz,
+    quality_factor: si.Dimensionless,
+) -> si.MetrePerVolt:
     """The amplitude per volt of a lightly damped mode at resonance: Q F / (ω² m), in m/V.
 
     Exact for structural (hysteretic) damping 1/Q of a single mode.
@@ -78,7 +62,7 @@ class BeamResponse(SolvedAgain):
         return f"{self.theory}_beam_{self.cross_section}"
 
     @property
-    def amplitude_per_volt(self) -> MetrePerVolt:
+    def amplitude_per_volt(self) -> si.MetrePerVolt:
         """Zero-to-peak amplitude at the largest interior lobe, per volt, at resonance (m/V)."""
         at = self.modes.index(self.mode)
         return abs(
@@ -90,21 +74,21 @@ class BeamResponse(SolvedAgain):
             )
         )
 
-    @checked_numbers
-    def amplitude_at(self, frequency: HertzArray, position: Metre) -> MetrePerVoltArray:
+    @si.checked_numbers
+    def amplitude_at(self, frequency: si.HertzArray, position: si.Metre) -> si.MetrePerVoltArray:
         """|w| per volt (m/V) at one position over an array of frequencies, by superposition."""
         return np.abs(self.transfer(frequency, np.array([position]))[:, 0])
 
-    @checked_numbers
-    def transfer(self, frequency: HertzArray, position: MetreArray) -> ComplexArray:
+    @si.checked_numbers
+    def transfer(self, frequency: si.HertzArray, position: si.MetreArray) -> si.ComplexArray:
         """Complex w per volt (m/V), shape (frequencies, positions), superposed over `modes`.
 
         Structural damping 1/Q for every mode; the truncation keeps the bending modes below twice
         the working mode's frequency (or the cut-off), so static parts off resonance are
         underestimated.
         """
-        require("frequency", frequency, Unit("Hz"), at_least=0, axes=1)
-        require("position", position, Unit("m"), axes=1)
+        si.require("frequency", frequency, si.Unit("Hz"), at_least=0, axes=1)
+        si.require("position", position, si.Unit("m"), axes=1)
         omega2 = (2 * np.pi * frequency[:, None]) ** 2
         total = np.zeros((frequency.size, np.size(position)), dtype=complex)
         for mode, force in zip(self.modes, self.modal_force_per_width, strict=True):
@@ -174,7 +158,7 @@ def beam_response(
     )
 
 
-LEAST_COVERAGE: Dimensionless = 0.8
+LEAST_COVERAGE: si.Dimensionless = 0.8
 
 
 def beam_doubt(plate: RectangularPlate) -> str | None:
@@ -192,7 +176,7 @@ def beam_doubt(plate: RectangularPlate) -> str | None:
     )
 
 
-def patch_capacitance(plate: RectangularPlate) -> Farad:
+def patch_capacitance(plate: RectangularPlate) -> si.Farad:
     """The capacitance of all ceramics in parallel (F): ε A / h_p, fringes neglected."""
     permittivity = plate.ceramic.relative_permittivity * VACUUM_PERMITTIVITY
     return permittivity * sum(p.length * p.width / p.thickness for p in plate.patches)

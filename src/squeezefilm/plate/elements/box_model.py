@@ -13,10 +13,10 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import GeometryError, InputError
 from squeezefilm.hard_limits import SOLID_MEMORY, require_within
 from squeezefilm.plate.elements.lobatto import LineMesh
-from squeezefilm.quantities import Dimensionless, FloatArray, IntArray, KilogramPerCubicMetre
 
 EndCondition = Literal["free", "symmetric", "antisymmetric", "clamped"]
 
@@ -39,18 +39,18 @@ class Medium:
     structural loss factor 1/Q of c). Voigt order xx, yy, zz, yz, xz, xy."""
 
     name: str
-    stiffness: FloatArray
-    density: KilogramPerCubicMetre
-    loss: Dimensionless = 0.0
-    stress_matrix: FloatArray | None = None
-    permittivity: FloatArray | None = None
+    stiffness: si.FloatArray
+    density: si.KilogramPerCubicMetre
+    loss: si.Dimensionless = 0.0
+    stress_matrix: si.FloatArray | None = None
+    permittivity: si.FloatArray | None = None
 
     @property
     def piezoelectric(self) -> bool:
         """Whether the medium carries a potential."""
         return self.stress_matrix is not None
 
-    def gradient_matrix(self, mechanical: float = 1.0, electrical: float = 1.0) -> FloatArray:
+    def gradient_matrix(self, mechanical: float = 1.0, electrical: float = 1.0) -> si.FloatArray:
         """The symmetric 4·3 × 4·3 matrix between gradients of (u, v, w, φ) and their fluxes.
 
         Potentials count in `POTENTIAL_UNIT`. Index (component, direction), shape (4, 3, 4, 3). The
@@ -90,13 +90,13 @@ class Foundation:
     y_elements: tuple[int, int]
     z_plane: int
     stiffness: tuple[float, float, float]
-    loss: Dimensionless = 0.0
+    loss: si.Dimensionless = 0.0
 
 
 def kept_products(y: LineMesh, z: LineMesh, trunk: float) -> NDArray[np.bool_]:
     """Which products of functions along y and z a `trunk` keeps, shape (y, z functions)."""
 
-    def relative(mesh: LineMesh) -> FloatArray:
+    def relative(mesh: LineMesh) -> si.FloatArray:
         highest = max(mesh.orders)
         return (mesh.function_orders - 1) / max(highest - 1, 1)
 
@@ -132,8 +132,8 @@ class BoxModel:
     y: LineMesh
     z: LineMesh
     media: tuple[Medium, ...]
-    medium: IntArray
-    ceramic: IntArray
+    medium: si.IntArray
+    ceramic: si.IntArray
     electrodes: tuple[Electrode, ...] = ()
     ends: tuple[EndCondition, EndCondition, EndCondition, EndCondition] = ("free",) * 4
     foundations: tuple[Foundation, ...] = field(default=())

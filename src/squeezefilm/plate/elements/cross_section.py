@@ -13,9 +13,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.plate.elements.box_model import POTENTIAL_UNIT, BoxModel, Medium
 from squeezefilm.plate.elements.lobatto import LineMesh, hierarchic_line_matrices
-from squeezefilm.quantities import FloatArray, IntArray
 
 # (mechanical, electrical) factors of a medium's constants; None leaves the medium out.
 Weight = Callable[[Medium], tuple[float, float]]
@@ -38,15 +38,15 @@ class CrossSection:
     to that electrode's potential; `c0` (electrodes²) their capacitance term.
     """
 
-    codes: IntArray
-    P2: FloatArray
-    P1: FloatArray
-    P0: FloatArray
-    R: FloatArray
+    codes: si.IntArray
+    P2: si.FloatArray
+    P1: si.FloatArray
+    P0: si.FloatArray
+    R: si.FloatArray
     electrodes: tuple[int, ...]
-    g0: FloatArray
-    g1: FloatArray
-    c0: FloatArray
+    g0: si.FloatArray
+    g1: si.FloatArray
+    c0: si.FloatArray
 
 
 def potential_base(model: BoxModel) -> int:
@@ -54,7 +54,7 @@ def potential_base(model: BoxModel) -> int:
     return 4 * model.y.nodes.size * model.z.nodes.size
 
 
-def code_parts(model: BoxModel, codes: IntArray) -> tuple[IntArray, IntArray, IntArray]:
+def code_parts(model: BoxModel, codes: si.IntArray) -> tuple[si.IntArray, si.IntArray, si.IntArray]:
     """The component (0–3), y node and z node of each code."""
     base, planes = potential_base(model), model.z.nodes.size
     ceramics = max(len(model.electrodes), 1)
@@ -65,7 +65,7 @@ def code_parts(model: BoxModel, codes: IntArray) -> tuple[IntArray, IntArray, In
 
 def _z_arrays(
     mesh: LineMesh, column: tuple[int, ...], media: tuple[Medium, ...], weight: Weight
-) -> tuple[FloatArray, FloatArray]:
+) -> tuple[si.FloatArray, si.FloatArray]:
     """Z[c, d, a, i, b, j] = ∫ H[a, c, b, d] (∂)N_i (∂)N_j dz and the mass ∫ρ N_i N_j dz of a
     column of cells; the derivative is taken where the direction is z."""
     size = mesh.nodes.size
@@ -86,7 +86,7 @@ def _z_arrays(
     return Z, mass
 
 
-def _kron(Y: FloatArray, Z: FloatArray) -> FloatArray:
+def _kron(Y: si.FloatArray, Z: si.FloatArray) -> si.FloatArray:
     """Y[i, j] Z[a, k, b, l] as a matrix over (i, k, a) and (j, l, b)."""
     n, planes = Y.shape[0], Z.shape[1]
     out = Y[:, None, None, :, None, None] * Z.transpose(1, 0, 3, 2)[None, :, :, None, :, :]
@@ -105,9 +105,11 @@ def cross_section(
     ny, nz, base = y.nodes.size, z.nodes.size, potential_base(model)
     ceramics = max(len(model.electrodes), 1)
     size = base + ny * nz * ceramics
-    blocks: list[tuple[IntArray, FloatArray, FloatArray, FloatArray, FloatArray]] = []
-    cache: dict[tuple[int, ...], tuple[FloatArray, FloatArray]] = {}
-    kron_cache: dict[tuple[object, ...], tuple[FloatArray, ...]] = {}
+    blocks: list[
+        tuple[si.IntArray, si.FloatArray, si.FloatArray, si.FloatArray, si.FloatArray]
+    ] = []
+    cache: dict[tuple[int, ...], tuple[si.FloatArray, si.FloatArray]] = {}
+    kron_cache: dict[tuple[object, ...], tuple[si.FloatArray, ...]] = {}
     present = np.zeros(size, dtype=bool)
     electrode_of = np.full(size, -1)
     for j in range(y.elements):
@@ -145,8 +147,8 @@ def cross_section(
 
 
 def _element_codes(
-    model: BoxModel, element: int, j: int, present: FloatArray, electrode_of: IntArray
-) -> tuple[IntArray, IntArray]:
+    model: BoxModel, element: int, j: int, present: si.FloatArray, electrode_of: si.IntArray
+) -> tuple[si.IntArray, si.IntArray]:
     """Codes of the unknowns of one y element in (y node, z node, component) order and which of
     them exist; marks them in `present` and the driven electrodes in `electrode_of`."""
     y, z = model.y, model.z
@@ -197,9 +199,9 @@ def _held(condition: str, normal: int) -> list[int]:
 
 def _assemble(
     model: BoxModel,
-    blocks: list[tuple[IntArray, FloatArray, FloatArray, FloatArray, FloatArray]],
-    present: FloatArray,
-    electrode_of: IntArray,
+    blocks: list[tuple[si.IntArray, si.FloatArray, si.FloatArray, si.FloatArray, si.FloatArray]],
+    present: si.FloatArray,
+    electrode_of: si.IntArray,
 ) -> CrossSection:
     all_codes = np.flatnonzero(present)
     position = np.full(present.size, -1)

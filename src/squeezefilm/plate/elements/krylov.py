@@ -9,25 +9,25 @@ import numpy as np
 from scipy.linalg import eigh
 from scipy.optimize import linear_sum_assignment
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import ConvergenceError
 from squeezefilm.plate.elements.lobatto import LineMesh
 from squeezefilm.plate.elements.slab_factor import SlabFactor
 from squeezefilm.plate.elements.slabs import Slabs
-from squeezefilm.quantities import FloatArray, IntArray
 
-Solve = Callable[[FloatArray], FloatArray]
+Solve = Callable[[si.FloatArray], si.FloatArray]
 
 
 @dataclass(frozen=True, eq=False)
 class Pairs:
     """Eigenvalues ω² (ascending) and vectors with unit modal mass of the model; `steps` taken."""
 
-    values: FloatArray
-    vectors: FloatArray
+    values: si.FloatArray
+    vectors: si.FloatArray
     steps: int
 
 
-def with_open_electrodes(slabs: Slabs, solve: Solve, columns: FloatArray) -> Solve:
+def with_open_electrodes(slabs: Slabs, solve: Solve, columns: si.FloatArray) -> Solve:
     """The inverse where combinations of electrodes carry no charge instead of no voltage.
 
     `columns` (electrodes × combinations) says which electrodes are tied with which sign. Bordered
@@ -38,7 +38,7 @@ def with_open_electrodes(slabs: Slabs, solve: Solve, columns: FloatArray) -> Sol
     AG = solve(G)
     S = G.T @ AG - C
 
-    def bordered(right: FloatArray) -> FloatArray:
+    def bordered(right: si.FloatArray) -> si.FloatArray:
         x = solve(right)
         return x - AG @ np.linalg.solve(S, G.T @ x)
 
@@ -49,8 +49,8 @@ def modes_near(
     slabs: Slabs,
     solve: Solve,
     shift: float,
-    wanted: Callable[[FloatArray], IntArray] | None,
-    start: FloatArray,
+    wanted: Callable[[si.FloatArray], si.IntArray] | None,
+    start: si.FloatArray,
     *,
     tolerance: float,
     most_steps: int = 40,
@@ -62,11 +62,11 @@ def modes_near(
     left is of the order of that change times the ratio of convergence. Raises `ConvergenceError`
     where that does not happen.
     """
-    Q: FloatArray = np.zeros((slabs.unknowns, 0))
+    Q: si.FloatArray = np.zeros((slabs.unknowns, 0))
     MQ = Q
     H = np.zeros((0, 0))
     X = solve(slabs.mass_times(start))
-    before: FloatArray | None = None
+    before: si.FloatArray | None = None
     for step in range(1, most_steps + 1):
         X, MX = _orthonormal(slabs, X, Q, MQ)
         if not X.shape[1]:
@@ -103,8 +103,8 @@ def modes_near(
 
 
 def _orthonormal(
-    slabs: Slabs, X: FloatArray, Q: FloatArray, MQ: FloatArray
-) -> tuple[FloatArray, FloatArray]:
+    slabs: Slabs, X: si.FloatArray, Q: si.FloatArray, MQ: si.FloatArray
+) -> tuple[si.FloatArray, si.FloatArray]:
     """A block orthonormal in mass to itself and to the basis Q, and M times it; directions that
     the basis has are left out."""
     for _ in range(2):
@@ -123,7 +123,7 @@ def _orthonormal(
     return X @ lower, MX @ lower
 
 
-def _grown(H: FloatArray, new: FloatArray) -> FloatArray:
+def _grown(H: si.FloatArray, new: si.FloatArray) -> si.FloatArray:
     """The symmetric projection with the columns of a new block, and the rows that mirror them."""
     old = H.shape[0]
     grown = np.empty((new.shape[0], new.shape[0]))
@@ -133,7 +133,7 @@ def _grown(H: FloatArray, new: FloatArray) -> FloatArray:
     return np.asarray((grown + grown.T) / 2)
 
 
-def prolonged(source: Slabs, target: Slabs, vectors: FloatArray) -> FloatArray:
+def prolonged(source: Slabs, target: Slabs, vectors: si.FloatArray) -> si.FloatArray:
     """Displacements of a solution as vectors of another discretisation of the same solid, finer or
     coarser, by interpolation; potentials are left at zero."""
     out = np.zeros((target.unknowns, vectors.shape[1]))
@@ -151,7 +151,7 @@ def prolonged(source: Slabs, target: Slabs, vectors: FloatArray) -> FloatArray:
     return out
 
 
-def _transfer(source: LineMesh, target: LineMesh) -> FloatArray:
+def _transfer(source: LineMesh, target: LineMesh) -> si.FloatArray:
     """Hierarchic coefficients on one line mesh from those on another."""
     values = source.hierarchic_interpolation(target.nodes)
     return np.asarray(np.linalg.solve(target.hierarchic_interpolation(target.nodes), values))

@@ -12,27 +12,29 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.polynomial import legendre
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import FloatArray, IntArray, Metre
 
 MAX_ORDER = 16
 
 
 @functools.lru_cache(maxsize=64)
-def lobatto_nodes(order: int) -> FloatArray:
+def lobatto_nodes(order: int) -> si.FloatArray:
     """The order + 1 Gauss–Lobatto–Legendre nodes on [−1, 1]: the ends and the roots of P′."""
     if not 1 <= order <= MAX_ORDER:
         raise InputError(f"order = {order}: elements of order 1 to {MAX_ORDER} are provided")
     roots = legendre.legroots(legendre.legder(np.eye(order + 1)[order])) if order > 1 else 0.0
     inside = np.sort(np.real(np.atleast_1d(roots)))[: order - 1]
-    nodes: FloatArray = np.concatenate([[-1.0], inside, [1.0]])
+    nodes: si.FloatArray = np.concatenate([[-1.0], inside, [1.0]])
     # Exact mirror symmetry lets mirrored cells of a plate share one factorisation.
     nodes = 0.5 * (nodes - nodes[::-1])
     nodes.setflags(write=False)
     return nodes
 
 
-def lagrange_basis(nodes: FloatArray, points: FloatArray) -> tuple[FloatArray, FloatArray]:
+def lagrange_basis(
+    nodes: si.FloatArray, points: si.FloatArray
+) -> tuple[si.FloatArray, si.FloatArray]:
     """Values and derivatives of the Lagrange polynomials of `nodes` at `points`.
 
     Both have the shape (points, nodes).
@@ -49,7 +51,7 @@ def lagrange_basis(nodes: FloatArray, points: FloatArray) -> tuple[FloatArray, F
 
 
 @functools.lru_cache(maxsize=64)
-def _reference_matrices(order: int) -> tuple[FloatArray, FloatArray, FloatArray]:
+def _reference_matrices(order: int) -> tuple[si.FloatArray, si.FloatArray, si.FloatArray]:
     nodes = lobatto_nodes(order)
     points, weights = legendre.leggauss(order + 1)
     values, slopes = lagrange_basis(nodes, points)
@@ -61,14 +63,16 @@ def _reference_matrices(order: int) -> tuple[FloatArray, FloatArray, FloatArray]
     return mass, slope, stiffness
 
 
-def line_matrices(length: Metre, order: int) -> tuple[FloatArray, FloatArray, FloatArray]:
+def line_matrices(
+    length: si.Metre, order: int
+) -> tuple[si.FloatArray, si.FloatArray, si.FloatArray]:
     """∫N Nᵀ, ∫N′ Nᵀ and ∫N′ N′ᵀ of one element, integrated exactly; shape (order + 1)² each."""
     mass, slope, stiffness = _reference_matrices(order)
     return mass * (length / 2), slope, stiffness * (2 / length)
 
 
 @functools.lru_cache(maxsize=64)
-def hierarchic_values(order: int, points: tuple[float, ...] | None = None) -> FloatArray:
+def hierarchic_values(order: int, points: tuple[float, ...] | None = None) -> si.FloatArray:
     """The hierarchic basis (two end functions, then integrated Legendre polynomials of order 2 to
     `order`, in the places of a Lagrange basis) at the Lobatto nodes or at given points of [−1, 1].
 
@@ -86,15 +90,15 @@ def hierarchic_values(order: int, points: tuple[float, ...] | None = None) -> Fl
 
 
 @functools.lru_cache(maxsize=64)
-def _hierarchic_reference(order: int) -> tuple[FloatArray, FloatArray, FloatArray]:
+def _hierarchic_reference(order: int) -> tuple[si.FloatArray, si.FloatArray, si.FloatArray]:
     E = hierarchic_values(order)
     mass, slope, stiffness = (E.T @ part @ E for part in _reference_matrices(order))
     return mass, slope, stiffness
 
 
 def hierarchic_line_matrices(
-    length: Metre, order: int
-) -> tuple[FloatArray, FloatArray, FloatArray]:
+    length: si.Metre, order: int
+) -> tuple[si.FloatArray, si.FloatArray, si.FloatArray]:
     """`line_matrices` in the hierarchic basis."""
     mass, slope, stiffness = _hierarchic_reference(order)
     return mass * (length / 2), slope, stiffness * (2 / length)
@@ -124,7 +128,7 @@ class LineMesh:
         return tuple(int(k) for k in np.concatenate([[0], np.cumsum(self.orders)]))
 
     @functools.cached_property
-    def nodes(self) -> FloatArray:
+    def nodes(self) -> si.FloatArray:
         """All nodes in ascending order (m)."""
         parts = [np.array([self.edges[0]])]
         for a, b, order in zip(self.edges[:-1], self.edges[1:], self.orders, strict=True):
@@ -132,22 +136,22 @@ class LineMesh:
         return np.concatenate(parts)
 
     @functools.cached_property
-    def function_orders(self) -> IntArray:
+    def function_orders(self) -> si.IntArray:
         """The polynomial order of each hierarchic function: 1 at element ends, 2 … inside."""
         out = np.ones(self.first_node[-1] + 1, dtype=np.int64)
         for k, order in enumerate(self.orders):
             out[self.first_node[k] + 1 : self.first_node[k + 1]] = np.arange(2, order + 1)
         return out
 
-    def hierarchic_interpolation(self, points: FloatArray) -> FloatArray:
+    def hierarchic_interpolation(self, points: si.FloatArray) -> si.FloatArray:
         """The matrix that takes hierarchic coefficients to values at `points`."""
         return self._evaluation(points, hierarchic=True)
 
-    def interpolation(self, points: FloatArray) -> FloatArray:
+    def interpolation(self, points: si.FloatArray) -> si.FloatArray:
         """The matrix that takes nodal values to values at `points`; shape (points, nodes)."""
         return self._evaluation(points, hierarchic=False)
 
-    def _evaluation(self, points: FloatArray, hierarchic: bool) -> FloatArray:
+    def _evaluation(self, points: si.FloatArray, hierarchic: bool) -> si.FloatArray:
         points = np.atleast_1d(np.asarray(points, dtype=float))
         edges = np.array(self.edges)
         owner = np.clip(np.searchsorted(edges, points, side="right") - 1, 0, self.elements - 1)

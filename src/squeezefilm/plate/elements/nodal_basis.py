@@ -12,8 +12,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.polynomial import legendre
 
+from squeezefilm import quantities as si
 from squeezefilm.plate.elements.lobatto import lagrange_basis, lobatto_nodes
-from squeezefilm.quantities import FloatArray
 
 CORNER_GRADING = 0.15
 """The ratio in which elements shrink towards a singular corner; near the optimum of hp methods
@@ -21,7 +21,7 @@ CORNER_GRADING = 0.15
 
 
 @functools.lru_cache(maxsize=64)
-def lagrange(degree: int, at: tuple[float, ...]) -> tuple[FloatArray, FloatArray]:
+def lagrange(degree: int, at: tuple[float, ...]) -> tuple[si.FloatArray, si.FloatArray]:
     """Values and derivatives of the Lagrange polynomials on the Lobatto points at points `at`.
 
     Two arrays of shape (len(at), degree + 1); derivatives are with respect to −1…1.
@@ -30,13 +30,13 @@ def lagrange(degree: int, at: tuple[float, ...]) -> tuple[FloatArray, FloatArray
 
 
 @functools.lru_cache(maxsize=64)
-def gauss_points(count: int) -> tuple[FloatArray, FloatArray]:
+def gauss_points(count: int) -> tuple[si.FloatArray, si.FloatArray]:
     """Gauss–Legendre points and weights on −1…1, exact to degree 2 count − 1."""
     points, weights = legendre.leggauss(count)
     return points, weights
 
 
-def node_coordinates(edges: FloatArray, degree: int) -> FloatArray:
+def node_coordinates(edges: si.FloatArray, degree: int) -> si.FloatArray:
     """The nodes of a row of elements, shape ((len(edges) − 1) × degree + 1,), shared at edges."""
     reference = (lobatto_nodes(degree) + 1) / 2
     inner = edges[:-1, None] + np.diff(edges)[:, None] * reference[None, :-1]
@@ -50,7 +50,7 @@ def graded_edges(
     *,
     levels: int = 1,
     shortest: float = 0.0,
-) -> FloatArray:
+) -> si.FloatArray:
     """Element edges that contain all `breaks`, no element longer than `longest`.
 
     Next to each value in `singular` the elements shrink `levels` times by `CORNER_GRADING`, as

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.plate.elements.box_model import BoxModel, EndCondition
 from squeezefilm.plate.elements.cross_section import (
     CrossSection,
@@ -20,7 +21,6 @@ from squeezefilm.plate.elements.cross_section import (
     cross_section,
 )
 from squeezefilm.plate.elements.lobatto import line_matrices
-from squeezefilm.quantities import FloatArray, IntArray
 
 
 def _held(condition: EndCondition) -> tuple[int, ...]:
@@ -56,11 +56,11 @@ class Slabs:
     def _number(self) -> None:
         x = self.model.x
         count = x.nodes.size
-        parts: list[list[IntArray]] = [[] for _ in range(count)]
+        parts: list[list[si.IntArray]] = [[] for _ in range(count)]
         for e, section in enumerate(self.sections):
             for a in range(x.orders[e] + 1):
                 parts[x.first_node[e] + a].append(section.codes)
-        self.codes: list[IntArray] = []
+        self.codes: list[si.IntArray] = []
         for some in parts:
             self.codes.append(functools.reduce(np.union1d, some) if len(some) > 1 else some[0])
         self.sizes = [codes.size for codes in self.codes]
@@ -74,25 +74,25 @@ class Slabs:
             at = slice(self.offsets[n], self.offsets[n + 1])
             self.held[at] |= np.isin(component, _held(condition))
 
-    def places(self, element: int, local: int) -> IntArray:
+    def places(self, element: int, local: int) -> si.IntArray:
         """Where the unknowns of an element's section stand in the slice of its node `local`."""
         codes = self.codes[self.model.x.first_node[element] + local]
         mine = self.sections[element].codes
         return np.arange(mine.size) if codes.size == mine.size else np.searchsorted(codes, mine)
 
     @functools.cached_property
-    def components(self) -> IntArray:
+    def components(self) -> si.IntArray:
         """The component (0–2 displacement, 3 potential) of every unknown."""
         return np.concatenate([part for part, _, _ in self.parts])
 
     @functools.cached_property
-    def parts(self) -> list[tuple[IntArray, IntArray, IntArray]]:
+    def parts(self) -> list[tuple[si.IntArray, si.IntArray, si.IntArray]]:
         """Component, y function and z function of every slice's unknowns."""
-        known: dict[int, tuple[IntArray, IntArray, IntArray]] = {}
+        known: dict[int, tuple[si.IntArray, si.IntArray, si.IntArray]] = {}
         return [known.setdefault(id(codes), code_parts(self.model, codes)) for codes in self.codes]
 
     @functools.cached_property
-    def _element_places(self) -> list[list[IntArray]]:
+    def _element_places(self) -> list[list[si.IntArray]]:
         x = self.model.x
         return [
             [self.offsets[x.first_node[e] + a] + self.places(e, a) for a in range(x.orders[e] + 1)]
@@ -100,7 +100,7 @@ class Slabs:
         ]
 
     @functools.cached_property
-    def electrode_columns(self) -> tuple[FloatArray, FloatArray]:
+    def electrode_columns(self) -> tuple[si.FloatArray, si.FloatArray]:
         """G (unknowns × electrodes) and C (electrodes²): the force of one volt on the unknowns is
         −G, and the charge on the electrodes is −(Gᵀ x + C V)."""
         number = len(self.model.electrodes)
@@ -118,17 +118,17 @@ class Slabs:
         G[self.held] = 0
         return G, C
 
-    def _lines(self, element: int) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def _lines(self, element: int) -> tuple[si.FloatArray, si.FloatArray, si.FloatArray]:
         x = self.model.x
         return line_matrices(x.edges[element + 1] - x.edges[element], x.orders[element])
 
-    def mass_times(self, U: FloatArray) -> FloatArray:
+    def mass_times(self, U: si.FloatArray) -> si.FloatArray:
         """M U for U of shape (unknowns, vectors); potentials have no mass."""
         return self._apply(U, self.sections, mass=True)
 
     def stiffness_times(
-        self, U: FloatArray, sections: list[CrossSection] | None = None
-    ) -> FloatArray:
+        self, U: si.FloatArray, sections: list[CrossSection] | None = None
+    ) -> si.FloatArray:
         """K U, or with other slice matrices (see `weighted_sections`)."""
         return self._apply(U, sections or self.sections, mass=False)
 
@@ -142,7 +142,7 @@ class Slabs:
             out.append(made[id(section)])
         return out
 
-    def _apply(self, U: FloatArray, sections: list[CrossSection], mass: bool) -> FloatArray:
+    def _apply(self, U: si.FloatArray, sections: list[CrossSection], mass: bool) -> si.FloatArray:
         U = np.where(self.held[:, None], 0, U)
         out = np.zeros_like(U)
         for e, section in enumerate(sections):
@@ -152,7 +152,7 @@ class Slabs:
             local = np.stack([U[at] for at in places], axis=1)
             flat = local.reshape(n, nodes * vectors)
 
-            def along(line: FloatArray, values: FloatArray) -> FloatArray:
+            def along(line: si.FloatArray, values: si.FloatArray) -> si.FloatArray:
                 return np.asarray(np.matmul(line, values))
 
             shape = local.shape
@@ -168,7 +168,7 @@ class Slabs:
         out[self.held] = 0
         return out
 
-    def grid(self, vector: FloatArray) -> FloatArray:
+    def grid(self, vector: si.FloatArray) -> si.FloatArray:
         """A vector's displacements: values at the x nodes, hierarchic coefficients along y and z;
         shape (x nodes, y functions, z functions, 3), zero where empty."""
         model = self.model
@@ -187,7 +187,7 @@ class _Relabel:
 
     seen: dict[int, int]
 
-    def __call__(self, numbers: IntArray) -> IntArray:
+    def __call__(self, numbers: si.IntArray) -> si.IntArray:
         out = np.full(numbers.shape, -1)
         for index in np.ndindex(numbers.shape):
             number = int(numbers[index])
@@ -196,7 +196,7 @@ class _Relabel:
         return out
 
 
-def relabelled(ceramic: IntArray) -> IntArray:
+def relabelled(ceramic: si.IntArray) -> si.IntArray:
     """Ceramic numbers replaced by their order of first appearance."""
     return _Relabel({})(ceramic)
 

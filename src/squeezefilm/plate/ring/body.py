@@ -10,6 +10,7 @@ from typing import Literal
 import numpy as np
 from scipy.interpolate import CubicSpline
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.plate.layout import AnnularStator, DiscPlate
 from squeezefilm.plate.ring.modes import AnnularMode, bending_mode
@@ -22,16 +23,6 @@ from squeezefilm.plate.ring.section import (
 )
 from squeezefilm.plate.ring.stator import StatorAssumptions, StatorFit, fit_stator
 from squeezefilm.plate.solid.modes import zero_crossings
-from squeezefilm.quantities import (
-    Dimensionless,
-    DimensionlessArray,
-    Hertz,
-    Kilogram,
-    Metre,
-    MetreArray,
-    MetrePerVolt,
-    checked_numbers,
-)
 
 Direction = Literal["circumference", "diameter"]
 
@@ -47,10 +38,10 @@ class RingBody:
     section: AnnularSection
     drive: SectorDrive
     label: tuple[int, int]
-    quality_factor: Dimensionless | None
+    quality_factor: si.Dimensionless | None
     fit: StatorFit | None = None
 
-    @checked_numbers
+    @si.checked_numbers
     def mode(self, label: tuple[int, int] | None = None) -> AnnularMode:
         """The mode B(circles, diameters), by default the working mode. Raises `InputError`."""
         circles, diameters = label or self.label
@@ -107,20 +98,20 @@ def _disc(disc: DiscPlate) -> RingBody:
     return RingBody(bonded_disc(disc), drive, (disc.nodal_circles, m), quality)
 
 
-@checked_numbers
-def surface_profile(mode: AnnularMode, radius: MetreArray) -> DimensionlessArray:
+@si.checked_numbers
+def surface_profile(mode: AnnularMode, radius: si.MetreArray) -> si.DimensionlessArray:
     """The mode's u_z on the surface at radii (m), between its nodes by a cubic spline."""
-    values: DimensionlessArray = CubicSpline(mode.surface_radius, mode.surface_shape)(radius)
+    values: si.DimensionlessArray = CubicSpline(mode.surface_radius, mode.surface_shape)(radius)
     return values
 
 
-def nodal_circles(mode: AnnularMode) -> MetreArray:
+def nodal_circles(mode: AnnularMode) -> si.MetreArray:
     """The radii (m) at which the surface stands still, rising."""
     r = np.linspace(mode.surface_radius[0], mode.surface_radius[-1], 801)
     return zero_crossings(r, surface_profile(mode, r))
 
 
-def half_wavelength_of(mode: AnnularMode) -> tuple[Metre | None, Direction]:
+def half_wavelength_of(mode: AnnularMode) -> tuple[si.Metre | None, Direction]:
     """The half wavelength (m) that a finger meets, and along what it is measured.
 
     With nodal diameters along the circumference on which wavelengths are measured. Without, along a
@@ -144,13 +135,13 @@ class RingWorkingMode:
     """
 
     label: str
-    frequency: Hertz
-    frequency_error: Hertz
-    half_wavelength: Metre
+    frequency: si.Hertz
+    frequency_error: si.Hertz
+    half_wavelength: si.Metre
     half_wavelength_along: Direction
-    quality_factor: Dimensionless
-    amplitude_per_volt: MetrePerVolt
-    modal_mass: Kilogram
+    quality_factor: si.Dimensionless
+    amplitude_per_volt: si.MetrePerVolt
+    modal_mass: si.Kilogram
     model: str
 
 

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import sparse
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import GeometryError, OutOfRangeError
 from squeezefilm.hard_limits import RING_ELEMENTS, require_within
 from squeezefilm.plate.elements.nodal_basis import (
@@ -22,13 +23,12 @@ from squeezefilm.plate.elements.nodal_basis import (
     node_coordinates,
 )
 from squeezefilm.plate.ring.section import AnnularSection, RingLayer
-from squeezefilm.quantities import FloatArray, Unit, format_quantity
 
 _SAME = 5e-10
 # Radius over thickness: a plain disc of 500 still has its lowest frequency to 1e-3.
 _THINNEST_BODY, _THINNEST_LAYER = 500.0, 20000.0
 _RADIAL, _HOOP, _AXIAL, _POTENTIAL = range(4)
-_Triple = tuple[np.ndarray, np.ndarray, FloatArray]
+_Triple = tuple[np.ndarray, np.ndarray, si.FloatArray]
 """Rows, columns and values of entries of a matrix."""
 
 
@@ -47,12 +47,12 @@ class HarmonicSystem:
     degree: int
     matrix: sparse.csc_matrix
     mass: sparse.csc_matrix
-    force: FloatArray
+    force: si.FloatArray
     clamped_capacitance_per_radian: float
-    r: FloatArray
-    z: FloatArray
+    r: si.FloatArray
+    z: si.FloatArray
     unknown: np.ndarray
-    sign: FloatArray
+    sign: si.FloatArray
     layer_stiffness: tuple[sparse.csc_matrix, ...]
 
     @property
@@ -60,7 +60,7 @@ class HarmonicSystem:
         """n, the number of mechanical unknowns."""
         return self.force.size
 
-    def field(self, vector: FloatArray) -> FloatArray:
+    def field(self, vector: si.FloatArray) -> si.FloatArray:
         """U, V, W at the nodes, shape (nodes, 3), of a vector of mechanical unknowns."""
         padded = np.append(vector[: self.displacements], 0.0)
         rows = self.unknown[:, :3]
@@ -71,8 +71,8 @@ class HarmonicSystem:
 class RingMesh:
     """Element edges of a section and the layer that fills each cell (−1 for none)."""
 
-    r_edges: FloatArray
-    z_edges: FloatArray
+    r_edges: si.FloatArray
+    z_edges: si.FloatArray
     layer: np.ndarray
 
 
@@ -90,9 +90,9 @@ def ring_mesh(section: AnnularSection, *, graded: bool = True) -> RingMesh:
     ):
         if radius > most * height:
             raise OutOfRangeError(
-                f"a {name} of {format_quantity(height, Unit('m'))} on a radius of "
-                f"{format_quantity(radius, Unit('m'))} has an aspect ratio above {most:.0f}, where "
-                "three-dimensional elements lose their digits; use a plate theory"
+                f"a {name} of {si.format_quantity(height, si.Unit('m'))} on a radius of "
+                f"{si.format_quantity(radius, si.Unit('m'))} has an aspect ratio above {most:.0f}, "
+                "where three-dimensional elements lose their digits; use a plate theory"
             )
     r_breaks = _unique([x for a in layers for x in (a.inner_radius, a.outer_radius)])
     z_breaks = _unique([x for a in layers for x in (a.bottom, a.top)])
@@ -178,8 +178,8 @@ def harmonic_system(
 
 
 def _element(
-    m: int, degree: int, r: FloatArray, z: FloatArray
-) -> tuple[FloatArray, FloatArray, FloatArray]:
+    m: int, degree: int, r: si.FloatArray, z: si.FloatArray
+) -> tuple[si.FloatArray, si.FloatArray, si.FloatArray]:
     """Of the cell between two radii and two heights (m), at its Gauss points: N (points, nodes), B
     as `_strains` has it, and the area with the radius in it, r dr dz (points,)."""
     points, weights = gauss_points(degree + 3)
@@ -196,7 +196,9 @@ def _element(
     return shape.reshape(flat), B, area
 
 
-def _strains(m: int, along_r: FloatArray, along_z: FloatArray, over_r: FloatArray) -> FloatArray:
+def _strains(
+    m: int, along_r: si.FloatArray, along_z: si.FloatArray, over_r: si.FloatArray
+) -> si.FloatArray:
     """B (points, 9, 4 × nodes): six strains, then the field E = −grad φ."""
     points, nodes = along_r.shape
     B = np.zeros((points, 9, 4, nodes))
@@ -216,7 +218,7 @@ def _strains(m: int, along_r: FloatArray, along_z: FloatArray, over_r: FloatArra
     return B.reshape(points, 9, 4 * nodes)
 
 
-def _constitutive(layer: RingLayer) -> FloatArray:
+def _constitutive(layer: RingLayer) -> si.FloatArray:
     """[[c, −eᵀ], [−e, −ε]] (9, 9): the electric enthalpy is half of its quadratic form."""
     law = np.zeros((9, 9))
     law[:6, :6] = layer.solid.stiffness
@@ -232,9 +234,9 @@ def _unknowns(
     mesh: RingMesh,
     m: int,
     degree: int,
-    r: FloatArray,
-    z: FloatArray,
-) -> tuple[np.ndarray, FloatArray, int, int, np.ndarray]:
+    r: si.FloatArray,
+    z: si.FloatArray,
+) -> tuple[np.ndarray, si.FloatArray, int, int, np.ndarray]:
     """Number the fields at each node; hold those that the axis or an electrode holds."""
     used = np.zeros((r.size, z.size), dtype=bool)
     electric = np.zeros_like(used)
@@ -278,7 +280,7 @@ def _unique(values: list[float]) -> list[float]:
     return [x for k, x in enumerate(ordered) if k == 0 or x - ordered[k - 1] > _SAME]
 
 
-def _entries(rows: np.ndarray, block: FloatArray) -> _Triple:
+def _entries(rows: np.ndarray, block: si.FloatArray) -> _Triple:
     keep = rows >= 0
     rows, block = rows[keep], block[np.ix_(keep, keep)]
     return np.repeat(rows, rows.size), np.tile(rows, rows.size), block.ravel()

@@ -10,23 +10,12 @@ from typing import Annotated
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.materials import ElasticMaterial, Piezoceramic, isotropic_stiffness
-from squeezefilm.quantities import (
-    Above,
-    AtLeast,
-    AtMost,
-    Below,
-    Dimensionless,
-    FloatArray,
-    KilogramPerCubicMetre,
-    Unit,
-    checked_numbers,
-    require,
-)
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, eq=False)
 class RingSolid:
     """A linear solid that looks the same from every angle θ.
@@ -40,15 +29,15 @@ class RingSolid:
     """
 
     name: str
-    stiffness: FloatArray
-    density: Annotated[KilogramPerCubicMetre, Above(0)]
-    piezoelectric: FloatArray | None = None
-    permittivity: Annotated[FloatArray, Above(0)] | None = None
-    loss_factor: Annotated[Dimensionless, AtLeast(0), Below(2)] | None = None
+    stiffness: si.FloatArray
+    density: Annotated[si.KilogramPerCubicMetre, si.Above(0)]
+    piezoelectric: si.FloatArray | None = None
+    permittivity: Annotated[si.FloatArray, si.Above(0)] | None = None
+    loss_factor: Annotated[si.Dimensionless, si.AtLeast(0), si.Below(2)] | None = None
 
     def __post_init__(self) -> None:
         c = self.stiffness
-        require("stiffness", c, Unit("Pa"))
+        si.require("stiffness", c, si.Unit("Pa"))
         if c.shape != (6, 6) or not np.allclose(c, c.T, rtol=1e-9, atol=1e-9 * np.abs(c).max()):
             raise InputError(f"the stiffness of {self.name} must be a symmetric 6 × 6 array")
         if np.linalg.eigvalsh(c)[0] < -1e-9 * np.abs(c).max():
@@ -62,7 +51,7 @@ class RingSolid:
         if self.piezoelectric is None:
             return
         e = self.piezoelectric
-        require("piezoelectric", e, Unit("C/m2"))
+        si.require("piezoelectric", e, si.Unit("C/m2"))
         if self.permittivity is None:
             raise InputError(f"{self.name} is piezoelectric; give its clamped permittivity too")
         if np.any(e[np.ix_([0, 2], odd)]) or np.any(e[np.ix_([1], even)]):
@@ -72,9 +61,9 @@ class RingSolid:
             )
 
 
-@checked_numbers
+@si.checked_numbers
 def isotropic_solid(
-    material: ElasticMaterial, loss_factor: Dimensionless | None = None
+    material: ElasticMaterial, loss_factor: si.Dimensionless | None = None
 ) -> RingSolid:
     """A metal or a glass as a `RingSolid`.
 
@@ -89,9 +78,9 @@ def isotropic_solid(
     )
 
 
-@checked_numbers
+@si.checked_numbers
 def piezoceramic_solid(
-    ceramic: Piezoceramic, loss_factor: Dimensionless | None = None
+    ceramic: Piezoceramic, loss_factor: si.Dimensionless | None = None
 ) -> RingSolid:
     """A ceramic poled along z in three dimensions: its `full_constants`, as boxes use them.
 
@@ -110,9 +99,9 @@ def piezoceramic_solid(
     )
 
 
-@checked_numbers
+@si.checked_numbers
 def stiff_teeth(
-    solid: RingSolid, fill: Annotated[Dimensionless, Above(0.0), AtMost(1.0)]
+    solid: RingSolid, fill: Annotated[si.Dimensionless, si.Above(0.0), si.AtMost(1.0)]
 ) -> RingSolid:
     """A layer of radial teeth, smeared, at its upper bound: everything times `fill`.
 
@@ -128,9 +117,9 @@ def stiff_teeth(
     )
 
 
-@checked_numbers
+@si.checked_numbers
 def soft_teeth(
-    solid: RingSolid, fill: Annotated[Dimensionless, Above(0.0), AtMost(1.0)]
+    solid: RingSolid, fill: Annotated[si.Dimensionless, si.Above(0.0), si.AtMost(1.0)]
 ) -> RingSolid:
     """A layer of radial teeth, smeared, at its lower bound: no hoop stiffness at all.
 

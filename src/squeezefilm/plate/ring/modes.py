@@ -16,28 +16,10 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.linalg import LinearOperator, eigsh, splu
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import ConvergenceError, InputError
 from squeezefilm.plate.ring.elements import HarmonicSystem, harmonic_system, ring_mesh
 from squeezefilm.plate.ring.section import AnnularSection, SectorDrive
-from squeezefilm.quantities import (
-    Above,
-    AtLeast,
-    AtMost,
-    ComplexArray,
-    Dimensionless,
-    DimensionlessArray,
-    Farad,
-    FloatArray,
-    Hertz,
-    HertzArray,
-    Kilogram,
-    Metre,
-    MetreArray,
-    MetrePerVolt,
-    NewtonPerVolt,
-    checked_numbers,
-    require,
-)
 
 DEFAULT_DEGREE = 5
 
@@ -57,19 +39,19 @@ class AnnularMode:
 
     harmonic: int
     label: str
-    frequency: Hertz
-    frequency_error: Hertz
-    quality_factor: Dimensionless
-    modal_mass: Kilogram
-    modal_force_all_round: NewtonPerVolt
-    half_wavelength: Metre | None
-    axial_share: Dimensionless
-    layer_energy: DimensionlessArray
-    node_radius: MetreArray
-    node_height: MetreArray
-    displacement: DimensionlessArray
-    surface_radius: MetreArray
-    surface_shape: DimensionlessArray
+    frequency: si.Hertz
+    frequency_error: si.Hertz
+    quality_factor: si.Dimensionless
+    modal_mass: si.Kilogram
+    modal_force_all_round: si.NewtonPerVolt
+    half_wavelength: si.Metre | None
+    axial_share: si.Dimensionless
+    layer_energy: si.DimensionlessArray
+    node_radius: si.MetreArray
+    node_height: si.MetreArray
+    displacement: si.DimensionlessArray
+    surface_radius: si.MetreArray
+    surface_shape: si.DimensionlessArray
     model: str = "annular_3d"
 
     @property
@@ -77,11 +59,11 @@ class AnnularMode:
         """Whether the body moves without deforming."""
         return self.label == "rigid"
 
-    def modal_force(self, drive: SectorDrive) -> NewtonPerVolt:
+    def modal_force(self, drive: SectorDrive) -> si.NewtonPerVolt:
         """The force of one volt on the mode turned to where `drive` moves it most (N/V)."""
         return abs(self.modal_force_all_round * drive.coefficient(self.harmonic))
 
-    def amplitude_per_volt(self, drive: SectorDrive) -> MetrePerVolt:
+    def amplitude_per_volt(self, drive: SectorDrive) -> si.MetrePerVolt:
         """Zero-to-peak u_z at the surface's highest antinode, per volt at resonance (m/V).
 
         Q F / (ω² M): exact for structural damping 1/Q of one mode. Raises `InputError` for a
@@ -92,25 +74,25 @@ class AnnularMode:
         stiffness = (2 * math.pi * self.frequency) ** 2 * self.modal_mass
         return self.quality_factor * self.modal_force(drive) / stiffness
 
-    @checked_numbers
+    @si.checked_numbers
     def coupling_coefficient(
-        self, drive: SectorDrive, capacitance: Annotated[Farad, Above(0.0)]
-    ) -> Dimensionless:
+        self, drive: SectorDrive, capacitance: Annotated[si.Farad, si.Above(0.0)]
+    ) -> si.Dimensionless:
         """Effective coupling k of the mode on `drive`: k² = F²/(F² + ω² M C), with C clamped."""
         stiffness = (2 * math.pi * self.frequency) ** 2 * self.modal_mass
         force = self.modal_force(drive)
         return force / math.sqrt(force**2 + stiffness * capacitance)
 
 
-@checked_numbers
+@si.checked_numbers
 def annular_modes(
     section: AnnularSection,
-    harmonic: Annotated[int, AtLeast(0)],
+    harmonic: Annotated[int, si.AtLeast(0)],
     *,
-    near: Annotated[Hertz, AtLeast(0.0)] = 0.0,
-    count: Annotated[int, AtLeast(1)] = 4,
-    degree: Annotated[int, AtLeast(3), AtMost(12)] = DEFAULT_DEGREE,
-    quality_factor: Dimensionless | None = None,
+    near: Annotated[si.Hertz, si.AtLeast(0.0)] = 0.0,
+    count: Annotated[int, si.AtLeast(1)] = 4,
+    degree: Annotated[int, si.AtLeast(3), si.AtMost(12)] = DEFAULT_DEGREE,
+    quality_factor: si.Dimensionless | None = None,
 ) -> tuple[AnnularMode, ...]:
     """The `count` modes of one Fourier harmonic nearest to a frequency, in rising order.
 
@@ -122,7 +104,7 @@ def annular_modes(
     `ConvergenceError` if the eigenvalues do not converge.
     """
     if quality_factor is not None:
-        require("quality_factor", quality_factor, above=0.5)
+        si.require("quality_factor", quality_factor, above=0.5)
     mesh = ring_mesh(section)
     fine = harmonic_system(section, harmonic, degree, mesh)
     coarse = harmonic_system(section, harmonic, degree - 1, mesh)
@@ -141,14 +123,14 @@ def annular_modes(
     return tuple(modes)
 
 
-@checked_numbers
+@si.checked_numbers
 def bending_mode(
     section: AnnularSection,
     diameters: int,
     circles: int = 0,
     *,
     degree: int = DEFAULT_DEGREE,
-    quality_factor: Dimensionless | None = None,
+    quality_factor: si.Dimensionless | None = None,
 ) -> AnnularMode:
     """The mode B(`circles`, `diameters`): the lowest of that label that moves the surface.
 
@@ -169,7 +151,7 @@ def bending_mode(
     )
 
 
-def clamped_capacitance(section: AnnularSection, drive: SectorDrive) -> Farad:
+def clamped_capacitance(section: AnnularSection, drive: SectorDrive) -> si.Farad:
     """The capacitance of the driven sectors with the ceramic held (F): ε33S A/h, no fringes.
 
     Raises `InputError` if no layer is piezoelectric.
@@ -184,17 +166,17 @@ def clamped_capacitance(section: AnnularSection, drive: SectorDrive) -> Farad:
     return float(total * drive.angle)
 
 
-@checked_numbers
+@si.checked_numbers
 def annular_admittance(
     section: AnnularSection,
     drive: SectorDrive,
-    frequency: Annotated[HertzArray, Above(0.0)],
+    frequency: Annotated[si.HertzArray, si.Above(0.0)],
     *,
     harmonics: Sequence[int],
-    quality_factor: Dimensionless | None = None,
+    quality_factor: si.Dimensionless | None = None,
     modes: int = 6,
     degree: int = DEFAULT_DEGREE,
-) -> ComplexArray:
+) -> si.ComplexArray:
     """The admittance of one channel (A/V), shape of `frequency`, by modes and their remainder.
 
     Each harmonic in `harmonics` enters with its `modes` modes nearest to the band and a static
@@ -224,11 +206,11 @@ def annular_admittance(
             loss = 0.0 if mode.is_rigid else 1 / mode.quality_factor
             charge += weight * force2 / (square * (1 + 1j * loss) - omega**2)
         charge += weight * static
-    admittance: ComplexArray = 1j * omega * charge
+    admittance: si.ComplexArray = 1j * omega * charge
     return admittance
 
 
-def _shift(system: HarmonicSystem, near: Hertz) -> float:
+def _shift(system: HarmonicSystem, near: si.Hertz) -> float:
     """The shift of ω² for modes near a frequency, kept off rigid-body modes at zero."""
     scale = abs(system.matrix.diagonal()[: system.displacements] / system.mass.diagonal()).min()
     return (2 * math.pi * near) ** 2 * (1 + 1e-7) - 1e-7 * float(scale)
@@ -242,15 +224,17 @@ def _factor(system: HarmonicSystem, shift: float) -> LinearOperator:
     factors = splu((system.matrix - shift * padded_mass).tocsc(), diag_pivot_thresh=0.0)
     padded = np.zeros(size)
 
-    def solve(b: FloatArray) -> FloatArray:
+    def solve(b: si.FloatArray) -> si.FloatArray:
         padded[:n] = np.ravel(b)
-        answer: FloatArray = factors.solve(padded)[:n]
+        answer: si.FloatArray = factors.solve(padded)[:n]
         return answer
 
     return LinearOperator((n, n), matvec=solve, dtype=float)
 
 
-def _eigenpairs(system: HarmonicSystem, near: Hertz, count: int) -> tuple[FloatArray, FloatArray]:
+def _eigenpairs(
+    system: HarmonicSystem, near: si.Hertz, count: int
+) -> tuple[si.FloatArray, si.FloatArray]:
     """The ω² nearest to a frequency, rising, and their vectors of unit modal mass."""
     n = system.displacements
     if count >= n:
@@ -280,8 +264,8 @@ def _mode(
     section: AnnularSection,
     system: HarmonicSystem,
     square: float,
-    vector: FloatArray,
-    quality_factor: Dimensionless | None,
+    vector: si.FloatArray,
+    quality_factor: si.Dimensionless | None,
 ) -> AnnularMode:
     field = system.field(vector)
     surface = np.flatnonzero(np.abs(system.z - section.surface_height) <= 5e-10)
@@ -329,7 +313,7 @@ def _elastic_scale(section: AnnularSection) -> float:
     return float(stiff * thin**2 / radius**4)
 
 
-def _label(m: int, axial_share: float, field: FloatArray, shape: FloatArray) -> str:
+def _label(m: int, axial_share: float, field: si.FloatArray, shape: si.FloatArray) -> str:
     """B(n, m) for bending; R or T in the plane, by whether it is more radial or more hoop."""
     if axial_share < 0.5:
         radial, hoop = np.abs(field[:, 0]).max(), np.abs(field[:, 1]).max()
@@ -339,7 +323,7 @@ def _label(m: int, axial_share: float, field: FloatArray, shape: FloatArray) -> 
 
 
 def _quality(
-    section: AnnularSection, energies: FloatArray, quality_factor: Dimensionless | None
+    section: AnnularSection, energies: si.FloatArray, quality_factor: si.Dimensionless | None
 ) -> float:
     if quality_factor is not None:
         return quality_factor

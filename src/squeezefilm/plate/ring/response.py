@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.plate.circuit import EquivalentCircuit
 from squeezefilm.plate.ring.body import RingBody, surface_profile
 from squeezefilm.plate.ring.modes import (
@@ -16,19 +17,6 @@ from squeezefilm.plate.ring.modes import (
     annular_admittance,
     annular_modes,
     clamped_capacitance,
-)
-from squeezefilm.quantities import (
-    Ampere,
-    ComplexArray,
-    Farad,
-    FloatArray,
-    HertzArray,
-    MetreArray,
-    Unit,
-    Volt,
-    Watt,
-    checked_numbers,
-    require,
 )
 
 _RADII = 121
@@ -43,16 +31,16 @@ class RingResponse:
     `admittance` (S), time factor e^{iωt}, of the harmonics `harmonics`.
     """
 
-    frequencies: HertzArray
-    radius: MetreArray
-    motion: ComplexArray
-    admittance: ComplexArray
+    frequencies: si.HertzArray
+    radius: si.MetreArray
+    motion: si.ComplexArray
+    admittance: si.ComplexArray
     harmonics: tuple[int, ...]
     terms: int
     model: str = "annular_3d"
 
     @functools.cached_property
-    def maximum(self) -> FloatArray:
+    def maximum(self) -> si.FloatArray:
         """The largest |u_z| per volt (m/V) on the surface, for every frequency."""
         return np.asarray(np.max(np.abs(self.motion), axis=1))
 
@@ -61,27 +49,27 @@ class RingResponse:
         """The number of the frequency with the largest amplitude."""
         return int(np.argmax(self.maximum))
 
-    @checked_numbers
-    def current(self, voltage: Volt) -> Ampere:
+    @si.checked_numbers
+    def current(self, voltage: si.Volt) -> si.Ampere:
         """The current amplitude (A) at resonance."""
         return float(np.abs(self.admittance[self.resonance])) * voltage
 
-    @checked_numbers
-    def apparent_power(self, voltage: Volt) -> Watt:
+    @si.checked_numbers
+    def apparent_power(self, voltage: si.Volt) -> si.Watt:
         """Half of voltage times current amplitude (VA) at resonance."""
         return voltage * self.current(voltage) / 2
 
-    @checked_numbers
-    def input_power(self, voltage: Volt) -> Watt:
+    @si.checked_numbers
+    def input_power(self, voltage: si.Volt) -> si.Watt:
         """The power taken up (W) at resonance, from the conductance."""
         return float(self.admittance[self.resonance].real) * voltage**2 / 2
 
 
-@checked_numbers
+@si.checked_numbers
 def ring_response(
     body: RingBody,
     mode: AnnularMode,
-    frequencies: HertzArray,
+    frequencies: si.HertzArray,
     harmonics: Sequence[int],
     terms: int = 6,
 ) -> RingResponse:
@@ -91,7 +79,7 @@ def ring_response(
     all of `harmonics`. Structural damping. Linear; sectors' fringes and the ceramic's dielectric
     loss are left out. Raises `InputError` for frequencies that are not positive.
     """
-    require("frequencies", frequencies, Unit("Hz"), above=0, axes=1)
+    si.require("frequencies", frequencies, si.Unit("Hz"), above=0, axes=1)
     m, quality = mode.harmonic, body.quality_factor
     near = annular_modes(body.section, m, near=mode.frequency, count=terms, quality_factor=quality)
     omega2 = (2 * np.pi * frequencies) ** 2
@@ -143,7 +131,7 @@ def ring_circuit(body: RingBody, mode: AnnularMode, response: RingResponse) -> E
     )
 
 
-def static_capacitance(body: RingBody, circuit: EquivalentCircuit | None) -> Farad:
+def static_capacitance(body: RingBody, circuit: EquivalentCircuit | None) -> si.Farad:
     """The capacitance beside a mode (F): that of the circuit, which other modes add to, or of the
     held ceramic where no circuit is known."""
     if circuit is not None:

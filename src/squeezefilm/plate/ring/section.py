@@ -9,28 +9,18 @@ from typing import Annotated, Literal
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import GeometryError, InputError
 from squeezefilm.materials import ElasticMaterial
 from squeezefilm.plate.layout import DiscPlate
 from squeezefilm.plate.ring.materials import RingSolid, isotropic_solid, piezoceramic_solid
-from squeezefilm.quantities import (
-    Above,
-    AtLeast,
-    Kilogram,
-    Metre,
-    Radian,
-    Unit,
-    checked_numbers,
-    format_quantity,
-    require,
-)
 
-_M = Unit("m")
+_M = si.Unit("m")
 # Half a nanometre: what two edges may differ by and still be the same edge.
 _SAME = 5e-10
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, eq=False)
 class RingLayer:
     """One rectangle of the (r, z) section, revolved: radii and heights in metres.
@@ -39,19 +29,19 @@ class RingLayer:
     earthed, at its upper face unless `driven_face` is "upper".
     """
 
-    inner_radius: Annotated[Metre, AtLeast(0)]
-    outer_radius: Metre
-    bottom: Metre
-    top: Metre
+    inner_radius: Annotated[si.Metre, si.AtLeast(0)]
+    outer_radius: si.Metre
+    bottom: si.Metre
+    top: si.Metre
     solid: RingSolid
     driven_face: Literal["lower", "upper"] = "lower"
 
     def __post_init__(self) -> None:
-        require("outer_radius", self.outer_radius, _M, above=self.inner_radius)
-        require("top", self.top, _M, above=self.bottom)
+        si.require("outer_radius", self.outer_radius, _M, above=self.inner_radius)
+        si.require("top", self.top, _M, above=self.bottom)
 
     @property
-    def thickness(self) -> Metre:
+    def thickness(self) -> si.Metre:
         """Top minus bottom."""
         return self.top - self.bottom
 
@@ -61,7 +51,7 @@ class RingLayer:
         return self.solid.piezoelectric is not None
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, eq=False)
 class AnnularSection:
     """Layers that together make a ring or a disc, free everywhere.
@@ -71,7 +61,7 @@ class AnnularSection:
     """
 
     layers: tuple[RingLayer, ...]
-    wave_diameter: Annotated[Metre, Above(0)] | None = None
+    wave_diameter: Annotated[si.Metre, si.Above(0)] | None = None
 
     def __post_init__(self) -> None:
         if not self.layers:
@@ -82,8 +72,9 @@ class AnnularSection:
                 high = min(a.top, b.top) - max(a.bottom, b.bottom)
                 if wide > _SAME and high > _SAME:
                     raise GeometryError(
-                        f"ring layers {j + 1} and {i + 1} overlap by {format_quantity(wide, _M)} × "
-                        f"{format_quantity(high, _M)}; move one of them"
+                        f"ring layers {j + 1} and {i + 1} overlap by "
+                        f"{si.format_quantity(wide, _M)} × {si.format_quantity(high, _M)}; move "
+                        "one of them"
                     )
         self._check_connected()
 
@@ -105,12 +96,12 @@ class AnnularSection:
             )
 
     @property
-    def thickness(self) -> Metre:
+    def thickness(self) -> si.Metre:
         """Overall height."""
         return self.surface_height - min(layer.bottom for layer in self.layers)
 
     @property
-    def mass(self) -> Kilogram:
+    def mass(self) -> si.Kilogram:
         """The mass of the whole body."""
         return math.pi * sum(
             a.solid.density * a.thickness * (a.outer_radius**2 - a.inner_radius**2)
@@ -118,23 +109,23 @@ class AnnularSection:
         )
 
     @property
-    def surface_height(self) -> Metre:
+    def surface_height(self) -> si.Metre:
         """The z of the surface that is touched: the highest one."""
         return max(layer.top for layer in self.layers)
 
     @property
-    def surface_radii(self) -> tuple[Metre, Metre]:
+    def surface_radii(self) -> tuple[si.Metre, si.Metre]:
         """Inner and outer radius of the surface that is touched."""
         at = [x for x in self.layers if abs(x.top - self.surface_height) <= _SAME]
         return min(x.inner_radius for x in at), max(x.outer_radius for x in at)
 
     @property
-    def mean_diameter(self) -> Metre:
+    def mean_diameter(self) -> si.Metre:
         """Where wavelengths are measured."""
         return self.wave_diameter or sum(self.surface_radii)
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True)
 class SectorDrive:
     """Which sectors of the ceramic ring one channel drives: (start, end, polarity) in radians.
@@ -143,14 +134,16 @@ class SectorDrive:
     voltage. Raises `GeometryError` for sectors that overlap.
     """
 
-    sectors: tuple[tuple[Radian, Radian, int], ...]
+    sectors: tuple[tuple[si.Radian, si.Radian, int], ...]
 
     def __post_init__(self) -> None:
         if not self.sectors:
             raise GeometryError("sectors is empty; a channel needs at least one")
         for start, end, polarity in self.sectors:
-            require("sector start", start, Unit("rad"))
-            require("sector end", end, Unit("rad"), above=start, at_most=start + 2 * math.pi + 1e-9)
+            si.require("sector start", start, si.Unit("rad"))
+            si.require(
+                "sector end", end, si.Unit("rad"), above=start, at_most=start + 2 * math.pi + 1e-9
+            )
             if polarity not in (1, -1):
                 raise InputError("polarity must be 1 or -1", quantity="polarity")
         ordered = sorted(self.sectors)
@@ -161,11 +154,11 @@ class SectorDrive:
             raise GeometryError("sectors overlap: together they go round more than once")
 
     @property
-    def angle(self) -> Radian:
+    def angle(self) -> si.Radian:
         """The angle that the electrodes cover."""
         return sum(end - start for start, end, _ in self.sectors)
 
-    @checked_numbers
+    @si.checked_numbers
     def coefficient(self, harmonic: int) -> complex:
         """∫ s(θ) exp(−i m θ) dθ of the polarity s; its size is what drives cos m(θ − θ0).
 
@@ -180,9 +173,11 @@ class SectorDrive:
         return complex(total * 1j / harmonic)
 
 
-@checked_numbers
+@si.checked_numbers
 def alternate_sectors(
-    count: Annotated[int, AtLeast(1)], width: Annotated[Radian, Above(0.0)], start: Radian = 0.0
+    count: Annotated[int, si.AtLeast(1)],
+    width: Annotated[si.Radian, si.Above(0.0)],
+    start: si.Radian = 0.0,
 ) -> SectorDrive:
     """`count` neighbouring sectors of one width, of alternate poling: the channel of a motor.
 

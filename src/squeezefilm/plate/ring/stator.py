@@ -9,6 +9,7 @@ from typing import Annotated, Literal
 
 from scipy.optimize import brentq
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import GeometryError, UnreachableError
 from squeezefilm.materials import ElasticMaterial, Piezoceramic
 from squeezefilm.plate.ring.materials import (
@@ -24,21 +25,9 @@ from squeezefilm.plate.ring.section import (
     SectorDrive,
     alternate_sectors,
 )
-from squeezefilm.quantities import (
-    Above,
-    AtLeast,
-    Dimensionless,
-    Hertz,
-    Metre,
-    Unit,
-    Volt,
-    checked_numbers,
-    format_quantity,
-    require,
-)
 
 ToothModel = Literal["soft", "stiff"]
-_M, _HZ = Unit("m"), Unit("Hz")
+_M, _HZ = si.Unit("m"), si.Unit("Hz")
 PHOSPHOR_BRONZE = ElasticMaterial("phosphor bronze", 112e9, 0.33, 8800.0)
 """What motor stators are commonly made of; handbook values (C51900), assumed for the USR60."""
 
@@ -55,7 +44,7 @@ HARD_PZT = Piezoceramic(
 """A hard ceramic of the kind motors use, in round numbers; assumed for the USR60."""
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True)
 class StatorAssumptions:
     """What the paper does not give of its USR60 stator. Every default is assumed.
@@ -66,20 +55,20 @@ class StatorAssumptions:
     Kenjo, An Introduction to Ultrasonic Motors, 1993; from memory, to be checked).
     """
 
-    outer_diameter: Metre = 60e-3
-    ceramic_thickness: Metre = 0.5e-3
-    tooth_height: Metre = 1.5e-3
-    tooth_fill: Dimensionless = 0.8
-    web_thickness: Metre = 0.0
-    web_inner_radius: Metre = 0.0
+    outer_diameter: si.Metre = 60e-3
+    ceramic_thickness: si.Metre = 0.5e-3
+    tooth_height: si.Metre = 1.5e-3
+    tooth_fill: si.Dimensionless = 0.8
+    web_thickness: si.Metre = 0.0
+    web_inner_radius: si.Metre = 0.0
     metal: ElasticMaterial = PHOSPHOR_BRONZE
     ceramic: Piezoceramic = HARD_PZT
-    quality_factor: Dimensionless = 200.0
+    quality_factor: si.Dimensionless = 200.0
     driven_sectors: int = 8
     tooth_model: ToothModel = "soft"
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, eq=False)
 class StatorFit:
     """A stator whose `ring_thickness` (metal between ceramic and teeth) was fitted.
@@ -94,24 +83,24 @@ class StatorFit:
     section: AnnularSection
     mode: AnnularMode
     drive: SectorDrive
-    ring_thickness: Metre
-    frequency_bounds: tuple[Hertz, Hertz]
-    thickness_bounds: tuple[Metre, Metre]
+    ring_thickness: si.Metre
+    frequency_bounds: tuple[si.Hertz, si.Hertz]
+    thickness_bounds: tuple[si.Metre, si.Metre]
     assumptions: StatorAssumptions
     fitted: dict[str, float] = field(default_factory=dict)
     derived: dict[str, float] = field(default_factory=dict)
     assumed: dict[str, object] = field(default_factory=dict)
 
-    @checked_numbers
-    def amplitude(self, voltage: Volt) -> Metre:
+    @si.checked_numbers
+    def amplitude(self, voltage: si.Volt) -> si.Metre:
         """Zero-to-peak amplitude at resonance at a voltage amplitude (m), linear in it."""
         return self.mode.amplitude_per_volt(self.drive) * voltage
 
 
-@checked_numbers
+@si.checked_numbers
 def stator_section(
-    mean_diameter: Metre,
-    ring_thickness: Annotated[Metre, Above(0.0)],
+    mean_diameter: si.Metre,
+    ring_thickness: Annotated[si.Metre, si.Above(0.0)],
     assumptions: StatorAssumptions,
     tooth_model: ToothModel,
 ) -> AnnularSection:
@@ -123,9 +112,9 @@ def stator_section(
     a web that is not inside the ring.
     """
     a = assumptions
-    require("outer_diameter", a.outer_diameter, _M, above=mean_diameter, below=2 * mean_diameter)
-    require("tooth_height", a.tooth_height, _M, at_least=0)
-    require("web_thickness", a.web_thickness, _M, at_least=0, at_most=ring_thickness)
+    si.require("outer_diameter", a.outer_diameter, _M, above=mean_diameter, below=2 * mean_diameter)
+    si.require("tooth_height", a.tooth_height, _M, at_least=0)
+    si.require("web_thickness", a.web_thickness, _M, at_least=0, at_most=ring_thickness)
     radial_width, loss_factor = a.outer_diameter - mean_diameter, 1 / a.quality_factor
     inner, outer = (mean_diameter - radial_width) / 2, (mean_diameter + radial_width) / 2
     solid = isotropic_solid(a.metal, loss_factor)
@@ -141,22 +130,22 @@ def stator_section(
     if a.web_thickness > 0:
         if not 0 <= a.web_inner_radius < inner:
             raise GeometryError(
-                f"web_inner_radius = {format_quantity(a.web_inner_radius, _M)} is not inside the "
-                f"ring, which begins at {format_quantity(inner, _M)}"
+                f"web_inner_radius = {si.format_quantity(a.web_inner_radius, _M)} is not inside "
+                f"the ring, which begins at {si.format_quantity(inner, _M)}"
             )
         layers.append(RingLayer(a.web_inner_radius, inner, base, base + a.web_thickness, solid))
     return AnnularSection(tuple(layers), wave_diameter=mean_diameter)
 
 
-@checked_numbers
+@si.checked_numbers
 def fit_stator(
-    frequency: Annotated[Hertz, Above(0.0)] = 40.5e3,
-    wavelength: Annotated[Metre, Above(0.0)] = 18.7e-3,
-    waves: Annotated[int, AtLeast(2)] = 9,
+    frequency: Annotated[si.Hertz, si.Above(0.0)] = 40.5e3,
+    wavelength: Annotated[si.Metre, si.Above(0.0)] = 18.7e-3,
+    waves: Annotated[int, si.AtLeast(2)] = 9,
     assumptions: StatorAssumptions | None = None,
     *,
-    thinnest: Annotated[Metre, Above(0.0)] = 0.3e-3,
-    thickest: Metre = 10e-3,
+    thinnest: Annotated[si.Metre, si.Above(0.0)] = 0.3e-3,
+    thickest: si.Metre = 10e-3,
     degree: int = DEFAULT_DEGREE,
 ) -> StatorFit:
     """Fit the metal's thickness so that B(0, `waves`) falls on `frequency`.
@@ -168,7 +157,7 @@ def fit_stator(
     """
     a = assumptions or StatorAssumptions()
     start = max(thinnest, a.web_thickness)  # a ring is no thinner than its web
-    require("thickest", thickest, _M, above=start)
+    si.require("thickest", thickest, _M, above=start)
     mean_diameter = waves * wavelength / math.pi
     ring = _Ring(frequency, waves, mean_diameter, (start, thickest), degree, a)
     soft = ring.thickness("soft")
@@ -221,11 +210,11 @@ class _Ring:
         ends = [self._above(t, teeth) for t in self.ends]
         if ends[0] * ends[1] > 0:
             raise UnreachableError(
-                f"no ring thickness from {format_quantity(self.ends[0], _M)} to "
-                f"{format_quantity(self.ends[1], _M)} puts B(0,{self.waves}) with {teeth} teeth on "
-                f"{format_quantity(self.frequency, _HZ)}: it lies between "
-                f"{format_quantity(ends[0] + self.frequency, _HZ)} and "
-                f"{format_quantity(ends[1] + self.frequency, _HZ)}; change the assumptions",
+                f"no ring thickness from {si.format_quantity(self.ends[0], _M)} to "
+                f"{si.format_quantity(self.ends[1], _M)} puts B(0,{self.waves}) with {teeth} teeth "
+                f"on {si.format_quantity(self.frequency, _HZ)}: it lies between "
+                f"{si.format_quantity(ends[0] + self.frequency, _HZ)} and "
+                f"{si.format_quantity(ends[1] + self.frequency, _HZ)}; change the assumptions",
                 quantity="frequency",
             )
         return float(brentq(self._above, *self.ends, args=(teeth,), xtol=1e-9))

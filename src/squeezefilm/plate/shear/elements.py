@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import sparse
 
+from squeezefilm import quantities as si
 from squeezefilm.plate.elements.lobatto import lobatto_nodes
 from squeezefilm.plate.elements.nodal_basis import gauss_points, lagrange
 from squeezefilm.plate.shear.section import ShearLayout, ShearSection
-from squeezefilm.quantities import FloatArray, Metre
 
 # Unknowns at a node: mid-plane u, v, deflection w, and the rotations a, b: u_x = u + z a, …
 _U, _V, _W, _A, _B = range(5)
@@ -23,9 +23,9 @@ _HELD = {(0, 1): (_U, _A), (0, -1): (_V, _W, _B), (1, 1): (_V, _B), (1, -1): (_U
 class Axis:
     """A row of elements of individual degrees: edges and nodes, and the layout's cell of each."""
 
-    edges: FloatArray
+    edges: si.FloatArray
     degrees: tuple[int, ...]
-    nodes: FloatArray
+    nodes: si.FloatArray
     first: tuple[int, ...]
     cell: tuple[int, ...]
 
@@ -40,19 +40,19 @@ class ShearSystem:
     parity: tuple[int, int]
     stiffness: sparse.csc_matrix
     mass: sparse.csc_matrix
-    force: FloatArray
+    force: si.FloatArray
     x: Axis
     y: Axis
     unknown: np.ndarray
 
-    def deflection(self, vector: FloatArray) -> FloatArray:
+    def deflection(self, vector: si.FloatArray) -> si.FloatArray:
         """w at the nodes, (nodes x, nodes y)."""
         rows = self.unknown[:, :, _W]
-        result: FloatArray = np.append(vector, 0.0)[rows]
+        result: si.FloatArray = np.append(vector, 0.0)[rows]
         return result
 
 
-def make_axis(edges: FloatArray, degree: int, longest: Metre, halved: bool) -> Axis:
+def make_axis(edges: si.FloatArray, degree: int, longest: si.Metre, halved: bool) -> Axis:
     """Cut the cells so that none is longer than `longest`; short ones get a lower degree."""
     end = (edges[0] + edges[-1]) / 2 if halved else edges[-1]
     cuts, cells = [edges[0]], []
@@ -73,7 +73,7 @@ def make_axis(edges: FloatArray, degree: int, longest: Metre, halved: bool) -> A
 
 
 def shear_system(
-    layout: ShearLayout, degree: int, longest: Metre, parity: tuple[int, int]
+    layout: ShearLayout, degree: int, longest: si.Metre, parity: tuple[int, int]
 ) -> ShearSystem:
     """Assemble one symmetry class; full Gauss quadrature (high degrees do not lock)."""
     x = make_axis(layout.x_edges, degree, longest, parity[0] != 0)
@@ -81,10 +81,10 @@ def shear_system(
     unknown, count = _unknowns(x, y, parity)
     drive = _projected(layout.polarity, parity)
     images = (2 if parity[0] else 1) * (2 if parity[1] else 1)
-    made: dict[tuple[object, ...], tuple[FloatArray, FloatArray, FloatArray]] = {}
+    made: dict[tuple[object, ...], tuple[si.FloatArray, si.FloatArray, si.FloatArray]] = {}
     force = np.zeros(count + 1)
     places: list[tuple[np.ndarray, np.ndarray]] = []
-    parts: list[tuple[FloatArray, FloatArray]] = []
+    parts: list[tuple[si.FloatArray, si.FloatArray]] = []
     for i, (ci, px) in enumerate(zip(x.cell, x.degrees, strict=True)):
         for j, (cj, py) in enumerate(zip(y.cell, y.degrees, strict=True)):
             section = layout.sections[layout.section[ci, cj]]
@@ -117,7 +117,7 @@ def shear_system(
 
 def _element(
     section: ShearSection, size: tuple[float, float], degrees: tuple[int, int]
-) -> tuple[FloatArray, FloatArray, FloatArray]:
+) -> tuple[si.FloatArray, si.FloatArray, si.FloatArray]:
     along, weights = [], []
     for h, p in zip(size, degrees, strict=True):
         points, w = gauss_points(p + 1)
@@ -163,7 +163,7 @@ def _unknowns(x: Axis, y: Axis, parity: tuple[int, int]) -> tuple[np.ndarray, in
     return unknown, count
 
 
-def _projected(polarity: FloatArray, parity: tuple[int, int]) -> FloatArray:
+def _projected(polarity: si.FloatArray, parity: tuple[int, int]) -> si.FloatArray:
     """The drive summed over a cell's mirror images, each with the sign of the class."""
     for axis in (0, 1):
         if parity[axis]:

@@ -13,32 +13,15 @@ from typing import Annotated
 import numpy as np
 from scipy.sparse.linalg import LinearOperator, eigsh, splu
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import ConvergenceError, InputError
 from squeezefilm.hard_limits import FREQUENCY, SHEAR_UNKNOWNS, require_within
 from squeezefilm.plate.elements.nodal_basis import lagrange
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.shear.elements import Axis, ShearSystem, shear_system
 from squeezefilm.plate.shear.section import ShearLayout, shear_layout
-from squeezefilm.quantities import (
-    Above,
-    AtLeast,
-    AtMost,
-    Dimensionless,
-    DimensionlessArray,
-    FloatArray,
-    Hertz,
-    Kilogram,
-    Metre,
-    MetreArray,
-    MetrePerVolt,
-    NewtonPerVolt,
-    Unit,
-    checked_numbers,
-    format_quantity,
-    require,
-)
 
-MODELLING_ERROR: Dimensionless = 0.02
+MODELLING_ERROR: si.Dimensionless = 0.02
 """Bound on the share by which the model is too high against 3-D elasticity on the reference plate
 (3 mm thick at λ/2 = 11 mm): its (8,0) comes out +1.7 and +1.8 % for the two data sets, the driven
 modes beside it +0.6 and +1.0 %. The ceramics' free edges, which a laminate cannot see, and shear
@@ -57,15 +40,15 @@ class ShearMode:
     (of one volt on all ceramics with their polarity) belong to that scale.
     """
 
-    frequency: Hertz
-    frequency_error: Hertz
+    frequency: si.Hertz
+    frequency_error: si.Hertz
     nodal_lines: tuple[int, int]
     parity: tuple[int, int]
-    modal_mass: Kilogram
-    modal_force: NewtonPerVolt
-    x: MetreArray
-    y: MetreArray
-    deflection: DimensionlessArray
+    modal_mass: si.Kilogram
+    modal_force: si.NewtonPerVolt
+    x: si.MetreArray
+    y: si.MetreArray
+    deflection: si.DimensionlessArray
     unknowns: int
     model: str = "shear_plate"
 
@@ -79,10 +62,10 @@ class ShearMode:
         """Whether the plate moves without deforming."""
         return self.frequency == 0
 
-    @checked_numbers
+    @si.checked_numbers
     def amplitude_per_volt(
-        self, quality_factor: Annotated[Dimensionless, Above(0.5)]
-    ) -> MetrePerVolt:
+        self, quality_factor: Annotated[si.Dimensionless, si.Above(0.5)]
+    ) -> si.MetrePerVolt:
         """Zero-to-peak deflection at the plate's highest point, per volt at resonance (m/V).
 
         Q F / (ω² M): one mode, structural damping. Raises `InputError` for a rigid-body mode.
@@ -92,31 +75,31 @@ class ShearMode:
         omega2 = (2 * math.pi * self.frequency) ** 2
         return quality_factor * abs(self.modal_force) / (omega2 * self.modal_mass)
 
-    @checked_numbers
-    def deflection_at(self, x: Metre, y: Metre) -> Dimensionless:
+    @si.checked_numbers
+    def deflection_at(self, x: si.Metre, y: si.Metre) -> si.Dimensionless:
         """The scaled deflection at a point, bilinear between nodes."""
-        require("x", x, Unit("m"), at_least=float(self.x[0]), at_most=float(self.x[-1]))
-        require("y", y, Unit("m"), at_least=float(self.y[0]), at_most=float(self.y[-1]))
+        si.require("x", x, si.Unit("m"), at_least=float(self.x[0]), at_most=float(self.x[-1]))
+        si.require("y", y, si.Unit("m"), at_least=float(self.y[0]), at_most=float(self.y[-1]))
         along = [np.interp(y, self.y, row) for row in self.deflection]
         return float(np.interp(x, self.x, along))
 
-    def centreline_nodes(self) -> MetreArray:
+    def centreline_nodes(self) -> si.MetreArray:
         """Where the deflection changes sign along the length, on the middle of the width (m)."""
         middle = (self.y[0] + self.y[-1]) / 2
         line = np.array([np.interp(middle, self.y, row) for row in self.deflection])
         at = np.flatnonzero(np.sign(line[:-1]) * np.sign(line[1:]) < 0)
         share = line[at] / (line[at] - line[at + 1])
-        crossings: MetreArray = self.x[at] + share * (self.x[at + 1] - self.x[at])
+        crossings: si.MetreArray = self.x[at] + share * (self.x[at + 1] - self.x[at])
         return crossings
 
 
-@checked_numbers
+@si.checked_numbers
 def shear_modes(
     plate: RectangularPlate | ShearLayout,
-    near: Hertz,
-    count: Annotated[int, AtLeast(1)] = 8,
+    near: si.Hertz,
+    count: Annotated[int, si.AtLeast(1)] = 8,
     *,
-    degree: Annotated[int, AtLeast(3), AtMost(14)] = DEFAULT_DEGREE,
+    degree: Annotated[int, si.AtLeast(3), si.AtMost(14)] = DEFAULT_DEGREE,
     parities: tuple[tuple[int, int], ...] | None = None,
     induced_potential: bool = True,
 ) -> tuple[ShearMode, ...]:
@@ -128,7 +111,7 @@ def shear_modes(
     bonded. Raises `InputError` for bad numbers or a parity the plate does not have,
     `ConvergenceError` if the eigenvalues do not converge.
     """
-    require("near", near, Unit("Hz"), at_least=0, at_most=FREQUENCY.most)
+    si.require("near", near, si.Unit("Hz"), at_least=0, at_most=FREQUENCY.most)
     layout = (
         plate
         if isinstance(plate, ShearLayout)
@@ -161,11 +144,11 @@ def shear_modes(
     return tuple(sorted(nearest, key=lambda mode: mode.frequency))
 
 
-@checked_numbers
+@si.checked_numbers
 def shear_mode(
     plate: RectangularPlate | ShearLayout,
     nodal_lines: tuple[int, int],
-    near: Hertz,
+    near: si.Hertz,
     *,
     degree: int = DEFAULT_DEGREE,
     induced_potential: bool = True,
@@ -191,8 +174,9 @@ def shear_mode(
         if same:
             return min(same, key=lambda mode: abs(mode.frequency - near))
     raise InputError(
-        f"no mode ({nodal_lines[0]},{nodal_lines[1]}) near {format_quantity(near, Unit('Hz'))}; "
-        f"there are {', '.join(mode.label for mode in modes)}; ask nearer to its frequency"
+        f"no mode ({nodal_lines[0]},{nodal_lines[1]}) near "
+        f"{si.format_quantity(near, si.Unit('Hz'))}; there are "
+        f"{', '.join(mode.label for mode in modes)}; ask nearer to its frequency"
     )
 
 
@@ -201,7 +185,7 @@ def _parities(layout: ShearLayout) -> tuple[tuple[int, int], ...]:
     return tuple((a, b) for a in along[0] for b in along[1])
 
 
-def _longest_element(layout: ShearLayout, near: Hertz) -> Metre:
+def _longest_element(layout: ShearLayout, near: si.Hertz) -> si.Metre:
     """Three quarters of the bending wavelength of the softest section, or half the plate."""
     half = max(np.ptp(layout.x_edges), np.ptp(layout.y_edges)) / 2
     if near == 0:
@@ -214,8 +198,8 @@ def _longest_element(layout: ShearLayout, near: Hertz) -> Metre:
 
 
 def _eigenpairs(
-    system: ShearSystem, layout: ShearLayout, near: Hertz, count: int
-) -> tuple[FloatArray, FloatArray]:
+    system: ShearSystem, layout: ShearLayout, near: si.Hertz, count: int
+) -> tuple[si.FloatArray, si.FloatArray]:
     n = system.force.size
     count = min(count, n - 2)
     # Off zero, where rigid-body motions make the matrix singular.
@@ -247,7 +231,11 @@ def _eigenpairs(
 
 
 def _mode(
-    system: ShearSystem, layout: ShearLayout, square: float, vector: FloatArray, rough: FloatArray
+    system: ShearSystem,
+    layout: ShearLayout,
+    square: float,
+    vector: si.FloatArray,
+    rough: si.FloatArray,
 ) -> ShearMode:
     w = system.deflection(vector)
     x, w = _whole(*_fine(system.x, w), layout.x_edges, system.parity[0])
@@ -285,7 +273,7 @@ def _mass(layout: ShearLayout) -> float:
     return float((areas * per_area).sum())
 
 
-def _fine(axis: Axis, values: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _fine(axis: Axis, values: si.FloatArray) -> tuple[si.FloatArray, si.FloatArray]:
     """Values on the first axis, interpolated to 12 even steps per element."""
     points = np.linspace(-1, 1, 13)
     places, pieces = [axis.edges[:1]], [values[:1]]
@@ -298,8 +286,8 @@ def _fine(axis: Axis, values: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def _whole(
-    line: FloatArray, values: FloatArray, edges: FloatArray, parity: int
-) -> tuple[FloatArray, FloatArray]:
+    line: si.FloatArray, values: si.FloatArray, edges: si.FloatArray, parity: int
+) -> tuple[si.FloatArray, si.FloatArray]:
     """Mirror half a plate to the whole."""
     if parity == 0:
         return line, values
@@ -307,10 +295,10 @@ def _whole(
     return np.concatenate([line, mirror]), np.concatenate([values, parity * values[-2::-1]])
 
 
-def _nodal_lines(w: FloatArray) -> tuple[int, int]:
+def _nodal_lines(w: si.FloatArray) -> tuple[int, int]:
     """Sign changes along x and along y: the middle value over the lines where there is motion."""
 
-    def count(rows: FloatArray) -> int:
+    def count(rows: si.FloatArray) -> int:
         changes = []
         for row in rows:
             strong = row[np.abs(row) > 0.05]

@@ -10,22 +10,15 @@ from typing import Annotated
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.materials import VACUUM_PERMITTIVITY, ElasticMaterial, Piezoceramic
 from squeezefilm.plate.laminate import SHEAR_CORRECTION
 from squeezefilm.plate.layout import RectangularPlate
-from squeezefilm.quantities import (
-    Above,
-    CoulombPerSquareMetre,
-    FloatArray,
-    Metre,
-    NewtonPerMetre,
-    checked_numbers,
-)
 
 _SAME = 1e-9
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, eq=False)
 class ShearSection:
     """One laminate per unit area: N = A ε + B κ, M = B ε + D κ, Q = S γ.
@@ -35,16 +28,16 @@ class ShearSection:
     force `stress_coefficient` (N/m per V = C/m²) in all directions at the height `piezo_arm`.
     """
 
-    membrane: FloatArray
-    coupling: FloatArray
-    bending: FloatArray
-    shear: NewtonPerMetre
-    inertia: FloatArray
-    stress_coefficient: CoulombPerSquareMetre = 0.0
-    piezo_arm: Metre = 0.0
+    membrane: si.FloatArray
+    coupling: si.FloatArray
+    bending: si.FloatArray
+    shear: si.NewtonPerMetre
+    inertia: si.FloatArray
+    stress_coefficient: si.CoulombPerSquareMetre = 0.0
+    piezo_arm: si.Metre = 0.0
 
     @property
-    def stiffness(self) -> FloatArray:
+    def stiffness(self) -> si.FloatArray:
         """All of it, (8, 8): three membrane strains, three curvatures, two shears."""
         law = np.zeros((8, 8))
         law[:3, :3], law[3:6, 3:6] = self.membrane, self.bending
@@ -53,7 +46,7 @@ class ShearSection:
         return law
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, eq=False)
 class ShearLayout:
     """A rectangular plate cut into cells by `x_edges` and `y_edges` (m), each of one section.
@@ -61,11 +54,11 @@ class ShearLayout:
     `section` (cells along x, along y) indexes `sections`; `polarity` is +1, −1 or 0 per cell.
     """
 
-    x_edges: FloatArray
-    y_edges: FloatArray
+    x_edges: si.FloatArray
+    y_edges: si.FloatArray
     sections: tuple[ShearSection, ...]
     section: np.ndarray
-    polarity: FloatArray
+    polarity: si.FloatArray
 
     def mirrored(self, axis: int) -> bool:
         """Whether the laminate (not its polarity) is its own mirror image along x (0) or y (1)."""
@@ -75,9 +68,9 @@ class ShearLayout:
         return bool(same_edges and np.array_equal(self.section, np.flip(self.section, axis)))
 
 
-@checked_numbers
+@si.checked_numbers
 def isotropic_section(
-    material: ElasticMaterial, thickness: Annotated[Metre, Above(0.0)]
+    material: ElasticMaterial, thickness: Annotated[si.Metre, si.Above(0.0)]
 ) -> ShearSection:
     """A bare plate of one material (plane stress, Reissner's shear factor 5/6)."""
     reduced = _plane_stress(material.plane_strain_modulus, material.poisson_ratio)
@@ -90,12 +83,12 @@ def isotropic_section(
     )
 
 
-@checked_numbers
+@si.checked_numbers
 def monomorph_section(
     substrate: ElasticMaterial,
-    thickness: Metre,
+    thickness: si.Metre,
     ceramic: Piezoceramic,
-    ceramic_thickness: Annotated[Metre, Above(0.0)],
+    ceramic_thickness: Annotated[si.Metre, si.Above(0.0)],
     *,
     induced_potential: bool = True,
 ) -> ShearSection:
@@ -151,9 +144,11 @@ def shear_layout(plate: RectangularPlate, *, induced_potential: bool = True) -> 
     return ShearLayout(x_edges, y_edges, sections, (polarity != 0).astype(int), polarity)
 
 
-@checked_numbers
+@si.checked_numbers
 def uniform_shear_layout(
-    length: Annotated[Metre, Above(0.0)], width: Annotated[Metre, Above(0.0)], section: ShearSection
+    length: Annotated[si.Metre, si.Above(0.0)],
+    width: Annotated[si.Metre, si.Above(0.0)],
+    section: ShearSection,
 ) -> ShearLayout:
     """A plate of one section, without drive."""
     one = np.zeros((1, 1))
@@ -162,10 +157,10 @@ def uniform_shear_layout(
     )
 
 
-def _plane_stress(modulus: float, poisson: float) -> FloatArray:
+def _plane_stress(modulus: float, poisson: float) -> si.FloatArray:
     return modulus * np.array([[1, poisson, 0], [poisson, 1, 0], [0, 0, (1 - poisson) / 2]])
 
 
-def _merged(values: list[float], end: float) -> FloatArray:
+def _merged(values: list[float], end: float) -> si.FloatArray:
     ordered = sorted(min(max(v, 0.0), end) for v in values)
     return np.array([v for k, v in enumerate(ordered) if k == 0 or v - ordered[k - 1] > _SAME])

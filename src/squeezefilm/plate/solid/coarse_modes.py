@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError, OutOfRangeError, SqueezefilmError
 from squeezefilm.hard_limits import BAND_MODES, require_within
 from squeezefilm.plate.beam.modes import free_beam_mode, timoshenko_frequency
@@ -21,7 +22,6 @@ from squeezefilm.plate.solid.modes import Label, SolvedModel, label_of, surface_
 from squeezefilm.plate.solid.resolution import COARSE
 from squeezefilm.plate.solid.shear_guess import screened_frequency
 from squeezefilm.plate.solid.symmetry import Parity
-from squeezefilm.quantities import FloatArray, IntArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,8 +30,8 @@ class CoarseModes:
 
     parity: tuple[Parity | None, Parity | None]
     solved: SolvedModel
-    values: FloatArray
-    vectors: FloatArray
+    values: si.FloatArray
+    vectors: si.FloatArray
     labels: list[Label | None]
     factor: SlabFactor
     shift: float
@@ -95,7 +95,7 @@ def coarse_modes(
             )
             require_within(BAND_MODES, expected, "band", enough="ask for a narrower band")
 
-        def wanted(values: FloatArray) -> IntArray:
+        def wanted(values: si.FloatArray) -> si.IntArray:
             inside = np.flatnonzero((values > limits[0]) & (values < limits[1]))
             # Not there yet: let the iteration go on by asking for what is not found.
             if expected is not None and inside.size < expected:
@@ -104,7 +104,7 @@ def coarse_modes(
 
     else:
 
-        def wanted(values: FloatArray) -> IntArray:
+        def wanted(values: si.FloatArray) -> si.IntArray:
             positive = np.flatnonzero(values > (2 * np.pi * 1.0) ** 2)
             near = positive[np.argsort(np.abs(np.sqrt(values[positive]) - 2 * np.pi * centre))]
             return np.sort(near[:count])
@@ -128,7 +128,7 @@ def chosen_modes(
     band: tuple[float, float] | None,
     mode: Label | None,
     count: int,
-) -> list[IntArray]:
+) -> list[si.IntArray]:
     """The indices of the modes to refine, for each class."""
     frequencies = [np.sqrt(one.values) / (2 * np.pi) for one in found]
     if mode is not None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.hard_limits import FREQUENCY, require_within
 from squeezefilm.plate.elements.blas_threads import one_blas_thread
 from squeezefilm.plate.elements.cross_section import CrossSection
@@ -20,13 +21,12 @@ from squeezefilm.plate.solid.reduced import (
 )
 from squeezefilm.plate.solid.resolution import NORMAL, Resolution
 from squeezefilm.plate.solid.symmetry import drive_classes
-from squeezefilm.quantities import ComplexArray, Hertz, checked_numbers
 
 
-@checked_numbers
+@si.checked_numbers
 def direct_admittance(
-    plate: RectangularPlate, frequency: Hertz, resolution: Resolution = NORMAL
-) -> tuple[complex, list[ComplexArray]]:
+    plate: RectangularPlate, frequency: si.Hertz, resolution: Resolution = NORMAL
+) -> tuple[complex, list[si.ComplexArray]]:
     """Y (S) by a direct solve with complex constants at one frequency, and the solution of each
     driven class: the check of the reduced response. Electrodes driven or shorted only.
 
@@ -34,7 +34,7 @@ def direct_admittance(
     """
     require_within(FREQUENCY, frequency, "frequency")
     omega, charge = 2 * np.pi * frequency, 0j
-    solutions: list[ComplexArray] = []
+    solutions: list[si.ComplexArray] = []
     with one_blas_thread():
         for parity in drive_classes(plate):
             built = plate_model(

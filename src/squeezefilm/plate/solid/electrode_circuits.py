@@ -8,6 +8,7 @@ from collections.abc import Callable
 import numpy as np
 from scipy.linalg import eig
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import ConvergenceError
 from squeezefilm.plate.elements.krylov import with_open_electrodes
 from squeezefilm.plate.elements.slab_factor import SlabFactor
@@ -15,18 +16,17 @@ from squeezefilm.plate.elements.slabs import Slabs
 from squeezefilm.plate.solid.modes import SolvedModel
 from squeezefilm.plate.solid.reduced import plate_circuit
 from squeezefilm.plate.solid.symmetry import drive_signs
-from squeezefilm.quantities import ComplexArray, FloatArray
 
 
 def inverse_with_open(
     slabs: Slabs, solved: SolvedModel, factor: SlabFactor
-) -> Callable[..., FloatArray]:
+) -> Callable[..., si.FloatArray]:
     """The inverse with the plate's own open electrodes."""
     columns = _floating(solved)
     return with_open_electrodes(slabs, factor.solve, columns) if columns.size else factor.solve
 
 
-def _floating(solved: SolvedModel) -> FloatArray:
+def _floating(solved: SolvedModel) -> si.FloatArray:
     """The electrodes that the plate leaves open, each by itself."""
     patches = solved.plate.patches
     return tied_electrodes(
@@ -34,11 +34,11 @@ def _floating(solved: SolvedModel) -> FloatArray:
     )
 
 
-def tied_electrodes(solved: SolvedModel, groups: list[list[tuple[int, float]]]) -> FloatArray:
+def tied_electrodes(solved: SolvedModel, groups: list[list[tuple[int, float]]]) -> si.FloatArray:
     """Model electrodes tied together, one column a group of (patch, sign); empty groups and
     repeated ones (mirror images) left out."""
     electrodes = len(solved.built.model.electrodes)
-    columns: list[FloatArray] = []
+    columns: list[si.FloatArray] = []
     for group in groups:
         column = np.zeros(electrodes)
         for patch, sign in group:
@@ -54,8 +54,12 @@ def tied_electrodes(solved: SolvedModel, groups: list[list[tuple[int, float]]]) 
 
 
 def open_values(
-    solved: SolvedModel, factor: SlabFactor, shift: float, values: FloatArray, vectors: FloatArray
-) -> FloatArray:
+    solved: SolvedModel,
+    factor: SlabFactor,
+    shift: float,
+    values: si.FloatArray,
+    vectors: si.FloatArray,
+) -> si.FloatArray:
     """ω² of the same modes with the drive's terminals open; `factor` is K − `shift` M."""
     slabs = solved.slabs
     signs = drive_signs(solved.plate)
@@ -84,8 +88,8 @@ def open_values(
 
 
 def shunted_frequencies(
-    solved: SolvedModel, factor: SlabFactor, values: FloatArray, vectors: FloatArray
-) -> ComplexArray:
+    solved: SolvedModel, factor: SlabFactor, values: si.FloatArray, vectors: si.FloatArray
+) -> si.ComplexArray:
     """Complex ω (rad/s, time factor e^{iωt}) of modes with their electrodes' resistors at work.
 
     `values` and `vectors` (unit modal mass of the model) are those with shunts short. A resistor R

@@ -7,6 +7,7 @@ import dataclasses
 import numpy as np
 from scipy.linalg import eigh
 
+from squeezefilm import quantities as si
 from squeezefilm.plate.elements.krylov import modes_near, prolonged
 from squeezefilm.plate.elements.slab_factor import SlabFactor
 from squeezefilm.plate.elements.slabs import Slabs
@@ -14,10 +15,9 @@ from squeezefilm.plate.solid.mesh import plate_model
 from squeezefilm.plate.solid.reduced import ReducedClass, resolved_frequency
 from squeezefilm.plate.solid.refined_modes import LEVELS, extrapolated
 from squeezefilm.plate.solid.resolution import COARSE
-from squeezefilm.quantities import Hertz
 
 
-def extrapolated_class(one: ReducedClass, band: tuple[Hertz, Hertz]) -> ReducedClass:
+def extrapolated_class(one: ReducedClass, band: tuple[si.Hertz, si.Hertz]) -> ReducedClass:
     """The same class with its stiffness and loss scaled so that the most strongly driven mode near
     the band stands at its frequency extrapolated from two meshes.
 

@@ -7,13 +7,13 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.materials import isotropic_stiffness
 from squeezefilm.plate.elements.box_model import Medium
 from squeezefilm.plate.elements.lobatto import LineMesh
 from squeezefilm.plate.layout import Face, RectangularPlate
 from squeezefilm.plate.solid.resolution import Resolution
 from squeezefilm.plate.solid.symmetry import SNAP
-from squeezefilm.quantities import Metre
 
 
 def _losses(plate: RectangularPlate) -> tuple[float, float, float]:
@@ -63,7 +63,7 @@ def media(plate: RectangularPlate) -> tuple[Medium, ...]:
     return tuple(media)
 
 
-def thicknesses(plate: RectangularPlate, face: Face) -> list[Metre]:
+def thicknesses(plate: RectangularPlate, face: Face) -> list[si.Metre]:
     """The different thicknesses of the ceramics on a face, ascending."""
     return merged(patch.thickness for patch in plate.patches if patch.face == face)
 
@@ -78,7 +78,7 @@ def through_thickness(
     layers: dict[str, tuple[int, int]] = {}
     ceramics: dict[tuple[Face, int], tuple[int, int]] = {}
 
-    def add(thickness: Metre, order: int, *, from_below: bool, from_above: bool) -> None:
+    def add(thickness: si.Metre, order: int, *, from_below: bool, from_above: bool) -> None:
         """One layer, its elements shrinking towards the bond below or above it."""
         near = [c * thickness for c in resolution.bond_layers]
         inner = [d for d in near if from_below] + [thickness - d for d in near if from_above]
@@ -117,7 +117,7 @@ def through_thickness(
     return mesh, layers, ceramics
 
 
-def snapped(length: Metre) -> int:
+def snapped(length: si.Metre) -> int:
     """A length in whole units of `SNAP`, to compare by."""
     return round(length / SNAP)
 
@@ -131,6 +131,6 @@ def merged(values: Iterable[float]) -> list[float]:
     return out
 
 
-def nearest(mesh: LineMesh, position: Metre) -> int:
+def nearest(mesh: LineMesh, position: si.Metre) -> int:
     """The number of the edge nearest to a position."""
     return int(np.argmin(np.abs(np.array(mesh.edges) - position)))

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import GeometryError, OutOfRangeError
 from squeezefilm.hard_limits import FREQUENCY
 from squeezefilm.plate.elements.box_model import (
@@ -32,7 +33,6 @@ from squeezefilm.plate.solid.symmetry import (
     mirror_map,
     symmetric_axes,
 )
-from squeezefilm.quantities import IntArray, Unit, format_quantity, require
 
 # Largest side of the plate over its thinnest layer. Measured on the paper's plate: a layer of glue
 # with the plate's own constants moves (8,0) in proportion to its thickness, to 2e-6, up to a
@@ -151,7 +151,7 @@ def plate_model(
     against its length that elements lose their digits.
     """
     # What resolves a band lies somewhat above it.
-    require("frequency", frequency, Unit("Hz"), above=0, at_most=2 * FREQUENCY.most)
+    si.require("frequency", frequency, si.Unit("Hz"), above=0, at_most=2 * FREQUENCY.most)
     for axis in (0, 1):
         if parity[axis] is not None and not symmetric_axes(plate)[axis]:
             raise GeometryError(
@@ -207,9 +207,9 @@ def _require_thick(plate: RectangularPlate, frequency: float, wave: float) -> No
     )
     if max(plate.length, plate.width) > _THINNEST * thinnest:
         raise OutOfRangeError(
-            f"a layer of {format_quantity(thinnest, Unit('m'))} on a plate of "
-            f"{format_quantity(max(plate.length, plate.width), Unit('m'))} has an aspect ratio "
-            f"above {_THINNEST:.0f}, where three-dimensional elements lose their digits; use "
+            f"a layer of {si.format_quantity(thinnest, si.Unit('m'))} on a plate of "
+            f"{si.format_quantity(max(plate.length, plate.width), si.Unit('m'))} has an aspect "
+            f"ratio above {_THINNEST:.0f}, where three-dimensional elements lose their digits; use "
             "a plate theory"
         )
     if math.pi / wave > _SLENDEREST * plate.thickness:
@@ -233,7 +233,7 @@ class _Cells:
     z: LineMesh
     layers: dict[str, tuple[int, int]]
 
-    def over(self, part: CeramicPatch | FoamSupport) -> tuple[IntArray, IntArray]:
+    def over(self, part: CeramicPatch | FoamSupport) -> tuple[si.IntArray, si.IntArray]:
         """The cells along x and y of the model that a part covers."""
         spans = [(part.x, part.x + part.length), (part.y, part.y + part.width)]
         along, across = (1, 0) if self.swapped else (0, 1)
@@ -248,7 +248,7 @@ class _Cells:
 
     def filled(
         self, ceramics: dict[tuple[Face, int], tuple[int, int]], electrode_of: list[int]
-    ) -> tuple[IntArray, IntArray, tuple[Electrode, ...], dict[int, int]]:
+    ) -> tuple[si.IntArray, si.IntArray, tuple[Electrode, ...], dict[int, int]]:
         """The medium and the number of the ceramic of each cell, the electrodes, and which of them
         a patch has; `ceramics` as `through_thickness` gives them."""
         medium, ceramic = np.full((2, self.x.elements, self.y.elements, self.z.elements), -1)

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.plate.elements.box_model import Medium
 from squeezefilm.plate.elements.slabs import Slabs
@@ -21,10 +22,9 @@ from squeezefilm.plate.solid.modes import (
 )
 from squeezefilm.plate.solid.refined_modes import RefinedModes, extrapolated
 from squeezefilm.plate.solid.symmetry import Parity, drive_signs
-from squeezefilm.quantities import FloatArray
 
 
-def energy_shares_of(slabs: Slabs, vectors: FloatArray) -> tuple[FloatArray, FloatArray]:
+def energy_shares_of(slabs: Slabs, vectors: si.FloatArray) -> tuple[si.FloatArray, si.FloatArray]:
     """The share of each medium, and of springs, in a mode's elastic energy (modes × media), and the
     loss factor that these shares and each medium's and spring's own loss make."""
     model = slabs.model
@@ -119,16 +119,18 @@ class _Mode(NamedTuple):
     mesh_frequency: float
     label: Label | None
     parity: tuple[Parity | None, Parity | None]
-    shape: FloatArray
-    forces: FloatArray
+    shape: si.FloatArray
+    forces: si.FloatArray
     drive_force: float
     open_frequency: float
-    energy_shares: FloatArray
+    energy_shares: si.FloatArray
     quality_factor: float
-    field: tuple[SolvedModel, FloatArray]
+    field: tuple[SolvedModel, si.FloatArray]
 
 
-def _modes_of(piece: RefinedModes, signs: FloatArray) -> tuple[FloatArray, FloatArray, list[_Mode]]:
+def _modes_of(
+    piece: RefinedModes, signs: si.FloatArray
+) -> tuple[si.FloatArray, si.FloatArray, list[_Mode]]:
     """The modes of one class, and x and y of their shapes; `signs` are those of the drive."""
     frequency, error = extrapolated(piece.coarse_values, piece.values, piece.level)
     scale = 1 / np.sqrt(piece.solved.built.copies)
@@ -171,7 +173,7 @@ def _modes_of(piece: RefinedModes, signs: FloatArray) -> tuple[FloatArray, Float
     return x, y, modes
 
 
-def _turn(top: FloatArray, driven: float) -> float:
+def _turn(top: si.FloatArray, driven: float) -> float:
     """The sign of a mode is free: the drive pushes it up, or its largest value does."""
     largest = top[:, :, 2].flat[int(np.argmax(np.abs(top[:, :, 2])))]
     return -1.0 if driven < -1e-9 or (abs(driven) <= 1e-9 and largest < 0) else 1.0

@@ -9,6 +9,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import FREQUENCY, require_within
 from squeezefilm.plate.elements.again import SolvedAgain
@@ -16,18 +17,6 @@ from squeezefilm.plate.elements.slabs import Slabs
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.solid.mesh import PlateModel
 from squeezefilm.plate.solid.symmetry import Parity
-from squeezefilm.quantities import (
-    DimensionlessArray,
-    FloatArray,
-    Hertz,
-    HertzArray,
-    Metre,
-    MetreArray,
-    Unit,
-    checked_numbers,
-    did_you_mean,
-    require,
-)
 
 Label = tuple[int, int]
 MODEL = "piezoelectric_solid_3d"
@@ -41,7 +30,9 @@ class SolvedModel:
     built: PlateModel
     slabs: Slabs
 
-    def field(self, vectors: FloatArray, x: FloatArray, y: FloatArray, z: float) -> FloatArray:
+    def field(
+        self, vectors: si.FloatArray, x: si.FloatArray, y: si.FloatArray, z: float
+    ) -> si.FloatArray:
         """Displacements at the grid of `x` and `y` (plate coordinates, m) at height `z` (m, the
         plate's lower face at 0): shape (vectors, x, y, 3)."""
         Ex, Ey, Ez, signs = self._evaluation(x, y, z)
@@ -54,7 +45,9 @@ class SolvedModel:
             out[column] = values
         return out * signs
 
-    def force(self, x: FloatArray, y: FloatArray, z: float, w: FloatArray) -> FloatArray:
+    def force(
+        self, x: si.FloatArray, y: si.FloatArray, z: float, w: si.FloatArray
+    ) -> si.FloatArray:
         """The load vector of forces `w` (N, along z, shape (x, y)) at the grid of points: the
         adjoint of `field`, projected on the class of symmetry; shape (unknowns,)."""
         Ex, Ey, Ez, signs = self._evaluation(x, y, z)
@@ -70,8 +63,8 @@ class SolvedModel:
         return out
 
     def _evaluation(
-        self, x: FloatArray, y: FloatArray, z: float
-    ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        self, x: si.FloatArray, y: si.FloatArray, z: float
+    ) -> tuple[si.FloatArray, si.FloatArray, si.FloatArray, si.FloatArray]:
         built, model = self.built, self.built.model
         spans = (self.plate.length, self.plate.width)
         folded, signs = [], []
@@ -111,25 +104,25 @@ class PlateModes(SolvedAgain):
     """
 
     plate: RectangularPlate
-    frequencies: HertzArray
-    errors: HertzArray
-    mesh_frequencies: HertzArray
+    frequencies: si.HertzArray
+    errors: si.HertzArray
+    mesh_frequencies: si.HertzArray
     labels: tuple[Label | None, ...]
     parities: tuple[tuple[Parity | None, Parity | None], ...]
-    x: MetreArray
-    y: MetreArray
-    shapes: FloatArray
-    modal_forces: FloatArray
-    drive_forces: FloatArray
-    open_frequencies: HertzArray
-    couplings: DimensionlessArray
-    quality_factors: DimensionlessArray
+    x: si.MetreArray
+    y: si.MetreArray
+    shapes: si.FloatArray
+    modal_forces: si.FloatArray
+    drive_forces: si.FloatArray
+    open_frequencies: si.HertzArray
+    couplings: si.DimensionlessArray
+    quality_factors: si.DimensionlessArray
     materials: tuple[str, ...]
-    energy_shares: DimensionlessArray
+    energy_shares: si.DimensionlessArray
     model: str
     status: str
     unknowns: int
-    _fields: tuple[tuple[SolvedModel, FloatArray], ...] = field(repr=False)
+    _fields: tuple[tuple[SolvedModel, si.FloatArray], ...] = field(repr=False)
     _again: Callable[[], PlateModes] | None = field(repr=False, default=None)
     _bulk: ClassVar[tuple[str, ...]] = ("_fields",)
 
@@ -139,10 +132,10 @@ class PlateModes(SolvedAgain):
         return self.frequencies.size
 
     def _known(self, mode: int) -> int:
-        require("mode", mode, at_least=-self.count, at_most=self.count - 1)
+        si.require("mode", mode, at_least=-self.count, at_most=self.count - 1)
         return mode
 
-    @checked_numbers
+    @si.checked_numbers
     def index(self, label: Label) -> int:
         """The position of the mode with these nodal lines.
 
@@ -153,31 +146,32 @@ class PlateModes(SolvedAgain):
             known = [str(own) for own in self.labels if own is not None]
             raise InputError(
                 f"no mode {label} is among those solved ({', '.join(known)})."
-                f"{did_you_mean(str(label), known)} Solve near another frequency or a wider band",
+                f"{si.did_you_mean(str(label), known)} Solve near another frequency or a wider "
+                "band",
                 quantity="label",
             )
         return max(found, key=lambda i: abs(self.drive_forces[i]))
 
-    @checked_numbers
-    def field(self, mode: int, x: FloatArray, y: FloatArray, z: Metre) -> FloatArray:
+    @si.checked_numbers
+    def field(self, mode: int, x: si.FloatArray, y: si.FloatArray, z: si.Metre) -> si.FloatArray:
         """Displacement (u, v, w) of a mode on the grid of `x` × `y` at height `z` above the
         plate's lower face, shape (x, y, 3), in 1/√kg."""
         solved, vector = self._fields[self._known(mode)]
-        require("x", x, Unit("m"), axes=1)
-        require("y", y, Unit("m"), axes=1)
-        values: FloatArray = solved.field(vector[:, None], x, y, z)[0]
+        si.require("x", x, si.Unit("m"), axes=1)
+        si.require("y", y, si.Unit("m"), axes=1)
+        values: si.FloatArray = solved.field(vector[:, None], x, y, z)[0]
         return values
 
-    @checked_numbers
-    def nodal_positions(self, mode: int) -> MetreArray:
+    @si.checked_numbers
+    def nodal_positions(self, mode: int) -> si.MetreArray:
         """Where w vanishes along the side that more nodal lines cross, of the shape's dominant
         part (m): along the length, or along the width of a mode such as (0,7)."""
         along, across, _ = profiles(self.shapes[self._known(mode)])
         lines = zero_crossings(self.x, along), zero_crossings(self.y, across)
         return lines[0] if lines[0].size >= lines[1].size else lines[1]
 
-    @checked_numbers
-    def half_wavelength(self, mode: int) -> Metre:
+    @si.checked_numbers
+    def half_wavelength(self, mode: int) -> si.Metre:
         """The mean distance of nodal lines along the side that more of them cross (m); NaN with
         fewer than two.
 
@@ -189,18 +183,18 @@ class PlateModes(SolvedAgain):
         return float(np.mean(np.diff(nodes))) if nodes.size > 1 else float("nan")
 
     @functools.cached_property
-    def half_wavelengths(self) -> MetreArray:
+    def half_wavelengths(self) -> si.MetreArray:
         """`half_wavelength` of every mode."""
         return np.array([self.half_wavelength(i) for i in range(self.count)])
 
 
-def profiles(shape: FloatArray) -> tuple[FloatArray, FloatArray, float]:
+def profiles(shape: si.FloatArray) -> tuple[si.FloatArray, si.FloatArray, float]:
     """The product X(x) Y(y) nearest to a shape, and its share of the shape's square."""
     U, s, V = np.linalg.svd(shape, full_matrices=False)
     return U[:, 0] * s[0], V[0], float(s[0] ** 2 / np.sum(s**2)) if s[0] > 0 else 0.0
 
 
-def zero_crossings(position: FloatArray, profile: FloatArray) -> FloatArray:
+def zero_crossings(position: si.FloatArray, profile: si.FloatArray) -> si.FloatArray:
     """Where a profile changes sign; values below 1e-6 of its largest count as none."""
     strong = np.abs(profile) > 1e-6 * np.max(np.abs(profile))
     x, w = position[strong], profile[strong]
@@ -212,15 +206,15 @@ _POINTS = (97, 65)
 
 
 def surface_shapes(
-    solved: SolvedModel, vectors: FloatArray
-) -> tuple[FloatArray, FloatArray, FloatArray]:
+    solved: SolvedModel, vectors: si.FloatArray
+) -> tuple[si.FloatArray, si.FloatArray, si.FloatArray]:
     """A grid x, y over the whole plate and the displacements there on its upper face."""
     plate = solved.plate
     x, y = np.linspace(0, plate.length, _POINTS[0]), np.linspace(0, plate.width, _POINTS[1])
     return x, y, solved.field(vectors, x, y, plate.thickness)
 
 
-def label_of(surface: FloatArray, x: FloatArray, y: FloatArray) -> Label | None:
+def label_of(surface: si.FloatArray, x: si.FloatArray, y: si.FloatArray) -> Label | None:
     """Nodal lines across the length and the width from displacements (x, y, 3) on the upper face;
     None where the motion is mostly in the plane."""
     w = surface[:, :, 2]
@@ -246,8 +240,8 @@ def tracked(before: PlateModes, after: PlateModes) -> list[tuple[int, float]]:
     return [(int(k), float(row[k])) for row in likeness for k in [int(np.argmax(row))]]
 
 
-@checked_numbers
-def check_band(band: tuple[Hertz, Hertz]) -> None:
+@si.checked_numbers
+def check_band(band: tuple[si.Hertz, si.Hertz]) -> None:
     """Refuse a band that is none."""
     if not 0 <= band[0] < band[1]:
         raise InputError(

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.plate.elements.box_model import Foundation, Medium
 from squeezefilm.plate.elements.slab_factor import SlabFactor
 from squeezefilm.plate.elements.slabs import Slabs
@@ -19,7 +20,6 @@ from squeezefilm.plate.solid.mesh import plate_model
 from squeezefilm.plate.solid.modes import SolvedModel
 from squeezefilm.plate.solid.resolution import NORMAL, Resolution
 from squeezefilm.plate.solid.symmetry import Parity, drive_signs
-from squeezefilm.quantities import ComplexArray, FloatArray, Hertz
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,17 +33,17 @@ class ReducedClass:
 
     solved: SolvedModel
     resolution: Resolution
-    basis: FloatArray
-    mass: FloatArray
-    stiffness: FloatArray
-    loss: FloatArray
-    coupling: FloatArray
-    capacitance: FloatArray
-    drive: FloatArray
+    basis: si.FloatArray
+    mass: si.FloatArray
+    stiffness: si.FloatArray
+    loss: si.FloatArray
+    coupling: si.FloatArray
+    capacitance: si.FloatArray
+    drive: si.FloatArray
     circuit: tuple[tuple[int, float, float], ...]
 
 
-def class_drive(plate: RectangularPlate, solved: SolvedModel) -> FloatArray:
+def class_drive(plate: RectangularPlate, solved: SolvedModel) -> si.FloatArray:
     """The part of the drive in a class: potential of each model electrode per volt."""
     built, signs = solved.built, drive_signs(plate)
     out = np.zeros(len(built.model.electrodes))
@@ -54,7 +54,7 @@ def class_drive(plate: RectangularPlate, solved: SolvedModel) -> FloatArray:
     return out / np.maximum(members, 1)
 
 
-def resolved_frequency(band: tuple[Hertz, Hertz]) -> Hertz:
+def resolved_frequency(band: tuple[si.Hertz, si.Hertz]) -> si.Hertz:
     """The frequency that meshes for a band are made for: as `solve_modes` makes its own."""
     return max(band[1], 1.15 * sum(band) / 2)
 
@@ -82,9 +82,9 @@ def loss_weight(medium: Medium) -> tuple[float, float]:
 def reduced_class(
     plate: RectangularPlate,
     parity: tuple[Parity | None, Parity | None],
-    band: tuple[Hertz, Hertz],
+    band: tuple[si.Hertz, si.Hertz],
     steps: int,
-    loads: list[tuple[FloatArray, FloatArray, FloatArray]],
+    loads: list[tuple[si.FloatArray, si.FloatArray, si.FloatArray]],
     resolution: Resolution = NORMAL,
 ) -> ReducedClass:
     """Reduce one class over a band with `steps` block Krylov steps.
@@ -125,11 +125,13 @@ def spring_losses(foundations: tuple[Foundation, ...]) -> list[float]:
     return [one.loss for one in foundations]
 
 
-def _symmetric(matrix: FloatArray) -> FloatArray:
+def _symmetric(matrix: si.FloatArray) -> si.FloatArray:
     return (matrix + matrix.T) / 2
 
 
-def _krylov_space(slabs: Slabs, factor: SlabFactor, columns: FloatArray, steps: int) -> FloatArray:
+def _krylov_space(
+    slabs: Slabs, factor: SlabFactor, columns: si.FloatArray, steps: int
+) -> si.FloatArray:
     """(K − σM)⁻¹ applied to the columns, and `steps` times (K − σM)⁻¹M to that, with unit mass."""
     X = factor.solve(columns / np.maximum(np.linalg.norm(columns, axis=0), 1e-300))
     Q = np.zeros((slabs.unknowns, 0))
@@ -156,18 +158,20 @@ def _krylov_space(slabs: Slabs, factor: SlabFactor, columns: FloatArray, steps: 
     return Q
 
 
-def surface_values(parts: list[ReducedClass], x: FloatArray, y: FloatArray, z: float) -> FloatArray:
+def surface_values(
+    parts: list[ReducedClass], x: si.FloatArray, y: si.FloatArray, z: float
+) -> si.FloatArray:
     """w of every coordinate of all classes on a grid, shape (coordinates, x, y)."""
     return np.concatenate([one.solved.field(one.basis, x, y, z)[..., 2] for one in parts])
 
 
 def harmonic_solution(
     parts: list[ReducedClass],
-    omega: FloatArray,
-    added: ComplexArray | None,
-    force: ComplexArray | None,
+    omega: si.FloatArray,
+    added: si.ComplexArray | None,
+    force: si.ComplexArray | None,
     voltage: float,
-) -> tuple[ComplexArray, list[ComplexArray], ComplexArray]:
+) -> tuple[si.ComplexArray, list[si.ComplexArray], si.ComplexArray]:
     """Coordinates (frequencies × coordinates), electrode potentials of each class (frequencies ×
     electrodes) and the charge at the drive's terminals, at angular frequencies `omega`.
 

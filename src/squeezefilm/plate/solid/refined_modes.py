@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.plate.elements.krylov import modes_near, prolonged
 from squeezefilm.plate.elements.slab_factor import SlabFactor
 from squeezefilm.plate.elements.slabs import Slabs
@@ -16,7 +17,6 @@ from squeezefilm.plate.solid.electrode_circuits import inverse_with_open
 from squeezefilm.plate.solid.mesh import plate_model
 from squeezefilm.plate.solid.modes import Label, SolvedModel, label_of, surface_shapes
 from squeezefilm.plate.solid.resolution import FINE, NORMAL
-from squeezefilm.quantities import FloatArray, IntArray
 
 LEVELS = (NORMAL, FINE)
 # Share of the difference between two meshes that is still missing on the finer one, and the
@@ -34,11 +34,11 @@ class RefinedModes:
     """The refined modes of one class."""
 
     found: CoarseModes
-    index: IntArray
+    index: si.IntArray
     solved: SolvedModel
-    coarse_values: FloatArray
-    values: FloatArray
-    vectors: FloatArray
+    coarse_values: si.FloatArray
+    values: si.FloatArray
+    vectors: si.FloatArray
     level: int
     factor: SlabFactor
 
@@ -46,7 +46,7 @@ class RefinedModes:
 def refined_modes(
     plate: RectangularPlate,
     one: CoarseModes,
-    index: IntArray,
+    index: si.IntArray,
     highest: float,
     tolerance: float,
 ) -> RefinedModes:
@@ -88,7 +88,9 @@ def with_label(piece: RefinedModes, label: Label) -> RefinedModes:
     )
 
 
-def extrapolated(coarse: FloatArray, fine: FloatArray, level: int) -> tuple[FloatArray, FloatArray]:
+def extrapolated(
+    coarse: si.FloatArray, fine: si.FloatArray, level: int
+) -> tuple[si.FloatArray, si.FloatArray]:
     """Frequencies extrapolated from two meshes, and their estimated errors (Hz)."""
     a, b = np.sqrt(coarse) / (2 * np.pi), np.sqrt(fine) / (2 * np.pi)
     share, doubt = EXTRAPOLATION[level], UNCERTAINTY[level]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from squeezefilm.quantities import Dimensionless
+from squeezefilm import quantities as si
 
 
 @dataclass(frozen=True)
@@ -25,7 +25,7 @@ class Resolution:
     extra_y: float
     order_z: int
     bond_layers: tuple[float, ...] = ()
-    trunk: Dimensionless = 1.0
+    trunk: si.Dimensionless = 1.0
 
 
 # From each to the next every kind of error (smooth, at strip edges, at the bond) falls by a factor

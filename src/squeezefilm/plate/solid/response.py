@@ -9,6 +9,7 @@ from typing import Annotated, ClassVar
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import GeometryError, InputError
 from squeezefilm.plate.circuit import EquivalentCircuit
 from squeezefilm.plate.elements.again import SolvedAgain
@@ -24,41 +25,24 @@ from squeezefilm.plate.solid.reduced import (
 )
 from squeezefilm.plate.solid.resolution import NORMAL, Resolution
 from squeezefilm.plate.solid.symmetry import all_classes, drive_classes, drive_signs
-from squeezefilm.quantities import (
-    AtLeast,
-    ComplexArray,
-    Dimensionless,
-    FloatArray,
-    HertzArray,
-    IntArray,
-    KilogramPerSquareMetre,
-    Metre,
-    MetreArray,
-    PascalPerMetre,
-    PascalSecondPerMetre,
-    Unit,
-    Volt,
-    checked_numbers,
-    require,
-)
 
 _GRID = (121, 81)
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True)
 class SurfaceLoad:
     """A finger or film on a rectangle of the upper face: mass, damping and stiffness per area."""
 
-    x: Metre
-    y: Metre
-    length: Metre
-    width: Metre
-    mass: KilogramPerSquareMetre = 0.0
-    damping: PascalSecondPerMetre = 0.0
-    stiffness: PascalPerMetre = 0.0
+    x: si.Metre
+    y: si.Metre
+    length: si.Metre
+    width: si.Metre
+    mass: si.KilogramPerSquareMetre = 0.0
+    damping: si.PascalSecondPerMetre = 0.0
+    stiffness: si.PascalPerMetre = 0.0
 
-    def points(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def points(self) -> tuple[si.FloatArray, si.FloatArray, si.FloatArray]:
         """Gauss points along x and y and their weights (m²), shape (x, y)."""
         nodes, weights = np.polynomial.legendre.leggauss(8)
         x = self.x + self.length * (nodes + 1) / 2
@@ -76,29 +60,29 @@ class HarmonicResponse(SolvedAgain):
     """
 
     plate: RectangularPlate
-    frequencies: HertzArray
-    admittance: ComplexArray
+    frequencies: si.HertzArray
+    admittance: si.ComplexArray
     method: str
-    truncation_error: Dimensionless
+    truncation_error: si.Dimensionless
     model: str
     _parts: list[ReducedClass] = field(repr=False)
-    _coordinates: ComplexArray = field(repr=False)
-    _potentials: list[ComplexArray] = field(repr=False)
+    _coordinates: si.ComplexArray = field(repr=False)
+    _potentials: list[si.ComplexArray] = field(repr=False)
     _loads: tuple[SurfaceLoad, ...] = field(repr=False, default=())
     _again: Callable[[], HarmonicResponse] | None = field(repr=False, default=None)
     _bulk: ClassVar[tuple[str, ...]] = ("_parts", "_coordinates", "_potentials")
 
     @property
-    def impedance(self) -> ComplexArray:
+    def impedance(self) -> si.ComplexArray:
         """Z = 1/Y (Ω)."""
         return 1 / self.admittance
 
-    @checked_numbers
-    def displacement(self, x: MetreArray, y: MetreArray) -> ComplexArray:
+    @si.checked_numbers
+    def displacement(self, x: si.MetreArray, y: si.MetreArray) -> si.ComplexArray:
         """Complex w per volt (m/V) on the grid of `x` × `y` of the upper face, shape (frequencies,
         x, y)."""
-        require("x", x, Unit("m"), axes=1)
-        require("y", y, Unit("m"), axes=1)
+        si.require("x", x, si.Unit("m"), axes=1)
+        si.require("y", y, si.Unit("m"), axes=1)
         values = surface_values(self._parts, x, y, self._top)
         return np.asarray(np.tensordot(self._coordinates, values, 1))
 
@@ -106,25 +90,25 @@ class HarmonicResponse(SolvedAgain):
     def _top(self) -> float:
         return self.plate.thickness
 
-    @checked_numbers
-    def amplitude_at(self, x: Metre, y: Metre) -> FloatArray:
+    @si.checked_numbers
+    def amplitude_at(self, x: si.Metre, y: si.Metre) -> si.FloatArray:
         """|w| per volt (m/V) at a point, for every frequency."""
         return np.abs(self.displacement(np.array([x]), np.array([y]))[:, 0, 0])
 
-    @checked_numbers
+    @si.checked_numbers
     def line(
-        self, at: int, points: Annotated[int, AtLeast(1)] = 201, y: Metre | None = None
-    ) -> tuple[MetreArray, ComplexArray]:
+        self, at: int, points: Annotated[int, si.AtLeast(1)] = 201, y: si.Metre | None = None
+    ) -> tuple[si.MetreArray, si.ComplexArray]:
         """w per volt (m/V) along the plate's length at frequency number `at`; by default on the
         centreline."""
-        require("at", at, at_least=-self.frequencies.size, at_most=self.frequencies.size - 1)
+        si.require("at", at, at_least=-self.frequencies.size, at_most=self.frequencies.size - 1)
         x = np.linspace(0, self.plate.length, points)
         across = self.plate.width / 2 if y is None else y
         values = surface_values(self._parts, x, np.array([across]), self._top)[:, :, 0]
         return x, self._coordinates[at] @ values
 
     @functools.cached_property
-    def maximum(self) -> FloatArray:
+    def maximum(self) -> si.FloatArray:
         """The largest |w| per volt (m/V) anywhere on the upper face, for every frequency."""
         x = np.linspace(0, self.plate.length, _GRID[0])
         y = np.linspace(0, self.plate.width, _GRID[1])
@@ -141,23 +125,23 @@ class HarmonicResponse(SolvedAgain):
         """The number of the frequency with the largest amplitude."""
         return int(np.argmax(self.maximum))
 
-    @checked_numbers
-    def current(self, voltage: Volt) -> FloatArray:
+    @si.checked_numbers
+    def current(self, voltage: si.Volt) -> si.FloatArray:
         """The amplifier's current amplitude (A) at a voltage amplitude."""
         return np.abs(self.admittance) * voltage
 
-    @checked_numbers
-    def apparent_power(self, voltage: Volt) -> FloatArray:
+    @si.checked_numbers
+    def apparent_power(self, voltage: si.Volt) -> si.FloatArray:
         """Vrms · Irms (VA): what the amplifier must be able to give."""
         return self.current(voltage) * voltage / 2
 
-    @checked_numbers
-    def input_power(self, voltage: Volt) -> FloatArray:
+    @si.checked_numbers
+    def input_power(self, voltage: si.Volt) -> si.FloatArray:
         """Mean electrical power (W) taken at a voltage amplitude."""
         return self.admittance.real * voltage**2 / 2
 
-    @checked_numbers
-    def dissipated_power(self, voltage: Volt) -> FloatArray:
+    @si.checked_numbers
+    def dissipated_power(self, voltage: si.Volt) -> si.FloatArray:
         """Mean power (W) lost in materials, supports, shunts and loads; equals the input power."""
         omega = 2 * np.pi * self.frequencies
         out = np.zeros(omega.size)
@@ -177,8 +161,8 @@ class HarmonicResponse(SolvedAgain):
             out += omega**2 / 2 * load.damping * np.sum(np.abs(w) ** 2 * area, axis=(1, 2))
         return out * voltage**2
 
-    @checked_numbers
-    def stored_energy(self, voltage: Volt) -> tuple[FloatArray, FloatArray]:
+    @si.checked_numbers
+    def stored_energy(self, voltage: si.Volt) -> tuple[si.FloatArray, si.FloatArray]:
         """Mean kinetic and mean potential energy (J; elastic and of supports, less the electric)
         of the plate at a voltage amplitude."""
         omega = 2 * np.pi * self.frequencies
@@ -219,7 +203,7 @@ class HarmonicResponse(SolvedAgain):
         width = max(f[-1] - f[0], f0 * 1e-6)
         c0 = float(np.median(Y.imag / omega))
 
-        def residual(p: FloatArray) -> FloatArray:
+        def residual(p: si.FloatArray) -> si.FloatArray:
             fr, q, conductance, c = f0 * (1 + p[0] * 1e-3), np.exp(p[1]), np.exp(p[2]), p[3] * c0
             x = q * (f / fr - fr / f)
             error = (conductance / (1 + 1j * x) + 1j * omega * c - Y) / g
@@ -234,17 +218,17 @@ class HarmonicResponse(SolvedAgain):
         )
 
 
-def _run(after: IntArray, peak: int) -> int:
+def _run(after: si.IntArray, peak: int) -> int:
     count = 0
     while count < after.size and after[count] == peak + 1 + count:
         count += 1
     return count
 
 
-@checked_numbers
+@si.checked_numbers
 def harmonic_response(
     plate: RectangularPlate,
-    frequencies: HertzArray,
+    frequencies: si.HertzArray,
     *,
     loads: Sequence[SurfaceLoad] = (),
     steps: int | None = None,
@@ -271,7 +255,7 @@ def harmonic_response(
     band = float(f[0]), float(f[-1])
     if steps is None:
         steps = int(np.clip(14 + 40 * (band[1] - band[0]) / band[1], 14, 60))
-    require("steps", steps, at_least=1)
+    si.require("steps", steps, at_least=1)
     with one_blas_thread():
         parts = _reduced(plate, loads, band, steps, resolution, extrapolate, progress)
         omega = 2 * np.pi * f
@@ -303,10 +287,10 @@ def harmonic_response(
 
 
 def _require_answered(
-    plate: RectangularPlate, frequencies: HertzArray, loads: Sequence[SurfaceLoad]
+    plate: RectangularPlate, frequencies: si.HertzArray, loads: Sequence[SurfaceLoad]
 ) -> None:
     """Refuse frequencies, a drive or a load to which there is no response."""
-    require("frequencies", frequencies, Unit("Hz"), above=0)
+    si.require("frequencies", frequencies, si.Unit("Hz"), above=0)
     if frequencies.size > 1 and np.any(np.diff(frequencies) <= 0):
         raise InputError("frequencies must ascend", quantity="frequencies")
     if not np.any(drive_signs(plate)):
@@ -348,8 +332,8 @@ def _load_stiffness(
     plate: RectangularPlate,
     parts: list[ReducedClass],
     loads: Sequence[SurfaceLoad],
-    omega: FloatArray,
-) -> ComplexArray:
+    omega: si.FloatArray,
+) -> si.ComplexArray:
     total = sum(one.basis.shape[1] for one in parts)
     out = np.zeros((omega.size, total, total), dtype=complex)
     for load in loads:
@@ -363,9 +347,9 @@ def _load_stiffness(
 
 def _truncation(
     parts: list[ReducedClass],
-    omega: FloatArray,
-    added: ComplexArray | None,
-    admittance: ComplexArray,
+    omega: si.FloatArray,
+    added: si.ComplexArray | None,
+    admittance: si.ComplexArray,
 ) -> float:
     """How much the admittance changes when each space loses its last quarter."""
     some = omega[:: max(1, omega.size // 12)]

@@ -10,19 +10,19 @@ import math
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import ConvergenceError, InputError
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.shear.modes import ShearMode, shear_modes
 from squeezefilm.plate.shear.section import shear_layout
 from squeezefilm.plate.solid.modes import profiles, zero_crossings
-from squeezefilm.quantities import Dimensionless, FloatArray, Hertz
 
 # So many modes of one class of symmetry around the bare plate's frequency are looked at: strips on
 # a part of the face move a mode by some ten percent.
 _NEAREST = 16
 
 
-def bare_frequency(plate: RectangularPlate, label: tuple[int, int]) -> Hertz:
+def bare_frequency(plate: RectangularPlate, label: tuple[int, int]) -> si.Hertz:
     """The frequency of the substrate alone (Hz), with free edges: k of a free-free beam along each
     side, Kirchhoff's plate. Good to 10 % for plates thin against the half wavelength.
 
@@ -37,7 +37,7 @@ def bare_frequency(plate: RectangularPlate, label: tuple[int, int]) -> Hertz:
     return k2 / (2 * math.pi) * math.sqrt(stiffness / (substrate.density * h))
 
 
-def screened_frequency(plate: RectangularPlate, label: tuple[int, int]) -> Hertz | None:
+def screened_frequency(plate: RectangularPlate, label: tuple[int, int]) -> si.Hertz | None:
     """The frequency of a mode by the shear plate (Hz), searched around the bare plate's.
 
     Of several with these nodal lines the one whose shape is most nearly that of straight lines:
@@ -65,7 +65,7 @@ def _lines(mode: ShearMode) -> tuple[int, int]:
     return zero_crossings(mode.x, along).size, zero_crossings(mode.y, across).size
 
 
-def straightness(deflection: FloatArray) -> Dimensionless:
+def straightness(deflection: si.FloatArray) -> si.Dimensionless:
     """The share of a shape's square that is one profile along x times one along y: 1 for straight
     nodal lines. `deflection` on a grid, shape (x, y)."""
     size = np.linalg.svd(deflection, compute_uv=False)

@@ -11,6 +11,7 @@ import dataclasses
 import functools
 from typing import Annotated
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import FREQUENCY
 from squeezefilm.plate.elements.blas_threads import one_blas_thread
@@ -26,30 +27,20 @@ from squeezefilm.plate.solid.modes import Label, PlateModes, check_band
 from squeezefilm.plate.solid.refined_modes import RefinedModes, refined_modes, with_label
 from squeezefilm.plate.solid.symmetry import Parity, all_classes, drive_classes
 from squeezefilm.progress import ShareProgress
-from squeezefilm.quantities import (
-    Above,
-    AtLeast,
-    Below,
-    Dimensionless,
-    Hertz,
-    Unit,
-    checked_numbers,
-    require,
-)
 
 # So many modes of a class are looked at around the guess of a mode that is asked for by its lines.
 _WIDTHS = (8, 24)
 
 
-@checked_numbers
+@si.checked_numbers
 def solve_modes(
     plate: RectangularPlate,
     *,
-    near: Hertz | None = None,
-    band: tuple[Hertz, Hertz] | None = None,
+    near: si.Hertz | None = None,
+    band: tuple[si.Hertz, si.Hertz] | None = None,
     mode: Label | None = None,
-    count: Annotated[int, AtLeast(1)] = 6,
-    tolerance: Annotated[Dimensionless, Above(0.0), Below(1.0)] = 1e-3,
+    count: Annotated[int, si.AtLeast(1)] = 6,
+    tolerance: Annotated[si.Dimensionless, si.Above(0.0), si.Below(1.0)] = 1e-3,
     driven_only: bool = False,
     progress: ShareProgress | None = None,
 ) -> PlateModes:
@@ -73,7 +64,7 @@ def solve_modes(
     if sum(option is not None for option in (near, band, mode)) > 1:
         raise InputError("give one of near, band and mode; they choose the modes in different ways")
     if near is not None:
-        require("near", near, Unit("Hz"), above=0, at_most=FREQUENCY.most)
+        si.require("near", near, si.Unit("Hz"), above=0, at_most=FREQUENCY.most)
     if band is not None:
         check_band(band)
     if near is None and band is None and mode is None:

@@ -7,8 +7,8 @@ from typing import Literal
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.plate.layout import CeramicPatch, FoamSupport, RectangularPlate
-from squeezefilm.quantities import FloatArray
 
 Parity = Literal["S", "A"]
 SNAP = 1e-9  # m; edges nearer than this are one
@@ -56,7 +56,7 @@ def mirror_map(plate: RectangularPlate, axis: int) -> list[int] | None:
     return out
 
 
-def drive_signs(plate: RectangularPlate) -> FloatArray:
+def drive_signs(plate: RectangularPlate) -> si.FloatArray:
     """The sign of each patch's potential under the drive; 0 where it is not driven."""
     return np.array(
         [p.polarity * p.poling if p.electrode == "driven" else 0.0 for p in plate.patches]

@@ -13,13 +13,13 @@ from typing import Any
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.plate.elements.box_model import POTENTIAL_UNIT
 from squeezefilm.plate.elements.cross_section import potential_base
 from squeezefilm.plate.elements.lobatto import LineMesh
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.solid.modes import PlateModes, SolvedModel
 from squeezefilm.plate.solid.response import HarmonicResponse
-from squeezefilm.quantities import ComplexArray, FloatArray, IntArray, MetreArray
 
 _CORNERS = np.array(
     [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
@@ -34,15 +34,17 @@ class PlateVolume:
     is that of the ground)."""
 
     plate: RectangularPlate
-    points: FloatArray
-    cells: IntArray
-    material: IntArray
+    points: si.FloatArray
+    cells: si.IntArray
+    material: si.IntArray
     materials: tuple[str, ...]
-    axes: tuple[MetreArray, MetreArray, MetreArray]
-    place: IntArray
-    patch: IntArray
+    axes: tuple[si.MetreArray, si.MetreArray, si.MetreArray]
+    place: si.IntArray
+    patch: si.IntArray
 
-    def displacement(self, solved: SolvedModel, vector: FloatArray | ComplexArray) -> FloatArray:
+    def displacement(
+        self, solved: SolvedModel, vector: si.FloatArray | si.ComplexArray
+    ) -> si.FloatArray:
         """(u, v, w) of a solution vector at the points, shape (points, 3)."""
         x, y, z = self.axes
         columns: Any = vector[:, None]  # real or complex: the interpolation is real
@@ -52,9 +54,9 @@ class PlateVolume:
     def potential(
         self,
         solved: SolvedModel,
-        vector: FloatArray | ComplexArray,
-        electrodes: FloatArray | ComplexArray,
-    ) -> FloatArray:
+        vector: si.FloatArray | si.ComplexArray,
+        electrodes: si.FloatArray | si.ComplexArray,
+    ) -> si.FloatArray:
         """φ (V) at the points, for the potentials (V) of the model's electrodes."""
         coefficients = _potential_coefficients(solved, vector, electrodes)
         model, built = solved.built.model, solved.built
@@ -130,7 +132,9 @@ def plate_volume(modes: PlateModes, mode: int) -> PlateVolume:
     )
 
 
-def mode_fields(volume: PlateVolume, modes: PlateModes, mode: int) -> tuple[FloatArray, FloatArray]:
+def mode_fields(
+    volume: PlateVolume, modes: PlateModes, mode: int
+) -> tuple[si.FloatArray, si.FloatArray]:
     """Displacement (points × 3, 1/√kg) and potential (V per m√kg) of a mode of unit modal mass."""
     solved, vector = modes._fields[mode]
     electrodes = _mode_electrodes(solved, vector)
@@ -139,7 +143,7 @@ def mode_fields(volume: PlateVolume, modes: PlateModes, mode: int) -> tuple[Floa
 
 def harmonic_fields(
     volume: PlateVolume, response: HarmonicResponse, at: int
-) -> tuple[ComplexArray, ComplexArray]:
+) -> tuple[si.ComplexArray, si.ComplexArray]:
     """Complex displacement (points × 3, m/V) and potential (V/V) of the response per volt of the
     drive at frequency number `at`."""
     moved = np.zeros(volume.points.shape, dtype=complex)
@@ -154,12 +158,14 @@ def harmonic_fields(
     return moved, charged
 
 
-def _element_of(line: LineMesh) -> IntArray:
+def _element_of(line: LineMesh) -> si.IntArray:
     """The element of each interval between two nodes of a line."""
     return np.repeat(np.arange(line.elements), line.orders)
 
 
-def _patches(plate: RectangularPlate, centres: list[FloatArray], material: IntArray) -> IntArray:
+def _patches(
+    plate: RectangularPlate, centres: list[si.FloatArray], material: si.IntArray
+) -> si.IntArray:
     """The patch of each interval box, −1 where it is none."""
     out = np.full(material.shape, -1)
     for number, patch in enumerate(plate.patches):
@@ -173,7 +179,7 @@ def _patches(plate: RectangularPlate, centres: list[FloatArray], material: IntAr
     return out
 
 
-def _mode_electrodes(solved: SolvedModel, vector: FloatArray) -> FloatArray:
+def _mode_electrodes(solved: SolvedModel, vector: si.FloatArray) -> si.FloatArray:
     """The potential (V) of each electrode in free vibration: none but where a patch is open and
     carries no charge."""
     G, C = solved.slabs.electrode_columns
@@ -188,8 +194,10 @@ def _mode_electrodes(solved: SolvedModel, vector: FloatArray) -> FloatArray:
 
 
 def _potential_coefficients(
-    solved: SolvedModel, vector: FloatArray | ComplexArray, electrodes: FloatArray | ComplexArray
-) -> FloatArray:
+    solved: SolvedModel,
+    vector: si.FloatArray | si.ComplexArray,
+    electrodes: si.FloatArray | si.ComplexArray,
+) -> si.FloatArray:
     """φ (V) of each ceramic: nodal along x, hierarchic along y and z; shape (ceramics, x nodes,
     y functions, z functions)."""
     slabs, model = solved.slabs, solved.built.model

@@ -12,26 +12,12 @@ from typing import Annotated
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.solid.modes import MODEL, PlateModes
 from squeezefilm.plate.solid.response import HarmonicResponse, harmonic_response
 from squeezefilm.plate.solid.solve import solve_modes
 from squeezefilm.progress import ShareProgress
-from squeezefilm.quantities import (
-    AtLeast,
-    Dimensionless,
-    FloatArray,
-    Hertz,
-    HertzLike,
-    Kilogram,
-    Metre,
-    MetreArray,
-    MetrePerVolt,
-    MetrePerVoltArray,
-    Unit,
-    checked_numbers,
-    require,
-)
 
 RESPONSE_POINTS = 200
 _LINE_POINTS = 401
@@ -42,12 +28,12 @@ _TOLERANCE = 3e-3
 _MODES = 0.5
 
 
-@checked_numbers
+@si.checked_numbers
 def response_frequencies(
-    frequency: Hertz,
-    quality_factor: Dimensionless,
-    points: Annotated[int, AtLeast(2)] = RESPONSE_POINTS,
-) -> FloatArray:
+    frequency: si.Hertz,
+    quality_factor: si.Dimensionless,
+    points: Annotated[int, si.AtLeast(2)] = RESPONSE_POINTS,
+) -> si.FloatArray:
     """Frequencies (Hz) around a resonance, ±8/Q, dense where the curve turns within f/Q.
 
     Raises `InputError` for fewer than 2 points.
@@ -73,43 +59,43 @@ class SolidMode:
     modes: PlateModes
     index: int
     response: HarmonicResponse
-    position: MetreArray
-    deflection: FloatArray
-    nodal_positions: MetreArray
-    lobe: tuple[Metre, Metre]
-    amplitude_per_volt: MetrePerVolt
-    modal_amplitude_per_volt: MetrePerVolt
-    modal_mass: Kilogram
+    position: si.MetreArray
+    deflection: si.FloatArray
+    nodal_positions: si.MetreArray
+    lobe: tuple[si.Metre, si.Metre]
+    amplitude_per_volt: si.MetrePerVolt
+    modal_amplitude_per_volt: si.MetrePerVolt
+    modal_mass: si.Kilogram
     model: str = MODEL
 
     @property
-    def frequency(self) -> Hertz:
+    def frequency(self) -> si.Hertz:
         """Resonance frequency (Hz), extrapolated from two meshes."""
         return float(self.modes.frequencies[self.index])
 
     @property
-    def frequency_error(self) -> Hertz:
+    def frequency_error(self) -> si.Hertz:
         """Estimated error of `frequency` (Hz): of the discretisation, not of the data."""
         return float(self.modes.errors[self.index])
 
     @property
-    def quality_factor(self) -> Dimensionless:
+    def quality_factor(self) -> si.Dimensionless:
         """From the materials' losses, weighted by their share of the energy."""
         return float(self.modes.quality_factors[self.index])
 
     @property
-    def half_wavelength(self) -> Metre:
+    def half_wavelength(self) -> si.Metre:
         """See `PlateModes.half_wavelength` (m)."""
         return self.modes.half_wavelength(self.index)
 
-    @checked_numbers
-    def amplitude_per_volt_at(self, frequency: HertzLike) -> MetrePerVoltArray:
+    @si.checked_numbers
+    def amplitude_per_volt_at(self, frequency: si.HertzLike) -> si.MetrePerVoltArray:
         """|w| per volt (m/V) at the largest interior lobe of the centreline, at frequencies (Hz).
 
         Solved anew at each of them, all modes in. Raises `InputError` unless they are above 0.
         """
         wanted = np.atleast_1d(np.asarray(frequency, dtype=float))
-        require("frequency", wanted, Unit("Hz"), above=0)
+        si.require("frequency", wanted, si.Unit("Hz"), above=0)
         ascending, back = np.unique(wanted, return_inverse=True)
         plate = self.modes.plate
         # With the resonance in the band, its mode is in the reduced space and not far outside.
@@ -133,7 +119,7 @@ class _Listener:
         return lambda text, fraction: tell(text, first + (last - first) * fraction)
 
 
-@checked_numbers
+@si.checked_numbers
 def solid_mode(
     plate: RectangularPlate,
     label: tuple[int, int] | None = None,
@@ -195,7 +181,9 @@ def _solid_mode(
     )
 
 
-def _interior(position: MetreArray, nodes: MetreArray) -> np.ndarray[tuple[int], np.dtype[np.bool]]:
+def _interior(
+    position: si.MetreArray, nodes: si.MetreArray
+) -> np.ndarray[tuple[int], np.dtype[np.bool]]:
     """Between the outermost nodal lines: free ends move further than any finger meets."""
     if nodes.size < 2:
         return np.ones(position.size, dtype=bool)

@@ -13,21 +13,9 @@ from typing import Annotated
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import RENDER_STEPS, require_motion
-from squeezefilm.quantities import (
-    Above,
-    Dimensionless,
-    DimensionlessArray,
-    FloatArray,
-    Hertz,
-    MetreArray,
-    MetrePerSecondArray,
-    SecondArray,
-    checked_numbers,
-    require,
-    returned,
-)
 from squeezefilm.render.fidelity.trace import RelativeFriction
 from squeezefilm.render.motion.estimator import MotionEstimate, MotionEstimator, estimate_motion
 from squeezefilm.render.motion.minimum_jerk import Trajectory
@@ -68,26 +56,26 @@ class RenderedStroke:
     trajectory: Trajectory
     envelope: DrivenEnvelope
     compensation: Compensation
-    control_rate: Hertz
+    control_rate: si.Hertz
     sensor: SensorModel | None
     estimator: MotionEstimator | None
     seed: int
-    time: SecondArray
-    position: MetreArray
-    speed: MetrePerSecondArray
+    time: si.SecondArray
+    position: si.MetreArray
+    speed: si.MetrePerSecondArray
     estimate: MotionEstimate | None
-    wanted: MetreArray
-    command: MetreArray
-    amplitude: MetreArray
-    relative_friction_wanted: DimensionlessArray
-    relative_friction_rendered: DimensionlessArray
-    saturated_top: Dimensionless
-    saturated_bottom: Dimensionless
-    silent: Dimensionless
+    wanted: si.MetreArray
+    command: si.MetreArray
+    amplitude: si.MetreArray
+    relative_friction_wanted: si.DimensionlessArray
+    relative_friction_rendered: si.DimensionlessArray
+    saturated_top: si.Dimensionless
+    saturated_bottom: si.Dimensionless
+    silent: si.Dimensionless
     model: str
 
 
-@checked_numbers
+@si.checked_numbers
 def rendered_stroke(
     texture: Texture,
     trajectory: Trajectory,
@@ -97,7 +85,7 @@ def rendered_stroke(
     compensation: Compensation = "none",
     sensor: SensorModel | None = None,
     estimator: MotionEstimator | None = None,
-    control_rate: Annotated[Hertz, Above(0.0)] = 20e3,
+    control_rate: Annotated[si.Hertz, si.Above(0.0)] = 20e3,
     seed: int = 0,
 ) -> RenderedStroke:
     """Render a stroke over a texture as a loop would.
@@ -129,14 +117,14 @@ def rendered_stroke(
     require_motion(RENDER_STEPS, rounded, trajectory.duration, control_rate)
     steps = math.floor(rounded)
     dt = 1 / control_rate
-    time: FloatArray = np.arange(steps + 1, dtype=np.float64) * dt
+    time: si.FloatArray = np.arange(steps + 1, dtype=np.float64) * dt
     position = trajectory.position(np.minimum(time, trajectory.duration))
-    speed: FloatArray = np.gradient(position, dt)
+    speed: si.FloatArray = np.gradient(position, dt)
     wanted = _asked(texture, position, speed, time)
     estimate, known = None, np.ones(time.size, dtype=bool)
     # For whose place a command is meant: the middle of its step, or (compensated) the next step.
     lead = 0.5 * dt if compensation == "none" else dt
-    later: FloatArray = np.minimum(time + lead, trajectory.duration)
+    later: si.FloatArray = np.minimum(time + lead, trajectory.duration)
     if sensor is None:
         ahead_position, ahead_speed = trajectory.position(later), speed
     else:
@@ -188,12 +176,12 @@ def rendered_stroke(
 def _previewed(
     texture: Texture,
     envelope: DrivenEnvelope,
-    time: FloatArray,
+    time: si.FloatArray,
     ahead: MotionEstimate,
     known: np.ndarray[tuple[int], np.dtype[np.bool_]],
     dt: float,
     start: float,
-) -> tuple[FloatArray, float, float]:
+) -> tuple[si.FloatArray, float, float]:
     """Commands where the way ahead is only predicted: at the estimated speed from each step on."""
     count = preview_samples(envelope, dt)
     state, parameters, work = (
@@ -216,15 +204,15 @@ def _previewed(
     return command, top, bottom
 
 
-def _asked(texture: Texture, x: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
+def _asked(texture: Texture, x: si.FloatArray, v: si.FloatArray, t: si.FloatArray) -> si.FloatArray:
     return _per_sample("texture", texture(x, 0.0, np.abs(v), t), x)
 
 
-def _friction(law: RelativeFriction, amplitude: FloatArray) -> FloatArray:
+def _friction(law: RelativeFriction, amplitude: si.FloatArray) -> si.FloatArray:
     return _per_sample("relative_friction", law(amplitude), amplitude)
 
 
-def _per_sample(name: str, values: FloatArray, given: FloatArray) -> FloatArray:
-    array = returned(name, values, given, "one value per sample")
-    require(f"a value returned by {name}", array, at_least=0.0)
+def _per_sample(name: str, values: si.FloatArray, given: si.FloatArray) -> si.FloatArray:
+    array = si.returned(name, values, given, "one value per sample")
+    si.require(f"a value returned by {name}", array, at_least=0.0)
     return array

@@ -12,32 +12,22 @@ from typing import Annotated
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import LAG_PRODUCTS, require_within
-from squeezefilm.quantities import (
-    Dimensionless,
-    DimensionlessArray,
-    FloatArray,
-    Hertz,
-    Metre,
-    MetrePerSecond,
-    Second,
-    Unit,
-    require,
-)
 from squeezefilm.render.fidelity.rendered_stroke import RenderedStroke
 from squeezefilm.render.motion.estimator import MotionEstimator
 from squeezefilm.render.motion.sensor import SensorModel
 from squeezefilm.render.resonator.compensation import Compensation, DrivenEnvelope
 
-PerMetreArray = Annotated[FloatArray, Unit("1/m")]
+PerMetreArray = Annotated[si.FloatArray, si.Unit("1/m")]
 _Mask = np.ndarray[tuple[int], np.dtype[np.bool_]]
-_Passes = list[tuple[FloatArray, FloatArray, FloatArray]]
+_Passes = list[tuple[si.FloatArray, si.FloatArray, si.FloatArray]]
 
 # After fifteen time constants 3e-7 of the start is left.
 _SETTLING = 15
 _PER_PERIOD = 64
-_LONGEST_LAG: Metre = 5e-3
+_LONGEST_LAG: si.Metre = 5e-3
 _FEWEST_PERIODS = 4
 # Below this share of the wanted pattern's power a spatial frequency counts as not in it.
 _FAINT = 1e-6
@@ -73,31 +63,31 @@ class FidelityReport:
     trajectory: str
     envelope: DrivenEnvelope
     compensation: Compensation
-    control_rate: Hertz
+    control_rate: si.Hertz
     sensor: SensorModel | None
     estimator: MotionEstimator | None
     seed: int
-    judged: Second
-    mean_speed: MetrePerSecond
-    wanted_swing: Dimensionless
-    rms_error: Dimensionless
-    relative_error: Dimensionless
+    judged: si.Second
+    mean_speed: si.MetrePerSecond
+    wanted_swing: si.Dimensionless
+    rms_error: si.Dimensionless
+    relative_error: si.Dimensionless
     spatial_frequency: PerMetreArray
-    contrast_kept: DimensionlessArray
-    swing_kept: DimensionlessArray
-    lag: Metre
-    lag_time: Second
-    saturated_top: Dimensionless
-    saturated_bottom: Dimensionless
-    silent: Dimensionless
-    position_error: Metre | None
-    speed_error: MetrePerSecond | None
+    contrast_kept: si.DimensionlessArray
+    swing_kept: si.DimensionlessArray
+    lag: si.Metre
+    lag_time: si.Second
+    saturated_top: si.Dimensionless
+    saturated_bottom: si.Dimensionless
+    silent: si.Dimensionless
+    position_error: si.Metre | None
+    speed_error: si.MetrePerSecond | None
     samples_refused: int | None
     model: str
 
 
 def fidelity_report(
-    stroke: RenderedStroke, spatial_frequencies: Sequence[float] | FloatArray | None = None
+    stroke: RenderedStroke, spatial_frequencies: Sequence[float] | si.FloatArray | None = None
 ) -> FidelityReport:
     """Judge a rendered stroke.
 
@@ -153,7 +143,7 @@ def fidelity_report(
     )
 
 
-def _judged(stroke: RenderedStroke) -> tuple[Second, _Mask]:
+def _judged(stroke: RenderedStroke) -> tuple[si.Second, _Mask]:
     """The start that is left out (s), and which steps are judged. Raises as `fidelity_report`."""
     slowest = max(stroke.envelope.rise_time_constant, stroke.envelope.fall_time_constant)
     skip = _SETTLING * slowest
@@ -176,7 +166,7 @@ def _judged(stroke: RenderedStroke) -> tuple[Second, _Mask]:
 
 def _errors_of_estimate(
     stroke: RenderedStroke, judged: _Mask
-) -> tuple[Metre | None, MetrePerSecond | None, int | None]:
+) -> tuple[si.Metre | None, si.MetrePerSecond | None, int | None]:
     """RMS errors of place and speed, and how many samples were refused; None without a sensor."""
     if stroke.estimate is None:
         return None, None, None
@@ -188,7 +178,7 @@ def _errors_of_estimate(
     )
 
 
-def _rms(values: FloatArray) -> float:
+def _rms(values: si.FloatArray) -> float:
     return math.sqrt(float(np.mean(values**2))) if values.size else math.nan
 
 
@@ -215,8 +205,8 @@ def _passes(stroke: RenderedStroke, judged: _Mask) -> _Passes:
 def _frequencies(
     stroke: RenderedStroke,
     passes: _Passes,
-    asked: Sequence[float] | FloatArray | None,
-) -> FloatArray:
+    asked: Sequence[float] | si.FloatArray | None,
+) -> si.FloatArray:
     longest = max((float(np.ptp(way)) for way, _, _ in passes), default=0.0)
     period = getattr(stroke.texture, "spatial_period", None)
     if asked is not None:
@@ -230,7 +220,7 @@ def _frequencies(
             f"spatial_frequencies of shape {frequencies.shape} cannot be used: give a list of at "
             "least one"
         )
-    require("spatial_frequencies", frequencies, Unit("1/m"), above=0.0)
+    si.require("spatial_frequencies", frequencies, si.Unit("1/m"), above=0.0)
     if longest * float(frequencies.min()) < _FEWEST_PERIODS * (1 - 1e-9):
         raise InputError(
             f"no pass shows {_FEWEST_PERIODS} periods at {float(frequencies.min()):.4g} 1/m: the "
@@ -239,7 +229,7 @@ def _frequencies(
     return frequencies
 
 
-def _contrast(passes: _Passes, frequencies: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _contrast(passes: _Passes, frequencies: si.FloatArray) -> tuple[si.FloatArray, si.FloatArray]:
     cross = np.zeros(frequencies.size, dtype=complex)
     wanted_power, rendered_power = np.zeros((2, frequencies.size))
     whole = 0.0

@@ -6,14 +6,14 @@ import math
 
 import numpy as np
 
-from squeezefilm.quantities import FloatArray, Metre
+from squeezefilm import quantities as si
 from squeezefilm.render.fidelity.rendered_stroke import RenderedStroke
 
 _MOST_LINES = 6
 _FAINT = 0.01
 
 
-def strongest_lines(stroke: RenderedStroke, period: Metre | None) -> FloatArray | None:
+def strongest_lines(stroke: RenderedStroke, period: si.Metre | None) -> si.FloatArray | None:
     """Spatial frequencies (1/m) at which a texture without a period has its contrast.
 
     The strongest lines of the first pass's spectrum, at most six; elsewhere a share of next to

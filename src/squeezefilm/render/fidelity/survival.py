@@ -9,22 +9,8 @@ from typing import Annotated, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import (
-    Above,
-    Dimensionless,
-    DimensionlessArray,
-    FloatArray,
-    Metre,
-    MetreArray,
-    MetrePerSecond,
-    MetrePerSecondArray,
-    Second,
-    Unit,
-    checked_numbers,
-    format_quantity,
-    require,
-)
 from squeezefilm.render.fidelity.trace import FrictionTrace, RelativeFriction, friction_trace
 from squeezefilm.render.motion.stroke import Stroke
 from squeezefilm.render.resonator.envelope import (
@@ -36,10 +22,10 @@ from squeezefilm.render.resonator.envelope import (
 )
 from squeezefilm.render.texture.gratings import Sine, Square
 
-PAPER_PERIODS: tuple[Metre, ...] = (0.4e-3, 2e-3, 4e-3, 8e-3, 10e-3)
+PAPER_PERIODS: tuple[si.Metre, ...] = (0.4e-3, 2e-3, 4e-3, 8e-3, 10e-3)
 """Spatial periods of the paper's match-to-sample experiment (m)."""
 
-EXPLORING_SPEEDS: tuple[MetrePerSecond, ...] = (0.01, 0.02, 0.05, 0.1, 0.2)
+EXPLORING_SPEEDS: tuple[si.MetrePerSecond, ...] = (0.01, 0.02, 0.05, 0.1, 0.2)
 """Finger speeds from slow to brisk exploration (m/s)."""
 
 # After fifteen time constants 3e-7 of a transient is left: nothing even beside a swing of which
@@ -50,7 +36,7 @@ _PERIODS_SHOWN = 2
 Signal = Literal["amplitude", "relative_friction"]
 
 
-def swing_kept(trace: FrictionTrace, signal: Signal = "amplitude") -> Dimensionless:
+def swing_kept(trace: FrictionTrace, signal: Signal = "amplitude") -> si.Dimensionless:
     """Swing (peak to peak) rendered, divided by the swing wanted, measured on a trace (1).
 
     Only settled stretches count: the first 15 time constants of every pass, the start and the
@@ -77,9 +63,10 @@ def swing_kept(trace: FrictionTrace, signal: Signal = "amplitude") -> Dimensionl
         needed += trace.texture.spatial_period
     if stroke.length < needed * (1 - 1e-9):
         raise InputError(
-            f"passes of {format_quantity(stroke.length, Unit('m'))} are too short to measure a "
-            f"swing: at {format_quantity(stroke.speed, Unit('m/s'))} settling and one period take "
-            f"{format_quantity(needed, Unit('m'))}; lengthen the stroke or slow it down"
+            f"passes of {si.format_quantity(stroke.length, si.Unit('m'))} are too short to measure "
+            f"a swing: at {si.format_quantity(stroke.speed, si.Unit('m/s'))} settling and one "
+            f"period take {si.format_quantity(needed, si.Unit('m'))}; lengthen the stroke or slow "
+            "it down"
         )
     settled = np.mod(trace.time, stroke.pass_duration) >= settling
     wanted_swing = _swing(wanted[settled])
@@ -91,11 +78,11 @@ def swing_kept(trace: FrictionTrace, signal: Signal = "amplitude") -> Dimensionl
     return _swing(rendered[settled]) / wanted_swing
 
 
-def _swing(values: FloatArray) -> float:
+def _swing(values: si.FloatArray) -> float:
     return float(np.max(values) - np.min(values)) if values.size else 0.0
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, slots=True, eq=False)
 class FidelityTable:
     """Which spatial periods keep their swing at which finger speeds.
@@ -117,36 +104,36 @@ class FidelityTable:
     """
 
     shape: Shape
-    low: Metre
-    high: Metre
-    time_constant: Second
-    kept: Dimensionless
-    spatial_periods: MetreArray
-    speeds: MetrePerSecondArray
-    amplitude_kept: DimensionlessArray
-    friction_kept: DimensionlessArray
-    finest_period: MetreArray
-    fastest_speed: MetrePerSecondArray
-    lag: MetreArray
+    low: si.Metre
+    high: si.Metre
+    time_constant: si.Second
+    kept: si.Dimensionless
+    spatial_periods: si.MetreArray
+    speeds: si.MetrePerSecondArray
+    amplitude_kept: si.DimensionlessArray
+    friction_kept: si.DimensionlessArray
+    finest_period: si.MetreArray
+    fastest_speed: si.MetrePerSecondArray
+    lag: si.MetreArray
     model: str = "first-order envelope at resonance, open loop"
 
     @property
-    def amplitude_survives(self) -> Annotated[NDArray[np.bool_], Unit("1")]:
+    def amplitude_survives(self) -> Annotated[NDArray[np.bool_], si.Unit("1")]:
         """Whether each period keeps its swing of amplitude at each speed, shape (p, v)."""
         return self.amplitude_kept >= self.kept
 
 
-@checked_numbers
+@si.checked_numbers
 def fidelity_table(
-    time_constant: Annotated[Second, Above(0.0)],
+    time_constant: Annotated[si.Second, si.Above(0.0)],
     relative_friction: RelativeFriction,
     *,
-    low: Metre,
-    high: Metre,
+    low: si.Metre,
+    high: si.Metre,
     shape: Shape = "square",
-    kept: Dimensionless = 0.9,
-    spatial_periods: Sequence[Metre] | MetreArray = PAPER_PERIODS,
-    speeds: Sequence[MetrePerSecond] | MetrePerSecondArray = EXPLORING_SPEEDS,
+    kept: si.Dimensionless = 0.9,
+    spatial_periods: Sequence[si.Metre] | si.MetreArray = PAPER_PERIODS,
+    speeds: Sequence[si.MetrePerSecond] | si.MetrePerSecondArray = EXPLORING_SPEEDS,
 ) -> FidelityTable:
     """Which spatial periods keep a share `kept` of their swing at which finger speeds.
 
@@ -168,8 +155,8 @@ def fidelity_table(
         InputError: a value outside its range, no period or no speed, or a friction that doesn't
             change between `low` and `high`.
     """
-    periods = _axis("spatial_periods", spatial_periods, Unit("m"))
-    columns = _axis("speeds", speeds, Unit("m/s"))
+    periods = _axis("spatial_periods", spatial_periods, si.Unit("m"))
+    columns = _axis("speeds", speeds, si.Unit("m/s"))
     finest = np.asarray(finest_period(columns, time_constant, kept, shape))
     fastest = np.asarray(fastest_speed(periods, time_constant, kept, shape))
     law = square_swing_kept if shape == "square" else sine_swing_kept
@@ -197,11 +184,11 @@ def fidelity_table(
     )
 
 
-def _axis(name: str, values: Sequence[float] | FloatArray, unit: Unit) -> FloatArray:
+def _axis(name: str, values: Sequence[float] | si.FloatArray, unit: si.Unit) -> si.FloatArray:
     array = np.array(values, dtype=float)
     if array.ndim != 1 or array.size == 0:
         raise InputError(
             f"{name} of shape {array.shape} cannot be used: give a list of at least one"
         )
-    require(name, array, unit, above=0.0)
+    si.require(name, array, unit, above=0.0)
     return array

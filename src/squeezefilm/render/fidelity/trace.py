@@ -8,28 +8,14 @@ from typing import Annotated
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import (
-    Above,
-    DimensionlessArray,
-    FloatArray,
-    Hertz,
-    Metre,
-    MetreArray,
-    Second,
-    SecondArray,
-    Unit,
-    checked_numbers,
-    format_quantity,
-    require,
-    returned,
-)
 from squeezefilm.render.motion.stroke import Stroke
 from squeezefilm.render.resonator.envelope import envelope_response
 from squeezefilm.render.texture.composition import Composable
 from squeezefilm.render.texture.gratings import Sine, Square, Texture
 
-RelativeFriction = Callable[[MetreArray], DimensionlessArray]
+RelativeFriction = Callable[[si.MetreArray], si.DimensionlessArray]
 """Vibration amplitude (m, zero-to-peak) → friction divided by that of the unexcited surface (1)."""
 
 # 50 samples a time constant draw the exponential smoothly; 128 a period put the extremes of a
@@ -40,7 +26,7 @@ _PER_STROKE = 1000
 _FEWEST_PER_PERIOD = 4
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, slots=True, eq=False)
 class FrictionTrace:
     """What a finger meets along a stroke, wanted and rendered; arrays of shape (samples,).
@@ -58,18 +44,18 @@ class FrictionTrace:
 
     texture: Texture
     stroke: Stroke
-    time_constant: Second
-    sample_rate: Hertz
-    time: SecondArray
-    position: MetreArray
-    command: MetreArray
-    amplitude: MetreArray
-    relative_friction_wanted: DimensionlessArray
-    relative_friction_rendered: DimensionlessArray
+    time_constant: si.Second
+    sample_rate: si.Hertz
+    time: si.SecondArray
+    position: si.MetreArray
+    command: si.MetreArray
+    amplitude: si.MetreArray
+    relative_friction_wanted: si.DimensionlessArray
+    relative_friction_rendered: si.DimensionlessArray
     model: str = "first-order envelope at resonance, open loop"
 
     @property
-    def lag(self) -> Metre:
+    def lag(self) -> si.Metre:
         """How far behind the finger the texture trails (m): τ·v.
 
         The delay of a slow pattern; a pattern as fast as the envelope's bandwidth trails less (a
@@ -78,13 +64,13 @@ class FrictionTrace:
         return self.time_constant * self.stroke.speed
 
 
-@checked_numbers
+@si.checked_numbers
 def friction_trace(
     texture: Texture,
     stroke: Stroke,
-    time_constant: Annotated[Second, Above(0.0)],
+    time_constant: Annotated[si.Second, si.Above(0.0)],
     relative_friction: RelativeFriction,
-    sample_rate: Hertz | None = None,
+    sample_rate: si.Hertz | None = None,
 ) -> FrictionTrace:
     """The friction a finger meets along a stroke over a texture, wanted and rendered.
 
@@ -118,11 +104,11 @@ def friction_trace(
     rate = _rate(texture, stroke, time_constant, sample_rate)
     time, position = stroke.sampled(rate)
     wanted = texture(position, 0.0, stroke.velocity(time), time)
-    command = _values("texture", wanted, time, Unit("m"))
+    command = _values("texture", wanted, time, si.Unit("m"))
     middle = time[:-1] + 0.5 / rate
     held = texture(stroke.position(middle), 0.0, stroke.velocity(middle), middle)
     # The last sample's command is held over a step that nobody sees.
-    steps = np.append(_values("texture", held, middle, Unit("m")), command[-1])
+    steps = np.append(_values("texture", held, middle, si.Unit("m")), command[-1])
     amplitude = envelope_response(steps, 1 / rate, time_constant, initial=float(command[0]))
     return FrictionTrace(
         texture=texture,
@@ -139,8 +125,8 @@ def friction_trace(
 
 
 def _rate(
-    texture: Texture, stroke: Stroke, time_constant: Second, sample_rate: Hertz | None
-) -> Hertz:
+    texture: Texture, stroke: Stroke, time_constant: si.Second, sample_rate: si.Hertz | None
+) -> si.Hertz:
     passed = stroke.speed / texture.spatial_period if isinstance(texture, Square | Sine) else None
     if sample_rate is None:
         rate = max(_PER_TIME_CONSTANT / time_constant, _PER_STROKE / stroke.duration)
@@ -148,22 +134,24 @@ def _rate(
             return rate
         halves = np.ceil(max(rate / passed, _PER_PERIOD) / 2)
         return float(2 * halves * passed)
-    require("sample_rate", sample_rate, Unit("Hz"), above=0.0)
+    si.require("sample_rate", sample_rate, si.Unit("Hz"), above=0.0)
     if passed is not None and sample_rate < _FEWEST_PER_PERIOD * passed:
         raise InputError(
-            f"sample_rate = {format_quantity(sample_rate, Unit('Hz'))} cannot show a grating that "
-            f"passes {format_quantity(passed, Unit('Hz'))} times a second: it must be at least "
-            f"{format_quantity(_FEWEST_PER_PERIOD * passed, Unit('Hz'))}; leave it out for one "
-            "that fits"
+            f"sample_rate = {si.format_quantity(sample_rate, si.Unit('Hz'))} cannot show a grating "
+            f"that passes {si.format_quantity(passed, si.Unit('Hz'))} times a second: it must be "
+            f"at least {si.format_quantity(_FEWEST_PER_PERIOD * passed, si.Unit('Hz'))}; leave it "
+            "out for one that fits"
         )
     return sample_rate
 
 
-def _friction(relative_friction: RelativeFriction, amplitude: MetreArray) -> DimensionlessArray:
-    return _values("relative_friction", relative_friction(amplitude), amplitude, Unit("1"))
+def _friction(
+    relative_friction: RelativeFriction, amplitude: si.MetreArray
+) -> si.DimensionlessArray:
+    return _values("relative_friction", relative_friction(amplitude), amplitude, si.Unit("1"))
 
 
-def _values(name: str, values: FloatArray, given: FloatArray, unit: Unit) -> FloatArray:
-    array = returned(name, values, given, "one value per sample")
-    require(f"a value returned by {name}", array, unit, at_least=0.0)
+def _values(name: str, values: si.FloatArray, given: si.FloatArray, unit: si.Unit) -> si.FloatArray:
+    array = si.returned(name, values, given, "one value per sample")
+    si.require(f"a value returned by {name}", array, unit, at_least=0.0)
     return array

@@ -24,31 +24,17 @@ from typing import Annotated
 import numpy as np
 from numpy.typing import NDArray
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import (
-    Above,
-    AtLeast,
-    Dimensionless,
-    FloatArray,
-    Metre,
-    MetreArray,
-    MetrePerSecond,
-    MetrePerSecondArray,
-    Second,
-    SecondArray,
-    Unit,
-    checked_numbers,
-    require,
-)
 from squeezefilm.render.motion import kernel
 from squeezefilm.render.motion.sensor import SensorModel, SensorStream
 
-MetrePerSecondSquared = Annotated[float, Unit("m/s2")]
-AccelerationDensity = Annotated[float, Unit("m2/s3")]
-JerkDensity = Annotated[float, Unit("m2/s5")]
+MetrePerSecondSquared = Annotated[float, si.Unit("m/s2")]
+AccelerationDensity = Annotated[float, si.Unit("m2/s3")]
+JerkDensity = Annotated[float, si.Unit("m2/s5")]
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class MotionModel:
     """What is assumed of a finger before any sample: how it starts and how it changes.
@@ -68,10 +54,10 @@ class MotionModel:
         InputError: a value outside its range.
     """
 
-    acceleration_density: Annotated[AccelerationDensity, AtLeast(0.0)] = 0.0
-    jerk_density: Annotated[JerkDensity, AtLeast(0.0)] = 40.0
-    speed_deviation: Annotated[MetrePerSecond, Above(0.0)] = 0.15
-    acceleration_deviation: Annotated[MetrePerSecondSquared, AtLeast(0.0)] = 2.0
+    acceleration_density: Annotated[AccelerationDensity, si.AtLeast(0.0)] = 0.0
+    jerk_density: Annotated[JerkDensity, si.AtLeast(0.0)] = 40.0
+    speed_deviation: Annotated[si.MetrePerSecond, si.Above(0.0)] = 0.15
+    acceleration_deviation: Annotated[MetrePerSecondSquared, si.AtLeast(0.0)] = 2.0
 
     def __post_init__(self) -> None:
         if self.acceleration_density == 0.0 and self.jerk_density == 0.0:
@@ -86,15 +72,15 @@ class MotionModel:
             )
 
     @classmethod
-    @checked_numbers
+    @si.checked_numbers
     def white_acceleration(
-        cls, density: AccelerationDensity = 0.05, speed_deviation: MetrePerSecond = 0.15
+        cls, density: AccelerationDensity = 0.05, speed_deviation: si.MetrePerSecond = 0.15
     ) -> MotionModel:
         """The model without jerk: speed wanders, √(density·t) in a time t; assumed density."""
         return cls(density, 0.0, speed_deviation, 0.0)
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class MotionEstimator:
     """The settings of an estimator; its running state is an array from `new_state`.
@@ -114,11 +100,11 @@ class MotionEstimator:
     """
 
     model: MotionModel
-    position_error: Annotated[Metre, Above(0.0)]
-    stamp_error: Annotated[Second, AtLeast(0.0)] = 0.0
-    gate: Annotated[Dimensionless, Above(0.0)] = 5.0
+    position_error: Annotated[si.Metre, si.Above(0.0)]
+    stamp_error: Annotated[si.Second, si.AtLeast(0.0)] = 0.0
+    gate: Annotated[si.Dimensionless, si.Above(0.0)] = 5.0
     most_rejected: int = 3
-    stall: Annotated[Second, Above(0.0)] = 0.1
+    stall: Annotated[si.Second, si.Above(0.0)] = 0.1
 
     def __post_init__(self) -> None:
         if (
@@ -141,7 +127,7 @@ class MotionEstimator:
             stall=max(0.1, 6 / sensor.rate),
         )
 
-    def parameters(self) -> FloatArray:
+    def parameters(self) -> si.FloatArray:
         """The settings as the compiled step takes them (SI), shape (9,)."""
         m = self.model
         return np.array(
@@ -158,7 +144,7 @@ class MotionEstimator:
             ]
         )
 
-    def new_state(self) -> FloatArray:
+    def new_state(self) -> si.FloatArray:
         """The state before the first sample, shape (19,): see `motion_kernel`."""
         return np.zeros(kernel.STATE_SIZE)
 
@@ -176,7 +162,7 @@ class MotionCounts:
     restart: int
 
     @classmethod
-    def of(cls, state: FloatArray) -> MotionCounts:
+    def of(cls, state: si.FloatArray) -> MotionCounts:
         """The counts in an estimator's state."""
         first = kernel.USED
         return cls(*(int(count) for count in state[first : kernel.STATE_SIZE]))
@@ -197,21 +183,21 @@ class MotionEstimate:
     """
 
     estimator: MotionEstimator
-    time: SecondArray
-    position: MetreArray
-    speed: MetrePerSecondArray
-    position_deviation: MetreArray
-    speed_deviation: MetrePerSecondArray
-    fresh: Annotated[NDArray[np.bool_], Unit("1")]
+    time: si.SecondArray
+    position: si.MetreArray
+    speed: si.MetrePerSecondArray
+    position_deviation: si.MetreArray
+    speed_deviation: si.MetrePerSecondArray
+    fresh: Annotated[NDArray[np.bool_], si.Unit("1")]
     counts: MotionCounts
 
 
-@checked_numbers
+@si.checked_numbers
 def estimate_motion(
     estimator: MotionEstimator,
     stream: SensorStream,
-    render: SecondArray,
-    ahead: Annotated[Second, AtLeast(0.0)] = 0.0,
+    render: si.SecondArray,
+    ahead: Annotated[si.Second, si.AtLeast(0.0)] = 0.0,
 ) -> MotionEstimate:
     """The finger's motion at each render time, from the samples that had arrived by then.
 
@@ -256,10 +242,10 @@ def estimate_motion(
     )
 
 
-@checked_numbers
+@si.checked_numbers
 def prediction_deviation(
-    estimator: MotionEstimator, interval: Second, lookahead: Second
-) -> tuple[Metre, MetrePerSecond]:
+    estimator: MotionEstimator, interval: si.Second, lookahead: si.Second
+) -> tuple[si.Metre, si.MetrePerSecond]:
     """Steady-state standard deviations of position (m) and speed (m/s): the Kalman bound.
 
     `interval` (s) separates the samples, `lookahead` (s) the newest sample from the time asked
@@ -268,8 +254,8 @@ def prediction_deviation(
     Raises:
         InputError: an interval not above 0 or above the stall limit, or a negative lookahead.
     """
-    require("interval", interval, Unit("s"), above=0.0, at_most=estimator.stall)
-    require("lookahead", lookahead, Unit("s"), at_least=0.0, at_most=estimator.stall)
+    si.require("interval", interval, si.Unit("s"), above=0.0, at_most=estimator.stall)
+    si.require("lookahead", lookahead, si.Unit("s"), at_least=0.0, at_most=estimator.stall)
     parameters, state = estimator.parameters(), estimator.new_state()
     # The stamp error would enter with a speed; the gate is never met by samples on prediction.
     parameters[kernel.STAMP_VARIANCE] = 0.0

@@ -7,28 +7,15 @@ from typing import Annotated
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import MOTION_SAMPLES, require_within
-from squeezefilm.quantities import (
-    AtLeast,
-    AtMost,
-    FloatArray,
-    Metre,
-    MetreArray,
-    MetreLike,
-    Second,
-    SecondArray,
-    SecondLike,
-    Unit,
-    checked_numbers,
-    require,
-)
 
-_FARTHEST: Metre = 10.0
+_FARTHEST: si.Metre = 10.0
 _ROUNDING = 1e-12
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, slots=True, eq=False)
 class FingerPath:
     """A finger's recorded or drawn motion; between two samples it goes straight at constant speed.
@@ -45,10 +32,10 @@ class FingerPath:
             not rise, or a finger that does not move at all.
     """
 
-    time: SecondArray
-    x: Annotated[MetreArray, AtLeast(-_FARTHEST), AtMost(_FARTHEST)]
-    y: Annotated[MetreArray, AtLeast(-_FARTHEST), AtMost(_FARTHEST)]
-    _way: FloatArray = field(init=False, repr=False)
+    time: si.SecondArray
+    x: Annotated[si.MetreArray, si.AtLeast(-_FARTHEST), si.AtMost(_FARTHEST)]
+    y: Annotated[si.MetreArray, si.AtLeast(-_FARTHEST), si.AtMost(_FARTHEST)]
+    _way: si.FloatArray = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         shapes = {np.shape(self.time), np.shape(self.x), np.shape(self.y)}
@@ -68,12 +55,12 @@ class FingerPath:
         object.__setattr__(self, "_way", way)
 
     @property
-    def duration(self) -> Second:
+    def duration(self) -> si.Second:
         """Time the whole motion takes (s)."""
         return float(self.time[-1])
 
     @property
-    def length(self) -> Metre:
+    def length(self) -> si.Metre:
         """Length of the whole path (m)."""
         return float(self._way[-1])
 
@@ -82,8 +69,8 @@ class FingerPath:
         """Whether the motion keeps to the line y = 0."""
         return not np.any(self.y)
 
-    @checked_numbers
-    def position(self, t: SecondLike) -> MetreArray:
+    @si.checked_numbers
+    def position(self, t: si.SecondLike) -> si.MetreArray:
         """x at time `t` since the motion began (m), in the shape of `t`.
 
         Raises:
@@ -91,8 +78,8 @@ class FingerPath:
         """
         return self.place(t)[0]
 
-    @checked_numbers
-    def place(self, t: SecondLike) -> tuple[MetreArray, MetreArray]:
+    @si.checked_numbers
+    def place(self, t: si.SecondLike) -> tuple[si.MetreArray, si.MetreArray]:
         """x and y at time `t` since the motion began (m). Raises as `position` does."""
         times = self._within(t)
         return (
@@ -100,13 +87,13 @@ class FingerPath:
             np.asarray(np.interp(times, self.time, self.y)),
         )
 
-    @checked_numbers
-    def travelled(self, t: SecondLike) -> MetreArray:
+    @si.checked_numbers
+    def travelled(self, t: si.SecondLike) -> si.MetreArray:
         """Length of the path up to time `t` (m); never falls. Raises as `position` does."""
         return np.asarray(np.interp(self._within(t), self.time, self._way))
 
-    @checked_numbers
-    def place_after(self, way: MetreLike) -> tuple[MetreArray, MetreArray]:
+    @si.checked_numbers
+    def place_after(self, way: si.MetreLike) -> tuple[si.MetreArray, si.MetreArray]:
         """x and y once `way` of the path is done (m); straight on before its start and past its
         end, as one who has only heard of the motion so far would have it."""
         s = np.asarray(way, dtype=float)
@@ -123,8 +110,8 @@ class FingerPath:
             found.append(np.asarray(inside))
         return found[0], found[1]
 
-    def _within(self, t: SecondLike) -> FloatArray:
-        require("t", t, Unit("s"), at_least=0.0, at_most=self.duration * (1 + _ROUNDING))
+    def _within(self, t: si.SecondLike) -> si.FloatArray:
+        si.require("t", t, si.Unit("s"), at_least=0.0, at_most=self.duration * (1 + _ROUNDING))
         return np.asarray(t, dtype=float)
 
 
@@ -139,12 +126,12 @@ class OverPath:
     path: FingerPath
 
     @property
-    def duration(self) -> Second:
+    def duration(self) -> si.Second:
         """Time the whole motion takes (s)."""
         return self.path.duration
 
-    @checked_numbers
-    def position(self, t: SecondLike) -> MetreArray:
+    @si.checked_numbers
+    def position(self, t: si.SecondLike) -> si.MetreArray:
         """The way done at time `t` (m). Raises `InputError` for a time outside the motion."""
         return self.path.travelled(t)
 

@@ -10,7 +10,7 @@ import math
 
 import numba
 
-from squeezefilm.quantities import Array
+from squeezefilm import quantities as si
 
 # Places in the state: the estimate at the last sample used, its covariance, then counters.
 X, V, A = 0, 1, 2
@@ -30,7 +30,7 @@ FRESH, STALLED, EMPTY, PAST, BAD_TIME = range(5)
 
 
 @numba.njit(cache=True, nogil=True, inline="always")
-def _begin(state: Array, parameters: Array, stamp: float, position: float) -> None:
+def _begin(state: si.Array, parameters: si.Array, stamp: float, position: float) -> None:
     state[X], state[V], state[A] = position, 0.0, 0.0
     state[XX] = parameters[POSITION_VARIANCE]
     state[XV], state[XA], state[VA] = 0.0, 0.0, 0.0
@@ -41,7 +41,7 @@ def _begin(state: Array, parameters: Array, stamp: float, position: float) -> No
 
 
 @numba.njit(cache=True, nogil=True, inline="always")
-def _ahead(state: Array, parameters: Array, h: float) -> tuple[float, ...]:
+def _ahead(state: si.Array, parameters: si.Array, h: float) -> tuple[float, ...]:
     """Mean and covariance `h` (s) after the last sample used."""
     qa, qj = parameters[ACCELERATION_DENSITY], parameters[JERK_DENSITY]
     a = state[A]
@@ -65,7 +65,7 @@ def _ahead(state: Array, parameters: Array, h: float) -> tuple[float, ...]:
 
 
 @numba.njit(cache=True, nogil=True)
-def motion_step(state: Array, parameters: Array, stamp: float, position: float) -> int:
+def motion_step(state: si.Array, parameters: si.Array, stamp: float, position: float) -> int:
     """Take one sample (s, m) into the state, or count why not. Returns one of the STEP codes."""
     if not (math.isfinite(stamp) and math.isfinite(position)):
         state[NOT_FINITE] += 1.0
@@ -120,7 +120,9 @@ def motion_step(state: Array, parameters: Array, stamp: float, position: float) 
 
 
 @numba.njit(cache=True, nogil=True)
-def motion_at(state: Array, parameters: Array, t: float) -> tuple[float, float, float, float, int]:
+def motion_at(
+    state: si.Array, parameters: si.Array, t: float
+) -> tuple[float, float, float, float, int]:
     """Position (m), speed (m/s), their standard deviations, and what they rest on, at time t (s).
 
     Past the stall limit the finger is taken to rest where it was at the limit. A little before the
@@ -144,18 +146,18 @@ def motion_at(state: Array, parameters: Array, t: float) -> tuple[float, float, 
 
 @numba.njit(cache=True, nogil=True)
 def motion_march(
-    state: Array,
-    parameters: Array,
-    stamp: Array,
-    arrival: Array,
-    position: Array,
-    render: Array,
+    state: si.Array,
+    parameters: si.Array,
+    stamp: si.Array,
+    arrival: si.Array,
+    position: si.Array,
+    render: si.Array,
     ahead: float,
-    at: Array,
-    speed: Array,
-    at_deviation: Array,
-    speed_deviation: Array,
-    code: Array,
+    at: si.Array,
+    speed: si.Array,
+    at_deviation: si.Array,
+    speed_deviation: si.Array,
+    code: si.Array,
 ) -> None:
     """At each render time (s): take what has arrived, predict to `ahead` (s) after it."""
     k = 0

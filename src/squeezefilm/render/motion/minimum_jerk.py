@@ -12,34 +12,25 @@ from typing import Annotated, Protocol
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.hard_limits import PASS_DURATION, STROKE_LENGTH, STROKE_START
-from squeezefilm.quantities import (
-    AtLeast,
-    Metre,
-    MetreArray,
-    Second,
-    SecondLike,
-    Unit,
-    checked_numbers,
-    require,
-)
 
 
 class Trajectory(Protocol):
     """A finger's motion along x: how long it lasts and where it is. `Stroke` is one."""
 
     @property
-    def duration(self) -> Second:
+    def duration(self) -> si.Second:
         """Time the motion takes (s)."""
         ...
 
-    @checked_numbers
-    def position(self, t: SecondLike, /) -> MetreArray:
+    @si.checked_numbers
+    def position(self, t: si.SecondLike, /) -> si.MetreArray:
         """Position at time t (m), 0 ≤ t ≤ duration, in the shape of `t`."""
         ...
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class MinimumJerkStroke:
     """A finger's motion along x: `passes` passes of `length`, each of least jerk, to and fro.
@@ -54,24 +45,24 @@ class MinimumJerkStroke:
         InputError: a value outside its range.
     """
 
-    length: Annotated[Metre, STROKE_LENGTH] = 0.04
-    pass_duration: Annotated[Second, PASS_DURATION] = 0.4
-    passes: Annotated[int, AtLeast(1)] = 2
-    start: Annotated[Metre, STROKE_START] = 0.0
+    length: Annotated[si.Metre, STROKE_LENGTH] = 0.04
+    pass_duration: Annotated[si.Second, PASS_DURATION] = 0.4
+    passes: Annotated[int, si.AtLeast(1)] = 2
+    start: Annotated[si.Metre, STROKE_START] = 0.0
 
     @property
-    def duration(self) -> Second:
+    def duration(self) -> si.Second:
         """Time the whole motion takes (s)."""
         return self.passes * self.pass_duration
 
-    @checked_numbers
-    def position(self, t: SecondLike) -> MetreArray:
+    @si.checked_numbers
+    def position(self, t: si.SecondLike) -> si.MetreArray:
         """Position x of the finger at time `t` since the motion began (m), in the shape of `t`.
 
         Raises:
             InputError: a time before the motion or after its end.
         """
-        require("t", t, Unit("s"), at_least=0.0, at_most=self.duration * (1 + 1e-12))
+        si.require("t", t, si.Unit("s"), at_least=0.0, at_most=self.duration * (1 + 1e-12))
         passed = np.asarray(t, dtype=float) / self.pass_duration
         done = np.minimum(np.floor(passed), self.passes - 1)
         s = np.clip(passed - done, 0.0, 1.0)

@@ -15,27 +15,12 @@ from typing import Annotated
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import MOTION_SAMPLES, require_motion
-from squeezefilm.quantities import (
-    Above,
-    AtLeast,
-    Below,
-    Dimensionless,
-    Hertz,
-    Metre,
-    MetreArray,
-    Second,
-    SecondArray,
-    Unit,
-    checked_numbers,
-    did_you_mean,
-    require,
-    returned,
-)
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class SensorModel:
     """A sensor of finger position: how often, how late, how irregular and how noisy it is.
@@ -58,12 +43,12 @@ class SensorModel:
     """
 
     name: str
-    rate: Annotated[Hertz, Above(0.0)]
-    latency: Annotated[Second, AtLeast(0.0)]
-    jitter: Annotated[Second, AtLeast(0.0)] = 0.0
-    noise: Annotated[Metre, AtLeast(0.0)] = 0.0
-    quantisation: Annotated[Metre, AtLeast(0.0)] = 0.0
-    loss: Annotated[Dimensionless, AtLeast(0.0), Below(1.0)] = 0.0
+    rate: Annotated[si.Hertz, si.Above(0.0)]
+    latency: Annotated[si.Second, si.AtLeast(0.0)]
+    jitter: Annotated[si.Second, si.AtLeast(0.0)] = 0.0
+    noise: Annotated[si.Metre, si.AtLeast(0.0)] = 0.0
+    quantisation: Annotated[si.Metre, si.AtLeast(0.0)] = 0.0
+    loss: Annotated[si.Dimensionless, si.AtLeast(0.0), si.Below(1.0)] = 0.0
     stamped: bool = True
     evidence: str = "assumed"
 
@@ -75,12 +60,12 @@ class SensorModel:
             )
 
     @property
-    def position_error(self) -> Metre:
+    def position_error(self) -> si.Metre:
         """Standard deviation of a position reported (m): noise and quantisation step/√12."""
         return math.hypot(self.noise, self.quantisation / math.sqrt(12))
 
     @property
-    def stamp_error(self) -> Second:
+    def stamp_error(self) -> si.Second:
         """Standard deviation of the time a sample is taken to be from (s)."""
         return 0.0 if self.stamped else self.jitter
 
@@ -110,7 +95,7 @@ SENSORS: dict[str, SensorModel] = {
 """The presets by name; all assumed."""
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, slots=True, eq=False)
 class SensorStream:
     """What a sensor reported, in the order of arrival; arrays of shape (samples,).
@@ -125,19 +110,19 @@ class SensorStream:
 
     sensor: SensorModel
     seed: int
-    taken: SecondArray
-    stamp: SecondArray
-    arrival: SecondArray
-    position: MetreArray
+    taken: si.SecondArray
+    stamp: si.SecondArray
+    arrival: si.SecondArray
+    position: si.MetreArray
 
 
-@checked_numbers
+@si.checked_numbers
 def sensor_stream(
     sensor: SensorModel,
-    position: Callable[[SecondArray], MetreArray],
-    duration: Annotated[Second, Above(0.0)],
-    seed: Annotated[int, AtLeast(0)],
-    start: Second = 0.0,
+    position: Callable[[si.SecondArray], si.MetreArray],
+    duration: Annotated[si.Second, si.Above(0.0)],
+    seed: Annotated[int, si.AtLeast(0)],
+    start: si.Second = 0.0,
 ) -> SensorStream:
     """What a sensor reports of a motion between `start` and `start + duration`.
 
@@ -160,8 +145,8 @@ def sensor_stream(
     count = math.floor(steps) + 1
     random = np.random.default_rng(seed)
     taken = start + np.minimum(np.arange(count) / sensor.rate, duration)
-    true = returned("position", position(taken), taken, "one position per time")
-    require("a value returned by position", true, Unit("m"))
+    true = si.returned("position", position(taken), taken, "one position per time")
+    si.require("a value returned by position", true, si.Unit("m"))
     seen = true + sensor.noise * random.standard_normal(count)
     if sensor.quantisation > 0.0:
         seen = sensor.quantisation * np.round(seen / sensor.quantisation)
@@ -182,7 +167,7 @@ def sensor_named(name: str) -> SensorModel:
     known = {_slug(one): sensor for one, sensor in SENSORS.items()}
     if _slug(name) not in known:
         raise InputError(
-            f"the sensor '{name}' is not known.{did_you_mean(_slug(name), known)} Sensors: "
+            f"the sensor '{name}' is not known.{si.did_you_mean(_slug(name), known)} Sensors: "
             f"{', '.join(known)}"
         )
     return known[_slug(name)]

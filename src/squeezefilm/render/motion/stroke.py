@@ -8,6 +8,7 @@ from typing import Annotated
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.from_text import reads_text
 from squeezefilm.hard_limits import (
@@ -16,30 +17,13 @@ from squeezefilm.hard_limits import (
     STROKE_LENGTH,
     STROKE_START,
 )
-from squeezefilm.quantities import (
-    Above,
-    AtLeast,
-    FloatArray,
-    Hertz,
-    Metre,
-    MetreArray,
-    MetrePerSecond,
-    MetrePerSecondArray,
-    Second,
-    SecondArray,
-    SecondLike,
-    Unit,
-    checked_numbers,
-    format_quantity,
-    require,
-)
 
 # Times made by dividing integers by a rate may pass the end by a rounding error.
 _ROUNDING = 1e-12
 
 
 @reads_text
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class Stroke:
     """A finger's motion along x: `passes` passes of `length` at constant `speed`, turning at once.
@@ -58,23 +42,23 @@ class Stroke:
         InputError: a value outside its range.
     """
 
-    speed: Annotated[MetrePerSecond, FINGER_SPEED]
-    length: Annotated[Metre, STROKE_LENGTH] = 0.04
-    passes: Annotated[int, AtLeast(1)] = 1
-    start: Annotated[Metre, STROKE_START] = 0.0
+    speed: Annotated[si.MetrePerSecond, FINGER_SPEED]
+    length: Annotated[si.Metre, STROKE_LENGTH] = 0.04
+    passes: Annotated[int, si.AtLeast(1)] = 1
+    start: Annotated[si.Metre, STROKE_START] = 0.0
 
     @property
-    def pass_duration(self) -> Second:
+    def pass_duration(self) -> si.Second:
         """Time one pass takes (s)."""
         return self.length / self.speed
 
     @property
-    def duration(self) -> Second:
+    def duration(self) -> si.Second:
         """Time the whole stroke takes (s)."""
         return self.passes * self.pass_duration
 
-    @checked_numbers
-    def position(self, t: SecondLike) -> MetreArray:
+    @si.checked_numbers
+    def position(self, t: si.SecondLike) -> si.MetreArray:
         """Position x of the finger at time `t` since the stroke began (m), in the shape of `t`.
 
         Raises:
@@ -84,8 +68,8 @@ class Stroke:
         along = np.clip(path - done * self.length, 0.0, self.length)
         return np.asarray(self.start + np.where(done % 2 == 0, along, self.length - along))
 
-    @checked_numbers
-    def velocity(self, t: SecondLike) -> MetrePerSecondArray:
+    @si.checked_numbers
+    def velocity(self, t: si.SecondLike) -> si.MetrePerSecondArray:
         """Velocity along x at time `t` (m/s), in the shape of `t`: ±`speed`, negative on the way
         back; at a turn that of the pass that begins, at the end that of the last.
 
@@ -95,15 +79,17 @@ class Stroke:
         _, done = self._path(t)
         return np.asarray(np.where(done % 2 == 0, self.speed, -self.speed))
 
-    def _path(self, t: SecondLike) -> tuple[MetreArray, FloatArray]:
+    def _path(self, t: si.SecondLike) -> tuple[si.MetreArray, si.FloatArray]:
         """The way gone (m) and the whole passes done by the time `t`."""
         latest = self.duration * (1 + _ROUNDING)
-        require("t", t, Unit("s"), at_least=0.0, at_most=latest)
+        si.require("t", t, si.Unit("s"), at_least=0.0, at_most=latest)
         path = np.minimum(np.asarray(t, dtype=float), self.duration) * self.speed
         return np.asarray(path), np.minimum(np.floor(path / self.length), self.passes - 1)
 
-    @checked_numbers
-    def sampled(self, rate: Annotated[Hertz, Above(0.0)]) -> tuple[SecondArray, MetreArray]:
+    @si.checked_numbers
+    def sampled(
+        self, rate: Annotated[si.Hertz, si.Above(0.0)]
+    ) -> tuple[si.SecondArray, si.MetreArray]:
         """Times 0, 1/rate, 2/rate … within the stroke (s), and the positions at them (m).
 
         The last sample lies less than 1/rate before the stroke's end.
@@ -114,12 +100,12 @@ class Stroke:
         """
         steps = self.duration * rate * (1 + _ROUNDING)
         if not 1 <= steps < MOTION_SAMPLES.most:
-            lowest = format_quantity(1 / self.duration, Unit("Hz"))
-            highest = format_quantity(MOTION_SAMPLES.most / self.duration, Unit("Hz"))
+            lowest = si.format_quantity(1 / self.duration, si.Unit("Hz"))
+            highest = si.format_quantity(MOTION_SAMPLES.most / self.duration, si.Unit("Hz"))
             raise InputError(
-                f"rate = {format_quantity(rate, Unit('Hz'))} cannot be used for a stroke of "
-                f"{format_quantity(self.duration, Unit('s'))}: it must be at least {lowest} and "
-                f"below {highest}"
+                f"rate = {si.format_quantity(rate, si.Unit('Hz'))} cannot be used for a stroke of "
+                f"{si.format_quantity(self.duration, si.Unit('s'))}: it must be at least {lowest} "
+                f"and below {highest}"
             )
         times = np.arange(math.floor(steps) + 1) / rate
         return times, self.position(times)

@@ -12,7 +12,7 @@ import math
 
 import numba
 
-from squeezefilm.quantities import Array
+from squeezefilm import quantities as si
 from squeezefilm.render import opcodes as op
 from squeezefilm.render.program import layout as at
 from squeezefilm.render.program.lookup import field_noise, image, line_noise
@@ -21,7 +21,7 @@ from squeezefilm.render.texture.noise import STEP_ALONG
 
 @numba.njit(cache=True, nogil=True, error_model="numpy")
 def interpret(
-    program: Array, memory: Array, base: int, x: float, y: float, v: float, t: float
+    program: si.Array, memory: si.Array, base: int, x: float, y: float, v: float, t: float
 ) -> float:
     """The texture's value, in its quantity; the stack is `memory` from `base` on."""
     pc = int(program[at.H_CODE])
@@ -160,7 +160,7 @@ def interpret(
 
 
 @numba.njit(cache=True, nogil=True, error_model="numpy")
-def _inverse(program: Array, wanted: float) -> float:
+def _inverse(program: si.Array, wanted: float) -> float:
     """The amplitude (m) of a relative friction within the table, by bisection."""
     count = int(program[at.H_INVERSE_COUNT])
     amplitude = int(program[at.H_INVERSE])
@@ -179,7 +179,7 @@ def _inverse(program: Array, wanted: float) -> float:
 
 
 @numba.njit(cache=True, nogil=True, error_model="numpy")
-def _wave_factor(program: Array, x: float, y: float) -> float:
+def _wave_factor(program: si.Array, x: float, y: float) -> float:
     """The wave's local share of its amplitude, linear between the factors of one period."""
     count = int(program[at.H_WAVE_COUNT])
     start = int(program[at.H_WAVE])
@@ -195,7 +195,7 @@ def _wave_factor(program: Array, x: float, y: float) -> float:
 
 @numba.njit(cache=True, nogil=True, error_model="numpy")
 def _amplitude(
-    program: Array, state: Array, wanted: float, x: float, y: float
+    program: si.Array, state: si.Array, wanted: float, x: float, y: float
 ) -> tuple[float, int]:
     """The amplitude for a value of the texture, within 0…LARGEST, and the flags it raised."""
     flags = 0
@@ -237,7 +237,7 @@ def _amplitude(
 
 
 @numba.njit(cache=True, nogil=True, error_model="numpy")
-def tick(program: Array, state: Array, x: float, y: float, v: float, t: float) -> float:
+def tick(program: si.Array, state: si.Array, x: float, y: float, v: float, t: float) -> float:
     """The vibration amplitude (m, zero-to-peak) for one sample of the finger.
 
     `program` and `state` are arrays of floats as `layout` says; `x`, `y` (m), `v` (m/s), `t` (s)
@@ -295,7 +295,13 @@ def tick(program: Array, state: Array, x: float, y: float, v: float, t: float) -
 
 @numba.njit(cache=True, nogil=True, error_model="numpy")
 def value_march(
-    program: Array, memory: Array, x: Array, y: Array, v: Array, t: Array, out: Array
+    program: si.Array,
+    memory: si.Array,
+    x: si.Array,
+    y: si.Array,
+    v: si.Array,
+    t: si.Array,
+    out: si.Array,
 ) -> None:
     """`interpret` over arrays of one length; `memory` is the stack."""
     for i in range(x.size):
@@ -304,7 +310,13 @@ def value_march(
 
 @numba.njit(cache=True, nogil=True, error_model="numpy")
 def amplitude_march(
-    program: Array, state: Array, x: Array, y: Array, v: Array, t: Array, out: Array
+    program: si.Array,
+    state: si.Array,
+    x: si.Array,
+    y: si.Array,
+    v: si.Array,
+    t: si.Array,
+    out: si.Array,
 ) -> None:
     """The amplitude of every value by itself; what cannot be reached is counted in `state`."""
     for i in range(x.size):
@@ -314,7 +326,14 @@ def amplitude_march(
 
 @numba.njit(cache=True, nogil=True, error_model="numpy")
 def tick_march(
-    program: Array, state: Array, x: Array, y: Array, v: Array, t: Array, out: Array, flags: Array
+    program: si.Array,
+    state: si.Array,
+    x: si.Array,
+    y: si.Array,
+    v: si.Array,
+    t: si.Array,
+    out: si.Array,
+    flags: si.Array,
 ) -> None:
     """`tick` over arrays of one length, sample after sample."""
     for i in range(x.size):

@@ -8,24 +8,10 @@ from typing import Annotated
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import (
-    Above,
-    AtLeast,
-    AtMost,
-    Dimensionless,
-    DimensionlessArray,
-    DimensionlessLike,
-    Metre,
-    MetreArray,
-    Unit,
-    checked_numbers,
-    format_quantity,
-    require,
-    returned,
-)
 
-_METRE = Unit("m")
+_METRE = si.Unit("m")
 _MOST_KNOTS = 65_536
 # Friction at rest is 1 by its definition; a curve may miss that by what a solver leaves.
 _AT_REST = 1e-4
@@ -33,7 +19,7 @@ _AT_REST = 1e-4
 _FLAT = 1e-12
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, slots=True, eq=False)
 class FrictionInverse:
     """Knots of a falling friction curve, read backwards with straight lines between them.
@@ -47,19 +33,19 @@ class FrictionInverse:
             measured between the knots on the curve itself.
     """
 
-    amplitude: MetreArray
-    relative_friction: DimensionlessArray
-    max_error: Dimensionless
+    amplitude: si.MetreArray
+    relative_friction: si.DimensionlessArray
+    max_error: si.Dimensionless
 
     @classmethod
-    @checked_numbers
+    @si.checked_numbers
     def from_function(
         cls,
-        relative_friction: Callable[[MetreArray], DimensionlessArray],
-        largest_amplitude: Annotated[Metre, Above(0.0), AtMost(1e-3)],
+        relative_friction: Callable[[si.MetreArray], si.DimensionlessArray],
+        largest_amplitude: Annotated[si.Metre, si.Above(0.0), si.AtMost(1e-3)],
         *,
         knots: int = 257,
-        rise_allowed: Annotated[Dimensionless, AtLeast(0.0), AtMost(0.1)] = 1e-9,
+        rise_allowed: Annotated[si.Dimensionless, si.AtLeast(0.0), si.AtMost(0.1)] = 1e-9,
     ) -> FrictionInverse:
         """The inverse of a friction law up to an amplitude.
 
@@ -79,30 +65,32 @@ class FrictionInverse:
             raise InputError(f"knots = {knots!r} cannot be used: it must be 3 to {_MOST_KNOTS}")
         fine = np.linspace(0.0, largest_amplitude, 4 * (knots - 1) + 1)
         values = relative_friction(fine)
-        found = returned("relative_friction", values, fine, "one value per amplitude")
+        found = si.returned("relative_friction", values, fine, "one value per amplitude")
         amplitude, friction = _knots(fine[::4], found[::4], rise_allowed)
         back = np.interp(fine, amplitude, friction)
         error = float(np.max(np.abs(back - found)))
         return cls(amplitude, friction, error)
 
     @property
-    def largest_amplitude(self) -> Metre:
+    def largest_amplitude(self) -> si.Metre:
         """The amplitude of the least friction (m, zero-to-peak)."""
         return float(self.amplitude[-1])
 
     @property
-    def least_friction(self) -> Dimensionless:
+    def least_friction(self) -> si.Dimensionless:
         """The least relative friction that can be reached (1)."""
         return float(self.relative_friction[-1])
 
-    @checked_numbers
-    def amplitude_for(self, relative_friction: DimensionlessLike) -> MetreArray:
+    @si.checked_numbers
+    def amplitude_for(self, relative_friction: si.DimensionlessLike) -> si.MetreArray:
         """The amplitude (m, zero-to-peak) that makes a relative friction (1), in its shape.
 
         Raises:
             InputError: a friction above 1 or below `least_friction`.
         """
-        require("relative_friction", relative_friction, at_least=self.least_friction, at_most=1.0)
+        si.require(
+            "relative_friction", relative_friction, at_least=self.least_friction, at_most=1.0
+        )
         found = np.interp(
             np.asarray(relative_friction, dtype=float),
             self.relative_friction[::-1],
@@ -112,9 +100,9 @@ class FrictionInverse:
 
 
 def _knots(
-    amplitude: MetreArray, friction: DimensionlessArray, rise_allowed: float
-) -> tuple[MetreArray, DimensionlessArray]:
-    require("relative_friction", friction, at_least=0.0)
+    amplitude: si.MetreArray, friction: si.DimensionlessArray, rise_allowed: float
+) -> tuple[si.MetreArray, si.DimensionlessArray]:
+    si.require("relative_friction", friction, at_least=0.0)
     if abs(friction[0] - 1.0) > _AT_REST:
         raise InputError(
             f"the relative friction at rest is {friction[0]:.6g}; it must be 1: divide the curve "
@@ -125,8 +113,9 @@ def _knots(
     if np.any(rise > rise_allowed):
         place = int(np.argmax(rise > rise_allowed))
         raise InputError(
-            f"friction rises by {rise[place]:.3g} from {format_quantity(amplitude[place], _METRE)} "
-            f"to {format_quantity(amplitude[place + 1], _METRE)}, so an amplitude for it is not "
+            f"friction rises by {rise[place]:.3g} from "
+            f"{si.format_quantity(amplitude[place], _METRE)} to "
+            f"{si.format_quantity(amplitude[place + 1], _METRE)}, so an amplitude for it is not "
             "unique; end the curve there, or allow the rise if it is noise (rise_allowed)"
         )
     # Of a flat stretch the least amplitude is kept; what that costs is in the error stated.

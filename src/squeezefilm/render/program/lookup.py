@@ -6,7 +6,7 @@ import math
 
 import numba
 
-from squeezefilm.quantities import Array
+from squeezefilm import quantities as si
 from squeezefilm.render.program import layout as at
 from squeezefilm.render.texture.noise import STEP_ACROSS, STEP_ALONG, mixed
 
@@ -66,7 +66,7 @@ def field_noise(u: float, w: float, seed: int) -> float:
 
 
 @numba.njit(cache=True, nogil=True, error_model="numpy")
-def image(program: Array, pc: int, x: float, y: float) -> float:
+def image(program: si.Array, pc: int, x: float, y: float) -> float:
     start = int(program[at.H_TABLES]) + int(program[pc])
     rows, columns = int(program[pc + 1]), int(program[pc + 2])
     pixel = program[pc + 5]

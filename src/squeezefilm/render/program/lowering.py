@@ -7,14 +7,8 @@ from typing import Any, get_args
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import (
-    Dimensionless,
-    FloatArray,
-    Metre,
-    checked_numbers,
-    require,
-)
 from squeezefilm.render import opcodes as op
 from squeezefilm.render.opcodes import Assembler
 from squeezefilm.render.program import layout as at
@@ -31,7 +25,7 @@ _LONGEST = 10_000_000
 _MOST_TICKS = 1_000_000
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, slots=True, eq=False)
 class Program:
     """A lowered texture with its inverse friction and limits, as one flat array of floats.
@@ -40,7 +34,7 @@ class Program:
     little-endian 64-bit floats.
     """
 
-    array: FloatArray
+    array: si.FloatArray
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "array", checked(self.array))
@@ -51,7 +45,7 @@ class Program:
         return QUANTITIES[int(self.array[at.H_QUANTITY])]
 
     @property
-    def largest_amplitude(self) -> Metre:
+    def largest_amplitude(self) -> si.Metre:
         """The largest amplitude a tick gives out (m, zero-to-peak)."""
         return float(self.array[at.H_LARGEST])
 
@@ -87,13 +81,13 @@ class Program:
         return frozenset(found)
 
 
-@checked_numbers
+@si.checked_numbers
 def lower(
     texture: Composable,
     *,
-    largest_amplitude: Metre | None = None,
+    largest_amplitude: si.Metre | None = None,
     inverse: FrictionInverse | None = None,
-    friction_coefficient: Dimensionless | None = None,
+    friction_coefficient: si.Dimensionless | None = None,
     compensation: WaveCompensation | None = None,
     hold_ticks: int = 20,
     fade_ticks: int = 30,
@@ -123,9 +117,9 @@ def lower(
         if inverse is None:
             raise InputError("a texture of amplitude needs the display's largest_amplitude (m)")
         largest_amplitude = inverse.largest_amplitude
-    require("largest_amplitude", largest_amplitude, METRE, above=0.0, at_most=LARGEST_AMPLITUDE)
+    si.require("largest_amplitude", largest_amplitude, METRE, above=0.0, at_most=LARGEST_AMPLITUDE)
     if friction_coefficient is not None:
-        require("friction_coefficient", friction_coefficient, above=0.0, at_most=10.0)
+        si.require("friction_coefficient", friction_coefficient, above=0.0, at_most=10.0)
     _require_ticks("hold_ticks", hold_ticks, 0)
     _require_ticks("fade_ticks", fade_ticks, 1)
     assembler = Assembler()
@@ -184,7 +178,7 @@ def _assembled(
     header: dict[int, float],
     inverse: FrictionInverse | None,
     compensation: WaveCompensation | None,
-) -> FloatArray:
+) -> si.FloatArray:
     code = np.array(assembler.code, dtype=float)
     tables = np.concatenate([np.empty(0), *assembler.tables])
     curve = np.empty(0)
@@ -211,8 +205,8 @@ def _assembled(
     return np.concatenate(parts)
 
 
-@checked_numbers
-def checked(array: FloatArray) -> FloatArray:
+@si.checked_numbers
+def checked(array: si.FloatArray) -> si.FloatArray:
     """A program's array, copied and made read-only, if an interpreter can run it safely.
 
     What is checked: that it is this version's, whole and finite, that its parts lie one after
@@ -251,20 +245,20 @@ def checked(array: FloatArray) -> FloatArray:
     _check_header(program, inverse, wave)
     _check_code(program, tables, inverse)
     program.setflags(write=False)
-    found: FloatArray = program
+    found: si.FloatArray = program
     return found
 
 
-def _check_header(program: FloatArray, inverse: int, wave: int) -> None:
+def _check_header(program: si.FloatArray, inverse: int, wave: int) -> None:
     quantity, count = int(program[at.H_QUANTITY]), int(program[at.H_INVERSE_COUNT])
     if quantity > 2 or (count == 0) != (quantity == 0) or count == 1:
         raise _broken("has an unknown quantity, or an inverse that does not belong to it")
     if quantity == 2 and program[at.H_FRICTION] <= 0.0:
         raise _broken("reduces a friction coefficient that is not above 0")
-    require("largest amplitude", program[at.H_LARGEST], METRE, above=0.0, at_most=1e-3)
-    require("farthest place", program[at.H_FARTHEST], METRE, above=0.0, at_most=FARTHEST)
-    require("stack", program[at.H_STACK], at_least=1.0, at_most=float(op.DEEPEST_STACK))
-    require("fade ticks", program[at.H_FADE], at_least=1.0)
+    si.require("largest amplitude", program[at.H_LARGEST], METRE, above=0.0, at_most=1e-3)
+    si.require("farthest place", program[at.H_FARTHEST], METRE, above=0.0, at_most=FARTHEST)
+    si.require("stack", program[at.H_STACK], at_least=1.0, at_most=float(op.DEEPEST_STACK))
+    si.require("fade ticks", program[at.H_FADE], at_least=1.0)
     amplitude, friction = program[inverse : inverse + count], program[inverse + count : wave]
     if count and (np.any(np.diff(amplitude) <= 0.0) or np.any(np.diff(friction) >= 0.0)):
         raise _broken("has an inverse that is not monotone")
@@ -272,14 +266,14 @@ def _check_header(program: FloatArray, inverse: int, wave: int) -> None:
         raise _broken("has an inverse with a negative amplitude")
     if program[at.H_WAVE_COUNT]:
         # These bounds keep the place within the wave a number that has an index.
-        require("wave period", program[at.H_WAVE_PERIOD], METRE, at_least=1e-6, at_most=FARTHEST)
+        si.require("wave period", program[at.H_WAVE_PERIOD], METRE, at_least=1e-6, at_most=FARTHEST)
         direction = program[at.H_WAVE_P : at.H_WAVE_Q + 1]
-        require("wave direction", direction, at_least=-1.0, at_most=1.0)
-        require("wave start", program[at.H_WAVE_R], METRE, at_least=-FARTHEST, at_most=FARTHEST)
-        require("wave factors", program[wave:], above=0.0, at_most=1.0)
+        si.require("wave direction", direction, at_least=-1.0, at_most=1.0)
+        si.require("wave start", program[at.H_WAVE_R], METRE, at_least=-FARTHEST, at_most=FARTHEST)
+        si.require("wave factors", program[wave:], above=0.0, at_most=1.0)
 
 
-def _instructions(program: FloatArray) -> list[tuple[int, FloatArray]]:
+def _instructions(program: si.FloatArray) -> list[tuple[int, si.FloatArray]]:
     """The instructions of a program, END last."""
     place, end = int(program[at.H_CODE]), int(program[at.H_TABLES])
     found = []
@@ -318,7 +312,7 @@ _DIVISORS = {
 }  # fmt: skip
 
 
-def _check_code(program: FloatArray, tables: int, inverse: int) -> None:
+def _check_code(program: si.FloatArray, tables: int, inverse: int) -> None:
     stack = 0
     scales: list[int] = []
     for code, operands in _instructions(program):
@@ -351,7 +345,7 @@ def _check_code(program: FloatArray, tables: int, inverse: int) -> None:
         raise _broken("does not leave one value")
 
 
-def _check_image(operands: FloatArray, available: int) -> None:
+def _check_image(operands: si.FloatArray, available: int) -> None:
     start, rows, columns, outside = (operands[place] for place in (0, 1, 2, 6))
     whole = all(one == int(one) for one in (start, rows, columns, outside))
     if not whole or start < 0 or rows < 1 or columns < 1 or outside not in (0, 1, 2):

@@ -8,19 +8,8 @@ from typing import Annotated, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError, UnreachableError
-from squeezefilm.quantities import (
-    FloatArray,
-    Metre,
-    MetreArray,
-    MetreLike,
-    MetrePerSecond,
-    MetrePerSecondLike,
-    Second,
-    SecondLike,
-    Unit,
-    real_numbers,
-)
 from squeezefilm.render.program import layout as at
 from squeezefilm.render.program.interpreter import amplitude_march, tick, tick_march, value_march
 from squeezefilm.render.program.lowering import Program
@@ -54,12 +43,12 @@ class Counters:
         return self.too_sticky + self.too_slippery + self.negative + self.saturated
 
 
-def new_state(program: Program) -> FloatArray:
+def new_state(program: Program) -> si.FloatArray:
     """A fresh state for `interpreter.tick`, its stack included."""
     return np.zeros(at.STATE + program.stack)
 
 
-def counters_of(state: FloatArray) -> Counters:
+def counters_of(state: si.FloatArray) -> Counters:
     """The counters that stand in a state."""
     return Counters(*(int(one) for one in state[at.S_TICKS : at.S_SATURATED + 1]))
 
@@ -77,7 +66,7 @@ class Renderer:
         self.program = program
         self.state = new_state(program)
 
-    def tick(self, x: Metre, y: Metre, v: MetrePerSecond, t: Second) -> Metre:
+    def tick(self, x: si.Metre, y: si.Metre, v: si.MetrePerSecond, t: si.Second) -> si.Metre:
         """The amplitude (m, zero-to-peak) for one sample; never raises. See `interpreter.tick`."""
         return float(tick(self.program.array, self.state, float(x), float(y), float(v), float(t)))
 
@@ -107,14 +96,14 @@ class Rendered:
         program: what made it.
     """
 
-    amplitude: MetreArray
-    flags: Annotated[NDArray[np.int64], Unit("1")]
+    amplitude: si.MetreArray
+    flags: Annotated[NDArray[np.int64], si.Unit("1")]
     counters: Counters
     program: Program
 
 
 def render(
-    program: Program, x: MetreLike, y: MetreLike, v: MetrePerSecondLike, t: SecondLike
+    program: Program, x: si.MetreLike, y: si.MetreLike, v: si.MetrePerSecondLike, t: si.SecondLike
 ) -> Rendered:
     """Tick through a series of samples, beginning afresh.
 
@@ -133,8 +122,8 @@ def render(
 
 
 def evaluate(
-    program: Program, x: MetreLike, y: MetreLike, v: MetrePerSecondLike, t: SecondLike
-) -> FloatArray:
+    program: Program, x: si.MetreLike, y: si.MetreLike, v: si.MetrePerSecondLike, t: si.SecondLike
+) -> si.FloatArray:
     """The texture's values in its quantity, with no memory and no limits, in the broadcast shape.
 
     The same as calling the texture, through the compiled interpreter.
@@ -159,8 +148,8 @@ class Played:
     program: Program
 
     def __call__(
-        self, x: MetreLike, y: MetreLike, v: MetrePerSecondLike, t: SecondLike, /
-    ) -> MetreArray:
+        self, x: si.MetreLike, y: si.MetreLike, v: si.MetrePerSecondLike, t: si.SecondLike, /
+    ) -> si.MetreArray:
         """The vibration amplitude wanted (m, zero-to-peak), in the broadcast shape.
 
         Raises:
@@ -183,8 +172,8 @@ class Played:
         return out.reshape(arrays[0].shape)
 
 
-def _series(*arguments: Any) -> list[FloatArray]:
-    arrays = [real_numbers(*one) for one in zip("xyvt", arguments, strict=True)]
+def _series(*arguments: Any) -> list[si.FloatArray]:
+    arrays = [si.real_numbers(*one) for one in zip("xyvt", arguments, strict=True)]
     try:
         joint = np.broadcast_arrays(*arrays)
     except ValueError as error:

@@ -14,31 +14,20 @@ from typing import Annotated
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import (
-    Above,
-    AtLeast,
-    AtMost,
-    Dimensionless,
-    DimensionlessArray,
-    FloatArray,
-    Metre,
-    MetreArray,
-    MetreLike,
-    checked_numbers,
-)
 from squeezefilm.render.program.inverse import FrictionInverse
 from squeezefilm.render.texture.coordinate import FARTHEST, X_AXIS, Coordinate, FromPoint
 
 _MOST_FACTORS = 65_536
 
 
-@checked_numbers
+@si.checked_numbers
 def wave_factor(
-    position: MetreLike,
-    half_wavelength: Annotated[Metre, Above(0.0), AtMost(FARTHEST)],
-    contact_length: Annotated[Metre, AtLeast(0.0), AtMost(FARTHEST)] = 0.0,
-) -> DimensionlessArray:
+    position: si.MetreLike,
+    half_wavelength: Annotated[si.Metre, si.Above(0.0), si.AtMost(FARTHEST)],
+    contact_length: Annotated[si.Metre, si.AtLeast(0.0), si.AtMost(FARTHEST)] = 0.0,
+) -> si.DimensionlessArray:
     """Mean of |cos(πx/half_wavelength)| over a contact centred at `position` (1), in its shape.
 
     `contact_length` (m) is the contact's extent along the wave; 0 for a point. Antinodes lie at
@@ -58,12 +47,12 @@ def wave_factor(
     return np.asarray((_area(u + half) - _area(u - half)) / (2.0 * half))
 
 
-def _area(u: FloatArray) -> FloatArray:
+def _area(u: si.FloatArray) -> si.FloatArray:
     n = np.floor(u / math.pi + 0.5)
     return np.asarray(2.0 * n + np.sin(u - n * math.pi))
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class WaveCompensation:
     """By what share the wave is weaker place by place; a renderer divides amplitudes by it.
@@ -80,8 +69,8 @@ class WaveCompensation:
         InputError: a value outside its range.
     """
 
-    half_wavelength: Annotated[Metre, AtLeast(1e-06), AtMost(FARTHEST)]
-    factors: Annotated[tuple[Dimensionless, ...], Above(0.0), AtMost(1.0)]
+    half_wavelength: Annotated[si.Metre, si.AtLeast(1e-06), si.AtMost(FARTHEST)]
+    factors: Annotated[tuple[si.Dimensionless, ...], si.Above(0.0), si.AtMost(1.0)]
     along: Coordinate = X_AXIS
 
     def __post_init__(self) -> None:
@@ -91,13 +80,13 @@ class WaveCompensation:
             raise InputError("a wave runs along a direction; give AlongX, AlongY, AlongDirection")
 
     @classmethod
-    @checked_numbers
+    @si.checked_numbers
     def over_contact(
         cls,
-        half_wavelength: Metre,
-        contact_length: Metre,
+        half_wavelength: si.Metre,
+        contact_length: si.Metre,
         *,
-        least: Annotated[Dimensionless, Above(0.0), AtMost(1.0)] = 0.1,
+        least: Annotated[si.Dimensionless, si.Above(0.0), si.AtMost(1.0)] = 0.1,
         along: Coordinate = X_AXIS,
         count: int = 256,
     ) -> WaveCompensation:
@@ -116,15 +105,15 @@ class WaveCompensation:
         return cls(half_wavelength, tuple(factors.tolist()), along)
 
     @classmethod
-    @checked_numbers
+    @si.checked_numbers
     def from_ripple(
         cls,
-        position: MetreArray,
-        relative_friction: DimensionlessArray,
+        position: si.MetreArray,
+        relative_friction: si.DimensionlessArray,
         inverse: FrictionInverse,
-        half_wavelength: Metre,
+        half_wavelength: si.Metre,
         *,
-        least: Annotated[Dimensionless, Above(0.0), AtMost(1.0)] = 0.1,
+        least: Annotated[si.Dimensionless, si.Above(0.0), si.AtMost(1.0)] = 0.1,
         along: Coordinate = X_AXIS,
     ) -> WaveCompensation:
         """From the friction of a pad that crosses the wave at one drive, computed or measured.
@@ -153,8 +142,8 @@ class WaveCompensation:
         factors = np.clip(amplitude / largest, least, 1.0)
         return cls(half_wavelength, tuple(factors.tolist()), along)
 
-    @checked_numbers
-    def factor(self, x: MetreLike, y: MetreLike = 0.0) -> DimensionlessArray:
+    @si.checked_numbers
+    def factor(self, x: si.MetreLike, y: si.MetreLike = 0.0) -> si.DimensionlessArray:
         """The factor at places (1), as the renderer reads it: linear between those of a period."""
         where = self.along.at(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
         count = len(self.factors)

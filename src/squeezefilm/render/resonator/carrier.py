@@ -23,44 +23,28 @@ from typing import Annotated
 import numba
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import (
-    Above,
-    Array,
-    Dimensionless,
-    DimensionlessLike,
-    Hertz,
-    HertzLike,
-    Metre,
-    MetreArray,
-    Radian,
-    SecondArray,
-    Unit,
-    checked_numbers,
-    closed_form,
-    format_quantity,
-    require,
-)
 from squeezefilm.render.resonator.envelope import envelope_response, envelope_time_constant, one_row
 
-DAC_RATE: Hertz = 192e3
+DAC_RATE: si.Hertz = 192e3
 """Rate of common sound converters that reach an ultrasonic carrier (Hz)."""
 
 
-@closed_form(positive="frequency sample_rate")
-def hold_gain(frequency: HertzLike, sample_rate: HertzLike) -> DimensionlessLike:
+@si.closed_form(positive="frequency sample_rate")
+def hold_gain(frequency: si.HertzLike, sample_rate: si.HertzLike) -> si.DimensionlessLike:
     """What is left of a carrier after a converter's zero-order hold (1): sin(πr)/(πr), r = f/f_s.
 
     `frequency` and `sample_rate` (Hz) broadcast. Raises `InputError` unless both are above 0.
     """
     ratio = math.pi * frequency / sample_rate
-    gain: DimensionlessLike = np.sin(ratio) / ratio
+    gain: si.DimensionlessLike = np.sin(ratio) / ratio
     return gain
 
 
 @numba.njit(cache=True, nogil=True)
 def carrier_block(
-    phase: float, advance: float, command: Array, samples: int, gain: float, out: Array
+    phase: float, advance: float, command: si.Array, samples: int, gain: float, out: si.Array
 ) -> float:
     """Fill `out` (samples per command × commands) with carrier; returns the phase to go on from.
 
@@ -82,7 +66,7 @@ def carrier_block(
 
 @numba.njit(cache=True, nogil=True)
 def _resonate(
-    drive: Array,
+    drive: si.Array,
     m00: float,
     m01: float,
     m10: float,
@@ -91,8 +75,8 @@ def _resonate(
     b1: float,
     x: float,
     v: float,
-    place: Array,
-    quadrature: Array,
+    place: si.Array,
+    quadrature: si.Array,
 ) -> None:
     for k in range(drive.size):
         place[k] = x
@@ -101,13 +85,13 @@ def _resonate(
         x, v = m00 * x + m01 * v + b0 * u, m10 * x + m11 * v + b1 * u
 
 
-@checked_numbers
+@si.checked_numbers
 def resonator_response(
-    drive: MetreArray,
-    sample_rate: Annotated[Hertz, Above(0.0)],
-    frequency: Annotated[Hertz, Above(0.0)],
-    quality_factor: Annotated[Dimensionless, Above(0.5)],
-) -> tuple[MetreArray, MetreArray]:
+    drive: si.MetreArray,
+    sample_rate: Annotated[si.Hertz, si.Above(0.0)],
+    frequency: Annotated[si.Hertz, si.Above(0.0)],
+    quality_factor: Annotated[si.Dimensionless, si.Above(0.5)],
+) -> tuple[si.MetreArray, si.MetreArray]:
     """Displacement x and quadrature ẋ/ω0 of a resonator at rest before, at each held sample (m).
 
     `drive` (m), shape (n,), is in metres of the amplitude that a carrier of it holds at resonance.
@@ -133,7 +117,7 @@ def resonator_response(
     return place, quadrature
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, slots=True, eq=False)
 class CarrierTrace:
     """An amplitude command played as a carrier into a resonator; arrays of shape (samples,).
@@ -148,33 +132,33 @@ class CarrierTrace:
         model: what made it.
     """
 
-    frequency: Hertz
-    resonance_frequency: Hertz
-    quality_factor: Dimensionless
-    sample_rate: Hertz
-    time: SecondArray
-    command: MetreArray
-    displacement: MetreArray
-    amplitude: MetreArray
-    amplitude_modelled: MetreArray
+    frequency: si.Hertz
+    resonance_frequency: si.Hertz
+    quality_factor: si.Dimensionless
+    sample_rate: si.Hertz
+    time: si.SecondArray
+    command: si.MetreArray
+    displacement: si.MetreArray
+    amplitude: si.MetreArray
+    amplitude_modelled: si.MetreArray
     model: str = "second-order resonator, converter with zero-order hold"
 
     @property
-    def envelope_error(self) -> Metre:
+    def envelope_error(self) -> si.Metre:
         """Largest difference of the two envelopes anywhere (m)."""
         return float(np.max(np.abs(self.amplitude - self.amplitude_modelled)))
 
 
-@checked_numbers
+@si.checked_numbers
 def carrier_trace(
-    command: MetreArray,
+    command: si.MetreArray,
     samples_per_command: int,
-    frequency: Hertz,
-    quality_factor: Dimensionless,
+    frequency: si.Hertz,
+    quality_factor: si.Dimensionless,
     *,
-    resonance_frequency: Hertz | None = None,
-    sample_rate: Annotated[Hertz, Above(0.0)] = DAC_RATE,
-    phase: Radian = 0.0,
+    resonance_frequency: si.Hertz | None = None,
+    sample_rate: Annotated[si.Hertz, si.Above(0.0)] = DAC_RATE,
+    phase: si.Radian = 0.0,
     hold_compensated: bool = True,
 ) -> CarrierTrace:
     """Play an amplitude command as a carrier into a resonator that is at rest.
@@ -193,7 +177,7 @@ def carrier_trace(
     Raises:
         InputError: a value outside its range.
     """
-    require("frequency", frequency, Unit("Hz"), above=0.0, below=sample_rate / 2)
+    si.require("frequency", frequency, si.Unit("Hz"), above=0.0, below=sample_rate / 2)
     levels = _levels(command, samples_per_command)
     own = frequency if resonance_frequency is None else resonance_frequency
     gain = 1 / float(hold_gain(frequency, sample_rate)) if hold_compensated else 1.0
@@ -222,7 +206,7 @@ def carrier_trace(
     )
 
 
-def _levels(command: MetreArray, samples_per_command: int) -> MetreArray:
+def _levels(command: si.MetreArray, samples_per_command: int) -> si.MetreArray:
     levels = np.ascontiguousarray(command, dtype=float)
     if levels.ndim != 1 or levels.size == 0 or samples_per_command < 1:
         raise InputError(
@@ -232,19 +216,19 @@ def _levels(command: MetreArray, samples_per_command: int) -> MetreArray:
     return levels
 
 
-@checked_numbers
-def samples_per_command(command_rate: Hertz, sample_rate: Hertz = DAC_RATE) -> int:
+@si.checked_numbers
+def samples_per_command(command_rate: si.Hertz, sample_rate: si.Hertz = DAC_RATE) -> int:
     """How many converter samples one command lasts, for rates that divide evenly.
 
     Raises:
         InputError: a rate not above 0, or a command rate that does not divide the sample rate.
     """
-    require("command_rate", command_rate, Unit("Hz"), above=0.0, at_most=sample_rate)
+    si.require("command_rate", command_rate, si.Unit("Hz"), above=0.0, at_most=sample_rate)
     count = round(sample_rate / command_rate)
     if abs(count * command_rate - sample_rate) > 1e-9 * sample_rate:
         raise InputError(
-            f"command_rate = {format_quantity(command_rate, Unit('Hz'))} does not divide "
-            f"{format_quantity(sample_rate, Unit('Hz'))}; take "
-            f"{format_quantity(sample_rate / count, Unit('Hz'))}"
+            f"command_rate = {si.format_quantity(command_rate, si.Unit('Hz'))} does not divide "
+            f"{si.format_quantity(sample_rate, si.Unit('Hz'))}; take "
+            f"{si.format_quantity(sample_rate / count, si.Unit('Hz'))}"
         )
     return count

@@ -27,24 +27,7 @@ from typing import Annotated, Literal
 
 import numpy as np
 
-from squeezefilm.quantities import (
-    Above,
-    AtLeast,
-    Dimensionless,
-    FloatArray,
-    Hertz,
-    Metre,
-    MetreArray,
-    MetreLike,
-    MetrePerVolt,
-    Second,
-    SecondLike,
-    Unit,
-    Volt,
-    checked_numbers,
-    closed_form,
-    require,
-)
+from squeezefilm import quantities as si
 from squeezefilm.render.resonator import kernel
 from squeezefilm.render.resonator.envelope import envelope_time_constant, one_row
 
@@ -55,10 +38,10 @@ COMPENSATIONS: tuple[Compensation, ...] = ("none", "inverse", "preview")
 _PREVIEW_TIME_CONSTANTS = 3.0
 
 
-@closed_form(positive="time_constant")
+@si.closed_form(positive="time_constant")
 def slew_time(
-    time_constant: SecondLike, start: MetreLike, target: MetreLike, limit: MetreLike
-) -> SecondLike:
+    time_constant: si.SecondLike, start: si.MetreLike, target: si.MetreLike, limit: si.MetreLike
+) -> si.SecondLike:
     """Least time from one amplitude to another under a bounded command (s).
 
     τ ln((limit − start)/(limit − target)) = τ ln((1 − a0/a_max)/(1 − a_t/a_max)), where `limit` is
@@ -67,12 +50,12 @@ def slew_time(
     between `start` and `limit` (it is never reached).
     """
     ratio = (limit - start) / (limit - target)
-    require("(limit - start)/(limit - target)", ratio, at_least=1.0)
-    time: SecondLike = time_constant * np.log(ratio)
+    si.require("(limit - start)/(limit - target)", ratio, at_least=1.0)
+    time: si.SecondLike = time_constant * np.log(ratio)
     return time
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class DrivenEnvelope:
     """A resonator's envelope and the command that its drive can give.
@@ -87,19 +70,19 @@ class DrivenEnvelope:
         InputError: a value outside its range.
     """
 
-    rise_time_constant: Annotated[Second, Above(0.0)]
-    fall_time_constant: Annotated[Second, Above(0.0)]
-    amplitude_limit: Annotated[Metre, Above(0.0)]
+    rise_time_constant: Annotated[si.Second, si.Above(0.0)]
+    fall_time_constant: Annotated[si.Second, si.Above(0.0)]
+    amplitude_limit: Annotated[si.Metre, si.Above(0.0)]
     braking: bool = False
 
     @classmethod
-    @checked_numbers
+    @si.checked_numbers
     def of_resonator(
         cls,
-        quality_factor: Dimensionless,
-        frequency: Hertz,
-        amplitude_per_volt: Annotated[MetrePerVolt, Above(0.0)],
-        voltage_limit: Annotated[Volt, Above(0.0)],
+        quality_factor: si.Dimensionless,
+        frequency: si.Hertz,
+        amplitude_per_volt: Annotated[si.MetrePerVolt, si.Above(0.0)],
+        voltage_limit: Annotated[si.Volt, si.Above(0.0)],
         braking: bool = False,
     ) -> DrivenEnvelope:
         """The envelope of a linear resonator at resonance, driven with up to `voltage_limit` (V).
@@ -113,12 +96,12 @@ class DrivenEnvelope:
         return cls(time_constant, time_constant, amplitude_per_volt * voltage_limit, braking)
 
     @property
-    def lowest_command(self) -> Metre:
+    def lowest_command(self) -> si.Metre:
         """Least command (m): minus the limit where the phase may be inverted, else 0."""
         return -self.amplitude_limit if self.braking else 0.0
 
-    @checked_numbers
-    def parameters(self, time_step: Annotated[Second, Above(0.0)]) -> FloatArray:
+    @si.checked_numbers
+    def parameters(self, time_step: Annotated[si.Second, si.Above(0.0)]) -> si.FloatArray:
         """What the compiled steps need at a time step (s): shape (4,), see the kernel."""
         return np.array(
             [
@@ -129,20 +112,22 @@ class DrivenEnvelope:
             ]
         )
 
-    @checked_numbers
-    def new_state(self, amplitude: Metre = 0.0) -> FloatArray:
+    @si.checked_numbers
+    def new_state(self, amplitude: si.Metre = 0.0) -> si.FloatArray:
         """A compensator's state where the resonator has `amplitude` (m); shape (5,).
 
         Raises:
             InputError: an amplitude below 0 or above the limit.
         """
-        require("amplitude", amplitude, Unit("m"), at_least=0.0, at_most=self.amplitude_limit)
+        si.require("amplitude", amplitude, si.Unit("m"), at_least=0.0, at_most=self.amplitude_limit)
         state = np.zeros(kernel.STATE_SIZE)
         state[kernel.AMPLITUDE] = amplitude
         return state
 
-    @checked_numbers
-    def response(self, command: MetreArray, time_step: Second, initial: Metre = 0.0) -> MetreArray:
+    @si.checked_numbers
+    def response(
+        self, command: si.MetreArray, time_step: si.Second, initial: si.Metre = 0.0
+    ) -> si.MetreArray:
         """Amplitude at each sample under a stepwise command (m), exactly; may be negative.
 
         A negative amplitude is vibration in the inverted phase, whose friction is that of its
@@ -175,28 +160,30 @@ class CompensatedDrive:
 
     envelope: DrivenEnvelope
     compensation: Compensation
-    time_step: Second
-    wanted: MetreArray
-    command: MetreArray
-    amplitude: MetreArray
-    saturated_top: Dimensionless
-    saturated_bottom: Dimensionless
+    time_step: si.Second
+    wanted: si.MetreArray
+    command: si.MetreArray
+    amplitude: si.MetreArray
+    saturated_top: si.Dimensionless
+    saturated_bottom: si.Dimensionless
     model: str
 
-    @checked_numbers
-    def voltage(self, amplitude_per_volt: Annotated[MetrePerVolt, Above(0.0)]) -> FloatArray:
+    @si.checked_numbers
+    def voltage(
+        self, amplitude_per_volt: Annotated[si.MetrePerVolt, si.Above(0.0)]
+    ) -> si.FloatArray:
         """The drive's voltage amplitude at each sample (V); negative in inverted phase."""
         return np.asarray(self.command / amplitude_per_volt)
 
 
-@checked_numbers
+@si.checked_numbers
 def compensated_drive(
-    wanted: MetreArray,
-    time_step: Second,
+    wanted: si.MetreArray,
+    time_step: si.Second,
     envelope: DrivenEnvelope,
     compensation: Compensation = "inverse",
-    initial: Metre | None = None,
-    preview: Second | None = None,
+    initial: si.Metre | None = None,
+    preview: si.Second | None = None,
 ) -> CompensatedDrive:
     """The command for amplitudes wanted at samples, and the amplitude that it makes.
 
@@ -213,7 +200,7 @@ def compensated_drive(
             above 0, an initial amplitude outside the limits, or an unknown compensation.
     """
     goal = one_row("wanted", wanted)
-    require("wanted", goal, Unit("m"), at_least=0.0)
+    si.require("wanted", goal, si.Unit("m"), at_least=0.0)
     first = min(float(goal[0]), envelope.amplitude_limit) if initial is None else initial
     state, parameters = envelope.new_state(first), envelope.parameters(time_step)
     command, code = np.empty_like(goal), np.zeros(goal.size, dtype=np.int64)
@@ -240,11 +227,11 @@ def compensated_drive(
     )
 
 
-@checked_numbers
+@si.checked_numbers
 def preview_samples(
     envelope: DrivenEnvelope,
-    time_step: Annotated[Second, Above(0.0)],
-    preview: Second | None = None,
+    time_step: Annotated[si.Second, si.Above(0.0)],
+    preview: si.Second | None = None,
 ) -> int:
     """How many samples a preview (s; three time constants without one) looks ahead.
 
@@ -253,11 +240,11 @@ def preview_samples(
     """
     slowest = max(envelope.rise_time_constant, envelope.fall_time_constant)
     span = _PREVIEW_TIME_CONSTANTS * slowest if preview is None else preview
-    require("preview", span, Unit("s"), above=0.0)
+    si.require("preview", span, si.Unit("s"), above=0.0)
     return max(1, math.ceil(span / time_step - 1e-9))
 
 
-@checked_numbers
-def preview_work(samples: Annotated[int, AtLeast(0)]) -> FloatArray:
+@si.checked_numbers
+def preview_work(samples: Annotated[int, si.AtLeast(0)]) -> si.FloatArray:
     """Working memory of `previewed_step` for so many samples ahead, shape (5, 2·samples + 2)."""
     return np.zeros((5, 2 * samples + 2))

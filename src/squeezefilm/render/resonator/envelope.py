@@ -17,27 +17,16 @@ from typing import Annotated, Literal
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import (
-    Above,
-    Below,
-    DimensionlessLike,
-    HertzLike,
-    MetreArray,
-    MetreLike,
-    MetrePerSecondLike,
-    Second,
-    SecondLike,
-    checked_numbers,
-    closed_form,
-    require,
-)
 
 Shape = Literal["square", "sine"]
 
 
-@closed_form(positive="quality_factor frequency")
-def envelope_time_constant(quality_factor: DimensionlessLike, frequency: HertzLike) -> SecondLike:
+@si.closed_form(positive="quality_factor frequency")
+def envelope_time_constant(
+    quality_factor: si.DimensionlessLike, frequency: si.HertzLike
+) -> si.SecondLike:
     """Time constant of the amplitude of a resonator (s): τ = Q/(πf), PHYSICS §4.
 
     `quality_factor` (1) and resonance `frequency` (Hz) broadcast. Raises `InputError` unless both
@@ -46,8 +35,10 @@ def envelope_time_constant(quality_factor: DimensionlessLike, frequency: HertzLi
     return quality_factor / (math.pi * frequency)
 
 
-@closed_form(positive="quality_factor frequency")
-def envelope_bandwidth(quality_factor: DimensionlessLike, frequency: HertzLike) -> HertzLike:
+@si.closed_form(positive="quality_factor frequency")
+def envelope_bandwidth(
+    quality_factor: si.DimensionlessLike, frequency: si.HertzLike
+) -> si.HertzLike:
     """Modulation frequency at which the envelope has fallen by 3 dB (Hz): f/2Q = 1/(2πτ).
 
     `quality_factor` (1) and resonance `frequency` (Hz) broadcast. Raises `InputError` unless both
@@ -56,13 +47,13 @@ def envelope_bandwidth(quality_factor: DimensionlessLike, frequency: HertzLike) 
     return frequency / (2 * quality_factor)
 
 
-@closed_form(positive="spatial_period speed time_constant")
+@si.closed_form(positive="spatial_period speed time_constant")
 def square_swing_kept(
-    spatial_period: MetreLike,
-    speed: MetrePerSecondLike,
-    time_constant: SecondLike,
-    duty: Annotated[DimensionlessLike, Above(0.0), Below(1.0)] = 0.5,
-) -> DimensionlessLike:
+    spatial_period: si.MetreLike,
+    speed: si.MetrePerSecondLike,
+    time_constant: si.SecondLike,
+    duty: Annotated[si.DimensionlessLike, si.Above(0.0), si.Below(1.0)] = 0.5,
+) -> si.DimensionlessLike:
     """Swing of amplitude left of a square grating, divided by the swing commanded (1).
 
     In the steady state the amplitude rises towards `high` for dT and decays towards `low` for
@@ -76,34 +67,34 @@ def square_swing_kept(
     """
     periods = spatial_period / (speed * time_constant)
     # expm1 keeps its digits where T ≪ τ, and unlike sinh cannot overflow where T ≫ τ.
-    kept: DimensionlessLike = (
+    kept: si.DimensionlessLike = (
         -np.expm1(-duty * periods) * np.expm1(-(1 - duty) * periods) / np.expm1(-periods)
     )
     return kept
 
 
-@closed_form(positive="spatial_period speed time_constant")
+@si.closed_form(positive="spatial_period speed time_constant")
 def sine_swing_kept(
-    spatial_period: MetreLike, speed: MetrePerSecondLike, time_constant: SecondLike
-) -> DimensionlessLike:
+    spatial_period: si.MetreLike, speed: si.MetrePerSecondLike, time_constant: si.SecondLike
+) -> si.DimensionlessLike:
     """Swing of amplitude left of a sine grating, divided by the swing commanded (1).
 
     1/√(1 + (2πτ/T)²) with T = spatial_period/speed: the gain of a first-order lag. All arguments
     (m, m/s, s) broadcast. Raises `InputError` unless all are above 0.
     """
-    kept: DimensionlessLike = 1 / np.sqrt(
+    kept: si.DimensionlessLike = 1 / np.sqrt(
         1 + (2 * math.pi * speed * time_constant / spatial_period) ** 2
     )
     return kept
 
 
-@closed_form(positive="speed time_constant")
+@si.closed_form(positive="speed time_constant")
 def finest_period(
-    speed: MetrePerSecondLike,
-    time_constant: SecondLike,
-    kept: DimensionlessLike = 0.9,
+    speed: si.MetrePerSecondLike,
+    time_constant: si.SecondLike,
+    kept: si.DimensionlessLike = 0.9,
     shape: Shape = "square",
-) -> MetreLike:
+) -> si.MetreLike:
     """Finest spatial period (m) that keeps a share `kept` of its swing at a finger's speed.
 
     Square with equal grooves and ridges: 4τv artanh(kept); sine: 2πτv kept/√(1 - kept²), the
@@ -114,13 +105,13 @@ def finest_period(
     return speed * time_constant * _time_constants_per_period(kept, shape)
 
 
-@closed_form(positive="spatial_period time_constant")
+@si.closed_form(positive="spatial_period time_constant")
 def fastest_speed(
-    spatial_period: MetreLike,
-    time_constant: SecondLike,
-    kept: DimensionlessLike = 0.9,
+    spatial_period: si.MetreLike,
+    time_constant: si.SecondLike,
+    kept: si.DimensionlessLike = 0.9,
     shape: Shape = "square",
-) -> MetrePerSecondLike:
+) -> si.MetrePerSecondLike:
     """Fastest finger (m/s) under which a grating keeps a share `kept` of its swing.
 
     The inverse of `finest_period` in speed. `spatial_period` (m), `time_constant` (s) and `kept`
@@ -130,18 +121,18 @@ def fastest_speed(
     return spatial_period / (time_constant * _time_constants_per_period(kept, shape))
 
 
-def _time_constants_per_period(kept: DimensionlessLike, shape: Shape) -> DimensionlessLike:
-    require("kept", kept, above=0.0, below=1.0)
+def _time_constants_per_period(kept: si.DimensionlessLike, shape: Shape) -> si.DimensionlessLike:
+    si.require("kept", kept, above=0.0, below=1.0)
     if shape == "square":
         # 4 artanh(kept), by logarithms since an inverse hyperbolic counts as an angle to pint.
-        square: DimensionlessLike = 2 * (np.log1p(kept) - np.log1p(-kept))
+        square: si.DimensionlessLike = 2 * (np.log1p(kept) - np.log1p(-kept))
         return square
-    sine: DimensionlessLike = 2 * math.pi * kept / np.sqrt((1 - kept) * (1 + kept))
+    sine: si.DimensionlessLike = 2 * math.pi * kept / np.sqrt((1 - kept) * (1 + kept))
     return sine
 
 
-@checked_numbers
-def one_row(name: str, values: MetreArray) -> MetreArray:
+@si.checked_numbers
+def one_row(name: str, values: si.MetreArray) -> si.MetreArray:
     """Samples (m) as the compiled steps take them. Raises `InputError` for another shape."""
     array = np.ascontiguousarray(values, dtype=float)
     if array.ndim != 1 or array.size == 0:
@@ -151,13 +142,13 @@ def one_row(name: str, values: MetreArray) -> MetreArray:
     return array
 
 
-@checked_numbers
+@si.checked_numbers
 def envelope_response(
-    command: MetreArray,
-    time_step: Annotated[Second, Above(0.0)],
-    time_constant: Annotated[Second, Above(0.0)],
-    initial: MetreLike = 0.0,
-) -> MetreArray:
+    command: si.MetreArray,
+    time_step: Annotated[si.Second, si.Above(0.0)],
+    time_constant: Annotated[si.Second, si.Above(0.0)],
+    initial: si.MetreLike = 0.0,
+) -> si.MetreArray:
     """Vibration amplitude of the resonator under a stepwise command (m, zero-to-peak).
 
     `command[..., k]` (m) is the amplitude commanded from sample k to sample k+1, `time_step` (s)

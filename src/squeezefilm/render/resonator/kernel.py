@@ -12,7 +12,7 @@ import math
 import numba
 import numpy as np
 
-from squeezefilm.quantities import Array
+from squeezefilm import quantities as si
 
 # Places in a compensator's state: the amplitude it takes the resonator to have, then counters.
 AMPLITUDE, SAMPLES, AT_TOP, AT_BOTTOM, NOT_FINITE = range(5)
@@ -33,7 +33,7 @@ def envelope_step(amplitude: float, command: float, keep_rise: float, keep_fall:
 
 @numba.njit(cache=True, nogil=True)
 def envelope_march(
-    command: Array, initial: float, keep_rise: float, keep_fall: float, amplitude: Array
+    command: si.Array, initial: float, keep_rise: float, keep_fall: float, amplitude: si.Array
 ) -> None:
     """Amplitude at each sample under a stepwise command; `amplitude[0]` takes `initial`."""
     a = initial
@@ -43,7 +43,7 @@ def envelope_march(
 
 
 @numba.njit(cache=True, nogil=True)
-def compensated_step(state: Array, parameters: Array, wanted: float) -> tuple[float, int]:
+def compensated_step(state: si.Array, parameters: si.Array, wanted: float) -> tuple[float, int]:
     """The command that brings the amplitude to `wanted` in one step, or nearest to it.
 
     `wanted` is for the end of the step. One that is not finite silences the drive; a negative one
@@ -73,7 +73,7 @@ def compensated_step(state: Array, parameters: Array, wanted: float) -> tuple[fl
 
 @numba.njit(cache=True, nogil=True)
 def compensated_march(
-    state: Array, parameters: Array, wanted: Array, command: Array, code: Array
+    state: si.Array, parameters: si.Array, wanted: si.Array, command: si.Array, code: si.Array
 ) -> None:
     """`compensated_step` over a block: `command[k]` leads to `wanted[k + 1]`, the last holds."""
     for k in range(wanted.size):
@@ -83,7 +83,7 @@ def compensated_march(
 
 
 @numba.njit(cache=True, nogil=True)
-def _least_place(places: Array, slopes: Array, knots: int) -> float:
+def _least_place(places: si.Array, slopes: si.Array, knots: int) -> float:
     """Where a rising piecewise linear slope crosses zero, or the end nearest to it."""
     if slopes[0] >= 0.0:
         return float(places[0])
@@ -96,7 +96,7 @@ def _least_place(places: Array, slopes: Array, knots: int) -> float:
 
 @numba.njit(cache=True, nogil=True)
 def previewed_step(
-    state: Array, parameters: Array, wanted: Array, work: Array
+    state: si.Array, parameters: si.Array, wanted: si.Array, work: si.Array
 ) -> tuple[float, int]:
     """The first command of the plan with least squared error over the samples ahead.
 
@@ -157,13 +157,13 @@ def previewed_step(
 
 @numba.njit(cache=True, nogil=True)
 def previewed_march(
-    state: Array,
-    parameters: Array,
-    wanted: Array,
+    state: si.Array,
+    parameters: si.Array,
+    wanted: si.Array,
     ahead: int,
-    work: Array,
-    command: Array,
-    code: Array,
+    work: si.Array,
+    command: si.Array,
+    code: si.Array,
 ) -> None:
     """`previewed_step` over a block, each with the next `ahead` samples; the last sample holds."""
     window = np.empty(ahead)
@@ -175,7 +175,12 @@ def previewed_march(
 
 @numba.njit(cache=True, nogil=True)
 def previewed_windows(
-    state: Array, parameters: Array, windows: Array, work: Array, command: Array, code: Array
+    state: si.Array,
+    parameters: si.Array,
+    windows: si.Array,
+    work: si.Array,
+    command: si.Array,
+    code: si.Array,
 ) -> None:
     """`previewed_step` over a block where each step has its own view ahead: a row of `windows`."""
     for k in range(windows.shape[0]):

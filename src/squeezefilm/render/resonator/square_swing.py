@@ -7,33 +7,20 @@ from typing import Annotated, Literal
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import OutOfRangeError
-from squeezefilm.quantities import (
-    Above,
-    Below,
-    Dimensionless,
-    DimensionlessLike,
-    Metre,
-    MetreLike,
-    MetrePerSecond,
-    MetrePerSecondLike,
-    Second,
-    Unit,
-    checked_numbers,
-    require,
-)
 from squeezefilm.render.resonator.compensation import DrivenEnvelope
 
 
-@checked_numbers
+@si.checked_numbers
 def square_swing_compensated(
-    spatial_period: Annotated[MetreLike, Above(0.0)],
-    speed: Annotated[MetrePerSecondLike, Above(0.0)],
+    spatial_period: Annotated[si.MetreLike, si.Above(0.0)],
+    speed: Annotated[si.MetrePerSecondLike, si.Above(0.0)],
     envelope: DrivenEnvelope,
-    low: Metre,
-    high: Metre,
+    low: si.Metre,
+    high: si.Metre,
     compensation: Literal["none", "inverse"] = "inverse",
-) -> DimensionlessLike:
+) -> si.DimensionlessLike:
     """Swing of amplitude left of a square grating of duty ½ in the steady state (1).
 
     For half a period h = spatial_period/(2 speed) the amplitude closes in on the limit above (with
@@ -49,8 +36,8 @@ def square_swing_compensated(
     Raises:
         InputError: a period or speed not above 0, or not 0 ≤ low < high ≤ limit.
     """
-    require("low", low, Unit("m"), at_least=0.0, below=high)
-    require("high", high, Unit("m"), at_most=envelope.amplitude_limit)
+    si.require("low", low, si.Unit("m"), at_least=0.0, below=high)
+    si.require("high", high, si.Unit("m"), at_most=envelope.amplitude_limit)
     half = np.asarray(spatial_period, dtype=float) / (2 * np.asarray(speed, dtype=float))
     rise = np.exp(-half / envelope.rise_time_constant)
     fall = np.exp(-half / envelope.fall_time_constant)
@@ -67,15 +54,15 @@ def square_swing_compensated(
     return float(kept) if kept.ndim == 0 else kept
 
 
-@checked_numbers
+@si.checked_numbers
 def fastest_compensated_speed(
-    spatial_period: Metre,
+    spatial_period: si.Metre,
     envelope: DrivenEnvelope,
-    low: Metre,
-    high: Metre,
+    low: si.Metre,
+    high: si.Metre,
     compensation: Literal["none", "inverse"] = "inverse",
-    kept: Annotated[Dimensionless, Above(0.0), Below(1.0)] = 0.9,
-) -> MetrePerSecond:
+    kept: Annotated[si.Dimensionless, si.Above(0.0), si.Below(1.0)] = 0.9,
+) -> si.MetrePerSecond:
     """Fastest finger (m/s) under which a square grating keeps a share `kept` of its swing.
 
     The inverse of `square_swing_compensated` in speed, found to 1e-12; proportional to the period.
@@ -104,8 +91,10 @@ def fastest_compensated_speed(
     return float(unit * math.exp(brentq(lacking, -30.0, 30.0, xtol=1e-13, rtol=1e-13)))
 
 
-@checked_numbers
-def least_cycle(envelope: DrivenEnvelope, swing: Metre, highest: Metre | None = None) -> Second:
+@si.checked_numbers
+def least_cycle(
+    envelope: DrivenEnvelope, swing: si.Metre, highest: si.Metre | None = None
+) -> si.Second:
     """Shortest period in which any drive within the limits swings the amplitude by so much (s).
 
     Rise at the full limit, fall at the lowest command, from the level where the two together are
@@ -116,8 +105,10 @@ def least_cycle(envelope: DrivenEnvelope, swing: Metre, highest: Metre | None = 
         InputError: not 0 < swing < limit, or a swing above `highest`.
     """
     ceiling = envelope.amplitude_limit if highest is None else highest
-    require("highest", ceiling, Unit("m"), above=0.0, at_most=envelope.amplitude_limit)
-    require("swing", swing, Unit("m"), above=0.0, below=envelope.amplitude_limit, at_most=ceiling)
+    si.require("highest", ceiling, si.Unit("m"), above=0.0, at_most=envelope.amplitude_limit)
+    si.require(
+        "swing", swing, si.Unit("m"), above=0.0, below=envelope.amplitude_limit, at_most=ceiling
+    )
     from scipy.optimize import minimize_scalar
 
     def period(level: float) -> float:

@@ -30,20 +30,9 @@ from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.from_text import reads_text
-from squeezefilm.quantities import (
-    AtLeast,
-    AtMost,
-    Dimensionless,
-    FloatArray,
-    FloatLike,
-    Metre,
-    MetreLike,
-    MetrePerSecondLike,
-    SecondLike,
-    checked_numbers,
-)
 from squeezefilm.render.opcodes import ADD, CROSS, FADE, MULTIPLY, WEIGH, Assembler
 from squeezefilm.render.texture.coordinate import (
     X_AXIS,
@@ -92,12 +81,14 @@ class Composable:
         return "stickier" if self.quantity == "relative_friction" else "slipperier"
 
     def __call__(
-        self, x: MetreLike, y: MetreLike, v: MetrePerSecondLike, t: SecondLike, /
-    ) -> FloatArray:
+        self, x: si.MetreLike, y: si.MetreLike, v: si.MetrePerSecondLike, t: si.SecondLike, /
+    ) -> si.FloatArray:
         """The texture at these places, velocities and times (m for an amplitude, else 1)."""
         return np.array(self._values(*finger_arguments(x, y, v, t)))
 
-    def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
+    def _values(
+        self, x: si.FloatArray, y: si.FloatArray, v: si.FloatArray, t: si.FloatArray
+    ) -> si.FloatArray:
         raise NotImplementedError
 
     def _lower(self, assembler: Assembler) -> None:
@@ -111,7 +102,7 @@ class Composable:
     def __radd__(self, other: Any) -> Sum:
         raise _no_sum(other)
 
-    def __mul__(self, other: Pattern | FloatLike) -> Product | Scaled:
+    def __mul__(self, other: Pattern | si.FloatLike) -> Product | Scaled:
         if isinstance(other, Pattern):
             return Product(self, other)
         if isinstance(other, Composable):
@@ -123,7 +114,7 @@ class Composable:
             return Scaled(self, float(other))
         return NotImplemented
 
-    def __rmul__(self, other: Pattern | FloatLike) -> Product | Scaled:
+    def __rmul__(self, other: Pattern | si.FloatLike) -> Product | Scaled:
         return self.__mul__(other)
 
     def __and__(self, mask: Pattern) -> Masked:
@@ -138,9 +129,14 @@ class Composable:
         return Masked(self, condition)
 
     @reads_text
-    @checked_numbers
+    @si.checked_numbers
     def then(
-        self, other: Composable, at: Metre, *, fade: Metre = 0.0, along: Coordinate | None = None
+        self,
+        other: Composable,
+        at: si.Metre,
+        *,
+        fade: si.Metre = 0.0,
+        along: Coordinate | None = None,
     ) -> Sequence:
         """This texture before the coordinate `at` (m; x unless `along` is given), then `other`."""
         coordinate = along or X_AXIS
@@ -207,7 +203,9 @@ class Sum(Composable):
         """That of its textures."""
         return self.textures[0].quantity
 
-    def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
+    def _values(
+        self, x: si.FloatArray, y: si.FloatArray, v: si.FloatArray, t: si.FloatArray
+    ) -> si.FloatArray:
         parts = [one._values(x, y, v, t) for one in self.textures]
         return np.asarray(np.add.reduce(parts))
 
@@ -243,7 +241,9 @@ class Product(_Shaped, Composable):
     pattern: Pattern
     type: Literal["product"] = field(default="product", repr=False)
 
-    def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
+    def _values(
+        self, x: si.FloatArray, y: si.FloatArray, v: si.FloatArray, t: si.FloatArray
+    ) -> si.FloatArray:
         return self.texture._values(x, y, v, t) * self.pattern._values(x, y, v, t)
 
     def _lower(self, assembler: Assembler) -> None:
@@ -252,13 +252,13 @@ class Product(_Shaped, Composable):
         assembler.emit(MULTIPLY)
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class Scaled(Composable):
     """`texture` times a number from 0 to 1000. Raises `InputError` outside that."""
 
     texture: Composable
-    factor: Annotated[Dimensionless, AtLeast(0.0), AtMost(1000.0)]
+    factor: Annotated[si.Dimensionless, si.AtLeast(0.0), si.AtMost(1000.0)]
     type: Literal["scaled"] = field(default="scaled", repr=False)
 
     def __post_init__(self) -> None:
@@ -269,7 +269,9 @@ class Scaled(Composable):
         """That of its texture."""
         return self.texture.quantity
 
-    def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
+    def _values(
+        self, x: si.FloatArray, y: si.FloatArray, v: si.FloatArray, t: si.FloatArray
+    ) -> si.FloatArray:
         return self.factor * self.texture._values(x, y, v, t)
 
     def _lower(self, assembler: Assembler) -> None:
@@ -288,7 +290,9 @@ class Masked(_Shaped, Composable):
     pattern: Pattern
     type: Literal["masked"] = field(default="masked", repr=False)
 
-    def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
+    def _values(
+        self, x: si.FloatArray, y: si.FloatArray, v: si.FloatArray, t: si.FloatArray
+    ) -> si.FloatArray:
         share = self.pattern._values(x, y, v, t)
         rest = AT_REST[self.quantity]
         return (1.0 - share) * rest + share * self.texture._values(x, y, v, t)
@@ -299,7 +303,7 @@ class Masked(_Shaped, Composable):
         assembler.emit(FADE, AT_REST[self.quantity])
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class Sequence(Composable):
     """One texture after another in space: `textures[k]` up to `edges[k]`, the last beyond.
@@ -317,7 +321,7 @@ class Sequence(Composable):
 
     textures: tuple[Composable, ...]
     edges: tuple[Place, ...]
-    fade: Metre = 0.0
+    fade: si.Metre = 0.0
     along: Coordinate = X_AXIS
     type: Literal["sequence"] = field(default="sequence", repr=False)
 
@@ -343,7 +347,9 @@ class Sequence(Composable):
         """That of its textures."""
         return self.textures[0].quantity
 
-    def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
+    def _values(
+        self, x: si.FloatArray, y: si.FloatArray, v: si.FloatArray, t: si.FloatArray
+    ) -> si.FloatArray:
         s = self.along.at(x, y)
         found = self.textures[0]._values(x, y, v, t)
         for edge, after in zip(self.edges, self.textures[1:], strict=True):

@@ -8,34 +8,21 @@ from typing import Annotated, Literal
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import (
-    AtLeast,
-    AtMost,
-    FloatArray,
-    Metre,
-    MetreArray,
-    MetreLike,
-    MetrePerSecondLike,
-    Radian,
-    SecondLike,
-    Unit,
-    checked_numbers,
-    require,
-)
 from squeezefilm.render.opcodes import ALONG, RADIUS, Assembler
 
-METRE = Unit("m")
-FARTHEST: Metre = 10.0
+METRE = si.Unit("m")
+FARTHEST: si.Metre = 10.0
 """No display is ten metres long (m): a place beyond is a slip of unit."""
 
-Place = Annotated[Metre, AtLeast(-FARTHEST), AtMost(FARTHEST)]
+Place = Annotated[si.Metre, si.AtLeast(-FARTHEST), si.AtMost(FARTHEST)]
 """A place on a display, in annotations: at most 10 m from the origin."""
 
-FINEST: Metre = 1e-9
+FINEST: si.Metre = 1e-9
 """No texture is finer than a nanometre (m): a width below is a slip of unit."""
 
-Length = Annotated[Metre, AtLeast(FINEST), AtMost(FARTHEST)]
+Length = Annotated[si.Metre, si.AtLeast(FINEST), si.AtMost(FARTHEST)]
 """A period or a width on a display, in annotations: from 1 nm to 10 m."""
 
 
@@ -45,7 +32,7 @@ class Coordinate:
 
     __slots__ = ()
 
-    def at(self, x: MetreArray, y: MetreArray) -> MetreArray:
+    def at(self, x: si.MetreArray, y: si.MetreArray) -> si.MetreArray:
         """The coordinate (m) at places `x`, `y` (m), in their shape."""
         raise NotImplementedError
 
@@ -59,7 +46,7 @@ class AlongX(Coordinate):
 
     type: Literal["x"] = field(default="x", repr=False)
 
-    def at(self, x: MetreArray, y: MetreArray) -> MetreArray:
+    def at(self, x: si.MetreArray, y: si.MetreArray) -> si.MetreArray:
         """`x` (m)."""
         return x
 
@@ -77,7 +64,7 @@ class AlongY(Coordinate):
 
     type: Literal["y"] = field(default="y", repr=False)
 
-    def at(self, x: MetreArray, y: MetreArray) -> MetreArray:
+    def at(self, x: si.MetreArray, y: si.MetreArray) -> si.MetreArray:
         """`y` (m)."""
         return y
 
@@ -85,7 +72,7 @@ class AlongY(Coordinate):
         assembler.emit(ALONG, 0.0, 1.0, 0.0)
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class AlongDirection(Coordinate):
     """x cos(angle) + y sin(angle): the way along a line at `angle` (rad) from x towards y.
@@ -93,10 +80,10 @@ class AlongDirection(Coordinate):
     Raises `InputError` for an angle that is not finite.
     """
 
-    angle: Radian
+    angle: si.Radian
     type: Literal["direction"] = field(default="direction", repr=False)
 
-    def at(self, x: MetreArray, y: MetreArray) -> MetreArray:
+    def at(self, x: si.MetreArray, y: si.MetreArray) -> si.MetreArray:
         """The way along the line (m)."""
         return np.asarray(math.cos(self.angle) * x + math.sin(self.angle) * y)
 
@@ -104,7 +91,7 @@ class AlongDirection(Coordinate):
         assembler.emit(ALONG, math.cos(self.angle), math.sin(self.angle), 0.0)
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class FromPoint(Coordinate):
     """The distance from the point (`x`, `y`), for rings and discs; never negative.
@@ -116,7 +103,7 @@ class FromPoint(Coordinate):
     y: Place = 0.0
     type: Literal["radius"] = field(default="radius", repr=False)
 
-    def at(self, x: MetreArray, y: MetreArray) -> MetreArray:
+    def at(self, x: si.MetreArray, y: si.MetreArray) -> si.MetreArray:
         """The distance (m)."""
         # Not hypot: a plain root is the same operation in every interpreter of a program.
         return np.sqrt((x - self.x) ** 2 + (y - self.y) ** 2)
@@ -125,10 +112,10 @@ class FromPoint(Coordinate):
         assembler.emit(RADIUS, self.x, self.y)
 
 
-def require_fade(value: Metre, at_most: Metre) -> None:
+def require_fade(value: si.Metre, at_most: si.Metre) -> None:
     """Refuse a fade (m) that is neither 0 nor between a nanometre and `at_most`."""
     if value != 0.0:
-        require("fade", value, METRE, at_least=FINEST, at_most=at_most)
+        si.require("fade", value, METRE, at_least=FINEST, at_most=at_most)
 
 
 def require_coordinate(value: object) -> None:
@@ -142,17 +129,17 @@ def require_coordinate(value: object) -> None:
 
 
 def finger_arguments(
-    x: MetreLike, y: MetreLike, v: MetrePerSecondLike, t: SecondLike
-) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    x: si.MetreLike, y: si.MetreLike, v: si.MetrePerSecondLike, t: si.SecondLike
+) -> tuple[si.FloatArray, si.FloatArray, si.FloatArray, si.FloatArray]:
     """Place, velocity and time of a finger as arrays of one shape.
 
     Raises `InputError` for one that is not finite, or for shapes that do not broadcast.
     """
     # A NaN would compare false and silently become the low side of an edge.
-    require("position x", x, METRE)
-    require("position y", y, METRE)
-    require("velocity v", v, Unit("m/s"))
-    require("time t", t, Unit("s"))
+    si.require("position x", x, METRE)
+    si.require("position y", y, METRE)
+    si.require("velocity v", v, si.Unit("m/s"))
+    si.require("time t", t, si.Unit("s"))
     arrays = [np.asarray(one, dtype=float) for one in (x, y, v, t)]
     try:
         a, b, c, d = np.broadcast_arrays(*arrays)

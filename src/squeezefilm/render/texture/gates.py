@@ -12,35 +12,21 @@ from typing import Annotated, Literal
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.from_text import reads_text
-from squeezefilm.quantities import (
-    Above,
-    AtLeast,
-    AtMost,
-    Below,
-    Dimensionless,
-    FloatArray,
-    Hertz,
-    MetrePerSecond,
-    Radian,
-    Second,
-    Unit,
-    checked_numbers,
-    require,
-)
 from squeezefilm.render import opcodes
 from squeezefilm.render.opcodes import Assembler
 from squeezefilm.render.texture.pattern import Pattern
 
-_SECOND = Unit("s")
-_SPEED = Unit("m/s")
-_FASTEST: MetrePerSecond = 1000.0
-_LONGEST: Second = 86_400.0
+_SECOND = si.Unit("s")
+_SPEED = si.Unit("m/s")
+_FASTEST: si.MetrePerSecond = 1000.0
+_LONGEST: si.Second = 86_400.0
 
 
 @reads_text
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class SpeedGate(Pattern):
     """1 while the finger's speed |v| is above `above` and below `below`, else 0.
@@ -54,8 +40,8 @@ class SpeedGate(Pattern):
         InputError: a speed outside its range.
     """
 
-    above: Annotated[MetrePerSecond, AtLeast(0.0), Below(_FASTEST)] | None = None
-    below: MetrePerSecond | None = None
+    above: Annotated[si.MetrePerSecond, si.AtLeast(0.0), si.Below(_FASTEST)] | None = None
+    below: si.MetrePerSecond | None = None
     type: Literal["speed_gate"] = field(default="speed_gate", repr=False)
 
     def __post_init__(self) -> None:
@@ -63,7 +49,7 @@ class SpeedGate(Pattern):
             raise InputError("a speed gate needs a speed above or below which it is open")
         if self.below is not None:
             least = 0.0 if self.above is None else self.above
-            require("below", self.below, _SPEED, above=least, at_most=_FASTEST)
+            si.require("below", self.below, _SPEED, above=least, at_most=_FASTEST)
 
     @property
     def _ends(self) -> tuple[float, float]:
@@ -72,7 +58,9 @@ class SpeedGate(Pattern):
             math.inf if self.below is None else self.below,
         )
 
-    def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
+    def _values(
+        self, x: si.FloatArray, y: si.FloatArray, v: si.FloatArray, t: si.FloatArray
+    ) -> si.FloatArray:
         low, high = self._ends
         return np.where((np.abs(v) > low) & (np.abs(v) < high), 1.0, 0.0)
 
@@ -88,10 +76,10 @@ class Speed:
 
     __slots__ = ()
 
-    def __gt__(self, other: MetrePerSecond) -> SpeedGate:
+    def __gt__(self, other: si.MetrePerSecond) -> SpeedGate:
         return SpeedGate(above=other)
 
-    def __lt__(self, other: MetrePerSecond) -> SpeedGate:
+    def __lt__(self, other: si.MetrePerSecond) -> SpeedGate:
         return SpeedGate(below=other)
 
 
@@ -99,7 +87,7 @@ speed = Speed()
 """The finger's speed, for ``texture.when(speed > 0.02)``; ~ and & join comparisons."""
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class Attack(Pattern):
     """Rises linearly from 0 at `start` to 1 after `duration`, and stays.
@@ -112,11 +100,13 @@ class Attack(Pattern):
         InputError: a time outside its range.
     """
 
-    duration: Annotated[Second, AtLeast(1e-06), AtMost(_LONGEST)]
-    start: Annotated[Second, AtLeast(0.0), AtMost(_LONGEST)] = 0.0
+    duration: Annotated[si.Second, si.AtLeast(1e-06), si.AtMost(_LONGEST)]
+    start: Annotated[si.Second, si.AtLeast(0.0), si.AtMost(_LONGEST)] = 0.0
     type: Literal["attack"] = field(default="attack", repr=False)
 
-    def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
+    def _values(
+        self, x: si.FloatArray, y: si.FloatArray, v: si.FloatArray, t: si.FloatArray
+    ) -> si.FloatArray:
         end = self.start + self.duration
         return np.clip((t - self.start) / (end - self.start), 0.0, 1.0)
 
@@ -125,7 +115,7 @@ class Attack(Pattern):
         assembler.emit(opcodes.RAMP, self.start, self.start + self.duration)
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class Decay(Pattern):
     """1 until `start`, then exp(−(t − start)/time_constant).
@@ -138,11 +128,13 @@ class Decay(Pattern):
         InputError: a time outside its range.
     """
 
-    time_constant: Annotated[Second, AtLeast(1e-06), AtMost(_LONGEST)]
-    start: Annotated[Second, AtLeast(0.0), AtMost(_LONGEST)] = 0.0
+    time_constant: Annotated[si.Second, si.AtLeast(1e-06), si.AtMost(_LONGEST)]
+    start: Annotated[si.Second, si.AtLeast(0.0), si.AtMost(_LONGEST)] = 0.0
     type: Literal["decay"] = field(default="decay", repr=False)
 
-    def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
+    def _values(
+        self, x: si.FloatArray, y: si.FloatArray, v: si.FloatArray, t: si.FloatArray
+    ) -> si.FloatArray:
         passed = np.maximum(t - self.start, 0.0)
         return np.asarray(np.exp(-passed / self.time_constant))
 
@@ -151,7 +143,7 @@ class Decay(Pattern):
         assembler.emit(opcodes.DECAY, self.start, self.time_constant)
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class Periodic(Pattern):
     """A square or a sine of time: what comes and goes `frequency` times a second.
@@ -166,13 +158,15 @@ class Periodic(Pattern):
         InputError: a value outside its range.
     """
 
-    frequency: Annotated[Hertz, AtLeast(1e-06), AtMost(2000.0)]
+    frequency: Annotated[si.Hertz, si.AtLeast(1e-06), si.AtMost(2000.0)]
     shape: Literal["square", "sine"] = "square"
-    duty: Annotated[Dimensionless, Above(0.0), Below(1.0)] = 0.5
-    phase: Radian = 0.0
+    duty: Annotated[si.Dimensionless, si.Above(0.0), si.Below(1.0)] = 0.5
+    phase: si.Radian = 0.0
     type: Literal["periodic"] = field(default="periodic", repr=False)
 
-    def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
+    def _values(
+        self, x: si.FloatArray, y: si.FloatArray, v: si.FloatArray, t: si.FloatArray
+    ) -> si.FloatArray:
         cycles = t / (1.0 / self.frequency) + self.phase / (2 * math.pi)
         if self.shape == "sine":
             return 0.5 + 0.5 * np.sin(2 * math.pi * cycles)

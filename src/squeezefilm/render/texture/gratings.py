@@ -14,24 +14,9 @@ from typing import Annotated, ClassVar, Literal, Protocol
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.from_text import reads_text
-from squeezefilm.quantities import (
-    Above,
-    Below,
-    Dimensionless,
-    FloatArray,
-    Metre,
-    MetreArray,
-    MetreLike,
-    MetrePerSecondLike,
-    Radian,
-    SecondLike,
-    Unit,
-    checked_numbers,
-    format_quantity,
-    require,
-)
 from squeezefilm.render.opcodes import ALONG, BETWEEN, SINE, SQUARE, Assembler
 from squeezefilm.render.texture.composition import Composable, Quantity
 from squeezefilm.render.texture.coordinate import FARTHEST, FINEST, METRE
@@ -49,8 +34,8 @@ class Texture(Protocol):
     """
 
     def __call__(
-        self, x: MetreLike, y: MetreLike, v: MetrePerSecondLike, t: SecondLike, /
-    ) -> MetreArray:
+        self, x: si.MetreLike, y: si.MetreLike, v: si.MetrePerSecondLike, t: si.SecondLike, /
+    ) -> si.MetreArray:
         """The vibration amplitude wanted (m, zero-to-peak)."""
         ...
 
@@ -59,26 +44,26 @@ class _Grating:
     """What the gratings have in common: a period and two amplitudes."""
 
     __slots__ = ()
-    spatial_period: Metre
-    low: Metre
-    high: Metre
-    phase: Radian
+    spatial_period: si.Metre
+    low: si.Metre
+    high: si.Metre
+    phase: si.Radian
 
     def __post_init__(self) -> None:
-        require("spatial_period", self.spatial_period, METRE, at_least=FINEST, at_most=FARTHEST)
-        require("low", self.low, METRE, at_least=0.0)
-        require("high", self.high, METRE, above=0.0, at_most=LARGEST_AMPLITUDE)
-        require("phase", self.phase, Unit("rad"))
+        si.require("spatial_period", self.spatial_period, METRE, at_least=FINEST, at_most=FARTHEST)
+        si.require("low", self.low, METRE, at_least=0.0)
+        si.require("high", self.high, METRE, above=0.0, at_most=LARGEST_AMPLITUDE)
+        si.require("phase", self.phase, si.Unit("rad"))
         if not self.low < self.high:
             raise InputError(
-                f"low = {format_quantity(self.low, METRE)} and high = "
-                f"{format_quantity(self.high, METRE)} make no texture: low must be below high; "
+                f"low = {si.format_quantity(self.low, METRE)} and high = "
+                f"{si.format_quantity(self.high, METRE)} make no texture: low must be below high; "
                 "to exchange grooves and ridges, change duty and phase"
             )
 
 
 @reads_text
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class Square(_Grating, Composable):
     """A square grating along x: amplitude `high` over `duty` of each period, `low` over the rest.
@@ -102,25 +87,25 @@ class Square(_Grating, Composable):
         InputError: a value outside its range.
     """
 
-    spatial_period: Metre
-    low: Metre
-    high: Metre
-    duty: Annotated[Dimensionless, Above(0.0), Below(1.0)] = 0.5
-    phase: Radian = 0.0
+    spatial_period: si.Metre
+    low: si.Metre
+    high: si.Metre
+    duty: Annotated[si.Dimensionless, si.Above(0.0), si.Below(1.0)] = 0.5
+    phase: si.Radian = 0.0
     type: Literal["square"] = field(default="square", repr=False)
     _quantity: ClassVar[Quantity] = "amplitude"
 
     @classmethod
     @reads_text
-    @checked_numbers
+    @si.checked_numbers
     def from_groove_and_ridge(
         cls,
-        groove: Annotated[Metre, Above(0.0)],
-        ridge: Annotated[Metre, Above(0.0)],
+        groove: Annotated[si.Metre, si.Above(0.0)],
+        ridge: Annotated[si.Metre, si.Above(0.0)],
         *,
-        low: Metre,
-        high: Metre,
-        phase: Radian = 0.0,
+        low: si.Metre,
+        high: si.Metre,
+        phase: si.Radian = 0.0,
     ) -> Square:
         """The grating whose grooves (at `high`) and ridges (at `low`) have these widths (m).
 
@@ -133,7 +118,9 @@ class Square(_Grating, Composable):
         period = groove + ridge
         return cls(period, low, high, duty=groove / period, phase=phase)
 
-    def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
+    def _values(
+        self, x: si.FloatArray, y: si.FloatArray, v: si.FloatArray, t: si.FloatArray
+    ) -> si.FloatArray:
         cycles = x / self.spatial_period + self.phase / (2 * math.pi)
         return np.where(cycles - np.floor(cycles) < self.duty, self.high, self.low)
 
@@ -144,7 +131,7 @@ class Square(_Grating, Composable):
 
 
 @reads_text
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class Sine(_Grating, Composable):
     """A sine grating along x: amplitude between `low` and `high`, once per spatial period.
@@ -161,14 +148,16 @@ class Sine(_Grating, Composable):
         InputError: a value outside its range.
     """
 
-    spatial_period: Metre
-    low: Metre
-    high: Metre
-    phase: Radian = 0.0
+    spatial_period: si.Metre
+    low: si.Metre
+    high: si.Metre
+    phase: si.Radian = 0.0
     type: Literal["sine"] = field(default="sine", repr=False)
     _quantity: ClassVar[Quantity] = "amplitude"
 
-    def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
+    def _values(
+        self, x: si.FloatArray, y: si.FloatArray, v: si.FloatArray, t: si.FloatArray
+    ) -> si.FloatArray:
         cycles = x / self.spatial_period + self.phase / (2 * math.pi)
         high_share = 0.5 + 0.5 * np.sin(2 * math.pi * cycles)
         # Weighted so, rounding cannot carry the value past either end (a negative amplitude).

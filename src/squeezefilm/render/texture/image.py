@@ -7,25 +7,15 @@ from typing import Annotated, Any, Literal
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.from_text import reads_text
 from squeezefilm.hard_limits import PIXELS
-from squeezefilm.quantities import (
-    AtLeast,
-    AtMost,
-    Dimensionless,
-    DimensionlessArray,
-    FloatArray,
-    Metre,
-    checked_numbers,
-    real_numbers,
-    require,
-)
 from squeezefilm.render.opcodes import IMAGE, Assembler
 from squeezefilm.render.texture.coordinate import Place
 from squeezefilm.render.texture.pattern import Pattern
 
-LARGEST_PIXEL: Metre = 0.1
+LARGEST_PIXEL: si.Metre = 0.1
 MOST_PIXELS = int(PIXELS.most)
 """Pixels one image may have."""
 
@@ -34,7 +24,7 @@ OUTSIDE = ("hold", "repeat", "zero")
 
 
 @reads_text
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class Image(Pattern):
     """Values from 0 to 1 on a grid of square pixels, bilinear between their centres.
@@ -53,13 +43,13 @@ class Image(Pattern):
             pixels.
     """
 
-    values: tuple[tuple[Dimensionless, ...], ...]
-    pixel: Annotated[Metre, AtLeast(1e-06), AtMost(LARGEST_PIXEL)]
+    values: tuple[tuple[si.Dimensionless, ...], ...]
+    pixel: Annotated[si.Metre, si.AtLeast(1e-06), si.AtMost(LARGEST_PIXEL)]
     left: Place = 0.0
     bottom: Place = 0.0
     outside: Literal["hold", "repeat", "zero"] = "hold"
     type: Literal["image"] = field(default="image", repr=False)
-    _grid: FloatArray = field(init=False, repr=False, compare=False)
+    _grid: si.FloatArray = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         if not isinstance(self.values, tuple | list) or not all(
@@ -83,8 +73,8 @@ class Image(Pattern):
                 f"{MOST_PIXELS} together; make its pixels larger",
                 quantity="values",
             )
-        grid = np.array(real_numbers("values", self.values))
-        require("values", grid, at_least=0.0, at_most=1.0)
+        grid = np.array(si.real_numbers("values", self.values))
+        si.require("values", grid, at_least=0.0, at_most=1.0)
         grid.setflags(write=False)
         object.__setattr__(self, "_grid", grid)
 
@@ -92,11 +82,11 @@ class Image(Pattern):
     @reads_text
     def from_array(
         cls,
-        values: DimensionlessArray,
-        pixel: Metre,
+        values: si.DimensionlessArray,
+        pixel: si.Metre,
         *,
-        left: Metre = 0.0,
-        bottom: Metre = 0.0,
+        left: si.Metre = 0.0,
+        bottom: si.Metre = 0.0,
         outside: Literal["hold", "repeat", "zero"] = "hold",
     ) -> Image:
         """The image of an array of floats (rows, columns) from 0 to 1.
@@ -105,7 +95,7 @@ class Image(Pattern):
             InputError: an array that is not of floats (8-bit grey must be divided by 255), has
                 not two axes, or cannot be an image.
         """
-        require("values", values)
+        si.require("values", values)
         array: Any = np.asarray(values)
         if array.ndim != 2 or not np.issubdtype(array.dtype, np.floating):
             raise InputError(
@@ -120,7 +110,9 @@ class Image(Pattern):
             )
         return cls(tuple(tuple(row) for row in array.tolist()), pixel, left, bottom, outside)
 
-    def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
+    def _values(
+        self, x: si.FloatArray, y: si.FloatArray, v: si.FloatArray, t: si.FloatArray
+    ) -> si.FloatArray:
         rows, columns = self._grid.shape
         u = (x - self.left) / self.pixel
         w = (y - self.bottom) / self.pixel
@@ -143,7 +135,7 @@ class Image(Pattern):
         assembler.emit(IMAGE, table, rows, columns, self.left, self.bottom, self.pixel, outside)
 
 
-def _neighbours(u: FloatArray, count: int, wraps: bool) -> tuple[Any, Any, FloatArray]:
+def _neighbours(u: si.FloatArray, count: int, wraps: bool) -> tuple[Any, Any, si.FloatArray]:
     """The two pixels around `u` pixels from the first centre, and how far between them."""
     if not wraps:
         u = np.clip(u, 0.0, count - 1.0)

@@ -17,15 +17,9 @@ from typing import Any, Literal
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.from_text import reads_text
-from squeezefilm.quantities import (
-    Dimensionless,
-    FloatArray,
-    Metre,
-    checked_numbers,
-    require,
-)
 from squeezefilm.render.opcodes import ADD, NOISE, NOISE_FIELD, WEIGH, Assembler
 from squeezefilm.render.texture.coordinate import METRE, X_AXIS, Coordinate, require_coordinate
 from squeezefilm.render.texture.pattern import Pattern
@@ -37,7 +31,7 @@ STEP_ACROSS = 0x85EBCA77
 _MASK = 0xFFFFFFFF
 _MOST_OCTAVES = 8
 # So that lattice numbers stay far within 32 bits over ten metres.
-_FINEST: Metre = 1e-6
+_FINEST: si.Metre = 1e-6
 
 
 def mixed(value: int) -> int:
@@ -58,12 +52,12 @@ def _mixed_all(values: Any) -> Any:
     return values ^ (values >> np.uint64(16))
 
 
-def _hashed(numbers: FloatArray, state: Any, step: int) -> Any:
+def _hashed(numbers: si.FloatArray, state: Any, step: int) -> Any:
     cells = numbers.astype(np.int64).astype(np.uint64) & np.uint64(_MASK)
     return _mixed_all(state ^ ((cells * np.uint64(step)) & np.uint64(_MASK)))
 
 
-def _weights(f: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+def _weights(f: si.FloatArray) -> tuple[si.FloatArray, si.FloatArray, si.FloatArray, si.FloatArray]:
     g = 1.0 - f
     return (
         g * g * g / 6.0,
@@ -73,8 +67,8 @@ def _weights(f: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatAr
     )
 
 
-@checked_numbers
-def line_noise(u: FloatArray, state: int) -> FloatArray:
+@si.checked_numbers
+def line_noise(u: si.FloatArray, state: int) -> si.FloatArray:
     """Noise at `u` lattice spacings from the origin, from a mixed seed; any shape."""
     cell = np.floor(u)
     start = np.full(u.shape, state, dtype=np.uint64)
@@ -84,8 +78,8 @@ def line_noise(u: FloatArray, state: int) -> FloatArray:
     return total
 
 
-@checked_numbers
-def field_noise(u: FloatArray, w: FloatArray, state: int) -> FloatArray:
+@si.checked_numbers
+def field_noise(u: si.FloatArray, w: si.FloatArray, state: int) -> si.FloatArray:
     """Noise at (`u`, `w`) lattice spacings from the origin, from a mixed seed; any one shape."""
     column, row = np.floor(u), np.floor(w)
     start = np.full(u.shape, state, dtype=np.uint64)
@@ -102,13 +96,13 @@ class _Octaves:
     """Noises that are added, each with twice the period of the one before."""
 
     __slots__ = ()
-    finest_period: Metre
+    finest_period: si.Metre
     seed: int
     octaves: int
-    persistence: Dimensionless
+    persistence: si.Dimensionless
 
     def __post_init__(self) -> None:
-        require("finest_period", self.finest_period, METRE, at_least=_FINEST, at_most=1.0)
+        si.require("finest_period", self.finest_period, METRE, at_least=_FINEST, at_most=1.0)
         for name, value, low, high in (
             ("seed", self.seed, 0, _MASK),
             ("octaves", self.octaves, 1, _MOST_OCTAVES),
@@ -119,22 +113,26 @@ class _Octaves:
                     f"{high}",
                     quantity=name,
                 )
-        require("persistence", self.persistence, above=0.0, at_most=1.0)
+        si.require("persistence", self.persistence, above=0.0, at_most=1.0)
 
-    def _octave(self, x: FloatArray, y: FloatArray, period: Metre, state: int) -> FloatArray:
+    def _octave(
+        self, x: si.FloatArray, y: si.FloatArray, period: si.Metre, state: int
+    ) -> si.FloatArray:
         raise NotImplementedError
 
-    def _lower_octave(self, assembler: Assembler, period: Metre, state: int) -> None:
+    def _lower_octave(self, assembler: Assembler, period: si.Metre, state: int) -> None:
         raise NotImplementedError
 
-    def _weighed(self) -> list[tuple[Metre, int, float]]:
+    def _weighed(self) -> list[tuple[si.Metre, int, float]]:
         """Spacing, mixed seed and weight of every octave; the weights sum to 1."""
         count, seed, finest = self.octaves, self.seed, self.finest_period
         weights = [self.persistence ** (count - 1 - k) for k in range(count)]
         total = sum(weights)
         return [(finest * 2.0**k, mixed(seed + k), weights[k] / total) for k in range(count)]
 
-    def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
+    def _values(
+        self, x: si.FloatArray, y: si.FloatArray, v: si.FloatArray, t: si.FloatArray
+    ) -> si.FloatArray:
         total = np.zeros(x.shape)
         for period, state, weight in self._weighed():
             total = total + weight * self._octave(x, y, period, state)
@@ -150,7 +148,7 @@ class _Octaves:
 
 
 @reads_text
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class Noise(_Octaves, Pattern):
     """Seeded noise along one coordinate, with nothing finer than `finest_period`.
@@ -166,10 +164,10 @@ class Noise(_Octaves, Pattern):
         InputError: a value outside its range.
     """
 
-    finest_period: Metre
+    finest_period: si.Metre
     seed: int
     octaves: int = 1
-    persistence: Dimensionless = 0.5
+    persistence: si.Dimensionless = 0.5
     along: Coordinate = X_AXIS
     type: Literal["noise"] = field(default="noise", repr=False)
 
@@ -177,15 +175,17 @@ class Noise(_Octaves, Pattern):
         _Octaves.__post_init__(self)
         require_coordinate(self.along)
 
-    def _octave(self, x: FloatArray, y: FloatArray, period: Metre, state: int) -> FloatArray:
+    def _octave(
+        self, x: si.FloatArray, y: si.FloatArray, period: si.Metre, state: int
+    ) -> si.FloatArray:
         return line_noise(self.along.at(x, y) / period, state)
 
-    def _lower_octave(self, assembler: Assembler, period: Metre, state: int) -> None:
+    def _lower_octave(self, assembler: Assembler, period: si.Metre, state: int) -> None:
         self.along._lower(assembler)
         assembler.emit(NOISE, period, state)
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class NoiseField(_Octaves, Pattern):
     """Seeded noise in the plane, with nothing finer than `finest_period` along x or y.
@@ -193,14 +193,16 @@ class NoiseField(_Octaves, Pattern):
     Args and errors as for `Noise`.
     """
 
-    finest_period: Metre
+    finest_period: si.Metre
     seed: int
     octaves: int = 1
-    persistence: Dimensionless = 0.5
+    persistence: si.Dimensionless = 0.5
     type: Literal["noise_field"] = field(default="noise_field", repr=False)
 
-    def _octave(self, x: FloatArray, y: FloatArray, period: Metre, state: int) -> FloatArray:
+    def _octave(
+        self, x: si.FloatArray, y: si.FloatArray, period: si.Metre, state: int
+    ) -> si.FloatArray:
         return field_noise(x / period, y / period, state)
 
-    def _lower_octave(self, assembler: Assembler, period: Metre, state: int) -> None:
+    def _lower_octave(self, assembler: Assembler, period: si.Metre, state: int) -> None:
         assembler.emit(NOISE_FIELD, period, state)

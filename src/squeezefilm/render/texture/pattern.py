@@ -18,20 +18,8 @@ from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import (
-    AtLeast,
-    AtMost,
-    DimensionlessArray,
-    FloatArray,
-    MetreLike,
-    MetrePerSecond,
-    MetrePerSecondLike,
-    SecondLike,
-    Unit,
-    checked_numbers,
-    require,
-)
 from squeezefilm.render.opcodes import (
     COMPLEMENT,
     ENTER_SCALE,
@@ -58,12 +46,14 @@ class Pattern:
     __slots__ = ()
 
     def __call__(
-        self, x: MetreLike, y: MetreLike, v: MetrePerSecondLike, t: SecondLike, /
-    ) -> DimensionlessArray:
+        self, x: si.MetreLike, y: si.MetreLike, v: si.MetrePerSecondLike, t: si.SecondLike, /
+    ) -> si.DimensionlessArray:
         """The pattern at these places, velocities and times (1)."""
         return np.array(self._values(*finger_arguments(x, y, v, t)))
 
-    def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
+    def _values(
+        self, x: si.FloatArray, y: si.FloatArray, v: si.FloatArray, t: si.FloatArray
+    ) -> si.FloatArray:
         raise NotImplementedError
 
     def _lower(self, assembler: Assembler) -> None:
@@ -88,12 +78,12 @@ class Pattern:
             "a * b for both, or add textures, whose values have a quantity"
         )
 
-    @checked_numbers
+    @si.checked_numbers
     def scaled_by_speed(
         self,
-        reference_speed: MetrePerSecond,
-        slowest: MetrePerSecond = 0.001,
-        fastest: MetrePerSecond = 1.0,
+        reference_speed: si.MetrePerSecond,
+        slowest: si.MetrePerSecond = 0.001,
+        fastest: si.MetrePerSecond = 1.0,
     ) -> SpeedScaled:
         """This pattern stretched by speed/`reference_speed`; see `SpeedScaled`."""
         return SpeedScaled(self, reference_speed, slowest, fastest)
@@ -127,7 +117,9 @@ class Complement(Pattern):
     def __post_init__(self) -> None:
         require_pattern("pattern", self.pattern)
 
-    def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
+    def _values(
+        self, x: si.FloatArray, y: si.FloatArray, v: si.FloatArray, t: si.FloatArray
+    ) -> si.FloatArray:
         return 1.0 - self.pattern._values(x, y, v, t)
 
     def _lower(self, assembler: Assembler) -> None:
@@ -152,7 +144,9 @@ class _Joined:
         for one in self.patterns:
             require_pattern("patterns", one)
 
-    def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
+    def _values(
+        self, x: si.FloatArray, y: si.FloatArray, v: si.FloatArray, t: si.FloatArray
+    ) -> si.FloatArray:
         parts = [one._values(x, y, v, t) for one in self.patterns]
         return np.asarray(self._operation.reduce(parts))
 
@@ -190,7 +184,7 @@ class Times(_Joined, Pattern):
     _operation, _opcode = np.multiply, MULTIPLY
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class SpeedScaled(Pattern):
     """`pattern` stretched about the origin in proportion to the finger's speed.
@@ -207,17 +201,19 @@ class SpeedScaled(Pattern):
     """
 
     pattern: Pattern
-    reference_speed: Annotated[MetrePerSecond, AtLeast(1e-06), AtMost(10.0)]
-    slowest: Annotated[MetrePerSecond, AtLeast(1e-06), AtMost(10.0)] = 0.001
-    fastest: MetrePerSecond = 1.0
+    reference_speed: Annotated[si.MetrePerSecond, si.AtLeast(1e-06), si.AtMost(10.0)]
+    slowest: Annotated[si.MetrePerSecond, si.AtLeast(1e-06), si.AtMost(10.0)] = 0.001
+    fastest: si.MetrePerSecond = 1.0
     type: Literal["speed_scaled"] = field(default="speed_scaled", repr=False)
 
     def __post_init__(self) -> None:
         require_pattern("pattern", self.pattern)
-        unit = Unit("m/s")
-        require("fastest", self.fastest, unit, at_least=self.slowest, at_most=10.0)
+        unit = si.Unit("m/s")
+        si.require("fastest", self.fastest, unit, at_least=self.slowest, at_most=10.0)
 
-    def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
+    def _values(
+        self, x: si.FloatArray, y: si.FloatArray, v: si.FloatArray, t: si.FloatArray
+    ) -> si.FloatArray:
         low, high = self.slowest / self.reference_speed, self.fastest / self.reference_speed
         factor = np.clip(np.abs(v) / self.reference_speed, low, high)
         return self.pattern._values(x / factor, y / factor, v, t)

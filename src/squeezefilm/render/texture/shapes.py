@@ -8,20 +8,9 @@ from typing import Annotated, Literal
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.from_text import reads_text
-from squeezefilm.quantities import (
-    Above,
-    AtLeast,
-    AtMost,
-    Below,
-    Dimensionless,
-    FloatArray,
-    Metre,
-    Radian,
-    checked_numbers,
-    require,
-)
 from squeezefilm.render.opcodes import (
     BAND,
     BUMP,
@@ -50,15 +39,17 @@ from squeezefilm.render.texture.pattern import Pattern
 _FULL_WIDTH = 2.0 * math.sqrt(2.0 * math.log(2.0))
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class Constant(Pattern):
     """The same `share` (1, from 0 to 1) everywhere. Raises `InputError` outside that."""
 
-    share: Annotated[Dimensionless, AtLeast(0.0), AtMost(1.0)] = 1.0
+    share: Annotated[si.Dimensionless, si.AtLeast(0.0), si.AtMost(1.0)] = 1.0
     type: Literal["constant"] = field(default="constant", repr=False)
 
-    def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
+    def _values(
+        self, x: si.FloatArray, y: si.FloatArray, v: si.FloatArray, t: si.FloatArray
+    ) -> si.FloatArray:
         return np.full(x.shape, float(self.share))
 
     def _lower(self, assembler: Assembler) -> None:
@@ -76,7 +67,7 @@ class _Along:
 
 
 @reads_text
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class SquareWave(_Along, Pattern):
     """1 over the first `duty` of every period, 0 over the rest.
@@ -94,12 +85,14 @@ class SquareWave(_Along, Pattern):
     """
 
     spatial_period: Length
-    duty: Annotated[Dimensionless, Above(0.0), Below(1.0)] = 0.5
-    phase: Radian = 0.0
+    duty: Annotated[si.Dimensionless, si.Above(0.0), si.Below(1.0)] = 0.5
+    phase: si.Radian = 0.0
     along: Coordinate = X_AXIS
     type: Literal["square_wave"] = field(default="square_wave", repr=False)
 
-    def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
+    def _values(
+        self, x: si.FloatArray, y: si.FloatArray, v: si.FloatArray, t: si.FloatArray
+    ) -> si.FloatArray:
         cycles = self.along.at(x, y) / self.spatial_period + self.phase / (2 * math.pi)
         return np.where(cycles - np.floor(cycles) < self.duty, 1.0, 0.0)
 
@@ -109,7 +102,7 @@ class SquareWave(_Along, Pattern):
 
 
 @reads_text
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class SineWave(_Along, Pattern):
     """½ + ½ sin(2πs/spatial_period + phase), s being the coordinate `along`.
@@ -118,11 +111,13 @@ class SineWave(_Along, Pattern):
     """
 
     spatial_period: Length
-    phase: Radian = 0.0
+    phase: si.Radian = 0.0
     along: Coordinate = X_AXIS
     type: Literal["sine_wave"] = field(default="sine_wave", repr=False)
 
-    def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
+    def _values(
+        self, x: si.FloatArray, y: si.FloatArray, v: si.FloatArray, t: si.FloatArray
+    ) -> si.FloatArray:
         cycles = self.along.at(x, y) / self.spatial_period + self.phase / (2 * math.pi)
         return 0.5 + 0.5 * np.sin(2 * math.pi * cycles)
 
@@ -132,7 +127,7 @@ class SineWave(_Along, Pattern):
 
 
 @reads_text
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class Pulse(_Along, Pattern):
     """One localised rise to 1 at `centre`, ½ at `width`/2 to either side.
@@ -153,7 +148,9 @@ class Pulse(_Along, Pattern):
     along: Coordinate = X_AXIS
     type: Literal["pulse"] = field(default="pulse", repr=False)
 
-    def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
+    def _values(
+        self, x: si.FloatArray, y: si.FloatArray, v: si.FloatArray, t: si.FloatArray
+    ) -> si.FloatArray:
         s = self.along.at(x, y)
         if self.shape == "gaussian":
             return np.asarray(np.exp(-0.5 * ((s - self.centre) / (self.width / _FULL_WIDTH)) ** 2))
@@ -169,7 +166,7 @@ class Pulse(_Along, Pattern):
 
 
 @reads_text
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class Ramp(Pattern):
     """From 0 at `start` to 1 at `end`, held beyond; falling if `end` lies before `start`.
@@ -198,7 +195,9 @@ class Ramp(Pattern):
                 quantity="end",
             )
 
-    def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
+    def _values(
+        self, x: si.FloatArray, y: si.FloatArray, v: si.FloatArray, t: si.FloatArray
+    ) -> si.FloatArray:
         done = np.clip((self.along.at(x, y) - self.start) / (self.end - self.start), 0.0, 1.0)
         return done if self.profile == "linear" else done * done * (3.0 - 2.0 * done)
 
@@ -210,7 +209,7 @@ class Ramp(Pattern):
 
 
 @reads_text
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class Band(Pattern):
     """1 from `start` to `end`, 0 outside, with edges linear over `fade`: a mask in space.
@@ -229,25 +228,31 @@ class Band(Pattern):
 
     start: Place
     end: Place
-    fade: Metre = 0.0
+    fade: si.Metre = 0.0
     along: Coordinate = X_AXIS
     type: Literal["band"] = field(default="band", repr=False)
 
     def __post_init__(self) -> None:
-        require("end", self.end, METRE, above=self.start)
+        si.require("end", self.end, METRE, above=self.start)
         require_fade(self.fade, self.end - self.start)
         require_coordinate(self.along)
 
     @classmethod
     @reads_text
-    @checked_numbers
+    @si.checked_numbers
     def disc(
-        cls, x: Metre, y: Metre, radius: Annotated[Metre, Above(0.0)], fade: Metre = 0.0
+        cls,
+        x: si.Metre,
+        y: si.Metre,
+        radius: Annotated[si.Metre, si.Above(0.0)],
+        fade: si.Metre = 0.0,
     ) -> Band:
         """1 within `radius` (m) of the point (`x`, `y`) (m)."""
         return cls(-radius, radius, fade, FromPoint(x, y))
 
-    def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
+    def _values(
+        self, x: si.FloatArray, y: si.FloatArray, v: si.FloatArray, t: si.FloatArray
+    ) -> si.FloatArray:
         s = self.along.at(x, y)
         if self.fade == 0.0:
             return np.where((s >= self.start) & (s < self.end), 1.0, 0.0)
@@ -260,7 +265,7 @@ class Band(Pattern):
 
 
 @reads_text
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class Bump(_Along, Pattern):
     """The slope of a Gaussian bump or hole, felt as its shape: ½ far away, 1 and 0 on its flanks.
@@ -293,7 +298,9 @@ class Bump(_Along, Pattern):
     along: Coordinate = X_AXIS
     type: Literal["bump"] = field(default="bump", repr=False)
 
-    def _values(self, x: FloatArray, y: FloatArray, v: FloatArray, t: FloatArray) -> FloatArray:
+    def _values(
+        self, x: si.FloatArray, y: si.FloatArray, v: si.FloatArray, t: si.FloatArray
+    ) -> si.FloatArray:
         d = (self.along.at(x, y) - self.centre) / self.width
         way = np.where(v < 0.0, -self._sign, self._sign)
         # Held within 0 to 1: at d = 1 rounding reaches past it.

@@ -6,10 +6,10 @@ import html
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
+from squeezefilm import quantities as si
 from squeezefilm.analysis.claims.command import ClaimResult, Reproduction
 from squeezefilm.analysis.claims.procedure import Design
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import Unit, format_quantity
 from squeezefilm.report.claims.prototype import prototype_markdown
 from squeezefilm.report.claims.prototype_page import html_row, prototype_sections
 from squeezefilm.report.kit.folder import json_text, write_folder
@@ -36,7 +36,9 @@ def show_values(values: Sequence[float] | None, unit: str) -> str:
         return "–"
     if unit == "m2":
         return " / ".join(f"{value * 1e4:.4g} cm²" for value in values)
-    return " / ".join(format_quantity(value, Unit(unit), 4).replace("um", "µm") for value in values)
+    return " / ".join(
+        si.format_quantity(value, si.Unit(unit), 4).replace("um", "µm") for value in values
+    )
 
 
 def write_validation_docs(result: Reproduction, root: Path | None = None) -> Path:

@@ -8,7 +8,7 @@ from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from squeezefilm.quantities import Unit
+from squeezefilm import quantities as si
 from squeezefilm.report.kit.folder import json_text, require_folder, write_folder
 from squeezefilm.report.kit.numbers import (
     display_values,
@@ -234,9 +234,9 @@ def _models(analysis: Analysis) -> str:
     rows = [
         (
             f"<code>{escape(model)}</code>",
-            shown(frequency, Unit("Hz")),
-            "–" if half is None else shown(half, Unit("m")),
-            "–" if amplitude is None else shown(amplitude, Unit("m"), 3),
+            shown(frequency, si.Unit("Hz")),
+            "–" if half is None else shown(half, si.Unit("m")),
+            "–" if amplitude is None else shown(amplitude, si.Unit("m"), 3),
         )
         for model, frequency, half, amplitude in made
     ]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from squeezefilm.quantities import Unit
+from squeezefilm import quantities as si
 from squeezefilm.report.kit.numbers import HZ, M, N, V, reduction_row, shown
 from squeezefilm.report.kit.terminal import heading, plain_console, table
 
@@ -35,7 +35,7 @@ def show_friction(result: FrictionAnalysis) -> None:
     tapping = result.tapping
     others.append(
         (
-            f"intermittent contact at {shown(tapping.speed, Unit('m/s'))}, no gas",
+            f"intermittent contact at {shown(tapping.speed, si.Unit('m/s'))}, no gas",
             f"{tapping.relative_friction:.3f}",
         )
     )
@@ -66,7 +66,7 @@ def _rows(result: FrictionAnalysis) -> list[tuple[str, str, str]]:
     rows += [
         ("Surface", p.surface.name, f"roughness {shown(p.surface.roughness, M)}"),
         ("Normal force", shown(p.normal_force, N), ""),
-        ("Ambient pressure", shown(result.display.gas.ambient_pressure, Unit("Pa")), ""),
+        ("Ambient pressure", shown(result.display.gas.ambient_pressure, si.Unit("Pa")), ""),
     ]
     sharing = p.touch.sharing
     if sharing is not None:

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-from squeezefilm.quantities import Unit, format_quantity, unit_of
+from squeezefilm import quantities as si
 
 if typing.TYPE_CHECKING:
     from squeezefilm.analysis.analyze import Analysis
@@ -19,7 +19,7 @@ if typing.TYPE_CHECKING:
     from squeezefilm.plate.working_mode import WorkingMode
     from squeezefilm.render.fidelity.report import FidelityReport
 
-M, HZ, S, N, V = Unit("m"), Unit("Hz"), Unit("s"), Unit("N"), Unit("V")
+M, HZ, S, N, V = si.Unit("m"), si.Unit("Hz"), si.Unit("s"), si.Unit("N"), si.Unit("V")
 
 
 @dataclass(frozen=True)
@@ -32,9 +32,9 @@ class Value:
     evidence: str
 
 
-def shown(value: float, unit: Unit, digits: int = 4) -> str:
+def shown(value: float, unit: si.Unit, digits: int = 4) -> str:
     """A quantity as a person reads it, e.g. ``"2 µm"``."""
-    text = micro(format_quantity(value, unit, digits))
+    text = micro(si.format_quantity(value, unit, digits))
     number, _, symbol = text.partition(" ")
     # 0.6 µm and 0.5 N are what the field says, not 600 nm and 500 mN.
     larger = {"n": "µ", "µ": "m"} | ({"m": ""} if unit.symbol in ("N", "V") else {})
@@ -71,7 +71,7 @@ def key_numbers(analysis: Analysis) -> list[tuple[str, str, str]]:
     # The resonance is defined to many digits only: an off-resonance drive is worth a line.
     off = abs(p.frequency / p.mode.resonance_frequency - 1) > 1e-6
     drive = "none" if p.voltage is None else shown(p.voltage, V)
-    per_volt = shown(p.mode.amplitude_per_volt, Unit("m/V"))
+    per_volt = shown(p.mode.amplitude_per_volt, si.Unit("m/V"))
     at_criterion = _reached(here.amplitude_for_criterion)
     rows = [
         ("Resonance frequency", shown(p.mode.resonance_frequency, HZ), _mode(p.mode)),
@@ -157,7 +157,7 @@ def display_values(display: Display) -> list[Value]:
     """
     rows = []
     for path, value, hint, _ in leaves(display):
-        unit = unit_of(hint)
+        unit = si.unit_of(hint)
         origin = display.provenance.get(".".join(str(part) for part in path))
         if isinstance(value, float | int) and not isinstance(value, bool):
             text = shown(value, unit, 6) if unit is not None else f"{value}"

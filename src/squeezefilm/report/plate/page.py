@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from html import escape
 from typing import TYPE_CHECKING
 
-from squeezefilm.quantities import Unit
+from squeezefilm import quantities as si
 from squeezefilm.report.kit.numbers import HZ, printable, shown
 from squeezefilm.report.kit.page_style import html_table, page_head, picture_sections, section
 from squeezefilm.report.plate.terminal_modes import mode_rows, working_rows
@@ -54,23 +54,22 @@ def _table(caption: str, head: tuple[str, ...], rows: Sequence[tuple[str, ...]])
 
 def _numbers(result: PlateAnalysis) -> str:
     volts, at = result.display.drive.voltage, result.response.resonance
+    amplitude = shown(volts * result.amplitude_per_volt, si.Unit("m"), 3)
+    current = shown(float(result.response.current(volts)[at]), si.Unit("A"), 3)
+    apparent = result.response.apparent_power(volts)[at]
+    power = f"{apparent:.3g} VA, {result.response.input_power(volts)[at]:.3g} W"
     rows = working_rows(result)
-    rows += [
-        (f"Amplitude at {volts:g} V", shown(volts * result.amplitude_per_volt, Unit("m"), 3),
-         "zero-to-peak, largest"),
-        (f"Current at {volts:g} V", shown(float(result.response.current(volts)[at]), Unit("A"), 3),
-         f"{result.response.apparent_power(volts)[at]:.3g} VA, "
-         f"{result.response.input_power(volts)[at]:.3g} W"),
-    ]  # fmt: skip
+    rows.append((f"Amplitude at {volts:g} V", amplitude, "zero-to-peak, largest"))
+    rows.append((f"Current at {volts:g} V", current, power))
     if result.circuit is not None:
         c = result.circuit
         rows.append(
             (
                 "Equivalent circuit",
-                f"C0 {shown(c.static_capacitance, Unit('F'), 3)}",
+                f"C0 {shown(c.static_capacitance, si.Unit('F'), 3)}",
                 f"R1 {c.motional_resistance:.3g} Ω, "
-                f"L1 {shown(c.motional_inductance, Unit('H'), 3)}, "
-                f"C1 {shown(c.motional_capacitance, Unit('F'), 3)}",
+                f"L1 {shown(c.motional_inductance, si.Unit('H'), 3)}, "
+                f"C1 {shown(c.motional_capacitance, si.Unit('F'), 3)}",
             )
         )
     return _table(f"{result.modes.model}", ("Quantity", "Value", "Remark"), rows)

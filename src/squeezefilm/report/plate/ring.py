@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from squeezefilm.quantities import Unit
+from squeezefilm import quantities as si
 from squeezefilm.report.display.layout_figures import FILL, draw_sector
 from squeezefilm.report.kit.folder import json_text, write_folder
 from squeezefilm.report.kit.numbers import HZ, M, shown
@@ -211,7 +211,7 @@ def response(result: RingAnalysis) -> Figure:
     below.semilogy(f, 1e3 * swept.admittance.real, color=ORANGE, ls="--", label="Re Y")
     if result.circuit is not None:
         circuit = 1e3 * np.abs(result.circuit.admittance(swept.frequencies))
-        resistance = shown(result.circuit.motional_resistance, Unit("ohm"), 3)
+        resistance = shown(result.circuit.motional_resistance, si.Unit("ohm"), 3)
         below.semilogy(
             f,
             circuit,

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from squeezefilm.quantities import Unit, format_quantity
+from squeezefilm import quantities as si
 from squeezefilm.report.kit.style import (
     BLUE,
     INK,
@@ -81,7 +81,7 @@ def tornado(table: SensitivityTable) -> Figure:
 @drawn
 def tracks(found: ModeTracks) -> Figure:
     """Frequencies of the tracked modes against the parameter, each line named at its end."""
-    unit = Unit(found.unit)
+    unit = si.Unit(found.unit)
     name = found.parameter.replace("_", " ")
     scale, symbol = _scale(found.values, unit)
     lost = sum(bool(np.isnan(t.frequency).any()) for t in found.tracks)
@@ -149,11 +149,11 @@ def _signed(percent: float) -> str:
     return digits.replace("-", "−")
 
 
-def _text(value: float, unit: Unit) -> str:
-    return f"{value:.4g}" if unit.symbol == "1" else format_quantity(value, unit)
+def _text(value: float, unit: si.Unit) -> str:
+    return f"{value:.4g}" if unit.symbol == "1" else si.format_quantity(value, unit)
 
 
-def _scale(values: FloatArray, unit: Unit) -> tuple[float, str]:
+def _scale(values: FloatArray, unit: si.Unit) -> tuple[float, str]:
     """A factor and a unit in which the values are read easily."""
     text = _text(float(values[-1]), unit)
     number, _, symbol = text.partition(" ")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from squeezefilm.quantities import Unit
+from squeezefilm import quantities as si
 from squeezefilm.report.kit.numbers import HZ, V, shown
 from squeezefilm.report.kit.terminal import heading, plain_console, table
 from squeezefilm.report.plate.terminal_modes import (
@@ -63,7 +63,7 @@ def show_plate(result: PlateAnalysis) -> None:
     rows.append(
         (
             f"At {shown(volts, V)}",
-            shown(float(result.response.current(volts)[at]), Unit("A"), 3),
+            shown(float(result.response.current(volts)[at]), si.Unit("A"), 3),
             f"{result.response.apparent_power(volts)[at]:.3g} VA, "
             f"{result.response.input_power(volts)[at]:.3g} W",
         )

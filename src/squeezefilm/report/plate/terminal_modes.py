@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from squeezefilm.quantities import MetrePerVolt, Unit
+from squeezefilm import quantities as si
 from squeezefilm.report.kit.numbers import HZ, shown
 from squeezefilm.report.kit.terminal import heading, table
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from squeezefilm.analysis.plate.command import ModeRow, PlateAnalysis
     from squeezefilm.plate.sound import SoundField
 
-PER_VOLT = Unit("m/V")
+PER_VOLT = si.Unit("m/V")
 
 # Of the working mode's amplitude per volt: below it a mode is called not driven.
 _DRIVEN = 1e-4
@@ -60,7 +60,7 @@ def show_guidance(console: Console, sound: SoundField) -> None:
 
 
 def mode_rows(
-    rows: Sequence[ModeRow], amplitude_per_volt: MetrePerVolt
+    rows: Sequence[ModeRow], amplitude_per_volt: si.MetrePerVolt
 ) -> list[tuple[str, str, str, str, str, str]]:
     """Label, frequency, its error, quality factor, amplitude per volt and coupling of every mode.
 
@@ -81,7 +81,9 @@ def mode_rows(
     ]
 
 
-def show_modes(console: Console, rows: Sequence[ModeRow], amplitude_per_volt: MetrePerVolt) -> None:
+def show_modes(
+    console: Console, rows: Sequence[ModeRow], amplitude_per_volt: si.MetrePerVolt
+) -> None:
     """Print the table of modes; `amplitude_per_volt` is the working mode's (m/V)."""
     heading(console, "Modes in the band")
     head = ("mode", "frequency", "±", "Q", "per volt", "coupling")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from squeezefilm.quantities import Unit
+from squeezefilm import quantities as si
 from squeezefilm.report.kit.numbers import HZ, M, shown
 from squeezefilm.report.kit.terminal import heading, plain_console, table
 from squeezefilm.report.plate.terminal_modes import PER_VOLT, show_guidance, show_modes, sound_rows
@@ -83,8 +83,8 @@ def _drive_rows(result: RingAnalysis) -> list[tuple[str, str, str]]:
         ),
         ("Effective coupling", f"{mode.coupling:.3g}", ""),
         (
-            f"At {shown(volts, Unit('V'))}",
-            shown(result.response.current(volts), Unit("A"), 3),
+            f"At {shown(volts, si.Unit('V'))}",
+            shown(result.response.current(volts), si.Unit("A"), 3),
             f"{result.response.apparent_power(volts):.3g} VA, "
             f"{result.response.input_power(volts):.3g} W",
         ),
@@ -94,10 +94,10 @@ def _drive_rows(result: RingAnalysis) -> list[tuple[str, str, str]]:
         rows.append(
             (
                 "Equivalent circuit",
-                f"C0 {shown(c.static_capacitance, Unit('F'), 3)}",
-                f"R1 {shown(c.motional_resistance, Unit('ohm'), 3)}, "
+                f"C0 {shown(c.static_capacitance, si.Unit('F'), 3)}",
+                f"R1 {shown(c.motional_resistance, si.Unit('ohm'), 3)}, "
                 f"L1 {c.motional_inductance:.3g} H, "
-                f"C1 {shown(c.motional_capacitance, Unit('F'), 3)}",
+                f"C1 {shown(c.motional_capacitance, si.Unit('F'), 3)}",
             )
         )
     return rows

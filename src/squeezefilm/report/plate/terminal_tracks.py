@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from squeezefilm.quantities import Unit
+from squeezefilm import quantities as si
 from squeezefilm.report.kit.numbers import shown
 from squeezefilm.report.kit.terminal import heading, table
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 def show_tracks(console: Console, found: ModeTracks) -> None:
     """Print each mode's frequency at the first, the plate's own and the last value."""
-    unit = Unit(found.unit)
+    unit = si.Unit(found.unit)
     own = int(np.argmin(np.abs(found.values - found.begun)))
     columns = (0, own, found.values.size - 1)
 
@@ -35,7 +35,7 @@ def show_tracks(console: Console, found: ModeTracks) -> None:
                 *(
                     "not followed"
                     if np.isnan(track.frequency[k])
-                    else shown(float(track.frequency[k]), Unit("Hz"), 5)
+                    else shown(float(track.frequency[k]), si.Unit("Hz"), 5)
                     for k in columns
                 ),
                 "driven" if track.driven else "",

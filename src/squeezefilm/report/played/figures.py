@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from squeezefilm.quantities import FloatArray
+from squeezefilm import quantities as si
 from squeezefilm.report.kit.numbers import HZ, M, S, shown
 from squeezefilm.report.kit.style import (
     BLUE,
@@ -86,7 +86,7 @@ def friction(session: PlayedSession) -> Figure:
     return figure
 
 
-def _middle_pass(way: PlayedWay) -> FloatArray:
+def _middle_pass(way: PlayedWay) -> si.FloatArray:
     """Indices of the one-way pass in the middle of a session."""
     turns = _turns(way)
     middle = int(np.searchsorted(turns, way.x.size // 2))
@@ -95,7 +95,7 @@ def _middle_pass(way: PlayedWay) -> FloatArray:
     return np.arange(first, last + 1)
 
 
-def _turns(way: PlayedWay) -> FloatArray:
+def _turns(way: PlayedWay) -> si.FloatArray:
     """Where the finger turns: the ends of a lazy follower's moves of more than 1 mm."""
     found, extreme, at, rising = [], float(way.x[0]), 0, True
     for k, x in enumerate(way.x.tolist()):

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
-from squeezefilm.quantities import Unit
+from squeezefilm import quantities as si
 from squeezefilm.report.kit.numbers import HZ, M, S, V, lag_rows, printable, shown
 from squeezefilm.report.kit.terminal import heading, plain_console, table
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 _BAR = 28
 _LINE_PERIOD = 1.0
-_SPEED = Unit("m/s")
+_SPEED = si.Unit("m/s")
 
 
 def show_export(done: TraceExport) -> None:

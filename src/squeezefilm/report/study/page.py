@@ -7,7 +7,7 @@ from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from squeezefilm.quantities import Unit
+from squeezefilm import quantities as si
 from squeezefilm.report.kit.folder import json_text, require_folder, write_folder
 from squeezefilm.report.kit.numbers import printable, shown
 from squeezefilm.report.kit.page_style import page_head, picture_sections, section, text_table
@@ -161,7 +161,7 @@ def key_rows(analysis: IdentificationAnalysis) -> list[tuple[str, str, str]]:
         ]
     if analysis.ex_gaussian is not None:
         g = analysis.ex_gaussian
-        texts = [shown(value, Unit("s"), 3) for value in (g.mean, g.spread, g.tail)]
+        texts = [shown(value, si.Unit("s"), 3) for value in (g.mean, g.spread, g.tail)]
         rows.append(("Response time μ, σ, τ", ", ".join(texts), "ex-Gaussian, all trials"))
     return rows
 

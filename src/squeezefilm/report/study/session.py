@@ -7,9 +7,9 @@ from contextlib import AbstractContextManager
 from dataclasses import KW_ONLY, dataclass
 from pathlib import Path
 
+from squeezefilm import quantities as si
 from squeezefilm.arguments import called_with
 from squeezefilm.from_text import reads_text
-from squeezefilm.quantities import MetrePerVolt
 from squeezefilm.report.study.terminal import TerminalExaminer, ask_acknowledgement
 from squeezefilm.study.conduct.terminal_run import Desk, open_study, run_session
 from squeezefilm.study.conduct.trial_by_trial import Examiner
@@ -25,7 +25,7 @@ class SessionRequest:
     _: KW_ONLY
     examiner: Examiner | None = None
     drive: str = "none"
-    amplitude_per_pickup: MetrePerVolt | None = None
+    amplitude_per_pickup: si.MetrePerVolt | None = None
     conditions: Path | None = None
     consent: bool = False
     acknowledge: Callable[[str], bool] = ask_acknowledgement

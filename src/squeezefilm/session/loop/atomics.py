@@ -16,7 +16,7 @@ from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
-from squeezefilm.quantities import Array
+from squeezefilm import quantities as si
 
 _INT64_BYTES = 8
 _item_pointer: Any = cgutils.get_item_pointer
@@ -52,22 +52,22 @@ def _store_release(typing_context: Any, array: Any, index: Any, value: Any) -> A
 
 if numba.config.DISABLE_JIT:  # type: ignore[attr-defined]
 
-    def load_acquire(array: Array, index: int) -> int:
+    def load_acquire(array: si.Array, index: int) -> int:
         """`array[index]`, interpreted."""
         return int(array[index])
 
-    def store_release(array: Array, index: int, value: int) -> None:
+    def store_release(array: si.Array, index: int, value: int) -> None:
         """`array[index] = value`, interpreted."""
         array[index] = value
 
 else:
 
     @numba.njit(cache=True, nogil=True)
-    def load_acquire(array: Array, index: int) -> int:
+    def load_acquire(array: si.Array, index: int) -> int:
         """`array[index]` of an int64 array; no later access is done before it."""
         return _load_acquire(array, index)  # type: ignore[call-arg]
 
     @numba.njit(cache=True, nogil=True)
-    def store_release(array: Array, index: int, value: int) -> None:
+    def store_release(array: si.Array, index: int, value: int) -> None:
         """`array[index] = value` in an int64 array; no earlier access is done after it."""
         _store_release(array, index, value)  # type: ignore[call-arg]

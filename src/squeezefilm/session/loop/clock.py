@@ -17,7 +17,7 @@ import numba
 import numpy as np
 from numba import types
 
-from squeezefilm.quantities import Array
+from squeezefilm import quantities as si
 
 _MONOTONIC, _THREAD_CPU_TIME, _ABSOLUTE = 1, 3, 1
 _SECOND_NS = 1_000_000_000
@@ -44,27 +44,27 @@ _clock_nanosleep: Any = types.ExternalFunction(
 _getppid: Any = types.ExternalFunction("getppid", types.intc())
 
 
-def new_timespec() -> Array:
+def new_timespec() -> si.Array:
     """Room for one `struct timespec`, which the functions here work in: int64, shape (2,)."""
     return np.zeros(2, dtype=np.int64)
 
 
 @numba.njit(cache=True, nogil=True)
-def monotonic_ns(timespec: Array) -> int:
+def monotonic_ns(timespec: si.Array) -> int:
     """CLOCK_MONOTONIC (ns). Needs `COMPILED_CLOCK`."""
     _clock_gettime(_MONOTONIC, timespec.ctypes.data)
     return int(timespec[0] * _SECOND_NS + timespec[1])
 
 
 @numba.njit(cache=True, nogil=True)
-def thread_cpu_ns(timespec: Array) -> int:
+def thread_cpu_ns(timespec: si.Array) -> int:
     """Processor time of the calling thread (ns). Needs `COMPILED_CLOCK`."""
     _clock_gettime(_THREAD_CPU_TIME, timespec.ctypes.data)
     return int(timespec[0] * _SECOND_NS + timespec[1])
 
 
 @numba.njit(cache=True, nogil=True)
-def sleep_until_ns(timespec: Array, when: int) -> None:
+def sleep_until_ns(timespec: si.Array, when: int) -> None:
     """Sleep until CLOCK_MONOTONIC is `when` (ns); a signal ends it. Needs `COMPILED_CLOCK`."""
     timespec[0] = when // _SECOND_NS
     timespec[1] = when % _SECOND_NS

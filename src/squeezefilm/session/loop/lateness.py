@@ -11,15 +11,8 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import (
-    Dimensionless,
-    Hertz,
-    Second,
-    SecondArray,
-    Unit,
-    require,
-)
 from squeezefilm.results import to_json
 
 CLASSES_PER_DECADE = 20
@@ -37,7 +30,7 @@ def lateness_class(late: float) -> int:
     return min(1 + int(CLASSES_PER_DECADE * math.log10(late / _FIRST_NS)), CLASSES - 1)
 
 
-def class_ends() -> SecondArray:
+def class_ends() -> si.SecondArray:
     """The upper end of every class (s), the last infinite; shape (CLASSES,)."""
     decades = np.arange(CLASSES - 1) / CLASSES_PER_DECADE
     return np.append(_FIRST_NS * 1e-9 * 10.0**decades, math.inf)
@@ -61,15 +54,15 @@ class Lateness:
         InputError: counts of another shape, below 0 or with another sum than `made`.
     """
 
-    rate: Hertz
+    rate: si.Hertz
     made: int
     lost: int
-    longest: Second
-    counts: Annotated[NDArray[np.int64], Unit("1")]
+    longest: si.Second
+    counts: Annotated[NDArray[np.int64], si.Unit("1")]
 
     def __post_init__(self) -> None:
-        require("rate", self.rate, Unit("Hz"), above=0.0)
-        require("longest", self.longest, Unit("s"), at_least=0.0)
+        si.require("rate", self.rate, si.Unit("Hz"), above=0.0)
+        si.require("longest", self.longest, si.Unit("s"), at_least=0.0)
         if self.counts.shape != (CLASSES,) or np.any(self.counts < 0):
             raise InputError(f"counts must be {CLASSES} numbers at least 0")
         if int(np.sum(self.counts)) != self.made or self.lost < 0:
@@ -79,12 +72,12 @@ class Lateness:
             )
 
     @property
-    def share_made(self) -> Dimensionless:
+    def share_made(self) -> si.Dimensionless:
         """Share of the ticks due that were made (1); not a number before the first."""
         due = self.made + self.lost
         return self.made / due if due else math.nan
 
-    def quantile(self, share: Dimensionless) -> Second:
+    def quantile(self, share: si.Dimensionless) -> si.Second:
         """The lateness (s) that a share of the ticks made did not exceed; NaN if none was made.
 
         The upper end of its class, at most 12 % too high; never above `longest`.
@@ -92,24 +85,24 @@ class Lateness:
         Raises:
             InputError: a share not above 0 or above 1.
         """
-        require("share", share, above=0.0, at_most=1.0)
+        si.require("share", share, above=0.0, at_most=1.0)
         if self.made == 0:
             return math.nan
         place = int(np.searchsorted(np.cumsum(self.counts), math.ceil(share * self.made)))
         return min(float(class_ends()[place]), self.longest)
 
     @property
-    def p50(self) -> Second:
+    def p50(self) -> si.Second:
         """Median lateness of the ticks made (s)."""
         return self.quantile(0.5)
 
     @property
-    def p99(self) -> Second:
+    def p99(self) -> si.Second:
         """Lateness that 99 % of the ticks made did not exceed (s)."""
         return self.quantile(0.99)
 
     @property
-    def p99_9(self) -> Second:
+    def p99_9(self) -> si.Second:
         """Lateness that 99.9 % of the ticks made did not exceed (s)."""
         return self.quantile(0.999)
 

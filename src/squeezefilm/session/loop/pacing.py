@@ -19,7 +19,7 @@ from typing import Any
 
 import numba
 
-from squeezefilm.quantities import Array, Dimensionless, Second
+from squeezefilm import quantities as si
 from squeezefilm.session.loop import clock, shared
 from squeezefilm.session.loop import plan as at
 from squeezefilm.session.loop import rows as column
@@ -27,9 +27,9 @@ from squeezefilm.session.loop.atomics import load_acquire, store_release
 from squeezefilm.session.loop.lateness import lateness_class
 from squeezefilm.session.loop.tick import make_tick
 
-MARGIN: Second = 50e-6
+MARGIN: si.Second = 50e-6
 """How long before a deadline the loop wakes, where half a period allows it."""
-MOST_SPIN: Dimensionless = 0.5
+MOST_SPIN: si.Dimensionless = 0.5
 """The largest share of a period that may be spun through."""
 _SECOND_NS = 1e9
 _PARENT_LOOKED_AT_NS = 5_000_000
@@ -75,7 +75,7 @@ def make_due_tick(arrays: Any, memory: Any, now: int) -> int:
 
 
 @numba.njit(cache=True, nogil=True)
-def silence(arrays: Any, control: Array, now: int, timeout: int) -> None:
+def silence(arrays: Any, control: si.Array, now: int, timeout: int) -> None:
     """Say to the next tick whether the host muted the loop, or has not been heard for too long."""
     reasons = 0
     if load_acquire(control, shared.MUTE) != 0:
@@ -87,7 +87,7 @@ def silence(arrays: Any, control: Array, now: int, timeout: int) -> None:
 
 @numba.njit(cache=True, nogil=True)
 def compiled_loop(
-    arrays: Any, memory: Any, timespec: Array, margin: int, timeout: int, parent: int
+    arrays: Any, memory: Any, timespec: si.Array, margin: int, timeout: int, parent: int
 ) -> None:
     """Tick until the host says stop or the parent is gone; needs `clock.COMPILED_CLOCK`.
 
@@ -143,6 +143,6 @@ def portable_loop(arrays: Any, memory: Any, timeout: int, parent: int) -> None:
     control[shared.CPU] = time.thread_time_ns() - begun
 
 
-def margin_ns(period: Second, real_time: bool) -> int:
+def margin_ns(period: si.Second, real_time: bool) -> int:
     """How long before a deadline a loop of this period (s) wakes (ns); 0 without priority."""
     return int(min(MARGIN, MOST_SPIN * period) * _SECOND_NS) if real_time else 0

@@ -7,26 +7,8 @@ from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import (
-    Above,
-    Array,
-    AtLeast,
-    AtMost,
-    Below,
-    DimensionlessArray,
-    FloatArray,
-    Hertz,
-    Metre,
-    MetreArray,
-    MetrePerVolt,
-    Second,
-    Unit,
-    Volt,
-    VoltArray,
-    checked_numbers,
-    require,
-)
 from squeezefilm.render.motion import kernel as motion_kernel
 from squeezefilm.render.motion.estimator import MotionEstimator
 from squeezefilm.render.program.lowering import Program
@@ -36,9 +18,9 @@ from squeezefilm.session.loop.rows import COLUMNS, COMMAND_COLUMNS, SAMPLE_COLUM
 
 LoopCompensation = Literal["none", "inverse"]
 
-LEAST_RATE: Hertz = 10.0
-HIGHEST_RATE: Hertz = 50e3
-_METRE, _VOLT = Unit("m"), Unit("V")
+LEAST_RATE: si.Hertz = 10.0
+HIGHEST_RATE: si.Hertz = 50e3
+_METRE, _VOLT = si.Unit("m"), si.Unit("V")
 
 # Places in the settings.
 DT, LEAD, OUTPUT_DELAY, INVERSE, LONGEST_GAP = range(5)
@@ -60,14 +42,14 @@ class DriveTable:
         InputError: knots that do not begin with 0 or do not rise.
     """
 
-    amplitude: MetreArray
-    voltage: VoltArray
+    amplitude: si.MetreArray
+    voltage: si.VoltArray
 
     def __post_init__(self) -> None:
         for name, unit in (("amplitude", _METRE), ("voltage", _VOLT)):
             values = np.array(getattr(self, name), dtype=float)
             object.__setattr__(self, name, values)
-            require(name, values, unit, at_least=0.0)
+            si.require(name, values, unit, at_least=0.0)
             if (
                 values.ndim != 1
                 or values.size < 2
@@ -86,15 +68,15 @@ class DriveTable:
             )
 
     @classmethod
-    def linear(cls, amplitude_per_volt: MetrePerVolt, voltage_limit: Volt) -> DriveTable:
+    def linear(cls, amplitude_per_volt: si.MetrePerVolt, voltage_limit: si.Volt) -> DriveTable:
         """The table of a linear resonator (m/V) up to a voltage (V, zero-to-peak)."""
-        require("amplitude_per_volt", amplitude_per_volt, Unit("m/V"), above=0.0)
-        require("voltage_limit", voltage_limit, _VOLT, above=0.0)
+        si.require("amplitude_per_volt", amplitude_per_volt, si.Unit("m/V"), above=0.0)
+        si.require("voltage_limit", voltage_limit, _VOLT, above=0.0)
         top = amplitude_per_volt * voltage_limit
         return cls(np.array([0.0, top]), np.array([0.0, voltage_limit]))
 
     @property
-    def largest_amplitude(self) -> Metre:
+    def largest_amplitude(self) -> si.Metre:
         """The amplitude at the table's highest voltage (m, zero-to-peak)."""
         return float(self.amplitude[-1])
 
@@ -109,16 +91,16 @@ class FrictionTable:
         InputError: arrays of other shapes or values outside those ranges.
     """
 
-    amplitude: MetreArray
-    relative_friction: DimensionlessArray
+    amplitude: si.MetreArray
+    relative_friction: si.DimensionlessArray
 
     def __post_init__(self) -> None:
         amplitude = np.array(self.amplitude, dtype=float)
         friction = np.array(self.relative_friction, dtype=float)
         object.__setattr__(self, "amplitude", amplitude)
         object.__setattr__(self, "relative_friction", friction)
-        require("amplitude", amplitude, _METRE, at_least=0.0)
-        require("relative_friction", friction, at_least=0.0, at_most=1.0)
+        si.require("amplitude", amplitude, _METRE, at_least=0.0)
+        si.require("relative_friction", friction, at_least=0.0, at_most=1.0)
         if (
             amplitude.ndim != 1
             or amplitude.shape != friction.shape
@@ -133,7 +115,7 @@ class FrictionTable:
             )
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, slots=True, eq=False)
 class LoopPlan:
     """All that a loop needs; it can be pickled and does not change while the loop runs.
@@ -160,14 +142,14 @@ class LoopPlan:
     """
 
     program: Program
-    rate: Annotated[Hertz, AtLeast(LEAST_RATE), AtMost(HIGHEST_RATE)]
+    rate: Annotated[si.Hertz, si.AtLeast(LEAST_RATE), si.AtMost(HIGHEST_RATE)]
     envelope: DrivenEnvelope
     drive: DriveTable
     estimator: MotionEstimator
     compensation: LoopCompensation = "none"
     relative_friction: FrictionTable | None = None
-    output_delay: Annotated[Second, AtLeast(0.0), Below(1.0)] = 0.0
-    host_timeout: Annotated[Second, Above(0.0), AtMost(60.0)] = 50e-3
+    output_delay: Annotated[si.Second, si.AtLeast(0.0), si.Below(1.0)] = 0.0
+    host_timeout: Annotated[si.Second, si.Above(0.0), si.AtMost(60.0)] = 50e-3
 
     def __post_init__(self) -> None:
         if self.envelope.amplitude_limit > self.drive.largest_amplitude * (1 + 1e-9):
@@ -179,12 +161,12 @@ class LoopPlan:
             )
 
     @property
-    def period(self) -> Second:
+    def period(self) -> si.Second:
         """Time from a tick to the next (s)."""
         return 1 / self.rate
 
     @property
-    def lead(self) -> Second:
+    def lead(self) -> si.Second:
         """From when a tick is due to the moment that its command is meant for (s).
 
         The output delay, and half a period (the middle of the step) or, compensated, a whole one
@@ -196,22 +178,22 @@ class LoopPlan:
 class TickArrays(NamedTuple):
     """A plan as the compiled tick takes it: constants, running states, and room to work in."""
 
-    settings: Array
-    program: Array
-    render_state: Array
-    motion_parameters: Array
-    motion_x: Array
-    motion_y: Array
-    envelope: Array
-    compensator: Array
-    drive_amplitude: Array
-    drive_voltage: Array
-    friction_amplitude: Array
-    friction: Array
-    memory: Array
-    sample: Array
-    row: Array
-    command: Array
+    settings: si.Array
+    program: si.Array
+    render_state: si.Array
+    motion_parameters: si.Array
+    motion_x: si.Array
+    motion_y: si.Array
+    envelope: si.Array
+    compensator: si.Array
+    drive_amplitude: si.Array
+    drive_voltage: si.Array
+    friction_amplitude: si.Array
+    friction: si.Array
+    memory: si.Array
+    sample: si.Array
+    row: si.Array
+    command: si.Array
 
 
 def tick_arrays(plan: LoopPlan) -> TickArrays:
@@ -224,7 +206,7 @@ def tick_arrays(plan: LoopPlan) -> TickArrays:
     memory = np.zeros(MEMORY_SIZE)
     memory[[REPORTED_LEVEL, REPORTED_AMPLITUDE, STAMP]] = np.nan
     curve = plan.relative_friction
-    empty: FloatArray = np.zeros(0)
+    empty: si.FloatArray = np.zeros(0)
     return TickArrays(
         settings=settings,
         # A copy that may be written to, so that the tick is compiled for one type of array only.

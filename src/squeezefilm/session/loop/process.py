@@ -22,8 +22,8 @@ from typing import IO, Self
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError, LoopError, SqueezefilmWarning
-from squeezefilm.quantities import Dimensionless, FloatArray, Second
 from squeezefilm.session.loop import shared
 from squeezefilm.session.loop.atomics import load_acquire, store_release
 from squeezefilm.session.loop.lateness import Lateness
@@ -35,8 +35,8 @@ from squeezefilm.session.loop.worker import Orders
 
 PRIORITY = 50
 """Of SCHED_FIFO: above all ordinary work, below what the kernel itself runs at 99."""
-_START_LIMIT: Second = 180.0
-_STOP_LIMIT: Second = 2.0
+_START_LIMIT: si.Second = 180.0
+_STOP_LIMIT: si.Second = 2.0
 # Until tick 0, so that the worker sees its epoch before it.
 _HEAD_START_NS = 5_000_000
 
@@ -61,8 +61,8 @@ class LoopReport:
     real_time_priority: bool
     memory_locked: bool
     compiled_clock: bool
-    processor_share: Dimensionless
-    spin_share: Dimensionless
+    processor_share: si.Dimensionless
+    spin_share: si.Dimensionless
     refused_commands: int
     dropped_samples: int
     dropped_commands: int
@@ -213,7 +213,7 @@ class LoopProcess:
 
     # --- work ---
 
-    def feed(self, samples: FloatArray) -> int:
+    def feed(self, samples: si.FloatArray) -> int:
         """Give finger samples, shape (n, 6) as in `rows.SAMPLE_COLUMNS`; returns how many fitted.
 
         Their times are on this loop's clock, see `time`. Does not wait.
@@ -226,7 +226,7 @@ class LoopProcess:
         memory = self._touch()
         return int(ring_put_all(memory.sample_counters, memory.samples, block))
 
-    def take_commands(self) -> FloatArray:
+    def take_commands(self) -> si.FloatArray:
         """The commands since the last call, shape (n, 4) as in `rows.COMMAND_COLUMNS`.
 
         Those whose output time passed longer ago than the plan's host timeout are counted and left
@@ -241,7 +241,7 @@ class LoopProcess:
         self._stale += int(np.count_nonzero(~fresh))
         return commands[fresh]
 
-    def take_rows(self) -> FloatArray:
+    def take_rows(self) -> si.FloatArray:
         """The rows since the last call, shape (n, 14) as in `rows.COLUMNS`. Does not wait.
 
         Also after the loop ended or died: what it wrote is kept. Raises `LoopError` for a loop
@@ -261,12 +261,12 @@ class LoopProcess:
     # --- state ---
 
     @property
-    def time(self) -> Second:
+    def time(self) -> si.Second:
         """Now, on the loop's clock: seconds after tick 0 was due. 0 before `start`."""
         return (time.monotonic_ns() - self._epoch) * 1e-9 if self._epoch else 0.0
 
     @property
-    def silence(self) -> Second:
+    def silence(self) -> si.Second:
         """How long ago the loop made its last tick (s); above some periods it hangs."""
         _, memory = self._running()
         return self.time - int(memory.control[shared.BEAT]) * 1e-9

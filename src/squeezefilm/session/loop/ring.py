@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import numba
 
-from squeezefilm.quantities import Array
+from squeezefilm import quantities as si
 from squeezefilm.session.loop.atomics import load_acquire, store_release
 
 # Written by the writer (HEAD, DROPPED) and by the reader (TAIL), on cache lines of their own.
@@ -21,7 +21,7 @@ COUNTERS_SIZE = 32
 
 
 @numba.njit(cache=True, nogil=True)
-def ring_put(counters: Array, rows: Array, row: Array) -> bool:
+def ring_put(counters: si.Array, rows: si.Array, row: si.Array) -> bool:
     """Append a row; False, and one more dropped, if the ring is full.
 
     `rows` has the shape (capacity, width), its capacity a power of two; `row` (width,).
@@ -38,7 +38,7 @@ def ring_put(counters: Array, rows: Array, row: Array) -> bool:
 
 
 @numba.njit(cache=True, nogil=True)
-def ring_take(counters: Array, rows: Array, out: Array) -> int:
+def ring_take(counters: si.Array, rows: si.Array, out: si.Array) -> int:
     """Move the oldest rows into `out`, shape (n, width); returns how many, at most n."""
     tail = counters[TAIL]
     count = min(load_acquire(counters, HEAD) - tail, out.shape[0])
@@ -51,7 +51,7 @@ def ring_take(counters: Array, rows: Array, out: Array) -> int:
 
 
 @numba.njit(cache=True, nogil=True)
-def ring_put_all(counters: Array, rows: Array, block: Array) -> int:
+def ring_put_all(counters: si.Array, rows: si.Array, block: si.Array) -> int:
     """Append the rows of a block, shape (n, width), as far as they fit; returns how many did."""
     for k in range(block.shape[0]):
         if not ring_put(counters, rows, block[k]):
@@ -61,6 +61,6 @@ def ring_put_all(counters: Array, rows: Array, block: Array) -> int:
 
 
 @numba.njit(cache=True, nogil=True)
-def ring_waiting(counters: Array) -> int:
+def ring_waiting(counters: si.Array) -> int:
     """How many rows wait to be read."""
     return int(load_acquire(counters, HEAD) - load_acquire(counters, TAIL))

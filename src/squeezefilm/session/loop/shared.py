@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from squeezefilm.quantities import Array
+from squeezefilm import quantities as si
 from squeezefilm.session.loop import lateness, ring, rows
 
 _LINE = 8
@@ -40,14 +40,14 @@ _RINGS = (
 class Shared(NamedTuple):
     """Views of the shared memory. A plain tuple of arrays, so that compiled code can take it."""
 
-    control: Array
-    histogram: Array
-    sample_counters: Array
-    samples: Array
-    command_counters: Array
-    commands: Array
-    row_counters: Array
-    rows: Array
+    control: si.Array
+    histogram: si.Array
+    sample_counters: si.Array
+    samples: si.Array
+    command_counters: si.Array
+    commands: si.Array
+    row_counters: si.Array
+    rows: si.Array
 
 
 def shared_size() -> int:
@@ -62,7 +62,7 @@ def shared_views(memory: mmap.mmap | bytearray) -> Shared:
     """The parts of a stretch of `shared_size` bytes, zeros at first."""
     place = 0
 
-    def part(kind: Any, *shape: int) -> Array:
+    def part(kind: Any, *shape: int) -> si.Array:
         nonlocal place
         found = np.frombuffer(memory, kind, int(np.prod(shape)), place).reshape(shape)
         place += -(-found.nbytes // 64) * 64

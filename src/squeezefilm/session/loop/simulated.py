@@ -9,17 +9,9 @@ from typing import Any
 import numba
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import SIMULATED_TICKS, require_within
-from squeezefilm.quantities import (
-    Array,
-    FloatArray,
-    MetreArray,
-    Second,
-    SecondArray,
-    Unit,
-    require,
-)
 from squeezefilm.render.motion.sensor import SensorStream
 from squeezefilm.session.loop import plan as at
 from squeezefilm.session.loop import shared
@@ -46,12 +38,12 @@ def _advance(arrays: Any, memory: Any, until: int) -> None:
 def _march(
     arrays: Any,
     memory: Any,
-    samples: Array,
-    arrival: Array,
-    delays: Array,
+    samples: si.Array,
+    arrival: si.Array,
+    delays: si.Array,
     ticks: int,
-    rows: Array,
-    commands: Array,
+    rows: si.Array,
+    commands: si.Array,
 ) -> int:
     """Wake for tick after tick, each time `delays` (s) late, until `ticks` were due."""
     control, period = memory.control, arrays.settings[at.DT]
@@ -88,11 +80,11 @@ class SimulatedLoop:
         self._memory = private_views()
 
     @property
-    def time(self) -> Second:
+    def time(self) -> si.Second:
         """When the next tick is due (s)."""
         return int(self._memory.control[shared.NEXT]) * self.plan.period
 
-    def feed(self, samples: FloatArray) -> int:
+    def feed(self, samples: si.FloatArray) -> int:
         """Give finger samples, shape (n, 6) as in `SAMPLE_COLUMNS`; returns how many fitted.
 
         Raises `InputError` for another shape.
@@ -100,20 +92,20 @@ class SimulatedLoop:
         block = sample_block(samples)
         return int(ring_put_all(self._memory.sample_counters, self._memory.samples, block))
 
-    def advance(self, until: Second) -> None:
+    def advance(self, until: si.Second) -> None:
         """Make every tick that is due before a time (s), each on time.
 
         Raises `InputError` for a time that is not finite.
         """
-        require("until", until, Unit("s"), at_most=1e6)
+        si.require("until", until, si.Unit("s"), at_most=1e6)
         _advance(self._arrays, self._memory, round(until * 1e9))
 
-    def make_tick(self, delay: Second = 0.0) -> None:
+    def make_tick(self, delay: si.Second = 0.0) -> None:
         """Make the next tick, late by `delay` (s); a delay of a period or more loses ticks.
 
         Raises `InputError` for a delay below 0.
         """
-        require("delay", delay, Unit("s"), at_least=0.0, at_most=1e6)
+        si.require("delay", delay, si.Unit("s"), at_least=0.0, at_most=1e6)
         number = int(self._memory.control[shared.NEXT])
         due = due_ns(number, self.plan.period)
         make_due_tick(self._arrays, self._memory, due + round(delay * 1e9))
@@ -122,11 +114,11 @@ class SimulatedLoop:
         """Play nothing from the next tick on, or play again."""
         self._arrays.memory[at.SILENCED] = float(MUTED if muted else 0)
 
-    def take_commands(self) -> FloatArray:
+    def take_commands(self) -> si.FloatArray:
         """The commands made since the last call, shape (n, 4) as in `COMMAND_COLUMNS`."""
         return taken(self._memory.command_counters, self._memory.commands)
 
-    def take_rows(self) -> FloatArray:
+    def take_rows(self) -> si.FloatArray:
         """The rows made since the last call, shape (n, 14) as in `COLUMNS`."""
         return taken(self._memory.row_counters, self._memory.rows)
 
@@ -148,17 +140,17 @@ class SimulatedRun:
     """
 
     plan: LoopPlan
-    rows: FloatArray
-    commands: FloatArray
+    rows: si.FloatArray
+    commands: si.FloatArray
     lateness: Lateness
 
 
 def run_ticks(
     plan: LoopPlan,
-    samples: FloatArray,
-    arrival: SecondArray,
+    samples: si.FloatArray,
+    arrival: si.SecondArray,
     ticks: int,
-    delays: SecondArray | None = None,
+    delays: si.SecondArray | None = None,
 ) -> SimulatedRun:
     """Run the loop over samples, until so many ticks were due.
 
@@ -175,8 +167,8 @@ def run_ticks(
     block = sample_block(samples)
     times = np.ascontiguousarray(arrival, dtype=float)
     late = np.zeros(0) if delays is None else np.ascontiguousarray(delays, dtype=float)
-    require("arrival", times, Unit("s"))
-    require("delays", late, Unit("s"), at_least=0.0, at_most=1e6)
+    si.require("arrival", times, si.Unit("s"))
+    si.require("delays", late, si.Unit("s"), at_least=0.0, at_most=1e6)
     if times.shape != (block.shape[0],) or bool(np.any(np.diff(times) < 0.0)):
         raise InputError(
             f"arrival of shape {times.shape} does not fit {block.shape[0]} samples; give one time "
@@ -192,7 +184,7 @@ def run_ticks(
     return SimulatedRun(plan, rows[:made], commands[:made], lateness_in(plan, memory))
 
 
-def stream_samples(stream: SensorStream, y: MetreArray | float = 0.0) -> FloatArray:
+def stream_samples(stream: SensorStream, y: si.MetreArray | float = 0.0) -> si.FloatArray:
     """A sensor's stream along x as samples of a finger that touches, shape (n, 6).
 
     `y` (m) is held or given for each sample. Their arrival is `stream.arrival`.
@@ -203,7 +195,7 @@ def stream_samples(stream: SensorStream, y: MetreArray | float = 0.0) -> FloatAr
     return samples
 
 
-def sample_block(samples: FloatArray) -> FloatArray:
+def sample_block(samples: si.FloatArray) -> si.FloatArray:
     """Samples as the rings take them. Raises `InputError` for a shape other than (n, 6)."""
     block = np.ascontiguousarray(samples, dtype=float)
     if block.ndim != 2 or block.shape[1] != len(SAMPLE_COLUMNS):
@@ -214,7 +206,7 @@ def sample_block(samples: FloatArray) -> FloatArray:
     return block
 
 
-def taken(counters: Array, rows: Array) -> FloatArray:
+def taken(counters: si.Array, rows: si.Array) -> si.FloatArray:
     """All rows that wait in a ring."""
     out = np.empty((ring_waiting(counters), rows.shape[1]))
     return out[: ring_take(counters, rows, out)]

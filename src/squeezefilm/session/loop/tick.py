@@ -13,7 +13,7 @@ from typing import Any
 
 import numba
 
-from squeezefilm.quantities import Array
+from squeezefilm import quantities as si
 from squeezefilm.render.motion import kernel as motion_kernel
 from squeezefilm.render.motion.kernel import motion_at, motion_step
 from squeezefilm.render.program import layout
@@ -27,7 +27,7 @@ from squeezefilm.session.loop.shared import SAMPLES
 
 
 @numba.njit(cache=True, nogil=True, error_model="numpy")
-def interpolated(places: Array, values: Array, place: float) -> float:
+def interpolated(places: si.Array, values: si.Array, place: float) -> float:
     """The value at a place, linear between knots that rise; held beyond the ends, NaN without."""
     last = places.size - 1
     if last < 1 or math.isnan(place):
@@ -46,7 +46,7 @@ def interpolated(places: Array, values: Array, place: float) -> float:
 
 
 @numba.njit(cache=True, nogil=True, error_model="numpy")
-def _listen(arrays: Any, sample: Array) -> int:
+def _listen(arrays: Any, sample: si.Array) -> int:
     """Take one finger sample into the estimators; returns flags."""
     memory = arrays.memory
     level, amplitude = sample[column.SAMPLE_LEVEL], sample[column.SAMPLE_AMPLITUDE]

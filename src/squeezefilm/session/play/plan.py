@@ -6,31 +6,20 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Annotated, Literal
 
+from squeezefilm import quantities as si
 from squeezefilm.device.wire.safety import Limits
 from squeezefilm.device.wire.states import Fault, State
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import (
-    AtLeast,
-    AtMost,
-    Hertz,
-    Metre,
-    MetrePerVolt,
-    Second,
-    Unit,
-    Volt,
-    checked_numbers,
-    require,
-)
 from squeezefilm.session.loop.plan import LoopPlan
 from squeezefilm.session.play.tile import TextureTile
 
 PlayMode = Literal["stream", "tile"]
 
 
-REPORT_PERIOD: Second = 1e-3
+REPORT_PERIOD: si.Second = 1e-3
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, slots=True, eq=False)
 class PlayPlan:
     """What is to be played, and on what.
@@ -53,20 +42,20 @@ class PlayPlan:
 
     loop: LoopPlan
     limits: Limits
-    frequency: Hertz
+    frequency: si.Hertz
     mode: PlayMode = "stream"
     tile: TextureTile | None = None
-    report_period: Annotated[Second, AtLeast(0.0002), AtMost(0.02)] = REPORT_PERIOD
-    sensor_latency: Annotated[Second, AtLeast(0.0), AtMost(1.0)] = 0.0
-    amplitude_per_pickup: MetrePerVolt | None = None
+    report_period: Annotated[si.Second, si.AtLeast(0.0002), si.AtMost(0.02)] = REPORT_PERIOD
+    sensor_latency: Annotated[si.Second, si.AtLeast(0.0), si.AtMost(1.0)] = 0.0
+    amplitude_per_pickup: si.MetrePerVolt | None = None
     twin: bool = False
 
     def __post_init__(self) -> None:
         limits = self.limits
-        require(
+        si.require(
             "frequency",
             self.frequency,
-            Unit("Hz"),
+            si.Unit("Hz"),
             at_least=limits.lowest_frequency,
             at_most=limits.highest_frequency,
         )
@@ -100,15 +89,15 @@ class PlayView:
     state and fault, readings heard, rows recorded, the round trip (s), flags of the last tick.
     """
 
-    time: Second
-    x: Metre
+    time: si.Second
+    x: si.Metre
     speed: float
-    wanted: Metre
-    amplitude: Metre
+    wanted: si.Metre
+    amplitude: si.Metre
     friction: float
-    level: Volt
-    lag: Metre
-    lateness: Second
+    level: si.Volt
+    lag: si.Metre
+    lateness: si.Second
     state: State
     fault: Fault
     readings: int

@@ -16,46 +16,41 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.device.host import DeviceHost
 from squeezefilm.device.ports import Sensor
 from squeezefilm.device.wire.messages import MOST_LEVELS, PICKUP_PRESENT, SENSOR_PRESENT, Reading
 from squeezefilm.device.wire.states import Fault, State
 from squeezefilm.errors import DeviceError, LoopError
-from squeezefilm.quantities import (
-    FloatArray,
-    Metre,
-    Second,
-    Volt,
-)
 from squeezefilm.session.loop import rows as column
 from squeezefilm.session.loop.rows import flag_meanings
 from squeezefilm.session.play.plan import Ending, PlayPlan, PlayView
 from squeezefilm.session.record.trace_writer import TraceWriter
 
-RESTING_SAMPLE: Second = 20e-3
+RESTING_SAMPLE: si.Second = 20e-3
 """A sensor slower than the reports repeats its last place; such repeats are fed this seldom."""
-LOOP_LIMIT: Second = 25e-3
+LOOP_LIMIT: si.Second = 25e-3
 """Silence of the loop after which the device is stopped: its last command would hold for ever."""
-DEAF_LIMIT: Second = 0.25
+DEAF_LIMIT: si.Second = 0.25
 """Silence of the device after which it is taken to be gone."""
-FADE: Second = 30e-3
+FADE: si.Second = 30e-3
 """From muting the loop to stopping the device: the last commands ramp to zero in it."""
-_STOP_LIMIT: Second = 0.5
+_STOP_LIMIT: si.Second = 0.5
 _MICRO = 1e-6
 
 
 class Loop(Protocol):
     """What a player needs of `LoopProcess` and `SimulatedLoop`."""
 
-    def feed(self, samples: FloatArray) -> int:
+    def feed(self, samples: si.FloatArray) -> int:
         """Give finger samples."""
         ...
 
-    def take_commands(self) -> FloatArray:
+    def take_commands(self) -> si.FloatArray:
         """The commands since the last call."""
         ...
 
-    def take_rows(self) -> FloatArray:
+    def take_rows(self) -> si.FloatArray:
         """The rows since the last call."""
         ...
 
@@ -83,9 +78,9 @@ class Player:
         loop: Loop,
         host: DeviceHost,
         writer: TraceWriter,
-        clock: Callable[[], Second],
+        clock: Callable[[], si.Second],
         sensor: Sensor | None = None,
-        tap: Callable[[FloatArray], None] | None = None,
+        tap: Callable[[si.FloatArray], None] | None = None,
     ) -> None:
         self.tap = tap
         self.plan, self.loop, self.host, self.writer = plan, loop, host, writer
@@ -98,7 +93,7 @@ class Player:
         self._faded = math.nan
         self._gap, self._gap_at = 0.0, -math.inf
         self._sending = False
-        self._row: FloatArray = np.full(len(column.COLUMNS), math.nan)
+        self._row: si.FloatArray = np.full(len(column.COLUMNS), math.nan)
         self._row[[column.TICK, column.FLAGS]] = 0.0
 
     @property
@@ -107,7 +102,7 @@ class Player:
         return self.ending is Ending.FAULT
 
     @property
-    def held_up(self) -> Second:
+    def held_up(self) -> si.Second:
         """The longest time between two steps of late (s)."""
         return self._gap
 
@@ -163,7 +158,7 @@ class Player:
             self._faded = self.clock()
             self.loop.mute()
 
-    def end(self, why: Ending, wait: Callable[[Second], None], message: str = "") -> None:
+    def end(self, why: Ending, wait: Callable[[si.Second], None], message: str = "") -> None:
         """Stop the device, wait until its output is at zero, and write the last rows.
 
         A device that does not answer any more is left to its watchdog.
@@ -220,7 +215,7 @@ class Player:
             flags=tuple(flag_meanings(int(row[column.FLAGS]) & ~column.NEW_SAMPLE)),
         )
 
-    def _hear(self, now: Second) -> list[tuple[float, ...]]:
+    def _hear(self, now: si.Second) -> list[tuple[float, ...]]:
         """Readings since the last call as samples for the loop."""
         samples: list[tuple[float, ...]] = []
         for reading in self.host.poll():
@@ -239,14 +234,14 @@ class Player:
             self._last = reading
         return samples
 
-    def _repeats(self, reading: Reading, stamp: Second) -> bool:
+    def _repeats(self, reading: Reading, stamp: si.Second) -> bool:
         """Whether a reading shows a place that was fed already and no news of the finger."""
         last = self._last
         if last is None or stamp - self._fed >= RESTING_SAMPLE:
             return False
         return (last.x, last.y, last.touching) == (reading.x, reading.y, reading.touching)
 
-    def _sample(self, reading: Reading, stamp: Second) -> tuple[float, ...]:
+    def _sample(self, reading: Reading, stamp: si.Second) -> tuple[float, ...]:
         if not reading.flags & SENSOR_PRESENT:
             raise DeviceError(
                 "the device has no finger sensor; give one with --sensor replay:FILE, or connect it"
@@ -259,7 +254,7 @@ class Player:
             *self._reported(reading),
         )
 
-    def _reported(self, reading: Reading | None) -> tuple[Volt, Metre]:
+    def _reported(self, reading: Reading | None) -> tuple[si.Volt, si.Metre]:
         """The device's output level and the amplitude by its pickup, NaN where not known."""
         if reading is None:
             return math.nan, math.nan
@@ -275,7 +270,7 @@ class Player:
             samples.append((one.time, one.x, one.y, float(one.touching), *reported))
         return samples
 
-    def _changed(self, reading: Reading, stamp: Second) -> None:
+    def _changed(self, reading: Reading, stamp: si.Second) -> None:
         state, fault = State(reading.state), Fault(reading.fault)
         if (state, fault) != (self.state, self.fault):
             self.state, self.fault = state, fault
@@ -291,7 +286,7 @@ class Player:
             if state is State.FAULT:
                 self.ending = Ending.FAULT
 
-    def _send(self, now: Second) -> None:
+    def _send(self, now: si.Second) -> None:
         commands = self.loop.take_commands()
         longest = max(LOOP_LIMIT, 3 * self.plan.loop.period)
         # Where this player was held up itself, the loop's silence is not the loop's.
@@ -327,7 +322,7 @@ class Player:
         self.writer.event(kind, fields)
 
 
-def _blocks(commands: FloatArray) -> list[FloatArray]:
+def _blocks(commands: si.FloatArray) -> list[si.FloatArray]:
     """Commands cut where ticks are missing, and to what fits a frame."""
     ticks = commands[:, column.COMMAND_TICK]
     runs = np.split(commands, np.flatnonzero(np.diff(ticks) != 1) + 1)

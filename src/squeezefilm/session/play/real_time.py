@@ -20,6 +20,7 @@ from typing import Any
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.device.host import DeviceHost
 from squeezefilm.device.ports import Sensor
 from squeezefilm.device.priority import (
@@ -33,7 +34,6 @@ from squeezefilm.device.wire.safety import require_safe_drive
 from squeezefilm.device.wire.states import Fault
 from squeezefilm.device.wire.streams import open_stream
 from squeezefilm.errors import DeviceError, LoopError
-from squeezefilm.quantities import FloatArray, Second
 from squeezefilm.results import to_json
 from squeezefilm.session.loop.process import LoopProcess
 from squeezefilm.session.loop.rows import COLUMNS, SAMPLE_COLUMNS
@@ -42,10 +42,10 @@ from squeezefilm.session.play.plan import Ending, PlayPlan, PlayView
 from squeezefilm.session.play.player import FADE, Player
 from squeezefilm.session.record.trace_writer import TraceWriter
 
-PAUSE: Second = 1e-3
+PAUSE: si.Second = 1e-3
 """Between two looks of the player at its device."""
-SHOW_PERIOD: Second = 0.1
-LONGEST_SILENCE: Second = 35e-3
+SHOW_PERIOD: si.Second = 0.1
+LONGEST_SILENCE: si.Second = 35e-3
 """Between two steps of the player, with which a device's watchdog is fed in time for certain."""
 
 
@@ -70,10 +70,10 @@ def run_play(
     trace: Path,
     metadata: Mapping[str, Any],
     *,
-    duration: Second,
-    sensor: Callable[[Callable[[], Second]], Sensor] | None = None,
+    duration: si.Second,
+    sensor: Callable[[Callable[[], si.Second]], Sensor] | None = None,
     show: Callable[[PlayView], None] | None = None,
-    tap: Callable[[FloatArray], None] | None = None,
+    tap: Callable[[si.FloatArray], None] | None = None,
     until: Callable[[], bool] | None = None,
     study: bool = False,
     bench_only: bool = False,
@@ -137,7 +137,7 @@ def _compile(plan: PlayPlan) -> None:
 def _played(
     player: Player,
     loop: LoopProcess,
-    duration: Second,
+    duration: si.Second,
     interrupted: Callable[[], bool],
     show: Callable[[PlayView], None] | None,
 ) -> tuple[Ending, str]:

@@ -12,10 +12,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from squeezefilm import quantities as si
 from squeezefilm.device.host import DeviceHost
 from squeezefilm.device.wire.link import Link
 from squeezefilm.errors import DeviceError, LoopError
-from squeezefilm.quantities import Second, Unit, require
 from squeezefilm.results import to_json
 from squeezefilm.session.loop.rows import COLUMNS
 from squeezefilm.session.loop.simulated import SimulatedLoop
@@ -25,7 +25,7 @@ from squeezefilm.session.play.real_time import PlayOutcome, fault_sentence
 from squeezefilm.session.record.trace_writer import TraceWriter
 from squeezefilm.twin.device import TwinDevice
 
-STEP: Second = 1e-3
+STEP: si.Second = 1e-3
 """Between two looks of the player at its device."""
 
 
@@ -38,17 +38,17 @@ class VirtualStream:
     """
 
     device: TwinDevice
-    latency: Second = 0.5e-3
-    now: Second = 0.0
-    together: Callable[[Second], None] | None = None
+    latency: si.Second = 0.5e-3
+    now: si.Second = 0.0
+    together: Callable[[si.Second], None] | None = None
     _under_way: deque[tuple[int, bytes]] = field(default_factory=deque)
     _arrived: bytearray = field(default_factory=bytearray)
 
-    def clock(self) -> Second:
+    def clock(self) -> si.Second:
         """The simulated time (s)."""
         return self.now
 
-    def wait(self, duration: Second) -> None:
+    def wait(self, duration: si.Second) -> None:
         """Let time pass (s)."""
         self.now += duration
         if self.together is not None:
@@ -79,9 +79,9 @@ def virtual_play(
     trace: Path,
     metadata: Mapping[str, Any],
     *,
-    duration: Second,
-    latency: Second = 0.5e-3,
-    step: Second = STEP,
+    duration: si.Second,
+    latency: si.Second = 0.5e-3,
+    step: si.Second = STEP,
 ) -> PlayOutcome:
     """Play on a twin for a time, as fast as the computer can; the truth is in `device.truth`.
 
@@ -98,13 +98,13 @@ def virtual_play(
         DeviceError: a device that refuses to begin.
         RecordError: a record that cannot be written.
     """
-    require("duration", duration, Unit("s"), above=0.0)
-    require("step", step, Unit("s"), above=0.0, at_most=20e-3)
+    si.require("duration", duration, si.Unit("s"), above=0.0)
+    si.require("step", step, si.Unit("s"), above=0.0, at_most=20e-3)
     loop = SimulatedLoop(plan.loop)
     stream = VirtualStream(device, latency, device.now * 1e-6)
     start = stream.now
 
-    def clock() -> Second:
+    def clock() -> si.Second:
         return stream.now - start
 
     stream.together = lambda now: loop.advance(now - start)

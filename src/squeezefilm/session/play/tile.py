@@ -6,23 +6,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.device.wire.messages import LONGEST_TILE
 from squeezefilm.errors import InputError, UnreachableError
-from squeezefilm.quantities import (
-    FloatArray,
-    Metre,
-    MetreArray,
-    Unit,
-    VoltArray,
-    format_quantity,
-    require,
-)
 from squeezefilm.render.program.lowering import Program
 from squeezefilm.render.program.renderer import render
 from squeezefilm.session.loop.plan import DriveTable
 
-_METRE = Unit("m")
-_MICROMETRE: Metre = 1e-6
+_METRE = si.Unit("m")
+_MICROMETRE: si.Metre = 1e-6
 _FINER = 16
 # What a position may miss a whole number of micrometres by.
 _ROUNDING = 1e-6
@@ -42,23 +34,23 @@ class TextureTile:
     """
 
     program: Program
-    origin: Metre
-    pitch: Metre
-    amplitude: MetreArray
-    largest_error: Metre
-    mean_error: Metre
+    origin: si.Metre
+    pitch: si.Metre
+    amplitude: si.MetreArray
+    largest_error: si.Metre
+    mean_error: si.Metre
 
-    def voltage(self, drive: DriveTable) -> VoltArray:
+    def voltage(self, drive: DriveTable) -> si.VoltArray:
         """The tile's levels (V, zero-to-peak), shape (size,).
 
         Raises:
             InputError: an amplitude above the drive's largest.
         """
-        require("amplitude", self.amplitude, _METRE, at_most=drive.largest_amplitude)
+        si.require("amplitude", self.amplitude, _METRE, at_most=drive.largest_amplitude)
         return np.asarray(np.interp(self.amplitude, drive.amplitude, drive.voltage))
 
 
-def tile_of(program: Program, origin: Metre, pitch: Metre, size: int) -> TextureTile:
+def tile_of(program: Program, origin: si.Metre, pitch: si.Metre, size: int) -> TextureTile:
     """A steady texture sampled into a device's tile.
 
     A tile knows no speed, no time and no y, and the device plays it without compensation.
@@ -86,21 +78,21 @@ def tile_of(program: Program, origin: Metre, pitch: Metre, size: int) -> Texture
             f"size = {size!r} cannot be used: a tile holds 2 to {LONGEST_TILE} amplitudes",
             quantity="size",
         )
-    require("origin", origin, _METRE, at_least=-2e3, at_most=2e3)
-    require("pitch", pitch, _METRE, at_least=_MICROMETRE, at_most=1.0)
+    si.require("origin", origin, _METRE, at_least=-2e3, at_most=2e3)
+    si.require("pitch", pitch, _METRE, at_least=_MICROMETRE, at_most=1.0)
     for name, value in (("origin", origin), ("pitch", pitch)):
         steps = value / _MICROMETRE
         if abs(steps - round(steps)) > _ROUNDING * max(1.0, abs(steps)):
             raise InputError(
-                f"{name} = {format_quantity(value, _METRE)} is no whole number of micrometres, "
+                f"{name} = {si.format_quantity(value, _METRE)} is no whole number of micrometres, "
                 "which the device counts in; round it",
                 quantity=name,
             )
-    places: FloatArray = round(origin / _MICROMETRE) + round(pitch / _MICROMETRE) * np.arange(
+    places: si.FloatArray = round(origin / _MICROMETRE) + round(pitch / _MICROMETRE) * np.arange(
         float(size)
     )
     amplitude = _amplitudes(program, places)
-    between: FloatArray = np.linspace(places[0], places[-1], (size - 1) * _FINER + 1)
+    between: si.FloatArray = np.linspace(places[0], places[-1], (size - 1) * _FINER + 1)
     wanted = _amplitudes(program, between)
     missed = np.abs(np.interp(between, places, amplitude) - wanted)
     return TextureTile(
@@ -108,7 +100,7 @@ def tile_of(program: Program, origin: Metre, pitch: Metre, size: int) -> Texture
     )
 
 
-def _amplitudes(program: Program, places: FloatArray) -> FloatArray:
+def _amplitudes(program: Program, places: si.FloatArray) -> si.FloatArray:
     """The texture's amplitudes at places along x (µm), each by itself."""
     # Divided, not multiplied by 1e-6: so a whole number of µm is the same float as in a texture.
     x = places / 1e6

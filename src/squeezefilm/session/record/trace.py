@@ -12,9 +12,9 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import TRACE_BYTES
-from squeezefilm.quantities import FloatArray, Second
 from squeezefilm.regular_file import opened
 from squeezefilm.results import Result
 from squeezefilm.session.record import trace_file as file
@@ -56,13 +56,13 @@ class Trace(Result):
     """
 
     columns: tuple[str, ...]
-    rows: FloatArray
+    rows: si.FloatArray
     events: tuple[TraceEvent, ...]
     metadata: Mapping[str, Any]
     damage: Damage
     _shown: ClassVar[str] = "display texture row_count duration damage.sentences"
 
-    def column(self, name: str) -> FloatArray:
+    def column(self, name: str) -> si.FloatArray:
         """The column of that name, shape (n,). Raises `InputError` if there is none."""
         if name not in self.columns:
             raise InputError(f"there is no column '{name}'; there are {', '.join(self.columns)}")
@@ -84,7 +84,7 @@ class Trace(Result):
         return len(self.rows)
 
     @property
-    def duration(self) -> Second:
+    def duration(self) -> si.Second:
         """From the first row to the last (s); 0 without a column of times."""
         if "time_s" not in self.columns or not len(self.rows):
             return 0.0

@@ -21,12 +21,12 @@ from typing import Any, Self
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError, RecordError
-from squeezefilm.quantities import FloatArray, Second, Unit, require
 from squeezefilm.results import sync_folder, to_json
 from squeezefilm.session.record import trace_file as file
 
-SYNC_PERIOD: Second = 1.0
+SYNC_PERIOD: si.Second = 1.0
 """How often the trace is forced onto the disk unless asked otherwise."""
 
 
@@ -52,10 +52,10 @@ class TraceWriter:
         columns: Sequence[str],
         metadata: Mapping[str, Any],
         *,
-        sync_period: Second = SYNC_PERIOD,
+        sync_period: si.Second = SYNC_PERIOD,
         replace: bool = False,
     ) -> None:
-        require("sync_period", sync_period, Unit("s"), at_least=0.0)
+        si.require("sync_period", sync_period, si.Unit("s"), at_least=0.0)
         if not columns or len(set(columns)) < len(columns):
             raise InputError(f"columns {list(columns)} are no table; name each once, at least one")
         self.path = Path(path)
@@ -105,7 +105,7 @@ class TraceWriter:
         """Rows that are on the disk: no power cut loses them."""
         return self._synced
 
-    def append(self, rows: FloatArray) -> int:
+    def append(self, rows: si.FloatArray) -> int:
         """Write rows of shape (n, columns); returns how many are acknowledged in all.
 
         Raises:

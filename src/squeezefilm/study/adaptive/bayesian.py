@@ -13,15 +13,9 @@ from typing import Any, Literal
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.from_text import reads_text
-from squeezefilm.quantities import (
-    Dimensionless,
-    DimensionlessArray,
-    FloatArray,
-    require,
-    require_one_of,
-)
 from squeezefilm.study.psychometric import kernel
 from squeezefilm.study.psychometric.function import Axis, Shape, on_axis, shape_code
 from squeezefilm.study.psychometric.prior import PsychometricPrior
@@ -52,7 +46,7 @@ class AdaptiveDesign:
     prior: PsychometricPrior
     shape: Shape = "logistic"
     axis: Axis = "linear"
-    guess_rate: Dimensionless = 0.5
+    guess_rate: si.Dimensionless = 0.5
     cells: tuple[int, int, int] = (40, 20, 5)
     interest: Interest = "threshold and width"
     most_trials: int = 120
@@ -60,12 +54,12 @@ class AdaptiveDesign:
     def __post_init__(self) -> None:
         shape_code(self.shape, self.axis)
         on_axis(np.array(self.stimuli), self.axis)
-        require("guess_rate", self.guess_rate, at_least=0.0, at_most=0.5)
-        require("cells", self.cells, at_least=1)
-        require("most_trials", self.most_trials, at_least=1)
+        si.require("guess_rate", self.guess_rate, at_least=0.0, at_most=0.5)
+        si.require("cells", self.cells, at_least=1)
+        si.require("most_trials", self.most_trials, at_least=1)
         if len(self.stimuli) < 2:
             raise InputError(f"stimuli = {self.stimuli} leaves nothing to choose; give two or more")
-        require_one_of("interest", self.interest, ("threshold and width", "all"))
+        si.require_one_of("interest", self.interest, ("threshold and width", "all"))
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,7 +96,7 @@ class BayesianAdaptive:
         self._weights = np.full(self._table.shape[0], 1.0 / self._table.shape[0])
         self._trials: list[AdaptiveTrial] = []
 
-    def _probabilities(self, places: FloatArray) -> FloatArray:
+    def _probabilities(self, places: si.FloatArray) -> si.FloatArray:
         """ψ of every cell at places on the axis: (cells, places)."""
         code = shape_code(self.design.shape, self.design.axis)
         m, w, lapse = self._nodes
@@ -128,7 +122,7 @@ class BayesianAdaptive:
         return len(self._trials) >= self.design.most_trials
 
     @property
-    def probability(self) -> DimensionlessArray:
+    def probability(self) -> si.DimensionlessArray:
         """The posterior on the grid, shape `design.cells`; sums to 1."""
         return self._weights.reshape(self.design.cells).copy()
 
@@ -149,7 +143,7 @@ class BayesianAdaptive:
         width = float(np.exp(np.sum(weights.sum(axis=(0, 2)) * self._nodes[1])))
         return (float(np.exp(place)) if self.design.axis == "log" else place), width
 
-    def expected_information(self) -> FloatArray:
+    def expected_information(self) -> si.FloatArray:
         """Mutual information of the next answer and what is of interest (nat), shape (stimuli,)."""
         weights = self._weights
         positive = weights @ self._table
@@ -237,6 +231,6 @@ class BayesianAdaptive:
         return method
 
 
-def _binary_entropy(p: FloatArray) -> FloatArray:
+def _binary_entropy(p: si.FloatArray) -> si.FloatArray:
     q = 1.0 - p
     return np.asarray(-(p * np.log(np.maximum(p, 1e-300)) + q * np.log(np.maximum(q, 1e-300))))

@@ -11,14 +11,14 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import Dimensionless, require, require_one_of
 from squeezefilm.study.psychometric.function import AXES, Axis
 
 
 def staircase_target(
     down_after: int, step_up: float = 1.0, step_down: float = 1.0
-) -> Dimensionless:
+) -> si.Dimensionless:
     """Probability of a correct answer at which a staircase settles: (s₊/(s₊ + s₋))^(1/n).
 
     There the expected steps up and down cancel: pⁿ s₋ = (1 − pⁿ) s₊. 70.7 % for two down, one up
@@ -27,9 +27,9 @@ def staircase_target(
     Raises:
         InputError: a value outside its range.
     """
-    require("down_after", down_after, at_least=1)
-    require("step_up", step_up, above=0.0)
-    require("step_down", step_down, above=0.0)
+    si.require("down_after", down_after, at_least=1)
+    si.require("step_up", step_up, above=0.0)
+    si.require("step_down", step_down, above=0.0)
     return float((step_up / (step_up + step_down)) ** (1.0 / down_after))
 
 
@@ -56,7 +56,7 @@ class StaircaseRule:
     step: float
     smallest_step: float
     down_after: int = 2
-    up_ratio: Dimensionless = 1.0
+    up_ratio: si.Dimensionless = 1.0
     lowest: float = -math.inf
     highest: float = math.inf
     axis: Axis = "linear"
@@ -64,14 +64,14 @@ class StaircaseRule:
     most_trials: int = 200
 
     def __post_init__(self) -> None:
-        require_one_of("axis", self.axis, AXES)
-        require("start", self.start, above=0.0 if self.axis == "log" else None)
-        require("step", self.step, above=0.0)
-        require("smallest_step", self.smallest_step, above=0.0, at_most=self.step)
-        require("down_after", self.down_after, at_least=1)
-        require("up_ratio", self.up_ratio, above=0.0)
-        require("reversals", self.reversals, at_least=2)
-        require("most_trials", self.most_trials, at_least=1)
+        si.require_one_of("axis", self.axis, AXES)
+        si.require("start", self.start, above=0.0 if self.axis == "log" else None)
+        si.require("step", self.step, above=0.0)
+        si.require("smallest_step", self.smallest_step, above=0.0, at_most=self.step)
+        si.require("down_after", self.down_after, at_least=1)
+        si.require("up_ratio", self.up_ratio, above=0.0)
+        si.require("reversals", self.reversals, at_least=2)
+        si.require("most_trials", self.most_trials, at_least=1)
         if not self.lowest <= self.start <= self.highest:
             raise InputError(
                 f"start = {self.start:g} is not between lowest, {self.lowest:g}, and highest, "
@@ -80,7 +80,7 @@ class StaircaseRule:
             )
 
     @property
-    def target(self) -> Dimensionless:
+    def target(self) -> si.Dimensionless:
         """Probability of a correct answer at which it settles."""
         return staircase_target(self.down_after, self.up_ratio, 1.0)
 
@@ -139,7 +139,7 @@ class Staircase:
         Raises:
             InputError: an intensity that is not finite, or the staircase has finished.
         """
-        require("intensity", intensity)
+        si.require("intensity", intensity)
         self.next_stimulus()
         rule = self.rule
         self._streak = self._streak + 1 if correct else 0
@@ -174,7 +174,7 @@ class Staircase:
         Raises:
             InputError: fewer than two reversals are left.
         """
-        require("discard", discard, at_least=0)
+        si.require("discard", discard, at_least=0)
         turns = [trial.intensity for trial in self._trials if trial.reversal][discard:]
         turns = turns[len(turns) % 2 :]
         if not turns:

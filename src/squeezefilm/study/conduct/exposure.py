@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from squeezefilm import quantities as si
 from squeezefilm.display import Display
 from squeezefilm.plate.sound import SoundField
-from squeezefilm.quantities import Dimensionless, Hertz, Metre, Second, Unit, format_quantity
 
-HEAD_DISTANCE: Metre = 0.5
+HEAD_DISTANCE: si.Metre = 0.5
 """From the plate to the ear of somebody seated at it (assumed)."""
 
 
@@ -23,16 +23,16 @@ class Exposure:
     """
 
     display: str
-    frequency: Hertz
-    distance: Metre
+    frequency: si.Hertz
+    distance: si.Metre
     level_dB: float
-    duration: Second
+    duration: si.Second
     guidance_dB: float | None
     guidance: str
     model: str
 
     @property
-    def above_guidance_dB(self) -> Dimensionless | None:
+    def above_guidance_dB(self) -> si.Dimensionless | None:
         """By how much the level exceeds the guidance (dB); None where there is none."""
         return None if self.guidance_dB is None else self.level_dB - self.guidance_dB
 
@@ -41,8 +41,8 @@ class Exposure:
         """What the experimenter acknowledges, in two sentences."""
         said = (
             f"Airborne ultrasound of {self.display}: up to {self.level_dB:.0f} dB at "
-            f"{format_quantity(self.distance, Unit('m'))}, "
-            f"{format_quantity(self.frequency, Unit('Hz'), 3)}, for about "
+            f"{si.format_quantity(self.distance, si.Unit('m'))}, "
+            f"{si.format_quantity(self.frequency, si.Unit('Hz'), 3)}, for about "
             f"{self.duration / 60:.0f} min ({self.model})."
         )
         above = self.above_guidance_dB
@@ -54,9 +54,9 @@ class Exposure:
 
 def exposure(
     display: Display,
-    duration: Second,
+    duration: si.Second,
     *,
-    distance: Metre = HEAD_DISTANCE,
+    distance: si.Metre = HEAD_DISTANCE,
     progress: Callable[[str], None] | None = None,
 ) -> Exposure:
     """The exposure of a session of `duration` (s) on a display at its own voltage.
@@ -70,7 +70,9 @@ def exposure(
     return exposure_of(display.name, field, duration, distance)
 
 
-def exposure_of(display: str, field: SoundField, duration: Second, distance: Metre) -> Exposure:
+def exposure_of(
+    display: str, field: SoundField, duration: si.Second, distance: si.Metre
+) -> Exposure:
     """The exposure that a computed sound field means at a distance (m).
 
     Between the field's distances the level falls with 1/distance from the nearest one.

@@ -15,10 +15,10 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
+from squeezefilm import quantities as si
 from squeezefilm.display import load_display
 from squeezefilm.errors import DeviceError, InputError
 from squeezefilm.perception.stimuli import Stimulus
-from squeezefilm.quantities import Hertz, MetrePerVolt, Second
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ
 from squeezefilm.results import config_hash
 from squeezefilm.study.conduct.playing_process import WorkerOrders, serve
@@ -26,10 +26,10 @@ from squeezefilm.study.conduct.study_device import DeviceIdentity, DeviceVerific
 from squeezefilm.twin.hand import EXPLORING
 from squeezefilm.twin.settings import PickupModel, TwinSettings
 
-START_LIMIT: Second = 300.0
+START_LIMIT: si.Second = 300.0
 """A first start solves the plate and compiles, which may take a minute on a busy computer."""
-STOP_LIMIT: Second = 20.0
-_RATE: Hertz = 5e3
+STOP_LIMIT: si.Second = 20.0
+_RATE: si.Hertz = 5e3
 
 
 def require_study_drive(drive: str) -> None:
@@ -69,10 +69,10 @@ class SessionDevice:
         drive: str,
         traces: Path,
         *,
-        amplitude_per_pickup: MetrePerVolt | None = None,
+        amplitude_per_pickup: si.MetrePerVolt | None = None,
         settings: TwinSettings | None = None,
         stroke: str = EXPLORING,
-        rate: Hertz = _RATE,
+        rate: si.Hertz = _RATE,
     ) -> None:
         require_study_drive(drive)
         self._display = load_display(target)
@@ -218,7 +218,7 @@ class SessionDevice:
         assert answer[0] in (expected, "ended"), answer[0]
         return answer
 
-    def _heard(self, limit: Second) -> tuple[Any, ...]:
+    def _heard(self, limit: si.Second) -> tuple[Any, ...]:
         connection = self._connection
         if connection is None:
             raise DeviceError("the process that plays was closed; present the surface again")

@@ -21,6 +21,7 @@ from typing import Any
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.bench.play import device_stream
 from squeezefilm.bench.resonance_sweep import sweep_resonance
 from squeezefilm.bench.setup import KnownDevice, PlaySetup, play_setup
@@ -35,7 +36,6 @@ from squeezefilm.display import Display, load_display
 from squeezefilm.errors import SqueezefilmError
 from squeezefilm.formats.traces import Table, csv_text
 from squeezefilm.perception.stimuli import Stimulus
-from squeezefilm.quantities import Dimensionless, FloatArray, Hertz, MetrePerVolt, Second
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ
 from squeezefilm.results import stamp
 from squeezefilm.session.loop import rows as column
@@ -46,11 +46,11 @@ from squeezefilm.study.conduct.study_device import DeviceVerification, Explorati
 from squeezefilm.texture_file import TextureFile
 from squeezefilm.twin.settings import TwinSettings
 
-LONGEST_PRESENTATION: Second = 600.0
+LONGEST_PRESENTATION: si.Second = 600.0
 """A surface that nobody answers plays no longer; the trial then comes again."""
-VERIFICATION_SHARE: Dimensionless = 0.25
+VERIFICATION_SHARE: si.Dimensionless = 0.25
 """Of the display's voltage, at which its resonance is swept."""
-PATH_PERIOD: Second = 10e-3
+PATH_PERIOD: si.Second = 10e-3
 """Between samples of the finger's path (the raw trace has every tick): slow against the sensor's
 noise, fast against a hand."""
 _SPAN = 4.0
@@ -72,8 +72,8 @@ class WorkerOrders:
     traces: str
     settings: TwinSettings
     stroke: str
-    rate: Hertz
-    amplitude_per_pickup: MetrePerVolt | None
+    rate: si.Hertz
+    amplitude_per_pickup: si.MetrePerVolt | None
 
 
 def serve(connection: Connection, orders: WorkerOrders) -> None:
@@ -184,7 +184,7 @@ class Bench:
         return _failure(outcome, trace), explored(trace, name)
 
     @property
-    def _amplitude_per_pickup(self) -> MetrePerVolt | None:
+    def _amplitude_per_pickup(self) -> si.MetrePerVolt | None:
         if self._orders.drive == "twin":
             return 1 / self._orders.settings.pickup.sensitivity
         return self._orders.amplitude_per_pickup
@@ -234,7 +234,7 @@ def explored(trace: Trace, name: str) -> Exploration:
 
 
 def _path(trace: Trace) -> Table:
-    rows: FloatArray = trace.rows
+    rows: si.FloatArray = trace.rows
     flags = rows[:, column.FLAGS].astype(np.int64)
     there = (flags & (column.NOT_TOUCHING | column.NO_FRESH_SAMPLE)) == 0
     there &= np.isfinite(rows[:, column.X]) & np.isfinite(rows[:, column.Y])

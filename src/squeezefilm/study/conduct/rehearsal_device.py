@@ -11,12 +11,12 @@ import math
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.bench.resonance_sweep import peak
 from squeezefilm.chain.friction import friction_law
 from squeezefilm.display import Display
 from squeezefilm.formats.traces import Table, csv_text
 from squeezefilm.perception.stimuli import Stimulus
-from squeezefilm.quantities import FloatArray, Hertz, Second
 from squeezefilm.render.texture.composition import Composable
 from squeezefilm.results import config_hash, to_json
 from squeezefilm.study.conduct.study_device import DeviceIdentity, DeviceVerification, Exploration
@@ -123,11 +123,11 @@ class StudyTwin:
         )
 
     @property
-    def _time_constant(self) -> Second:
+    def _time_constant(self) -> si.Second:
         mode = self.point.mode
         return mode.quality_factor / (math.pi * mode.resonance_frequency)
 
-    def _amplitude(self, carrier: Hertz) -> float:
+    def _amplitude(self, carrier: si.Hertz) -> float:
         """The settled amplitude (m) as the pickup has it: the mean of its readings' squares, less
         the noise it is known to have."""
         plate, volts = self._plate, self.display.drive.voltage
@@ -140,7 +140,7 @@ class StudyTwin:
         signal = math.sqrt(max(float(np.mean(squares)) - noise, 0.0))
         return signal * plate.pickup_calibration
 
-    def _step(self, duration: int, volts: float, carrier: Hertz) -> None:
+    def _step(self, duration: int, volts: float, carrier: si.Hertz) -> None:
         self._now += duration
         self._plate.advance(self._now, round(volts * 1e6), round(carrier * 1e3))
 
@@ -155,7 +155,7 @@ class StudyTwin:
         return round(min(volts, self.display.drive.voltage) * 1e6)
 
 
-def _levels(point: WorkingPoint, force: float) -> tuple[FloatArray, FloatArray]:
+def _levels(point: WorkingPoint, force: float) -> tuple[si.FloatArray, si.FloatArray]:
     """Relative friction, falling, and the amplitudes (m) that make it, at a normal force (N)."""
     law = friction_law(
         point.display,
@@ -169,5 +169,5 @@ def _levels(point: WorkingPoint, force: float) -> tuple[FloatArray, FloatArray]:
     return friction[falling], amplitudes[falling]
 
 
-def _seconds_to_us(duration: Second) -> int:
+def _seconds_to_us(duration: si.Second) -> int:
     return round(duration * 1e6)

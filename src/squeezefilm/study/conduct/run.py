@@ -18,9 +18,9 @@ from datetime import datetime
 from typing import Any, Literal
 
 from squeezefilm import __version__
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.perception.stimuli import Grating, Stimulus
-from squeezefilm.quantities import Second, Unit, require
 from squeezefilm.study.adaptive.series import adaptive_method
 from squeezefilm.study.conduct.sessions import display_wanted
 from squeezefilm.study.conduct.study_device import Exploration
@@ -55,7 +55,7 @@ class Presentation:
     intensity: float | None
     times_presented: int
     remaining: int
-    rest: Second
+    rest: si.Second
 
 
 @dataclass(frozen=True)
@@ -69,9 +69,9 @@ class Response:
 
     choice: str = ""
     estimate: float | None = None
-    response_time: Second | None = None
-    started_monotonic: Second = 0.0
-    ended_monotonic: Second = 0.0
+    response_time: si.Second | None = None
+    started_monotonic: si.Second = 0.0
+    ended_monotonic: si.Second = 0.0
     started_utc: str = field(default_factory=utc_now)
     ended_utc: str = field(default_factory=utc_now)
     explorations: tuple[Exploration, ...] = ()
@@ -96,7 +96,7 @@ class StudyRun:
     "finished" or "display changes" (then begin a session on the other display)."""
 
     def __init__(
-        self, store: StudyStore, session: str, *, clock: Callable[[], Second] = time.monotonic
+        self, store: StudyStore, session: str, *, clock: Callable[[], si.Second] = time.monotonic
     ) -> None:
         found = store.rows("SELECT * FROM session WHERE uuid = ?", [session])
         if not found:
@@ -105,7 +105,7 @@ class StudyRun:
         self._session = found[0]
         self._presented: str | None = None
         self._clock = clock
-        self._first_shown: tuple[str, Second] = ("", 0.0)
+        self._first_shown: tuple[str, si.Second] = ("", 0.0)
 
     @property
     def session(self) -> Row:
@@ -219,7 +219,7 @@ class StudyRun:
         of this participant."""
         return self._recorded(self._planned(token)) is not None
 
-    def _rest_left(self, row: Row, now: str) -> Second:
+    def _rest_left(self, row: Row, now: str) -> si.Second:
         whole = float(row["pause_s"])
         if not whole:
             return 0.0
@@ -344,9 +344,9 @@ def _mean(values: list[float]) -> float | None:
 
 def _require_answer(trial: Trial, response: Response) -> None:
     for name in ("started_monotonic", "ended_monotonic"):
-        require(name, getattr(response, name), Unit("s"))
+        si.require(name, getattr(response, name), si.Unit("s"))
     if response.response_time is not None:
-        require("response_time", response.response_time, Unit("s"), at_least=0.0)
+        si.require("response_time", response.response_time, si.Unit("s"), at_least=0.0)
     if not trial.asks:
         if response.choice or response.estimate is not None:
             raise InputError(f"trial {trial.number} is only felt; it takes no answer")
@@ -363,4 +363,4 @@ def _require_answer(trial: Trial, response: Response) -> None:
         raise InputError(
             f"trial {trial.number} asks for a number above 0, as `estimate`", quantity="estimate"
         )
-    require("estimate", response.estimate, above=0.0, at_most=1e12)
+    si.require("estimate", response.estimate, above=0.0, at_most=1e12)

@@ -5,21 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import (
-    AtLeast,
-    AtMost,
-    Dimensionless,
-    Kelvin,
-    Newton,
-    Radian,
-    checked_numbers,
-)
 
 _LONGEST_TEXT = 200
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True)
 class SessionConditions:
     """The conditions of one sitting. What was not measured stays None; nothing is guessed.
@@ -48,14 +40,14 @@ class SessionConditions:
     consent: bool
     consent_form: str = ""
     room: str = ""
-    temperature: Annotated[Kelvin, AtLeast(253), AtMost(333)] | None = None
-    relative_humidity: Annotated[Dimensionless, AtLeast(0), AtMost(1)] | None = None
-    skin_moisture: Annotated[Dimensionless, AtLeast(0), AtMost(1e6)] | None = None
+    temperature: Annotated[si.Kelvin, si.AtLeast(253), si.AtMost(333)] | None = None
+    relative_humidity: Annotated[si.Dimensionless, si.AtLeast(0), si.AtMost(1)] | None = None
+    skin_moisture: Annotated[si.Dimensionless, si.AtLeast(0), si.AtMost(1e6)] | None = None
     skin_moisture_method: str = ""
     hand: Literal["", "left", "right"] = ""
     finger: Literal["", "thumb", "index", "middle", "ring", "little"] = ""
-    finger_orientation: Annotated[Radian, AtLeast(-6.3), AtMost(6.3)] | None = None
-    normal_force_asked: Annotated[Newton, AtLeast(0), AtMost(50)] | None = None
+    finger_orientation: Annotated[si.Radian, si.AtLeast(-6.3), si.AtMost(6.3)] | None = None
+    normal_force_asked: Annotated[si.Newton, si.AtLeast(0), si.AtMost(50)] | None = None
     masking_noise: str = ""
     note: str = ""
 

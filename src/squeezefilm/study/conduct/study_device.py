@@ -6,17 +6,8 @@ import math
 from dataclasses import dataclass
 from typing import Protocol
 
+from squeezefilm import quantities as si
 from squeezefilm.perception.stimuli import Stimulus
-from squeezefilm.quantities import (
-    Dimensionless,
-    Hertz,
-    Metre,
-    MetrePerSecond,
-    Newton,
-    Unit,
-    format_quantity,
-    require,
-)
 
 
 @dataclass(frozen=True)
@@ -44,23 +35,23 @@ class DeviceVerification:
         InputError: a measured or expected value that is not above 0, or a tolerance outside 0…1.
     """
 
-    amplitude: Metre = math.nan
-    expected_amplitude: Metre = math.nan
-    resonance_frequency: Hertz = math.nan
-    expected_resonance_frequency: Hertz = math.nan
-    amplitude_tolerance: Dimensionless = 0.1
-    resonance_tolerance: Dimensionless = 0.01
+    amplitude: si.Metre = math.nan
+    expected_amplitude: si.Metre = math.nan
+    resonance_frequency: si.Hertz = math.nan
+    expected_resonance_frequency: si.Hertz = math.nan
+    amplitude_tolerance: si.Dimensionless = 0.1
+    resonance_tolerance: si.Dimensionless = 0.01
     measurable: bool = True
     remark: str = ""
 
     def __post_init__(self) -> None:
-        require("amplitude_tolerance", self.amplitude_tolerance, above=0.0, below=1.0)
-        require("resonance_tolerance", self.resonance_tolerance, above=0.0, below=1.0)
+        si.require("amplitude_tolerance", self.amplitude_tolerance, above=0.0, below=1.0)
+        si.require("resonance_tolerance", self.resonance_tolerance, above=0.0, below=1.0)
         if self.measurable:
-            metre, hertz = Unit("m"), Unit("Hz")
+            metre, hertz = si.Unit("m"), si.Unit("Hz")
             if not (math.isnan(self.amplitude) and math.isnan(self.expected_amplitude)):
-                require("expected_amplitude", self.expected_amplitude, metre, above=0.0)
-            require(
+                si.require("expected_amplitude", self.expected_amplitude, metre, above=0.0)
+            si.require(
                 "expected_resonance_frequency", self.expected_resonance_frequency, hertz, above=0.0
             )
 
@@ -77,21 +68,21 @@ class DeviceVerification:
                 self.amplitude,
                 self.expected_amplitude,
                 self.amplitude_tolerance,
-                Unit("m"),
+                si.Unit("m"),
             ),
             (
                 "resonance",
                 self.resonance_frequency,
                 self.expected_resonance_frequency,
                 self.resonance_tolerance,
-                Unit("Hz"),
+                si.Unit("Hz"),
             ),
         ):
             # Written so that a NaN measured is off; one expected is nothing to compare with.
             if not math.isnan(expected) and not abs(measured - expected) <= tolerance * expected:
                 found.append(
-                    f"{name} is {format_quantity(measured, unit)}; it must be within "
-                    f"{100 * tolerance:g} % of {format_quantity(expected, unit)}"
+                    f"{name} is {si.format_quantity(measured, unit)}; it must be within "
+                    f"{100 * tolerance:g} % of {si.format_quantity(expected, unit)}"
                 )
         return tuple(found)
 
@@ -110,9 +101,9 @@ class Exploration:
     that the device wrote into the study's folder of traces, empty if there is none.
     """
 
-    path_length: Metre = math.nan
-    mean_speed: MetrePerSecond = math.nan
-    mean_normal_force: Newton = math.nan
+    path_length: si.Metre = math.nan
+    mean_speed: si.MetrePerSecond = math.nan
+    mean_normal_force: si.Newton = math.nan
     trace: str = ""
     raw_trace: str = ""
 

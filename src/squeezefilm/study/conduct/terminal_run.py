@@ -10,9 +10,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from squeezefilm import config
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.progress import SayProgress
-from squeezefilm.quantities import MetrePerVolt
 from squeezefilm.study.conduct.exposure import Exposure, exposure
 from squeezefilm.study.conduct.run import StudyRun
 from squeezefilm.study.conduct.session_conditions import SessionConditions
@@ -69,7 +69,7 @@ def run_session(
     desk: Desk,
     *,
     drive: str = "none",
-    amplitude_per_pickup: MetrePerVolt | None = None,
+    amplitude_per_pickup: si.MetrePerVolt | None = None,
     conditions: Path | None = None,
     consent: bool = False,
 ) -> str:
@@ -136,7 +136,7 @@ def _device(
     drive: str,
     store: StudyStore,
     display: str,
-    amplitude_per_pickup: MetrePerVolt | None,
+    amplitude_per_pickup: si.MetrePerVolt | None,
     tell: SayProgress,
     closing: contextlib.ExitStack,
 ) -> tuple[StudyDevice, Exposure | None]:

@@ -6,8 +6,8 @@ import time
 from collections.abc import Callable
 from typing import Protocol
 
+from squeezefilm import quantities as si
 from squeezefilm.perception.stimuli import Stimulus
-from squeezefilm.quantities import Second
 from squeezefilm.study.conduct.run import Acknowledgement, Presentation, Response, StudyRun
 from squeezefilm.study.conduct.study_device import Exploration, StudyDevice
 from squeezefilm.study.record.store import utc_now
@@ -16,7 +16,7 @@ from squeezefilm.study.record.store import utc_now
 class Examiner(Protocol):
     """What stands between a session and the person: a terminal, a page, or a script."""
 
-    def rest(self, duration: Second) -> None:
+    def rest(self, duration: si.Second) -> None:
         """Let the person rest (s)."""
         ...
 

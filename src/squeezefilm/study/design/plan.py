@@ -6,9 +6,9 @@ from collections import Counter
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
+from squeezefilm import quantities as si
 from squeezefilm.from_text import reads_text
 from squeezefilm.hard_limits import PLANNED_TRIALS, require_within
-from squeezefilm.quantities import Second, require
 from squeezefilm.results import Result
 from squeezefilm.study.design.study_design import NamedDesign, StudyDesign
 from squeezefilm.study.design.trials import Trial, expected_duration, trials, williams_square
@@ -24,7 +24,7 @@ class StudyPlan(Result):
     participants: int
     seed: int
     schedules: tuple[tuple[Trial, ...], ...]
-    duration: Second
+    duration: si.Second
     balanced_participants: int
     _shown: ClassVar[str] = "design.name participants duration balanced_participants seed"
 
@@ -108,8 +108,8 @@ def plan_study(design: NamedDesign, participants: int = 1, seed: int = 0) -> Stu
 
     Raises `InputError` for less than 1 or more than 1000 participants, or a seed below 0.
     """
-    require("participants", participants, at_least=1, at_most=1000)
-    require("seed", seed, at_least=0)
+    si.require("participants", participants, at_least=1, at_most=1000)
+    si.require("seed", seed, at_least=0)
     most = int(PLANNED_TRIALS.most // design.most_trials)
     enough = f"of {design.most_trials} trials each, at most {most} participants are planned at once"
     require_within(PLANNED_TRIALS, participants * design.most_trials, enough=enough)

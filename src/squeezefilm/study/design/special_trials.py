@@ -6,14 +6,14 @@ import re
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.perception.stimuli import Stimulus, Varied
-from squeezefilm.quantities import Above, AtLeast, AtMost, Dimensionless, checked_numbers, require
 
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,79}")
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True)
 class CatchTrial:
     """A trial whose answer is plain to everyone who attends, and how often it comes.
@@ -23,10 +23,10 @@ class CatchTrial:
 
     stimulus: Stimulus
     answer: str
-    count: Annotated[int, AtLeast(1), AtMost(1000)] = 1
+    count: Annotated[int, si.AtLeast(1), si.AtMost(1000)] = 1
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True)
 class AdaptiveCondition:
     """A series of trials in which a method chooses each comparison after the last answer.
@@ -45,18 +45,18 @@ class AdaptiveCondition:
     name: str
     method: Literal["staircase", "bayesian"]
     varied: Varied = "spatial_period"
-    start: Dimensionless = 0.4
-    lowest: Annotated[Dimensionless, Above(0.0)] = 0.005
-    highest: Dimensionless = 0.9
-    step: Dimensionless = 0.1
-    down: Annotated[int, AtLeast(1), AtMost(10)] = 2
-    count: Annotated[int, AtLeast(1), AtMost(10000)] = 60
+    start: si.Dimensionless = 0.4
+    lowest: Annotated[si.Dimensionless, si.Above(0.0)] = 0.005
+    highest: si.Dimensionless = 0.9
+    step: si.Dimensionless = 0.1
+    down: Annotated[int, si.AtLeast(1), si.AtMost(10)] = 2
+    count: Annotated[int, si.AtLeast(1), si.AtMost(10000)] = 60
 
     def __post_init__(self) -> None:
         require_name(self.name)
-        require("highest", self.highest, above=self.lowest, at_most=100.0)
-        require("start", self.start, at_least=self.lowest, at_most=self.highest)
-        require("step", self.step, above=0.0, at_most=self.highest)
+        si.require("highest", self.highest, above=self.lowest, at_most=100.0)
+        si.require("start", self.start, at_least=self.lowest, at_most=self.highest)
+        si.require("step", self.step, above=0.0, at_most=self.highest)
 
 
 def require_name(name: str) -> None:

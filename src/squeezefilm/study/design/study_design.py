@@ -19,20 +19,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated, Literal
 
+from squeezefilm import quantities as si
 from squeezefilm.config.provenance import Provenance
 from squeezefilm.errors import InputError
 from squeezefilm.from_text import ReadBy
 from squeezefilm.hard_limits import PARTICIPANT_TRIALS, require_within
 from squeezefilm.perception.stimuli import Grating, Stimulus, Varied
-from squeezefilm.quantities import (
-    Above,
-    AtLeast,
-    AtMost,
-    Dimensionless,
-    Second,
-    checked_numbers,
-    did_you_mean,
-)
 from squeezefilm.results import config_hash
 from squeezefilm.study.design.special_trials import (
     AdaptiveCondition,
@@ -66,7 +58,7 @@ TASKS: tuple[Task, ...] = (
 )
 
 
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True)
 class StudyDesign:
     """A whole design. Read one with `load_design`.
@@ -108,17 +100,17 @@ class StudyDesign:
     alternatives: tuple[Grating, ...] = ()
     reference: str = ""
     judged: Varied = "spatial_period"
-    modulus: Annotated[Dimensionless, AtLeast(0.0)] = 0.0
+    modulus: Annotated[si.Dimensionless, si.AtLeast(0.0)] = 0.0
     question: str = ""
     order: Order = "williams"
-    familiarisation: Annotated[int, AtLeast(0), AtMost(20)] = 0
-    practice: Annotated[int, AtLeast(0), AtMost(1000)] = 0
-    blocks: Annotated[int, AtLeast(1), AtMost(100)] = 1
-    repetitions: Annotated[int, AtLeast(1), AtMost(1000)] = 1
+    familiarisation: Annotated[int, si.AtLeast(0), si.AtMost(20)] = 0
+    practice: Annotated[int, si.AtLeast(0), si.AtMost(1000)] = 0
+    blocks: Annotated[int, si.AtLeast(1), si.AtMost(100)] = 1
+    repetitions: Annotated[int, si.AtLeast(1), si.AtMost(1000)] = 1
     catch: tuple[CatchTrial, ...] = ()
     adaptive: tuple[AdaptiveCondition, ...] = ()
-    break_between_blocks: Annotated[Second, AtLeast(0.0)] = 60.0
-    trial_duration: Annotated[Second, Above(0.0), AtMost(3600.0)] = 20.0
+    break_between_blocks: Annotated[si.Second, si.AtLeast(0.0)] = 60.0
+    trial_duration: Annotated[si.Second, si.Above(0.0), si.AtMost(3600.0)] = 20.0
     note: str = ""
     provenance: Mapping[str, Provenance] = field(
         default_factory=dict, metadata={"loader": True}, compare=False, repr=False
@@ -139,7 +131,7 @@ class StudyDesign:
             known = [one.name for one in self.stimuli]
             raise InputError(
                 f"reference = '{self.reference}' is no stimulus."
-                f"{did_you_mean(self.reference, known)} Stimuli: {', '.join(known)}",
+                f"{si.did_you_mean(self.reference, known)} Stimuli: {', '.join(known)}",
                 quantity="reference",
             )
         self._require_task()
@@ -202,7 +194,7 @@ class StudyDesign:
                 return one
         known = [one.name for one in every]
         raise InputError(
-            f"design '{self.name}' has no stimulus '{name}'.{did_you_mean(name, known)} "
+            f"design '{self.name}' has no stimulus '{name}'.{si.did_you_mean(name, known)} "
             f"It has: {', '.join(known)}"
         )
 
@@ -322,7 +314,7 @@ class StudyDesign:
             if one.matches and one.matches not in names:
                 raise InputError(
                     f"stimulus '{one.name}' matches '{one.matches}', which is no alternative."
-                    f"{did_you_mean(one.matches, names)} Alternatives: {', '.join(names)}",
+                    f"{si.did_you_mean(one.matches, names)} Alternatives: {', '.join(names)}",
                     quantity="stimuli",
                 )
         for trial in self.catch:

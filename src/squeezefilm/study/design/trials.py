@@ -14,7 +14,7 @@ from typing import Literal
 
 import numpy as np
 
-from squeezefilm.quantities import Second, require
+from squeezefilm import quantities as si
 from squeezefilm.study.design.study_design import CatchTrial, Condition, Order, StudyDesign
 
 Phase = Literal["familiarisation", "practice", "main", "catch"]
@@ -49,7 +49,7 @@ class Trial:
     answer: str
     adaptive: str
     reference_first: bool
-    pause: Second
+    pause: si.Second
     seed: int
 
     @property
@@ -65,7 +65,7 @@ class Trial:
 
 def latin_square(size: int) -> tuple[tuple[int, ...], ...]:
     """The cyclic Latin square: row r has (r + place) mod size. Raises `InputError` below 1."""
-    require("size", size, at_least=1)
+    si.require("size", size, at_least=1)
     return tuple(tuple((row + place) % size for place in range(size)) for row in range(size))
 
 
@@ -76,7 +76,7 @@ def williams_square(size: int) -> tuple[tuple[int, ...], ...]:
     n rows for n even, 2n for n odd (Williams 1949): the zigzag 0, 1, n−1, 2, n−2, … and its
     cyclic shifts, for n odd their mirror images too. Raises `InputError` below 1.
     """
-    require("size", size, at_least=1)
+    si.require("size", size, at_least=1)
     zigzag = [
         (place + 1) // 2 if place % 2 else (size - place // 2) % size for place in range(size)
     ]
@@ -97,7 +97,7 @@ def orders(
         seed: of the study, the same for all its participants.
         order: as in `StudyDesign`.
     """
-    require("participant_number", participant_number, at_least=0)
+    si.require("participant_number", participant_number, at_least=0)
     if order == "shuffled":
         random = _random(seed, _ORDERS, participant_number)
         return tuple(tuple(random.permutation(count).tolist()) for _ in range(repetitions))
@@ -139,8 +139,8 @@ def trials(design: StudyDesign, participant_number: int, seed: int) -> tuple[Tri
     Raises:
         InputError: a number or seed below 0.
     """
-    require("participant_number", participant_number, at_least=0)
-    require("seed", seed, at_least=0)
+    si.require("participant_number", participant_number, at_least=0)
+    si.require("seed", seed, at_least=0)
     found: list[Trial] = []
     sequence = orders(len(design.displays), 1, participant_number, seed)[0]
     for place, index in enumerate(sequence):
@@ -153,7 +153,7 @@ def trial_count(design: StudyDesign) -> int:
     return sum(trial.asks for trial in trials(design, 0, 0))
 
 
-def expected_duration(design: StudyDesign) -> Second:
+def expected_duration(design: StudyDesign) -> si.Second:
     """How long one participant takes (s): trials at `trial_duration`, and the breaks."""
     planned = trials(design, 0, 0)
     return len(planned) * design.trial_duration + sum(trial.pause for trial in planned)

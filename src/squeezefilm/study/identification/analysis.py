@@ -9,9 +9,9 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
+from squeezefilm import quantities as si
 from squeezefilm.arguments import called_with
 from squeezefilm.errors import ConvergenceError, InputError
-from squeezefilm.quantities import Dimensionless, DimensionlessArray, IntArray
 from squeezefilm.results import Result, stamp, to_json
 from squeezefilm.study.identification.choice_model import (
     ChoiceModel,
@@ -52,9 +52,9 @@ class StimulusCorrect:
     stimulus: str
     trials: int
     correct: int
-    proportion_correct: Dimensionless
-    low: Dimensionless
-    high: Dimensionless
+    proportion_correct: si.Dimensionless
+    low: si.Dimensionless
+    high: si.Dimensionless
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -86,12 +86,12 @@ class IdentificationAnalysis(Result):
     name: str
     origin: str
     matrix: ConfusionMatrix
-    counts: IntArray
+    counts: si.IntArray
     intervals: tuple[Interval, ...]
     by_stimulus: tuple[StimulusCorrect, ...]
-    participant_correct: DimensionlessArray
-    chance_p: Dimensionless
-    permutation_p: Dimensionless
+    participant_correct: si.DimensionlessArray
+    chance_p: si.Dimensionless
+    permutation_p: si.Dimensionless
     posterior: ConfusionPosterior
     information: InformationTransfer
     sensitivity: OrderedSensitivity | None
@@ -111,7 +111,7 @@ class IdentificationAnalysis(Result):
         return int(self.counts.shape[0])
 
     @property
-    def proportion_correct(self) -> Dimensionless:
+    def proportion_correct(self) -> si.Dimensionless:
         """Share of right answers of all trials."""
         return self.matrix.proportion_correct
 
@@ -196,7 +196,7 @@ class IdentificationRequest:
     response_time: ArrayLike | None = None
     exploration: Mapping[str, ArrayLike] | None = None
     mixed: bool = False
-    level: Dimensionless = 0.95
+    level: si.Dimensionless = 0.95
     resamples: int = 1000
     seed: int = 0
     progress: Callable[[str], None] | None = None
@@ -235,7 +235,7 @@ def analyze_identification(asked: IdentificationRequest) -> IdentificationAnalys
 
 def _analysis(
     asked: IdentificationRequest,
-    counts: IntArray,
+    counts: si.IntArray,
     matrix: ConfusionMatrix,
     tell: Callable[[str], None],
 ) -> IdentificationAnalysis:
@@ -293,7 +293,7 @@ def _analysis(
 
 
 def _intervals(
-    counts: IntArray, matrix: ConfusionMatrix, asked: IdentificationRequest, notes: list[str]
+    counts: si.IntArray, matrix: ConfusionMatrix, asked: IdentificationRequest, notes: list[str]
 ) -> tuple[Interval, ...]:
     """Of the proportion correct: over trials, and over people where there are two or more."""
     level = asked.level
@@ -320,7 +320,7 @@ def _by_stimulus(matrix: ConfusionMatrix, level: float) -> tuple[StimulusCorrect
 
 
 def _models(
-    counts: IntArray, matrix: ConfusionMatrix, asked: IdentificationRequest, notes: list[str]
+    counts: si.IntArray, matrix: ConfusionMatrix, asked: IdentificationRequest, notes: list[str]
 ) -> tuple[OrderedSensitivity | None, ChoiceModel | None, PerceptualMap | None]:
     sensitivity, choice, points = None, None, None
     try:

@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy import stats
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import ConvergenceError, InputError
-from squeezefilm.quantities import Dimensionless, DimensionlessArray, FloatArray, require
 from squeezefilm.study.identification.confusion import column_proportions, whole_counts
 
 _MOST_ROUNDS = 20_000
@@ -41,29 +41,29 @@ class ChoiceModel:
         rounds: of the iteration.
     """
 
-    similarity: DimensionlessArray
-    bias: DimensionlessArray
-    distance: DimensionlessArray
-    pseudo_trials: Dimensionless
-    deviance: Dimensionless
+    similarity: si.DimensionlessArray
+    bias: si.DimensionlessArray
+    distance: si.DimensionlessArray
+    pseudo_trials: si.Dimensionless
+    deviance: si.Dimensionless
     degrees_of_freedom: int
-    p_value: Dimensionless
-    log_likelihood: Dimensionless
+    p_value: si.Dimensionless
+    log_likelihood: si.Dimensionless
     rounds: int
 
     @property
-    def probabilities(self) -> FloatArray:
+    def probabilities(self) -> si.FloatArray:
         """Answer probabilities of the model, shape (answers, stimuli)."""
         return choice_probabilities(self.similarity, self.bias)
 
 
-def choice_probabilities(similarity: ArrayLike, bias: ArrayLike) -> FloatArray:
+def choice_probabilities(similarity: ArrayLike, bias: ArrayLike) -> si.FloatArray:
     """Answer probabilities, shape (answers, stimuli), of similarities and biases."""
     strength = np.asarray(bias, dtype=float)[:, None] * np.asarray(similarity, dtype=float)
     return np.asarray(strength / strength.sum(axis=0, keepdims=True))
 
 
-def exact_choice(probabilities: ArrayLike) -> tuple[FloatArray, FloatArray]:
+def exact_choice(probabilities: ArrayLike) -> tuple[si.FloatArray, si.FloatArray]:
     """Similarities and biases in closed form, for probabilities that obey the model.
 
     η_ij = √(p_ij p_ji / (p_ii p_jj)); b_i/b_j = √(p_ij p_ii / (p_ji p_jj)), here as the geometric
@@ -76,7 +76,7 @@ def exact_choice(probabilities: ArrayLike) -> tuple[FloatArray, FloatArray]:
     p = np.asarray(probabilities, dtype=float)
     if p.ndim != 2 or p.shape[0] != p.shape[1]:
         raise InputError(f"probabilities of shape {p.shape} are not square; (k, k) is wanted")
-    require("probabilities", p, above=0.0)
+    si.require("probabilities", p, above=0.0)
     diagonal = np.diag(p)
     similarity = np.sqrt(p * p.T / np.outer(diagonal, diagonal))
     ratio = np.log(p * diagonal[:, None]) - np.log(p.T * diagonal[None, :])
@@ -84,7 +84,7 @@ def exact_choice(probabilities: ArrayLike) -> tuple[FloatArray, FloatArray]:
     return np.asarray(similarity), np.asarray(bias / bias.sum())
 
 
-def choice_model(counts: ArrayLike, pseudo_trials: Dimensionless = 0.0) -> ChoiceModel:
+def choice_model(counts: ArrayLike, pseudo_trials: si.Dimensionless = 0.0) -> ChoiceModel:
     """Fit the choice model by maximum likelihood.
 
     Args:
@@ -101,7 +101,7 @@ def choice_model(counts: ArrayLike, pseudo_trials: Dimensionless = 0.0) -> Choic
     whole = whole_counts(counts)
     if whole.ndim != 2 or whole.shape[0] != whole.shape[1]:
         raise InputError(f"counts of shape {whole.shape} are not square; (k, k) is wanted")
-    require("pseudo_trials", pseudo_trials, at_least=0.0)
+    si.require("pseudo_trials", pseudo_trials, at_least=0.0)
     k = whole.shape[0]
     n = whole + pseudo_trials / k
     if np.any(n.sum(axis=0) == 0):
@@ -136,7 +136,7 @@ def choice_model(counts: ArrayLike, pseudo_trials: Dimensionless = 0.0) -> Choic
     )
 
 
-def _bias(fitted: FloatArray) -> FloatArray:
+def _bias(fitted: si.FloatArray) -> si.FloatArray:
     """Biases of a quasi-symmetric table: of answers that are linked by confusions."""
     p = column_proportions(fitted)
     k = p.shape[0]
@@ -156,7 +156,7 @@ def _bias(fitted: FloatArray) -> FloatArray:
     return np.asarray(bias / bias.sum())
 
 
-def _quasi_symmetric(n: FloatArray) -> tuple[FloatArray, int]:
+def _quasi_symmetric(n: si.FloatArray) -> tuple[si.FloatArray, int]:
     """Expected counts with the margins and the sums of mirrored cells of `n`."""
     m = np.where(n + n.T > 0, 1.0, 0.0)
     mirrored = n + n.T
@@ -175,7 +175,7 @@ def _quasi_symmetric(n: FloatArray) -> tuple[FloatArray, int]:
     )
 
 
-def _ratio(wanted: FloatArray, have: FloatArray) -> FloatArray:
+def _ratio(wanted: si.FloatArray, have: si.FloatArray) -> si.FloatArray:
     return np.divide(wanted, have, out=np.zeros_like(have), where=have > 0)
 
 
@@ -191,9 +191,9 @@ class PerceptualMap:
             are not those of points in any space.
     """
 
-    points: DimensionlessArray
-    explained: Dimensionless
-    negative: Dimensionless
+    points: si.DimensionlessArray
+    explained: si.Dimensionless
+    negative: si.Dimensionless
 
 
 def perceptual_map(distance: ArrayLike, dimensions: int = 2) -> PerceptualMap:

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import DimensionlessArray, FloatArray, IntArray
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -29,7 +29,7 @@ class ConfusionMatrix:
         InputError: counts of another shape than the names, below 0, not whole, or all 0.
     """
 
-    counts: IntArray
+    counts: si.IntArray
     answers: tuple[str, ...]
     stimuli: tuple[str, ...]
 
@@ -50,17 +50,17 @@ class ConfusionMatrix:
         return int(self.counts.sum())
 
     @property
-    def trials_per_stimulus(self) -> IntArray:
+    def trials_per_stimulus(self) -> si.IntArray:
         """Trials of each column, shape (stimuli,)."""
         return np.asarray(self.counts.sum(axis=0), dtype=np.int64)
 
     @property
-    def proportions(self) -> DimensionlessArray:
+    def proportions(self) -> si.DimensionlessArray:
         """Share of each column's answers, shape (answers, stimuli); NaN in an empty column."""
         return column_proportions(self.counts)
 
     @property
-    def percent(self) -> FloatArray:
+    def percent(self) -> si.FloatArray:
         """The same in per cent, as the paper's tables have it."""
         return np.asarray(100.0 * self.proportions)
 
@@ -90,7 +90,7 @@ class ConfusionMatrix:
         return 1.0 / len(self.answers)
 
 
-def whole_counts(counts: ArrayLike) -> IntArray:
+def whole_counts(counts: ArrayLike) -> si.IntArray:
     """Counts as whole numbers. Raises `InputError` for negative, broken or not finite ones."""
     given = np.asarray(counts)
     if given.dtype.kind not in "iuf" or not np.all(np.isfinite(given)):
@@ -104,7 +104,7 @@ def whole_counts(counts: ArrayLike) -> IntArray:
     return whole
 
 
-def column_proportions(counts: ArrayLike) -> FloatArray:
+def column_proportions(counts: ArrayLike) -> si.FloatArray:
     """Counts over the sums of their columns, shape (…, answers, stimuli); NaN for an empty one."""
     given = np.asarray(counts, dtype=float)
     totals = given.sum(axis=-2, keepdims=True)
@@ -113,7 +113,7 @@ def column_proportions(counts: ArrayLike) -> FloatArray:
 
 def participant_counts(
     participant: ArrayLike, stimulus: ArrayLike, choice: ArrayLike, answers: int, stimuli: int
-) -> tuple[NDArray[np.generic], IntArray]:
+) -> tuple[NDArray[np.generic], si.IntArray]:
     """Every participant's own confusion matrix.
 
     Args:
@@ -163,7 +163,7 @@ def confusion_matrix(
     return ConfusionMatrix(counts[0], tuple(answers), columns)
 
 
-def _index(name: str, values: ArrayLike, count: int) -> IntArray:
+def _index(name: str, values: ArrayLike, count: int) -> si.IntArray:
     given = np.asarray(values)
     if given.size and given.dtype.kind not in "iu":
         raise InputError(f"{name} must hold whole numbers from 0 to {count - 1}")

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import stats
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import Dimensionless, DimensionlessArray, require
 from squeezefilm.study.identification.confusion import ConfusionMatrix
 from squeezefilm.study.identification.participant_bootstrap import Interval
 
@@ -31,18 +31,18 @@ class ConfusionPosterior:
     """
 
     matrix: ConfusionMatrix
-    prior: Dimensionless
-    level: Dimensionless
-    mean: DimensionlessArray
-    low: DimensionlessArray
-    high: DimensionlessArray
+    prior: si.Dimensionless
+    level: si.Dimensionless
+    mean: si.DimensionlessArray
+    low: si.DimensionlessArray
+    high: si.DimensionlessArray
     proportion_correct: Interval | None
 
 
 def confusion_posterior(
     matrix: ConfusionMatrix,
-    prior: Dimensionless | None = None,
-    level: Dimensionless = 0.95,
+    prior: si.Dimensionless | None = None,
+    level: si.Dimensionless = 0.95,
     samples: int = 20_000,
     seed: int = 0,
 ) -> ConfusionPosterior:
@@ -63,8 +63,8 @@ def confusion_posterior(
     """
     answers = len(matrix.answers)
     a = 1.0 / answers if prior is None else float(prior)
-    require("prior", a, above=0.0)
-    require("level", level, above=0.0, below=1.0)
+    si.require("prior", a, above=0.0)
+    si.require("level", level, above=0.0, below=1.0)
     if samples < 100:
         raise InputError(f"samples = {samples} cannot be used; it must be at least 100")
     ones = matrix.counts + a

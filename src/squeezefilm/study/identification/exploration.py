@@ -8,19 +8,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy import stats
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import (
-    Dimensionless,
-    Metre,
-    MetrePerSecond,
-    Newton,
-    Second,
-    Unit,
-    require,
-)
 
 # Slower than this the finger rests rather than explores; assumed.
-RESTING_SPEED: MetrePerSecond = 5e-3
+RESTING_SPEED: si.MetrePerSecond = 5e-3
 """Speed (m/s) below which a finger counts as resting; assumed."""
 
 
@@ -39,14 +31,14 @@ class Exploration:
             NaN where no force was taken.
     """
 
-    duration: Second
-    path_length: Metre
-    mean_speed: MetrePerSecond
-    moving_speed: MetrePerSecond
-    moving_share: Dimensionless
+    duration: si.Second
+    path_length: si.Metre
+    mean_speed: si.MetrePerSecond
+    moving_speed: si.MetrePerSecond
+    moving_share: si.Dimensionless
     reversals: int
-    mean_force: Newton
-    force_spread: Newton
+    mean_force: si.Newton
+    force_spread: si.Newton
 
 
 def exploration(
@@ -77,12 +69,12 @@ def exploration(
             "time, x, y and force must be rows of the same length with at least 2 samples; their "
             f"shapes are {sorted(shapes)}"
         )
-    require("time", t, Unit("s"))
+    si.require("time", t, si.Unit("s"))
     steps = np.diff(t)
     if np.any(steps <= 0):
         raise InputError("time must rise from sample to sample; sort the trace, drop repeats")
-    require("x", along, Unit("m"))
-    require("y", across, Unit("m"))
+    si.require("x", along, si.Unit("m"))
+    si.require("y", across, si.Unit("m"))
     way = np.hypot(np.diff(along), np.diff(across))
     moving = way / steps > RESTING_SPEED
     heading = np.sign(np.diff(along))[moving]
@@ -90,7 +82,7 @@ def exploration(
     duration, moved = float(t[-1] - t[0]), float(steps[moving].sum())
     mean_force = spread = float("nan")
     if pressed is not None:
-        require("force", pressed, Unit("N"), at_least=0.0)
+        si.require("force", pressed, si.Unit("N"), at_least=0.0)
         middle = 0.5 * (pressed[1:] + pressed[:-1])
         mean_force = float((middle * steps).sum() / duration)
         spread = float(np.sqrt(((middle - mean_force) ** 2 * steps).sum() / duration))
@@ -119,7 +111,7 @@ class ConditionMean:
     mean: float
     low: float
     high: float
-    level: Dimensionless
+    level: si.Dimensionless
 
 
 def condition_means(
@@ -127,7 +119,7 @@ def condition_means(
     condition: ArrayLike,
     values: ArrayLike,
     names: tuple[str, ...],
-    level: Dimensionless = 0.95,
+    level: si.Dimensionless = 0.95,
 ) -> tuple[ConditionMean, ...]:
     """Means by condition with participants as the random unit; conditions without a value are
     left out.
@@ -141,7 +133,7 @@ def condition_means(
     Raises:
         InputError: arrays of unequal length, or a level not between 0 and 1.
     """
-    require("level", level, above=0.0, below=1.0)
+    si.require("level", level, above=0.0, below=1.0)
     person = np.asarray(participant, dtype=np.int64)
     kind, given = np.asarray(condition, dtype=np.int64), np.asarray(values, dtype=float)
     if person.ndim != 1 or not person.shape == kind.shape == given.shape:

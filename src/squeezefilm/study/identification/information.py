@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import ndtr
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import Dimensionless, FloatArray, Unit, require
 from squeezefilm.study.identification import information_estimators as estimators
 from squeezefilm.study.identification.confusion import whole_counts
 from squeezefilm.study.identification.participant_bootstrap import (
@@ -25,7 +25,7 @@ from squeezefilm.study.identification.participant_bootstrap import (
     resampled_counts,
 )
 
-Bit = Annotated[float, Unit("bit")]
+Bit = Annotated[float, si.Unit("bit")]
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +34,7 @@ class InformationEstimator:
 
     key: str
     name: str
-    estimate: Callable[[ArrayLike], FloatArray]
+    estimate: Callable[[ArrayLike], si.FloatArray]
     fails: str
 
 
@@ -143,7 +143,7 @@ class InformationTransfer:
 
 def information_transfer(
     counts: ArrayLike,
-    level: Dimensionless = 0.95,
+    level: si.Dimensionless = 0.95,
     resamples: int = 1000,
     seed: int = 0,
 ) -> InformationTransfer:
@@ -167,7 +167,7 @@ def information_transfer(
             f"counts of shape {whole.shape} hold no matrix with a trial; (participants, answers, "
             "stimuli) is wanted"
         )
-    require("level", level, above=0.0, below=1.0)
+    si.require("level", level, above=0.0, below=1.0)
     pooled = whole.sum(axis=0)
     people = int(np.count_nonzero(whole.sum(axis=(1, 2))))
     again = resampled_counts(whole, resamples, seed) if whole.shape[0] > 1 else None
@@ -188,26 +188,26 @@ def information_transfer(
     return InformationTransfer(tuple(found), best, greatest, int(pooled.sum()), people, made)
 
 
-def ordered_observer(spacing: float, stimuli: int = 5) -> FloatArray:
+def ordered_observer(spacing: float, stimuli: int = 5) -> si.FloatArray:
     """Answer probabilities of an unbiased observer of ordered stimuli, shape (answers, stimuli).
 
     Stimulus j is felt as a normal deviate about j·`spacing` of unit spread, criteria lie midway
     (Thurstone's model with equal variances); `spacing` is d′ of neighbours, above 0.
     """
-    require("spacing", spacing, above=0.0)
+    si.require("spacing", spacing, above=0.0)
     place = spacing * np.arange(stimuli)
     criteria = np.concatenate([[-np.inf], 0.5 * (place[1:] + place[:-1]), [np.inf]])
     return np.asarray(np.diff(ndtr(criteria[:, None] - place[None, :]), axis=0))
 
 
-def even_errors(proportion_correct: Dimensionless, stimuli: int = 5) -> FloatArray:
+def even_errors(proportion_correct: si.Dimensionless, stimuli: int = 5) -> si.FloatArray:
     """Answer probabilities of an observer whose errors fall evenly on all wrong answers."""
-    require("proportion_correct", proportion_correct, at_least=0.0, at_most=1.0)
+    si.require("proportion_correct", proportion_correct, at_least=0.0, at_most=1.0)
     wrong = (1 - proportion_correct) / (stimuli - 1)
     return np.full((stimuli, stimuli), wrong) + (proportion_correct - wrong) * np.eye(stimuli)
 
 
-REFERENCE_MATRICES: dict[str, FloatArray] = {
+REFERENCE_MATRICES: dict[str, si.FloatArray] = {
     "guesser": even_errors(0.2),
     **{f"d′ = {spacing}": ordered_observer(float(spacing)) for spacing in (1, 2, 3, 4)},
 }
@@ -215,7 +215,7 @@ REFERENCE_MATRICES: dict[str, FloatArray] = {
 ordered stimuli one, two, three and four d′ apart; 20, 51, 75, 89 and 96 % right."""
 
 
-def transfer_of(probabilities: FloatArray) -> Bit:
+def transfer_of(probabilities: si.FloatArray) -> Bit:
     """The exact transfer (bit) of answer probabilities, every stimulus presented equally often."""
     joint = np.asarray(probabilities, dtype=float) / probabilities.shape[1]
     answer = joint.sum(axis=1, keepdims=True)
@@ -239,7 +239,7 @@ class EstimatorError:
 
 
 def estimator_bias(
-    matrices: dict[str, FloatArray] | None = None,
+    matrices: dict[str, si.FloatArray] | None = None,
     trials: int = 60,
     runs: int = 2000,
     seed: int = 0,

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import digamma, gammaln, polygamma
 
-from squeezefilm.quantities import FloatArray, IntArray
+from squeezefilm import quantities as si
 from squeezefilm.study.identification.confusion import whole_counts
 
 _LN2 = float(np.log(2.0))
@@ -22,11 +22,11 @@ _CONCENTRATION = np.logspace(-4.0, 3.0, 80)
 _BLOCK = 4096
 
 
-def _x_log_x(x: FloatArray) -> FloatArray:
+def _x_log_x(x: si.FloatArray) -> si.FloatArray:
     return np.asarray(x * np.log(np.where(x > 0, x, 1.0)))
 
 
-def plug_in(counts: ArrayLike) -> FloatArray:
+def plug_in(counts: ArrayLike) -> si.FloatArray:
     """The transfer of the observed shares: maximum likelihood. Biased up, by up to (r−1)(s−1)/(2N
     ln 2) and more."""
     n = whole_counts(counts).astype(float)
@@ -42,7 +42,7 @@ def plug_in(counts: ArrayLike) -> FloatArray:
     )
 
 
-def miller_madow(counts: ArrayLike) -> FloatArray:
+def miller_madow(counts: ArrayLike) -> si.FloatArray:
     """Plug-in less (K − R − S + 1)/(2N ln 2), K, R, S the cells, rows, columns with any trial
     (Miller 1955)."""
     n = whole_counts(counts)
@@ -53,7 +53,7 @@ def miller_madow(counts: ArrayLike) -> FloatArray:
     return np.asarray(plug_in(n) - first)
 
 
-def first_order(counts: ArrayLike) -> FloatArray:
+def first_order(counts: ArrayLike) -> si.FloatArray:
     """Plug-in less (r−1)(s−1)/(2N ln 2) with all cells, seen or not; too much for good observers.
 
     Only columns that were presented are counted.
@@ -64,7 +64,7 @@ def first_order(counts: ArrayLike) -> FloatArray:
     return np.asarray(plug_in(n) - first)
 
 
-def jackknife(counts: ArrayLike) -> FloatArray:
+def jackknife(counts: ArrayLike) -> si.FloatArray:
     """The jackknife by columns: I + Σ_j (N_j−1)/N_j Σ_i n_ij (I − I without a trial of cell ij).
 
     Trials are left out within a stimulus and the stimuli's shares stay (a stratified jackknife;
@@ -77,7 +77,7 @@ def jackknife(counts: ArrayLike) -> FloatArray:
     return np.concatenate(blocks).reshape(n.shape[:-2])
 
 
-def _jackknife(whole: IntArray) -> FloatArray:
+def _jackknife(whole: si.IntArray) -> si.FloatArray:
     n = whole.astype(float)
     column = n.sum(axis=-2)
     share = column / column.sum(axis=-1, keepdims=True)
@@ -108,7 +108,7 @@ def _jackknife(whole: IntArray) -> FloatArray:
     return np.asarray(np.where(np.any(column == 1, axis=-1), np.nan, estimate) / _LN2)
 
 
-def grassberger(counts: ArrayLike) -> FloatArray:
+def grassberger(counts: ArrayLike) -> si.FloatArray:
     """Grassberger's entropies (1988, 10.1016/0375-9601(88)90193-4) of answers and of each column:
     log N − Σ n G(n)/N, G(n) = ψ(n) + (−1)ⁿ/2 [ψ((n+1)/2) − ψ(n/2)]."""
     n = whole_counts(counts)
@@ -118,7 +118,7 @@ def grassberger(counts: ArrayLike) -> FloatArray:
     return np.asarray((answer - (within * column).sum(axis=-1) / column.sum(axis=-1)) / _LN2)
 
 
-def _grassberger_entropy(n: IntArray) -> FloatArray:
+def _grassberger_entropy(n: si.IntArray) -> si.FloatArray:
     x = np.maximum(n, 1).astype(float)
     sign = np.where(n % 2 == 0, 0.5, -0.5)
     g = digamma(x) + sign * (digamma((x + 1) / 2) - digamma(x / 2))
@@ -126,7 +126,7 @@ def _grassberger_entropy(n: IntArray) -> FloatArray:
     return np.asarray(np.log(total) - np.where(n > 0, n * g, 0.0).sum(axis=-1) / total)
 
 
-def chao_shen(counts: ArrayLike) -> FloatArray:
+def chao_shen(counts: ArrayLike) -> si.FloatArray:
     """Coverage-adjusted entropies (Chao & Shen 2003, 10.1023/A:1026096204727) of answers and of
     answers with stimuli; the stimuli's own entropy is known."""
     n = whole_counts(counts)
@@ -137,7 +137,7 @@ def chao_shen(counts: ArrayLike) -> FloatArray:
     return np.asarray((_chao_shen_entropy(n.sum(axis=-1)) + stimulus - joint) / _LN2)
 
 
-def _chao_shen_entropy(n: IntArray) -> FloatArray:
+def _chao_shen_entropy(n: si.IntArray) -> si.FloatArray:
     total = n.sum(axis=-1, keepdims=True)
     singles = (n == 1).sum(axis=-1, keepdims=True)
     # All trials single would make the coverage 0.
@@ -147,7 +147,7 @@ def _chao_shen_entropy(n: IntArray) -> FloatArray:
     return np.asarray(-(_x_log_x(p) / np.where(seen > 0, seen, 1.0)).sum(axis=-1))
 
 
-def dirichlet(counts: ArrayLike, prior: float = 0.5) -> FloatArray:
+def dirichlet(counts: ArrayLike, prior: float = 0.5) -> si.FloatArray:
     """Posterior means of entropies under Dirichlet priors (Wolpert & Wolf 1995,
     10.1103/PhysRevE.52.6841): columns with `prior` in every cell, answers with as much as all
     columns together."""
@@ -159,13 +159,13 @@ def dirichlet(counts: ArrayLike, prior: float = 0.5) -> FloatArray:
     return np.asarray((answer - (within * column).sum(axis=-1) / column.sum(axis=-1)) / _LN2)
 
 
-def _dirichlet_entropy(n: IntArray, prior: FloatArray) -> FloatArray:
+def _dirichlet_entropy(n: si.IntArray, prior: si.FloatArray) -> si.FloatArray:
     a = n + prior
     total = a.sum(axis=-1)
     return np.asarray(digamma(total + 1) - (a * digamma(a + 1)).sum(axis=-1) / total)
 
 
-def nsb(counts: ArrayLike) -> FloatArray:
+def nsb(counts: ArrayLike) -> si.FloatArray:
     """Nemenman, Shafee & Bialek's entropies (2002, arXiv physics/0108025), columns sharing one
     concentration.
 
@@ -179,7 +179,7 @@ def nsb(counts: ArrayLike) -> FloatArray:
     return np.concatenate(blocks).reshape(n.shape[:-2])
 
 
-def _nsb(n: IntArray) -> FloatArray:
+def _nsb(n: si.IntArray) -> si.FloatArray:
     column = n.sum(axis=-2)
     share = column / column.sum(axis=-1, keepdims=True)
     columns = np.swapaxes(n, -1, -2)
@@ -187,7 +187,7 @@ def _nsb(n: IntArray) -> FloatArray:
     return np.asarray((answer - (share * _mixed_entropy(columns)).sum(axis=-1)) / _LN2)
 
 
-def _mixed_entropy(n: IntArray) -> FloatArray:
+def _mixed_entropy(n: si.IntArray) -> si.FloatArray:
     """Posterior mean entropies of groups (…, groups, kinds) with a concentration in common."""
     kinds = n.shape[-1]
     beta = _CONCENTRATION

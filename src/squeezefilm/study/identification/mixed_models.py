@@ -15,8 +15,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import Dimensionless, DimensionlessArray, FloatArray, IntArray, require
 
 _MOST_TRIALS = 50_000
 
@@ -41,16 +41,16 @@ class MixedModel:
     """
 
     names: tuple[str, ...]
-    log_odds: DimensionlessArray
-    log_odds_error: DimensionlessArray
-    proportion_correct: DimensionlessArray
-    participant_spread: Dimensionless
-    participant_spread_low: Dimensionless
-    participant_spread_high: Dimensionless
-    average_log_odds: DimensionlessArray
-    average_error: DimensionlessArray
-    average_proportion_correct: DimensionlessArray
-    correlation: Dimensionless
+    log_odds: si.DimensionlessArray
+    log_odds_error: si.DimensionlessArray
+    proportion_correct: si.DimensionlessArray
+    participant_spread: si.Dimensionless
+    participant_spread_low: si.Dimensionless
+    participant_spread_high: si.Dimensionless
+    average_log_odds: si.DimensionlessArray
+    average_error: si.DimensionlessArray
+    average_proportion_correct: si.DimensionlessArray
+    correlation: si.Dimensionless
     separated: tuple[str, ...]
     model: str
 
@@ -60,7 +60,7 @@ def mixed_model(
     stimulus: ArrayLike,
     correct: ArrayLike,
     names: tuple[str, ...],
-    prior_spread: Dimensionless = 2.0,
+    prior_spread: si.Dimensionless = 2.0,
 ) -> MixedModel:
     """Fit both models to trials.
 
@@ -80,7 +80,7 @@ def mixed_model(
             stimulus without a trial, or more than 50 000 trials.
     """
     api = _statsmodels()
-    require("prior_spread", prior_spread, above=0.0)
+    si.require("prior_spread", prior_spread, above=0.0)
     people, kind, right = _trials(participant, stimulus, correct)
     count = int(people.max()) + 1
     mixed = _mixed(kind, right, names)
@@ -118,7 +118,7 @@ def mixed_model(
 
 def _trials(
     participant: ArrayLike, stimulus: ArrayLike, correct: ArrayLike
-) -> tuple[IntArray, IntArray, FloatArray]:
+) -> tuple[si.IntArray, si.IntArray, si.FloatArray]:
     """Of each trial the numbers of participant and stimulus, and whether the answer was right.
     Raises `InputError` for arrays that do not fit, one participant or too many trials."""
     who, people = np.unique(np.asarray(participant), return_inverse=True)
@@ -136,7 +136,7 @@ def _trials(
     return people, kind, right
 
 
-def _mixed(kind: IntArray, right: FloatArray, names: tuple[str, ...]) -> IntArray:
+def _mixed(kind: si.IntArray, right: si.FloatArray, names: tuple[str, ...]) -> si.IntArray:
     """Numbers of the stimuli that were answered both rightly and wrongly. Raises `InputError` where
     one has no trial."""
     count = np.bincount(kind, minlength=len(names))
@@ -146,7 +146,7 @@ def _mixed(kind: IntArray, right: FloatArray, names: tuple[str, ...]) -> IntArra
     return np.flatnonzero((share > 0) & (share < 1))
 
 
-def _averaged(right: FloatArray, fixed: FloatArray, people: IntArray) -> Any:
+def _averaged(right: si.FloatArray, fixed: si.FloatArray, people: si.IntArray) -> Any:
     """The population-averaged model, as statsmodels fitted it."""
     api = _statsmodels()
     with warnings.catch_warnings():

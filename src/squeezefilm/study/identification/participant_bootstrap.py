@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy import stats
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import Dimensionless, FloatArray, IntArray, require
 from squeezefilm.study.identification.confusion import whole_counts
 
 
@@ -24,14 +24,14 @@ class Interval:
 
     low: float
     high: float
-    level: Dimensionless
+    level: si.Dimensionless
     method: str
 
     def __contains__(self, value: float) -> bool:
         return self.low <= value <= self.high
 
 
-def resampled_counts(counts: ArrayLike, resamples: int, seed: int) -> IntArray:
+def resampled_counts(counts: ArrayLike, resamples: int, seed: int) -> si.IntArray:
     """Pooled matrices of resampled participants, shape (resamples, answers, stimuli).
 
     Args:
@@ -76,7 +76,7 @@ def expansion(participants: int, level: float) -> float:
 
 def recentred_interval(
     estimate: float,
-    resampled: FloatArray,
+    resampled: si.FloatArray,
     participants: int,
     level: float = 0.95,
     least: float = -np.inf,
@@ -91,7 +91,7 @@ def recentred_interval(
     Raises:
         InputError: a level not between 0 and 1, or no finite resample.
     """
-    require("level", level, above=0.0, below=1.0)
+    si.require("level", level, above=0.0, below=1.0)
     values = resampled[np.isfinite(resampled)]
     if values.size == 0:
         raise InputError("no resample gave a finite value; there is no interval")

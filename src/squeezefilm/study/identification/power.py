@@ -17,9 +17,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy import stats
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import STUDIES, require_within
-from squeezefilm.quantities import Dimensionless, DimensionlessArray, FloatArray, IntArray, require
 from squeezefilm.results import config_hash, write_whole
 from squeezefilm.study.identification.confusion import whole_counts
 from squeezefilm.study.identification.proportions import clopper_pearson_interval
@@ -28,7 +28,7 @@ from squeezefilm.study.identification.proportions import clopper_pearson_interva
 class ParticipantSimulator(Protocol):
     """Draws participants: their counts, shape (participants, answers, stimuli)."""
 
-    def __call__(self, participants: int, random: np.random.Generator) -> IntArray:
+    def __call__(self, participants: int, random: np.random.Generator) -> si.IntArray:
         """Counts of so many people; all randomness from `random`."""
         ...
 
@@ -48,14 +48,14 @@ class DirichletParticipants:
         InputError: columns that do not sum to 1, or values out of range.
     """
 
-    probabilities: FloatArray
+    probabilities: si.FloatArray
     trials_per_stimulus: int
-    concentration: Dimensionless
+    concentration: si.Dimensionless
 
     def __post_init__(self) -> None:
         p = np.asarray(self.probabilities, dtype=float)
-        require("probabilities", p, at_least=0.0, at_most=1.0)
-        require("concentration", self.concentration, above=0.0)
+        si.require("probabilities", p, at_least=0.0, at_most=1.0)
+        si.require("concentration", self.concentration, above=0.0)
         if p.ndim != 2 or not np.allclose(p.sum(axis=0), 1.0):
             raise InputError("every column of the answer probabilities must sum to 1")
         if self.trials_per_stimulus < 1:
@@ -65,7 +65,7 @@ class DirichletParticipants:
             )
         object.__setattr__(self, "probabilities", p)
 
-    def __call__(self, participants: int, random: np.random.Generator) -> IntArray:
+    def __call__(self, participants: int, random: np.random.Generator) -> si.IntArray:
         """Counts of so many people, shape (participants, answers, stimuli)."""
         answers, stimuli = self.probabilities.shape
         counts = np.zeros((participants, answers, stimuli), dtype=np.int64)
@@ -92,9 +92,9 @@ class Distinction:
         participants: with trials of both.
     """
 
-    score: Dimensionless
-    t: Dimensionless
-    p_value: Dimensionless
+    score: si.Dimensionless
+    t: si.Dimensionless
+    p_value: si.Dimensionless
     participants: int
 
 
@@ -142,25 +142,25 @@ class PowerCurve:
         needed_surely: the same for the lower bounds.
     """
 
-    participants: IntArray
-    power: DimensionlessArray
-    low: DimensionlessArray
-    high: DimensionlessArray
+    participants: si.IntArray
+    power: si.DimensionlessArray
+    low: si.DimensionlessArray
+    high: si.DimensionlessArray
     studies: int
-    alpha: Dimensionless
-    target: Dimensionless
+    alpha: si.Dimensionless
+    target: si.Dimensionless
     needed: int | None
     needed_surely: int | None
 
 
 def power_curve(
     simulate: ParticipantSimulator,
-    test: Callable[[IntArray], float],
+    test: Callable[[si.IntArray], float],
     participants: tuple[int, ...] = (4, 6, 8, 12, 16, 24, 32, 48),
     *,
     studies: int = 1000,
-    alpha: Dimensionless = 0.05,
-    target: Dimensionless = 0.8,
+    alpha: si.Dimensionless = 0.05,
+    target: si.Dimensionless = 0.8,
     seed: int = 0,
     progress: Callable[[int, int], None] | None = None,
     cache: Path | None = None,
@@ -186,8 +186,8 @@ def power_curve(
     """
     sizes = _sizes(participants, studies)
     require_within(STUDIES, studies, "studies")
-    require("alpha", alpha, above=0.0, below=1.0)
-    require("target", target, above=0.0, below=1.0)
+    si.require("alpha", alpha, above=0.0, below=1.0)
+    si.require("target", target, above=0.0, below=1.0)
     if cache is not None and not key:
         raise InputError("a cache needs a key that names simulator and test; pass key=...")
     found = []
@@ -224,7 +224,7 @@ def _sizes(participants: tuple[int, ...], studies: int) -> tuple[int, ...]:
 
 def _significant(
     simulate: ParticipantSimulator,
-    test: Callable[[IntArray], float],
+    test: Callable[[si.IntArray], float],
     people: int,
     studies: int,
     alpha: float,

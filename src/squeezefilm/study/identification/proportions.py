@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy import stats
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import Dimensionless, IntArray, require
 from squeezefilm.study.identification.confusion import ConfusionMatrix, whole_counts
 from squeezefilm.study.identification.participant_bootstrap import (
     Interval,
@@ -19,7 +19,7 @@ from squeezefilm.study.identification.participant_bootstrap import (
 )
 
 
-def wilson_interval(successes: int, trials: int, level: Dimensionless = 0.95) -> Interval:
+def wilson_interval(successes: int, trials: int, level: si.Dimensionless = 0.95) -> Interval:
     """Wilson's score interval of a proportion (1927, 10.1080/01621459.1927.10502953).
 
     Raises `InputError` for counts that do not fit or a level not between 0 and 1.
@@ -27,7 +27,7 @@ def wilson_interval(successes: int, trials: int, level: Dimensionless = 0.95) ->
     return _by_scipy(successes, trials, level, "wilson", "Wilson")
 
 
-def jeffreys_interval(successes: int, trials: int, level: Dimensionless = 0.95) -> Interval:
+def jeffreys_interval(successes: int, trials: int, level: si.Dimensionless = 0.95) -> Interval:
     """Equal-tailed posterior interval under Jeffreys' prior Beta(1/2, 1/2).
 
     At 0 or all successes the bound at the end is 0 or 1 (Brown, Cai & DasGupta 2001,
@@ -41,7 +41,9 @@ def jeffreys_interval(successes: int, trials: int, level: Dimensionless = 0.95) 
     return Interval(low, high, level, "Jeffreys")
 
 
-def clopper_pearson_interval(successes: int, trials: int, level: Dimensionless = 0.95) -> Interval:
+def clopper_pearson_interval(
+    successes: int, trials: int, level: si.Dimensionless = 0.95
+) -> Interval:
     """The exact interval (Clopper & Pearson 1934, 10.1093/biomet/26.4.404): never too short.
 
     Raises as `wilson_interval`.
@@ -50,7 +52,7 @@ def clopper_pearson_interval(successes: int, trials: int, level: Dimensionless =
 
 
 def participant_interval(
-    counts: ArrayLike, level: Dimensionless = 0.95, resamples: int = 2000, seed: int = 0
+    counts: ArrayLike, level: si.Dimensionless = 0.95, resamples: int = 2000, seed: int = 0
 ) -> Interval:
     """Percentile interval of the proportion correct over resampled participants.
 
@@ -64,7 +66,7 @@ def participant_interval(
     Raises:
         InputError: fewer than two participants, or matrices that are not square.
     """
-    require("level", level, above=0.0, below=1.0)
+    si.require("level", level, above=0.0, below=1.0)
     whole = _square(counts)
     pooled = resampled_counts(whole, resamples, seed)
     right = np.trace(pooled, axis1=1, axis2=2) / pooled.sum(axis=(1, 2))
@@ -73,7 +75,7 @@ def participant_interval(
     return Interval(float(low), float(high), level, "participant bootstrap")
 
 
-def chance_test(matrix: ConfusionMatrix) -> Dimensionless:
+def chance_test(matrix: ConfusionMatrix) -> si.Dimensionless:
     """Probability of so many right answers or more from guessing (exact binomial, one-sided).
 
     It treats trials as independent, which holds under guessing. Raises `InputError` where rows and
@@ -82,7 +84,9 @@ def chance_test(matrix: ConfusionMatrix) -> Dimensionless:
     return float(stats.binom.sf(matrix.correct - 1, matrix.trials, matrix.chance))
 
 
-def permutation_test(counts: ArrayLike, permutations: int = 2000, seed: int = 0) -> Dimensionless:
+def permutation_test(
+    counts: ArrayLike, permutations: int = 2000, seed: int = 0
+) -> si.Dimensionless:
     """Probability of so many right answers if answers had nothing to do with what was presented.
 
     Answers are shuffled over the trials of each participant, so preferences for an answer, which
@@ -116,7 +120,7 @@ def permutation_test(counts: ArrayLike, permutations: int = 2000, seed: int = 0)
     return float((1 + np.count_nonzero(found >= observed)) / (1 + permutations))
 
 
-def _draw(random: np.random.Generator, left: IntArray, drawn: int) -> IntArray:
+def _draw(random: np.random.Generator, left: si.IntArray, drawn: int) -> si.IntArray:
     """One multivariate hypergeometric draw from each row of `left`."""
     taken = np.zeros_like(left)
     wanted = np.full(left.shape[0], drawn)
@@ -128,7 +132,7 @@ def _draw(random: np.random.Generator, left: IntArray, drawn: int) -> IntArray:
     return taken
 
 
-def _normal_permutation(answers: IntArray, presented: IntArray, observed: int) -> float:
+def _normal_permutation(answers: si.IntArray, presented: si.IntArray, observed: int) -> float:
     trials = presented.sum(axis=1).astype(float)
     both = (answers * presented).astype(float)
     mean = both.sum(axis=1) / np.maximum(trials, 1.0)
@@ -151,7 +155,7 @@ def _by_scipy(
     return Interval(float(found.low), float(found.high), level, name)
 
 
-def _square(counts: ArrayLike) -> IntArray:
+def _square(counts: ArrayLike) -> si.IntArray:
     whole = whole_counts(counts)
     if whole.ndim != 3 or whole.shape[1] != whole.shape[2]:
         raise InputError(
@@ -162,7 +166,7 @@ def _square(counts: ArrayLike) -> IntArray:
 
 
 def _check(successes: int, trials: int, level: float) -> None:
-    require("level", level, above=0.0, below=1.0)
+    si.require("level", level, above=0.0, below=1.0)
     if not 0 <= successes <= trials or trials < 1:
         raise InputError(
             f"{successes} successes of {trials} trials cannot be; successes must lie between 0 and "

@@ -9,8 +9,8 @@ from numpy.typing import ArrayLike
 from scipy import optimize, stats
 from scipy.special import erfcx, log_ndtr
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import ConvergenceError, InputError
-from squeezefilm.quantities import Dimensionless, FloatArray, IntArray, Second, Unit, require
 
 _MOST_VALUES = 20_000
 
@@ -32,12 +32,12 @@ class ResponseTimeSummary:
     name: str
     trials: int
     participants: int
-    geometric_mean: Second
-    low: Second
-    high: Second
-    level: Dimensionless
-    spread: Dimensionless
-    median: Second
+    geometric_mean: si.Second
+    low: si.Second
+    high: si.Second
+    level: si.Dimensionless
+    spread: si.Dimensionless
+    median: si.Second
 
 
 def response_time_summary(
@@ -45,7 +45,7 @@ def response_time_summary(
     condition: ArrayLike,
     response_time: ArrayLike,
     names: tuple[str, ...],
-    level: Dimensionless = 0.95,
+    level: si.Dimensionless = 0.95,
 ) -> tuple[ResponseTimeSummary, ...]:
     """Summaries by condition; times of a participant count as log-normal.
 
@@ -59,7 +59,7 @@ def response_time_summary(
     Raises:
         InputError: times not above 0, arrays of unequal length, or a level not between 0 and 1.
     """
-    require("level", level, above=0.0, below=1.0)
+    si.require("level", level, above=0.0, below=1.0)
     person, kind, times = _three(participant, condition, response_time)
     people = int(person.max()) + 1 if person.size else 0
     logs = np.log(times)
@@ -107,10 +107,10 @@ class ExGaussian:
         values: how many times the fit used.
     """
 
-    mean: Second
-    spread: Second
-    tail: Second
-    log_likelihood: Dimensionless
+    mean: si.Second
+    spread: si.Second
+    tail: si.Second
+    log_likelihood: si.Dimensionless
     values: int
 
 
@@ -130,7 +130,7 @@ def fit_ex_gaussian(response_time: ArrayLike, seed: int = 0) -> ExGaussian:
     """
     times = np.asarray(response_time, dtype=float).ravel()
     times = times[~np.isnan(times)]
-    require("response_time", times, Unit("s"), above=0.0)
+    si.require("response_time", times, si.Unit("s"), above=0.0)
     if times.size < 10 or np.ptp(times) == 0.0:
         raise InputError(
             f"{times.size} response times (or equal ones) have no ex-Gaussian; give 10 that differ"
@@ -143,7 +143,7 @@ def fit_ex_gaussian(response_time: ArrayLike, seed: int = 0) -> ExGaussian:
     tail = (skew / 2) ** (1 / 3)
     start = np.array([-tail, 0.5 * np.log(1 - tail**2), np.log(tail)])
 
-    def cost(values: FloatArray) -> float:
+    def cost(values: si.FloatArray) -> float:
         return -float(_log_density(z, values[0], np.exp(values[1]), np.exp(values[2])).mean())
 
     # σ → 0 and τ → 0 are limits, not solutions: keep to a thousandth of the deviation.
@@ -161,13 +161,13 @@ def fit_ex_gaussian(response_time: ArrayLike, seed: int = 0) -> ExGaussian:
     )
 
 
-def ex_gaussian_density(time: ArrayLike, fit: ExGaussian) -> FloatArray:
+def ex_gaussian_density(time: ArrayLike, fit: ExGaussian) -> si.FloatArray:
     """Density of a fitted ex-Gaussian (1/s) at times (s), the same shape."""
     t = np.asarray(time, dtype=float)
     return np.asarray(np.exp(_log_density(t, fit.mean, fit.spread, fit.tail)))
 
 
-def _log_density(x: FloatArray, mean: float, spread: float, tail: float) -> FloatArray:
+def _log_density(x: si.FloatArray, mean: float, spread: float, tail: float) -> si.FloatArray:
     """ln of (1/τ) exp(σ²/2τ² − (x−μ)/τ) Φ((x−μ)/σ − σ/τ), without overflow for small τ."""
     u = (x - mean) / spread
     v = u - spread / tail
@@ -177,7 +177,9 @@ def _log_density(x: FloatArray, mean: float, spread: float, tail: float) -> Floa
     return np.asarray(np.where(v < 0, low, high) - np.log(tail))
 
 
-def _three(a: ArrayLike, b: ArrayLike, c: ArrayLike) -> tuple[IntArray, IntArray, FloatArray]:
+def _three(
+    a: ArrayLike, b: ArrayLike, c: ArrayLike
+) -> tuple[si.IntArray, si.IntArray, si.FloatArray]:
     person = np.asarray(a, dtype=np.int64)
     kind, times = np.asarray(b, dtype=np.int64), np.asarray(c, dtype=float)
     if not person.ndim == 1 or not person.shape == kind.shape == times.shape:
@@ -186,5 +188,5 @@ def _three(a: ArrayLike, b: ArrayLike, c: ArrayLike) -> tuple[IntArray, IntArray
             f"are {person.shape}, {kind.shape} and {times.shape}"
         )
     taken = ~np.isnan(times)
-    require("response_time", times[taken], Unit("s"), above=0.0)
+    si.require("response_time", times[taken], si.Unit("s"), above=0.0)
     return person[taken], kind[taken], times[taken]

@@ -15,14 +15,8 @@ from numpy.typing import ArrayLike, NDArray
 from scipy import stats
 from scipy.special import ndtr
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import (
-    Dimensionless,
-    DimensionlessArray,
-    FloatArray,
-    IntArray,
-    require,
-)
 from squeezefilm.study.identification.confusion import whole_counts
 from squeezefilm.study.identification.participant_bootstrap import (
     recentred_interval,
@@ -58,29 +52,29 @@ class OrderedSensitivity:
         log_likelihood: of the fit, without the multinomial constant.
     """
 
-    positions: DimensionlessArray
-    criteria: DimensionlessArray
-    d_prime: DimensionlessArray
-    standard_error: DimensionlessArray
-    low: DimensionlessArray
-    high: DimensionlessArray
-    total: Dimensionless
-    level: Dimensionless
+    positions: si.DimensionlessArray
+    criteria: si.DimensionlessArray
+    d_prime: si.DimensionlessArray
+    standard_error: si.DimensionlessArray
+    low: si.DimensionlessArray
+    high: si.DimensionlessArray
+    total: si.Dimensionless
+    level: si.Dimensionless
     interval_method: str
     corrected: bool
-    deviance: Dimensionless
+    deviance: si.Dimensionless
     degrees_of_freedom: int
-    p_value: Dimensionless
-    log_likelihood: Dimensionless
+    p_value: si.Dimensionless
+    log_likelihood: si.Dimensionless
 
     @property
-    def probabilities(self) -> FloatArray:
+    def probabilities(self) -> si.FloatArray:
         """Answer probabilities of the model, shape (answers, stimuli)."""
         return np.asarray(_probabilities(self.criteria[None], self.positions[None])[0])
 
 
 def ordered_sensitivity(
-    counts: ArrayLike, level: Dimensionless = 0.95, resamples: int = 1000, seed: int = 0
+    counts: ArrayLike, level: si.Dimensionless = 0.95, resamples: int = 1000, seed: int = 0
 ) -> OrderedSensitivity:
     """Fit positions and criteria by maximum likelihood (Fisher scoring; the likelihood is concave).
 
@@ -94,7 +88,7 @@ def ordered_sensitivity(
         InputError: fewer than two stimuli or answers, a stimulus without a trial, one and the
             same answer to everything, or a level not between 0 and 1.
     """
-    require("level", level, above=0.0, below=1.0)
+    si.require("level", level, above=0.0, below=1.0)
     whole = _enough_counts(counts)
     answers, stimuli = whole.shape[1:]
     n = whole.sum(axis=0)[None].astype(float)
@@ -139,7 +133,7 @@ def ordered_sensitivity(
     )
 
 
-def _enough_counts(counts: ArrayLike) -> IntArray:
+def _enough_counts(counts: ArrayLike) -> si.IntArray:
     """Counts, shape (participants, answers, stimuli), refused where they have no d′."""
     whole = whole_counts(counts)
     whole = whole[None] if whole.ndim == 2 else whole
@@ -154,7 +148,9 @@ def _enough_counts(counts: ArrayLike) -> IntArray:
     return whole
 
 
-def _standard_error(criteria: FloatArray, positions: FloatArray, totals: FloatArray) -> FloatArray:
+def _standard_error(
+    criteria: si.FloatArray, positions: si.FloatArray, totals: si.FloatArray
+) -> si.FloatArray:
     """Of the d′ of neighbours, from the Fisher information of the first of a batch."""
     cuts, steps = criteria.shape[1], positions.shape[1] - 1
     covariance = np.linalg.inv(_information(criteria, positions, totals)[0])
@@ -163,7 +159,7 @@ def _standard_error(criteria: FloatArray, positions: FloatArray, totals: FloatAr
     return np.asarray(np.sqrt(np.diag(to_d @ covariance @ to_d.T)))
 
 
-def _goodness(n: FloatArray, p: FloatArray) -> tuple[float, float]:
+def _goodness(n: si.FloatArray, p: si.FloatArray) -> tuple[float, float]:
     """ln likelihood of counts with probabilities, and G² against the saturated model."""
     some, share = n > 0, n / n.sum(axis=1, keepdims=True)
     log_p = np.log(np.where(some, p, 1.0))
@@ -171,7 +167,7 @@ def _goodness(n: FloatArray, p: FloatArray) -> tuple[float, float]:
     return float((n * log_p).sum()), deviance
 
 
-def _bootstrapped(counts: FloatArray, corrected: bool) -> FloatArray:
+def _bootstrapped(counts: si.FloatArray, corrected: bool) -> si.FloatArray:
     """d′ of every resample; those that have no finite estimate get the correction."""
     answers = counts.shape[1]
     if corrected:
@@ -182,7 +178,7 @@ def _bootstrapped(counts: FloatArray, corrected: bool) -> FloatArray:
     return np.asarray(np.diff(positions, axis=1))
 
 
-def _probabilities(criteria: FloatArray, positions: FloatArray) -> FloatArray:
+def _probabilities(criteria: si.FloatArray, positions: si.FloatArray) -> si.FloatArray:
     """Shape (batch, answers, stimuli), without loss where both bounds lie far out on one side."""
     upper = criteria[:, :, None] - positions[:, None, :]
     flat = np.full((upper.shape[0], 1, upper.shape[2]), np.inf)
@@ -192,7 +188,7 @@ def _probabilities(criteria: FloatArray, positions: FloatArray) -> FloatArray:
     return np.asarray(np.maximum(ndtr(b) - ndtr(a), 1e-300))
 
 
-def _slopes(criteria: FloatArray, positions: FloatArray) -> FloatArray:
+def _slopes(criteria: si.FloatArray, positions: si.FloatArray) -> si.FloatArray:
     """Derivatives of the probabilities, shape (batch, answers, stimuli, parameters)."""
     batch, cuts = criteria.shape
     stimuli = positions.shape[1]
@@ -208,13 +204,15 @@ def _slopes(criteria: FloatArray, positions: FloatArray) -> FloatArray:
     return out
 
 
-def _information(criteria: FloatArray, positions: FloatArray, totals: FloatArray) -> FloatArray:
+def _information(
+    criteria: si.FloatArray, positions: si.FloatArray, totals: si.FloatArray
+) -> si.FloatArray:
     slopes = _slopes(criteria, positions)
     weight = totals[:, None, :] / _probabilities(criteria, positions)
     return np.asarray(np.einsum("baj,bajp,bajq->bpq", weight, slopes, slopes, optimize=True))
 
 
-def _fit(n: FloatArray) -> tuple[FloatArray, FloatArray, NDArray[np.bool_]]:
+def _fit(n: si.FloatArray) -> tuple[si.FloatArray, si.FloatArray, NDArray[np.bool_]]:
     """Criteria, positions and whether they are finite, of a batch (batch, answers, stimuli)."""
     batch, answers, stimuli = n.shape
     totals = n.sum(axis=1)
@@ -224,7 +222,7 @@ def _fit(n: FloatArray) -> tuple[FloatArray, FloatArray, NDArray[np.bool_]]:
     theta = np.concatenate([stats.norm.ppf(cumulative), np.zeros((batch, stimuli - 1))], axis=1)
     cuts = answers - 1
 
-    def likelihood(values: FloatArray, rows: FloatArray) -> FloatArray:
+    def likelihood(values: si.FloatArray, rows: si.FloatArray) -> si.FloatArray:
         c, x = _split(values, cuts)
         fine = np.all(np.diff(c, axis=1) > 0, axis=1) if cuts > 1 else np.ones(len(c), bool)
         value = (rows * np.log(_probabilities(c, x))).sum(axis=(1, 2))
@@ -266,6 +264,6 @@ def _fit(n: FloatArray) -> tuple[FloatArray, FloatArray, NDArray[np.bool_]]:
     return criteria, positions, finite
 
 
-def _split(theta: FloatArray, cuts: int) -> tuple[FloatArray, FloatArray]:
+def _split(theta: si.FloatArray, cuts: int) -> tuple[si.FloatArray, si.FloatArray]:
     zero = np.zeros((theta.shape[0], 1))
     return theta[:, :cuts], np.concatenate([zero, theta[:, cuts:]], axis=1)

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import chdtri
 
-from squeezefilm.quantities import Dimensionless, DimensionlessArray, FloatArray, require
+from squeezefilm import quantities as si
 from squeezefilm.study.psychometric import kernel
 from squeezefilm.study.psychometric.kernel import BoolArray
 
@@ -43,19 +43,21 @@ class PenalisedLikelihood:
 
     code: int
     free: BoolArray
-    low: FloatArray
-    high: FloatArray
-    beta: FloatArray
-    x: FloatArray
-    k: FloatArray
-    n: FloatArray
+    low: si.FloatArray
+    high: si.FloatArray
+    beta: si.FloatArray
+    x: si.FloatArray
+    k: si.FloatArray
+    n: si.FloatArray
 
     def model(self, free: BoolArray | None = None) -> kernel.Model:
         """What is fitted, as the kernel takes it; with other parameters free, where given."""
         some = self.free if free is None else free
         return kernel.Model(self.code, some, self.low, self.high, self.beta)
 
-    def maximum(self, start: FloatArray, free: BoolArray | None = None) -> tuple[FloatArray, float]:
+    def maximum(
+        self, start: si.FloatArray, free: BoolArray | None = None
+    ) -> tuple[si.FloatArray, float]:
         """θ of the largest ln density near a start, and that ln density."""
         theta = start.copy()
         return theta, kernel.maximise(self.model(free), theta, self.x, self.k, self.n)
@@ -72,25 +74,25 @@ class Bootstrap:
         shares: the random numbers, uniform in 0 to 1, shape (replicates, places).
     """
 
-    best: FloatArray
-    estimates: FloatArray
-    deviances: DimensionlessArray
-    shares: DimensionlessArray
+    best: si.FloatArray
+    estimates: si.FloatArray
+    deviances: si.DimensionlessArray
+    shares: si.DimensionlessArray
 
-    def percentiles(self, parameter: int, level: Dimensionless) -> tuple[float, float]:
+    def percentiles(self, parameter: int, level: si.Dimensionless) -> tuple[float, float]:
         """The plain percentile interval of θ, to compare with; it covers less than its level."""
         tail = 0.5 * (1.0 - level)
         low, high = np.quantile(self.estimates[:, parameter], [tail, 1.0 - tail])
         return float(low), float(high)
 
-    def goodness_of_fit(self, deviance: float) -> Dimensionless:
+    def goodness_of_fit(self, deviance: float) -> si.Dimensionless:
         """Probability of a deviance at least as large if the fitted function were the truth."""
         larger = int(np.count_nonzero(self.deviances >= deviance - 1e-9))
         return (1 + larger) / (1 + self.deviances.size)
 
 
 def simulate_bootstrap(
-    likelihood: PenalisedLikelihood, best: FloatArray, replicates: int, seed: int
+    likelihood: PenalisedLikelihood, best: si.FloatArray, replicates: int, seed: int
 ) -> Bootstrap:
     """Simulate answers at the places and trials of the data and refit them.
 
@@ -100,7 +102,7 @@ def simulate_bootstrap(
     Raises:
         InputError: fewer than 39 replicates, which cannot tell a 95 % interval.
     """
-    require("replicates", replicates, at_least=39)
+    si.require("replicates", replicates, at_least=39)
     shares = np.random.default_rng(seed).random((replicates, likelihood.x.size))
     answers = _answers(likelihood, best, shares)
     estimates, deviances = np.empty((replicates, 4)), np.empty(replicates)
@@ -110,7 +112,7 @@ def simulate_bootstrap(
 
 
 def inverted_interval(
-    likelihood: PenalisedLikelihood, bootstrap: Bootstrap, parameter: int, level: Dimensionless
+    likelihood: PenalisedLikelihood, bootstrap: Bootstrap, parameter: int, level: si.Dimensionless
 ) -> tuple[float, float]:
     """The values of one θ that the test with simulated deviances does not refuse.
 
@@ -125,8 +127,8 @@ def inverted_interval(
 
 
 def _answers(
-    likelihood: PenalisedLikelihood, theta: FloatArray, shares: DimensionlessArray
-) -> FloatArray:
+    likelihood: PenalisedLikelihood, theta: si.FloatArray, shares: si.DimensionlessArray
+) -> si.FloatArray:
     answers = np.empty_like(shares)
     p = kernel.probabilities(likelihood.code, theta, likelihood.x)
     kernel.binomial_quantiles(p, likelihood.n, shares, answers)
@@ -161,12 +163,12 @@ def _inverted_end(
 
 def _end(
     likelihood: PenalisedLikelihood,
-    best: FloatArray,
+    best: si.FloatArray,
     top: float,
     parameter: int,
     allowed: float,
     bound: float,
-) -> FloatArray:
+) -> si.FloatArray:
     """θ at the end of what a profile deviance allows, towards a bound or at it."""
     free = likelihood.free.copy()
     free[parameter] = False

@@ -13,8 +13,8 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.special import ndtr, ndtri
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import Dimensionless, FloatArray, require, require_one_of
 from squeezefilm.study.psychometric.fit import Interval, PsychometricFit
 
 # Nodes of the integral over the percept of the right alternative; the integrand is smooth.
@@ -22,18 +22,18 @@ _NODES, _WEIGHTS = np.polynomial.hermite_e.hermegauss(120)
 _LARGEST_D_PRIME = 20.0
 
 
-def _require_proportion(name: str, value: Dimensionless) -> None:
-    require(name, value, above=0.0, below=1.0)
+def _require_proportion(name: str, value: si.Dimensionless) -> None:
+    si.require(name, value, above=0.0, below=1.0)
 
 
-def corrected_proportion(count: int, trials: int) -> Dimensionless:
+def corrected_proportion(count: int, trials: int) -> si.Dimensionless:
     """(count + ½)/(trials + 1): a proportion that is never 0 or 1 (Hautus 1995, log-linear).
 
     Raises:
         InputError: a count that is below 0 or above the trials, or no trials.
     """
-    require("trials", trials, at_least=1)
-    require("count", count, at_least=0, at_most=trials)
+    si.require("trials", trials, at_least=1)
+    si.require("count", count, at_least=0, at_most=trials)
     return (count + 0.5) / (trials + 1.0)
 
 
@@ -41,12 +41,14 @@ def corrected_proportion(count: int, trials: int) -> Dimensionless:
 class Sensitivity:
     """d′ and the criterion, in standard deviations of a percept; `model` says of which task."""
 
-    d_prime: Dimensionless
-    criterion: Dimensionless
+    d_prime: si.Dimensionless
+    criterion: si.Dimensionless
     model: str
 
 
-def yes_no_sensitivity(hit_rate: Dimensionless, false_alarm_rate: Dimensionless) -> Sensitivity:
+def yes_no_sensitivity(
+    hit_rate: si.Dimensionless, false_alarm_rate: si.Dimensionless
+) -> Sensitivity:
     """d′ = z(H) − z(F), c = −(z(H) + z(F))/2 of one stimulus a trial.
 
     Raises:
@@ -59,7 +61,7 @@ def yes_no_sensitivity(hit_rate: Dimensionless, false_alarm_rate: Dimensionless)
 
 
 def two_interval_sensitivity(
-    hit_rate: Dimensionless, false_alarm_rate: Dimensionless
+    hit_rate: si.Dimensionless, false_alarm_rate: si.Dimensionless
 ) -> Sensitivity:
     """d′ = (z(H) − z(F))/√2 and the bias of 2IFC: d′ = √2 z(p) where there is no bias.
 
@@ -74,7 +76,7 @@ def two_interval_sensitivity(
     return Sensitivity(plain.d_prime / math.sqrt(2), plain.criterion, "two-interval forced choice")
 
 
-def correct_of_alternatives(d_prime: Dimensionless, alternatives: int) -> Dimensionless:
+def correct_of_alternatives(d_prime: si.Dimensionless, alternatives: int) -> si.Dimensionless:
     """Share correct of an unbiased choice among m: ∫ φ(t − d′) Φ(t)^(m−1) dt.
 
     Percepts of equal variance, independent. By Gauss–Hermite quadrature.
@@ -82,13 +84,13 @@ def correct_of_alternatives(d_prime: Dimensionless, alternatives: int) -> Dimens
     Raises:
         InputError: fewer than two alternatives, or a d′ beyond ±20.
     """
-    require("alternatives", alternatives, at_least=2)
-    require("d_prime", d_prime, at_least=-_LARGEST_D_PRIME, at_most=_LARGEST_D_PRIME)
+    si.require("alternatives", alternatives, at_least=2)
+    si.require("d_prime", d_prime, at_least=-_LARGEST_D_PRIME, at_most=_LARGEST_D_PRIME)
     values = ndtr(_NODES + d_prime) ** (alternatives - 1)
     return float(np.sum(_WEIGHTS * values) / math.sqrt(2 * math.pi))
 
 
-def alternatives_d_prime(correct: Dimensionless, alternatives: int) -> Dimensionless:
+def alternatives_d_prime(correct: si.Dimensionless, alternatives: int) -> si.Dimensionless:
     """d′ of an unbiased choice among m alternatives from the share correct.
 
     Raises:
@@ -109,8 +111,8 @@ def alternatives_d_prime(correct: Dimensionless, alternatives: int) -> Dimension
 
 
 def differencing_rates(
-    d_prime: Dimensionless, criterion: Dimensionless
-) -> tuple[Dimensionless, Dimensionless]:
+    d_prime: si.Dimensionless, criterion: si.Dimensionless
+) -> tuple[si.Dimensionless, si.Dimensionless]:
     """Shares of "different" in same/different, where the difference of the percepts decides.
 
     H = Φ((d′ − k)/√2) + Φ((−d′ − k)/√2), F = 2 Φ(−k/√2), with the criterion k at least 0.
@@ -118,15 +120,15 @@ def differencing_rates(
     Raises:
         InputError: a value below 0.
     """
-    require("d_prime", d_prime, at_least=0.0)
-    require("criterion", criterion, at_least=0.0)
+    si.require("d_prime", d_prime, at_least=0.0)
+    si.require("criterion", criterion, at_least=0.0)
     root = math.sqrt(2.0)
     hit = ndtr((d_prime - criterion) / root) + ndtr((-d_prime - criterion) / root)
     return float(hit), float(2 * ndtr(-criterion / root))
 
 
 def differencing_sensitivity(
-    hit_rate: Dimensionless, false_alarm_rate: Dimensionless
+    hit_rate: si.Dimensionless, false_alarm_rate: si.Dimensionless
 ) -> Sensitivity:
     """d′ of same/different by the differencing model, for a roving standard.
 
@@ -150,7 +152,7 @@ def differencing_sensitivity(
 
 
 def independent_observation_sensitivity(
-    hit_rate: Dimensionless, false_alarm_rate: Dimensionless
+    hit_rate: si.Dimensionless, false_alarm_rate: si.Dimensionless
 ) -> Sensitivity:
     """d′ of same/different by the independent-observation model, for a fixed pair of stimuli.
 
@@ -173,7 +175,7 @@ class SensitivityInterval:
 
     sensitivity: Sensitivity
     interval: Interval
-    level: Dimensionless
+    level: si.Dimensionless
 
 
 _MODELS = {
@@ -191,7 +193,7 @@ def sensitivity(
     noises: int,
     model: str,
     *,
-    level: Dimensionless = 0.95,
+    level: si.Dimensionless = 0.95,
     draws: int = 2000,
     seed: int = 0,
 ) -> SensitivityInterval:
@@ -208,9 +210,9 @@ def sensitivity(
     Raises:
         InputError: an unknown model or a value outside its range.
     """
-    require_one_of("model", model, _MODELS)
-    require("level", level, above=0.0, below=1.0)
-    require("draws", draws, at_least=39)
+    si.require_one_of("model", model, _MODELS)
+    si.require("level", level, above=0.0, below=1.0)
+    si.require("draws", draws, at_least=39)
     of = _MODELS[model]
     point = of(corrected_proportion(hits, signals), corrected_proportion(false_alarms, noises))
     random = np.random.default_rng(seed)
@@ -221,7 +223,7 @@ def sensitivity(
     return SensitivityInterval(point, (float(low), float(high)), level)
 
 
-def _within(rates: FloatArray) -> FloatArray:
+def _within(rates: si.FloatArray) -> si.FloatArray:
     # A draw may round to 0 or 1, whose z is infinite.
     return np.clip(rates, 1e-12, 1 - 1e-12)
 
@@ -245,9 +247,9 @@ class JustNoticeableDifference:
     equality_interval: Interval
     difference: float
     difference_interval: Interval
-    weber_fraction: Dimensionless
+    weber_fraction: si.Dimensionless
     weber_fraction_interval: Interval
-    level: Dimensionless
+    level: si.Dimensionless
     by: str
 
 
@@ -265,7 +267,7 @@ def just_noticeable_difference(
         InputError: a standard not above 0, a guess rate known to be above 0.1, which is that of
             choices among alternatives, or intervals asked by a bootstrap that was not made.
     """
-    require("standard", standard, above=0.0)
+    si.require("standard", standard, above=0.0)
     known = "guess_rate" not in fit.fitted
     if known and fit.function.guess_rate > 0.1:
         raise InputError(

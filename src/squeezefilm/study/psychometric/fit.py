@@ -8,10 +8,10 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
+from squeezefilm import quantities as si
 from squeezefilm.arguments import called_with
 from squeezefilm.errors import InputError
 from squeezefilm.from_text import reads_text
-from squeezefilm.quantities import Dimensionless, FloatArray, require
 from squeezefilm.results import Result
 from squeezefilm.study.psychometric import kernel
 from squeezefilm.study.psychometric.bootstrap import (
@@ -63,18 +63,18 @@ class PsychometricFit(Result):
     """
 
     function: PsychometricFunction
-    intensity: FloatArray
-    positive: FloatArray
-    trials: FloatArray
+    intensity: si.FloatArray
+    positive: si.FloatArray
+    trials: si.FloatArray
     prior: PsychometricPrior
     fitted: tuple[str, ...]
-    level: Dimensionless
+    level: si.Dimensionless
     posterior: PsychometricPosterior
     posterior_interval: dict[str, Interval]
     bootstrap: Bootstrap | None
     bootstrap_interval: dict[str, Interval]
     deviance: float
-    deviance_p: Dimensionless | None
+    deviance_p: si.Dimensionless | None
     bounded_by_prior: tuple[str, ...]
     _shown: ClassVar[str] = (
         "function.shape function.threshold function.width function.lapse_rate posterior_interval"
@@ -111,9 +111,9 @@ class FitRequest:
     _: KW_ONLY
     shape: Shape = "logistic"
     axis: Axis = "linear"
-    guess_rate: Dimensionless | None = 0.5
+    guess_rate: si.Dimensionless | None = 0.5
     prior: PsychometricPrior | None = None
-    level: Dimensionless = 0.95
+    level: si.Dimensionless = 0.95
     replicates: int = 999
     seed: int = 0
 
@@ -142,9 +142,9 @@ def fit_psychometric(asked: FitRequest) -> PsychometricFit:
     """
     axis, level, guess_rate = asked.axis, asked.level, asked.guess_rate
     code = shape_code(asked.shape, axis)
-    require("level", level, above=0.0, below=1.0)
+    si.require("level", level, above=0.0, below=1.0)
     if guess_rate is not None:
-        require("guess_rate", guess_rate, at_least=0.0, at_most=0.5)
+        si.require("guess_rate", guess_rate, at_least=0.0, at_most=0.5)
     places, k, n = _by_place(asked.intensity, asked.positive, asked.trials)
     prior = PsychometricPrior.for_stimuli(places, axis) if asked.prior is None else asked.prior
     answered = Answered(code, axis, prior, guess_rate, on_axis(places, axis), k, n)
@@ -195,7 +195,7 @@ def _penalised(answered: Answered) -> PenalisedLikelihood:
     return PenalisedLikelihood(a.code, free, low, high, beta, a.x, a.k, a.n)
 
 
-def _function(shape: Shape, axis: Axis, theta: FloatArray) -> PsychometricFunction:
+def _function(shape: Shape, axis: Axis, theta: si.FloatArray) -> PsychometricFunction:
     """The function of the kernel's θ."""
     threshold = float(np.exp(theta[0])) if axis == "log" else float(theta[0])
     width, lapse, guess = float(np.exp(theta[1])), float(theta[2]), float(theta[3])
@@ -228,7 +228,7 @@ def _bounded(
 
 def _by_place(
     intensity: ArrayLike, positive: ArrayLike, trials: ArrayLike | None
-) -> tuple[FloatArray, FloatArray, FloatArray]:
+) -> tuple[si.FloatArray, si.FloatArray, si.FloatArray]:
     """Rows of the same intensity together, in rising order."""
     given = np.asarray(intensity, dtype=float)
     k = np.asarray(positive, dtype=float)
@@ -238,9 +238,9 @@ def _by_place(
             f"intensity, positive and trials have the shapes {given.shape}, {k.shape} and "
             f"{n.shape}; all must be one-dimensional, of one length, with at least one row"
         )
-    require("intensity", given)
-    require("positive", k, at_least=0.0)
-    require("trials", n, at_least=0.0)
+    si.require("intensity", given)
+    si.require("positive", k, at_least=0.0)
+    si.require("trials", n, at_least=0.0)
     if np.any(k > n) or np.any(k != np.round(k)) or np.any(n != np.round(n)):
         row = int(np.flatnonzero((k > n) | (k != np.round(k)) | (n != np.round(n)))[0])
         raise InputError(

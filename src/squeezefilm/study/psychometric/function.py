@@ -14,20 +14,9 @@ from typing import Annotated, Literal, get_args
 import numpy as np
 from scipy.special import ndtri
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.from_text import reads_text
-from squeezefilm.quantities import (
-    Above,
-    AtLeast,
-    Below,
-    Dimensionless,
-    DimensionlessLike,
-    FloatArray,
-    FloatLike,
-    checked_numbers,
-    require,
-    require_one_of,
-)
 from squeezefilm.study.psychometric import kernel
 
 Shape = Literal[
@@ -57,8 +46,8 @@ def shape_code(shape: Shape, axis: Axis) -> int:
         InputError: an unknown shape or axis, or Weibull's or Quick's function, which are
             defined on a logarithmic axis, on a linear one.
     """
-    require_one_of("shape", shape, SHAPES)
-    require_one_of("axis", axis, AXES)
+    si.require_one_of("shape", shape, SHAPES)
+    si.require_one_of("axis", axis, AXES)
     if shape in ("weibull", "quick") and axis != "log":
         raise InputError(
             f"shape = '{shape}' is defined for the logarithm of intensity; give axis = 'log', or "
@@ -68,19 +57,19 @@ def shape_code(shape: Shape, axis: Axis) -> int:
     return _CODES[shape]
 
 
-def on_axis(intensity: FloatLike, axis: Axis) -> FloatArray:
+def on_axis(intensity: si.FloatLike, axis: Axis) -> si.FloatArray:
     """Places on the axis of a shape: the intensities, or their natural logarithms.
 
     Raises:
         InputError: an intensity that is not finite, or not above 0 on a logarithmic axis.
     """
-    require("intensity", intensity, above=0.0 if axis == "log" else None)
+    si.require("intensity", intensity, above=0.0 if axis == "log" else None)
     array = np.asarray(intensity, dtype=float)
     return np.log(array) if axis == "log" else array
 
 
 @reads_text
-@checked_numbers
+@si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class PsychometricFunction:
     """A psychometric function: ψ(x) = γ + (1 − γ − λ) S((x − threshold)/width).
@@ -104,14 +93,14 @@ class PsychometricFunction:
 
     shape: Shape
     threshold: float
-    width: Annotated[float, Above(0.0)]
-    guess_rate: Annotated[Dimensionless, AtLeast(0.0), Below(1.0)] = 0.0
-    lapse_rate: Annotated[Dimensionless, AtLeast(0.0), Below(1.0)] = 0.0
+    width: Annotated[float, si.Above(0.0)]
+    guess_rate: Annotated[si.Dimensionless, si.AtLeast(0.0), si.Below(1.0)] = 0.0
+    lapse_rate: Annotated[si.Dimensionless, si.AtLeast(0.0), si.Below(1.0)] = 0.0
     axis: Axis = "linear"
 
     def __post_init__(self) -> None:
         shape_code(self.shape, self.axis)
-        require("threshold", self.threshold, above=0.0 if self.axis == "log" else None)
+        si.require("threshold", self.threshold, above=0.0 if self.axis == "log" else None)
         if self.guess_rate + self.lapse_rate >= 1.0:
             raise InputError(
                 f"guess_rate + lapse_rate = {self.guess_rate + self.lapse_rate:g} leaves no rise; "
@@ -120,34 +109,34 @@ class PsychometricFunction:
             )
 
     @property
-    def _theta(self) -> FloatArray:
+    def _theta(self) -> si.FloatArray:
         place = float(on_axis(self.threshold, self.axis))
         return np.array([place, np.log(self.width), self.lapse_rate, self.guess_rate])
 
-    def __call__(self, intensity: FloatLike) -> DimensionlessLike:
+    def __call__(self, intensity: si.FloatLike) -> si.DimensionlessLike:
         """Probability of the answer at an intensity (1), the shape of `intensity`."""
         x = on_axis(intensity, self.axis)
         code = shape_code(self.shape, self.axis)
         flat = kernel.probabilities(code, self._theta, np.ascontiguousarray(x).ravel())
         return float(flat[0]) if x.ndim == 0 else flat.reshape(x.shape)
 
-    def intensity(self, probability: Dimensionless) -> float:
+    def intensity(self, probability: si.Dimensionless) -> float:
         """The intensity at which ψ equals a probability between γ and 1 − λ.
 
         Raises:
             InputError: a probability not between guess rate and 1 − lapse rate.
         """
-        require("probability", probability, above=self.guess_rate, below=1.0 - self.lapse_rate)
+        si.require("probability", probability, above=self.guess_rate, below=1.0 - self.lapse_rate)
         rise = 1.0 - self.guess_rate - self.lapse_rate
         return self.quantile((probability - self.guess_rate) / rise)
 
-    def quantile(self, share: Dimensionless) -> float:
+    def quantile(self, share: si.Dimensionless) -> float:
         """The intensity at which the shape S (without guesses and lapses) equals `share`.
 
         Raises:
             InputError: a share not between 0 and 1.
         """
-        require("share", share, above=0.0, below=1.0)
+        si.require("share", share, above=0.0, below=1.0)
         z = _standard_quantile(_CODES[self.shape], share)
         if self.axis == "log":
             return float(self.threshold * np.exp(self.width * z))

@@ -15,7 +15,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from squeezefilm.quantities import FloatArray
+from squeezefilm import quantities as si
 
 BoolArray = NDArray[np.bool_]
 
@@ -41,9 +41,9 @@ class Model(NamedTuple):
 
     shape: int
     free: BoolArray
-    low: FloatArray
-    high: FloatArray
-    beta: FloatArray
+    low: si.FloatArray
+    high: si.FloatArray
+    beta: si.FloatArray
 
 
 @njit(nogil=True, cache=True, error_model="numpy")
@@ -75,7 +75,7 @@ def sigmoid(shape: int, z: float) -> tuple[float, float, float]:
 
 
 @njit(nogil=True, cache=True, error_model="numpy")
-def probabilities(shape: int, theta: FloatArray, x: FloatArray) -> FloatArray:
+def probabilities(shape: int, theta: si.FloatArray, x: si.FloatArray) -> si.FloatArray:
     """ψ = γ + (1 − γ − λ) S at the places x, shape of x."""
     out = np.empty(x.size)
     width = math.exp(theta[1])
@@ -87,7 +87,12 @@ def probabilities(shape: int, theta: FloatArray, x: FloatArray) -> FloatArray:
 
 @njit(nogil=True, cache=True, error_model="numpy")
 def log_density(
-    shape: int, theta: FloatArray, beta: FloatArray, x: FloatArray, k: FloatArray, n: FloatArray
+    shape: int,
+    theta: si.FloatArray,
+    beta: si.FloatArray,
+    x: si.FloatArray,
+    k: si.FloatArray,
+    n: si.FloatArray,
 ) -> float:
     """ln likelihood (without binomial coefficients) plus ln prior (not normalised)."""
     width = math.exp(theta[1])
@@ -111,13 +116,13 @@ def log_density(
 @njit(nogil=True, cache=True, error_model="numpy")
 def _derivatives(
     shape: int,
-    theta: FloatArray,
-    beta: FloatArray,
-    x: FloatArray,
-    k: FloatArray,
-    n: FloatArray,
-    gradient: FloatArray,
-    information: FloatArray,
+    theta: si.FloatArray,
+    beta: si.FloatArray,
+    x: si.FloatArray,
+    k: si.FloatArray,
+    n: si.FloatArray,
+    gradient: si.FloatArray,
+    information: si.FloatArray,
 ) -> None:
     width = math.exp(theta[1])
     gradient[:] = 0.0
@@ -147,7 +152,7 @@ def _derivatives(
 
 
 @njit(nogil=True, cache=True, error_model="numpy")
-def _solve(matrix: FloatArray, right: FloatArray, size: int) -> bool:
+def _solve(matrix: si.FloatArray, right: si.FloatArray, size: int) -> bool:
     """Cholesky in place on the lower triangle; False where the matrix is not positive."""
     for i in range(size):
         for j in range(i + 1):
@@ -172,7 +177,9 @@ def _solve(matrix: FloatArray, right: FloatArray, size: int) -> bool:
 
 
 @njit(nogil=True, cache=True, error_model="numpy")
-def maximise(model: Model, theta: FloatArray, x: FloatArray, k: FloatArray, n: FloatArray) -> float:
+def maximise(
+    model: Model, theta: si.FloatArray, x: si.FloatArray, k: si.FloatArray, n: si.FloatArray
+) -> float:
     """Raise ln density over the free parameters within their bounds; θ is changed in place.
 
     Fisher scoring, damped after Levenberg and Marquardt, with an active set of bounds. Returns
@@ -227,7 +234,7 @@ def maximise(model: Model, theta: FloatArray, x: FloatArray, k: FloatArray, n: F
 
 
 @njit(nogil=True, cache=True, error_model="numpy")
-def saturated(k: FloatArray, n: FloatArray) -> float:
+def saturated(k: si.FloatArray, n: si.FloatArray) -> float:
     """ln likelihood of the model that has a probability of its own for every place."""
     total = 0.0
     for i in range(k.size):
@@ -237,7 +244,9 @@ def saturated(k: FloatArray, n: FloatArray) -> float:
 
 
 @njit(nogil=True, cache=True, error_model="numpy")
-def binomial_quantiles(p: FloatArray, n: FloatArray, shares: FloatArray, out: FloatArray) -> None:
+def binomial_quantiles(
+    p: si.FloatArray, n: si.FloatArray, shares: si.FloatArray, out: si.FloatArray
+) -> None:
     """Counts of n trials not exceeded with a probability `shares` (rows, places), into `out`.
 
     The same shares give counts that rise with p, so that what is simulated at two values of a
@@ -268,12 +277,12 @@ def binomial_quantiles(p: FloatArray, n: FloatArray, shares: FloatArray, out: Fl
 @njit(nogil=True, cache=True, error_model="numpy")
 def refit(
     model: Model,
-    best: FloatArray,
-    x: FloatArray,
-    n: FloatArray,
-    answers: FloatArray,
-    estimates: FloatArray,
-    deviances: FloatArray,
+    best: si.FloatArray,
+    x: si.FloatArray,
+    n: si.FloatArray,
+    answers: si.FloatArray,
+    estimates: si.FloatArray,
+    deviances: si.FloatArray,
 ) -> None:
     """Fit every row of simulated `answers` (replicates, places), starting from `best`.
 
@@ -291,12 +300,12 @@ def refit(
 @njit(nogil=True, cache=True, error_model="numpy")
 def profile_drops(
     model: Model,
-    held: FloatArray,
+    held: si.FloatArray,
     parameter: int,
-    x: FloatArray,
-    n: FloatArray,
-    answers: FloatArray,
-    drops: FloatArray,
+    x: si.FloatArray,
+    n: si.FloatArray,
+    answers: si.FloatArray,
+    drops: si.FloatArray,
 ) -> None:
     """Twice the fall of ln density when one parameter is held at its true value, θ = `held`.
 
@@ -317,14 +326,14 @@ def profile_drops(
 @njit(nogil=True, cache=True, error_model="numpy")
 def grid_log_likelihood(
     shape: int,
-    thresholds: FloatArray,
-    log_widths: FloatArray,
-    lapses: FloatArray,
-    guesses: FloatArray,
-    x: FloatArray,
-    k: FloatArray,
-    n: FloatArray,
-) -> FloatArray:
+    thresholds: si.FloatArray,
+    log_widths: si.FloatArray,
+    lapses: si.FloatArray,
+    guesses: si.FloatArray,
+    x: si.FloatArray,
+    k: si.FloatArray,
+    n: si.FloatArray,
+) -> si.FloatArray:
     """ln likelihood at every cell of a grid: (thresholds, widths, lapses, guesses); −inf where
     lapse and guess rate leave no rise."""
     out = np.zeros((thresholds.size, log_widths.size, lapses.size, guesses.size))

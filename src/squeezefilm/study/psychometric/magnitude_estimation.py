@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import stdtrit
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import Dimensionless, FloatArray, require
 from squeezefilm.study.psychometric.fit import Interval
 
 
@@ -35,14 +35,14 @@ class PowerLaw:
         degrees_of_freedom: of t: people − 1, or trials − 2 of one person.
     """
 
-    exponent: Dimensionless
+    exponent: si.Dimensionless
     interval: Interval
-    level: Dimensionless
+    level: si.Dimensionless
     participants: tuple[str, ...]
-    exponents: FloatArray
-    moduli: FloatArray
-    pooled_exponent: Dimensionless
-    residual: Dimensionless
+    exponents: si.FloatArray
+    moduli: si.FloatArray
+    pooled_exponent: si.Dimensionless
+    residual: si.Dimensionless
     degrees_of_freedom: int
 
 
@@ -57,7 +57,7 @@ class _Line(NamedTuple):
     squares: float
 
 
-def _line(name: str, x: FloatArray, y: FloatArray) -> _Line:
+def _line(name: str, x: si.FloatArray, y: si.FloatArray) -> _Line:
     """The line of a person. Raises `InputError` where all intensities are the same."""
     dx, dy = x - x.mean(), y - y.mean()
     if np.unique(x).size < 2:
@@ -75,7 +75,7 @@ def fit_power_law(
     estimate: ArrayLike,
     participant: ArrayLike,
     *,
-    level: Dimensionless = 0.95,
+    level: si.Dimensionless = 0.95,
 ) -> PowerLaw:
     """Stevens' exponent from magnitude estimates, with an intercept and a slope for each person.
 
@@ -93,7 +93,7 @@ def fit_power_law(
             different intensities, or one single participant with fewer than three trials.
     """
     x, y, who = _logarithms(intensity, estimate, participant)
-    require("level", level, above=0.0, below=1.0)
+    si.require("level", level, above=0.0, below=1.0)
     people = sorted(set(who))
     names = np.array(who)
     lines = [_line(name, x[names == name], y[names == name]) for name in people]
@@ -124,7 +124,7 @@ def fit_power_law(
     )
 
 
-def equalised_estimates(estimate: ArrayLike, participant: ArrayLike) -> FloatArray:
+def equalised_estimates(estimate: ArrayLike, participant: ArrayLike) -> si.FloatArray:
     """Estimates with the modulus of every person made the same, shape (trials,).
 
     Each person's numbers are multiplied by what makes their geometric mean that of all people
@@ -141,7 +141,9 @@ def equalised_estimates(estimate: ArrayLike, participant: ArrayLike) -> FloatArr
     return np.asarray(np.exp(y - np.array([means[name] for name in who]) + middle))
 
 
-def geometric_means(intensity: ArrayLike, estimate: ArrayLike) -> tuple[FloatArray, FloatArray]:
+def geometric_means(
+    intensity: ArrayLike, estimate: ArrayLike
+) -> tuple[si.FloatArray, si.FloatArray]:
     """Different intensities in rising order, and the geometric mean of the numbers given to each.
 
     Raises:
@@ -155,7 +157,7 @@ def geometric_means(intensity: ArrayLike, estimate: ArrayLike) -> tuple[FloatArr
 
 def _logarithms(
     intensity: ArrayLike, estimate: ArrayLike, participant: ArrayLike
-) -> tuple[FloatArray, FloatArray, list[str]]:
+) -> tuple[si.FloatArray, si.FloatArray, list[str]]:
     given, numbers = np.asarray(intensity, dtype=float), np.asarray(estimate, dtype=float)
     who = np.asarray(participant)
     if given.ndim != 1 or not given.shape == numbers.shape == who.shape or given.size == 0:
@@ -163,6 +165,6 @@ def _logarithms(
             f"intensity, estimate and participant have the shapes {given.shape}, {numbers.shape} "
             f"and {who.shape}; all must be one-dimensional, of one length, with at least one row"
         )
-    require("intensity", given, above=0.0)
-    require("estimate", numbers, above=0.0)
+    si.require("intensity", given, above=0.0)
+    si.require("estimate", numbers, above=0.0)
     return np.log(given), np.log(numbers), [str(one) for one in who]

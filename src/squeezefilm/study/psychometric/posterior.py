@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
-from squeezefilm.quantities import Dimensionless, FloatArray, FloatLike, require, require_one_of
+from squeezefilm import quantities as si
 from squeezefilm.study.psychometric import kernel
 from squeezefilm.study.psychometric.function import Axis
 from squeezefilm.study.psychometric.prior import LARGEST_RATE, PsychometricPrior
@@ -43,10 +43,10 @@ class Answered:
     code: int
     axis: Axis
     prior: PsychometricPrior
-    guess_rate: Dimensionless | None
-    x: FloatArray
-    k: FloatArray
-    n: FloatArray
+    guess_rate: si.Dimensionless | None
+    x: si.FloatArray
+    k: si.FloatArray
+    n: si.FloatArray
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -62,11 +62,11 @@ class PsychometricPosterior:
     """
 
     axis: Axis
-    edges: tuple[FloatArray, FloatArray, FloatArray, FloatArray]
-    probability: FloatArray
+    edges: tuple[si.FloatArray, si.FloatArray, si.FloatArray, si.FloatArray]
+    probability: si.FloatArray
     log_evidence: float
 
-    def marginal(self, parameter: str) -> FloatArray:
+    def marginal(self, parameter: str) -> si.FloatArray:
         """Probability of each cell of one parameter, shape (cells,).
 
         Raises:
@@ -77,7 +77,7 @@ class PsychometricPosterior:
             self.probability.sum(axis=tuple(other for other in range(4) if other != at))
         )
 
-    def quantile(self, parameter: str, share: Dimensionless) -> float:
+    def quantile(self, parameter: str, share: si.Dimensionless) -> float:
         """The value not exceeded with posterior probability `share`, in the parameter's unit.
 
         Between the edges of cells the cumulative probability is a monotone cubic.
@@ -85,7 +85,7 @@ class PsychometricPosterior:
         Raises:
             InputError: an unknown parameter, or a share not within 0 and 1.
         """
-        require("share", share, at_least=0.0, at_most=1.0)
+        si.require("share", share, at_least=0.0, at_most=1.0)
         edges = self.edges[_index(parameter)]
         if edges[0] == edges[-1]:
             return float(edges[0])
@@ -99,13 +99,13 @@ class PsychometricPosterior:
             np.interp(share, PchipInterpolator(edges, heights / heights[-1])(places), places)
         )
 
-    def interval(self, parameter: str, level: Dimensionless = 0.95) -> tuple[float, float]:
+    def interval(self, parameter: str, level: si.Dimensionless = 0.95) -> tuple[float, float]:
         """The central credible interval: as much probability below it as above it.
 
         Raises:
             InputError: an unknown parameter, or a level not between 0 and 1.
         """
-        require("level", level, above=0.0, below=1.0)
+        si.require("level", level, above=0.0, below=1.0)
         tail = 0.5 * (1.0 - level)
         return self.quantile(parameter, tail), self.quantile(parameter, 1.0 - tail)
 
@@ -116,7 +116,7 @@ class PsychometricPosterior:
         middles = PchipInterpolator(np.arange(edges.size), edges)(cells + 0.5)
         return float(np.sum(self.marginal(parameter) * middles))
 
-    def draws(self, count: int, seed: int) -> FloatArray:
+    def draws(self, count: int, seed: int) -> si.FloatArray:
         """Samples of (threshold, width, lapse rate, guess rate), shape (count, 4).
 
         For whatever is computed from several parameters. Within a cell samples are spread evenly.
@@ -135,11 +135,11 @@ class PsychometricPosterior:
 
 
 def _index(parameter: str) -> int:
-    require_one_of("parameter", parameter, PARAMETERS)
+    si.require_one_of("parameter", parameter, PARAMETERS)
     return PARAMETERS.index(parameter)
 
 
-def coarse_maxima(answered: Answered) -> FloatArray:
+def coarse_maxima(answered: Answered) -> si.FloatArray:
     """θ of the likeliest cells of a coarse grid over the whole prior, to start searches from.
 
     One for each sixth of the widths, shape (6, 4): few answers can have a narrow and a wide
@@ -157,7 +157,7 @@ def coarse_maxima(answered: Answered) -> FloatArray:
 
 
 def grid_posterior(
-    answered: Answered, mode: FloatArray, *, cells: tuple[int, int, int, int] | None = None
+    answered: Answered, mode: si.FloatArray, *, cells: tuple[int, int, int, int] | None = None
 ) -> PsychometricPosterior:
     """The posterior of threshold, width, lapse rate and, where it is not known, guess rate.
 
@@ -202,18 +202,18 @@ def _one_guess(
     return cells if guess_rate is None else (*cells[:3], 1)
 
 
-def _coordinate(at: int, theta: FloatLike) -> FloatArray:
+def _coordinate(at: int, theta: si.FloatLike) -> si.FloatArray:
     """Where a θ stands on the grid."""
     rate = at in (kernel.LAPSE, kernel.GUESS)
     return np.asarray(np.arcsin(np.sqrt(theta)) if rate else theta)
 
 
-def _theta(at: int, coordinate: FloatArray) -> FloatArray:
+def _theta(at: int, coordinate: si.FloatArray) -> si.FloatArray:
     rate = at in (kernel.LAPSE, kernel.GUESS)
     return np.asarray(np.sin(coordinate) ** 2 if rate else coordinate)
 
 
-def _span(answered: Answered) -> tuple[FloatArray, FloatArray]:
+def _span(answered: Answered) -> tuple[si.FloatArray, si.FloatArray]:
     """Lowest and highest coordinates of the whole prior; equal for a rate that is known."""
     low, high = answered.prior.bounds(answered.axis)
     if answered.guess_rate is not None:
@@ -227,8 +227,8 @@ def _span(answered: Answered) -> tuple[FloatArray, FloatArray]:
 
 
 def _weigh(
-    answered: Answered, low: FloatArray, high: FloatArray, cells: tuple[int, int, int, int]
-) -> tuple[list[FloatArray], FloatArray, float]:
+    answered: Answered, low: si.FloatArray, high: si.FloatArray, cells: tuple[int, int, int, int]
+) -> tuple[list[si.FloatArray], si.FloatArray, float]:
     """Nodes (θ), probabilities of the cells, and ln of the mean likelihood over the prior."""
     a, nodes, masses = answered, [], []
     for at, size in enumerate(cells):

@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 from scipy.special import betainc, betaincinv, betaln
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import Dimensionless, DimensionlessArray, FloatArray, require
 from squeezefilm.study.psychometric.function import Axis, on_axis
 
-LARGEST_RATE: Dimensionless = 0.5
+LARGEST_RATE: si.Dimensionless = 0.5
 """Lapse rates, and guess rates that are fitted, are held to lie below this."""
 
 
@@ -41,18 +41,18 @@ class PsychometricPrior:
     def __post_init__(self) -> None:
         for name in ("threshold", "width"):
             low, high = getattr(self, name)
-            require(name, low, above=0.0 if name == "width" else None)
-            require(name, high)
+            si.require(name, low, above=0.0 if name == "width" else None)
+            si.require(name, high)
             if not low < high:
                 raise InputError(
                     f"{name} = ({low:g}, {high:g}) is no range; write the lower value first",
                     quantity=name,
                 )
         for name in ("lapse_rate", "guess_rate"):
-            require(f"{name} (an exponent of its Beta prior)", getattr(self, name), at_least=1.0)
+            si.require(f"{name} (an exponent of its Beta prior)", getattr(self, name), at_least=1.0)
 
     @classmethod
-    def for_stimuli(cls, intensity: FloatArray, axis: Axis = "linear") -> PsychometricPrior:
+    def for_stimuli(cls, intensity: si.FloatArray, axis: Axis = "linear") -> PsychometricPrior:
         """A weak prior from the intensities used, of which there must be two or more.
 
         The threshold lies within their range or half of it beyond (on the axis), the width
@@ -74,7 +74,7 @@ class PsychometricPrior:
         ends = (float(np.exp(low)), float(np.exp(high))) if axis == "log" else (low, high)
         return cls(ends, (least, 3.0 * reach))
 
-    def bounds(self, axis: Axis) -> tuple[FloatArray, FloatArray]:
+    def bounds(self, axis: Axis) -> tuple[si.FloatArray, si.FloatArray]:
         """Lowest and highest θ (threshold on the axis, ln width, lapse rate, guess rate)."""
         ends = on_axis(np.array(self.threshold), axis)
         low, high = np.log(np.array(self.width))
@@ -83,7 +83,7 @@ class PsychometricPrior:
             np.array([ends[1], high, LARGEST_RATE, LARGEST_RATE - 0.01]),
         )
 
-    def quantile(self, parameter: int, share: DimensionlessArray, axis: Axis) -> FloatArray:
+    def quantile(self, parameter: int, share: si.DimensionlessArray, axis: Axis) -> si.FloatArray:
         """θ of a parameter (0 to 3) not exceeded with a prior probability `share`, its shape."""
         if parameter < 2:
             low, high = self.bounds(axis)
@@ -91,7 +91,7 @@ class PsychometricPrior:
         a, b = self.lapse_rate if parameter == 2 else self.guess_rate
         return np.asarray(betaincinv(a, b, share * betainc(a, b, LARGEST_RATE)))
 
-    def density(self, parameter: int, theta: FloatArray, axis: Axis) -> FloatArray:
+    def density(self, parameter: int, theta: si.FloatArray, axis: Axis) -> si.FloatArray:
         """Prior probability per unit of θ of a parameter (0 to 3), the shape of `theta`."""
         if parameter < 2:
             low, high = self.bounds(axis)

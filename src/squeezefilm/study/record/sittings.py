@@ -20,8 +20,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError, RecordError
-from squeezefilm.quantities import Second
 from squeezefilm.results import write_whole
 from squeezefilm.study.record.erasure import erase_file, overwrite, plain_file, require_plain
 
@@ -35,7 +35,7 @@ else:
 
 MOST_SITTINGS = 500
 FILE = ".sittings.json"
-_PATIENCE: Second = 5.0
+_PATIENCE: si.Second = 5.0
 """How long a change waits for another program's."""
 
 

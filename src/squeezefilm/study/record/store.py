@@ -20,8 +20,8 @@ from pathlib import Path
 from typing import Any
 
 from squeezefilm import __version__
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError, RecordError
-from squeezefilm.quantities import require
 from squeezefilm.results import sync_folder, write_whole
 from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.design.trials import Trial, trials
@@ -86,9 +86,9 @@ class StudyStore:
             RecordError: a file that cannot be written.
         """
         path = Path(path)
-        require("seed", seed, at_least=0, at_most=_HIGHEST_SEED)
-        require("stations", stations, at_least=1, at_most=10_000)
-        require("station", station, at_least=0, below=stations)
+        si.require("seed", seed, at_least=0, at_most=_HIGHEST_SEED)
+        si.require("stations", stations, at_least=1, at_most=10_000)
+        si.require("station", station, at_least=0, below=stations)
         if path.suffix in ("", ".traces", ".backups", ".exports"):
             raise InputError(f"{path}: give the file a suffix of its own, like study.sqlite")
         claimed = claim(path)

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.chain.rendered_texture import RenderAnalysis
 from squeezefilm.perception.observer import FingerClass, Observer
 from squeezefilm.perception.percepts import Percept, along_way
 from squeezefilm.perception.senses import line_amplitudes, line_periods
 from squeezefilm.perception.stimuli import Stimulus
-from squeezefilm.quantities import Dimensionless, FloatArray, Hertz, Metre
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,16 +35,16 @@ class Causes:
         clearest_d_prime: its evidence (1).
     """
 
-    texture_frequency: Hertz
-    envelope_bandwidth: Hertz
-    contrast_kept: Dimensionless
-    lag_over_period: Dimensionless
-    contact_over_period: Dimensionless
-    ripple_share: Dimensionless
-    mean_displacement: Metre
-    d_prime: Dimensionless
-    clearest_period: Metre
-    clearest_d_prime: Dimensionless
+    texture_frequency: si.Hertz
+    envelope_bandwidth: si.Hertz
+    contrast_kept: si.Dimensionless
+    lag_over_period: si.Dimensionless
+    contact_over_period: si.Dimensionless
+    ripple_share: si.Dimensionless
+    mean_displacement: si.Metre
+    d_prime: si.Dimensionless
+    clearest_period: si.Metre
+    clearest_d_prime: si.Dimensionless
 
 
 def causes(
@@ -76,12 +76,12 @@ def causes(
     )
 
 
-def _line(way: FloatArray, values: FloatArray, observer: Observer, period: Metre) -> float:
+def _line(way: si.FloatArray, values: si.FloatArray, observer: Observer, period: si.Metre) -> float:
     lines = line_amplitudes(along_way(way, values, observer, (1.0, 1.0)))
     return float(np.interp(period, line_periods(), lines))
 
 
-def _ripple_share(played: RenderAnalysis) -> Dimensionless:
+def _ripple_share(played: RenderAnalysis) -> si.Dimensionless:
     """What the wave adds to the friction that the same amplitudes make over an antinode."""
     # A compensating renderer's inverse is of the driven amplitude, so there is no plain friction.
     if played.wave != "felt":

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.display import Display, load_display
 from squeezefilm.errors import InputError
 from squeezefilm.perception.observer import FingerClass, Observer
@@ -20,7 +21,6 @@ from squeezefilm.perception.percepts import Apparatus, Percept, grating_percept,
 from squeezefilm.perception.senses import Candidates
 from squeezefilm.perception.stimuli import Grating, Stimulus
 from squeezefilm.progress import SayProgress
-from squeezefilm.quantities import DimensionlessArray, FloatArray
 from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.simulated.causes import Causes, causes
 
@@ -46,8 +46,8 @@ class ChainTables:
     apparatus: tuple[Apparatus, ...]
     virtual: Candidates
     real: Candidates
-    virtual_rhythm: DimensionlessArray
-    real_rhythm: DimensionlessArray
+    virtual_rhythm: si.DimensionlessArray
+    real_rhythm: si.DimensionlessArray
     causes: tuple[tuple[tuple[Causes, ...], ...], ...]
 
     def explain(self, display: int = 0) -> dict[str, Causes]:
@@ -134,7 +134,7 @@ def _competing(tree: Any) -> Candidates:
     )
 
 
-def _gathered(tree: Any, part: Callable[[Percept], FloatArray]) -> FloatArray:
+def _gathered(tree: Any, part: Callable[[Percept], si.FloatArray]) -> si.FloatArray:
     """One array of every percept in nested lists, which become its first axes."""
 
     def gather(one: Any) -> Any:

@@ -17,19 +17,12 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.from_text import reads_text
 from squeezefilm.hard_limits import SIMULATED_TRIALS, require_within
 from squeezefilm.perception.observer import NamedObserver, Observer
 from squeezefilm.perception.senses import D_PRIME_OF_75
-from squeezefilm.quantities import (
-    Dimensionless,
-    DimensionlessArray,
-    FloatArray,
-    IntArray,
-    SecondArray,
-    require,
-)
 from squeezefilm.results import Result, stamp, to_json
 from squeezefilm.study.design.study_design import NamedDesign, StudyDesign
 from squeezefilm.study.design.trials import trials
@@ -60,13 +53,13 @@ class SimulatedStudy(Result):
 
     tables: ChainTables
     seed: int
-    display: IntArray
-    stimulus: IntArray
-    choice: IntArray
-    number: IntArray
+    display: si.IntArray
+    stimulus: si.IntArray
+    choice: si.IntArray
+    number: si.IntArray
     felt: NDArray[np.bool_]
-    response_time: SecondArray
-    finger: IntArray
+    response_time: si.SecondArray
+    finger: si.IntArray
     origin: str = "simulated"
     _shown: ClassVar[str] = "tables.design.name tables.observer.name participants seed origin"
 
@@ -75,7 +68,7 @@ class SimulatedStudy(Result):
         """How many people."""
         return int(self.choice.shape[0])
 
-    def participant_counts(self, display: int = 0) -> IntArray:
+    def participant_counts(self, display: int = 0) -> si.IntArray:
         """Counts of each person on a display, shape (participants, answers, stimuli)."""
         design = self.tables.design
         answers, stimuli = len(design.alternatives), len(design.stimuli)
@@ -94,7 +87,7 @@ class SimulatedStudy(Result):
             tuple(one.name for one in design.stimuli),
         )
 
-    def proportion_correct(self, display: int = 0) -> Dimensionless:
+    def proportion_correct(self, display: int = 0) -> si.Dimensionless:
         """Share of right answers on a display (1)."""
         right = right_answers(self.tables.design)
         here = self.display == display
@@ -176,8 +169,8 @@ def simulate_participants(
     Raises:
         InputError: a number out of range, another task, or tables of another design or observer.
     """
-    require("participants", participants, at_least=1, at_most=_MOST_PEOPLE)
-    require("seed", seed, at_least=0)
+    si.require("participants", participants, at_least=1, at_most=_MOST_PEOPLE)
+    si.require("seed", seed, at_least=0)
     most = int(SIMULATED_TRIALS.most // design.most_trials)
     enough = f"of {design.most_trials} trials each, at most {most} people are simulated"
     require_within(SIMULATED_TRIALS, participants * design.most_trials, enough=enough)
@@ -197,14 +190,16 @@ def simulate_participants(
     )
 
 
-def right_answers(design: StudyDesign) -> IntArray:
+def right_answers(design: StudyDesign) -> si.IntArray:
     """Number of the right alternative of each stimulus, −1 where none is right."""
     names = [one.name for one in design.alternatives]
     right = [design.answer_to(one) for one in design.stimuli]
     return np.array([names.index(one) if one else -1 for one in right], dtype=np.int64)
 
 
-def _orders(design: StudyDesign, people: int, seed: int) -> tuple[IntArray, IntArray, IntArray]:
+def _orders(
+    design: StudyDesign, people: int, seed: int
+) -> tuple[si.IntArray, si.IntArray, si.IntArray]:
     places = {one.name: i for i, one in enumerate(design.stimuli)}
     displays = {name: i for i, name in enumerate(design.displays)}
     rows = []
@@ -223,12 +218,12 @@ def _orders(design: StudyDesign, people: int, seed: int) -> tuple[IntArray, IntA
 
 def _answers(
     tables: ChainTables,
-    display: IntArray,
-    stimulus: IntArray,
-    number: IntArray,
+    display: si.IntArray,
+    stimulus: si.IntArray,
+    number: si.IntArray,
     random: np.random.Generator,
     count: int,
-) -> tuple[IntArray, NDArray[np.bool_], SecondArray, IntArray]:
+) -> tuple[si.IntArray, NDArray[np.bool_], si.SecondArray, si.IntArray]:
     """Choice, whether felt, response time (people, trials) and finger class (people,).
 
     Noise is drawn for a whole chunk whatever `count` is, so that people do not depend on it.
@@ -272,14 +267,14 @@ def _answers(
 
 
 def _perceived(
-    period: FloatArray,
-    d_prime: FloatArray,
-    skill: DimensionlessArray,
-    sigma: DimensionlessArray,
+    period: si.FloatArray,
+    d_prime: si.FloatArray,
+    skill: si.DimensionlessArray,
+    sigma: si.DimensionlessArray,
     observer: Observer,
     random: np.random.Generator,
     shape: tuple[int, ...],
-) -> tuple[FloatArray, NDArray[np.bool_]]:
+) -> tuple[si.FloatArray, NDArray[np.bool_]]:
     """Logarithm of the period perceived and whether anything was, over the last axis."""
     count = period.shape[0]
     noise = random.standard_normal((*shape, period.shape[-1]))[:count]
@@ -292,7 +287,7 @@ def _perceived(
     return np.log(pick[1]) + blur * random.standard_normal(shape)[:count], felt
 
 
-def _doubt(away: FloatArray, sigma: DimensionlessArray) -> DimensionlessArray:
+def _doubt(away: si.FloatArray, sigma: si.DimensionlessArray) -> si.DimensionlessArray:
     """1 where two gratings are equally near, falling by e for each σ that the second is further."""
     if away.shape[2] < 2:
         return np.zeros(away.shape[:2])

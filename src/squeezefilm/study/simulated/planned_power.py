@@ -7,9 +7,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.perception.observer import Observer
-from squeezefilm.quantities import Dimensionless, did_you_mean
 from squeezefilm.results import stamp, to_json
 from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.identification.power import PowerCurve, distinction, power_curve
@@ -35,7 +35,7 @@ class PlannedPower:
     second: str
     observer: str
     curve: PowerCurve
-    difference: Dimensionless
+    difference: si.Dimensionless
     seed: int
     origin: str = "simulated"
 
@@ -53,8 +53,8 @@ def planned_power(
     display: str | None = None,
     participants: tuple[int, ...] = SIZES,
     studies: int = 400,
-    alpha: Dimensionless = 0.05,
-    target: Dimensionless = 0.8,
+    alpha: si.Dimensionless = 0.05,
+    target: si.Dimensionless = 0.8,
     seed: int = 0,
     progress: Callable[[str], None] | None = None,
 ) -> PlannedPower:
@@ -102,7 +102,7 @@ def _number(design: StudyDesign, name: str) -> int:
     names = [one.name for one in design.stimuli]
     if name not in names:
         raise InputError(
-            f"design '{design.name}' has no stimulus '{name}'.{did_you_mean(name, names)} "
+            f"design '{design.name}' has no stimulus '{name}'.{si.did_you_mean(name, names)} "
             f"It has: {', '.join(names)}"
         )
     return names.index(name)

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.quantities import IntArray, require
 from squeezefilm.study.simulated.participants import SimulatedStudy
 
 
@@ -25,7 +25,7 @@ class SimulatedPeople:
         InputError: counts of another shape, or of fewer than two people.
     """
 
-    counts: IntArray
+    counts: si.IntArray
 
     def __post_init__(self) -> None:
         if self.counts.ndim != 3 or self.counts.shape[0] < 2:
@@ -39,7 +39,7 @@ class SimulatedPeople:
         """The people of a simulated study on one of its displays."""
         return cls(study.participant_counts(display))
 
-    def __call__(self, participants: int, random: np.random.Generator) -> IntArray:
+    def __call__(self, participants: int, random: np.random.Generator) -> si.IntArray:
         """Counts of so many people, shape (participants, answers, stimuli)."""
-        require("participants", participants, at_least=1)
+        si.require("participants", participants, at_least=1)
         return self.counts[random.integers(0, self.counts.shape[0], participants)]
