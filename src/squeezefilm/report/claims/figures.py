@@ -13,16 +13,7 @@ from squeezefilm.plate.beam.modes import euler_bernoulli_frequency, timoshenko_f
 from squeezefilm.plate.laminate import Laminate, plate_laminate
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.report.display.friction_figures import friction, pressure, wavelength
-from squeezefilm.report.kit.style import (
-    BLUE,
-    INK,
-    MUTED,
-    ORANGE,
-    drawn,
-    legend_below,
-    new_figure,
-    svg,
-)
+from squeezefilm.report.kit import style
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -31,7 +22,7 @@ _CRITERION = 20.6e3
 _PRINTED_LIMIT = 16.1e-3
 
 
-@drawn
+@style.drawn
 def frequency_against_half_wavelength(section: Laminate) -> Figure:
     """Resonance frequency against half wavelength by two beam theories: the paper's Fig 10."""
     half = np.linspace(5e-3, 25e-3, 201)
@@ -40,29 +31,31 @@ def frequency_against_half_wavelength(section: Laminate) -> Figure:
     timoshenko = np.asarray(timoshenko_frequency(half, section))
     limit = float(np.interp(-_CRITERION, -euler, half))
     shear_limit = float(np.interp(-_CRITERION, -timoshenko, half))
-    figure = new_figure(
+    figure = style.new_figure(
         f"20.6 kHz needs a half wavelength below {limit * 1e3:.1f} mm (Euler–Bernoulli) or "
         f"{shear_limit * 1e3:.1f} mm (Timoshenko); the paper reads 16.1 mm",
         "waves in the paper's laminate, E of the substrate and c11_p of the ceramic",
         4.6,
     )
     axes = figure.subplots()
-    axes.plot(1e3 * half, euler / 1e3, color=BLUE, label="Euler–Bernoulli")
-    axes.plot(1e3 * half, timoshenko / 1e3, color=ORANGE, ls="--", label="Timoshenko")
-    axes.axhline(_CRITERION / 1e3, color=MUTED, lw=1.2, ls=(0, (2, 2)), label="20.6 kHz (σ = 10)")
-    for at, color in ((limit, BLUE), (shear_limit, ORANGE)):
+    axes.plot(1e3 * half, euler / 1e3, color=style.BLUE, label="Euler–Bernoulli")
+    axes.plot(1e3 * half, timoshenko / 1e3, color=style.ORANGE, ls="--", label="Timoshenko")
+    axes.axhline(
+        _CRITERION / 1e3, color=style.MUTED, lw=1.2, ls=(0, (2, 2)), label="20.6 kHz (σ = 10)"
+    )
+    for at, color in ((limit, style.BLUE), (shear_limit, style.ORANGE)):
         axes.plot([1e3 * at], [_CRITERION / 1e3], "o", color=color, ms=6, zorder=3)
     axes.plot(
         [1e3 * _PRINTED_LIMIT],
         [_CRITERION / 1e3],
         "x",
-        color=INK,
+        color=style.INK,
         ms=9,
         mew=2,
         label="printed: 16.1 mm",
     )
     axes.set(xlim=(5, 25), ylim=(0, 110), xlabel="half wavelength (mm)", ylabel="frequency (kHz)")
-    legend_below(axes)
+    style.legend_below(axes)
     return figure
 
 
@@ -85,4 +78,4 @@ def reproduction_figures(tell: Callable[[str], None]) -> list[tuple[str, str]]:
         ),
         ("fig11", "Figure 11: amplitude for four half wavelengths", wavelength(plate)),
     )
-    return [(title, svg(figure, key, title)) for key, title, figure in drawings]
+    return [(title, style.svg(figure, key, title)) for key, title, figure in drawings]

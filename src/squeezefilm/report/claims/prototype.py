@@ -20,7 +20,7 @@ from squeezefilm.analysis.claims.prototype import (
     OPEN_ACCURACY,
     RATIO_ACCURACY,
 )
-from squeezefilm.report.kit.style import BLUE, INK, MUTED, ORANGE, drawn, new_figure
+from squeezefilm.report.kit import style
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -178,10 +178,10 @@ def _markdown(table: Table) -> list[str]:
     ]
 
 
-@drawn
+@style.drawn
 def identifiability(study: PrototypeStudy) -> Figure:
     """What each explanation of 30.5 kHz predicts for every further measurement."""
-    figure = new_figure(
+    figure = style.new_figure(
         f"{len(study.explanations)} explanations of 30.5 kHz, and what would tell them apart",
         "piezoelectric_solid_3d, each explanation solved for its free parameter; bars are what a "
         "measurement could resolve: explanations whose bars overlap are not told apart by it",
@@ -200,7 +200,7 @@ def identifiability(study: PrototypeStudy) -> Figure:
                 ms=5,
                 lw=2.2,
                 capsize=3,
-                color=ORANGE if "e31" in one.name else BLUE,
+                color=style.ORANGE if "e31" in one.name else style.BLUE,
             )
         axes.set_xlabel(label)
         axes.set_ylim(-0.6, at.size - 0.4)
@@ -208,7 +208,7 @@ def identifiability(study: PrototypeStudy) -> Figure:
         axes.margins(x=0.15)
         if number:
             axes.tick_params(left=False)
-    panels[-1].axvline(MEASURED_AMPLITUDE * 1e6, color=INK, lw=1, ls=(0, (4, 2)))
+    panels[-1].axvline(MEASURED_AMPLITUDE * 1e6, color=style.INK, lw=1, ls=(0, (4, 2)))
     panels[-1].annotate(
         "measured,\nQ unknown",
         (MEASURED_AMPLITUDE * 1e6, 0.2),
@@ -217,7 +217,7 @@ def identifiability(study: PrototypeStudy) -> Figure:
         textcoords="offset points",
         va="top",
         fontsize=8,
-        color=MUTED,
+        color=style.MUTED,
     )
     panels[0].set_yticks(
         at, [f"{one.name}\n{one.free}: {one.value}" for one in study.explanations], fontsize=8.5

@@ -15,7 +15,7 @@ from squeezefilm.report.claims.prototype import (
     sentences,
     separation_table,
 )
-from squeezefilm.report.kit.style import svg
+from squeezefilm.report.kit import style
 from squeezefilm.report.plate.sensitivity_figures import tornado
 
 if TYPE_CHECKING:
@@ -29,13 +29,13 @@ def prototype_sections(study: PrototypeStudy) -> list[str]:
         ("The plate: the paper, the solved plate, the prototype", _table(comparison(study))),
         (
             "What could shift the frequency",
-            _drawing(svg(tornado(study.sensitivities), "tornado", "Sensitivities"))
+            _drawing(style.svg(tornado(study.sensitivities), "tornado", "Sensitivities"))
             + _table(sensitivity_table(study)),
         ),
         (
             "What one frequency cannot tell",
             f"<ul>{words}</ul>"
-            + _drawing(svg(identifiability(study), "identifiability", "Identifiability"))
+            + _drawing(style.svg(identifiability(study), "identifiability", "Identifiability"))
             + _table(explanation_table(study))
             + "<p>Distance of each pair, in units of what could be measured:</p>"
             + _table(separation_table(study)),

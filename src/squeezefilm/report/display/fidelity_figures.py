@@ -5,17 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from squeezefilm.render.fidelity.survival import PAPER_PERIODS
+from squeezefilm.report.kit import style
 from squeezefilm.report.kit.numbers import M, S, shown
-from squeezefilm.report.kit.style import (
-    INK,
-    LINES,
-    MUTED,
-    drawn,
-    message_figure,
-    new_figure,
-    plain,
-    plain_log,
-)
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -26,11 +17,11 @@ if TYPE_CHECKING:
 _PERIODS_SHOWN = 2
 
 
-@drawn
+@style.drawn
 def compensated_grating(grating: CompensatedGrating) -> Figure:
     """One grating by each drive: the amplitude over the way, and the command that makes it."""
     kept = [f"{100 * share:.0f} %" for share in grating.swing_kept]
-    figure = new_figure(
+    figure = style.new_figure(
         f"At {1e3 * grating.speed:.0f} mm/s a grating of {shown(grating.spatial_period, M, 3)} "
         f"keeps {kept[0]} of its swing without compensation, {kept[1]} with it, and {kept[-1]} "
         "where the drive may also invert the phase",
@@ -43,18 +34,20 @@ def compensated_grating(grating: CompensatedGrating) -> Figure:
     last = way >= way[-1] - 1e3 * _PERIODS_SHOWN * grating.spatial_period
     x = way[last] - way[last][0]
     limit = grating.envelope.amplitude_limit
-    (wanted,) = top.plot(x, grating.drives[0].wanted[last] / limit, color=MUTED, lw=1.2)
+    (wanted,) = top.plot(x, grating.drives[0].wanted[last] / limit, color=style.MUTED, lw=1.2)
     handles, labels = [wanted], ["wanted"]
     for law, share, drive, (color, dashes) in zip(
-        grating.laws, kept, grating.drives, LINES, strict=False
+        grating.laws, kept, grating.drives, style.LINES, strict=False
     ):
         (line,) = top.plot(x, drive.amplitude[last] / limit, color=color, ls=dashes)
         bottom.plot(x, drive.command[last] / limit, color=color, ls=dashes, drawstyle="steps-post")
         handles.append(line)
         labels.append(f"{law.name}: {share} kept")
     for level in (1, -1):
-        bottom.axhline(level, color=INK, lw=0.8, ls=(0, (1.4, 1.2)))
-    bottom.text(0.02 * x[-1], 1.06, "limit of the voltage", color=MUTED, fontsize=9, va="bottom")
+        bottom.axhline(level, color=style.INK, lw=0.8, ls=(0, (1.4, 1.2)))
+    bottom.text(
+        0.02 * x[-1], 1.06, "limit of the voltage", color=style.MUTED, fontsize=9, va="bottom"
+    )
     top.set(ylabel="amplitude, relative to the limit", ylim=(0, 1.02))
     bottom.set(xlabel="finger's way (mm)", ylabel="command, relative", ylim=(-1.15, 1.4))
     bottom.set_yticks([-1, 0, 1])
@@ -67,28 +60,28 @@ def compensated_grating(grating: CompensatedGrating) -> Figure:
     return figure
 
 
-@drawn
+@style.drawn
 def compensation(analysis: Analysis) -> Figure:
     """`compensated_grating` of an analysis."""
     if analysis.compensated is None:
-        return message_figure("Nothing to compensate", "No voltage makes an amplitude here.")
+        return style.message_figure("Nothing to compensate", "No voltage makes an amplitude here.")
     return compensated_grating(analysis.compensated)
 
 
-@drawn
+@style.drawn
 def survival(analysis: Analysis) -> Figure:
     """`texture_survival` of an analysis."""
     if analysis.survival is None:
-        return message_figure("Nothing to compensate", "No voltage makes an amplitude here.")
+        return style.message_figure("Nothing to compensate", "No voltage makes an amplitude here.")
     return texture_survival(analysis.survival)
 
 
-@drawn
+@style.drawn
 def texture_survival(table: TextureSurvival) -> Figure:
     """Which spatial period survives at which speed, one line per drive."""
     from matplotlib.lines import Line2D
 
-    figure = new_figure(
+    figure = style.new_figure(
         f"Compensation with phase inversion keeps a grating up to {table.gain[-1]:.2g} times the "
         f"finger speed, without inversion up to {table.gain[1]:.2g} times",
         f"{table.model}; swing from 0 to {100 * table.level:g} % of what the full voltage holds, "
@@ -98,19 +91,21 @@ def texture_survival(table: TextureSurvival) -> Figure:
     grid = figure.add_gridspec(2, 1, height_ratios=[1, 0.1])
     strip, axes = figure.add_subplot(grid[1]), figure.add_subplot(grid[0])
     strip.set_axis_off()
-    for law, row, (color, dashes) in zip(table.laws, table.finest_period, LINES, strict=False):
+    for law, row, (color, dashes) in zip(
+        table.laws, table.finest_period, style.LINES, strict=False
+    ):
         axes.loglog(1e3 * table.speeds, 1e3 * row, color=color, ls=dashes, label=law.name)
     for period in PAPER_PERIODS:
-        axes.axhline(1e3 * period, color=MUTED, lw=0.8, ls=(0, (1.4, 1.2)))
-    axes.set_title(f"{plain(table.name)}, τ = {shown(table.time_constant, S, 3)}")
+        axes.axhline(1e3 * period, color=style.MUTED, lw=0.8, ls=(0, (1.4, 1.2)))
+    axes.set_title(f"{style.plain(table.name)}, τ = {shown(table.time_constant, S, 3)}")
     axes.set(xlabel="finger speed (mm/s)", xlim=(10, 400), ylim=(0.02, 12))
     axes.set_ylabel("finest period that survives (mm)")
     axes.set_xticks([10, 20, 50, 100, 200, 400])
     axes.set_yticks([0.02, 0.05, 0.1, 0.2, 0.4, 1, 2, 4, 10])
-    plain_log(axes.xaxis)
-    plain_log(axes.yaxis)
+    style.plain_log(axes.xaxis)
+    style.plain_log(axes.yaxis)
     handles, labels = axes.get_legend_handles_labels()
-    handles.append(Line2D([], [], color=MUTED, lw=0.8, ls=(0, (1.4, 1.2))))
+    handles.append(Line2D([], [], color=style.MUTED, lw=0.8, ls=(0, (1.4, 1.2))))
     labels.append("the paper's gratings")
     strip.legend(handles, labels, loc="center", ncols=2, frameon=False)
     return figure

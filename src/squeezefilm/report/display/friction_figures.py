@@ -7,24 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from squeezefilm.analysis.curves import PAPER_CRITERION
+from squeezefilm.report.kit import style
 from squeezefilm.report.kit.numbers import HZ, M, N, shown
-from squeezefilm.report.kit.style import (
-    BLUE,
-    GREEN,
-    INK,
-    LINES,
-    MUTED,
-    ORANGE,
-    SKIN,
-    drawn,
-    legend_below,
-    mark,
-    message_figure,
-    new_figure,
-    pairs_of_axes,
-    plain,
-    plain_log,
-)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -33,7 +17,7 @@ if TYPE_CHECKING:
     from squeezefilm.analysis.analyze import Analysis
 
 _RIDGES_IN_ZOOM = 2.6
-_FIVE = (*LINES, (INK, (0, (3, 1, 1, 1, 1, 1))))
+_FIVE = (*style.LINES, (style.INK, (0, (3, 1, 1, 1, 1, 1))))
 
 
 _NAMES = {
@@ -47,7 +31,7 @@ _NAMES = {
 }
 
 
-@drawn
+@style.drawn
 def pressure(analysis: Analysis) -> Figure:
     """Gap and mean pressure along the contact, whole and enlarged: the paper's Fig 4."""
     profiles, p, display = analysis.pressure, analysis.prediction, analysis.display
@@ -66,16 +50,16 @@ def pressure(analysis: Analysis) -> Figure:
             f"The film adds no pressure here; {carried:.3f} times ambient would carry the finger"
         )
     names = ", ".join(f"{item.model}" for item in profiles)
-    figure = new_figure(title, f"{names} (grooves sealed at their ends)", 5.8)
-    grid, strip = pairs_of_axes(figure)
+    figure = style.new_figure(title, f"{names} (grooves sealed at their ends)", 5.8)
+    grid, strip = style.pairs_of_axes(figure)
     span = 0.5 * _RIDGES_IN_ZOOM * 1e3 * display.finger.ridge_period
     span = min(span, float(x[-1]))
     for column, (low, high) in enumerate(((float(x[0]), float(x[-1])), (-span, span))):
         above, below = grid[0][column], grid[1][column]
-        above.fill_between(x, gap, 1.12 * float(np.max(gap)), color=SKIN, lw=0)
-        above.plot(x, gap, color=INK, lw=1.2)
+        above.fill_between(x, gap, 1.12 * float(np.max(gap)), color=style.SKIN, lw=0)
+        above.plot(x, gap, color=style.INK, lw=1.2)
         above.set(ylim=(0, 1.12 * float(np.max(gap))))
-        for item, color in zip(profiles, (BLUE, GREEN), strict=False):
+        for item, color in zip(profiles, (style.BLUE, style.GREEN), strict=False):
             mean = float(np.trapezoid(item.mean_pressure, x) / (x[-1] - x[0]))
             below.plot(
                 x,
@@ -86,7 +70,7 @@ def pressure(analysis: Analysis) -> Figure:
             )
         below.axhline(
             carried,
-            color=ORANGE,
+            color=style.ORANGE,
             lw=1.6,
             ls=(0, (6, 1.6)),
             label=f"would carry the finger: {carried:.4f}",
@@ -101,7 +85,7 @@ def pressure(analysis: Analysis) -> Figure:
     return figure
 
 
-@drawn
+@style.drawn
 def friction(analysis: Analysis) -> Figure:
     """Relative friction against amplitude on each surface: the paper's Fig 5, and solved."""
     p, curves = analysis.prediction, analysis.friction_curves
@@ -109,17 +93,17 @@ def friction(analysis: Analysis) -> Figure:
     at = shown(p.vibration_amplitude, M, 3)
     needed = here.amplitude_for_criterion
     title = (
-        f"At {at} the friction on {plain(here.surface, 20)} is {p.relative_friction:.3g} of what "
-        "it is without vibration; 0.7 takes "
+        f"At {at} the friction on {style.plain(here.surface, 20)} is {p.relative_friction:.3g} of "
+        "what it is without vibration; 0.7 takes "
         + ("more than 50 µm" if needed is None else shown(needed, M, 3))
     )
     models = ", ".join(dict.fromkeys(curve.model for curve in curves))
-    figure = new_figure(
+    figure = style.new_figure(
         title, f"{models}; {shown(p.normal_force, N)}", 4.4 + 0.24 * (len(curves) + 2)
     )
     axes = figure.subplots()
     for number, curve in enumerate(curves):
-        color, dashes = LINES[number % len(LINES)]
+        color, dashes = style.LINES[number % len(style.LINES)]
         reached = curve.amplitude_for_criterion
         zero = curve.zero_friction_amplitude
         words = "0.7 out of reach" if reached is None else f"0.7 at {shown(reached, M, 3)}"
@@ -129,7 +113,7 @@ def friction(analysis: Analysis) -> Figure:
             curve.relative_friction,
             color=color,
             ls=dashes,
-            label=f"{_NAMES.get(curve.model, curve.model)}, {plain(curve.surface, 20)} "
+            label=f"{_NAMES.get(curve.model, curve.model)}, {style.plain(curve.surface, 20)} "
             f"({shown(curve.roughness, M, 3)}): {words}",
         )
         if reached is not None:
@@ -141,22 +125,24 @@ def friction(analysis: Analysis) -> Figure:
     axes.set(xlim=(0, 1e6 * max(float(c.amplitude[-1]) for c in curves)))
     axes.set(ylim=(0, 1.06), xlabel="vibration amplitude, zero-to-peak (µm)")
     axes.set(ylabel="relative friction µ′/µ")
-    legend_below(axes, columns=1)
+    style.legend_below(axes, columns=1)
     return figure
 
 
-@drawn
+@style.drawn
 def film_models(analysis: Analysis) -> Figure:
     """The share of the finger's load that each reading of the film carries, against amplitude."""
     films, p = analysis.film_models, analysis.prediction
     if films is None:
-        return message_figure("Nothing vibrates", "Without vibration no film carries anything.")
+        return style.message_figure(
+            "Nothing vibrates", "Without vibration no film carries anything."
+        )
     shares = [100 * r.load_share for r in films.results if np.isfinite(r.load_share)]
     title = (
         f"At {shown(p.vibration_amplitude, M, 3)} the film carries from {min(shares):.2g} to "
         f"{max(shares):.3g} % of the finger: how ridges are drawn decides"
     )
-    figure = new_figure(
+    figure = style.new_figure(
         title, f"all at {shown(p.frequency, HZ, 3)}, with slip but for the asymptote", 5.4
     )
     axes = figure.subplots()
@@ -177,16 +163,16 @@ def film_models(analysis: Analysis) -> Figure:
             ms=6,
             zorder=3,
         )
-    axes.axhline(1, color=MUTED, lw=1.2, ls=(0, (2, 2)), label="carries the whole finger")
+    axes.axhline(1, color=style.MUTED, lw=1.2, ls=(0, (2, 2)), label="carries the whole finger")
     right = 1e6 * max(float(curve.amplitude[-1]) for curve in films.curves)
     axes.set(xlim=(0, right), ylim=(1e-4, 30), xlabel="vibration amplitude, zero-to-peak (µm)")
     axes.set(ylabel="film's pressure over the finger's")
-    plain_log(axes.yaxis)
-    legend_below(axes)
+    style.plain_log(axes.yaxis)
+    style.legend_below(axes)
     return figure
 
 
-@drawn
+@style.drawn
 def wavelength(analysis: Analysis) -> Figure:
     """Relative friction against amplitude for four half wavelengths: the paper's Fig 11."""
     p, curves = analysis.prediction, analysis.wavelength_curves
@@ -198,12 +184,12 @@ def wavelength(analysis: Analysis) -> Figure:
         f"{at[curves.index(short)]} at λ/2 = {shown(short.half_wavelength, M, 3)}, "
         f"{at[curves.index(long)]} at {shown(long.half_wavelength, M, 3)}"
     )
-    model = f"{curves[0].model}, {plain(p.surface.name, 20)}, {shown(p.normal_force, N)}"
-    figure = new_figure(title, model, 4.8)
+    model = f"{curves[0].model}, {style.plain(p.surface.name, 20)}, {shown(p.normal_force, N)}"
+    figure = style.new_figure(title, model, 4.8)
     axes = figure.subplots()
     right = 1e6 * float(max(c.amplitude[-1] for c in curves))
     for number, curve in enumerate(curves):
-        color, dashes = LINES[number % len(LINES)]
+        color, dashes = style.LINES[number % len(style.LINES)]
         axes.plot(
             1e6 * curve.amplitude,
             curve.relative_friction,
@@ -222,14 +208,14 @@ def wavelength(analysis: Analysis) -> Figure:
         _working_point(axes, analysis, more, friction)
     axes.set(xlim=(0, right), ylim=(0, 1.06), xlabel="vibration amplitude, zero-to-peak (µm)")
     axes.set(ylabel="relative friction µ′/µ")
-    legend_below(axes)
+    style.legend_below(axes)
     return figure
 
 
 def _criterion(axes: Axes) -> None:
     axes.axhline(
         PAPER_CRITERION,
-        color=MUTED,
+        color=style.MUTED,
         lw=1.2,
         ls=(0, (2, 2)),
         label="0.7: what the paper asks for",
@@ -249,4 +235,4 @@ def _working_point(
     p = analysis.prediction
     height = p.relative_friction if friction is None else friction
     words = f"this display: {height:.2f} at {shown(p.vibration_amplitude, M, 3)}{more}"
-    mark(axes, 1e6 * p.vibration_amplitude, height, 9, words)
+    style.mark(axes, 1e6 * p.vibration_amplitude, height, 9, words)

@@ -9,20 +9,8 @@ import numpy as np
 
 from squeezefilm.plate.laminate import plate_laminate
 from squeezefilm.plate.layout import AnnularStator, DiscPlate, RectangularPlate
+from squeezefilm.report.kit import style
 from squeezefilm.report.kit.numbers import M, shown
-from squeezefilm.report.kit.style import (
-    INK,
-    METAL,
-    MINUS,
-    MUTED,
-    ORANGE,
-    PAPER,
-    PLUS,
-    drawn,
-    legend_below,
-    new_figure,
-    plain,
-)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -33,10 +21,10 @@ if TYPE_CHECKING:
 
 
 _SIGN = {1: "+", -1: "−"}
-FILL = {1: PLUS, -1: MINUS}
+FILL = {1: style.PLUS, -1: style.MINUS}
 
 
-@drawn
+@style.drawn
 def layout(analysis: Analysis) -> Figure:
     """The body to scale: plate with ceramics, or ring with waves."""
     actuator = analysis.display.actuator
@@ -58,7 +46,7 @@ def _plate(plate: RectangularPlate, section: Laminate) -> Figure:
         f"axis {shown(neutral, M, 3)} below the touched face"
     )
     plan_height = float(np.clip(6.9 * plate.width / plate.length, 1.0, 5.2))
-    figure = new_figure(
+    figure = style.new_figure(
         title,
         "neutral axis of a section with ceramic; thicknesses and positions as described",
         plan_height + 2.6,
@@ -69,23 +57,29 @@ def _plate(plate: RectangularPlate, section: Laminate) -> Figure:
     length, width = 1e3 * plate.length, 1e3 * plate.width
 
     plan.set_title("lower face, seen through the plate; + and − say how it follows the drive")
-    plan.add_patch(Rectangle((0, 0), length, width, facecolor=METAL, edgecolor=INK, lw=1))
+    plan.add_patch(
+        Rectangle((0, 0), length, width, facecolor=style.METAL, edgecolor=style.INK, lw=1)
+    )
     side.set_title("side view, to scale")
     thick, ceramic = 1e3 * plate.thickness, 1e3 * plate.ceramic_thickness
-    side.add_patch(Rectangle((0, -thick), length, thick, facecolor=METAL, edgecolor=INK, lw=0.8))
+    side.add_patch(
+        Rectangle((0, -thick), length, thick, facecolor=style.METAL, edgecolor=style.INK, lw=0.8)
+    )
     for patch in plate.patches:
         x, y, dx, dy = (1e3 * v for v in (patch.x, patch.y, patch.length, patch.width))
         fill = FILL[patch.polarity]
-        plan.add_patch(Rectangle((x, y), dx, dy, facecolor=fill, edgecolor=INK, lw=0.8))
+        plan.add_patch(Rectangle((x, y), dx, dy, facecolor=fill, edgecolor=style.INK, lw=0.8))
         side.add_patch(
-            Rectangle((x, -thick - ceramic), dx, ceramic, facecolor=fill, edgecolor=INK, lw=0.8)
+            Rectangle(
+                (x, -thick - ceramic), dx, ceramic, facecolor=fill, edgecolor=style.INK, lw=0.8
+            )
         )
         # A sign needs some two percent of the picture to be read.
         if min(dx, dy) > 0.02 * length:
             plan.text(
                 x + dx / 2, y + dy / 2, _SIGN[patch.polarity], ha="center", va="center", fontsize=15
             )
-    side.axhline(-1e3 * neutral, color=ORANGE, lw=1.2, ls=(0, (5, 2)))
+    side.axhline(-1e3 * neutral, color=style.ORANGE, lw=1.2, ls=(0, (5, 2)))
     pad = 0.015 * length
     plan.set(xlim=(-pad, length + pad), ylim=(-pad, width + pad), aspect="equal")
     plan.set(xlabel="x along the plate (mm)", ylabel="y (mm)")
@@ -108,7 +102,7 @@ def _disc(disc: DiscPlate, analysis: Analysis) -> Figure:
     ceramic, hole = 1e3 * disc.ceramic_thickness, 500 * disc.inner_diameter
     contact = 1e3 * analysis.display.finger.contact_length
     share = (outer**2 - inner**2) / (radius**2 - hole**2)
-    figure = new_figure(
+    figure = style.new_figure(
         f"A ceramic below covers {100 * share:.0f} % of the disc; a finger pad {contact:.3g} mm "
         f"wide touches {contact / (2 * radius):.0%} of its diameter",
         "thicknesses and diameters as described",
@@ -116,20 +110,26 @@ def _disc(disc: DiscPlate, analysis: Analysis) -> Figure:
     )
     plan, side = figure.subplots(2, 1, height_ratios=[5, 1], sharex=True)
     plan.set_title("seen from above, the ceramic through the disc")
-    plan.add_patch(Circle((0, 0), radius, facecolor=METAL, edgecolor=INK, lw=1))
-    plan.add_patch(Circle((0, 0), outer, facecolor=PLUS, edgecolor=INK, lw=0.8))
-    for size, fill in ((inner, METAL), (hole, PAPER)):
+    plan.add_patch(Circle((0, 0), radius, facecolor=style.METAL, edgecolor=style.INK, lw=1))
+    plan.add_patch(Circle((0, 0), outer, facecolor=style.PLUS, edgecolor=style.INK, lw=0.8))
+    for size, fill in ((inner, style.METAL), (hole, style.PAPER)):
         if size > 0:
-            plan.add_patch(Circle((0, 0), size, facecolor=fill, edgecolor=INK, lw=0.8))
+            plan.add_patch(Circle((0, 0), size, facecolor=fill, edgecolor=style.INK, lw=0.8))
     label = f"finger contact, {contact:.3g} mm × {contact:.3g} mm"
     _finger(plan, contact, 0.0, label)
     side.set_title("section, to scale")
-    side.add_patch(Rectangle((-radius, -thick), 2 * radius, thick, facecolor=METAL, edgecolor=INK))
+    side.add_patch(
+        Rectangle((-radius, -thick), 2 * radius, thick, facecolor=style.METAL, edgecolor=style.INK)
+    )
     parts = ((-outer, -inner), (inner, outer)) if inner > 0 else ((-outer, outer),)
     for left, right in parts:
         side.add_patch(
             Rectangle(
-                (left, -thick - ceramic), right - left, ceramic, facecolor=PLUS, edgecolor=INK
+                (left, -thick - ceramic),
+                right - left,
+                ceramic,
+                facecolor=style.PLUS,
+                edgecolor=style.INK,
             )
         )
     reach = 1.06 * max(radius, contact / 2)
@@ -141,7 +141,7 @@ def _disc(disc: DiscPlate, analysis: Analysis) -> Figure:
     side.spines["left"].set_visible(False)
     for axes in (plan, side):
         axes.grid(visible=False)
-    legend_below(plan, gap=0.02)
+    style.legend_below(plan, gap=0.02)
     return figure
 
 
@@ -156,7 +156,7 @@ def _finger(axes: Axes, contact: float, y: float, label: str = "") -> None:
             contact,
             contact,
             facecolor="none",
-            edgecolor=ORANGE,
+            edgecolor=style.ORANGE,
             lw=2.2,
             zorder=3,
             label=label,
@@ -171,23 +171,23 @@ def _section(axes: Axes, plate: RectangularPlate, neutral: float) -> None:
     thick, ceramic = 1e3 * plate.thickness, 1e3 * plate.ceramic_thickness
     axes.set_title("section, enlarged")
     for top, height, fill, name in (
-        (0.0, thick, METAL, plate.substrate.name),
-        (thick, ceramic, PLUS, plate.ceramic.name),
+        (0.0, thick, style.METAL, plate.substrate.name),
+        (thick, ceramic, style.PLUS, plate.ceramic.name),
     ):
-        axes.add_patch(Rectangle((0, top), 1, height, facecolor=fill, edgecolor=INK, lw=1))
+        axes.add_patch(Rectangle((0, top), 1, height, facecolor=fill, edgecolor=style.INK, lw=1))
         # Named at the edge that the neutral axis is further from, so that it crosses no name.
         middle = top + height / 2
         at = middle - 0.22 * height if 1e3 * neutral > middle else middle + 0.22 * height
         axes.text(
             0.5,
             at,
-            f"{plain(name, 16)}\n{height:.3g} mm",
+            f"{style.plain(name, 16)}\n{height:.3g} mm",
             ha="center",
             va="center",
             fontsize=8.5,
             linespacing=1.1,
         )
-    axes.axhline(1e3 * neutral, color=ORANGE, lw=1.6, ls=(0, (5, 2)), label="neutral axis")
+    axes.axhline(1e3 * neutral, color=style.ORANGE, lw=1.6, ls=(0, (5, 2)), label="neutral axis")
     axes.set(xlim=(0, 1), ylim=(1.04 * (thick + ceramic), -0.04 * (thick + ceramic)))
     axes.set(ylabel="depth below the touched face (mm)")
     axes.set_xticks([])
@@ -201,7 +201,7 @@ def _ring(ring: AnnularStator, analysis: Analysis) -> Figure:
     waves = round(ring.wavelengths_around)
     radius, width = 500 * ring.mean_diameter, 1e3 * ring.radial_width
     contact = 1e3 * analysis.display.finger.contact_length
-    figure = new_figure(
+    figure = style.new_figure(
         f"{waves} waves of {shown(ring.wavelength, M)} stand on the ring; a finger pad covers "
         f"{contact / (500 * ring.wavelength):.2g} half waves",
         f"{analysis.prediction.mode.model}, the ring taken as smooth (its teeth are left out)",
@@ -210,10 +210,10 @@ def _ring(ring: AnnularStator, analysis: Analysis) -> Figure:
     axes = figure.subplots()
     outer = radius + width / 2
     _half_waves(axes, 2 * waves, radius, width)
-    axes.add_patch(Circle((0, 0), radius, fill=False, ls=(0, (5, 3)), ec=MUTED, lw=1))
+    axes.add_patch(Circle((0, 0), radius, fill=False, ls=(0, (5, 3)), ec=style.MUTED, lw=1))
     _finger(axes, contact, radius)
     axes.annotate(
-        "", (-radius, 0), (radius, 0), arrowprops={"arrowstyle": "<->", "color": INK, "lw": 1}
+        "", (-radius, 0), (radius, 0), arrowprops={"arrowstyle": "<->", "color": style.INK, "lw": 1}
     )
     axes.text(
         0,
@@ -256,7 +256,9 @@ def draw_sector(
     from matplotlib.patches import Wedge
 
     fill = FILL[sign]
-    axes.add_patch(Wedge((0, 0), outer, *ends, width=width, facecolor=fill, edgecolor=INK, lw=0.8))
+    axes.add_patch(
+        Wedge((0, 0), outer, *ends, width=width, facecolor=fill, edgecolor=style.INK, lw=0.8)
+    )
 
 
 def _explain_ring(axes: Axes, contact: float) -> None:
@@ -264,12 +266,12 @@ def _explain_ring(axes: Axes, contact: float) -> None:
 
     axes.legend(
         handles=[
-            Patch(facecolor=PLUS, edgecolor=INK, label="+  half wave going up"),
-            Patch(facecolor=MINUS, edgecolor=INK, label="−  half wave going down"),
-            Patch(facecolor=PAPER, edgecolor=INK, label="lines between: nodal lines"),
+            Patch(facecolor=style.PLUS, edgecolor=style.INK, label="+  half wave going up"),
+            Patch(facecolor=style.MINUS, edgecolor=style.INK, label="−  half wave going down"),
+            Patch(facecolor=style.PAPER, edgecolor=style.INK, label="lines between: nodal lines"),
             Patch(
                 facecolor="none",
-                edgecolor=ORANGE,
+                edgecolor=style.ORANGE,
                 lw=2,
                 label=f"finger contact, {contact:.3g} mm × {contact:.3g} mm",
             ),
@@ -289,7 +291,12 @@ def drive_strip(axes: Axes, plate: RectangularPlate, reach: float) -> float:
         x, dx = 1e3 * patch.x, 1e3 * patch.length
         axes.add_patch(
             Rectangle(
-                (x, low), dx, high - low, facecolor=FILL[patch.polarity], edgecolor=INK, lw=0.8
+                (x, low),
+                dx,
+                high - low,
+                facecolor=FILL[patch.polarity],
+                edgecolor=style.INK,
+                lw=0.8,
             )
         )
         if patch.length > 0.02 * plate.length:

@@ -9,19 +9,8 @@ import numpy as np
 
 from squeezefilm.plate.layout import AnnularStator, RectangularPlate
 from squeezefilm.report.display.layout_figures import drive_strip
+from squeezefilm.report.kit import style
 from squeezefilm.report.kit.numbers import HZ, M, V, shown
-from squeezefilm.report.kit.style import (
-    BAND,
-    BLUE,
-    INK,
-    MUTED,
-    ORANGE,
-    PAPER,
-    drawn,
-    legend_below,
-    micrometres_beside,
-    new_figure,
-)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -36,7 +25,7 @@ if TYPE_CHECKING:
 _MOST_LABELS = 26
 
 
-@drawn
+@style.drawn
 def mode_shape(analysis: Analysis) -> Figure:
     """The working mode at the working amplitude, with its nodal lines."""
     mode = analysis.prediction.mode
@@ -44,7 +33,7 @@ def mode_shape(analysis: Analysis) -> Figure:
     x, w, nodes, title, along = (
         _around_the_ring(analysis) if mode.line is None else _along_the_line(mode, mode.line)
     )
-    figure = new_figure(title, mode.model, 4.4)
+    figure = style.new_figure(title, mode.model, 4.4)
     axes = figure.subplots()
     unit = f"deflection at {shown(analysis.prediction.vibration_amplitude, M, 3)} (µm)"
     # A drive that cancels out leaves rounding errors, no picometre of motion.
@@ -53,11 +42,11 @@ def mode_shape(analysis: Analysis) -> Figure:
     y = size * w
     reach = float(np.max(np.abs(y)))
     for node in nodes:
-        axes.axvline(float(node), color=MUTED, lw=0.9, ls=(0, (2, 2)))
-    axes.fill_between(x, y, -y, color=BAND, lw=0)
-    axes.plot(x, y, color=BLUE, label="one extreme of the vibration")
-    axes.plot(x, -y, color=BLUE, lw=1.1, ls=(0, (4, 2)), label="half a period later")
-    axes.axhline(0, color=INK, lw=0.8)
+        axes.axvline(float(node), color=style.MUTED, lw=0.9, ls=(0, (2, 2)))
+    axes.fill_between(x, y, -y, color=style.BAND, lw=0)
+    axes.plot(x, y, color=style.BLUE, label="one extreme of the vibration")
+    axes.plot(x, -y, color=style.BLUE, lw=1.1, ls=(0, (4, 2)), label="half a period later")
+    axes.axhline(0, color=style.INK, lw=0.8)
     bottom = -1.2 * reach
     plate = analysis.display.actuator
     if isinstance(plate, RectangularPlate) and plate.lines_across == "length":
@@ -71,7 +60,7 @@ def mode_shape(analysis: Analysis) -> Figure:
     # The strip of ceramics has no deflection to read.
     axes.set_yticks([tick for tick in axes.get_yticks() if abs(tick) <= reach])
     _label_nodes(axes, nodes)
-    legend_below(axes)
+    style.legend_below(axes)
     return figure
 
 
@@ -134,7 +123,7 @@ def _half_wave_arrow(axes: Axes, nodes: FloatArray, height: float, half: float) 
         "",
         (left, height),
         (right, height),
-        arrowprops={"arrowstyle": "<->", "color": INK, "lw": 1, "shrinkA": 0, "shrinkB": 0},
+        arrowprops={"arrowstyle": "<->", "color": style.INK, "lw": 1, "shrinkA": 0, "shrinkB": 0},
     )
     axes.annotate(
         f"λ/2 = {shown(half, M, 4)}",
@@ -144,11 +133,11 @@ def _half_wave_arrow(axes: Axes, nodes: FloatArray, height: float, half: float) 
         ha="center",
         va="bottom",
         fontsize=9.5,
-        bbox={"facecolor": PAPER, "edgecolor": "none", "pad": 1.2},
+        bbox={"facecolor": style.PAPER, "edgecolor": "none", "pad": 1.2},
     )
 
 
-@drawn
+@style.drawn
 def frequency_response(analysis: Analysis) -> Figure:
     """Amplitude per volt against frequency, with resonance, half-power band and drive."""
     response, p = analysis.response, analysis.prediction
@@ -164,24 +153,24 @@ def frequency_response(analysis: Analysis) -> Figure:
     if driven:
         wide = "" if band is None else f" is {shown(1e3 * (band[1] - band[0]), HZ, 3)} wide"
         title = f"The resonance at {at}{wide}: the drive must stay on it{_lost_beside(p)}"
-    figure = new_figure(title, response.model, 4.3)
+    figure = style.new_figure(title, response.model, 4.3)
     axes = figure.subplots()
     if band is not None:
         axes.axvspan(
             *band,
-            color=BAND,
+            color=style.BAND,
             lw=0,
             label=f"half-power band, {band[0]:.2f} to {band[1]:.2f} kHz (above 71 % of the peak)",
         )
     axes.plot(
         f,
         per_volt,
-        color=BLUE,
+        color=style.BLUE,
         label=f"amplitude per volt, quality factor Q = {p.mode.quality_factor:.3g}",
     )
     axes.axvline(
         1e-3 * p.mode.resonance_frequency,
-        color=INK,
+        color=style.INK,
         lw=1,
         ls=(0, (4, 2)),
         label=f"resonance, {shown(p.mode.resonance_frequency, HZ)}",
@@ -191,8 +180,8 @@ def frequency_response(analysis: Analysis) -> Figure:
     axes.set(xlim=(float(f[0]), float(f[-1])), ylim=(0, 1.08 * peak if peak > 0 else 1))
     axes.set(xlabel="frequency (kHz)", ylabel="amplitude per volt (nm/V)")
     if p.voltage:
-        micrometres_beside(axes, p.voltage, f"amplitude at {shown(p.voltage, V)} (µm)")
-    legend_below(axes)
+        style.micrometres_beside(axes, p.voltage, f"amplitude at {shown(p.voltage, V)} (µm)")
+    style.legend_below(axes)
     return figure
 
 
@@ -212,9 +201,9 @@ def _mark_drive(axes: Axes, p: Prediction, voltage: float, peak: float) -> None:
         [1e-3 * p.frequency],
         [1e9 * p.vibration_amplitude / voltage if voltage else peak],
         "o",
-        color=ORANGE,
+        color=style.ORANGE,
         ms=8,
-        mec=PAPER,
+        mec=style.PAPER,
         mew=1.2,
         zorder=4,
         label=f"drive: {shown(voltage, V)} at {shown(p.frequency, HZ)}, "

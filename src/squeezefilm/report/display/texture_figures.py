@@ -7,17 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from squeezefilm.render.texture.gratings import Sine, Square
+from squeezefilm.report.kit import style
 from squeezefilm.report.kit.numbers import M, S, shown
-from squeezefilm.report.kit.style import (
-    BLUE,
-    INK,
-    ORANGE,
-    SKIN,
-    drawn,
-    message_figure,
-    new_figure,
-    pairs_of_axes,
-)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -36,25 +27,25 @@ _PERIODS_SHOWN = 3.5
 _MOST_POINTS = 1500
 
 
-@drawn
+@style.drawn
 def texture(analysis: Analysis) -> Figure:
     """A grating under the finger: what is wanted and what the resonator makes of it."""
     trace = analysis.texture
     if trace is None:
-        return message_figure("No texture can be rendered here", _NOTHING)
+        return style.message_figure("No texture can be rendered here", _NOTHING)
     period = (
         trace.texture.spatial_period
         if isinstance(trace.texture, Square | Sine)
         else trace.stroke.length / 20
     )
-    figure = new_figure(
+    figure = style.new_figure(
         f"A grating of {shown(period, M, 3)} at {1e3 * trace.stroke.speed:g} mm/s comes "
         f"{shown(trace.lag, M, 2)} late: the resonator needs {shown(trace.time_constant, S, 3)} "
         "to follow",
         f"{trace.model}; friction by {analysis.prediction.model}, following the amplitude at once",
         5.8,
     )
-    grid, strip = pairs_of_axes(figure)
+    grid, strip = style.pairs_of_axes(figure)
     # A rise in the middle of the stroke, where nothing remembers the start.
     middle = trace.position.searchsorted(trace.stroke.start + trace.stroke.length / 2)
     rises = middle + np.flatnonzero(np.diff(trace.command[middle:]) > 0)
@@ -77,7 +68,7 @@ def texture(analysis: Analysis) -> Figure:
         axes.axvspan(
             1e3 * edge,
             1e3 * (edge + trace.lag),
-            color=SKIN,
+            color=style.SKIN,
             lw=0,
             label=f"lag τ·v = {shown(trace.lag, M, 2)}",
         )
@@ -104,25 +95,25 @@ def _draw(
     inside = np.flatnonzero((trace.position >= low) & (trace.position <= high))
     inside = inside[:: max(1, inside.size // _MOST_POINTS)]
     x = 1e3 * trace.position[inside]
-    axes.plot(x, wanted[inside], color=ORANGE, lw=1.5, ls=(0, (6, 1.6)), label="wanted")
-    axes.plot(x, rendered[inside], color=BLUE, lw=1.9, label="rendered")
+    axes.plot(x, wanted[inside], color=style.ORANGE, lw=1.5, ls=(0, (6, 1.6)), label="wanted")
+    axes.plot(x, rendered[inside], color=style.BLUE, lw=1.9, label="rendered")
 
 
-@drawn
+@style.drawn
 def fidelity(analysis: Analysis) -> Figure:
     """Which spatial period keeps its swing at which finger speed."""
     from matplotlib.patches import Patch
 
     table = analysis.fidelity
     if table is None:
-        return message_figure("No texture survives here", _NOTHING)
+        return style.message_figure("No texture survives here", _NOTHING)
     fastest = 1e3 * float(table.speeds[-1])
     title = (
         f"At {fastest:g} mm/s the finest {table.shape} grating that keeps {100 * table.kept:.0f} % "
         f"of its swing has a period of {shown(float(table.finest_period[-1]), M, 3)}"
     )
     rows, columns = table.amplitude_kept.shape
-    figure = new_figure(
+    figure = style.new_figure(
         title, f"{table.model}; friction by {analysis.prediction.model}", 2.5 + 0.62 * rows
     )
     axes, strip = figure.subplots(2, 1, height_ratios=[rows, 0.35])
@@ -148,11 +139,11 @@ def fidelity(analysis: Analysis) -> Figure:
         handles=[
             Patch(
                 facecolor="none",
-                edgecolor=INK,
+                edgecolor=style.INK,
                 lw=1.2,
                 label=f"✓ keeps {100 * table.kept:.0f} % of the amplitude's swing",
             ),
-            Patch(facecolor="none", edgecolor=INK, lw=0.8, ls="--", label="✗ loses more"),
+            Patch(facecolor="none", edgecolor=style.INK, lw=0.8, ls="--", label="✗ loses more"),
         ],
         loc="center",
         ncols=2,
@@ -177,7 +168,7 @@ def _draw_cell(axes: Axes, table: FidelityTable, row: int, column: int) -> None:
             0.96,
             0.92,
             facecolor=fill,
-            edgecolor=INK,
+            edgecolor=style.INK,
             lw=1.2 if survives else 0.8,
             ls="-" if survives else (0, (3, 2)),
         )

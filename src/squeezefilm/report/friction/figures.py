@@ -7,26 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from squeezefilm.report.kit import style
 from squeezefilm.report.kit.folder import json_text, write_folder
 from squeezefilm.report.kit.numbers import M, N, shown
-from squeezefilm.report.kit.style import (
-    BAND,
-    BLUE,
-    GREEN,
-    INK,
-    LINES,
-    MUTED,
-    ORANGE,
-    PAPER,
-    PURPLE,
-    drawn,
-    legend_below,
-    mark,
-    new_figure,
-    plain,
-    plain_log,
-    png,
-)
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -42,9 +25,9 @@ if TYPE_CHECKING:
     from squeezefilm.chain.prediction import Prediction
 
 _STYLES = {
-    "paper2008": (ORANGE, (0, (6, 1.6)), "paper's asymptote"),
-    "film-smooth": (GREEN, (0, (5, 1.5, 1, 1.5)), "smooth film, no ridges"),
-    "film-sealed": (PURPLE, (0, (1.4, 1.2)), "film under the paper's ridges, solved"),
+    "paper2008": (style.ORANGE, (0, (6, 1.6)), "paper's asymptote"),
+    "film-smooth": (style.GREEN, (0, (5, 1.5, 1, 1.5)), "smooth film, no ridges"),
+    "film-sealed": (style.PURPLE, (0, (1.4, 1.2)), "film under the paper's ridges, solved"),
 }
 _NAMES_OF_PARAMETERS = {
     "finger.asperities.reference_gap": "gap of the asperities",
@@ -78,38 +61,38 @@ def draw_models(
         1e6 * own.amplitude,
         stiff,
         own.relative_friction,
-        color=BAND,
+        color=style.BAND,
         lw=0,
         label="between a stiff pad (one mean gap) and a soft one",
     )
     axes.plot(
         1e6 * own.amplitude,
         own.relative_friction,
-        color=BLUE,
+        color=style.BLUE,
         lw=2.4,
         label="partial levitation, each ridge at its own balance",
     )
     at = 1e6 * p.vibration_amplitude
     if unsure is not None:
         low, high = unsure.interval
-        axes.plot([at, at], [low, high], color=INK, lw=1.6, zorder=4)
+        axes.plot([at, at], [low, high], color=style.INK, lw=1.6, zorder=4)
         for end in (low, high):
-            axes.plot([at], [end], "_", color=INK, ms=11, mew=1.6, zorder=4)
+            axes.plot([at], [end], "_", color=style.INK, ms=11, mew=1.6, zorder=4)
     words = f"{p.relative_friction:.2f}"
     if unsure is not None:
         words += f" ({unsure.interval[0]:.2f}–{unsure.interval[1]:.2f}, {unsure.level:.0%})"
-    mark(axes, at, p.relative_friction, 8, f"this display, {p.model}: {words}")
+    style.mark(axes, at, p.relative_friction, 8, f"this display, {p.model}: {words}")
     axes.set(xlim=(0, 1e6 * float(own.amplitude[-1])), ylim=(0, 1.04))
     axes.set(xlabel="vibration amplitude, zero-to-peak (µm)", ylabel="relative friction µ′/µ")
 
 
-@drawn
+@style.drawn
 def models(result: FrictionAnalysis) -> Figure:
     """The paper's model, the smooth film, the ridge film and partial levitation on one plot."""
     return _models(result.curves, result.prediction, result.uncertainty)
 
 
-@drawn
+@style.drawn
 def chain(analysis: Analysis) -> Figure:
     """The same plot for a whole analysis."""
     return _models(analysis.model_curves, analysis.prediction, analysis.uncertainty)
@@ -119,19 +102,19 @@ def _models(
     curves: tuple[ModelCurve, ...], p: Prediction, unsure: UncertainFriction | None
 ) -> Figure:
     said = f"µ′/µ = {p.relative_friction:.2f}" if unsure is None else unsure.sentence
-    figure = new_figure(
-        f"At {shown(p.vibration_amplitude, M, 3)} on {plain(p.surface.name, 20)} {said}: the model "
-        "decides, and no measured curve has settled it",
+    figure = style.new_figure(
+        f"At {shown(p.vibration_amplitude, M, 3)} on {style.plain(p.surface.name, 20)} {said}: the "
+        "model decides, and no measured curve has settled it",
         f"as in the legend; {shown(p.normal_force, N)}",
         5.4,
     )
     axes = figure.subplots()
     draw_models(axes, curves, p, unsure)
-    legend_below(axes, columns=2)
+    style.legend_below(axes, columns=2)
     return figure
 
 
-@drawn
+@style.drawn
 def predictions(found: Sequence[Prediction]) -> Figure:
     """Predicted friction against amplitude: each law, and on it the working points."""
     first = found[0]
@@ -142,27 +125,27 @@ def predictions(found: Sequence[Prediction]) -> Figure:
         f"{min(one.relative_friction for one in found):.2f} to "
         f"{max(one.relative_friction for one in found):.2f}"
     )
-    figure = new_figure(said, ", ".join(dict.fromkeys(one.model for one in found)), 4.4)
+    figure = style.new_figure(said, ", ".join(dict.fromkeys(one.model for one in found)), 4.4)
     axes = figure.subplots()
     reach: dict[FrictionLaw, float] = {}
     for one in found:
         reach[one.law] = max(reach.get(one.law, 0.5e-6), one.vibration_amplitude)
     for number, (law, highest) in enumerate(reach.items()):
-        color, dashes = LINES[number % len(LINES)]
+        color, dashes = style.LINES[number % len(style.LINES)]
         table = law.table(highest)
         axes.plot(1e6 * table.amplitude, table.relative_friction, color=color, ls=dashes)
     for one in found:
-        mark(axes, 1e6 * one.vibration_amplitude, one.relative_friction, 7)
+        style.mark(axes, 1e6 * one.vibration_amplitude, one.relative_friction, 7)
     axes.set(xlim=(0, None), ylim=(0, 1.04))
     axes.set(xlabel="vibration amplitude, zero-to-peak (µm)", ylabel="relative friction µ′/µ")
     return figure
 
 
-@drawn
+@style.drawn
 def friction_map(result: FrictionAnalysis) -> Figure:
     """µ′/µ over amplitude and force, the working point marked."""
     found, p = result.map, result.prediction
-    figure = new_figure(
+    figure = style.new_figure(
         f"µ′/µ is {p.relative_friction:.2f} at {shown(p.vibration_amplitude, M, 3)} and "
         f"{shown(p.normal_force, N, 3)}; over these ranges it goes from "
         f"{np.nanmin(found.relative_friction):.2f} to {np.nanmax(found.relative_friction):.2f}",
@@ -183,61 +166,67 @@ def friction_map(result: FrictionAnalysis) -> Figure:
         found.normal_force,
         found.relative_friction,
         levels=levels[1:-1:2],
-        colors=PAPER,
+        colors=style.PAPER,
         linewidths=1.0,
     )
     axes.clabel(lines, fmt=lambda v: f"{v:.1f}", fontsize=9)
     here = 1e6 * p.vibration_amplitude, p.normal_force
-    mark(axes, *here, 9, "this display", color=ORANGE, clip_on=True)
+    style.mark(axes, *here, 9, "this display", color=style.ORANGE, clip_on=True)
     bar = figure.colorbar(filled, ax=axes, label="relative friction µ′/µ")
-    bar.outline.set_edgecolor(MUTED)
+    bar.outline.set_edgecolor(style.MUTED)
     axes.set(yscale="log", xlabel="vibration amplitude, zero-to-peak (µm)")
     axes.set(ylabel="normal force (N)")
-    plain_log(axes.yaxis)
-    legend_below(axes)
+    style.plain_log(axes.yaxis)
+    style.legend_below(axes)
     return figure
 
 
-@drawn
+@style.drawn
 def uncertainty(result: FrictionAnalysis) -> Figure:
     """Left: how µ′/µ is distributed. Right: which parameter makes it so."""
     unsure = result.uncertainty
     assert unsure is not None, "asked without samples"
     low, high = unsure.interval
     first = _name(unsure.influences[0].parameter.path)
-    figure = new_figure(
+    figure = style.new_figure(
         f"{unsure.sentence}; to know it better, measure the {first}",
         f"{unsure.model}, {unsure.evaluations} load balances",
         4.6,
     )
     left, right = figure.subplots(1, 2, width_ratios=[1, 1.15])
-    left.hist(unsure.samples, bins=24, range=(0, 1), color=BLUE, alpha=0.85)
-    left.axvspan(low, high, color=BAND, zorder=0, label=f"{unsure.level:.0%} interval")
-    left.axvline(unsure.nominal, color=INK, lw=1.6, label=f"as described: {unsure.nominal:.2f}")
+    left.hist(unsure.samples, bins=24, range=(0, 1), color=style.BLUE, alpha=0.85)
+    left.axvspan(low, high, color=style.BAND, zorder=0, label=f"{unsure.level:.0%} interval")
+    left.axvline(
+        unsure.nominal, color=style.INK, lw=1.6, label=f"as described: {unsure.nominal:.2f}"
+    )
     left.set(xlabel="relative friction µ′/µ", ylabel="samples", xlim=(0, 1))
-    legend_below(left, columns=1)
+    style.legend_below(left, columns=1)
     ranked = unsure.influences[:8][::-1]
     rows = np.arange(len(ranked))
     right.barh(
         rows,
         [100 * max(i.total, 0) for i in ranked],
-        color=BAND,
-        edgecolor=MUTED,
+        color=style.BAND,
+        edgecolor=style.MUTED,
         xerr=[100 * i.total_error for i in ranked],
-        ecolor=MUTED,
+        ecolor=style.MUTED,
         label="with all its company",
     )
     right.barh(
-        rows, [100 * max(i.first_order, 0) for i in ranked], height=0.4, color=ORANGE, label="alone"
+        rows,
+        [100 * max(i.first_order, 0) for i in ranked],
+        height=0.4,
+        color=style.ORANGE,
+        label="alone",
     )
     right.set_yticks(rows, [_name(i.parameter.path) for i in ranked])
     right.set(xlabel="share of the variance of µ′/µ (%)", xlim=(0, None))
     right.grid(visible=False, axis="y")
-    legend_below(right, columns=2)
+    style.legend_below(right, columns=2)
     return figure
 
 
-@drawn
+@style.drawn
 def ripple(result: FrictionAnalysis) -> Figure:
     """The friction as the pad moves along the standing wave, at constant amplitude."""
     found = result.ripple
@@ -245,26 +234,28 @@ def ripple(result: FrictionAnalysis) -> Figure:
     half = found.half_wavelength
     x = np.concatenate([found.position, found.position + half, [2 * half]])
     y = np.concatenate([found.relative_friction] * 2 + [found.relative_friction[:1]])
-    figure = new_figure(
+    figure = style.new_figure(
         f"The wave itself is felt: {100 * found.ripple:.2g} % of ripple every "
         f"{shown(half, M, 3)} under a contact of {shown(found.contact_length, M, 3)}",
         "partial-levitation, each ridge at its own balance",
         4.0,
     )
     axes = figure.subplots()
-    axes.plot(1e3 * x, y, color=BLUE, label="relative friction of the whole pad")
-    axes.axhline(found.mean, color=MUTED, ls=(0, (4, 2)), lw=1.2, label=f"mean {found.mean:.2f}")
+    axes.plot(1e3 * x, y, color=style.BLUE, label="relative friction of the whole pad")
+    axes.axhline(
+        found.mean, color=style.MUTED, ls=(0, (4, 2)), lw=1.2, label=f"mean {found.mean:.2f}"
+    )
     for node in (0.5 * half, 1.5 * half):
         axes.axvline(
             1e3 * node,
-            color=INK,
+            color=style.INK,
             lw=0.9,
             ls=(0, (1, 2)),
             label="nodal lines" if node < half else None,
         )
     axes.set(xlabel="centre of the pad, from an antinode (mm)", ylabel="relative friction µ′/µ")
     axes.set(xlim=(0, 2e3 * half), ylim=(0, 1.04))
-    legend_below(axes)
+    style.legend_below(axes)
     return figure
 
 
@@ -285,12 +276,12 @@ def write_friction(result: FrictionAnalysis, folder: Path) -> Path:
     }
     files: dict[str, str | bytes] = {
         "friction.json": json_text(summary),
-        "friction-models.png": png(models(result)),
-        "friction-map.png": png(friction_map(result)),
+        "friction-models.png": style.png(models(result)),
+        "friction-map.png": style.png(friction_map(result)),
     }
     if result.uncertainty is not None:
-        files["friction-uncertainty.png"] = png(uncertainty(result))
+        files["friction-uncertainty.png"] = style.png(uncertainty(result))
     if result.ripple is not None:
-        files["friction-ripple.png"] = png(ripple(result))
+        files["friction-ripple.png"] = style.png(ripple(result))
     write_folder(folder, files)
     return folder

@@ -10,15 +10,15 @@ from html import escape
 from itertools import zip_longest
 from typing import TYPE_CHECKING
 
+from squeezefilm.report.kit import style
 from squeezefilm.report.kit.numbers import printable
-from squeezefilm.report.kit.style import PALETTE
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
 def _variables(which: int) -> str:
-    return " ".join(f"--{role}: {colors[which]};" for role, colors in PALETTE.items())
+    return " ".join(f"--{role}: {colors[which]};" for role, colors in style.PALETTE.items())
 
 
 STYLE = f"""

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from squeezefilm.report.kit.style import INK, PAPER, drawn, new_figure
+from squeezefilm.report.kit import style
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -26,7 +26,7 @@ def driven_shape(result: PlateAnalysis, x: FloatArray, y: FloatArray) -> FloatAr
     return np.asarray((w * np.conj(phase) / np.abs(phase)).real)
 
 
-@drawn
+@style.drawn
 def mode_surface(result: PlateAnalysis) -> Figure:
     """The driven shape at resonance as a surface, heights exaggerated by a factor that is said."""
     from contourpy import LineType, contour_generator
@@ -38,7 +38,7 @@ def mode_surface(result: PlateAnalysis) -> Figure:
     lines: Any = contour_generator(x, y, w.T, line_type=LineType.Separate).lines(0.0)
     exaggeration = _DRAWN_HEIGHT * plate.length / (2 * reach * 1e-9 * (volts or 1.0))
     factor = f"{float(f'{exaggeration:.2g}'):,.0f}".replace(",", " ")
-    figure = new_figure(
+    figure = style.new_figure(
         f"Mode {result.working.label} at {result.working.frequency / 1e3:.2f} kHz: up to "
         f"{reach:.3g} nm per volt",
         f"{result.modes.model}, all electrodes driven at resonance; heights drawn {factor} times "
@@ -66,7 +66,7 @@ def mode_surface(result: PlateAnalysis) -> Figure:
     for line in lines:
         seen = np.array([not hidden(a, b) for a, b in line])
         a, b = 1e3 * np.where(seen, line[:, 0], np.nan), 1e3 * np.where(seen, line[:, 1], np.nan)
-        axes.plot(a, b, np.zeros(a.size), color=INK, lw=1.5, zorder=2, clip_on=False)
+        axes.plot(a, b, np.zeros(a.size), color=style.INK, lw=1.5, zorder=2, clip_on=False)
     axes.set_box_aspect((plate.length, plate.width, _DRAWN_HEIGHT * plate.length), zoom=1.22)
     axes.view_init(elev=_ELEVATION, azim=_AZIMUTH)
     axes.set(xlim=(0, 1e3 * plate.length), ylim=(0, 1e3 * plate.width), zlim=(-reach, reach))
@@ -75,7 +75,7 @@ def mode_surface(result: PlateAnalysis) -> Figure:
     axes.set_zlabel("w (nm/V)", labelpad=4)
     axes.locator_params(axis="z", nbins=3)
     for axis in (axes.xaxis, axes.yaxis, axes.zaxis):
-        axis.set_pane_color(PAPER)
+        axis.set_pane_color(style.PAPER)
     bar = figure.add_axes((0.89, 0.24, 0.016, 0.52))
     figure.colorbar(surface, cax=bar, label="w per volt (nm/V)")
     return figure

@@ -9,20 +9,8 @@ import numpy as np
 
 from squeezefilm.plate.solid.modes import zero_crossings
 from squeezefilm.report.display.plate_figures import half_power
+from squeezefilm.report.kit import style
 from squeezefilm.report.kit.folder import json_text, write_folder
-from squeezefilm.report.kit.style import (
-    BAND,
-    BLUE,
-    GREEN,
-    INK,
-    MUTED,
-    ORANGE,
-    drawn,
-    legend_below,
-    micrometres_beside,
-    new_figure,
-    png,
-)
 from squeezefilm.report.plate.mode_surface import driven_shape, mode_surface
 from squeezefilm.report.plate.vtu import write_vtu
 
@@ -32,7 +20,7 @@ if TYPE_CHECKING:
     from squeezefilm.analysis.plate.command import PlateAnalysis
 
 
-@drawn
+@style.drawn
 def plan_view(result: PlateAnalysis) -> Figure:
     """The driven shape over the upper face, seen from above, with its nodal lines."""
     from matplotlib.ticker import MaxNLocator
@@ -41,7 +29,7 @@ def plan_view(result: PlateAnalysis) -> Figure:
     x, y = np.linspace(0, plate.length, 166), np.linspace(0, plate.width, 99)
     w = 1e9 * driven_shape(result, x, y)
     reach = float(np.max(np.abs(w)))
-    figure = new_figure(
+    figure = style.new_figure(
         f"Mode {result.working.label} at {result.working.frequency / 1e3:.2f} kHz from above: up "
         f"to {reach:.3g} nm per volt",
         f"{result.modes.model}, all electrodes driven at resonance; nodal lines in black",
@@ -51,14 +39,14 @@ def plan_view(result: PlateAnalysis) -> Figure:
     field = axes.contourf(
         1e3 * x, 1e3 * y, w.T, levels=np.linspace(-reach, reach, 21), cmap="RdBu_r"
     )
-    axes.contour(1e3 * x, 1e3 * y, w.T, levels=[0.0], colors=INK, linewidths=1.2)
+    axes.contour(1e3 * x, 1e3 * y, w.T, levels=[0.0], colors=style.INK, linewidths=1.2)
     axes.set(xlabel="x (mm)", ylabel="y (mm)", aspect="equal")
     ticks = MaxNLocator(nbins=6, symmetric=True)
     figure.colorbar(field, ax=axes, label="w per volt (nm/V)", ticks=ticks, shrink=0.8)
     return figure
 
 
-@drawn
+@style.drawn
 def line_scan(result: PlateAnalysis) -> Figure:
     """The driven shape across its nodal lines, on the middle of the plate and on its edge, as a
     vibrometer that is moved along would see it."""
@@ -73,17 +61,19 @@ def line_scan(result: PlateAnalysis) -> Figure:
         f"Along the centre {centre:.3g} nm per volt between the outer nodes, "
         f"{result.amplitude_per_volt * 1e9:.3g} nm per volt at the largest of the face"
     )
-    figure = new_figure(title, f"{result.modes.model}, all electrodes driven at resonance", 4.2)
+    figure = style.new_figure(
+        title, f"{result.modes.model}, all electrodes driven at resonance", 4.2
+    )
     axes = figure.subplots()
-    axes.plot(1e3 * x, w[:, 1], color=BLUE, label="centreline")
-    axes.plot(1e3 * x, w[:, 0], color=ORANGE, ls="--", label="edge")
-    axes.axhline(0, color=MUTED, lw=0.8)
+    axes.plot(1e3 * x, w[:, 1], color=style.BLUE, label="centreline")
+    axes.plot(1e3 * x, w[:, 0], color=style.ORANGE, ls="--", label="edge")
+    axes.axhline(0, color=style.MUTED, lw=0.8)
     nodes = zero_crossings(x, w[:, 1])
     axes.plot(
         1e3 * nodes,
         np.zeros(nodes.size),
         "o",
-        color=INK,
+        color=style.INK,
         ms=4,
         zorder=3,
         label=f"{nodes.size} nodes of the centreline",
@@ -91,12 +81,12 @@ def line_scan(result: PlateAnalysis) -> Figure:
     axes.set(xlabel="x (mm)" if lengthwise else "y (mm)", xlim=(0, 1e3 * span))
     axes.set(ylabel="w per volt (nm/V)")
     if volts:
-        micrometres_beside(axes, volts, f"w at {volts:g} V (µm)")
-    legend_below(axes, columns=3, gap=0.2)
+        style.micrometres_beside(axes, volts, f"w at {volts:g} V (µm)")
+    style.legend_below(axes, columns=3, gap=0.2)
     return figure
 
 
-@drawn
+@style.drawn
 def frequency_response(result: PlateAnalysis) -> Figure:
     """The largest amplitude per volt against frequency around the working mode."""
     response = result.response
@@ -104,51 +94,51 @@ def frequency_response(result: PlateAnalysis) -> Figure:
     per_volt = 1e9 * response.maximum
     band = half_power(f, per_volt)
     wide = "" if band is None else f", {1e3 * (band[1] - band[0]):.3g} Hz wide at half power"
-    figure = new_figure(
+    figure = style.new_figure(
         f"Resonance at {f[at]:.2f} kHz: {per_volt[at]:.3g} nm per volt{wide}",
         f"{response.model}, {response.method}; largest point of the upper face",
         4.2,
     )
     axes = figure.subplots()
     if band is not None:
-        axes.axvspan(*band, color=BAND, lw=0, label="half-power band")
-    axes.plot(f, per_volt, color=BLUE, label="solved plate, all modes")
+        axes.axvspan(*band, color=style.BAND, lw=0, label="half-power band")
+    axes.plot(f, per_volt, color=style.BLUE, label="solved plate, all modes")
     axes.axvline(
         result.working.frequency / 1e3,
-        color=INK,
+        color=style.INK,
         lw=1,
         ls=(0, (4, 2)),
         label=f"mode {result.working.label} extrapolated, {result.working.frequency / 1e3:.2f} kHz",
     )
     axes.set(xlabel="frequency (kHz)", ylabel="largest amplitude (nm/V)")
     axes.set(ylim=(0, None), xlim=(f[0], f[-1]))
-    legend_below(axes, columns=3, gap=0.2)
+    style.legend_below(axes, columns=3, gap=0.2)
     return figure
 
 
-@drawn
+@style.drawn
 def admittance(result: PlateAnalysis) -> Figure:
     """Admittance around the working mode, its parts, and its circle."""
     response = result.response
     f, Y = response.frequencies / 1e3, 1e3 * response.admittance
     top = int(np.argmax(Y.real))
-    figure = new_figure(
+    figure = style.new_figure(
         f"Admittance: {np.abs(Y[top]):.3g} mS at {f[top]:.2f} kHz, where its real part is largest",
         f"{response.method}; truncation {response.truncation_error:.1g} of the admittance",
         4.6,
     )
     left, right = figure.subplots(1, 2, width_ratios=[1.5, 1])
-    left.plot(f, np.abs(Y), color=BLUE, label="|Y|")
-    left.plot(f, Y.real, color=ORANGE, ls="--", label="Re Y (conductance)")
-    left.plot(f, Y.imag, color=GREEN, ls=(0, (5, 1.5, 1, 1.5)), label="Im Y (susceptance)")
-    left.axhline(0, color=MUTED, lw=0.8)
+    left.plot(f, np.abs(Y), color=style.BLUE, label="|Y|")
+    left.plot(f, Y.real, color=style.ORANGE, ls="--", label="Re Y (conductance)")
+    left.plot(f, Y.imag, color=style.GREEN, ls=(0, (5, 1.5, 1, 1.5)), label="Im Y (susceptance)")
+    left.axhline(0, color=style.MUTED, lw=0.8)
     left.set(xlabel="frequency (kHz)", ylabel="admittance (mS)", xlim=(f[0], f[-1]))
-    legend_below(left, columns=3, gap=0.18)
-    right.plot(Y.real, Y.imag, color=BLUE)
-    right.plot(Y.real[top], Y.imag[top], "o", color=ORANGE, ms=6, label=f"{f[top]:.2f} kHz")
+    style.legend_below(left, columns=3, gap=0.18)
+    right.plot(Y.real, Y.imag, color=style.BLUE)
+    right.plot(Y.real[top], Y.imag[top], "o", color=style.ORANGE, ms=6, label=f"{f[top]:.2f} kHz")
     right.set(xlabel="Re Y (mS)", ylabel="Im Y (mS)", aspect="equal", xlim=(0, None))
     right.margins(0.08)
-    legend_below(right, gap=0.18)
+    style.legend_below(right, gap=0.18)
     return figure
 
 
@@ -173,7 +163,7 @@ def write_plate(result: PlateAnalysis, folder: Path) -> Path:
     if result.tracks is not None:
         figures["tracking"] = ("Modes against a parameter", tracks(result.tracks))
     files: dict[str, str | bytes] = {
-        f"{name}.png": png(figure) for name, (_, figure) in figures.items()
+        f"{name}.png": style.png(figure) for name, (_, figure) in figures.items()
     }
     files["plate.json"] = json_text(result.summary())
     files["index.html"] = plate_page(result, figures)

@@ -10,21 +10,9 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.report.display.layout_figures import FILL, draw_sector
+from squeezefilm.report.kit import style
 from squeezefilm.report.kit.folder import json_text, write_folder
 from squeezefilm.report.kit.numbers import HZ, M, shown
-from squeezefilm.report.kit.style import (
-    BLUE,
-    INK,
-    MINUS,
-    MUTED,
-    ORANGE,
-    PLUS,
-    drawn,
-    legend_below,
-    new_figure,
-    plain_log,
-    png,
-)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -33,7 +21,7 @@ if TYPE_CHECKING:
     from squeezefilm.analysis.plate.ring import RingAnalysis
 
 
-@drawn
+@style.drawn
 def shape(result: RingAnalysis) -> Figure:
     """The mode from above with its nodal lines and circles, beside the poling of the sectors."""
     from matplotlib.ticker import MaxNLocator
@@ -44,7 +32,7 @@ def shape(result: RingAnalysis) -> Figure:
     if not mode.harmonic:
         radii = ", ".join(shown(float(r), M, 3) for r in result.circles)
         where = f"nodal circle at a radius of {radii}" if radii else "no nodal line"
-    figure = new_figure(
+    figure = style.new_figure(
         f"Mode {result.working.label} at {result.working.frequency / 1e3:.2f} kHz moves up to "
         f"{size:.0f} nm per volt; {where}",
         f"{result.model}, channel driven at resonance",
@@ -60,7 +48,7 @@ def shape(result: RingAnalysis) -> Figure:
     reach = float(np.max(np.abs(w)))
     levels = np.linspace(-reach, reach, 21)
     field = left.contourf(x, y, w, levels=levels, cmap="RdBu_r")
-    left.contour(x, y, w, levels=[0.0], colors=INK, linewidths=0.9)
+    left.contour(x, y, w, levels=[0.0], colors=style.INK, linewidths=0.9)
     figure.colorbar(
         field,
         ax=left,
@@ -104,7 +92,9 @@ def _sectors(axes: Axes, result: RingAnalysis) -> None:
     whole = result.body.drive.angle > 2 * np.pi - 1e-9 and len(result.body.drive.sectors) == 1
     if not whole:
         axes.add_patch(
-            Wedge((0, 0), edge, 0, 360, width=width, facecolor="none", edgecolor=MUTED, lw=0.8)
+            Wedge(
+                (0, 0), edge, 0, 360, width=width, facecolor="none", edgecolor=style.MUTED, lw=0.8
+            )
         )
     for start, end, sign in result.body.drive.sectors:
         draw_sector(axes, edge, width, (math.degrees(start), math.degrees(end)), sign)
@@ -118,12 +108,12 @@ def _sectors(axes: Axes, result: RingAnalysis) -> None:
             fontsize=11,
         )
     for radius in {outer, inner} - {0.0}:
-        axes.add_patch(Circle((0, 0), radius, fill=False, ec=INK, lw=1))
+        axes.add_patch(Circle((0, 0), radius, fill=False, ec=style.INK, lw=1))
     axes.set_title("ceramic below, seen through the body")
     handles = [
-        Patch(facecolor=PLUS, edgecolor=INK, label="driven, poled up"),
-        Patch(facecolor=MINUS, edgecolor=INK, label="driven, poled down"),
-        Patch(facecolor="none", edgecolor=MUTED, label="not on this channel"),
+        Patch(facecolor=style.PLUS, edgecolor=style.INK, label="driven, poled up"),
+        Patch(facecolor=style.MINUS, edgecolor=style.INK, label="driven, poled down"),
+        Patch(facecolor="none", edgecolor=style.MUTED, label="not on this channel"),
     ]
     axes.legend(
         handles=handles[:1] if whole else handles,
@@ -136,7 +126,7 @@ def _sectors(axes: Axes, result: RingAnalysis) -> None:
     )
 
 
-@drawn
+@style.drawn
 def scan(result: RingAnalysis) -> Figure:
     """The driven shape around the mean circumference and along a radius; without nodal diameters
     along a diameter."""
@@ -148,7 +138,7 @@ def scan(result: RingAnalysis) -> Figure:
             f"{m} waves stand around the mean circumference of {shown(2 * math.pi * mean, M)}: "
             f"{1e9 * result.centreline_per_volt:.0f} nm per volt at their antinodes"
         )
-        figure = new_figure(title, f"{result.model}, channel driven at resonance", 5.6)
+        figure = style.new_figure(title, f"{result.model}, channel driven at resonance", 5.6)
         above, below = figure.subplots(2, 1)
         _around(above, result, float(np.interp(mean, result.response.radius, radial)))
     else:
@@ -156,18 +146,18 @@ def scan(result: RingAnalysis) -> Figure:
             f"Along a diameter {result.working.label} moves {abs(radial[0]):.0f} nm per volt in "
             f"the middle and {abs(radial[-1]):.0f} at the rim"
         )
-        figure = new_figure(title, f"{result.model}, channel driven at resonance", 4.2)
+        figure = style.new_figure(title, f"{result.model}, channel driven at resonance", 4.2)
         below = figure.subplots()
     r = 1e3 * result.response.radius
-    below.plot(r, radial, color=BLUE, label="at the angle of an antinode" if m else None)
+    below.plot(r, radial, color=style.BLUE, label="at the angle of an antinode" if m else None)
     if not m:
-        below.plot(-r, radial, color=BLUE)
-    below.axhline(0, color=MUTED, lw=0.8)
+        below.plot(-r, radial, color=style.BLUE)
+    below.axhline(0, color=style.MUTED, lw=0.8)
     for number, circle in enumerate(result.circles):
         for side in (1,) if m else (1, -1):
             below.axvline(
                 side * 1e3 * float(circle),
-                color=ORANGE,
+                color=style.ORANGE,
                 lw=1.2,
                 ls=(0, (4, 2)),
                 label="nodal circle" if number == 0 and side == 1 else None,
@@ -175,7 +165,7 @@ def scan(result: RingAnalysis) -> Figure:
     below.set(xlabel="radius (mm)" if m else "along a diameter (mm)", ylabel="per volt (nm/V)")
     below.set_xlim(r[0] if m else -r[-1], r[-1])
     if below.get_legend_handles_labels()[0]:
-        legend_below(below, gap=0.3 if m else 0.2)
+        style.legend_below(below, gap=0.3 if m else 0.2)
     return figure
 
 
@@ -184,20 +174,20 @@ def _around(axes: Axes, result: RingAnalysis, here: float) -> None:
     m, mean = result.mode.harmonic, result.scan_radius
     angle = np.linspace(0, 2 * np.pi, max(361, 40 * m) | 1)
     length = 1e3 * mean * angle
-    axes.plot(length, here * np.cos(m * angle - _turn(result)), color=BLUE)
-    axes.axhline(0, color=MUTED, lw=0.8)
+    axes.plot(length, here * np.cos(m * angle - _turn(result)), color=style.BLUE)
+    axes.axhline(0, color=style.MUTED, lw=0.8)
     axes.set(xlabel=f"along the circumference at a radius of {shown(mean, M)} (mm)")
     axes.set(ylabel="per volt (nm/V)", xlim=(0, float(length[-1])))
     for start, end, sign in result.body.drive.sectors:
         axes.axvspan(1e3 * mean * start, 1e3 * mean * end, ymax=0.06, color=FILL[sign], lw=0.0)
 
 
-@drawn
+@style.drawn
 def response(result: RingAnalysis) -> Figure:
     """Amplitude per volt and admittance around the working mode, with its equivalent circuit."""
     swept = result.response
     f = swept.frequencies / 1e3
-    figure = new_figure(
+    figure = style.new_figure(
         f"Resonance at {shown(float(swept.frequencies[swept.resonance]), HZ)}: "
         f"{np.abs(swept.admittance[swept.resonance]) * 1e3:.3g} mS",
         f"{result.model}; {swept.terms} modes of its harmonic, "
@@ -205,24 +195,24 @@ def response(result: RingAnalysis) -> Figure:
         6.0,
     )
     above, below = figure.subplots(2, 1, sharex=True)
-    above.plot(f, 1e9 * swept.maximum, color=BLUE)
+    above.plot(f, 1e9 * swept.maximum, color=style.BLUE)
     above.set(ylabel="largest amplitude (nm/V)", ylim=(0, None))
-    below.semilogy(f, 1e3 * np.abs(swept.admittance), color=BLUE, label="|Y|")
-    below.semilogy(f, 1e3 * swept.admittance.real, color=ORANGE, ls="--", label="Re Y")
+    below.semilogy(f, 1e3 * np.abs(swept.admittance), color=style.BLUE, label="|Y|")
+    below.semilogy(f, 1e3 * swept.admittance.real, color=style.ORANGE, ls="--", label="Re Y")
     if result.circuit is not None:
         circuit = 1e3 * np.abs(result.circuit.admittance(swept.frequencies))
         resistance = shown(result.circuit.motional_resistance, si.Unit("ohm"), 3)
         below.semilogy(
             f,
             circuit,
-            color=INK,
+            color=style.INK,
             lw=1.0,
             ls=(0, (1, 2)),
             label=f"equivalent circuit, R1 = {resistance}",
         )
-    plain_log(below.yaxis)
+    style.plain_log(below.yaxis)
     below.set(xlabel="frequency (kHz)", ylabel="admittance (mS)")
-    legend_below(below, columns=3, gap=0.28)
+    style.legend_below(below, columns=3, gap=0.28)
     return figure
 
 
@@ -230,9 +220,9 @@ def write_ring(result: RingAnalysis, folder: Path) -> Path:
     """Write plate.json and the figures plate-shape, plate-scan and plate-response; the folder."""
     files: dict[str, str | bytes] = {
         "plate.json": json_text(result.summary()),
-        "plate-shape.png": png(shape(result)),
-        "plate-scan.png": png(scan(result)),
-        "plate-response.png": png(response(result)),
+        "plate-shape.png": style.png(shape(result)),
+        "plate-scan.png": style.png(scan(result)),
+        "plate-response.png": style.png(response(result)),
     }
     write_folder(folder, files)
     return folder

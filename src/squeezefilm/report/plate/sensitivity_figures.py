@@ -7,16 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.report.kit.style import (
-    BLUE,
-    INK,
-    LINES,
-    MUTED,
-    ORANGE,
-    drawn,
-    legend_below,
-    new_figure,
-)
+from squeezefilm.report.kit import style
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -29,14 +20,14 @@ if TYPE_CHECKING:
 _CUT = 2.6
 
 
-@drawn
+@style.drawn
 def tornado(table: SensitivityTable) -> Figure:
     """Shift of frequency and of amplitude per volt under each change, largest shift first."""
     rows = sorted(table.rows, key=lambda row: -abs(row.frequency_shift))
     moving = [row for row in rows if abs(row.frequency_shift) >= 5e-5 or row.amplitude_shift]
     largest = moving[0]
     label = f"({table.reference.label[0]},{table.reference.label[1]})"
-    figure = new_figure(
+    figure = style.new_figure(
         f"Mode {label} at {table.reference.frequency / 1e3:.2f} kHz: {largest.name}, "
         f"{largest.change}, shifts it most: {_signed(100 * largest.frequency_shift)} %",
         "piezoelectric_solid_3d, every changed plate solved anew; the amplitude is the largest of "
@@ -54,9 +45,9 @@ def tornado(table: SensitivityTable) -> Figure:
         limit = _CUT * known[-3] if known.size >= 3 else known[-1]
         limit = float(min(limit, known[-1])) or 1.0
         shown = np.clip(np.nan_to_num(values), -limit, limit)
-        colors = [BLUE if v < 0 else ORANGE for v in shown]
+        colors = [style.BLUE if v < 0 else style.ORANGE for v in shown]
         axes.barh(at, shown, color=colors, height=0.66)
-        axes.axvline(0, color=INK, lw=0.8)
+        axes.axvline(0, color=style.INK, lw=0.8)
         axes.set_xlim(-1.6 * limit, 1.6 * limit)
         for y, value, width in zip(at, values, shown, strict=True):
             cut = "" if abs(value) <= limit * 1.0001 else " (cut)"
@@ -78,7 +69,7 @@ def tornado(table: SensitivityTable) -> Figure:
     return figure
 
 
-@drawn
+@style.drawn
 def tracks(found: ModeTracks) -> Figure:
     """Frequencies of the tracked modes against the parameter, each line named at its end."""
     unit = si.Unit(found.unit)
@@ -86,7 +77,7 @@ def tracks(found: ModeTracks) -> Figure:
     scale, symbol = _scale(found.values, unit)
     lost = sum(bool(np.isnan(t.frequency).any()) for t in found.tracks)
     gone = "" if lost == 0 else f"; {lost} of them only in part, where they can be recognised"
-    figure = new_figure(
+    figure = style.new_figure(
         f"{len(found.tracks)} modes followed by their shapes over the {name}{gone}",
         f"piezoelectric_solid_3d; labels read at {_text(found.begun, unit)}; least likeness from "
         f"one value to the next {found.least_likeness:.2f}",
@@ -100,16 +91,16 @@ def tracks(found: ModeTracks) -> Figure:
         axes.plot(
             x,
             track.frequency / 1e3,
-            color=MUTED,
+            color=style.MUTED,
             lw=1.0,
             label="not driven (symmetry)" if number == 0 else None,
         )
     for number, track in enumerate(driven):
-        color, dashes = LINES[number % len(LINES)]
+        color, dashes = style.LINES[number % len(style.LINES)]
         axes.plot(
             x, track.frequency / 1e3, color=color, ls=dashes, lw=2.2, label=f"{track.label}, driven"
         )
-    axes.axvline(scale * found.own, color=INK, lw=0.8, ls=(0, (2, 2)), label="this plate")
+    axes.axvline(scale * found.own, color=style.INK, lw=0.8, ls=(0, (2, 2)), label="this plate")
     ends: list[tuple[float, str]] = []
     for track in found.tracks:
         known = np.flatnonzero(np.isfinite(track.frequency))
@@ -127,11 +118,17 @@ def tracks(found: ModeTracks) -> Figure:
             fontsize=8.5,
             va="center",
             annotation_clip=False,
-            arrowprops={"arrowstyle": "-", "color": MUTED, "lw": 0.5, "shrinkA": 0, "shrinkB": 0},
+            arrowprops={
+                "arrowstyle": "-",
+                "color": style.MUTED,
+                "lw": 0.5,
+                "shrinkA": 0,
+                "shrinkB": 0,
+            },
         )
     axes.set(xlim=(x[0], x[-1]), xlabel=f"{name} ({symbol})" if symbol != "1" else name)
     axes.set(ylabel="frequency (kHz)")
-    legend_below(axes, columns=4, gap=0.12)
+    style.legend_below(axes, columns=4, gap=0.12)
     return figure
 
 

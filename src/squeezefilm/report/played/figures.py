@@ -8,20 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from squeezefilm import quantities as si
+from squeezefilm.report.kit import style
 from squeezefilm.report.kit.numbers import HZ, M, S, shown
-from squeezefilm.report.kit.style import (
-    BLUE,
-    GREEN,
-    INK,
-    MUTED,
-    ORANGE,
-    drawn,
-    legend_below,
-    message_figure,
-    new_figure,
-    plain,
-    plain_log,
-)
 from squeezefilm.session.loop import rows as column
 from squeezefilm.session.loop.lateness import Lateness, class_ends
 
@@ -34,14 +22,16 @@ _WINDOW = 0.25
 _MOST_POINTS = 4000
 
 
-@drawn
+@style.drawn
 def friction(session: PlayedSession) -> Figure:
     """Friction wanted and rendered over the finger's place, as recorded and as it was."""
     judged = session.by_truth or session.by_record
     way = judged.way
     if way.time.size < 8:
-        return message_figure("The finger was not seen", "There is no place to draw friction over.")
-    title = f"{plain(session.setup.name, 40)}: "
+        return style.message_figure(
+            "The finger was not seen", "There is no place to draw friction over."
+        )
+    title = f"{style.plain(session.setup.name, 40)}: "
     found = judged.fidelity
     if found is None:
         title += "it cannot be judged"
@@ -51,14 +41,14 @@ def friction(session: PlayedSession) -> Figure:
         if math.isfinite(found.lag):
             word = "late" if found.lag >= 0 else "early"
             title += f", {1e3 * abs(found.lag):.2f} mm {word}"
-    figure = new_figure(title, f"{way.source}; friction by the display's law", 4.2)
+    figure = style.new_figure(title, f"{way.source}; friction by the display's law", 4.2)
     axes = figure.subplots()
     part = _middle_pass(way)
     order = part[np.argsort(way.x[part])]
     axes.plot(
         1e3 * way.x[order],
         way.relative_friction_wanted[order],
-        color=ORANGE,
+        color=style.ORANGE,
         lw=1.5,
         ls=(0, (6, 1.6)),
         label="wanted where the finger was",
@@ -66,7 +56,7 @@ def friction(session: PlayedSession) -> Figure:
     axes.plot(
         1e3 * way.x[order],
         way.relative_friction_rendered[order],
-        color=BLUE,
+        color=style.BLUE,
         lw=1.7,
         label="rendered",
     )
@@ -78,11 +68,11 @@ def friction(session: PlayedSession) -> Figure:
             seen.relative_friction_rendered[inside],
             ".",
             ms=3,
-            color=GREEN,
+            color=style.GREEN,
             label="by the record (sensor and pickup)",
         )
     axes.set(xlabel="place of the finger (mm)", ylabel="relative friction µ′/µ", ylim=(0, 1.05))
-    legend_below(axes, columns=3)
+    style.legend_below(axes, columns=3)
     return figure
 
 
@@ -107,19 +97,19 @@ def _turns(way: PlayedWay) -> si.FloatArray:
     return np.array(found, dtype=np.int64)
 
 
-@drawn
+@style.drawn
 def amplitude(session: PlayedSession) -> Figure:
     """The amplitude commanded, reported by the pickup and true, over a quarter of a second."""
     rows = session.trace.rows
     if len(rows) < 8:
-        return message_figure("Nothing was played", "The record holds no rows.")
+        return style.message_figure("Nothing was played", "The record holds no rows.")
     plan = session.setup.plan.loop
     time = rows[:, column.TIME]
     middle = float(time[len(time) // 2])
     inside = np.abs(time - middle) <= 0.5 * _WINDOW
     t = time[inside]
     largest = plan.drive.largest_amplitude
-    figure = new_figure(
+    figure = style.new_figure(
         f"The display reaches {shown(largest, M, 3)}; the plate follows its commands with "
         f"τ = {shown(plan.envelope.rise_time_constant, S, 2)}",
         f"mode {session.setup.plan.mode}, compensation {plan.compensation}, commands "
@@ -133,38 +123,45 @@ def amplitude(session: PlayedSession) -> Figure:
         t + plan.output_delay,
         1e6 * commanded,
         where="post",
-        color=ORANGE,
+        color=style.ORANGE,
         lw=1.2,
         label="commanded, at its time",
     )
     if session.by_truth is not None:
         way = session.by_truth.way
         near = np.abs(way.time - middle) <= 0.5 * _WINDOW
-        above.plot(way.time[near], 1e6 * way.amplitude[near], color=BLUE, lw=1.7, label="true")
+        above.plot(
+            way.time[near], 1e6 * way.amplitude[near], color=style.BLUE, lw=1.7, label="true"
+        )
     seen = session.by_record.way
     near = np.abs(seen.time - middle) <= 0.5 * _WINDOW
     above.plot(
-        seen.time[near], 1e6 * seen.amplitude[near], ".", ms=3.5, color=GREEN, label="in the record"
+        seen.time[near],
+        1e6 * seen.amplitude[near],
+        ".",
+        ms=3.5,
+        color=style.GREEN,
+        label="in the record",
     )
     above.set(ylabel="amplitude (µm)", ylim=(0, 1.12e6 * largest))
     above.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False)
-    below.plot(t, 1e3 * rows[inside, column.X], color=INK, lw=1.4)
+    below.plot(t, 1e3 * rows[inside, column.X], color=style.INK, lw=1.4)
     below.set(xlabel="time (s)", ylabel="place (mm)", xlim=(t[0], t[-1]))
     return figure
 
 
-@drawn
+@style.drawn
 def lateness(session: PlayedSession) -> Figure:
     """How late ticks were made, and how long samples wait for their command."""
     said = session.loop().get("lateness")
     if not said or not said["made"]:
-        return message_figure("The loop could not say how late it was", "It made no tick.")
+        return style.message_figure("The loop could not say how late it was", "It made no tick.")
     found = Lateness.from_json(said)
     due = found.made + found.lost
     lost = f"{100 * found.lost / max(due, 1):.2g} % of {due} ticks were lost"
     if not found.lost:
         lost = f"None of {due} ticks was lost"
-    figure = new_figure(
+    figure = style.new_figure(
         f"{lost}; half are made within {shown(found.p50, S, 2)}, 99.9 % within "
         f"{shown(found.p99_9, S, 2)}",
         f"loop at {shown(found.rate, HZ, 3)}; a tick is lost when the next is due before it began",
@@ -174,18 +171,18 @@ def lateness(session: PlayedSession) -> Figure:
     # The first class, whatever is below 100 ns, is drawn as wide as the next.
     ends = 1e6 * class_ends()[:-1]
     edges = np.concatenate([[ends[0] ** 2 / ends[1]], ends])
-    left.stairs(found.counts[:-1], edges, fill=True, color=BLUE)
+    left.stairs(found.counts[:-1], edges, fill=True, color=style.BLUE)
     used = np.flatnonzero(found.counts[:-1])
     left.set_xlim(edges[max(int(used[0]) - 2, 0)], max(2e6 / found.rate, 1.5 * edges[used[-1] + 1]))
-    left.axvline(1e6 / found.rate, color=MUTED, lw=1.2, ls=(0, (2, 2)), label="a period")
+    left.axvline(1e6 / found.rate, color=style.MUTED, lw=1.2, ls=(0, (2, 2)), label="a period")
     left.set(xscale="log", yscale="log", xlabel="lateness (µs)", ylabel="ticks")
     left.set_ylim(0.7, None)
-    plain_log(left.xaxis)
-    plain_log(left.yaxis)
+    style.plain_log(left.xaxis)
+    style.plain_log(left.yaxis)
     left.legend(loc="upper left", frameon=False)
     lag = session.trace.rows[:, column.LAG]
     lag = 1e3 * lag[np.isfinite(lag)]
     if lag.size:
-        right.hist(lag, bins=60, color=GREEN)
+        right.hist(lag, bins=60, color=style.GREEN)
     right.set(xlabel="way from sample to its command (mm)", ylabel="ticks")
     return figure

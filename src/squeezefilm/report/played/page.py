@@ -7,10 +7,10 @@ from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from squeezefilm.report.kit import style
 from squeezefilm.report.kit.folder import json_text, write_folder
 from squeezefilm.report.kit.numbers import printable
 from squeezefilm.report.kit.page_style import page_head, picture_sections, section
-from squeezefilm.report.kit.style import png
 from squeezefilm.report.played import figures as draw
 from squeezefilm.report.played.terminal import play_rows, play_warnings
 
@@ -36,7 +36,7 @@ def write_play(
         "play-lateness": ("Lateness and lag", draw.lateness(session)),
     }
     files: dict[str, str | bytes] = {
-        f"{name}.png": png(figure) for name, (_, figure) in figures.items()
+        f"{name}.png": style.png(figure) for name, (_, figure) in figures.items()
     }
     files["summary.json"] = json_text(result.summary())
     there = {*files, *(one.name for one in folder.glob("*"))}

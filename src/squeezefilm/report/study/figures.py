@@ -8,20 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from squeezefilm.report.kit.style import (
-    BAND,
-    BLUE,
-    INK,
-    METAL,
-    MUTED,
-    ORANGE,
-    PAPER,
-    PLUS,
-    drawn,
-    message_figure,
-    new_figure,
-    plain,
-)
+from squeezefilm.report.kit import style
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -35,16 +22,16 @@ def data_of(analysis: IdentificationAnalysis) -> str:
     """The small print of every figure: whose answers, how many."""
     people = analysis.participants
     return (
-        f"{plain(analysis.origin, 40)} answers, {plain(analysis.name, 40)}; "
+        f"{style.plain(analysis.origin, 40)} answers, {style.plain(analysis.name, 40)}; "
         f"{people} participant{'s' if people != 1 else ''}, {analysis.matrix.trials} trials"
     )
 
 
-@drawn
+@style.drawn
 def confusion(analysis: IdentificationAnalysis) -> Figure:
     """The confusion matrix in the paper's layout: rows gratings, columns simulated periods."""
     matrix = analysis.matrix
-    figure = new_figure(
+    figure = style.new_figure(
         f"{100 * analysis.proportion_correct:.3g} % of the answers are right; {_worst(matrix)}",
         f"{data_of(analysis)}; per cent of each column, trials in brackets",
         1.7 + 0.62 * len(matrix.answers),
@@ -58,17 +45,19 @@ def _draw_confusion(axes: Axes, matrix: ConfusionMatrix) -> None:
     from matplotlib.patches import Rectangle
 
     percent = matrix.percent
-    shades = LinearSegmentedColormap.from_list("share", [PAPER, PLUS, "#6fb0d8"])
+    shades = LinearSegmentedColormap.from_list("share", [style.PAPER, style.PLUS, "#6fb0d8"])
     axes.imshow(np.nan_to_num(percent), cmap=shades, vmin=0, vmax=100, aspect="auto")
     for (i, j), value in np.ndenumerate(percent):
         count = int(matrix.counts[i, j])
         words = "–" if np.isnan(value) else f"{value:.0f} %\n({count})" if count else "·"
         weight = "bold" if i == j and matrix.is_square else "normal"
-        axes.text(j, i, words, ha="center", va="center", weight=weight, color=INK)
+        axes.text(j, i, words, ha="center", va="center", weight=weight, color=style.INK)
         if i == j and matrix.is_square:
-            axes.add_patch(Rectangle((j - 0.5, i - 0.5), 1, 1, fill=False, edgecolor=MUTED, lw=1.2))
-    axes.set_xticks(range(len(matrix.stimuli)), [plain(name, 16) for name in matrix.stimuli])
-    axes.set_yticks(range(len(matrix.answers)), [plain(name, 16) for name in matrix.answers])
+            axes.add_patch(
+                Rectangle((j - 0.5, i - 0.5), 1, 1, fill=False, edgecolor=style.MUTED, lw=1.2)
+            )
+    axes.set_xticks(range(len(matrix.stimuli)), [style.plain(name, 16) for name in matrix.stimuli])
+    axes.set_yticks(range(len(matrix.answers)), [style.plain(name, 16) for name in matrix.answers])
     axes.set(xlabel="simulated", ylabel="grating answered")
     axes.tick_params(length=0)
     axes.grid(visible=False)
@@ -82,18 +71,18 @@ def _worst(matrix: ConfusionMatrix) -> str:
     if wrong[i, j] <= 0:
         return "nothing is confused"
     return (
-        f"{plain(matrix.stimuli[j], 16)} is most often taken for {plain(matrix.answers[i], 16)} "
-        f"({wrong[i, j]:.0f} %)"
+        f"{style.plain(matrix.stimuli[j], 16)} is most often taken for "
+        f"{style.plain(matrix.answers[i], 16)} ({wrong[i, j]:.0f} %)"
     )
 
 
-@drawn
+@style.drawn
 def proportion_correct(analysis: IdentificationAnalysis) -> Figure:
     """Right answers by stimulus and over all, with intervals; the people themselves beside."""
     bounds = analysis.interval
     p = analysis.permutation_p
     said = "better than" if p < 0.05 else "not shown to be better than"
-    figure = new_figure(
+    figure = style.new_figure(
         f"{100 * analysis.proportion_correct:.3g} % right "
         f"({100 * bounds.low:.3g} to {100 * bounds.high:.3g} %), {said} unrelated answers "
         f"(p {_p(p)})",
@@ -103,23 +92,28 @@ def proportion_correct(analysis: IdentificationAnalysis) -> Figure:
     left, right = figure.subplots(1, 2, width_ratios=[1.6, 1], sharey=True)
     chance = 100 * analysis.matrix.chance
     for x, item in enumerate(analysis.by_stimulus):
-        left.plot([x, x], [100 * item.low, 100 * item.high], color=MUTED, lw=1.4)
-        left.plot([x], [100 * item.proportion_correct], "o", color=BLUE, ms=7, mec=PAPER)
+        left.plot([x, x], [100 * item.low, 100 * item.high], color=style.MUTED, lw=1.4)
+        left.plot(
+            [x], [100 * item.proportion_correct], "o", color=style.BLUE, ms=7, mec=style.PAPER
+        )
     left.set_xticks(
-        range(len(analysis.by_stimulus)), [plain(s.stimulus, 14) for s in analysis.by_stimulus]
+        range(len(analysis.by_stimulus)),
+        [style.plain(s.stimulus, 14) for s in analysis.by_stimulus],
     )
     left.set(ylabel="right answers (%)", ylim=(0, 104), xlabel="stimulus")
     right.hist(
         100 * analysis.participant_correct,
         bins=_bins(analysis),
         orientation="horizontal",
-        color=PLUS,
-        edgecolor=MUTED,
+        color=style.PLUS,
+        edgecolor=style.MUTED,
     )
     right.set(xlabel="participants")
     for k, interval in enumerate(analysis.intervals):
         x = (0.6 + 0.11 * k) * right.get_xlim()[1]
-        right.plot([x, x], [100 * interval.low, 100 * interval.high], color=ORANGE, lw=2, zorder=4)
+        right.plot(
+            [x, x], [100 * interval.low, 100 * interval.high], color=style.ORANGE, lw=2, zorder=4
+        )
         right.text(
             x,
             100 * interval.low - 2,
@@ -128,17 +122,17 @@ def proportion_correct(analysis: IdentificationAnalysis) -> Figure:
             ha="center",
             va="top",
             fontsize=8.5,
-            bbox={"facecolor": PAPER, "edgecolor": "none", "alpha": 0.8, "pad": 0.5},
+            bbox={"facecolor": style.PAPER, "edgecolor": "none", "alpha": 0.8, "pad": 0.5},
         )
     for axes in (left, right):
-        axes.axhline(chance, color=MUTED, lw=1, ls=(0, (1.4, 1.2)))
+        axes.axhline(chance, color=style.MUTED, lw=1, ls=(0, (1.4, 1.2)))
     left.annotate(
         f"guessing: {chance:.3g} %",
         (0, chance),
         (-8, 4),
         textcoords="offset points",
         fontsize=9,
-        color=MUTED,
+        color=style.MUTED,
     )
     left.set_title("each stimulus")
     right.set_title("people, and the mean's intervals")
@@ -156,12 +150,12 @@ def _p(p: float) -> str:
     return "< 0.001" if p < 0.001 else f"= {p:.2g}"
 
 
-@drawn
+@style.drawn
 def information(analysis: IdentificationAnalysis) -> Figure:
     """Information transfer by every estimator, the recommended one marked, and where each fails."""
     found = analysis.information
     best = found.best
-    figure = new_figure(
+    figure = style.new_figure(
         f"Answers carry {best.estimate:.2f} bit of {found.greatest:.2f}: about "
         f"{2 ** max(best.estimate, 0):.1f} stimuli told apart without error",
         f"{data_of(analysis)}; {best.name} is the one to quote",
@@ -171,9 +165,11 @@ def information(analysis: IdentificationAnalysis) -> Figure:
     rows = np.arange(len(found.estimates))[::-1]
     for row, item in zip(rows, found.estimates, strict=True):
         chosen = item.key == found.recommended
-        color = ORANGE if chosen else BLUE
+        color = style.ORANGE if chosen else style.BLUE
         if item.interval is not None:
-            axes.plot([item.interval.low, item.interval.high], [row, row], color=MUTED, lw=1.4)
+            axes.plot(
+                [item.interval.low, item.interval.high], [row, row], color=style.MUTED, lw=1.4
+            )
         if np.isfinite(item.estimate):
             axes.plot(
                 [item.estimate],
@@ -181,7 +177,7 @@ def information(analysis: IdentificationAnalysis) -> Figure:
                 "D" if chosen else "o",
                 color=color,
                 ms=8,
-                mec=PAPER,
+                mec=style.PAPER,
                 clip_on=False,
                 zorder=4,
             )
@@ -197,7 +193,7 @@ def information(analysis: IdentificationAnalysis) -> Figure:
             row,
             textwrap.fill(item.fails, 62),
             fontsize=7.6,
-            color=MUTED,
+            color=style.MUTED,
             va="center",
             transform=axes.get_yaxis_transform(),
         )
@@ -209,15 +205,15 @@ def _values(analysis: IdentificationAnalysis) -> list[float]:
     return [i.estimate for i in analysis.information.estimates if np.isfinite(i.estimate)]
 
 
-@drawn
+@style.drawn
 def sensitivity(analysis: IdentificationAnalysis) -> Figure:
     """Stimuli and criteria on the decision axis, and d′ of neighbours with intervals."""
     fit = analysis.sensitivity
     if fit is None:
-        return message_figure("No d′", _note(analysis, "d′"))
-    names = [plain(name, 14) for name in analysis.matrix.stimuli]
+        return style.message_figure("No d′", _note(analysis, "d′"))
+    names = [style.plain(name, 14) for name in analysis.matrix.stimuli]
     weakest = int(np.argmin(fit.d_prime))
-    figure = new_figure(
+    figure = style.new_figure(
         f"Δ′ = {fit.total:.2f} from {names[0]} to {names[-1]}; "
         f"{names[weakest]} and {names[weakest + 1]} lie closest, d′ = {fit.d_prime[weakest]:.2f}",
         f"{data_of(analysis)}; equal-variance Thurstone model, "
@@ -234,11 +230,15 @@ def sensitivity(analysis: IdentificationAnalysis) -> Figure:
     x = np.linspace(low - 2.6, max(high, fit.criteria.max()) + 2.6, 500)
     for name, place in zip(names, fit.positions, strict=True):
         curve = np.exp(-0.5 * (x - place) ** 2)
-        top.plot(x, curve, color=BLUE, lw=1.3)
+        top.plot(x, curve, color=style.BLUE, lw=1.3)
         top.text(place, 1.04, name, ha="center", va="bottom", fontsize=9.5)
     for k, criterion in enumerate(fit.criteria):
         top.axvline(
-            criterion, color=ORANGE, lw=1.2, ls=(0, (4, 2)), label="criteria" if k == 0 else None
+            criterion,
+            color=style.ORANGE,
+            lw=1.2,
+            ls=(0, (4, 2)),
+            label="criteria" if k == 0 else None,
         )
     top.set(xlim=(x[0], x[-1]), ylim=(0, 1.3), xlabel="decision axis (standard deviations)")
     top.set_yticks([])
@@ -246,9 +246,9 @@ def sensitivity(analysis: IdentificationAnalysis) -> Figure:
     top.legend(loc="upper right", frameon=False)
     steps = np.arange(fit.d_prime.size)
     for k in range(steps.size):
-        below.plot([k, k], [fit.low[k], fit.high[k]], color=MUTED, lw=1.4)
-    below.plot(steps, fit.d_prime, "o", color=BLUE, ms=7, mec=PAPER)
-    below.axhline(0, color=MUTED, lw=0.9)
+        below.plot([k, k], [fit.low[k], fit.high[k]], color=style.MUTED, lw=1.4)
+    below.plot(steps, fit.d_prime, "o", color=style.BLUE, ms=7, mec=style.PAPER)
+    below.axhline(0, color=style.MUTED, lw=0.9)
     pairs = [f"{a} – {b}" for a, b in itertools.pairwise(names)]
     below.set_xticks(steps, pairs)
     below.set(ylabel="d′ of neighbours", xlim=(-0.5, steps[-1] + 0.5))
@@ -256,16 +256,16 @@ def sensitivity(analysis: IdentificationAnalysis) -> Figure:
     return figure
 
 
-@drawn
+@style.drawn
 def similarities(analysis: IdentificationAnalysis) -> Figure:
     """Similarities of the choice model, biases of answers, and the stimuli as points."""
     fit, points = analysis.choice, analysis.choice_map
     if fit is None or points is None:
-        return message_figure("No choice model", _note(analysis, "choice model"))
-    names = [plain(name, 12) for name in analysis.matrix.stimuli]
+        return style.message_figure("No choice model", _note(analysis, "choice model"))
+    names = [style.plain(name, 12) for name in analysis.matrix.stimuli]
     off = np.where(np.eye(len(names), dtype=bool), -1.0, fit.similarity)
     i, j = sorted(int(v) for v in np.unravel_index(int(np.argmax(off)), off.shape))
-    figure = new_figure(
+    figure = style.new_figure(
         f"{names[i]} and {names[j]} are felt most alike (η = {off[i, j]:.2f}); "
         f"{names[int(np.argmax(fit.bias))]} is the answer preferred",
         f"{data_of(analysis)}; Luce–Shepard choice model"
@@ -282,15 +282,15 @@ def similarities(analysis: IdentificationAnalysis) -> Figure:
     bars = figure.add_subplot(grid[1, 1])
     _draw_similarity(left, fit.similarity, names)
     second = points.points[:, 1] if points.points.shape[1] > 1 else np.zeros(len(names))
-    right.plot(points.points[:, 0], second, "-", color=METAL, lw=1.2)
-    right.plot(points.points[:, 0], second, "o", color=BLUE, ms=7, mec=PAPER)
+    right.plot(points.points[:, 0], second, "-", color=style.METAL, lw=1.2)
+    right.plot(points.points[:, 0], second, "o", color=style.BLUE, ms=7, mec=style.PAPER)
     for name, a, b in zip(names, points.points[:, 0], second, strict=True):
         right.annotate(name, (a, b), (0, 7), textcoords="offset points", ha="center", fontsize=9)
     right.set_title(f"distances −ln η as points ({100 * points.explained:.0f} % of them)")
     right.set_aspect("equal", adjustable="datalim")
     right.margins(0.18)
-    bars.bar(np.arange(len(names)), 100 * fit.bias, color=BAND, edgecolor=MUTED)
-    bars.axhline(100 / len(names), color=MUTED, lw=1, ls=(0, (1.4, 1.2)))
+    bars.bar(np.arange(len(names)), 100 * fit.bias, color=style.BAND, edgecolor=style.MUTED)
+    bars.axhline(100 / len(names), color=style.MUTED, lw=1, ls=(0, (1.4, 1.2)))
     bars.set_xticks(np.arange(len(names)), names)
     bars.set_ylabel("bias of answer (%)")
     return figure
@@ -299,7 +299,7 @@ def similarities(analysis: IdentificationAnalysis) -> Figure:
 def _draw_similarity(axes: Axes, similarity: np.ndarray, names: list[str]) -> None:
     from matplotlib.colors import LinearSegmentedColormap
 
-    shades = LinearSegmentedColormap.from_list("alike", [PAPER, METAL])
+    shades = LinearSegmentedColormap.from_list("alike", [style.PAPER, style.METAL])
     below = np.tril(np.ones(similarity.shape, dtype=bool), -1)
     shown = np.where(below, np.minimum(similarity, 1.0), np.nan)
     axes.imshow(shown, cmap=shades, vmin=0, vmax=1, aspect="auto")

@@ -6,68 +6,59 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from squeezefilm.report.kit import style
 from squeezefilm.report.kit.numbers import M, shown
-from squeezefilm.report.kit.style import (
-    BLUE,
-    INK,
-    LINES,
-    METAL,
-    MUTED,
-    ORANGE,
-    drawn,
-    legend_below,
-    new_figure,
-    plain,
-    plain_log,
-)
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from squeezefilm.study.simulated.chain_tables import ChainTables
 
-_DISPLAYS = (BLUE, ORANGE)
+_DISPLAYS = (style.BLUE, style.ORANGE)
 
 
-@drawn
+@style.drawn
 def channels(tables: ChainTables) -> Figure:
     """Gain of each channel against frequency, and where the study's gratings pass the finger."""
     observer = tables.observer
     frequency = np.geomspace(1.0, 1000.0, 400)
     bands = [
-        f"{plain(one.name, 12)} from {shown(one.threshold, M, 2)}" for one in observer.channels
+        f"{style.plain(one.name, 12)} from {shown(one.threshold, M, 2)}"
+        for one in observer.channels
     ]
-    figure = new_figure(
-        f"Channels of '{plain(observer.name)}': {', '.join(bands)}",
+    figure = style.new_figure(
+        f"Channels of '{style.plain(observer.name)}': {', '.join(bands)}",
         "second-order bands, assumed shapes and thresholds (amplitude of d′ = 1); marks: textures "
         "under the median speed; dotted: the displays' envelope bandwidths",
         3.8,
     )
     axes = figure.subplots()
-    for one, (color, dashes) in zip(observer.channels, LINES, strict=False):
-        axes.plot(frequency, one.gain(frequency), color=color, ls=dashes, label=plain(one.name))
+    for one, (color, dashes) in zip(observer.channels, style.LINES, strict=False):
+        axes.plot(
+            frequency, one.gain(frequency), color=color, ls=dashes, label=style.plain(one.name)
+        )
     for name, why in tables.explain().items():
-        axes.axvline(why.texture_frequency, color=MUTED, lw=0.9)
+        axes.axvline(why.texture_frequency, color=style.MUTED, lw=0.9)
         axes.text(
             why.texture_frequency,
             1.03,
-            plain(name, 10),
+            style.plain(name, 10),
             ha="center",
             va="bottom",
             fontsize=9.0,
-            color=INK,
+            color=style.INK,
             rotation=35,
         )
     for index in range(len(tables.design.displays)):
         width = next(iter(tables.explain(index).values())).envelope_bandwidth
-        axes.axvline(width, color=METAL, lw=2.2, ls=":")
+        axes.axvline(width, color=style.METAL, lw=2.2, ls=":")
     axes.set(xscale="log", xlim=(1, 1000), ylim=(0, 1.0), xlabel="frequency (Hz)", ylabel="gain")
-    plain_log(axes.xaxis)
-    legend_below(axes, 3, 0.22)
+    style.plain_log(axes.xaxis)
+    style.legend_below(axes, 3, 0.22)
     return figure
 
 
-@drawn
+@style.drawn
 def percepts(tables: ChainTables) -> Figure:
     """Evidence for a rhythm of each period, before noise: virtual gratings by display, and real."""
     from squeezefilm.perception.senses import line_periods
@@ -75,9 +66,9 @@ def percepts(tables: ChainTables) -> Figure:
     design, observer = tables.design, tables.observer
     clearest = tables.virtual.d_prime[..., 0]
     faint = np.unravel_index(int(np.argmin(np.median(clearest, axis=1))), clearest[:, 0].shape)
-    figure = new_figure(
-        f"Least evident: {plain(design.stimuli[faint[1]].name, 14)} on "
-        f"{plain(design.displays[faint[0]], 24)}, d′ = "
+    figure = style.new_figure(
+        f"Least evident: {style.plain(design.stimuli[faint[1]].name, 14)} on "
+        f"{style.plain(design.displays[faint[0]], 24)}, d′ = "
         f"{max(float(np.median(clearest, axis=1)[faint]), 0.0):.2f} at its clearest rhythm",
         "the chain before noise: thin lines finger classes, thick their median; dashed the "
         "criterion below which nothing is felt; upright lines the true period",
@@ -85,7 +76,7 @@ def percepts(tables: ChainTables) -> Figure:
     )
     period = 1e3 * line_periods()
     real = len(design.displays)
-    heads = [*(plain(one, 24) for one in design.displays), "real gratings"]
+    heads = [*(style.plain(one, 24) for one in design.displays), "real gratings"]
     axes = figure.subplots(
         max(len(design.stimuli), len(design.alternatives)), real + 1, sharex=True, squeeze=False
     )
@@ -101,17 +92,17 @@ def percepts(tables: ChainTables) -> Figure:
                 if column < real
                 else tables.real_rhythm[:, row]
             )
-            color = _DISPLAYS[column % 2] if column < real else INK
+            color = _DISPLAYS[column % 2] if column < real else style.INK
             cell.plot(period, found.T, color=color, lw=0.6, alpha=0.35)
             cell.plot(period, np.median(found, axis=0), color=color, lw=1.7)
-            cell.axhline(observer.detection_criterion, color=MUTED, lw=0.9, ls=(0, (4, 2)))
-            cell.axvline(1e3 * surfaces[row].period, color=METAL, lw=2.2, zorder=0)
+            cell.axhline(observer.detection_criterion, color=style.MUTED, lw=0.9, ls=(0, (4, 2)))
+            cell.axvline(1e3 * surfaces[row].period, color=style.METAL, lw=2.2, zorder=0)
             cell.set(xscale="log", xlim=(0.25, 20))
             if column < real:
                 cell.set_ylim(0, highest)
             else:
                 cell.set_ylim(0, None)
-            cell.set_title(f"{head}: {plain(surfaces[row].name, 14)}", fontsize=9.0)
+            cell.set_title(f"{head}: {style.plain(surfaces[row].name, 14)}", fontsize=9.0)
             cell.set_xticks([0.4, 1, 2, 4, 10], ["0.4", "1", "2", "4", "10"])
             cell.minorticks_off()
     figure.supylabel("evidence for a rhythm, d′", fontsize=10.5)

@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from squeezefilm import quantities as si
+from squeezefilm.report.kit import style
 from squeezefilm.report.kit.folder import json_text, require_folder, write_folder
 from squeezefilm.report.kit.numbers import printable, shown
 from squeezefilm.report.kit.page_style import page_head, picture_sections, section, text_table
-from squeezefilm.report.kit.style import png
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -40,7 +40,7 @@ def write_study(
     tell("figures")
     figures = study_figures(analysis, power)
     files: dict[str, str | bytes] = {
-        f"study-{key}.png": png(figure) for key, (_, figure) in figures.items()
+        f"study-{key}.png": style.png(figure) for key, (_, figure) in figures.items()
     }
     summary = analysis.summary()
     if power is not None:

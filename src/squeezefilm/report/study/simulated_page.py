@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
+from squeezefilm.report.kit import style
 from squeezefilm.report.kit.folder import json_text, require_folder, write_folder
 from squeezefilm.report.kit.numbers import printable
 from squeezefilm.report.kit.page_style import page_head, section, text_table
-from squeezefilm.report.kit.style import png
 from squeezefilm.report.study import observer_figures
 from squeezefilm.study.record.trial_table import Column, csv_text
 from squeezefilm.study.simulated.participants import SimulatedStudy
@@ -67,8 +67,8 @@ def write_simulated(
     summary = study.summary()
     tell("figures")
     files: dict[str, str | bytes] = {
-        "channels.png": png(observer_figures.channels(study.tables)),
-        "percepts.png": png(observer_figures.percepts(study.tables)),
+        "channels.png": style.png(observer_figures.channels(study.tables)),
+        "percepts.png": style.png(observer_figures.percepts(study.tables)),
     }
     analysed = _analyses(study, folder, tell)
     files["simulated.json"] = json_text(summary)

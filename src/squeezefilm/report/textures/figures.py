@@ -6,21 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from squeezefilm.report.kit import style
 from squeezefilm.report.kit.numbers import M, N, S, V, shown
-from squeezefilm.report.kit.style import (
-    BLUE,
-    GREEN,
-    INK,
-    MUTED,
-    ORANGE,
-    PAPER,
-    drawn,
-    legend_below,
-    message_figure,
-    new_figure,
-    plain,
-    plain_log,
-)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -38,7 +25,7 @@ def _thin(count: int) -> slice:
     return slice(None, None, max(1, count // _MOST_POINTS))
 
 
-@drawn
+@style.drawn
 def friction(result: RenderAnalysis) -> Figure:
     """Friction asked for and rendered over time, whole and enlarged."""
     stroke = result.stroke
@@ -50,9 +37,9 @@ def friction(result: RenderAnalysis) -> Figure:
             + ("late" if result.fidelity.lag >= 0 else "early")
         )
     )
-    figure = new_figure(
-        f"{plain(result.played.name, 40)} on {plain(result.display.name, 24)}: friction is "
-        f"rendered within {result.rms_error:.2g} RMS of µ′/µ{late}",
+    figure = style.new_figure(
+        f"{style.plain(result.played.name, 40)} on {style.plain(result.display.name, 24)}: "
+        f"friction is rendered within {result.rms_error:.2g} RMS of µ′/µ{late}",
         f"{stroke.model}; friction by {result.prediction.model}",
         4.4,
     )
@@ -65,21 +52,25 @@ def friction(result: RenderAnalysis) -> Figure:
         inside = inside[_thin(inside.size)]
         t = stroke.time[inside]
         axes.plot(
-            t, result.asked[inside], color=ORANGE, lw=1.5, ls=(0, (6, 1.6)), label="asked for"
+            t, result.asked[inside], color=style.ORANGE, lw=1.5, ls=(0, (6, 1.6)), label="asked for"
         )
         axes.plot(
-            t, stroke.relative_friction_rendered[inside], color=BLUE, lw=1.6, label="rendered"
+            t, stroke.relative_friction_rendered[inside], color=style.BLUE, lw=1.6, label="rendered"
         )
         axes.set(xlim=(low, high), xlabel="time (s)")
     least = result.played.inverse.least_friction
     left.axhline(
-        least, color=MUTED, lw=1.1, ls=(0, (2, 2)), label=f"least this display reaches: {least:.2f}"
+        least,
+        color=style.MUTED,
+        lw=1.1,
+        ls=(0, (2, 2)),
+        label=f"least this display reaches: {least:.2f}",
     )
-    right.axhline(least, color=MUTED, lw=1.1, ls=(0, (2, 2)))
+    right.axhline(least, color=style.MUTED, lw=1.1, ls=(0, (2, 2)))
     left.set(ylabel="relative friction µ′/µ", ylim=(0, max(1.05, 1.03 * float(result.asked.max()))))
     left.set_title("the whole stroke")
     right.set_title("its first pass's middle, enlarged")
-    legend_below(left, columns=3)
+    style.legend_below(left, columns=3)
     return figure
 
 
@@ -87,7 +78,7 @@ def _passes(result: RenderAnalysis) -> int:
     return int(getattr(result.motion, "passes", 1))
 
 
-@drawn
+@style.drawn
 def drive(result: RenderAnalysis) -> Figure:
     """The amplitude commanded and the envelope; the tangential force under the finger."""
     stroke, force = result.stroke, result.force
@@ -98,7 +89,7 @@ def drive(result: RenderAnalysis) -> Figure:
         if result.prediction.voltage is None
         else (f" at {shown(result.prediction.voltage, V, 3)}")
     )
-    figure = new_figure(
+    figure = style.new_figure(
         f"The drive is at a limit {100 * saturated:.2g} % of the time; the finger is dragged with "
         f"{shown(float(np.mean(np.abs(force.friction_force))), N, 2)} on average",
         f"τ = {shown(result.time_constant, S, 3)} with the finger; pad {force.model}",
@@ -107,31 +98,31 @@ def drive(result: RenderAnalysis) -> Figure:
     above, below = figure.subplots(2, 1, sharex=True)
     thin = _thin(stroke.time.size)
     t = stroke.time[thin]
-    above.plot(t, 1e6 * stroke.command[thin], color=ORANGE, lw=1.2, label="commanded")
-    above.plot(t, 1e6 * stroke.amplitude[thin], color=BLUE, lw=1.6, label="vibrating")
+    above.plot(t, 1e6 * stroke.command[thin], color=style.ORANGE, lw=1.2, label="commanded")
+    above.plot(t, 1e6 * stroke.amplitude[thin], color=style.BLUE, lw=1.6, label="vibrating")
     above.axhline(
         1e6 * largest,
-        color=MUTED,
+        color=style.MUTED,
         lw=1.1,
         ls=(0, (2, 2)),
         label=f"largest: {shown(largest, M, 3)}{shown_volts}",
     )
     above.set(ylabel="amplitude (µm)")
-    below.plot(t, force.friction_force[thin], color=GREEN, lw=1.4, label="tangential force")
+    below.plot(t, force.friction_force[thin], color=style.GREEN, lw=1.4, label="tangential force")
     stuck = np.where(force.sticking[thin], force.friction_force[thin], np.nan)
-    below.plot(t, stuck, color=INK, lw=2.2, label="while the skin sticks")
+    below.plot(t, stuck, color=style.INK, lw=2.2, label="while the skin sticks")
     below.set(xlabel="time (s)", ylabel="force (N)", xlim=(0, float(stroke.time[-1])))
     for axes in (above, below):
         axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False)
     return figure
 
 
-@drawn
+@style.drawn
 def contrast(result: RenderAnalysis) -> Figure:
     """Share of the texture's contrast kept, by spatial frequency."""
     judged = result.fidelity
     if judged is None:
-        return message_figure("This stroke cannot be judged", result.unjudged or "")
+        return style.message_figure("This stroke cannot be judged", result.unjudged or "")
     f, kept, swing = judged.spatial_frequency, judged.contrast_kept, judged.swing_kept
     good = np.isfinite(kept)
     period = 1 / f[good]
@@ -142,14 +133,14 @@ def contrast(result: RenderAnalysis) -> Figure:
             f"Of its contrast at {shown(float(period[worst]), M, 2)} the texture keeps "
             f"{100 * float(kept[good][worst]):.0f} % in its place"
         )
-    figure = new_figure(title, judged.model, 3.6)
+    figure = style.new_figure(title, judged.model, 3.6)
     axes = figure.subplots()
     axes.semilogx(
         1e3 * period,
         100 * swing[good],
         "s",
         ms=9,
-        color=ORANGE,
+        color=style.ORANGE,
         mfc="none",
         mew=1.6,
         label="swing kept, wherever it lies",
@@ -159,21 +150,21 @@ def contrast(result: RenderAnalysis) -> Figure:
         100 * kept[good],
         "o",
         ms=6,
-        color=BLUE,
-        mec=PAPER,
+        color=style.BLUE,
+        mec=style.PAPER,
         label="contrast kept in its place",
     )
-    axes.axhline(100, color=MUTED, lw=1.0, ls=(0, (2, 2)))
+    axes.axhline(100, color=style.MUTED, lw=1.0, ls=(0, (2, 2)))
     axes.set(xlabel="spatial period (mm)", ylabel="kept (%)")
     axes.set(ylim=(0, 1.1 * max(100.0, 100 * float(np.max(swing[good], initial=0.0)))))
-    plain_log(axes.xaxis)
+    style.plain_log(axes.xaxis)
     if period.size:
         axes.set_xlim(0.5e3 * float(period.min()), 2e3 * float(period.max()))
-    legend_below(axes, gap=0.24)
+    style.legend_below(axes, gap=0.24)
     return figure
 
 
-@drawn
+@style.drawn
 def way(result: RenderAnalysis) -> Figure:
     """The texture in the plane, and the finger's way over it."""
     finger = result.finger
@@ -184,9 +175,9 @@ def way(result: RenderAnalysis) -> Figure:
     low = (float(finger.x.min()) - margin, centre - 0.5 * across - margin)
     high = (float(finger.x.max()) + margin, centre + 0.5 * across + margin)
     speed = float(np.mean(np.abs(finger.speed)))
-    figure = new_figure(
+    figure = style.new_figure(
         f"{shown(float(np.sum(np.abs(np.diff(finger.way)))), M, 3)} of finger motion over "
-        f"{plain(result.played.name, 40)}, {1e3 * speed:.3g} mm/s on average",
+        f"{style.plain(result.played.name, 40)}, {1e3 * speed:.3g} mm/s on average",
         "the texture as asked for, at the mean speed",
         4.2,
     )
@@ -204,12 +195,21 @@ def way(result: RenderAnalysis) -> Figure:
     )
     figure.colorbar(drawn_, ax=axes, label="µ′/µ asked for", shrink=0.9)
     thin = _thin(finger.x.size)
-    axes.plot(1e3 * finger.x[thin], 1e3 * finger.y[thin], color=PAPER, lw=3.4)
-    axes.plot(1e3 * finger.x[thin], 1e3 * finger.y[thin], color=ORANGE, lw=1.7, label="finger")
-    axes.plot([1e3 * finger.x[0]], [1e3 * finger.y[0]], "o", color=INK, mec=PAPER, label="start")
+    axes.plot(1e3 * finger.x[thin], 1e3 * finger.y[thin], color=style.PAPER, lw=3.4)
+    axes.plot(
+        1e3 * finger.x[thin], 1e3 * finger.y[thin], color=style.ORANGE, lw=1.7, label="finger"
+    )
+    axes.plot(
+        [1e3 * finger.x[0]],
+        [1e3 * finger.y[0]],
+        "o",
+        color=style.INK,
+        mec=style.PAPER,
+        label="start",
+    )
     axes.grid(visible=False)
     axes.set(xlabel="x (mm)", ylabel="y (mm)")
-    legend_below(axes, columns=2)
+    style.legend_below(axes, columns=2)
     return figure
 
 
@@ -233,13 +233,13 @@ def friction_of(result: RenderAnalysis, values: FloatArray) -> FloatArray:
     return played.friction(values)
 
 
-@drawn
+@style.drawn
 def ripple(result: RenderAnalysis) -> Figure:
     """What the standing wave leaves of the amplitude along the way."""
     stroke, finger = result.stroke, result.finger
     half = result.prediction.mode.half_wavelength
     done = " The renderer makes up for it." if result.wave == "compensated" else ""
-    figure = new_figure(
+    figure = style.new_figure(
         f"Along the wave, every {shown(half, M, 3)}, the pad meets "
         f"{100 * float(np.min(result.factor)):.3g} to {100 * float(np.max(result.factor)):.3g} % "
         f"of an antinode's amplitude.{done}",
@@ -253,15 +253,19 @@ def ripple(result: RenderAnalysis) -> Figure:
     x = 1e3 * finger.x[first]
     thin = _thin(x.size)
     above.plot(
-        x[thin], 1e6 * stroke.amplitude[first][thin], color=ORANGE, lw=1.4, label="at the antinodes"
+        x[thin],
+        1e6 * stroke.amplitude[first][thin],
+        color=style.ORANGE,
+        lw=1.4,
+        label="at the antinodes",
     )
     met = (stroke.amplitude * result.factor)[first]
-    above.plot(x[thin], 1e6 * met[thin], color=BLUE, lw=1.6, label="met by the pad")
+    above.plot(x[thin], 1e6 * met[thin], color=style.BLUE, lw=1.6, label="met by the pad")
     above.set(ylabel="amplitude (µm)", ylim=(0, None))
     below.plot(
         x[thin],
         result.asked[first][thin],
-        color=ORANGE,
+        color=style.ORANGE,
         lw=1.4,
         ls=(0, (6, 1.6)),
         label="asked for",
@@ -269,7 +273,7 @@ def ripple(result: RenderAnalysis) -> Figure:
     below.plot(
         x[thin],
         stroke.relative_friction_rendered[first][thin],
-        color=BLUE,
+        color=style.BLUE,
         lw=1.6,
         label="rendered",
     )

@@ -17,7 +17,7 @@ import numpy as np
 from squeezefilm import presets
 from squeezefilm.chain.played_texture import single_period
 from squeezefilm.errors import InputError
-from squeezefilm.report.kit.style import BLUE, INK, MUTED, PAPER, drawn, new_figure, png
+from squeezefilm.report.kit import style
 from squeezefilm.texture_file import TextureFile, load_texture
 
 if TYPE_CHECKING:
@@ -34,14 +34,14 @@ _LABELS = {
 }
 
 
-@drawn
+@style.drawn
 def picture(texture: TextureFile) -> Figure:
     """A texture from above, 50 mm or twelve periods wide, and along its middle line at 60 mm/s."""
     period = single_period(texture.texture)
     wide = _WIDE if period is None else min(_WIDE, _PERIODS * period)
     high = _HIGH * wide
     label, scale = _LABELS[texture.texture.quantity]
-    figure = new_figure(
+    figure = style.new_figure(
         texture.title, f"none; {label} as asked for at {1e3 * _SPEED:g} mm/s, towards +x", 3.6
     )
     left, right = figure.subplots(1, 2, width_ratios=[1.0, 1.2])
@@ -56,14 +56,14 @@ def picture(texture: TextureFile) -> Figure:
         interpolation="nearest",
     )
     bar = figure.colorbar(seen, ax=left, orientation="horizontal", label=label)
-    bar.outline.set_edgecolor(MUTED)
-    left.axhline(500 * high, color=PAPER, lw=2.6)
-    left.axhline(500 * high, color=INK, lw=1.1, ls=(0, (4, 2)))
+    bar.outline.set_edgecolor(style.MUTED)
+    left.axhline(500 * high, color=style.PAPER, lw=2.6)
+    left.axhline(500 * high, color=style.INK, lw=1.1, ls=(0, (4, 2)))
     left.grid(visible=False)
     left.set(xlabel="x (mm)", ylabel="y (mm)")
     fine = np.linspace(0, wide, 4001)
     right.plot(
-        1e3 * fine, scale * texture.texture(fine, 0.5 * high, _SPEED, 0.0), color=BLUE, lw=1.4
+        1e3 * fine, scale * texture.texture(fine, 0.5 * high, _SPEED, 0.0), color=style.BLUE, lw=1.4
     )
     right.set(xlabel="x (mm), along the dashed line", ylabel=label, xlim=(0, 1e3 * wide))
     return figure
@@ -80,7 +80,7 @@ def gallery_files() -> dict[str, bytes]:
     ]
     for name in presets.texture_names():
         texture = load_texture(name)
-        files[f"gallery/{name}.png"] = png(picture(texture), dots_per_inch=80)
+        files[f"gallery/{name}.png"] = style.png(picture(texture), dots_per_inch=80)
         text = presets.resolve_texture(name).read_text(encoding="utf-8").strip()
         body = re.sub(r'\Atitle = ".*"\n+', "", text)
         parts.append(f"## {texture.title}: `{name}`\n")

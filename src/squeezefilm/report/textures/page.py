@@ -15,10 +15,10 @@ from squeezefilm.errors import InputError
 from squeezefilm.formats.hjif import HjifExport, ReferenceDevice, hjif_of
 from squeezefilm.formats.traces import Table, csv_text, parquet_bytes
 from squeezefilm.formats.wav import Waveform, wav_bytes
+from squeezefilm.report.kit import style
 from squeezefilm.report.kit.folder import json_text, require_folder, write_folder
 from squeezefilm.report.kit.numbers import printable
 from squeezefilm.report.kit.page_style import html_table, page_head, picture_sections, section
-from squeezefilm.report.kit.style import png
 from squeezefilm.report.textures import figures as draw
 from squeezefilm.report.textures.terminal import render_rows
 
@@ -124,7 +124,7 @@ def write_render(
     tell("figures")
     figures = render_figures(result)
     files: dict[str, str | bytes] = {
-        f"{name}.png": png(figure) for name, (_, figure) in figures.items()
+        f"{name}.png": style.png(figure) for name, (_, figure) in figures.items()
     }
     tell("trace")
     trace = trace_table(result)

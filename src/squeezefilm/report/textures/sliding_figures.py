@@ -6,17 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from squeezefilm.report.kit import style
 from squeezefilm.report.kit.numbers import HZ, M, N, shown
-from squeezefilm.report.kit.style import (
-    BLUE,
-    MUTED,
-    ORANGE,
-    SKIN,
-    drawn,
-    legend_below,
-    new_figure,
-    plain_log,
-)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -31,7 +22,7 @@ _MOST_POINTS = 4000
 _FLOOR = 3e-5
 
 
-@drawn
+@style.drawn
 def tangential_force(force: StrokeForce) -> Figure:
     """The tangential force of a stroke over a grating, with sticking shaded, and skin spectrum.
 
@@ -43,7 +34,7 @@ def tangential_force(force: StrokeForce) -> Figure:
     frequency = shown(vibration.fundamental, HZ, 3)
     settled = motion.time >= force.settled
     swing = float(np.ptp(motion.bone_force[settled & (motion.time <= stroke.pass_duration)]))
-    figure = new_figure(
+    figure = style.new_figure(
         f"At {1e3 * stroke.speed:g} mm/s the tangential force swings by {shown(swing, N, 2)}, and "
         f"the grating shakes the skin by "
         f"{shown(float(vibration.displacement_amplitude[0]), M, 2)} at {frequency}",
@@ -70,7 +61,7 @@ def _draw_force(axes: Axes, force: StrokeForce, end: float) -> None:
         1,
         where=motion.sticking[shown_part].tolist(),
         step="post",
-        color=SKIN,
+        color=style.SKIN,
         lw=0,
         transform=axes.get_xaxis_transform(),
         label="skin sticks",
@@ -78,30 +69,30 @@ def _draw_force(axes: Axes, force: StrokeForce, end: float) -> None:
     axes.plot(
         t,
         motion.friction_force[shown_part],
-        color=ORANGE,
+        color=style.ORANGE,
         lw=1.5,
         ls=(0, (6, 1.6)),
         label="at the surface",
     )
-    axes.plot(t, motion.bone_force[shown_part], color=BLUE, label="at the bone")
+    axes.plot(t, motion.bone_force[shown_part], color=style.BLUE, label="at the bone")
     axes.set(xlabel="time (ms)", ylabel="tangential force (N)", xlim=(0, t[-1]))
     axes.set_title(f"start of the stroke and {_PERIODS_SHOWN} periods")
-    legend_below(axes, 3, 0.2)
+    style.legend_below(axes, 3, 0.2)
 
 
 def _draw_spectrum(axes: Axes, vibration: SkinVibration) -> None:
     seen = slice(1, None)  # the first bin is what is left of the drift
     density = 1e6 * np.sqrt(vibration.displacement_psd[seen])
-    axes.loglog(vibration.frequency[seen], density, color=BLUE, lw=1.4)
+    axes.loglog(vibration.frequency[seen], density, color=style.BLUE, lw=1.4)
     top = float(density.max())
     for k, line in enumerate(vibration.harmonic_frequency):
         amplitude = shown(float(vibration.displacement_amplitude[k]), M, 2)
-        axes.axvline(line, color=MUTED, lw=0.8, ls=(0, (1.4, 1.2)))
+        axes.axvline(line, color=style.MUTED, lw=0.8, ls=(0, (1.4, 1.2)))
         axes.text(
             1.01 * line,
             2.4 * top,
             amplitude,
-            color=MUTED,
+            color=style.MUTED,
             fontsize=9,
             rotation=35,
             ha="left",
@@ -116,8 +107,8 @@ def _draw_spectrum(axes: Axes, vibration: SkinVibration) -> None:
     )
     rungs = np.outer(10.0 ** np.arange(-1, 6), [1, 2, 5]).ravel()
     axes.set_xticks(rungs[(rungs > low) & (rungs < high)])
-    plain_log(axes.xaxis)
-    plain_log(axes.yaxis)
+    style.plain_log(axes.xaxis)
+    style.plain_log(axes.yaxis)
     axes.set_title(
         "skin relative to the bone; dotted: the grating's frequency, harmonics, their amplitudes",
         pad=34,
