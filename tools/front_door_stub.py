@@ -63,6 +63,18 @@ class _WithoutMarks(ast.NodeTransformer):
         return self.generic_visit(node)
 
 
+class _WithoutModules(ast.NodeTransformer):
+    """What is named through its module (``si.Metre``) is imported from it (``Metre``)."""
+
+    def __init__(self, module: Any, imports: dict[str, set[str]]) -> None:
+        self._module, self._imports = module, imports
+
+    def visit_Attribute(self, node: ast.Attribute) -> ast.AST:
+        assert isinstance(node.value, ast.Name)
+        self._imports[vars(self._module)[node.value.id].__name__].add(node.attr)
+        return ast.Name(node.attr, node.ctx)
+
+
 class Stub:
     """The stub's text as it grows: what is imported, and what is written out."""
 
@@ -108,9 +120,11 @@ class Stub:
         """The annotation without its marks; what it names is imported."""
         tree = _WithoutMarks().visit(ast.parse(annotation, mode="eval"))
         for node in ast.walk(tree):
-            if isinstance(node, ast.Name) and not hasattr(builtins, node.id):
+            if isinstance(node, ast.Name) and not (
+                hasattr(builtins, node.id) or inspect.ismodule(vars(module).get(node.id))
+            ):
                 self.imports[imported_from(module, node.id)].add(node.id)
-        return ast.unparse(tree)
+        return ast.unparse(_WithoutModules(module, self.imports).visit(tree))
 
     def text(self) -> str:
         """The whole stub."""

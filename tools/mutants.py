@@ -6,11 +6,11 @@
 
 A sample is drawn by seed over all kinds of faults in turn. Each mutant is tried in a private copy
 of the working tree, never in the checkout, with compiled code cached apart, until a test fails. By
-the quick tests that run its lines, those of its module first; where none is known to (compiled
-code, other processes) by the files of tests nearest to it by imports. Slow tests are asked by
-nearness too. What passes them all survived. The answers are appended to a file of JSON lines; a
-run that was cut off goes on where it stopped. Mutants that change nothing anybody could notice are
-named in ``tools/equivalent_mutants.toml`` with the reason, and do not count.
+the quick tests that run its lines and the files named after its module; where none is known to
+(compiled code, other processes) by the files of tests nearest to it by imports. Slow tests are
+asked by nearness too. What passes them all survived. The answers are appended to a file of JSON
+lines; a run that was cut off goes on where it stopped. Mutants that change nothing anybody could
+notice are named in ``tools/equivalent_mutants.toml`` with the reason, and do not count.
 """
 
 from __future__ import annotations
@@ -206,12 +206,16 @@ class Nearness:
             self._after[name] = import_graph.modules_in_the_name_of(test, tests, self.graph)
             self._steps[name] = import_graph.distances(named, self.graph)
 
+    def own(self, test: str, module: str) -> bool:
+        """Whether a file of tests is named after a module."""
+        return module in self._after[test]
+
     def tests(self, module: str) -> list[str]:
         """The files of tests that reach a module: its own first, then by steps of import."""
         ranked = [
-            (module not in self._after[name], steps[module], len(steps), name)
+            (not self.own(name, module), steps[module], len(steps), name)
             for name, steps in self._steps.items()
-            if module in steps or module in self._after[name]
+            if module in steps or self.own(name, module)
         ]
         return [name for *_, name in sorted(ranked)]
 
@@ -349,7 +353,8 @@ class Trial:
         reached, answer = self._noticed_by_reach(mutant, files, lost)
         marks, asked = QUICK, 0
         for test, part in self._questions(files) if answer is None else ():
-            if part == QUICK and reached:
+            # A line may run where no test is looking, as what is compiled for several of them.
+            if part == QUICK and reached and not self._nearness.own(test, mutant.module):
                 continue
             asked += 1
             answer, marks = self._notices(mutant, test, part, lost), part

@@ -13,8 +13,8 @@ from matplotlib.colors import to_hex
 
 from squeezefilm.analysis.film.command import FilmMap, FilmRequest
 from squeezefilm.film.planar.film import FilmPlanar
-from squeezefilm.report import film_map as module
 from squeezefilm.report.film_map import film_map, film_pressure, write_film_map
+from squeezefilm.report.kit import style
 from squeezefilm.report.kit.style import BLUE
 
 SIGMA, EXCURSION = np.geomspace(0.01, 1e4, 121), np.linspace(0.02, 0.95, 40)
@@ -136,7 +136,7 @@ def test_the_map_is_written_as_numbers_and_as_a_picture(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     # A picture of its title: PNGs are slow.
-    monkeypatch.setattr(module, "png", lambda one: one.get_suptitle().encode())
+    monkeypatch.setattr(style, "png", lambda one: one.get_suptitle().encode())
     path = write_film_map(MAP, tmp_path / "new")
     assert path == tmp_path / "new" / "film-map.png"
     assert path.read_text(encoding="utf-8").startswith("The strip's over-pressure")

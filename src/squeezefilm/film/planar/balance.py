@@ -125,7 +125,6 @@ class Balancer:
     def __init__(self, film: Film, grid: PlanarGrid, count: int) -> None:
         self.film, self.grid, self.count = film, grid, count
         T = times(count)
-        self.T = T
         X = np.concatenate([grid.X, grid.row_X, grid.column_X, grid.edge_X])
         Y = np.concatenate([grid.Y, grid.row_Y, grid.column_Y, grid.edge_Y])
         self.gaps = gap_values(film.gap, X, Y, T)

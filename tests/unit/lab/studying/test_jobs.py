@@ -99,7 +99,7 @@ def test_a_report_lies_beside_the_study_and_is_named_from_the_labs_folder(
     study: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(jobs, "analyze_study", quickly)
-    monkeypatch.setattr(page, "png", named)
+    monkeypatch.setattr(style, "png", named)
     pages = report_of(study)["pages"]
     assert pages == [f"studies/one.results/{display}/index.html" for display in DISPLAYS]
     for one, display in zip(pages, DISPLAYS, strict=True):

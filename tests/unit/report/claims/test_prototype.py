@@ -26,6 +26,7 @@ from squeezefilm.report.claims.prototype import (
     separation_table,
 )
 from squeezefilm.report.claims.prototype_page import prototype_sections
+from squeezefilm.report.kit import style
 from squeezefilm.report.kit.style import BLUE, ORANGE
 
 D31 = WorkingPoint((8, 0), 33.55e3, 10.0, 160e-9, 60.0, 34.8920e3)
@@ -212,7 +213,6 @@ def test_each_panel_shows_every_explanation_with_what_could_be_resolved() -> Non
 
 
 def test_the_page_has_both_figures_and_all_tables(monkeypatch: pytest.MonkeyPatch) -> None:
-    from squeezefilm.report.claims import prototype_page
 
     drawn: list[tuple[Any, ...]] = []
 
@@ -221,7 +221,7 @@ def test_the_page_has_both_figures_and_all_tables(monkeypatch: pytest.MonkeyPatc
         return f"<svg>{prefix}</svg>"
 
     # What a drawing looks like as SVG is the style's own business, and takes its time.
-    monkeypatch.setattr(prototype_page, "svg", drawing)
+    monkeypatch.setattr(style, "svg", drawing)
     first, second, third = prototype_sections(STUDY)
     assert [one[1:] for one in drawn] == [
         ("tornado", "Sensitivities"), ("identifiability", "Identifiability"),

@@ -21,7 +21,6 @@ from squeezefilm.contact.sharing.pad import FrictionRipple
 from squeezefilm.display import load_display
 from squeezefilm.distributions import Uniform
 from squeezefilm.quantities import Unit
-from squeezefilm.report.friction import figures
 from squeezefilm.report.friction.figures import (
     chain,
     friction_map,
@@ -31,6 +30,7 @@ from squeezefilm.report.friction.figures import (
     uncertainty,
     write_friction,
 )
+from squeezefilm.report.kit import style
 from squeezefilm.report.kit.style import BLUE, GREEN, ORANGE, PURPLE
 
 AMPLITUDE = "vibration amplitude, zero-to-peak (µm)"
@@ -292,7 +292,7 @@ def test_numbers_and_pictures_are_written_each_under_its_name(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     # A picture of its title: which goes where is what counts, and PNGs are slow.
-    monkeypatch.setattr(figures, "png", lambda one: words(one.get_suptitle()).encode())
+    monkeypatch.setattr(style, "png", lambda one: words(one.get_suptitle()).encode())
     assert write_friction(RESULT, tmp_path / "all") == tmp_path / "all"
     said = {one.name: one.read_text(encoding="utf-8") for one in (tmp_path / "all").iterdir()}
     data = said.pop("friction.json")
@@ -313,7 +313,7 @@ def test_numbers_and_pictures_are_written_each_under_its_name(
 def test_what_was_not_computed_gets_no_picture(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(figures, "png", lambda _: b"")
+    monkeypatch.setattr(style, "png", lambda _: b"")
     write_friction(without(uncertainty=None, ripple=None), tmp_path)
     assert sorted(one.name for one in tmp_path.iterdir()) == [
         "friction-map.png", "friction-models.png", "friction.json",

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
+from squeezefilm.report.kit import style
 from squeezefilm.report.plate import mode_surface as surface_module
 from squeezefilm.report.plate import page, plate, sensitivity_figures
 from squeezefilm.report.plate.mode_surface import driven_shape, mode_surface
@@ -245,7 +246,7 @@ def test_numbers_volume_and_pictures_are_written_each_under_its_name(
         monkeypatch.setattr(plate, name, lambda _, name=name: name)
     monkeypatch.setattr(sensitivity_figures, "tornado", lambda table: f"tornado of {table}")
     monkeypatch.setattr(sensitivity_figures, "tracks", lambda found: f"tracks of {found}")
-    monkeypatch.setattr(plate, "png", lambda figure: f"PNG {figure}".encode())
+    monkeypatch.setattr(style, "png", lambda figure: f"PNG {figure}".encode())
     monkeypatch.setattr(plate, "write_mode", lambda _, file: written.append(file))
     monkeypatch.setattr(page, "plate_page", text)
     always = {

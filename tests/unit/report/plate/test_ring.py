@@ -16,8 +16,8 @@ from matplotlib.patches import Circle, Wedge
 from squeezefilm.plate.circuit import EquivalentCircuit
 from squeezefilm.plate.ring.response import RingResponse
 from squeezefilm.plate.ring.section import SectorDrive
+from squeezefilm.report.kit import style
 from squeezefilm.report.kit.style import BLUE, MINUS, MUTED, PLUS
-from squeezefilm.report.plate import ring
 from squeezefilm.report.plate.ring import response, scan, shape, write_ring
 
 RADIUS = np.linspace(10e-3, 30e-3, 41)
@@ -255,7 +255,7 @@ def test_numbers_and_pictures_are_written_each_under_its_name(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     # A picture of its title: which goes where is what counts, and PNGs are slow.
-    monkeypatch.setattr(ring, "png", lambda one: one.get_suptitle().encode())
+    monkeypatch.setattr(style, "png", lambda one: one.get_suptitle().encode())
     assert write_ring(RING, tmp_path) == tmp_path
     said = {one.name: one.read_text(encoding="utf-8") for one in tmp_path.iterdir()}
     data = said.pop("plate.json")

@@ -98,6 +98,8 @@ def test_power_is_drawn_with_what_is_needed() -> None:
     figure = study_time_figures.power(curve)
     assert curve.needed == 12
     assert "12 people reach 80" in " ".join(figure.get_suptitle().split())
+    axes = figure.axes[0]
+    assert axes.get_xlim()[0] == axes.get_ylim()[0] == 0
 
 
 def test_too_few_data_make_a_message() -> None:

@@ -18,6 +18,7 @@ from squeezefilm.errors import InputError
 from squeezefilm.perception.observer import load_observer
 from squeezefilm.perception.percepts import Apparatus
 from squeezefilm.perception.senses import Candidates, line_periods
+from squeezefilm.report.kit import style
 from squeezefilm.report.study import simulated_page
 from squeezefilm.report.study.simulated_page import (
     COLUMNS,
@@ -82,7 +83,7 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, list[Any], 
         # Reports of real answers have tests of their own, and pictures are slow.
         patch.setattr("squeezefilm.report.study.page.write_study", write_study)
         patch.setattr(identification, "analyze_identification", quick)
-        patch.setattr(simulated_page, "png", lambda one: one.get_suptitle().encode())
+        patch.setattr(style, "png", lambda one: one.get_suptitle().encode())
         assert write_simulated(study(), folder, told.append) == folder / "index.html"
     return folder, handed, told
 
@@ -195,7 +196,7 @@ def test_the_page_says_that_nobody_answered_and_shows_names_as_text(
 def test_gratings_that_do_not_pair_up_get_no_analysis_of_right_answers(
     alternatives: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(simulated_page, "png", lambda _: b"")
+    monkeypatch.setattr(style, "png", lambda _: b"")
     monkeypatch.setattr(simulated_page.observer_figures, "channels", lambda _: None)
     monkeypatch.setattr(simulated_page.observer_figures, "percepts", lambda _: None)
     design = dataclasses.replace(DESIGN, alternatives=alternatives)

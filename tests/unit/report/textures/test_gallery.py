@@ -13,6 +13,7 @@ from matplotlib.colors import to_hex
 from PIL import Image
 
 from squeezefilm.errors import InputError
+from squeezefilm.report.kit import style
 from squeezefilm.report.kit.style import INK, PAPER
 from squeezefilm.report.textures import gallery
 
@@ -101,7 +102,7 @@ def checkout(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     )
     monkeypatch.setattr(gallery, "picture", lambda texture: len(texture.title))
     monkeypatch.setattr(
-        gallery, "png", lambda figure, dots_per_inch: painted((4, 4), 10 * figure, dots_per_inch)
+        style, "png", lambda figure, dots_per_inch: painted((4, 4), 10 * figure, dots_per_inch)
     )
     (tmp_path / "docs").mkdir()
     return tmp_path / "docs"

@@ -20,6 +20,7 @@ from squeezefilm.formats.wav import waveform_from
 from squeezefilm.render.motion.stroke import Stroke
 from squeezefilm.render.texture.levels import Amplitude, FrictionReduction, RelativeFriction
 from squeezefilm.render.texture.shapes import SineWave
+from squeezefilm.report.kit import style
 from squeezefilm.report.textures import page
 from squeezefilm.report.textures.page import (
     drive_waveform,
@@ -55,7 +56,7 @@ def felt() -> RenderAnalysis:
 @pytest.fixture(autouse=True)
 def _quick_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
     # A picture of its title: which goes where is what counts, and PNGs are slow.
-    monkeypatch.setattr(page, "png", lambda one: " ".join(one.get_suptitle().split()).encode())
+    monkeypatch.setattr(style, "png", lambda one: " ".join(one.get_suptitle().split()).encode())
 
 
 @pytest.fixture(scope="module")
@@ -63,7 +64,7 @@ def written(felt: RenderAnalysis, tmp_path_factory: pytest.TempPathFactory) -> d
     """Everything that can be written, by file name; and what was told meanwhile."""
     folder, told = tmp_path_factory.mktemp("render") / "deep", []
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(page, "png", lambda one: " ".join(one.get_suptitle().split()).encode())
+        patch.setattr(style, "png", lambda one: " ".join(one.get_suptitle().split()).encode())
         found = write_render(felt, folder, drive=True, hjif=True, progress=told.append)
     assert found == folder / "index.html"
     assert told == ["figures", "trace"]
