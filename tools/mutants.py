@@ -163,7 +163,9 @@ class Copy:
                 self._end_processes()
                 process.wait()
             output.seek(0)
-            failed = _FAILED.search(output.read().decode(errors="replace"))
+            # Of the summary alone: what a test logged may stand before it as ERROR too.
+            told = output.read().decode(errors="replace")
+            failed = _FAILED.search(told.rpartition("short test summary info")[2])
         said = {0: "passed", 5: "empty"}.get(process.returncode, "failed")
         name = failed_test(failed[1], tests) if failed else test
         return Answer(said, test if said == "passed" else name, time.monotonic() - started)

@@ -96,8 +96,10 @@ def test_a_run_finds_what_survives_and_leaves_the_source_as_it_was(
         "src/squeezefilm/__init__.py": '"""A package."""\n',
         "src/squeezefilm/quantities/units.py": "",
         "src/squeezefilm/gap.py": "def half(a: int) -> float:\n    b = a + 0\n    return b / 2\n",
-        "tests/unit/test_gap.py": "from squeezefilm.gap import half\n\n\n"
-        "def test_half():\n    assert half(0) == 0\n    assert half(4) == 2\n",
+        # What a failing test logged stands as ERROR before the summary.
+        "tests/unit/test_gap.py": "import logging\nfrom squeezefilm.gap import half\n\n\n"
+        "def test_half():\n    logging.error('no test')\n    assert half(0) == 0\n"
+        "    assert half(4) == 2\n",
     }
     for name, text in files.items():
         (root / name).parent.mkdir(parents=True, exist_ok=True)
