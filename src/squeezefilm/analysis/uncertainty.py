@@ -272,7 +272,7 @@ def _evaluate(
     friction = np.full(len(values), np.nan)
     amplitude = np.full(len(values), np.nan)
     scale = _Amplitude(display, prediction)
-    every = max(1, len(values) // 20)
+    every = len(values) // 20  # of 64 samples at least
     for number, (changes, compliance) in enumerate(_changes(parameters, values)):
         if number % every == 0:
             tell(f"friction of sample {number + 1} of {len(values)}")

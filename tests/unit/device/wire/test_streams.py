@@ -34,3 +34,15 @@ def test_64_kib_may_wait_and_no_more() -> None:
         stream.write(chunk)
     os.close(slave)
     os.close(master)
+
+
+def test_a_port_is_taken_alone_and_never_waited_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[tuple[object, ...]] = []
+
+    def opened(port: str, baudrate: int, **how: object) -> None:
+        asked.append((port, baudrate, how))
+
+    monkeypatch.setattr("serial.Serial", opened)
+    SerialStream("/dev/none", 9600)
+    how = {"timeout": 0, "write_timeout": 0, "exclusive": True}
+    assert asked == [("/dev/none", 9600, how)]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
 
@@ -88,6 +89,12 @@ def test_titles_carry_the_numbers(analysis: IdentificationAnalysis) -> None:
     assert f"Δ′ = {fit.total:.2f}" in " ".join(
         study_figures.sensitivity(analysis).get_suptitle().split()
     )
+
+
+def test_times_of_no_distribution_leave_its_place_empty(analysis: IdentificationAnalysis) -> None:
+    _, right = study_time_figures.response_times(replace(analysis, ex_gaussian=None)).axes
+    assert not right.axison
+    assert [one.get_text() for one in right.texts] == ["no ex-Gaussian: too few times"]
 
 
 def test_power_is_drawn_with_what_is_needed() -> None:
