@@ -85,7 +85,7 @@ def test_a_good_sensor_keeps_the_contrast_and_a_slow_one_does_not() -> None:
 
 def test_without_a_voltage_a_limit_must_be_given(plate: Prediction) -> None:
     given = predict(load_display("biet2008-plate"), vibration_amplitude=1e-6)
-    with pytest.raises(InputError, match="voltage_limit"):
+    with pytest.raises(InputError, match="not a voltage: give voltage_limit"):
         driven_envelope(given)
     wide = driven_envelope(given, 30.0)
     assert wide.amplitude_limit == pytest.approx(2 * driven_envelope(plate).amplitude_limit)

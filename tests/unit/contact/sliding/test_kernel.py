@@ -291,3 +291,12 @@ def test_too_many_slips_in_one_sample_are_given_up() -> None:
     late = march((0.0, 7.6, -5 / span), 1e-5, span, 3, substeps=2000, start=(1e-3, 7.6))
     assert late.done == 1
     assert late.account[1] < 250
+
+
+@pytest.mark.parametrize(("slips", "done"), [(95, 2), (105, 0)])
+def test_starts_count_beside_ends_where_slips_are_too_many(slips: int, done: int) -> None:
+    V, L, r = 0.05, 0.2, 1.5
+    drop = (r - 1) * L / STIFFNESS
+    cycle = 2 * drop / V + (2 * math.pi - 2 * math.atan2(drop * W, V)) / W
+    span = r * L / (STIFFNESS * V) + (slips + 0.5) * cycle
+    assert march((0.0, V, 0.0), L, span, 2, law=(r, 0.0), substeps=4000).done == done

@@ -77,7 +77,9 @@ def test_presets_are_listed_with_what_is_assumed(capsys: pytest.CaptureFixture[s
     assert "13 of 37" in text
 
 
-def test_values_are_shown_as_written(capsys: pytest.CaptureFixture[str]) -> None:
+def test_values_are_shown_as_written(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
     values = terminal.display_values("biet2008-plate")
     by_path = {item["path"]: item for item in values}
     assert by_path["actuator.thickness"] == {
@@ -94,6 +96,12 @@ def test_values_are_shown_as_written(capsys: pytest.CaptureFixture[str]) -> None
     text = printed(capsys)
     assert "* poisson_ratio" in text
     assert "* assumed: 13 of" in text
+    # Where there are colours, what is assumed stands out.
+    styles: list[Any] = []
+    monkeypatch.setattr(terminal, "table", lambda *_, **how: styles.append(how["styles"]))
+    terminal.show_values(values)
+    assert [one(("* a", "b", "")) for one in styles[:2]] == ["yellow"] * 2
+    assert [one(("  a", "* b", "")) for one in styles[:2]] == [""] * 2
 
 
 def test_values_of_what_cannot_be_loaded_are_refused() -> None:
