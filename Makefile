@@ -53,14 +53,22 @@ slow: $(VENV)/test.stamp  ## run the tests that take seconds each, as CI does af
 	$(call run_tests,and slow and not nightly)
 
 coverage: $(VENV)/test.stamp  ## branches that the quick tests take, and which test runs which line
-	@$(PYTEST) -n $(WORKERS) -m "not campaign and not realtime $(QUICK)" --cov --cov-context=test --cov-report=
-	@$(BIN)/coverage report --skip-covered --sort=-cover
+	@failed=0; \
+	$(PYTEST) -n $(WORKERS) -m "not campaign and not realtime $(QUICK)" --cov --cov-context=test --cov-report= \
+	  || failed=1; \
+	$(BIN)/coverage report --skip-covered --sort=-cover; \
+	exit $$failed
 
+# The quick tests, with the branches that they take, then all others.
 nightly: export SQUEEZEFILM_EXPLORE = 1
-nightly: PYTEST += --hypothesis-seed=$(SEED) --durations=25
+nightly: export PYTEST_ADDOPTS += --hypothesis-seed=$(SEED) --durations=25
 nightly: $(VENV)/test.stamp  ## run every test but a campaign's, and explore properties (SEED=N)
 	@echo "nightly: seed $(SEED)"
-	$(call run_tests,)
+	@failed=0; \
+	$(MAKE) --no-print-directory coverage || failed=1; \
+	$(PYTEST) -n $(WORKERS) -m "not campaign and not realtime and (slow or nightly)" || failed=1; \
+	$(PYTEST) -m "not campaign and realtime" $(REALTIME) || failed=1; \
+	exit $$failed
 
 campaign: coverage  ## what takes hours and goes on where it stopped: statistics, mutants
 	@nice $(PYTEST) -n $(WORKERS) -p tests.campaign --answers campaigns/statistics.jsonl -m campaign
