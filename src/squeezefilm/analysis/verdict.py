@@ -10,6 +10,7 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.analysis.curves import PAPER_CRITERION, FrictionCurve
 from squeezefilm.analysis.film.models import FilmComparison
+from squeezefilm.chain.friction import MODEL_KINDS
 from squeezefilm.chain.prediction import Prediction
 from squeezefilm.display import Display
 from squeezefilm.render.fidelity.survival import FidelityTable
@@ -51,7 +52,7 @@ def verdict(
         )
     if table is not None:
         found.append(_of_gratings(table))
-    if p.model.startswith("paper"):
+    if MODEL_KINDS[p.model].film == "asymptote":
         found.extend(Finding("doubt", check.sentence) for check in p.validity.failed)
     if films is not None:
         found.extend(_of_films(p, films))
@@ -77,7 +78,8 @@ def verdict(
 def _of_friction(p: Prediction, amplitude: str, curves: tuple[FrictionCurve, ...]) -> Finding:
     """How far the friction falls, against the paper's criterion."""
     here = next(c for c in curves if c.surface == p.surface.name and c.model == p.model)
-    by = "By the paper's model" if p.model.startswith("paper") else f"By the model '{p.model}'"
+    papers = MODEL_KINDS[p.model].film == "asymptote"
+    by = "By the paper's model" if papers else f"By the model '{p.model}'"
     lowered = (
         f"{by} {amplitude} lower the friction to {100 * p.relative_friction:.3g} % of what it is "
         "without vibration"

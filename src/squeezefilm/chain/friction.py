@@ -7,7 +7,7 @@ curves, textures. Each law names its model.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated, Literal, cast, get_args
+from typing import Annotated, Literal, NamedTuple, cast, get_args
 
 import numpy as np
 
@@ -47,14 +47,28 @@ DEFAULT_MODEL: FrictionModel = "partial-levitation"
 HIGHEST_AMPLITUDE: si.Metre = 50e-6
 
 
-def is_solved(model: FrictionModel) -> bool:
-    """Whether a model solves the film (and is slower by a factor of a hundred)."""
-    return model.startswith("film-") or shares_load(model)
+class ModelKind(NamedTuple):
+    """What a friction model makes of the film, and in which limit it takes the skin.
+
+    "asymptote": the paper's closed form at an infinite squeeze number; "held": a film solved (a
+    hundred times slower) at a gap that does not yield; "shared": films that carry the finger
+    together with asperities, at the gap where both balance the load.
+    """
+
+    film: Literal["asymptote", "held", "shared"]
+    limit: Limit = "own"
 
 
-def shares_load(model: FrictionModel) -> bool:
-    """Whether a model lets film and asperities share the load by a balance at each ridge."""
-    return model.startswith("partial-levitation")
+MODEL_KINDS: dict[FrictionModel, ModelKind] = {
+    "paper2008": ModelKind("asymptote"),
+    "paper2008-printed": ModelKind("asymptote"),
+    "film-sealed": ModelKind("held"),
+    "film-open": ModelKind("held"),
+    "film-plateau": ModelKind("held"),
+    "film-smooth": ModelKind("held"),
+    "partial-levitation": ModelKind("shared"),
+    "partial-levitation-one-gap": ModelKind("shared", "one-gap"),
+}
 
 
 @si.checked_numbers
@@ -122,13 +136,18 @@ class FrictionLaw:
     position: si.Metre = 0.0
 
     def __post_init__(self) -> None:
-        if self.position and not shares_load(self.model):
+        if self.position and self.kind.film != "shared":
             raise InputError(
                 f"position = {si.format_quantity(self.position, si.Unit('m'))} from the antinode: "
                 f"the model '{self.model}' knows the finger over an antinode only; ask a "
                 "partial-levitation model",
                 quantity="position",
             )
+
+    @property
+    def kind(self) -> ModelKind:
+        """What the model makes of film and skin."""
+        return MODEL_KINDS[self.model]
 
     @si.checked_numbers
     def gap(self, amplitude: si.MetreLike) -> PaperGap:
@@ -148,7 +167,7 @@ class FrictionLaw:
         if self.model == "paper2008-printed":
             over = float(contact_mean_pressure(self.gap(amplitude), "paper2008-printed")) - 1
             return FilmLoad("paper2008", over, 0.0, float("nan"), "closed form, as printed")
-        if shares_load(self.model):
+        if self.kind.film == "shared":
             return self._shared_load(amplitude)
         solved = cast(FilmModel, self.model)
         return film_load(
@@ -173,12 +192,12 @@ class FrictionLaw:
         finger's skin yields at the ultrasonic frequency. Raises `InputError` for a model that does
         not share the load."""
         if limit is None:
-            if not shares_load(self.model):
+            if self.kind.film != "shared":
                 raise InputError(
                     f"the model '{self.model}' holds the gap and shares no load; ask a "
                     "partial-levitation model, or name a limit"
                 )
-            limit = "one-gap" if self.model == "partial-levitation-one-gap" else "own"
+            limit = self.kind.limit
         finger = self.finger
         side = float(np.sqrt(finger.contact_area(self.normal_force)))
         return pad_friction(
@@ -254,13 +273,13 @@ class FrictionLaw:
     def curve(self, amplitude: si.MetreArray) -> si.DimensionlessArray:
         """µ′/µ (dimensionless, 0 to 1) at an array of amplitudes (m), same shape (1-D)."""
         ambient = self.gas.ambient_pressure
-        if not is_solved(self.model):
+        if self.kind.film == "asymptote":
             return np.asarray(
                 paper.relative_friction(
                     self.gap(amplitude), self.normal_force, ambient, self._closed_form
                 )
             )
-        if shares_load(self.model):
+        if self.kind.film == "shared":
             return self.sharing(np.ravel(amplitude)).relative_friction
         pressures = np.array([1 + self.load(float(a)).over_pressure for a in np.ravel(amplitude)])
         return np.asarray(self._shared(pressures))
@@ -268,9 +287,9 @@ class FrictionLaw:
     @si.checked_numbers
     def under(self, load: FilmLoad, amplitude: si.Metre) -> si.Dimensionless:
         """µ′/µ (dimensionless) with a film already solved at an amplitude (m), as `load` has it."""
-        if not is_solved(self.model):
+        if self.kind.film == "asymptote":
             return self.at(amplitude)
-        if shares_load(self.model):
+        if self.kind.film == "shared":
             # The contact grows with the force here, so the paper's fixed area will not do.
             carried = load.over_pressure * self.gas.ambient_pressure
             carried *= self.finger.contact_area(self.normal_force)
@@ -298,7 +317,7 @@ class FrictionLaw:
         Raises `InputError` for a value outside [0, 1] and `UnreachableError` where no amplitude up
         to 50 µm does.
         """
-        if not is_solved(self.model):
+        if self.kind.film == "asymptote":
             return paper.vibration_amplitude_for(
                 relative_friction,
                 self.gap(0.0),
@@ -316,7 +335,7 @@ class FrictionLaw:
         pressure = self.normal_force / self.finger.contact_length**2 / self.gas.ambient_pressure
 
         def excess(amplitude: float) -> float:
-            if shares_load(self.model):
+            if self.kind.film == "shared":
                 return self.at(amplitude) - wanted
             return 1 - self.load(amplitude).over_pressure / pressure - wanted
 
@@ -348,7 +367,7 @@ class FrictionLaw:
         """
         if points is not None:
             si.require("points", points, at_least=2)
-        count = points or (65 if is_solved(self.model) else 257)
+        count = points or (257 if self.kind.film == "asymptote" else 65)
         # Denser at small amplitudes, where the law bends within the roughness.
         grid = highest_amplitude * np.linspace(0.0, 1.0, count) ** 2
         law = self.curve(grid)

@@ -22,7 +22,6 @@ from squeezefilm.chain.friction import (
     FrictionModel,
     FrictionTable,
     friction_law,
-    shares_load,
 )
 from squeezefilm.chain.touch import Touch, kept_at, touch
 from squeezefilm.contact.sharing.film_load import FilmLoad
@@ -185,7 +184,7 @@ def predict(
             model=model or DEFAULT_MODEL,
             position=position,
         )
-        asked_for_asymptote = model is not None and model.startswith("paper2008")
+        asked_for_asymptote = model is not None and law.kind.film == "asymptote"
         felt = _felt(mode, drive, law, strict=strict and asked_for_asymptote)
     doubts = _beam_doubts(display.actuator, mode, drive, strict=strict)
     return _prediction(display, felt, _doubts(caught, felt) + doubts)
@@ -239,7 +238,7 @@ def _felt(mode: WorkingMode, drive: _Drive, law: FrictionLaw, *, strict: bool) -
     validity = film_validity(law.gap(felt.amplitude), drive.frequency, law.gas, strict=strict)
     load = law.load(felt.amplitude)
     friction, limits = law.under(load, felt.amplitude), None
-    if shares_load(law.model):
+    if law.kind.film == "shared":
         found = law.limits(felt.amplitude)
         limits = float(found.own[0]), float(found.one_gap[0])
     return _Felt(mode, drive, law, felt, validity, load, friction, limits)
@@ -259,15 +258,14 @@ def _beam_doubts(
 
 def _doubts(caught: list[warnings.WarningMessage], felt: _Felt) -> list[str]:
     """What was warned of on the way, and what the models leave out."""
-    model = felt.law.model
+    film = felt.law.kind.film
     # Where the film is solved, what fails of the asymptote is no doubt about this number.
-    solved = not model.startswith("paper2008")
     messages = [
         str(item.message)
         for item in caught
-        if not (solved and issubclass(item.category, OutOfRangeWarning))
+        if film == "asymptote" or not issubclass(item.category, OutOfRangeWarning)
     ]
-    if model.startswith("film-"):
+    if film == "held":
         inertia = felt.validity.check("inertia")
         messages += [] if inertia.holds else [inertia.sentence]
     if felt.drive.voltage is not None and felt.mode.modal_mass is None:
@@ -278,8 +276,8 @@ def _doubts(caught: list[warnings.WarningMessage], felt: _Felt) -> list[str]:
     if felt.limits is not None:
         spread = abs(felt.limits[0] - felt.limits[1])
         messages.append(
-            f"the model '{model}' lets film and asperities share the load of each ridge; its "
-            "asperities and plateaus are assumed, not measured, and decide the answer: see the "
+            f"the model '{felt.law.model}' lets film and asperities share the load of each ridge; "
+            "its asperities and plateaus are assumed, not measured, and decide the answer: see the "
             "interval of squeezefilm friction. Relative friction differs by "
             f"{spread:.2f} between a skin that sinks ridge by ridge and a stiff one"
         )

@@ -8,7 +8,7 @@ from typing import Literal, get_args
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.chain.friction import FrictionTable, shares_load
+from squeezefilm.chain.friction import MODEL_KINDS, FrictionTable
 from squeezefilm.chain.played_texture import FingerMotion
 from squeezefilm.chain.prediction import Prediction
 from squeezefilm.contact.sharing.gas_table import film_table
@@ -48,7 +48,7 @@ def wave_factors(display: Display, p: Prediction) -> WaveCompensation:
     across = isinstance(plate, RectangularPlate) and plate.lines_across == "width"
     along = AlongY() if across else AlongX()
     half, law = p.mode.half_wavelength, p.law
-    if not shares_load(p.model):
+    if MODEL_KINDS[p.model].film != "shared":
         return WaveCompensation.over_contact(half, law.finger.contact_length, along=along)
     found = friction_ripple(
         film_table(law.frequency, law.finger.plateau_width, law.gas),

@@ -9,7 +9,7 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.chain.friction import FrictionLaw
 from squeezefilm.contact.finger.load import finger_stiffness, interface_stiffness
-from squeezefilm.contact.sharing.pad import Limit, PadFriction
+from squeezefilm.contact.sharing.pad import PadFriction
 from squeezefilm.errors import ConvergenceError
 from squeezefilm.plate.loaded_mode import LoadedMode, loaded_mode, mean_square_wave
 from squeezefilm.plate.working_mode import WorkingMode
@@ -103,8 +103,8 @@ def load_ratios(mode: WorkingMode, law: FrictionLaw, amplitude: si.MetreArray) -
 
 
 def _sharing(law: FrictionLaw, amplitude: si.MetreLike) -> PadFriction:
-    limit: Limit = "one-gap" if law.model == "partial-levitation-one-gap" else "own"
-    return law.sharing(amplitude, limit)
+    # Whatever the law: a model that holds the gap says nothing of what the finger takes.
+    return law.sharing(amplitude, law.kind.limit)
 
 
 def _loaded(

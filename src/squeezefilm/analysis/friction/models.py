@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.chain.friction import FrictionModel, friction_law, shares_load
+from squeezefilm.chain.friction import MODEL_KINDS, FrictionModel, friction_law
 from squeezefilm.chain.prediction import Prediction
 from squeezefilm.display import Display
 from squeezefilm.errors import SqueezefilmError
@@ -51,7 +51,7 @@ def model_curves(display: Display, prediction: Prediction) -> tuple[ModelCurve, 
             surface=p.surface,
             normal_force=p.normal_force,
             model=model,
-            position=p.law.position if shares_load(model) else 0.0,
+            position=p.law.position if MODEL_KINDS[model].film == "shared" else 0.0,
         )
         # Denser at small amplitudes, where a smooth film lifts the finger off.
         amplitude = np.union1d(top * np.linspace(0, 1, points) ** 1.5, p.vibration_amplitude)
