@@ -16,7 +16,7 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import RENDER_STEPS, require_motion
-from squeezefilm.plate.layout import Actuator, AnnularStator, DiscPlate, RectangularPlate
+from squeezefilm.plate.layout import Actuator, AnnularStator
 from squeezefilm.render.motion.finger_path import FingerPath, OverPath
 from squeezefilm.render.motion.minimum_jerk import MinimumJerkStroke, Trajectory
 from squeezefilm.render.motion.stroke import Stroke
@@ -200,13 +200,7 @@ def require_on_display(actuator: Actuator, motion: FingerMotion) -> None:
                 "stroke, or take a plate for a motion in the plane"
             )
         return
-    if isinstance(actuator, DiscPlate):
-        room: tuple[si.Metre, si.Metre] = (actuator.diameter, actuator.diameter)
-    elif isinstance(actuator, RectangularPlate):
-        room = (actuator.length, actuator.width)
-    else:
-        return
-    for name, used, there in (("x", width, room[0]), ("y", height, room[1])):
+    for name, used, there in zip("xy", (width, height), actuator.extent, strict=True):
         if used > there * (1 + 1e-9):
             raise InputError(
                 f"the stroke covers {si.format_quantity(used, _METRE)} along {name}, and the "

@@ -15,7 +15,7 @@ from squeezefilm.contact.sharing.gas_table import film_table
 from squeezefilm.contact.sharing.pad import friction_ripple
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError
-from squeezefilm.plate.layout import DiscPlate, RectangularPlate
+from squeezefilm.plate.layout import DiscPlate
 from squeezefilm.render.program.inverse import FrictionInverse
 from squeezefilm.render.program.wave import WaveCompensation
 from squeezefilm.render.texture.coordinate import AlongX, AlongY
@@ -45,7 +45,7 @@ def wave_factors(display: Display, p: Prediction) -> WaveCompensation:
         raise InputError(
             "the wave of a disc is no standing wave along a line; leave --wave out for a disc"
         )
-    across = isinstance(plate, RectangularPlate) and plate.lines_across == "width"
+    across = plate.lines_across == "width"
     along = AlongY() if across else AlongX()
     half, law = p.mode.half_wavelength, p.law
     if MODEL_KINDS[p.model].film != "shared":

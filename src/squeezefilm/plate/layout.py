@@ -194,6 +194,11 @@ class RectangularPlate:
         return (self.nodal_lines, 0) if self.lines_across == "length" else (0, self.nodal_lines)
 
     @property
+    def extent(self) -> tuple[si.Metre, si.Metre]:
+        """What there is to touch along x and along y (m)."""
+        return self.length, self.width
+
+    @property
     def area(self) -> si.SquareMetre:
         """The surface a finger can explore."""
         return self.length * self.width

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 from squeezefilm import hard_limits as hard
 from squeezefilm import quantities as si
@@ -45,6 +45,7 @@ class AnnularStator:
     tooth_pitch: si.Metre | None = None
     slot_width: si.Metre | None = None
     type: Literal["annular_stator"] = "annular_stator"
+    lines_across: ClassVar[Literal["length", "width"]] = "length"
 
     def __post_init__(self) -> None:
         if self.radial_width >= self.mean_diameter:
@@ -66,6 +67,11 @@ class AnnularStator:
                 f"mean diameter of {si.format_quantity(self.mean_diameter, _M)}; a standing wave "
                 "needs a whole number (within 0.05)"
             )
+
+    @property
+    def extent(self) -> tuple[si.Metre, si.Metre]:
+        """What there is to touch once round, along x, and across it (m)."""
+        return math.pi * self.mean_diameter, self.radial_width
 
     @property
     def wavelengths_around(self) -> si.Dimensionless:
@@ -101,6 +107,7 @@ class DiscPlate:
     sectors: int = 0
     glue: GlueLayer | None = None
     type: Literal["disc"] = "disc"
+    lines_across: ClassVar[Literal["length", "width"]] = "length"
 
     def __post_init__(self) -> None:
         si.require("inner_diameter", self.inner_diameter, _M, at_least=0, below=self.diameter)
@@ -147,6 +154,11 @@ class DiscPlate:
                 "ceramic_inner_diameter",
                 quantity="ceramic_inner_diameter",
             )
+
+    @property
+    def extent(self) -> tuple[si.Metre, si.Metre]:
+        """What there is to touch along x and along y (m), at the widest."""
+        return self.diameter, self.diameter
 
     @property
     def nodal_lines(self) -> int:

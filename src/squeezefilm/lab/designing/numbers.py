@@ -191,7 +191,7 @@ def _line(p: Prediction, actuator: Actuator) -> dict[str, Any] | None:
     lobe. `along` is the plate's axis that the positions are on."""
     line = p.mode.line
     if line is not None:
-        across = isinstance(actuator, RectangularPlate) and actuator.lines_across == "width"
+        across = actuator.lines_across == "width"
         return {
             "along": "y" if across else "x",
             "position_m": line.position[::4].tolist(),

@@ -23,7 +23,7 @@ from squeezefilm.errors import InputError
 from squeezefilm.formats.pictures import picture_from
 from squeezefilm.lab.designing.form import display_of
 from squeezefilm.lab.designing.numbers import WorkingPoint, predicted
-from squeezefilm.plate.layout import Actuator, DiscPlate, RectangularPlate
+from squeezefilm.plate.layout import DiscPlate
 from squeezefilm.render.program.lowering import Program
 from squeezefilm.render.program.renderer import render
 from squeezefilm.results import stamp, to_json
@@ -94,12 +94,12 @@ def feel(
     amplitude = np.linspace(0.0, largest, _KNOTS)
     quality_factor, resonance = resonance_with_finger(p)
     actuator = display.actuator
-    width, height = _size(actuator)
+    width, height = actuator.extent
     wave = None
     if not isinstance(actuator, DiscPlate):
         factors = wave_factors(display, p)
         along = np.linspace(0.0, 2 * p.mode.half_wavelength, 129)
-        across = isinstance(actuator, RectangularPlate) and actuator.lines_across == "width"
+        across = actuator.lines_across == "width"
         found = factors.factor(0.0, along) if across else factors.factor(along, 0.0)
         wave = {
             "period_m": 2 * p.mode.half_wavelength,
@@ -142,7 +142,7 @@ def parity(
 ) -> dict[str, Any]:
     """A random walk of samples with the amplitudes (m) that the compiled interpreter gives."""
     ready = _ready(display_text, texture_text, preset, quality, folder)
-    width, height = _size(ready.display.actuator)
+    width, height = ready.display.actuator.extent
     rng = np.random.default_rng(20261121)
     t = np.cumsum(rng.uniform(1e-4, 4e-3, ticks))
     v = 0.3 * rng.standard_normal(ticks)
@@ -159,12 +159,3 @@ def parity(
         "t_s": t.tolist(),
         "amplitude_m": done.amplitude.tolist(),
     }
-
-
-def _size(actuator: Actuator) -> tuple[si.Metre, si.Metre]:
-    """What there is to touch: along the wave, and across it."""
-    if isinstance(actuator, RectangularPlate):
-        return actuator.length, actuator.width
-    if isinstance(actuator, DiscPlate):
-        return actuator.diameter, actuator.diameter
-    return float(np.pi * actuator.mean_diameter), actuator.radial_width
