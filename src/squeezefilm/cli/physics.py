@@ -206,7 +206,6 @@ def plate(asked: PlateOptions) -> None:
     from squeezefilm.analysis.plate.tracking import parse_track
     from squeezefilm.display import load_display
     from squeezefilm.report.plate.terminal import show_plate
-    from squeezefilm.report.plate.terminal_ring import show_ring
 
     display, out, vtu = load_display(asked.target), asked.out, asked.vtu
     mode = None if asked.mode is None else parse_mode(asked.mode)
@@ -231,20 +230,14 @@ def plate(asked: PlateOptions) -> None:
         )
         if out is not None or vtu is not None:
             from squeezefilm.report.plate.plate import write_mode, write_plate
-            from squeezefilm.report.plate.ring import write_ring
 
             step("figures")
-            if isinstance(result, PlateAnalysis):
-                written += [] if out is None else [write_plate(result, out)]
-                written += [] if vtu is None else [write_mode(result, vtu)]
-            elif out is not None:
-                written.append(write_ring(result, out))
+            written += [] if out is None else [write_plate(result, out)]
+            if vtu is not None and isinstance(result, PlateAnalysis):
+                written.append(write_mode(result, vtu))
     if asked.as_json:
         print_json(result.summary())
         return
-    if isinstance(result, PlateAnalysis):
-        show_plate(result)
-    else:
-        show_ring(result)
+    show_plate(result)
     for path in written:
         typer.echo(f"wrote {path}")

@@ -1,4 +1,4 @@
-"""The equivalent circuit of a vibrating body near one resonance."""
+"""What a vibrating body is to the amplifier: its admittance, and a circuit near one resonance."""
 
 from __future__ import annotations
 
@@ -7,6 +7,47 @@ from dataclasses import dataclass
 import numpy as np
 
 from squeezefilm import quantities as si
+
+
+class DrivenResponse:
+    """The response of a body to one volt (zero to peak) on its drive, at `frequencies` (Hz).
+
+    `admittance` in siemens, time factor e^{iωt}; `maximum` is the largest amplitude per volt
+    anywhere on the touched face (m/V). All have the shape (frequencies,).
+    """
+
+    frequencies: si.HertzArray
+    admittance: si.ComplexArray
+
+    @property
+    def maximum(self) -> si.FloatArray:
+        """The largest amplitude per volt (m/V) on the touched face, for every frequency."""
+        raise NotImplementedError
+
+    @property
+    def resonance(self) -> int:
+        """The number of the frequency with the largest amplitude."""
+        return int(np.argmax(self.maximum))
+
+    @property
+    def impedance(self) -> si.ComplexArray:
+        """Z = 1/Y (Ω)."""
+        return 1 / self.admittance
+
+    @si.checked_numbers
+    def current(self, voltage: si.Volt) -> si.FloatArray:
+        """The amplifier's current amplitude (A) at a voltage amplitude."""
+        return np.abs(self.admittance) * voltage
+
+    @si.checked_numbers
+    def apparent_power(self, voltage: si.Volt) -> si.FloatArray:
+        """Vrms · Irms (VA): what the amplifier must be able to give."""
+        return self.current(voltage) * voltage / 2
+
+    @si.checked_numbers
+    def input_power(self, voltage: si.Volt) -> si.FloatArray:
+        """Mean electrical power (W) taken at a voltage amplitude."""
+        return self.admittance.real * voltage**2 / 2
 
 
 @si.checked_numbers

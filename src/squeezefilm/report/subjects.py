@@ -102,7 +102,7 @@ SUBJECTS: Mapping[type, _Subject] = {
         plate.write_plate,
     ),
     RingAnalysis: _Subject(
-        {"shape": ring.shape, "scan": ring.scan, "response": ring.response}, ring.write_ring
+        {"shape": ring.shape, "scan": ring.scan, "response": ring.response}, plate.write_plate
     ),
     SensitivityTable: _Subject({"tornado": sensitivity_figures.tornado}),
     ModeTracks: _Subject({"tracks": sensitivity_figures.tracks}),

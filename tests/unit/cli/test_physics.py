@@ -142,10 +142,8 @@ def plates(stands_in: StandsIn, monkeypatch: pytest.MonkeyPatch) -> SimpleNamesp
     return SimpleNamespace(
         solve=stands_in("analysis.plate.solve:solve_plate", Plate(summary=lambda: {"plate": 1})),
         show_plate=stands_in("report.plate.terminal:show_plate"),
-        show_ring=stands_in("report.plate.terminal_ring:show_ring"),
         page=stands_in("report.plate.plate:write_plate", "plate.html"),
         volume=stands_in("report.plate.plate:write_mode", "plate.vtu"),
-        ring_page=stands_in("report.plate.ring:write_ring", "ring.html"),
     )
 
 
@@ -156,7 +154,7 @@ def test_a_plate_is_solved_and_shown(plates: SimpleNamespace) -> None:
     assert plates.solve.named == {"mode": None, "band": None, "sensitivity": False, "track": None}
     assert plates.show_plate.given == (plates.solve.answer,)
     assert (done.stdout, done.stderr) == ("", "  a step …\n")
-    assert plates.page.calls == plates.volume.calls == plates.show_ring.calls == []
+    assert plates.page.calls == plates.volume.calls == []
     done = run(
         "plate", PLATE, "--band", "25 kHz:45 kHz", "--mode", "8,0", "--sensitivity", "--track",
         "ceramic_thickness", "--from", "0.5 mm", "--to", "1.5 mm", "--json",
@@ -182,20 +180,19 @@ def test_a_plate_is_written_where_asked(plates: SimpleNamespace, tmp_path: Path)
     assert done.stdout == "wrote plate.vtu\n"
     done = run("plate", PLATE, "--vtu", tmp_path / "a.vtu", "--out", tmp_path)
     assert done.stdout == "wrote plate.html\nwrote plate.vtu\n"
-    assert plates.ring_page.calls == []
 
 
-def test_a_stator_is_shown_as_a_ring(plates: SimpleNamespace, tmp_path: Path) -> None:
+def test_a_stator_has_a_page_and_no_volume(plates: SimpleNamespace, tmp_path: Path) -> None:
     plates.solve.answer = ANSWER
     done = run("plate", STATOR)
-    assert plates.show_ring.given == (ANSWER,)
+    assert plates.show_plate.given == (ANSWER,)
     assert done.stdout == ""
     done = run("plate", STATOR, "--out", tmp_path)
-    assert plates.ring_page.given == (ANSWER, tmp_path)
-    assert done.stdout == "wrote ring.html\n"
+    assert plates.page.given == (ANSWER, tmp_path)
+    assert done.stdout == "wrote plate.html\n"
     refused = run("plate", STATOR, "--vtu", tmp_path / "a.vtu")
     assert refused.returncode == 2
     assert f"actuator of '{STATOR}' is of the type annular stator" in refused.stderr
     assert "annular stator" in refused.stderr
     assert len(plates.solve.calls) == 2
-    assert plates.show_plate.calls == plates.page.calls == plates.volume.calls == []
+    assert plates.volume.calls == []

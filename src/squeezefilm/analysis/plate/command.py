@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.analysis.plate.sensitivity import SensitivityTable, plate_sensitivity
+from squeezefilm.analysis.plate.solved import ModeRow, Remarks, SolvedBody, sweep_around
 from squeezefilm.analysis.plate.tracking import (
     ModeTracks,
     TrackRequest,
@@ -34,27 +35,11 @@ from squeezefilm.plate.solid.response import HarmonicResponse, harmonic_response
 from squeezefilm.plate.solid.solve import solve_modes
 from squeezefilm.plate.sound import SoundField, rectangular_surface, sound_field
 from squeezefilm.progress import SayProgress
-from squeezefilm.results import Result, stamp, to_json
-
-
-@dataclass(frozen=True)
-class ModeRow:
-    """One mode of the table: label by nodal lines across length and width, extrapolated frequency
-    with its estimated error, Q, amplitude per volt at the largest point of the face if it stood
-    alone, effective coupling, modal force (N/V for unit modal mass)."""
-
-    label: str
-    frequency: si.Hertz
-    frequency_error: si.Hertz
-    quality_factor: si.Dimensionless
-    amplitude_per_volt: si.MetrePerVolt
-    coupling: si.Dimensionless
-    modal_force: float
-    half_wavelength: si.Metre | None
+from squeezefilm.results import to_json
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class PlateAnalysis(Result):
+class PlateAnalysis(SolvedBody):
     """The solved plate: table of modes, the working mode, its response and equivalent circuit."""
 
     display: Display
@@ -74,31 +59,30 @@ class PlateAnalysis(Result):
     sound: SoundField
     sensitivities: SensitivityTable | None = None
     tracks: ModeTracks | None = None
-    _shown: ClassVar[str] = (
-        "display.name working.label working.frequency working.quality_factor amplitude_per_volt "
-        "modes.model"
-    )
 
-    def summary(self) -> dict[str, Any]:
-        """What ``--json`` prints; keys carry units."""
-        volts = self.display.drive.voltage
-        at = self.response.resonance
+    @property
+    def model(self) -> str:
+        """What made the numbers."""
+        return self.modes.model
+
+    @property
+    def status(self) -> str:
+        """How good the table is, in words."""
+        return self.modes.status
+
+    @property
+    def remarks(self) -> Remarks:
+        """What is said beside the numbers."""
+        return Remarks(
+            "(estimated)",
+            "largest, upper face",
+            "centreline, between outer nodes",
+            "from the losses of its materials",
+            "loudest direction",
+        )
+
+    def _particulars(self) -> dict[str, Any]:
         return {
-            "display": self.display.name,
-            "mode": self.working.label,
-            "frequency_Hz": self.working.frequency,
-            "frequency_error_Hz": self.working.frequency_error,
-            "amplitude_m_per_V": self.amplitude_per_volt,
-            "centreline_amplitude_m_per_V": self.centreline_per_volt,
-            "half_wavelength_m": self.working.half_wavelength,
-            "quality_factor": self.working.quality_factor,
-            "coupling": self.working.coupling,
-            "modes": to_json(self.rows),
-            "voltage_V": volts,
-            "current_A": float(self.response.current(volts)[at]),
-            "apparent_power_VA": float(self.response.apparent_power(volts)[at]),
-            "input_power_W": float(self.response.input_power(volts)[at]),
-            "equivalent_circuit": to_json(self.circuit),
             "beam": {
                 "model": "timoshenko_beam_plane_strain",
                 "frequency_Hz": self.beam_frequency,
@@ -111,25 +95,9 @@ class PlateAnalysis(Result):
                 "frequency_Hz": self.shear_frequency,
                 "error_against_solid": self.shear_frequency / self.working.frequency - 1,
             },
-            **sound_summary(self.sound),
             "sensitivities": to_json(self.sensitivities),
             "tracks": to_json(self.tracks),
-            "model": self.modes.model,
-            "status": self.modes.status,
-            "provenance": stamp(self.display),
         }
-
-    def _table(self) -> Any:
-        return to_json(self.rows)
-
-
-def sound_summary(sound: SoundField) -> dict[str, Any]:
-    """What a summary says of the sound: its levels by distance, and the guidance on exposure."""
-    levels = zip(sound.distances, sound.sound_pressure_level_dB, strict=True)
-    return {
-        "sound_pressure_level_dB": {f"{distance:g} m": level for distance, level in levels},
-        "sound_guidance": to_json(sound.guidance),
-    }
 
 
 def parse_mode(text: str) -> tuple[int, int]:
@@ -219,18 +187,6 @@ def _driven_plate(display: Display) -> RectangularPlate:
             quantity="patches",
         )
     return plate
-
-
-def sweep_around(
-    frequency: si.Hertz, quality_factor: si.Dimensionless, points: int
-) -> si.HertzArray:
-    """Frequencies (Hz) over ±4/Q about a resonance, 1 % at the least, shape (points,).
-
-    They are dense near the peak, where the curve turns within f/Q.
-    """
-    span = max(4 / quality_factor, 0.01)
-    near = np.sinh(np.linspace(-3, 3, points)) / np.sinh(3)
-    return np.asarray(frequency * (1 + span * near))
 
 
 def _centreline_per_volt(

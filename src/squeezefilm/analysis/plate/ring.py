@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.analysis.plate.command import ModeRow, sound_summary, sweep_around
+from squeezefilm.analysis.plate.solved import ModeRow, Remarks, SolvedBody, sweep_around
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import RING_MODES, require_within
@@ -31,13 +31,13 @@ from squeezefilm.plate.ring.response import (
 from squeezefilm.plate.solid.modes import check_band
 from squeezefilm.plate.sound import SoundField, ring_surface, sound_field
 from squeezefilm.progress import SayProgress
-from squeezefilm.results import Result, stamp, to_json
+from squeezefilm.results import to_json
 
 _MOST_HARMONICS = 60
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class RingAnalysis(Result):
+class RingAnalysis(SolvedBody):
     """A solved disc or stator: table of modes, the working mode, its response and circuit.
 
     Modes are B(nodal circles, nodal diameters), or R and T in the plane.
@@ -57,10 +57,6 @@ class RingAnalysis(Result):
     circuit: EquivalentCircuit | None
     sound: SoundField
     described_amplitude_per_volt: si.MetrePerVolt | None
-    _shown: ClassVar[str] = (
-        "display.name working.label working.frequency working.quality_factor amplitude_per_volt "
-        "model"
-    )
 
     @property
     def amplitude_per_volt(self) -> si.MetrePerVolt:
@@ -92,33 +88,25 @@ class RingAnalysis(Result):
         worst = max(row.frequency_error / row.frequency for row in self.rows)
         return f"{len(self.rows)} modes in the band, within {worst:.1e} (estimated)"
 
-    def summary(self) -> dict[str, Any]:
-        """What ``--json`` prints; keys carry units, and are a rectangle's where they apply."""
-        volts = self.display.drive.voltage
+    @property
+    def remarks(self) -> Remarks:
+        """What is said beside the numbers."""
+        return Remarks(
+            "(estimated)" + ("; fitted, not predicted" if self.body.fit is not None else ""),
+            "largest, touched face",
+            "antinodes of the mean circumference" if self.mode.harmonic else "inner lobe",
+            "from the losses of its materials"
+            if self.body.quality_factor is None
+            else "of the assembly, as described",
+            "loudest direction, touched face only",
+        )
+
+    def _particulars(self) -> dict[str, Any]:
         return {
-            "display": self.display.name,
-            "mode": self.working.label,
-            "frequency_Hz": self.working.frequency,
-            "frequency_error_Hz": self.working.frequency_error,
-            "amplitude_m_per_V": self.amplitude_per_volt,
-            "centreline_amplitude_m_per_V": self.centreline_per_volt,
-            "half_wavelength_m": self.working.half_wavelength,
             "half_wavelength_along": self.half_wavelength_along,
             "nodal_circles_m": to_json(self.circles),
-            "quality_factor": self.working.quality_factor,
-            "coupling": self.working.coupling,
-            "modes": to_json(self.rows),
-            "voltage_V": volts,
-            "current_A": self.response.current(volts),
-            "apparent_power_VA": self.response.apparent_power(volts),
-            "input_power_W": self.response.input_power(volts),
-            "equivalent_circuit": to_json(self.circuit),
             "described_amplitude_m_per_V": self.described_amplitude_per_volt,
             "fit": self._fit(),
-            **sound_summary(self.sound),
-            "model": self.model,
-            "status": self.status,
-            "provenance": stamp(self.display),
         }
 
     def _fit(self) -> dict[str, Any] | None:
@@ -136,9 +124,6 @@ class RingAnalysis(Result):
             "thickness_with_stiff_and_soft_teeth_m": list(fit.thickness_bounds),
             "assumed": to_json(fit.assumptions),
         }
-
-    def _table(self) -> Any:
-        return to_json(self.rows)
 
 
 def analyze_ring(

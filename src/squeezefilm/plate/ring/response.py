@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.plate.circuit import EquivalentCircuit
+from squeezefilm.plate.circuit import DrivenResponse, EquivalentCircuit
 from squeezefilm.plate.ring.body import RingBody, surface_profile
 from squeezefilm.plate.ring.modes import (
     AnnularMode,
@@ -23,7 +23,7 @@ _RADII = 121
 
 
 @dataclass(frozen=True, eq=False)
-class RingResponse:
+class RingResponse(DrivenResponse):
     """The response to one volt (zero to peak) on the channel, at `frequencies` (Hz).
 
     `motion` is u_z per volt (m/V, complex) on the surface at θ of an antinode, shape (frequencies,
@@ -43,26 +43,6 @@ class RingResponse:
     def maximum(self) -> si.FloatArray:
         """The largest |u_z| per volt (m/V) on the surface, for every frequency."""
         return np.asarray(np.max(np.abs(self.motion), axis=1))
-
-    @property
-    def resonance(self) -> int:
-        """The number of the frequency with the largest amplitude."""
-        return int(np.argmax(self.maximum))
-
-    @si.checked_numbers
-    def current(self, voltage: si.Volt) -> si.Ampere:
-        """The current amplitude (A) at resonance."""
-        return float(np.abs(self.admittance[self.resonance])) * voltage
-
-    @si.checked_numbers
-    def apparent_power(self, voltage: si.Volt) -> si.Watt:
-        """Half of voltage times current amplitude (VA) at resonance."""
-        return voltage * self.current(voltage) / 2
-
-    @si.checked_numbers
-    def input_power(self, voltage: si.Volt) -> si.Watt:
-        """The power taken up (W) at resonance, from the conductance."""
-        return float(self.admittance[self.resonance].real) * voltage**2 / 2
 
 
 @si.checked_numbers

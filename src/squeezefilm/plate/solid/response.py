@@ -11,7 +11,7 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import GeometryError, InputError
-from squeezefilm.plate.circuit import EquivalentCircuit
+from squeezefilm.plate.circuit import DrivenResponse, EquivalentCircuit
 from squeezefilm.plate.elements.again import SolvedAgain
 from squeezefilm.plate.elements.blas_threads import one_blas_thread
 from squeezefilm.plate.layout import RectangularPlate
@@ -51,7 +51,7 @@ class SurfaceLoad:
 
 
 @dataclass(frozen=True, eq=False)
-class HarmonicResponse(SolvedAgain):
+class HarmonicResponse(SolvedAgain, DrivenResponse):
     """The response of a plate to one volt (zero to peak) on its drive, at `frequencies` (Hz).
 
     `admittance` in siemens, time factor e^{iωt}. `method` says how it was made and
@@ -71,11 +71,6 @@ class HarmonicResponse(SolvedAgain):
     _loads: tuple[SurfaceLoad, ...] = field(repr=False, default=())
     _again: Callable[[], HarmonicResponse] | None = field(repr=False, default=None)
     _bulk: ClassVar[tuple[str, ...]] = ("_parts", "_coordinates", "_potentials")
-
-    @property
-    def impedance(self) -> si.ComplexArray:
-        """Z = 1/Y (Ω)."""
-        return 1 / self.admittance
 
     @si.checked_numbers
     def displacement(self, x: si.MetreArray, y: si.MetreArray) -> si.ComplexArray:
@@ -119,26 +114,6 @@ class HarmonicResponse(SolvedAgain):
         for k, row in enumerate(self._coordinates):
             out[k] = np.sqrt(np.max((row.real @ values) ** 2 + (row.imag @ values) ** 2))
         return out
-
-    @property
-    def resonance(self) -> int:
-        """The number of the frequency with the largest amplitude."""
-        return int(np.argmax(self.maximum))
-
-    @si.checked_numbers
-    def current(self, voltage: si.Volt) -> si.FloatArray:
-        """The amplifier's current amplitude (A) at a voltage amplitude."""
-        return np.abs(self.admittance) * voltage
-
-    @si.checked_numbers
-    def apparent_power(self, voltage: si.Volt) -> si.FloatArray:
-        """Vrms · Irms (VA): what the amplifier must be able to give."""
-        return self.current(voltage) * voltage / 2
-
-    @si.checked_numbers
-    def input_power(self, voltage: si.Volt) -> si.FloatArray:
-        """Mean electrical power (W) taken at a voltage amplitude."""
-        return self.admittance.real * voltage**2 / 2
 
     @si.checked_numbers
     def dissipated_power(self, voltage: si.Volt) -> si.FloatArray:

@@ -1,4 +1,4 @@
-"""The page of a solved plate: its numbers, its figures beside it, its modes, what it depends on."""
+"""The page of a solved plate, disc or stator: numbers, figures, modes, what it depends on."""
 
 from __future__ import annotations
 
@@ -6,19 +6,25 @@ from collections.abc import Mapping, Sequence
 from html import escape
 from typing import TYPE_CHECKING
 
-from squeezefilm import quantities as si
-from squeezefilm.report.kit.numbers import HZ, printable, shown
+from squeezefilm.analysis.plate.command import PlateAnalysis
+from squeezefilm.analysis.plate.ring import RingAnalysis
+from squeezefilm.report.kit.numbers import HZ, M, V, printable, shown
 from squeezefilm.report.kit.page_style import html_table, page_head, picture_sections, section
-from squeezefilm.report.plate.terminal_modes import mode_rows, working_rows
+from squeezefilm.report.plate.terminal_modes import drive_rows, mode_rows, working_rows
+from squeezefilm.report.plate.terminal_ring import fit_sentences
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from squeezefilm.analysis.plate.command import PlateAnalysis
     from squeezefilm.analysis.plate.sensitivity import SensitivityTable
+    from squeezefilm.analysis.plate.solved import SolvedBody
+
+_VOLUME = """ The solved volume for ParaView:
+<a href="mode.vtu">mode.vtu</a> (warp by <code>mode_displacement_m</code>, scaled to 1 µm at its
+largest)."""
 
 
-def plate_page(result: PlateAnalysis, figures: Mapping[str, tuple[str, Figure]]) -> str:
+def plate_page(result: SolvedBody, figures: Mapping[str, tuple[str, Figure]]) -> str:
     """The text of index.html; figures (heading and drawing) are the PNG files beside it by name."""
     title = escape(printable(result.display.title))
     sections = [
@@ -26,7 +32,8 @@ def plate_page(result: PlateAnalysis, figures: Mapping[str, tuple[str, Figure]])
         picture_sections(figures),
         section("Modes in the band", _modes(result)),
     ]
-    if result.sensitivities is not None:
+    volume = _VOLUME if isinstance(result, PlateAnalysis) else ""
+    if isinstance(result, PlateAnalysis) and result.sensitivities is not None:
         sections.append(section("Sensitivities in numbers", sensitivities(result.sensitivities)))
     stamp = result.summary()["provenance"]
     return f"""{page_head(f"{title}: solved plate")}
@@ -39,9 +46,7 @@ def plate_page(result: PlateAnalysis, figures: Mapping[str, tuple[str, Figure]])
 <footer><p>squeezefilm {escape(str(stamp["squeezefilm_version"]))} ·
 made {escape(str(stamp["created_utc"]))} (UTC) ·
 description SHA-256 <code>{escape(str(stamp["config_sha256"]))}</code>.
-Numbers: <a href="plate.json">plate.json</a>. The solved volume for ParaView:
-<a href="mode.vtu">mode.vtu</a> (warp by <code>mode_displacement_m</code>, scaled to 1 µm at its
-largest).</p></footer>
+Numbers: <a href="plate.json">plate.json</a>.{volume}</p></footer>
 </body>
 </html>
 """
@@ -52,36 +57,24 @@ def _table(caption: str, head: tuple[str, ...], rows: Sequence[tuple[str, ...]])
     return html_table(escape(caption), map(escape, head), cells, between="")
 
 
-def _numbers(result: PlateAnalysis) -> str:
-    volts, at = result.display.drive.voltage, result.response.resonance
-    amplitude = shown(volts * result.amplitude_per_volt, si.Unit("m"), 3)
-    current = shown(float(result.response.current(volts)[at]), si.Unit("A"), 3)
-    apparent = result.response.apparent_power(volts)[at]
-    power = f"{apparent:.3g} VA, {result.response.input_power(volts)[at]:.3g} W"
+def _numbers(result: SolvedBody) -> str:
+    volts = result.display.drive.voltage
     rows = working_rows(result)
-    rows.append((f"Amplitude at {volts:g} V", amplitude, "zero-to-peak, largest"))
-    rows.append((f"Current at {volts:g} V", current, power))
-    if result.circuit is not None:
-        c = result.circuit
-        rows.append(
-            (
-                "Equivalent circuit",
-                f"C0 {shown(c.static_capacitance, si.Unit('F'), 3)}",
-                f"R1 {c.motional_resistance:.3g} Ω, "
-                f"L1 {shown(c.motional_inductance, si.Unit('H'), 3)}, "
-                f"C1 {shown(c.motional_capacitance, si.Unit('F'), 3)}",
-            )
-        )
-    return _table(f"{result.modes.model}", ("Quantity", "Value", "Remark"), rows)
+    amplitude = shown(volts * result.amplitude_per_volt, M, 3)
+    rows.append((f"Amplitude at {shown(volts, V)}", amplitude, "zero-to-peak, largest"))
+    table = _table(result.model, ("Quantity", "Value", "Remark"), rows + drive_rows(result))
+    fit = result.body.fit if isinstance(result, RingAnalysis) else None
+    said = () if fit is None else fit_sentences(fit)
+    return table + "".join(f"<p>{escape(sentence)}</p>" for sentence in said)
 
 
-def _modes(result: PlateAnalysis) -> str:
+def _modes(result: SolvedBody) -> str:
     rows = [
         (label, frequency, f"± {error}", *rest)
         for label, frequency, error, *rest in mode_rows(result.rows, result.amplitude_per_volt)
     ]
     head = ("Mode", "Frequency", "Error", "Q", "Per volt", "Coupling")
-    return _table(result.modes.status, head, rows)
+    return _table(result.status, head, rows)
 
 
 def sensitivities(table: SensitivityTable) -> str:

@@ -1,4 +1,4 @@
-"""What `squeezefilm plate --out` writes: figures of the solved plate, a page, the volume."""
+"""What `squeezefilm plate --out` writes: figures of what was solved, a page, the volume."""
 
 from __future__ import annotations
 
@@ -7,17 +7,20 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from squeezefilm.analysis.plate.command import PlateAnalysis
+from squeezefilm.analysis.plate.ring import RingAnalysis
 from squeezefilm.plate.solid.modes import zero_crossings
 from squeezefilm.report.display.plate_figures import half_power
 from squeezefilm.report.kit import style
 from squeezefilm.report.kit.folder import json_text, write_folder
+from squeezefilm.report.plate import ring
 from squeezefilm.report.plate.mode_surface import driven_shape, mode_surface
 from squeezefilm.report.plate.vtu import write_vtu
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from squeezefilm.analysis.plate.command import PlateAnalysis
+    from squeezefilm.analysis.plate.solved import SolvedBody
 
 
 @style.drawn
@@ -142,13 +145,36 @@ def admittance(result: PlateAnalysis) -> Figure:
     return figure
 
 
-def write_plate(result: PlateAnalysis, folder: Path) -> Path:
-    """Write what a solved plate gives into `folder`: index.html, plate.json, mode.vtu for ParaView
-    and one PNG a figure; the page's path.
+def write_plate(result: SolvedBody, folder: Path) -> Path:
+    """Write what a solved plate, disc or stator gives into `folder`: index.html, plate.json and one
+    PNG a figure; of a rectangular plate mode.vtu for ParaView too. The page's path.
 
     Everything is made before anything is written.
     """
     from squeezefilm.report.plate.page import plate_page
+
+    if isinstance(result, RingAnalysis):
+        figures = {
+            "mode-plan": ("Mode shape from above", ring.shape(result)),
+            "line-scan": ("Scan around and across", ring.scan(result)),
+            "frequency-response": ("Frequency response", ring.response(result)),
+        }
+    else:
+        assert isinstance(result, PlateAnalysis)
+        figures = _plate_figures(result)
+    files: dict[str, str | bytes] = {
+        f"{name}.png": style.png(figure) for name, (_, figure) in figures.items()
+    }
+    files["plate.json"] = json_text(result.summary())
+    files["index.html"] = plate_page(result, figures)
+    if isinstance(result, PlateAnalysis):
+        write_mode(result, folder / "mode.vtu")
+    write_folder(folder, files)
+    return folder / "index.html"
+
+
+def _plate_figures(result: PlateAnalysis) -> dict[str, tuple[str, Figure]]:
+    """The figures of a rectangular plate by their file's name, each with its heading."""
     from squeezefilm.report.plate.sensitivity_figures import tornado, tracks
 
     figures = {
@@ -162,14 +188,7 @@ def write_plate(result: PlateAnalysis, folder: Path) -> Path:
         figures["sensitivity"] = ("Sensitivities", tornado(result.sensitivities))
     if result.tracks is not None:
         figures["tracking"] = ("Modes against a parameter", tracks(result.tracks))
-    files: dict[str, str | bytes] = {
-        f"{name}.png": style.png(figure) for name, (_, figure) in figures.items()
-    }
-    files["plate.json"] = json_text(result.summary())
-    files["index.html"] = plate_page(result, figures)
-    write_mode(result, folder / "mode.vtu")
-    write_folder(folder, files)
-    return folder / "index.html"
+    return figures
 
 
 def write_mode(result: PlateAnalysis, file: Path) -> Path:

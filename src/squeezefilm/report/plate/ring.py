@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,7 +10,6 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.report.display.layout_figures import FILL, draw_sector
 from squeezefilm.report.kit import style
-from squeezefilm.report.kit.folder import json_text, write_folder
 from squeezefilm.report.kit.numbers import HZ, M, shown
 
 if TYPE_CHECKING:
@@ -214,15 +212,3 @@ def response(result: RingAnalysis) -> Figure:
     below.set(xlabel="frequency (kHz)", ylabel="admittance (mS)")
     style.legend_below(below, columns=3, gap=0.28)
     return figure
-
-
-def write_ring(result: RingAnalysis, folder: Path) -> Path:
-    """Write plate.json and the figures plate-shape, plate-scan and plate-response; the folder."""
-    files: dict[str, str | bytes] = {
-        "plate.json": json_text(result.summary()),
-        "plate-shape.png": style.png(shape(result)),
-        "plate-scan.png": style.png(scan(result)),
-        "plate-response.png": style.png(response(result)),
-    }
-    write_folder(folder, files)
-    return folder

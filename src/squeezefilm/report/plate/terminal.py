@@ -1,22 +1,28 @@
-"""What the terminal shows of a solved film and of a solved plate."""
+"""What the terminal shows of a solved film, and of a solved plate, disc or stator."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from squeezefilm import quantities as si
-from squeezefilm.report.kit.numbers import HZ, V, shown
+from squeezefilm.analysis.plate.command import PlateAnalysis
+from squeezefilm.analysis.plate.ring import RingAnalysis
+from squeezefilm.report.kit.numbers import HZ, shown
 from squeezefilm.report.kit.terminal import heading, plain_console, table
 from squeezefilm.report.plate.terminal_modes import (
+    Row,
+    drive_rows,
     show_guidance,
     show_modes,
     sound_rows,
     working_rows,
 )
+from squeezefilm.report.plate.terminal_ring import fit_sentences
 
 if TYPE_CHECKING:
+    from rich.console import Console
+
     from squeezefilm.analysis.film.command import FilmAnswer
-    from squeezefilm.analysis.plate.command import PlateAnalysis
+    from squeezefilm.analysis.plate.solved import SolvedBody
 
 
 def show_film(answer: FilmAnswer) -> None:
@@ -45,34 +51,41 @@ def show_film(answer: FilmAnswer) -> None:
     console.print(answer.status)
 
 
-def show_plate(result: PlateAnalysis) -> None:
-    """Print a solved plate: the working mode, then every mode of the band."""
-    console, mode = plain_console(), result.working
+def show_plate(result: SolvedBody) -> None:
+    """Print a solved plate, disc or stator: the working mode, then every mode of the band."""
+    console = plain_console()
     heading(console, f"{result.display.title} [{result.display.name}]")
     rows = working_rows(result)
-    rows += [
-        (f"As a {theory}", shown(frequency, HZ, 5), f"{frequency / mode.frequency - 1:+.1%}")
-        for theory, frequency in (
-            ("Timoshenko beam", result.beam_frequency),
-            ("shear plate", result.shear_frequency),
-        )
-        if frequency is not None
-    ]
-    volts = result.display.drive.voltage
-    at = result.response.resonance
-    rows.append(
-        (
-            f"At {shown(volts, V)}",
-            shown(float(result.response.current(volts)[at]), si.Unit("A"), 3),
-            f"{result.response.apparent_power(volts)[at]:.3g} VA, "
-            f"{result.response.input_power(volts)[at]:.3g} W",
-        )
-    )
-    rows += sound_rows(result.sound, "loudest direction")
+    if isinstance(result, PlateAnalysis):
+        rows += _theory_rows(result)
+    rows += drive_rows(result) + sound_rows(result.sound, result.remarks.loudest)
     table(console, ("", "", ""), rows, fixed=(0,))
     show_guidance(console, result.sound)
+    if isinstance(result, RingAnalysis) and result.body.fit is not None:
+        for sentence in fit_sentences(result.body.fit):
+            console.print(sentence)
     show_modes(console, result.rows, result.amplitude_per_volt)
-    console.print(f"{result.modes.model}; {result.modes.status}")
+    if isinstance(result, RingAnalysis):
+        console.print(
+            "B(circles, diameters) bends; R and T move in the plane, radially and around."
+        )
+    console.print(f"{result.model}; {result.status}")
+    if isinstance(result, PlateAnalysis):
+        _show_changes(console, result)
+
+
+def _theory_rows(result: PlateAnalysis) -> list[Row]:
+    """The working mode's frequency by simpler theories."""
+    theories = ("Timoshenko beam", result.beam_frequency), ("shear plate", result.shear_frequency)
+    return [
+        (f"As a {name}", shown(found, HZ, 5), f"{found / result.working.frequency - 1:+.1%}")
+        for name, found in theories
+        if found is not None
+    ]
+
+
+def _show_changes(console: Console, result: PlateAnalysis) -> None:
+    """What other materials and dimensions would change, where that was asked for."""
     if result.sensitivities is not None:
         heading(console, "Sensitivities of the working mode")
         table(

@@ -6,38 +6,82 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from squeezefilm import quantities as si
-from squeezefilm.report.kit.numbers import HZ, shown
+from squeezefilm.analysis.plate.ring import RingAnalysis
+from squeezefilm.report.kit.numbers import HZ, M, V, shown
 from squeezefilm.report.kit.terminal import heading, table
 
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from squeezefilm.analysis.plate.command import ModeRow, PlateAnalysis
+    from squeezefilm.analysis.plate.solved import ModeRow, SolvedBody
     from squeezefilm.plate.sound import SoundField
 
-PER_VOLT = si.Unit("m/V")
+PER_VOLT, A, OHM = si.Unit("m/V"), si.Unit("A"), si.Unit("ohm")
+HENRY, FARAD = si.Unit("H"), si.Unit("F")
+Row = tuple[str, str, str]
 
 # Of the working mode's amplitude per volt: below it a mode is called not driven.
 _DRIVEN = 1e-4
 
 
-def working_rows(result: PlateAnalysis) -> list[tuple[str, str, str]]:
-    """The working mode of a solved plate: quantity, value, remark."""
-    mode = result.working
-    return [
+def working_rows(result: SolvedBody) -> list[Row]:
+    """The working mode of a solved plate, disc or stator: quantity, value, remark."""
+    mode, said = result.working, result.remarks
+    rows = [
         (
             f"Mode {mode.label}",
             shown(mode.frequency, HZ, 5),
-            f"± {shown(mode.frequency_error, HZ, 2)} (estimated)",
+            f"± {shown(mode.frequency_error, HZ, 2)} {said.frequency}",
         ),
-        ("Amplitude per volt", shown(result.amplitude_per_volt, PER_VOLT), "largest, upper face"),
-        ("", shown(result.centreline_per_volt, PER_VOLT), "centreline, between outer nodes"),
-        ("Quality factor", f"{mode.quality_factor:.4g}", "from the losses of its materials"),
-        ("Effective coupling", f"{mode.coupling:.3g}", ""),
+        ("Amplitude per volt", shown(result.amplitude_per_volt, PER_VOLT), said.largest),
+        ("", shown(result.centreline_per_volt, PER_VOLT), said.centreline),
     ]
+    if isinstance(result, RingAnalysis):
+        rows += _ring_rows(result)
+    rows.append(("Quality factor", f"{mode.quality_factor:.4g}", said.quality))
+    rows.append(("Effective coupling", f"{mode.coupling:.3g}", ""))
+    return rows
 
 
-def sound_rows(sound: SoundField, direction: str) -> list[tuple[str, str, str]]:
+def _ring_rows(result: RingAnalysis) -> list[Row]:
+    """What was measured of a stator, and where a disc or stator stands still."""
+    rows, half = [], result.working.half_wavelength
+    if result.described_amplitude_per_volt is not None:
+        measured = shown(result.described_amplitude_per_volt, PER_VOLT)
+        rows.append(("", measured, "described as measured"))
+    if half is not None:
+        rows.append(
+            ("Half wavelength", shown(half, M), f"along the {result.half_wavelength_along}")
+        )
+    if result.circles.size:
+        radii = ", ".join(shown(float(r), M, 3) for r in result.circles)
+        rows.append(("Nodal circles", radii, "radius"))
+    return rows
+
+
+def drive_rows(result: SolvedBody) -> list[Row]:
+    """Current and power at resonance at the display's voltage, and the equivalent circuit."""
+    volts, at = result.display.drive.voltage, result.response.resonance
+    response, c = result.response, result.circuit
+    rows = [
+        (
+            f"At {shown(volts, V)}",
+            shown(float(response.current(volts)[at]), A, 3),
+            f"{response.apparent_power(volts)[at]:.3g} VA, {response.input_power(volts)[at]:.3g} W",
+        )
+    ]
+    if c is not None:
+        motional = (
+            f"R1 {shown(c.motional_resistance, OHM, 3)}",
+            f"L1 {shown(c.motional_inductance, HENRY, 3)}",
+            f"C1 {shown(c.motional_capacitance, FARAD, 3)}",
+        )
+        static = f"C0 {shown(c.static_capacitance, FARAD, 3)}"
+        rows.append(("Equivalent circuit", static, ", ".join(motional)))
+    return rows
+
+
+def sound_rows(sound: SoundField, direction: str) -> list[Row]:
     """Sound pressure levels by distance; `direction` says where they are loudest."""
     guidance = sound.guidance
     limit = "no guidance" if guidance is None else f"guidance {guidance.level_dB:.0f} dB"

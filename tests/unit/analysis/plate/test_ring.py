@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from squeezefilm.analysis.plate import ring
-from squeezefilm.analysis.plate.command import ModeRow
 from squeezefilm.analysis.plate.ring import RingAnalysis, analyze_ring, mode_row, modes_in_band
+from squeezefilm.analysis.plate.solved import ModeRow
 from squeezefilm.display import load_display
 from squeezefilm.errors import InputError
 from squeezefilm.plate.circuit import EquivalentCircuit

@@ -87,9 +87,9 @@ def test_powers_are_those_at_the_largest_amplitude() -> None:
     )  # fmt: skip
     assert one.maximum == pytest.approx([2.0, 4.0, 3.0])
     assert one.resonance == 1
-    assert one.current(20.0) == pytest.approx(0.1)
-    assert one.apparent_power(20.0) == pytest.approx(1.0)
-    assert one.input_power(20.0) == pytest.approx(0.6)
+    assert one.current(20.0)[one.resonance] == pytest.approx(0.1)
+    assert one.apparent_power(20.0)[one.resonance] == pytest.approx(1.0)
+    assert one.input_power(20.0)[one.resonance] == pytest.approx(0.6)
 
 
 def test_the_circuit_has_the_modes_branch_and_what_is_beside_it() -> None:

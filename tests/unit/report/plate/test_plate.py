@@ -11,7 +11,9 @@ from typing import Any
 import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from tests.unit.report.made_results import made_result
 
+from squeezefilm.analysis.plate.command import PlateAnalysis
 from squeezefilm.report.kit import style
 from squeezefilm.report.plate import mode_surface as surface_module
 from squeezefilm.report.plate import page, plate, sensitivity_figures
@@ -81,7 +83,7 @@ def solved(label: tuple[int, int] = (4, 0), volts: float = 15.0, **changes: Any)
         "display": SimpleNamespace(drive=SimpleNamespace(voltage=volts)),
         "sensitivities": None, "tracks": None, "summary": lambda: {"mode": "µ"},
     }  # fmt: skip
-    return SimpleNamespace(**{**parts, **changes})
+    return made_result(PlateAnalysis, **{**parts, **changes})
 
 
 def words(text: str) -> str:

@@ -12,13 +12,17 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_hex
 from matplotlib.patches import Circle, Wedge
+from tests.unit.report.made_results import made_result
 
+from squeezefilm.analysis.plate.ring import RingAnalysis
 from squeezefilm.plate.circuit import EquivalentCircuit
 from squeezefilm.plate.ring.response import RingResponse
 from squeezefilm.plate.ring.section import SectorDrive
 from squeezefilm.report.kit import style
 from squeezefilm.report.kit.style import BLUE, MINUS, MUTED, PLUS
-from squeezefilm.report.plate.ring import response, scan, shape, write_ring
+from squeezefilm.report.plate import page
+from squeezefilm.report.plate.plate import write_plate
+from squeezefilm.report.plate.ring import response, scan, shape
 
 RADIUS = np.linspace(10e-3, 30e-3, 41)
 # The rim stands at an angle of phase of its own; a nodal circle lies at 15 mm.
@@ -58,7 +62,7 @@ def made(**changes: Any) -> Any:
             ),
         ),
     }  # fmt: skip
-    return SimpleNamespace(**{**parts, **changes})
+    return made_result(RingAnalysis, **{**parts, **changes})
 
 
 RING = made()
@@ -256,14 +260,16 @@ def test_numbers_and_pictures_are_written_each_under_its_name(
 ) -> None:
     # A picture of its title: which goes where is what counts, and PNGs are slow.
     monkeypatch.setattr(style, "png", lambda one: one.get_suptitle().encode())
-    assert write_ring(RING, tmp_path) == tmp_path
+    monkeypatch.setattr(page, "plate_page", lambda _, figures: " ".join(figures))
+    assert write_plate(RING, tmp_path) == tmp_path / "index.html"
     said = {one.name: one.read_text(encoding="utf-8") for one in tmp_path.iterdir()}
     data = said.pop("plate.json")
     assert json.loads(data) == {"mode": "µ"}
     assert "µ" in data
     assert data.endswith("}\n")
     assert said == {
-        "plate-shape.png": shape(RING).get_suptitle(),
-        "plate-scan.png": scan(RING).get_suptitle(),
-        "plate-response.png": response(RING).get_suptitle(),
+        "index.html": "mode-plan line-scan frequency-response",
+        "mode-plan.png": shape(RING).get_suptitle(),
+        "line-scan.png": scan(RING).get_suptitle(),
+        "frequency-response.png": response(RING).get_suptitle(),
     }

@@ -6,11 +6,14 @@ from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
+from tests.unit.report.made_results import made_result
 from tests.unit.report.printed import printed
 
 from squeezefilm.analysis.film.command import FilmAnswer, FilmRequest
-from squeezefilm.analysis.plate.command import ModeRow
+from squeezefilm.analysis.plate.command import PlateAnalysis
+from squeezefilm.analysis.plate.solved import ModeRow
 from squeezefilm.analysis.plate.tracking import ModeTrack, ModeTracks
+from squeezefilm.plate.circuit import EquivalentCircuit
 from squeezefilm.report.plate.terminal import show_film, show_plate
 
 FILM = FilmAnswer(
@@ -21,6 +24,7 @@ FILM = FilmAnswer(
 )  # fmt: skip
 WORKING = ModeRow("(8,0)", 33581.26, 12.345, 212.34, 1.2e-7, 0.1234, 1.0, 10e-3)
 ASIDE = ModeRow("(7,1)", 30000.0, 12.0, 200.0, 1e-13, 0.0, 0.0, None)
+CIRCUIT = EquivalentCircuit(40e3, 200.0, 5.4321e-9, 123.45, 0.098765, 1.2345e-10)
 TRACKS = ModeTracks(
     "thickness", "m", np.array([1e-3, 2e-3]), 1e-3, 1e-3,
     (ModeTrack("(8,0)", np.array([33e3, 34e3]), np.ones(2), True),), 0.9,
@@ -58,6 +62,7 @@ def plate(**changes: Any) -> Any:
         "beam_frequency": 1.021 * 33581.26,
         "shear_frequency": 0.9 * 33581.26,
         "response": Response(),
+        "circuit": CIRCUIT,
         "sound": SimpleNamespace(
             guidance=SimpleNamespace(level_dB=100.0, source="somebody 1984", evidence="doubtful"),
             distances=(0.3,),
@@ -76,7 +81,7 @@ def plate(**changes: Any) -> Any:
         ),
         "tracks": TRACKS,
     }
-    return SimpleNamespace(**{**values, **changes})
+    return made_result(PlateAnalysis, **{**values, **changes})
 
 
 def said(columns: int = 220, **changes: Any) -> list[str]:
@@ -105,6 +110,7 @@ def test_a_plate_is_said_with_all_that_there_is() -> None:
         "As a Timoshenko beam 34.286 kHz +2.1%",
         "As a shear plate 30.223 kHz -10.0%",
         "At 15 V 12.3 mA 0.0926 VA, 0.0432 W",
+        "Equivalent circuit C0 5.43 nF R1 123 ohm, L1 0.0988 H, C1 123 pF",
         "Sound at 0.3 m 120 dB loudest direction; guidance 100 dB",
         "Guidance (doubtful): somebody 1984",
         "Modes in the band",
@@ -123,9 +129,9 @@ def test_a_plate_is_said_with_all_that_there_is() -> None:
 
 
 def test_what_was_not_asked_for_is_not_there() -> None:
-    lines = said(shear_frequency=None, sensitivities=None, tracks=None)
+    lines = said(shear_frequency=None, sensitivities=None, tracks=None, circuit=None)
     assert lines[-1] == "piezoelectric_solid_3d; 12 modes"
-    assert not [line for line in lines if "shear" in line]
+    assert not [line for line in lines if "shear" in line or "circuit" in line]
 
 
 def test_labels_are_not_broken_on_a_narrow_terminal() -> None:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from tests.unit.report.printed import printed
 
-from squeezefilm.analysis.plate.command import ModeRow
+from squeezefilm.analysis.plate.solved import ModeRow
 from squeezefilm.plate.sound import GUIDANCE
 from squeezefilm.report.kit.terminal import plain_console
 from squeezefilm.report.plate.terminal_modes import show_guidance, show_modes, sound_rows

@@ -6,12 +6,15 @@ from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
+from tests.unit.report.made_results import made_result
 from tests.unit.report.printed import printed
 
-from squeezefilm.analysis.plate.command import ModeRow
+from squeezefilm.analysis.plate.ring import RingAnalysis
+from squeezefilm.analysis.plate.solved import ModeRow
 from squeezefilm.plate.circuit import EquivalentCircuit
 from squeezefilm.plate.ring.stator import StatorAssumptions
-from squeezefilm.report.plate.terminal_ring import fit_sentences, show_ring
+from squeezefilm.report.plate.terminal import show_plate
+from squeezefilm.report.plate.terminal_ring import fit_sentences
 
 WORKING = ModeRow("B(0,9)", 40523.4, 12.345, 212.34, 1.2e-7, 0.1234, 1.0, 9.3456e-3)
 ASIDE = ModeRow("T(0,2)", 41001.2, 12.0, 200.0, 1e-13, 0.0, 0.0, None)
@@ -31,11 +34,13 @@ def fitted(**assumed: Any) -> Any:
 
 
 def response() -> SimpleNamespace:
-    """10 mA, 0.06 VA and 0.02 W at 12 V."""
+    """12 mA, 0.07 VA and 0.02 W at 12 V at the resonance, the second of two."""
+    there = np.array([9.0, 1.0]) / 12
     return SimpleNamespace(
-        current=lambda volts: 0.012345 * volts / 12,
-        apparent_power=lambda volts: 0.074071 * volts / 12,
-        input_power=lambda volts: 0.021234 * volts / 12,
+        resonance=1,
+        current=lambda volts: 0.012345 * volts * there,
+        apparent_power=lambda volts: 0.074071 * volts * there,
+        input_power=lambda volts: 0.021234 * volts * there,
     )
 
 
@@ -64,11 +69,11 @@ def ring(**changes: Any) -> Any:
         "model": "annular_3d",
         "status": "2 modes in the band, within 1e-3 (estimated)",
     }  # fmt: skip
-    return SimpleNamespace(**{**values, **changes})
+    return made_result(RingAnalysis, **{**values, **changes})
 
 
 def said(columns: int = 250, **changes: Any) -> list[str]:
-    return printed(lambda: show_ring(ring(**changes)), columns)
+    return printed(lambda: show_plate(ring(**changes)), columns)
 
 
 def test_a_ring_is_said_with_all_that_there_is() -> None:

@@ -1,0 +1,116 @@
+"""What is alike in a solved plate, disc and stator: its modes, the working one, a summary."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from squeezefilm import quantities as si
+from squeezefilm.display import Display
+from squeezefilm.plate.circuit import DrivenResponse, EquivalentCircuit
+from squeezefilm.plate.sound import SoundField
+from squeezefilm.results import Result, stamp, to_json
+
+
+@dataclass(frozen=True)
+class ModeRow:
+    """One mode of the table: label by nodal lines across length and width, extrapolated frequency
+    with its estimated error, Q, amplitude per volt at the largest point of the face if it stood
+    alone, effective coupling, modal force (N/V for unit modal mass)."""
+
+    label: str
+    frequency: si.Hertz
+    frequency_error: si.Hertz
+    quality_factor: si.Dimensionless
+    amplitude_per_volt: si.MetrePerVolt
+    coupling: si.Dimensionless
+    modal_force: float
+    half_wavelength: si.Metre | None
+
+
+@dataclass(frozen=True)
+class Remarks:
+    """What is said beside the numbers of a working mode: of its frequency, where it moves most and
+    along which line, what its quality factor is of, where it is loudest."""
+
+    frequency: str
+    largest: str
+    centreline: str
+    quality: str
+    loudest: str
+
+
+class SolvedBody(Result):
+    """What a solved plate, disc or stator has: its modes, the working one, response and sound."""
+
+    display: Display
+    rows: tuple[ModeRow, ...]
+    working: ModeRow
+    circuit: EquivalentCircuit | None
+    sound: SoundField
+    response: DrivenResponse
+    # A field of one and computed by another, which no narrower type allows.
+    amplitude_per_volt: Any
+    centreline_per_volt: Any
+    model: Any
+    status: Any
+    remarks: Any
+    _shown: ClassVar[str] = (
+        "display.name working.label working.frequency working.quality_factor amplitude_per_volt "
+        "model"
+    )
+
+    def summary(self) -> dict[str, Any]:
+        """What ``--json`` prints; keys carry units."""
+        volts, at = self.display.drive.voltage, self.response.resonance
+        return {
+            "display": self.display.name,
+            "mode": self.working.label,
+            "frequency_Hz": self.working.frequency,
+            "frequency_error_Hz": self.working.frequency_error,
+            "amplitude_m_per_V": self.amplitude_per_volt,
+            "centreline_amplitude_m_per_V": self.centreline_per_volt,
+            "half_wavelength_m": self.working.half_wavelength,
+            "quality_factor": self.working.quality_factor,
+            "coupling": self.working.coupling,
+            "modes": to_json(self.rows),
+            "voltage_V": volts,
+            "current_A": float(self.response.current(volts)[at]),
+            "apparent_power_VA": float(self.response.apparent_power(volts)[at]),
+            "input_power_W": float(self.response.input_power(volts)[at]),
+            "equivalent_circuit": to_json(self.circuit),
+            **self._particulars(),
+            **sound_summary(self.sound),
+            "model": self.model,
+            "status": self.status,
+            "provenance": stamp(self.display),
+        }
+
+    def _particulars(self) -> dict[str, Any]:
+        raise NotImplementedError
+
+    def _table(self) -> Any:
+        return to_json(self.rows)
+
+
+def sound_summary(sound: SoundField) -> dict[str, Any]:
+    """What a summary says of the sound: its levels by distance, and the guidance on exposure."""
+    levels = zip(sound.distances, sound.sound_pressure_level_dB, strict=True)
+    return {
+        "sound_pressure_level_dB": {f"{distance:g} m": level for distance, level in levels},
+        "sound_guidance": to_json(sound.guidance),
+    }
+
+
+def sweep_around(
+    frequency: si.Hertz, quality_factor: si.Dimensionless, points: int
+) -> si.HertzArray:
+    """Frequencies (Hz) over ±4/Q about a resonance, 1 % at the least, shape (points,).
+
+    They are dense near the peak, where the curve turns within f/Q.
+    """
+    span = max(4 / quality_factor, 0.01)
+    near = np.sinh(np.linspace(-3, 3, points)) / np.sinh(3)
+    return np.asarray(frequency * (1 + span * near))
