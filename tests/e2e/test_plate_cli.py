@@ -35,7 +35,7 @@ def test_a_stator_is_solved_and_says_what_was_fitted(tmp_path: Path) -> None:
     ):  # fmt: skip
         assert said in text
     assert {path.name for path in tmp_path.iterdir()} == {
-        "plate.json", "plate-shape.png", "plate-scan.png", "plate-response.png",
+        "index.html", "plate.json", "mode-plan.png", "line-scan.png", "frequency-response.png",
     }  # fmt: skip
     result = json.loads((tmp_path / "plate.json").read_text())
     assert set(result) >= SHARED_KEYS

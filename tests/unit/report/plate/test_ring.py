@@ -255,6 +255,26 @@ def test_the_response_has_amplitude_admittance_and_circuit() -> None:
     assert list(labelled(response(made(circuit=None)).axes[1])) == ["|Y|", "Re Y"]
 
 
+def test_a_page_says_what_the_terminal_says(monkeypatch: pytest.MonkeyPatch) -> None:
+    rows = [("Mode B(0,2)", "40 kHz", "fitted & not predicted")]
+    monkeypatch.setattr(page, "working_rows", lambda _: list(rows))
+    monkeypatch.setattr(page, "drive_rows", lambda _: [("At 12 V", "1 mA", "")])
+    monkeypatch.setattr(page, "fit_sentences", lambda fit: (f"Fitted: {fit} < all.",))
+    told = {"provenance": dict.fromkeys(("squeezefilm_version", "created_utc", "config_sha256"), 1)}
+    ring = made(
+        display=SimpleNamespace(title="A <ring>", name="r", drive=SimpleNamespace(voltage=12.0)),
+        body=SimpleNamespace(fit="thickness", quality_factor=None), rows=(), status="no modes",
+        summary=lambda: told,
+    )  # fmt: skip
+    text = page.plate_page(ring, {"line-scan": ("Scan", scan(RING))})
+    for said in (
+        "A &lt;ring&gt;", "Mode B(0,2)", "fitted &amp; not predicted", "At 12 V", "0.24 µm",
+        "<p>Fitted: thickness &lt; all.</p>", "no modes", "line-scan.png",
+    ):  # fmt: skip
+        assert said in text, said
+    assert "ParaView" not in text
+
+
 def test_numbers_and_pictures_are_written_each_under_its_name(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
