@@ -169,14 +169,9 @@ class FrictionLaw:
             return FilmLoad("paper2008", over, 0.0, float("nan"), "closed form, as printed")
         if self.kind.film == "shared":
             return self._shared_load(amplitude)
-        solved = cast(FilmModel, self.model)
-        return film_load(
-            self.gap(amplitude),
-            self.frequency,
-            self.gas,
-            solved,
-            plateau_width=self.finger.plateau_width,
-        )
+        gap, model = self.gap(amplitude), cast(FilmModel, self.model)
+        width = self.finger.plateau_width
+        return film_load(gap, self.frequency, self.gas, model, plateau_width=width)
 
     @si.checked_numbers
     def sharing(
@@ -216,11 +211,8 @@ class FrictionLaw:
     def limits(self, amplitude: si.MetreLike) -> FrictionLimits:
         """µ′/µ in both limits of partial levitation at amplitudes (m), whatever the model."""
         a = np.atleast_1d(np.asarray(amplitude, dtype=float))
-        own, tied = (
-            self.sharing(a, "own").relative_friction,
-            self.sharing(a, "one-gap").relative_friction,
-        )
-        return FrictionLimits(a, own, tied)
+        own, tied = self.sharing(a, "own"), self.sharing(a, "one-gap")
+        return FrictionLimits(a, own.relative_friction, tied.relative_friction)
 
     @si.checked_numbers
     def tapped(self, amplitude: si.MetreLike, speed: si.MetrePerSecond) -> si.DimensionlessArray:
