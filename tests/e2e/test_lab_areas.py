@@ -343,6 +343,8 @@ def test_what_plays_is_stopped_from_every_area(seen: Watched) -> None:
     page, bar = seen.page, seen.page.locator("#stopbar")
     seen.go("device")
     stops = seen.count("stop everything")
+    # The area is ready once its last list is there; what it fills in disarms.
+    page.locator("#device-texture option").first.wait_for(state="attached")
     seen.settle()
     arm = page.get_by_role("button", name="Arm", exact=True)
     arm.focus()
