@@ -7,7 +7,7 @@ curves, textures. Each law names its model.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated, Literal, NamedTuple, cast, get_args
+from typing import Annotated, Literal, NamedTuple, cast
 
 import numpy as np
 
@@ -40,7 +40,6 @@ FrictionModel = Literal[
     "partial-levitation",
     "partial-levitation-one-gap",
 ]
-FRICTION_MODELS: tuple[FrictionModel, ...] = get_args(FrictionModel)
 DEFAULT_MODEL: FrictionModel = "partial-levitation"
 """Film and asperities share the load, each ridge at its own balance (decision 0005)."""
 

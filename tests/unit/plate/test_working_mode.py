@@ -5,17 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from squeezefilm.display import load_display
 from squeezefilm.plate.layout import DiscPlate
 from squeezefilm.plate.ring.body import nodal_circles, ring_body
 from squeezefilm.plate.working_mode import working_mode
-
-
-@pytest.fixture(scope="module")
-def disc() -> DiscPlate:
-    actuator = load_display("winfield2007-tpad").actuator
-    assert isinstance(actuator, DiscPlate)
-    return actuator
 
 
 def test_a_disc_moves_alike_on_both_sides_of_its_middle(disc: DiscPlate) -> None:

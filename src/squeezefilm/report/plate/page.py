@@ -10,8 +10,12 @@ from squeezefilm.analysis.plate.command import PlateAnalysis
 from squeezefilm.analysis.plate.ring import RingAnalysis
 from squeezefilm.report.kit.numbers import HZ, M, V, printable, shown
 from squeezefilm.report.kit.page_style import html_table, page_head, picture_sections, section
-from squeezefilm.report.plate.terminal_modes import drive_rows, mode_rows, working_rows
-from squeezefilm.report.plate.terminal_ring import fit_sentences
+from squeezefilm.report.plate.terminal_modes import (
+    drive_rows,
+    fit_sentences,
+    mode_rows,
+    working_rows,
+)
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -156,7 +156,7 @@ def write_plate(result: SolvedBody, folder: Path) -> Path:
     if isinstance(result, RingAnalysis):
         figures = {
             "mode-plan": ("Mode shape from above", ring.shape(result)),
-            "line-scan": ("Scan around and across", ring.scan(result)),
+            "line-scan": ("Line scan", ring.scan(result)),
             "frequency-response": ("Frequency response", ring.response(result)),
         }
     else:

@@ -11,12 +11,12 @@ from squeezefilm.report.kit.terminal import heading, plain_console, table
 from squeezefilm.report.plate.terminal_modes import (
     Row,
     drive_rows,
+    fit_sentences,
     show_guidance,
     show_modes,
     sound_rows,
     working_rows,
 )
-from squeezefilm.report.plate.terminal_ring import fit_sentences
 
 if TYPE_CHECKING:
     from rich.console import Console

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from typing import get_args
+
 import numpy as np
 import pytest
 
 from squeezefilm.analysis.friction import models
 from squeezefilm.analysis.friction.models import COMPARED, ModelCurve, model_curves
-from squeezefilm.chain.friction import FRICTION_MODELS, FrictionLaw, friction_law
+from squeezefilm.chain.friction import MODEL_KINDS, FrictionLaw, FrictionModel, friction_law
 from squeezefilm.chain.prediction import Prediction, predict
 from squeezefilm.display import load_display
 from squeezefilm.errors import OutOfRangeError
@@ -20,7 +22,7 @@ QUICK = tuple(one for one in COMPARED if not one[0].startswith("film-"))
 def test_known_models_are_compared_the_papers_first() -> None:
     names = [model for model, _ in COMPARED]
     assert names[0] == "paper2008"
-    assert set(names) < set(FRICTION_MODELS)
+    assert set(names) < set(MODEL_KINDS) == set(get_args(FrictionModel))
     assert len(set(names)) == len(names) == 5
 
 

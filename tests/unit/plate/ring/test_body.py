@@ -27,13 +27,6 @@ from squeezefilm.plate.ring.response import ring_circuit, ring_response
 from squeezefilm.plate.solid.layers import media
 
 
-@pytest.fixture(scope="module")
-def disc() -> DiscPlate:
-    actuator = load_display("winfield2007-tpad").actuator
-    assert isinstance(actuator, DiscPlate)
-    return actuator
-
-
 def test_boxes_and_rings_have_one_definition_of_their_materials(disc: DiscPlate) -> None:
     plate = load_display("basdogan2020-glass").actuator
     assert isinstance(plate, RectangularPlate)
