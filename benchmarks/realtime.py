@@ -33,7 +33,8 @@ from squeezefilm.render.motion.estimator import MotionEstimator
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ
 from squeezefilm.render.program.lowering import lower
 from squeezefilm.render.resonator.compensation import DrivenEnvelope
-from squeezefilm.render.texture.gratings import Square
+from squeezefilm.render.texture.levels import Amplitude
+from squeezefilm.render.texture.shapes import SquareWave
 from squeezefilm.session.loop import shared
 from squeezefilm.session.loop.atomics import store_release
 from squeezefilm.session.loop.lateness import Lateness
@@ -50,7 +51,7 @@ SPEED, LIMIT = 0.06, 1e-6
 def plan_at(rate: float) -> LoopPlan:
     """A square grating of 2 mm, compensated within 100 V."""
     return LoopPlan(
-        program=lower(Square(2e-3, 0.1e-6, 0.8e-6), largest_amplitude=LIMIT),
+        program=lower(Amplitude(SquareWave(2e-3), 0.1e-6, 0.8e-6), largest_amplitude=LIMIT),
         rate=rate,
         envelope=DrivenEnvelope(0.5e-3, 0.5e-3, LIMIT),
         drive=DriveTable.linear(LIMIT / 100.0, 100.0),

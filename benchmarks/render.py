@@ -26,7 +26,6 @@ from squeezefilm.render.program.lowering import Program, lower
 from squeezefilm.render.program.renderer import Renderer, evaluate, new_state
 from squeezefilm.render.texture.composition import Composable
 from squeezefilm.render.texture.gates import Attack, speed
-from squeezefilm.render.texture.gratings import Square
 from squeezefilm.render.texture.levels import Amplitude, RelativeFriction
 from squeezefilm.render.texture.noise import Noise, NoiseField
 from squeezefilm.render.texture.shapes import Band, Bump, Pulse, SineWave, SquareWave
@@ -49,7 +48,7 @@ def textures() -> dict[str, Composable]:
         & (Band.disc(0.04, 0.0, 0.05) | SquareWave(1e-3).scaled_by_speed(0.05))
     )
     return {
-        "square grating, amplitude": Square(2e-3, 0.0, 2e-6),
+        "square grating, amplitude": Amplitude(SquareWave(2e-3), 0.0, 2e-6),
         "sine grating, amplitude": Amplitude(SineWave(2e-3), 0.0, 2e-6),
         "square grating, friction": grating,
         "noise along x, friction": noise,

@@ -51,8 +51,10 @@ if TYPE_CHECKING:
     from squeezefilm.render.texture.gates import speed as speed
     from squeezefilm.render.texture.image import Image as _Image
     from squeezefilm.render.texture.levels import Amplitude as _Amplitude
+    from squeezefilm.render.texture.levels import FrictionShare, VibrationAmplitude
     from squeezefilm.render.texture.levels import RelativeFriction as _RelativeFriction
     from squeezefilm.render.texture.noise import Noise as _Noise
+    from squeezefilm.render.texture.noise import Octaves, Persistence, Seed, Spacing
     from squeezefilm.render.texture.pattern import Pattern
     from squeezefilm.render.texture.shapes import Band as _Band
     from squeezefilm.render.texture.shapes import Bump as _Bump
@@ -171,8 +173,8 @@ if TYPE_CHECKING:
         def __init__(
             self,
             pattern: Pattern,
-            low: Metre | str,
-            high: Metre | str,
+            low: VibrationAmplitude | str,
+            high: VibrationAmplitude | str,
             type: Literal["amplitude"] = ...,
         ) -> None: ...
 
@@ -181,8 +183,8 @@ if TYPE_CHECKING:
         def __init__(
             self,
             pattern: Pattern,
-            low: Dimensionless | str,
-            high: Dimensionless | str,
+            low: FrictionShare | str,
+            high: FrictionShare | str,
             type: Literal["relative_friction"] = ...,
         ) -> None: ...
 
@@ -233,10 +235,10 @@ if TYPE_CHECKING:
         """Seeded noise along one coordinate, with nothing finer than `finest_period`."""
         def __init__(
             self,
-            finest_period: Metre | str,
-            seed: int,
-            octaves: int = ...,
-            persistence: Dimensionless | str = ...,
+            finest_period: Spacing | str,
+            seed: Seed,
+            octaves: Octaves = ...,
+            persistence: Persistence | str = ...,
             along: Coordinate = ...,
             type: Literal["noise"] = ...,
         ) -> None: ...

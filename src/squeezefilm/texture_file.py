@@ -31,13 +31,12 @@ from squeezefilm.errors import ConfigError, InputError
 from squeezefilm.formats import image_file
 from squeezefilm.from_text import ReadBy
 from squeezefilm.render.texture import gates as pattern_gates
-from squeezefilm.render.texture import gratings as texture
 from squeezefilm.render.texture import image as pattern_image
 from squeezefilm.render.texture import levels
 from squeezefilm.render.texture import noise as pattern_noise
 from squeezefilm.render.texture.composition import Composable, require_texture
 
-MODULES = (image_file, levels, pattern_gates, pattern_image, pattern_noise, texture)
+MODULES = (image_file, levels, pattern_gates, pattern_image, pattern_noise)
 """The modules whose classes a file may name, beside those these import."""
 
 

@@ -49,8 +49,6 @@ VALUES: dict[tuple[str, str], float] = {
     # The gap must not close.
     ("squeezefilm.contact.sharing.wedge.wedge_pressure", "amplitude"): 0.05,
     # The amplitude must lie between where it starts and what it is drawn to.
-    ("squeezefilm.render.resonator.compensation.slew_time", "start"): 0.05,
-    ("squeezefilm.render.resonator.compensation.slew_time", "limit"): 0.2,
 }
 DEFAULT_VALUES: dict[str, float] = {
     # Indices and ratios that start at 1.
@@ -103,8 +101,6 @@ MINIMUM = {
         "contact.finger.occlusion.occlusion_factor",
         "contact.sliding.skin_vibration.texture_frequency",
         "plate.beam.modes.euler_bernoulli_frequency",
-        "render.resonator.carrier.hold_gain",
-        "render.resonator.compensation.slew_time",
     )
 }
 

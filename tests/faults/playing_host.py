@@ -17,7 +17,8 @@ from squeezefilm.render.motion.estimator import MotionEstimator
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ
 from squeezefilm.render.program.lowering import lower
 from squeezefilm.render.resonator.compensation import DrivenEnvelope
-from squeezefilm.render.texture.gratings import Square
+from squeezefilm.render.texture.levels import Amplitude
+from squeezefilm.render.texture.shapes import SquareWave
 from squeezefilm.session.loop.plan import DriveTable, LoopPlan
 from squeezefilm.session.play.plan import PlayPlan
 from squeezefilm.session.play.real_time import run_play
@@ -26,7 +27,7 @@ from squeezefilm.session.play.real_time import run_play
 def own_plan() -> PlayPlan:
     """What it plays."""
     # Never silent, so that an output at zero is the device's doing.
-    square = Square(spatial_period=2e-3, low=0.5e-6, high=1e-6)
+    square = Amplitude(SquareWave(2e-3), 0.5e-6, 1e-6)
     loop = LoopPlan(
         program=lower(square, largest_amplitude=1e-6),
         rate=2e3,

@@ -21,7 +21,8 @@ from squeezefilm.render.motion.estimator import MotionEstimator
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ
 from squeezefilm.render.program.lowering import lower
 from squeezefilm.render.resonator.compensation import DrivenEnvelope
-from squeezefilm.render.texture.gratings import Square
+from squeezefilm.render.texture.levels import Amplitude
+from squeezefilm.render.texture.shapes import SquareWave
 from squeezefilm.session.loop import rows as column
 from squeezefilm.session.loop.pacing import MARGIN
 from squeezefilm.session.loop.plan import DriveTable, LoopPlan
@@ -33,7 +34,7 @@ pytestmark = pytest.mark.realtime
 PATIENCE = 60.0
 RATE = 1e3
 PLAN = LoopPlan(
-    program=lower(Square(2e-3, 0.1e-6, 0.8e-6), largest_amplitude=1e-6),
+    program=lower(Amplitude(SquareWave(2e-3), 0.1e-6, 0.8e-6), largest_amplitude=1e-6),
     rate=RATE,
     envelope=DrivenEnvelope(1e-3, 1e-3, 1e-6),
     drive=DriveTable.linear(1e-8, 100.0),

@@ -19,7 +19,7 @@ from squeezefilm.plate.solid.modes import PlateModes
 from squeezefilm.plate.sound import RadiatingSurface
 from squeezefilm.quantities import unit_of
 from squeezefilm.render.program.lowering import Program
-from squeezefilm.render.texture.gratings import Texture
+from squeezefilm.render.texture.composition import Texture
 from squeezefilm.render.texture.levels import Amplitude, RelativeFriction
 
 from .made_objects import (
@@ -195,9 +195,7 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
     "plate.ring.stator.fit_stator": {"degree": 3},
     "chain.prediction.predict": {"theory": "timoshenko", "model": "paper2008"},
     "chain.prediction.voltage_for_friction": {"theory": "timoshenko", "model": "paper2008"},
-    "render.resonator.carrier.carrier_trace": {"frequency": 30e3},
     "render.resonator.square_swing.least_cycle": {"swing": 1e-6},
-    "render.resonator.compensation.slew_time": {"start": 0.0, "target": 1e-6, "limit": 2e-6},
     "render.texture.composition.Sequence": {
         "textures": Later(lambda: (made(RelativeFriction),) * 2),
         "edges": (1e-3,),

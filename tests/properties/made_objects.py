@@ -75,12 +75,11 @@ from squeezefilm.render.resonator.compensation import (
     DrivenEnvelope,
     compensated_drive,
 )
-from squeezefilm.render.texture.composition import Composable
+from squeezefilm.render.texture.composition import Composable, Texture
 from squeezefilm.render.texture.coordinate import AlongX, AlongY, Coordinate
-from squeezefilm.render.texture.gratings import Square, Texture
 from squeezefilm.render.texture.levels import Amplitude, RelativeFriction
 from squeezefilm.render.texture.pattern import Pattern
-from squeezefilm.render.texture.shapes import SineWave
+from squeezefilm.render.texture.shapes import SineWave, SquareWave
 
 BRASS = ElasticMaterial("brass", 100e9, 0.35, 8500.0, 200.0)
 PZT = Piezoceramic("PZT", 67.9e9, 0.29, 23e9, 7700.0, -247e-12, 1900.0, 60.0)
@@ -182,7 +181,7 @@ MADE: dict[Any, Callable[[], Any]] = {
     SensorModel: lambda: LVDT_10_KHZ,
     SensorStream: lambda: sensor_stream(LVDT_10_KHZ, lambda t: 0.1 * t, 0.05, 1),
     Stroke: lambda: Stroke(0.1, 0.02),
-    Texture: lambda: Square(2e-3, 0.0, 1e-6),
+    Texture: lambda: Amplitude(SquareWave(2e-3), 0.0, 1e-6),
     Trajectory: lambda: Stroke(0.1, 0.02),
     MinimumJerkStroke: lambda: MinimumJerkStroke(0.02, 0.1),
     WaveCompensation: lambda: WaveCompensation.over_contact(8e-3, 2e-3, count=32),

@@ -44,7 +44,7 @@ QUICK = (
     "render.resonator.envelope.f",
     "render.texture.levels", "render.motion.minimum_jerk", "render.motion.estimator.MotionModel",
     "render.texture.pattern",
-    "render.motion.sensor.SensorModel", "render.motion.stroke", "render.texture.gratings",
+    "render.motion.sensor.SensorModel", "render.motion.stroke",
     "render.program.wave.wave_factor",
 )  # fmt: skip
 

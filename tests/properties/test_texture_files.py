@@ -32,7 +32,7 @@ def test_the_types_a_file_may_name_are_all_of_the_algebra() -> None:
 
     assert tags(Coordinate) == {"x", "y", "direction", "radius"}
     assert tags(Composable) == {
-        "amplitude", "relative_friction", "friction_reduction", "square", "sine",
+        "amplitude", "relative_friction", "friction_reduction",
         "sum", "product", "scaled", "masked", "sequence",
     }  # fmt: skip
     assert tags(Pattern) == {

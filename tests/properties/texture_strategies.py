@@ -21,7 +21,6 @@ from squeezefilm.render.texture.coordinate import (
     FromPoint,
 )
 from squeezefilm.render.texture.gates import Attack, Decay, Periodic, SpeedGate
-from squeezefilm.render.texture.gratings import Sine, Square
 from squeezefilm.render.texture.image import Image
 from squeezefilm.render.texture.levels import Amplitude, FrictionReduction, RelativeFriction
 from squeezefilm.render.texture.noise import Noise, NoiseField
@@ -138,8 +137,8 @@ def levels(draw: st.DrawFn, quantity: str) -> Composable:
         return Amplitude(draw(patterns), low * 4e-6, high * 4e-6)
     period, high = draw(widths), 1e-9 + high * 4e-6
     if draw(st.booleans()):
-        return Square(period, low * high * 0.9, high, draw(duties), draw(phases))
-    return Sine(period, low * high * 0.9, high, draw(phases))
+        return Amplitude(SquareWave(period, draw(duties), draw(phases)), low * high * 0.9, high)
+    return Amplitude(SineWave(period, draw(phases)), low * high * 0.9, high)
 
 
 @st.composite

@@ -18,7 +18,8 @@ from squeezefilm.render.motion.stroke import Stroke
 from squeezefilm.render.resonator.compensation import DrivenEnvelope
 from squeezefilm.render.resonator.envelope import sine_swing_kept
 from squeezefilm.render.resonator.square_swing import square_swing_compensated
-from squeezefilm.render.texture.gratings import Sine, Square
+from squeezefilm.render.texture.levels import Amplitude
+from squeezefilm.render.texture.shapes import SineWave, SquareWave
 
 LIMIT, TAU = 1e-6, 0.57e-3
 FREE = DrivenEnvelope(TAU, TAU, 100 * LIMIT, braking=True)
@@ -33,7 +34,11 @@ def straight(amplitude: FloatArray) -> FloatArray:
 def test_open_loop_a_sine_keeps_and_trails_as_a_first_order_lag(period: float) -> None:
     speed = 0.1
     stroke = rendered_stroke(
-        Sine(period, 0.0, LIMIT), Stroke(speed, 0.04, 2), TIGHT, straight, control_rate=200e3
+        Amplitude(SineWave(period), 0.0, LIMIT),
+        Stroke(speed, 0.04, 2),
+        TIGHT,
+        straight,
+        control_rate=200e3,
     )
     report = fidelity_report(stroke)
     kept = sine_swing_kept(period, speed, TAU)
@@ -51,7 +56,11 @@ def test_open_loop_a_sine_keeps_and_trails_as_a_first_order_lag(period: float) -
 
 def test_open_loop_every_harmonic_of_a_square_keeps_what_the_lag_leaves_it() -> None:
     stroke = rendered_stroke(
-        Square(2e-3, 0.0, LIMIT), Stroke(0.1, 0.04, 3), TIGHT, straight, control_rate=200e3
+        Amplitude(SquareWave(2e-3), 0.0, LIMIT),
+        Stroke(0.1, 0.04, 3),
+        TIGHT,
+        straight,
+        control_rate=200e3,
     )
     report = fidelity_report(stroke)
     omega = 2 * math.pi * 0.1 * report.spatial_frequency
@@ -61,7 +70,11 @@ def test_open_loop_every_harmonic_of_a_square_keeps_what_the_lag_leaves_it() -> 
 def test_the_inverse_renders_what_is_wanted_where_nothing_saturates() -> None:
     for compensation in ("inverse", "preview"):
         stroke = rendered_stroke(
-            Sine(1e-3, 0.0, LIMIT), Stroke(0.1), FREE, straight, compensation=compensation
+            Amplitude(SineWave(1e-3), 0.0, LIMIT),
+            Stroke(0.1),
+            FREE,
+            straight,
+            compensation=compensation,
         )
         report = fidelity_report(stroke)
         assert report.relative_error < 1e-6
@@ -73,7 +86,7 @@ def test_the_inverse_renders_what_is_wanted_where_nothing_saturates() -> None:
 def test_a_saturated_square_keeps_the_swing_of_the_closed_form() -> None:
     period, speed = 0.4e-3, 0.2763
     stroke = rendered_stroke(
-        Square(period, 0.0, 0.8 * LIMIT), Stroke(speed, 0.04), TIGHT, straight,
+        Amplitude(SquareWave(period), 0.0, 0.8 * LIMIT), Stroke(speed, 0.04), TIGHT, straight,
         compensation="inverse", control_rate=250 * speed / period,
     )  # fmt: skip
     late = stroke.time > 20 * TAU
@@ -90,7 +103,9 @@ def shifted(stroke: RenderedStroke, by: float) -> RenderedStroke:
 
 @pytest.mark.parametrize("by", [-0.3e-3, 0.0, 0.05e-3, 0.4e-3])
 def test_a_known_shift_is_found_in_either_direction(by: float) -> None:
-    stroke = rendered_stroke(Sine(2e-3, 0.0, LIMIT), Stroke(0.1, 0.04, 4), TIGHT, straight)
+    stroke = rendered_stroke(
+        Amplitude(SineWave(2e-3), 0.0, LIMIT), Stroke(0.1, 0.04, 4), TIGHT, straight
+    )
     report = fidelity_report(shifted(stroke, by))
     assert report.lag == pytest.approx(by, abs=2e-6)
     # All of it is there, only elsewhere.
@@ -103,7 +118,7 @@ def test_a_position_error_blurs_a_sine_by_its_gaussian() -> None:
     kept, expected = [], []
     for period in (1e-3, 2e-3, 4e-3):
         stroke = rendered_stroke(
-            Sine(period, 0.0, LIMIT), Stroke(0.1, 2.0), FREE, straight,
+            Amplitude(SineWave(period), 0.0, LIMIT), Stroke(0.1, 2.0), FREE, straight,
             compensation="inverse", sensor=sensor, seed=5, control_rate=5e3,
         )  # fmt: skip
         report = fidelity_report(stroke)
@@ -118,7 +133,8 @@ def test_fast_sensors_render_in_place_what_slow_ones_do_not() -> None:
     reports = [
         fidelity_report(
             rendered_stroke(
-                Square(1e-3, 0.0, 0.8 * LIMIT), MinimumJerkStroke(passes=10), TIGHT, straight,
+                Amplitude(SquareWave(1e-3), 0.0, 0.8 * LIMIT),
+                MinimumJerkStroke(passes=10), TIGHT, straight,
                 compensation="inverse", sensor=sensor,
             )
         )
@@ -135,7 +151,7 @@ def test_preview_with_a_good_sensor_takes_the_lag_away() -> None:
     lags, errors = [], []
     for compensation in ("none", "inverse", "preview"):
         stroke = rendered_stroke(
-            Square(0.4e-3, 0.0, 0.8 * LIMIT), Stroke(0.2, 0.04, 4), TIGHT, straight,
+            Amplitude(SquareWave(0.4e-3), 0.0, 0.8 * LIMIT), Stroke(0.2, 0.04, 4), TIGHT, straight,
             compensation=compensation, sensor=LVDT_10_KHZ, control_rate=40e3,
             estimator=MotionEstimator.for_sensor(LVDT_10_KHZ),
         )  # fmt: skip

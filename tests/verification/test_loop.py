@@ -28,9 +28,9 @@ from squeezefilm.render.program.lowering import lower
 from squeezefilm.render.resonator.compensation import DrivenEnvelope
 from squeezefilm.render.texture.composition import Composable
 from squeezefilm.render.texture.gates import Periodic, SpeedGate
-from squeezefilm.render.texture.gratings import Sine, Square
 from squeezefilm.render.texture.levels import Amplitude
 from squeezefilm.render.texture.noise import Noise
+from squeezefilm.render.texture.shapes import SineWave, SquareWave
 from squeezefilm.session.loop import rows as column
 from squeezefilm.session.loop.lateness import CLASSES, lateness_class
 from squeezefilm.session.loop.plan import DriveTable, FrictionTable, LoopPlan
@@ -43,8 +43,8 @@ from squeezefilm.session.loop.simulated import (
 
 LIMIT, PER_VOLT = 1e-6, 1e-8
 TEXTURES: dict[str, Composable] = {
-    "square": Square(2e-3, 0.1e-6, 0.8e-6),
-    "sine": Sine(1e-3, 0.0, 0.7e-6),
+    "square": Amplitude(SquareWave(2e-3), 0.1e-6, 0.8e-6),
+    "sine": Amplitude(SineWave(1e-3), 0.0, 0.7e-6),
     "moving": Amplitude(
         Noise(0.7e-3, 5, 3) * Periodic(40.0, "sine") * SpeedGate(above=0.02), 0.1e-6, 0.9e-6
     ),
@@ -224,7 +224,7 @@ def test_lost_ticks_leave_the_compensator_where_the_resonator_is() -> None:
     # What the resonator does under the commands held over the gap, against what the loop believes.
     envelope = DrivenEnvelope(2e-3, 3e-3, LIMIT, braking=True)
     plan = LoopPlan(
-        lower(Sine(1e-3, 0.1e-6, 0.9e-6), largest_amplitude=LIMIT), 5e3, envelope,
+        lower(Amplitude(SineWave(1e-3), 0.1e-6, 0.9e-6), largest_amplitude=LIMIT), 5e3, envelope,
         DriveTable.linear(PER_VOLT, 100.0), MotionEstimator.for_sensor(LVDT_10_KHZ), "inverse",
         FrictionTable(np.array([0.0, LIMIT]), np.array([1.0, 0.0])),
     )  # fmt: skip

@@ -15,13 +15,12 @@ from squeezefilm.render.motion.estimator import (
     MotionEstimator,
     MotionModel,
     estimate_motion,
-    prediction_deviation,
 )
 from squeezefilm.render.motion.minimum_jerk import MinimumJerkStroke
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ, SensorModel, SensorStream, sensor_stream
 
 MODELS = {
-    "white acceleration": MotionModel.white_acceleration(0.05),
+    "white acceleration": MotionModel(0.05, 0.0, acceleration_deviation=0.0),
     "white jerk": MotionModel(jerk_density=40.0),
     "both": MotionModel(0.02, 20.0, 0.1, 1.0),
 }
@@ -45,6 +44,13 @@ def settled(estimator: MotionEstimator, interval: float) -> FloatArray:
     return state
 
 
+def deviations(estimator: MotionEstimator, interval: float, ahead: float) -> tuple[float, float]:
+    """What the filter believes of place and speed `ahead` of the newest of many samples."""
+    state = settled(estimator, interval)
+    known = kernel.motion_at(state, estimator.parameters(), state[kernel.STAMP] + ahead)
+    return known[2], known[3]
+
+
 @pytest.mark.parametrize(("interval", "density", "noise"), [
     (1 / 60, 0.05, 5e-5), (1e-3, 0.05, 5e-5), (1e-2, 1.0, 1e-3),
 ])  # fmt: skip
@@ -52,7 +58,9 @@ def test_gains_settle_at_the_closed_form_of_white_acceleration(
     interval: float, density: float, noise: float
 ) -> None:
     """α and β by Bar-Shalom, Li, Kirubarajan 2001, section 6.5.3, from λ = q T³/R."""
-    state = settled(MotionEstimator(MotionModel.white_acceleration(density), noise), interval)
+    state = settled(
+        MotionEstimator(MotionModel(density, 0.0, acceleration_deviation=0.0), noise), interval
+    )
     u = 1 / 3 + math.sqrt(1 / 12 + 4 * noise**2 / (density * interval**3))
     beta = 12 / (6 * (u + math.sqrt(u)) + 1)
     assert state[kernel.XX] / noise**2 == pytest.approx(beta * math.sqrt(u), rel=1e-9)
@@ -76,8 +84,9 @@ def test_the_covariance_settles_where_the_riccati_equation_says(name: str, rate:
     assert found == pytest.approx(after[np.triu_indices(3)], rel=1e-6)
     F, Q = step_matrices(MODELS[name], 0.03)
     ahead = F @ after @ F.T + Q
-    bound = prediction_deviation(estimator, 1 / rate, 0.03)
-    assert bound == pytest.approx((math.sqrt(ahead[0, 0]), math.sqrt(ahead[1, 1])), rel=1e-6)
+    assert deviations(estimator, 1 / rate, 0.03) == pytest.approx(
+        (math.sqrt(ahead[0, 0]), math.sqrt(ahead[1, 1])), rel=1e-6
+    )
 
 
 def wiener_covariance(model: MotionModel, s: FloatArray, t: FloatArray) -> FloatArray:
@@ -155,7 +164,7 @@ def test_rms_error_is_the_kalman_bound_behind_a_latency_of_20_ms(name: str, rate
     # What the filter believes is the Riccati bound, averaged over the ages of the newest sample.
     youngest = math.ceil(LATENCY * 3 * rate - 1e-6)
     ages = (youngest + np.arange(3)) / (3 * rate)
-    riccati = [prediction_deviation(estimator, 1 / rate, float(age))[0] ** 2 for age in ages]
+    riccati = [deviations(estimator, 1 / rate, float(age))[0] ** 2 for age in ages]
     assert np.mean(bounds) == pytest.approx(np.mean(riccati), rel=0.02)
     # 1.2 is what was asked; far below 1 the motion would not be the model's.
     assert 0.9 < ratio <= 1.2
@@ -236,7 +245,7 @@ def test_a_density_ten_times_wrong_costs_less_than_twice_the_error(rate: float) 
                 "default": MotionModel(),
                 "tenth": MotionModel(jerk_density=4.0),
                 "tenfold": MotionModel(jerk_density=400.0),
-                "white acceleration": MotionModel.white_acceleration(),
+                "white acceleration": MotionModel(0.05, 0.0, acceleration_deviation=0.0),
             }.items()
         }
         assert errors["default"] < 2.0 * min(errors.values())

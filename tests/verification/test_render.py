@@ -16,7 +16,8 @@ from squeezefilm.render.resonator.envelope import (
     sine_swing_kept,
     square_swing_kept,
 )
-from squeezefilm.render.texture.gratings import Sine, Square
+from squeezefilm.render.texture.levels import Amplitude
+from squeezefilm.render.texture.shapes import SineWave, SquareWave
 
 LOW, HIGH = 0.2e-6, 2e-6
 
@@ -68,7 +69,7 @@ def test_splitting_every_step_changes_nothing() -> None:
 def test_a_simulated_square_keeps_the_swing_of_the_law(ratio: float, duty: float) -> None:
     speed, tau = 0.1, 0.55e-3
     period = ratio * tau * speed
-    texture = Square(period, LOW, HIGH, duty=duty)
+    texture = Amplitude(SquareWave(period, duty=duty), LOW, HIGH)
     # 400 samples a period put the edges of these duties on samples: what is left is settling.
     trace = friction_trace(texture, Stroke(speed, 0.004), tau, linear, 400 * speed / period)
     law = square_swing_kept(period, speed, tau, duty)
@@ -82,7 +83,7 @@ def test_a_simulated_sine_keeps_the_swing_of_the_law(ratio: float, passes: int) 
     speed, tau = 0.1, 0.55e-3
     period = ratio * tau * speed
     trace = friction_trace(
-        Sine(period, LOW, HIGH, phase=0.7), Stroke(speed, 0.006, passes), tau, linear
+        Amplitude(SineWave(period, phase=0.7), LOW, HIGH), Stroke(speed, 0.006, passes), tau, linear
     )
     assert swing_kept(trace) == pytest.approx(sine_swing_kept(period, speed, tau), rel=1e-3)
 
@@ -92,7 +93,11 @@ def test_the_measured_swing_does_not_depend_on_the_sample_rate() -> None:
     kept = [
         swing_kept(
             friction_trace(
-                Square(period, LOW, HIGH), Stroke(speed), tau, linear, samples * speed / period
+                Amplitude(SquareWave(period), LOW, HIGH),
+                Stroke(speed),
+                tau,
+                linear,
+                samples * speed / period,
             )
         )
         for samples in (4, 16, 64, 1024)
@@ -107,7 +112,11 @@ def test_a_sine_is_followed_to_second_order_in_the_time_step() -> None:
     errors = []
     for samples in (16, 32, 64):
         trace = friction_trace(
-            Sine(period, LOW, HIGH), Stroke(speed), tau, linear, samples * speed / period
+            Amplitude(SineWave(period), LOW, HIGH),
+            Stroke(speed),
+            tau,
+            linear,
+            samples * speed / period,
         )
         exact = (LOW + HIGH) / 2 + (HIGH - LOW) / 2 * gain * np.sin(angular * trace.time - late)
         settled = trace.time > 30 * tau
@@ -118,7 +127,7 @@ def test_a_sine_is_followed_to_second_order_in_the_time_step() -> None:
 
 def test_a_slow_texture_trails_the_finger_by_the_lag() -> None:
     stroke, tau = Stroke(0.1), 0.55e-3
-    texture = Sine(10e-3, LOW, HIGH)
+    texture = Amplitude(SineWave(10e-3), LOW, HIGH)
     trace = friction_trace(texture, stroke, tau, linear)
     settled = trace.time > 20 * tau
     # Second order in ωτ = 0.035 is what separates a pure delay from a first-order lag.

@@ -9,12 +9,12 @@ from typing import Literal
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from tests.verification.second_order import carried
 
 from squeezefilm.chain.prediction import predict
 from squeezefilm.display import load_display
 from squeezefilm.plate.working_mode import resonance_factor
 from squeezefilm.render.motion.stroke import Stroke
-from squeezefilm.render.resonator.carrier import carrier_trace
 from squeezefilm.render.resonator.envelope import envelope_time_constant
 from squeezefilm.twin.envelope_step import (
     Electrical,
@@ -86,9 +86,9 @@ def test_a_detuned_start_beats_as_a_resonator_of_the_second_order_does() -> None
     # The envelope leaves out terms of 1/Q; Q is 50 here.
     mode, rate = point().mode, 2.56e6
     ratio = 1.02
-    trace = carrier_trace(
+    trace = carried(
         np.ones(8), 640, carrier(ratio) * 1e-3, mode.quality_factor,
-        resonance_frequency=mode.resonance_frequency, sample_rate=rate,
+        resonance=mode.resonance_frequency, rate=rate,
     )  # fmt: skip
     plant = Plant(point(), CALM)
     plant.advance(2_000, 1_000_000, carrier(ratio))

@@ -47,7 +47,8 @@ from squeezefilm.render.fidelity.survival import FidelityTable, fidelity_table
 from squeezefilm.render.fidelity.trace import FrictionTrace, friction_trace
 from squeezefilm.render.motion.stroke import Stroke
 from squeezefilm.render.resonator.envelope import envelope_bandwidth
-from squeezefilm.render.texture.gratings import Square
+from squeezefilm.render.texture.levels import Amplitude
+from squeezefilm.render.texture.shapes import SquareWave
 from squeezefilm.results import Result, stamp, to_json
 
 
@@ -280,6 +281,6 @@ def _textures(
         return None, None
     friction = prediction.friction
     trace = friction_trace(
-        Square(spatial_period=2e-3, low=0.0, high=high), Stroke(speed=0.1), tau, friction
+        Amplitude(SquareWave(2e-3), low=0.0, high=high), Stroke(speed=0.1), tau, friction
     )
     return trace, fidelity_table(tau, friction, low=0.0, high=high)

@@ -21,7 +21,8 @@ from squeezefilm.render.resonator.compensation import (
     compensated_drive,
 )
 from squeezefilm.render.resonator.square_swing import fastest_compensated_speed, least_cycle
-from squeezefilm.render.texture.gratings import Sine
+from squeezefilm.render.texture.levels import Amplitude
+from squeezefilm.render.texture.shapes import SineWave
 
 _STEPS_PER_PERIOD = 1000
 _PERIODS = 8
@@ -268,7 +269,7 @@ def sensor_contrast(
         tuple(
             fidelity_report(
                 rendered_stroke(
-                    Sine(float(period), 0.0, level * envelope.amplitude_limit),
+                    Amplitude(SineWave(float(period)), 0.0, level * envelope.amplitude_limit),
                     hand,
                     envelope,
                     relative_friction,

@@ -15,7 +15,8 @@ from squeezefilm.render.motion.estimator import MotionEstimator
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ
 from squeezefilm.render.program.lowering import lower
 from squeezefilm.render.resonator.compensation import DrivenEnvelope
-from squeezefilm.render.texture.gratings import Square
+from squeezefilm.render.texture.levels import Amplitude
+from squeezefilm.render.texture.shapes import SquareWave
 from squeezefilm.session.loop.lateness import Lateness
 from squeezefilm.session.loop.plan import DriveTable, LoopPlan
 from squeezefilm.session.loop.process import LoopProcess
@@ -33,7 +34,7 @@ def check_loop(rate: si.Hertz, duration: si.Second = LOOP_SECONDS) -> CheckResul
 
 def loop_lateness(rate: si.Hertz, duration: si.Second) -> Lateness:
     """How late this computer's loop is at a rate (Hz), over some seconds; nothing is played."""
-    square = Square(spatial_period=2e-3, low=0.0, high=1e-6)
+    square = Amplitude(SquareWave(2e-3), low=0.0, high=1e-6)
     plan = LoopPlan(
         program=lower(square, largest_amplitude=1e-6),
         rate=rate,

@@ -17,9 +17,8 @@ from squeezefilm.contact.sliding.skin_vibration import (
     texture_frequency,
 )
 from squeezefilm.errors import InputError
-from squeezefilm.render.fidelity.trace import FrictionTrace
+from squeezefilm.render.fidelity.trace import FrictionTrace, period_of
 from squeezefilm.render.motion.stroke import Stroke
-from squeezefilm.render.texture.gratings import Sine, Square
 
 # Of the skin's slower time constant: what is left of a start by then is 1 %.
 _SETTLING = 5.0
@@ -58,12 +57,13 @@ class StrokeForce:
                 after the start has settled; make it longer.
         """
         texture, stroke = self.trace.texture, self.trace.stroke
-        if not isinstance(texture, Square | Sine):
+        period = period_of(texture)
+        if period is None:
             raise InputError(
                 f"a {type(texture).__name__} has no spatial period to look for; call "
                 "skin_vibration on `motion` with a frequency of your choice"
             )
-        return first_pass_vibration(self.motion, stroke, texture.spatial_period, harmonics)
+        return first_pass_vibration(self.motion, stroke, period, harmonics)
 
 
 def settled_after(motion: Sliding) -> si.Second:

@@ -19,6 +19,7 @@ from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.formats.pictures import read_picture
 from squeezefilm.render.opcodes import Assembler
+from squeezefilm.render.texture.coordinate import Finger
 from squeezefilm.render.texture.image import Image
 from squeezefilm.render.texture.pattern import Pattern
 
@@ -81,9 +82,7 @@ class ImageFile(Pattern):
             values, self.pixel, left=self.left, bottom=self.bottom, outside=self.outside
         )
 
-    def _values(
-        self, x: si.FloatArray, y: si.FloatArray, v: si.FloatArray, t: si.FloatArray
-    ) -> si.FloatArray:
+    def _values(self, finger: Finger) -> si.FloatArray:
         raise self._unread()
 
     def _lower(self, assembler: Assembler) -> None:

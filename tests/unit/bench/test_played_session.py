@@ -19,12 +19,13 @@ from squeezefilm.render.motion.estimator import MotionEstimator
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ
 from squeezefilm.render.program.lowering import lower
 from squeezefilm.render.resonator.compensation import DrivenEnvelope
-from squeezefilm.render.texture.gratings import Square
+from squeezefilm.render.texture.levels import Amplitude
+from squeezefilm.render.texture.shapes import SquareWave
 from squeezefilm.session.loop import rows as column
 from squeezefilm.session.loop.plan import DriveTable, LoopPlan
 from squeezefilm.session.record.trace import Damage, Trace, TraceEvent
 
-SQUARE = Square(2e-3, 0.1e-6, 0.8e-6)
+SQUARE = Amplitude(SquareWave(2e-3), 0.1e-6, 0.8e-6)
 REACH = 2e-6
 LATENCY = 4e-3
 

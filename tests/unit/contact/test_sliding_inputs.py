@@ -21,7 +21,8 @@ from squeezefilm.contact.sliding.skin_vibration import (
 from squeezefilm.errors import InputError, OutOfRangeError
 from squeezefilm.render.fidelity.trace import friction_trace
 from squeezefilm.render.motion.stroke import Stroke
-from squeezefilm.render.texture.gratings import Square
+from squeezefilm.render.texture.levels import Amplitude
+from squeezefilm.render.texture.shapes import SquareWave
 
 DT = 1e-4
 BONE = 0.08 * DT * np.arange(2000)
@@ -102,7 +103,9 @@ def test_lines_are_found_between_bins_and_beside_a_drift() -> None:
 def force() -> StrokeForce:
     """A 1 mm square grating, 40 % of friction deep, under a finger at 80 mm/s, there and back."""
     stroke = Stroke(0.08, 0.03, passes=2)
-    trace = friction_trace(Square(1e-3, 0.0, 2e-6), stroke, 5e-4, lambda a: 1 - a / 5e-6)
+    trace = friction_trace(
+        Amplitude(SquareWave(1e-3), 0.0, 2e-6), stroke, 5e-4, lambda a: 1 - a / 5e-6
+    )
     return stroke_force(trace, 0.6, 0.5)
 
 

@@ -12,7 +12,8 @@ from squeezefilm.render.motion.estimator import MotionEstimator
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ
 from squeezefilm.render.program.lowering import lower
 from squeezefilm.render.resonator.compensation import DrivenEnvelope
-from squeezefilm.render.texture.gratings import Square
+from squeezefilm.render.texture.levels import Amplitude
+from squeezefilm.render.texture.shapes import SquareWave
 from squeezefilm.session.loop.plan import DriveTable, FrictionTable, LoopPlan
 
 
@@ -22,7 +23,7 @@ def plan_of() -> Callable[..., LoopPlan]:
 
     def made(**changes: Any) -> LoopPlan:
         fields: dict[str, Any] = {
-            "program": lower(Square(2e-3, 0.1e-6, 0.8e-6), largest_amplitude=2e-6),
+            "program": lower(Amplitude(SquareWave(2e-3), 0.1e-6, 0.8e-6), largest_amplitude=2e-6),
             "rate": 5e3,
             "envelope": DrivenEnvelope(0.5e-3, 0.7e-3, 1e-6),
             "drive": DriveTable.linear(1e-8, 100.0),

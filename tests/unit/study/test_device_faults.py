@@ -151,7 +151,8 @@ def test_a_study_refuses_a_drive_that_does_not_stop_by_itself(
     from squeezefilm.render.motion.sensor import LVDT_10_KHZ
     from squeezefilm.render.program.lowering import lower
     from squeezefilm.render.resonator.compensation import DrivenEnvelope
-    from squeezefilm.render.texture.gratings import Square
+    from squeezefilm.render.texture.levels import Amplitude
+    from squeezefilm.render.texture.shapes import SquareWave
     from squeezefilm.session.loop.plan import DriveTable, LoopPlan
 
     class Silent:
@@ -167,7 +168,7 @@ def test_a_study_refuses_a_drive_that_does_not_stop_by_itself(
             pass
 
     loop = LoopPlan(
-        program=lower(Square(2e-3, 0.5e-6, 1e-6), largest_amplitude=1e-6),
+        program=lower(Amplitude(SquareWave(2e-3), 0.5e-6, 1e-6), largest_amplitude=1e-6),
         rate=1e3,
         envelope=DrivenEnvelope(1e-3, 1e-3, 1e-6),
         drive=DriveTable.linear(1e-7, 10.0),

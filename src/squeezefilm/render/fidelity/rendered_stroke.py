@@ -28,7 +28,7 @@ from squeezefilm.render.resonator.compensation import (
     preview_samples,
     preview_work,
 )
-from squeezefilm.render.texture.gratings import Texture
+from squeezefilm.render.texture.composition import Texture
 
 _WINDOW_ROWS = 4096
 

@@ -16,6 +16,7 @@ from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import LAG_PRODUCTS, require_within
 from squeezefilm.render.fidelity.rendered_stroke import RenderedStroke
+from squeezefilm.render.fidelity.trace import period_of
 from squeezefilm.render.motion.estimator import MotionEstimator
 from squeezefilm.render.motion.sensor import SensorModel
 from squeezefilm.render.resonator.compensation import Compensation, DrivenEnvelope
@@ -98,7 +99,7 @@ def fidelity_report(
     Args:
         stroke: from `rendered_stroke`.
         spatial_frequencies: at which to measure contrast (1/m). Without them the first, third
-            and fifth harmonic of a texture with a `spatial_period`, else eight from four periods
+            and fifth harmonic of a grating along x, else eight from four periods
             a pass to one per 0.5 mm.
 
     Raises:
@@ -112,7 +113,7 @@ def fidelity_report(
     frequencies = _frequencies(stroke, passes, spatial_frequencies)
     contrast, swing = _contrast(passes, frequencies)
     mean_speed = float(np.mean(np.abs(stroke.speed[judged])))
-    lag = _lag(passes, getattr(stroke.texture, "spatial_period", None), float(frequencies.max()))
+    lag = _lag(passes, period_of(stroke.texture), float(frequencies.max()))
     position_error, speed_error, refused = _errors_of_estimate(stroke, judged)
     return FidelityReport(
         texture=repr(stroke.texture),
@@ -208,7 +209,7 @@ def _frequencies(
     asked: Sequence[float] | si.FloatArray | None,
 ) -> si.FloatArray:
     longest = max((float(np.ptp(way)) for way, _, _ in passes), default=0.0)
-    period = getattr(stroke.texture, "spatial_period", None)
+    period = period_of(stroke.texture)
     if asked is not None:
         frequencies = np.array(asked, dtype=float)
     elif period is not None:

@@ -11,7 +11,12 @@ from numpy.typing import NDArray
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.render.fidelity.trace import FrictionTrace, RelativeFriction, friction_trace
+from squeezefilm.render.fidelity.trace import (
+    FrictionTrace,
+    RelativeFriction,
+    friction_trace,
+    period_of,
+)
 from squeezefilm.render.motion.stroke import Stroke
 from squeezefilm.render.resonator.envelope import (
     Shape,
@@ -20,7 +25,8 @@ from squeezefilm.render.resonator.envelope import (
     sine_swing_kept,
     square_swing_kept,
 )
-from squeezefilm.render.texture.gratings import Sine, Square
+from squeezefilm.render.texture.levels import Amplitude
+from squeezefilm.render.texture.shapes import SineWave, SquareWave
 
 PAPER_PERIODS: tuple[si.Metre, ...] = (0.4e-3, 2e-3, 4e-3, 8e-3, 10e-3)
 """Spatial periods of the paper's match-to-sample experiment (m)."""
@@ -58,9 +64,7 @@ def swing_kept(trace: FrictionTrace, signal: Signal = "amplitude") -> si.Dimensi
             f"signal = {signal!r} is not known; it must be 'amplitude' or 'relative_friction'"
         )
     stroke, settling = trace.stroke, _SETTLING * trace.time_constant
-    needed = settling * stroke.speed
-    if isinstance(trace.texture, Square | Sine):
-        needed += trace.texture.spatial_period
+    needed = settling * stroke.speed + (period_of(trace.texture) or 0.0)
     if stroke.length < needed * (1 - 1e-9):
         raise InputError(
             f"passes of {si.format_quantity(stroke.length, si.Unit('m'))} are too short to measure "
@@ -163,7 +167,8 @@ def fidelity_table(
     amplitude = np.asarray(law(periods[:, None], columns, time_constant))
     friction = np.empty_like(amplitude)
     for row, period in enumerate(periods.tolist()):
-        texture = (Square if shape == "square" else Sine)(period, low, high)
+        wave = SquareWave(period) if shape == "square" else SineWave(period)
+        texture = Amplitude(wave, low, high)
         for column, speed in enumerate(columns.tolist()):
             length = _PERIODS_SHOWN * period + _SETTLING * time_constant * speed
             trace = friction_trace(texture, Stroke(speed, length), time_constant, relative_friction)

@@ -12,8 +12,7 @@ from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.render.motion.stroke import Stroke
 from squeezefilm.render.resonator.envelope import envelope_response
-from squeezefilm.render.texture.composition import Composable
-from squeezefilm.render.texture.gratings import Sine, Square, Texture
+from squeezefilm.render.texture.composition import Composable, Texture
 
 RelativeFriction = Callable[[si.MetreArray], si.DimensionlessArray]
 """Vibration amplitude (m, zero-to-peak) → friction divided by that of the unexcited surface (1)."""
@@ -87,7 +86,7 @@ def friction_trace(
         relative_friction: vibration amplitudes (m, zero-to-peak; shape (n,)) → relative friction
             (1; the same shape). Called twice.
         sample_rate: of the trace (Hz). Without one: 50 samples a time constant, 128 a spatial
-            period and 1000 a stroke at least, and for a `Square` or `Sine` a whole even number a
+            period and 1000 a stroke at least, and for a grating along x a whole even number a
             period, so that the edges of a grating of duty ½ and phase 0 fall on samples. Otherwise
             an edge is misplaced by up to one step.
 
@@ -124,10 +123,17 @@ def friction_trace(
     )
 
 
+def period_of(texture: Texture) -> si.Metre | None:
+    """The period of a grating along x (m); None for any other texture."""
+    period: si.Metre | None = getattr(texture, "spatial_period", None)
+    return period
+
+
 def _rate(
     texture: Texture, stroke: Stroke, time_constant: si.Second, sample_rate: si.Hertz | None
 ) -> si.Hertz:
-    passed = stroke.speed / texture.spatial_period if isinstance(texture, Square | Sine) else None
+    period = period_of(texture)
+    passed = None if period is None else stroke.speed / period
     if sample_rate is None:
         rate = max(_PER_TIME_CONSTANT / time_constant, _PER_STROKE / stroke.duration)
         if passed is None:

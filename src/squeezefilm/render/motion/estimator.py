@@ -71,14 +71,6 @@ class MotionModel:
                 "= 0: an acceleration without jerk would last for ever; give 0"
             )
 
-    @classmethod
-    @si.checked_numbers
-    def white_acceleration(
-        cls, density: AccelerationDensity = 0.05, speed_deviation: si.MetrePerSecond = 0.15
-    ) -> MotionModel:
-        """The model without jerk: speed wanders, √(density·t) in a time t; assumed density."""
-        return cls(density, 0.0, speed_deviation, 0.0)
-
 
 @si.checked_numbers
 @dataclass(frozen=True, slots=True)
@@ -92,7 +84,8 @@ class MotionEstimator:
             speed × stamp error; at least 0.
         gate: a sample further from its prediction than this many standard deviations is an
             outlier (1); above 0. 5 rejects six good samples in ten million.
-        most_rejected: outliers in a row after which the estimator starts anew from the last one.
+        most_rejected: outliers in a row after which the estimator starts anew from the last one;
+            1 starts anew at each.
         stall: time without a sample after which the finger counts as lost (s); above 0.
 
     Raises:
@@ -103,19 +96,8 @@ class MotionEstimator:
     position_error: Annotated[si.Metre, si.Above(0.0)]
     stamp_error: Annotated[si.Second, si.AtLeast(0.0)] = 0.0
     gate: Annotated[si.Dimensionless, si.Above(0.0)] = 5.0
-    most_rejected: int = 3
+    most_rejected: Annotated[int, si.AtLeast(1)] = 3
     stall: Annotated[si.Second, si.Above(0.0)] = 0.1
-
-    def __post_init__(self) -> None:
-        if (
-            not isinstance(self.most_rejected, int)
-            or isinstance(self.most_rejected, bool)
-            or self.most_rejected < 1
-        ):
-            raise InputError(
-                f"most_rejected = {self.most_rejected!r} cannot be used: it must be a whole "
-                "number, at least 1 (1 starts anew at each outlier)"
-            )
 
     @classmethod
     def for_sensor(cls, sensor: SensorModel, model: MotionModel | None = None) -> MotionEstimator:
@@ -240,32 +222,3 @@ def estimate_motion(
     return MotionEstimate(
         estimator, times + ahead, x, v, dx, dv, code == kernel.FRESH, MotionCounts.of(state)
     )
-
-
-@si.checked_numbers
-def prediction_deviation(
-    estimator: MotionEstimator, interval: si.Second, lookahead: si.Second
-) -> tuple[si.Metre, si.MetrePerSecond]:
-    """Steady-state standard deviations of position (m) and speed (m/s): the Kalman bound.
-
-    `interval` (s) separates the samples, `lookahead` (s) the newest sample from the time asked
-    about; stamps are taken as exact. Found by running the covariance until it stands still.
-
-    Raises:
-        InputError: an interval not above 0 or above the stall limit, or a negative lookahead.
-    """
-    si.require("interval", interval, si.Unit("s"), above=0.0, at_most=estimator.stall)
-    si.require("lookahead", lookahead, si.Unit("s"), at_least=0.0, at_most=estimator.stall)
-    parameters, state = estimator.parameters(), estimator.new_state()
-    # The stamp error would enter with a speed; the gate is never met by samples on prediction.
-    parameters[kernel.STAMP_VARIANCE] = 0.0
-    before, k = 0.0, 0
-    while True:
-        for _ in range(64):
-            kernel.motion_step(state, parameters, k * interval, 0.0)
-            k += 1
-        if abs(state[kernel.VV] - before) <= 1e-13 * before:
-            break
-        before = float(state[kernel.VV])
-    _, _, dx, dv, _ = kernel.motion_at(state, parameters, (k - 1) * interval + lookahead)
-    return dx, dv

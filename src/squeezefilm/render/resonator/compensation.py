@@ -38,23 +38,6 @@ COMPENSATIONS: tuple[Compensation, ...] = ("none", "inverse", "preview")
 _PREVIEW_TIME_CONSTANTS = 3.0
 
 
-@si.closed_form(positive="time_constant")
-def slew_time(
-    time_constant: si.SecondLike, start: si.MetreLike, target: si.MetreLike, limit: si.MetreLike
-) -> si.SecondLike:
-    """Least time from one amplitude to another under a bounded command (s).
-
-    τ ln((limit − start)/(limit − target)) = τ ln((1 − a0/a_max)/(1 − a_t/a_max)), where `limit` is
-    the command held meanwhile: +a_max to rise, 0 or −a_max to fall. All arguments (s, m, m, m)
-    broadcast. Raises `InputError` for a time constant not above 0, or a target that does not lie
-    between `start` and `limit` (it is never reached).
-    """
-    ratio = (limit - start) / (limit - target)
-    si.require("(limit - start)/(limit - target)", ratio, at_least=1.0)
-    time: si.SecondLike = time_constant * np.log(ratio)
-    return time
-
-
 @si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class DrivenEnvelope:

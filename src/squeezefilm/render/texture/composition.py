@@ -25,8 +25,8 @@ associative, and ``(a + b) * m = a * m + b * m``.
 from __future__ import annotations
 
 from collections.abc import Sequence as SequenceOf
-from dataclasses import dataclass, field
-from typing import Annotated, Any, ClassVar, Literal
+from dataclasses import field
+from typing import Annotated, Any, ClassVar, Literal, Protocol
 
 import numpy as np
 
@@ -37,18 +37,15 @@ from squeezefilm.render.opcodes import ADD, CROSS, FADE, MULTIPLY, WEIGH, Assemb
 from squeezefilm.render.texture.coordinate import (
     X_AXIS,
     Coordinate,
+    Finger,
     Place,
-    finger_arguments,
     require_coordinate,
     require_fade,
 )
-from squeezefilm.render.texture.pattern import MOST_PARTS, Pattern, require_pattern
+from squeezefilm.render.texture.pattern import MOST_PARTS, Part, Pattern, part, require_pattern
 
 Quantity = Literal["amplitude", "relative_friction", "friction_reduction"]
 """What a texture's values are."""
-
-Polarity = Literal["slipperier", "stickier"]
-"""What a greater value feels like."""
 
 AT_REST: dict[Quantity, float] = {
     "amplitude": 0.0,
@@ -58,14 +55,25 @@ AT_REST: dict[Quantity, float] = {
 """The value of a plate that does not vibrate."""
 
 
-class Composable:
-    """A texture with a quantity that composes with others; the base of every texture here.
+class Texture(Protocol):
+    """The seam between what is to be felt and what renders it.
 
-    Called with the finger's place `x`, `y` (m), its velocity `v` along its path (m/s; negative on
-    the way back) and the time `t` (s), which broadcast; returns values of its `quantity` in the
-    broadcast shape. Raises `InputError` for an argument that is not finite or shapes that do not
-    broadcast.
+    Called with the finger's position `x`, `y` (m), its velocity `v` along its path (m/s; |v| is
+    its speed, and v is negative on the way back, which only a `Bump` asks for) and the time `t`
+    since the stroke began (s), it returns the vibration amplitude wanted there (m, zero-to-peak).
+    The four broadcast against each other; the result has the broadcast shape. A `Composable`
+    whose quantity is not the amplitude needs a renderer to become one.
     """
+
+    def __call__(
+        self, x: si.MetreLike, y: si.MetreLike, v: si.MetrePerSecondLike, t: si.SecondLike, /
+    ) -> si.MetreArray:
+        """The vibration amplitude wanted (m, zero-to-peak)."""
+        ...
+
+
+class Composable(Part):
+    """A texture with a quantity that composes with others; the base of every texture here."""
 
     __slots__ = ()
     _quantity: ClassVar[Quantity]
@@ -74,25 +82,6 @@ class Composable:
     def quantity(self) -> Quantity:
         """What the values are: amplitude (m), relative_friction or friction_reduction (1)."""
         return self._quantity
-
-    @property
-    def polarity(self) -> Polarity:
-        """What a greater value feels like."""
-        return "stickier" if self.quantity == "relative_friction" else "slipperier"
-
-    def __call__(
-        self, x: si.MetreLike, y: si.MetreLike, v: si.MetrePerSecondLike, t: si.SecondLike, /
-    ) -> si.FloatArray:
-        """The texture at these places, velocities and times (m for an amplitude, else 1)."""
-        return np.array(self._values(*finger_arguments(x, y, v, t)))
-
-    def _values(
-        self, x: si.FloatArray, y: si.FloatArray, v: si.FloatArray, t: si.FloatArray
-    ) -> si.FloatArray:
-        raise NotImplementedError
-
-    def _lower(self, assembler: Assembler) -> None:
-        raise NotImplementedError
 
     def __add__(self, other: Composable) -> Sum:
         if not isinstance(other, Composable):
@@ -166,7 +155,7 @@ def require_texture(name: str, value: object) -> None:
     if not isinstance(value, Composable):
         raise InputError(
             f"{name} = {value!r} is no texture with a quantity; give one such as "
-            "Amplitude(pattern, low, high) or Square(spatial_period, low, high)",
+            "Amplitude(pattern, low, high)",
             quantity=name,
         )
 
@@ -188,8 +177,20 @@ def _require_alike(textures: SequenceOf[Composable], what: str) -> None:
         )
 
 
-@dataclass(frozen=True, slots=True)
-class Sum(Composable):
+class _Several(Composable):
+    """Textures of one quantity, which is its own."""
+
+    __slots__ = ()
+    textures: tuple[Composable, ...]
+
+    @property
+    def quantity(self) -> Quantity:
+        """That of its textures."""
+        return self.textures[0].quantity
+
+
+@part
+class Sum(_Several):
     """The sum of `textures` of one quantity. Raises `InputError` for a mixture."""
 
     textures: tuple[Composable, ...]
@@ -198,15 +199,8 @@ class Sum(Composable):
     def __post_init__(self) -> None:
         _require_alike(self.textures, "sum")
 
-    @property
-    def quantity(self) -> Quantity:
-        """That of its textures."""
-        return self.textures[0].quantity
-
-    def _values(
-        self, x: si.FloatArray, y: si.FloatArray, v: si.FloatArray, t: si.FloatArray
-    ) -> si.FloatArray:
-        parts = [one._values(x, y, v, t) for one in self.textures]
+    def _values(self, finger: Finger) -> si.FloatArray:
+        parts = [one._values(finger) for one in self.textures]
         return np.asarray(np.add.reduce(parts))
 
     def _lower(self, assembler: Assembler) -> None:
@@ -216,16 +210,14 @@ class Sum(Composable):
                 assembler.emit(ADD)
 
 
-class _Shaped:
-    """A texture that a pattern shapes."""
+class _Changed(Composable):
+    """A texture that something changes, but for its quantity."""
 
     __slots__ = ()
     texture: Composable
-    pattern: Pattern
 
     def __post_init__(self) -> None:
         require_texture("texture", self.texture)
-        require_pattern("pattern", self.pattern)
 
     @property
     def quantity(self) -> Quantity:
@@ -233,18 +225,27 @@ class _Shaped:
         return self.texture.quantity
 
 
-@dataclass(frozen=True, slots=True)
-class Product(_Shaped, Composable):
+class _Shaped(_Changed):
+    """A texture that a pattern shapes."""
+
+    __slots__ = ()
+    pattern: Pattern
+
+    def __post_init__(self) -> None:
+        _Changed.__post_init__(self)
+        require_pattern("pattern", self.pattern)
+
+
+@part
+class Product(_Shaped):
     """`texture` times a dimensionless `pattern`, value by value. See `Masked` to fade to rest."""
 
     texture: Composable
     pattern: Pattern
     type: Literal["product"] = field(default="product", repr=False)
 
-    def _values(
-        self, x: si.FloatArray, y: si.FloatArray, v: si.FloatArray, t: si.FloatArray
-    ) -> si.FloatArray:
-        return self.texture._values(x, y, v, t) * self.pattern._values(x, y, v, t)
+    def _values(self, finger: Finger) -> si.FloatArray:
+        return self.texture._values(finger) * self.pattern._values(finger)
 
     def _lower(self, assembler: Assembler) -> None:
         self.texture._lower(assembler)
@@ -252,35 +253,24 @@ class Product(_Shaped, Composable):
         assembler.emit(MULTIPLY)
 
 
-@si.checked_numbers
-@dataclass(frozen=True, slots=True)
-class Scaled(Composable):
+@part
+class Scaled(_Changed):
     """`texture` times a number from 0 to 1000. Raises `InputError` outside that."""
 
     texture: Composable
     factor: Annotated[si.Dimensionless, si.AtLeast(0.0), si.AtMost(1000.0)]
     type: Literal["scaled"] = field(default="scaled", repr=False)
 
-    def __post_init__(self) -> None:
-        require_texture("texture", self.texture)
-
-    @property
-    def quantity(self) -> Quantity:
-        """That of its texture."""
-        return self.texture.quantity
-
-    def _values(
-        self, x: si.FloatArray, y: si.FloatArray, v: si.FloatArray, t: si.FloatArray
-    ) -> si.FloatArray:
-        return self.factor * self.texture._values(x, y, v, t)
+    def _values(self, finger: Finger) -> si.FloatArray:
+        return self.factor * self.texture._values(finger)
 
     def _lower(self, assembler: Assembler) -> None:
         self.texture._lower(assembler)
         assembler.emit(WEIGH, self.factor)
 
 
-@dataclass(frozen=True, slots=True)
-class Masked(_Shaped, Composable):
+@part
+class Masked(_Shaped):
     """`texture` where `pattern` is 1, the plate at rest where it is 0.
 
     Value: rest + pattern·(texture − rest), with the rest of the texture's quantity.
@@ -290,12 +280,10 @@ class Masked(_Shaped, Composable):
     pattern: Pattern
     type: Literal["masked"] = field(default="masked", repr=False)
 
-    def _values(
-        self, x: si.FloatArray, y: si.FloatArray, v: si.FloatArray, t: si.FloatArray
-    ) -> si.FloatArray:
-        share = self.pattern._values(x, y, v, t)
+    def _values(self, finger: Finger) -> si.FloatArray:
+        share = self.pattern._values(finger)
         rest = AT_REST[self.quantity]
-        return (1.0 - share) * rest + share * self.texture._values(x, y, v, t)
+        return (1.0 - share) * rest + share * self.texture._values(finger)
 
     def _lower(self, assembler: Assembler) -> None:
         self.texture._lower(assembler)
@@ -303,9 +291,8 @@ class Masked(_Shaped, Composable):
         assembler.emit(FADE, AT_REST[self.quantity])
 
 
-@si.checked_numbers
-@dataclass(frozen=True, slots=True)
-class Sequence(Composable):
+@part
+class Sequence(_Several):
     """One texture after another in space: `textures[k]` up to `edges[k]`, the last beyond.
 
     Args:
@@ -342,22 +329,15 @@ class Sequence(Composable):
         widest = float(np.min(steps)) if steps.size else 1.0
         require_fade(self.fade, widest)
 
-    @property
-    def quantity(self) -> Quantity:
-        """That of its textures."""
-        return self.textures[0].quantity
-
-    def _values(
-        self, x: si.FloatArray, y: si.FloatArray, v: si.FloatArray, t: si.FloatArray
-    ) -> si.FloatArray:
-        s = self.along.at(x, y)
-        found = self.textures[0]._values(x, y, v, t)
+    def _values(self, finger: Finger) -> si.FloatArray:
+        s = self.along.at(finger.x, finger.y)
+        found = self.textures[0]._values(finger)
         for edge, after in zip(self.edges, self.textures[1:], strict=True):
             if self.fade == 0.0:
                 share = np.where(s < edge, 0.0, 1.0)
             else:
                 share = np.clip((s - edge) / self.fade + 0.5, 0.0, 1.0)
-            found = (1.0 - share) * found + share * after._values(x, y, v, t)
+            found = (1.0 - share) * found + share * after._values(finger)
         return found
 
     def _lower(self, assembler: Assembler) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Annotated, Literal
+from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
 
@@ -26,6 +26,15 @@ Length = Annotated[si.Metre, si.AtLeast(FINEST), si.AtMost(FARTHEST)]
 """A period or a width on a display, in annotations: from 1 nm to 10 m."""
 
 
+class Finger(NamedTuple):
+    """Place `x`, `y` (m), velocity `v` (m/s) and time `t` (s) of a finger: arrays of one shape."""
+
+    x: si.FloatArray
+    y: si.FloatArray
+    v: si.FloatArray
+    t: si.FloatArray
+
+
 class Coordinate:
     """A length (m) read off the finger's place; the base of the family `AlongX`, `AlongY`,
     `AlongDirection` and `FromPoint`."""
@@ -40,18 +49,31 @@ class Coordinate:
         raise NotImplementedError
 
 
+class _Straight(Coordinate):
+    """The way along a line through the origin."""
+
+    __slots__ = ()
+
+    @property
+    def _direction(self) -> tuple[float, float]:
+        """Its components along x and y."""
+        raise NotImplementedError
+
+    def at(self, x: si.MetreArray, y: si.MetreArray) -> si.MetreArray:
+        """The way along the line (m)."""
+        p, q = self._direction
+        return np.asarray(p * x + q * y)
+
+    def _lower(self, assembler: Assembler) -> None:
+        assembler.emit(ALONG, *self._direction, 0.0)
+
+
 @dataclass(frozen=True, slots=True)
-class AlongX(Coordinate):
+class AlongX(_Straight):
     """The coordinate x."""
 
     type: Literal["x"] = field(default="x", repr=False)
-
-    def at(self, x: si.MetreArray, y: si.MetreArray) -> si.MetreArray:
-        """`x` (m)."""
-        return x
-
-    def _lower(self, assembler: Assembler) -> None:
-        assembler.emit(ALONG, 1.0, 0.0, 0.0)
+    _direction = (1.0, 0.0)
 
 
 X_AXIS = AlongX()
@@ -59,22 +81,16 @@ X_AXIS = AlongX()
 
 
 @dataclass(frozen=True, slots=True)
-class AlongY(Coordinate):
+class AlongY(_Straight):
     """The coordinate y."""
 
     type: Literal["y"] = field(default="y", repr=False)
-
-    def at(self, x: si.MetreArray, y: si.MetreArray) -> si.MetreArray:
-        """`y` (m)."""
-        return y
-
-    def _lower(self, assembler: Assembler) -> None:
-        assembler.emit(ALONG, 0.0, 1.0, 0.0)
+    _direction = (0.0, 1.0)
 
 
 @si.checked_numbers
 @dataclass(frozen=True, slots=True)
-class AlongDirection(Coordinate):
+class AlongDirection(_Straight):
     """x cos(angle) + y sin(angle): the way along a line at `angle` (rad) from x towards y.
 
     Raises `InputError` for an angle that is not finite.
@@ -83,12 +99,9 @@ class AlongDirection(Coordinate):
     angle: si.Radian
     type: Literal["direction"] = field(default="direction", repr=False)
 
-    def at(self, x: si.MetreArray, y: si.MetreArray) -> si.MetreArray:
-        """The way along the line (m)."""
-        return np.asarray(math.cos(self.angle) * x + math.sin(self.angle) * y)
-
-    def _lower(self, assembler: Assembler) -> None:
-        assembler.emit(ALONG, math.cos(self.angle), math.sin(self.angle), 0.0)
+    @property
+    def _direction(self) -> tuple[float, float]:
+        return math.cos(self.angle), math.sin(self.angle)
 
 
 @si.checked_numbers
@@ -130,7 +143,7 @@ def require_coordinate(value: object) -> None:
 
 def finger_arguments(
     x: si.MetreLike, y: si.MetreLike, v: si.MetrePerSecondLike, t: si.SecondLike
-) -> tuple[si.FloatArray, si.FloatArray, si.FloatArray, si.FloatArray]:
+) -> Finger:
     """Place, velocity and time of a finger as arrays of one shape.
 
     Raises `InputError` for one that is not finite, or for shapes that do not broadcast.
@@ -142,10 +155,9 @@ def finger_arguments(
     si.require("time t", t, si.Unit("s"))
     arrays = [np.asarray(one, dtype=float) for one in (x, y, v, t)]
     try:
-        a, b, c, d = np.broadcast_arrays(*arrays)
+        return Finger(*np.broadcast_arrays(*arrays))
     except ValueError as error:
         shapes = ", ".join(str(one.shape) for one in arrays)
         raise InputError(
             f"x, y, v, t of shapes {shapes} do not broadcast; give equal shapes or scalars"
         ) from error
-    return a, b, c, d

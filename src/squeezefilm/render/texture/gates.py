@@ -7,17 +7,17 @@ Time is that of the stroke or the contact, whatever the caller passes as `t`.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Annotated, Literal
 
 import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.from_text import reads_text
 from squeezefilm.render import opcodes
 from squeezefilm.render.opcodes import Assembler
-from squeezefilm.render.texture.pattern import Pattern
+from squeezefilm.render.texture.coordinate import Finger
+from squeezefilm.render.texture.pattern import Pattern, part
 
 _SECOND = si.Unit("s")
 _SPEED = si.Unit("m/s")
@@ -25,9 +25,7 @@ _FASTEST: si.MetrePerSecond = 1000.0
 _LONGEST: si.Second = 86_400.0
 
 
-@reads_text
-@si.checked_numbers
-@dataclass(frozen=True, slots=True)
+@part
 class SpeedGate(Pattern):
     """1 while the finger's speed |v| is above `above` and below `below`, else 0.
 
@@ -58,11 +56,9 @@ class SpeedGate(Pattern):
             math.inf if self.below is None else self.below,
         )
 
-    def _values(
-        self, x: si.FloatArray, y: si.FloatArray, v: si.FloatArray, t: si.FloatArray
-    ) -> si.FloatArray:
+    def _values(self, finger: Finger) -> si.FloatArray:
         low, high = self._ends
-        return np.where((np.abs(v) > low) & (np.abs(v) < high), 1.0, 0.0)
+        return np.where((np.abs(finger.v) > low) & (np.abs(finger.v) < high), 1.0, 0.0)
 
     def _lower(self, assembler: Assembler) -> None:
         assembler.emit(opcodes.SPEED)
@@ -87,8 +83,7 @@ speed = Speed()
 """The finger's speed, for ``texture.when(speed > 0.02)``; ~ and & join comparisons."""
 
 
-@si.checked_numbers
-@dataclass(frozen=True, slots=True)
+@part
 class Attack(Pattern):
     """Rises linearly from 0 at `start` to 1 after `duration`, and stays.
 
@@ -104,19 +99,16 @@ class Attack(Pattern):
     start: Annotated[si.Second, si.AtLeast(0.0), si.AtMost(_LONGEST)] = 0.0
     type: Literal["attack"] = field(default="attack", repr=False)
 
-    def _values(
-        self, x: si.FloatArray, y: si.FloatArray, v: si.FloatArray, t: si.FloatArray
-    ) -> si.FloatArray:
+    def _values(self, finger: Finger) -> si.FloatArray:
         end = self.start + self.duration
-        return np.clip((t - self.start) / (end - self.start), 0.0, 1.0)
+        return np.clip((finger.t - self.start) / (end - self.start), 0.0, 1.0)
 
     def _lower(self, assembler: Assembler) -> None:
         assembler.emit(opcodes.TIME)
         assembler.emit(opcodes.RAMP, self.start, self.start + self.duration)
 
 
-@si.checked_numbers
-@dataclass(frozen=True, slots=True)
+@part
 class Decay(Pattern):
     """1 until `start`, then exp(−(t − start)/time_constant).
 
@@ -132,10 +124,8 @@ class Decay(Pattern):
     start: Annotated[si.Second, si.AtLeast(0.0), si.AtMost(_LONGEST)] = 0.0
     type: Literal["decay"] = field(default="decay", repr=False)
 
-    def _values(
-        self, x: si.FloatArray, y: si.FloatArray, v: si.FloatArray, t: si.FloatArray
-    ) -> si.FloatArray:
-        passed = np.maximum(t - self.start, 0.0)
+    def _values(self, finger: Finger) -> si.FloatArray:
+        passed = np.maximum(finger.t - self.start, 0.0)
         return np.asarray(np.exp(-passed / self.time_constant))
 
     def _lower(self, assembler: Assembler) -> None:
@@ -143,8 +133,7 @@ class Decay(Pattern):
         assembler.emit(opcodes.DECAY, self.start, self.time_constant)
 
 
-@si.checked_numbers
-@dataclass(frozen=True, slots=True)
+@part
 class Periodic(Pattern):
     """A square or a sine of time: what comes and goes `frequency` times a second.
 
@@ -164,10 +153,8 @@ class Periodic(Pattern):
     phase: si.Radian = 0.0
     type: Literal["periodic"] = field(default="periodic", repr=False)
 
-    def _values(
-        self, x: si.FloatArray, y: si.FloatArray, v: si.FloatArray, t: si.FloatArray
-    ) -> si.FloatArray:
-        cycles = t / (1.0 / self.frequency) + self.phase / (2 * math.pi)
+    def _values(self, finger: Finger) -> si.FloatArray:
+        cycles = finger.t / (1.0 / self.frequency) + self.phase / (2 * math.pi)
         if self.shape == "sine":
             return 0.5 + 0.5 * np.sin(2 * math.pi * cycles)
         return np.where(cycles - np.floor(cycles) < self.duty, 1.0, 0.0)

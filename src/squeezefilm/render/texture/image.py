@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Annotated, Any, Literal
 
 import numpy as np
@@ -12,8 +12,8 @@ from squeezefilm.errors import InputError
 from squeezefilm.from_text import reads_text
 from squeezefilm.hard_limits import PIXELS
 from squeezefilm.render.opcodes import IMAGE, Assembler
-from squeezefilm.render.texture.coordinate import Place
-from squeezefilm.render.texture.pattern import Pattern
+from squeezefilm.render.texture.coordinate import Finger, Place
+from squeezefilm.render.texture.pattern import Pattern, part
 
 LARGEST_PIXEL: si.Metre = 0.1
 MOST_PIXELS = int(PIXELS.most)
@@ -23,9 +23,7 @@ OUTSIDE = ("hold", "repeat", "zero")
 """What an image does beyond its frame, in the order of the opcode's operand."""
 
 
-@reads_text
-@si.checked_numbers
-@dataclass(frozen=True, slots=True)
+@part
 class Image(Pattern):
     """Values from 0 to 1 on a grid of square pixels, bilinear between their centres.
 
@@ -110,12 +108,10 @@ class Image(Pattern):
             )
         return cls(tuple(tuple(row) for row in array.tolist()), pixel, left, bottom, outside)
 
-    def _values(
-        self, x: si.FloatArray, y: si.FloatArray, v: si.FloatArray, t: si.FloatArray
-    ) -> si.FloatArray:
+    def _values(self, finger: Finger) -> si.FloatArray:
         rows, columns = self._grid.shape
-        u = (x - self.left) / self.pixel
-        w = (y - self.bottom) / self.pixel
+        u = (finger.x - self.left) / self.pixel
+        w = (finger.y - self.bottom) / self.pixel
         inside = (u >= 0.0) & (u <= columns) & (w >= 0.0) & (w <= rows)
         if self.outside == "repeat":
             u = u - columns * np.floor(u / columns)

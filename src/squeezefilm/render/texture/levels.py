@@ -2,37 +2,61 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import Any, ClassVar, Literal
+import typing
+from dataclasses import field
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.from_text import reads_text
 from squeezefilm.render.opcodes import BETWEEN, Assembler
 from squeezefilm.render.texture.composition import Composable, Quantity
-from squeezefilm.render.texture.pattern import Pattern, require_pattern
+from squeezefilm.render.texture.coordinate import METRE, X_AXIS, Finger
+from squeezefilm.render.texture.pattern import Pattern, part, require_pattern
 from squeezefilm.render.texture.shapes import Constant
 
 LARGEST_AMPLITUDE: si.Metre = 1e-3
 """No vibrating plate reaches a millimetre (m): what lies beyond is a slip of unit (2 for 2 um)."""
 
-_LARGEST_REDUCTION: si.Dimensionless = 10.0
+VibrationAmplitude = Annotated[si.Metre, si.AtLeast(0.0), si.AtMost(LARGEST_AMPLITUDE)]
+FrictionShare = Annotated[si.Dimensionless, si.AtLeast(0.0), si.AtMost(1.0)]
+FrictionLoss = Annotated[si.Dimensionless, si.AtLeast(0.0), si.AtMost(10.0)]
 
 
 class _Level(Composable):
     """`low` where the pattern is 0, `high` where it is 1."""
 
     __slots__ = ()
-    pattern: Any
+    pattern: Pattern
     low: Any
     high: Any
+    _unit: ClassVar[si.Unit] = si.Unit("1")
 
-    def _values(
-        self, x: si.FloatArray, y: si.FloatArray, v: si.FloatArray, t: si.FloatArray
-    ) -> si.FloatArray:
-        share = self.pattern._values(x, y, v, t)
+    def __post_init__(self) -> None:
+        require_pattern("pattern", self.pattern)
+        if self.low > self.high:
+            raise InputError(
+                f"low = {si.format_quantity(self.low, self._unit)} lies above high = "
+                f"{si.format_quantity(self.high, self._unit)}; to exchange them, complement the "
+                "pattern (~pattern)",
+                quantity="low",
+            )
+
+    @classmethod
+    def constant(cls, value: float) -> Self:
+        """The same `value` (m for an amplitude, else 1) everywhere."""
+        made: Any = cls
+        return typing.cast(Self, made(Constant(), value, value))
+
+    @property
+    def spatial_period(self) -> si.Metre | None:
+        """The period of a grating along x (m); None for any other pattern."""
+        along_x = getattr(self.pattern, "along", None) == X_AXIS
+        return getattr(self.pattern, "spatial_period", None) if along_x else None
+
+    def _values(self, finger: Finger) -> si.FloatArray:
+        share = self.pattern._values(finger)
         # Weighted so, rounding cannot carry the value past either end.
         return np.asarray((1.0 - share) * self.low + share * self.high)
 
@@ -40,22 +64,8 @@ class _Level(Composable):
         self.pattern._lower(assembler)
         assembler.emit(BETWEEN, self.low, self.high)
 
-    def _require(self, unit: si.Unit, largest: float) -> None:
-        require_pattern("pattern", self.pattern)
-        si.require("low", self.low, unit, at_least=0.0, at_most=largest)
-        si.require("high", self.high, unit, at_least=0.0, at_most=largest)
-        if self.low > self.high:
-            raise InputError(
-                f"low = {si.format_quantity(self.low, unit)} lies above high = "
-                f"{si.format_quantity(self.high, unit)}; to exchange them, complement the pattern "
-                "(~pattern)",
-                quantity="low",
-            )
 
-
-@reads_text
-@si.checked_numbers
-@dataclass(frozen=True, slots=True)
+@part
 class Amplitude(_Level):
     """A vibration amplitude: `low` (m, zero-to-peak) where the pattern is 0, `high` where it is 1.
 
@@ -63,25 +73,14 @@ class Amplitude(_Level):
     """
 
     pattern: Pattern
-    low: si.Metre
-    high: si.Metre
+    low: VibrationAmplitude
+    high: VibrationAmplitude
     type: Literal["amplitude"] = field(default="amplitude", repr=False)
     _quantity: ClassVar[Quantity] = "amplitude"
-
-    def __post_init__(self) -> None:
-        self._require(si.Unit("m"), LARGEST_AMPLITUDE)
-
-    @classmethod
-    @reads_text
-    @si.checked_numbers
-    def constant(cls, value: si.Metre) -> Amplitude:
-        """The same amplitude (m, zero-to-peak) everywhere."""
-        return cls(Constant(), value, value)
+    _unit: ClassVar[si.Unit] = METRE
 
 
-@reads_text
-@si.checked_numbers
-@dataclass(frozen=True, slots=True)
+@part
 class RelativeFriction(_Level):
     """Friction over that of the surface at rest (1): `low` where the pattern is 0, else `high`.
 
@@ -90,25 +89,13 @@ class RelativeFriction(_Level):
     """
 
     pattern: Pattern
-    low: si.Dimensionless
-    high: si.Dimensionless
+    low: FrictionShare
+    high: FrictionShare
     type: Literal["relative_friction"] = field(default="relative_friction", repr=False)
     _quantity: ClassVar[Quantity] = "relative_friction"
 
-    def __post_init__(self) -> None:
-        self._require(si.Unit("1"), 1.0)
 
-    @classmethod
-    @reads_text
-    @si.checked_numbers
-    def constant(cls, value: si.Dimensionless) -> RelativeFriction:
-        """The same relative friction (1) everywhere."""
-        return cls(Constant(), value, value)
-
-
-@reads_text
-@si.checked_numbers
-@dataclass(frozen=True, slots=True)
+@part
 class FrictionReduction(_Level):
     """Friction coefficient taken away, µ − µ′ (1): `low` where the pattern is 0, else `high`.
 
@@ -117,17 +104,7 @@ class FrictionReduction(_Level):
     """
 
     pattern: Pattern
-    low: si.Dimensionless
-    high: si.Dimensionless
+    low: FrictionLoss
+    high: FrictionLoss
     type: Literal["friction_reduction"] = field(default="friction_reduction", repr=False)
     _quantity: ClassVar[Quantity] = "friction_reduction"
-
-    def __post_init__(self) -> None:
-        self._require(si.Unit("1"), _LARGEST_REDUCTION)
-
-    @classmethod
-    @reads_text
-    @si.checked_numbers
-    def constant(cls, value: si.Dimensionless) -> FrictionReduction:
-        """The same reduction (1) everywhere."""
-        return cls(Constant(), value, value)

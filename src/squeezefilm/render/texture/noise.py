@@ -12,26 +12,26 @@ The mixing function is "lowbias32" (C. Wellons, Hash Prospector, public domain).
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import Any, Literal
+from dataclasses import field
+from typing import Annotated, Any, Literal
 
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.errors import InputError
-from squeezefilm.from_text import reads_text
 from squeezefilm.render.opcodes import ADD, NOISE, NOISE_FIELD, WEIGH, Assembler
-from squeezefilm.render.texture.coordinate import METRE, X_AXIS, Coordinate, require_coordinate
-from squeezefilm.render.texture.pattern import Pattern
+from squeezefilm.render.texture.coordinate import X_AXIS, Coordinate, Finger, require_coordinate
+from squeezefilm.render.texture.pattern import Pattern, part
 
 STEP_ALONG = 0x9E3779B1
 STEP_ACROSS = 0x85EBCA77
 """Odd numbers that spread neighbouring lattice points over 32 bits."""
 
 _MASK = 0xFFFFFFFF
-_MOST_OCTAVES = 8
 # So that lattice numbers stay far within 32 bits over ten metres.
-_FINEST: si.Metre = 1e-6
+Spacing = Annotated[si.Metre, si.AtLeast(1e-6), si.AtMost(1.0)]
+Seed = Annotated[int, si.AtLeast(0), si.AtMost(_MASK)]
+Octaves = Annotated[int, si.AtLeast(1), si.AtMost(8)]
+Persistence = Annotated[si.Dimensionless, si.Above(0.0), si.AtMost(1.0)]
 
 
 def mixed(value: int) -> int:
@@ -92,32 +92,16 @@ def field_noise(u: si.FloatArray, w: si.FloatArray, state: int) -> si.FloatArray
     return total
 
 
-class _Octaves:
+class _Added(Pattern):
     """Noises that are added, each with twice the period of the one before."""
 
     __slots__ = ()
-    finest_period: si.Metre
-    seed: int
-    octaves: int
-    persistence: si.Dimensionless
+    finest_period: Spacing
+    seed: Seed
+    octaves: Octaves
+    persistence: Persistence
 
-    def __post_init__(self) -> None:
-        si.require("finest_period", self.finest_period, METRE, at_least=_FINEST, at_most=1.0)
-        for name, value, low, high in (
-            ("seed", self.seed, 0, _MASK),
-            ("octaves", self.octaves, 1, _MOST_OCTAVES),
-        ):
-            if not isinstance(value, int) or isinstance(value, bool) or not low <= value <= high:
-                raise InputError(
-                    f"{name} = {value!r} cannot be used: it must be a whole number from {low} to "
-                    f"{high}",
-                    quantity=name,
-                )
-        si.require("persistence", self.persistence, above=0.0, at_most=1.0)
-
-    def _octave(
-        self, x: si.FloatArray, y: si.FloatArray, period: si.Metre, state: int
-    ) -> si.FloatArray:
+    def _octave(self, finger: Finger, period: si.Metre, state: int) -> si.FloatArray:
         raise NotImplementedError
 
     def _lower_octave(self, assembler: Assembler, period: si.Metre, state: int) -> None:
@@ -130,12 +114,10 @@ class _Octaves:
         total = sum(weights)
         return [(finest * 2.0**k, mixed(seed + k), weights[k] / total) for k in range(count)]
 
-    def _values(
-        self, x: si.FloatArray, y: si.FloatArray, v: si.FloatArray, t: si.FloatArray
-    ) -> si.FloatArray:
-        total = np.zeros(x.shape)
+    def _values(self, finger: Finger) -> si.FloatArray:
+        total = np.zeros(finger.x.shape)
         for period, state, weight in self._weighed():
-            total = total + weight * self._octave(x, y, period, state)
+            total = total + weight * self._octave(finger, period, state)
         # The weights sum to 1 but for rounding.
         return np.minimum(total, 1.0)
 
@@ -147,10 +129,8 @@ class _Octaves:
                 assembler.emit(ADD)
 
 
-@reads_text
-@si.checked_numbers
-@dataclass(frozen=True, slots=True)
-class Noise(_Octaves, Pattern):
+@part
+class Noise(_Added):
     """Seeded noise along one coordinate, with nothing finer than `finest_period`.
 
     Args:
@@ -164,45 +144,39 @@ class Noise(_Octaves, Pattern):
         InputError: a value outside its range.
     """
 
-    finest_period: si.Metre
-    seed: int
-    octaves: int = 1
-    persistence: si.Dimensionless = 0.5
+    finest_period: Spacing
+    seed: Seed
+    octaves: Octaves = 1
+    persistence: Persistence = 0.5
     along: Coordinate = X_AXIS
     type: Literal["noise"] = field(default="noise", repr=False)
 
     def __post_init__(self) -> None:
-        _Octaves.__post_init__(self)
         require_coordinate(self.along)
 
-    def _octave(
-        self, x: si.FloatArray, y: si.FloatArray, period: si.Metre, state: int
-    ) -> si.FloatArray:
-        return line_noise(self.along.at(x, y) / period, state)
+    def _octave(self, finger: Finger, period: si.Metre, state: int) -> si.FloatArray:
+        return line_noise(self.along.at(finger.x, finger.y) / period, state)
 
     def _lower_octave(self, assembler: Assembler, period: si.Metre, state: int) -> None:
         self.along._lower(assembler)
         assembler.emit(NOISE, period, state)
 
 
-@si.checked_numbers
-@dataclass(frozen=True, slots=True)
-class NoiseField(_Octaves, Pattern):
+@part
+class NoiseField(_Added):
     """Seeded noise in the plane, with nothing finer than `finest_period` along x or y.
 
     Args and errors as for `Noise`.
     """
 
-    finest_period: si.Metre
-    seed: int
-    octaves: int = 1
-    persistence: si.Dimensionless = 0.5
+    finest_period: Spacing
+    seed: Seed
+    octaves: Octaves = 1
+    persistence: Persistence = 0.5
     type: Literal["noise_field"] = field(default="noise_field", repr=False)
 
-    def _octave(
-        self, x: si.FloatArray, y: si.FloatArray, period: si.Metre, state: int
-    ) -> si.FloatArray:
-        return field_noise(x / period, y / period, state)
+    def _octave(self, finger: Finger, period: si.Metre, state: int) -> si.FloatArray:
+        return field_noise(finger.x / period, finger.y / period, state)
 
     def _lower_octave(self, assembler: Assembler, period: si.Metre, state: int) -> None:
         assembler.emit(NOISE_FIELD, period, state)

@@ -14,12 +14,13 @@ Morgan). There is no +: it would leave 0…1. Add textures, which have a quantit
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, ClassVar, Literal, TypeVar, dataclass_transform
 
 import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
+from squeezefilm.from_text import reads_text
 from squeezefilm.render.opcodes import (
     COMPLEMENT,
     ENTER_SCALE,
@@ -29,17 +30,27 @@ from squeezefilm.render.opcodes import (
     MULTIPLY,
     Assembler,
 )
-from squeezefilm.render.texture.coordinate import finger_arguments
+from squeezefilm.render.texture.coordinate import Finger, finger_arguments
 
 MOST_PARTS = 64
 """Parts that one sum, product, sequence or lattice operation may have."""
 
 
-class Pattern:
-    """A dimensionless shape, 0 to 1; the base of every generator and composite.
+_T = TypeVar("_T")
 
-    Called with the finger's place `x`, `y` (m), its velocity `v` (m/s; negative on the way back)
-    and the time `t` (s), which broadcast; returns values from 0 to 1 in the broadcast shape.
+
+@dataclass_transform(frozen_default=True, field_specifiers=(field,))
+def part(cls: type[_T]) -> type[_T]:
+    """A part of a texture: a frozen dataclass whose numbers are checked, and may be texts with
+    units."""
+    return reads_text(si.checked_numbers(dataclass(frozen=True, slots=True)(cls)))
+
+
+class Part:
+    """What has a value wherever a finger is: a pattern or a texture.
+
+    Called with the finger's place `x`, `y` (m), its velocity `v` along its path (m/s; negative on
+    the way back) and the time `t` (s), which broadcast; returns values in the broadcast shape.
     Raises `InputError` for an argument that is not finite or shapes that do not broadcast.
     """
 
@@ -47,17 +58,21 @@ class Pattern:
 
     def __call__(
         self, x: si.MetreLike, y: si.MetreLike, v: si.MetrePerSecondLike, t: si.SecondLike, /
-    ) -> si.DimensionlessArray:
-        """The pattern at these places, velocities and times (1)."""
-        return np.array(self._values(*finger_arguments(x, y, v, t)))
-
-    def _values(
-        self, x: si.FloatArray, y: si.FloatArray, v: si.FloatArray, t: si.FloatArray
     ) -> si.FloatArray:
+        """The values at these places, velocities and times (m for an amplitude, else 1)."""
+        return np.array(self._values(finger_arguments(x, y, v, t)))
+
+    def _values(self, finger: Finger) -> si.FloatArray:
         raise NotImplementedError
 
     def _lower(self, assembler: Assembler) -> None:
         raise NotImplementedError
+
+
+class Pattern(Part):
+    """A dimensionless shape, 0 to 1; the base of every generator and composite."""
+
+    __slots__ = ()
 
     def __invert__(self) -> Pattern:
         return self.pattern if isinstance(self, Complement) else Complement(self)
@@ -107,7 +122,7 @@ def require_pattern(name: str, value: object) -> None:
         )
 
 
-@dataclass(frozen=True, slots=True)
+@part
 class Complement(Pattern):
     """1 − `pattern`: its ends exchanged."""
 
@@ -117,10 +132,8 @@ class Complement(Pattern):
     def __post_init__(self) -> None:
         require_pattern("pattern", self.pattern)
 
-    def _values(
-        self, x: si.FloatArray, y: si.FloatArray, v: si.FloatArray, t: si.FloatArray
-    ) -> si.FloatArray:
-        return 1.0 - self.pattern._values(x, y, v, t)
+    def _values(self, finger: Finger) -> si.FloatArray:
+        return 1.0 - self.pattern._values(finger)
 
     def _lower(self, assembler: Assembler) -> None:
         self.pattern._lower(assembler)
@@ -144,10 +157,8 @@ class _Joined:
         for one in self.patterns:
             require_pattern("patterns", one)
 
-    def _values(
-        self, x: si.FloatArray, y: si.FloatArray, v: si.FloatArray, t: si.FloatArray
-    ) -> si.FloatArray:
-        parts = [one._values(x, y, v, t) for one in self.patterns]
+    def _values(self, finger: Finger) -> si.FloatArray:
+        parts = [one._values(finger) for one in self.patterns]
         return np.asarray(self._operation.reduce(parts))
 
     def _lower(self, assembler: Assembler) -> None:
@@ -157,7 +168,7 @@ class _Joined:
                 assembler.emit(self._opcode)
 
 
-@dataclass(frozen=True, slots=True)
+@part
 class Least(_Joined, Pattern):
     """The least of `patterns`: where masks overlap."""
 
@@ -166,7 +177,7 @@ class Least(_Joined, Pattern):
     _operation, _opcode = np.minimum, LEAST
 
 
-@dataclass(frozen=True, slots=True)
+@part
 class Greatest(_Joined, Pattern):
     """The greatest of `patterns`: masks side by side."""
 
@@ -175,7 +186,7 @@ class Greatest(_Joined, Pattern):
     _operation, _opcode = np.maximum, GREATEST
 
 
-@dataclass(frozen=True, slots=True)
+@part
 class Times(_Joined, Pattern):
     """The product of `patterns`: one fading another."""
 
@@ -184,8 +195,7 @@ class Times(_Joined, Pattern):
     _operation, _opcode = np.multiply, MULTIPLY
 
 
-@si.checked_numbers
-@dataclass(frozen=True, slots=True)
+@part
 class SpeedScaled(Pattern):
     """`pattern` stretched about the origin in proportion to the finger's speed.
 
@@ -211,12 +221,11 @@ class SpeedScaled(Pattern):
         unit = si.Unit("m/s")
         si.require("fastest", self.fastest, unit, at_least=self.slowest, at_most=10.0)
 
-    def _values(
-        self, x: si.FloatArray, y: si.FloatArray, v: si.FloatArray, t: si.FloatArray
-    ) -> si.FloatArray:
+    def _values(self, finger: Finger) -> si.FloatArray:
+        x, y, v, t = finger
         low, high = self.slowest / self.reference_speed, self.fastest / self.reference_speed
         factor = np.clip(np.abs(v) / self.reference_speed, low, high)
-        return self.pattern._values(x / factor, y / factor, v, t)
+        return self.pattern._values(Finger(x / factor, y / factor, v, t))
 
     def _lower(self, assembler: Assembler) -> None:
         low, high = self.slowest / self.reference_speed, self.fastest / self.reference_speed

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Annotated, Literal
 
 import numpy as np
@@ -27,36 +27,34 @@ from squeezefilm.render.texture.coordinate import (
     METRE,
     X_AXIS,
     Coordinate,
+    Finger,
     FromPoint,
     Length,
     Place,
     require_coordinate,
     require_fade,
 )
-from squeezefilm.render.texture.pattern import Pattern
+from squeezefilm.render.texture.pattern import Pattern, part
 
 # Full width at half height of a Gaussian, in standard deviations.
 _FULL_WIDTH = 2.0 * math.sqrt(2.0 * math.log(2.0))
 
 
-@si.checked_numbers
-@dataclass(frozen=True, slots=True)
+@part
 class Constant(Pattern):
     """The same `share` (1, from 0 to 1) everywhere. Raises `InputError` outside that."""
 
     share: Annotated[si.Dimensionless, si.AtLeast(0.0), si.AtMost(1.0)] = 1.0
     type: Literal["constant"] = field(default="constant", repr=False)
 
-    def _values(
-        self, x: si.FloatArray, y: si.FloatArray, v: si.FloatArray, t: si.FloatArray
-    ) -> si.FloatArray:
-        return np.full(x.shape, float(self.share))
+    def _values(self, finger: Finger) -> si.FloatArray:
+        return np.full(finger.x.shape, float(self.share))
 
     def _lower(self, assembler: Assembler) -> None:
         assembler.emit(CONSTANT, self.share)
 
 
-class _Along:
+class _Along(Pattern):
     """What a shape along a coordinate has: it is one."""
 
     __slots__ = ()
@@ -65,14 +63,21 @@ class _Along:
     def __post_init__(self) -> None:
         require_coordinate(self.along)
 
+    def _place(self, finger: Finger) -> si.FloatArray:
+        return self.along.at(finger.x, finger.y)
 
-@reads_text
-@si.checked_numbers
-@dataclass(frozen=True, slots=True)
-class SquareWave(_Along, Pattern):
+
+@part
+class SquareWave(_Along):
     """1 over the first `duty` of every period, 0 over the rest.
 
     1 where ``(s/spatial_period + phase/2π) mod 1 < duty``, s being the coordinate `along`.
+
+    `spatial_period` is one whole period, groove plus ridge. The source paper calls 0.4 to 10 mm
+    both the "space period" of its gratings and the width of their grooves *and* of their ridges;
+    if the latter is meant (groove width = ridge width = w), the period is 2w. A grating whose
+    grooves (at 1) and ridges (at 0) have two widths g and r has the period g + r and the duty
+    g/(g + r). In an `Amplitude` a stretch at 1 is slippery, so it plays the groove.
 
     Args:
         spatial_period: one whole period (m); from 1 nm to 10 m.
@@ -90,10 +95,8 @@ class SquareWave(_Along, Pattern):
     along: Coordinate = X_AXIS
     type: Literal["square_wave"] = field(default="square_wave", repr=False)
 
-    def _values(
-        self, x: si.FloatArray, y: si.FloatArray, v: si.FloatArray, t: si.FloatArray
-    ) -> si.FloatArray:
-        cycles = self.along.at(x, y) / self.spatial_period + self.phase / (2 * math.pi)
+    def _values(self, finger: Finger) -> si.FloatArray:
+        cycles = self._place(finger) / self.spatial_period + self.phase / (2 * math.pi)
         return np.where(cycles - np.floor(cycles) < self.duty, 1.0, 0.0)
 
     def _lower(self, assembler: Assembler) -> None:
@@ -101,10 +104,8 @@ class SquareWave(_Along, Pattern):
         assembler.emit(SQUARE, self.spatial_period, self.phase / (2 * math.pi), self.duty)
 
 
-@reads_text
-@si.checked_numbers
-@dataclass(frozen=True, slots=True)
-class SineWave(_Along, Pattern):
+@part
+class SineWave(_Along):
     """½ + ½ sin(2πs/spatial_period + phase), s being the coordinate `along`.
 
     Args and errors as for `SquareWave`.
@@ -115,10 +116,8 @@ class SineWave(_Along, Pattern):
     along: Coordinate = X_AXIS
     type: Literal["sine_wave"] = field(default="sine_wave", repr=False)
 
-    def _values(
-        self, x: si.FloatArray, y: si.FloatArray, v: si.FloatArray, t: si.FloatArray
-    ) -> si.FloatArray:
-        cycles = self.along.at(x, y) / self.spatial_period + self.phase / (2 * math.pi)
+    def _values(self, finger: Finger) -> si.FloatArray:
+        cycles = self._place(finger) / self.spatial_period + self.phase / (2 * math.pi)
         return 0.5 + 0.5 * np.sin(2 * math.pi * cycles)
 
     def _lower(self, assembler: Assembler) -> None:
@@ -126,10 +125,8 @@ class SineWave(_Along, Pattern):
         assembler.emit(SINE, self.spatial_period, self.phase / (2 * math.pi))
 
 
-@reads_text
-@si.checked_numbers
-@dataclass(frozen=True, slots=True)
-class Pulse(_Along, Pattern):
+@part
+class Pulse(_Along):
     """One localised rise to 1 at `centre`, ½ at `width`/2 to either side.
 
     Args:
@@ -148,10 +145,8 @@ class Pulse(_Along, Pattern):
     along: Coordinate = X_AXIS
     type: Literal["pulse"] = field(default="pulse", repr=False)
 
-    def _values(
-        self, x: si.FloatArray, y: si.FloatArray, v: si.FloatArray, t: si.FloatArray
-    ) -> si.FloatArray:
-        s = self.along.at(x, y)
+    def _values(self, finger: Finger) -> si.FloatArray:
+        s = self._place(finger)
         if self.shape == "gaussian":
             return np.asarray(np.exp(-0.5 * ((s - self.centre) / (self.width / _FULL_WIDTH)) ** 2))
         off = np.abs(s - self.centre) / self.width
@@ -165,10 +160,8 @@ class Pulse(_Along, Pattern):
             assembler.emit(HANN, self.centre, self.width)
 
 
-@reads_text
-@si.checked_numbers
-@dataclass(frozen=True, slots=True)
-class Ramp(Pattern):
+@part
+class Ramp(_Along):
     """From 0 at `start` to 1 at `end`, held beyond; falling if `end` lies before `start`.
 
     Args:
@@ -187,7 +180,7 @@ class Ramp(Pattern):
     type: Literal["ramp"] = field(default="ramp", repr=False)
 
     def __post_init__(self) -> None:
-        require_coordinate(self.along)
+        _Along.__post_init__(self)
         if abs(self.end - self.start) < 1e-9:
             raise InputError(
                 "start and end of a ramp are the same; they must be a nanometre apart at least; "
@@ -195,10 +188,8 @@ class Ramp(Pattern):
                 quantity="end",
             )
 
-    def _values(
-        self, x: si.FloatArray, y: si.FloatArray, v: si.FloatArray, t: si.FloatArray
-    ) -> si.FloatArray:
-        done = np.clip((self.along.at(x, y) - self.start) / (self.end - self.start), 0.0, 1.0)
+    def _values(self, finger: Finger) -> si.FloatArray:
+        done = np.clip((self._place(finger) - self.start) / (self.end - self.start), 0.0, 1.0)
         return done if self.profile == "linear" else done * done * (3.0 - 2.0 * done)
 
     def _lower(self, assembler: Assembler) -> None:
@@ -208,10 +199,8 @@ class Ramp(Pattern):
             assembler.emit(SMOOTH)
 
 
-@reads_text
-@si.checked_numbers
-@dataclass(frozen=True, slots=True)
-class Band(Pattern):
+@part
+class Band(_Along):
     """1 from `start` to `end`, 0 outside, with edges linear over `fade`: a mask in space.
 
     With `fade` 0 the start belongs to the band and the end does not, so that bands side by side
@@ -235,7 +224,7 @@ class Band(Pattern):
     def __post_init__(self) -> None:
         si.require("end", self.end, METRE, above=self.start)
         require_fade(self.fade, self.end - self.start)
-        require_coordinate(self.along)
+        _Along.__post_init__(self)
 
     @classmethod
     @reads_text
@@ -250,10 +239,8 @@ class Band(Pattern):
         """1 within `radius` (m) of the point (`x`, `y`) (m)."""
         return cls(-radius, radius, fade, FromPoint(x, y))
 
-    def _values(
-        self, x: si.FloatArray, y: si.FloatArray, v: si.FloatArray, t: si.FloatArray
-    ) -> si.FloatArray:
-        s = self.along.at(x, y)
+    def _values(self, finger: Finger) -> si.FloatArray:
+        s = self._place(finger)
         if self.fade == 0.0:
             return np.where((s >= self.start) & (s < self.end), 1.0, 0.0)
         within = np.minimum(s - self.start, self.end - s) / self.fade + 0.5
@@ -264,10 +251,8 @@ class Band(Pattern):
         assembler.emit(BAND, self.start, self.end, self.fade)
 
 
-@reads_text
-@si.checked_numbers
-@dataclass(frozen=True, slots=True)
-class Bump(_Along, Pattern):
+@part
+class Bump(_Along):
     """The slope of a Gaussian bump or hole, felt as its shape: ½ far away, 1 and 0 on its flanks.
 
     Lateral force alone makes a flat surface feel like a bump or a hole: it resists on the way up
@@ -298,11 +283,9 @@ class Bump(_Along, Pattern):
     along: Coordinate = X_AXIS
     type: Literal["bump"] = field(default="bump", repr=False)
 
-    def _values(
-        self, x: si.FloatArray, y: si.FloatArray, v: si.FloatArray, t: si.FloatArray
-    ) -> si.FloatArray:
-        d = (self.along.at(x, y) - self.centre) / self.width
-        way = np.where(v < 0.0, -self._sign, self._sign)
+    def _values(self, finger: Finger) -> si.FloatArray:
+        d = (self._place(finger) - self.centre) / self.width
+        way = np.where(finger.v < 0.0, -self._sign, self._sign)
         # Held within 0 to 1: at d = 1 rounding reaches past it.
         return np.clip(0.5 - 0.5 * way * d * np.exp(0.5 * (1.0 - d * d)), 0.0, 1.0)
 

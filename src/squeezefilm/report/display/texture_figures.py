@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from squeezefilm.render.texture.gratings import Sine, Square
+from squeezefilm.render.fidelity.trace import period_of
 from squeezefilm.report.kit import style
 from squeezefilm.report.kit.numbers import M, S, shown
 
@@ -33,11 +33,7 @@ def texture(analysis: Analysis) -> Figure:
     trace = analysis.texture
     if trace is None:
         return style.message_figure("No texture can be rendered here", _NOTHING)
-    period = (
-        trace.texture.spatial_period
-        if isinstance(trace.texture, Square | Sine)
-        else trace.stroke.length / 20
-    )
+    period = period_of(trace.texture) or trace.stroke.length / 20
     figure = style.new_figure(
         f"A grating of {shown(period, M, 3)} at {1e3 * trace.stroke.speed:g} mm/s comes "
         f"{shown(trace.lag, M, 2)} late: the resonator needs {shown(trace.time_constant, S, 3)} "

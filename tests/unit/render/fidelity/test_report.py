@@ -15,11 +15,12 @@ from squeezefilm.render.motion.estimator import MotionEstimator, MotionModel
 from squeezefilm.render.motion.sensor import TOUCH_PANEL_120_HZ, TOUCH_PANEL_240_HZ
 from squeezefilm.render.motion.stroke import Stroke
 from squeezefilm.render.resonator.compensation import DrivenEnvelope
-from squeezefilm.render.texture.gratings import Square
+from squeezefilm.render.texture.levels import Amplitude
+from squeezefilm.render.texture.shapes import SquareWave
 from squeezefilm.results import to_json
 
 ENVELOPE = DrivenEnvelope(0.5e-3, 0.5e-3, 1e-6)
-GRATING = Square(2e-3, 0.0, 0.8e-6)
+GRATING = Amplitude(SquareWave(2e-3), 0.0, 0.8e-6)
 STROKE = Stroke(0.1, 0.04, 2)
 
 
@@ -97,7 +98,9 @@ def test_four_periods_in_a_pass_are_enough_to_the_last_digit() -> None:
         kept = fidelity_report(stroke, asked).contrast_kept
         assert np.isfinite(kept[1])
         # There the 2 mm grating has no line; one of four periods to the pass has.
-        wide = rendered_stroke(Square(length / 4, 0.0, 0.8e-6), STROKE, ENVELOPE, friction)
+        wide = rendered_stroke(
+            Amplitude(SquareWave(length / 4), 0.0, 0.8e-6), STROKE, ENVELOPE, friction
+        )
         assert np.isfinite(fidelity_report(wide, asked).contrast_kept[0])
     with pytest.raises(InputError, match="no pass shows 4 periods"):
         fidelity_report(stroke, [3.999 / length, 500.0])

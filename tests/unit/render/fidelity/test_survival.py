@@ -9,7 +9,8 @@ from squeezefilm.errors import InputError
 from squeezefilm.render.fidelity.survival import FidelityTable, fidelity_table, swing_kept
 from squeezefilm.render.fidelity.trace import friction_trace
 from squeezefilm.render.motion.stroke import Stroke
-from squeezefilm.render.texture.gratings import Square
+from squeezefilm.render.texture.levels import Amplitude
+from squeezefilm.render.texture.shapes import SquareWave
 
 TAU = 0.55e-3
 
@@ -47,7 +48,7 @@ def test_a_sine_loses_more_than_a_square() -> None:
         ({"time_constant": 0.0}, "time_constant = 0 s"),
         ({"kept": 1.0}, "kept = 1"),
         ({"shape": "saw"}, "Allowed: square, sine"),
-        ({"low": 2e-6, "high": 1e-6}, "low must be below high"),
+        ({"low": 2e-6, "high": 1e-6}, "low = 2 um lies above high = 1 um"),
         ({"spatial_periods": []}, "spatial_periods of shape"),
         ({"spatial_periods": [0.0]}, "spatial_periods = 0 m"),
         ({"speeds": 0.1}, "speeds is one number"),
@@ -62,7 +63,7 @@ def test_a_table_that_cannot_be_made_is_refused(changes: dict, said: str) -> Non
 
 
 def test_a_swing_that_cannot_be_measured_is_refused() -> None:
-    trace = friction_trace(Square(10e-3, 0.0, 2e-6), Stroke(0.1, 8e-3), TAU, falling)
+    trace = friction_trace(Amplitude(SquareWave(10e-3), 0.0, 2e-6), Stroke(0.1, 8e-3), TAU, falling)
     with pytest.raises(InputError, match="passes of 8 mm are too short"):
         swing_kept(trace)
     with pytest.raises(InputError, match="'amplitude' or 'relative_friction'"):

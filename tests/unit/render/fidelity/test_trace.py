@@ -8,10 +8,11 @@ import pytest
 from squeezefilm.errors import InputError
 from squeezefilm.render.fidelity.trace import friction_trace
 from squeezefilm.render.motion.stroke import Stroke
-from squeezefilm.render.texture.gratings import Sine, Square
+from squeezefilm.render.texture.levels import Amplitude
+from squeezefilm.render.texture.shapes import SineWave, SquareWave
 
 TAU = 0.55e-3
-SQUARE = Square(4e-3, 0.0, 2e-6)
+SQUARE = Amplitude(SquareWave(4e-3), 0.0, 2e-6)
 
 
 def falling(amplitude: np.ndarray) -> np.ndarray:
@@ -34,7 +35,7 @@ def test_a_trace_holds_what_made_it_and_consistent_arrays() -> None:
 
 def test_the_default_rate_fits_texture_resonator_and_stroke() -> None:
     assert friction_trace(SQUARE, Stroke(0.1), TAU, falling).sample_rate >= 50 / TAU
-    fine = friction_trace(Sine(0.1e-3, 0, 1e-6), Stroke(0.2, 0.01), TAU, falling)
+    fine = friction_trace(Amplitude(SineWave(0.1e-3), 0, 1e-6), Stroke(0.2, 0.01), TAU, falling)
     assert fine.sample_rate == pytest.approx(128 * 2000)
     own = friction_trace(lambda x, y, v, t: 1e-6 + 0 * x, Stroke(0.1), 1.0, falling)
     assert own.sample_rate == pytest.approx(2500)

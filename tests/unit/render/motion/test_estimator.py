@@ -18,7 +18,6 @@ from squeezefilm.render.motion.estimator import (
     MotionEstimator,
     MotionModel,
     estimate_motion,
-    prediction_deviation,
 )
 from squeezefilm.render.motion.minimum_jerk import MinimumJerkStroke
 from squeezefilm.render.motion.sensor import (
@@ -192,8 +191,6 @@ def test_settings_and_estimates_become_strict_json() -> None:
     (lambda: dataclasses.replace(ESTIMATOR, gate=0.0), "gate"),
     (lambda: dataclasses.replace(ESTIMATOR, most_rejected=0), "most_rejected"),
     (lambda: dataclasses.replace(ESTIMATOR, stall=math.nan), "stall"),
-    (lambda: prediction_deviation(ESTIMATOR, 0.2, 0.0), "interval"),
-    (lambda: prediction_deviation(ESTIMATOR, 0.01, -1.0), "lookahead"),
     (lambda: MinimumJerkStroke(passes=0), "passes"),
     (lambda: MinimumJerkStroke(pass_duration=0.0), "pass_duration"),
     (lambda: MinimumJerkStroke().position(-1.0), "t = -1 s"),

@@ -17,7 +17,6 @@ from squeezefilm.render.program.renderer import Played, Renderer, evaluate
 from squeezefilm.render.texture.composition import Composable
 from squeezefilm.render.texture.coordinate import AlongDirection, AlongY, FromPoint
 from squeezefilm.render.texture.gates import Attack, Decay, Periodic, SpeedGate
-from squeezefilm.render.texture.gratings import Sine, Square
 from squeezefilm.render.texture.image import Image
 from squeezefilm.render.texture.levels import Amplitude, FrictionReduction, RelativeFriction
 from squeezefilm.render.texture.noise import Noise, NoiseField
@@ -101,12 +100,12 @@ def test_a_picture_is_zero_outside_and_its_frame_belongs_to_it() -> None:
 @pytest.mark.parametrize(
     "texture",
     [
-        Square(2e-3, 0.2e-6, 0.9e-6, 0.3, 0.7),
-        Sine(2e-3, 0.2e-6, 0.9e-6, 0.7),
+        Amplitude(SquareWave(2e-3, 0.3, 0.7), 0.2e-6, 0.9e-6),
+        Amplitude(SineWave(2e-3, 0.7), 0.2e-6, 0.9e-6),
         Amplitude(SquareWave(2e-3), 0.1e-6, 0.6e-6) + Amplitude(SineWave(3e-3), 0.0, 0.3e-6),
         Amplitude(SquareWave(2e-3), 0.1e-6, 0.6e-6) * 0.7,
         Amplitude(SquareWave(2e-3), 0.1e-6, 0.6e-6) * SineWave(3e-3),
-        Amplitude.constant(0.4e-6).then(Square(2e-3, 0.0, 1e-6), 2e-3),
+        Amplitude.constant(0.4e-6).then(Amplitude(SquareWave(2e-3), 0.0, 1e-6), 2e-3),
         Amplitude.constant(0.4e-6).then(MILD, 2e-3, fade=1e-3, along=DIAGONAL),
         Amplitude.constant(0.4e-6).then(MILD, 1e-3).then(
             Amplitude.constant(0.1e-6), 4e-3

@@ -17,14 +17,13 @@ from squeezefilm.render.program.inverse import FrictionInverse
 from squeezefilm.render.program.lowering import Program, checked, lower
 from squeezefilm.render.program.renderer import Played, Renderer, evaluate, render
 from squeezefilm.render.texture.coordinate import FromPoint
-from squeezefilm.render.texture.gratings import Square
 from squeezefilm.render.texture.image import Image
 from squeezefilm.render.texture.levels import Amplitude, FrictionReduction, RelativeFriction
 from squeezefilm.render.texture.noise import Noise
 from squeezefilm.render.texture.shapes import Bump, Constant, Ramp, SquareWave
 
 INVERSE = FrictionInverse.from_function(lambda a: 1 - 0.5 * a / 4e-6, 4e-6)
-GRATING = Square(2e-3, 1e-6, 2e-6)
+GRATING = Amplitude(SquareWave(2e-3), 1e-6, 2e-6)
 PROGRAM = lower(GRATING, largest_amplitude=3e-6, hold_ticks=3, fade_ticks=4)
 
 

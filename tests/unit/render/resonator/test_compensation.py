@@ -10,13 +10,12 @@ import pytest
 
 from squeezefilm.errors import InputError
 from squeezefilm.render.resonator import kernel
-from squeezefilm.render.resonator.carrier import carrier_block, carrier_trace, samples_per_command
+from squeezefilm.render.resonator.carrier import carrier_block, samples_per_command
 from squeezefilm.render.resonator.compensation import (
     DrivenEnvelope,
     compensated_drive,
     preview_samples,
     preview_work,
-    slew_time,
 )
 from squeezefilm.render.resonator.square_swing import (
     fastest_compensated_speed,
@@ -117,17 +116,12 @@ def test_rates_that_divide_give_a_number_of_samples() -> None:
     (lambda: compensated_drive(np.array([[1e-9]]), 1e-4, ENVELOPE), "wanted of shape"),
     (lambda: compensated_drive(np.array([0.0]), 1e-4, ENVELOPE, "magic"), "magic"),  # type: ignore[arg-type]
     (lambda: compensated_drive(np.array([0.0]), 1e-4, ENVELOPE, "preview", preview=0.0), "preview"),
-    (lambda: slew_time(1e-3, 0.5, 1.0, 0.8), "limit - start"),
-    (lambda: slew_time(1e-3, 0.5, 0.6, 0.0), "limit - start"),
     (lambda: square_swing_compensated(1e-3, 0.1, ENVELOPE, 0.0, 2e-6), "high"),
     (lambda: square_swing_compensated(1e-3, 0.1, ENVELOPE, 5e-7, 5e-7), "low"),
     (lambda: square_swing_compensated(1e-3, 0.1, ENVELOPE, 0.0, 5e-7, "preview"), "none, inverse"),  # type: ignore[arg-type]
     (lambda: fastest_compensated_speed(1e-3, ENVELOPE, 0.0, 5e-7, kept=1.0), "kept"),
     (lambda: least_cycle(ENVELOPE, 1e-6), "swing"),
     (lambda: least_cycle(ENVELOPE, 5e-7, highest=2e-6), "highest"),
-    (lambda: carrier_trace(np.array([1e-6]), 0, 3e4, 60.0), "samples each"),
-    (lambda: carrier_trace(np.array([1e-6]), 1, 1e5, 60.0), "frequency"),
-    (lambda: carrier_trace(np.array([1e-6]), 1, 3e4, 0.5), "quality_factor"),
 ])  # fmt: skip
 def test_senseless_requests_are_refused(ask: object, word: str) -> None:
     with pytest.raises(InputError, match=word):

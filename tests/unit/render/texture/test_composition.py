@@ -6,9 +6,8 @@ import pytest
 from squeezefilm.errors import InputError
 from squeezefilm.render.texture.composition import Masked, Sequence, Sum
 from squeezefilm.render.texture.gates import speed
-from squeezefilm.render.texture.gratings import Sine, Square
 from squeezefilm.render.texture.levels import Amplitude, FrictionReduction, RelativeFriction
-from squeezefilm.render.texture.shapes import Band, Constant, Ramp, SquareWave
+from squeezefilm.render.texture.shapes import Band, Constant, Ramp, SineWave, SquareWave
 
 GRATING = RelativeFriction(SquareWave(2e-3), 0.4, 0.9)
 
@@ -23,27 +22,21 @@ def test_levels_stand_where_the_pattern_is_0_and_1() -> None:
         [1e-6, 2e-6, 3e-6]
     )
     assert at(FrictionReduction.constant(0.2), [1.0]) == [0.2]
-    # The grating of amplitudes is the pattern between the same two.
-    x = np.linspace(-0.01, 0.01, 777)
-    assert at(Square(3e-3, 1e-6, 2e-6, 0.3, 1.0), x) == at(
-        Amplitude(SquareWave(3e-3, 0.3, 1.0), 1e-6, 2e-6), x
-    )
 
 
-def test_quantity_and_polarity_are_known_of_every_composite() -> None:
+def test_the_quantity_is_known_of_every_composite() -> None:
     reduction = FrictionReduction(SquareWave(2e-3), 0.1, 0.3)
     for made in (GRATING, GRATING * 0.5, GRATING & Band(0, 0.01), GRATING.then(GRATING, at=0.1)):
         assert made.quantity == "relative_friction"
-        assert made.polarity == "stickier"
-    assert (reduction + reduction).polarity == "slipperier"
-    assert Sine(2e-3, 0.0, 1e-6).quantity == "amplitude"
+    assert (reduction + reduction).quantity == "friction_reduction"
+    assert Amplitude(SineWave(2e-3), 0.0, 1e-6).quantity == "amplitude"
 
 
 def test_what_is_masked_is_the_plate_at_rest() -> None:
     band = Band(0.0, 0.01)
     assert at(GRATING & band, [-0.5e-3, 0.5e-3, 1.5e-3, 0.0205]) == [1.0, 0.9, 0.4, 1.0]
     assert at(GRATING * band, [-0.5e-3, 0.5e-3]) == [0.0, 0.9]
-    assert at(Square(2e-3, 1e-6, 2e-6) & band, [-0.5e-3, 0.5e-3]) == [0.0, 2e-6]
+    assert at(Amplitude(SquareWave(2e-3), 1e-6, 2e-6) & band, [-0.5e-3, 0.5e-3]) == [0.0, 2e-6]
     fast = GRATING.when(speed > 0.05)
     assert at(fast, [1.5e-3], v=0.1) == [0.4]
     assert at(fast, [1.5e-3], v=-0.01) == [1.0]
@@ -61,7 +54,11 @@ def test_one_after_another() -> None:
 
 
 def test_sums_add_values() -> None:
-    total = Amplitude.constant(1e-6) + Square(2e-3, 0.0, 1e-6) + Amplitude.constant(0.5e-6)
+    total = (
+        Amplitude.constant(1e-6)
+        + Amplitude(SquareWave(2e-3), 0.0, 1e-6)
+        + Amplitude.constant(0.5e-6)
+    )
     assert at(total, [0.5e-3, 1.5e-3]) == pytest.approx([2.5e-6, 1.5e-6])
     assert len(total.textures) == 3
 
@@ -73,7 +70,7 @@ def test_sums_add_values() -> None:
             lambda: GRATING + Amplitude.constant(1e-6),
             "a sum cannot mix relative_friction and amplitude",
         ),
-        (lambda: GRATING.then(Square(1e-3, 0, 1e-6), at=0), "sequence cannot mix"),
+        (lambda: GRATING.then(Amplitude(SquareWave(1e-3), 0, 1e-6), at=0), "sequence cannot mix"),
         (lambda: GRATING + FrictionReduction.constant(0.1), "and friction_reduction"),
         (lambda: GRATING + 0.1, "has no quantity"),
         (lambda: 0.1 + GRATING, "has no quantity"),

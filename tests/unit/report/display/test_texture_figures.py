@@ -13,12 +13,13 @@ from matplotlib.patches import Rectangle
 from squeezefilm.render.fidelity.survival import FidelityTable
 from squeezefilm.render.fidelity.trace import FrictionTrace, friction_trace
 from squeezefilm.render.motion.stroke import Stroke
-from squeezefilm.render.texture.gratings import Square
+from squeezefilm.render.texture.levels import Amplitude
+from squeezefilm.render.texture.shapes import SquareWave
 from squeezefilm.report.display.texture_figures import fidelity, texture
 from squeezefilm.report.kit.style import BLUE, ORANGE
 
 LOW, HIGH = 0.5e-6, 2e-6
-GRATING = Square(2e-3, LOW, HIGH)
+GRATING = Amplitude(SquareWave(2e-3), LOW, HIGH)
 
 
 def traced(grating: Any = GRATING, tau: float = 0.5e-3, swing: float = 0.2) -> FrictionTrace:

@@ -9,7 +9,8 @@ from squeezefilm.contact.finger.fingerpad import FingerpadDynamics
 from squeezefilm.contact.sliding.dry_friction import DryFriction
 from squeezefilm.render.fidelity.trace import friction_trace
 from squeezefilm.render.motion.stroke import Stroke
-from squeezefilm.render.texture.gratings import Square
+from squeezefilm.render.texture.levels import Amplitude
+from squeezefilm.render.texture.shapes import SquareWave
 from squeezefilm.report.kit import style
 from squeezefilm.report.textures.sliding_figures import tangential_force
 
@@ -18,7 +19,7 @@ from squeezefilm.report.textures.sliding_figures import tangential_force
 def stick_slip() -> StrokeForce:
     """A lightly damped pad that sticks and slips over a grating."""
     trace = friction_trace(
-        Square(2e-3, 0.0, 2e-6), Stroke(0.03, 0.02), 5e-4, lambda a: 1 - a / 3e-6
+        Amplitude(SquareWave(2e-3), 0.0, 2e-6), Stroke(0.03, 0.02), 5e-4, lambda a: 1 - a / 3e-6
     )
     return stroke_force(trace, 0.6, 0.5, FingerpadDynamics(damping=0.1), DryFriction(1.5))
 

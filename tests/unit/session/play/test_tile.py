@@ -13,7 +13,6 @@ from squeezefilm.render.program.lowering import Program, lower
 from squeezefilm.render.texture.composition import Composable
 from squeezefilm.render.texture.coordinate import AlongDirection
 from squeezefilm.render.texture.gates import Decay, Periodic, SpeedGate
-from squeezefilm.render.texture.gratings import Sine, Square
 from squeezefilm.render.texture.levels import Amplitude
 from squeezefilm.render.texture.noise import NoiseField
 from squeezefilm.render.texture.pattern import Pattern
@@ -27,7 +26,7 @@ def _program(texture: Composable) -> Program:
 
 
 def test_a_tile_holds_the_textures_own_amplitudes() -> None:
-    sine = Sine(4e-3, 0.0, 1e-6)
+    sine = Amplitude(SineWave(4e-3), 0.0, 1e-6)
     tile = tile_of(_program(sine), -2e-3, 50e-6, 401)
     x = -2e-3 + 50e-6 * np.arange(401)
     np.testing.assert_allclose(tile.amplitude, sine(x, 0.0, 0.0, 0.0), atol=1e-18)
@@ -37,7 +36,7 @@ def test_a_tile_holds_the_textures_own_amplitudes() -> None:
 
 
 def test_a_device_reads_from_it_what_the_texture_wants() -> None:
-    square = Square(2e-3, 0.1e-6, 0.8e-6)
+    square = Amplitude(SquareWave(2e-3), 0.1e-6, 0.8e-6)
     tile = tile_of(_program(square), 0.0, 20e-6, 512)
     volts = tile.voltage(DriveTable.linear(1e-8, 100.0))
     device = Tile(0, 20, 512, [round(v * 1e6) for v in volts])
@@ -65,7 +64,7 @@ def test_what_is_not_steady_along_x_is_refused(pattern: Pattern, words: str) -> 
 
 
 def test_the_devices_units_and_size_are_kept() -> None:
-    program = _program(Square(2e-3, 0.0, 1e-6))
+    program = _program(Amplitude(SquareWave(2e-3), 0.0, 1e-6))
     with pytest.raises(InputError, match="2 to 512"):
         tile_of(program, 0.0, 50e-6, 513)
     with pytest.raises(InputError, match="whole number of micrometres"):

@@ -1,4 +1,4 @@
-"""Gratings: values at chosen places, shapes, and every refusal."""
+"""Gratings of amplitude: values at chosen places, shapes, and every refusal."""
 
 import math
 
@@ -6,7 +6,10 @@ import numpy as np
 import pytest
 
 from squeezefilm.errors import InputError
-from squeezefilm.render.texture.gratings import Sine, Square, Texture
+from squeezefilm.render.texture.composition import Texture
+from squeezefilm.render.texture.coordinate import AlongY
+from squeezefilm.render.texture.levels import Amplitude
+from squeezefilm.render.texture.shapes import SineWave, SquareWave
 
 LOW, HIGH = 0.5e-6, 2e-6
 
@@ -16,31 +19,31 @@ def along(texture: Texture, x: object) -> np.ndarray:
 
 
 def test_square_is_high_first_and_low_after_its_duty() -> None:
-    square = Square(4e-3, LOW, HIGH, duty=0.25)
+    square = Amplitude(SquareWave(4e-3, duty=0.25), LOW, HIGH)
     values = along(square, [0.0, 0.9e-3, 1.1e-3, 3.9e-3, 4.1e-3, -0.1e-3])
     assert values.tolist() == [HIGH, HIGH, LOW, LOW, HIGH, LOW]
 
 
 def test_phase_of_half_a_turn_exchanges_the_halves() -> None:
-    values = along(Square(4e-3, LOW, HIGH, phase=math.pi), [1e-3, 3e-3])
+    values = along(Amplitude(SquareWave(4e-3, phase=math.pi), LOW, HIGH), [1e-3, 3e-3])
     assert values.tolist() == [LOW, HIGH]
 
 
-def test_groove_and_ridge_make_a_period_of_both() -> None:
-    square = Square.from_groove_and_ridge(0.4e-3, 0.4e-3, low=LOW, high=HIGH)
-    assert square == Square(0.8e-3, LOW, HIGH, duty=0.5)
-    uneven = Square.from_groove_and_ridge(1e-3, 3e-3, low=LOW, high=HIGH, phase=0.1)
-    assert uneven.duty == pytest.approx(0.25)
-    assert uneven.phase == 0.1
+def test_a_grating_along_x_has_a_period_and_nothing_else_has() -> None:
+    assert Amplitude(SineWave(4e-3), LOW, HIGH).spatial_period == 4e-3
+    assert Amplitude(SquareWave(4e-3, along=AlongY()), LOW, HIGH).spatial_period is None
+    assert Amplitude.constant(LOW).spatial_period is None
 
 
 def test_sine_at_its_quarters() -> None:
-    values = along(Sine(4e-3, LOW, HIGH), [0.0, 1e-3, 2e-3, 3e-3])
+    values = along(Amplitude(SineWave(4e-3), LOW, HIGH), [0.0, 1e-3, 2e-3, 3e-3])
     middle = (LOW + HIGH) / 2
     assert values == pytest.approx([middle, HIGH, middle, LOW], rel=1e-12)
 
 
-@pytest.mark.parametrize("texture", [Square(1e-3, LOW, HIGH), Sine(1e-3, LOW, HIGH)])
+@pytest.mark.parametrize(
+    "texture", [Amplitude(SquareWave(1e-3), LOW, HIGH), Amplitude(SineWave(1e-3), LOW, HIGH)]
+)
 def test_arguments_broadcast(texture: Texture) -> None:
     assert texture(0.0, 0.0, 0.1, 0.0).shape == ()
     x, y = np.linspace(0, 1e-2, 5), np.zeros((3, 1))
@@ -48,7 +51,7 @@ def test_arguments_broadcast(texture: Texture) -> None:
     assert np.array_equal(texture(x, y, 0.1, 0.0)[2], texture(x, 0.0, 0.1, 0.0))
 
 
-@pytest.mark.parametrize("make", [Square, Sine])
+@pytest.mark.parametrize("make", [SquareWave, SineWave])
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
@@ -59,30 +62,25 @@ def test_arguments_broadcast(texture: Texture) -> None:
         ((1e-3, -1e-9, HIGH), "low = -1 nm"),
         ((1e-3, math.nan, HIGH), "low = nan"),
         ((1e-3, 0.0, 2.0), "at most 1 mm"),
-        ((1e-3, HIGH, LOW), "low must be below high"),
-        ((1e-3, HIGH, HIGH), "low must be below high"),
+        ((1e-3, HIGH, LOW), "low = 2 um lies above high = 500 nm"),
     ],
 )
 def test_a_grating_out_of_range_is_refused(make: type, arguments: tuple, said: str) -> None:
     with pytest.raises(InputError, match=said):
-        make(*arguments)
+        Amplitude(make(arguments[0]), *arguments[1:])
     with pytest.raises(InputError, match="phase = inf"):
-        make(1e-3, LOW, HIGH, phase=math.inf)
+        make(1e-3, phase=math.inf)
 
 
 @pytest.mark.parametrize("duty", [0.0, 1.0, -0.1, math.nan])
 def test_a_duty_that_leaves_no_grating_is_refused(duty: float) -> None:
     with pytest.raises(InputError, match="duty"):
-        Square(1e-3, LOW, HIGH, duty=duty)
+        Amplitude(SquareWave(1e-3, duty=duty), LOW, HIGH)
 
 
-@pytest.mark.parametrize(("groove", "ridge", "said"), [(0, 1e-3, "groove"), (1e-3, -1, "ridge")])
-def test_a_groove_or_ridge_without_width_is_refused(groove: float, ridge: float, said: str) -> None:
-    with pytest.raises(InputError, match=f"{said} = .*above 0"):
-        Square.from_groove_and_ridge(groove, ridge, low=LOW, high=HIGH)
-
-
-@pytest.mark.parametrize("texture", [Square(1e-3, LOW, HIGH), Sine(1e-3, LOW, HIGH)])
+@pytest.mark.parametrize(
+    "texture", [Amplitude(SquareWave(1e-3), LOW, HIGH), Amplitude(SineWave(1e-3), LOW, HIGH)]
+)
 def test_a_position_that_is_not_finite_is_refused(texture: Texture) -> None:
     with pytest.raises(InputError, match="position x = nan"):
         along(texture, [0.0, math.nan])
