@@ -22,7 +22,7 @@ from scipy.optimize import lsq_linear
 
 from squeezefilm.render.motion import kernel as motion_kernel
 from squeezefilm.render.motion.estimator import MotionEstimator, MotionModel
-from squeezefilm.render.motion.minimum_jerk import MinimumJerkStroke
+from squeezefilm.render.motion.stroke import MinimumJerkStroke
 from squeezefilm.render.resonator import kernel as compensation_kernel
 from squeezefilm.render.resonator.carrier import carrier_block
 from squeezefilm.render.resonator.compensation import DrivenEnvelope, preview_samples, preview_work

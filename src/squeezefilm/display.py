@@ -77,34 +77,33 @@ class Drive:
         """
         most = self.voltage if voltage is None else voltage
         si.require("voltage", most, si.Unit("V"), above=0, at_most=self.voltage)
-        continuous = self.voltage if self.continuous_voltage is None else self.continuous_voltage
+        limits = self._assumed(frequency)
+        for name in limits:
+            if (given := getattr(self, name)) is not None:
+                limits[name] = given
+        limits["continuous_voltage"] = min(limits["continuous_voltage"], most)
         return Limits(
             voltage=most,
-            slew=max(1.0, 1e3 * self.voltage) if self.slew is None else self.slew,
-            continuous_voltage=min(continuous, most),
-            heat=_SECONDS_OF_HEAT * self.voltage**2 if self.heat is None else self.heat,
-            lowest_frequency=(1 - _FREQUENCY_WINDOW) * frequency
-            if self.lowest_frequency is None
-            else self.lowest_frequency,
-            highest_frequency=(1 + _FREQUENCY_WINDOW) * frequency
-            if self.highest_frequency is None
-            else self.highest_frequency,
+            **limits,
             duty=self.duty,
             duty_window=self.duty_window,
             insulation=self.insulation,
         )
 
+    def _assumed(self, frequency: si.Hertz) -> dict[str, float]:
+        """What each limit is that the display does not give."""
+        return {
+            "slew": max(1.0, 1e3 * self.voltage),
+            "continuous_voltage": self.voltage,
+            "heat": _SECONDS_OF_HEAT * self.voltage**2,
+            "lowest_frequency": (1 - _FREQUENCY_WINDOW) * frequency,
+            "highest_frequency": (1 + _FREQUENCY_WINDOW) * frequency,
+        }
+
     @property
     def assumed_limits(self) -> tuple[str, ...]:
         """The limits that the display does not give and `limits` assumes."""
-        given = {
-            "slew": self.slew,
-            "continuous_voltage": self.continuous_voltage,
-            "heat": self.heat,
-            "lowest_frequency": self.lowest_frequency,
-            "highest_frequency": self.highest_frequency,
-        }
-        return tuple(name for name, value in given.items() if value is None)
+        return tuple(name for name in self._assumed(1.0) if getattr(self, name) is None)
 
 
 @dataclass(frozen=True, repr=False)

@@ -16,6 +16,8 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 
+_ONE, _M, _HZ, _S, _N, _PA = (si.Unit(symbol) for symbol in ("1", "m", "Hz", "s", "N", "Pa"))
+
 
 @dataclass(frozen=True, slots=True)
 class HardLimit:
@@ -24,8 +26,8 @@ class HardLimit:
     name: str
     least: float
     most: float
-    unit: si.Unit
     reason: str
+    unit: si.Unit = _ONE
 
     @property
     def range(self) -> str:
@@ -81,121 +83,114 @@ def _shown(value: float, unit: si.Unit) -> str:
     return si.format_quantity(value, unit)
 
 
-_ONE, _M, _HZ, _S, _N, _PA = (si.Unit(symbol) for symbol in ("1", "m", "Hz", "s", "N", "Pa"))
 _SLIP = "anything outside is a slip of unit"
 
 # --- sizes of what is described ---------------------------------------------------------------
 
-SIDE = HardLimit("a side or a diameter", 1e-6, 10.0, _M, "MEMS to table tops; " + _SLIP)
-PLACE = HardLimit("a distance from an edge", 0.0, 10.0, _M, "no body is larger; " + _SLIP)
-LAYER = HardLimit("the thickness of a layer", 1e-8, 1.0, _M, "thin films to blocks; " + _SLIP)
-MODULUS = HardLimit("a modulus", 1e-2, 1e13, _PA, "next to nothing to beyond diamond; " + _SLIP)
-SHEAR_MODULUS = HardLimit("a shear modulus", 0.0, 1e13, _PA, "up to beyond diamond; " + _SLIP)
-DENSITY = HardLimit("a density", 1.0, 1e5, si.Unit("kg/m3"), "aerogel to beyond osmium; " + _SLIP)
-QUALITY = HardLimit("a quality factor", 0.501, 1e8, _ONE, "from no resonance to beyond quartz")
-COMPLIANCE = HardLimit("a compliance", 1e-14, 1e-3, si.Unit("m2/N"), "of any solid; " + _SLIP)
-CROSS_COMPLIANCE = HardLimit("a compliance", -1e-3, 1e-3, si.Unit("m2/N"), "of any solid; " + _SLIP)
+SIDE = HardLimit("a side or a diameter", 1e-6, 10.0, "MEMS to table tops; " + _SLIP, _M)
+PLACE = HardLimit("a distance from an edge", 0.0, 10.0, "no body is larger; " + _SLIP, _M)
+LAYER = HardLimit("the thickness of a layer", 1e-8, 1.0, "thin films to blocks; " + _SLIP, _M)
+MODULUS = HardLimit("a modulus", 1e-2, 1e13, "next to nothing to beyond diamond; " + _SLIP, _PA)
+SHEAR_MODULUS = HardLimit("a shear modulus", 0.0, 1e13, "up to beyond diamond; " + _SLIP, _PA)
+DENSITY = HardLimit("a density", 1.0, 1e5, "aerogel to beyond osmium; " + _SLIP, si.Unit("kg/m3"))
+QUALITY = HardLimit("a quality factor", 0.501, 1e8, "from no resonance to beyond quartz")
+COMPLIANCE = HardLimit("a compliance", 1e-14, 1e-3, "of any solid; " + _SLIP, si.Unit("m2/N"))
+CROSS_COMPLIANCE = HardLimit("a compliance", -1e-3, 1e-3, "of any solid; " + _SLIP, si.Unit("m2/N"))
 CHARGE_COEFFICIENT = HardLimit(
-    "a charge coefficient", -1e-6, 1e-6, si.Unit("m/V"), "beyond any ceramic or crystal; " + _SLIP
+    "a charge coefficient", -1e-6, 1e-6, "beyond any ceramic or crystal; " + _SLIP, si.Unit("m/V")
 )
 STRESS_COEFFICIENT = HardLimit(
-    "a stress coefficient", -1e4, 1e4, si.Unit("C/m2"), "beyond any ceramic or crystal; " + _SLIP
+    "a stress coefficient", -1e4, 1e4, "beyond any ceramic or crystal; " + _SLIP, si.Unit("C/m2")
 )
-PERMITTIVITY = HardLimit("a relative permittivity", 1.0, 1e7, _ONE, "vacuum to beyond any ceramic")
-RESISTANCE = HardLimit("a resistance", 1e-6, 1e15, si.Unit("ohm"), "a busbar to the best insulator")
-FREQUENCY = HardLimit("a frequency", 1.0, 1e9, _HZ, "of a vibration in a solid; " + _SLIP)
-ROUGHNESS = HardLimit("a roughness", 1e-11, 1e-3, _M, "below an atom to a rasp; " + _SLIP)
-SKIN_ROUGHNESS = HardLimit("a skin's roughness", 0.0, 1e-3, _M, "none to a rasp; " + _SLIP)
-RIDGE_AMPLITUDE = HardLimit("half a ridge's height", 0.0, 1e-2, _M, "none to a glove; " + _SLIP)
-CONTACT_LENGTH = HardLimit("a contact's length", 1e-6, 1.0, _M, "a hair to a forearm; " + _SLIP)
-RIDGE_PERIOD = HardLimit("a ridge's period", 1e-6, 1.0, _M, "a hair to a forearm; " + _SLIP)
-DECAY_LENGTH = HardLimit("a decay length", 1e-11, 1e-3, _M, "below an atom to a rasp; " + _SLIP)
-FORCE = HardLimit("a force", 1e-6, 1e4, _N, "a fly to a car's jack; " + _SLIP)
-PRESSURE = HardLimit("a pressure", 1e-3, 1e10, _PA, "a high vacuum to a press; " + _SLIP)
-VISCOSITY = HardLimit("a viscosity", 1e-8, 1e3, si.Unit("Pa*s"), "below any gas to honey; " + _SLIP)
-GAS_DENSITY = HardLimit("a gas's density", 1e-9, 1e4, si.Unit("kg/m3"), "of any gas; " + _SLIP)
-SOUND_SPEED = HardLimit("a speed of sound", 10.0, 1e5, si.Unit("m/s"), "of any gas; " + _SLIP)
-FREE_PATH = HardLimit("a mean free path", 1e-18, 1e3, _M, "none, in effect, to a vacuum; " + _SLIP)
-VIBRATION = HardLimit("a vibration's amplitude", 0.0, 1e-3, _M, "no plate survives more")
-PAD_STIFFNESS = HardLimit("a stiffness", 1e-3, 1e9, si.Unit("N/m"), "of a fingertip; " + _SLIP)
-PAD_DAMPING = HardLimit("a damping", 0.0, 1e6, si.Unit("N*s/m"), "of a fingertip; " + _SLIP)
-PAD_MASS = HardLimit("a mass", 1e-9, 1e3, si.Unit("kg"), "of a fingertip; " + _SLIP)
-SKIN_MASS = HardLimit("a mass per area", 1e-6, 1e9, si.Unit("kg/m2"), "up to one that stands still")
-SKIN_STIFFNESS = HardLimit("a stiffness per area", 0.0, 1e15, si.Unit("Pa/m"), "of skin; " + _SLIP)
-SKIN_DAMPING = HardLimit("a damping per area", 0.0, 1e12, si.Unit("Pa*s/m"), "of skin; " + _SLIP)
+PERMITTIVITY = HardLimit("a relative permittivity", 1.0, 1e7, "vacuum to beyond any ceramic")
+RESISTANCE = HardLimit("a resistance", 1e-6, 1e15, "a busbar to the best insulator", si.Unit("ohm"))
+FREQUENCY = HardLimit("a frequency", 1.0, 1e9, "of a vibration in a solid; " + _SLIP, _HZ)
+ROUGHNESS = HardLimit("a roughness", 1e-11, 1e-3, "below an atom to a rasp; " + _SLIP, _M)
+SKIN_ROUGHNESS = HardLimit("a skin's roughness", 0.0, 1e-3, "none to a rasp; " + _SLIP, _M)
+RIDGE_AMPLITUDE = HardLimit("half a ridge's height", 0.0, 1e-2, "none to a glove; " + _SLIP, _M)
+CONTACT_LENGTH = HardLimit("a contact's length", 1e-6, 1.0, "a hair to a forearm; " + _SLIP, _M)
+RIDGE_PERIOD = HardLimit("a ridge's period", 1e-6, 1.0, "a hair to a forearm; " + _SLIP, _M)
+DECAY_LENGTH = HardLimit("a decay length", 1e-11, 1e-3, "below an atom to a rasp; " + _SLIP, _M)
+FORCE = HardLimit("a force", 1e-6, 1e4, "a fly to a car's jack; " + _SLIP, _N)
+PRESSURE = HardLimit("a pressure", 1e-3, 1e10, "a high vacuum to a press; " + _SLIP, _PA)
+VISCOSITY = HardLimit("a viscosity", 1e-8, 1e3, "below any gas to honey; " + _SLIP, si.Unit("Pa*s"))
+GAS_DENSITY = HardLimit("a gas's density", 1e-9, 1e4, "of any gas; " + _SLIP, si.Unit("kg/m3"))
+SOUND_SPEED = HardLimit("a speed of sound", 10.0, 1e5, "of any gas; " + _SLIP, si.Unit("m/s"))
+FREE_PATH = HardLimit("a mean free path", 1e-18, 1e3, "none, in effect, to a vacuum; " + _SLIP, _M)
+VIBRATION = HardLimit("a vibration's amplitude", 0.0, 1e-3, "no plate survives more", _M)
+PAD_STIFFNESS = HardLimit("a stiffness", 1e-3, 1e9, "of a fingertip; " + _SLIP, si.Unit("N/m"))
+PAD_DAMPING = HardLimit("a damping", 0.0, 1e6, "of a fingertip; " + _SLIP, si.Unit("N*s/m"))
+PAD_MASS = HardLimit("a mass", 1e-9, 1e3, "of a fingertip; " + _SLIP, si.Unit("kg"))
+SKIN_MASS = HardLimit("a mass per area", 1e-6, 1e9, "up to one that stands still", si.Unit("kg/m2"))
+SKIN_STIFFNESS = HardLimit("a stiffness per area", 0.0, 1e15, "of skin; " + _SLIP, si.Unit("Pa/m"))
+SKIN_DAMPING = HardLimit("a damping per area", 0.0, 1e12, "of skin; " + _SLIP, si.Unit("Pa*s/m"))
 FINGER_SPEED = HardLimit(
-    "a finger's speed", 1e-9, 5.0, si.Unit("m/s"), "from standing still to faster than any hand"
+    "a finger's speed", 1e-9, 5.0, "from standing still to faster than any hand", si.Unit("m/s")
 )
-STROKE_LENGTH = HardLimit("a stroke's length", 1e-9, 10.0, _M, "no surface is longer; " + _SLIP)
-PASS_DURATION = HardLimit("a pass's duration", 1e-6, 1e9, _S, "a pass may take thirty years")
-STROKE_START = HardLimit("where a stroke starts", -10.0, 10.0, _M, "no surface is longer; " + _SLIP)
+STROKE_LENGTH = HardLimit("a stroke's length", 1e-9, 10.0, "no surface is longer; " + _SLIP, _M)
+PASS_DURATION = HardLimit("a pass's duration", 1e-6, 1e9, "a pass may take thirty years", _S)
+STROKE_START = HardLimit("where a stroke starts", -10.0, 10.0, "no surface is longer; " + _SLIP, _M)
 
 # --- work -------------------------------------------------------------------------------------
 
-NODAL_LINES = HardLimit(
-    "nodal lines", 2, 300, _ONE, "a mode is found by going through all below it"
-)
+NODAL_LINES = HardLimit("nodal lines", 2, 300, "a mode is found by going through all below it")
 NODAL_CIRCLES = HardLimit(
-    "nodal circles or diameters", 0, 100, _ONE, "a mode is found by going through all below it"
+    "nodal circles or diameters", 0, 100, "a mode is found by going through all below it"
 )
 PARTS_OF_A_PLATE = HardLimit(
-    "ceramics or supports", 0, 200, _ONE, "every pair is checked, and every edge takes elements"
+    "ceramics or supports", 0, 200, "every pair is checked, and every edge takes elements"
 )
 RIDGES = HardLimit(
-    "ridges under a contact", 0, 2000, _ONE, "each is a film and a load balance of its own"
+    "ridges under a contact", 0, 2000, "each is a film and a load balance of its own"
 )
 SOLID_MEMORY = HardLimit(
-    "bytes of a three-dimensional solve", 0, 8e9, _ONE, "it would take hours and all memory"
+    "bytes of a three-dimensional solve", 0, 8e9, "it would take hours and all memory"
 )
 PLANAR_MEMORY = HardLimit(
-    "bytes of a film in the plane", 0, 2e9, _ONE, "every row of cells keeps a dense block"
+    "bytes of a film in the plane", 0, 2e9, "every row of cells keeps a dense block"
 )
-SHEAR_UNKNOWNS = HardLimit(
-    "unknowns of a shear plate", 1, 100_000, _ONE, "it would take all memory"
-)
+SHEAR_UNKNOWNS = HardLimit("unknowns of a shear plate", 1, 100_000, "it would take all memory")
 RING_ELEMENTS = HardLimit(
-    "elements of a ring's section", 1, 4000, _ONE, "it would take hours and all memory"
+    "elements of a ring's section", 1, 4000, "it would take hours and all memory"
 )
 BAND_MODES = HardLimit(
-    "modes in a band", 0, 500, _ONE, "each is a field over the whole plate, refined by itself"
+    "modes in a band", 0, 500, "each is a field over the whole plate, refined by itself"
 )
 RING_MODES = HardLimit(
-    "modes of one harmonic in a band", 0, 100, _ONE, "a section's elements do not tell more apart"
+    "modes of one harmonic in a band", 0, 100, "a section's elements do not tell more apart"
 )
 TRACKED_VALUES = HardLimit(
-    "values of a tracked parameter", 2, 200, _ONE, "each is a solved plate, at seconds to minutes"
+    "values of a tracked parameter", 2, 200, "each is a solved plate, at seconds to minutes"
 )
-ASPECT = HardLimit("an aspect ratio", 1e-6, 1e6, _ONE, "beyond, a strip is the same film")
+ASPECT = HardLimit("an aspect ratio", 1e-6, 1e6, "beyond, a strip is the same film")
 MOTION_SAMPLES = HardLimit(
-    "samples of a motion", 2, 20_000_000, _ONE, "160 MB for every array of a trace"
+    "samples of a motion", 2, 20_000_000, "160 MB for every array of a trace"
 )
-RENDER_STEPS = HardLimit(
-    "steps of a rendered stroke", 2, 3_000_000, _ONE, "forty arrays of 24 MB each"
-)
+RENDER_STEPS = HardLimit("steps of a rendered stroke", 2, 3_000_000, "forty arrays of 24 MB each")
 LAG_PRODUCTS = HardLimit(
-    "products of a lag's correlation", 0, 5e8, _ONE, "more take minutes for one number"
+    "products of a lag's correlation", 0, 5e8, "more take minutes for one number"
 )
-SIMULATED_TICKS = HardLimit("simulated ticks", 1, 20_000_000, _ONE, "a gigabyte of rows")
-PIXELS = HardLimit("pixels of an image", 1, 1_048_576, _ONE, "one table of 8 MB in a program")
-PARTICIPANT_TRIALS = HardLimit("trials of one participant", 1, 20_000, _ONE, "a month of sittings")
+SIMULATED_TICKS = HardLimit("simulated ticks", 1, 20_000_000, "a gigabyte of rows")
+PIXELS = HardLimit("pixels of an image", 1, 1_048_576, "one table of 8 MB in a program")
+PARTICIPANT_TRIALS = HardLimit("trials of one participant", 1, 20_000, "a month of sittings")
 SIMULATED_TRIALS = HardLimit(
-    "answers of simulated people", 1, 20_000_000, _ONE, "eighty bytes for each of them"
+    "answers of simulated people", 1, 20_000_000, "eighty bytes for each of them"
 )
 PLANNED_TRIALS = HardLimit(
-    "planned trials", 1, 500_000, _ONE, "each participant's order is made and kept"
+    "planned trials", 1, 500_000, "each participant's order is made and kept"
 )
 STUDIES = HardLimit(
-    "simulated studies of one size", 10, 100_000, _ONE, "each is drawn and tested by itself"
+    "simulated studies of one size", 10, 100_000, "each is drawn and tested by itself"
 )
 
 # --- texts and files --------------------------------------------------------------------------
 
-NAME = HardLimit("characters of a name", 1, 200, _ONE, "it becomes a file's name or a title")
+NAME = HardLimit("characters of a name", 1, 200, "it becomes a file's name or a title")
 DESCRIPTION_BYTES = HardLimit(
-    "bytes of a description", 0, 4_000_000, _ONE, "a display has a few thousand"
+    "bytes of a description", 0, 4_000_000, "a display has a few thousand"
 )
-PICTURE_BYTES = HardLimit("bytes of a picture", 0, 16_000_000, _ONE, "a megapixel of 16 bits")
-TABLE_BYTES = HardLimit("bytes of a table", 0, 2_000_000_000, _ONE, "it is read into memory")
-HJIF_BYTES = HardLimit("bytes of an HJIF", 0, 50_000_000, _ONE, "it is read into memory")
-WAVE_BYTES = HardLimit("bytes of a WAV file", 0, 2**32, _ONE, "what the format can hold")
-TRACE_BYTES = HardLimit("bytes of a trace", 0, 1e12, _ONE, "a month of the fastest loop")
+PICTURE_BYTES = HardLimit("bytes of a picture", 0, 16_000_000, "a megapixel of 16 bits")
+TABLE_BYTES = HardLimit("bytes of a table", 0, 2_000_000_000, "it is read into memory")
+HJIF_BYTES = HardLimit("bytes of an HJIF", 0, 50_000_000, "it is read into memory")
+WAVE_BYTES = HardLimit("bytes of a WAV file", 0, 2**32, "what the format can hold")
+TRACE_BYTES = HardLimit("bytes of a trace", 0, 1e12, "a month of the fastest loop")

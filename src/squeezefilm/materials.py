@@ -28,6 +28,8 @@ from squeezefilm.hard_limits import (
     require_within,
 )
 
+# How far data that are given twice may be apart: a share of what the others give.
+_AGREEMENT = 0.03
 PiezoDataSet = Literal["from_d31", "printed_e31"]
 
 VACUUM_PERMITTIVITY: si.FaradPerMetre = 8.8541878128e-12
@@ -68,6 +70,18 @@ def isotropic_stiffness(young_modulus: si.Pascal, poisson_ratio: si.Dimensionles
     return np.asarray(np.linalg.inv(s))
 
 
+def _require_agreement(
+    name: str, given: float | None, derived: float, from_what: str, unit: str = ""
+) -> None:
+    """Refuse a constant that contradicts what follows from others (`from_what`, with its verb)."""
+    if given is not None and abs(given - derived) > _AGREEMENT * abs(derived):
+        raise ContradictionError(
+            f"{name} = {given:.4g}{unit} contradicts {from_what} {derived:.4g}{unit} (more than "
+            f"{100 * _AGREEMENT:.0f} % apart); leave one out, or give both of one ceramic",
+            quantity=name,
+        )
+
+
 @si.checked_numbers
 @dataclass(frozen=True)
 class PiezoConstants:
@@ -103,13 +117,13 @@ class PiezoConstants:
                 "strain would be negative; check s12 and s13 against s11 and s33",
                 quantity="compliance_12",
             )
-        across = 2 * (self.compliance_11 - self.compliance_12)
-        if abs(self.compliance_66 - across) > 0.03 * across:
-            raise ContradictionError(
-                f"compliance_66 = {self.compliance_66:.4g} m2/N contradicts 2 (s11 - s12) = "
-                f"{across:.4g} m2/N, which a ceramic poled along z has (more than 3 % apart)",
-                quantity="compliance_66",
-            )
+        _require_agreement(
+            "compliance_66",
+            self.compliance_66,
+            2 * (self.compliance_11 - self.compliance_12),
+            "2 (s11 - s12) of a ceramic poled along z, which is",
+            " m2/N",
+        )
         free = self.free_permittivity_matrix / VACUUM_PERMITTIVITY
         e = self.stress_matrix
         for name, given, derived, unit in (
@@ -119,12 +133,8 @@ class PiezoConstants:
             ("stress_coefficient_33", self.stress_coefficient_33, e[2, 2], " C/m2"),
             ("stress_coefficient_15", self.stress_coefficient_15, e[0, 4], " C/m2"),
         ):
-            if given is not None and abs(given - derived) > 0.03 * abs(derived):
-                raise ContradictionError(
-                    f"{name} = {given:.4g}{unit} contradicts the ceramic's other constants, which "
-                    f"give {derived:.4g}{unit} (more than 3 % apart); leave one of them out",
-                    quantity=name,
-                )
+            others = "the ceramic's other constants, which give"
+            _require_agreement(name, given, float(derived), others, unit)
 
     @property
     def compliance_matrix(self) -> si.FloatArray:
@@ -208,27 +218,13 @@ class Piezoceramic:
                 "data_set = 'printed_e31' needs a stress_coefficient; give one in C/m2, "
                 "or choose data_set = 'from_d31'"
             )
-        self._check_constants()
-
-    def _check_constants(self) -> None:
-        """The in-plane data and the full set are of one ceramic."""
-        if self.constants is None:
-            return
-        full = self.constants
-        for name, own, derived in (
-            (
-                "in_plane_stiffness",
-                self.in_plane_stiffness,
-                full.compliance_11 / (full.compliance_11**2 - full.compliance_12**2),
-            ),
-            ("charge_coefficient", self.charge_coefficient, full.charge_coefficient_31),
-        ):
-            if abs(own - derived) > 0.03 * abs(derived):
-                raise ContradictionError(
-                    f"{name} = {own:.4g} contradicts the full constants, which give {derived:.4g} "
-                    "(more than 3 % apart, SI units); both must be of one ceramic",
-                    quantity=name,
-                )
+        if (full := self.constants) is not None:
+            plane = full.compliance_11 / (full.compliance_11**2 - full.compliance_12**2)
+            for name, own, derived, unit in (
+                ("in_plane_stiffness", self.in_plane_stiffness, plane, " Pa"),
+                ("charge_coefficient", self.charge_coefficient, full.charge_coefficient_31, " m/V"),
+            ):
+                _require_agreement(name, own, derived, "the full constants, which give", unit)
 
     @property
     def compliance_11(self) -> si.SquareMetrePerNewton:

@@ -63,9 +63,8 @@ from squeezefilm.plate.working_mode import WorkingMode, working_mode
 from squeezefilm.quantities import Unit
 from squeezefilm.render.motion.estimator import MotionEstimator, MotionModel
 from squeezefilm.render.motion.finger_path import FingerPath, OverPath
-from squeezefilm.render.motion.minimum_jerk import MinimumJerkStroke, Trajectory
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ, SensorModel, SensorStream, sensor_stream
-from squeezefilm.render.motion.stroke import Stroke
+from squeezefilm.render.motion.stroke import MinimumJerkStroke, Stroke, Trajectory
 from squeezefilm.render.program.inverse import FrictionInverse
 from squeezefilm.render.program.lowering import Program, lower
 from squeezefilm.render.program.renderer import Played, Renderer

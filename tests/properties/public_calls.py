@@ -124,10 +124,8 @@ NOT_CALLED = {
     plate.solid.volume.PlateVolume.displacement plate.solid.volume.PlateVolume.potential
     plate.solid.volume.harmonic_fields plate.solid.volume.mode_fields
     plate.solid.volume.plate_volume render.texture.coordinate.Coordinate.at
-    render.texture.coordinate.FromPoint.at render.texture.coordinate.AlongY.at
-    render.texture.coordinate.AlongX.at
-    render.texture.coordinate.AlongDirection.at render.fidelity.report.fidelity_report
-    render.fidelity.spectral_lines.strongest_lines
+    render.texture.coordinate.FromPoint.at render.fidelity.report.fidelity_report
+    render.fidelity.report.strongest_lines
     render.motion.estimator.MotionCounts.of render.program.renderer.counters_of
     """,
     "the real-time tick: it takes any floats, flags what it cannot use and never raises": """

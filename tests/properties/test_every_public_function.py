@@ -42,7 +42,7 @@ QUICK = (
     "plate.layout", "plate.loaded_mode", "plate.sound.exposure_guidance",
     "plate.working_mode.resonance_factor", "render.resonator.envelope.e",
     "render.resonator.envelope.f",
-    "render.texture.levels", "render.motion.minimum_jerk", "render.motion.estimator.MotionModel",
+    "render.texture.levels", "render.motion.estimator.MotionModel",
     "render.texture.pattern",
     "render.motion.sensor.SensorModel", "render.motion.stroke",
     "render.program.wave.wave_factor",

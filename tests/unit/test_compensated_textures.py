@@ -17,8 +17,8 @@ from squeezefilm.analysis.textures import (
 from squeezefilm.chain.prediction import Prediction, predict
 from squeezefilm.display import load_display
 from squeezefilm.errors import InputError
-from squeezefilm.render.motion.minimum_jerk import MinimumJerkStroke
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ, TOUCH_PANEL_60_HZ
+from squeezefilm.render.motion.stroke import MinimumJerkStroke
 from squeezefilm.render.resonator.compensation import DrivenEnvelope
 from squeezefilm.results import to_json
 

@@ -24,8 +24,7 @@ from squeezefilm.plate.solid.modes import check_band
 from squeezefilm.plate.solid.solve import solve_modes
 from squeezefilm.presets import path as preset_path
 from squeezefilm.quantities import Unit, checked_numbers
-from squeezefilm.render.motion.minimum_jerk import MinimumJerkStroke
-from squeezefilm.render.motion.stroke import Stroke
+from squeezefilm.render.motion.stroke import MinimumJerkStroke, Stroke
 from squeezefilm.study.design.plan import plan_study
 from squeezefilm.study.design.study_design import load_design
 
@@ -164,6 +163,6 @@ def test_every_preset_design_has_no_more_trials_than_it_says() -> None:
 
 
 def test_limits_are_shown_with_units_and_counts_in_full() -> None:
-    limit = HardLimit("a size", 1e-6, 2.0, Unit("m"), "a reason")
+    limit = HardLimit("a size", 1e-6, 2.0, "a reason", Unit("m"))
     assert limit.range == "at least 1 um and at most 2 m"
     assert hard.RENDER_STEPS.range == "at least 2 and at most 3 000 000"

@@ -13,11 +13,10 @@ from squeezefilm.formats.pictures import read_picture
 from squeezefilm.formats.traces import table_from_parquet, text_of_file
 from squeezefilm.formats.wav import read_wav
 from squeezefilm.hard_limits import HardLimit
-from squeezefilm.quantities import Unit
 from squeezefilm.regular_file import read_regular, read_regular_text
 from squeezefilm.session.record.trace import read_trace
 
-TEN = HardLimit("bytes of a test", 0, 10, Unit("1"), "ten are enough")
+TEN = HardLimit("bytes of a test", 0, 10, "ten are enough")
 READERS = [
     lambda path: load(Display, path), text_of_file, table_from_parquet, read_wav, read_hjif,
     read_picture, read_trace,

@@ -12,9 +12,8 @@ from squeezefilm.quantities import FloatArray
 from squeezefilm.render.fidelity.rendered_stroke import RenderedStroke, rendered_stroke
 from squeezefilm.render.fidelity.report import fidelity_report
 from squeezefilm.render.motion.estimator import MotionEstimator
-from squeezefilm.render.motion.minimum_jerk import MinimumJerkStroke
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ, SENSORS, SensorModel
-from squeezefilm.render.motion.stroke import Stroke
+from squeezefilm.render.motion.stroke import MinimumJerkStroke, Stroke
 from squeezefilm.render.resonator.compensation import DrivenEnvelope
 from squeezefilm.render.resonator.envelope import sine_swing_kept
 from squeezefilm.render.resonator.square_swing import square_swing_compensated

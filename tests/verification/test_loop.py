@@ -16,7 +16,6 @@ import pytest
 
 from squeezefilm.render.fidelity.rendered_stroke import RenderedStroke, rendered_stroke
 from squeezefilm.render.motion.estimator import MotionEstimator
-from squeezefilm.render.motion.minimum_jerk import MinimumJerkStroke
 from squeezefilm.render.motion.sensor import (
     LVDT_10_KHZ,
     TOUCH_PANEL_60_HZ,
@@ -24,6 +23,7 @@ from squeezefilm.render.motion.sensor import (
     SensorModel,
     sensor_stream,
 )
+from squeezefilm.render.motion.stroke import MinimumJerkStroke
 from squeezefilm.render.program.lowering import lower
 from squeezefilm.render.resonator.compensation import DrivenEnvelope
 from squeezefilm.render.texture.composition import Composable

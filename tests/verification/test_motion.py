@@ -16,8 +16,8 @@ from squeezefilm.render.motion.estimator import (
     MotionModel,
     estimate_motion,
 )
-from squeezefilm.render.motion.minimum_jerk import MinimumJerkStroke
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ, SensorModel, SensorStream, sensor_stream
+from squeezefilm.render.motion.stroke import MinimumJerkStroke
 
 MODELS = {
     "white acceleration": MotionModel(0.05, 0.0, acceleration_deviation=0.0),

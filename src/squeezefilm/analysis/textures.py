@@ -13,8 +13,8 @@ from squeezefilm.errors import InputError
 from squeezefilm.render.fidelity.rendered_stroke import rendered_stroke
 from squeezefilm.render.fidelity.report import FidelityReport, fidelity_report
 from squeezefilm.render.fidelity.trace import RelativeFriction
-from squeezefilm.render.motion.minimum_jerk import MinimumJerkStroke, Trajectory
 from squeezefilm.render.motion.sensor import SENSORS, SensorModel
+from squeezefilm.render.motion.stroke import MinimumJerkStroke, Trajectory
 from squeezefilm.render.resonator.compensation import (
     CompensatedDrive,
     DrivenEnvelope,

@@ -18,8 +18,7 @@ from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import RENDER_STEPS, require_motion
 from squeezefilm.plate.layout import Actuator, AnnularStator
 from squeezefilm.render.motion.finger_path import FingerPath, OverPath
-from squeezefilm.render.motion.minimum_jerk import MinimumJerkStroke, Trajectory
-from squeezefilm.render.motion.stroke import Stroke
+from squeezefilm.render.motion.stroke import MinimumJerkStroke, Stroke, Trajectory
 from squeezefilm.render.program.inverse import FrictionInverse
 from squeezefilm.render.program.lowering import Program
 from squeezefilm.render.program.renderer import evaluate

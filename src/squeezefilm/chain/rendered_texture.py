@@ -33,8 +33,7 @@ from squeezefilm.formats.trajectories import Motion, NamedMotion
 from squeezefilm.from_text import reads_text
 from squeezefilm.progress import SayProgress
 from squeezefilm.render.fidelity.rendered_stroke import RenderedStroke, rendered_stroke
-from squeezefilm.render.fidelity.report import FidelityReport, fidelity_report
-from squeezefilm.render.fidelity.spectral_lines import strongest_lines
+from squeezefilm.render.fidelity.report import FidelityReport, fidelity_report, strongest_lines
 from squeezefilm.render.motion.sensor import SensorModel, sensor_named
 from squeezefilm.render.motion.stroke import Stroke
 from squeezefilm.render.program.inverse import FrictionInverse

@@ -28,8 +28,22 @@ from squeezefilm.hard_limits import DESCRIPTION_BYTES
 from squeezefilm.regular_file import read_regular_text
 
 T = TypeVar("T")
+_Path = tuple[str | int, ...]
 MOST_ERRORS = 20
 """Errors of one file that are told; each is looked for in the text."""
+
+
+@dataclasses.dataclass(frozen=True)
+class _Source:
+    """The TOML text that is read, and the file it is from, for messages."""
+
+    text: str
+    file: str | Path | None
+
+    def error(self, message: str, path: Sequence[str | int]) -> ConfigError:
+        """An error at a key, with its line."""
+        key = ".".join(str(part + 1) if isinstance(part, int) else part for part in path)
+        return ConfigError(message, file=self.file, line=locate(self.text, path), key=key or None)
 
 
 def load(cls: type[T], path: str | Path) -> T:
@@ -58,6 +72,7 @@ def load_text(cls: type[T], text: str, *, file: str | Path | None = None) -> T:
     if not raw:
         keys = ", ".join(field.name for field in dataclasses.fields(cls) if reads_from_file(field))  # type: ignore[arg-type]
         raise ConfigError(f"is empty; a {cls.__name__.lower()} needs the keys {keys}", file=file)
+    source = _Source(text, file)
     try:
         plain, sources, spreads = split_provenance(raw)
     except ConfigError as error:
@@ -66,11 +81,11 @@ def load_text(cls: type[T], text: str, *, file: str | Path | None = None) -> T:
     try:
         model = model_of(cls).model_validate(plain)
     except ValidationError as error:
-        raise _all_errors(cls, error, text, file) from error
-    built = _build(cls, model, (), text, file)
+        raise _all_errors(cls, error, source) from error
+    built = _build(cls, model, (), source)
     if any(field.name == "provenance" for field in dataclasses.fields(cls)):  # type: ignore[arg-type]
         for key, spread in spreads.items():
-            found = _distribution(built, key, spread, text, file)
+            found = _distribution(built, key, spread, source)
             sources[key] = dataclasses.replace(sources[key], distribution=found)
         built = dataclasses.replace(built, provenance=read_only(sources))
     return typing.cast(T, built)
@@ -87,9 +102,7 @@ def _depth(tree: Any) -> int:
     return deepest
 
 
-def _distribution(
-    built: Any, key: str, spread: Spread, text: str, file: str | Path | None
-) -> Distribution:
+def _distribution(built: Any, key: str, spread: Spread, source: _Source) -> Distribution:
     """The distribution of the value at a dotted path of what was built."""
     owner, parts = built, key.split(".")
     for part in parts[:-1]:
@@ -100,26 +113,15 @@ def _distribution(
             raise InputError("this is no quantity and has no uncertainty; leave it out")
         return distribution_of(getattr(owner, parts[-1]), unit, spread)
     except InputError as error:
-        place = locate(text, parts)
-        raise ConfigError(str(error), file=file, line=place, key=_dotted_key(parts)) from error
+        place = [int(part) if part.isdigit() else part for part in parts]
+        raise source.error(str(error), place) from error
 
 
-def _dotted_key(parts: Sequence[str]) -> str:
-    return _dotted([int(part) if part.isdigit() else part for part in parts])
-
-
-def _build(
-    cls: type[Any],
-    model: BaseModel,
-    path: tuple[str | int, ...],
-    text: str,
-    file: str | Path | None,
-) -> Any:
+def _build(cls: type[Any], model: BaseModel, path: _Path, source: _Source) -> Any:
     hints = typing.get_type_hints(cls, include_extras=True)
     values: dict[str, Any] = {}
     for name in type(model).model_fields:
-        here = (*path, name)
-        values[name] = _built_value(hints[name], getattr(model, name), here, text, file)
+        values[name] = _built_value(hints[name], getattr(model, name), (*path, name), source)
     try:
         return cls(**values)
     except ConfigError:
@@ -127,29 +129,21 @@ def _build(
     except InputError as error:
         key = getattr(error, "quantity", None)
         at = (*path, key) if key in values else path
-        raise ConfigError(
-            str(error), file=file, line=locate(text, at), key=_dotted(at) or None
-        ) from error
+        raise source.error(str(error), at) from error
 
 
-def _built_value(
-    hint: Any, value: Any, path: tuple[str | int, ...], text: str, file: str | Path | None
-) -> Any:
+def _built_value(hint: Any, value: Any, path: _Path, source: _Source) -> Any:
     if isinstance(value, BaseModel):
-        return _build(_dataclass_of(hint, value), value, path, text, file)
+        options = _options(hint) or [hint]
+        owner = next(cls for cls in options if model_of(cls) is type(value))
+        return _build(owner, value, path, source)
     if isinstance(value, list):
         item_hint = typing.get_args(hint)[0]
         return tuple(
-            _built_value(item_hint, item, (*path, index), text, file)
+            _built_value(item_hint, item, (*path, index), source)
             for index, item in enumerate(value)
         )
     return value
-
-
-def _dataclass_of(hint: Any, model: BaseModel) -> type[Any]:
-    candidates = _options(hint) or [hint]
-    found: type[Any] = next(cls for cls in candidates if model_of(cls) is type(model))
-    return found
 
 
 def _options(hint: Any) -> list[Any]:
@@ -159,35 +153,23 @@ def _options(hint: Any) -> list[Any]:
     return list(family(hint))
 
 
-def _dotted(path: Sequence[str | int]) -> str:
-    return ".".join(str(part + 1) if isinstance(part, int) else part for part in path)
-
-
-def _all_errors(
-    cls: type[Any], error: ValidationError, text: str, file: str | Path | None
-) -> ConfigError:
+def _all_errors(cls: type[Any], error: ValidationError, source: _Source) -> ConfigError:
     found: list[ConfigError] = []
     count = error.error_count()
     for item in error.errors()[:MOST_ERRORS]:
         path, owner = _path_and_owner(cls, item["loc"])
-        message = _message(item, path, owner)
-        found.append(
-            ConfigError(message, file=file, line=locate(text, path), key=_dotted(path) or None)
-        )
+        found.append(source.error(_message(item, path, owner), path))
     if count == 1:
         return found[0]
-    lines = "\n".join(f"  {one.key}: {one.message}" + _at(one.line) for one in found)
+    lines = "\n".join(
+        f"  {one.key}: {one.message}" + ("" if one.line is None else f" (line {one.line})")
+        for one in found
+    )
     more = f"\n  and {count - len(found)} more" if count > len(found) else ""
-    return ConfigError(f"{count} things are not right:\n{lines}{more}", file=file)
+    return ConfigError(f"{count} things are not right:\n{lines}{more}", file=source.file)
 
 
-def _at(line: int | None) -> str:
-    return "" if line is None else f" (line {line})"
-
-
-def _path_and_owner(
-    cls: type[Any], location: Sequence[str | int]
-) -> tuple[tuple[str | int, ...], type[Any]]:
+def _path_and_owner(cls: type[Any], location: Sequence[str | int]) -> tuple[_Path, type[Any]]:
     """Strip the union tags that pydantic puts into a location; find the dataclass that owns the
     last key."""
     path: list[str | int] = []

@@ -6,6 +6,7 @@ import dataclasses
 import json
 import math
 import typing
+from collections.abc import Iterator
 from decimal import Decimal
 from typing import Any
 
@@ -47,16 +48,12 @@ def _table(value: Any, path: _Path, lines: list[str]) -> None:
     # A name may stand for a list and the table in it; a line holds up to four more.
     if 2 * len(path) + 4 > DEEPEST:
         raise InputError(f"it is nested {len(path)} tables deep, too deep to be read; nest less")
-    hints = typing.get_type_hints(type(value), include_extras=True)
     tables: list[tuple[str, Any]] = []
-    for field in sorted(dataclasses.fields(value), key=lambda one: one.name != "type"):
-        item = getattr(value, field.name)
-        if not reads_from_file(field) or (field.name != "type" and _is_default(field, item)):
-            continue
+    for name, item, hint in _written(value):
         if _holds_tables(item) and not _fits_a_line(item):
-            tables.append((field.name, item))
+            tables.append((name, item))
         else:
-            lines.append(f"{field.name} = {_inline(item, hints[field.name])}")
+            lines.append(f"{name} = {_inline(item, hint)}")
     for name, item in tables:
         here = (*path, name)
         if isinstance(item, tuple):
@@ -66,6 +63,15 @@ def _table(value: Any, path: _Path, lines: list[str]) -> None:
         else:
             lines.extend(["", f"[{'.'.join(here)}]"])
             _table(item, here, lines)
+
+
+def _written(value: Any) -> Iterator[tuple[str, Any, Any]]:
+    """Name, value and annotation of the fields that are written, the `type` first."""
+    hints = typing.get_type_hints(type(value), include_extras=True)
+    for field in sorted(dataclasses.fields(value), key=lambda one: one.name != "type"):
+        item = getattr(value, field.name)
+        if reads_from_file(field) and (field.name == "type" or not _is_default(field, item)):
+            yield field.name, item, hints[field.name]
 
 
 def _is_default(field: dataclasses.Field[Any], item: Any) -> bool:
@@ -95,13 +101,7 @@ def _inline(item: Any, hint: Any) -> str:
         inner = typing.get_args(hint)[0]
         return "[" + ", ".join(_inline(one, inner) for one in item) + "]"
     if dataclasses.is_dataclass(item):
-        hints = typing.get_type_hints(type(item), include_extras=True)
-        pairs = [
-            f"{field.name} = {_inline(getattr(item, field.name), hints[field.name])}"
-            for field in sorted(dataclasses.fields(item), key=lambda one: one.name != "type")
-            if reads_from_file(field)
-            and (field.name == "type" or not _is_default(field, getattr(item, field.name)))
-        ]
+        pairs = [f"{name} = {_inline(one, hint)}" for name, one, hint in _written(item)]
         return "{ " + ", ".join(pairs) + " }"
     if isinstance(item, bool):
         return "true" if item else "false"

@@ -25,8 +25,7 @@ from squeezefilm.formats.traces import Table, table_from_csv, text_of_file
 from squeezefilm.from_text import ReadBy
 from squeezefilm.hard_limits import FINGER_SPEED
 from squeezefilm.render.motion.finger_path import FingerPath
-from squeezefilm.render.motion.minimum_jerk import MinimumJerkStroke
-from squeezefilm.render.motion.stroke import Stroke
+from squeezefilm.render.motion.stroke import MinimumJerkStroke, Stroke
 
 Motion = Stroke | MinimumJerkStroke | FingerPath
 """What a finger does, however it was said."""

@@ -29,8 +29,8 @@ from squeezefilm.perception.senses import (
     line_amplitudes,
 )
 from squeezefilm.perception.stimuli import Grating, Stimulus
-from squeezefilm.render.motion.minimum_jerk import MinimumJerkStroke
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ, SensorModel
+from squeezefilm.render.motion.stroke import MinimumJerkStroke
 from squeezefilm.texture_file import TextureFile
 
 CONTROL_RATE: si.Hertz = 9.6e3

@@ -20,11 +20,10 @@ from squeezefilm.chain.rendered_texture import (
 from squeezefilm.chain.standing_wave import WAVES, wave_factors
 from squeezefilm.display import load_display
 from squeezefilm.errors import InputError
-from squeezefilm.render.fidelity.spectral_lines import strongest_lines
+from squeezefilm.render.fidelity.report import strongest_lines
 from squeezefilm.render.motion.finger_path import FingerPath
-from squeezefilm.render.motion.minimum_jerk import MinimumJerkStroke
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ
-from squeezefilm.render.motion.stroke import Stroke
+from squeezefilm.render.motion.stroke import MinimumJerkStroke, Stroke
 from squeezefilm.render.texture.coordinate import AlongDirection
 from squeezefilm.render.texture.image import Image
 from squeezefilm.render.texture.levels import Amplitude, FrictionReduction, RelativeFriction

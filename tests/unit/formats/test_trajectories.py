@@ -9,8 +9,7 @@ import pytest
 from squeezefilm.errors import ConfigError, InputError
 from squeezefilm.formats.trajectories import motion_from, read_trajectory, stroke_from_text
 from squeezefilm.render.motion.finger_path import FingerPath, OverPath
-from squeezefilm.render.motion.minimum_jerk import MinimumJerkStroke
-from squeezefilm.render.motion.stroke import Stroke
+from squeezefilm.render.motion.stroke import MinimumJerkStroke, Stroke
 
 
 def test_strokes_in_words() -> None:

@@ -16,10 +16,10 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import RENDER_STEPS, require_motion
-from squeezefilm.render.fidelity.trace import RelativeFriction
+from squeezefilm.render.fidelity.trace import RelativeFriction, friction_of, per_sample
 from squeezefilm.render.motion.estimator import MotionEstimate, MotionEstimator, estimate_motion
-from squeezefilm.render.motion.minimum_jerk import Trajectory
 from squeezefilm.render.motion.sensor import SensorModel, sensor_stream
+from squeezefilm.render.motion.stroke import Trajectory
 from squeezefilm.render.resonator import kernel
 from squeezefilm.render.resonator.compensation import (
     Compensation,
@@ -164,8 +164,8 @@ def rendered_stroke(
         wanted=wanted,
         command=command,
         amplitude=amplitude,
-        relative_friction_wanted=_friction(relative_friction, wanted),
-        relative_friction_rendered=_friction(relative_friction, amplitude),
+        relative_friction_wanted=friction_of(relative_friction, wanted),
+        relative_friction_rendered=friction_of(relative_friction, amplitude),
         saturated_top=top,
         saturated_bottom=bottom,
         silent=float(np.mean(~known)),
@@ -205,14 +205,4 @@ def _previewed(
 
 
 def _asked(texture: Texture, x: si.FloatArray, v: si.FloatArray, t: si.FloatArray) -> si.FloatArray:
-    return _per_sample("texture", texture(x, 0.0, np.abs(v), t), x)
-
-
-def _friction(law: RelativeFriction, amplitude: si.FloatArray) -> si.FloatArray:
-    return _per_sample("relative_friction", law(amplitude), amplitude)
-
-
-def _per_sample(name: str, values: si.FloatArray, given: si.FloatArray) -> si.FloatArray:
-    array = si.returned(name, values, given, "one value per sample")
-    si.require(f"a value returned by {name}", array, at_least=0.0)
-    return array
+    return per_sample("texture", texture(x, 0.0, np.abs(v), t), x, si.Unit("m"))

@@ -103,11 +103,11 @@ def friction_trace(
     rate = _rate(texture, stroke, time_constant, sample_rate)
     time, position = stroke.sampled(rate)
     wanted = texture(position, 0.0, stroke.velocity(time), time)
-    command = _values("texture", wanted, time, si.Unit("m"))
+    command = per_sample("texture", wanted, time, si.Unit("m"))
     middle = time[:-1] + 0.5 / rate
     held = texture(stroke.position(middle), 0.0, stroke.velocity(middle), middle)
     # The last sample's command is held over a step that nobody sees.
-    steps = np.append(_values("texture", held, middle, si.Unit("m")), command[-1])
+    steps = np.append(per_sample("texture", held, middle, si.Unit("m")), command[-1])
     amplitude = envelope_response(steps, 1 / rate, time_constant, initial=float(command[0]))
     return FrictionTrace(
         texture=texture,
@@ -118,8 +118,8 @@ def friction_trace(
         position=position,
         command=command,
         amplitude=amplitude,
-        relative_friction_wanted=_friction(relative_friction, command),
-        relative_friction_rendered=_friction(relative_friction, amplitude),
+        relative_friction_wanted=friction_of(relative_friction, command),
+        relative_friction_rendered=friction_of(relative_friction, amplitude),
     )
 
 
@@ -151,13 +151,18 @@ def _rate(
     return sample_rate
 
 
-def _friction(
-    relative_friction: RelativeFriction, amplitude: si.MetreArray
-) -> si.DimensionlessArray:
-    return _values("relative_friction", relative_friction(amplitude), amplitude, si.Unit("1"))
+def friction_of(law: RelativeFriction, amplitude: si.MetreArray) -> si.DimensionlessArray:
+    """What a law says at amplitudes (m), as `per_sample` lets it pass (1)."""
+    return per_sample("relative_friction", law(amplitude), amplitude, si.Unit("1"))
 
 
-def _values(name: str, values: si.FloatArray, given: si.FloatArray, unit: si.Unit) -> si.FloatArray:
+def per_sample(
+    name: str, values: si.FloatArray, given: si.FloatArray, unit: si.Unit
+) -> si.FloatArray:
+    """What a callable `name` returned where samples were `given`.
+
+    Raises `InputError` unless that is one finite value, at least 0, per sample.
+    """
     array = si.returned(name, values, given, "one value per sample")
     si.require(f"a value returned by {name}", array, unit, at_least=0.0)
     return array

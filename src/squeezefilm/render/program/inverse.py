@@ -44,7 +44,7 @@ class FrictionInverse:
         relative_friction: Callable[[si.MetreArray], si.DimensionlessArray],
         largest_amplitude: Annotated[si.Metre, si.Above(0.0), si.AtMost(1e-3)],
         *,
-        knots: int = 257,
+        knots: Annotated[int, si.AtLeast(3), si.AtMost(_MOST_KNOTS)] = 257,
         rise_allowed: Annotated[si.Dimensionless, si.AtLeast(0.0), si.AtMost(0.1)] = 1e-9,
     ) -> FrictionInverse:
         """The inverse of a friction law up to an amplitude.
@@ -61,8 +61,6 @@ class FrictionInverse:
             InputError: a value outside its range, or a friction that is not finite, is not 1 at
                 rest or rises with amplitude.
         """
-        if not isinstance(knots, int) or not 3 <= knots <= _MOST_KNOTS:
-            raise InputError(f"knots = {knots!r} cannot be used: it must be 3 to {_MOST_KNOTS}")
         fine = np.linspace(0.0, largest_amplitude, 4 * (knots - 1) + 1)
         values = relative_friction(fine)
         found = si.returned("relative_friction", values, fine, "one value per amplitude")

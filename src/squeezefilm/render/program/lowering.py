@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, get_args
+from typing import Annotated, Any, get_args
 
 import numpy as np
 
@@ -85,12 +85,13 @@ class Program:
 def lower(
     texture: Composable,
     *,
-    largest_amplitude: si.Metre | None = None,
+    largest_amplitude: Annotated[si.Metre, si.Above(0.0), si.AtMost(LARGEST_AMPLITUDE)]
+    | None = None,
     inverse: FrictionInverse | None = None,
-    friction_coefficient: si.Dimensionless | None = None,
+    friction_coefficient: Annotated[si.Dimensionless, si.Above(0.0), si.AtMost(10.0)] | None = None,
     compensation: WaveCompensation | None = None,
-    hold_ticks: int = 20,
-    fade_ticks: int = 30,
+    hold_ticks: Annotated[int, si.AtLeast(0), si.AtMost(_MOST_TICKS)] = 20,
+    fade_ticks: Annotated[int, si.AtLeast(1), si.AtMost(_MOST_TICKS)] = 30,
 ) -> Program:
     """The program of a texture.
 
@@ -117,11 +118,6 @@ def lower(
         if inverse is None:
             raise InputError("a texture of amplitude needs the display's largest_amplitude (m)")
         largest_amplitude = inverse.largest_amplitude
-    si.require("largest_amplitude", largest_amplitude, METRE, above=0.0, at_most=LARGEST_AMPLITUDE)
-    if friction_coefficient is not None:
-        si.require("friction_coefficient", friction_coefficient, above=0.0, at_most=10.0)
-    _require_ticks("hold_ticks", hold_ticks, 0)
-    _require_ticks("fade_ticks", fade_ticks, 1)
     assembler = Assembler()
     texture._lower(assembler)
     assembler.emit(op.END)
@@ -162,14 +158,6 @@ def _require_what_belongs(
                 if friction_coefficient is None
                 else "takes no friction_coefficient; leave it out"
             )
-        )
-
-
-def _require_ticks(name: str, ticks: object, least: int) -> None:
-    if not isinstance(ticks, int) or not least <= ticks <= _MOST_TICKS:
-        raise InputError(
-            f"{name} = {ticks!r} cannot be used: it must be a whole number from {least} to "
-            f"{_MOST_TICKS}"
         )
 
 

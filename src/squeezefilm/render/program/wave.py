@@ -88,7 +88,7 @@ class WaveCompensation:
         *,
         least: Annotated[si.Dimensionless, si.Above(0.0), si.AtMost(1.0)] = 0.1,
         along: Coordinate = X_AXIS,
-        count: int = 256,
+        count: Annotated[int, si.AtLeast(2), si.AtMost(_MOST_FACTORS)] = 256,
     ) -> WaveCompensation:
         """From `wave_factor`, divided by its largest; `least` bounds what is made up for.
 
@@ -97,8 +97,6 @@ class WaveCompensation:
         Raises:
             InputError: a value outside its range.
         """
-        if not 2 <= count <= _MOST_FACTORS:
-            raise InputError(f"count = {count} cannot be used: it must be 2 to {_MOST_FACTORS}")
         places = np.arange(count) / count * half_wavelength
         found = wave_factor(places, half_wavelength, contact_length)
         factors = np.clip(found / np.max(found), least, 1.0)

@@ -19,13 +19,13 @@ from squeezefilm.render.motion.estimator import (
     MotionModel,
     estimate_motion,
 )
-from squeezefilm.render.motion.minimum_jerk import MinimumJerkStroke
 from squeezefilm.render.motion.sensor import (
     LVDT_10_KHZ,
     TOUCH_PANEL_60_HZ,
     SensorStream,
     sensor_stream,
 )
+from squeezefilm.render.motion.stroke import MinimumJerkStroke
 from squeezefilm.render.resonator import kernel as compensation_kernel
 from squeezefilm.render.resonator.carrier import carrier_block
 from squeezefilm.render.resonator.compensation import DrivenEnvelope, preview_work
