@@ -82,7 +82,7 @@ def marched(estimator: MotionEstimator, stamps: np.ndarray, seen: np.ndarray) ->
     out = np.empty((4, seen.size))
     code = np.empty(seen.size, dtype=np.int64)
     motion_kernel.motion_march(
-        estimator.new_state(), estimator.parameters(), stamps, stamps, seen, stamps, 0.0, *out, code
+        estimator.new_state(), estimator.parameters(), stamps, stamps, seen, stamps, 0.0, out, code
     )
     return out[0]
 
@@ -113,7 +113,7 @@ def predicted(estimator: MotionEstimator, times: np.ndarray) -> None:
     near = np.minimum(times, 0.5 * estimator.stall)
     motion_kernel.motion_march(
         estimator.new_state(), estimator.parameters(), times[:1], times[:1], times[:1],
-        near, 0.0, *out, code,
+        near, 0.0, out, code,
     )  # fmt: skip
     assert np.all(code == motion_kernel.FRESH)
 

@@ -107,7 +107,7 @@ def table(count: int) -> None:
 
         def ticks(program=program, state=state, out=out, flags=flags) -> None:
             state[:] = 0.0
-            interpreter.tick_march(program.array, state, *arrays, out, flags)
+            interpreter.tick_march(program.array, state, arrays, out, flags)
 
         def from_python(program=program) -> None:
             renderer = Renderer(program)

@@ -203,22 +203,11 @@ def estimate_motion(
             "the one ahead of it"
         )
     state = estimator.new_state()
-    x, v, dx, dv = np.empty((4, times.size))
-    code = np.empty(times.size, dtype=np.int64)
-    kernel.motion_march(
-        state,
-        estimator.parameters(),
-        stream.stamp,
-        stream.arrival,
-        stream.position,
-        times,
-        ahead,
-        x,
-        v,
-        dx,
-        dv,
-        code,
-    )
+    out, code = np.empty((4, times.size)), np.empty(times.size, dtype=np.int64)
+    settings = estimator.parameters()
+    stamp, arrival, position = stream.stamp, stream.arrival, stream.position
+    kernel.motion_march(state, settings, stamp, arrival, position, times, ahead, out, code)
+    x, v, dx, dv = out
     return MotionEstimate(
         estimator, times + ahead, x, v, dx, dv, code == kernel.FRESH, MotionCounts.of(state)
     )

@@ -153,21 +153,18 @@ def motion_march(
     position: si.Array,
     render: si.Array,
     ahead: float,
-    at: si.Array,
-    speed: si.Array,
-    at_deviation: si.Array,
-    speed_deviation: si.Array,
+    out: si.Array,
     code: si.Array,
 ) -> None:
-    """At each render time (s): take what has arrived, predict to `ahead` (s) after it."""
+    """At each render time (s): take what has arrived, predict to `ahead` (s) after it.
+
+    `out` takes rows of place, speed and their standard deviations, as `motion_at` gives them.
+    """
     k = 0
     for i in range(render.size):
         while k < stamp.size and arrival[k] <= render[i]:
             motion_step(state, parameters, stamp[k], position[k])
             k += 1
-        x, v, dx, dv, c = motion_at(state, parameters, render[i] + ahead)
-        at[i] = x
-        speed[i] = v
-        at_deviation[i] = dx
-        speed_deviation[i] = dv
-        code[i] = c
+        out[0, i], out[1, i], out[2, i], out[3, i], code[i] = motion_at(
+            state, parameters, render[i] + ahead
+        )

@@ -295,30 +295,20 @@ def tick(program: si.Array, state: si.Array, x: float, y: float, v: float, t: fl
 
 @numba.njit(cache=True, nogil=True, error_model="numpy")
 def value_march(
-    program: si.Array,
-    memory: si.Array,
-    x: si.Array,
-    y: si.Array,
-    v: si.Array,
-    t: si.Array,
-    out: si.Array,
+    program: si.Array, memory: si.Array, samples: tuple[si.Array, ...], out: si.Array
 ) -> None:
-    """`interpret` over arrays of one length; `memory` is the stack."""
+    """`interpret` over `samples`, which are x, y, v and t of one length; `memory` is the stack."""
+    x, y, v, t = samples
     for i in range(x.size):
         out[i] = interpret(program, memory, 0, x[i], y[i], v[i], t[i])
 
 
 @numba.njit(cache=True, nogil=True, error_model="numpy")
 def amplitude_march(
-    program: si.Array,
-    state: si.Array,
-    x: si.Array,
-    y: si.Array,
-    v: si.Array,
-    t: si.Array,
-    out: si.Array,
+    program: si.Array, state: si.Array, samples: tuple[si.Array, ...], out: si.Array
 ) -> None:
     """The amplitude of every value by itself; what cannot be reached is counted in `state`."""
+    x, y, v, t = samples
     for i in range(x.size):
         wanted = interpret(program, state, at.STATE, x[i], y[i], v[i], t[i])
         out[i] = _amplitude(program, state, wanted, x[i], y[i])[0]
@@ -328,14 +318,12 @@ def amplitude_march(
 def tick_march(
     program: si.Array,
     state: si.Array,
-    x: si.Array,
-    y: si.Array,
-    v: si.Array,
-    t: si.Array,
+    samples: tuple[si.Array, ...],
     out: si.Array,
     flags: si.Array,
 ) -> None:
-    """`tick` over arrays of one length, sample after sample."""
+    """`tick` over `samples`, one after another."""
+    x, y, v, t = samples
     for i in range(x.size):
         out[i] = tick(program, state, x[i], y[i], v[i], t[i])
         flags[i] = int(state[at.S_FLAGS])

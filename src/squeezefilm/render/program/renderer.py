@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Annotated, Any
 
@@ -113,11 +114,11 @@ def render(
     Raises:
         InputError: shapes that do not broadcast to one axis.
     """
-    a, b, c, d = _series(x, y, v, t)
+    samples = _series(x, y, v, t)
     state = new_state(program)
-    amplitude = np.empty(a.size)
-    flags = np.empty(a.size, dtype=np.int64)
-    tick_march(program.array, state, a, b, c, d, amplitude, flags)
+    amplitude = np.empty(samples[0].size)
+    flags = np.empty(samples[0].size, dtype=np.int64)
+    tick_march(program.array, state, samples, amplitude, flags)
     return Rendered(amplitude, flags, counters_of(state), program)
 
 
@@ -131,11 +132,10 @@ def evaluate(
     Raises:
         InputError: an argument that is not finite, or shapes that do not broadcast.
     """
-    arrays = finger_arguments(x, y, v, t)
-    a, b, c, d = (np.ascontiguousarray(one).ravel() for one in arrays)
-    out = np.empty(a.size)
-    value_march(program.array, np.empty(program.stack), a, b, c, d, out)
-    return out.reshape(arrays[0].shape)
+    finger = finger_arguments(x, y, v, t)
+    out = np.empty(finger.x.size)
+    value_march(program.array, np.empty(program.stack), _rows(finger), out)
+    return out.reshape(finger.x.shape)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -157,22 +157,26 @@ class Played:
             UnreachableError: a friction or an amplitude that the display cannot reach. (A renderer
                 that ticks counts it instead.)
         """
-        arrays = finger_arguments(x, y, v, t)
-        a, b, c, d = (np.ascontiguousarray(one).ravel() for one in arrays)
-        out, state = np.empty(a.size), new_state(self.program)
-        amplitude_march(self.program.array, state, a, b, c, d, out)
+        finger = finger_arguments(x, y, v, t)
+        out, state = np.empty(finger.x.size), new_state(self.program)
+        amplitude_march(self.program.array, state, _rows(finger), out)
         met = counters_of(state)
         if met.unreachable:
             raise UnreachableError(
-                f"at {met.unreachable} of {a.size} samples the texture wants what the display "
+                f"at {met.unreachable} of {out.size} samples the texture wants what the display "
                 f"cannot reach: {met.too_sticky} times more friction than at rest, "
                 f"{met.too_slippery} times less than the least, {met.negative} amplitudes below 0, "
                 f"{met.saturated} above the largest; change its ends or its sums"
             )
-        return out.reshape(arrays[0].shape)
+        return out.reshape(finger.x.shape)
 
 
-def _series(*arguments: Any) -> list[si.FloatArray]:
+def _rows(arrays: Iterable[si.FloatArray]) -> tuple[si.FloatArray, ...]:
+    """Arrays as the compiled loops take them."""
+    return tuple(np.ascontiguousarray(one).ravel() for one in arrays)
+
+
+def _series(*arguments: Any) -> tuple[si.FloatArray, ...]:
     arrays = [si.real_numbers(*one) for one in zip("xyvt", arguments, strict=True)]
     try:
         joint = np.broadcast_arrays(*arrays)
@@ -180,4 +184,4 @@ def _series(*arguments: Any) -> list[si.FloatArray]:
         raise InputError("x, y, v, t do not broadcast; give equal shapes or scalars") from error
     if joint[0].ndim != 1:
         raise InputError(f"x, y, v, t of shape {joint[0].shape} are no series; give one axis")
-    return [np.ascontiguousarray(one) for one in joint]
+    return _rows(joint)

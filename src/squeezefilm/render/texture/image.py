@@ -23,6 +23,10 @@ OUTSIDE = ("hold", "repeat", "zero")
 """What an image does beyond its frame, in the order of the opcode's operand."""
 
 
+Share = Annotated[si.Dimensionless, si.AtLeast(0.0), si.AtMost(1.0)]
+"""A pixel's value, in annotations: from 0 to 1."""
+
+
 @part
 class Image(Pattern):
     """Values from 0 to 1 on a grid of square pixels, bilinear between their centres.
@@ -41,7 +45,7 @@ class Image(Pattern):
             pixels.
     """
 
-    values: tuple[tuple[si.Dimensionless, ...], ...]
+    values: tuple[tuple[Share, ...], ...]
     pixel: Annotated[si.Metre, si.AtLeast(1e-06), si.AtMost(LARGEST_PIXEL)]
     left: Place = 0.0
     bottom: Place = 0.0
@@ -50,29 +54,10 @@ class Image(Pattern):
     _grid: si.FloatArray = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        if not isinstance(self.values, tuple | list) or not all(
-            isinstance(row, tuple | list) for row in self.values
-        ):
-            raise InputError(
-                "values are no image; give rows of values, or an array to Image.from_array",
-                quantity="values",
-            )
-        rows = len(self.values)
-        columns = len(self.values[0]) if rows else 0
-        if columns == 0 or any(len(row) != columns for row in self.values):
-            raise InputError(
-                "an image needs at least one value, and rows of one length; "
-                f"here are {rows} rows of {sorted({len(row) for row in self.values})} values",
-                quantity="values",
-            )
-        if rows * columns > MOST_PIXELS:
-            raise InputError(
-                f"an image of {columns} × {rows} pixels cannot be used: it may have at most "
-                f"{MOST_PIXELS} together; make its pixels larger",
-                quantity="values",
-            )
-        grid = np.array(si.real_numbers("values", self.values))
-        si.require("values", grid, at_least=0.0, at_most=1.0)
+        grid = np.array(self.values, dtype=float)
+        if not grid.size:
+            raise InputError("an image needs at least one value", quantity="values")
+        _require_pixels(grid.size)
         grid.setflags(write=False)
         object.__setattr__(self, "_grid", grid)
 
@@ -101,11 +86,7 @@ class Image(Pattern):
                 "from 0 to 1 of shape (rows, columns), 8-bit grey divided by 255",
                 quantity="values",
             )
-        if array.size > MOST_PIXELS:
-            raise InputError(
-                f"an image of {array.size} pixels cannot be used: at most {MOST_PIXELS}",
-                quantity="values",
-            )
+        _require_pixels(array.size)
         return cls(tuple(tuple(row) for row in array.tolist()), pixel, left, bottom, outside)
 
     def _values(self, finger: Finger) -> si.FloatArray:
@@ -129,6 +110,15 @@ class Image(Pattern):
         table = assembler.table(self._grid)
         outside = OUTSIDE.index(self.outside)
         assembler.emit(IMAGE, table, rows, columns, self.left, self.bottom, self.pixel, outside)
+
+
+def _require_pixels(count: int) -> None:
+    if count > MOST_PIXELS:
+        raise InputError(
+            f"an image of {count} pixels cannot be used: it may have at most {MOST_PIXELS}; make "
+            "its pixels larger",
+            quantity="values",
+        )
 
 
 def _neighbours(u: si.FloatArray, count: int, wraps: bool) -> tuple[Any, Any, si.FloatArray]:

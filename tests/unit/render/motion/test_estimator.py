@@ -235,7 +235,7 @@ def allocations(count: int) -> int:
     _nrt_python.memsys_enable_stats()
     try:
         before = rtsys.get_allocation_stats().alloc
-        kernel.motion_march(states[0], settings[0], stamps, stamps, seen, stamps, 1e-3, *out, code)
+        kernel.motion_march(states[0], settings[0], stamps, stamps, seen, stamps, 1e-3, out, code)
         compensation_kernel.compensated_march(states[1], settings[1], wanted, out[0], code)
         compensation_kernel.previewed_windows(states[1], settings[1], windows, work, out[0], code)
         carrier_block(0.0, 1.0, wanted[: count // 4], 4, 1.0, out[1])

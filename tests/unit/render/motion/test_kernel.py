@@ -161,16 +161,16 @@ def test_a_march_takes_what_has_arrived_and_looks_ahead() -> None:
     arrival = stamp + np.array([0.001, 0.004, 0.002, 0.002])  # two together, at 1.006
     position = 0.02 + 0.1 * (stamp - 1.0)
     render = np.array([0.9, 1.001, 1.005, 1.006, 1.008, 1.1])
-    out = [np.empty(6) for _ in range(4)]
+    out = np.empty((4, 6))
     code = np.empty(6, dtype=np.int64)
     state = np.zeros(kernel.STATE_SIZE)
-    motion_march.py_func(state, PARAMETERS, stamp, arrival, position, render, 0.003, *out, code)
+    motion_march.py_func(state, PARAMETERS, stamp, arrival, position, render, 0.003, out, code)
     other, taken = np.zeros(kernel.STATE_SIZE), 0
     for i, has in enumerate((0, 1, 1, 3, 4, 4)):
         for k in range(taken, has):
             motion_step.py_func(other, PARAMETERS, stamp[k], position[k])
         taken = has
         expected = motion_at.py_func(other, PARAMETERS, render[i] + 0.003)
-        assert (*(one[i] for one in out), code[i]) == pytest.approx(expected)
+        assert (*out[:, i], code[i]) == pytest.approx(expected)
     assert list(code) == [kernel.EMPTY] + [kernel.FRESH] * 4 + [kernel.STALLED]
     assert state == pytest.approx(other)
