@@ -15,31 +15,30 @@ ROWS = (tuple, list, collections.abc.Sequence)
 
 
 @dataclass(frozen=True, slots=True)
-class Above:
+class _Bound:
+    """In an annotation: how a number, or every number, lies to a value (SI)."""
+
+    value: float
+
+
+class Above(_Bound):
     """In an annotation: the number, or every number, is above this (SI)."""
 
-    above: float
 
-
-@dataclass(frozen=True, slots=True)
-class AtLeast:
+class AtLeast(_Bound):
     """In an annotation: the number, or every number, is at least this (SI)."""
 
-    at_least: float
 
-
-@dataclass(frozen=True, slots=True)
-class Below:
+class Below(_Bound):
     """In an annotation: the number, or every number, is below this (SI)."""
 
-    below: float
 
-
-@dataclass(frozen=True, slots=True)
-class AtMost:
+class AtMost(_Bound):
     """In an annotation: the number, or every number, is at most this (SI)."""
 
-    at_most: float
+
+_WORDS = {Above: "above", AtLeast: "at_least", Below: "below", AtMost: "at_most"}
+"""The bounds as `require` calls them."""
 
 
 @runtime_checkable
@@ -50,18 +49,10 @@ class Limit(Protocol):
         """Raise `InputError` that names the quantity."""
 
 
-_BOUNDS = (Above, AtLeast, Below, AtMost)
-
-
 def bounds_of(hint: Any) -> tuple[dict[str, Any], tuple[Limit, ...]]:
     """The bounds in an annotation, as `require` takes them, and its other limits."""
     found = list(_beside(hint))
-    bounds = {
-        name: float(getattr(one, name))
-        for one in found
-        if isinstance(one, _BOUNDS)
-        for name in one.__slots__
-    }
+    bounds = {_WORDS[type(one)]: float(one.value) for one in found if isinstance(one, _Bound)}
     return bounds, tuple(one for one in found if isinstance(one, Limit))
 
 

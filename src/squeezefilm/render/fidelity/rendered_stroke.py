@@ -135,15 +135,12 @@ def rendered_stroke(
         ahead_position, ahead_speed, known = ahead.position, ahead.speed, ahead.fresh
     asked = np.where(known, _asked(texture, ahead_position, ahead_speed, time + lead), 0.0)
     start = min(float(wanted[0]), envelope.amplitude_limit) if sensor is None else 0.0
-    if compensation == "none":
-        drive = compensated_drive(asked, dt, envelope, "none", start)
-        command, top, bottom = drive.command, drive.saturated_top, drive.saturated_bottom
-    elif compensation == "inverse" or sensor is None:
-        goal = np.concatenate([[start], asked[:-1]])
+    if compensation == "preview" and sensor is not None:
+        command, top, bottom = _previewed(texture, envelope, time, ahead, known, dt, start)
+    else:
+        goal = asked if compensation == "none" else np.concatenate([[start], asked[:-1]])
         drive = compensated_drive(goal, dt, envelope, compensation, start)
         command, top, bottom = drive.command, drive.saturated_top, drive.saturated_bottom
-    else:
-        command, top, bottom = _previewed(texture, envelope, time, ahead, known, dt, start)
     # The envelope's sign is the carrier's phase; the finger meets its magnitude.
     amplitude = np.abs(envelope.response(command, dt, start))
     eyes = "position known" if sensor is None else f"{sensor.name} ({sensor.evidence})"
@@ -184,11 +181,8 @@ def _previewed(
 ) -> tuple[si.FloatArray, float, float]:
     """Commands where the way ahead is only predicted: at the estimated speed from each step on."""
     count = preview_samples(envelope, dt)
-    state, parameters, work = (
-        envelope.new_state(start),
-        envelope.parameters(dt),
-        preview_work(count),
-    )
+    state, parameters = envelope.new_state(start), envelope.parameters(dt)
+    work = preview_work(count)
     command, code = np.empty_like(time), np.empty(time.size, dtype=np.int64)
     further = np.arange(count) * dt
     for first in range(0, time.size, _WINDOW_ROWS):

@@ -34,27 +34,19 @@ Octaves = Annotated[int, si.AtLeast(1), si.AtMost(8)]
 Persistence = Annotated[si.Dimensionless, si.Above(0.0), si.AtMost(1.0)]
 
 
-def mixed(value: int) -> int:
-    """A 32-bit number mixed into another: "lowbias32"."""
-    value &= _MASK
-    value ^= value >> 16
+def mixed(value: Any) -> Any:
+    """A 32-bit number, or an array of them as `uint64`, mixed into another: "lowbias32"."""
+    value = value & _MASK
+    value = value ^ (value >> 16)
     value = (value * 0x7FEB352D) & _MASK
-    value ^= value >> 15
+    value = value ^ (value >> 15)
     value = (value * 0x846CA68B) & _MASK
     return value ^ (value >> 16)
 
 
-def _mixed_all(values: Any) -> Any:
-    values = values ^ (values >> np.uint64(16))
-    values = (values * np.uint64(0x7FEB352D)) & np.uint64(_MASK)
-    values = values ^ (values >> np.uint64(15))
-    values = (values * np.uint64(0x846CA68B)) & np.uint64(_MASK)
-    return values ^ (values >> np.uint64(16))
-
-
 def _hashed(numbers: si.FloatArray, state: Any, step: int) -> Any:
-    cells = numbers.astype(np.int64).astype(np.uint64) & np.uint64(_MASK)
-    return _mixed_all(state ^ ((cells * np.uint64(step)) & np.uint64(_MASK)))
+    cells = numbers.astype(np.int64).astype(np.uint64) & _MASK
+    return mixed(state ^ ((cells * step) & _MASK))
 
 
 def _weights(f: si.FloatArray) -> tuple[si.FloatArray, si.FloatArray, si.FloatArray, si.FloatArray]:
