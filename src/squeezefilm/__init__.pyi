@@ -50,6 +50,7 @@ if TYPE_CHECKING:
     from squeezefilm.render.texture.coordinate import Coordinate, Length, Place
     from squeezefilm.render.texture.gates import speed as speed
     from squeezefilm.render.texture.image import Image as _Image
+    from squeezefilm.render.texture.image import Share
     from squeezefilm.render.texture.levels import Amplitude as _Amplitude
     from squeezefilm.render.texture.levels import FrictionShare, VibrationAmplitude
     from squeezefilm.render.texture.levels import RelativeFriction as _RelativeFriction
@@ -247,7 +248,7 @@ if TYPE_CHECKING:
         """Values from 0 to 1 on a grid of square pixels, bilinear between their centres."""
         def __init__(
             self,
-            values: tuple[tuple[Dimensionless, ...], ...] | str,
+            values: tuple[tuple[Share, ...], ...] | str,
             pixel: Metre | str,
             left: Place | str = ...,
             bottom: Place | str = ...,

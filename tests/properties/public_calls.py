@@ -114,7 +114,7 @@ NOT_CALLED = {
     plate.elements.slabs.Slabs.mass_times
     plate.elements.slabs.Slabs.places plate.elements.slabs.Slabs.stiffness_times
     plate.elements.slabs.Slabs.weighted_sections render.opcodes.Assembler.emit
-    render.opcodes.Assembler.table render.texture.noise.mixed render.texture.coordinate.require_fade
+    render.opcodes.Assembler.table render.texture.coordinate.require_fade
     render.texture.noise.field_noise
     render.texture.noise.line_noise film.periodic.resolution.resolution_of
     film.periodic.solution.assembled
