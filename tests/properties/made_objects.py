@@ -77,7 +77,7 @@ from squeezefilm.render.resonator.compensation import (
 from squeezefilm.render.texture.composition import Composable, Texture
 from squeezefilm.render.texture.coordinate import AlongX, AlongY, Coordinate
 from squeezefilm.render.texture.levels import Amplitude, RelativeFriction
-from squeezefilm.render.texture.pattern import Pattern
+from squeezefilm.render.texture.pattern import Part, Pattern
 from squeezefilm.render.texture.shapes import SineWave, SquareWave
 
 BRASS = ElasticMaterial("brass", 100e9, 0.35, 8500.0, 200.0)
@@ -174,6 +174,7 @@ MADE: dict[Any, Callable[[], Any]] = {
     FrictionInverse: lambda: FrictionInverse.from_function(falling_friction, 2e-6),
     MotionEstimator: lambda: MotionEstimator.for_sensor(LVDT_10_KHZ),
     MotionModel: MotionModel,
+    Part: lambda: SINE,
     Pattern: lambda: SINE,
     Program: lambda: lower(Amplitude(SINE, 0.0, 1e-6), largest_amplitude=2e-6),
     Renderer: lambda: Renderer(MADE[Program]()),

@@ -126,6 +126,7 @@ NOT_CALLED = {
     plate.solid.volume.plate_volume render.texture.coordinate.Coordinate.at
     render.texture.coordinate.FromPoint.at render.fidelity.report.fidelity_report
     render.fidelity.report.strongest_lines
+    render.fidelity.trace.friction_of render.fidelity.trace.per_sample
     render.motion.estimator.MotionCounts.of render.program.renderer.counters_of
     """,
     "the real-time tick: it takes any floats, flags what it cannot use and never raises": """
