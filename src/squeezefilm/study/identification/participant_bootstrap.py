@@ -49,8 +49,7 @@ def resampled_counts(counts: ArrayLike, resamples: int, seed: int) -> si.IntArra
             f"counts of shape {whole.shape} hold fewer than 2 participants; an interval over "
             "people needs at least 2"
         )
-    if resamples < 1:
-        raise InputError(f"resamples = {resamples} cannot be used; it must be at least 1")
+    si.require("resamples", resamples, at_least=1)
     people = whole.shape[0]
     cells = whole.reshape(people, -1).astype(float)
     random = np.random.default_rng(seed)

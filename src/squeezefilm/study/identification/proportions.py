@@ -1,9 +1,11 @@
-"""Proportions with intervals, and tests of whether people did better than by guessing."""
+"""Proportions with intervals, of right answers and of every cell of a confusion matrix, and tests
+of whether people did better than by guessing."""
 
 from __future__ import annotations
 
 import math
-from typing import Literal
+from dataclasses import dataclass
+from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -18,37 +20,40 @@ from squeezefilm.study.identification.participant_bootstrap import (
     resampled_counts,
 )
 
+Method = Literal["Wilson", "Jeffreys", "Clopper–Pearson"]
+METHODS: tuple[Method, ...] = get_args(Method)
 
-def wilson_interval(successes: int, trials: int, level: si.Dimensionless = 0.95) -> Interval:
-    """Wilson's score interval of a proportion (1927, 10.1080/01621459.1927.10502953).
 
-    Raises `InputError` for counts that do not fit or a level not between 0 and 1.
+def proportion_interval(
+    successes: int, trials: int, level: si.Dimensionless = 0.95, method: Method = "Wilson"
+) -> Interval:
+    """An interval of a proportion; trials are taken as independent.
+
+    Wilson's score interval (1927, 10.1080/01621459.1927.10502953); the equal-tailed posterior
+    under Jeffreys' prior Beta(1/2, 1/2), whose bound at 0 or all successes is 0 or 1 (Brown, Cai &
+    DasGupta 2001, 10.1214/ss/1009213286); or the exact one of Clopper & Pearson (1934,
+    10.1093/biomet/26.4.404), which is never too short.
+
+    Raises:
+        InputError: counts that do not fit, or a level not between 0 and 1.
     """
-    return _by_scipy(successes, trials, level, "wilson", "Wilson")
-
-
-def jeffreys_interval(successes: int, trials: int, level: si.Dimensionless = 0.95) -> Interval:
-    """Equal-tailed posterior interval under Jeffreys' prior Beta(1/2, 1/2).
-
-    At 0 or all successes the bound at the end is 0 or 1 (Brown, Cai & DasGupta 2001,
-    10.1214/ss/1009213286). Raises as `wilson_interval`.
-    """
-    _check(successes, trials, level)
+    si.require("level", level, above=0.0, below=1.0)
+    if not 0 <= successes <= trials or trials < 1:
+        raise InputError(
+            f"{successes} successes of {trials} trials cannot be; successes must lie between 0 and "
+            "the trials, of which at least 1 is wanted"
+        )
+    if method != "Jeffreys":
+        exact = method == "Clopper–Pearson"
+        found = stats.binomtest(successes, trials).proportion_ci(
+            level, "exact" if exact else "wilson"
+        )
+        return Interval(float(found.low), float(found.high), level, method)
     posterior = stats.beta(successes + 0.5, trials - successes + 0.5)
     tail = (1 - level) / 2
     low = 0.0 if successes == 0 else float(posterior.ppf(tail))
     high = 1.0 if successes == trials else float(posterior.isf(tail))
-    return Interval(low, high, level, "Jeffreys")
-
-
-def clopper_pearson_interval(
-    successes: int, trials: int, level: si.Dimensionless = 0.95
-) -> Interval:
-    """The exact interval (Clopper & Pearson 1934, 10.1093/biomet/26.4.404): never too short.
-
-    Raises as `wilson_interval`.
-    """
-    return _by_scipy(successes, trials, level, "exact", "Clopper–Pearson")
+    return Interval(low, high, level, method)
 
 
 def participant_interval(
@@ -102,8 +107,7 @@ def permutation_test(
         InputError: matrices that are not square, or fewer than one permutation.
     """
     whole = _square(counts)
-    if permutations < 1:
-        raise InputError(f"permutations = {permutations} cannot be used; it must be at least 1")
+    si.require("permutations", permutations, at_least=1)
     observed = int(np.trace(whole, axis1=1, axis2=2).sum())
     answers, presented = whole.sum(axis=2), whole.sum(axis=1)
     if whole.shape[0] > 200:
@@ -147,14 +151,6 @@ def _normal_permutation(answers: si.IntArray, presented: si.IntArray, observed: 
     return float(stats.norm.sf(z))
 
 
-def _by_scipy(
-    successes: int, trials: int, level: float, method: Literal["exact", "wilson"], name: str
-) -> Interval:
-    _check(successes, trials, level)
-    found = stats.binomtest(successes, trials).proportion_ci(level, method)
-    return Interval(float(found.low), float(found.high), level, name)
-
-
 def _square(counts: ArrayLike) -> si.IntArray:
     whole = whole_counts(counts)
     if whole.ndim != 3 or whole.shape[1] != whole.shape[2]:
@@ -165,10 +161,75 @@ def _square(counts: ArrayLike) -> si.IntArray:
     return whole
 
 
-def _check(successes: int, trials: int, level: float) -> None:
+@dataclass(frozen=True, slots=True, eq=False)
+class ConfusionPosterior:
+    """Posterior of the answer probabilities; arrays of shape (answers, stimuli).
+
+    Trials are taken as independent draws of one person or of people who are alike: where people
+    differ the intervals are too short, and the participant bootstrap is the one to quote.
+
+    Attributes:
+        matrix: the data.
+        prior: Dirichlet parameter of every cell (1).
+        level: of the intervals.
+        mean: posterior means.
+        low, high: bounds of equal-tailed intervals of single cells.
+        proportion_correct: interval of the mean of the diagonal, every stimulus counting the same;
+            None where rows and columns do not pair up.
+    """
+
+    matrix: ConfusionMatrix
+    prior: si.Dimensionless
+    level: si.Dimensionless
+    mean: si.DimensionlessArray
+    low: si.DimensionlessArray
+    high: si.DimensionlessArray
+    proportion_correct: Interval | None
+
+
+def confusion_posterior(
+    matrix: ConfusionMatrix,
+    prior: si.Dimensionless | None = None,
+    level: si.Dimensionless = 0.95,
+    samples: int = 20_000,
+    seed: int = 0,
+) -> ConfusionPosterior:
+    """The posterior of a confusion matrix with independent Dirichlet columns.
+
+    A cell's marginal is Beta(n_ij + a, N_j − n_ij + (k − 1) a), in closed form. The proportion
+    correct is a mean of Beta variables and is sampled.
+
+    Args:
+        matrix: the data.
+        prior: Dirichlet parameter a of every cell; 1/answers if None (Perks' prior, which weighs
+            as much as one trial per column whatever the number of answers); above 0.
+        level: of the intervals.
+        samples, seed: of the proportion correct.
+
+    Raises:
+        InputError: a prior not above 0, a level not between 0 and 1, fewer than 100 samples.
+    """
+    answers = len(matrix.answers)
+    a = 1.0 / answers if prior is None else float(prior)
+    si.require("prior", a, above=0.0)
     si.require("level", level, above=0.0, below=1.0)
-    if not 0 <= successes <= trials or trials < 1:
-        raise InputError(
-            f"{successes} successes of {trials} trials cannot be; successes must lie between 0 and "
-            "the trials, of which at least 1 is wanted"
-        )
+    si.require("samples", samples, at_least=100)
+    ones = matrix.counts + a
+    others = ones.sum(axis=0) - ones
+    tail = (1 - level) / 2
+    marginal = stats.beta(ones, others)
+    correct = None
+    if matrix.is_square:
+        random = np.random.default_rng(seed)
+        diagonal = random.beta(np.diag(ones), np.diag(others), size=(samples, answers))
+        low, high = np.quantile(diagonal.mean(axis=1), [tail, 1 - tail])
+        correct = Interval(float(low), float(high), level, f"Dirichlet posterior, prior {a:g}")
+    return ConfusionPosterior(
+        matrix,
+        a,
+        level,
+        ones / ones.sum(axis=0),
+        np.asarray(marginal.ppf(tail)),
+        np.asarray(marginal.isf(tail)),
+        correct,
+    )
