@@ -25,11 +25,11 @@ from squeezefilm.study.identification.information import (
     ordered_observer,
     transfer_of,
 )
-from squeezefilm.study.identification.participant_bootstrap import (
+from squeezefilm.study.identification.power import DirichletParticipants
+from squeezefilm.study.identification.proportions import (
     recentred_interval,
     resampled_counts,
 )
-from squeezefilm.study.identification.power import DirichletParticipants
 
 TABLES = arrays(np.int64, (4, 3), elements=st.integers(0, 9)).filter(
     lambda n: bool(np.all(n.sum(axis=0) > 1))

@@ -9,15 +9,20 @@ the conditions their places in the square, once per run through its rows.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Literal
+import dataclasses
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from typing import Any, Literal
 
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.study.design.study_design import CatchTrial, Condition, Order, StudyDesign
+from squeezefilm.study.design.special_trials import CatchTrial
+from squeezefilm.study.design.study_design import Condition, Order, StudyDesign
 
 Phase = Literal["familiarisation", "practice", "main", "catch"]
+_LISTS = ("stimuli", "alternatives")
 _ORDERS, _MATCHING, _SPREAD, _PRACTICE, _NOISE = range(5)
 
 
@@ -34,10 +39,10 @@ class Trial:
         alternatives: answers that may be given, in the order in which they are offered; empty
             where any number may be given, or none is asked for.
         answer: what is right; an empty text where nothing is.
-        adaptive: the series that chooses the stimuli, if any.
-        reference_first: whether an adaptive series presents the reference first.
         pause: rest before this trial (s).
         seed: of whatever is random while it is presented.
+        adaptive: the series that chooses the stimuli, if any.
+        reference_first: whether an adaptive series presents the reference first.
     """
 
     number: int
@@ -47,10 +52,10 @@ class Trial:
     stimuli: Condition
     alternatives: tuple[str, ...]
     answer: str
-    adaptive: str
-    reference_first: bool
     pause: si.Second
     seed: int
+    adaptive: str = ""
+    reference_first: bool = False
 
     @property
     def asks(self) -> bool:
@@ -61,6 +66,19 @@ class Trial:
     def feedback(self) -> bool:
         """Whether the participant is told what was right."""
         return self.phase == "practice"
+
+    def row(self) -> dict[str, Any]:
+        """The trial as a study's file holds it: lists as JSON, the pause with its unit."""
+        row = dataclasses.asdict(self)
+        row["pause_s"] = row.pop("pause")
+        return row | {name: json.dumps(row[name]) for name in _LISTS}
+
+    @classmethod
+    def of_row(cls, row: Mapping[str, Any]) -> Trial:
+        """The trial of a row that `row` made."""
+        lists = {name: tuple(json.loads(row[name])) for name in _LISTS}
+        own = {"pause": row["pause_s"], "reference_first": bool(row["reference_first"]), **lists}
+        return cls(**{one.name: row[one.name] for one in fields(cls) if one.name not in own}, **own)
 
 
 def latin_square(size: int) -> tuple[tuple[int, ...], ...]:
@@ -176,21 +194,9 @@ def _display_trials(
     def add(block: int, phase: Phase, one: Condition, pause: float = 0.0, answer: str = "") -> None:
         if phase in ("practice", "main"):
             answer = design.answer_to(*(design.stimulus(name) for name in one))
-        found.append(
-            Trial(
-                number=len(found) + 1,
-                display=display,
-                block=block,
-                phase=phase,
-                stimuli=one,
-                alternatives=() if phase == "familiarisation" else offered,
-                answer=answer,
-                adaptive="",
-                reference_first=False,
-                pause=pause,
-                seed=_trial_seed(seed, participant, len(found) + 1),
-            )
-        )
+        number, answers = len(found) + 1, () if phase == "familiarisation" else offered
+        noise = _trial_seed(seed, participant, number)
+        found.append(Trial(number, display, block, phase, one, answers, answer, pause, noise))
 
     pause = design.break_between_blocks if place else 0.0
     felt = names if design.task == "match-to-sample" else [one.name for one in design.stimuli]
@@ -259,17 +265,17 @@ def _adaptive_trials(
         answer = "second" if reference_first else "first"
         found.append(
             Trial(
-                number=len(found) + 1,
-                display=display,
-                block=position // size + 1,
-                phase="main" if caught is None else "catch",
-                stimuli=() if caught is None else design.catch_condition(caught),
-                alternatives=design.answers,
-                answer=answer if caught is None else caught.answer,
-                adaptive=name,
-                reference_first=reference_first,
-                pause=design.break_between_blocks if rest else 0.0,
-                seed=_trial_seed(seed, participant, len(found) + 1),
+                len(found) + 1,
+                display,
+                position // size + 1,
+                "main" if caught is None else "catch",
+                () if caught is None else design.catch_condition(caught),
+                design.answers,
+                answer if caught is None else caught.answer,
+                design.break_between_blocks if rest else 0.0,
+                _trial_seed(seed, participant, len(found) + 1),
+                name,
+                reference_first,
             )
         )
 

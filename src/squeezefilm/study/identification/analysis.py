@@ -23,10 +23,10 @@ from squeezefilm.study.identification.confusion import ConfusionMatrix, particip
 from squeezefilm.study.identification.exploration import ConditionMean, condition_means
 from squeezefilm.study.identification.information import InformationTransfer, information_transfer
 from squeezefilm.study.identification.mixed_models import MixedModel, mixed_model
-from squeezefilm.study.identification.participant_bootstrap import Interval
 from squeezefilm.study.identification.proportions import (
     METHODS,
     ConfusionPosterior,
+    Interval,
     chance_test,
     confusion_posterior,
     participant_interval,

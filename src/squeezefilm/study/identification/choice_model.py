@@ -142,15 +142,12 @@ def _bias(fitted: si.FloatArray) -> si.FloatArray:
     linked = (p > 0) & (p.T > 0) & ~np.eye(k, dtype=bool)
     # Answers without a common confusion have no bias against each other; least squares of the
     # smallest length then gives those groups the same geometric mean.
-    rows, values = [], []
-    for i, j in np.argwhere(np.triu(linked)):
-        row = np.zeros(k)
-        row[i], row[j] = 1.0, -1.0
-        rows.append(row)
-        values.append(0.5 * np.log(p[i, j] * p[i, i] / (p[j, i] * p[j, j])))
-    if not rows:
+    i, j = np.nonzero(np.triu(linked))
+    if not i.size:
         return np.full(k, 1.0 / k)
-    logs = np.linalg.lstsq(np.array(rows), np.array(values), rcond=None)[0]
+    rows = np.eye(k)[i] - np.eye(k)[j]
+    values = 0.5 * np.log(p[i, j] * p[i, i] / (p[j, i] * p[j, j]))
+    logs = np.linalg.lstsq(rows, values, rcond=None)[0]
     bias = np.exp(logs - logs.max())
     return np.asarray(bias / bias.sum())
 

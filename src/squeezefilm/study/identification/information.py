@@ -24,7 +24,7 @@ from scipy.special import digamma, gammaln, ndtr, polygamma
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.study.identification.confusion import whole_counts
-from squeezefilm.study.identification.participant_bootstrap import (
+from squeezefilm.study.identification.proportions import (
     Interval,
     recentred_interval,
     resampled_counts,

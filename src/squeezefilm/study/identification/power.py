@@ -244,9 +244,5 @@ def _significant(
 
 
 def _first_lasting(sizes: tuple[int, ...], reached: NDArray[np.bool_]) -> int | None:
-    found = None
-    for people, good in zip(reversed(sizes), reversed(reached.tolist()), strict=True):
-        if not good:
-            break
-        found = people
-    return found
+    lasting = np.flip(np.logical_and.accumulate(np.flip(reached)))
+    return sizes[int(np.argmax(lasting))] if lasting.any() else None

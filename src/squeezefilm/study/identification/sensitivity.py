@@ -18,7 +18,7 @@ from scipy.special import ndtr
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.study.identification.confusion import goodness_of_fit, whole_counts
-from squeezefilm.study.identification.participant_bootstrap import (
+from squeezefilm.study.identification.proportions import (
     recentred_interval,
     resampled_counts,
 )

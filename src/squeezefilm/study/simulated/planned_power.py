@@ -74,7 +74,8 @@ def planned_power(
     Raises:
         InputError: names that are not in the design, or what the simulation refuses.
     """
-    a, b = (_number(design, name) for name in (first, second))
+    asked = dataclasses.replace(design, catch=())
+    a, b = (design.stimuli.index(asked.stimulus(name)) for name in (first, second))
     alone = _on_one_display(design, display)
     tell = progress or (lambda _: None)
     tables = chain_tables(alone, observer, progress=tell)
@@ -93,17 +94,6 @@ def planned_power(
     whole = distinction(pool.participant_counts(), a, b).score
     where = alone.displays[0]
     return PlannedPower(design.name, where, first, second, observer.name, curve, whole, seed)
-
-
-def _number(design: StudyDesign, name: str) -> int:
-    """Which stimulus of a design has a name. Raises `InputError` where none has."""
-    names = [one.name for one in design.stimuli]
-    if name not in names:
-        raise InputError(
-            f"design '{design.name}' has no stimulus '{name}'.{si.did_you_mean(name, names)} "
-            f"It has: {', '.join(names)}"
-        )
-    return names.index(name)
 
 
 def _on_one_display(design: StudyDesign, display: str | None) -> StudyDesign:

@@ -18,14 +18,15 @@ from squeezefilm.study.identification.confusion import (
     confusion_matrix,
     participant_counts,
 )
-from squeezefilm.study.identification.participant_bootstrap import expansion, resampled_counts
 from squeezefilm.study.identification.proportions import (
     METHODS,
     chance_test,
     confusion_posterior,
+    expansion,
     participant_interval,
     permutation_test,
     proportion_interval,
+    resampled_counts,
 )
 
 NAMES = ("a", "b", "c")
