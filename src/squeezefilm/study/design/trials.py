@@ -39,10 +39,10 @@ class Trial:
         alternatives: answers that may be given, in the order in which they are offered; empty
             where any number may be given, or none is asked for.
         answer: what is right; an empty text where nothing is.
-        pause: rest before this trial (s).
-        seed: of whatever is random while it is presented.
         adaptive: the series that chooses the stimuli, if any.
         reference_first: whether an adaptive series presents the reference first.
+        pause: rest before this trial (s).
+        seed: of whatever is random while it is presented.
     """
 
     number: int
@@ -52,10 +52,10 @@ class Trial:
     stimuli: Condition
     alternatives: tuple[str, ...]
     answer: str
+    adaptive: str
+    reference_first: bool
     pause: si.Second
     seed: int
-    adaptive: str = ""
-    reference_first: bool = False
 
     @property
     def asks(self) -> bool:
@@ -194,9 +194,21 @@ def _display_trials(
     def add(block: int, phase: Phase, one: Condition, pause: float = 0.0, answer: str = "") -> None:
         if phase in ("practice", "main"):
             answer = design.answer_to(*(design.stimulus(name) for name in one))
-        number, answers = len(found) + 1, () if phase == "familiarisation" else offered
-        noise = _trial_seed(seed, participant, number)
-        found.append(Trial(number, display, block, phase, one, answers, answer, pause, noise))
+        found.append(
+            Trial(
+                number=len(found) + 1,
+                display=display,
+                block=block,
+                phase=phase,
+                stimuli=one,
+                alternatives=() if phase == "familiarisation" else offered,
+                answer=answer,
+                adaptive="",
+                reference_first=False,
+                pause=pause,
+                seed=_trial_seed(seed, participant, len(found) + 1),
+            )
+        )
 
     pause = design.break_between_blocks if place else 0.0
     felt = names if design.task == "match-to-sample" else [one.name for one in design.stimuli]
@@ -265,17 +277,17 @@ def _adaptive_trials(
         answer = "second" if reference_first else "first"
         found.append(
             Trial(
-                len(found) + 1,
-                display,
-                position // size + 1,
-                "main" if caught is None else "catch",
-                () if caught is None else design.catch_condition(caught),
-                design.answers,
-                answer if caught is None else caught.answer,
-                design.break_between_blocks if rest else 0.0,
-                _trial_seed(seed, participant, len(found) + 1),
-                name,
-                reference_first,
+                number=len(found) + 1,
+                display=display,
+                block=position // size + 1,
+                phase="main" if caught is None else "catch",
+                stimuli=() if caught is None else design.catch_condition(caught),
+                alternatives=design.answers,
+                answer=answer if caught is None else caught.answer,
+                adaptive=name,
+                reference_first=reference_first,
+                pause=design.break_between_blocks if rest else 0.0,
+                seed=_trial_seed(seed, participant, len(found) + 1),
             )
         )
 
