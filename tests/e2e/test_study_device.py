@@ -20,11 +20,14 @@ from squeezefilm.perception.stimuli import Grating, Stimulus
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ
 from squeezefilm.session.loop import rows as column
 from squeezefilm.session.record.trace import read_trace
-from squeezefilm.study.conduct.exposure import Exposure
 from squeezefilm.study.conduct.played_device import SessionDevice
 from squeezefilm.study.conduct.run import Acknowledgement, Presentation, StudyRun
-from squeezefilm.study.conduct.session_conditions import SessionConditions
-from squeezefilm.study.conduct.sessions import begin_session, end_session
+from squeezefilm.study.conduct.sessions import (
+    Exposure,
+    SessionConditions,
+    begin_session,
+    end_session,
+)
 from squeezefilm.study.conduct.study_device import NoDevice, StudyDevice
 from squeezefilm.study.conduct.trial_by_trial import conduct
 from squeezefilm.study.design.study_design import StudyDesign

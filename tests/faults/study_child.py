@@ -19,8 +19,7 @@ from pathlib import Path
 from squeezefilm.errors import RecordError
 from squeezefilm.perception.stimuli import Stimulus
 from squeezefilm.study.conduct.run import Acknowledgement, Presentation, StudyRun
-from squeezefilm.study.conduct.session_conditions import SessionConditions
-from squeezefilm.study.conduct.sessions import begin_session
+from squeezefilm.study.conduct.sessions import SessionConditions, begin_session
 from squeezefilm.study.conduct.study_device import DeviceIdentity, DeviceVerification, Exploration
 from squeezefilm.study.conduct.trial_by_trial import conduct
 from squeezefilm.study.record.store import StudyStore

@@ -166,8 +166,7 @@ def test_a_full_disk_acknowledges_nothing_and_the_run_goes_on(tmp_path: Path) ->
 def test_a_database_that_may_not_grow_acknowledges_nothing(tmp_path: Path) -> None:
     from squeezefilm.errors import RecordError
     from squeezefilm.study.conduct.run import Response, StudyRun
-    from squeezefilm.study.conduct.session_conditions import SessionConditions
-    from squeezefilm.study.conduct.sessions import begin_session
+    from squeezefilm.study.conduct.sessions import SessionConditions, begin_session
     from squeezefilm.study.conduct.study_device import NoDevice
 
     path = tmp_path / "study.sqlite"

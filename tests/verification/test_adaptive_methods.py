@@ -9,7 +9,7 @@ import pytest
 
 from squeezefilm.errors import InputError
 from squeezefilm.study.adaptive.bayesian import AdaptiveDesign, BayesianAdaptive
-from squeezefilm.study.adaptive.staircase import Staircase, StaircaseRule, staircase_target
+from squeezefilm.study.adaptive.staircase import Staircase, StaircaseRule
 from squeezefilm.study.psychometric.function import PsychometricFunction
 from squeezefilm.study.psychometric.prior import PsychometricPrior
 
@@ -18,16 +18,20 @@ STIMULI = tuple(np.linspace(0.0, 10.0, 21))
 PERSON = PsychometricFunction("logistic", 5.0, 3.0, 0.5, 0.02)
 
 
+def target_of(down_after: int, up_ratio: float = 1.0) -> float:
+    return StaircaseRule(5.0, 1.0, 0.5, down_after, up_ratio).target
+
+
 @pytest.mark.parametrize(
     ("down_after", "percent"), [(1, 50.0), (2, 70.7), (3, 79.4), (4, 84.1), (5, 87.1)]
 )
 def test_targets_of_levitt(down_after: int, percent: float) -> None:
-    assert 100 * staircase_target(down_after) == pytest.approx(percent, abs=0.05)
+    assert 100 * target_of(down_after) == pytest.approx(percent, abs=0.05)
 
 
 def test_target_of_kaernbach() -> None:
     # A step up three times the step down settles at 75 %.
-    assert staircase_target(1, 3.0, 1.0) == pytest.approx(0.75)
+    assert target_of(1, 3.0) == pytest.approx(0.75)
 
 
 def mean_of_stationary_distribution(down_after: int, up_ratio: int, step: float) -> float:
@@ -58,7 +62,7 @@ def mean_of_stationary_distribution(down_after: int, up_ratio: int, step: float)
 @pytest.mark.parametrize(("down_after", "up_ratio"), [(1, 1), (1, 3), (2, 1), (3, 1)])
 def test_small_steps_settle_at_the_target(down_after: int, up_ratio: int) -> None:
     function = PsychometricFunction("logistic", 0.0, 4.0)
-    goal = function.intensity(staircase_target(down_after, up_ratio, 1.0))
+    goal = function.intensity(target_of(down_after, up_ratio))
     errors = [
         abs(mean_of_stationary_distribution(down_after, up_ratio, step) - goal)
         for step in (0.2, 0.1, 0.05)

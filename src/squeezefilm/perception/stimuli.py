@@ -130,9 +130,8 @@ class Stimulus(_Periodic):
         A friction depth lowers the grooves and leaves the ridges.
         Raises `InputError` for a value outside its range.
         """
-        if varied == "friction_depth":
-            return dataclasses.replace(self, name=name, low=self.high - value, matches="")
-        changed: dict[str, Any] = {varied: value}
+        deeper = varied == "friction_depth"
+        changed: dict[str, Any] = {"low": self.high - value} if deeper else {varied: value}
         return dataclasses.replace(self, name=name, matches="", **changed)
 
 

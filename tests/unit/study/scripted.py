@@ -5,10 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from squeezefilm.perception.stimuli import Grating, Stimulus
-from squeezefilm.study.conduct.exposure import Exposure
 from squeezefilm.study.conduct.run import Acknowledgement, Presentation, StudyRun
-from squeezefilm.study.conduct.session_conditions import SessionConditions
-from squeezefilm.study.conduct.sessions import begin_session
+from squeezefilm.study.conduct.sessions import Exposure, SessionConditions, begin_session
 from squeezefilm.study.conduct.study_device import (
     DeviceIdentity,
     DeviceVerification,
@@ -17,7 +15,8 @@ from squeezefilm.study.conduct.study_device import (
     StudyDevice,
 )
 from squeezefilm.study.conduct.trial_by_trial import conduct
-from squeezefilm.study.design.study_design import AdaptiveCondition, StudyDesign
+from squeezefilm.study.design.special_trials import AdaptiveCondition
+from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.record.store import StudyStore
 
 LOUD = Exposure("biet2008-plate", 33e3, 0.5, 124.0, 1200.0, 100.0, "somebody 1984", "estimated")

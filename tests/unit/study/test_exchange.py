@@ -16,12 +16,11 @@ from hypothesis import strategies as st
 
 from squeezefilm.errors import InputError
 from squeezefilm.study.conduct.run import StudyRun
-from squeezefilm.study.conduct.session_conditions import SessionConditions
-from squeezefilm.study.conduct.sessions import begin_session
+from squeezefilm.study.conduct.sessions import SessionConditions, begin_session
 from squeezefilm.study.conduct.trial_by_trial import conduct
 from squeezefilm.study.record.exports import export_study, exported_folders
 from squeezefilm.study.record.store import StudyStore
-from squeezefilm.study.record.trial_table import (
+from squeezefilm.study.record.tables import (
     COLUMNS,
     Column,
     cell_text,

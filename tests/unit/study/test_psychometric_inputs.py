@@ -141,8 +141,9 @@ def test_states_that_are_none() -> None:
         Staircase.from_state({"rule": {"start": 1.0}})
     with pytest.raises(InputError, match="no Bayesian method's state"):
         BayesianAdaptive.from_state({"design": {}})
-    with pytest.raises(InputError, match="no prior's state"):
-        PsychometricPrior.from_state({"threshold": [1.0]})
+    for prior in ({"threshold": [1.0]}, {"threshold": [1.0], "width": [1.0, 2.0]}):
+        with pytest.raises(InputError, match="no Bayesian method's state"):
+            BayesianAdaptive.from_state({"design": {"prior": prior}})
 
 
 def test_a_finished_choice_says_so() -> None:

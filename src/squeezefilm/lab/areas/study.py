@@ -29,8 +29,8 @@ from squeezefilm.lab.studying.jobs import analysis_of, rehearsed, report_of
 from squeezefilm.lab.studying.studies import Studies
 from squeezefilm.lab.wire import Answer, Request
 from squeezefilm.lab.worker import PAGE
-from squeezefilm.study.conduct.exposure import Exposure, exposure
 from squeezefilm.study.conduct.run import Response
+from squeezefilm.study.conduct.sessions import Exposure, exposure
 from squeezefilm.study.conduct.study_device import (
     DeviceIdentity,
     DeviceVerification,

@@ -16,19 +16,23 @@ from squeezefilm.errors import InputError
 from squeezefilm.lab.files import existing, fresh
 from squeezefilm.perception.stimuli import Stimulus
 from squeezefilm.results import to_json
-from squeezefilm.study.conduct.exposure import Exposure
 from squeezefilm.study.conduct.run import Response, StudyRun
-from squeezefilm.study.conduct.session_conditions import SessionConditions
-from squeezefilm.study.conduct.sessions import begin_session, display_wanted, end_session
+from squeezefilm.study.conduct.sessions import (
+    Exposure,
+    SessionConditions,
+    begin_session,
+    display_wanted,
+    end_session,
+)
 from squeezefilm.study.conduct.study_device import StudyDevice
 from squeezefilm.study.design.study_design import StudyDesign, load_design
 from squeezefilm.study.design.trials import expected_duration, trial_count
 from squeezefilm.study.record.deletion import delete_participant
 from squeezefilm.study.record.exports import export_study
 from squeezefilm.study.record.merge import merge
-from squeezefilm.study.record.origin import origin_of
 from squeezefilm.study.record.sittings import FILE, Sitting, Sittings
 from squeezefilm.study.record.store import StudyStore
+from squeezefilm.study.record.tables import origin_of
 
 SUFFIX = ".sqlite"
 CONSENT = (

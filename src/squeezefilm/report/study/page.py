@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from squeezefilm.study.identification.analysis import IdentificationAnalysis
-    from squeezefilm.study.identification.participant_bootstrap import Interval
     from squeezefilm.study.identification.power import PowerCurve
+    from squeezefilm.study.identification.proportions import Interval
 
 
 def write_study(

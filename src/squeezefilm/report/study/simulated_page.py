@@ -14,7 +14,7 @@ from squeezefilm.report.kit.folder import json_text, require_folder, write_folde
 from squeezefilm.report.kit.numbers import printable
 from squeezefilm.report.kit.page_style import page_head, section, text_table
 from squeezefilm.report.study import observer_figures
-from squeezefilm.study.record.trial_table import Column, csv_text
+from squeezefilm.study.record.tables import Column, csv_text
 from squeezefilm.study.simulated.participants import SimulatedStudy
 
 REMARK = (

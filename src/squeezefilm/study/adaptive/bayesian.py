@@ -16,6 +16,7 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.from_text import reads_text
+from squeezefilm.results import to_json
 from squeezefilm.study.psychometric import kernel
 from squeezefilm.study.psychometric.function import Axis, Shape, on_axis, shape_code
 from squeezefilm.study.psychometric.prior import PsychometricPrior
@@ -87,12 +88,7 @@ class BayesianAdaptive:
         self._nodes = nodes
         self._places = on_axis(np.array(design.stimuli), axis)
         self._table = self._probabilities(self._places)
-        q = 1.0 - self._table
-        # Binary entropy; the logarithm is nought where the probability is.
-        self._entropy = -(
-            self._table * np.log(np.maximum(self._table, 1e-300))
-            + q * np.log(np.maximum(q, 1e-300))
-        )
+        self._entropy = _binary_entropy(self._table)
         self._weights = np.full(self._table.shape[0], 1.0 / self._table.shape[0])
         self._trials: list[AdaptiveTrial] = []
 
@@ -196,15 +192,9 @@ class BayesianAdaptive:
 
     def state(self) -> dict[str, Any]:
         """Design and answers, as JSON holds them."""
-        design: dict[str, Any] = {
-            name: getattr(self.design, name) for name in self.design.__slots__
-        }
-        design["stimuli"] = list(self.design.stimuli)
-        design["cells"] = list(self.design.cells)
-        design["prior"] = self.design.prior.state()
         return {
             "method": "bayesian-adaptive",
-            "design": design,
+            "design": to_json(self.design),
             "trials": [[trial.intensity, trial.positive] for trial in self._trials],
         }
 
@@ -217,14 +207,15 @@ class BayesianAdaptive:
         """
         try:
             design = dict(state["design"])
-            design["prior"] = PsychometricPrior.from_state(design["prior"])
-            design["stimuli"] = tuple(float(one) for one in design["stimuli"])
-            a, b, c = design["cells"]
-            design["cells"] = (int(a), int(b), int(c))
+            prior = {name: (low, high) for name, (low, high) in design["prior"].items()}
+            design["prior"] = PsychometricPrior(**prior)
+            design |= {name: tuple(design[name]) for name in ("stimuli", "cells")}
             method = cls(AdaptiveDesign(**design))
             for intensity, positive in state["trials"]:
                 method.update(float(intensity), bool(positive))
-        except (KeyError, TypeError) as error:
+        except InputError:
+            raise
+        except (KeyError, TypeError, ValueError) as error:
             raise InputError(
                 f"this is no Bayesian method's state: {error!r} is at fault"
             ) from error
@@ -233,4 +224,5 @@ class BayesianAdaptive:
 
 def _binary_entropy(p: si.FloatArray) -> si.FloatArray:
     q = 1.0 - p
+    # The logarithm is nought where the probability is.
     return np.asarray(-(p * np.log(np.maximum(p, 1e-300)) + q * np.log(np.maximum(q, 1e-300))))

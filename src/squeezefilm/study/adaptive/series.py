@@ -3,28 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Protocol
 
 import numpy as np
 
 from squeezefilm.study.adaptive.bayesian import AdaptiveDesign, BayesianAdaptive
 from squeezefilm.study.adaptive.staircase import Staircase, StaircaseRule
-from squeezefilm.study.design.study_design import AdaptiveCondition
+from squeezefilm.study.design.special_trials import AdaptiveCondition
 from squeezefilm.study.psychometric.prior import PsychometricPrior
 
 _CHOICES = 40
 
 
-class AdaptiveMethod(Protocol):
-    """What a run asks of an adaptive method."""
-
-    def next_stimulus(self) -> float:
-        """The intensity to present next."""
-        ...
-
-    def update(self, intensity: float, correct: bool, /) -> None:
-        """Take in an answer."""
-        ...
+AdaptiveMethod = Staircase | BayesianAdaptive
 
 
 def adaptive_method(

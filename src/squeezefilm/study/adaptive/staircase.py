@@ -13,24 +13,8 @@ from typing import Any
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
+from squeezefilm.results import to_json
 from squeezefilm.study.psychometric.function import AXES, Axis
-
-
-def staircase_target(
-    down_after: int, step_up: float = 1.0, step_down: float = 1.0
-) -> si.Dimensionless:
-    """Probability of a correct answer at which a staircase settles: (s₊/(s₊ + s₋))^(1/n).
-
-    There the expected steps up and down cancel: pⁿ s₋ = (1 − pⁿ) s₊. 70.7 % for two down, one up
-    (Levitt 1971), s₊/(s₊ + s₋) for a weighted staircase (Kaernbach 1991). Holds for small steps.
-
-    Raises:
-        InputError: a value outside its range.
-    """
-    si.require("down_after", down_after, at_least=1)
-    si.require("step_up", step_up, above=0.0)
-    si.require("step_down", step_down, above=0.0)
-    return float((step_up / (step_up + step_down)) ** (1.0 / down_after))
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,8 +65,12 @@ class StaircaseRule:
 
     @property
     def target(self) -> si.Dimensionless:
-        """Probability of a correct answer at which it settles."""
-        return staircase_target(self.down_after, self.up_ratio, 1.0)
+        """Probability of a correct answer at which it settles: (s₊/(s₊ + s₋))^(1/n).
+
+        There the expected steps up and down cancel: pⁿ s₋ = (1 − pⁿ) s₊. 70.7 % for two down, one
+        up (Levitt 1971), s₊/(s₊ + s₋) for a weighted staircase (Kaernbach 1991). Holds for small
+        steps."""
+        return float((self.up_ratio / (self.up_ratio + 1.0)) ** (1.0 / self.down_after))
 
 
 @dataclass(frozen=True, slots=True)
@@ -187,13 +175,9 @@ class Staircase:
 
     def state(self) -> dict[str, Any]:
         """Rule and answers, as JSON holds them."""
-        rule = {name: getattr(self.rule, name) for name in self.rule.__slots__}
-        for name in ("lowest", "highest"):
-            # JSON has no infinity.
-            rule[name] = rule[name] if math.isfinite(rule[name]) else None
         return {
             "method": "staircase",
-            "rule": rule,
+            "rule": to_json(self.rule),
             "trials": [[trial.intensity, trial.correct] for trial in self._trials],
         }
 
@@ -205,9 +189,8 @@ class Staircase:
             InputError: a state that is none.
         """
         try:
-            rule = dict(state["rule"])
-            rule["lowest"] = -math.inf if rule["lowest"] is None else rule["lowest"]
-            rule["highest"] = math.inf if rule["highest"] is None else rule["highest"]
+            # JSON has no infinity: a bound that is none is left out.
+            rule = {key: value for key, value in state["rule"].items() if value is not None}
             staircase = cls(StaircaseRule(**rule))
             for intensity, correct in state["trials"]:
                 staircase.update(float(intensity), bool(correct))

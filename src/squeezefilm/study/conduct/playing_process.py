@@ -14,6 +14,7 @@ from __future__ import annotations
 import contextlib
 import math
 import signal
+from collections.abc import Callable
 from dataclasses import dataclass
 from multiprocessing.connection import Connection
 from pathlib import Path
@@ -23,19 +24,20 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.bench.play import device_stream
-from squeezefilm.bench.resonance_sweep import sweep_resonance
+from squeezefilm.bench.resonance_sweep import ResonanceSweep, sweep_resonance
 from squeezefilm.bench.setup import KnownDevice, PlaySetup, play_setup
 from squeezefilm.chain.prediction import predict
 from squeezefilm.device.host import DeviceHost
 from squeezefilm.device.serial_ports import SerialDrive
 from squeezefilm.device.wire.link import Link
-from squeezefilm.device.wire.safety import require_safe_drive
+from squeezefilm.device.wire.safety import Limits, require_safe_drive
 from squeezefilm.device.wire.states import State
 from squeezefilm.device.wire.streams import open_stream
 from squeezefilm.display import Display, load_display
 from squeezefilm.errors import SqueezefilmError
 from squeezefilm.formats.traces import Table, csv_text
 from squeezefilm.perception.stimuli import Stimulus
+from squeezefilm.plate.working_mode import WorkingMode
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ
 from squeezefilm.results import stamp
 from squeezefilm.session.loop import rows as column
@@ -59,6 +61,10 @@ _POINTS = 41
 _SETTLE = 10.0
 """Time constants waited at each carrier: e⁻¹⁰ of the change is left."""
 _PATH = ("time_s", "x_m", "y_m", "speed_m_per_s", "amplitude_m", "relative_friction")
+
+
+Sweep = Callable[[Limits, si.HertzArray, si.Volt, si.Second], ResonanceSweep | None]
+"""Sweeps carriers within limits at a voltage, settling at each; None without a pickup."""
 
 
 @dataclass(frozen=True)
@@ -115,40 +121,17 @@ class Bench:
 
     def verification(self) -> DeviceVerification:
         """The resonance swept on the device, with no finger (a twin's lifts it)."""
-        display, orders = self._loaded(), self._orders
-        predicted = predict(display)
-        mode, volts = predicted.mode, VERIFICATION_SHARE * display.drive.voltage
-        limits = display.limits(mode.resonance_frequency, volts, twin=self._orders.drive == "twin")
-        half = _SPAN * mode.resonance_frequency / (2 * mode.quality_factor)
-        carriers = np.linspace(
-            max(limits.lowest_frequency, mode.resonance_frequency - half),
-            min(limits.highest_frequency, mode.resonance_frequency + half),
-            _POINTS,
-        )
-        settle = _SETTLE * mode.quality_factor / (math.pi * mode.resonance_frequency)
+        display, twin = self._loaded(), self._orders.drive == "twin"
+        per_volt = self._amplitude_per_pickup
+        return resonance_verified(display, predict(display).mode, per_volt, self._swept, twin=twin)
+
+    def _swept(
+        self, limits: Limits, carriers: si.HertzArray, voltage: si.Volt, settle: si.Second
+    ) -> ResonanceSweep | None:
         with contextlib.closing(open_stream(self._streaming("none"))) as stream:
             host = DeviceHost(Link(stream))
-            require_safe_drive(SerialDrive(host, 1 / orders.rate), limits, study=True)
-            swept = sweep_resonance(host, limits, carriers, volts, settle=settle)
-        if swept is None:
-            return DeviceVerification(
-                measurable=False, remark="the device has no pickup: nothing was verified"
-            )
-        frequency, signal_at_peak = swept.peak
-        per_volt = self._amplitude_per_pickup
-        said = f"swept at {volts:.3g} V and read at the device's pickup, no finger"
-        if per_volt is None:
-            said += "; the pickup is not calibrated, so its amplitude was not judged"
-        if swept.touched:
-            said += "; the plate was touched meanwhile, so it says nothing: do it again"
-            frequency = signal_at_peak = math.nan
-        return DeviceVerification(
-            amplitude=math.nan if per_volt is None else per_volt * signal_at_peak,
-            expected_amplitude=math.nan if per_volt is None else mode.amplitude_per_volt * volts,
-            resonance_frequency=frequency,
-            expected_resonance_frequency=mode.resonance_frequency,
-            remark=said,
-        )
+            require_safe_drive(SerialDrive(host, 1 / self._orders.rate), limits, study=True)
+            return sweep_resonance(host, limits, carriers, voltage, settle=settle)
 
     def presentation(self, stimulus: Stimulus, seed: int, name: str) -> tuple[str, Exploration]:
         """Play until an order comes; returns what failed (empty: nothing) and the exploration."""
@@ -212,6 +195,50 @@ class Bench:
             self._stream = self._twin.enter_context(found)
             self._finger = finger
         return self._stream
+
+
+def resonance_verified(
+    display: Display,
+    mode: WorkingMode,
+    amplitude_per_pickup: si.MetrePerVolt | None,
+    sweep: Sweep,
+    *,
+    twin: bool,
+) -> DeviceVerification:
+    """What a sweep of the carrier over a mode's resonance, without a finger, says of a device.
+
+    At a quarter of the display's voltage; the amplitude is judged where the pickup is calibrated
+    (m/V). A device without a pickup is not measurable. Raises what `sweep` raises.
+    """
+    volts = VERIFICATION_SHARE * display.drive.voltage
+    limits = display.limits(mode.resonance_frequency, volts, twin=twin)
+    half = _SPAN * mode.resonance_frequency / (2 * mode.quality_factor)
+    carriers = np.linspace(
+        max(limits.lowest_frequency, mode.resonance_frequency - half),
+        min(limits.highest_frequency, mode.resonance_frequency + half),
+        _POINTS,
+    )
+    settle = _SETTLE * mode.quality_factor / (math.pi * mode.resonance_frequency)
+    swept = sweep(limits, carriers, volts, settle)
+    if swept is None:
+        return DeviceVerification(
+            measurable=False, remark="the device has no pickup: nothing was verified"
+        )
+    frequency, signal_at_peak = swept.peak
+    per_volt = amplitude_per_pickup
+    said = f"swept at {volts:.3g} V and read at the device's pickup, no finger"
+    if per_volt is None:
+        said += "; the pickup is not calibrated, so its amplitude was not judged"
+    if swept.touched:
+        said += "; the plate was touched meanwhile, so it says nothing: do it again"
+        frequency = signal_at_peak = math.nan
+    return DeviceVerification(
+        amplitude=math.nan if per_volt is None else per_volt * signal_at_peak,
+        expected_amplitude=math.nan if per_volt is None else mode.amplitude_per_volt * volts,
+        resonance_frequency=frequency,
+        expected_resonance_frequency=mode.resonance_frequency,
+        remark=said,
+    )
 
 
 def explored(trace: Trace, name: str) -> Exploration:

@@ -11,11 +11,15 @@ from collections.abc import Callable
 from squeezefilm.errors import InputError
 from squeezefilm.perception.observer import Observer
 from squeezefilm.study.conduct.run import Response, StudyRun
-from squeezefilm.study.conduct.session_conditions import SessionConditions
-from squeezefilm.study.conduct.sessions import begin_session, display_wanted, end_session
+from squeezefilm.study.conduct.sessions import (
+    SessionConditions,
+    begin_session,
+    display_wanted,
+    end_session,
+)
 from squeezefilm.study.conduct.study_device import NoDevice
-from squeezefilm.study.record.origin import SIMULATED, SIMULATED_NOTE, origin_of
 from squeezefilm.study.record.store import StudyStore
+from squeezefilm.study.record.tables import SIMULATED, SIMULATED_NOTE, origin_of
 from squeezefilm.study.simulated.chain_tables import chain_tables
 from squeezefilm.study.simulated.participants import SimulatedStudy, simulate_participants
 

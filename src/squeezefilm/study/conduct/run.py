@@ -8,6 +8,7 @@ or on another day. An answer is handed in with its trial's token and is on the d
 
 from __future__ import annotations
 
+import dataclasses
 import json
 import math
 import time
@@ -21,18 +22,14 @@ from squeezefilm import __version__
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.perception.stimuli import Grating, Stimulus
+from squeezefilm.results import to_json
 from squeezefilm.study.adaptive.series import adaptive_method
-from squeezefilm.study.conduct.sessions import display_wanted
+from squeezefilm.study.conduct.sessions import display_wanted, next_planned
 from squeezefilm.study.conduct.study_device import Exploration
 from squeezefilm.study.design.trials import Trial
 from squeezefilm.study.record.store import Row, StudyStore, insert, utc_now
 
 State = Literal["ready", "presented", "display changes", "finished"]
-_PLANNED = (
-    "SELECT t.*, (SELECT count(*) FROM presentation p WHERE p.trial = t.uuid) AS presentations "
-    "FROM trial t LEFT JOIN response r ON r.trial = t.uuid "
-    "WHERE t.participant = ? AND r.trial IS NULL ORDER BY t.number LIMIT 1"
-)
 
 
 @dataclass(frozen=True)
@@ -144,9 +141,9 @@ class StudyRun:
         gives the same trial with the same token and counts another presentation.
         Raises `RecordError` if nothing could be written: then nothing may be presented.
         """
-        if self.state in ("finished", "display changes"):
+        row = next_planned(self._store, self.participant)
+        if row is None or row["display"] != self._session["display"]:
             return None
-        row = self._store.rows(_PLANNED, [self.participant])[0]
         trial, surfaces, intensity = self._surfaces(row)
         shown = {
             "uuid": str(uuid.uuid4()),
@@ -181,7 +178,8 @@ class StudyRun:
         planned = self._planned(token)
         if (known := self._recorded(planned)) is not None:
             return known
-        first = self._store.rows(_PLANNED, [self.participant])[0]
+        first = next_planned(self._store, self.participant)
+        assert first is not None
         if first["uuid"] != token:
             raise InputError(
                 f"trial {planned['number']} is not the one to be answered now, "
@@ -202,14 +200,14 @@ class StudyRun:
         self._presented = None
         known = self._recorded(planned)
         assert known is not None
-        return known if done is not None else _first_time(known)
+        return dataclasses.replace(known, repeated=done is not None)
 
     def presented(self, token: str) -> tuple[Trial, tuple[Stimulus | Grating, ...]]:
         """The trial of a token and its surfaces. Raises `InputError` for a token of no trial of
         this participant, or of one that is answered or was not presented."""
         planned = self._planned(token)
-        first = self._store.rows(_PLANNED, [self.participant])
-        if not first or first[0]["uuid"] != token or not first[0]["presentations"]:
+        first = next_planned(self._store, self.participant)
+        if first is None or first["uuid"] != token or not first["presentations"]:
             raise InputError(f"trial {planned['number']} is not being presented; call next_trial")
         trial, surfaces, _ = self._surfaces(planned)
         return trial, surfaces
@@ -262,19 +260,7 @@ class StudyRun:
     def _surfaces(self, row: Row) -> tuple[Trial, tuple[Stimulus | Grating, ...], float | None]:
         """The planned trial, what is felt in it, and an adaptive series' intensity."""
         design = self._store.design
-        trial = Trial(
-            number=row["number"],
-            display=row["display"],
-            block=row["block"],
-            phase=row["phase"],
-            stimuli=tuple(json.loads(row["stimuli"])),
-            alternatives=tuple(json.loads(row["alternatives"])),
-            answer=row["answer"],
-            adaptive=row["adaptive"],
-            reference_first=bool(row["reference_first"]),
-            pause=row["pause_s"],
-            seed=row["seed"],
-        )
+        trial = Trial.of_row(row)
         if trial.phase == "familiarisation" and design.alternatives:
             gratings = {one.name: one for one in design.alternatives}
             return trial, tuple(gratings[name] for name in trial.stimuli), None
@@ -304,19 +290,15 @@ class StudyRun:
         correct = None
         if trial.asks and trial.answer:
             correct = int(response.choice == trial.answer)
+        answered = to_json(dataclasses.replace(response, explorations=()))
+        del answered["explorations"]
         return {
             "trial": planned["uuid"],
             "session": self._session["uuid"],
             "stimuli": json.dumps([one.name for one in surfaces]),
             "intensity": intensity,
-            "choice": response.choice,
-            "estimate": response.estimate,
             "correct": correct,
-            "response_time_s": response.response_time,
-            "started_monotonic_s": response.started_monotonic,
-            "ended_monotonic_s": response.ended_monotonic,
-            "started_utc": response.started_utc,
-            "ended_utc": response.ended_utc,
+            **answered,
             "path_length_m": _known(sum(one.path_length for one in felt)) if felt else None,
             "mean_speed_m_per_s": _mean([one.mean_speed for one in felt]),
             "mean_normal_force_N": _mean([one.mean_normal_force for one in felt]),
@@ -326,12 +308,6 @@ class StudyRun:
             "device_sha256": self._session["device_sha256"],
             "calibration_sha256": self._session["calibration_sha256"],
         }
-
-
-def _first_time(known: Acknowledgement) -> Acknowledgement:
-    import dataclasses
-
-    return dataclasses.replace(known, repeated=False)
 
 
 def _known(value: float) -> float | None:

@@ -62,22 +62,11 @@ class DeviceVerification:
         if not self.measurable:
             return ()
         found = []
-        for name, measured, expected, tolerance, unit in (
-            (
-                "amplitude",
-                self.amplitude,
-                self.expected_amplitude,
-                self.amplitude_tolerance,
-                si.Unit("m"),
-            ),
-            (
-                "resonance",
-                self.resonance_frequency,
-                self.expected_resonance_frequency,
-                self.resonance_tolerance,
-                si.Unit("Hz"),
-            ),
+        for name, quantity, tolerance, unit in (
+            ("amplitude", "amplitude", self.amplitude_tolerance, si.Unit("m")),
+            ("resonance", "resonance_frequency", self.resonance_tolerance, si.Unit("Hz")),
         ):
+            measured, expected = getattr(self, quantity), getattr(self, f"expected_{quantity}")
             # Written so that a NaN measured is off; one expected is nothing to compare with.
             if not math.isnan(expected) and not abs(measured - expected) <= tolerance * expected:
                 found.append(

@@ -13,10 +13,15 @@ from squeezefilm import config
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.progress import SayProgress
-from squeezefilm.study.conduct.exposure import Exposure, exposure
 from squeezefilm.study.conduct.run import StudyRun
-from squeezefilm.study.conduct.session_conditions import SessionConditions
-from squeezefilm.study.conduct.sessions import begin_session, display_wanted, end_session
+from squeezefilm.study.conduct.sessions import (
+    Exposure,
+    SessionConditions,
+    begin_session,
+    display_wanted,
+    end_session,
+    exposure,
+)
 from squeezefilm.study.conduct.study_device import NoDevice, StudyDevice
 from squeezefilm.study.conduct.trial_by_trial import Examiner, conduct
 from squeezefilm.study.design.study_design import load_design

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -9,9 +10,16 @@ from typing import Any, ClassVar
 from squeezefilm import quantities as si
 from squeezefilm.from_text import reads_text
 from squeezefilm.hard_limits import PLANNED_TRIALS, require_within
+from squeezefilm.perception.stimuli import Grating, Stimulus
 from squeezefilm.results import Result
 from squeezefilm.study.design.study_design import NamedDesign, StudyDesign
-from squeezefilm.study.design.trials import Trial, expected_duration, trials, williams_square
+from squeezefilm.study.design.trials import (
+    Trial,
+    conditions,
+    expected_duration,
+    trials,
+    williams_square,
+)
 
 
 @dataclass(frozen=True, repr=False)
@@ -50,10 +58,7 @@ class StudyPlan(Result):
             "displays": list(design.displays),
             "stimuli": [
                 {
-                    "name": one.name,
-                    "spatial_period_m": one.period,
-                    "groove_width_m": one.groove_width,
-                    "length_means": one.period_means,
+                    **_grooves(one),
                     "waveform": one.waveform,
                     "friction_depth": one.friction_depth,
                     "right_answer": design.answer_to(one) if not design.two_surfaces else "",
@@ -62,10 +67,7 @@ class StudyPlan(Result):
             ],
             "alternatives": [
                 {
-                    "name": one.name,
-                    "spatial_period_m": one.period,
-                    "groove_width_m": one.groove_width,
-                    "length_means": one.period_means,
+                    **_grooves(one),
                     "ridge_height_m": one.ridge_height,
                     "material": one.material,
                 }
@@ -119,12 +121,17 @@ def plan_study(design: NamedDesign, participants: int = 1, seed: int = 0) -> Stu
     )
 
 
+def _grooves(one: Stimulus | Grating) -> dict[str, Any]:
+    return {
+        "name": one.name,
+        "spatial_period_m": one.period,
+        "groove_width_m": one.groove_width,
+        "length_means": one.period_means,
+    }
+
+
 def _balanced(design: StudyDesign) -> int:
     """Participants after which every row of every square in use has come equally often."""
-    import math
-
-    from squeezefilm.study.design.trials import conditions
-
     # Displays are in a Williams square over participants, once each.
     displays = len(williams_square(len(design.displays)))
     if design.adaptive or design.order == "shuffled":

@@ -33,29 +33,10 @@ from squeezefilm.study.design.special_trials import (
     require_name,
 )
 
-__all__ = [
-    "TASKS",
-    "AdaptiveCondition",
-    "CatchTrial",
-    "Condition",
-    "NamedDesign",
-    "Order",
-    "StudyDesign",
-    "Task",
-    "load_design",
-]
-
 Task = Literal["match-to-sample", "same-different", "two-interval", "magnitude-estimation"]
 Order = Literal["williams", "latin-square", "shuffled"]
 Condition = tuple[str, ...]
 """The names of what one trial presents: one stimulus, or two in their order."""
-
-TASKS: tuple[Task, ...] = (
-    "match-to-sample",
-    "same-different",
-    "two-interval",
-    "magnitude-estimation",
-)
 
 
 @si.checked_numbers

@@ -9,15 +9,20 @@ the conditions their places in the square, once per run through its rows.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Literal
+import dataclasses
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from typing import Any, Literal
 
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.study.design.study_design import CatchTrial, Condition, Order, StudyDesign
+from squeezefilm.study.design.special_trials import CatchTrial
+from squeezefilm.study.design.study_design import Condition, Order, StudyDesign
 
 Phase = Literal["familiarisation", "practice", "main", "catch"]
+_LISTS = ("stimuli", "alternatives")
 _ORDERS, _MATCHING, _SPREAD, _PRACTICE, _NOISE = range(5)
 
 
@@ -61,6 +66,19 @@ class Trial:
     def feedback(self) -> bool:
         """Whether the participant is told what was right."""
         return self.phase == "practice"
+
+    def row(self) -> dict[str, Any]:
+        """The trial as a study's file holds it: lists as JSON, the pause with its unit."""
+        row = dataclasses.asdict(self)
+        row["pause_s"] = row.pop("pause")
+        return row | {name: json.dumps(row[name]) for name in _LISTS}
+
+    @classmethod
+    def of_row(cls, row: Mapping[str, Any]) -> Trial:
+        """The trial of a row that `row` made."""
+        lists = {name: tuple(json.loads(row[name])) for name in _LISTS}
+        own = {"pause": row["pause_s"], "reference_first": bool(row["reference_first"]), **lists}
+        return cls(**{one.name: row[one.name] for one in fields(cls) if one.name not in own}, **own)
 
 
 def latin_square(size: int) -> tuple[tuple[int, ...], ...]:

@@ -20,21 +20,18 @@ from squeezefilm.study.identification.choice_model import (
     perceptual_map,
 )
 from squeezefilm.study.identification.confusion import ConfusionMatrix, participant_counts
-from squeezefilm.study.identification.confusion_posterior import (
-    ConfusionPosterior,
-    confusion_posterior,
-)
 from squeezefilm.study.identification.exploration import ConditionMean, condition_means
 from squeezefilm.study.identification.information import InformationTransfer, information_transfer
 from squeezefilm.study.identification.mixed_models import MixedModel, mixed_model
-from squeezefilm.study.identification.participant_bootstrap import Interval
 from squeezefilm.study.identification.proportions import (
+    METHODS,
+    ConfusionPosterior,
+    Interval,
     chance_test,
-    clopper_pearson_interval,
-    jeffreys_interval,
+    confusion_posterior,
     participant_interval,
     permutation_test,
-    wilson_interval,
+    proportion_interval,
 )
 from squeezefilm.study.identification.response_times import (
     ExGaussian,
@@ -146,14 +143,7 @@ class IdentificationAnalysis(Result):
             "chance": matrix.chance,
             "chance_p": self.chance_p,
             "permutation_p": self.permutation_p,
-            "posterior": {
-                "prior": self.posterior.prior,
-                "level": self.posterior.level,
-                "mean": self.posterior.mean,
-                "low": self.posterior.low,
-                "high": self.posterior.high,
-                "proportion_correct": self.posterior.proportion_correct,
-            },
+            "posterior": self.posterior,
             "information_transfer_bit": best.estimate,
             "information_transfer_estimator": best.key,
             "information": self.information,
@@ -170,6 +160,7 @@ class IdentificationAnalysis(Result):
             ),
         }
         plain: dict[str, Any] = to_json(values)
+        del plain["posterior"]["matrix"]
         return plain
 
     def _table(self) -> Any:
@@ -298,8 +289,7 @@ def _intervals(
     """Of the proportion correct: over trials, and over people where there are two or more."""
     level = asked.level
     intervals = [
-        made(matrix.correct, matrix.trials, level)
-        for made in (wilson_interval, jeffreys_interval, clopper_pearson_interval)
+        proportion_interval(matrix.correct, matrix.trials, level, method) for method in METHODS
     ]
     if counts.shape[0] > 1:
         intervals.append(participant_interval(counts, level, asked.resamples, asked.seed))
@@ -314,7 +304,7 @@ def _by_stimulus(matrix: ConfusionMatrix, level: float) -> tuple[StimulusCorrect
         right, trials = int(matrix.counts[j, j]), int(matrix.trials_per_stimulus[j])
         if trials == 0:
             continue
-        bounds = wilson_interval(right, trials, level)
+        bounds = proportion_interval(right, trials, level)
         found.append(StimulusCorrect(name, trials, right, right / trials, bounds.low, bounds.high))
     return tuple(found)
 

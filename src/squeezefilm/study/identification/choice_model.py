@@ -14,11 +14,14 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy import stats
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import ConvergenceError, InputError
-from squeezefilm.study.identification.confusion import column_proportions, whole_counts
+from squeezefilm.study.identification.confusion import (
+    column_proportions,
+    goodness_of_fit,
+    whole_counts,
+)
 
 _MOST_ROUNDS = 20_000
 _TOLERANCE = 1e-10
@@ -115,12 +118,8 @@ def choice_model(counts: ArrayLike, pseudo_trials: si.Dimensionless = 0.0) -> Ch
     diagonal = np.diag(fitted)
     similarity = np.sqrt(fitted * fitted.T / np.outer(diagonal, diagonal))
     p = column_proportions(fitted)
-    some = n > 0
-    share = column_proportions(n)
-    log_p = np.log(np.where(some, p, 1.0))
-    deviance = 2 * float((n * (np.log(np.where(some, share, 1.0)) - log_p)).sum())
     freedom = (k - 1) * (k - 2) // 2
-    fits = freedom > 0 and pseudo_trials == 0
+    deviance, p_value, likelihood = goodness_of_fit(n, p, freedom, judged=pseudo_trials == 0)
     with np.errstate(divide="ignore"):
         distance = np.where(np.eye(k) > 0, 0.0, -np.log(similarity))
     return ChoiceModel(
@@ -128,10 +127,10 @@ def choice_model(counts: ArrayLike, pseudo_trials: si.Dimensionless = 0.0) -> Ch
         _bias(fitted),
         distance,
         float(pseudo_trials),
-        max(deviance, 0.0) if fits else float("nan"),
+        deviance,
         freedom,
-        float(stats.chi2.sf(max(deviance, 0.0), freedom)) if fits else float("nan"),
-        float((n * log_p).sum()),
+        p_value,
+        likelihood,
         rounds,
     )
 
@@ -143,15 +142,12 @@ def _bias(fitted: si.FloatArray) -> si.FloatArray:
     linked = (p > 0) & (p.T > 0) & ~np.eye(k, dtype=bool)
     # Answers without a common confusion have no bias against each other; least squares of the
     # smallest length then gives those groups the same geometric mean.
-    rows, values = [], []
-    for i, j in np.argwhere(np.triu(linked)):
-        row = np.zeros(k)
-        row[i], row[j] = 1.0, -1.0
-        rows.append(row)
-        values.append(0.5 * np.log(p[i, j] * p[i, i] / (p[j, i] * p[j, j])))
-    if not rows:
+    i, j = np.nonzero(np.triu(linked))
+    if not i.size:
         return np.full(k, 1.0 / k)
-    logs = np.linalg.lstsq(np.array(rows), np.array(values), rcond=None)[0]
+    rows = np.eye(k)[i] - np.eye(k)[j]
+    values = 0.5 * np.log(p[i, j] * p[i, i] / (p[j, i] * p[j, j]))
+    logs = np.linalg.lstsq(rows, values, rcond=None)[0]
     bias = np.exp(logs - logs.max())
     return np.asarray(bias / bias.sum())
 

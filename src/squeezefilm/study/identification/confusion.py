@@ -8,9 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy import stats
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
@@ -111,6 +113,34 @@ def column_proportions(counts: ArrayLike) -> si.FloatArray:
     return np.asarray(np.divide(given, totals, out=np.full_like(given, np.nan), where=totals > 0))
 
 
+def one_per_trial(**columns: ArrayLike) -> tuple[NDArray[Any], ...]:
+    """The columns as arrays of shape (trials,). Raises `InputError` where they are of others."""
+    arrays = tuple(np.asarray(column) for column in columns.values())
+    if arrays[0].ndim != 1 or len({array.shape for array in arrays}) > 1:
+        *names, last = columns
+        raise InputError(
+            f"{', '.join(names)} and {last} must have one value a trial; their shapes are "
+            f"{', '.join(str(array.shape) for array in arrays)}"
+        )
+    return arrays
+
+
+def goodness_of_fit(
+    counts: si.FloatArray, probabilities: si.FloatArray, freedom: int, *, judged: bool
+) -> tuple[float, float, float]:
+    """G² of a model's answer probabilities against the saturated model, its p value by χ², and the
+    ln likelihood; shapes (…, answers, stimuli). G² and p are NaN unless `judged`, and without
+    degrees of freedom."""
+    some = counts > 0
+    log_p = np.log(np.where(some, probabilities, 1.0))
+    saturated = np.log(np.where(some, column_proportions(counts), 1.0))
+    likelihood = float((counts * log_p).sum())
+    if freedom <= 0 or not judged:
+        return float("nan"), float("nan"), likelihood
+    deviance = max(2 * float((counts * (saturated - log_p)).sum()), 0.0)
+    return deviance, float(stats.chi2.sf(deviance, freedom)), likelihood
+
+
 def participant_counts(
     participant: ArrayLike, stimulus: ArrayLike, choice: ArrayLike, answers: int, stimuli: int
 ) -> tuple[NDArray[np.generic], si.IntArray]:
@@ -129,14 +159,9 @@ def participant_counts(
     Raises:
         InputError: arrays of unequal length, no trial, or a number out of range.
     """
-    who = np.asarray(participant)
     columns = _index("stimulus", stimulus, stimuli)
     rows = _index("choice", choice, answers)
-    if not who.ndim == 1 or not who.shape == columns.shape == rows.shape:
-        raise InputError(
-            f"participant, stimulus and choice must have one value a trial; their shapes are "
-            f"{who.shape}, {columns.shape} and {rows.shape}"
-        )
+    who, columns, rows = one_per_trial(participant=participant, stimulus=columns, choice=rows)
     if who.size == 0:
         raise InputError("there is no trial to analyse; give at least one")
     names, person = np.unique(who, return_inverse=True)

@@ -10,6 +10,7 @@ from scipy import stats
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
+from squeezefilm.study.identification.confusion import one_per_trial
 
 # Slower than this the finger rests rather than explores; assumed.
 RESTING_SPEED: si.MetrePerSecond = 5e-3
@@ -136,11 +137,7 @@ def condition_means(
     si.require("level", level, above=0.0, below=1.0)
     person = np.asarray(participant, dtype=np.int64)
     kind, given = np.asarray(condition, dtype=np.int64), np.asarray(values, dtype=float)
-    if person.ndim != 1 or not person.shape == kind.shape == given.shape:
-        raise InputError(
-            "participant, condition and values must have one value a trial; their shapes are "
-            f"{person.shape}, {kind.shape} and {given.shape}"
-        )
+    one_per_trial(participant=person, condition=kind, values=given)
     there = np.isfinite(given)
     person, kind, given = person[there], kind[there], given[there]
     people = int(person.max()) + 1 if person.size else 0
@@ -158,15 +155,7 @@ def condition_means(
             t = float(stats.t.isf((1 - level) / 2, means.size - 1))
             half = t * float(means.std(ddof=1)) / np.sqrt(means.size)
         centre = float(means.mean())
-        found.append(
-            ConditionMean(
-                name,
-                int(count[:, column].sum()),
-                means.size,
-                centre,
-                centre - half,
-                centre + half,
-                level,
-            )
-        )
+        trials = int(count[:, column].sum())
+        low, high = centre - half, centre + half
+        found.append(ConditionMean(name, trials, means.size, centre, low, high, level))
     return tuple(found)

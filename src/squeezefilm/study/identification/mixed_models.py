@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
+from squeezefilm.study.identification.confusion import one_per_trial
 
 _MOST_TRIALS = 50_000
 
@@ -123,11 +124,7 @@ def _trials(
     Raises `InputError` for arrays that do not fit, one participant or too many trials."""
     who, people = np.unique(np.asarray(participant), return_inverse=True)
     kind, right = np.asarray(stimulus, dtype=np.int64), np.asarray(correct, dtype=float)
-    if people.ndim != 1 or not people.shape == kind.shape == right.shape:
-        raise InputError(
-            "participant, stimulus and correct must have one value a trial; their shapes are "
-            f"{people.shape}, {kind.shape} and {right.shape}"
-        )
+    one_per_trial(participant=people, stimulus=kind, correct=right)
     if who.size < 2 or kind.size > _MOST_TRIALS:
         raise InputError(
             f"{who.size} participants with {kind.size} trials cannot be fitted; at least 2 people "

@@ -11,7 +11,7 @@ import json
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Protocol
+from typing import Annotated, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -22,7 +22,7 @@ from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import STUDIES, require_within
 from squeezefilm.results import config_hash, write_whole
 from squeezefilm.study.identification.confusion import whole_counts
-from squeezefilm.study.identification.proportions import clopper_pearson_interval
+from squeezefilm.study.identification.proportions import proportion_interval
 
 
 class ParticipantSimulator(Protocol):
@@ -33,6 +33,7 @@ class ParticipantSimulator(Protocol):
         ...
 
 
+@si.checked_numbers
 @dataclass(frozen=True, slots=True, eq=False)
 class DirichletParticipants:
     """People whose answer probabilities vary about a common matrix (Dirichlet-multinomial).
@@ -48,22 +49,14 @@ class DirichletParticipants:
         InputError: columns that do not sum to 1, or values out of range.
     """
 
-    probabilities: si.FloatArray
-    trials_per_stimulus: int
-    concentration: si.Dimensionless
+    probabilities: Annotated[si.FloatArray, si.AtLeast(0.0), si.AtMost(1.0)]
+    trials_per_stimulus: Annotated[int, si.AtLeast(1)]
+    concentration: Annotated[si.Dimensionless, si.Above(0.0)]
 
     def __post_init__(self) -> None:
-        p = np.asarray(self.probabilities, dtype=float)
-        si.require("probabilities", p, at_least=0.0, at_most=1.0)
-        si.require("concentration", self.concentration, above=0.0)
+        p = self.probabilities
         if p.ndim != 2 or not np.allclose(p.sum(axis=0), 1.0):
             raise InputError("every column of the answer probabilities must sum to 1")
-        if self.trials_per_stimulus < 1:
-            raise InputError(
-                f"trials_per_stimulus = {self.trials_per_stimulus} cannot be used; it must be at "
-                "least 1"
-            )
-        object.__setattr__(self, "probabilities", p)
 
     def __call__(self, participants: int, random: np.random.Generator) -> si.IntArray:
         """Counts of so many people, shape (participants, answers, stimuli)."""
@@ -169,7 +162,7 @@ def power_curve(
     """Simulate studies of several sizes and count those whose test is significant.
 
     Args:
-        simulate: draws people (`DirichletParticipants`, or a simulated observer's).
+        simulate: draws people (`DirichletParticipants`, or `SimulatedStudy.people`).
         test: counts of a study, shape (participants, answers, stimuli) → p value.
         participants: numbers of people, each at least 2.
         studies: per number; at least 10.
@@ -195,7 +188,7 @@ def power_curve(
         found.append(_significant(simulate, test, people, studies, alpha, seed, cache, key))
         if progress is not None:
             progress(done + 1, len(sizes))
-    bounds = [clopper_pearson_interval(number, studies) for number in found]
+    bounds = [proportion_interval(number, studies, method="Clopper–Pearson") for number in found]
     power = np.array(found) / studies
     low, high = np.array([b.low for b in bounds]), np.array([b.high for b in bounds])
     return PowerCurve(
@@ -251,9 +244,5 @@ def _significant(
 
 
 def _first_lasting(sizes: tuple[int, ...], reached: NDArray[np.bool_]) -> int | None:
-    found = None
-    for people, good in zip(reversed(sizes), reversed(reached.tolist()), strict=True):
-        if not good:
-            break
-        found = people
-    return found
+    lasting = np.flip(np.logical_and.accumulate(np.flip(reached)))
+    return sizes[int(np.argmax(lasting))] if lasting.any() else None

@@ -10,9 +10,8 @@ import numpy as np
 from squeezefilm.errors import InputError
 from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.identification.analysis import IdentificationAnalysis, analyze_identification
-from squeezefilm.study.record.origin import origin_of
 from squeezefilm.study.record.store import StudyStore
-from squeezefilm.study.record.trial_table import trial_table
+from squeezefilm.study.record.tables import origin_of, trial_table
 
 _EXPLORED = ("mean_speed_m_per_s", "mean_normal_force_N", "path_length_m")
 
@@ -50,11 +49,11 @@ def analyze_study(
         here = [row for row in rows if row["display"] == display]
         if not here:
             continue
-        explored = {
-            key: np.array([np.nan if row[key] is None else row[key] for row in here], dtype=float)
-            for key in _EXPLORED
+        columns = {
+            key: np.array([row[key] for row in here], dtype=float)
+            for key in ("response_time_s", *_EXPLORED)
         }
-        times = [row["response_time_s"] for row in here]
+        taken = {key: values for key, values in columns.items() if np.isfinite(values).any()}
         found[display] = analyze_identification(
             np.array([str(row["participant_id"]) for row in here]),
             [stimuli.index(str(row["stimulus"])) for row in here],
@@ -62,10 +61,8 @@ def analyze_study(
             right,
             name=f"{store.study['name']}, {display}",
             origin=origin_of(store),
-            response_time=np.array([np.nan if one is None else one for one in times], dtype=float)
-            if any(one is not None for one in times)
-            else None,
-            exploration={key: one for key, one in explored.items() if np.isfinite(one).any()},
+            response_time=taken.pop("response_time_s", None),
+            exploration=taken,
             mixed=mixed,
             resamples=resamples,
             seed=seed,

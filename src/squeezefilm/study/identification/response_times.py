@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,6 +12,8 @@ from scipy.special import erfcx, log_ndtr
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import ConvergenceError, InputError
+from squeezefilm.study.identification.confusion import one_per_trial
+from squeezefilm.study.identification.exploration import condition_means
 
 _MOST_VALUES = 20_000
 
@@ -59,38 +62,30 @@ def response_time_summary(
     Raises:
         InputError: times not above 0, arrays of unequal length, or a level not between 0 and 1.
     """
+    person, kind = (np.asarray(one, dtype=np.int64) for one in (participant, condition))
+    given = np.asarray(response_time, dtype=float)
+    one_per_trial(participant=person, condition=kind, response_time=given)
+    taken = ~np.isnan(given)
+    si.require("response_time", given[taken], si.Unit("s"), above=0.0)
     si.require("level", level, above=0.0, below=1.0)
-    person, kind, times = _three(participant, condition, response_time)
-    people = int(person.max()) + 1 if person.size else 0
-    logs = np.log(times)
-    group = person * len(names) + kind
-    size = people * len(names)
-    count = np.bincount(group, minlength=size).reshape(people, len(names))
-    total = np.bincount(group, logs, size).reshape(people, len(names))
-    square = np.bincount(group, logs**2, size).reshape(people, len(names))
     found = []
-    for column, name in enumerate(names):
-        n, some = count[:, column], count[:, column] > 0
-        if not np.any(some):
-            continue
-        means = total[some, column] / n[some]
-        inner = np.maximum(square[some, column] - n[some] * means**2, 0.0).sum()
-        freedom = int(n[some].sum() - some.sum())
-        centre, half = float(means.mean()), float("nan")
-        if means.size > 1:
-            t = float(stats.t.isf((1 - level) / 2, means.size - 1))
-            half = t * float(means.std(ddof=1)) / np.sqrt(means.size)
+    for column in np.unique(kind[taken]).tolist():
+        here = taken & (kind == column)
+        who, logs = person[here], np.log(given[here])
+        (one,) = condition_means(who, np.zeros_like(who), logs, (names[column],), level)
+        own = np.bincount(who, logs) / np.maximum(np.bincount(who), 1)
+        freedom = one.trials - one.participants
         found.append(
             ResponseTimeSummary(
-                name,
-                int(n.sum()),
-                int(some.sum()),
-                float(np.exp(centre)),
-                float(np.exp(centre - half)),
-                float(np.exp(centre + half)),
+                one.name,
+                one.trials,
+                one.participants,
+                float(np.exp(one.mean)),
+                float(np.exp(one.low)),
+                float(np.exp(one.high)),
                 level,
-                float(np.sqrt(inner / freedom)) if freedom else float("nan"),
-                float(np.median(times[kind == column])),
+                math.sqrt(((logs - own[who]) ** 2).sum() / freedom) if freedom else math.nan,
+                float(np.median(given[here])),
             )
         )
     return tuple(found)
@@ -175,18 +170,3 @@ def _log_density(x: si.FloatArray, mean: float, spread: float, tail: float) -> s
     low = -0.5 * u**2 + np.log(0.5 * erfcx(-np.minimum(v, 0.0) / np.sqrt(2)))
     high = 0.5 * (spread / tail) ** 2 - (x - mean) / tail + log_ndtr(np.maximum(v, 0.0))
     return np.asarray(np.where(v < 0, low, high) - np.log(tail))
-
-
-def _three(
-    a: ArrayLike, b: ArrayLike, c: ArrayLike
-) -> tuple[si.IntArray, si.IntArray, si.FloatArray]:
-    person = np.asarray(a, dtype=np.int64)
-    kind, times = np.asarray(b, dtype=np.int64), np.asarray(c, dtype=float)
-    if not person.ndim == 1 or not person.shape == kind.shape == times.shape:
-        raise InputError(
-            "participant, condition and response_time must have one value a trial; their shapes "
-            f"are {person.shape}, {kind.shape} and {times.shape}"
-        )
-    taken = ~np.isnan(times)
-    si.require("response_time", times[taken], si.Unit("s"), above=0.0)
-    return person[taken], kind[taken], times[taken]

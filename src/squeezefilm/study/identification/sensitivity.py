@@ -17,8 +17,8 @@ from scipy.special import ndtr
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.study.identification.confusion import whole_counts
-from squeezefilm.study.identification.participant_bootstrap import (
+from squeezefilm.study.identification.confusion import goodness_of_fit, whole_counts
+from squeezefilm.study.identification.proportions import (
     recentred_interval,
     resampled_counts,
 )
@@ -111,10 +111,11 @@ def ordered_sensitivity(
     else:
         z = float(stats.norm.isf((1 - level) / 2))
         low, high, method = d_prime - z * error, d_prime + z * error, "Fisher information"
-    likelihood, deviance = _goodness(n, _probabilities(criteria, positions))
     freedom = (answers - 1) * stimuli - (answers + stimuli - 2)
     # The trials added are no answers of anybody, and no normal tail describes them.
-    fits = freedom > 0 and not corrected
+    deviance, p_value, likelihood = goodness_of_fit(
+        n, _probabilities(criteria, positions), freedom, judged=not corrected
+    )
     return OrderedSensitivity(
         positions[0],
         criteria[0],
@@ -126,9 +127,9 @@ def ordered_sensitivity(
         level,
         method,
         corrected,
-        deviance if fits else float("nan"),
+        deviance,
         freedom,
-        float(stats.chi2.sf(deviance, freedom)) if fits else float("nan"),
+        p_value,
         likelihood,
     )
 
@@ -157,14 +158,6 @@ def _standard_error(
     to_d = np.zeros((steps, cuts + steps))
     to_d[:, cuts:] = np.eye(steps) - np.eye(steps, k=-1)
     return np.asarray(np.sqrt(np.diag(to_d @ covariance @ to_d.T)))
-
-
-def _goodness(n: si.FloatArray, p: si.FloatArray) -> tuple[float, float]:
-    """ln likelihood of counts with probabilities, and G² against the saturated model."""
-    some, share = n > 0, n / n.sum(axis=1, keepdims=True)
-    log_p = np.log(np.where(some, p, 1.0))
-    deviance = 2 * float((n * (np.log(np.where(some, share, 1.0)) - log_p)).sum())
-    return float((n * log_p).sum()), deviance
 
 
 def _bootstrapped(counts: si.FloatArray, corrected: bool) -> si.FloatArray:

@@ -15,7 +15,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import chdtri
+from scipy.special import bdtr, chdtri
 
 from squeezefilm import quantities as si
 from squeezefilm.study.psychometric import kernel
@@ -79,12 +79,6 @@ class Bootstrap:
     deviances: si.DimensionlessArray
     shares: si.DimensionlessArray
 
-    def percentiles(self, parameter: int, level: si.Dimensionless) -> tuple[float, float]:
-        """The plain percentile interval of θ, to compare with; it covers less than its level."""
-        tail = 0.5 * (1.0 - level)
-        low, high = np.quantile(self.estimates[:, parameter], [tail, 1.0 - tail])
-        return float(low), float(high)
-
     def goodness_of_fit(self, deviance: float) -> si.Dimensionless:
         """Probability of a deviance at least as large if the fitted function were the truth."""
         larger = int(np.count_nonzero(self.deviances >= deviance - 1e-9))
@@ -129,9 +123,14 @@ def inverted_interval(
 def _answers(
     likelihood: PenalisedLikelihood, theta: si.FloatArray, shares: si.DimensionlessArray
 ) -> si.FloatArray:
+    """Counts not exceeded with a probability `shares`, shape (replicates, places). The same shares
+    give counts that rise with ψ, so that what is simulated at two values of a parameter differs by
+    the parameter and not by chance."""
     answers = np.empty_like(shares)
     p = kernel.probabilities(likelihood.code, theta, likelihood.x)
-    kernel.binomial_quantiles(p, likelihood.n, shares, answers)
+    for place, trials in enumerate(likelihood.n):
+        heights = bdtr(np.arange(trials + 1), int(trials), p[place])
+        answers[:, place] = np.searchsorted(heights, shares[:, place])
     return answers
 
 

@@ -12,7 +12,7 @@ from squeezefilm import quantities as si
 from squeezefilm.arguments import called_with
 from squeezefilm.errors import InputError
 from squeezefilm.from_text import reads_text
-from squeezefilm.results import Result
+from squeezefilm.results import Result, to_json
 from squeezefilm.study.psychometric import kernel
 from squeezefilm.study.psychometric.bootstrap import (
     Bootstrap,
@@ -94,7 +94,7 @@ class PsychometricFit(Result):
             "deviance_p": self.deviance_p,
             "trials": int(self.trials.sum()),
             "bounded_by_prior": list(self.bounded_by_prior),
-            "prior": self.prior.state(),
+            "prior": to_json(self.prior),
         }
 
     def _table(self) -> Any:

@@ -244,37 +244,6 @@ def saturated(k: si.FloatArray, n: si.FloatArray) -> float:
 
 
 @njit(nogil=True, cache=True, error_model="numpy")
-def binomial_quantiles(
-    p: si.FloatArray, n: si.FloatArray, shares: si.FloatArray, out: si.FloatArray
-) -> None:
-    """Counts of n trials not exceeded with a probability `shares` (rows, places), into `out`.
-
-    The same shares give counts that rise with p, so that what is simulated at two values of a
-    parameter differs by the parameter and not by chance.
-    """
-    for i in range(p.size):
-        heights = np.empty(int(n[i]) + 1)
-        size = heights.size - 1
-        total = 0.0
-        for k in range(size + 1):
-            if p[i] <= 0.0 or p[i] >= 1.0:
-                term = 1.0 if (k == 0) == (p[i] <= 0.0) and (k == 0 or k == size) else 0.0
-            else:
-                term = math.exp(
-                    math.lgamma(size + 1.0)
-                    - math.lgamma(k + 1.0)
-                    - math.lgamma(size - k + 1.0)
-                    + k * math.log(p[i])
-                    + (size - k) * math.log(1.0 - p[i])
-                )
-            total += term
-            heights[k] = total
-        for row in range(out.shape[0]):
-            at = np.searchsorted(heights, shares[row, i] * total)
-            out[row, i] = min(at, size)
-
-
-@njit(nogil=True, cache=True, error_model="numpy")
 def refit(
     model: Model,
     best: si.FloatArray,

@@ -8,7 +8,6 @@ the regression of ln number on ln intensity, or by modulus equalisation (Lane, C
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -46,30 +45,6 @@ class PowerLaw:
     degrees_of_freedom: int
 
 
-class _Line(NamedTuple):
-    """One person's ln number over ln intensity, by least squares: slope, value at ln intensity 0,
-    and the sums of dx², of dx · dy and of what is left, squared."""
-
-    slope: float
-    start: float
-    spread: float
-    within: float
-    squares: float
-
-
-def _line(name: str, x: si.FloatArray, y: si.FloatArray) -> _Line:
-    """The line of a person. Raises `InputError` where all intensities are the same."""
-    dx, dy = x - x.mean(), y - y.mean()
-    if np.unique(x).size < 2:
-        raise InputError(
-            f"participant '{name}' judged one intensity only; an exponent needs two or more"
-        )
-    spread, within = float(dx @ dx), float(dx @ dy)
-    slope = within / spread
-    start = float(y.mean() - slope * x.mean())
-    return _Line(slope, start, spread, within, float(np.sum((dy - slope * dx) ** 2)))
-
-
 def fit_power_law(
     intensity: ArrayLike,
     estimate: ArrayLike,
@@ -92,21 +67,27 @@ def fit_power_law(
         InputError: data of unlike shapes or not above 0, a participant with fewer than two
             different intensities, or one single participant with fewer than three trials.
     """
-    x, y, who = _logarithms(intensity, estimate, participant)
+    x, y, people, who = _logarithms(intensity, estimate, participant)
     si.require("level", level, above=0.0, below=1.0)
-    people = sorted(set(who))
-    names = np.array(who)
-    lines = [_line(name, x[names == name], y[names == name]) for name in people]
+    for number, name in enumerate(people):
+        if np.unique(x[who == number]).size < 2:
+            raise InputError(
+                f"participant '{name}' judged one intensity only; an exponent needs two or more"
+            )
+    # Least squares of everyone's own line: sums of dx² and of dx·dy about their means.
+    middle_x, middle_y = _means(who, x), _means(who, y)
+    dx, dy = x - middle_x[who], y - middle_y[who]
+    spread, within = np.bincount(who, dx * dx), np.bincount(who, dx * dy)
+    exponents = within / spread
     freedom = x.size - 2 * len(people)
-    exponents = np.array([one.slope for one in lines])
-    squares = sum(one.squares for one in lines)
+    squares = float(np.sum((dy - exponents[who] * dx) ** 2))
     residual = float(np.sqrt(squares / freedom)) if freedom > 0 else 0.0
     if len(people) > 1:
         degrees = len(people) - 1
         error = float(exponents.std(ddof=1)) / np.sqrt(len(people))
     else:
         degrees = freedom
-        error = residual / np.sqrt(lines[0].spread)
+        error = residual / np.sqrt(spread[0])
         if degrees < 1:
             raise InputError("one participant with two trials has no interval; give three or more")
     mean = float(exponents.mean())
@@ -115,10 +96,10 @@ def fit_power_law(
         exponent=mean,
         interval=(mean - reach, mean + reach),
         level=level,
-        participants=tuple(people),
+        participants=people,
         exponents=exponents,
-        moduli=np.exp(np.array([one.start for one in lines])),
-        pooled_exponent=sum(one.within for one in lines) / sum(one.spread for one in lines),
+        moduli=np.exp(middle_y - exponents * middle_x),
+        pooled_exponent=float(within.sum() / spread.sum()),
         residual=residual,
         degrees_of_freedom=degrees,
     )
@@ -133,12 +114,10 @@ def equalised_estimates(estimate: ArrayLike, participant: ArrayLike) -> si.Float
     Raises:
         InputError: data of unlike shapes or not above 0.
     """
-    _, y, who = _logarithms(np.ones_like(np.asarray(estimate, dtype=float)), estimate, participant)
-    people = sorted(set(who))
-    names = np.array(who)
-    means = {name: float(y[names == name].mean()) for name in people}
-    middle = float(np.mean([means[name] for name in people]))
-    return np.asarray(np.exp(y - np.array([means[name] for name in who]) + middle))
+    given = np.ones_like(np.asarray(estimate, dtype=float))
+    _, y, _, who = _logarithms(given, estimate, participant)
+    means = _means(who, y)
+    return np.asarray(np.exp(y - means[who] + means.mean()))
 
 
 def geometric_means(
@@ -149,15 +128,20 @@ def geometric_means(
     Raises:
         InputError: data of unlike shapes or not above 0.
     """
-    _, y, _ = _logarithms(intensity, estimate, np.zeros(np.shape(estimate), dtype=int))
+    _, y, _, _ = _logarithms(intensity, estimate, np.zeros(np.shape(estimate), dtype=int))
     given = np.asarray(intensity, dtype=float)
     places, where = np.unique(given, return_inverse=True)
-    return places, np.exp(np.bincount(where, y) / np.bincount(where))
+    return places, np.exp(_means(where, y))
+
+
+def _means(group: si.IntArray, values: si.FloatArray) -> si.FloatArray:
+    return np.asarray(np.bincount(group, values) / np.bincount(group))
 
 
 def _logarithms(
     intensity: ArrayLike, estimate: ArrayLike, participant: ArrayLike
-) -> tuple[si.FloatArray, si.FloatArray, list[str]]:
+) -> tuple[si.FloatArray, si.FloatArray, tuple[str, ...], si.IntArray]:
+    """ln of intensities and estimates, the participants' names in order, and whose each row is."""
     given, numbers = np.asarray(intensity, dtype=float), np.asarray(estimate, dtype=float)
     who = np.asarray(participant)
     if given.ndim != 1 or not given.shape == numbers.shape == who.shape or given.size == 0:
@@ -167,4 +151,5 @@ def _logarithms(
         )
     si.require("intensity", given, above=0.0)
     si.require("estimate", numbers, above=0.0)
-    return np.log(given), np.log(numbers), [str(one) for one in who]
+    names, whose = np.unique([str(one) for one in who], return_inverse=True)
+    return np.log(given), np.log(numbers), tuple(names.tolist()), whose

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from scipy.special import betainc, betaincinv, betaln
@@ -99,22 +98,3 @@ class PsychometricPrior:
         a, b = self.lapse_rate if parameter == 2 else self.guess_rate
         scale = np.exp(betaln(a, b)) * betainc(a, b, LARGEST_RATE)
         return np.asarray(theta ** (a - 1.0) * (1.0 - theta) ** (b - 1.0) / scale)
-
-    def state(self) -> dict[str, Any]:
-        """The prior as JSON holds it; `PsychometricPrior.from_state` reads it."""
-        return {
-            name: list(getattr(self, name))
-            for name in ("threshold", "width", "lapse_rate", "guess_rate")
-        }
-
-    @classmethod
-    def from_state(cls, state: dict[str, Any]) -> PsychometricPrior:
-        """The prior that `state` was taken of.
-
-        Raises:
-            InputError: a state that is none.
-        """
-        try:
-            return cls(**{key: (float(low), float(high)) for key, (low, high) in state.items()})
-        except (TypeError, ValueError) as error:
-            raise InputError(f"prior = {state!r} is no prior's state: {error}") from error

@@ -12,8 +12,7 @@ import re
 import sqlite3
 from collections.abc import Callable, Iterable, Iterator
 from datetime import datetime
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 from squeezefilm.errors import InputError
 from squeezefilm.study.record.schema import SCHEMA, TABLES
@@ -29,6 +28,7 @@ _PLAIN = (str, int, float, bool, type(None))
 _KINDS: dict[str, type] = {"TEXT": str, "INTEGER": int, "REAL": float}
 
 Check = Callable[[Any], bool]
+Rows = Callable[[str], list[dict[str, Any]]]
 
 
 def require_identifier(text: str) -> None:
@@ -40,70 +40,41 @@ def require_identifier(text: str) -> None:
         )
 
 
-class ReadableStudy(Protocol):
-    """What a study's file is looked at through: `StudyStore`, which asks for the look."""
-
-    path: Path
-
-    @property
-    def backups(self) -> Path:
-        """The folder of backups."""
-        ...
-
-    @property
-    def design(self) -> StudyDesign:
-        """The design that the file was made for."""
-        ...
-
-    def rows(self, query: str, values: Iterable[Any] = ()) -> list[dict[str, Any]]:
-        """Rows by the names of their columns."""
-        ...
-
-    def values(self, query: str) -> list[tuple[Any, ...]]:
-        """Rows as they stand."""
-        ...
-
-
 def is_trace(name: str) -> bool:
     """Whether a file among the traces has a name that this program gave, half-written or not."""
     return bool(_TRACE.fullmatch(name) or _HALF_WRITTEN.fullmatch(name))
 
 
-def require_contents(store: ReadableStudy) -> None:
-    """Refuse a file whose tables or rows are not what this program writes.
+def problems(rows: Rows, design: Callable[[], StudyDesign]) -> Iterator[str]:
+    """In what a file's tables or rows are not what this program writes: table, row and column.
 
-    Raises `InputError` that names table, row and column, `RecordError` for what cannot be read.
+    `rows` asks the file, `design` reads its design once the study's own row is known to be good.
     """
-    for problem in _problems(store):
-        raise InputError(
-            f"{store.path} is damaged or was not written by this program: {problem}. Nothing of it "
-            f"was used; open the last good backup (in {store.backups.name}), or mend that row"
-        )
-
-
-def _problems(store: ReadableStudy) -> Iterator[str]:
     with sqlite3.connect(":memory:") as reference:
+        reference.row_factory = sqlite3.Row
         reference.executescript(SCHEMA)
         wanted = {name: _shape(reference.execute, name) for name in ("study", *TABLES)}
     reference.close()
     for name in wanted:
-        if _shape(store.values, name) != wanted[name]:
+        if _shape(rows, name) != wanted[name]:
             yield f"the table {name} has other columns"
             return
-    for row in store.rows("SELECT name FROM sqlite_schema WHERE type IN ('trigger', 'view')"):
+    for row in rows("SELECT name FROM sqlite_schema WHERE type IN ('trigger', 'view')"):
         yield f"{row['name']} is a trigger or a view, and a study has none"
-    for row in store.rows("PRAGMA foreign_key_check"):
+    for row in rows("PRAGMA foreign_key_check"):
         yield f"a row of {row['table']} belongs to one of {row['parent']} that is gone"
-    studies = store.rows("SELECT * FROM study")
+    studies = rows("SELECT * FROM study")
     if len(studies) != 1:
         yield f"it holds {len(studies)} studies instead of one"
         return
-    yield from _row_problems("study", wanted["study"], studies, _STUDY)
-    checks = _checks(store.design)
+    yield from _row_problems("study", wanted["study"], studies, _CHECKS)
+    checks = _CHECKS | {
+        "display": lambda one: one in design().displays,
+        "adaptive": lambda one: not one or one in [series.name for series in design().adaptive],
+    }
     for table in TABLES:
-        rows = store.rows(f"SELECT * FROM {table}")
-        yield from _row_problems(table, wanted[table], rows, checks[table])
-    yield from _trial_problems(store)
+        yield from _row_problems(table, wanted[table], rows(f"SELECT * FROM {table}"), checks)
+    yield from _trial_problems(rows, design())
 
 
 Shape = dict[str, tuple[type, bool]]
@@ -112,7 +83,10 @@ Shape = dict[str, tuple[type, bool]]
 def _shape(execute: Callable[[str], Iterable[Any]], table: str) -> Shape:
     """Columns of a table: the type of their values, and whether they may be NULL."""
     columns = execute(f"PRAGMA table_info({table})")
-    return {one[1]: (_KINDS.get(one[2], bytes), not (one[3] or one[5])) for one in columns}
+    return {
+        one["name"]: (_KINDS.get(one["type"], bytes), not (one["notnull"] or one["pk"]))
+        for one in columns
+    }
 
 
 def _row_problems(
@@ -131,13 +105,12 @@ def _row_problems(
                 yield f"{table} {row[key]!r:.40} has {column} = {value!r:.60}"
 
 
-def _trial_problems(store: ReadableStudy) -> Iterator[str]:
+def _trial_problems(rows: Rows, design: StudyDesign) -> Iterator[str]:
     """What no column shows alone: whether answers fit their trials, and trials their design."""
-    design = store.design
     gratings = [one.name for one in design.alternatives]
     stimuli = [one.name for one in design.stimuli]
     catches = [one.stimulus.name for one in design.catch]
-    for row in store.rows(
+    for row in rows(
         "SELECT t.*, r.trial AS answered, r.stimuli AS felt, r.choice, r.intensity, r.estimate "
         "FROM trial t LEFT JOIN response r ON r.trial = t.uuid"
     ):
@@ -214,53 +187,27 @@ def _identifier(text: str) -> bool:
     return bool(_IDENTIFIER.fullmatch(text))
 
 
-_STUDY: dict[str, Check] = {
+_CHECKS: dict[str, Check] = {
     "uuid": _identifier,
+    "participant": _identifier,
     "seed": lambda one: 0 <= one <= 2**53,
     "stations": lambda one: one >= 1,
     "station": _not_negative,
-    "created_utc": _moment,
+    "number": _not_negative,
+    "phase": lambda one: one in _PHASES,
+    "stimuli": _texts,
+    "alternatives": _texts,
+    "pause_s": _not_negative,
+    "conditions": _fields,
+    "exposure": _fields_or_none,
+    "moment": lambda one: one in ("before", "after"),
+    "result": _verification,
+    "traces": _traces,
+    "correct": lambda one: one in (0, 1),
+    "response_time_s": _not_negative,
+    **dict.fromkeys(
+        ("created_utc", "enrolled_utc", "started_utc", "made_utc", "presented_utc", "ended_utc"),
+        _moment,
+    ),
 }
-
-
-def _checks(design: StudyDesign) -> dict[str, dict[str, Check]]:
-    """What the columns of each table must hold."""
-    displays, series = design.displays, [one.name for one in design.adaptive]
-    return {
-        "participant": {"uuid": _identifier, "number": _not_negative, "enrolled_utc": _moment},
-        "trial": {
-            "uuid": _identifier,
-            "participant": _identifier,
-            "number": _not_negative,
-            "display": lambda one: one in displays,
-            "phase": lambda one: one in _PHASES,
-            "stimuli": _texts,
-            "alternatives": _texts,
-            "adaptive": lambda one: not one or one in series,
-            "pause_s": _not_negative,
-            "seed": _not_negative,
-        },
-        "session": {
-            "uuid": _identifier,
-            "participant": _identifier,
-            "display": lambda one: one in displays,
-            "conditions": _fields,
-            "exposure": _fields_or_none,
-            "started_utc": _moment,
-        },
-        "verification": {
-            "uuid": _identifier,
-            "moment": lambda one: one in ("before", "after"),
-            "result": _verification,
-            "made_utc": _moment,
-        },
-        "presentation": {"uuid": _identifier, "presented_utc": _moment},
-        "response": {
-            "stimuli": _texts,
-            "traces": _traces,
-            "correct": lambda one: one in (0, 1),
-            "response_time_s": _not_negative,
-            "started_utc": _moment,
-            "ended_utc": _moment,
-        },
-    }
+"""What the columns must hold, in whichever table they are."""

@@ -26,6 +26,16 @@ from squeezefilm.study.record.sittings import FILE, Sittings
 from squeezefilm.study.record.store import StudyStore
 
 _PIECE = 1 << 20
+_TRIALS = "trial IN (SELECT uuid FROM trial WHERE participant = ?)"
+_OF = {
+    "response": _TRIALS,
+    "presentation": _TRIALS,
+    "verification": "session IN (SELECT uuid FROM session WHERE participant = ?)",
+    "session": "participant = ?",
+    "trial": "participant = ?",
+    "participant": "uuid = ?",
+}
+"""Which rows of each table are a participant's; each table before those it refers to."""
 
 
 @dataclass(frozen=True)
@@ -127,17 +137,11 @@ def _surveyed(
 
 def _identifiers(store: StudyStore, pseudonym: str) -> set[str]:
     """Everything random that only this participant's rows hold."""
-    found: set[str] = set()
-    sessions = "SELECT uuid FROM session WHERE participant = ?"
-    trials = "SELECT uuid FROM trial WHERE participant = ?"
-    for query in (
-        sessions,
-        trials,
-        f"SELECT uuid FROM verification WHERE session IN ({sessions})",
-        f"SELECT uuid FROM presentation WHERE trial IN ({trials})",
-    ):
-        found |= {row["uuid"] for row in store.rows(query, [pseudonym])}
-    return found | set(_traces(store, pseudonym))
+    found = set(_traces(store, pseudonym))
+    for table in ("presentation", "verification", "session", "trial"):
+        rows = store.rows(f"SELECT uuid FROM {table} WHERE {_OF[table]}", [pseudonym])
+        found |= {row["uuid"] for row in rows}
+    return found
 
 
 def _traces(store: StudyStore, pseudonym: str) -> list[str]:
@@ -151,20 +155,12 @@ def _traces(store: StudyStore, pseudonym: str) -> list[str]:
 def remove_rows(store: StudyStore, pseudonym: str) -> tuple[bool, int]:
     """Delete a participant's rows, and nothing else. Whether they were enrolled, and how many
     answers went. Raises `RecordError` with nothing deleted."""
-    sessions = "SELECT uuid FROM session WHERE participant = ?"
-    trials = "SELECT uuid FROM trial WHERE participant = ?"
     with store.transaction() as write:
-        gone = write.execute(f"DELETE FROM response WHERE trial IN ({trials})", [pseudonym])
-        answers = gone.rowcount
-        for statement in (
-            f"DELETE FROM presentation WHERE trial IN ({trials})",
-            f"DELETE FROM verification WHERE session IN ({sessions})",
-            "DELETE FROM session WHERE participant = ?",
-            "DELETE FROM trial WHERE participant = ?",
-        ):
-            write.execute(statement, [pseudonym])
-        gone = write.execute("DELETE FROM participant WHERE uuid = ?", [pseudonym])
-        return gone.rowcount > 0, answers
+        gone = {
+            table: write.execute(f"DELETE FROM {table} WHERE {of}", [pseudonym]).rowcount
+            for table, of in _OF.items()
+        }
+    return gone["participant"] > 0, gone["response"]
 
 
 def _require_gone(store: StudyStore, sittings: Sittings, identifiers: set[str]) -> int:

@@ -2,25 +2,40 @@
 
 The list lies beside the study (``study.exports/exports.json``), never in it: places on one
 machine's disk are nobody else's business.
+
+Psych-DS after the rules at https://psychds-docs.readthedocs.io: CSV files under ``data/``, named by
+keywords, each with a sidecar of its own columns; ``dataset_description.json`` in JSON-LD with name,
+description and every column in `variableMeasured`. BIDS after
+https://bids-specification.readthedocs.io (1.10), "Behavioral experiments (with no neural
+recordings)": ``sub-*/beh/sub-*_task-*_beh.tsv``, one row per trial, with one sidecar for all at
+the root, and likewise one row per sitting as the task "sittings".
 """
 
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal, get_args
 
+from squeezefilm import __version__
 from squeezefilm.errors import InputError
 from squeezefilm.results import write_whole
-from squeezefilm.study.record import bids, psych_ds
 from squeezefilm.study.record.erasure import erase_file, require_plain
-from squeezefilm.study.record.session_table import SESSION_COLUMNS, session_table
 from squeezefilm.study.record.store import StudyStore
-from squeezefilm.study.record.trial_table import csv_text, trial_table
+from squeezefilm.study.record.tables import (
+    COLUMNS,
+    SESSION_COLUMNS,
+    Cell,
+    Column,
+    cell_text,
+    csv_text,
+    session_table,
+    trial_table,
+)
 
 Format = Literal["csv", "psych-ds", "bids"]
-FORMATS: tuple[Format, ...] = ("csv", "psych-ds", "bids")
+FORMATS: tuple[Format, ...] = get_args(Format)
 LIST = "exports.json"
 """The list's name in the folder of exports."""
 _MARK = ".squeezefilm-export.json"
@@ -145,8 +160,165 @@ def _csv_files(store: StudyStore) -> dict[str, str]:
     }
 
 
+_KINDS = {"text": "text", "number": "number", "whole": "whole number", "truth": "true or false"}
+
+
+def psych_ds(store: StudyStore) -> dict[str, str]:
+    """The files of a Psych-DS dataset: path within it → text."""
+    design = store.design
+    name = keyword(design.name)
+    columns = {one.name: one for one in (*COLUMNS, *SESSION_COLUMNS)}
+    about = {
+        "@context": "https://schema.org",
+        "@type": "Dataset",
+        "name": design.title or design.name,
+        "description": description(store),
+        "keywords": ["tactile perception", "friction modulation", "psychophysics", design.task],
+        "variableMeasured": _variables(list(columns.values())),
+    }
+    trials = f"data/study-{name}_task-{keyword(design.task)}_data"
+    sessions = f"data/study-{name}_task-sessions_data"
+    return {
+        "dataset_description.json": _json(about),
+        "README.md": readme(store, "Psych-DS"),
+        "CHANGES.md": f"Exported by squeezefilm {__version__}.\n",
+        f"{trials}.csv": csv_text(trial_table(store)),
+        f"{trials}.json": _json({"variableMeasured": _variables(COLUMNS)}),
+        f"{sessions}.csv": csv_text(session_table(store), SESSION_COLUMNS),
+        f"{sessions}.json": _json({"variableMeasured": _variables(SESSION_COLUMNS)}),
+        "materials/design.toml": store.study["design"],
+    }
+
+
+def keyword(text: str) -> str:
+    """A text as the value of a keyword in a file's name: letters and digits only."""
+    return "".join(one for one in text if one.isascii() and one.isalnum())
+
+
+def description(store: StudyStore) -> str:
+    """One paragraph about the study, for a dataset's description."""
+    design, study = store.design, store.study
+    said = (
+        f"{design.title or design.name}: {design.task} on {', '.join(design.displays)}, "
+        f"{len(store.participants())} participants; design {study['design_sha256'][:12]}, seed "
+        f"{study['seed']}, recorded with squeezefilm {study['squeezefilm_version']}."
+    )
+    return f"{said} {design.note}" if design.note else said
+
+
+def readme(store: StudyStore, standard: str) -> str:
+    """The dataset's README."""
+    design = store.design
+    return (
+        f"# {design.title or design.name}\n\n{description(store)}\n\nQuestion: "
+        f"{design.spoken_question}\n\nThis is a {standard} dataset. One row is one answered trial; "
+        "participants are random pseudonyms. Periods are whole spatial periods, groove plus "
+        "ridge. A text cell that begins with an apostrophe was guarded against being taken for a "
+        "formula: leave out that apostrophe.\n"
+    )
+
+
+def _variables(columns: Sequence[Column]) -> list[dict[str, str]]:
+    found = []
+    for column in columns:
+        said = f"{column.description} ({_KINDS[column.kind]})"
+        one = {"@type": "PropertyValue", "name": column.name, "description": said}
+        if column.unit:
+            one["unitText"] = column.unit
+        found.append(one)
+    return found
+
+
+_MISSING = "n/a"
+_NUMBER = Column("participant_number", "Which of the balanced orders they had, from 0")
+
+
+def bids(store: StudyStore) -> dict[str, str]:
+    """The files of a BIDS dataset: path within it → text."""
+    design = store.design
+    task = keyword(design.task)
+    rows = trial_table(store)
+    columns = [
+        Column("sitting_id", one.description) if one.name == "session_id" else one
+        for one in COLUMNS
+        if not one.name.startswith("participant_")
+    ]
+    people = {row["participant_id"]: row["participant_number"] for row in rows}
+    listing: list[dict[str, Cell]] = [
+        {"participant_id": f"sub-{one}", "participant_number": number}
+        for one, number in people.items()
+    ]
+    files = {
+        "dataset_description.json": _json(
+            {
+                "Name": design.title or design.name,
+                "BIDSVersion": "1.10.0",
+                "DatasetType": "raw",
+                "GeneratedBy": [{"Name": "squeezefilm", "Version": __version__}],
+            }
+        ),
+        "README": f"{readme(store, 'BIDS')}\n{description(store)}\n",
+        "CHANGES": f"1.0.0 {store.study['created_utc'][:10]}\n  - Exported by squeezefilm.\n",
+        "participants.tsv": _tsv(listing, [COLUMNS[0], _NUMBER]),
+        "participants.json": _json(_described([_NUMBER])),
+        f"task-{task}_beh.json": _json(
+            {
+                "TaskName": task,
+                "TaskDescription": description(store),
+                "Instructions": design.spoken_question,
+                **_described(columns),
+            }
+        ),
+    }
+    sittings = session_table(store)
+    files["task-sittings_beh.json"] = _json(
+        {
+            "TaskName": "sittings",
+            "TaskDescription": "Conditions, airborne ultrasound and the device's state, by sitting",
+            **_described(_SITTINGS),
+        }
+    )
+    for one in people:
+        mine = [row for row in rows if row["participant_id"] == one]
+        files[f"sub-{one}/beh/sub-{one}_task-{task}_beh.tsv"] = _tsv(mine, columns)
+        sat = [row for row in sittings if row["participant_id"] == one]
+        files[f"sub-{one}/beh/sub-{one}_task-sittings_beh.tsv"] = _tsv(sat, _SITTINGS)
+    return files
+
+
+# BIDS keeps the name session_id for sessions of its own folders (ses-*).
+_SITTINGS = [
+    Column("sitting_id", one.description) if one.name == "session_id" else one
+    for one in SESSION_COLUMNS
+    if one.name != "participant_id"
+]
+
+
+def _described(columns: Sequence[Column]) -> dict[str, Any]:
+    found: dict[str, Any] = {}
+    for column in columns:
+        found[column.name] = {"Description": column.description}
+        if column.unit:
+            found[column.name]["Units"] = column.unit
+    return found
+
+
+def _tsv(rows: Sequence[dict[str, Cell]], columns: Sequence[Column]) -> str:
+    lines = ["\t".join(column.name for column in columns)]
+    for row in rows:
+        named = {**row, "sitting_id": row.get("session_id")}
+        cells = [cell_text(named[column.name], _MISSING) for column in columns]
+        # A tab or a line's end has no escape in TSV.
+        lines.append("\t".join(" ".join(cell.split()) or _MISSING for cell in cells))
+    return "\n".join(lines) + "\n"
+
+
+def _json(value: Any) -> str:
+    return json.dumps(value, indent=2, ensure_ascii=False) + "\n"
+
+
 _FILES: dict[Format, Callable[[StudyStore], dict[str, str]]] = {
     "csv": _csv_files,
-    "psych-ds": psych_ds.dataset,
-    "bids": bids.dataset,
+    "psych-ds": psych_ds,
+    "bids": bids,
 }

@@ -24,8 +24,8 @@ from squeezefilm import quantities as si
 from squeezefilm.errors import InputError, RecordError
 from squeezefilm.results import sync_folder, write_whole
 from squeezefilm.study.design.study_design import StudyDesign
-from squeezefilm.study.design.trials import Trial, trials
-from squeezefilm.study.record.contents import is_trace, require_contents
+from squeezefilm.study.design.trials import trials
+from squeezefilm.study.record.contents import is_trace, problems
 from squeezefilm.study.record.database import (
     FAILURES,
     Database,
@@ -148,7 +148,12 @@ class StudyStore:
         require_study(path)
         store = cls(path, Database(path))
         try:
-            require_contents(store)
+            for problem in problems(store.rows, lambda: store.design):
+                raise InputError(
+                    f"{path} is damaged or was not written by this program: {problem}. Nothing of "
+                    f"it was used; open the last good backup (in {store.backups.name}), or mend "
+                    "that row"
+                )
         except BaseException:
             store.close()
             raise
@@ -231,10 +236,6 @@ class StudyStore:
         except FAILURES as error:
             raise RecordError(f"{self.path} cannot be read: {error}") from error
 
-    def values(self, query: str) -> list[tuple[Any, ...]]:
-        """As `rows`, without the columns' names."""
-        return [tuple(row.values()) for row in self.rows(query)]
-
     @contextlib.contextmanager
     def transaction(self) -> Iterator[sqlite3.Connection]:
         """One transaction: all of it is on the disk when it ends, or nothing is and it raises."""
@@ -283,7 +284,8 @@ class StudyStore:
             }
             insert(write, "participant", row)
             for trial in trials(design, number, study["seed"]):
-                insert(write, "trial", _planned(trial, pseudonym))
+                planned = {"uuid": str(uuid.uuid4()), "participant": pseudonym, **trial.row()}
+                insert(write, "trial", planned)
         return pseudonym
 
     def participants(self) -> list[dict[str, Any]]:
@@ -374,24 +376,6 @@ def insert(write: sqlite3.Connection, table: str, row: Row) -> None:
     """Add a row to one of this room's tables, in a transaction that is open."""
     columns, marks = ", ".join(row), ", ".join("?" * len(row))
     write.execute(f"INSERT INTO {table} ({columns}) VALUES ({marks})", tuple(row.values()))
-
-
-def _planned(trial: Trial, participant: str) -> Row:
-    return {
-        "uuid": str(uuid.uuid4()),
-        "participant": participant,
-        "number": trial.number,
-        "display": trial.display,
-        "block": trial.block,
-        "phase": trial.phase,
-        "stimuli": json.dumps(trial.stimuli),
-        "alternatives": json.dumps(trial.alternatives),
-        "answer": trial.answer,
-        "adaptive": trial.adaptive,
-        "reference_first": int(trial.reference_first),
-        "pause_s": trial.pause,
-        "seed": trial.seed,
-    }
 
 
 def _roll_back(connection: sqlite3.Connection) -> None:

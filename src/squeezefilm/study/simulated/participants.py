@@ -26,7 +26,8 @@ from squeezefilm.perception.senses import D_PRIME_OF_75
 from squeezefilm.results import Result, stamp, to_json
 from squeezefilm.study.design.study_design import NamedDesign, StudyDesign
 from squeezefilm.study.design.trials import trials
-from squeezefilm.study.identification.confusion import ConfusionMatrix
+from squeezefilm.study.identification.confusion import ConfusionMatrix, participant_counts
+from squeezefilm.study.identification.power import ParticipantSimulator
 from squeezefilm.study.simulated.chain_tables import ChainTables, chain_tables
 
 _CHUNK = 60
@@ -74,9 +75,22 @@ class SimulatedStudy(Result):
         answers, stimuli = len(design.alternatives), len(design.stimuli)
         here = self.display == display
         who = np.broadcast_to(np.arange(self.participants)[:, None], self.choice.shape)[here]
-        flat = (who * answers + self.choice[here]) * stimuli + self.stimulus[here]
-        counts = np.bincount(flat, minlength=self.participants * answers * stimuli)
-        return counts.reshape(self.participants, answers, stimuli).astype(np.int64)
+        return participant_counts(who, self.stimulus[here], self.choice[here], answers, stimuli)[1]
+
+    def people(self, display: int = 0) -> ParticipantSimulator:
+        """Draws people of this study with replacement, for `power_curve`.
+
+        There should be many against the people of a study drawn (some 10 000): then two of one
+        study are hardly ever the same. Raises `InputError` where there are fewer than two.
+        """
+        si.require("participants", self.participants, at_least=2)
+        counts = self.participant_counts(display)
+
+        def drawn(participants: int, random: np.random.Generator) -> si.IntArray:
+            si.require("participants", participants, at_least=1)
+            return counts[random.integers(0, counts.shape[0], participants)]
+
+        return drawn
 
     def confusion(self, display: int = 0) -> ConfusionMatrix:
         """The confusion matrix on a display: rows gratings, columns simulated periods."""

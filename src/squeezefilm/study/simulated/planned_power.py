@@ -15,7 +15,6 @@ from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.identification.power import PowerCurve, distinction, power_curve
 from squeezefilm.study.simulated.chain_tables import chain_tables
 from squeezefilm.study.simulated.participants import right_answers, simulate_participants
-from squeezefilm.study.simulated.pool import SimulatedPeople
 
 SIZES = (2, 3, 4, 5, 6, 8, 10, 12, 16, 24, 32, 48)
 POOL = 4000
@@ -75,15 +74,15 @@ def planned_power(
     Raises:
         InputError: names that are not in the design, or what the simulation refuses.
     """
-    a, b = (_number(design, name) for name in (first, second))
+    asked = dataclasses.replace(design, catch=())
+    a, b = (design.stimuli.index(asked.stimulus(name)) for name in (first, second))
     alone = _on_one_display(design, display)
     tell = progress or (lambda _: None)
     tables = chain_tables(alone, observer, progress=tell)
     tell(f"{POOL} simulated participants")
     pool = simulate_participants(alone, observer, POOL, seed, tables)
-    people = SimulatedPeople.of(pool)
     curve = power_curve(
-        people,
+        pool.people(),
         lambda counts: distinction(counts, a, b).p_value,
         participants,
         studies=studies,
@@ -92,20 +91,9 @@ def planned_power(
         seed=seed,
         progress=lambda done, all_: tell(f"studies of size {done} of {all_}"),
     )
-    whole = distinction(people.counts, a, b).score
+    whole = distinction(pool.participant_counts(), a, b).score
     where = alone.displays[0]
     return PlannedPower(design.name, where, first, second, observer.name, curve, whole, seed)
-
-
-def _number(design: StudyDesign, name: str) -> int:
-    """Which stimulus of a design has a name. Raises `InputError` where none has."""
-    names = [one.name for one in design.stimuli]
-    if name not in names:
-        raise InputError(
-            f"design '{design.name}' has no stimulus '{name}'.{si.did_you_mean(name, names)} "
-            f"It has: {', '.join(names)}"
-        )
-    return names.index(name)
 
 
 def _on_one_display(design: StudyDesign, display: str | None) -> StudyDesign:

@@ -34,7 +34,7 @@ from squeezefilm.lab.keys import CODE_LIFE
 from squeezefilm.lab.server import LanPlace
 from squeezefilm.lab.studying.devices import StudyDevices
 from squeezefilm.lab.worker import PAGE
-from squeezefilm.study.conduct.exposure import Exposure
+from squeezefilm.study.conduct.sessions import Exposure
 from squeezefilm.study.conduct.study_device import DeviceIdentity, DeviceVerification, Exploration
 from squeezefilm.study.record.store import StudyStore
 

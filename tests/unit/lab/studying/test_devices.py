@@ -23,7 +23,7 @@ from squeezefilm.lab.playing_process import DeviceSession
 from squeezefilm.lab.server import PAGE, Lab
 from squeezefilm.lab.studying.devices import StudyDevices, require_device
 from squeezefilm.perception.stimuli import Stimulus
-from squeezefilm.study.conduct.exposure import Exposure
+from squeezefilm.study.conduct.sessions import Exposure
 from squeezefilm.study.conduct.study_device import DeviceIdentity, DeviceVerification, Exploration
 from squeezefilm.study.record.store import StudyStore
 

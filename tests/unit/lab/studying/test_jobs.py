@@ -21,7 +21,7 @@ from squeezefilm.report.study.page import key_rows
 from squeezefilm.study.conduct import rehearsal
 from squeezefilm.study.identification.recorded import analyze_study
 from squeezefilm.study.record.store import StudyStore
-from squeezefilm.study.record.trial_table import trial_table
+from squeezefilm.study.record.tables import trial_table
 
 from ...study.scripted import gratings, run_through
 

@@ -31,8 +31,7 @@ from squeezefilm.report.study.simulated_page import (
 )
 from squeezefilm.study.design.study_design import load_design
 from squeezefilm.study.identification import analysis as identification
-from squeezefilm.study.simulated.causes import Causes
-from squeezefilm.study.simulated.chain_tables import ChainTables
+from squeezefilm.study.simulated.chain_tables import Causes, ChainTables
 from squeezefilm.study.simulated.participants import SimulatedStudy
 
 PAPER = load_design("biet2008-gratings")

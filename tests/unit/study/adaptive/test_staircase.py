@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from squeezefilm.errors import InputError
-from squeezefilm.study.adaptive.staircase import Staircase, StaircaseRule, staircase_target
+from squeezefilm.study.adaptive.staircase import Staircase, StaircaseRule
 
 RULE: dict[str, Any] = {"start": 8.0, "step": 2.0, "smallest_step": 0.5}
 
@@ -16,11 +16,9 @@ def test_one_correct_answer_is_the_least_that_moves_the_stairs_down() -> None:
     stairs = Staircase(StaircaseRule(**RULE, down_after=1))
     stairs.update(8.0, True)
     assert stairs.next_stimulus() == 6.0
-    assert stairs.rule.target == staircase_target(1, 1.0, 1.0) == 0.5
+    assert stairs.rule.target == 0.5
     with pytest.raises(InputError, match="down_after"):
         StaircaseRule(**RULE, down_after=0)
-    with pytest.raises(InputError, match="down_after"):
-        staircase_target(0)
 
 
 @pytest.mark.parametrize(

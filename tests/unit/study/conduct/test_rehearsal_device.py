@@ -10,11 +10,13 @@ import pytest
 
 from squeezefilm.display import load_display
 from squeezefilm.perception.stimuli import Stimulus
+from squeezefilm.render.motion.sensor import LVDT_10_KHZ
 from squeezefilm.study.conduct.rehearsal_device import StudyTwin
 from squeezefilm.twin.settings import PickupModel, PlateDrift, TwinSettings
 from squeezefilm.twin.working_point import WorkingPoint, working_point
 
 DISPLAY = load_display("biet2008-plate")
+SETTINGS = TwinSettings(sensor=LVDT_10_KHZ, pickup=PickupModel(kind="sensing_patch"))
 
 
 @pytest.fixture(scope="module")
@@ -24,7 +26,7 @@ def point() -> WorkingPoint:
 
 
 def _twin(point: WorkingPoint, **changed: object) -> StudyTwin:
-    settings = dataclasses.replace(TwinSettings(truth_rows=20_000), **changed)  # type: ignore[arg-type]
+    settings = dataclasses.replace(SETTINGS, **changed)  # type: ignore[arg-type]
     return StudyTwin(DISPLAY, settings, point=point)
 
 

@@ -13,9 +13,12 @@ import pytest
 from squeezefilm import config
 from squeezefilm.errors import ConfigError, InputError
 from squeezefilm.plate.sound import SoundField, exposure_guidance
-from squeezefilm.study.conduct.exposure import exposure_of
-from squeezefilm.study.conduct.session_conditions import SessionConditions
-from squeezefilm.study.conduct.sessions import begin_session, end_session
+from squeezefilm.study.conduct.sessions import (
+    SessionConditions,
+    begin_session,
+    end_session,
+    exposure_of,
+)
 from squeezefilm.study.conduct.study_device import DeviceVerification, NoDevice
 from squeezefilm.study.record.store import StudyStore
 

@@ -11,12 +11,8 @@ import pytest
 from squeezefilm import config, presets
 from squeezefilm.errors import ConfigError, InputError
 from squeezefilm.perception.stimuli import Grating, Stimulus
-from squeezefilm.study.design.study_design import (
-    AdaptiveCondition,
-    CatchTrial,
-    StudyDesign,
-    load_design,
-)
+from squeezefilm.study.design.special_trials import AdaptiveCondition, CatchTrial
+from squeezefilm.study.design.study_design import StudyDesign, load_design
 from squeezefilm.study.design.trials import trials
 from squeezefilm.study.record.store import StudyStore
 

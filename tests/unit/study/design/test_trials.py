@@ -11,12 +11,8 @@ import pytest
 from squeezefilm import config
 from squeezefilm.errors import InputError
 from squeezefilm.perception.stimuli import Stimulus
-from squeezefilm.study.design.study_design import (
-    AdaptiveCondition,
-    CatchTrial,
-    StudyDesign,
-    load_design,
-)
+from squeezefilm.study.design.special_trials import AdaptiveCondition, CatchTrial
+from squeezefilm.study.design.study_design import StudyDesign, load_design
 from squeezefilm.study.design.trials import (
     conditions,
     expected_duration,

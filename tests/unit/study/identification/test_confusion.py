@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import itertools
 import math
 
@@ -17,18 +18,21 @@ from squeezefilm.study.identification.confusion import (
     confusion_matrix,
     participant_counts,
 )
-from squeezefilm.study.identification.confusion_posterior import confusion_posterior
-from squeezefilm.study.identification.participant_bootstrap import expansion, resampled_counts
 from squeezefilm.study.identification.proportions import (
+    METHODS,
     chance_test,
-    clopper_pearson_interval,
-    jeffreys_interval,
+    confusion_posterior,
+    expansion,
     participant_interval,
     permutation_test,
-    wilson_interval,
+    proportion_interval,
+    resampled_counts,
 )
 
 NAMES = ("a", "b", "c")
+WILSON, JEFFREYS, CLOPPER_PEARSON = INTERVALS = [
+    functools.partial(proportion_interval, method=method) for method in METHODS
+]
 
 
 def test_rows_are_answers_and_columns_stimuli() -> None:
@@ -91,23 +95,23 @@ def test_no_right_answers_without_pairs() -> None:
 
 def test_intervals_against_published_values() -> None:
     # Newcombe 1998, 10.1002/(SICI)1097-0258(19980430)17:8<857::AID-SIM777>3.0.CO;2-E, 81 of 263.
-    wilson, exact = wilson_interval(81, 263), clopper_pearson_interval(81, 263)
+    wilson, exact = WILSON(81, 263), CLOPPER_PEARSON(81, 263)
     assert (wilson.low, wilson.high) == pytest.approx((0.2553, 0.3662), abs=5e-5)
     assert (exact.low, exact.high) == pytest.approx((0.2527, 0.3676), abs=5e-5)
-    zero = wilson_interval(0, 20)
+    zero = WILSON(0, 20)
     assert (zero.low, zero.high) == pytest.approx((0.0, 0.1611), abs=5e-5)
 
 
 @given(st.integers(1, 80), st.floats(0, 1), st.floats(0.5, 0.999))
 def test_intervals_hold_the_share_and_mirror(trials: int, share: float, level: float) -> None:
     successes = round(share * trials)
-    for interval in (wilson_interval, jeffreys_interval, clopper_pearson_interval):
+    for interval in INTERVALS:
         found, mirrored = (interval(k, trials, level) for k in (successes, trials - successes))
         assert 0 <= found.low <= successes / trials + 1e-12
         assert successes / trials - 1e-12 <= found.high <= 1
         assert mirrored.low == pytest.approx(1 - found.high, abs=1e-9)
-    inner = jeffreys_interval(successes, trials, level)
-    outer = clopper_pearson_interval(successes, trials, level)
+    inner = JEFFREYS(successes, trials, level)
+    outer = CLOPPER_PEARSON(successes, trials, level)
     assert outer.low <= inner.low + 1e-12
     assert inner.high <= outer.high + 1e-12
 
@@ -119,9 +123,9 @@ def test_coverage_is_computed_exactly(p: float) -> None:
     def coverage(interval) -> float:  # type: ignore[no-untyped-def]
         return math.fsum(w for k, w in enumerate(weights) if p in interval(k, 60))
 
-    assert coverage(clopper_pearson_interval) >= 0.95
-    assert 0.92 < coverage(wilson_interval) < 0.98
-    assert 0.92 < coverage(jeffreys_interval) < 0.98
+    assert coverage(CLOPPER_PEARSON) >= 0.95
+    assert 0.92 < coverage(WILSON) < 0.98
+    assert 0.92 < coverage(JEFFREYS) < 0.98
 
 
 def test_chance_by_hand() -> None:
@@ -234,7 +238,7 @@ def test_the_first_number_out_of_range_is_named() -> None:
     assert confusion_matrix([0, 1], [1, 0], ("a", "b"), ("x", "y")).stimuli == ("x", "y")
 
 
-@pytest.mark.parametrize("interval", [wilson_interval, jeffreys_interval, clopper_pearson_interval])
+@pytest.mark.parametrize("interval", INTERVALS)
 def test_one_trial_has_an_interval_and_none_has_not(interval) -> None:  # type: ignore[no-untyped-def]
     assert interval(0, 1).low == 0.0
     assert interval(1, 1).high == 1.0

@@ -16,9 +16,8 @@ from squeezefilm.study.conduct.sessions import begin_session
 from squeezefilm.study.conduct.study_device import NoDevice
 from squeezefilm.study.conduct.trial_by_trial import conduct
 from squeezefilm.study.identification.recorded import analyze_study
-from squeezefilm.study.record.origin import SIMULATED, origin_of
 from squeezefilm.study.record.store import StudyStore
-from squeezefilm.study.record.trial_table import trial_table
+from squeezefilm.study.record.tables import SIMULATED, origin_of, trial_table
 from squeezefilm.study.simulated.participants import simulate_participants
 
 from ..scripted import CONSENT, Script, gratings, staircase

@@ -158,14 +158,6 @@ def test_the_saturated_model_has_a_share_for_each_place() -> None:
     assert kernel.saturated(k, n) == pytest.approx(expected, rel=1e-13)
 
 
-def test_counts_of_shares_are_the_binomials_quantiles() -> None:
-    p, n = np.array([0.03, 0.4, 0.77, 0.0, 1.0, 0.999]), np.array([5.0, 31.0, 12.0, 6.0, 9.0, 60.0])
-    shares = np.random.default_rng(4).random((50, p.size))
-    out = np.empty_like(shares)
-    kernel.binomial_quantiles(p, n, shares, out)
-    assert np.array_equal(out, stats.binom.ppf(shares, n, p))
-
-
 def test_a_grid_holds_the_likelihood_of_each_cell() -> None:
     thresholds, widths = np.array([1.5, 2.2, 2.9]), np.log([0.8, 1.9])
     lapses, guesses = np.array([0.01, 0.06, 0.5]), np.array([0.1, 0.3, 0.5, 0.6])

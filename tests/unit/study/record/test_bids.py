@@ -12,15 +12,13 @@ import pytest
 
 from squeezefilm import __version__
 from squeezefilm.study.conduct.run import StudyRun
-from squeezefilm.study.conduct.session_conditions import SessionConditions
-from squeezefilm.study.conduct.sessions import begin_session
+from squeezefilm.study.conduct.sessions import SessionConditions, begin_session
 from squeezefilm.study.conduct.study_device import NoDevice
 from squeezefilm.study.conduct.trial_by_trial import conduct
-from squeezefilm.study.record.bids import dataset
-from squeezefilm.study.record.psych_ds import description, readme
-from squeezefilm.study.record.session_table import SESSION_COLUMNS
+from squeezefilm.study.record.exports import bids as dataset
+from squeezefilm.study.record.exports import description, readme
 from squeezefilm.study.record.store import StudyStore
-from squeezefilm.study.record.trial_table import COLUMNS, trial_table
+from squeezefilm.study.record.tables import COLUMNS, SESSION_COLUMNS, trial_table
 
 from ..scripted import Script, gratings
 

@@ -11,8 +11,7 @@ import pytest
 
 from squeezefilm.errors import InputError, RecordError, SqueezefilmError
 from squeezefilm.study.conduct.run import StudyRun
-from squeezefilm.study.conduct.session_conditions import SessionConditions
-from squeezefilm.study.conduct.sessions import begin_session, end_session
+from squeezefilm.study.conduct.sessions import SessionConditions, begin_session, end_session
 from squeezefilm.study.conduct.trial_by_trial import conduct
 from squeezefilm.study.record import deletion
 from squeezefilm.study.record.deletion import delete_participant

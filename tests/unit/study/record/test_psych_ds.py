@@ -12,10 +12,10 @@ from pathlib import Path
 import pytest
 
 from squeezefilm import __version__
-from squeezefilm.study.record.psych_ds import dataset, description, keyword, readme
-from squeezefilm.study.record.session_table import SESSION_COLUMNS
+from squeezefilm.study.record.exports import description, keyword, readme
+from squeezefilm.study.record.exports import psych_ds as dataset
 from squeezefilm.study.record.store import StudyStore
-from squeezefilm.study.record.trial_table import COLUMNS
+from squeezefilm.study.record.tables import COLUMNS, SESSION_COLUMNS
 
 from ..scripted import gratings, run_through
 

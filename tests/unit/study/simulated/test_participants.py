@@ -14,10 +14,8 @@ from squeezefilm.perception.observer import Observer, load_observer
 from squeezefilm.perception.percepts import Apparatus
 from squeezefilm.perception.senses import D_PRIME_OF_75, Candidates
 from squeezefilm.study.design.study_design import StudyDesign, load_design
-from squeezefilm.study.simulated.causes import Causes
-from squeezefilm.study.simulated.chain_tables import ChainTables, chain_tables
+from squeezefilm.study.simulated.chain_tables import Causes, ChainTables, chain_tables
 from squeezefilm.study.simulated.participants import right_answers, simulate_participants
-from squeezefilm.study.simulated.pool import SimulatedPeople
 
 PERIODS = np.array([0.4e-3, 2e-3, 4e-3, 8e-3, 10e-3])
 DESIGN = dataclasses.replace(load_design("biet2008-gratings"), displays=("biet2008-stator",))
@@ -108,13 +106,10 @@ def test_right_answers_are_the_designs() -> None:
 
 def test_people_for_power_have_the_pools_confusions() -> None:
     study = run(2.0, 300)
-    people = SimulatedPeople.of(study)
-    drawn = people(5000, np.random.default_rng(1))
+    drawn = study.people()(5000, np.random.default_rng(1))
     assert drawn.shape == (5000, 5, 5)
     pooled = study.confusion().proportions
     assert np.abs(drawn.sum(axis=0) / drawn.sum(axis=(0, 1)) - pooled).max() < 0.02
-    with pytest.raises(InputError, match="two people"):
-        SimulatedPeople(np.zeros((1, 5, 5), dtype=np.int64))
 
 
 def test_what_cannot_be_simulated_is_refused() -> None:
@@ -128,12 +123,10 @@ def test_what_cannot_be_simulated_is_refused() -> None:
 
 
 def test_two_people_are_enough_to_draw_from_and_one_is_not() -> None:
-    two = np.stack([np.eye(5, dtype=np.int64), 2 * np.eye(5, dtype=np.int64)])
-    drawn = SimulatedPeople(two)(50, np.random.default_rng(1))
-    assert {int(one[0, 0]) for one in drawn} == {1, 2}
-    with pytest.raises(InputError, match="at least two people"):
-        SimulatedPeople(two[:1])
-    with pytest.raises(InputError, match="at least two people"):
-        SimulatedPeople(two[0])
-    with pytest.raises(InputError, match="participants"):
-        SimulatedPeople(two)(0, np.random.default_rng(1))
+    two = run(2.0, 2)
+    drawn = two.people()(50, np.random.default_rng(1))
+    assert {one.tobytes() for one in drawn} == {one.tobytes() for one in two.participant_counts()}
+    with pytest.raises(InputError, match="participants = 1 "):
+        run(2.0, 1).people()
+    with pytest.raises(InputError, match="participants = 0 "):
+        two.people()(0, np.random.default_rng(1))

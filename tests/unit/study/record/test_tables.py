@@ -8,12 +8,11 @@ from pathlib import Path
 import pytest
 
 from squeezefilm.study.conduct.run import StudyRun
-from squeezefilm.study.conduct.session_conditions import SessionConditions
-from squeezefilm.study.conduct.sessions import begin_session, end_session
+from squeezefilm.study.conduct.sessions import SessionConditions, begin_session, end_session
 from squeezefilm.study.conduct.study_device import NoDevice
 from squeezefilm.study.conduct.trial_by_trial import conduct
-from squeezefilm.study.record.session_table import SESSION_COLUMNS, session_table
 from squeezefilm.study.record.store import StudyStore
+from squeezefilm.study.record.tables import SESSION_COLUMNS, session_table
 
 from ..scripted import LOUD, Bench, Script, gratings
 

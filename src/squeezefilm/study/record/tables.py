@@ -1,4 +1,5 @@
-"""A study's answers as one table, a row per trial, and as CSV that a spreadsheet may open.
+"""A study's answers and sessions as tables, a row per trial or sitting, and as CSV that a
+spreadsheet may open.
 
 A text cell that a spreadsheet would take for a formula is written with an apostrophe before it
 (OWASP, "CSV Injection"); numbers are written as numbers, the negative ones too.
@@ -69,13 +70,9 @@ COLUMNS = (
 """What every export holds, in this order."""
 
 _QUERY = """
-SELECT p.uuid AS participant_id, p.number AS participant_number, r.session AS session_id,
-    t.display, t.number AS trial, t.block, t.phase, r.stimuli, t.adaptive AS adaptive_series,
-    r.intensity, t.answer, r.choice, r.estimate, r.correct, r.response_time_s, r.path_length_m,
-    r.mean_speed_m_per_s, r.mean_normal_force_N,
-    (SELECT count(*) FROM presentation s WHERE s.trial = t.uuid) AS presentations,
-    r.started_utc, r.ended_utc, r.started_monotonic_s, r.ended_monotonic_s, r.traces, r.seed,
-    r.squeezefilm_version, r.device_sha256, r.calibration_sha256
+SELECT r.*, p.uuid AS participant_id, p.number AS participant_number, r.session AS session_id,
+    t.display, t.number AS trial, t.block, t.phase, t.adaptive AS adaptive_series, t.answer,
+    (SELECT count(*) FROM presentation s WHERE s.trial = t.uuid) AS presentations
 FROM response r JOIN trial t ON t.uuid = r.trial JOIN participant p ON p.uuid = t.participant
 ORDER BY p.number, p.uuid, t.number
 """
@@ -107,14 +104,94 @@ def trial_table(store: StudyStore) -> list[dict[str, Cell]]:
                 one = design.comparison(series, row["intensity"])
             row[f"{prefix}_period_m"] = None if one is None else one.period
             row[f"{prefix}_friction_depth"] = getattr(one, "friction_depth", None)
-        if len(names) < 2:
-            row.update(
-                second_stimulus="",
-                second_stimulus_period_m=None,
-                second_stimulus_friction_depth=None,
-            )
         found.append({column.name: row[column.name] for column in COLUMNS})
     return found
+
+
+SESSION_COLUMNS = (
+    Column("participant_id", "Random pseudonym of the participant"),
+    Column("session_id", "Random identifier of the sitting"),
+    Column("display", "Display that presented the stimuli"),
+    Column("started_utc", "Wall clock when it began (UTC)"),
+    Column("device", "Device that was driven, or none"),
+    Column("device_sha256", "Hash of the display's description"),
+    Column("calibration_sha256", "Hash of its calibration"),
+    Column("squeezefilm_version", "Version of the program"),
+    Column("consent", "Whether the participant consented", kind="truth"),
+    Column("consent_form", "Which text they consented to"),
+    Column("room", "What matters of the room"),
+    Column("temperature_K", "Of the room", "K", "number"),
+    Column("relative_humidity", "Of the room, from 0 to 1", "", "number"),
+    Column("skin_moisture", "As the instrument reads it", "", "number"),
+    Column("skin_moisture_method", "Instrument and its unit"),
+    Column("hand", "That explored"),
+    Column("finger", "That explored"),
+    Column("finger_orientation_rad", "Angle of the finger from the stroke", "rad", "number"),
+    Column("normal_force_asked_N", "Force participants were asked to press with", "N", "number"),
+    Column("masking_noise", "What participants heard"),
+    Column("note", "Anything else"),
+    Column("ultrasound_level_dB", "Estimated airborne sound pressure level", "dB", "number"),
+    Column("ultrasound_distance_m", "Distance from the plate it is estimated for", "m", "number"),
+    Column("ultrasound_frequency_Hz", "Its frequency", "Hz", "number"),
+    Column("ultrasound_duration_s", "How long at most", "s", "number"),
+    Column("ultrasound_guidance_dB", "Public guidance it was compared with", "dB", "number"),
+    Column("ultrasound_acknowledged", "Whether it was acknowledged", kind="truth"),
+    *(
+        column
+        for moment in ("before", "after")
+        for column in (
+            Column(f"verified_{moment}", f"Whether the device was in order {moment}", kind="truth"),
+            Column(f"amplitude_{moment}_m", f"Vibration amplitude {moment}", "m", "number"),
+            Column(f"resonance_frequency_{moment}_Hz", f"Resonance {moment}", "Hz", "number"),
+        )
+    ),
+)
+"""What every export says of sessions, in this order."""
+
+
+def session_table(store: StudyStore) -> list[dict[str, Cell]]:
+    """Every session, in the order of participants and of time; keys as in `SESSION_COLUMNS`.
+
+    A verification that could not measure anything is neither true nor false.
+    """
+    sessions = store.rows(
+        "SELECT s.*, s.participant AS participant_id, s.uuid AS session_id FROM session s "
+        "JOIN participant p ON p.uuid = s.participant ORDER BY p.number, p.uuid, s.started_utc"
+    )
+    found: list[dict[str, Cell]] = []
+    for row in sessions:
+        cells: dict[str, Cell] = {**json.loads(row["conditions"]), **row}
+        exposure = json.loads(row["exposure"]) or {}
+        cells |= {f"ultrasound_{key}": value for key, value in exposure.items()}
+        made = store.rows(
+            "SELECT moment, result, passed FROM verification WHERE session = ? ORDER BY made_utc, "
+            "moment DESC",
+            [row["uuid"]],
+        )
+        for one in made:
+            result, moment = json.loads(one["result"]), one["moment"]
+            cells[f"verified_{moment}"] = bool(one["passed"]) if result["measurable"] else None
+            cells[f"amplitude_{moment}_m"] = result["amplitude_m"]
+            key = f"resonance_frequency_{moment}_Hz"
+            cells[key] = result["resonance_frequency_Hz"]
+        found.append({column.name: cells.get(column.name) for column in SESSION_COLUMNS})
+    return found
+
+
+SIMULATED = "simulated participants"
+SIMULATED_NOTE = "simulated participant"
+"""The note of a session that no person sat in."""
+
+
+def origin_of(store: StudyStore) -> str:
+    """What to label results with: people, simulated, both mixed, or nobody."""
+    notes = [json.loads(row["conditions"]) for row in store.rows("SELECT conditions FROM session")]
+    simulated = [one.get("note") == SIMULATED_NOTE for one in notes]
+    if not simulated:
+        return "nobody"
+    if all(simulated):
+        return SIMULATED
+    return "people and simulated participants, mixed" if any(simulated) else "people"
 
 
 def guarded(text: str) -> str:
