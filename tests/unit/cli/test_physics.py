@@ -13,7 +13,7 @@ from tests.e2e.program import run
 
 from squeezefilm.analysis.film.command import FilmRequest
 from squeezefilm.analysis.plate.tracking import TrackRequest
-from squeezefilm.cli.physics import film, friction, plate
+from squeezefilm.cli.describe import film, friction, plate
 from squeezefilm.display import load_display
 
 PLATE, STATOR = "biet2008-plate", "biet2008-stator"
