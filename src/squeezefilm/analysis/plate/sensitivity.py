@@ -15,8 +15,9 @@ from typing import Any, Literal
 import numpy as np
 
 from squeezefilm import quantities as si
+from squeezefilm.analysis.parameters import with_values
+from squeezefilm.analysis.plate.solved import sweep_around
 from squeezefilm.errors import InputError
-from squeezefilm.materials import Piezoceramic
 from squeezefilm.plate.layout import GlueLayer, RectangularPlate
 from squeezefilm.plate.solid.modes import Label, PlateModes, tracked
 from squeezefilm.plate.solid.response import harmonic_response
@@ -90,10 +91,8 @@ def _solved(plate: RectangularPlate, label: Label) -> PlateModes:
 def _amplitude(
     plate: RectangularPlate, frequency: si.Hertz, quality: si.Dimensionless
 ) -> si.MetrePerVolt:
-    # Dense near the peak, where the curve turns within f/Q; the harmonic mesh is another one, so
-    # the peak need not lie at the middle exactly.
-    near = np.sinh(np.linspace(-3, 3, _POINTS)) / np.sinh(3)
-    response = harmonic_response(plate, frequency * (1 + max(4 / quality, 0.01) * near))
+    # The harmonic mesh is another one, so the peak need not lie at the middle exactly.
+    response = harmonic_response(plate, sweep_around(frequency, quality, _POINTS))
     return float(np.max(response.maximum))
 
 
@@ -177,12 +176,13 @@ def usual_changes(plate: RectangularPlate) -> tuple[Change, ...]:
     own = plate.substrate
     out: list[Change] = []
 
-    def both(name: str, unit: str, low: float, high: float, make: _Setter) -> None:
+    def both(name: str, path: str, unit: str, low: float, high: float) -> None:
         for value in (low, high):
-            out.append(Change(name, _text(value, unit), functools.partial(make, value=value)))
+            make = functools.partial(with_values, values={path: value})
+            out.append(Change(name, _text(value, unit), make))
 
     E, t, tp = own.young_modulus, plate.thickness, plate.ceramic_thickness
-    both("plate Young's modulus", "Pa", E * 115 / 123, E * 131 / 123, with_young_modulus)
+    both("plate Young's modulus", "substrate.young_modulus", "Pa", E * 115 / 123, E * 131 / 123)
     for share in (0.9, 1.1):
         out.append(
             Change(
@@ -191,13 +191,12 @@ def usual_changes(plate: RectangularPlate) -> tuple[Change, ...]:
                 functools.partial(with_ceramic_stiffness, share=share),
             )
         )
-    both("plate thickness", "m", 0.975 * t, 1.025 * t, with_thickness)
-    both("ceramic thickness", "m", 0.95 * tp, 1.05 * tp, with_ceramic_thickness)
-    both(
-        "plate density", "kg/m3", own.density * 8140 / 8250, own.density * 8360 / 8250, with_density
-    )
-    nu = own.poisson_ratio
-    both("plate Poisson's ratio", "1", nu - 0.03, min(nu + 0.03, 0.49), with_poisson_ratio)
+    both("plate thickness", "thickness", "m", 0.975 * t, 1.025 * t)
+    both("ceramic thickness", "patches.*.thickness", "m", 0.95 * tp, 1.05 * tp)
+    rho, nu = own.density, own.poisson_ratio
+    both("plate density", "substrate.density", "kg/m3", rho * 8140 / 8250, rho * 8360 / 8250)
+    low, high = nu - 0.03, min(nu + 0.03, 0.49)
+    both("plate Poisson's ratio", "substrate.poisson_ratio", "1", low, high)
     out.append(Change("ceramics open", "each on its own", with_open_ceramics, frequency_only=True))
     if plate.glue is None:
         for modulus in (3e9, 1e9):
@@ -216,7 +215,7 @@ def usual_changes(plate: RectangularPlate) -> tuple[Change, ...]:
                 Change(
                     "quality factor, all materials",
                     f"{Q:.3g} → {share * Q:.3g}",
-                    functools.partial(with_quality_factor, value=share * Q),
+                    functools.partial(with_values, values={"quality_factor": share * Q}),
                 )
             )
         out.append(Change("losses", "in the ceramic alone", with_loss_in_ceramic_alone))
@@ -227,43 +226,10 @@ def usual_changes(plate: RectangularPlate) -> tuple[Change, ...]:
     return tuple(out)
 
 
-_Setter = Callable[..., RectangularPlate]
-
-
 def _text(value: float, unit: str) -> str:
     if unit == "1":
         return f"{value:.3g}"
     return si.format_quantity(value, si.Unit(unit), 4).replace(" um", " µm").replace("m3", "m³")
-
-
-def _substrate(plate: RectangularPlate, **values: float) -> RectangularPlate:
-    return dataclasses.replace(plate, substrate=dataclasses.replace(plate.substrate, **values))  # type: ignore[arg-type]
-
-
-def with_young_modulus(plate: RectangularPlate, value: si.Pascal) -> RectangularPlate:
-    """The plate with another Young's modulus of its substrate."""
-    return _substrate(plate, young_modulus=value)
-
-
-def with_density(plate: RectangularPlate, value: float) -> RectangularPlate:
-    """The plate with another density (kg/m³) of its substrate."""
-    return _substrate(plate, density=value)
-
-
-def with_poisson_ratio(plate: RectangularPlate, value: si.Dimensionless) -> RectangularPlate:
-    """The plate with another Poisson's ratio of its substrate."""
-    return _substrate(plate, poisson_ratio=value)
-
-
-def with_thickness(plate: RectangularPlate, value: si.Metre) -> RectangularPlate:
-    """The plate with another thickness of its substrate."""
-    return dataclasses.replace(plate, thickness=value)
-
-
-def with_ceramic_thickness(plate: RectangularPlate, value: si.Metre) -> RectangularPlate:
-    """The plate with another thickness of all its ceramics."""
-    patches = tuple(dataclasses.replace(patch, thickness=value) for patch in plate.patches)
-    return dataclasses.replace(plate, patches=patches)
 
 
 def with_ceramic_stiffness(plate: RectangularPlate, share: si.Dimensionless) -> RectangularPlate:
@@ -283,13 +249,8 @@ def with_ceramic_stiffness(plate: RectangularPlate, share: si.Dimensionless) -> 
         }
         constants = dataclasses.replace(constants, **changed)
     stiffness = ceramic.in_plane_stiffness * share
-    return _ceramic(
-        plate, dataclasses.replace(ceramic, in_plane_stiffness=stiffness, constants=constants)
-    )
-
-
-def _ceramic(plate: RectangularPlate, ceramic: Piezoceramic) -> RectangularPlate:
-    return dataclasses.replace(plate, ceramic=ceramic)
+    softer = dataclasses.replace(ceramic, in_plane_stiffness=stiffness, constants=constants)
+    return dataclasses.replace(plate, ceramic=softer)
 
 
 def with_other_data_set(plate: RectangularPlate) -> RectangularPlate:
@@ -298,7 +259,7 @@ def with_other_data_set(plate: RectangularPlate) -> RectangularPlate:
     other: Literal["from_d31", "printed_e31"] = (
         "printed_e31" if ceramic.data_set == "from_d31" else "from_d31"
     )
-    return _ceramic(plate, dataclasses.replace(ceramic, data_set=other))
+    return dataclasses.replace(plate, ceramic=dataclasses.replace(ceramic, data_set=other))
 
 
 def with_open_ceramics(plate: RectangularPlate) -> RectangularPlate:
@@ -317,11 +278,6 @@ def with_glue(
     return dataclasses.replace(plate, glue=GlueLayer(thickness, young_modulus))
 
 
-def with_quality_factor(plate: RectangularPlate, value: si.Dimensionless) -> RectangularPlate:
-    """The plate with another quality factor of the whole assembly."""
-    return dataclasses.replace(plate, quality_factor=value)
-
-
 def with_loss_in_ceramic_alone(plate: RectangularPlate) -> RectangularPlate:
     """The plate with no losses but its ceramic's (and its glue's, where it has one)."""
-    return _substrate(plate, quality_factor=LOSSLESS)
+    return with_values(plate, {"substrate.quality_factor": LOSSLESS})
