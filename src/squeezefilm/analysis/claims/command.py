@@ -159,14 +159,7 @@ def reproduce(
 
 def judge(claim: Claim, found: ClaimValue) -> ClaimResult:
     """The verdict on a claim, from what was computed for it."""
-    return ClaimResult(
-        claim=claim,
-        value=found.value,
-        printed_formula_value=found.printed_formula,
-        alternative=found.alternative,
-        verdict=_verdict(claim, found),
-        note=found.note,
-    )
+    return ClaimResult(claim=claim, verdict=_verdict(claim, found), **vars(found))
 
 
 def _verdict(claim: Claim, found: ClaimValue) -> Verdict:

@@ -7,7 +7,7 @@ ceramics and plate that follow.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated
 
 import numpy as np
@@ -94,14 +94,7 @@ def friction_criterion(
     """
     amplitudes = []
     for half in half_wavelengths:
-        shorter = PaperGap(
-            roughness=gap.roughness,
-            vibration_amplitude=0.0,
-            ridge_amplitude=gap.ridge_amplitude,
-            ridge_period=gap.ridge_period,
-            wavelength=2 * float(half),
-            contact_length=gap.contact_length,
-        )
+        shorter = replace(gap, vibration_amplitude=0.0, wavelength=2 * float(half))
         try:
             amplitudes.append(
                 vibration_amplitude_for(relative_friction, shorter, normal_force, ambient_pressure)
@@ -138,7 +131,7 @@ def design_plate(
     euler = float(
         euler_bernoulli_half_wavelength(lowest, section.bending_stiffness, section.mass_per_area)
     )
-    timoshenko = _timoshenko_half_wavelength(lowest, section)
+    timoshenko = timoshenko_half_wavelength(lowest, section)
     halves = np.array(PAPER_HALF_WAVELENGTHS)
     amplitudes = friction_criterion(
         gap, halves, wants.relative_friction, normal_force, ambient_pressure
@@ -215,7 +208,8 @@ def _list(values: si.MetreArray, scale: float = 1e6) -> str:
     return "/".join(f"{value * scale:.3g}" for value in values)
 
 
-def _timoshenko_half_wavelength(frequency: si.Hertz, section: Laminate) -> si.Metre:
+def timoshenko_half_wavelength(frequency: si.Hertz, section: Laminate) -> si.Metre:
+    """The half wavelength (m) of a Timoshenko beam at a frequency (Hz), to 1e-12 m."""
     from scipy.optimize import brentq
 
     thickness = sum(layer.thickness for layer in section.layers)
