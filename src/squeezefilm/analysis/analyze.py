@@ -12,15 +12,16 @@ from squeezefilm import quantities as si
 from squeezefilm.analysis.curves import (
     FrequencyResponse,
     FrictionCurve,
+    ModelCurve,
     PressureProfile,
     WavelengthCurve,
     frequency_response,
     friction_curve,
+    model_curves,
     pressure_profiles,
     wavelength_curves,
 )
 from squeezefilm.analysis.film.models import FilmComparison, compare_film_models
-from squeezefilm.analysis.friction.models import ModelCurve, model_curves
 from squeezefilm.analysis.textures import (
     CompensatedGrating,
     TextureSurvival,
@@ -187,12 +188,12 @@ def _what_follows(
     if prediction.model not in models:
         models = (*models, prediction.model)
     curves = tuple(
-        friction_curve(display, prediction, surface, model)
+        friction_curve(prediction, surface, model)
         for model in models
         for surface in display.surfaces
     )
     tell("friction by every model, and how sure it is")
-    by_model = model_curves(display, prediction)
+    by_model = model_curves(prediction)
     unsure = None
     if samples and prediction.touch.sharing is not None:
         try:
@@ -201,7 +202,7 @@ def _what_follows(
             warned = (*prediction.warnings, f"the friction has no interval: {error}")
             prediction = dataclasses.replace(prediction, warnings=warned)
     tell("wavelength against amplitude")
-    wavelengths = wavelength_curves(display, prediction)
+    wavelengths = wavelength_curves(prediction)
     tell("the paper's film and solved films")
     films = compare_film_models(display, prediction)
     tell("textures")

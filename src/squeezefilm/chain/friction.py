@@ -17,9 +17,11 @@ from squeezefilm.contact.sharing import paper
 from squeezefilm.contact.sharing.film_load import FilmLoad, FilmModel, film_load
 from squeezefilm.contact.sharing.gas_table import film_table
 from squeezefilm.contact.sharing.pad import (
+    FrictionRipple,
     Limit,
     PadFriction,
     PadPosture,
+    friction_ripple,
     pad_friction,
     ridge_points,
 )
@@ -212,6 +214,18 @@ class FrictionLaw:
         a = np.atleast_1d(np.asarray(amplitude, dtype=float))
         own, tied = self.sharing(a, "own"), self.sharing(a, "one-gap")
         return FrictionLimits(a, own.relative_friction, tied.relative_friction)
+
+    def ripple(self, amplitude: si.Metre) -> FrictionRipple:
+        """µ′/µ along the wave by partial levitation at an amplitude (m), each ridge at its own
+        balance, whatever the model. See `friction_ripple`."""
+        return friction_ripple(
+            film_table(self.frequency, self.finger.plateau_width, self.gas),
+            self.finger.asperity_law(self.surface.roughness),
+            amplitude,
+            self.half_wavelength,
+            self.finger,
+            normal_force=self.normal_force,
+        )
 
     @si.checked_numbers
     def tapped(self, amplitude: si.MetreLike, speed: si.MetrePerSecond) -> si.DimensionlessArray:
