@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import dataclasses
 import itertools
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -214,7 +215,7 @@ def _what_follows(
         prediction=prediction,
         envelope_time_constant=tau,
         envelope_bandwidth=float(envelope_bandwidth(mode.quality_factor, mode.resonance_frequency)),
-        other_models=_other_models(display, prediction),
+        other_models=tuple(_other_models(display, prediction)),
         response=response,
         pressure=pressure,
         friction_curves=curves,
@@ -239,21 +240,20 @@ def _compensation(
     return compensated_grating(envelope), texture_survival(display.name, envelope)
 
 
-def _other_models(display: Display, prediction: Prediction) -> tuple[OtherModel, ...]:
+def _other_models(display: Display, prediction: Prediction) -> Iterator[OtherModel]:
     if not isinstance(display.actuator, RectangularPlate) or prediction.voltage is None:
-        return ()
-    found = []
+        return
     plate, volts = display.actuator, prediction.voltage
     mode = prediction.mode
     if mode.solid is None:
         with contextlib.suppress(InputError):
             solid = solid_mode(plate)
             amplitude = volts * solid.amplitude_per_volt
-            found.append(OtherModel(solid.model, solid.frequency, solid.half_wavelength, amplitude))
+            yield OtherModel(solid.model, solid.frequency, solid.half_wavelength, amplitude)
     # A theory that has no such mode near has nothing to set beside.
     with contextlib.suppress(InputError):
         shear = shear_mode(plate, plate.working_label, mode.resonance_frequency)
-        found.append(OtherModel("shear_plate", shear.frequency, None, None))
+        yield OtherModel("shear_plate", shear.frequency, None, None)
     theories: tuple[BeamTheory, ...] = ("timoshenko", "euler_bernoulli")
     sections: tuple[CrossSection, ...] = ("plane_strain", "plane_stress", "paper")
     for theory, section in itertools.product(theories, sections):
@@ -262,15 +262,8 @@ def _other_models(display: Display, prediction: Prediction) -> tuple[OtherModel,
         except OutOfRangeError:
             continue
         if beam.model != mode.model:
-            found.append(
-                OtherModel(
-                    beam.model,
-                    beam.mode.frequency,
-                    beam.mode.half_wavelength,
-                    volts * beam.amplitude_per_volt,
-                )
-            )
-    return tuple(found)
+            amplitude = volts * beam.amplitude_per_volt
+            yield OtherModel(beam.model, beam.mode.frequency, beam.mode.half_wavelength, amplitude)
 
 
 def _textures(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -104,7 +105,7 @@ def texture_survival(
     high = level * envelope.amplitude_limit
     per_metre, bound = [], []
     for law in DRIVE_LAWS:
-        driven = _with_braking(envelope, law.braking)
+        driven = dataclasses.replace(envelope, braking=law.braking)
         compensation = "inverse" if law.compensated else "none"
         per_metre.append(
             fastest_compensated_speed(1.0, driven, 0.0, high, compensation, kept)  # type: ignore[arg-type]
@@ -178,7 +179,7 @@ def compensated_grating(
         compensated_drive(
             wanted,
             step,
-            _with_braking(envelope, law.braking),
+            dataclasses.replace(envelope, braking=law.braking),
             "inverse" if law.compensated else "none",
             initial=0.0,
         )
@@ -194,13 +195,4 @@ def compensated_grating(
         time=np.arange(wanted.size, dtype=np.float64) * step,
         drives=drives,
         swing_kept=np.array([np.ptp(drive.amplitude[last]) / high for drive in drives]),
-    )
-
-
-def _with_braking(envelope: DrivenEnvelope, braking: bool) -> DrivenEnvelope:
-    return DrivenEnvelope(
-        envelope.rise_time_constant,
-        envelope.fall_time_constant,
-        envelope.amplitude_limit,
-        braking,
     )

@@ -75,7 +75,8 @@ MODEL_KINDS: dict[FrictionModel, ModelKind] = {
 @si.checked_numbers
 @dataclass(frozen=True, eq=False)
 class FrictionLimits:
-    """µ′/µ (dimensionless) at amplitudes (m) in the two limits of the skin, and their spread.
+    """µ′/µ (dimensionless) at amplitudes (m) in the two limits of the skin; how far they are apart
+    belongs in the uncertainty of µ′/µ.
 
     `own`: each ridge at its own balance (a skin compliant at rest, the default); `one_gap`: all
     ridges tied to one mean gap.
@@ -84,11 +85,6 @@ class FrictionLimits:
     amplitude: si.MetreArray
     own: si.DimensionlessArray
     one_gap: si.DimensionlessArray
-
-    @property
-    def spread(self) -> si.DimensionlessArray:
-        """Their difference (dimensionless), which belongs in the uncertainty of µ′/µ."""
-        return np.abs(self.own - self.one_gap)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

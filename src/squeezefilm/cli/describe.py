@@ -266,8 +266,12 @@ class PlateOptions:
 @called_with(PlateOptions)
 def plate(asked: PlateOptions) -> None:
     """Solve a plate, disc or stator in three dimensions: modes, amplitude per volt, admittance."""
-    from squeezefilm.analysis.plate.command import PlateAnalysis, parse_band, parse_mode
-    from squeezefilm.analysis.plate.solve import solve_plate
+    from squeezefilm.analysis.plate.command import (
+        PlateAnalysis,
+        parse_band,
+        parse_mode,
+        solve_plate,
+    )
     from squeezefilm.analysis.plate.tracking import parse_track
     from squeezefilm.display import load_display
     from squeezefilm.report.plate.terminal import show_plate

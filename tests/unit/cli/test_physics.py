@@ -140,7 +140,7 @@ def plates(stands_in: StandsIn, monkeypatch: pytest.MonkeyPatch) -> SimpleNamesp
 
     monkeypatch.setattr(command, "PlateAnalysis", Plate)
     return SimpleNamespace(
-        solve=stands_in("analysis.plate.solve:solve_plate", Plate(summary=lambda: {"plate": 1})),
+        solve=stands_in("analysis.plate.command:solve_plate", Plate(summary=lambda: {"plate": 1})),
         show_plate=stands_in("report.plate.terminal:show_plate"),
         page=stands_in("report.plate.plate:write_plate", "plate.html"),
         volume=stands_in("report.plate.plate:write_mode", "plate.vtu"),

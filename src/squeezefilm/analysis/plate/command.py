@@ -1,4 +1,7 @@
-"""What `squeezefilm plate` computes: the modes of a plate in a band, and its harmonic response."""
+"""What `squeezefilm plate` computes: the modes of a plate in a band, and its harmonic response.
+
+`solve_plate` takes whatever a display has: a rectangle, which is solved here, a disc or a stator.
+"""
 
 from __future__ import annotations
 
@@ -9,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from squeezefilm import quantities as si
+from squeezefilm.analysis.plate.ring import RingAnalysis, analyze_ring
 from squeezefilm.analysis.plate.sensitivity import SensitivityTable, plate_sensitivity
 from squeezefilm.analysis.plate.solved import ModeRow, Remarks, SolvedBody, sweep_around
 from squeezefilm.analysis.plate.tracking import (
@@ -17,8 +21,9 @@ from squeezefilm.analysis.plate.tracking import (
     check_track,
     track_modes,
 )
-from squeezefilm.display import Display
+from squeezefilm.display import Display, NamedDisplay
 from squeezefilm.errors import InputError
+from squeezefilm.from_text import reads_text
 from squeezefilm.hard_limits import NODAL_LINES, require_within
 from squeezefilm.plate.beam.response import beam_response
 from squeezefilm.plate.circuit import EquivalentCircuit
@@ -109,6 +114,42 @@ def parse_mode(text: str) -> tuple[int, int]:
             require_within(NODAL_LINES, max(lines, NODAL_LINES.least), "--mode")
         return label
     raise InputError(f"--mode '{text}' is no mode; write nodal lines across length, width: 8,0")
+
+
+@reads_text
+def solve_plate(
+    display: NamedDisplay,
+    *,
+    mode: tuple[int, int] | None = None,
+    band: tuple[si.Hertz, si.Hertz] | None = None,
+    points: int = 200,
+    sensitivity: bool = False,
+    track: TrackRequest | None = None,
+    progress: SayProgress | None = None,
+) -> PlateAnalysis | RingAnalysis:
+    """The modes of a display's plate, disc or stator in a band (Hz), and its working mode's
+    response at `points` frequencies.
+
+    Arguments and errors are those of `analyze_plate` and `analyze_ring`; `sensitivity` and `track`
+    are for rectangular plates. Raises `InputError` where they are asked of another.
+    """
+    actuator = display.actuator
+    if isinstance(actuator, RectangularPlate):
+        return analyze_plate(
+            display,
+            mode=mode,
+            band=band,
+            points=points,
+            sensitivity=sensitivity,
+            track=track,
+            progress=progress,
+        )
+    if sensitivity or track is not None:
+        raise InputError(
+            f"sensitivity and track are for rectangular plates; '{display.name}' is a "
+            f"{actuator.type.replace('_', ' ')}"
+        )
+    return analyze_ring(display, mode=mode, band=band, points=points, progress=progress)
 
 
 def analyze_plate(

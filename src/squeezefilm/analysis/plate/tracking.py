@@ -210,15 +210,6 @@ def likeness(before: PlateModes, after: PlateModes) -> si.FloatArray:
     return np.asarray((motions(before) @ motions(after).T) ** 2)
 
 
-def _assignment(alike: si.FloatArray) -> list[int]:
-    """For each row the column that it is given, none given twice; −1 where there are not enough."""
-    from scipy.optimize import linear_sum_assignment
-
-    rows, columns = linear_sum_assignment(-alike)
-    given = dict(zip(rows.tolist(), columns.tolist(), strict=True))
-    return [given.get(row, -1) for row in range(alike.shape[0])]
-
-
 def _shown(value: float, unit: si.Unit) -> str:
     return f"{value:.4g}" if unit.symbol == "1" else si.format_quantity(value, unit)
 
@@ -234,6 +225,8 @@ def _advance(
     tell: SayProgress,
 ) -> None:
     """Follow the modes from one value to the next, with values in between where needed."""
+    from scipy.optimize import linear_sum_assignment
+
     tell(f"{request.parameter} = {_shown(value, PARAMETERS[request.parameter][0])}")
     before, numbers, _ = steps[last]
     known = [n for n in numbers if n is not None]
@@ -247,20 +240,14 @@ def _advance(
     rows = [row for row, n in enumerate(numbers) if n is not None]
     to_last = likeness(before, after)[known]
     to_first = likeness(first, after)[rows]
-    # What a mode was at the beginning is what its label means: it counts twice.
-    given = _assignment(to_last + 2 * to_first)
     best = np.maximum(to_last, to_first)
-    matches = {
-        row: (k, float(best[i, k]) if k >= 0 else 0.0)
-        for i, (row, k) in enumerate(zip(rows, given, strict=True))
-    }
-    found: list[int | None] = []
-    alikes: list[float] = []
-    for row in range(len(numbers)):
-        k, share = matches.get(row, (-1, 0.0))
-        found.append(int(k) if share >= _LOST else None)
-        alikes.append(float(share))
-    worst = min(alike for n, alike in zip(numbers, alikes, strict=True) if n is not None)
+    found: list[int | None] = [None] * len(numbers)
+    alikes = [0.0] * len(numbers)
+    # What a mode was at the beginning is what its label means: it counts twice.
+    for i, k in zip(*linear_sum_assignment(-(to_last + 2 * to_first)), strict=True):
+        alikes[rows[i]] = float(best[i, k])
+        found[rows[i]] = int(k) if best[i, k] >= _LOST else None
+    worst = min(alikes[row] for row in rows)
     if worst < _ALIKE and halvings:
         middle = (last + value) / 2
         _advance(plate, request, first, last, middle, steps, halvings - 1, tell)
