@@ -43,8 +43,7 @@ def wave_factors(display: Display, p: Prediction) -> WaveCompensation:
         raise InputError(
             "the wave of a disc is no standing wave along a line; leave --wave out for a disc"
         )
-    across = plate.lines_across == "width"
-    along = AlongY() if across else AlongX()
+    along = AlongY() if plate.lines_across == "width" else AlongX()
     half, law = p.mode.half_wavelength, p.law
     if MODEL_KINDS[p.model].film != "shared":
         return WaveCompensation.over_contact(half, law.finger.contact_length, along=along)

@@ -12,7 +12,6 @@ import typer
 from squeezefilm.cli import describe  # noqa: F401 # isort: skip
 from squeezefilm.cli import textures  # noqa: F401 # isort: skip
 from squeezefilm.cli import claims  # noqa: F401 # isort: skip
-from squeezefilm.cli import lab  # noqa: F401 # isort: skip
 from squeezefilm.cli import study  # noqa: F401 # isort: skip
 from squeezefilm.cli.app import app
 from squeezefilm.errors import SqueezefilmError

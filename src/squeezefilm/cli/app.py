@@ -65,6 +65,14 @@ Frequency = Annotated[
     In("Hz"),
     typer.Option(help='Drive frequency, like "34 kHz"; the resonance if not given.'),
 ]
+Amplitude = Annotated[
+    str | None,
+    In("m"),
+    typer.Option(
+        "--amplitude",
+        help='Vibration amplitude with the finger on it, like "2 um", in place of a voltage.',
+    ),
+]
 Force = Annotated[str | None, In("N"), typer.Option("--force", help='Normal force, like "0.5 N".')]
 OnSurface = Annotated[str | None, typer.Option("--surface", help="Which of its surfaces.")]
 Model = Annotated[

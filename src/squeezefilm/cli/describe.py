@@ -8,6 +8,7 @@ import typer
 
 from squeezefilm.arguments import called_with
 from squeezefilm.cli.app import (
+    Amplitude,
     AsJson,
     Force,
     Frequency,
@@ -68,13 +69,7 @@ class AnalyzeOptions:
     as_json: AsJson = False
     voltage: Voltage = None
     frequency: Frequency = None
-    vibration_amplitude: Annotated[
-        str | None,
-        In("m"),
-        typer.Option(
-            "--amplitude", help='Vibration amplitude, like "2 um", in place of voltage and plate.'
-        ),
-    ] = None
+    vibration_amplitude: Amplitude = None
     normal_force: Force = None
     surface: OnSurface = None
     model: Model = None
@@ -119,14 +114,7 @@ class FrictionOptions:
     target: Target
     voltage: Voltage = None
     frequency: Frequency = None
-    vibration_amplitude: Annotated[
-        str | None,
-        In("m"),
-        typer.Option(
-            "--amplitude",
-            help='Amplitude with the finger on it, like "2 um", in place of a voltage.',
-        ),
-    ] = None
+    vibration_amplitude: Amplitude = None
     normal_force: Force = None
     surface: OnSurface = None
     model: Model = None

@@ -1,4 +1,4 @@
-"""Verbs of a study: plan it, run it, look at it, export it, merge it, take somebody out."""
+"""Verbs of the lab, and of a study: plan, run, look, export, merge, take somebody out."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -8,6 +8,31 @@ import typer
 
 from squeezefilm.arguments import called_with
 from squeezefilm.cli.app import AsJson, Pickup, answer, app, given, print_json, working, written_to
+
+
+@app.command()
+def lab(
+    folder: Annotated[
+        Path, typer.Option(help="Where displays, textures, strokes and studies are saved.")
+    ] = Path("squeezefilm-lab"),
+    port: Annotated[int, typer.Option(help="On this computer; the next free one if taken.")] = 8631,
+    browser: Annotated[
+        bool, typer.Option("--browser/--no-browser", help="Open the page in the browser.")
+    ] = True,
+    lan: Annotated[
+        str | None,
+        typer.Option(
+            metavar="ADDRESS",
+            help="This computer's address in the local network, to pair tablets as participant "
+            "stations by TLS; needs squeezefilm[lan].",
+        ),
+    ] = None,
+) -> None:
+    """Open the lab, a page on this computer: design, feel, drive and study."""
+    from squeezefilm.lab.serve import serve
+
+    serve(folder, port=port, browser=browser, lan=lan, say=lambda line: typer.echo(line))
+
 
 study = typer.Typer(
     name="study",

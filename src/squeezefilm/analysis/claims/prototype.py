@@ -130,14 +130,12 @@ def _softer(plate: RectangularPlate, value: float) -> RectangularPlate:
 _Make = Callable[[RectangularPlate, float], RectangularPlate]
 
 
-def _glued(thickness: si.Metre) -> _Make:
-    return lambda plate, value: with_glue(plate, thickness, value)
-
-
 # Name, what is free, its unit, from where to where it is looked for, and how the plate is made.
 _CASES: tuple[tuple[str, str, str, float, float, _Make], ...] = (
-    ("50 µm of glue", "its Young's modulus", "Pa", 0.3e9, 3e9, _glued(50e-6)),
-    ("20 µm of glue", "its Young's modulus", "Pa", 0.1e9, 1e9, _glued(20e-6)),
+    ("50 µm of glue", "its Young's modulus", "Pa", 0.3e9, 3e9,
+     lambda plate, value: with_glue(plate, 50e-6, value)),
+    ("20 µm of glue", "its Young's modulus", "Pa", 0.1e9, 1e9,
+     lambda plate, value: with_glue(plate, 20e-6, value)),
     ("E 115 GPa, c11_p −10 %, thinner plate", "plate thickness", "m", 1.6e-3, 2e-3,
      _softer_and_thinner),
     ("plate and ceramic softer alike", "share of E and c11_p", "1", 0.7, 1.0, _softer),
