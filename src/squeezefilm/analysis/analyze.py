@@ -227,7 +227,7 @@ def _what_follows(
         fidelity=table,
         compensated=compensated,
         survival=survival,
-        verdict=verdict(display, prediction, curves, table, films),
+        verdict=tuple(verdict(display, prediction, curves, table, films)),
     )
 
 

@@ -34,22 +34,12 @@ class Finding:
 
 def verdict(
     display: Display,
-    prediction: Prediction,
-    curves: tuple[FrictionCurve, ...],
-    table: FidelityTable | None,
-    films: FilmComparison | None,
-) -> tuple[Finding, ...]:
-    """What an analysis amounts to, in sentences."""
-    return tuple(_findings(display, prediction, curves, table, films))
-
-
-def _findings(
-    display: Display,
     p: Prediction,
     curves: tuple[FrictionCurve, ...],
     table: FidelityTable | None,
     films: FilmComparison | None,
 ) -> Iterator[Finding]:
+    """What an analysis amounts to, in sentences."""
     amplitude = f"{p.vibration_amplitude * 1e6:.3g} µm"
     yield _of_friction(p, amplitude, curves)
     if p.vibration_amplitude > PLAUSIBLE_AMPLITUDE:

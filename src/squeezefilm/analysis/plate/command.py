@@ -65,6 +65,13 @@ class PlateAnalysis(SolvedBody):
     sound: SoundField
     sensitivities: SensitivityTable | None = None
     tracks: ModeTracks | None = None
+    remarks = Remarks(
+        "(estimated)",
+        "largest, upper face",
+        "centreline, between outer nodes",
+        "from the losses of its materials",
+        "loudest direction",
+    )
 
     @property
     def model(self) -> str:
@@ -75,17 +82,6 @@ class PlateAnalysis(SolvedBody):
     def status(self) -> str:
         """How good the table is, in words."""
         return self.modes.status
-
-    @property
-    def remarks(self) -> Remarks:
-        """What is said beside the numbers."""
-        return Remarks(
-            "(estimated)",
-            "largest, upper face",
-            "centreline, between outer nodes",
-            "from the losses of its materials",
-            "loudest direction",
-        )
 
     def _particulars(self) -> dict[str, Any]:
         return {
