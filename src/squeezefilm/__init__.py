@@ -27,7 +27,7 @@ _NAMES = {
     "voltage_for_friction": "chain.prediction",
     "analyze": "analysis.analyze",
     "analyze_friction": "analysis.friction.command",
-    "solve_plate": "analysis.plate.solve",
+    "solve_plate": "analysis.plate.command",
     "solve_film": "analysis.film.command",
     # Textures, composed
     "Amplitude": "render.texture.levels",

@@ -154,7 +154,7 @@ if TYPE_CHECKING:
         points: int = ...,
         sensitivity: bool = ...,
         track: TrackRequest | None = ...,
-        progress: Callable[[str], None] | None = ...,
+        progress: SayProgress | None = ...,
     ) -> PlateAnalysis | RingAnalysis:
         """The modes of a display's plate, disc or stator in a band (Hz), and its working mode's"""
     def solve_film(

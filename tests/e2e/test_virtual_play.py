@@ -74,9 +74,9 @@ def test_a_grating_is_felt_where_it_is(
     outcome, session = played(prepared(display), point, tmp_path)
     assert outcome.ending is Ending.DURATION
     assert session.trace.damage.whole
-    assert session.end()["device_at_zero"]
-    assert session.link()["lost"] == 0
-    assert session.link()["refused"] == 0
+    assert session.last("end")["device_at_zero"]
+    assert session.last("link")["lost"] == 0
+    assert session.last("link")["refused"] == 0
     assert session.by_truth is not None
     for judged in (session.by_record, session.by_truth):
         found = judged.fidelity
@@ -126,7 +126,7 @@ def test_a_slow_sensor_costs_contrast_or_place_and_it_shows(
 ) -> None:
     setup = prepared(display, sensor=TOUCH_PANEL_240_HZ)
     _, session = played(setup, point, tmp_path, sensor=TOUCH_PANEL_240_HZ)
-    assert session.end()["repeated_readings"] > 500
+    assert session.last("end")["repeated_readings"] > 500
     assert session.position_error is not None
     print(f"240 Hz panel: position error {1e6 * session.position_error:.0f} um")
     assert session.position_error < 0.5e-3
@@ -200,5 +200,5 @@ def test_a_loop_that_hangs_stops_the_device(
     outcome, session = played(prepared(display), point, tmp_path)
     assert outcome.ending is Ending.LOOP
     assert "no command" in outcome.message
-    assert session.end()["device_at_zero"]
+    assert session.last("end")["device_at_zero"]
     assert all(event["fault"] == "none" for event in session.device_events)

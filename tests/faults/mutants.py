@@ -117,7 +117,7 @@ def _screened(display: Display) -> None:
     """A display as the screening theory sees it: a beam, its friction and a small map of it."""
     plate = isinstance(display.actuator, RectangularPlate)
     p = predict(display, theory="timoshenko" if plate else None)
-    friction_map(display, p, 4)
+    friction_map(p, 4)
 
 
 def _rendered(texture: Path | None, stroke: str) -> None:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.analysis.analyze import Analysis, analyze
-from squeezefilm.analysis.claims.procedure import Requirements, design_plate, friction_criterion
+from squeezefilm.analysis.claims.procedure import design_plate, friction_criterion
 from squeezefilm.chain.friction import friction_law
 from squeezefilm.display import load_display
 from squeezefilm.errors import InputError
@@ -125,18 +125,12 @@ def test_the_paper_s_procedure_leads_to_the_paper_s_plate() -> None:
     assert design.amplitudes * 1e6 == pytest.approx([2.33, 1.89, 1.54, 1.35], abs=0.005)
     assert design.area > 28.18e-4
     assert len(design.contradictions) == 4
-    bigger = Requirements(smallest_area=40e-4)
-    paper = design_plate(section, gap, gas.viscosity, gas.ambient_pressure, 0.5, bigger)
+    paper = design_plate(section, gap, gas.viscosity, gas.ambient_pressure, 0.5, 40e-4)
     assert (paper.ceramics, paper.nodal_lines) == (7, 8)
     assert paper.length == pytest.approx(83e-3)
     assert paper.area == pytest.approx(40.67e-4)
     with pytest.raises(InputError, match="largest explored area"):
-        design_plate(
-            section, gap, gas.viscosity, gas.ambient_pressure, 0.5,
-            Requirements(smallest_area=128e-4),
-        )  # fmt: skip
-    with pytest.raises(InputError, match="exchange"):
-        Requirements(smallest_area=1.0)
+        design_plate(section, gap, gas.viscosity, gas.ambient_pressure, 0.5, 128e-4)
 
 
 def test_friction_criterion_is_nan_where_nothing_reaches_it() -> None:

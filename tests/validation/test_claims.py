@@ -61,7 +61,7 @@ def _claim(**changes: object) -> Claim:
         (_claim(), ClaimValue((1.009,)), "reproduces"),
         (_claim(), ClaimValue((1.02,)), "does not reproduce"),
         (_claim(), ClaimValue((2.0,), alternative=(1.0,)), "misprint"),
-        (_claim(), ClaimValue((2.0,), printed_formula=(1.0,)), "does not reproduce"),
+        (_claim(), ClaimValue((2.0,), printed_formula_value=(1.0,)), "does not reproduce"),
         (_claim(), ClaimValue((float("nan"),)), "does not reproduce"),
         (_claim(relation="above"), ClaimValue((1.0,)), "does not hold"),
         (_claim(relation="at_least"), ClaimValue((1.0,)), "holds"),

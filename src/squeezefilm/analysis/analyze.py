@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import dataclasses
 import itertools
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -12,15 +13,16 @@ from squeezefilm import quantities as si
 from squeezefilm.analysis.curves import (
     FrequencyResponse,
     FrictionCurve,
+    ModelCurve,
     PressureProfile,
     WavelengthCurve,
     frequency_response,
     friction_curve,
+    model_curves,
     pressure_profiles,
     wavelength_curves,
 )
 from squeezefilm.analysis.film.models import FilmComparison, compare_film_models
-from squeezefilm.analysis.friction.models import ModelCurve, model_curves
 from squeezefilm.analysis.textures import (
     CompensatedGrating,
     TextureSurvival,
@@ -188,12 +190,12 @@ def _what_follows(
     if prediction.model not in models:
         models = (*models, prediction.model)
     curves = tuple(
-        friction_curve(display, prediction, surface, model)
+        friction_curve(prediction, surface, model)
         for model in models
         for surface in display.surfaces
     )
     tell("friction by every model, and how sure it is")
-    by_model = model_curves(display, prediction)
+    by_model = model_curves(prediction)
     unsure = None
     if samples and prediction.touch.sharing is not None:
         try:
@@ -202,7 +204,7 @@ def _what_follows(
             warned = (*prediction.warnings, f"the friction has no interval: {error}")
             prediction = dataclasses.replace(prediction, warnings=warned)
     tell("wavelength against amplitude")
-    wavelengths = wavelength_curves(display, prediction)
+    wavelengths = wavelength_curves(prediction)
     tell("the paper's film and solved films")
     films = compare_film_models(display, prediction)
     tell("textures")
@@ -214,7 +216,7 @@ def _what_follows(
         prediction=prediction,
         envelope_time_constant=tau,
         envelope_bandwidth=float(envelope_bandwidth(mode.quality_factor, mode.resonance_frequency)),
-        other_models=_other_models(display, prediction),
+        other_models=tuple(_other_models(display, prediction)),
         response=response,
         pressure=pressure,
         friction_curves=curves,
@@ -226,7 +228,7 @@ def _what_follows(
         fidelity=table,
         compensated=compensated,
         survival=survival,
-        verdict=verdict(display, prediction, curves, table, films),
+        verdict=tuple(verdict(display, prediction, curves, table, films)),
     )
 
 
@@ -239,21 +241,20 @@ def _compensation(
     return compensated_grating(envelope), texture_survival(display.name, envelope)
 
 
-def _other_models(display: Display, prediction: Prediction) -> tuple[OtherModel, ...]:
+def _other_models(display: Display, prediction: Prediction) -> Iterator[OtherModel]:
     if not isinstance(display.actuator, RectangularPlate) or prediction.voltage is None:
-        return ()
-    found = []
+        return
     plate, volts = display.actuator, prediction.voltage
     mode = prediction.mode
     if mode.solid is None:
         with contextlib.suppress(InputError):
             solid = solid_mode(plate)
             amplitude = volts * solid.amplitude_per_volt
-            found.append(OtherModel(solid.model, solid.frequency, solid.half_wavelength, amplitude))
+            yield OtherModel(solid.model, solid.frequency, solid.half_wavelength, amplitude)
     # A theory that has no such mode near has nothing to set beside.
     with contextlib.suppress(InputError):
         shear = shear_mode(plate, plate.working_label, mode.resonance_frequency)
-        found.append(OtherModel("shear_plate", shear.frequency, None, None))
+        yield OtherModel("shear_plate", shear.frequency, None, None)
     theories: tuple[BeamTheory, ...] = ("timoshenko", "euler_bernoulli")
     sections: tuple[CrossSection, ...] = ("plane_strain", "plane_stress", "paper")
     for theory, section in itertools.product(theories, sections):
@@ -262,15 +263,8 @@ def _other_models(display: Display, prediction: Prediction) -> tuple[OtherModel,
         except OutOfRangeError:
             continue
         if beam.model != mode.model:
-            found.append(
-                OtherModel(
-                    beam.model,
-                    beam.mode.frequency,
-                    beam.mode.half_wavelength,
-                    volts * beam.amplitude_per_volt,
-                )
-            )
-    return tuple(found)
+            amplitude = volts * beam.amplitude_per_volt
+            yield OtherModel(beam.model, beam.mode.frequency, beam.mode.half_wavelength, amplitude)
 
 
 def _textures(

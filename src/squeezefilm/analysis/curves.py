@@ -1,18 +1,20 @@
-"""The curves of an analysis: response, pressure under the finger, friction, wavelength."""
+"""The curves of an analysis: response, pressure under the finger, friction by surface,
+model and wavelength."""
 
 from __future__ import annotations
 
+import dataclasses
 from dataclasses import dataclass
 
 import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.analysis.claims.procedure import PAPER_HALF_WAVELENGTHS, friction_criterion
-from squeezefilm.chain.friction import FrictionLaw, FrictionModel, friction_law
+from squeezefilm.chain.friction import MODEL_KINDS, FrictionLaw, FrictionModel
 from squeezefilm.chain.prediction import Prediction
 from squeezefilm.contact.sharing.film_load import is_still, line_film
-from squeezefilm.display import Display, Surface
-from squeezefilm.errors import UnreachableError
+from squeezefilm.display import Surface
+from squeezefilm.errors import SqueezefilmError, UnreachableError
 from squeezefilm.film.closed.limits import mean_pressure_profile
 from squeezefilm.plate.solid.working import response_frequencies
 
@@ -96,19 +98,10 @@ def pressure_profiles(prediction: Prediction) -> tuple[PressureProfile, ...]:
     return tuple(profiles)
 
 
-def friction_curve(
-    display: Display, prediction: Prediction, surface: Surface, model: FrictionModel
-) -> FrictionCurve:
+def friction_curve(prediction: Prediction, surface: Surface, model: FrictionModel) -> FrictionCurve:
     """Relative friction against amplitude on one surface by one model."""
     p = prediction
-    law = friction_law(
-        display,
-        p.mode.half_wavelength,
-        p.frequency,
-        surface=surface,
-        normal_force=p.normal_force,
-        model=model,
-    )
+    law = dataclasses.replace(p.law, surface=surface, model=model, position=0.0)
     zero = _reached(law, 0.0)
     # Room for where the paper's finger floats; a solved one may never float.
     top = max(10e-6, 1.25 * p.vibration_amplitude, 1.1 * min(zero or 0.0, 15e-6))
@@ -131,23 +124,64 @@ def _reached(law: FrictionLaw, relative_friction: si.Dimensionless) -> si.Metre 
         return None
 
 
-def wavelength_curves(display: Display, prediction: Prediction) -> tuple[WavelengthCurve, ...]:
+def wavelength_curves(prediction: Prediction) -> tuple[WavelengthCurve, ...]:
     """Relative friction against amplitude at the paper's four half wavelengths, by its model."""
     p = prediction
-    ambient = display.gas.ambient_pressure
+    ambient = p.law.gas.ambient_pressure
     needed = friction_criterion(
-        p.law.gap(0.0), PAPER_HALF_WAVELENGTHS, PAPER_CRITERION, p.normal_force, ambient
+        p.law.gap(0.0), PAPER_HALF_WAVELENGTHS, PAPER_CRITERION, p.law.normal_force, ambient
     )
     amplitude = np.linspace(0.0, 4e-6, 121)
+    asymptote = dataclasses.replace(p.law, model="paper2008", position=0.0)
     found = []
     for half, at in zip(PAPER_HALF_WAVELENGTHS, needed, strict=True):
-        law = friction_law(
-            display,
-            half,
-            p.frequency,
-            surface=p.surface,
-            normal_force=p.normal_force,
-            model="paper2008",
-        )
+        law = dataclasses.replace(asymptote, half_wavelength=half)
         found.append(WavelengthCurve(half, amplitude, law.curve(amplitude), float(at), "paper2008"))
+    return tuple(found)
+
+
+# The paper's model, the films of the paper's gap, and what shares the load; the cheap ones finely.
+COMPARED: tuple[tuple[FrictionModel, int], ...] = (
+    ("paper2008", 101),
+    ("film-smooth", 25),
+    ("film-sealed", 25),
+    ("partial-levitation", 81),
+    ("partial-levitation-one-gap", 41),
+)
+
+
+@dataclass(frozen=True, eq=False)
+class ModelCurve:
+    """µ′/µ against vibration amplitude by one model; NaN beyond what it can do."""
+
+    model: FrictionModel
+    amplitude: si.MetreArray
+    relative_friction: si.DimensionlessArray
+
+    def at(self, amplitude: si.Metre) -> si.Dimensionless | None:
+        """µ′/µ at an amplitude (m) by linear interpolation; None beyond the curve."""
+        if not self.amplitude[0] <= amplitude <= self.amplitude[-1]:
+            return None
+        value = float(np.interp(amplitude, self.amplitude, self.relative_friction))
+        return value if np.isfinite(value) else None
+
+
+def model_curves(prediction: Prediction) -> tuple[ModelCurve, ...]:
+    """The curves of all compared models, at the frequency, force and surface of a prediction."""
+    p = prediction
+    top = max(4e-6, 1.25 * p.vibration_amplitude)
+    found = []
+    for model, points in COMPARED:
+        shared = MODEL_KINDS[model].film == "shared"
+        position = p.law.position if shared else 0.0
+        law = dataclasses.replace(p.law, model=model, position=position)
+        # Denser at small amplitudes, where a smooth film lifts the finger off.
+        amplitude = np.union1d(top * np.linspace(0, 1, points) ** 1.5, p.vibration_amplitude)
+        friction = np.full(amplitude.size, np.nan)
+        for at in range(amplitude.size):
+            try:
+                friction[at] = law.at(float(amplitude[at]))
+            except SqueezefilmError:
+                break
+        found.append(ModelCurve(model, amplitude, friction))
     return tuple(found)

@@ -6,7 +6,7 @@ import dataclasses
 import typing
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, Literal, TypeVar
 
 from squeezefilm import quantities as si
 from squeezefilm.display import Display, NamedDisplay
@@ -14,6 +14,7 @@ from squeezefilm.distributions import Distribution, Uniform
 from squeezefilm.errors import InputError
 from squeezefilm.from_text import reads_text
 
+_Whole = TypeVar("_Whole")
 Origin = Literal["given", "assumed"]
 
 SKIN_COMPLIANCE = "skin_compliance"
@@ -93,19 +94,20 @@ def _matters(path: str, surface: int, driven: bool) -> bool:
     return head[0] in ("finger", "gas")
 
 
-def value_at(display: Display, path: str) -> tuple[float, si.Unit]:
-    """The value at a dotted path of a display, such as ``surfaces.0.roughness``, and its unit.
+def value_at(whole: Any, path: str) -> tuple[float, si.Unit]:
+    """The value at a dotted path of a display or a part of one, such as ``surfaces.0.roughness``,
+    and its unit.
 
     Raises `InputError` for a path that leads to no number.
     """
-    owner, name = _place(display, path)
+    owner, name = _place(whole, path)
     hints = typing.get_type_hints(type(owner), include_extras=True)
     return float(getattr(owner, name)), si.unit_of(hints[name]) or si.Unit("1")
 
 
-def _place(display: Display, path: str) -> tuple[Any, str]:
+def _place(whole: Any, path: str) -> tuple[Any, str]:
     """What holds the number at a dotted path, and its name there."""
-    owner: Any = display
+    owner = whole
     *heads, name = path.split(".")
     for part in heads:
         owner = _inside(owner, part, path)
@@ -117,6 +119,8 @@ def _place(display: Display, path: str) -> tuple[Any, str]:
 
 
 def _inside(owner: Any, part: str, path: str) -> Any:
+    if part == "*" and isinstance(owner, tuple) and owner:
+        return owner[0]
     known = (
         [str(number) for number in range(len(owner))]
         if isinstance(owner, tuple)
@@ -138,9 +142,17 @@ def replaced(display: NamedDisplay, values: Mapping[str, float | str]) -> Displa
 
     Raises `InputError` for a path that leads to no number, and for what cannot be there.
     """
+    return with_values(display, values)
+
+
+def with_values(whole: _Whole, values: Mapping[str, float | str]) -> _Whole:
+    """A display, or a part of one such as its plate, with other values at dotted paths.
+
+    ``*`` in a path stands for every one of a list: ``patches.*.thickness``. Raises as `replaced`.
+    """
     tree: dict[str, Any] = {}
     for path, given in values.items():
-        owner, name = _place(display, path)
+        owner, name = _place(whole, path)
         value = given
         if isinstance(given, str):
             hints = typing.get_type_hints(type(owner), include_extras=True)
@@ -150,16 +162,14 @@ def replaced(display: NamedDisplay, values: Mapping[str, float | str]) -> Displa
         for part in heads:
             node = node.setdefault(part, {})
         node[last] = value
-    return typing.cast(Display, _with(display, tree))
+    return typing.cast(_Whole, _with(whole, tree))
 
 
 def _with(owner: Any, tree: Mapping[str, Any]) -> Any:
     if not isinstance(tree, Mapping):
         return tree
     if isinstance(owner, tuple):
-        return tuple(
-            _with(item, tree[str(index)]) if str(index) in tree else item
-            for index, item in enumerate(owner)
-        )
+        of_all = tree.get("*", {})
+        return tuple(_with(item, tree.get(str(at), of_all)) for at, item in enumerate(owner))
     changes = {name: _with(getattr(owner, name), below) for name, below in tree.items()}
     return dataclasses.replace(owner, **changes)

@@ -1,7 +1,8 @@
-"""What compensation and a sensor do to the textures of a display: gratings, speeds, contrast."""
+"""What compensation does to the gratings of a display, and to the speeds that they survive."""
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -10,19 +11,12 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.chain.prediction import Prediction
 from squeezefilm.errors import InputError
-from squeezefilm.render.fidelity.rendered_stroke import rendered_stroke
-from squeezefilm.render.fidelity.report import FidelityReport, fidelity_report
-from squeezefilm.render.fidelity.trace import RelativeFriction
-from squeezefilm.render.motion.sensor import SENSORS, SensorModel
-from squeezefilm.render.motion.stroke import MinimumJerkStroke, Trajectory
 from squeezefilm.render.resonator.compensation import (
     CompensatedDrive,
     DrivenEnvelope,
     compensated_drive,
 )
 from squeezefilm.render.resonator.square_swing import fastest_compensated_speed, least_cycle
-from squeezefilm.render.texture.levels import Amplitude
-from squeezefilm.render.texture.shapes import SineWave
 
 _STEPS_PER_PERIOD = 1000
 _PERIODS = 8
@@ -45,38 +39,18 @@ DRIVE_LAWS: tuple[DriveLaw, ...] = (
 """The drives that are compared everywhere here."""
 
 
-def driven_envelope(
-    prediction: Prediction,
-    voltage_limit: si.Volt | None = None,
-    braking: bool = False,
-    with_finger: bool = False,
-) -> DrivenEnvelope:
-    """The envelope of a display at its resonance, driven with up to `voltage_limit` (V).
+def driven_envelope(prediction: Prediction) -> DrivenEnvelope:
+    """The envelope of a display without a finger at its resonance, driven with up to the voltage of
+    the prediction.
 
-    Without a limit the voltage of the prediction is the limit. `with_finger` takes resonance, Q
-    and amplitude of the mode with the finger on it, at its own resonance; without, or where the
-    finger's part is not known (no modal mass), those of the free mode.
-
-    Raises:
-        InputError: no voltage given and the prediction was made from an amplitude, a voltage not
-            above 0, or a mode that the drive does not reach.
+    Raises `InputError` for a prediction made from an amplitude, a voltage not above 0, or a mode
+    that the drive does not reach.
     """
-    volts = prediction.voltage if voltage_limit is None else voltage_limit
-    if volts is None:
-        raise InputError(
-            "the prediction was made from an amplitude, not a voltage: give voltage_limit"
-        )
-    mode, loaded = prediction.mode, prediction.touch.mode if with_finger else None
-    if loaded is None:
-        return DrivenEnvelope.of_resonator(
-            mode.quality_factor, mode.resonance_frequency, mode.amplitude_per_volt, volts, braking
-        )
+    if prediction.voltage is None:
+        raise InputError("the prediction was made from an amplitude, not a voltage: give a voltage")
+    mode = prediction.mode
     return DrivenEnvelope.of_resonator(
-        loaded.quality_factor,
-        loaded.resonance_frequency,
-        mode.amplitude_per_volt * loaded.amplitude_ratio(loaded.resonance_frequency),
-        volts,
-        braking,
+        mode.quality_factor, mode.resonance_frequency, mode.amplitude_per_volt, prediction.voltage
     )
 
 
@@ -131,7 +105,7 @@ def texture_survival(
     high = level * envelope.amplitude_limit
     per_metre, bound = [], []
     for law in DRIVE_LAWS:
-        driven = _with_braking(envelope, law.braking)
+        driven = dataclasses.replace(envelope, braking=law.braking)
         compensation = "inverse" if law.compensated else "none"
         per_metre.append(
             fastest_compensated_speed(1.0, driven, 0.0, high, compensation, kept)  # type: ignore[arg-type]
@@ -205,7 +179,7 @@ def compensated_grating(
         compensated_drive(
             wanted,
             step,
-            _with_braking(envelope, law.braking),
+            dataclasses.replace(envelope, braking=law.braking),
             "inverse" if law.compensated else "none",
             initial=0.0,
         )
@@ -221,76 +195,4 @@ def compensated_grating(
         time=np.arange(wanted.size, dtype=np.float64) * step,
         drives=drives,
         swing_kept=np.array([np.ptp(drive.amplitude[last]) / high for drive in drives]),
-    )
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class SensorContrast:
-    """What a hand that turns meets of gratings, by sensor.
-
-    Attributes:
-        trajectory: the hand.
-        sensors: what saw it, shape (s,); None is a position that is known.
-        spatial_periods: of the sine gratings (m), shape (p,).
-        reports: one per sensor and period.
-        contrast_kept: rendered in its place (1), shape (s, p).
-    """
-
-    trajectory: Trajectory
-    sensors: tuple[SensorModel | None, ...]
-    spatial_periods: si.MetreArray
-    reports: tuple[tuple[FidelityReport, ...], ...]
-    contrast_kept: si.DimensionlessArray
-
-
-def sensor_contrast(
-    envelope: DrivenEnvelope,
-    relative_friction: RelativeFriction,
-    level: si.Dimensionless = 0.8,
-    spatial_periods: Sequence[si.Metre] | None = None,
-    sensors: Sequence[SensorModel | None] = (*SENSORS.values(), None),
-    trajectory: Trajectory | None = None,
-    seed: int = 0,
-) -> SensorContrast:
-    """Contrast kept in place of sine gratings, inverse filter, for each sensor.
-
-    Without a trajectory: twenty minimum-jerk passes of 40 mm in 0.4 s. `relative_friction` maps
-    amplitudes (m) to relative friction (1).
-
-    Raises:
-        InputError: see `rendered_stroke` and `fidelity_report`.
-    """
-    si.require("level", level, above=0.0, at_most=1.0)
-    hand = MinimumJerkStroke(passes=20) if trajectory is None else trajectory
-    periods = (
-        np.geomspace(0.25e-3, 8e-3, 16) if spatial_periods is None else np.array(spatial_periods)
-    )
-    reports = tuple(
-        tuple(
-            fidelity_report(
-                rendered_stroke(
-                    Amplitude(SineWave(float(period)), 0.0, level * envelope.amplitude_limit),
-                    hand,
-                    envelope,
-                    relative_friction,
-                    compensation="inverse",
-                    sensor=sensor,
-                    seed=seed,
-                ),
-                [1 / float(period)],
-            )
-            for period in periods
-        )
-        for sensor in sensors
-    )
-    contrast = np.array([[float(one.contrast_kept[0]) for one in row] for row in reports])
-    return SensorContrast(hand, tuple(sensors), periods, reports, contrast)
-
-
-def _with_braking(envelope: DrivenEnvelope, braking: bool) -> DrivenEnvelope:
-    return DrivenEnvelope(
-        envelope.rise_time_constant,
-        envelope.fall_time_constant,
-        envelope.amplitude_limit,
-        braking,
     )

@@ -251,10 +251,9 @@ def friction_band(
         rows[number] = share * limits.own + (1 - share) * limits.one_gap
     known = np.isfinite(rows).sum(axis=0) > samples / 2
     tails = (1 - LEVEL) / 2
-    low, high = np.full(amplitude.size, np.nan), np.full(amplitude.size, np.nan)
-    low[known] = np.nanquantile(rows[:, known], tails, axis=0)
-    high[known] = np.nanquantile(rows[:, known], 1 - tails, axis=0)
-    return FrictionBand(amplitude, low, high, LEVEL, samples)
+    edges = np.full((2, amplitude.size), np.nan)
+    edges[:, known] = np.nanquantile(rows[:, known], [tails, 1 - tails], axis=0)
+    return FrictionBand(amplitude, edges[0], edges[1], LEVEL, samples)
 
 
 def _nominal(prediction: Prediction) -> float:
@@ -314,17 +313,12 @@ def _one(
     p, law = prediction, _law(display, prediction)
     amplitude = free_amplitude
     if p.voltage is not None and p.mode.modal_mass is not None:
-        mode = dataclasses.replace(
-            p.mode, quality_factor=_quality_factor(display, p.mode.quality_factor)
-        )
+        quality = getattr(display.actuator, "quality_factor", p.mode.quality_factor)
+        mode = dataclasses.replace(p.mode, quality_factor=float(quality))
         amplitude = touch(mode, law, free_amplitude).amplitude
     limits = law.limits(amplitude)
     own, tied = float(limits.own[0]), float(limits.one_gap[0])
     return compliance * own + (1 - compliance) * tied, amplitude
-
-
-def _quality_factor(display: Display, otherwise: float) -> float:
-    return float(getattr(display.actuator, "quality_factor", otherwise))
 
 
 class _Amplitude:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Literal
 
@@ -33,46 +34,38 @@ class Finding:
 
 def verdict(
     display: Display,
-    prediction: Prediction,
+    p: Prediction,
     curves: tuple[FrictionCurve, ...],
     table: FidelityTable | None,
     films: FilmComparison | None,
-) -> tuple[Finding, ...]:
+) -> Iterator[Finding]:
     """What an analysis amounts to, in sentences."""
-    p = prediction
     amplitude = f"{p.vibration_amplitude * 1e6:.3g} µm"
-    found = [_of_friction(p, amplitude, curves)]
+    yield _of_friction(p, amplitude, curves)
     if p.vibration_amplitude > PLAUSIBLE_AMPLITUDE:
-        found.append(
-            Finding(
-                "doubt",
-                f"{amplitude} is more than any bonded plate of this kind is known to do; ceramics "
-                "turn nonlinear and bonds fail long before, and nothing here sees that.",
-            )
+        yield Finding(
+            "doubt",
+            f"{amplitude} is more than any bonded plate of this kind is known to do; ceramics "
+            "turn nonlinear and bonds fail long before, and nothing here sees that.",
         )
     if table is not None:
-        found.append(_of_gratings(table))
+        yield _of_gratings(table)
     if MODEL_KINDS[p.model].film == "asymptote":
-        found.extend(Finding("doubt", check.sentence) for check in p.validity.failed)
+        yield from (Finding("doubt", check.sentence) for check in p.validity.failed)
     if films is not None:
-        found.extend(_of_films(p, films))
+        yield from _of_films(p, films)
     assumed = [path for path, item in display.provenance.items() if item.evidence == "assumed"]
     if assumed:
-        found.append(
-            Finding(
-                "doubt",
-                f"{len(assumed)} of {len(display.provenance)} sourced values of this display are "
-                f"assumed, not measured or published: squeezefilm show {display.name} lists them.",
-            )
-        )
-    found.append(
-        Finding(
+        yield Finding(
             "doubt",
-            "Friction against amplitude is not validated against measurements: no measured curve "
-            "of an ultrasonic display could be read anywhere.",
+            f"{len(assumed)} of {len(display.provenance)} sourced values of this display are "
+            f"assumed, not measured or published: squeezefilm show {display.name} lists them.",
         )
+    yield Finding(
+        "doubt",
+        "Friction against amplitude is not validated against measurements: no measured curve "
+        "of an ultrasonic display could be read anywhere.",
     )
-    return tuple(found)
 
 
 def _of_friction(p: Prediction, amplitude: str, curves: tuple[FrictionCurve, ...]) -> Finding:
@@ -111,32 +104,26 @@ def _of_gratings(table: FidelityTable) -> Finding:
     )
 
 
-def _of_films(p: Prediction, films: FilmComparison) -> list[Finding]:
+def _of_films(p: Prediction, films: FilmComparison) -> Iterator[Finding]:
     paper, sealed = films.result("paper2008"), films.result("film-sealed")
     open_, plateau = films.result("film-open"), films.result("film-plateau")
-    found = []
     if sealed.over_pressure > 0 and open_.over_pressure > 0:
-        found.append(
-            Finding(
-                "doubt",
-                f"The paper's asymptote promises {paper.over_pressure / sealed.over_pressure:.3g} "
-                f"times the over-pressure of the solved film with sealed grooves (squeeze number "
-                f"{p.squeeze_number:.3g}), and {paper.over_pressure / open_.over_pressure:.3g} "
-                f"times that with grooves open at the edge of the contact.",
-            )
-        )
-    found.append(
-        Finding(
+        yield Finding(
             "doubt",
-            f"How ridges are drawn decides: sinusoidal ridges with open grooves carry "
-            f"{open_.load_share:.1%} of the finger, ridges pressed flat "
-            + ("all of it." if plateau.load_share >= 1 else f"{plateau.load_share:.0%} of it.")
-            + " Partial levitation, where film and asperities share the load of a "
-            "flattened ridge, lies between.",
+            f"The paper's asymptote promises {paper.over_pressure / sealed.over_pressure:.3g} "
+            f"times the over-pressure of the solved film with sealed grooves (squeeze number "
+            f"{p.squeeze_number:.3g}), and {paper.over_pressure / open_.over_pressure:.3g} "
+            f"times that with grooves open at the edge of the contact.",
         )
+    yield Finding(
+        "doubt",
+        f"How ridges are drawn decides: sinusoidal ridges with open grooves carry "
+        f"{open_.load_share:.1%} of the finger, ridges pressed flat "
+        + ("all of it." if plateau.load_share >= 1 else f"{plateau.load_share:.0%} of it.")
+        + " Partial levitation, where film and asperities share the load of a "
+        "flattened ridge, lies between.",
     )
     if films.balance is not None:
-        found.append(Finding("limit", films.balance.sentence))
+        yield Finding("limit", films.balance.sentence)
     if films.teeth is not None:
-        found.append(Finding("limit", films.teeth.sentence))
-    return found
+        yield Finding("limit", films.teeth.sentence)

@@ -188,29 +188,30 @@ def limit_checks(talk: Conversation, limits: Limits, frequency: si.Hertz) -> lis
     """What lies outside the limits is refused whole, and the output stays at zero."""
     first = talk.ask(m.KeepAlive())
     token = 0 if first is None else first.token
-    results = [
-        _refusal(talk, "wrong token", m.Arm(token ^ 1), Reason.TOKEN),
-    ]
+    wrong = m.Arm(token ^ 1).payload()
+    results = [_refusal(talk, "wrong token", m.Arm.TYPE, wrong, Reason.TOKEN)]
     _arm(talk)
-    above = math.ceil(limits.highest_frequency * 1e3) + 1
-    below = math.floor(limits.lowest_frequency * 1e3) - 1
-    results += [
-        _refusal(talk, "frequency above its window", m.Start(above), Reason.VALUE),
-        _refusal(talk, "frequency below its window", m.Start(below), Reason.VALUE),
-    ]
+    for name, frequency_mHz in (
+        ("frequency above its window", math.ceil(limits.highest_frequency * 1e3) + 1),
+        ("frequency below its window", math.floor(limits.lowest_frequency * 1e3) - 1),
+    ):
+        payload = m.Start(frequency_mHz).payload()
+        results.append(_refusal(talk, name, m.Start.TYPE, payload, Reason.VALUE))
     _start(talk, frequency)
     good, over = 0.5 * limits.voltage, 1.01 * limits.voltage
+    envelope = m.Envelope.TYPE
     for name, levels in (
         ("voltage above its limit", (good, good, over)),
         ("voltage below zero", (good, -good)),
         ("voltage not a number", (good, math.nan)),
         ("voltage infinite", (good, math.inf)),
     ):
-        results.append(_refusal(talk, name, _envelope(levels), Reason.VALUE, kind=m.Envelope.TYPE))
-    results.append(_stale(talk))
-    results.append(
-        _refusal(talk, "frame of a wrong length", b"\1\2\3", Reason.LENGTH, kind=m.Start.TYPE)
-    )
+        results.append(_refusal(talk, name, envelope, _envelope(levels), Reason.VALUE))
+    stale, old = _envelope((0.5 * TEST_VOLTAGE,)), (talk.sequence - 3) & 0xFFFF
+    results += [
+        _refusal(talk, "an old sequence number", envelope, stale, Reason.SEQUENCE, old),
+        _refusal(talk, "frame of a wrong length", m.Start.TYPE, b"\1\2\3", Reason.LENGTH),
+    ]
     talk.ask(m.Stop())
     return results
 
@@ -358,31 +359,22 @@ def _envelope(levels: Sequence[float]) -> bytes:
 
 
 def _refusal(
-    talk: Conversation, name: str, what: m.Message | bytes, reason: Reason, kind: int | None = None
+    talk: Conversation,
+    name: str,
+    kind: int,
+    payload: bytes,
+    reason: Reason,
+    sequence: int | None = None,
 ) -> CheckResult:
-    if isinstance(what, m.Message):
-        sequence = talk.send(what)
-    else:
-        assert kind is not None
-        sequence = talk.send_raw(kind, what)
-    return _judged(talk, f"refused: {name}", sequence, reason)
-
-
-def _stale(talk: Conversation) -> CheckResult:
-    sequence = (talk.sequence - 3) & 0xFFFF
-    talk.send_raw(m.Envelope.TYPE, _envelope((0.5 * TEST_VOLTAGE,)), sequence)
-    return _judged(talk, "refused: an old sequence number", sequence, Reason.SEQUENCE)
-
-
-def _judged(talk: Conversation, name: str, sequence: int, reason: Reason) -> CheckResult:
-    found = talk.answer(sequence)
+    """Whether a payload of a kind is refused for a reason, and the output stays at zero."""
+    found = talk.answer(talk.send_raw(kind, payload, sequence))
     # Time for an output that should not be there to show.
     talk.listen_for(3e-3)
     after = talk.ask(m.KeepAlive())
     level = 0 if after is None else after.level
     said = "no answer" if found is None else Reason(found.reason).name.lower()
     return _result(
-        name,
+        f"refused: {name}",
         found is not None and found.reason == reason and after is not None and level == 0,
         f"{said}; output {level * 1e-6:g} V",
         f"{reason.name.lower()}; output 0 V",

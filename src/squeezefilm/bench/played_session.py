@@ -95,23 +95,10 @@ class PlayedSession(Result):
     device_events: tuple[Mapping[str, Any], ...]
     _shown: ClassVar[str] = "setup.display.name setup.name position_error"
 
-    def end(self) -> Mapping[str, Any]:
-        """The fields of the session's last event; empty where it had no end."""
-        return next(
-            (event.fields for event in reversed(self.trace.events) if event.kind == "end"), {}
-        )
-
-    def loop(self) -> Mapping[str, Any]:
-        """What the loop said of itself at the end; empty where it could not."""
-        return next(
-            (event.fields for event in reversed(self.trace.events) if event.kind == "loop"), {}
-        )
-
-    def link(self) -> Mapping[str, Any]:
-        """What the link counted; empty where it could not."""
-        return next(
-            (event.fields for event in reversed(self.trace.events) if event.kind == "link"), {}
-        )
+    def last(self, kind: str) -> Mapping[str, Any]:
+        """The fields of the last event of a kind, such as "end", "loop" (what the loop said of
+        itself) or "link" (what it counted); empty where there was none."""
+        return _last(self.trace, kind)
 
     def summary(self) -> dict[str, Any]:
         """What ``--json`` prints and summary.json holds; keys carry units."""
@@ -132,9 +119,9 @@ class PlayedSession(Result):
             "assumed_limits": list(self.setup.assumed_limits),
             "sensor": to_json(self.setup.sensor),
             "rows": len(self.trace.rows),
-            "end": to_json(dict(self.end())),
-            "loop": to_json(dict(self.loop())),
-            "link": to_json(dict(self.link())),
+            "end": to_json(dict(self.last("end"))),
+            "loop": to_json(dict(self.last("loop"))),
+            "link": to_json(dict(self.last("link"))),
             "lag": to_json(self.lag),
             "position_error_m": self.position_error,
             "flags": dict(self.flags),
@@ -160,7 +147,7 @@ def judge_session(setup: PlaySetup, trace: Trace, truth: Path | None = None) -> 
     by_record = _judge(setup, recorded_way(setup, trace))
     by_truth, error = None, None
     # How the device's clock stands to the loop's is known from the first answer on.
-    offset = _end_fields(trace).get("device_clock_offset_s")
+    offset = _last(trace, "end").get("device_clock_offset_s")
     if truth is not None and offset is not None:
         found = _true_way(setup, trace, truth, offset)
         by_truth = _judge(setup, found)
@@ -235,13 +222,13 @@ def _true_way(setup: PlaySetup, trace: Trace, truth: Path, offset: si.Second) ->
     )
 
 
-def _end_fields(trace: Trace) -> Mapping[str, Any]:
-    return next((event.fields for event in reversed(trace.events) if event.kind == "end"), {})
+def _last(trace: Trace, kind: str) -> Mapping[str, Any]:
+    return next((event.fields for event in reversed(trace.events) if event.kind == kind), {})
 
 
 def _played_until(trace: Trace) -> si.Second:
     """When the session began to end (s); after it nothing was to be rendered."""
-    fields = _end_fields(trace)
+    fields = _last(trace, "end")
     found = fields.get("faded_at_s")
     last = float(trace.rows[-1, column.TIME]) if len(trace.rows) else 0.0
     return last if found is None else min(float(found), last)

@@ -8,6 +8,7 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.chain.prediction import Prediction, predict
+from squeezefilm.chain.rendered_texture import lowered
 from squeezefilm.device.wire.messages import LONGEST_TILE
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError
@@ -15,7 +16,6 @@ from squeezefilm.film.compiled import announce
 from squeezefilm.render.motion.estimator import MotionEstimator
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ, SensorModel
 from squeezefilm.render.program.inverse import FrictionInverse
-from squeezefilm.render.program.lowering import Program, lower
 from squeezefilm.render.resonator.compensation import DrivenEnvelope
 from squeezefilm.render.resonator.envelope import envelope_time_constant
 from squeezefilm.session.loop.plan import DriveTable, FrictionTable, LoopPlan
@@ -120,7 +120,7 @@ def play_setup(
     loaded = p.touch.mode or p.mode
     tau = float(envelope_time_constant(loaded.quality_factor, loaded.resonance_frequency))
     loop = LoopPlan(
-        program=_program(texture, p),
+        program=lowered(texture, p, p.inverse),
         rate=rate,
         envelope=DrivenEnvelope(tau, tau, largest),
         drive=DriveTable.linear(largest / p.voltage, p.voltage),
@@ -142,18 +142,6 @@ def play_setup(
     )
     assumed = display.drive.assumed_limits
     return PlaySetup(display, texture, p, p.inverse, device.sensor, plan, assumed)
-
-
-def _program(texture: TextureFile, prediction: Prediction) -> Program:
-    """The texture for the loop, up to the amplitude of a prediction."""
-    inverse, quantity = prediction.inverse, texture.texture.quantity
-    reduces = quantity == "friction_reduction"
-    return lower(
-        texture.texture,
-        largest_amplitude=prediction.vibration_amplitude,
-        inverse=None if quantity == "amplitude" else inverse,
-        friction_coefficient=prediction.friction_coefficient if reduces else None,
-    )
 
 
 def _tile(loop: LoopPlan, way: tuple[si.Metre, si.Metre] | None) -> TextureTile:

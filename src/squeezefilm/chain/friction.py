@@ -17,9 +17,11 @@ from squeezefilm.contact.sharing import paper
 from squeezefilm.contact.sharing.film_load import FilmLoad, FilmModel, film_load
 from squeezefilm.contact.sharing.gas_table import film_table
 from squeezefilm.contact.sharing.pad import (
+    FrictionRipple,
     Limit,
     PadFriction,
     PadPosture,
+    friction_ripple,
     pad_friction,
     ridge_points,
 )
@@ -73,7 +75,8 @@ MODEL_KINDS: dict[FrictionModel, ModelKind] = {
 @si.checked_numbers
 @dataclass(frozen=True, eq=False)
 class FrictionLimits:
-    """µ′/µ (dimensionless) at amplitudes (m) in the two limits of the skin, and their spread.
+    """µ′/µ (dimensionless) at amplitudes (m) in the two limits of the skin; how far they are apart
+    belongs in the uncertainty of µ′/µ.
 
     `own`: each ridge at its own balance (a skin compliant at rest, the default); `one_gap`: all
     ridges tied to one mean gap.
@@ -82,11 +85,6 @@ class FrictionLimits:
     amplitude: si.MetreArray
     own: si.DimensionlessArray
     one_gap: si.DimensionlessArray
-
-    @property
-    def spread(self) -> si.DimensionlessArray:
-        """Their difference (dimensionless), which belongs in the uncertainty of µ′/µ."""
-        return np.abs(self.own - self.one_gap)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -212,6 +210,18 @@ class FrictionLaw:
         a = np.atleast_1d(np.asarray(amplitude, dtype=float))
         own, tied = self.sharing(a, "own"), self.sharing(a, "one-gap")
         return FrictionLimits(a, own.relative_friction, tied.relative_friction)
+
+    def ripple(self, amplitude: si.Metre) -> FrictionRipple:
+        """µ′/µ along the wave by partial levitation at an amplitude (m), each ridge at its own
+        balance, whatever the model. See `friction_ripple`."""
+        return friction_ripple(
+            film_table(self.frequency, self.finger.plateau_width, self.gas),
+            self.finger.asperity_law(self.surface.roughness),
+            amplitude,
+            self.half_wavelength,
+            self.finger,
+            normal_force=self.normal_force,
+        )
 
     @si.checked_numbers
     def tapped(self, amplitude: si.MetreLike, speed: si.MetrePerSecond) -> si.DimensionlessArray:

@@ -162,15 +162,13 @@ def require_on_image(texture: Composable, motion: FingerMotion) -> None:
         )
         if np.any(beyond):
             k = int(np.flatnonzero(beyond)[0])
+            at, ends = (motion.x[k], motion.y[k]), (image.left, right, image.bottom, top)
+            x, y, *sides = (si.format_quantity(float(one), _METRE) for one in (*at, *ends))
             raise InputError(
-                f"the stroke leaves the image: at {motion.time[k]:.4g} s the finger is at x = "
-                f"{si.format_quantity(float(motion.x[k]), _METRE)}, y = "
-                f"{si.format_quantity(float(motion.y[k]), _METRE)}, and the image ends at x = "
-                f"{si.format_quantity(image.left, _METRE)} to {si.format_quantity(right, _METRE)}, "
-                f"y = {si.format_quantity(image.bottom, _METRE)} to "
-                f"{si.format_quantity(top, _METRE)}; "
-                'shorten the stroke, move the image (left, bottom), or say outside = "zero" or '
-                '"repeat"'
+                f"the stroke leaves the image: at {motion.time[k]:.4g} s the finger is at x = {x}, "
+                f"y = {y}, and the image ends at x = {sides[0]} to {sides[1]}, y = {sides[2]} to "
+                f"{sides[3]}; shorten the stroke, move the image (left, bottom), or say outside = "
+                '"zero" or "repeat"'
             )
 
 

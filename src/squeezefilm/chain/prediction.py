@@ -24,7 +24,6 @@ from squeezefilm.chain.friction import (
     friction_law,
 )
 from squeezefilm.chain.touch import Touch, kept_at, touch
-from squeezefilm.contact.sharing.film_load import FilmLoad
 from squeezefilm.device.wire.safety import HIGHEST_VOLTAGE
 from squeezefilm.display import Display, NamedDisplay, Surface
 from squeezefilm.errors import (
@@ -185,9 +184,9 @@ def predict(
             position=position,
         )
         asked_for_asymptote = model is not None and law.kind.film == "asymptote"
-        felt = _felt(mode, drive, law, strict=strict and asked_for_asymptote)
-    doubts = _beam_doubts(display.actuator, mode, drive, strict=strict)
-    return _prediction(display, felt, _doubts(caught, felt) + doubts)
+        found = _felt(display, mode, drive, law, strict=strict and asked_for_asymptote)
+    doubts = _doubts(caught, found) + _beam_doubts(display.actuator, mode, drive, strict=strict)
+    return dataclasses.replace(found, warnings=tuple(dict.fromkeys(doubts)))
 
 
 class _Drive(NamedTuple):
@@ -198,19 +197,6 @@ class _Drive(NamedTuple):
     voltage: si.Volt | None
     amplitude: si.Metre
     source: str
-
-
-class _Felt(NamedTuple):
-    """A vibration, and what finger, film and friction make of it."""
-
-    mode: WorkingMode
-    drive: _Drive
-    law: FrictionLaw
-    touch: Touch
-    validity: FilmValidity
-    load: FilmLoad
-    relative_friction: si.Dimensionless
-    limits: tuple[si.Dimensionless, si.Dimensionless] | None
 
 
 def _drive(
@@ -231,17 +217,50 @@ def _drive(
     return _Drive(frequency, volts, float(volts * _per_volt(mode, frequency)), mode.model)
 
 
-def _felt(mode: WorkingMode, drive: _Drive, law: FrictionLaw, *, strict: bool) -> _Felt:
+def _felt(
+    display: Display, mode: WorkingMode, drive: _Drive, law: FrictionLaw, *, strict: bool
+) -> Prediction:
     """The finger on the vibration, the film under it, and the friction that is left."""
     taking = mode if drive.voltage is not None else dataclasses.replace(mode, modal_mass=None)
     felt = touch(taking, law, drive.amplitude)
-    validity = film_validity(law.gap(felt.amplitude), drive.frequency, law.gas, strict=strict)
+    gap, gas = law.gap(felt.amplitude), law.gas
+    validity = film_validity(gap, drive.frequency, gas, strict=strict)
     load = law.load(felt.amplitude)
     friction, limits = law.under(load, felt.amplitude), None
     if law.kind.film == "shared":
         found = law.limits(felt.amplitude)
         limits = float(found.own[0]), float(found.one_gap[0])
-    return _Felt(mode, drive, law, felt, validity, load, friction, limits)
+    base = law.surface.friction_coefficient * law.finger.friction_factor
+    sigma = squeeze_number(
+        drive.frequency,
+        gap.contact_length,
+        gap.reference_thickness,
+        gas.viscosity,
+        gas.ambient_pressure,
+    )
+    return Prediction(
+        display=display.name,
+        surface=law.surface,
+        voltage=drive.voltage,
+        frequency=drive.frequency,
+        normal_force=law.normal_force,
+        mode=mode,
+        amplitude_model=drive.source,
+        vibration_amplitude=felt.amplitude,
+        touch=felt,
+        model=law.model,
+        law=law,
+        squeeze_number=float(sigma),
+        mean_pressure=1 + load.over_pressure,
+        mean_pressure_error=load.error,
+        relative_friction=friction,
+        relative_friction_limits=limits,
+        friction_coefficient=base,
+        friction_reduction=base * (1 - friction),
+        tangential_force=base * friction * law.normal_force,
+        validity=validity,
+        warnings=(),
+    )
 
 
 def _beam_doubts(
@@ -256,9 +275,9 @@ def _beam_doubts(
     return [] if doubt is None else [doubt]
 
 
-def _doubts(caught: list[warnings.WarningMessage], felt: _Felt) -> list[str]:
+def _doubts(caught: list[warnings.WarningMessage], p: Prediction) -> list[str]:
     """What was warned of on the way, and what the models leave out."""
-    film = felt.law.kind.film
+    film, limits = p.law.kind.film, p.relative_friction_limits
     # Where the film is solved, what fails of the asymptote is no doubt about this number.
     messages = [
         str(item.message)
@@ -266,60 +285,22 @@ def _doubts(caught: list[warnings.WarningMessage], felt: _Felt) -> list[str]:
         if film == "asymptote" or not issubclass(item.category, OutOfRangeWarning)
     ]
     if film == "held":
-        inertia = felt.validity.check("inertia")
+        inertia = p.validity.check("inertia")
         messages += [] if inertia.holds else [inertia.sentence]
-    if felt.drive.voltage is not None and felt.mode.modal_mass is None:
+    if p.voltage is not None and p.mode.modal_mass is None:
         messages.append(
             "the amplitude is the measured one; what a finger takes from it is not known and left "
             "out"
         )
-    if felt.limits is not None:
-        spread = abs(felt.limits[0] - felt.limits[1])
+    if limits is not None:
+        spread = abs(limits[0] - limits[1])
         messages.append(
-            f"the model '{felt.law.model}' lets film and asperities share the load of each ridge; "
+            f"the model '{p.model}' lets film and asperities share the load of each ridge; "
             "its asperities and plateaus are assumed, not measured, and decide the answer: see the "
             "interval of squeezefilm friction. Relative friction differs by "
             f"{spread:.2f} between a skin that sinks ridge by ridge and a stiff one"
         )
     return messages
-
-
-def _prediction(display: Display, felt: _Felt, doubts: list[str]) -> Prediction:
-    """The answer, put together."""
-    drive, law, friction = felt.drive, felt.law, felt.relative_friction
-    amplitude, force = felt.touch.amplitude, law.normal_force
-    gap, gas = law.gap(amplitude), law.gas
-    base = law.surface.friction_coefficient * law.finger.friction_factor
-    sigma = squeeze_number(
-        drive.frequency,
-        gap.contact_length,
-        gap.reference_thickness,
-        gas.viscosity,
-        gas.ambient_pressure,
-    )
-    return Prediction(
-        display=display.name,
-        surface=law.surface,
-        voltage=drive.voltage,
-        frequency=drive.frequency,
-        normal_force=force,
-        mode=felt.mode,
-        amplitude_model=drive.source,
-        vibration_amplitude=amplitude,
-        touch=felt.touch,
-        model=law.model,
-        law=law,
-        squeeze_number=float(sigma),
-        mean_pressure=1 + felt.load.over_pressure,
-        mean_pressure_error=felt.load.error,
-        relative_friction=friction,
-        relative_friction_limits=felt.limits,
-        friction_coefficient=base,
-        friction_reduction=base * (1 - friction),
-        tangential_force=base * friction * force,
-        validity=felt.validity,
-        warnings=tuple(dict.fromkeys(doubts)),
-    )
 
 
 @reads_text

@@ -99,11 +99,7 @@ class RenderAnalysis(Result):
 
     def provenance(self) -> dict[str, Any]:
         """Version, hash of display, texture and motion, seed and time."""
-        return stamp((self.display, self.texture, self.motion_values()), self.seed)
-
-    def motion_values(self) -> Any:
-        """The motion as JSON can have it."""
-        return to_json(self.motion)
+        return stamp((self.display, self.texture, self.motion), self.seed)
 
     def columns(self) -> dict[str, si.FloatArray]:
         """Every step of the loop, units in the names."""
@@ -280,67 +276,63 @@ def render_texture(asked: RenderRequest) -> RenderAnalysis:
         control_rate=asked.control_rate,
         seed=asked.seed,
     )
-    return _Rendering(display, texture, motion, p, played, under).analysis(stroke, tell)
+    tell("tangential force")
+    return _analysis(display, texture, motion, p, under, stroke, played)
 
 
-@dataclass(frozen=True)
-class _Rendering:
-    """A texture on its way through the chain, up to what the loop makes of it."""
-
-    display: Display
-    texture: TextureFile
-    motion: Motion
-    prediction: Prediction
-    played: PlayedTexture
-    under: UnderPad
-
-    def analysis(self, stroke: RenderedStroke, tell: SayProgress) -> RenderAnalysis:
-        """The friction under the pad along a stroke, the force that it makes, and how faithful
-        all of it is."""
-        played, under, p = self.played, self.under, self.prediction
-        finger = played.motion
-        values = self.texture.texture(finger.x, finger.y, finger.speed, finger.time)
-        amplitude = played.amplitude(values)
-        reached, factor = under.reached(amplitude), under.factor(finger)
-        by_amplitude = self.texture.texture.quantity == "amplitude"
-        nodes = "" if under.factors is None else f"; standing wave {under.wave}"
-        stroke = dataclasses.replace(
-            stroke,
-            relative_friction_wanted=reached,
-            relative_friction_rendered=under.felt(stroke.amplitude * factor),
-            model=stroke.model + nodes,
-        )
-        counters = render(played.program, finger.x, finger.y, finger.speed, finger.time).counters
-        tell("tangential force")
-        force = slide(
-            finger.way,
-            1 / stroke.control_rate,
-            p.friction_coefficient * stroke.relative_friction_rendered,
-            p.normal_force,
-            self.display.finger.fingerpad,
-        )
-        judged, because = None, None
-        try:
-            judged = fidelity_report(stroke, strongest_lines(stroke, played.spatial_period))
-        except InputError as error:
-            because = str(error)
-        return RenderAnalysis(
-            display=self.display,
-            texture=self.texture,
-            motion=self.motion,
-            prediction=p,
-            played=played,
-            stroke=stroke,
-            finger=finger,
-            wave=under.wave,
-            factor=factor,
-            asked=reached if by_amplitude else played.friction(values),
-            counters=counters,
-            force=force,
-            fidelity=judged,
-            unjudged=because,
-            seed=stroke.seed,
-        )
+def _analysis(
+    display: Display,
+    texture: TextureFile,
+    motion: Motion,
+    p: Prediction,
+    under: UnderPad,
+    stroke: RenderedStroke,
+    played: PlayedTexture,
+) -> RenderAnalysis:
+    """The friction under the pad along a stroke, the force that it makes, and how faithful all of
+    it is."""
+    finger = played.motion
+    values = texture.texture(finger.x, finger.y, finger.speed, finger.time)
+    amplitude = played.amplitude(values)
+    reached, factor = under.reached(amplitude), under.factor(finger)
+    by_amplitude = texture.texture.quantity == "amplitude"
+    nodes = "" if under.factors is None else f"; standing wave {under.wave}"
+    stroke = dataclasses.replace(
+        stroke,
+        relative_friction_wanted=reached,
+        relative_friction_rendered=under.felt(stroke.amplitude * factor),
+        model=stroke.model + nodes,
+    )
+    counters = render(played.program, finger.x, finger.y, finger.speed, finger.time).counters
+    force = slide(
+        finger.way,
+        1 / stroke.control_rate,
+        p.friction_coefficient * stroke.relative_friction_rendered,
+        p.normal_force,
+        display.finger.fingerpad,
+    )
+    judged, because = None, None
+    try:
+        judged = fidelity_report(stroke, strongest_lines(stroke, played.spatial_period))
+    except InputError as error:
+        because = str(error)
+    return RenderAnalysis(
+        display=display,
+        texture=texture,
+        motion=motion,
+        prediction=p,
+        played=played,
+        stroke=stroke,
+        finger=finger,
+        wave=under.wave,
+        factor=factor,
+        asked=reached if by_amplitude else played.friction(values),
+        counters=counters,
+        force=force,
+        fidelity=judged,
+        unjudged=because,
+        seed=stroke.seed,
+    )
 
 
 def _played(

@@ -11,8 +11,6 @@ from squeezefilm import quantities as si
 from squeezefilm.chain.friction import MODEL_KINDS, FrictionTable
 from squeezefilm.chain.played_texture import FingerMotion
 from squeezefilm.chain.prediction import Prediction
-from squeezefilm.contact.sharing.gas_table import film_table
-from squeezefilm.contact.sharing.pad import friction_ripple
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError
 from squeezefilm.plate.layout import DiscPlate
@@ -45,19 +43,11 @@ def wave_factors(display: Display, p: Prediction) -> WaveCompensation:
         raise InputError(
             "the wave of a disc is no standing wave along a line; leave --wave out for a disc"
         )
-    across = plate.lines_across == "width"
-    along = AlongY() if across else AlongX()
+    along = AlongY() if plate.lines_across == "width" else AlongX()
     half, law = p.mode.half_wavelength, p.law
     if MODEL_KINDS[p.model].film != "shared":
         return WaveCompensation.over_contact(half, law.finger.contact_length, along=along)
-    found = friction_ripple(
-        film_table(law.frequency, law.finger.plateau_width, law.gas),
-        law.finger.asperity_law(law.surface.roughness),
-        p.vibration_amplitude,
-        half,
-        law.finger,
-        normal_force=law.normal_force,
-    )
+    found = law.ripple(p.vibration_amplitude)
     # Off the antinode friction may be less than the display makes centred on it.
     wide = _BETTER * p.vibration_amplitude
     inverse = FrictionInverse.from_function(law.table(wide), wide)

@@ -10,11 +10,8 @@ import typer
 
 # In the order in which `--help` lists them.
 from squeezefilm.cli import describe  # noqa: F401 # isort: skip
-from squeezefilm.cli import physics  # noqa: F401 # isort: skip
 from squeezefilm.cli import textures  # noqa: F401 # isort: skip
-from squeezefilm.cli import device  # noqa: F401 # isort: skip
 from squeezefilm.cli import claims  # noqa: F401 # isort: skip
-from squeezefilm.cli import lab  # noqa: F401 # isort: skip
 from squeezefilm.cli import study  # noqa: F401 # isort: skip
 from squeezefilm.cli.app import app
 from squeezefilm.errors import SqueezefilmError

@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import sys
+import typing
+from collections.abc import Callable
 from contextlib import AbstractContextManager
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+from typer.models import OptionInfo
 
 from squeezefilm import __version__
 from squeezefilm.errors import InputError
 
 if TYPE_CHECKING:
     from squeezefilm.progress import SayProgress
-    from squeezefilm.quantities import Unit
 
 app = typer.Typer(
     name="squeezefilm",
@@ -24,6 +27,14 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
 )
+
+
+@dataclass(frozen=True)
+class In:
+    """Beside the type of an option: the unit in which its text is read."""
+
+    unit: str
+
 
 Target = Annotated[
     str, typer.Argument(metavar="PRESET|FILE", help="A preset's name or a TOML file.")
@@ -38,17 +49,31 @@ Texture = Annotated[
     str, typer.Argument(metavar="TEXTURE|FILE", help="A preset texture or a TOML file.")
 ]
 OnDisplay = Annotated[str, typer.Option(help="A display: a preset's name or a TOML file.")]
-LargestVoltage = Annotated[str | None, typer.Option(help='Largest voltage amplitude, like "15 V".')]
+LargestVoltage = Annotated[
+    str | None, In("V"), typer.Option(help='Largest voltage amplitude, like "15 V".')
+]
 Pickup = Annotated[
-    str | None, typer.Option(help='Amplitude per signal of the device\'s pickup: "2 um/V".')
+    str | None,
+    In("m/V"),
+    typer.Option("--pickup", help='Amplitude per signal of the device\'s pickup: "2 um/V".'),
 ]
 
 # A working point is asked for in the same words by every verb.
-Voltage = Annotated[str | None, typer.Option(help='Voltage amplitude, like "15 V".')]
+Voltage = Annotated[str | None, In("V"), typer.Option(help='Voltage amplitude, like "15 V".')]
 Frequency = Annotated[
-    str | None, typer.Option(help='Drive frequency, like "34 kHz"; the resonance if not given.')
+    str | None,
+    In("Hz"),
+    typer.Option(help='Drive frequency, like "34 kHz"; the resonance if not given.'),
 ]
-Force = Annotated[str | None, typer.Option(help='Normal force, like "0.5 N".')]
+Amplitude = Annotated[
+    str | None,
+    In("m"),
+    typer.Option(
+        "--amplitude",
+        help='Vibration amplitude with the finger on it, like "2 um", in place of a voltage.',
+    ),
+]
+Force = Annotated[str | None, In("N"), typer.Option("--force", help='Normal force, like "0.5 N".')]
 OnSurface = Annotated[str | None, typer.Option("--surface", help="Which of its surfaces.")]
 Model = Annotated[
     str | None,
@@ -90,15 +115,38 @@ def reachable(path: Path | None) -> Path | None:
     return path
 
 
-def quantity(text: str | None, option: str, unit: Unit) -> float | None:
-    """The value of an option that is a quantity text, with the option named in the error."""
-    if text is None:
-        return None
+def written_to(help: str) -> Any:
+    """An option that names a file or folder to write, see `reachable`."""
+    return typer.Option(callback=reachable, help=help)
 
-    from squeezefilm.quantities import parse_quantity
 
+def given(asked: Any, leave: str) -> dict[str, Any]:
+    """The options of a verb as the arguments of what it calls, quantities read in their unit.
+
+    `leave` names, between blanks, the options that the verb keeps to itself. Raises `InputError`,
+    with the option named, for a text that is no such quantity.
+    """
+    hints = typing.get_type_hints(type(asked), include_extras=True)
+    kept = leave.split()
+    return {
+        name: _read(getattr(asked, name), name, typing.get_args(hint))
+        for name, hint in hints.items()
+        if name not in kept
+    }
+
+
+def _read(value: Any, name: str, marks: tuple[Any, ...]) -> Any:
+    units = [mark.unit for mark in marks if isinstance(mark, In)]
+    if not units or value is None:
+        return value
+
+    from squeezefilm.quantities import Unit, parse_quantity
+
+    # Where an option has another name than its argument, typer holds it as a default.
+    other = [mark.default for mark in marks if isinstance(mark, OptionInfo)]
+    option = other[0] if isinstance(other[0], str) else f"--{name.replace('_', '-')}"
     try:
-        return parse_quantity(text, unit)
+        return parse_quantity(value, Unit(units[0]))
     except InputError as error:
         raise InputError(f"{option}: {error}") from error
 
@@ -108,6 +156,20 @@ def working(quiet: bool) -> AbstractContextManager[SayProgress]:
     from squeezefilm.report.kit import terminal
 
     return terminal.progress(enabled=sys.stderr.isatty() or not quiet)
+
+
+def answer(
+    as_json: bool, found: Any, show: Callable[[Any], object], **written: Path | None
+) -> None:
+    """Print what was found as one JSON object, or in words, and then what was written by its kind:
+    ``page: …``."""
+    if as_json:
+        print_json(found.summary() if hasattr(found, "summary") else found)
+        return
+    show(found)
+    for kind, path in written.items():
+        if path is not None:
+            typer.echo(f"{kind}: {path}")
 
 
 def print_json(value: Any) -> None:

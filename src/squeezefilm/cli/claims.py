@@ -7,14 +7,12 @@ from typing import Annotated
 
 import typer
 
-from squeezefilm.cli.app import AsJson, app, print_json, reachable, working
+from squeezefilm.cli.app import AsJson, answer, app, working, written_to
 
 
 @app.command()
 def reproduce(
-    out: Annotated[
-        Path | None, typer.Option(callback=reachable, help="Write figures 4, 5, 10, 11 and a page.")
-    ] = None,
+    out: Annotated[Path | None, written_to("Write figures 4, 5, 10, 11 and a page.")] = None,
     as_json: AsJson = False,
     write_docs: Annotated[
         bool, typer.Option("--write-docs", help="In a checkout: rewrite docs/validation.md.")
@@ -33,16 +31,12 @@ def reproduce(
         checkout()
     with working(as_json) as step:
         result = run(prototype=out is not None or write_docs, progress=step)
+        written = None
         if out is not None:
             written = write_reproduction(result, out, progress=step)
     if write_docs:
         typer.echo(f"wrote {write_validation_docs(result)}", err=True)
-    if as_json:
-        print_json(result.summary())
-    else:
-        terminal.show_claims(result)
-        if out is not None:
-            typer.echo(f"report: {written}")
+    answer(as_json, result, terminal.show_claims, report=written)
     if result.changed:
         for claim in result.changed:
             typer.echo(

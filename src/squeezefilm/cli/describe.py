@@ -1,4 +1,4 @@
-"""Verbs about a display: what there is, what it says, and what follows from it."""
+"""Verbs about a display: what there is, what it says, and what follows from it, room by room."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -8,20 +8,25 @@ import typer
 
 from squeezefilm.arguments import called_with
 from squeezefilm.cli.app import (
+    Amplitude,
     AsJson,
     Force,
     Frequency,
+    In,
     Model,
     OnSurface,
     Strict,
     Target,
     Voltage,
+    answer,
     app,
+    given,
     print_json,
-    quantity,
     reachable,
     working,
+    written_to,
 )
+from squeezefilm.errors import InputError
 
 
 @app.command()
@@ -29,11 +34,7 @@ def presets(as_json: AsJson = False) -> None:
     """List the displays that come with the package."""
     from squeezefilm.report.kit.terminal import preset_list, show_presets
 
-    listing = preset_list()
-    if as_json:
-        print_json(listing)
-    else:
-        show_presets(listing)
+    answer(as_json, preset_list(), show_presets)
 
 
 @app.command()
@@ -41,11 +42,7 @@ def show(target: Target, as_json: AsJson = False) -> None:
     """Show every value of a display, with its source and what is assumed."""
     from squeezefilm.report.kit import terminal
 
-    values = terminal.display_values(target)
-    if as_json:
-        print_json(values)
-    else:
-        terminal.show_values(values)
+    answer(as_json, terminal.display_values(target), terminal.show_values)
 
 
 @app.command()
@@ -66,18 +63,14 @@ class AnalyzeOptions:
     """What `analyze` is asked for."""
 
     target: Target
-    out: Annotated[
-        Path | None,
-        typer.Option(callback=reachable, help="Write result.json and report.html to this folder."),
-    ] = None
+    out: Annotated[Path | None, written_to("Write result.json and report.html to this folder.")] = (
+        None
+    )
     as_json: AsJson = False
     voltage: Voltage = None
     frequency: Frequency = None
-    amplitude: Annotated[
-        str | None,
-        typer.Option(help='Vibration amplitude, like "2 um", in place of voltage and plate.'),
-    ] = None
-    force: Force = None
+    vibration_amplitude: Amplitude = None
+    normal_force: Force = None
     surface: OnSurface = None
     model: Model = None
     samples: Annotated[
@@ -99,34 +92,209 @@ def analyze(asked: AnalyzeOptions) -> None:
     """From the display's description to resonance, amplitude, friction and textures."""
     from squeezefilm.analysis.analyze import analyze as run
     from squeezefilm.display import load_display
-    from squeezefilm.quantities import Unit
     from squeezefilm.report.kit import terminal
 
     display = load_display(asked.target)
     with working(asked.as_json) as step:
-        result = run(
-            display,
-            voltage=quantity(asked.voltage, "--voltage", Unit("V")),
-            frequency=quantity(asked.frequency, "--frequency", Unit("Hz")),
-            vibration_amplitude=quantity(asked.amplitude, "--amplitude", Unit("m")),
-            normal_force=quantity(asked.force, "--force", Unit("N")),
-            surface=asked.surface,
-            samples=asked.samples,
-            theory=asked.theory,  # type: ignore[arg-type] # checked with a message by working_mode
-            model=asked.model,  # type: ignore[arg-type] # checked with a message by FrictionLaw
-            strict=asked.strict,
-            progress=step,
-        )
+        result = run(display, **given(asked, leave="target out as_json"), progress=step)
         written = None
         if asked.out is not None:
             from squeezefilm.report.display.page import write_analysis
 
             written = write_analysis(result, asked.out, progress=step)
+    answer(asked.as_json, result, terminal.show_analysis, report=written)
+    if written is None and not asked.as_json:
+        typer.echo("add --out DIR to write result.json and a report with figures")
+
+
+@dataclass(frozen=True)
+class FrictionOptions:
+    """What `friction` is asked for."""
+
+    target: Target
+    voltage: Voltage = None
+    frequency: Frequency = None
+    vibration_amplitude: Amplitude = None
+    normal_force: Force = None
+    surface: OnSurface = None
+    model: Model = None
+    position: Annotated[
+        str, In("m"), typer.Option(help="The pad's centre from an antinode, along the wave.")
+    ] = "0 mm"
+    speed: Annotated[
+        str,
+        In("m/s"),
+        typer.Option(help="Of the finger, for the competing mechanism: intermittent contact."),
+    ] = "80 mm/s"
+    ambient_pressure: Annotated[
+        str | None,
+        In("Pa"),
+        typer.Option(help='Of the air around, like "2 kPa" for a vacuum experiment.'),
+    ] = None
+    wanted_friction: Annotated[
+        float | None,
+        typer.Option("--wanted", help="A relative friction: which voltage reaches it?"),
+    ] = None
+    samples: Annotated[
+        int, typer.Option(help="Base samples of the uncertainty, a power of two; 0 for none.")
+    ] = 64
+    seed: Annotated[int, typer.Option(help="Of the samples.")] = 1
+    out: Annotated[Path | None, written_to("Folder for friction.json and figures.")] = None
+    as_json: AsJson = False
+
+
+@app.command()
+@called_with(FrictionOptions)
+def friction(asked: FrictionOptions) -> None:
+    """The friction a finger meets, how the load is shared, and how sure all of it is."""
+    from squeezefilm.analysis.friction.command import analyze_friction
+    from squeezefilm.display import load_display
+    from squeezefilm.report.friction.terminal import show_friction
+
+    display = load_display(asked.target)
+    with working(asked.as_json) as step:
+        result = analyze_friction(
+            display, **given(asked, leave="target out as_json"), progress=step
+        )
+        written = None
+        if asked.out is not None:
+            from squeezefilm.report.friction.figures import write_friction
+
+            written = write_friction(result, asked.out)
+    answer(asked.as_json, result, show_friction, figures=written)
+
+
+@dataclass(frozen=True)
+class FilmOptions:
+    """What `film` is asked for."""
+
+    squeeze_number: Annotated[
+        float | None, typer.Option("--squeeze-number", help="σ on width, radius or X semi-axis.")
+    ] = None
+    excursion: Annotated[
+        float | None, typer.Option("--excursion", help="ε, amplitude over mean gap, below 1.")
+    ] = None
+    shape: Annotated[str, typer.Option(help="strip, disc, rectangle or ellipse.")] = "strip"
+    aspect_ratio: Annotated[
+        float, typer.Option("--aspect", help="Length ratio of rectangle or ellipse.")
+    ] = 1.0
+    polytropic_exponent: Annotated[
+        float, typer.Option("--polytropic", help="1 isothermal to 1.4 adiabatic.")
+    ] = 1.0
+    knudsen_number: Annotated[
+        float, typer.Option("--knudsen", help="Mean free path over mean gap.")
+    ] = 0.0
+    slip: Annotated[str, typer.Option(help="first, second, fukui-kaneko or veijola.")] = "first"
+    tolerance: Annotated[float, typer.Option(help="Relative, on the over-pressure.")] = 1e-3
+    sweep: Annotated[
+        bool, typer.Option("--sweep", help="Draw the map over squeeze number and excursion.")
+    ] = False
+    out: Annotated[Path | None, written_to("Folder for the map and its numbers.")] = None
+    as_json: AsJson = False
+
+
+@app.command()
+@called_with(FilmOptions)
+def film(asked: FilmOptions) -> None:
+    """Solve the periodic gas film of one shape, or map it over squeeze number and excursion."""
+    from squeezefilm.analysis.film.command import FilmRequest, solve_film, sweep_film
+    from squeezefilm.report.plate.terminal import show_film
+
+    of_film = given(asked, leave="squeeze_number excursion sweep out as_json")
+    with working(asked.as_json) as step:
+        if asked.sweep:
+            from squeezefilm.report.film_map import write_film_map
+
+            if asked.out is None:
+                raise InputError("--sweep draws a map into a folder; say which with --out DIR")
+            found = sweep_film(FilmRequest(**of_film), progress=step)
+            path = write_film_map(found, asked.out)
+        else:
+            if asked.squeeze_number is None or asked.excursion is None:
+                raise InputError(
+                    "film needs --squeeze-number and --excursion, or --sweep --out DIR for a map"
+                )
+            step("solving the film")
+            solved = solve_film(asked.squeeze_number, asked.excursion, **of_film)
+    if asked.sweep:
+        answer(asked.as_json, found, lambda _: None, map=path)
+    else:
+        answer(asked.as_json, solved, show_film)
+
+
+@dataclass(frozen=True)
+class PlateOptions:
+    """What `plate` is asked for."""
+
+    target: Target
+    band: Annotated[str | None, typer.Option(help='Modes in a band, like "25 kHz:45 kHz".')] = None
+    mode: Annotated[
+        str | None,
+        typer.Option(
+            help="Working mode by nodal lines, like 8,0; of discs and rings circles, diameters."
+        ),
+    ] = None
+    out: Annotated[Path | None, written_to("Folder for a page with figures.")] = None
+    vtu: Annotated[
+        Path | None, written_to("Write the solved volume for ParaView to this .vtu file.")
+    ] = None
+    sensitivity: Annotated[
+        bool, typer.Option("--sensitivity", help="What other materials and sizes would change.")
+    ] = False
+    track: Annotated[
+        str | None, typer.Option(help="Follow the modes over a parameter, like ceramic_thickness.")
+    ] = None
+    start: Annotated[str | None, typer.Option("--from", help='Its first value: "0.5 mm".')] = None
+    stop: Annotated[str | None, typer.Option("--to", help='Its last value: "1.5 mm".')] = None
+    values: Annotated[int, typer.Option(help="How many values of it.")] = 9
+    as_json: AsJson = False
+
+
+@app.command()
+@called_with(PlateOptions)
+def plate(asked: PlateOptions) -> None:
+    """Solve a plate, disc or stator in three dimensions: modes, amplitude per volt, admittance."""
+    from squeezefilm.analysis.plate.command import (
+        PlateAnalysis,
+        parse_band,
+        parse_mode,
+        solve_plate,
+    )
+    from squeezefilm.analysis.plate.tracking import parse_track
+    from squeezefilm.display import load_display
+    from squeezefilm.report.plate.terminal import show_plate
+
+    display, out, vtu = load_display(asked.target), asked.out, asked.vtu
+    mode = None if asked.mode is None else parse_mode(asked.mode)
+    band = None if asked.band is None else parse_band(asked.band)
+    track = None
+    if asked.track is not None:
+        track = parse_track(asked.track, asked.start, asked.stop, asked.values)
+    if vtu is not None and display.actuator.type != "rectangular_plate":
+        raise InputError(
+            f"--vtu is for rectangular plates; the actuator of '{display.name}' is of the type "
+            f"{display.actuator.type.replace('_', ' ')}"
+        )
+    with working(asked.as_json) as step:
+        written = []
+        result = solve_plate(
+            display,
+            mode=mode,
+            band=band,
+            sensitivity=asked.sensitivity,
+            track=track,
+            progress=step,
+        )
+        if out is not None or vtu is not None:
+            from squeezefilm.report.plate.plate import write_mode, write_plate
+
+            step("figures")
+            written += [] if out is None else [write_plate(result, out)]
+            if vtu is not None and isinstance(result, PlateAnalysis):
+                written.append(write_mode(result, vtu))
     if asked.as_json:
         print_json(result.summary())
         return
-    terminal.show_analysis(result)
-    if written is not None:
-        typer.echo(f"report: {written}")
-    else:
-        typer.echo("add --out DIR to write result.json and a report with figures")
+    show_plate(result)
+    for path in written:
+        typer.echo(f"wrote {path}")

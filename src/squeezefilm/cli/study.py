@@ -1,4 +1,4 @@
-"""Verbs of a study: plan it, run it, look at it, export it, merge it, take somebody out."""
+"""Verbs of the lab, and of a study: plan, run, look, export, merge, take somebody out."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -7,7 +7,32 @@ from typing import Annotated
 import typer
 
 from squeezefilm.arguments import called_with
-from squeezefilm.cli.app import AsJson, Pickup, app, print_json, quantity, reachable, working
+from squeezefilm.cli.app import AsJson, Pickup, answer, app, given, print_json, working, written_to
+
+
+@app.command()
+def lab(
+    folder: Annotated[
+        Path, typer.Option(help="Where displays, textures, strokes and studies are saved.")
+    ] = Path("squeezefilm-lab"),
+    port: Annotated[int, typer.Option(help="On this computer; the next free one if taken.")] = 8631,
+    browser: Annotated[
+        bool, typer.Option("--browser/--no-browser", help="Open the page in the browser.")
+    ] = True,
+    lan: Annotated[
+        str | None,
+        typer.Option(
+            metavar="ADDRESS",
+            help="This computer's address in the local network, to pair tablets as participant "
+            "stations by TLS; needs squeezefilm[lan].",
+        ),
+    ] = None,
+) -> None:
+    """Open the lab, a page on this computer: design, feel, drive and study."""
+    from squeezefilm.lab.serve import serve
+
+    serve(folder, port=port, browser=browser, lan=lan, say=lambda line: typer.echo(line))
+
 
 study = typer.Typer(
     name="study",
@@ -20,9 +45,7 @@ Design = Annotated[
     str, typer.Argument(metavar="NAME|FILE", help="A preset study or a design in TOML.")
 ]
 Store = Annotated[Path, typer.Argument(metavar="STUDY.sqlite", help="The study's file.")]
-NewStore = Annotated[
-    Path, typer.Option("--store", callback=reachable, help="The study's file; made if not there.")
-]
+NewStore = Annotated[Path, written_to("The study's file; made if not there.")]
 Consent = Annotated[bool, typer.Option("--consent", help="The participant has consented.")]
 Seed = Annotated[int, typer.Option(help="Of all orders.")]
 Observer = Annotated[str, typer.Option(help="What people are made of: a preset or a TOML file.")]
@@ -40,11 +63,7 @@ def plan(
     from squeezefilm.study.design.plan import plan_study
     from squeezefilm.study.design.study_design import load_design
 
-    found = plan_study(load_design(design), participants, seed)
-    if as_json:
-        print_json(found.summary())
-    else:
-        show_plan(found)
+    answer(as_json, plan_study(load_design(design), participants, seed), show_plan)
 
 
 @study.command()
@@ -68,7 +87,7 @@ def simulate(
     seed: Annotated[int, typer.Option(help="Of orders, people and noise.")] = 0,
     out: Annotated[
         Path | None,
-        typer.Option(callback=reachable, help="Folder for answers, tables, figures and a page."),
+        written_to("Folder for answers, tables, figures and a page."),
     ] = None,
     observer: Observer = "fingertip",
     as_json: AsJson = False,
@@ -86,12 +105,7 @@ def simulate(
         tables = chain_tables(planned, people, progress=step)
         found = simulate_participants(planned, people, participants, seed, tables)
         written = None if out is None else write_simulated(found, out, step)
-    if as_json:
-        print_json(found.summary())
-        return
-    show_simulated(found)
-    if written is not None:
-        typer.echo(f"page: {written}")
+    answer(as_json, found, show_simulated, page=written)
 
 
 @dataclass(frozen=True)
@@ -108,9 +122,7 @@ class PowerOptions:
     studies: Annotated[int, typer.Option(help="Simulated per number of people.")] = 400
     observer: Observer = "fingertip"
     seed: Annotated[int, typer.Option(help="Of people, answers and studies.")] = 0
-    out: Annotated[
-        Path | None, typer.Option(callback=reachable, help="A PNG of the curve to write.")
-    ] = None
+    out: Annotated[Path | None, written_to("A PNG of the curve to write.")] = None
     as_json: AsJson = False
 
 
@@ -124,27 +136,16 @@ def power(asked: PowerOptions) -> None:
     from squeezefilm.study.simulated.planned_power import planned_power
 
     with working(asked.as_json) as step:
-        found = planned_power(
-            load_design(asked.design),
-            load_observer(asked.observer),
-            asked.first,
-            asked.second,
-            display=asked.display,
-            target=asked.target,
-            studies=asked.studies,
-            seed=asked.seed,
-            progress=step,
-        )
+        design, people = load_design(asked.design), load_observer(asked.observer)
+        options = given(asked, leave="design observer first second out as_json")
+        found = planned_power(design, people, asked.first, asked.second, **options, progress=step)
     if asked.out is not None:
         from squeezefilm.report.kit.style import png
         from squeezefilm.report.study.time_figures import power as drawn
         from squeezefilm.results import write_whole
 
         write_whole(asked.out, png(drawn(found.curve)))
-    if asked.as_json:
-        print_json(found.summary())
-    else:
-        show_power(found)
+    answer(asked.as_json, found, show_power)
 
 
 @study.command()
@@ -189,7 +190,7 @@ class RunOptions:
             "rehearsal (one without a port, as fast as it goes) or none."
         ),
     ] = "none"
-    pickup: Pickup = None
+    amplitude_per_pickup: Pickup = None
     acknowledge: Annotated[
         bool,
         typer.Option("--acknowledge-ultrasound", help="The exposure was read and acknowledged."),
@@ -203,7 +204,6 @@ class RunOptions:
 @called_with(RunOptions)
 def run(asked: RunOptions) -> None:
     """Run a session at the terminal; stop with Ctrl-C, and go on later where it stopped."""
-    from squeezefilm.quantities import Unit
     from squeezefilm.report.study.session import run_study
     from squeezefilm.report.study.terminal import ask_acknowledgement
 
@@ -211,14 +211,8 @@ def run(asked: RunOptions) -> None:
         asked.design,
         asked.store,
         asked.participant,
-        drive=asked.drive,
-        amplitude_per_pickup=quantity(asked.pickup, "--pickup", Unit("m/V")),
-        conditions=asked.conditions,
-        consent=asked.consent,
+        **given(asked, leave="design store participant acknowledge"),
         acknowledge=(lambda _: True) if asked.acknowledge else ask_acknowledgement,
-        seed=asked.seed,
-        station=asked.station,
-        stations=asked.stations,
         tell=typer.echo,
         progress=lambda: working(quiet=True),
     )
@@ -244,7 +238,7 @@ def export(
     format: Annotated[str, typer.Option("--format", help="csv, psych-ds or bids.")] = "csv",
     out: Annotated[
         Path | None,
-        typer.Option(callback=reachable, help="Folder; beside the study's file without it."),
+        written_to("Folder; beside the study's file without it."),
     ] = None,
 ) -> None:
     """Write all answers as CSV, a Psych-DS dataset or a BIDS behavioural dataset."""
@@ -301,9 +295,7 @@ def analyze(
     store: Store,
     out: Annotated[
         Path | None,
-        typer.Option(
-            callback=reachable, help="Folder for numbers, figures and a page per display."
-        ),
+        written_to("Folder for numbers, figures and a page per display."),
     ] = None,
     mixed: Annotated[
         bool, typer.Option("--mixed", help="Mixed models too (needs the extra 'models').")

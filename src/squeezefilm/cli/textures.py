@@ -1,4 +1,4 @@
-"""Verbs about textures."""
+"""Verbs about textures: computed, played on a device or its twin, and what was recorded."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,16 +10,19 @@ from squeezefilm.arguments import called_with
 from squeezefilm.cli.app import (
     AsJson,
     Force,
+    In,
     LargestVoltage,
     Model,
     OnDisplay,
     OnSurface,
+    Pickup,
     Texture,
+    answer,
     app,
+    given,
     print_json,
-    quantity,
-    reachable,
     working,
+    written_to,
 )
 from squeezefilm.errors import InputError
 
@@ -34,17 +37,15 @@ class RenderOptions:
         str, typer.Option(help='Finger motion: STROKE.csv, or "60 mm/s over 4 cm, 2 passes".')
     ] = "60 mm/s over 4 cm, 2 passes"
     out: Annotated[
-        Path | None,
-        typer.Option(
-            callback=reachable, help="Folder for trace, envelope, numbers, figures, a page."
-        ),
+        Path | None, written_to("Folder for trace, envelope, numbers, figures, a page.")
     ] = None
     as_json: AsJson = False
     sensor: Annotated[
         str | None, typer.Option(help="How the loop sees the finger, like touch-panel-120-hz.")
     ] = None
-    compensate: Annotated[
-        str, typer.Option(help="Of the resonator's slowness: none, inverse or preview.")
+    compensation: Annotated[
+        str,
+        typer.Option("--compensate", help="Of the resonator's slowness: none, inverse or preview."),
     ] = "none"
     braking: Annotated[
         bool, typer.Option("--braking", help="The drive may invert the carrier's phase.")
@@ -53,7 +54,7 @@ class RenderOptions:
         str, typer.Option(help="The standing wave's nodes: ignored, felt or compensated.")
     ] = "ignored"
     voltage: LargestVoltage = None
-    force: Force = None
+    normal_force: Force = None
     surface: OnSurface = None
     model: Model = None
     table: Annotated[str, typer.Option(help="The trace as csv or parquet.")] = "csv"
@@ -73,7 +74,6 @@ def render(asked: RenderOptions) -> None:
     from squeezefilm.chain.rendered_texture import render_texture
     from squeezefilm.display import load_display
     from squeezefilm.formats.trajectories import motion_from
-    from squeezefilm.quantities import Unit
     from squeezefilm.report.textures.terminal import show_lost, show_render
     from squeezefilm.texture_file import load_texture
 
@@ -82,35 +82,21 @@ def render(asked: RenderOptions) -> None:
         raise InputError("--drive, --hjif and --table write files; say where with --out DIR")
     what, motion = load_texture(asked.texture), motion_from(asked.stroke)
     where = load_display(asked.display)
+    options = given(asked, leave="texture display stroke out as_json table drive hjif")
     with working(asked.as_json) as step:
-        result = render_texture(
-            where,
-            what,
-            motion,
-            voltage=quantity(asked.voltage, "--voltage", Unit("V")),
-            normal_force=quantity(asked.force, "--force", Unit("N")),
-            surface=asked.surface,
-            model=asked.model,  # type: ignore[arg-type] # checked with a message by FrictionLaw
-            sensor=asked.sensor,
-            compensation=asked.compensate,
-            braking=asked.braking,
-            wave=asked.wave,
-            seed=asked.seed,
-            progress=step,
-        )
+        result = render_texture(where, what, motion, **options, progress=step)
         written = None
         if out is not None:
             from squeezefilm.report.textures.page import hjif_export, write_render
 
             written = write_render(result, out, table=table, drive=drive, hjif=hjif, progress=step)
-    if asked.as_json:
-        print_json(result.summary())
-        return
-    show_render(result)
-    if hjif:
-        show_lost(hjif_export(result))
-    if written is not None:
-        typer.echo(f"page: {written}")
+
+    def show(_: object) -> None:
+        show_render(result)
+        if hjif:
+            show_lost(hjif_export(result))
+
+    answer(asked.as_json, result, show, page=written)
 
 
 @app.command()
@@ -124,7 +110,147 @@ def textures(as_json: AsJson = False) -> None:
     for name in texture_names():
         one = load_texture(name)
         listing.append({"name": name, "title": one.title, "quantity": one.texture.quantity})
+    answer(as_json, listing, show_textures)
+
+
+device_app = typer.Typer(
+    help="A device on a serial port, or the twin of a display.",
+    no_args_is_help=True,
+    add_completion=False,
+    rich_markup_mode=None,
+)
+app.add_typer(device_app, name="device")
+
+OnDrive = Annotated[
+    str, typer.Option("--drive", help="twin, or a port like serial:/dev/ttyACM0[@baud].")
+]
+
+
+@dataclass(frozen=True)
+class PlayOptions:
+    """What `play` is asked for."""
+
+    texture: Texture
+    display: OnDisplay
+    drive: OnDrive = "twin"
+    sensor: Annotated[
+        str,
+        typer.Option(
+            help="device: its own sensor; replay:STROKE.csv; or what its sensor is like, such as "
+            "touch-panel-240-hz."
+        ),
+    ] = "device"
+    mode: Annotated[
+        str, typer.Option(help="stream: the loop here renders; tile: the device by itself.")
+    ] = "stream"
+    stroke: Annotated[
+        str, typer.Option(help='The twin\'s finger, to and fro: "60 mm/s over 4 cm", or a CSV.')
+    ] = "60 mm/s over 4 cm"
+    duration: Annotated[str, In("s"), typer.Option(help='How long, like "10 s".')] = "4 s"
+    rate: Annotated[str, In("Hz"), typer.Option(help='Of the loop, like "5 kHz".')] = "5 kHz"
+    voltage: LargestVoltage = None
+    surface: OnSurface = None
+    compensation: Annotated[
+        str, typer.Option("--compensate", help="Of the resonator's slowness: none or inverse.")
+    ] = "none"
+    amplitude_per_pickup: Pickup = None
+    bench_only: Annotated[
+        bool, typer.Option("--bench-only", help="Allow a drive that does not stop by itself.")
+    ] = False
+    out: Annotated[
+        Path | None, written_to("Folder for the record, numbers, figures and a page.")
+    ] = None
+    seed: Annotated[int, typer.Option(help="Of the twin's noise.")] = 0
+    as_json: AsJson = False
+
+
+@app.command()
+@called_with(PlayOptions)
+def play(asked: PlayOptions) -> None:
+    """Play a texture under a moving finger: in real time, on a device or its twin.
+
+    Ctrl-C stops safely. Exit code 1 where the device faulted, the link broke or the loop died.
+    """
+    from squeezefilm.bench.play import play_texture
+    from squeezefilm.report.played.terminal import live_view, show_play
+    from squeezefilm.texture_file import load_texture
+
+    what = load_texture(asked.texture)
+
+    def step(text: str) -> None:
+        # Lines, since only one thing at a time may move on a terminal, and that is the session.
+        if not asked.as_json:
+            typer.echo(f"  {text} …", err=True)
+
+    with live_view(not asked.as_json) as show:
+        result = play_texture(
+            asked.display,
+            what,
+            **given(asked, leave="texture display as_json"),
+            show=show,
+            progress=step,
+        )
+    page = None
+    if asked.out is not None:
+        from squeezefilm.report.played.page import write_play
+
+        page = write_play(result, asked.out)
+    answer(asked.as_json, result, show_play, page=page)
+    if page is None and not asked.as_json:
+        typer.echo("add --out DIR to keep the record")
+    if result.outcome.failed:
+        if asked.as_json:
+            typer.echo(f"{result.outcome.ending.value}: {result.outcome.message}", err=True)
+        raise typer.Exit(1)
+
+
+@app.command()
+def export(
+    trace: Annotated[Path, typer.Argument(help="A trace that a session recorded.")],
+    to: Annotated[Path, written_to("The file to write, .csv or .parquet.")],
+    as_json: AsJson = False,
+) -> None:
+    """Write a recorded trace as CSV or Parquet, with its metadata, and say what it had lost."""
+    from squeezefilm.report.played.terminal import show_export
+    from squeezefilm.results import to_json
+    from squeezefilm.session.record.export import export_trace
+
+    done = export_trace(trace, to)
     if as_json:
-        print_json(listing)
+        print_json(to_json(done))
     else:
-        show_textures(listing)
+        show_export(done)
+
+
+@dataclass(frozen=True)
+class CheckOptions:
+    """What `check` is asked for."""
+
+    drive: OnDrive = "twin"
+    display: Annotated[
+        str, typer.Option(help="The display on it: a preset's name or a TOML file.")
+    ] = "biet2008-plate"
+    rate: Annotated[str, In("Hz"), typer.Option(help='Of the loop here, like "5 kHz".')] = "5 kHz"
+    as_json: AsJson = False
+
+
+@device_app.command()
+@called_with(CheckOptions)
+def check(asked: CheckOptions) -> None:
+    """Check a device: link, round trip, timing, limits, watchdog, readings.
+
+    At no more than 1 V. Exit code 1 if a check fails.
+    """
+    from squeezefilm.bench.play import check_drive
+    from squeezefilm.report.played.terminal import show_check
+    from squeezefilm.results import to_json
+
+    with working(asked.as_json) as step:
+        read = given(asked, leave="drive display as_json")
+        result = check_drive(asked.drive, asked.display, **read, progress=step)
+    if asked.as_json:
+        print_json({**to_json(result), "passed": result.passed})
+    else:
+        show_check(result)
+    if not result.passed:
+        raise typer.Exit(1)

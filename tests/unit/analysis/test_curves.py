@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import dataclasses
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 
 from squeezefilm.analysis.curves import (
     PAPER_CRITERION,
+    WavelengthCurve,
     frequency_response,
     friction_curve,
     pressure_profiles,
@@ -75,7 +77,7 @@ def test_a_still_surface_has_no_solved_film() -> None:
 
 def test_a_friction_curve_reaches_its_marked_points(point: Prediction) -> None:
     bare = STATOR.surface("bare")
-    found = friction_curve(STATOR, point, bare, "paper2008")
+    found = friction_curve(point, bare, "paper2008")
     assert (found.surface, found.roughness, found.model) == ("bare", bare.roughness, "paper2008")
     assert found.amplitude == pytest.approx(np.linspace(0, 10e-6, 201))
     assert found.relative_friction[0] == pytest.approx(1.0)
@@ -87,7 +89,7 @@ def test_a_friction_curve_reaches_its_marked_points(point: Prediction) -> None:
     assert found.zero_friction_amplitude is not None
     assert law.at(found.zero_friction_amplitude * 0.999) > 0
     assert law.at(found.zero_friction_amplitude * 1.001) == 0
-    shared = friction_curve(STATOR, point, bare, "partial-levitation")
+    shared = friction_curve(point, bare, "partial-levitation")
     assert shared.amplitude.size == 51
     assert shared.zero_friction_amplitude is None
 
@@ -96,8 +98,9 @@ def test_a_curve_has_room_for_where_the_finger_floats(point: Prediction) -> None
     adhesive = STATOR.surface("adhesive")
 
     def end(force: float, amplitude: float = 2e-6) -> tuple[float, float | None]:
-        at = dataclasses.replace(point, normal_force=force, vibration_amplitude=amplitude)
-        found = friction_curve(STATOR, at, adhesive, "paper2008")
+        law = dataclasses.replace(point.law, normal_force=force)
+        at = dataclasses.replace(point, law=law, vibration_amplitude=amplitude)
+        found = friction_curve(at, adhesive, "paper2008")
         return float(found.amplitude[-1]), found.zero_friction_amplitude
 
     assert end(0.5) == (pytest.approx(10e-6), pytest.approx(7.63e-6, abs=5e-9))
@@ -112,7 +115,7 @@ def test_a_curve_has_room_for_where_the_finger_floats(point: Prediction) -> None
 
 
 def test_half_wavelengths_are_the_papers_with_its_amplitudes(point: Prediction) -> None:
-    curves = wavelength_curves(STATOR, point)
+    curves = wavelength_curves(point)
     needed = [curve.amplitude_for_criterion * 1e6 for curve in curves]
     assert needed == pytest.approx([2.33, 1.89, 1.54, 1.35], abs=5e-3)
     assert np.all(np.diff([curve.half_wavelength for curve in curves]) > 0)
@@ -121,10 +124,15 @@ def test_half_wavelengths_are_the_papers_with_its_amplitudes(point: Prediction) 
         assert curve.amplitude == pytest.approx(np.linspace(0, 4e-6, 121))
         at = np.interp(curve.amplitude_for_criterion, curve.amplitude, curve.relative_friction)
         assert at == pytest.approx(0.7, abs=1e-3)
-    hard = wavelength_curves(STATOR, dataclasses.replace(point, normal_force=0.7))
+
+    def curves_with(**changes: Any) -> tuple[WavelengthCurve, ...]:
+        law = dataclasses.replace(point.law, **changes)
+        return wavelength_curves(dataclasses.replace(point, law=law))
+
+    hard = curves_with(normal_force=0.7)
     for light, heavy in zip(curves, hard, strict=True):
         assert heavy.amplitude_for_criterion > light.amplitude_for_criterion
         assert np.all(heavy.relative_friction[1:] > light.relative_friction[1:])
-    smooth = dataclasses.replace(point, surface=STATOR.surface("bare"))
-    for rough, bare in zip(curves, wavelength_curves(STATOR, smooth), strict=True):
+    smooth = curves_with(surface=STATOR.surface("bare"))
+    for rough, bare in zip(curves, smooth, strict=True):
         assert np.all(bare.relative_friction[1:] < rough.relative_friction[1:])

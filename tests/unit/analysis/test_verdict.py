@@ -25,6 +25,10 @@ STATOR = dataclasses.replace(load_display("biet2008-stator"), provenance={})
 SHARED = "partial-levitation"
 
 
+def findings(*about: Any) -> tuple[Finding, ...]:
+    return tuple(verdict(*about))
+
+
 @pytest.fixture(scope="module")
 def point() -> Prediction:
     return predict(STATOR)
@@ -43,7 +47,7 @@ def said(p: Prediction, needed: float | None = 2.5e-6, **changes: Any) -> tuple[
         curve(8e-6, model="another"),
         curve(needed, model=p.model),
     )
-    return verdict(STATOR, p, curves, None, None)
+    return findings(STATOR, p, curves, None, None)
 
 
 def test_friction_low_enough_is_good(point: Prediction) -> None:
@@ -93,7 +97,7 @@ def table(kept: list[list[float]]) -> FidelityTable:
 
 def test_gratings_that_survive_the_fastest_finger_are_named(point: Prediction) -> None:
     curves = (curve(1e-6),)
-    some = verdict(STATOR, point, curves, table([[1.0, 0.9], [1.0, 0.5], [1.0, 1.0]]), None)
+    some = findings(STATOR, point, curves, table([[1.0, 0.9], [1.0, 0.5], [1.0, 1.0]]), None)
     assert (
         Finding(
             "good",
@@ -102,7 +106,7 @@ def test_gratings_that_survive_the_fastest_finger_are_named(point: Prediction) -
         )
         in some
     )
-    none = verdict(STATOR, point, curves, table([[1.0, 0.8], [1.0, 0.5], [1.0, 0.2]]), None)
+    none = findings(STATOR, point, curves, table([[1.0, 0.8], [1.0, 0.5], [1.0, 0.2]]), None)
     assert Finding(
         "limit",
         "Square gratings of no listed mm keep 90 % of their swing up to 150 mm/s; 0.4 mm up to 40 "
@@ -124,7 +128,7 @@ def test_assumed_values_are_counted(point: Prediction) -> None:
         "c": Provenance("nowhere", "assumed"),
     }
     display = dataclasses.replace(STATOR, provenance=sources)
-    found = verdict(display, point, (curve(1e-6),), None, None)
+    found = findings(display, point, (curve(1e-6),), None, None)
     assert Finding(
         "doubt",
         "2 of 3 sourced values of this display are assumed, not measured or published: "
@@ -156,7 +160,7 @@ def films(sealed: float, opened: float, plateau: float, **others: Any) -> FilmCo
 
 def test_films_are_compared_by_their_over_pressure(point: Prediction) -> None:
     p = dataclasses.replace(point, squeeze_number=20.42)
-    found = verdict(STATOR, p, (curve(1e-6),), None, films(0.012, 0.0005, 0.04))
+    found = findings(STATOR, p, (curve(1e-6),), None, films(0.012, 0.0005, 0.04))
     assert Finding(
         "doubt",
         "The paper's asymptote promises 2.5 times the over-pressure of the solved film with sealed "
@@ -175,19 +179,19 @@ def test_films_are_compared_by_their_over_pressure(point: Prediction) -> None:
 def test_a_film_without_over_pressure_is_in_no_ratio(
     point: Prediction, sealed: float, opened: float
 ) -> None:
-    found = verdict(STATOR, point, (curve(1e-6),), None, films(sealed, opened, 0.05))
+    found = findings(STATOR, point, (curve(1e-6),), None, films(sealed, opened, 0.05))
     assert not any("promises" in one.text for one in found)
     assert any("ridges pressed flat all of it. Partial" in one.text for one in found)
 
 
 def test_plateaus_and_teeth_add_their_own_sentences(point: Prediction) -> None:
-    before = len(verdict(STATOR, point, (curve(1e-6),), None, films(0.01, 0.01, 0.1)))
+    before = len(findings(STATOR, point, (curve(1e-6),), None, films(0.01, 0.01, 0.1)))
     both = films(
         0.01, 0.01, 0.1,
         balance=PlateauBalance(1e-6, 1e-9, 1e-6, 7e3, "It floats."),
         teeth=ToothResult(2e-3, 1e-3, 0.1, 0.1, 1.0, "Teeth do not matter."),
     )  # fmt: skip
-    found = verdict(STATOR, point, (curve(1e-6),), None, both)
+    found = findings(STATOR, point, (curve(1e-6),), None, both)
     assert len(found) == before + 2
     assert Finding("limit", "It floats.") in found
     assert Finding("limit", "Teeth do not matter.") in found

@@ -198,11 +198,11 @@ def test_flags_lags_and_events_are_summed_up(setup: Any) -> None:
     assert session.lag is not None
     assert (session.lag.median, session.lag.p99) == (pytest.approx(0.5e-3), pytest.approx(0.99e-3))
     assert session.device_events == ({"state": "armed"}, {"state": "playing"})
-    assert (session.end(), session.loop(), session.link()) == (
+    assert tuple(session.last(kind) for kind in ("end", "loop", "link")) == (
         {"why": "over"}, {"made": 3}, {"sent": 2},
     )  # fmt: skip
     nothing = judge_session(setup, trace_of(rows_of(20)))
-    assert nothing.end() == nothing.loop() == nothing.link() == {}
+    assert all(nothing.last(kind) == {} for kind in ("end", "loop", "link"))
     other = Trace(("time_s", "x_m"), np.zeros((1, 2)), (), {}, Damage(0, 0, True, ()))
     with pytest.raises(InputError, match="the record has no tick, sample_time_s"):
         judge_session(setup, other)

@@ -12,7 +12,7 @@ import pytest
 from tests.e2e.program import run
 
 from squeezefilm.bench.check import CheckResult, DeviceCheck
-from squeezefilm.cli.device import device_app
+from squeezefilm.cli.textures import device_app
 from squeezefilm.session.record.export import TraceExport
 from squeezefilm.texture_file import load_texture
 

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from tests.e2e.program import run
 
-from squeezefilm.cli.lab import lab
+from squeezefilm.cli.study import lab
 from squeezefilm.lab.serve import PORT
 
 StandsIn = Callable[..., Any]

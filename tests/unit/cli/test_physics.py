@@ -13,7 +13,7 @@ from tests.e2e.program import run
 
 from squeezefilm.analysis.film.command import FilmRequest
 from squeezefilm.analysis.plate.tracking import TrackRequest
-from squeezefilm.cli.physics import film, friction, plate
+from squeezefilm.cli.describe import film, friction, plate
 from squeezefilm.display import load_display
 
 PLATE, STATOR = "biet2008-plate", "biet2008-stator"
@@ -140,7 +140,7 @@ def plates(stands_in: StandsIn, monkeypatch: pytest.MonkeyPatch) -> SimpleNamesp
 
     monkeypatch.setattr(command, "PlateAnalysis", Plate)
     return SimpleNamespace(
-        solve=stands_in("analysis.plate.solve:solve_plate", Plate(summary=lambda: {"plate": 1})),
+        solve=stands_in("analysis.plate.command:solve_plate", Plate(summary=lambda: {"plate": 1})),
         show_plate=stands_in("report.plate.terminal:show_plate"),
         page=stands_in("report.plate.plate:write_plate", "plate.html"),
         volume=stands_in("report.plate.plate:write_mode", "plate.vtu"),

@@ -73,11 +73,6 @@ class ClaimResult:
     verdict: Verdict
     note: str
 
-    @property
-    def why(self) -> str:
-        """Why it differs or agrees, in words."""
-        return self.claim.why
-
 
 @dataclass(frozen=True)
 class Reproduction:
@@ -110,7 +105,7 @@ class Reproduction:
                     "alternative": to_json(item.alternative),
                     "verdict": item.verdict,
                     "verdict_on_record": item.claim.verdict,
-                    "why": item.why,
+                    "why": item.claim.why,
                     "note": item.note,
                 }
                 for item in self.results
@@ -139,11 +134,11 @@ def reproduce(
 
     Raises `ConfigError` for a claim that nothing computes.
     """
+    tell = progress or (lambda _: None)
     file = read_claims()
     results = []
     for claim in file.claims if claims is None else claims:
-        if progress is not None:
-            progress(f"claim {claim.id}")
+        tell(f"claim {claim.id}")
         if claim.id not in CLAIM_VALUES:
             raise ConfigError(
                 "nothing computes the claim "
@@ -151,22 +146,14 @@ def reproduce(
                 file=presets.claims_path(),
             )
         results.append(judge(claim, CLAIM_VALUES[claim.id]()))
-    if progress is not None:
-        progress("the paper's design procedure")
+    tell("the paper's design procedure")
     study = prototype_study(progress) if prototype else None
     return Reproduction(tuple(results), file.errata, paper_design(), study)
 
 
 def judge(claim: Claim, found: ClaimValue) -> ClaimResult:
     """The verdict on a claim, from what was computed for it."""
-    return ClaimResult(
-        claim=claim,
-        value=found.value,
-        printed_formula_value=found.printed_formula,
-        alternative=found.alternative,
-        verdict=_verdict(claim, found),
-        note=found.note,
-    )
+    return ClaimResult(claim=claim, verdict=_verdict(claim, found), **vars(found))
 
 
 def _verdict(claim: Claim, found: ClaimValue) -> Verdict:

@@ -9,8 +9,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from types import MappingProxyType
+from typing import Any
 
 from squeezefilm import quantities as si
 from squeezefilm.analysis.claims.values import ClaimValue, value_of
@@ -54,25 +55,18 @@ class FrozenContact:
     def relative_friction(
         self,
         *,
-        frequency: si.Hertz | None = None,
-        amplitude: si.Metre | None = None,
-        roughness: si.Metre | None = None,
         ambient_pressure: si.Pascal | None = None,
-        plateau_pressure: si.Pascal | None = None,
         slip: str = "first",
         skin: Skin | None = None,
+        **changes: Any,
     ) -> si.Dimensionless:
-        """µ′/µ with what is given changed and all else as it is frozen."""
-        gas = self.gas if ambient_pressure is None else self.gas.at_pressure(ambient_pressure)
-        table = film_table(frequency or self.frequency, self.finger.plateau_width, gas, slip)
-        law = self.finger.asperity_law(self.roughness if roughness is None else roughness)
-        shared = share_load(
-            table,
-            law,
-            self.amplitude if amplitude is None else amplitude,
-            plateau_pressure or self.plateau_pressure,
-            skin=skin,
-        )
+        """µ′/µ with what is given changed (`changes` by the names above) and all else as it is
+        frozen."""
+        here = replace(self, **changes)
+        gas = here.gas if ambient_pressure is None else here.gas.at_pressure(ambient_pressure)
+        table = film_table(here.frequency, here.finger.plateau_width, gas, slip)
+        law = here.finger.asperity_law(here.roughness)
+        shared = share_load(table, law, here.amplitude, here.plateau_pressure, skin=skin)
         return float(shared.relative_friction)
 
 

@@ -7,8 +7,7 @@ ceramics and plate that follow.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import Annotated
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -24,36 +23,20 @@ from squeezefilm.plate.beam.modes import (
 from squeezefilm.plate.laminate import Laminate
 
 MEAN_EXPLORED_AREA: si.SquareMetre = 28.18e-4
+"""In Smith's experiment; the largest, 128.37 cm², bounds from above."""
 LARGEST_EXPLORED_AREA: si.SquareMetre = 128.37e-4
+SQUEEZE_NUMBER: si.Dimensionless = 10.0
+FREQUENCY_AMPLITUDE: si.Metre = 3e-6
+"""Of the unfavourable film for which the frequency criterion is asked."""
+WANTED_FRICTION: si.Dimensionless = 0.7
+CERAMIC_LENGTH: si.Metre = 11e-3
+CERAMIC_GAP: si.Metre = 1e-3
+WIDTH: si.Metre = 49e-3
 PAPER_HALF_WAVELENGTHS = (7.5e-3, 10e-3, 12.5e-3, 15e-3)
 _NO_ASYMPTOTE_YET = (
     "σ ≥ 10 does not make the asymptote hold: there a smooth film reaches less than half of the "
     "asymptotic over-pressure"
 )
-
-
-@si.checked_numbers
-@dataclass(frozen=True)
-class Requirements:
-    """What a display of the paper's kind must do. The defaults are the paper's.
-
-    `smallest_area` is the mean area explored in Smith's experiment, 28.18 cm²; the largest,
-    128.37 cm², bounds from above. The unfavourable case of the frequency criterion is a film of
-    `frequency_amplitude` and `roughness`.
-    """
-
-    smallest_area: Annotated[si.SquareMetre, si.Above(0)] = MEAN_EXPLORED_AREA
-    largest_area: Annotated[si.SquareMetre, si.Above(0)] = LARGEST_EXPLORED_AREA
-    squeeze_number: Annotated[si.Dimensionless, si.Above(0)] = 10.0
-    frequency_amplitude: Annotated[si.Metre, si.Above(0)] = 3e-6
-    relative_friction: Annotated[si.Dimensionless, si.AtLeast(0), si.AtMost(1)] = 0.7
-    ceramic_length: Annotated[si.Metre, si.Above(0)] = 11e-3
-    ceramic_gap: Annotated[si.Metre, si.Above(0)] = 1e-3
-    width: Annotated[si.Metre, si.Above(0)] = 49e-3
-
-    def __post_init__(self) -> None:
-        if self.smallest_area > self.largest_area:
-            raise InputError("smallest_area is larger than largest_area; exchange them")
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,14 +77,7 @@ def friction_criterion(
     """
     amplitudes = []
     for half in half_wavelengths:
-        shorter = PaperGap(
-            roughness=gap.roughness,
-            vibration_amplitude=0.0,
-            ridge_amplitude=gap.ridge_amplitude,
-            ridge_period=gap.ridge_period,
-            wavelength=2 * float(half),
-            contact_length=gap.contact_length,
-        )
+        shorter = replace(gap, vibration_amplitude=0.0, wavelength=2 * float(half))
         try:
             amplitudes.append(
                 vibration_amplitude_for(relative_friction, shorter, normal_force, ambient_pressure)
@@ -117,20 +93,19 @@ def design_plate(
     viscosity: si.PascalSecond,
     ambient_pressure: si.Pascal,
     normal_force: si.Newton,
-    requirements: Requirements | None = None,
+    smallest_area: si.SquareMetre = MEAN_EXPLORED_AREA,
 ) -> Design:
     """The plate that the paper's procedure leads to, for one laminate and one finger.
 
-    The number of ceramics is the smallest that covers the mean explored area; the mode has one
+    The number of ceramics is the smallest that covers `smallest_area` (m²); the mode has one
     antinode a ceramic and one beyond each end. Valid where the paper's model is: for comparison,
-    not for design. Raises `InputError` for requirements that contradict each other.
+    not for design. Raises `InputError` where that is more than the largest explored area.
     """
-    wants = requirements or Requirements()
     lowest = float(
         frequency_for_squeeze_number(
-            wants.squeeze_number,
+            SQUEEZE_NUMBER,
             gap.contact_length,
-            gap.with_amplitude(wants.frequency_amplitude).reference_thickness,
+            gap.with_amplitude(FREQUENCY_AMPLITUDE).reference_thickness,
             viscosity,
             ambient_pressure,
         )
@@ -138,16 +113,14 @@ def design_plate(
     euler = float(
         euler_bernoulli_half_wavelength(lowest, section.bending_stiffness, section.mass_per_area)
     )
-    timoshenko = _timoshenko_half_wavelength(lowest, section)
+    timoshenko = timoshenko_half_wavelength(lowest, section)
     halves = np.array(PAPER_HALF_WAVELENGTHS)
-    amplitudes = friction_criterion(
-        gap, halves, wants.relative_friction, normal_force, ambient_pressure
-    )
-    ceramics, length = _ceramics(wants)
+    amplitudes = friction_criterion(gap, halves, WANTED_FRICTION, normal_force, ambient_pressure)
+    ceramics, length = _ceramics(smallest_area)
     lines = ceramics + 1
     mode = free_beam_mode(section, length, lines)
     required = friction_criterion(
-        gap, (mode.half_wavelength,), wants.relative_friction, normal_force, ambient_pressure
+        gap, (mode.half_wavelength,), WANTED_FRICTION, normal_force, ambient_pressure
     )
     return Design(
         lowest_frequency=lowest,
@@ -157,8 +130,8 @@ def design_plate(
         amplitudes=amplitudes,
         ceramics=ceramics,
         length=length,
-        width=wants.width,
-        area=length * wants.width,
+        width=WIDTH,
+        area=length * WIDTH,
         nodal_lines=lines,
         half_wavelength=mode.half_wavelength,
         resonance_frequency=mode.frequency,
@@ -194,19 +167,19 @@ def _against_rising(halves: si.MetreArray, amplitudes: si.MetreArray) -> str:
     )
 
 
-def _ceramics(wants: Requirements) -> tuple[int, si.Metre]:
+def _ceramics(smallest_area: si.SquareMetre) -> tuple[int, si.Metre]:
     """The number of ceramics, and the plate's length (m); `InputError` for too large a plate."""
-    pitch = wants.ceramic_length + wants.ceramic_gap
-    ceramics = math.ceil((wants.smallest_area / wants.width + wants.ceramic_gap) / pitch)
+    pitch = CERAMIC_LENGTH + CERAMIC_GAP
+    ceramics = math.ceil((smallest_area / WIDTH + CERAMIC_GAP) / pitch)
     # An odd number puts an antinode at the centre, where the paper's plate has one.
     ceramics += 1 - ceramics % 2
-    length = ceramics * pitch - wants.ceramic_gap
-    area = length * wants.width
-    if area > wants.largest_area:
+    length = ceramics * pitch - CERAMIC_GAP
+    area = length * WIDTH
+    if area > LARGEST_EXPLORED_AREA:
         raise InputError(
-            f"{ceramics} ceramics of {si.format_quantity(wants.ceramic_length, si.Unit('m'))} make "
+            f"{ceramics} ceramics of {si.format_quantity(CERAMIC_LENGTH, si.Unit('m'))} make "
             f"a plate of {area * 1e4:.4g} cm2, above the largest explored area of "
-            f"{wants.largest_area * 1e4:.4g} cm2; use fewer, shorter or narrower ones"
+            f"{LARGEST_EXPLORED_AREA * 1e4:.4g} cm2; use fewer, shorter or narrower ones"
         )
     return ceramics, length
 
@@ -215,7 +188,8 @@ def _list(values: si.MetreArray, scale: float = 1e6) -> str:
     return "/".join(f"{value * scale:.3g}" for value in values)
 
 
-def _timoshenko_half_wavelength(frequency: si.Hertz, section: Laminate) -> si.Metre:
+def timoshenko_half_wavelength(frequency: si.Hertz, section: Laminate) -> si.Metre:
+    """The half wavelength (m) of a Timoshenko beam at a frequency (Hz), to 1e-12 m."""
     from scipy.optimize import brentq
 
     thickness = sum(layer.thickness for layer in section.layers)

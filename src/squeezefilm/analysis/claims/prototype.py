@@ -14,16 +14,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from squeezefilm import quantities as si
+from squeezefilm.analysis.parameters import with_values
 from squeezefilm.analysis.plate.sensitivity import (
     SensitivityTable,
     WorkingPoint,
     plate_sensitivity,
     with_ceramic_stiffness,
-    with_density,
     with_glue,
     with_other_data_set,
-    with_thickness,
-    with_young_modulus,
     working_point,
 )
 from squeezefilm.display import load_display
@@ -120,30 +118,29 @@ def paper_points() -> tuple[WorkingPoint, WorkingPoint]:
 
 
 def _softer_and_thinner(plate: RectangularPlate, value: float) -> RectangularPlate:
-    softer = with_ceramic_stiffness(with_young_modulus(plate, 115e9), 0.9)
-    return with_thickness(softer, value)
+    thinner = with_values(plate, {"substrate.young_modulus": 115e9, "thickness": value})
+    return with_ceramic_stiffness(thinner, 0.9)
 
 
 def _softer(plate: RectangularPlate, value: float) -> RectangularPlate:
-    both = with_young_modulus(plate, plate.substrate.young_modulus * value)
-    return with_ceramic_stiffness(both, value)
+    softer = {"substrate.young_modulus": plate.substrate.young_modulus * value}
+    return with_ceramic_stiffness(with_values(plate, softer), value)
 
 
 _Make = Callable[[RectangularPlate, float], RectangularPlate]
 
 
-def _glued(thickness: si.Metre) -> _Make:
-    return lambda plate, value: with_glue(plate, thickness, value)
-
-
 # Name, what is free, its unit, from where to where it is looked for, and how the plate is made.
 _CASES: tuple[tuple[str, str, str, float, float, _Make], ...] = (
-    ("50 µm of glue", "its Young's modulus", "Pa", 0.3e9, 3e9, _glued(50e-6)),
-    ("20 µm of glue", "its Young's modulus", "Pa", 0.1e9, 1e9, _glued(20e-6)),
+    ("50 µm of glue", "its Young's modulus", "Pa", 0.3e9, 3e9,
+     lambda plate, value: with_glue(plate, 50e-6, value)),
+    ("20 µm of glue", "its Young's modulus", "Pa", 0.1e9, 1e9,
+     lambda plate, value: with_glue(plate, 20e-6, value)),
     ("E 115 GPa, c11_p −10 %, thinner plate", "plate thickness", "m", 1.6e-3, 2e-3,
      _softer_and_thinner),
     ("plate and ceramic softer alike", "share of E and c11_p", "1", 0.7, 1.0, _softer),
-    ("a heavier plate", "its density", "kg/m3", 8250.0, 13500.0, with_density),
+    ("a heavier plate", "its density", "kg/m3", 8250.0, 13500.0,
+     lambda plate, value: with_values(plate, {"substrate.density": value})),
     ("50 µm of glue, printed e31", "its Young's modulus", "Pa", 0.3e9, 3e9,
      lambda plate, value: with_glue(with_other_data_set(plate), 50e-6, value)),
 )  # fmt: skip

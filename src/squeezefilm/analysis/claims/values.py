@@ -16,8 +16,9 @@ from squeezefilm.analysis.claims.procedure import (
     Design,
     design_plate,
     friction_criterion,
+    timoshenko_half_wavelength,
 )
-from squeezefilm.analysis.claims.prototype import MODAL_FREQUENCY, paper_points
+from squeezefilm.analysis.claims.prototype import MODAL_FREQUENCY, paper_plate, paper_points
 from squeezefilm.analysis.plate.sensitivity import (
     WorkingPoint,
     with_glue,
@@ -39,10 +40,10 @@ from squeezefilm.film.gap import (
     squeeze_number_printed,
 )
 from squeezefilm.film.validity import asymptotic_fraction
-from squeezefilm.plate.beam.modes import euler_bernoulli_half_wavelength, timoshenko_frequency
+from squeezefilm.plate.beam.modes import euler_bernoulli_half_wavelength
 from squeezefilm.plate.beam.response import beam_response
 from squeezefilm.plate.laminate import Laminate, plate_laminate
-from squeezefilm.plate.layout import AnnularStator, RectangularPlate
+from squeezefilm.plate.layout import AnnularStator
 
 PRINTED_HALF_WAVELENGTH: si.Metre = 10.37e-3
 PRINTED_WIDTH: si.Metre = 50e-3  # section 3.1.1 chooses b = 50 mm, section 3.1.2 ends at 49 mm
@@ -54,7 +55,7 @@ class ClaimValue:
     value under another reading of the print; a note on models and inputs."""
 
     value: tuple[float, ...]
-    printed_formula: tuple[float, ...] | None = None
+    printed_formula_value: tuple[float, ...] | None = None
     alternative: tuple[float, ...] | None = None
     note: str = ""
 
@@ -77,17 +78,6 @@ def _stator() -> Display:
     return load_display("biet2008-stator")
 
 
-@functools.cache
-def _plate_display() -> Display:
-    return load_display("biet2008-plate")
-
-
-def _plate() -> RectangularPlate:
-    actuator = _plate_display().actuator
-    assert isinstance(actuator, RectangularPlate)
-    return actuator
-
-
 def _gap(
     amplitude: si.Metre, roughness: si.Metre = 0.6e-6, half_wavelength: si.Metre = 9.35e-3
 ) -> PaperGap:
@@ -97,16 +87,15 @@ def _gap(
     return law.gap(amplitude)
 
 
-def _sigma(frequency: float, gap: PaperGap) -> tuple[float, float]:
+def _film(gap: PaperGap) -> tuple[si.Metre, si.MetreLike, si.PascalSecond, si.Pascal]:
+    """What, beside a frequency, makes the squeeze number of a gap on the stator."""
     gas = _stator().gas
-    arguments = (
-        frequency,
-        gap.contact_length,
-        gap.reference_thickness,
-        gas.viscosity,
-        gas.ambient_pressure,
-    )
-    return float(squeeze_number(*arguments)), float(squeeze_number_printed(*arguments))
+    return gap.contact_length, gap.reference_thickness, gas.viscosity, gas.ambient_pressure
+
+
+def _sigma(frequency: float, gap: PaperGap) -> tuple[float, float]:
+    film = _film(gap)
+    return float(squeeze_number(frequency, *film)), float(squeeze_number_printed(frequency, *film))
 
 
 def _force_and_ambient() -> tuple[float, float]:
@@ -130,23 +119,10 @@ def _() -> ClaimValue:
 
 @value_of("frequency-criterion")
 def _() -> ClaimValue:
-    gas = _stator().gas
-
-    def frequency(roughness: float) -> float:
-        gap = _gap(3e-6, roughness)
-        return float(
-            frequency_for_squeeze_number(
-                10.0,
-                gap.contact_length,
-                gap.reference_thickness,
-                gas.viscosity,
-                gas.ambient_pressure,
-            )
-        )
-
-    return ClaimValue(
-        (frequency(1.6e-6),), alternative=(frequency(0.6e-6),), note="alternative: 0.6 µm"
+    rough, smooth = (
+        float(frequency_for_squeeze_number(10.0, *_film(_gap(3e-6, r)))) for r in (1.6e-6, 0.6e-6)
     )
+    return ClaimValue((rough,), alternative=(smooth,), note="alternative: 0.6 µm")
 
 
 @value_of("asymptote-at-10")
@@ -202,28 +178,24 @@ def _() -> ClaimValue:
 
 
 def _section() -> Laminate:
-    return plate_laminate(_plate(), "paper")
+    return plate_laminate(paper_plate(), "paper")
 
 
 @value_of("half-wavelength-limit")
 def _() -> ClaimValue:
-    from scipy.optimize import brentq
-
     section = _section()
     G, M = section.bending_stiffness, section.mass_per_area
     euler = float(euler_bernoulli_half_wavelength(20.6e3, G, M))
     # As printed: ω taken for f_n, and the width in G_b alone.
     printed = np.pi * (G * PRINTED_WIDTH / M) ** 0.25 / np.sqrt(20.6e3)
-    timoshenko = brentq(lambda half: float(timoshenko_frequency(half, section)) - 20.6e3, 5e-3, 0.1)
-    return ClaimValue(
-        (euler,), (float(printed),), (float(timoshenko),), "alternative: Timoshenko beam"
-    )
+    timoshenko = timoshenko_half_wavelength(20.6e3, section)
+    return ClaimValue((euler,), (float(printed),), (timoshenko,), "alternative: Timoshenko beam")
 
 
 @value_of("half-wavelength-of-mode")
 def _() -> ClaimValue:
-    beam = beam_response(_plate(), "euler_bernoulli", "paper")
-    return ClaimValue((beam.mode.half_wavelength,), (_plate().length / 8,))
+    beam = beam_response(paper_plate(), "euler_bernoulli", "paper")
+    return ClaimValue((beam.mode.half_wavelength,), (paper_plate().length / 8,))
 
 
 @value_of("prototype-is-enough")
@@ -237,20 +209,16 @@ def _() -> ClaimValue:
 
 
 @value_of("plate-area")
+@value_of("workspace")
 def _() -> ClaimValue:
-    return ClaimValue((_plate().area,))
+    return ClaimValue((paper_plate().area,))
 
 
 @value_of("plate-length")
 def _() -> ClaimValue:
-    patches = _plate().patches
+    patches = paper_plate().patches
     gaps = sum(right.x - left.x - left.length for left, right in itertools.pairwise(patches))
     return ClaimValue((sum(patch.length for patch in patches) + gaps,))
-
-
-@value_of("workspace")
-def _() -> ClaimValue:
-    return ClaimValue((_plate().area,))
 
 
 @value_of("stator-wavelength")
@@ -262,7 +230,7 @@ def _() -> ClaimValue:
 
 @value_of("effective-coupling")
 def _() -> ClaimValue:
-    return ClaimValue((_plate().ceramic.stress_coefficient_from_d31,))
+    return ClaimValue((paper_plate().ceramic.stress_coefficient_from_d31,))
 
 
 def paper_design() -> Design:
@@ -272,18 +240,10 @@ def paper_design() -> Design:
     return design_plate(_section(), _gap(0.0), gas.viscosity, gas.ambient_pressure, force)
 
 
-def _beam_note() -> str:
-    found = [
-        f"{theory.replace('_', '–')} {section.replace('_', ' ')} "
-        f"{beam_response(_plate(), theory, section).mode.frequency / 1e3:.2f} kHz"
-        for theory in ("euler_bernoulli", "timoshenko")
-        for section in ("paper", "plane_stress", "plane_strain")
-    ]
-    return "; ".join(found)
-
-
-def _both() -> tuple[WorkingPoint, WorkingPoint]:
-    return paper_points()
+def _frequencies(note: str) -> ClaimValue:
+    """The frequency of the solved plate, and in the alternative reading with the printed e31."""
+    ours, printed = paper_points()
+    return ClaimValue((ours.frequency,), alternative=(printed.frequency,), note=note)
 
 
 def _kilohertz(value: float) -> str:
@@ -292,65 +252,59 @@ def _kilohertz(value: float) -> str:
 
 @value_of("modal-frequency")
 def _() -> ClaimValue:
-    ours, printed = _both()
+    ours, _ = paper_points()
     against = f"{MODAL_FREQUENCY / ours.frequency - 1:+.1%}".replace("-", "−")
-    return ClaimValue(
-        (ours.frequency,),
-        alternative=(printed.frequency,),
-        note="solved plate, mode (8,0), alternative: the printed e31; the paper stands "
-        f"{against} from it; " + _beam_note(),
+    beams = [
+        f"{theory.replace('_', '–')} {section.replace('_', ' ')} "
+        f"{_kilohertz(beam_response(paper_plate(), theory, section).mode.frequency)}"
+        for theory in ("euler_bernoulli", "timoshenko")
+        for section in ("paper", "plane_stress", "plane_strain")
+    ]
+    return _frequencies(
+        "solved plate, mode (8,0), alternative: the printed e31; the paper stands "
+        f"{against} from it; " + "; ".join(beams),
     )
 
 
 @value_of("harmonic-frequency")
 def _() -> ClaimValue:
-    ours, printed = _both()
-    return ClaimValue(
-        (ours.frequency,),
-        alternative=(printed.frequency,),
-        note="alternative: the printed e31; with the terminals open "
-        f"{_kilohertz(ours.open_frequency)} and {_kilohertz(printed.open_frequency)}",
+    ours, printed = paper_points()
+    return _frequencies(
+        "alternative: the printed e31; with the terminals open "
+        f"{_kilohertz(ours.open_frequency)} and {_kilohertz(printed.open_frequency)}"
     )
 
 
-def _volts() -> float:
-    return _plate_display().drive.voltage
+def _amplitude(point: WorkingPoint) -> si.Metre:
+    """The largest amplitude on the upper face at the drive's voltage."""
+    assert point.amplitude_per_volt is not None
+    return load_display("biet2008-plate").drive.voltage * point.amplitude_per_volt
 
 
-def _amplitudes() -> tuple[float, float]:
-    """The largest amplitude on the upper face at the drive's voltage, with d31 and printed e31."""
-    ours, printed = (point.amplitude_per_volt for point in _both())
-    assert ours is not None
-    assert printed is not None
-    return _volts() * ours, _volts() * printed
+def _amplitudes(note: str) -> ClaimValue:
+    """The amplitude of the solved plate, and in the alternative reading with the printed e31."""
+    ours, printed = (_amplitude(point) for point in paper_points())
+    return ClaimValue((ours,), alternative=(printed,), note=note)
 
 
 @value_of("harmonic-amplitude")
 def _() -> ClaimValue:
-    ours, printed = _amplitudes()
-    loss = working_point(with_loss_in_ceramic_alone(_plate())).amplitude_per_volt
-    assert loss is not None
-    return ClaimValue(
-        (ours,),
-        alternative=(printed,),
-        note="alternative: the printed e31; Q 60 in all materials, largest of the upper face; with "
-        f"the loss in the ceramic alone {_volts() * loss * 1e6:.2f} µm with d31",
+    loss = _amplitude(working_point(with_loss_in_ceramic_alone(paper_plate())))
+    return _amplitudes(
+        "alternative: the printed e31; Q 60 in all materials, largest of the upper face; with "
+        f"the loss in the ceramic alone {loss * 1e6:.2f} µm with d31"
     )
 
 
 @value_of("measured-frequency")
 def _() -> ClaimValue:
-    ours, printed = _both()
-    glued = working_point(with_glue(_plate(), 50e-6, 1e9), amplitude=False).frequency
-    return ClaimValue(
-        (ours.frequency,),
-        alternative=(printed.frequency,),
-        note="perfect bond, alternative: the printed e31; with 50 µm of glue of 1 GPa "
+    glued = working_point(with_glue(paper_plate(), 50e-6, 1e9), amplitude=False).frequency
+    return _frequencies(
+        "perfect bond, alternative: the printed e31; with 50 µm of glue of 1 GPa "
         f"{_kilohertz(glued)}",
     )
 
 
 @value_of("measured-amplitude")
 def _() -> ClaimValue:
-    ours, printed = _amplitudes()
-    return ClaimValue((ours,), alternative=(printed,), note="alternative: the printed e31")
+    return _amplitudes("alternative: the printed e31")

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import dataclasses
 from dataclasses import dataclass
 
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.chain.friction import FrictionLaw, friction_law
+from squeezefilm.chain.friction import FrictionLaw
 from squeezefilm.chain.prediction import Prediction
 from squeezefilm.contact.sharing.film_load import DESCRIPTIONS, FILM_MODELS, FilmModel, is_still
 from squeezefilm.display import Display
@@ -98,14 +99,7 @@ def compare_film_models(display: Display, prediction: Prediction) -> FilmCompari
     results, curves = [], []
     top = max(4e-6, 1.25 * p.vibration_amplitude)
     for model in FILM_MODELS:
-        law = friction_law(
-            display,
-            p.mode.half_wavelength,
-            p.frequency,
-            surface=p.surface,
-            normal_force=p.normal_force,
-            model=model,
-        )
+        law = dataclasses.replace(p.law, model=model, position=0.0)
         results.append(_result(law, model, p.vibration_amplitude, pressure))
         amplitude = np.linspace(top / 40, top, _POINTS[model])
         share = np.full(amplitude.size, np.nan)

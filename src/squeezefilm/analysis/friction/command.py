@@ -9,13 +9,12 @@ from typing import Any, ClassVar
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.analysis.friction.models import ModelCurve, model_curves
+from squeezefilm.analysis.curves import ModelCurve, model_curves
 from squeezefilm.analysis.uncertainty import UncertainFriction, uncertain_friction
 from squeezefilm.arguments import called_with
 from squeezefilm.chain.friction import DEFAULT_MODEL, FrictionModel
 from squeezefilm.chain.prediction import Prediction, predict, voltage_for_friction
-from squeezefilm.contact.sharing.gas_table import film_table
-from squeezefilm.contact.sharing.pad import FrictionRipple, friction_ripple
+from squeezefilm.contact.sharing.pad import FrictionRipple
 from squeezefilm.display import Display, NamedDisplay
 from squeezefilm.errors import OutOfRangeError
 from squeezefilm.from_text import reads_text
@@ -181,9 +180,9 @@ def analyze_friction(asked: FrictionRequest) -> FrictionAnalysis:
     )
     wanted = _wanted(display, asked)
     tell("models side by side")
-    curves = model_curves(display, prediction)
+    curves = model_curves(prediction)
     tell("map over amplitude and force")
-    found = friction_map(display, prediction, asked.points)
+    found = friction_map(prediction, asked.points)
     unsure = None
     if asked.samples:
         unsure = uncertain_friction(
@@ -218,7 +217,7 @@ def _wanted(display: Display, asked: FrictionRequest) -> Wanted | None:
     return Wanted(asked.wanted_friction, amplitude, volts)
 
 
-def friction_map(display: Display, prediction: Prediction, points: int = 40) -> FrictionMap:
+def friction_map(prediction: Prediction, points: int = 40) -> FrictionMap:
     """µ′/µ over amplitudes up to twice the working one (3 µm at the least) and over forces.
 
     Forces from a tenth of the working one to four times it, spaced evenly in their logarithm.
@@ -243,16 +242,5 @@ def friction_map(display: Display, prediction: Prediction, points: int = 40) -> 
     return FrictionMap(amplitude, force, rows, law.model)
 
 
-def _ripple(prediction: Prediction) -> FrictionRipple | None:
-    p, law = prediction, prediction.law
-    if p.touch.sharing is None:
-        return None
-    finger = law.finger
-    return friction_ripple(
-        film_table(law.frequency, finger.plateau_width, law.gas),
-        finger.asperity_law(law.surface.roughness),
-        p.vibration_amplitude,
-        law.half_wavelength,
-        finger,
-        normal_force=law.normal_force,
-    )
+def _ripple(p: Prediction) -> FrictionRipple | None:
+    return None if p.touch.sharing is None else p.law.ripple(p.vibration_amplitude)

@@ -1,14 +1,18 @@
-"""What `squeezefilm plate` computes: the modes of a plate in a band, and its harmonic response."""
+"""What `squeezefilm plate` computes: the modes of a plate in a band, and its harmonic response.
+
+`solve_plate` takes whatever a display has: a rectangle, which is solved here, a disc or a stator.
+"""
 
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 from typing import Any
 
 import numpy as np
 
 from squeezefilm import quantities as si
+from squeezefilm.analysis.plate.ring import RingAnalysis, analyze_ring
 from squeezefilm.analysis.plate.sensitivity import SensitivityTable, plate_sensitivity
 from squeezefilm.analysis.plate.solved import ModeRow, Remarks, SolvedBody, sweep_around
 from squeezefilm.analysis.plate.tracking import (
@@ -17,8 +21,10 @@ from squeezefilm.analysis.plate.tracking import (
     check_track,
     track_modes,
 )
-from squeezefilm.display import Display
+from squeezefilm.arguments import called_with
+from squeezefilm.display import Display, NamedDisplay
 from squeezefilm.errors import InputError
+from squeezefilm.from_text import reads_text
 from squeezefilm.hard_limits import NODAL_LINES, require_within
 from squeezefilm.plate.beam.response import beam_response
 from squeezefilm.plate.circuit import EquivalentCircuit
@@ -59,6 +65,13 @@ class PlateAnalysis(SolvedBody):
     sound: SoundField
     sensitivities: SensitivityTable | None = None
     tracks: ModeTracks | None = None
+    remarks = Remarks(
+        "(estimated)",
+        "largest, upper face",
+        "centreline, between outer nodes",
+        "from the losses of its materials",
+        "loudest direction",
+    )
 
     @property
     def model(self) -> str:
@@ -69,17 +82,6 @@ class PlateAnalysis(SolvedBody):
     def status(self) -> str:
         """How good the table is, in words."""
         return self.modes.status
-
-    @property
-    def remarks(self) -> Remarks:
-        """What is said beside the numbers."""
-        return Remarks(
-            "(estimated)",
-            "largest, upper face",
-            "centreline, between outer nodes",
-            "from the losses of its materials",
-            "loudest direction",
-        )
 
     def _particulars(self) -> dict[str, Any]:
         return {
@@ -111,16 +113,22 @@ def parse_mode(text: str) -> tuple[int, int]:
     raise InputError(f"--mode '{text}' is no mode; write nodal lines across length, width: 8,0")
 
 
-def analyze_plate(
-    display: Display,
-    *,
-    mode: tuple[int, int] | None = None,
-    band: tuple[si.Hertz, si.Hertz] | None = None,
-    points: int = 200,
-    sensitivity: bool = False,
-    track: TrackRequest | None = None,
-    progress: SayProgress | None = None,
-) -> PlateAnalysis:
+@dataclass(frozen=True)
+class PlateRequest:
+    """What `solve_plate` is asked for."""
+
+    display: NamedDisplay
+    _: KW_ONLY
+    mode: tuple[int, int] | None = None
+    band: tuple[si.Hertz, si.Hertz] | None = None
+    points: int = 200
+    sensitivity: bool = False
+    track: TrackRequest | None = None
+    progress: SayProgress | None = None
+
+
+@called_with(PlateRequest)
+def analyze_plate(asked: PlateRequest) -> PlateAnalysis:
     """The modes of a display's plate in a band, and the response around the working mode.
 
     `mode` defaults to the display's own, (nodal lines, 0); `band` to ±8 % around it. `sensitivity`
@@ -129,13 +137,14 @@ def analyze_plate(
     `InputError` for a display without a rectangular plate and what `solve_modes` raises: a band
     with no mode, a mode that is not found.
     """
+    display, band, track = asked.display, asked.band, asked.track
     plate = _driven_plate(display)
     if band is not None:
         check_band(band)
     if track is not None:
         check_track(plate, track)
-    tell = progress or (lambda _: None)
-    label = mode or plate.working_label
+    tell = asked.progress or (lambda _: None)
+    label = asked.mode or plate.working_label
     tell(f"mode ({label[0]},{label[1]})")
     alone = solve_modes(plate, mode=label)
     frequency = float(alone.frequencies[alone.index(label)])
@@ -143,8 +152,10 @@ def analyze_plate(
     modes = solve_modes(plate, band=band or (0.92 * frequency, 1.08 * frequency))
     rows = tuple(_row(modes, index) for index in range(modes.count))
     working = _row(alone, alone.index(label))
-    tell(f"response at {points} frequencies")
-    response = harmonic_response(plate, sweep_around(frequency, working.quality_factor, points))
+    tell(f"response at {asked.points} frequencies")
+    response = harmonic_response(
+        plate, sweep_around(frequency, working.quality_factor, asked.points)
+    )
     try:
         circuit = response.equivalent_circuit()
     except InputError:
@@ -168,9 +179,32 @@ def analyze_plate(
         beam_amplitude_per_volt=beam.amplitude_per_volt,
         shear_frequency=_shear_frequency(plate, label, frequency),
         sound=sound,
-        sensitivities=plate_sensitivity(plate, label=label, progress=tell) if sensitivity else None,
+        sensitivities=plate_sensitivity(plate, label=label, progress=tell)
+        if asked.sensitivity
+        else None,
         tracks=None if track is None else track_modes(plate, track, label=label, progress=tell),
     )
+
+
+@reads_text
+@called_with(PlateRequest)
+def solve_plate(asked: PlateRequest) -> PlateAnalysis | RingAnalysis:
+    """The modes of a display's plate, disc or stator in a band (Hz), and its working mode's
+    response at `points` frequencies.
+
+    Arguments and errors are those of `analyze_plate` and `analyze_ring`; `sensitivity` and `track`
+    are for rectangular plates. Raises `InputError` where they are asked of another.
+    """
+    given, actuator = dict(vars(asked)), asked.display.actuator
+    if isinstance(actuator, RectangularPlate):
+        return analyze_plate(**given)
+    sensitivity, track = given.pop("sensitivity"), given.pop("track")
+    if sensitivity or track is not None:
+        raise InputError(
+            f"sensitivity and track are for rectangular plates; '{asked.display.name}' is a "
+            f"{actuator.type.replace('_', ' ')}"
+        )
+    return analyze_ring(**given)
 
 
 def _driven_plate(display: Display) -> RectangularPlate:

@@ -8,15 +8,17 @@ from __future__ import annotations
 
 import dataclasses
 import functools
-from collections.abc import Callable, Sequence
+import itertools
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
 
 from squeezefilm import quantities as si
+from squeezefilm.analysis.parameters import with_values
+from squeezefilm.analysis.plate.solved import sweep_around
 from squeezefilm.errors import InputError
-from squeezefilm.materials import Piezoceramic
 from squeezefilm.plate.layout import GlueLayer, RectangularPlate
 from squeezefilm.plate.solid.modes import Label, PlateModes, tracked
 from squeezefilm.plate.solid.response import harmonic_response
@@ -90,10 +92,8 @@ def _solved(plate: RectangularPlate, label: Label) -> PlateModes:
 def _amplitude(
     plate: RectangularPlate, frequency: si.Hertz, quality: si.Dimensionless
 ) -> si.MetrePerVolt:
-    # Dense near the peak, where the curve turns within f/Q; the harmonic mesh is another one, so
-    # the peak need not lie at the middle exactly.
-    near = np.sinh(np.linspace(-3, 3, _POINTS)) / np.sinh(3)
-    response = harmonic_response(plate, frequency * (1 + max(4 / quality, 0.01) * near))
+    # The harmonic mesh is another one, so the peak need not lie at the middle exactly.
+    response = harmonic_response(plate, sweep_around(frequency, quality, _POINTS))
     return float(np.max(response.maximum))
 
 
@@ -137,7 +137,7 @@ def plate_sensitivity(
     one: the change is too large to compare.
     """
     wanted = label or (plate.nodal_lines, 0)
-    every = usual_changes(plate) if changes is None else tuple(changes)
+    every = tuple(usual_changes(plate) if changes is None else changes)
     tell = progress or (lambda _: None)
     tell("the unchanged plate")
     reference = working_point(plate, wanted, amplitude=amplitude)
@@ -168,102 +168,58 @@ def plate_sensitivity(
     return SensitivityTable(reference, tuple(rows))
 
 
-def usual_changes(plate: RectangularPlate) -> tuple[Change, ...]:
+def usual_changes(plate: RectangularPlate) -> Iterator[Change]:
     """What is seldom known well about a plate, by as much as it is seldom known.
 
     Sizes are relative, so that they fit any plate: on the paper's they are E 115 and 131 GPa,
     c11_p ∓10 %, plate and ceramic ±0.05 mm, ρ 8360 kg/m³, ν 0.27 and 0.33, glue of 20 and 50 µm.
     """
-    own = plate.substrate
-    out: list[Change] = []
-
-    def both(name: str, unit: str, low: float, high: float, make: _Setter) -> None:
-        for value in (low, high):
-            out.append(Change(name, _text(value, unit), functools.partial(make, value=value)))
-
-    E, t, tp = own.young_modulus, plate.thickness, plate.ceramic_thickness
-    both("plate Young's modulus", "Pa", E * 115 / 123, E * 131 / 123, with_young_modulus)
-    for share in (0.9, 1.1):
-        out.append(
-            Change(
-                "ceramic stiffness c11_p",
-                f"{100 * (share - 1):+.0f} %".replace("-", "−"),
-                functools.partial(with_ceramic_stiffness, share=share),
-            )
-        )
-    both("plate thickness", "m", 0.975 * t, 1.025 * t, with_thickness)
-    both("ceramic thickness", "m", 0.95 * tp, 1.05 * tp, with_ceramic_thickness)
-    both(
-        "plate density", "kg/m3", own.density * 8140 / 8250, own.density * 8360 / 8250, with_density
+    own, ceramic = plate.substrate, plate.ceramic
+    E, rho, nu = own.young_modulus, own.density, own.poisson_ratio
+    t, tp, Q = plate.thickness, plate.ceramic_thickness, plate.quality_factor
+    yield from _both(
+        "plate Young's modulus", "substrate.young_modulus", "Pa", E * 115 / 123, E * 131 / 123
     )
-    nu = own.poisson_ratio
-    both("plate Poisson's ratio", "1", nu - 0.03, min(nu + 0.03, 0.49), with_poisson_ratio)
-    out.append(Change("ceramics open", "each on its own", with_open_ceramics, frequency_only=True))
+    for share in (0.9, 1.1):
+        yield Change(
+            "ceramic stiffness c11_p",
+            f"{100 * (share - 1):+.0f} %".replace("-", "−"),
+            functools.partial(with_ceramic_stiffness, share=share),
+        )
+    yield from _both("plate thickness", "thickness", "m", 0.975 * t, 1.025 * t)
+    yield from _both("ceramic thickness", "patches.*.thickness", "m", 0.95 * tp, 1.05 * tp)
+    low, high = rho * 8140 / 8250, rho * 8360 / 8250
+    yield from _both("plate density", "substrate.density", "kg/m3", low, high)
+    low, high = nu - 0.03, min(nu + 0.03, 0.49)
+    yield from _both("plate Poisson's ratio", "substrate.poisson_ratio", "1", low, high)
+    yield Change("ceramics open", "each on its own", with_open_ceramics, frequency_only=True)
     if plate.glue is None:
-        for modulus in (3e9, 1e9):
-            for thickness in (0.02 * tp, 0.05 * tp):
-                out.append(
-                    Change(
-                        f"glue of {_text(modulus, 'Pa')}",
-                        _text(thickness, "m"),
-                        functools.partial(with_glue, thickness=thickness, young_modulus=modulus),
-                    )
-                )
-    Q = plate.quality_factor
+        for modulus, thickness in itertools.product((3e9, 1e9), (0.02 * tp, 0.05 * tp)):
+            glued = functools.partial(with_glue, thickness=thickness, young_modulus=modulus)
+            yield Change(f"glue of {_text(modulus, 'Pa')}", _text(thickness, "m"), glued)
     if own.quality_factor is None:
         for share in (0.8, 1.2):
-            out.append(
-                Change(
-                    "quality factor, all materials",
-                    f"{Q:.3g} → {share * Q:.3g}",
-                    functools.partial(with_quality_factor, value=share * Q),
-                )
+            yield Change(
+                "quality factor, all materials",
+                f"{Q:.3g} → {share * Q:.3g}",
+                functools.partial(with_values, values={"quality_factor": share * Q}),
             )
-        out.append(Change("losses", "in the ceramic alone", with_loss_in_ceramic_alone))
-    ceramic = plate.ceramic
+        yield Change("losses", "in the ceramic alone", with_loss_in_ceramic_alone)
     if ceramic.stress_coefficient is not None and ceramic.constants is None:
         other = "printed_e31" if ceramic.data_set == "from_d31" else "from_d31"
-        out.append(Change("ceramic data set", f"{ceramic.data_set} → {other}", with_other_data_set))
-    return tuple(out)
+        yield Change("ceramic data set", f"{ceramic.data_set} → {other}", with_other_data_set)
 
 
-_Setter = Callable[..., RectangularPlate]
+def _both(name: str, path: str, unit: str, low: float, high: float) -> Iterator[Change]:
+    for value in (low, high):
+        make = functools.partial(with_values, values={path: value})
+        yield Change(name, _text(value, unit), make)
 
 
 def _text(value: float, unit: str) -> str:
     if unit == "1":
         return f"{value:.3g}"
     return si.format_quantity(value, si.Unit(unit), 4).replace(" um", " µm").replace("m3", "m³")
-
-
-def _substrate(plate: RectangularPlate, **values: float) -> RectangularPlate:
-    return dataclasses.replace(plate, substrate=dataclasses.replace(plate.substrate, **values))  # type: ignore[arg-type]
-
-
-def with_young_modulus(plate: RectangularPlate, value: si.Pascal) -> RectangularPlate:
-    """The plate with another Young's modulus of its substrate."""
-    return _substrate(plate, young_modulus=value)
-
-
-def with_density(plate: RectangularPlate, value: float) -> RectangularPlate:
-    """The plate with another density (kg/m³) of its substrate."""
-    return _substrate(plate, density=value)
-
-
-def with_poisson_ratio(plate: RectangularPlate, value: si.Dimensionless) -> RectangularPlate:
-    """The plate with another Poisson's ratio of its substrate."""
-    return _substrate(plate, poisson_ratio=value)
-
-
-def with_thickness(plate: RectangularPlate, value: si.Metre) -> RectangularPlate:
-    """The plate with another thickness of its substrate."""
-    return dataclasses.replace(plate, thickness=value)
-
-
-def with_ceramic_thickness(plate: RectangularPlate, value: si.Metre) -> RectangularPlate:
-    """The plate with another thickness of all its ceramics."""
-    patches = tuple(dataclasses.replace(patch, thickness=value) for patch in plate.patches)
-    return dataclasses.replace(plate, patches=patches)
 
 
 def with_ceramic_stiffness(plate: RectangularPlate, share: si.Dimensionless) -> RectangularPlate:
@@ -274,22 +230,12 @@ def with_ceramic_stiffness(plate: RectangularPlate, share: si.Dimensionless) -> 
         names = [f"compliance_{pair}" for pair in (11, 12, 13, 33, 44, 66)]
         changed: dict[str, Any] = {name: getattr(constants, name) / share for name in names}
         # What was stated of e and free ε belongs to the other stiffness.
-        changed |= {
-            "free_permittivity_11": None,
-            "free_permittivity_33": None,
-            "stress_coefficient_31": None,
-            "stress_coefficient_33": None,
-            "stress_coefficient_15": None,
-        }
+        changed |= {f"free_permittivity_{axis}": None for axis in (11, 33)}
+        changed |= {f"stress_coefficient_{pair}": None for pair in (31, 33, 15)}
         constants = dataclasses.replace(constants, **changed)
     stiffness = ceramic.in_plane_stiffness * share
-    return _ceramic(
-        plate, dataclasses.replace(ceramic, in_plane_stiffness=stiffness, constants=constants)
-    )
-
-
-def _ceramic(plate: RectangularPlate, ceramic: Piezoceramic) -> RectangularPlate:
-    return dataclasses.replace(plate, ceramic=ceramic)
+    softer = dataclasses.replace(ceramic, in_plane_stiffness=stiffness, constants=constants)
+    return dataclasses.replace(plate, ceramic=softer)
 
 
 def with_other_data_set(plate: RectangularPlate) -> RectangularPlate:
@@ -298,7 +244,7 @@ def with_other_data_set(plate: RectangularPlate) -> RectangularPlate:
     other: Literal["from_d31", "printed_e31"] = (
         "printed_e31" if ceramic.data_set == "from_d31" else "from_d31"
     )
-    return _ceramic(plate, dataclasses.replace(ceramic, data_set=other))
+    return dataclasses.replace(plate, ceramic=dataclasses.replace(ceramic, data_set=other))
 
 
 def with_open_ceramics(plate: RectangularPlate) -> RectangularPlate:
@@ -317,11 +263,6 @@ def with_glue(
     return dataclasses.replace(plate, glue=GlueLayer(thickness, young_modulus))
 
 
-def with_quality_factor(plate: RectangularPlate, value: si.Dimensionless) -> RectangularPlate:
-    """The plate with another quality factor of the whole assembly."""
-    return dataclasses.replace(plate, quality_factor=value)
-
-
 def with_loss_in_ceramic_alone(plate: RectangularPlate) -> RectangularPlate:
     """The plate with no losses but its ceramic's (and its glue's, where it has one)."""
-    return _substrate(plate, quality_factor=LOSSLESS)
+    return with_values(plate, {"substrate.quality_factor": LOSSLESS})

@@ -65,6 +65,7 @@ class SolvedBody(Result):
     def summary(self) -> dict[str, Any]:
         """What ``--json`` prints; keys carry units."""
         volts, at = self.display.drive.voltage, self.response.resonance
+        levels = zip(self.sound.distances, self.sound.sound_pressure_level_dB, strict=True)
         return {
             "display": self.display.name,
             "mode": self.working.label,
@@ -82,7 +83,8 @@ class SolvedBody(Result):
             "input_power_W": float(self.response.input_power(volts)[at]),
             "equivalent_circuit": to_json(self.circuit),
             **self._particulars(),
-            **sound_summary(self.sound),
+            "sound_pressure_level_dB": {f"{far:g} m": level for far, level in levels},
+            "sound_guidance": to_json(self.sound.guidance),
             "model": self.model,
             "status": self.status,
             "provenance": stamp(self.display),
@@ -93,15 +95,6 @@ class SolvedBody(Result):
 
     def _table(self) -> Any:
         return to_json(self.rows)
-
-
-def sound_summary(sound: SoundField) -> dict[str, Any]:
-    """What a summary says of the sound: its levels by distance, and the guidance on exposure."""
-    levels = zip(sound.distances, sound.sound_pressure_level_dB, strict=True)
-    return {
-        "sound_pressure_level_dB": {f"{distance:g} m": level for distance, level in levels},
-        "sound_guidance": to_json(sound.guidance),
-    }
 
 
 def sweep_around(

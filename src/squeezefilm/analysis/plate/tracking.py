@@ -8,20 +8,12 @@ motion, not the order of frequencies.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.analysis.plate.sensitivity import (
-    with_ceramic_thickness,
-    with_density,
-    with_glue,
-    with_poisson_ratio,
-    with_thickness,
-    with_young_modulus,
-)
+from squeezefilm.analysis.parameters import value_at, with_values
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import TRACKED_VALUES, require_within
 from squeezefilm.plate.layout import RectangularPlate
@@ -36,35 +28,19 @@ _GRID = (49, 33)
 _REACH = 0.08  # of the working mode's frequency: the modes that are followed
 
 
-def _set_glue_thickness(plate: RectangularPlate, value: float) -> RectangularPlate:
-    assert plate.glue is not None
-    return with_glue(plate, value, plate.glue.young_modulus)
-
-
-def _set_glue_modulus(plate: RectangularPlate, value: float) -> RectangularPlate:
-    assert plate.glue is not None
-    return with_glue(plate, plate.glue.thickness, value)
-
-
-_Get = Callable[[RectangularPlate], float]
-_Set = Callable[[RectangularPlate, float], RectangularPlate]
 # By value: the modes there, which of them each tracked one is, and how alike it is.
 _Steps = dict[float, tuple[PlateModes, list[int | None], list[float]]]
 
-PARAMETERS: dict[str, tuple[si.Unit, _Get, _Set]] = {
-    "ceramic_thickness": (si.Unit("m"), lambda p: p.ceramic_thickness, with_ceramic_thickness),
-    "thickness": (si.Unit("m"), lambda p: p.thickness, with_thickness),
-    "young_modulus": (si.Unit("Pa"), lambda p: p.substrate.young_modulus, with_young_modulus),
-    "density": (si.Unit("kg/m3"), lambda p: p.substrate.density, with_density),
-    "poisson_ratio": (si.Unit("1"), lambda p: p.substrate.poisson_ratio, with_poisson_ratio),
-    "glue_thickness": (
-        si.Unit("m"), lambda p: 0.0 if p.glue is None else p.glue.thickness, _set_glue_thickness,
-    ),
-    "glue_young_modulus": (
-        si.Unit("Pa"), lambda p: 0.0 if p.glue is None else p.glue.young_modulus, _set_glue_modulus,
-    ),
-}  # fmt: skip
-"""What `track_modes` can vary: unit, how to read it, how to set it."""
+PARAMETERS: dict[str, tuple[si.Unit, str]] = {
+    "ceramic_thickness": (si.Unit("m"), "patches.*.thickness"),
+    "thickness": (si.Unit("m"), "thickness"),
+    "young_modulus": (si.Unit("Pa"), "substrate.young_modulus"),
+    "density": (si.Unit("kg/m3"), "substrate.density"),
+    "poisson_ratio": (si.Unit("1"), "substrate.poisson_ratio"),
+    "glue_thickness": (si.Unit("m"), "glue.thickness"),
+    "glue_young_modulus": (si.Unit("Pa"), "glue.young_modulus"),
+}
+"""What `track_modes` can vary: its unit, and its path in a plate."""
 
 
 @si.checked_numbers
@@ -87,6 +63,10 @@ class TrackRequest:
         if not self.start < self.stop:
             raise InputError("--from must be smaller than --to", quantity="track")
         require_within(TRACKED_VALUES, self.values, "--values")
+
+    def changed(self, plate: RectangularPlate, value: float) -> RectangularPlate:
+        """A plate with another value of the parameter."""
+        return with_values(plate, {PARAMETERS[self.parameter][1]: value})
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,14 +128,18 @@ def track_modes(
     `InputError` for a plate without the glue that is to be varied and what `solve_modes` raises.
     """
     check_track(plate, request)
-    unit, get, _ = PARAMETERS[request.parameter]
+    unit, path = PARAMETERS[request.parameter]
     tell = progress or (lambda _: None)
     values = np.linspace(request.start, request.stop, request.values)
-    own = get(plate)
+    # Where ceramics differ, their mean.
+    own = plate.ceramic_thickness if "patches" in path else value_at(plate, path)[0]
     begun = own if request.start <= own <= request.stop else request.start
     tell(f"{request.parameter} = {_shown(begun, unit)}")
-    f0 = _centre(plate, request, begun, label or (plate.nodal_lines, 0))
-    first = _solve(plate, request, begun, ((1 - _REACH) * f0, (1 + _REACH) * f0))
+    working = label or (plate.nodal_lines, 0)
+    alone = solve_modes(request.changed(plate, begun), mode=working)
+    f0 = float(alone.frequencies[alone.index(working)])
+    band = (1 - _REACH) * f0, (1 + _REACH) * f0
+    first = solve_modes(request.changed(plate, begun), band=band)
     steps: _Steps = {begun: (first, list(range(first.count)), [1.0] * first.count)}
     for side in (
         values[values > begun + 1e-12 * abs(begun)],
@@ -201,7 +185,7 @@ def check_track(plate: RectangularPlate, request: TrackRequest) -> None:
             f"--track {request.parameter}: the plate has no glue; add [actuator.glue] to its file"
         )
     for end in (request.start, request.stop):
-        PARAMETERS[request.parameter][2](plate, end)
+        request.changed(plate, end)
 
 
 def likeness(before: PlateModes, after: PlateModes) -> si.FloatArray:
@@ -226,29 +210,8 @@ def likeness(before: PlateModes, after: PlateModes) -> si.FloatArray:
     return np.asarray((motions(before) @ motions(after).T) ** 2)
 
 
-def _assignment(alike: si.FloatArray) -> list[int]:
-    """For each row the column that it is given, none given twice; −1 where there are not enough."""
-    from scipy.optimize import linear_sum_assignment
-
-    rows, columns = linear_sum_assignment(-alike)
-    given = dict(zip(rows.tolist(), columns.tolist(), strict=True))
-    return [given.get(row, -1) for row in range(alike.shape[0])]
-
-
 def _shown(value: float, unit: si.Unit) -> str:
     return f"{value:.4g}" if unit.symbol == "1" else si.format_quantity(value, unit)
-
-
-def _centre(plate: RectangularPlate, request: TrackRequest, value: float, label: Label) -> float:
-    changed = PARAMETERS[request.parameter][2](plate, value)
-    modes = solve_modes(changed, mode=label)
-    return float(modes.frequencies[modes.index(label)])
-
-
-def _solve(
-    plate: RectangularPlate, request: TrackRequest, value: float, band: tuple[float, float]
-) -> PlateModes:
-    return solve_modes(PARAMETERS[request.parameter][2](plate, value), band=band)
 
 
 def _advance(
@@ -262,6 +225,8 @@ def _advance(
     tell: SayProgress,
 ) -> None:
     """Follow the modes from one value to the next, with values in between where needed."""
+    from scipy.optimize import linear_sum_assignment
+
     tell(f"{request.parameter} = {_shown(value, PARAMETERS[request.parameter][0])}")
     before, numbers, _ = steps[last]
     known = [n for n in numbers if n is not None]
@@ -270,24 +235,19 @@ def _advance(
         return
     lowest = float(before.frequencies[min(known)])
     highest = float(before.frequencies[max(known)])
-    after = _solve(plate, request, value, (0.94 * lowest, 1.06 * highest))
+    band = 0.94 * lowest, 1.06 * highest
+    after = solve_modes(request.changed(plate, value), band=band)
     rows = [row for row, n in enumerate(numbers) if n is not None]
     to_last = likeness(before, after)[known]
     to_first = likeness(first, after)[rows]
-    # What a mode was at the beginning is what its label means: it counts twice.
-    given = _assignment(to_last + 2 * to_first)
     best = np.maximum(to_last, to_first)
-    matches = {
-        row: (k, float(best[i, k]) if k >= 0 else 0.0)
-        for i, (row, k) in enumerate(zip(rows, given, strict=True))
-    }
-    found: list[int | None] = []
-    alikes: list[float] = []
-    for row in range(len(numbers)):
-        k, share = matches.get(row, (-1, 0.0))
-        found.append(int(k) if share >= _LOST else None)
-        alikes.append(float(share))
-    worst = min(alike for n, alike in zip(numbers, alikes, strict=True) if n is not None)
+    found: list[int | None] = [None] * len(numbers)
+    alikes = [0.0] * len(numbers)
+    # What a mode was at the beginning is what its label means: it counts twice.
+    for i, k in zip(*linear_sum_assignment(-(to_last + 2 * to_first)), strict=True):
+        alikes[rows[i]] = float(best[i, k])
+        found[rows[i]] = int(k) if best[i, k] >= _LOST else None
+    worst = min(alikes[row] for row in rows)
     if worst < _ALIKE and halvings:
         middle = (last + value) / 2
         _advance(plate, request, first, last, middle, steps, halvings - 1, tell)

@@ -74,7 +74,9 @@ def validation_markdown(result: Reproduction) -> str:
     ]
     lines += ["", "## Why", ""]
     for item in result.results:
-        lines.append(f"* **{item.claim.statement}** ({item.verdict}): {item.why}." + _extra(item))
+        lines.append(
+            f"* **{item.claim.statement}** ({item.verdict}): {item.claim.why}." + _extra(item)
+        )
     if result.prototype is not None:
         lines += prototype_markdown(result.prototype)
     lines += ["", "## The paper's design procedure", ""]
@@ -167,7 +169,7 @@ def _page(result: Reproduction, figures: list[str]) -> str:
                 _formula(item),
                 show_values(item.value, item.claim.unit),
                 item.verdict,
-                item.why,
+                item.claim.why,
             )
         )
         for item in result.results

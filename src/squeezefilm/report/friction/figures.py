@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from squeezefilm.analysis.analyze import Analysis
+    from squeezefilm.analysis.curves import ModelCurve
     from squeezefilm.analysis.friction.command import FrictionAnalysis
-    from squeezefilm.analysis.friction.models import ModelCurve
     from squeezefilm.analysis.uncertainty import UncertainFriction
     from squeezefilm.chain.friction import FrictionLaw
     from squeezefilm.chain.prediction import Prediction

@@ -190,7 +190,7 @@ def show_claims(result: Reproduction) -> None:
             console,
             [
                 ("", f"{item.claim.where}: {item.claim.statement}", ""),
-                ("", f"why: {item.why}", ""),
+                ("", f"why: {item.claim.why}", ""),
                 *([("", item.note, "")] if item.note else []),
             ],
         )

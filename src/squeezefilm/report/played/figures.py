@@ -153,7 +153,7 @@ def amplitude(session: PlayedSession) -> Figure:
 @style.drawn
 def lateness(session: PlayedSession) -> Figure:
     """How late ticks were made, and how long samples wait for their command."""
-    said = session.loop().get("lateness")
+    said = session.last("loop").get("lateness")
     if not said or not said["made"]:
         return style.message_figure("The loop could not say how late it was", "It made no tick.")
     found = Lateness.from_json(said)

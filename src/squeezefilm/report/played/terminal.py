@@ -188,7 +188,7 @@ def play_rows(result: PlayResult) -> list[tuple[str, str, str]]:
                 "at 99 %",
             )
         )
-    rows += _loop_rows(session.loop()) + _link_rows(session)
+    rows += _loop_rows(session.last("loop")) + _link_rows(session)
     return rows
 
 
@@ -251,7 +251,7 @@ def _loop_rows(loop: Mapping[str, Any]) -> list[tuple[str, str, str]]:
 
 
 def _link_rows(session: PlayedSession) -> list[tuple[str, str, str]]:
-    link, end = session.link(), session.end()
+    link, end = session.last("link"), session.last("end")
     rows = []
     if link:
         rows.append(

@@ -148,7 +148,7 @@ def exposure(
     The plate or ring is solved and its field searched over all directions (`plate.sound`), which
     takes seconds. Raises what `solve_plate` raises.
     """
-    from squeezefilm.analysis.plate.solve import solve_plate
+    from squeezefilm.analysis.plate.command import solve_plate
 
     field = solve_plate(display, points=41, progress=progress).sound
     return exposure_of(display.name, field, duration, distance)

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from squeezefilm.analysis.curves import ModelCurve
 from squeezefilm.analysis.friction import command
 from squeezefilm.analysis.friction.command import (
     FrictionAnalysis,
@@ -17,7 +18,6 @@ from squeezefilm.analysis.friction.command import (
     analyze_friction,
     friction_map,
 )
-from squeezefilm.analysis.friction.models import ModelCurve
 from squeezefilm.display import Display, load_display
 from squeezefilm.errors import OutOfRangeError
 
@@ -71,7 +71,7 @@ def stator() -> Display:
 
 
 def test_a_map_goes_over_amplitudes_and_forces(stator: Display) -> None:
-    found = friction_map(stator, prediction(), 5)
+    found = friction_map(prediction(), 5)
     # At the least 3 µm, else twice the working amplitude; a tenth to four times the force.
     assert found.amplitude == pytest.approx(1e-6 * np.arange(5))
     assert found.normal_force[[0, -1]] == pytest.approx([0.05, 2.0])
@@ -81,9 +81,9 @@ def test_a_map_goes_over_amplitudes_and_forces(stator: Display) -> None:
     # Where the asperities are pressed through a row ends; what was before it stays.
     expected[-1, 3:] = np.nan
     assert found.relative_friction == pytest.approx(expected, nan_ok=True)
-    small = friction_map(stator, prediction(vibration_amplitude=1e-6), 4)
+    small = friction_map(prediction(vibration_amplitude=1e-6), 4)
     assert small.amplitude == pytest.approx(1e-6 * np.arange(4))
-    assert friction_map(stator, prediction()).relative_friction.shape == (40, 40)
+    assert friction_map(prediction()).relative_friction.shape == (40, 40)
 
 
 @pytest.mark.parametrize(
@@ -96,26 +96,14 @@ def test_a_map_goes_over_amplitudes_and_forces(stator: Display) -> None:
     ],
 )
 def test_a_map_is_by_a_model_that_balances_loads(stator: Display, model: str, mapped: str) -> None:
-    assert friction_map(stator, prediction(law=Law(model)), 2).model == mapped
+    assert friction_map(prediction(law=Law(model)), 2).model == mapped
 
 
-def test_the_ripple_is_of_the_standing_wave_under_the_finger(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    asked: list[Any] = []
-    monkeypatch.setattr(command, "film_table", lambda *given: ("film", *given))
-    monkeypatch.setattr(
-        command, "friction_ripple", lambda *given, **named: asked.append((given, named)) or "ripple"
-    )
-    finger = SimpleNamespace(plateau_width=2e-4, asperity_law=lambda r: ("asperities", r))
-    law = Law(finger=finger, surface=SimpleNamespace(roughness=3e-7))
-    assert command._ripple(prediction(law=law)) == "ripple"
-    film, asperities = ("film", 40e3, 2e-4, "air"), ("asperities", 3e-7)
-    assert asked == [((film, asperities, 2e-6, 9e-3, finger), {"normal_force": 0.5})]
+def test_the_ripple_is_of_the_standing_wave_under_the_finger() -> None:
+    law = SimpleNamespace(ripple=lambda amplitude: ("ripple", amplitude))
+    assert command._ripple(prediction(law=law)) == ("ripple", 2e-6)
     # A model that holds the gap has no balance that could ripple.
-    untouched = SimpleNamespace(sharing=None)
-    assert command._ripple(prediction(law=law, touch=untouched)) is None
-    assert len(asked) == 1
+    assert command._ripple(prediction(law=law, touch=SimpleNamespace(sharing=None))) is None
 
 
 @pytest.fixture
@@ -154,8 +142,8 @@ def test_an_analysis_passes_on_what_was_asked(stator: Display, parts: list[Any])
     assert parts == [
         ("predict", (thin,), point | more),
         ("voltage_for_friction", (thin, 0.6), point),
-        ("model_curves", (thin, PREDICTION), {}),
-        ("friction_map", (thin, PREDICTION, 7), {}),
+        ("model_curves", (PREDICTION,), {}),
+        ("friction_map", (PREDICTION, 7), {}),
         (
             "uncertain_friction", (thin, PREDICTION),
             {"samples": 16, "seed": 9, "progress": said},

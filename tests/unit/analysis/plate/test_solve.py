@@ -6,8 +6,8 @@ from typing import Any
 
 import pytest
 
-from squeezefilm.analysis.plate import solve
-from squeezefilm.analysis.plate.solve import solve_plate
+from squeezefilm.analysis.plate import command as solve
+from squeezefilm.analysis.plate.command import solve_plate
 from squeezefilm.display import load_display
 from squeezefilm.errors import InputError
 

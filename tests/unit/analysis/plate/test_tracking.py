@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from squeezefilm.analysis.parameters import value_at
 from squeezefilm.analysis.plate import tracking
 from squeezefilm.analysis.plate.tracking import (
     PARAMETERS,
@@ -335,19 +336,19 @@ def test_likeness_is_the_share_of_the_motion_of_both_faces(paper: RectangularPla
 @pytest.mark.parametrize("name", PARAMETERS)
 def test_what_is_varied_is_that_and_nothing_else(paper: RectangularPlate, name: str) -> None:
     glued = dataclasses.replace(paper, glue=GlueLayer(20e-6, 2e9))
-    _, get, vary = PARAMETERS[name]
-    before = {other: PARAMETERS[other][1](glued) for other in PARAMETERS}
+    paths = {other: path for other, (_, path) in PARAMETERS.items()}
+    before = {other: value_at(glued, path)[0] for other, path in paths.items()}
     wanted = 0.9 * before[name]
-    changed = vary(glued, wanted)
-    after = {other: PARAMETERS[other][1](changed) for other in PARAMETERS}
+    request = TrackRequest(name, 0.5 * wanted, wanted)
+    changed = request.changed(glued, wanted)
+    after = {other: value_at(changed, path)[0] for other, path in paths.items()}
     assert after == pytest.approx({**before, name: wanted})
     # Back again it is the plate that it was.
-    assert vary(changed, before[name]) == glued
+    assert request.changed(changed, before[name]) == glued
     if name.startswith("glue"):
-        assert get(paper) == 0.0
         with pytest.raises(InputError, match=rf"{name}: the plate has no glue"):
-            check_track(paper, TrackRequest(name, 0.5 * wanted, wanted))
-        check_track(glued, TrackRequest(name, 0.5 * wanted, wanted))
+            check_track(paper, request)
+        check_track(glued, request)
 
 
 def test_an_end_that_the_plate_cannot_have_is_refused_before_anything_is_solved(

@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_hex
 
+from squeezefilm.analysis.curves import ModelCurve
 from squeezefilm.analysis.friction.command import FrictionMap
-from squeezefilm.analysis.friction.models import ModelCurve
 from squeezefilm.analysis.parameters import Parameter
 from squeezefilm.analysis.uncertainty import Influence, UncertainFriction
 from squeezefilm.chain.friction import FrictionLaw, friction_law

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from tests.unit.report.printed import printed
 
+from squeezefilm.analysis.curves import ModelCurve
 from squeezefilm.analysis.friction.command import Tapping, Wanted
-from squeezefilm.analysis.friction.models import ModelCurve
 from squeezefilm.analysis.parameters import Parameter
 from squeezefilm.analysis.uncertainty import Influence, UncertainFriction
 from squeezefilm.chain.touch import Touch

@@ -122,6 +122,7 @@ class FakeClaim:
     printed: tuple[float, ...] = (1.4e-6, 1.55e-6)
     unit: str = "m"
     relation: str = "at_least"
+    why: str = "because " * 30
 
 
 @dataclass(frozen=True)
@@ -130,7 +131,6 @@ class FakeResult:
     printed_formula_value: tuple[float, ...] | None = None
     value: tuple[float, ...] = (2e-6, 3e-6)
     verdict: str = "does not hold"
-    why: str = "because " * 30
     note: str = ""
 
 

@@ -54,7 +54,8 @@ def session(**changes: Any) -> Any:
         "trace": SimpleNamespace(rows=rows), "by_truth": judged, "by_record": seen,
         "loop": lambda: {},
     }  # fmt: skip
-    return SimpleNamespace(**{**parts, **changes})
+    known = {**parts, **changes}
+    return SimpleNamespace(**known, last=lambda kind: known[kind]())
 
 
 def words(text: str) -> str:

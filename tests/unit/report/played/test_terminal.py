@@ -244,7 +244,8 @@ def played(**changes: Any) -> Any:
         "loop": lambda: {"lateness": LATE}, "link": lambda: {}, "end": lambda: {},
         "flags": {}, "device_events": (),
     }  # fmt: skip
-    return SimpleNamespace(**{**values, **changes})
+    known = {**values, **changes}
+    return SimpleNamespace(**known, last=lambda kind: known[kind]())
 
 
 def result(**changes: Any) -> Any:

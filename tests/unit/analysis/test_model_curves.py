@@ -7,8 +7,8 @@ from typing import get_args
 import numpy as np
 import pytest
 
-from squeezefilm.analysis.friction import models
-from squeezefilm.analysis.friction.models import COMPARED, ModelCurve, model_curves
+from squeezefilm.analysis import curves as models
+from squeezefilm.analysis.curves import COMPARED, ModelCurve, model_curves
 from squeezefilm.chain.friction import MODEL_KINDS, FrictionLaw, FrictionModel, friction_law
 from squeezefilm.chain.prediction import Prediction, predict
 from squeezefilm.display import load_display
@@ -48,7 +48,7 @@ def test_each_model_is_asked_at_the_predictions_point(
 ) -> None:
     monkeypatch.setattr(models, "COMPARED", QUICK)
     p = off_centre
-    curves = model_curves(STATOR, p)
+    curves = model_curves(p)
     assert [curve.model for curve in curves] == [model for model, _ in QUICK]
     for curve, (model, points) in zip(curves, QUICK, strict=True):
         assert curve.amplitude.size == points + 1
@@ -70,7 +70,7 @@ def test_each_model_is_asked_at_the_predictions_point(
 
 def test_curves_reach_a_quarter_beyond_a_large_amplitude(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(models, "COMPARED", (("paper2008", 11),))
-    (curve,) = model_curves(STATOR, predict(STATOR, vibration_amplitude=8e-6, model="paper2008"))
+    (curve,) = model_curves(predict(STATOR, vibration_amplitude=8e-6, model="paper2008"))
     assert curve.amplitude[-1] == pytest.approx(10e-6)
 
 
@@ -86,7 +86,7 @@ def test_a_curve_ends_where_its_model_does(
 
     monkeypatch.setattr(FrictionLaw, "at", at)
     monkeypatch.setattr(models, "COMPARED", (("paper2008", 101),))
-    (curve,) = model_curves(STATOR, off_centre)
+    (curve,) = model_curves(off_centre)
     assert np.array_equal(np.isfinite(curve.relative_friction), curve.amplitude <= 1e-6)
     assert curve.at(0.5e-6) is not None
     assert curve.at(3e-6) is None
