@@ -237,15 +237,10 @@ def _effects(
                 if effect["id"] not in library or "keyframes" not in library[effect["id"]]:
                     raise InputError(f"the effect {effect['id']} is not in the library")
                 whole = {**library[effect["id"]], "position": effect["position"]}
-            frequencies = {
-                key["frequency_modulation"]
-                for key in whole["keyframes"]
-                if "frequency_modulation" in key
-            }
             kind, curve = band["band_type"], band.get("curve_type", "Linear")
             if kind not in ("Curve", "VectorialWave") or curve not in ("Linear", "Cubic"):
                 lost.append(f"an effect of a {kind} band ({curve}) was left out")
-            elif kind == "VectorialWave" and len(frequencies) != 1:
+            elif kind == "VectorialWave" and len(_frequencies(whole)) != 1:
                 lost.append("a wave whose frequency changes was left out")
             elif not any("amplitude_modulation" in key for key in whole["keyframes"]):
                 lost.append("an effect without amplitudes was left out")
@@ -254,17 +249,25 @@ def _effects(
 
 
 def _extent(line: _Line) -> tuple[si.Metre, si.Metre]:
-    starts, ends = [], []
-    for _, effect in line.effects:
-        last = max(key.get("relative_position", 0) for key in effect["keyframes"])
-        starts.append(effect["position"])
-        ends.append(effect["position"] + last)
-    start, end = min(starts) * line.unit, max(ends) * line.unit
+    first = min(effect["position"] for _, effect in line.effects)
+    last = max(effect["position"] + _length(effect) for _, effect in line.effects)
+    start, end = first * line.unit, last * line.unit
     if not end > start:
         raise InputError("the effects of the file have no extent; a texture needs a way")
     if not -10.0 <= start < end <= 10.0:
         raise InputError(f"the file goes from {start:.4g} to {end:.4g} m; ±10 m are allowed")
     return start, end
+
+
+def _length(effect: dict[str, Any]) -> int:
+    """How far an effect reaches from its position on."""
+    return max(key.get("relative_position", 0) for key in effect["keyframes"])
+
+
+def _frequencies(effect: dict[str, Any]) -> set[int]:
+    """The frequencies that a wave has in its keyframes (1/m)."""
+    keys = effect["keyframes"]
+    return {key["frequency_modulation"] for key in keys if "frequency_modulation" in key}
 
 
 def _keys(effect: dict[str, Any]) -> tuple[si.FloatArray, si.FloatArray]:
@@ -280,19 +283,14 @@ def _along(line: _Line, x: si.MetreArray) -> si.DimensionlessArray:
     for band, effect in line.effects:
         way = x / line.unit - effect["position"]
         places, values = _keys(effect)
-        last = max(key.get("relative_position", 0) for key in effect["keyframes"])
         # Ends that a division by the unit moved by a rounding error still belong to the effect.
-        inside = (way >= -1e-6) & (way <= last + 1e-6)
+        inside = (way >= -1e-6) & (way <= _length(effect) + 1e-6)
         level = np.interp(way, places, values)
         if band["band_type"] == "Curve":
             if band.get("curve_type", "Linear") == "Cubic" and places.size > 1:
                 level = _cubic(way, places, values)
         else:
-            frequency = next(
-                key["frequency_modulation"]
-                for key in effect["keyframes"]
-                if "frequency_modulation" in key
-            )
+            (frequency,) = _frequencies(effect)
             cycles = way * line.unit * frequency + effect["phase"] / (2 * math.pi)
             level = level * _signal(effect["base_signal"], cycles)
         total = total + np.where(inside, level, 0.0)
