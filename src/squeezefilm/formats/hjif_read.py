@@ -261,7 +261,8 @@ def _extent(line: _Line) -> tuple[si.Metre, si.Metre]:
 
 def _length(effect: dict[str, Any]) -> int:
     """How far an effect reaches from its position on."""
-    return max(key.get("relative_position", 0) for key in effect["keyframes"])
+    places: list[int] = [key.get("relative_position", 0) for key in effect["keyframes"]]
+    return max(places)
 
 
 def _frequencies(effect: dict[str, Any]) -> set[int]:

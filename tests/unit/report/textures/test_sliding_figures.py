@@ -11,7 +11,7 @@ from squeezefilm.render.fidelity.trace import friction_trace
 from squeezefilm.render.motion.stroke import Stroke
 from squeezefilm.render.texture.gratings import Square
 from squeezefilm.report.kit import style
-from squeezefilm.report.textures.sliding_figures import tangential_force
+from squeezefilm.report.textures.figures import tangential_force
 
 
 @pytest.fixture(scope="module")
