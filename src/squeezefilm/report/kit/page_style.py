@@ -134,6 +134,11 @@ def section(heading: str, body: str, kind: str = "") -> str:
     return f"<section{attribute}>\n<h2>{heading}</h2>\n{body}\n</section>\n"
 
 
+def _always(_: Any) -> bool:
+    """Every result has the figure."""
+    return True
+
+
 @dataclass(frozen=True)
 class FigureOf:
     """A figure of one type of result: its key, its heading on a page, what draws it.
@@ -149,7 +154,7 @@ class FigureOf:
     draw: Callable[[Any], Figure]
     reading: str = ""
     file: str = ""
-    has: Callable[[Any], object] = lambda _: True
+    has: Callable[[Any], object] = _always
 
 
 def drawn_figures(
