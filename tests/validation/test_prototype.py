@@ -17,13 +17,13 @@ from squeezefilm.analysis.claims.prototype import (
 )
 from squeezefilm.analysis.plate.sensitivity import plate_sensitivity, usual_changes
 from squeezefilm.errors import SqueezefilmError
+from squeezefilm.report.claims.page import prototype_sections
 from squeezefilm.report.claims.prototype import (
     identifiability,
     prototype_markdown,
     sentences,
     separation_table,
 )
-from squeezefilm.report.claims.prototype_page import prototype_sections
 
 
 def _case(name: str) -> Explanation:

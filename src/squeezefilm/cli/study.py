@@ -95,7 +95,7 @@ def simulate(
     """Let simulated participants do a match-to-sample study; every number is simulated."""
     from squeezefilm.perception.observer import load_observer
     from squeezefilm.report.study.simulated_page import write_simulated
-    from squeezefilm.report.study.terminal_simulated import show_simulated
+    from squeezefilm.report.study.terminal_identification import show_simulated
     from squeezefilm.study.design.study_design import load_design
     from squeezefilm.study.simulated.chain_tables import chain_tables
     from squeezefilm.study.simulated.participants import simulate_participants

@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from datetime import UTC, datetime
 from typing import Annotated, Any
 
@@ -64,16 +64,12 @@ class ReferenceDevice:
 
     def document(self) -> dict[str, Any]:
         """As the format has it. Displays work at one frequency: least, largest and resonance."""
+        frequencies = ("maximum_frequency", "minimum_frequency")
         return {
             "id": 0,
-            "name": self.name,
-            "maximum_frequency": self.resonance_frequency,
-            "minimum_frequency": self.resonance_frequency,
-            "resonance_frequency": self.resonance_frequency,
-            "maximum_amplitude": self.maximum_amplitude,
-            "maximum_voltage": self.maximum_voltage,
-            "maximum_displacement": self.maximum_displacement,
             "type": "Piezo",
+            **asdict(self),
+            **dict.fromkeys(frequencies, self.resonance_frequency),
         }
 
 
@@ -190,18 +186,18 @@ def _wave(texture: Composable, start: si.Metre, end: si.Metre) -> list[dict[str,
     phase = math.fmod(pattern.phase + 2 * math.pi * (cycles - math.floor(cycles)), 2 * math.pi)
     mean, swing = 0.5 * (texture.low + texture.high), 0.5 * (texture.high - texture.low)
     signal = "Sine" if isinstance(pattern, SineWave) else "Square"
-    keys: tuple[dict[str, Any], ...] = (
-        {"relative_position": 0, "amplitude_modulation": swing, "frequency_modulation": frequency},
-        {"relative_position": last - first, "amplitude_modulation": swing,
-         "frequency_modulation": frequency},
-    )  # fmt: skip
-    level = [
-        {"relative_position": place, "amplitude_modulation": mean} for place in (0, last - first)
-    ]
+    ends = (0, last - first)
+    level = [_key(place, mean) for place in ends]
+    keys = [{**_key(place, swing), "frequency_modulation": frequency} for place in ends]
     return [
         _band("Curve", _effect(first, level), 0),
-        _band("VectorialWave", _effect(first, list(keys), signal, phase), frequency),
+        _band("VectorialWave", _effect(first, keys, signal, phase), frequency),
     ]
+
+
+def _key(place: int, value: float) -> dict[str, Any]:
+    """A keyframe at a place from its effect's begin on."""
+    return {"relative_position": place, "amplitude_modulation": value}
 
 
 def _keyframes(
@@ -215,10 +211,7 @@ def _keyframes(
             f"the texture needs {kept.size} keyframes and the format counts up to "
             f"{_MOST_KEYFRAMES}; export a shorter line, or allow a larger tolerance"
         )
-    keyframes = [
-        {"relative_position": int(places[k] - first), "amplitude_modulation": float(values[k])}
-        for k in kept
-    ]
+    keyframes = [_key(int(places[k] - first), float(values[k])) for k in kept]
     return _band("Curve", _effect(first, keyframes), 0)
 
 

@@ -28,30 +28,29 @@ from squeezefilm.render.texture.shapes import SineWave, SquareWave
 
 _COARSE: si.Metre = 10e-6
 _SIGNALS = ("Sine", "Square", "Triangle", "SawToothUp", "SawToothDown")
-_NEEDED: dict[str, dict[str, type | tuple[type, ...]]] = {
-    "experience": {
-        "version": str, "profile": str, "level": int, "date": str, "description": str,
-        "timescale": int, "avatars": list, "perceptions": list, "syncs": list,
-    },
-    "perception": {
-        "id": int, "avatar_id": int, "description": str, "perception_modality": str,
-        "channels": list, "effect_library": list,
-    },
-    "channel": {
-        "id": int, "description": str, "gain": (int, float), "mixing_coefficient": (int, float),
-        "body_part_mask": int, "bands": list,
-    },
-    "band": {
-        "band_type": str, "lower_frequency_limit": int, "upper_frequency_limit": int,
-        "effects": list,
-    },
-    "effect": {
-        "effect_type": str, "position": int, "phase": (int, float), "base_signal": str,
-        "keyframes": list,
-    },
-    "reference": {"effect_type": str, "position": int, "id": int},
-    "keyframe": {},
-}  # fmt: skip
+# What the type of a key is, wherever it stands, and which keys an object must have.
+_NUMBER = (int, float)
+_TYPES: dict[str, type | tuple[type, ...]] = {
+    key: kind
+    for kind, keys in (
+        (str, "version profile date description perception_modality band_type effect_type"),
+        (str, "base_signal"),
+        (int, "level timescale id avatar_id body_part_mask position relative_position"),
+        (int, "lower_frequency_limit upper_frequency_limit frequency_modulation"),
+        (_NUMBER, "gain mixing_coefficient phase amplitude_modulation"),
+        (list, "avatars perceptions syncs channels effect_library bands effects keyframes"),
+    )
+    for key in keys.split()
+}
+_NEEDED = {
+    "experience": "version profile level date description timescale avatars perceptions syncs",
+    "perception": "id avatar_id description perception_modality channels effect_library",
+    "channel": "id description gain mixing_coefficient body_part_mask bands",
+    "band": "band_type lower_frequency_limit upper_frequency_limit effects",
+    "effect": "effect_type position phase base_signal keyframes",
+    "reference": "effect_type position id",
+    "keyframe": "",
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,26 +117,22 @@ def _effect(effect: Any, where: str) -> None:
         raise InputError(f"{where}.base_signal = {effect['base_signal']!r} is not known")
     for k, keyframe in enumerate(effect["keyframes"]):
         _needs(keyframe, "keyframe", f"{where}.keyframes[{k}]")
-        for key, kinds in (
-            ("relative_position", int),
-            ("amplitude_modulation", (int, float)),
-            ("frequency_modulation", int),
-        ):
+        for key in ("relative_position", "amplitude_modulation", "frequency_modulation"):
             if key in keyframe:
-                _right(keyframe[key], kinds, f"{where}.keyframes[{k}].{key}")
+                _right(keyframe[key], key, f"{where}.keyframes[{k}].{key}")
 
 
 def _needs(value: Any, kind: str, where: str) -> None:
     if not isinstance(value, dict):
         raise InputError(f"{where} is no JSON object, so the file is no HJIF")
-    for key, kinds in _NEEDED[kind].items():
+    for key in _NEEDED[kind].split():
         if key not in value:
             raise InputError(f"{where} has no '{key}', which HJIF needs")
-        _right(value[key], kinds, f"{where}.{key}")
+        _right(value[key], key, f"{where}.{key}")
 
 
-def _right(value: Any, kinds: Any, where: str) -> None:
-    if isinstance(value, bool) or not isinstance(value, kinds):
+def _right(value: Any, key: str, where: str) -> None:
+    if isinstance(value, bool) or not isinstance(value, _TYPES[key]):
         raise InputError(f"{where} = {value!r} is of the wrong type for HJIF")
     if isinstance(value, int | float) and not (math.isfinite(value) and abs(value) < 2**53):
         raise InputError(f"{where} = {value!r} is no number that HJIF can hold")
@@ -242,15 +237,10 @@ def _effects(
                 if effect["id"] not in library or "keyframes" not in library[effect["id"]]:
                     raise InputError(f"the effect {effect['id']} is not in the library")
                 whole = {**library[effect["id"]], "position": effect["position"]}
-            frequencies = {
-                key["frequency_modulation"]
-                for key in whole["keyframes"]
-                if "frequency_modulation" in key
-            }
             kind, curve = band["band_type"], band.get("curve_type", "Linear")
             if kind not in ("Curve", "VectorialWave") or curve not in ("Linear", "Cubic"):
                 lost.append(f"an effect of a {kind} band ({curve}) was left out")
-            elif kind == "VectorialWave" and len(frequencies) != 1:
+            elif kind == "VectorialWave" and len(_frequencies(whole)) != 1:
                 lost.append("a wave whose frequency changes was left out")
             elif not any("amplitude_modulation" in key for key in whole["keyframes"]):
                 lost.append("an effect without amplitudes was left out")
@@ -259,17 +249,26 @@ def _effects(
 
 
 def _extent(line: _Line) -> tuple[si.Metre, si.Metre]:
-    starts, ends = [], []
-    for _, effect in line.effects:
-        last = max(key.get("relative_position", 0) for key in effect["keyframes"])
-        starts.append(effect["position"])
-        ends.append(effect["position"] + last)
-    start, end = min(starts) * line.unit, max(ends) * line.unit
+    first = min(effect["position"] for _, effect in line.effects)
+    last = max(effect["position"] + _length(effect) for _, effect in line.effects)
+    start, end = first * line.unit, last * line.unit
     if not end > start:
         raise InputError("the effects of the file have no extent; a texture needs a way")
     if not -10.0 <= start < end <= 10.0:
         raise InputError(f"the file goes from {start:.4g} to {end:.4g} m; ±10 m are allowed")
     return start, end
+
+
+def _length(effect: dict[str, Any]) -> int:
+    """How far an effect reaches from its position on."""
+    places: list[int] = [key.get("relative_position", 0) for key in effect["keyframes"]]
+    return max(places)
+
+
+def _frequencies(effect: dict[str, Any]) -> set[int]:
+    """The frequencies that a wave has in its keyframes (1/m)."""
+    keys = effect["keyframes"]
+    return {key["frequency_modulation"] for key in keys if "frequency_modulation" in key}
 
 
 def _keys(effect: dict[str, Any]) -> tuple[si.FloatArray, si.FloatArray]:
@@ -285,19 +284,14 @@ def _along(line: _Line, x: si.MetreArray) -> si.DimensionlessArray:
     for band, effect in line.effects:
         way = x / line.unit - effect["position"]
         places, values = _keys(effect)
-        last = max(key.get("relative_position", 0) for key in effect["keyframes"])
         # Ends that a division by the unit moved by a rounding error still belong to the effect.
-        inside = (way >= -1e-6) & (way <= last + 1e-6)
+        inside = (way >= -1e-6) & (way <= _length(effect) + 1e-6)
         level = np.interp(way, places, values)
         if band["band_type"] == "Curve":
             if band.get("curve_type", "Linear") == "Cubic" and places.size > 1:
                 level = _cubic(way, places, values)
         else:
-            frequency = next(
-                key["frequency_modulation"]
-                for key in effect["keyframes"]
-                if "frequency_modulation" in key
-            )
+            (frequency,) = _frequencies(effect)
             cycles = way * line.unit * frequency + effect["phase"] / (2 * math.pi)
             level = level * _signal(effect["base_signal"], cycles)
         total = total + np.where(inside, level, 0.0)

@@ -17,9 +17,21 @@ _NOT_DISPLAYS = {"claims"}
 
 def display_names() -> tuple[str, ...]:
     """The names of all preset displays, sorted."""
-    return tuple(
-        sorted(path.stem for path in _FOLDER.glob("*.toml") if path.stem not in _NOT_DISPLAYS)
-    )
+    return tuple(name for name in _names(_FOLDER) if name not in _NOT_DISPLAYS)
+
+
+def texture_names() -> tuple[str, ...]:
+    """The names of all preset textures, sorted."""
+    return _names(_FOLDER / "textures")
+
+
+def study_names() -> tuple[str, ...]:
+    """The names of all preset studies, sorted."""
+    return _names(_FOLDER / "studies")
+
+
+def _names(folder: Path) -> tuple[str, ...]:
+    return tuple(sorted(path.stem for path in folder.glob("*.toml")))
 
 
 def path(name: str) -> Path:
@@ -37,9 +49,12 @@ def claims_path() -> Path:
     return _FOLDER / "claims.toml"
 
 
-def texture_names() -> tuple[str, ...]:
-    """The names of all preset textures, sorted."""
-    return tuple(sorted(path.stem for path in (_FOLDER / "textures").glob("*.toml")))
+def resolve(name_or_path: str | Path) -> Path:
+    """The file of a preset's name or of a path to a TOML file.
+
+    A text without a separator and without ``.toml`` is a preset's name unless such a file exists.
+    """
+    return _resolved(name_or_path, "preset", display_names(), _FOLDER)
 
 
 def resolve_texture(name_or_path: str | Path) -> Path:
@@ -47,32 +62,15 @@ def resolve_texture(name_or_path: str | Path) -> Path:
     return _resolved(name_or_path, "texture", texture_names(), _FOLDER / "textures")
 
 
-def study_names() -> tuple[str, ...]:
-    """The names of all preset studies, sorted."""
-    return tuple(sorted(path.stem for path in (_FOLDER / "studies").glob("*.toml")))
-
-
 def resolve_study(name_or_path: str | Path) -> Path:
     """The file of a preset study's name or of a path to a TOML file. As `resolve` does."""
     return _resolved(name_or_path, "study", study_names(), _FOLDER / "studies")
 
 
-def observer_names() -> tuple[str, ...]:
-    """The names of all preset simulated observers, sorted."""
-    return tuple(sorted(path.stem for path in (_FOLDER / "observers").glob("*.toml")))
-
-
 def resolve_observer(name_or_path: str | Path) -> Path:
     """The file of a preset observer's name or of a path to a TOML file. As `resolve` does."""
-    return _resolved(name_or_path, "observer", observer_names(), _FOLDER / "observers")
-
-
-def resolve(name_or_path: str | Path) -> Path:
-    """The file of a preset's name or of a path to a TOML file.
-
-    A text without a separator and without ``.toml`` is a preset's name unless such a file exists.
-    """
-    return _resolved(name_or_path, "preset", display_names(), _FOLDER)
+    folder = _FOLDER / "observers"
+    return _resolved(name_or_path, "observer", _names(folder), folder)
 
 
 def _resolved(name_or_path: str | Path, kind: str, known: tuple[str, ...], folder: Path) -> Path:

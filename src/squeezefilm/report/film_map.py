@@ -41,8 +41,7 @@ def film_map(found: FilmMap) -> Figure:
     right.contour(
         sigma, excursion, share.T, levels=[90], colors=style.INK, linewidths=1.6, linestyles="--"
     )
-    bar = figure.colorbar(parts, ax=right, label="share of the over-pressure at σ = 10⁴ (%)")
-    bar.outline.set_edgecolor(style.MUTED)
+    figure.colorbar(parts, ax=right, label="share of the over-pressure at σ = 10⁴ (%)")
     left.set_title("over-pressure W − 1 over ambient")
     right.set_title("dashed: 90 %")
     for axes in (left, right):

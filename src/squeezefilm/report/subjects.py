@@ -6,7 +6,7 @@ this file have.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -30,15 +30,17 @@ from squeezefilm.report import film_map
 from squeezefilm.report.display.figures import FIGURES
 from squeezefilm.report.display.page import write_analysis
 from squeezefilm.report.friction import figures as friction
-from squeezefilm.report.plate import mode_surface, plate, ring, sensitivity_figures
+from squeezefilm.report.kit.page_style import FigureOf
+from squeezefilm.report.plate import plate, ring, sensitivity_figures
 from squeezefilm.report.played import figures as played
 from squeezefilm.report.played.page import write_play
-from squeezefilm.report.study import figures as study
-from squeezefilm.report.study import observer_figures, psychometric_figure, time_figures
+from squeezefilm.report.study import time_figures
+from squeezefilm.report.study.page import FIGURES as FIGURES_OF_STUDY
 from squeezefilm.report.study.page import write_study
+from squeezefilm.report.study.simulated_page import FIGURES as FIGURES_OF_SIMULATED
 from squeezefilm.report.study.simulated_page import write_simulated
 from squeezefilm.report.textures import figures as textures
-from squeezefilm.report.textures import gallery, sliding_figures
+from squeezefilm.report.textures import gallery
 from squeezefilm.report.textures.page import write_render
 from squeezefilm.study.identification.analysis import IdentificationAnalysis
 from squeezefilm.study.psychometric.fit import PsychometricFit
@@ -61,87 +63,36 @@ class _Subject:
     write: Callable[..., Path] | None = None
 
 
+def _by_key(figures: Iterable[FigureOf]) -> dict[str, _Draw]:
+    return {one.key: one.draw for one in figures}
+
+
 def _of_session(draw: _Draw) -> _Draw:
     return lambda result: draw(result.session)
 
 
-def _of_tables(draw: _Draw) -> _Draw:
-    return lambda result: draw(result.tables)
-
-
-_PLAYED: Mapping[str, _Draw] = {
-    "friction": played.friction,
-    "amplitude": played.amplitude,
-    "lateness": played.lateness,
-}
+_PLAYED = _by_key(played.FIGURES)
 
 SUBJECTS: Mapping[type, _Subject] = {
     Prediction: _Subject({"friction": lambda one: friction.predictions([one])}),
-    Analysis: _Subject(
-        {"chain": friction.chain, **{one.key: one.draw for one in FIGURES}}, write_analysis
-    ),
-    FrictionAnalysis: _Subject(
-        {
-            "models": friction.models,
-            "map": friction.friction_map,
-            "uncertainty": friction.uncertainty,
-            "ripple": friction.ripple,
-        },
-        friction.write_friction,
-    ),
+    Analysis: _Subject({"chain": friction.chain, **_by_key(FIGURES)}, write_analysis),
+    FrictionAnalysis: _Subject(_by_key(friction.FIGURES), friction.write_friction),
     FilmAnswer: _Subject({"pressure": film_map.film_pressure}),
     FilmMap: _Subject({"map": film_map.film_map}, film_map.write_film_map),
-    PlateAnalysis: _Subject(
-        {
-            "surface": mode_surface.mode_surface,
-            "plan": plate.plan_view,
-            "scan": plate.line_scan,
-            "response": plate.frequency_response,
-            "admittance": plate.admittance,
-        },
-        plate.write_plate,
-    ),
-    RingAnalysis: _Subject(
-        {"shape": ring.shape, "scan": ring.scan, "response": ring.response}, plate.write_plate
-    ),
+    PlateAnalysis: _Subject(_by_key(plate.FIGURES), plate.write_plate),
+    RingAnalysis: _Subject(_by_key(ring.FIGURES), plate.write_plate),
     SensitivityTable: _Subject({"tornado": sensitivity_figures.tornado}),
     ModeTracks: _Subject({"tracks": sensitivity_figures.tracks}),
     TextureFile: _Subject({"texture": gallery.picture}),
     Composable: _Subject({"texture": lambda one: gallery.picture(TextureFile.of(one))}),
-    RenderAnalysis: _Subject(
-        {
-            "friction": textures.friction,
-            "drive": textures.drive,
-            "contrast": textures.contrast,
-            "way": textures.way,
-            "wave": textures.ripple,
-        },
-        write_render,
-    ),
-    StrokeForce: _Subject({"force": sliding_figures.tangential_force}),
+    RenderAnalysis: _Subject(_by_key(textures.FIGURES), write_render),
+    StrokeForce: _Subject({"force": textures.tangential_force}),
     PlayedSession: _Subject(_PLAYED),
     PlayResult: _Subject({key: _of_session(draw) for key, draw in _PLAYED.items()}, write_play),
-    IdentificationAnalysis: _Subject(
-        {
-            "confusion": study.confusion,
-            "correct": study.proportion_correct,
-            "information": study.information,
-            "sensitivity": study.sensitivity,
-            "similarities": study.similarities,
-            "times": time_figures.response_times,
-            "exploration": time_figures.exploration,
-        },
-        write_study,
-    ),
-    SimulatedStudy: _Subject(
-        {
-            "percepts": _of_tables(observer_figures.percepts),
-            "channels": _of_tables(observer_figures.channels),
-        },
-        write_simulated,
-    ),
+    IdentificationAnalysis: _Subject(_by_key(FIGURES_OF_STUDY), write_study),
+    SimulatedStudy: _Subject(_by_key(FIGURES_OF_SIMULATED), write_simulated),
     PlannedPower: _Subject({"power": lambda one: time_figures.power(one.curve)}),
-    PsychometricFit: _Subject({"function": psychometric_figure.psychometric_function}),
+    PsychometricFit: _Subject({"function": time_figures.psychometric_function}),
 }
 """Figures and report of every type of result."""
 

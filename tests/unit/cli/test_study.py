@@ -78,7 +78,7 @@ def test_simulated_people_are_shown_and_written_where_asked(
 ) -> None:
     tables = stands_in("study.simulated.chain_tables:chain_tables", "the tables")
     people = stands_in("study.simulated.participants:simulate_participants", ANSWER)
-    shown = stands_in("report.study.terminal_simulated:show_simulated")
+    shown = stands_in("report.study.terminal_identification:show_simulated")
     written = stands_in("report.study.simulated_page:write_simulated", tmp_path / "index.html")
     done = run("simulate", PRESET)
     assert done.returncode == 0, done.stderr

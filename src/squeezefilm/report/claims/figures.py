@@ -40,20 +40,12 @@ def frequency_against_half_wavelength(section: Laminate) -> Figure:
     axes = figure.subplots()
     axes.plot(1e3 * half, euler / 1e3, color=style.BLUE, label="Euler–Bernoulli")
     axes.plot(1e3 * half, timoshenko / 1e3, color=style.ORANGE, ls="--", label="Timoshenko")
-    axes.axhline(
-        _CRITERION / 1e3, color=style.MUTED, lw=1.2, ls=(0, (2, 2)), label="20.6 kHz (σ = 10)"
-    )
+    level = _CRITERION / 1e3
+    axes.axhline(level, **style.REFERENCE, label="20.6 kHz (σ = 10)")
     for at, color in ((limit, style.BLUE), (shear_limit, style.ORANGE)):
-        axes.plot([1e3 * at], [_CRITERION / 1e3], "o", color=color, ms=6, zorder=3)
-    axes.plot(
-        [1e3 * _PRINTED_LIMIT],
-        [_CRITERION / 1e3],
-        "x",
-        color=style.INK,
-        ms=9,
-        mew=2,
-        label="printed: 16.1 mm",
-    )
+        axes.plot([1e3 * at], [level], "o", color=color, ms=6, zorder=3)
+    limit_mm, said = 1e3 * _PRINTED_LIMIT, "printed: 16.1 mm"
+    axes.plot([limit_mm], [level], "x", color=style.INK, ms=9, mew=2, label=said)
     axes.set(xlim=(5, 25), ylim=(0, 110), xlabel="half wavelength (mm)", ylabel="frequency (kHz)")
     style.legend_below(axes)
     return figure
@@ -68,14 +60,12 @@ def reproduction_figures(tell: Callable[[str], None]) -> list[tuple[str, str]]:
     plate = analyze(display)
     assert isinstance(display.actuator, RectangularPlate)
     section = plate_laminate(display.actuator, "paper")
+    beams = frequency_against_half_wavelength(section)
     drawings = (
-        ("fig4", "Figure 4: mean pressure under the finger", pressure(stator)),
-        ("fig5", "Figure 5: relative friction against amplitude", friction(stator)),
-        (
-            "fig10",
-            "Figure 10: frequency against half wavelength",
-            frequency_against_half_wavelength(section),
-        ),
-        ("fig11", "Figure 11: amplitude for four half wavelengths", wavelength(plate)),
+        (4, "mean pressure under the finger", pressure(stator)),
+        (5, "relative friction against amplitude", friction(stator)),
+        (10, "frequency against half wavelength", beams),
+        (11, "amplitude for four half wavelengths", wavelength(plate)),
     )
-    return [(title, style.svg(figure, key, title)) for key, title, figure in drawings]
+    titled = ((f"Figure {number}: {what}", number, figure) for number, what, figure in drawings)
+    return [(title, style.svg(figure, f"fig{number}", title)) for title, number, figure in titled]

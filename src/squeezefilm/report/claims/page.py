@@ -2,18 +2,30 @@
 
 from __future__ import annotations
 
-import html
 from collections.abc import Callable, Sequence
+from html import escape
 from pathlib import Path
 
 from squeezefilm import quantities as si
 from squeezefilm.analysis.claims.command import ClaimResult, Reproduction
 from squeezefilm.analysis.claims.procedure import Design
+from squeezefilm.analysis.claims.prototype import PrototypeStudy
 from squeezefilm.errors import InputError
-from squeezefilm.report.claims.prototype import prototype_markdown
-from squeezefilm.report.claims.prototype_page import html_row, prototype_sections
+from squeezefilm.report.claims.prototype import (
+    Table,
+    comparison,
+    explanation_table,
+    identifiability,
+    markdown_table,
+    prototype_markdown,
+    sensitivity_table,
+    sentences,
+    separation_table,
+)
+from squeezefilm.report.kit import style
 from squeezefilm.report.kit.folder import json_text, write_folder
-from squeezefilm.report.kit.page_style import STYLE
+from squeezefilm.report.kit.page_style import bullets, page_head
+from squeezefilm.report.plate.sensitivity_figures import tornado
 from squeezefilm.results import write_whole
 
 _HEADER = """# Validation
@@ -28,6 +40,9 @@ ultrasonic display could be read anywhere. What follows compares with what the p
 says where and why the numbers differ. "Printed formula" is what the formula gives as it stands in
 the paper, where that differs from the corrected one.
 """
+
+_HEAD = ("where", "claim", "printed", "printed formula", "recomputed", "verdict")
+_ERRATA = ("equation", "printed", "corrected", "why")
 
 
 def show_values(values: Sequence[float] | None, unit: str) -> str:
@@ -65,13 +80,11 @@ def checkout(root: Path | None = None) -> Path:
 def validation_markdown(result: Reproduction) -> str:
     """The text of docs/validation.md: a table of all claims, their reasons, the errata."""
     lines = [_HEADER, "## Claims", ""]
-    lines.append("| where | claim | printed | printed formula | recomputed | verdict |")
-    lines.append("|---|---|---|---|---|---|")
-    lines += [
-        f"| {item.claim.where} | {item.claim.statement} | {_printed(item)} | {_formula(item)} | "
-        f"{show_values(item.value, item.claim.unit)} | **{item.verdict}** |"
+    claims = [
+        (item.claim.where, item.claim.statement, *_found(item), f"**{item.verdict}**")
         for item in result.results
     ]
+    lines += markdown_table((_HEAD, claims))
     lines += ["", "## Why", ""]
     for item in result.results:
         lines.append(
@@ -81,12 +94,9 @@ def validation_markdown(result: Reproduction) -> str:
         lines += prototype_markdown(result.prototype)
     lines += ["", "## The paper's design procedure", ""]
     lines += [f"* {sentence}" for sentence in design_sentences(result.design)]
-    lines += ["", "## Errata of the paper", "", "| equation | printed | corrected | why |"]
-    lines.append("|---|---|---|---|")
-    lines += [
-        f"| {one.equation} | {_cell(one.printed)} | {_cell(one.corrected)} | {one.why} |"
-        for one in result.errata
-    ]
+    lines += ["", "## Errata of the paper", ""]
+    errata = [(e.equation, _cell(e.printed), _cell(e.corrected), e.why) for e in result.errata]
+    lines += markdown_table((_ERRATA, errata))
     return "\n".join([*lines, ""])
 
 
@@ -109,6 +119,11 @@ def design_sentences(design: Design) -> list[str]:
 
 def _cell(text: str) -> str:
     return text.replace("|", "\\|")
+
+
+def _found(item: ClaimResult) -> tuple[str, str, str]:
+    """What was printed, what the printed formula gives, what was recomputed."""
+    return _printed(item), _formula(item), show_values(item.value, item.claim.unit)
 
 
 def _printed(item: ClaimResult) -> str:
@@ -144,57 +159,73 @@ def write_reproduction(
     from squeezefilm.report.claims.figures import reproduction_figures
 
     tell = progress or (lambda _: None)
-    figures = []
-    for title, svg in reproduction_figures(tell):
-        figures.append(
-            f"<section><h2>{html.escape(title)}</h2>"
-            f'<figure><div class="scroll" tabindex="0">{svg}</div></figure></section>'
-        )
+    figures = [
+        f"<section><h2>{escape(title)}</h2>{_framed(svg)}</section>"
+        for title, svg in reproduction_figures(tell)
+    ]
     if result.prototype is not None:
         tell("the prototype")
         figures += prototype_sections(result.prototype)
-    page = _page(result, figures)
-    files = {"claims.json": json_text(result.summary()), "reproduction.html": page}
+    files = {
+        "claims.json": json_text(result.summary()),
+        "reproduction.html": _page(result, figures),
+    }
     write_folder(folder, files)
     return folder / "reproduction.html"
 
 
 def _page(result: Reproduction, figures: list[str]) -> str:
-    rows = "\n".join(
-        html_row(
-            (
-                item.claim.where,
-                item.claim.statement,
-                _printed(item),
-                _formula(item),
-                show_values(item.value, item.claim.unit),
-                item.verdict,
-                item.claim.why,
-            )
-        )
+    claims = [
+        (item.claim.where, item.claim.statement, *_found(item), item.verdict, item.claim.why)
         for item in result.results
-    )
-    errata = "\n".join(
-        html_row((one.equation, one.printed, one.corrected, one.why)) for one in result.errata
-    )
-    design = "".join(f"<li>{html.escape(one)}</li>" for one in design_sentences(result.design))
-    return f"""<!doctype html>
-<html lang="en"><head><meta charset="utf-8">
-<meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<title>The paper's claims, recomputed</title>
-<style>{STYLE}</style></head><body><header>
-<h1>The paper's claims, recomputed</h1>
+    ]
+    errata = [(one.equation, one.printed, one.corrected, one.why) for one in result.errata]
+    title, design = "The paper's claims, recomputed", bullets(design_sentences(result.design))
+    return f"""{page_head(title, images="")}<header>
+<h1>{title}</h1>
 <p>Source: Biet, Giraud, Lemaire-Semail, <em>The implementation of tactile feedback using squeeze
 film effect devices</em>. Friction against amplitude is not validated against measurements.</p>
-</header><main><section><h2>Claims</h2>
-<div class="scroll" tabindex="0"><table><thead><tr><th>where</th><th>claim</th><th>printed</th>
-<th>printed formula</th><th>recomputed</th><th>verdict</th><th>why</th></tr></thead>
-<tbody>{rows}</tbody></table></div></section>
+</header><main><section><h2>Claims</h2>{_table(((*_HEAD, "why"), claims))}</section>
 {"".join(figures)}
-<section><h2>The paper's design procedure</h2><ul>{design}</ul></section>
-<section><h2>Errata</h2>
-<div class="scroll" tabindex="0"><table><thead><tr><th>equation</th><th>printed</th>
-<th>corrected</th>
-<th>why</th></tr></thead><tbody>{errata}</tbody></table></div></section></main></body></html>
+<section><h2>The paper's design procedure</h2>{design}</section>
+<section><h2>Errata</h2>{_table((_ERRATA, errata))}</section></main></body></html>
 """
+
+
+def prototype_sections(study: PrototypeStudy) -> list[str]:
+    """HTML sections: the comparison, the sensitivities, what would identify the cause."""
+    parts = (
+        ("The plate: the paper, the solved plate, the prototype", _table(comparison(study))),
+        (
+            "What could shift the frequency",
+            _framed(style.svg(tornado(study.sensitivities), "tornado", "Sensitivities"))
+            + _table(sensitivity_table(study)),
+        ),
+        (
+            "What one frequency cannot tell",
+            bullets(sentences(study))
+            + _framed(style.svg(identifiability(study), "identifiability", "Identifiability"))
+            + _table(explanation_table(study))
+            + "<p>Distance of each pair, in units of what could be measured:</p>"
+            + _table(separation_table(study)),
+        ),
+    )
+    return [f"<section><h2>{escape(title)}</h2>{body}</section>" for title, body in parts]
+
+
+def _framed(drawing: str) -> str:
+    """A drawing (an SVG element) as a figure that scrolls."""
+    return f'<figure><div class="scroll" tabindex="0">{drawing}</div></figure>'
+
+
+def _table(table: Table) -> str:
+    """Head and rows of plain texts as HTML."""
+    head, rows = table
+    top = "".join(f"<th>{escape(cell)}</th>" for cell in head)
+    body = "\n".join(
+        "<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in row) + "</tr>" for row in rows
+    )
+    return (
+        f'<div class="scroll" tabindex="0"><table><thead><tr>{top}</tr></thead>'
+        f"<tbody>{body}</tbody></table></div>"
+    )

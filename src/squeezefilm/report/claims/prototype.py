@@ -161,15 +161,21 @@ def sentences(study: PrototypeStudy) -> list[str]:
 def prototype_markdown(study: PrototypeStudy) -> list[str]:
     """The section of docs/validation.md, line by line."""
     lines = ["", "## The plate: the paper, the solved plate, the prototype", ""]
-    lines += [*_markdown(comparison(study)), "", "### What could shift it (with d31)", ""]
-    lines += [*_markdown(sensitivity_table(study)), "", "### What one frequency cannot tell", ""]
+    lines += [*markdown_table(comparison(study)), "", "### What could shift it (with d31)", ""]
+    lines += [
+        *markdown_table(sensitivity_table(study)),
+        "",
+        "### What one frequency cannot tell",
+        "",
+    ]
     lines += [f"* {sentence}" for sentence in sentences(study)]
-    lines += ["", *_markdown(explanation_table(study)), ""]
+    lines += ["", *markdown_table(explanation_table(study)), ""]
     lines += ["Distance of each pair, in units of what could be measured:", ""]
-    return [*lines, *_markdown(separation_table(study))]
+    return [*lines, *markdown_table(separation_table(study))]
 
 
-def _markdown(table: Table) -> list[str]:
+def markdown_table(table: Table) -> list[str]:
+    """A table as lines of Markdown."""
     head, rows = table
     return [
         "| " + " | ".join(head) + " |",
@@ -192,23 +198,15 @@ def identifiability(study: PrototypeStudy) -> Figure:
     for number, axes in enumerate(panels):
         values, errors, label = _panel(study.explanations, number)
         for y, value, error, one in zip(at, values, errors, study.explanations, strict=True):
-            axes.errorbar(
-                value,
-                y,
-                xerr=error,
-                fmt="o",
-                ms=5,
-                lw=2.2,
-                capsize=3,
-                color=style.ORANGE if "e31" in one.name else style.BLUE,
-            )
+            color = style.ORANGE if "e31" in one.name else style.BLUE
+            axes.errorbar(value, y, xerr=error, fmt="o", ms=5, lw=2.2, capsize=3, color=color)
         axes.set_xlabel(label)
         axes.set_ylim(-0.6, at.size - 0.4)
         axes.locator_params(axis="x", nbins=3)
         axes.margins(x=0.15)
         if number:
             axes.tick_params(left=False)
-    panels[-1].axvline(MEASURED_AMPLITUDE * 1e6, color=style.INK, lw=1, ls=(0, (4, 2)))
+    panels[-1].axvline(MEASURED_AMPLITUDE * 1e6, **style.LANDMARK)
     panels[-1].annotate(
         "measured,\nQ unknown",
         (MEASURED_AMPLITUDE * 1e6, 0.2),

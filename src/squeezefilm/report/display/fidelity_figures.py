@@ -34,53 +34,49 @@ def compensated_grating(grating: CompensatedGrating) -> Figure:
     last = way >= way[-1] - 1e3 * _PERIODS_SHOWN * grating.spatial_period
     x = way[last] - way[last][0]
     limit = grating.envelope.amplitude_limit
-    (wanted,) = top.plot(x, grating.drives[0].wanted[last] / limit, color=style.MUTED, lw=1.2)
-    handles, labels = [wanted], ["wanted"]
+    wanted = grating.drives[0].wanted[last] / limit
+    top.plot(x, wanted, color=style.MUTED, lw=1.2, label="wanted")
     for law, share, drive, (color, dashes) in zip(
         grating.laws, kept, grating.drives, style.LINES, strict=False
     ):
-        (line,) = top.plot(x, drive.amplitude[last] / limit, color=color, ls=dashes)
+        name = f"{law.name}: {share} kept"
+        top.plot(x, drive.amplitude[last] / limit, color=color, ls=dashes, label=name)
         bottom.plot(x, drive.command[last] / limit, color=color, ls=dashes, drawstyle="steps-post")
-        handles.append(line)
-        labels.append(f"{law.name}: {share} kept")
     for level in (1, -1):
-        bottom.axhline(level, color=style.INK, lw=0.8, ls=(0, (1.4, 1.2)))
-    bottom.text(
-        0.02 * x[-1], 1.06, "limit of the voltage", color=style.MUTED, fontsize=9, va="bottom"
-    )
+        bottom.axhline(level, **style.GUIDE)
+    said = "limit of the voltage"
+    bottom.text(0.02 * x[-1], 1.06, said, color=style.MUTED, fontsize=9, va="bottom")
     top.set(ylabel="amplitude, relative to the limit", ylim=(0, 1.02))
     bottom.set(xlabel="finger's way (mm)", ylabel="command, relative", ylim=(-1.15, 1.4))
     bottom.set_yticks([-1, 0, 1])
     for axes in (top, bottom):
         axes.set_xlim(0, float(x[-1]))
     top.tick_params(labelbottom=False)
-    bottom.legend(
-        handles, labels, loc="upper center", bbox_to_anchor=(0.5, -0.22), ncols=2, frameon=False
-    )
+    style.legend_below(bottom, gap=0.22, handles=top.get_legend_handles_labels()[0])
     return figure
 
 
 @style.drawn
 def compensation(analysis: Analysis) -> Figure:
     """`compensated_grating` of an analysis."""
-    if analysis.compensated is None:
-        return style.message_figure("Nothing to compensate", "No voltage makes an amplitude here.")
-    return compensated_grating(analysis.compensated)
+    found = analysis.compensated
+    return _nothing() if found is None else compensated_grating(found)
 
 
 @style.drawn
 def survival(analysis: Analysis) -> Figure:
     """`texture_survival` of an analysis."""
-    if analysis.survival is None:
-        return style.message_figure("Nothing to compensate", "No voltage makes an amplitude here.")
-    return texture_survival(analysis.survival)
+    found = analysis.survival
+    return _nothing() if found is None else texture_survival(found)
+
+
+def _nothing() -> Figure:
+    return style.message_figure("Nothing to compensate", "No voltage makes an amplitude here.")
 
 
 @style.drawn
 def texture_survival(table: TextureSurvival) -> Figure:
     """Which spatial period survives at which speed, one line per drive."""
-    from matplotlib.lines import Line2D
-
     figure = style.new_figure(
         f"Compensation with phase inversion keeps a grating up to {table.gain[-1]:.2g} times the "
         f"finger speed, without inversion up to {table.gain[1]:.2g} times",
@@ -96,16 +92,13 @@ def texture_survival(table: TextureSurvival) -> Figure:
     ):
         axes.loglog(1e3 * table.speeds, 1e3 * row, color=color, ls=dashes, label=law.name)
     for period in PAPER_PERIODS:
-        axes.axhline(1e3 * period, color=style.MUTED, lw=0.8, ls=(0, (1.4, 1.2)))
+        named = "the paper's gratings" if period == PAPER_PERIODS[0] else None
+        axes.axhline(1e3 * period, **style.GUIDE, label=named)
     axes.set_title(f"{style.plain(table.name)}, τ = {shown(table.time_constant, S, 3)}")
     axes.set(xlabel="finger speed (mm/s)", xlim=(10, 400), ylim=(0.02, 12))
     axes.set_ylabel("finest period that survives (mm)")
     axes.set_xticks([10, 20, 50, 100, 200, 400])
     axes.set_yticks([0.02, 0.05, 0.1, 0.2, 0.4, 1, 2, 4, 10])
-    style.plain_log(axes.xaxis)
-    style.plain_log(axes.yaxis)
-    handles, labels = axes.get_legend_handles_labels()
-    handles.append(Line2D([], [], color=style.MUTED, lw=0.8, ls=(0, (1.4, 1.2))))
-    labels.append("the paper's gratings")
-    strip.legend(handles, labels, loc="center", ncols=2, frameon=False)
+    style.plain_log(axes.xaxis, axes.yaxis)
+    style.legend_in(strip, axes, columns=2)
     return figure

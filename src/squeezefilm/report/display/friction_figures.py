@@ -61,27 +61,15 @@ def pressure(analysis: Analysis) -> Figure:
         above.set(ylim=(0, 1.12 * float(np.max(gap))))
         for item, color in zip(profiles, (style.BLUE, style.GREEN), strict=False):
             mean = float(np.trapezoid(item.mean_pressure, x) / (x[-1] - x[0]))
-            below.plot(
-                x,
-                item.mean_pressure,
-                color=color,
-                lw=1.4,
-                label=f"{_NAMES[item.model]}, mean {mean:.4f}",
-            )
-        below.axhline(
-            carried,
-            color=style.ORANGE,
-            lw=1.6,
-            ls=(0, (6, 1.6)),
-            label=f"would carry the finger: {carried:.4f}",
-        )
+            name = f"{_NAMES[item.model]}, mean {mean:.4f}"
+            below.plot(x, item.mean_pressure, color=color, lw=1.4, label=name)
+        below.axhline(carried, **style.WANTED, label=f"would carry the finger: {carried:.4f}")
         below.set(xlim=(low, high), xlabel="position under the finger (mm)")
     grid[0][0].set(ylabel="mean gap (µm)")
     grid[1][0].set(ylabel="pressure over ambient")
     grid[0][0].set_title("the whole contact: the finger's ridges, and the plate at 0")
     grid[0][1].set_title("enlarged")
-    handles, labels = grid[1][0].get_legend_handles_labels()
-    strip.legend(handles, labels, loc="center", ncols=3, frameon=False)
+    style.legend_in(strip, grid[1][0])
     return figure
 
 
@@ -108,13 +96,10 @@ def friction(analysis: Analysis) -> Figure:
         zero = curve.zero_friction_amplitude
         words = "0.7 out of reach" if reached is None else f"0.7 at {shown(reached, M, 3)}"
         words += "" if zero is None else f", zero at {shown(zero, M, 3)}"
+        name = f"{_NAMES.get(curve.model, curve.model)}, {style.plain(curve.surface, 20)}"
+        name += f" ({shown(curve.roughness, M, 3)}): {words}"
         axes.plot(
-            1e6 * curve.amplitude,
-            curve.relative_friction,
-            color=color,
-            ls=dashes,
-            label=f"{_NAMES.get(curve.model, curve.model)}, {style.plain(curve.surface, 20)} "
-            f"({shown(curve.roughness, M, 3)}): {words}",
+            1e6 * curve.amplitude, curve.relative_friction, color=color, ls=dashes, label=name
         )
         if reached is not None:
             _drop(axes, reached, color)
@@ -122,9 +107,7 @@ def friction(analysis: Analysis) -> Figure:
             axes.plot([1e6 * zero], [0], "s", color=color, ms=6, clip_on=False, zorder=4)
     _criterion(axes)
     _working_point(axes, analysis)
-    axes.set(xlim=(0, 1e6 * max(float(c.amplitude[-1]) for c in curves)))
-    axes.set(ylim=(0, 1.06), xlabel="vibration amplitude, zero-to-peak (µm)")
-    axes.set(ylabel="relative friction µ′/µ")
+    style.friction_axes(axes, 1e6 * max(float(c.amplitude[-1]) for c in curves), top=1.06)
     style.legend_below(axes, columns=1)
     return figure
 
@@ -134,9 +117,8 @@ def film_models(analysis: Analysis) -> Figure:
     """The share of the finger's load that each reading of the film carries, against amplitude."""
     films, p = analysis.film_models, analysis.prediction
     if films is None:
-        return style.message_figure(
-            "Nothing vibrates", "Without vibration no film carries anything."
-        )
+        said = "Without vibration no film carries anything."
+        return style.message_figure("Nothing vibrates", said)
     shares = [100 * r.load_share for r in films.results if np.isfinite(r.load_share)]
     title = (
         f"At {shown(p.vibration_amplitude, M, 3)} the film carries from {min(shares):.2g} to "
@@ -148,22 +130,11 @@ def film_models(analysis: Analysis) -> Figure:
     axes = figure.subplots()
     for number, curve in enumerate(films.curves):
         color, dashes = _FIVE[number % len(_FIVE)]
-        axes.semilogy(
-            1e6 * curve.amplitude,
-            curve.load_share,
-            color=color,
-            ls=dashes,
-            label=_NAMES[curve.model],
-        )
-        axes.plot(
-            [1e6 * p.vibration_amplitude],
-            [films.results[number].load_share],
-            "o",
-            color=color,
-            ms=6,
-            zorder=3,
-        )
-    axes.axhline(1, color=style.MUTED, lw=1.2, ls=(0, (2, 2)), label="carries the whole finger")
+        amplitude, name = 1e6 * curve.amplitude, _NAMES[curve.model]
+        axes.semilogy(amplitude, curve.load_share, color=color, ls=dashes, label=name)
+        here = 1e6 * p.vibration_amplitude, films.results[number].load_share
+        axes.plot(*here, "o", color=color, ms=6, zorder=3)
+    axes.axhline(1, **style.REFERENCE, label="carries the whole finger")
     right = 1e6 * max(float(curve.amplitude[-1]) for curve in films.curves)
     axes.set(xlim=(0, right), ylim=(1e-4, 30), xlabel="vibration amplitude, zero-to-peak (µm)")
     axes.set(ylabel="film's pressure over the finger's")
@@ -190,12 +161,9 @@ def wavelength(analysis: Analysis) -> Figure:
     right = 1e6 * float(max(c.amplitude[-1] for c in curves))
     for number, curve in enumerate(curves):
         color, dashes = style.LINES[number % len(style.LINES)]
+        name = f"λ/2 = {shown(curve.half_wavelength, M, 3)}: 0.7 at {at[number]}"
         axes.plot(
-            1e6 * curve.amplitude,
-            curve.relative_friction,
-            color=color,
-            ls=dashes,
-            label=f"λ/2 = {shown(curve.half_wavelength, M, 3)}: 0.7 at {at[number]}",
+            1e6 * curve.amplitude, curve.relative_friction, color=color, ls=dashes, label=name
         )
         if 1e6 * curve.amplitude_for_criterion <= right:
             _drop(axes, curve.amplitude_for_criterion, color)
@@ -206,20 +174,13 @@ def wavelength(analysis: Analysis) -> Figure:
         friction = None if films is None else films.result("paper2008").relative_friction
         more = f" at λ/2 = {shown(p.mode.half_wavelength, M, 3)}"
         _working_point(axes, analysis, more, friction)
-    axes.set(xlim=(0, right), ylim=(0, 1.06), xlabel="vibration amplitude, zero-to-peak (µm)")
-    axes.set(ylabel="relative friction µ′/µ")
+    style.friction_axes(axes, right, top=1.06)
     style.legend_below(axes)
     return figure
 
 
 def _criterion(axes: Axes) -> None:
-    axes.axhline(
-        PAPER_CRITERION,
-        color=style.MUTED,
-        lw=1.2,
-        ls=(0, (2, 2)),
-        label="0.7: what the paper asks for",
-    )
+    axes.axhline(PAPER_CRITERION, **style.REFERENCE, label="0.7: what the paper asks for")
 
 
 def _drop(axes: Axes, amplitude: float, color: str) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -36,8 +36,6 @@ def layout(analysis: Analysis) -> Figure:
 
 
 def _plate(plate: RectangularPlate, section: Laminate) -> Figure:
-    from matplotlib.patches import Rectangle
-
     count = len(plate.patches)
     neutral = section.neutral_axis
     noun = "ceramic covers" if count == 1 else "ceramics cover"
@@ -57,28 +55,19 @@ def _plate(plate: RectangularPlate, section: Laminate) -> Figure:
     length, width = 1e3 * plate.length, 1e3 * plate.width
 
     plan.set_title("lower face, seen through the plate; + and − say how it follows the drive")
-    plan.add_patch(
-        Rectangle((0, 0), length, width, facecolor=style.METAL, edgecolor=style.INK, lw=1)
-    )
+    _box(plan, (0, 0), length, width, style.METAL)
     side.set_title("side view, to scale")
     thick, ceramic = 1e3 * plate.thickness, 1e3 * plate.ceramic_thickness
-    side.add_patch(
-        Rectangle((0, -thick), length, thick, facecolor=style.METAL, edgecolor=style.INK, lw=0.8)
-    )
+    _box(side, (0, -thick), length, thick, style.METAL)
     for patch in plate.patches:
         x, y, dx, dy = (1e3 * v for v in (patch.x, patch.y, patch.length, patch.width))
         fill = FILL[patch.polarity]
-        plan.add_patch(Rectangle((x, y), dx, dy, facecolor=fill, edgecolor=style.INK, lw=0.8))
-        side.add_patch(
-            Rectangle(
-                (x, -thick - ceramic), dx, ceramic, facecolor=fill, edgecolor=style.INK, lw=0.8
-            )
-        )
+        _box(plan, (x, y), dx, dy, fill)
+        _box(side, (x, -thick - ceramic), dx, ceramic, fill)
         # A sign needs some two percent of the picture to be read.
         if min(dx, dy) > 0.02 * length:
-            plan.text(
-                x + dx / 2, y + dy / 2, _SIGN[patch.polarity], ha="center", va="center", fontsize=15
-            )
+            sign = _SIGN[patch.polarity]
+            plan.text(x + dx / 2, y + dy / 2, sign, ha="center", va="center", fontsize=15)
     side.axhline(-1e3 * neutral, color=style.ORANGE, lw=1.2, ls=(0, (5, 2)))
     pad = 0.015 * length
     plan.set(xlim=(-pad, length + pad), ylim=(-pad, width + pad), aspect="equal")
@@ -86,16 +75,28 @@ def _plate(plate: RectangularPlate, section: Laminate) -> Figure:
     deep = thick + ceramic
     side.set(xlim=(-pad, length + pad), ylim=(-1.5 * deep, 0.5 * deep), aspect="equal")
     side.set(xlabel="x along the plate (mm)")
-    side.set_yticks([])
-    for axes in (plan, side):
-        axes.grid(visible=False)
-    side.spines["left"].set_visible(False)
+    _without_height(plan, side)
     _section(detail, plate, neutral)
     return figure
 
 
+def _box(axes: Axes, corner: tuple[float, float], dx: float, dy: float, fill: str) -> None:
+    """A filled rectangle with an outline."""
+    from matplotlib.patches import Rectangle
+
+    axes.add_patch(Rectangle(corner, dx, dy, facecolor=fill, **style.OUTLINED))
+
+
+def _without_height(plan: Axes, side: Axes) -> None:
+    """No grid on either; the side view has no heights to read."""
+    side.set_yticks([])
+    side.spines["left"].set_visible(False)
+    for axes in (plan, side):
+        axes.grid(visible=False)
+
+
 def _disc(disc: DiscPlate, analysis: Analysis) -> Figure:
-    from matplotlib.patches import Circle, Rectangle
+    from matplotlib.patches import Circle
 
     radius, thick = 500 * disc.diameter, 1e3 * disc.thickness
     outer, inner = 500 * disc.ceramic_outer_diameter, 500 * disc.ceramic_inner_diameter
@@ -110,83 +111,50 @@ def _disc(disc: DiscPlate, analysis: Analysis) -> Figure:
     )
     plan, side = figure.subplots(2, 1, height_ratios=[5, 1], sharex=True)
     plan.set_title("seen from above, the ceramic through the disc")
-    plan.add_patch(Circle((0, 0), radius, facecolor=style.METAL, edgecolor=style.INK, lw=1))
-    plan.add_patch(Circle((0, 0), outer, facecolor=style.PLUS, edgecolor=style.INK, lw=0.8))
-    for size, fill in ((inner, style.METAL), (hole, style.PAPER)):
+    faces = ((radius, style.METAL), (outer, style.PLUS), (inner, style.METAL), (hole, style.PAPER))
+    for size, fill in faces:
         if size > 0:
-            plan.add_patch(Circle((0, 0), size, facecolor=fill, edgecolor=style.INK, lw=0.8))
-    label = f"finger contact, {contact:.3g} mm × {contact:.3g} mm"
-    _finger(plan, contact, 0.0, label)
+            plan.add_patch(Circle((0, 0), size, facecolor=fill, **style.OUTLINED))
+    _finger(plan, contact, 0.0)
     side.set_title("section, to scale")
-    side.add_patch(
-        Rectangle((-radius, -thick), 2 * radius, thick, facecolor=style.METAL, edgecolor=style.INK)
-    )
+    _box(side, (-radius, -thick), 2 * radius, thick, style.METAL)
     parts = ((-outer, -inner), (inner, outer)) if inner > 0 else ((-outer, outer),)
     for left, right in parts:
-        side.add_patch(
-            Rectangle(
-                (left, -thick - ceramic),
-                right - left,
-                ceramic,
-                facecolor=style.PLUS,
-                edgecolor=style.INK,
-            )
-        )
+        _box(side, (left, -thick - ceramic), right - left, ceramic, style.PLUS)
     reach = 1.06 * max(radius, contact / 2)
     deep = thick + ceramic
     plan.set(xlim=(-reach, reach), ylim=(-reach, reach), aspect="equal", ylabel="y (mm)")
     side.set(xlim=(-reach, reach), ylim=(-1.6 * deep, 0.6 * deep), aspect="equal")
     side.set(xlabel="x (mm)")
-    side.set_yticks([])
-    side.spines["left"].set_visible(False)
-    for axes in (plan, side):
-        axes.grid(visible=False)
+    _without_height(plan, side)
     style.legend_below(plan, gap=0.02)
     return figure
 
 
-def _finger(axes: Axes, contact: float, y: float, label: str = "") -> None:
-    """The contact's outline (mm) about x = 0."""
+def _finger(axes: Axes, contact: float, y: float) -> None:
+    """The contact's outline (mm) about x = 0, named for a legend."""
     from matplotlib.patches import Rectangle
 
     corner = (-contact / 2, y - contact / 2)
-    axes.add_patch(
-        Rectangle(
-            corner,
-            contact,
-            contact,
-            facecolor="none",
-            edgecolor=style.ORANGE,
-            lw=2.2,
-            zorder=3,
-            label=label,
-        )
-    )
+    name = f"finger contact, {contact:.3g} mm × {contact:.3g} mm"
+    look: dict[str, Any] = {"facecolor": "none", "edgecolor": style.ORANGE, "lw": 2.2}
+    axes.add_patch(Rectangle(corner, contact, contact, **look, zorder=3, label=name))
 
 
 def _section(axes: Axes, plate: RectangularPlate, neutral: float) -> None:
     """The layers through the thickness, with the neutral axis."""
-    from matplotlib.patches import Rectangle
-
     thick, ceramic = 1e3 * plate.thickness, 1e3 * plate.ceramic_thickness
     axes.set_title("section, enlarged")
     for top, height, fill, name in (
         (0.0, thick, style.METAL, plate.substrate.name),
         (thick, ceramic, style.PLUS, plate.ceramic.name),
     ):
-        axes.add_patch(Rectangle((0, top), 1, height, facecolor=fill, edgecolor=style.INK, lw=1))
+        _box(axes, (0, top), 1, height, fill)
         # Named at the edge that the neutral axis is further from, so that it crosses no name.
         middle = top + height / 2
         at = middle - 0.22 * height if 1e3 * neutral > middle else middle + 0.22 * height
-        axes.text(
-            0.5,
-            at,
-            f"{style.plain(name, 16)}\n{height:.3g} mm",
-            ha="center",
-            va="center",
-            fontsize=8.5,
-            linespacing=1.1,
-        )
+        words = f"{style.plain(name, 16)}\n{height:.3g} mm"
+        axes.text(0.5, at, words, ha="center", va="center", fontsize=8.5, linespacing=1.1)
     axes.axhline(1e3 * neutral, color=style.ORANGE, lw=1.6, ls=(0, (5, 2)), label="neutral axis")
     axes.set(xlim=(0, 1), ylim=(1.04 * (thick + ceramic), -0.04 * (thick + ceramic)))
     axes.set(ylabel="depth below the touched face (mm)")
@@ -215,15 +183,9 @@ def _ring(ring: AnnularStator, analysis: Analysis) -> Figure:
     axes.annotate(
         "", (-radius, 0), (radius, 0), arrowprops={"arrowstyle": "<->", "color": style.INK, "lw": 1}
     )
-    axes.text(
-        0,
-        0.03 * outer,
-        f"mean diameter\n{2 * radius:.4g} mm",
-        ha="center",
-        va="bottom",
-        fontsize=9.5,
-    )
-    _explain_ring(axes, contact)
+    said = f"mean diameter\n{2 * radius:.4g} mm"
+    axes.text(0, 0.03 * outer, said, ha="center", va="bottom", fontsize=9.5)
+    _explain_ring(axes)
     reach = 1.06 * max(outer, radius + contact / 2)
     axes.set(xlim=(-reach, reach), ylim=(-1.06 * outer, reach), aspect="equal")
     axes.set(xlabel="x (mm)", ylabel="y (mm)")
@@ -239,14 +201,10 @@ def _half_waves(axes: Axes, count: int, radius: float, width: float) -> None:
         sign = 1 if number % 2 == 0 else -1
         draw_sector(axes, radius + width / 2, width, (angle - half, angle + half), sign)
         if count <= 60 and number:
-            axes.text(
-                (radius + width / 4) * math.cos(math.radians(angle)),
-                (radius + width / 4) * math.sin(math.radians(angle)),
-                _SIGN[sign],
-                ha="center",
-                va="center",
-                fontsize=float(np.clip(220 / count, 7, 14)),
-            )
+            place, turn = radius + width / 4, math.radians(angle)
+            x, y = place * math.cos(turn), place * math.sin(turn)
+            size = float(np.clip(220 / count, 7, 14))
+            axes.text(x, y, _SIGN[sign], ha="center", va="center", fontsize=size)
 
 
 def draw_sector(
@@ -255,50 +213,29 @@ def draw_sector(
     """A sector of one sign: its outer radius and width, in the axes' unit, its ends (degrees)."""
     from matplotlib.patches import Wedge
 
-    fill = FILL[sign]
-    axes.add_patch(
-        Wedge((0, 0), outer, *ends, width=width, facecolor=fill, edgecolor=style.INK, lw=0.8)
-    )
+    axes.add_patch(Wedge((0, 0), outer, *ends, width=width, facecolor=FILL[sign], **style.OUTLINED))
 
 
-def _explain_ring(axes: Axes, contact: float) -> None:
+def _explain_ring(axes: Axes) -> None:
+    """The signs, the lines and the finger in a legend beside the ring."""
     from matplotlib.patches import Patch
 
-    axes.legend(
-        handles=[
-            Patch(facecolor=style.PLUS, edgecolor=style.INK, label="+  half wave going up"),
-            Patch(facecolor=style.MINUS, edgecolor=style.INK, label="−  half wave going down"),
-            Patch(facecolor=style.PAPER, edgecolor=style.INK, label="lines between: nodal lines"),
-            Patch(
-                facecolor="none",
-                edgecolor=style.ORANGE,
-                lw=2,
-                label=f"finger contact, {contact:.3g} mm × {contact:.3g} mm",
-            ),
-        ],
-        loc="center left",
-        bbox_to_anchor=(1.04, 0.5),
-        frameon=False,
+    said = (
+        (style.PLUS, "+  half wave going up"),
+        (style.MINUS, "−  half wave going down"),
+        (style.PAPER, "lines between: nodal lines"),
     )
+    signs = [Patch(facecolor=fill, edgecolor=style.INK, label=name) for fill, name in said]
+    handles = [*signs, *axes.get_legend_handles_labels()[0]]
+    axes.legend(handles=handles, loc="center left", bbox_to_anchor=(1.04, 0.5), frameon=False)
 
 
 def drive_strip(axes: Axes, plate: RectangularPlate, reach: float) -> float:
     """The ceramics under the mode that they drive; the new bottom of the axes."""
-    from matplotlib.patches import Rectangle
-
     low, high = -1.62 * reach, -1.28 * reach
     for patch in plate.patches:
         x, dx = 1e3 * patch.x, 1e3 * patch.length
-        axes.add_patch(
-            Rectangle(
-                (x, low),
-                dx,
-                high - low,
-                facecolor=FILL[patch.polarity],
-                edgecolor=style.INK,
-                lw=0.8,
-            )
-        )
+        _box(axes, (x, low), dx, high - low, FILL[patch.polarity])
         if patch.length > 0.02 * plate.length:
             axes.text(x + dx / 2, (low + high) / 2, _SIGN[patch.polarity], ha="center", va="center")
     return -1.75 * reach

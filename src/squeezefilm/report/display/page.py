@@ -8,7 +8,8 @@ from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from squeezefilm import quantities as si
+import numpy as np
+
 from squeezefilm.report.kit.folder import json_text, require_folder, write_folder
 from squeezefilm.report.kit.numbers import (
     display_values,
@@ -16,10 +17,10 @@ from squeezefilm.report.kit.numbers import (
     key_numbers,
     models,
     printable,
-    shown,
+    theory_rows,
     unsaid_warnings,
 )
-from squeezefilm.report.kit.page_style import STYLE, html_table, section
+from squeezefilm.report.kit.page_style import bullets, html_table, page, section, stamped
 from squeezefilm.results import to_json
 
 if TYPE_CHECKING:
@@ -40,11 +41,11 @@ def write_analysis(
     """
     folder = require_folder(folder)
     summary = analysis.summary()
-    page = report_page(analysis, summary, progress)
+    whole = report_page(analysis, summary, progress)
     if progress is not None:
         progress("writing the report")
     data = json_text(result_data(analysis, summary))
-    write_folder(folder, {"result.json": data, "report.html": page})
+    write_folder(folder, {"result.json": data, "report.html": whole})
     return folder / "report.html"
 
 
@@ -69,17 +70,11 @@ def result_data(analysis: Analysis, summary: dict[str, Any]) -> dict[str, Any]:
 def _trace(trace: FrictionTrace) -> dict[str, Any]:
     """A trace with every so many samples only, and its sample rate changed to match."""
     every = -(-trace.time.size // _MOST_SAMPLES)
-    arrays = {
-        name: getattr(trace, name)[::every]
-        for name in (
-            "time",
-            "position",
-            "command",
-            "amplitude",
-            "relative_friction_wanted",
-            "relative_friction_rendered",
-        )
-    }
+    arrays: dict[str, Any] = {}
+    for field in dataclasses.fields(trace):
+        value = getattr(trace, field.name)
+        if isinstance(value, np.ndarray):
+            arrays[field.name] = value[::every]
     thin = dataclasses.replace(trace, sample_rate=trace.sample_rate / every, **arrays)
     data: dict[str, Any] = to_json(thin)
     return {**data, "kept_one_sample_in": every, "lag_m": trace.lag}
@@ -104,33 +99,16 @@ def report_page(
         section("Where the values come from", _provenance(analysis)),
     ]
     stamp = summary["provenance"]
-    return f"""<!DOCTYPE html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'; img-src data:">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<title>{name}: squeezefilm report</title>
-<style>{STYLE}</style>
-</head>
-<body>
-<header>
-<h1>{title}</h1>
-<p class="name"><code>{name}</code>, analysed by squeezefilm</p>
-</header>
-<main>
-{"".join(parts)}
-</main>
-<footer>
-<p>squeezefilm {escape(str(stamp["squeezefilm_version"]))} ·
-made <time datetime="{escape(str(stamp["created_utc"]))}">{escape(str(stamp["created_utc"]))}</time> (UTC) ·
-description SHA-256 <code>{escape(str(stamp["config_sha256"]))}</code> ·
-{"no random numbers" if stamp["seed"] is None else f"seed {escape(str(stamp['seed']))}"}.
-The numbers and curves are in <code>result.json</code> beside this page.</p>
-</footer>
-</body>
-</html>
-"""  # noqa: E501
+    seed = "no random numbers" if stamp["seed"] is None else f"seed {escape(str(stamp['seed']))}"
+    return page(
+        f"{name}: squeezefilm report",
+        title,
+        f"<code>{name}</code>, analysed by squeezefilm",
+        "".join(parts),
+        f"{stamped(stamp, 'description SHA-256')} ·\n{seed}.\n"
+        "The numbers and curves are in <code>result.json</code> beside this page.",
+        images="data:",
+    )
 
 
 def _verdict(analysis: Analysis) -> str:
@@ -193,11 +171,7 @@ def _validity(analysis: Analysis) -> str:
 
 
 def _warnings(analysis: Analysis) -> str:
-    texts = unsaid_warnings(analysis)
-    if not texts:
-        return "<p>None beyond the doubts of the verdict.</p>"
-    items = "".join(f"<li>{escape(printable(text))}</li>\n" for text in texts)
-    return f"<ul>\n{items}</ul>"
+    return bullets(unsaid_warnings(analysis), "None beyond the doubts of the verdict.")
 
 
 def _models(analysis: Analysis) -> str:
@@ -218,28 +192,7 @@ def _models(analysis: Analysis) -> str:
         )
     if not analysis.other_models:
         return used
-    p = analysis.prediction
-    made: list[tuple[str, float, float | None, float | None]] = [
-        (
-            p.mode.model + " (used)",
-            p.mode.resonance_frequency,
-            p.mode.half_wavelength,
-            p.vibration_amplitude,
-        )
-    ]
-    made += [
-        (other.model, other.resonance_frequency, other.half_wavelength, other.vibration_amplitude)
-        for other in analysis.other_models
-    ]
-    rows = [
-        (
-            f"<code>{escape(model)}</code>",
-            shown(frequency, si.Unit("Hz")),
-            "–" if half is None else shown(half, si.Unit("m")),
-            "–" if amplitude is None else shown(amplitude, si.Unit("m"), 3),
-        )
-        for model, frequency, half, amplitude in made
-    ]
+    rows = [(f"<code>{escape(row[0])}</code>", *row[1:]) for row in theory_rows(analysis)]
     others = html_table(
         "The same plate by other theories, each driven at its own resonance",
         ("Model", "Resonance", "Half wavelength", "Amplitude"),

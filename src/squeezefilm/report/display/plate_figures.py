@@ -42,7 +42,7 @@ def mode_shape(analysis: Analysis) -> Figure:
     y = size * w
     reach = float(np.max(np.abs(y)))
     for node in nodes:
-        axes.axvline(float(node), color=style.MUTED, lw=0.9, ls=(0, (2, 2)))
+        axes.axvline(float(node), **style.GUIDE)
     axes.fill_between(x, y, -y, color=style.BAND, lw=0)
     axes.plot(x, y, color=style.BLUE, label="one extreme of the vibration")
     axes.plot(x, -y, color=style.BLUE, lw=1.1, ls=(0, (4, 2)), label="half a period later")
@@ -93,14 +93,13 @@ def _around_the_ring(analysis: Analysis) -> _Drawn:
     waves = round(2 * math.pi * (actuator.mean_diameter / 2) / (2 * half))
     seen = min(3, waves)
     x = np.linspace(0, 2e3 * half * seen, 1201)
-    return _Drawn(
-        x,
-        np.sin(np.pi * x / (1e3 * half)),
-        1e3 * half * np.arange(2 * seen + 1, dtype=float),
+    w, nodes = np.sin(np.pi * x / (1e3 * half)), 1e3 * half * np.arange(2 * seen + 1, dtype=float)
+    title = (
         f"{seen} of the {waves} waves around the ring: a nodal line every "
-        f"{shown(half, M)}, where the surface stands still",
-        f"position along the mean circumference (mm), {seen} of {waves} waves",
+        f"{shown(half, M)}, where the surface stands still"
     )
+    along = f"position along the mean circumference (mm), {seen} of {waves} waves"
+    return _Drawn(x, w, nodes, title, along)
 
 
 def _label_nodes(axes: Axes, nodes: FloatArray) -> None:
@@ -108,12 +107,9 @@ def _label_nodes(axes: Axes, nodes: FloatArray) -> None:
     above = axes.secondary_xaxis("top")
     every = math.ceil(len(nodes) / _MOST_LABELS)
     marked = nodes[::every]
-    above.set_xticks(
-        marked, [f"{node:.1f}" for node in marked], rotation=90 if len(marked) > 14 else 0
-    )
-    above.set_xlabel(
-        "nodal lines at (mm)" if every == 1 else f"nodal lines at (mm), one in {every}"
-    )
+    turned = 90 if len(marked) > 14 else 0
+    above.set_xticks(marked, [f"{node:.1f}" for node in marked], rotation=turned)
+    above.set_xlabel("nodal lines at (mm)" + ("" if every == 1 else f", one in {every}"))
 
 
 def _half_wave_arrow(axes: Axes, nodes: FloatArray, height: float, half: float) -> None:
@@ -156,25 +152,11 @@ def frequency_response(analysis: Analysis) -> Figure:
     figure = style.new_figure(title, response.model, 4.3)
     axes = figure.subplots()
     if band is not None:
-        axes.axvspan(
-            *band,
-            color=style.BAND,
-            lw=0,
-            label=f"half-power band, {band[0]:.2f} to {band[1]:.2f} kHz (above 71 % of the peak)",
-        )
-    axes.plot(
-        f,
-        per_volt,
-        color=style.BLUE,
-        label=f"amplitude per volt, quality factor Q = {p.mode.quality_factor:.3g}",
-    )
-    axes.axvline(
-        1e-3 * p.mode.resonance_frequency,
-        color=style.INK,
-        lw=1,
-        ls=(0, (4, 2)),
-        label=f"resonance, {shown(p.mode.resonance_frequency, HZ)}",
-    )
+        name = f"half-power band, {band[0]:.2f} to {band[1]:.2f} kHz (above 71 % of the peak)"
+        axes.axvspan(*band, color=style.BAND, lw=0, label=name)
+    name = f"amplitude per volt, quality factor Q = {p.mode.quality_factor:.3g}"
+    axes.plot(f, per_volt, color=style.BLUE, label=name)
+    axes.axvline(1e-3 * p.mode.resonance_frequency, **style.LANDMARK, label=f"resonance, {at}")
     if p.voltage is not None and f[0] <= 1e-3 * p.frequency <= f[-1]:
         _mark_drive(axes, p, p.voltage, peak)
     axes.set(xlim=(float(f[0]), float(f[-1])), ylim=(0, 1.08 * peak if peak > 0 else 1))
@@ -197,18 +179,11 @@ def _lost_beside(p: Prediction) -> str:
 
 def _mark_drive(axes: Axes, p: Prediction, voltage: float, peak: float) -> None:
     """The working point; without a voltage (V) the amplitude per volt is the peak's (nm/V)."""
-    axes.plot(
-        [1e-3 * p.frequency],
-        [1e9 * p.vibration_amplitude / voltage if voltage else peak],
-        "o",
-        color=style.ORANGE,
-        ms=8,
-        mec=style.PAPER,
-        mew=1.2,
-        zorder=4,
-        label=f"drive: {shown(voltage, V)} at {shown(p.frequency, HZ)}, "
-        f"{shown(p.vibration_amplitude, M, 3)}",
-    )
+    height = 1e9 * p.vibration_amplitude / voltage if voltage else peak
+    amplitude = shown(p.vibration_amplitude, M, 3)
+    name = f"drive: {shown(voltage, V)} at {shown(p.frequency, HZ)}, {amplitude}"
+    look = {**style.ESTIMATE, "color": style.ORANGE, "ms": 8, "mew": 1.2}
+    axes.plot(1e-3 * p.frequency, height, **look, zorder=4, label=name)
 
 
 def half_power(frequency: FloatArray, amplitude: FloatArray) -> tuple[float, float] | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,9 +15,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from squeezefilm.analysis.analyze import Analysis
-    from squeezefilm.quantities import FloatArray
     from squeezefilm.render.fidelity.survival import FidelityTable
-    from squeezefilm.render.fidelity.trace import FrictionTrace
 
 _NOTHING = (
     "The amplitude at the working point changes no friction, so there is no texture to draw: raise "
@@ -49,25 +47,21 @@ def texture(analysis: Analysis) -> Figure:
     wide = (edge - 0.25 * period, edge + (_PERIODS_SHOWN - 0.25) * period)
     near = 0.5 * min(period, max(10 * trace.lag, 0.2 * period))
     close = (edge - 0.35 * near, edge + 1.65 * near)
+    pairs = (
+        (1e6 * trace.command, 1e6 * trace.amplitude),
+        (trace.relative_friction_wanted, trace.relative_friction_rendered),
+    )
     for column, (low, high) in enumerate((wide, close)):
-        _draw(grid[0][column], trace, 1e6 * trace.command, 1e6 * trace.amplitude, low, high)
-        _draw(
-            grid[1][column],
-            trace,
-            trace.relative_friction_wanted,
-            trace.relative_friction_rendered,
-            low,
-            high,
-        )
+        inside = np.flatnonzero((trace.position >= low) & (trace.position <= high))
+        inside = inside[:: max(1, inside.size // _MOST_POINTS)]
+        x = 1e3 * trace.position[inside]
+        for row, (wanted, rendered) in enumerate(pairs):
+            grid[row][column].plot(x, wanted[inside], **style.WANTED, label="wanted")
+            grid[row][column].plot(x, rendered[inside], **style.RENDERED, label="rendered")
         grid[1][column].set(xlim=(1e3 * low, 1e3 * high), xlabel="finger position (mm)")
+    late = f"lag τ·v = {shown(trace.lag, M, 2)}"
     for axes in (grid[0][1], grid[1][1]):
-        axes.axvspan(
-            1e3 * edge,
-            1e3 * (edge + trace.lag),
-            color=style.SKIN,
-            lw=0,
-            label=f"lag τ·v = {shown(trace.lag, M, 2)}",
-        )
+        axes.axvspan(1e3 * edge, 1e3 * (edge + trace.lag), color=style.SKIN, lw=0, label=late)
     grid[0][0].set(ylabel="amplitude (µm)", ylim=(0, None))
     grid[1][0].set(ylabel="relative friction µ′/µ")
     if np.ptp(trace.relative_friction_wanted) < 0.01:
@@ -75,24 +69,8 @@ def texture(analysis: Analysis) -> Figure:
         grid[1][0].set(ylim=(0, 1.05))
     grid[0][0].set_title(f"{_PERIODS_SHOWN:g} periods from the middle of the stroke")
     grid[0][1].set_title("one edge, enlarged")
-    handles, labels = grid[0][1].get_legend_handles_labels()
-    strip.legend(handles, labels, loc="center", ncols=3, frameon=False)
+    style.legend_in(strip, grid[0][1])
     return figure
-
-
-def _draw(
-    axes: Axes,
-    trace: FrictionTrace,
-    wanted: FloatArray,
-    rendered: FloatArray,
-    low: float,
-    high: float,
-) -> None:
-    inside = np.flatnonzero((trace.position >= low) & (trace.position <= high))
-    inside = inside[:: max(1, inside.size // _MOST_POINTS)]
-    x = 1e3 * trace.position[inside]
-    axes.plot(x, wanted[inside], color=style.ORANGE, lw=1.5, ls=(0, (6, 1.6)), label="wanted")
-    axes.plot(x, rendered[inside], color=style.BLUE, lw=1.9, label="rendered")
 
 
 @style.drawn
@@ -119,32 +97,19 @@ def fidelity(analysis: Analysis) -> Figure:
             _draw_cell(axes, table, row, column)
     axes.set(xlim=(-0.52, columns - 0.48), ylim=(rows - 0.5, -0.5))
     axes.set_yticks(range(rows), [f"{1e3 * period:g}" for period in table.spatial_periods])
-    axes.set_xticks(
-        range(columns),
-        [
-            f"{1e3 * speed:g}\nfinest {shown(float(finest), M, 2)}\nlag {shown(float(lag), M, 2)}"
-            for speed, finest, lag in zip(table.speeds, table.finest_period, table.lag, strict=True)
-        ],
-    )
+    columns_named = [
+        f"{1e3 * speed:g}\nfinest {shown(float(finest), M, 2)}\nlag {shown(float(lag), M, 2)}"
+        for speed, finest, lag in zip(table.speeds, table.finest_period, table.lag, strict=True)
+    ]
+    axes.set_xticks(range(columns), columns_named)
     axes.set(xlabel="finger speed (mm/s)", ylabel="spatial period (mm)")
-    axes.grid(visible=False)
-    axes.tick_params(length=0)
-    for side in ("left", "bottom"):
-        axes.spines[side].set_visible(False)
-    strip.legend(
-        handles=[
-            Patch(
-                facecolor="none",
-                edgecolor=style.INK,
-                lw=1.2,
-                label=f"✓ keeps {100 * table.kept:.0f} % of the amplitude's swing",
-            ),
-            Patch(facecolor="none", edgecolor=style.INK, lw=0.8, ls="--", label="✗ loses more"),
-        ],
-        loc="center",
-        ncols=2,
-        frameon=False,
-    )
+    style.bare(axes)
+    kept = f"✓ keeps {100 * table.kept:.0f} % of the amplitude's swing"
+    handles = [
+        Patch(facecolor="none", edgecolor=style.INK, lw=1.2, label=kept),
+        Patch(facecolor="none", edgecolor=style.INK, lw=0.8, ls="--", label="✗ loses more"),
+    ]
+    strip.legend(handles=handles, loc="center", ncols=2, frameon=False)
     return figure
 
 
@@ -158,17 +123,9 @@ def _draw_cell(axes: Axes, table: FidelityTable, row: int, column: int) -> None:
     share = float(table.amplitude_kept[row, column])
     survives = bool(table.amplitude_survives[row, column])
     fill = colors(share**3)
-    axes.add_patch(
-        Rectangle(
-            (column - 0.48, row - 0.46),
-            0.96,
-            0.92,
-            facecolor=fill,
-            edgecolor=style.INK,
-            lw=1.2 if survives else 0.8,
-            ls="-" if survives else (0, (3, 2)),
-        )
-    )
+    edge: dict[str, Any] = {"lw": 1.2, "ls": "-"} if survives else {"lw": 0.8, "ls": (0, (3, 2))}
+    corner = column - 0.48, row - 0.46
+    axes.add_patch(Rectangle(corner, 0.96, 0.92, facecolor=fill, edgecolor=style.INK, **edge))
     ink = "#ffffff" if _luminance(fill[:3]) < 0.2 else "#101820"
     words = f"{_percent(share, table.kept)}  {'✓' if survives else '✗'}"
     axes.text(column, row - 0.12, words, ha="center", va="center", color=ink, fontsize=12)

@@ -10,11 +10,11 @@ import numpy as np
 from squeezefilm.report.kit import style
 from squeezefilm.report.kit.folder import json_text, write_folder
 from squeezefilm.report.kit.numbers import M, N, shown
+from squeezefilm.report.kit.page_style import FigureOf, drawn_figures, picture_files
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
     from squeezefilm.analysis.analyze import Analysis
@@ -25,9 +25,9 @@ if TYPE_CHECKING:
     from squeezefilm.chain.prediction import Prediction
 
 _STYLES = {
-    "paper2008": (style.ORANGE, (0, (6, 1.6)), "paper's asymptote"),
-    "film-smooth": (style.GREEN, (0, (5, 1.5, 1, 1.5)), "smooth film, no ridges"),
-    "film-sealed": (style.PURPLE, (0, (1.4, 1.2)), "film under the paper's ridges, solved"),
+    "paper2008": (*style.LINES[1], "paper's asymptote"),
+    "film-smooth": (*style.LINES[2], "smooth film, no ridges"),
+    "film-sealed": (*style.LINES[3], "film under the paper's ridges, solved"),
 }
 _NAMES_OF_PARAMETERS = {
     "finger.asperities.reference_gap": "gap of the asperities",
@@ -37,53 +37,6 @@ _NAMES_OF_PARAMETERS = {
     "actuator.quality_factor": "quality factor",
     "skin_compliance": "softness of the pad",
 }
-
-
-def draw_models(
-    axes: Axes,
-    curves: tuple[ModelCurve, ...],
-    prediction: Prediction,
-    unsure: UncertainFriction | None,
-) -> None:
-    """Every model's µ′/µ against amplitude; partial levitation as a band between its limits."""
-    p = prediction
-    for curve in curves:
-        if curve.model not in _STYLES:
-            continue
-        color, dashes, name = _STYLES[curve.model]
-        axes.plot(
-            1e6 * curve.amplitude, curve.relative_friction, color=color, ls=dashes, label=name
-        )
-    own = next(c for c in curves if c.model == "partial-levitation")
-    tied = next(c for c in curves if c.model == "partial-levitation-one-gap")
-    stiff = np.interp(own.amplitude, tied.amplitude, tied.relative_friction)
-    axes.fill_between(
-        1e6 * own.amplitude,
-        stiff,
-        own.relative_friction,
-        color=style.BAND,
-        lw=0,
-        label="between a stiff pad (one mean gap) and a soft one",
-    )
-    axes.plot(
-        1e6 * own.amplitude,
-        own.relative_friction,
-        color=style.BLUE,
-        lw=2.4,
-        label="partial levitation, each ridge at its own balance",
-    )
-    at = 1e6 * p.vibration_amplitude
-    if unsure is not None:
-        low, high = unsure.interval
-        axes.plot([at, at], [low, high], color=style.INK, lw=1.6, zorder=4)
-        for end in (low, high):
-            axes.plot([at], [end], "_", color=style.INK, ms=11, mew=1.6, zorder=4)
-    words = f"{p.relative_friction:.2f}"
-    if unsure is not None:
-        words += f" ({unsure.interval[0]:.2f}–{unsure.interval[1]:.2f}, {unsure.level:.0%})"
-    style.mark(axes, at, p.relative_friction, 8, f"this display, {p.model}: {words}")
-    axes.set(xlim=(0, 1e6 * float(own.amplitude[-1])), ylim=(0, 1.04))
-    axes.set(xlabel="vibration amplitude, zero-to-peak (µm)", ylabel="relative friction µ′/µ")
 
 
 @style.drawn
@@ -101,6 +54,7 @@ def chain(analysis: Analysis) -> Figure:
 def _models(
     curves: tuple[ModelCurve, ...], p: Prediction, unsure: UncertainFriction | None
 ) -> Figure:
+    """Every model's µ′/µ against amplitude; partial levitation as a band between its limits."""
     said = f"µ′/µ = {p.relative_friction:.2f}" if unsure is None else unsure.sentence
     figure = style.new_figure(
         f"At {shown(p.vibration_amplitude, M, 3)} on {style.plain(p.surface.name, 20)} {said}: the "
@@ -109,7 +63,27 @@ def _models(
         5.4,
     )
     axes = figure.subplots()
-    draw_models(axes, curves, p, unsure)
+    for curve in curves:
+        if curve.model in _STYLES:
+            color, dashes, name = _STYLES[curve.model]
+            x = 1e6 * curve.amplitude
+            axes.plot(x, curve.relative_friction, color=color, ls=dashes, label=name)
+    own = next(c for c in curves if c.model == "partial-levitation")
+    tied = next(c for c in curves if c.model == "partial-levitation-one-gap")
+    stiff = np.interp(own.amplitude, tied.amplitude, tied.relative_friction)
+    x, name = 1e6 * own.amplitude, "between a stiff pad (one mean gap) and a soft one"
+    axes.fill_between(x, stiff, own.relative_friction, color=style.BAND, lw=0, label=name)
+    name = "partial levitation, each ridge at its own balance"
+    axes.plot(x, own.relative_friction, color=style.BLUE, lw=2.4, label=name)
+    at, words = 1e6 * p.vibration_amplitude, f"{p.relative_friction:.2f}"
+    if unsure is not None:
+        low, high = unsure.interval
+        axes.plot([at, at], [low, high], color=style.INK, lw=1.6, zorder=4)
+        for end in (low, high):
+            axes.plot([at], [end], "_", color=style.INK, ms=11, mew=1.6, zorder=4)
+        words += f" ({low:.2f}–{high:.2f}, {unsure.level:.0%})"
+    style.mark(axes, at, p.relative_friction, 8, f"this display, {p.model}: {words}")
+    style.friction_axes(axes, float(x[-1]))
     style.legend_below(axes, columns=2)
     return figure
 
@@ -118,13 +92,10 @@ def _models(
 def predictions(found: Sequence[Prediction]) -> Figure:
     """Predicted friction against amplitude: each law, and on it the working points."""
     first = found[0]
-    said = (
-        f"µ′/µ = {first.relative_friction:.2f} at {shown(first.vibration_amplitude, M, 3)}"
-        if len(found) == 1
-        else f"{len(found)} predictions: µ′/µ from "
-        f"{min(one.relative_friction for one in found):.2f} to "
-        f"{max(one.relative_friction for one in found):.2f}"
-    )
+    said = f"µ′/µ = {first.relative_friction:.2f} at {shown(first.vibration_amplitude, M, 3)}"
+    if len(found) > 1:
+        frictions = [one.relative_friction for one in found]
+        said = f"{len(found)} predictions: µ′/µ from {min(frictions):.2f} to {max(frictions):.2f}"
     figure = style.new_figure(said, ", ".join(dict.fromkeys(one.model for one in found)), 4.4)
     axes = figure.subplots()
     reach: dict[FrictionLaw, float] = {}
@@ -136,8 +107,7 @@ def predictions(found: Sequence[Prediction]) -> Figure:
         axes.plot(1e6 * table.amplitude, table.relative_friction, color=color, ls=dashes)
     for one in found:
         style.mark(axes, 1e6 * one.vibration_amplitude, one.relative_friction, 7)
-    axes.set(xlim=(0, None), ylim=(0, 1.04))
-    axes.set(xlabel="vibration amplitude, zero-to-peak (µm)", ylabel="relative friction µ′/µ")
+    style.friction_axes(axes)
     return figure
 
 
@@ -154,26 +124,13 @@ def friction_map(result: FrictionAnalysis) -> Figure:
     )
     axes = figure.subplots()
     levels = np.linspace(0, 1, 11)
-    filled = axes.contourf(
-        1e6 * found.amplitude,
-        found.normal_force,
-        found.relative_friction,
-        levels=levels,
-        cmap="cividis",
-    )
-    lines = axes.contour(
-        1e6 * found.amplitude,
-        found.normal_force,
-        found.relative_friction,
-        levels=levels[1:-1:2],
-        colors=style.PAPER,
-        linewidths=1.0,
-    )
+    surface = 1e6 * found.amplitude, found.normal_force, found.relative_friction
+    filled = axes.contourf(*surface, levels=levels, cmap="cividis")
+    lines = axes.contour(*surface, levels=levels[1:-1:2], colors=style.PAPER, linewidths=1.0)
     axes.clabel(lines, fmt=lambda v: f"{v:.1f}", fontsize=9)
     here = 1e6 * p.vibration_amplitude, p.normal_force
     style.mark(axes, *here, 9, "this display", color=style.ORANGE, clip_on=True)
-    bar = figure.colorbar(filled, ax=axes, label="relative friction µ′/µ")
-    bar.outline.set_edgecolor(style.MUTED)
+    figure.colorbar(filled, ax=axes, label="relative friction µ′/µ")
     axes.set(yscale="log", xlabel="vibration amplitude, zero-to-peak (µm)")
     axes.set(ylabel="normal force (N)")
     style.plain_log(axes.yaxis)
@@ -196,29 +153,18 @@ def uncertainty(result: FrictionAnalysis) -> Figure:
     left, right = figure.subplots(1, 2, width_ratios=[1, 1.15])
     left.hist(unsure.samples, bins=24, range=(0, 1), color=style.BLUE, alpha=0.85)
     left.axvspan(low, high, color=style.BAND, zorder=0, label=f"{unsure.level:.0%} interval")
-    left.axvline(
-        unsure.nominal, color=style.INK, lw=1.6, label=f"as described: {unsure.nominal:.2f}"
-    )
+    name = f"as described: {unsure.nominal:.2f}"
+    left.axvline(unsure.nominal, color=style.INK, lw=1.6, label=name)
     left.set(xlabel="relative friction µ′/µ", ylabel="samples", xlim=(0, 1))
     style.legend_below(left, columns=1)
     ranked = unsure.influences[:8][::-1]
     rows = np.arange(len(ranked))
-    right.barh(
-        rows,
-        [100 * max(i.total, 0) for i in ranked],
-        color=style.BAND,
-        edgecolor=style.MUTED,
-        xerr=[100 * i.total_error for i in ranked],
-        ecolor=style.MUTED,
-        label="with all its company",
-    )
-    right.barh(
-        rows,
-        [100 * max(i.first_order, 0) for i in ranked],
-        height=0.4,
-        color=style.ORANGE,
-        label="alone",
-    )
+    whole = [100 * max(i.total, 0) for i in ranked]
+    alone = [100 * max(i.first_order, 0) for i in ranked]
+    errors = [100 * i.total_error for i in ranked]
+    company = "with all its company"
+    right.barh(rows, whole, xerr=errors, ecolor=style.MUTED, label=company, **style.BARS)
+    right.barh(rows, alone, height=0.4, color=style.ORANGE, label="alone")
     right.set_yticks(rows, [_name(i.parameter.path) for i in ranked])
     right.set(xlabel="share of the variance of µ′/µ (%)", xlim=(0, None))
     right.grid(visible=False, axis="y")
@@ -242,17 +188,10 @@ def ripple(result: FrictionAnalysis) -> Figure:
     )
     axes = figure.subplots()
     axes.plot(1e3 * x, y, color=style.BLUE, label="relative friction of the whole pad")
-    axes.axhline(
-        found.mean, color=style.MUTED, ls=(0, (4, 2)), lw=1.2, label=f"mean {found.mean:.2f}"
-    )
+    axes.axhline(found.mean, **style.REFERENCE, label=f"mean {found.mean:.2f}")
     for node in (0.5 * half, 1.5 * half):
-        axes.axvline(
-            1e3 * node,
-            color=style.INK,
-            lw=0.9,
-            ls=(0, (1, 2)),
-            label="nodal lines" if node < half else None,
-        )
+        name = "nodal lines" if node < half else None
+        axes.axvline(1e3 * node, color=style.INK, lw=0.9, ls=(0, (1, 2)), label=name)
     axes.set(xlabel="centre of the pad, from an antinode (mm)", ylabel="relative friction µ′/µ")
     axes.set(xlim=(0, 2e3 * half), ylim=(0, 1.04))
     style.legend_below(axes)
@@ -265,6 +204,14 @@ def _name(path: str) -> str:
     return _NAMES_OF_PARAMETERS.get(path, path.split(".", 1)[-1].replace("_", " "))
 
 
+FIGURES = (
+    FigureOf("models", "Friction by every model", models),
+    FigureOf("map", "Friction over amplitude and force", friction_map),
+    FigureOf("uncertainty", "How sure it is", uncertainty, has=lambda one: one.uncertainty),
+    FigureOf("ripple", "The standing wave", ripple, has=lambda one: one.ripple),
+)
+
+
 def write_friction(result: FrictionAnalysis, folder: Path) -> Path:
     """Write friction.json, and the figures as PNG, into `folder`; the folder."""
     summary = result.summary()
@@ -274,14 +221,6 @@ def write_friction(result: FrictionAnalysis, folder: Path) -> Path:
         "normal_force_N": found.normal_force,
         "relative_friction": found.relative_friction,
     }
-    files: dict[str, str | bytes] = {
-        "friction.json": json_text(summary),
-        "friction-models.png": style.png(models(result)),
-        "friction-map.png": style.png(friction_map(result)),
-    }
-    if result.uncertainty is not None:
-        files["friction-uncertainty.png"] = style.png(uncertainty(result))
-    if result.ripple is not None:
-        files["friction-ripple.png"] = style.png(ripple(result))
-    write_folder(folder, files)
+    pictures = picture_files(drawn_figures(FIGURES, result, "friction-"))
+    write_folder(folder, {"friction.json": json_text(summary), **pictures})
     return folder

@@ -91,29 +91,15 @@ def _friction_rows(result: FrictionAnalysis) -> list[tuple[str, str, str]]:
     ]
     if p.relative_friction_limits is not None:
         own, tied = p.relative_friction_limits
-        rows.append(
-            (
-                "A softer, a stiffer pad",
-                f"{own:.3f}, {tied:.3f}",
-                "each ridge at its own balance, all at one mean gap",
-            )
-        )
-    if result.ripple is not None:
-        rows.append(
-            (
-                "Ripple of the wave",
-                f"{100 * result.ripple.ripple:.2g} %",
-                f"every {shown(result.ripple.half_wavelength, M, 3)}, at constant amplitude",
-            )
-        )
-    if result.wanted is not None:
-        rows.append(
-            (
-                f"For µ′/µ = {result.wanted.relative_friction:.3g}",
-                shown(result.wanted.voltage, V, 3),
-                shown(result.wanted.vibration_amplitude, M, 3),
-            )
-        )
+        balance = "each ridge at its own balance, all at one mean gap"
+        rows.append(("A softer, a stiffer pad", f"{own:.3f}, {tied:.3f}", balance))
+    if (wave := result.ripple) is not None:
+        remark = f"every {shown(wave.half_wavelength, M, 3)}, at constant amplitude"
+        rows.append(("Ripple of the wave", f"{100 * wave.ripple:.2g} %", remark))
+    if (wanted := result.wanted) is not None:
+        amplitude = shown(wanted.vibration_amplitude, M, 3)
+        label = f"For µ′/µ = {wanted.relative_friction:.3g}"
+        rows.append((label, shown(wanted.voltage, V, 3), amplitude))
     return rows
 
 

@@ -144,6 +144,30 @@ def models(analysis: Analysis) -> list[tuple[str, str]]:
     return rows
 
 
+def theory_rows(analysis: Analysis) -> list[tuple[str, str, str, str]]:
+    """Model, resonance, half wavelength and amplitude: as used, then by each other theory."""
+    p = analysis.prediction
+    used = (
+        p.mode.model + " (used)",
+        p.mode.resonance_frequency,
+        p.mode.half_wavelength,
+        p.vibration_amplitude,
+    )
+    others = [
+        (other.model, other.resonance_frequency, other.half_wavelength, other.vibration_amplitude)
+        for other in analysis.other_models
+    ]
+    return [
+        (
+            model,
+            shown(frequency, HZ),
+            "–" if half is None else shown(half, M),
+            "–" if amplitude is None else shown(amplitude, M, 3),
+        )
+        for model, frequency, half, amplitude in (used, *others)
+    ]
+
+
 def unsaid_warnings(analysis: Analysis) -> list[str]:
     """The warnings that the verdict does not already say word for word."""
     said = {finding.text for finding in analysis.verdict}
@@ -163,14 +187,8 @@ def display_values(display: Display) -> list[Value]:
             text = shown(value, unit, 6) if unit is not None else f"{value}"
         else:
             text = str(value)
-        rows.append(
-            Value(
-                dotted(path),
-                text,
-                "" if origin is None else origin.source,
-                "" if origin is None else origin.evidence,
-            )
-        )
+        source, evidence = ("", "") if origin is None else (origin.source, origin.evidence)
+        rows.append(Value(dotted(path), text, source, evidence))
     return rows
 
 
@@ -209,29 +227,20 @@ def lag_rows(judged: FidelityReport, what: str = "Lag") -> list[tuple[str, str, 
     if not math.isfinite(judged.lag):
         return []
     word = "behind" if judged.lag >= 0 else "ahead of"
-    return [
-        (
-            what,
-            f"{1e3 * judged.lag:.3f} mm",
-            f"{word} the finger, {shown(abs(judged.lag_time), S, 2)} at "
-            f"{1e3 * judged.mean_speed:.3g} mm/s",
-        )
-    ]
+    late = f"{shown(abs(judged.lag_time), S, 2)} at {1e3 * judged.mean_speed:.3g} mm/s"
+    return [(what, f"{1e3 * judged.lag:.3f} mm", f"{word} the finger, {late}")]
 
 
 def film_rows(analysis: Analysis) -> list[tuple[str, str, str, str]]:
     """Model, over-pressure with its error, share of the finger carried, relative friction."""
     if analysis.film_models is None:
         return []
-    return [
-        (item.model, "not solved", "–", "–")
-        if not math.isfinite(item.over_pressure)
-        else (
-            item.model,
-            f"{item.over_pressure:.3g}"
-            + (f" ± {item.over_pressure_error:.1g}" if item.over_pressure_error else ""),
-            f"{100 * item.load_share:.3g} %",
-            f"{item.relative_friction:.3f}",
-        )
-        for item in analysis.film_models.results
-    ]
+    rows: list[tuple[str, str, str, str]] = []
+    for item in analysis.film_models.results:
+        said = ("not solved", "–", "–")
+        if math.isfinite(item.over_pressure):
+            error = f" ± {item.over_pressure_error:.1g}" if item.over_pressure_error else ""
+            carried = f"{100 * item.load_share:.3g} %"
+            said = f"{item.over_pressure:.3g}{error}", carried, f"{item.relative_friction:.3f}"
+        rows.append((item.model, *said))
+    return rows

@@ -5,10 +5,11 @@ No file and no font comes from elsewhere.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from html import escape
 from itertools import zip_longest
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from squeezefilm.report.kit import style
 from squeezefilm.report.kit.numbers import printable
@@ -69,12 +70,14 @@ footer {{ font-size: .9rem; padding-bottom: 2rem; }}
 """
 
 
-def page_head(title: str) -> str:
-    """A page with pictures beside it, from its first line to the opening of its body.
+def page_head(title: str, images: str = "'self' file:") -> str:
+    """A page from its first line to the opening of its body.
 
-    `title` is HTML already. Scripts and anything from elsewhere are refused by its policy.
+    `title` is HTML already, `images` says where pictures may be from: beside the page, "data:", or
+    "" for nowhere. Scripts and anything from elsewhere are refused by its policy.
     """
-    policy = "default-src 'none'; style-src 'unsafe-inline'; img-src 'self' file:"
+    policy = "default-src 'none'; style-src 'unsafe-inline'"
+    policy += f"; img-src {images}" if images else ""
     return f"""<!DOCTYPE html>
 <html lang="en">
 <head>
@@ -88,10 +91,86 @@ figure img {{ display: block; width: 100%; height: auto; background: #fff; }}</s
 <body>"""
 
 
+def page(
+    window: str, title: str, name: str, body: str, foot: str, images: str = "'self' file:"
+) -> str:
+    """A whole page, of HTML already: the title of its window, its own, a line below that, its
+    sections, its last lines. `images` as in `page_head`.
+    """
+    return f"""{page_head(window, images)}
+<header><h1>{title}</h1>
+<p class="name">{name}</p></header>
+<main>
+{body}</main>
+<footer><p>{foot}</p></footer>
+</body>
+</html>
+"""
+
+
+def stamped(stamp: Mapping[str, Any], digest: str, made: str = "made") -> str:
+    """Which version made a page's numbers and when, and the digest of what, `digest` in words."""
+    version, when, code = (
+        escape(str(stamp.get(key, "")))
+        for key in ("squeezefilm_version", "created_utc", "config_sha256")
+    )
+    return f"squeezefilm {version} ·\n{made} {when} (UTC) ·\n{digest} <code>{code}</code>"
+
+
+def bullets(texts: Iterable[str], none: str = "None.") -> str:
+    """A list of plain texts; `none` where there is none."""
+    items = "".join(f"<li>{_plain(text)}</li>" for text in texts)
+    return f"<ul>{items or f'<li>{none}</li>'}</ul>"
+
+
+def links(names: Iterable[str]) -> str:
+    """The files of these names beside the page."""
+    return ", ".join(f'<a href="{escape(name)}">{escape(name)}</a>' for name in names)
+
+
 def section(heading: str, body: str, kind: str = "") -> str:
     """A section of a class; heading and body are HTML already."""
     attribute = f' class="{kind}"' if kind else ""
     return f"<section{attribute}>\n<h2>{heading}</h2>\n{body}\n</section>\n"
+
+
+def _always(_: Any) -> bool:
+    """Every result has the figure."""
+    return True
+
+
+@dataclass(frozen=True)
+class FigureOf:
+    """A figure of one type of result: its key, its heading on a page, what draws it.
+
+    Attributes:
+        reading: how it is read.
+        file: its name beside a page, where that is not its key.
+        has: true of a result that has it; of every one, unless said.
+    """
+
+    key: str
+    heading: str
+    draw: Callable[[Any], Figure]
+    reading: str = ""
+    file: str = ""
+    has: Callable[[Any], object] = _always
+
+
+def drawn_figures(
+    figures: Iterable[FigureOf], result: Any, prefix: str = ""
+) -> dict[str, tuple[str, Figure]]:
+    """The figures that a result has by the name of their file: heading and drawing."""
+    return {
+        prefix + (one.file or one.key): (one.heading, one.draw(result))
+        for one in figures
+        if one.has(result)
+    }
+
+
+def picture_files(figures: Mapping[str, tuple[str, Figure]]) -> dict[str, str | bytes]:
+    """The pictures NAME.png that `picture_sections` shows."""
+    return {f"{name}.png": style.png(figure) for name, (_, figure) in figures.items()}
 
 
 def picture_sections(figures: Mapping[str, tuple[str, Figure]]) -> str:
@@ -107,18 +186,11 @@ def picture_sections(figures: Mapping[str, tuple[str, Figure]]) -> str:
 
 
 def html_table(
-    caption: str,
-    head: Iterable[str],
-    rows: Iterable[Sequence[str]],
-    *,
-    kinds: Iterable[str] = (),
-    label: str = "",
-    between: str = "\n",
+    caption: str, head: Iterable[str], rows: Iterable[Sequence[str]], *, kinds: Iterable[str] = ()
 ) -> str:
     """A table of cells that are HTML already; the first cell of a row heads it.
 
-    `kinds` are the rows' classes; `label` is read out in the caption's place, `between` stands
-    between head and body.
+    `kinds` are the rows' classes.
     """
     columns = "".join(f'<th scope="col">{cell}</th>' for cell in head)
     lines = "\n".join(
@@ -128,8 +200,8 @@ def html_table(
         for cells, kind in zip_longest(rows, kinds, fillvalue="")
     )
     return (
-        f'<div class="scroll" tabindex="0" role="region" aria-label="{label or caption}"><table>'
-        f"<caption>{caption}</caption><thead><tr>{columns}</tr></thead>{between}"
+        f'<div class="scroll" tabindex="0" role="region" aria-label="{caption}"><table>'
+        f"<caption>{caption}</caption><thead><tr>{columns}</tr></thead>\n"
         f"<tbody>\n{lines}\n</tbody></table></div>"
     )
 

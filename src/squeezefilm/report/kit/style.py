@@ -11,16 +11,20 @@ import io
 import re
 import textwrap
 import unicodedata
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import AbstractContextManager
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
 if TYPE_CHECKING:
+    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.axis import Axis
     from matplotlib.figure import Figure
+    from matplotlib.image import AxesImage
+
+    from squeezefilm.quantities import FloatArray
 
 _A = TypeVar("_A")
 
@@ -56,6 +60,18 @@ LINES: tuple[tuple[str, str | tuple[int, tuple[float, ...]]], ...] = (
     (GREEN, (0, (5, 1.5, 1, 1.5))),
     (PURPLE, (0, (1.4, 1.2))),
 )
+# Looks of lines and points that figures share: `axes.plot(x, y, **style.WANTED)`.
+WANTED: dict[str, Any] = {"color": ORANGE, "lw": 1.5, "ls": LINES[1][1]}
+RENDERED: dict[str, Any] = {"color": BLUE, "lw": 1.7}
+REFERENCE: dict[str, Any] = {"color": MUTED, "lw": 1.2, "ls": (0, (2, 2))}
+GUIDE: dict[str, Any] = {"color": MUTED, "lw": 0.8, "ls": (0, (1.4, 1.2))}
+ZERO: dict[str, Any] = {"color": MUTED, "lw": 0.8}
+LANDMARK: dict[str, Any] = {"color": INK, "lw": 1, "ls": (0, (4, 2))}
+ESTIMATE: dict[str, Any] = {"color": BLUE, "marker": "o", "ls": "", "ms": 7, "mec": PAPER}
+INTERVAL: dict[str, Any] = {"color": MUTED, "lw": 1.4}
+OUTLINED: dict[str, Any] = {"edgecolor": INK, "lw": 0.8}
+SLANTED: dict[str, Any] = {"fontsize": 9, "rotation": 35, "va": "bottom"}
+BARS: dict[str, Any] = {"color": BAND, "edgecolor": MUTED}
 
 _RC: dict[str, Any] = {
     "font.family": "DejaVu Sans",  # comes with matplotlib: the same on every machine
@@ -156,17 +172,80 @@ def message_figure(title: str, message: str) -> Figure:
     return figure
 
 
-def plain_log(axis: Axis) -> None:
-    """Plain numbers along a logarithmic axis: the style reads no mathematics in texts."""
+def plain_log(*axes: Axis) -> None:
+    """Plain numbers along logarithmic axes: the style reads no mathematics in texts."""
     from matplotlib.ticker import FuncFormatter, NullFormatter
 
-    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    axis.set_minor_formatter(NullFormatter())
+    for axis in axes:
+        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+        axis.set_minor_formatter(NullFormatter())
 
 
-def legend_below(axes: Axes, columns: int = 2, gap: float = 0.16) -> None:
-    """A legend under the axes, where it can hide no curve; `gap` in heights of the axes."""
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -gap), ncols=columns, frameon=False)
+def friction_axes(axes: Axes, right: float | None = None, top: float = 1.04) -> None:
+    """Axes of relative friction, up to `top`, over amplitude, up to `right` (µm)."""
+    axes.set(xlim=(0, right), ylim=(0, top))
+    axes.set(xlabel="vibration amplitude, zero-to-peak (µm)", ylabel="relative friction µ′/µ")
+
+
+def bare(axes: Axes) -> None:
+    """Axes of a table of cells: no grid, no ticks, no spines."""
+    axes.grid(visible=False)
+    axes.tick_params(length=0)
+    axes.spines[:].set_visible(False)
+
+
+def estimates(axes: Axes, values: Iterable[tuple[float, float, float]]) -> None:
+    """A point with its interval at 0, 1, …: value, low, high."""
+    for x, (value, low, high) in enumerate(values):
+        axes.plot([x, x], [low, high], **INTERVAL)
+        axes.plot([x], [value], **ESTIMATE)
+
+
+def seen_from_above(
+    axes: Axes, values: FloatArray, low: tuple[float, float], high: tuple[float, float]
+) -> AxesImage:
+    """Values over a rectangle between two corners (m), shape (y, x), as an image."""
+    (left, bottom), (right, top) = low, high
+    ends = (1e3 * left, 1e3 * right, 1e3 * bottom, 1e3 * top)
+    axes.grid(visible=False)
+    axes.set(xlabel="x (mm)", ylabel="y (mm)")
+    return axes.imshow(values, extent=ends, origin="lower", cmap="cividis", interpolation="nearest")
+
+
+def motion_field(axes: Axes, x: FloatArray, y: FloatArray, w: FloatArray, **bar: Any) -> None:
+    """Displacement over a face in two colours, nodal lines in black; `bar` as for its colorbar."""
+    from matplotlib.ticker import MaxNLocator
+
+    reach = float(np.max(np.abs(w)))
+    field = axes.contourf(x, y, w, levels=np.linspace(-reach, reach, 21), cmap="RdBu_r")
+    axes.contour(x, y, w, levels=[0.0], colors=INK, linewidths=1.2)
+    ticks = MaxNLocator(nbins=6, symmetric=True)
+    axes.figure.colorbar(field, ax=axes, ticks=ticks, **bar)
+
+
+def legend_below(
+    axes: Axes, columns: int = 2, gap: float = 0.16, handles: Sequence[Artist] | None = None
+) -> None:
+    """A legend under the axes, where it can hide no curve; `gap` in heights of the axes. `handles`
+    are what it names, where that is not all that the axes have."""
+    axes.legend(
+        handles=axes.get_legend_handles_labels()[0] if handles is None else handles,
+        loc="upper center",
+        bbox_to_anchor=(0.5, -gap),
+        ncols=columns,
+        frameon=False,
+    )
+
+
+def legend_beside(axes: Axes) -> None:
+    """A legend to the right of the axes, from their top down."""
+    axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False)
+
+
+def legend_in(strip: Axes, drawn_in: Axes, columns: int = 3) -> None:
+    """The legend of some axes in an empty strip of the figure."""
+    handles, labels = drawn_in.get_legend_handles_labels()
+    strip.legend(handles, labels, loc="center", ncols=columns, frameon=False)
 
 
 def mark(
@@ -200,25 +279,17 @@ def pairs_of_axes(figure: Figure) -> tuple[Any, Axes]:
     the small print.
     """
     grid = figure.add_gridspec(3, 2, width_ratios=[2.2, 1], height_ratios=[1, 1, 0.09])
-    rows: list[list[Axes]] = []
-    for row in range(2):
-        line: list[Axes] = []
-        for column in range(2):
-            line.append(
-                figure.add_subplot(
-                    grid[row, column],
-                    sharex=rows[0][column] if rows else None,
-                    sharey=line[0] if line else None,
-                )
-            )
-        rows.append(line)
-    for axes in rows[0]:
+    left = figure.add_subplot(grid[0, 0])
+    right = figure.add_subplot(grid[0, 1], sharey=left)
+    below = figure.add_subplot(grid[1, 0], sharex=left)
+    last = figure.add_subplot(grid[1, 1], sharex=right, sharey=below)
+    for axes in (left, right):
         axes.tick_params(labelbottom=False)
-    for line in rows:
-        line[1].tick_params(labelleft=False)
+    for axes in (right, last):
+        axes.tick_params(labelleft=False)
     strip = figure.add_subplot(grid[2, :])
     strip.set_axis_off()
-    return rows, strip
+    return ((left, right), (below, last)), strip
 
 
 @functools.cache

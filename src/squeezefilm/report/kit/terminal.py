@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import sys
 import tomllib
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
+from squeezefilm import quantities as si
 from squeezefilm.report.kit.numbers import (
     dotted,
     film_rows,
@@ -16,6 +18,7 @@ from squeezefilm.report.kit.numbers import (
     models,
     printable,
     shown,
+    theory_rows,
     unsaid_warnings,
 )
 
@@ -106,6 +109,22 @@ def heading(console: Console, text: str) -> None:
     console.print(Text(printable(text), style="bold"))
 
 
+def show_rows(
+    title: str,
+    rows: Iterable[Sequence[str]],
+    warnings: Iterable[str] = (),
+    *,
+    fixed: Iterable[int] = (0,),
+) -> Console:
+    """Print a heading, rows of quantity, value and remark, and warnings; the console to go on."""
+    console = plain_console()
+    heading(console, title)
+    table(console, ("", "", ""), rows, fixed=fixed)
+    for text in warnings:
+        console.print(f"! {text}")
+    return console
+
+
 def _bullets(console: Console, items: Iterable[tuple[str, str, str]]) -> None:
     """Wrapped sentences, each behind a word that says what kind it is."""
     from rich.table import Table
@@ -121,29 +140,14 @@ def _bullets(console: Console, items: Iterable[tuple[str, str, str]]) -> None:
 
 def show_analysis(analysis: Analysis) -> None:
     """Print an analysis: verdict last, where the eye rests, after numbers, models and warnings."""
-    console = plain_console()
-    heading(console, f"{analysis.display.title} [{analysis.display.name}]")
-    table(console, ("", "", ""), key_numbers(analysis), fixed=(0,))
+    display = analysis.display
+    console = show_rows(f"{display.title} [{display.name}]", key_numbers(analysis))
     heading(console, "Models")
     table(console, ("", ""), models(analysis), fixed=(0,))
     if analysis.other_models:
-        from squeezefilm.quantities import Unit
-
         heading(console, "The same plate by other theories")
-        table(
-            console,
-            ("model", "resonance", "amplitude"),
-            [
-                (
-                    other.model,
-                    shown(other.resonance_frequency, Unit("Hz")),
-                    "–"
-                    if other.vibration_amplitude is None
-                    else shown(other.vibration_amplitude, Unit("m"), 3),
-                )
-                for other in analysis.other_models
-            ],
-        )
+        others = [(model, at, amplitude) for model, at, _, amplitude in theory_rows(analysis)[1:]]
+        table(console, ("model", "resonance", "amplitude"), others)
     if films := film_rows(analysis):
         heading(console, "The film under the finger, drawn in five ways")
         table(console, ("model", "over-pressure", "carries", "µ′/µ"), films)
@@ -152,10 +156,8 @@ def show_analysis(analysis: Analysis) -> None:
         heading(console, "Warnings")
         _bullets(console, [("!", text, "yellow") for text in warned])
     heading(console, "Verdict")
-    _bullets(
-        console,
-        [(_KINDS[item.kind], item.text, _STYLES[item.kind]) for item in analysis.verdict],
-    )
+    verdict = [(_KINDS[item.kind], item.text, _STYLES[item.kind]) for item in analysis.verdict]
+    _bullets(console, verdict)
     console.print()
 
 
@@ -186,34 +188,23 @@ def show_claims(result: Reproduction) -> None:
     heading(console, "Where and why")
     for item in result.results:
         heading(console, f"{item.claim.id}: {item.verdict}")
-        _bullets(
-            console,
-            [
-                ("", f"{item.claim.where}: {item.claim.statement}", ""),
-                ("", f"why: {item.claim.why}", ""),
-                *([("", item.note, "")] if item.note else []),
-            ],
-        )
+        said = [f"{item.claim.where}: {item.claim.statement}", f"why: {item.claim.why}"]
+        said += [item.note] if item.note else []
+        _bullets(console, [("", text, "") for text in said])
     if result.errata:
         heading(console, "Errata of the paper")
-        _bullets(
-            console,
-            [
-                (one.equation, f"{one.printed}  must be  {one.corrected}: {one.why}", "")
-                for one in result.errata
-            ],
-        )
-    counts: dict[str, int] = {}
-    for item in result.results:
-        counts[item.verdict] = counts.get(item.verdict, 0) + 1
+        errata = [
+            (one.equation, f"{one.printed}  must be  {one.corrected}: {one.why}", "")
+            for one in result.errata
+        ]
+        _bullets(console, errata)
+    counts = Counter(item.verdict for item in result.results)
     total = ", ".join(f"{count} {verdict}" for verdict, count in counts.items())
     heading(console, f"{len(result.results)} claims: {total}")
 
 
 def _values(values: Iterable[float], unit: str, sign: str = "") -> str:
-    from squeezefilm.quantities import Unit
-
-    return "\n".join(sign + shown(value, Unit(unit)) for value in values)
+    return "\n".join(sign + shown(value, si.Unit(unit)) for value in values)
 
 
 def preset_list() -> list[dict[str, Any]]:
@@ -240,19 +231,11 @@ def preset_list() -> list[dict[str, Any]]:
 def show_presets(listing: Sequence[dict[str, Any]]) -> None:
     """Print the list of presets."""
     console = plain_console()
-    table(
-        console,
-        ("preset", "what it is", "assumed"),
-        [
-            (
-                str(item["name"]),
-                str(item["title"]),
-                f"{item['values_assumed']} of {item['values_with_source']}",
-            )
-            for item in listing
-        ],
-        fixed=(0, 2),
-    )
+    rows = [
+        (one["name"], one["title"], f"{one['values_assumed']} of {one['values_with_source']}")
+        for one in listing
+    ]
+    table(console, ("preset", "what it is", "assumed"), rows, fixed=(0, 2))
     console.print("squeezefilm show NAME lists the values; squeezefilm analyze NAME works them out")
 
 
@@ -305,24 +288,18 @@ def show_values(values: Sequence[dict[str, Any]]) -> None:
     """Print the values of a display by table of its file, with their sources; a star marks what is
     assumed."""
     console = plain_console()
-    groups: dict[str, list[dict[str, Any]]] = {}
+    groups: dict[str, list[tuple[str, str, str]]] = {}
     for item in values:
-        groups.setdefault(str(item["path"]).rpartition(".")[0], []).append(item)
-    for group, items in groups.items():
+        group, _, key = item["path"].rpartition(".")
+        star = "* " if item["evidence"] == "assumed" else "  "
+        groups.setdefault(group, []).append((star + key, micro(item["text"]), _origin(item)))
+    for group, rows in groups.items():
         if group:
             heading(console, group)
         table(
             console,
             ("", "", ""),
-            [
-                (
-                    ("* " if item["evidence"] == "assumed" else "  ")
-                    + str(item["path"]).rpartition(".")[2],
-                    micro(str(item["text"])),
-                    _origin(item),
-                )
-                for item in items
-            ],
+            rows,
             fixed=(0,),
             styles=lambda row: "yellow" if row[0].startswith("*") else "",
         )

@@ -13,8 +13,10 @@ from squeezefilm.plate.solid.modes import zero_crossings
 from squeezefilm.report.display.plate_figures import half_power
 from squeezefilm.report.kit import style
 from squeezefilm.report.kit.folder import json_text, write_folder
+from squeezefilm.report.kit.page_style import FigureOf, drawn_figures, picture_files
 from squeezefilm.report.plate import ring
 from squeezefilm.report.plate.mode_surface import driven_shape, mode_surface
+from squeezefilm.report.plate.sensitivity_figures import tornado, tracks
 from squeezefilm.report.plate.vtu import write_vtu
 
 if TYPE_CHECKING:
@@ -26,8 +28,6 @@ if TYPE_CHECKING:
 @style.drawn
 def plan_view(result: PlateAnalysis) -> Figure:
     """The driven shape over the upper face, seen from above, with its nodal lines."""
-    from matplotlib.ticker import MaxNLocator
-
     plate = result.plate
     x, y = np.linspace(0, plate.length, 166), np.linspace(0, plate.width, 99)
     w = 1e9 * driven_shape(result, x, y)
@@ -39,13 +39,8 @@ def plan_view(result: PlateAnalysis) -> Figure:
         5.2,
     )
     axes = figure.subplots()
-    field = axes.contourf(
-        1e3 * x, 1e3 * y, w.T, levels=np.linspace(-reach, reach, 21), cmap="RdBu_r"
-    )
-    axes.contour(1e3 * x, 1e3 * y, w.T, levels=[0.0], colors=style.INK, linewidths=1.2)
+    style.motion_field(axes, 1e3 * x, 1e3 * y, w.T, label="w per volt (nm/V)", shrink=0.8)
     axes.set(xlabel="x (mm)", ylabel="y (mm)", aspect="equal")
-    ticks = MaxNLocator(nbins=6, symmetric=True)
-    figure.colorbar(field, ax=axes, label="w per volt (nm/V)", ticks=ticks, shrink=0.8)
     return figure
 
 
@@ -64,23 +59,15 @@ def line_scan(result: PlateAnalysis) -> Figure:
         f"Along the centre {centre:.3g} nm per volt between the outer nodes, "
         f"{result.amplitude_per_volt * 1e9:.3g} nm per volt at the largest of the face"
     )
-    figure = style.new_figure(
-        title, f"{result.modes.model}, all electrodes driven at resonance", 4.2
-    )
+    model = f"{result.modes.model}, all electrodes driven at resonance"
+    figure = style.new_figure(title, model, 4.2)
     axes = figure.subplots()
     axes.plot(1e3 * x, w[:, 1], color=style.BLUE, label="centreline")
     axes.plot(1e3 * x, w[:, 0], color=style.ORANGE, ls="--", label="edge")
-    axes.axhline(0, color=style.MUTED, lw=0.8)
+    axes.axhline(0, **style.ZERO)
     nodes = zero_crossings(x, w[:, 1])
-    axes.plot(
-        1e3 * nodes,
-        np.zeros(nodes.size),
-        "o",
-        color=style.INK,
-        ms=4,
-        zorder=3,
-        label=f"{nodes.size} nodes of the centreline",
-    )
+    named = f"{nodes.size} nodes of the centreline"
+    axes.plot(1e3 * nodes, 0 * nodes, "o", color=style.INK, ms=4, zorder=3, label=named)
     axes.set(xlabel="x (mm)" if lengthwise else "y (mm)", xlim=(0, 1e3 * span))
     axes.set(ylabel="w per volt (nm/V)")
     if volts:
@@ -106,13 +93,9 @@ def frequency_response(result: PlateAnalysis) -> Figure:
     if band is not None:
         axes.axvspan(*band, color=style.BAND, lw=0, label="half-power band")
     axes.plot(f, per_volt, color=style.BLUE, label="solved plate, all modes")
-    axes.axvline(
-        result.working.frequency / 1e3,
-        color=style.INK,
-        lw=1,
-        ls=(0, (4, 2)),
-        label=f"mode {result.working.label} extrapolated, {result.working.frequency / 1e3:.2f} kHz",
-    )
+    own = result.working.frequency / 1e3
+    named = f"mode {result.working.label} extrapolated, {own:.2f} kHz"
+    axes.axvline(own, **style.LANDMARK, label=named)
     axes.set(xlabel="frequency (kHz)", ylabel="largest amplitude (nm/V)")
     axes.set(ylim=(0, None), xlim=(f[0], f[-1]))
     style.legend_below(axes, columns=3, gap=0.2)
@@ -133,8 +116,8 @@ def admittance(result: PlateAnalysis) -> Figure:
     left, right = figure.subplots(1, 2, width_ratios=[1.5, 1])
     left.plot(f, np.abs(Y), color=style.BLUE, label="|Y|")
     left.plot(f, Y.real, color=style.ORANGE, ls="--", label="Re Y (conductance)")
-    left.plot(f, Y.imag, color=style.GREEN, ls=(0, (5, 1.5, 1, 1.5)), label="Im Y (susceptance)")
-    left.axhline(0, color=style.MUTED, lw=0.8)
+    left.plot(f, Y.imag, color=style.GREEN, ls=style.LINES[2][1], label="Im Y (susceptance)")
+    left.axhline(0, **style.ZERO)
     left.set(xlabel="frequency (kHz)", ylabel="admittance (mS)", xlim=(f[0], f[-1]))
     style.legend_below(left, columns=3, gap=0.18)
     right.plot(Y.real, Y.imag, color=style.BLUE)
@@ -145,6 +128,31 @@ def admittance(result: PlateAnalysis) -> Figure:
     return figure
 
 
+def _tornado(result: PlateAnalysis) -> Figure:
+    assert result.sensitivities is not None
+    return tornado(result.sensitivities)
+
+
+def _tracks(result: PlateAnalysis) -> Figure:
+    assert result.tracks is not None
+    return tracks(result.tracks)
+
+
+FIGURES = (
+    FigureOf("surface", "Mode shape", mode_surface, file="mode-surface"),
+    FigureOf("plan", "Mode shape from above", plan_view, file="mode-plan"),
+    FigureOf("scan", "Line scan along the plate", line_scan, file="line-scan"),
+    FigureOf("response", "Frequency response", frequency_response, file="frequency-response"),
+    FigureOf("admittance", "Admittance", admittance),
+)
+"""The figures of every rectangular plate."""
+
+_WHERE_ASKED = (
+    FigureOf("sensitivity", "Sensitivities", _tornado, has=lambda one: one.sensitivities),
+    FigureOf("tracking", "Modes against a parameter", _tracks, has=lambda one: one.tracks),
+)
+
+
 def write_plate(result: SolvedBody, folder: Path) -> Path:
     """Write what a solved plate, disc or stator gives into `folder`: index.html, plate.json and one
     PNG a figure; of a rectangular plate mode.vtu for ParaView too. The page's path.
@@ -153,42 +161,15 @@ def write_plate(result: SolvedBody, folder: Path) -> Path:
     """
     from squeezefilm.report.plate.page import plate_page
 
-    if isinstance(result, RingAnalysis):
-        figures = {
-            "mode-plan": ("Mode shape from above", ring.shape(result)),
-            "line-scan": ("Line scan", ring.scan(result)),
-            "frequency-response": ("Frequency response", ring.response(result)),
-        }
-    else:
-        assert isinstance(result, PlateAnalysis)
-        figures = _plate_figures(result)
-    files: dict[str, str | bytes] = {
-        f"{name}.png": style.png(figure) for name, (_, figure) in figures.items()
-    }
+    kinds = ring.FIGURES if isinstance(result, RingAnalysis) else (*FIGURES, *_WHERE_ASKED)
+    figures = drawn_figures(kinds, result)
+    files = picture_files(figures)
     files["plate.json"] = json_text(result.summary())
     files["index.html"] = plate_page(result, figures)
     if isinstance(result, PlateAnalysis):
         write_mode(result, folder / "mode.vtu")
     write_folder(folder, files)
     return folder / "index.html"
-
-
-def _plate_figures(result: PlateAnalysis) -> dict[str, tuple[str, Figure]]:
-    """The figures of a rectangular plate by their file's name, each with its heading."""
-    from squeezefilm.report.plate.sensitivity_figures import tornado, tracks
-
-    figures = {
-        "mode-surface": ("Mode shape", mode_surface(result)),
-        "mode-plan": ("Mode shape from above", plan_view(result)),
-        "line-scan": ("Line scan along the plate", line_scan(result)),
-        "frequency-response": ("Frequency response", frequency_response(result)),
-        "admittance": ("Admittance", admittance(result)),
-    }
-    if result.sensitivities is not None:
-        figures["sensitivity"] = ("Sensitivities", tornado(result.sensitivities))
-    if result.tracks is not None:
-        figures["tracking"] = ("Modes against a parameter", tracks(result.tracks))
-    return figures
 
 
 def write_mode(result: PlateAnalysis, file: Path) -> Path:

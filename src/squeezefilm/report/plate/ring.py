@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -11,6 +11,7 @@ from squeezefilm import quantities as si
 from squeezefilm.report.display.layout_figures import FILL, draw_sector
 from squeezefilm.report.kit import style
 from squeezefilm.report.kit.numbers import HZ, M, shown
+from squeezefilm.report.kit.page_style import FigureOf
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -22,8 +23,6 @@ if TYPE_CHECKING:
 @style.drawn
 def shape(result: RingAnalysis) -> Figure:
     """The mode from above with its nodal lines and circles, beside the poling of the sectors."""
-    from matplotlib.ticker import MaxNLocator
-
     mode, at = result.mode, result.response.resonance
     size = 1e9 * result.amplitude_per_volt
     where = f"nodal lines {shown(mode.half_wavelength or 0.0, M)} apart on the mean circumference"
@@ -43,18 +42,7 @@ def shape(result: RingAnalysis) -> Figure:
     # Turned to where the channel moves it most: cos m(θ − θ0).
     w = 1e9 * radial[:, None] * np.cos(mode.harmonic * theta - _turn(result))[None, :]
     x, y = 1e3 * r[:, None] * np.cos(theta), 1e3 * r[:, None] * np.sin(theta)
-    reach = float(np.max(np.abs(w)))
-    levels = np.linspace(-reach, reach, 21)
-    field = left.contourf(x, y, w, levels=levels, cmap="RdBu_r")
-    left.contour(x, y, w, levels=[0.0], colors=style.INK, linewidths=0.9)
-    figure.colorbar(
-        field,
-        ax=left,
-        label="per volt (nm/V)",
-        ticks=MaxNLocator(nbins=6, symmetric=True),
-        location="bottom",
-        shrink=0.75,
-    )
+    style.motion_field(left, x, y, w, label="per volt (nm/V)", location="bottom", shrink=0.75)
     left.set_title("touched face; nodal lines in black")
     _sectors(right, result)
     outer = 1e3 * max(layer.outer_radius for layer in result.body.section.layers)
@@ -88,47 +76,30 @@ def _sectors(axes: Axes, result: RingAnalysis) -> None:
     ceramic = next(layer for layer in layers if layer.is_piezoelectric)
     edge, width = 1e3 * ceramic.outer_radius, 1e3 * (ceramic.outer_radius - ceramic.inner_radius)
     whole = result.body.drive.angle > 2 * np.pi - 1e-9 and len(result.body.drive.sectors) == 1
+    unused: dict[str, Any] = {"facecolor": "none", "edgecolor": style.MUTED}
     if not whole:
-        axes.add_patch(
-            Wedge(
-                (0, 0), edge, 0, 360, width=width, facecolor="none", edgecolor=style.MUTED, lw=0.8
-            )
-        )
+        axes.add_patch(Wedge((0, 0), edge, 0, 360, width=width, lw=0.8, **unused))
     for start, end, sign in result.body.drive.sectors:
         draw_sector(axes, edge, width, (math.degrees(start), math.degrees(end)), sign)
-        middle, place = (start + end) / 2, edge - width / 2
-        axes.text(
-            0.0 if whole and inner == 0 else place * math.cos(middle),
-            0.0 if whole and inner == 0 else place * math.sin(middle),
-            "+" if sign > 0 else "−",
-            ha="center",
-            va="center",
-            fontsize=11,
-        )
+        middle, place = (start + end) / 2, 0.0 if whole and inner == 0 else edge - width / 2
+        x, y = place * math.cos(middle), place * math.sin(middle)
+        axes.text(x, y, "+" if sign > 0 else "−", ha="center", va="center", fontsize=11)
     for radius in {outer, inner} - {0.0}:
         axes.add_patch(Circle((0, 0), radius, fill=False, ec=style.INK, lw=1))
     axes.set_title("ceramic below, seen through the body")
     handles = [
         Patch(facecolor=style.PLUS, edgecolor=style.INK, label="driven, poled up"),
         Patch(facecolor=style.MINUS, edgecolor=style.INK, label="driven, poled down"),
-        Patch(facecolor="none", edgecolor=style.MUTED, label="not on this channel"),
+        Patch(**unused, label="not on this channel"),
     ]
-    axes.legend(
-        handles=handles[:1] if whole else handles,
-        loc="upper center",
-        bbox_to_anchor=(0.5, -0.16),
-        ncols=3,
-        frameon=False,
-        fontsize=8.5,
-        handlelength=1.2,
-    )
+    style.legend_below(axes, handles=handles[:1] if whole else handles)
 
 
 @style.drawn
 def scan(result: RingAnalysis) -> Figure:
     """The driven shape around the mean circumference and along a radius; without nodal diameters
     along a diameter."""
-    m = result.mode.harmonic
+    m, model = result.mode.harmonic, f"{result.model}, channel driven at resonance"
     radial = 1e9 * _standing(result.response.motion[result.response.resonance])
     mean = result.scan_radius
     if m:
@@ -136,7 +107,7 @@ def scan(result: RingAnalysis) -> Figure:
             f"{m} waves stand around the mean circumference of {shown(2 * math.pi * mean, M)}: "
             f"{1e9 * result.centreline_per_volt:.0f} nm per volt at their antinodes"
         )
-        figure = style.new_figure(title, f"{result.model}, channel driven at resonance", 5.6)
+        figure = style.new_figure(title, model, 5.6)
         above, below = figure.subplots(2, 1)
         _around(above, result, float(np.interp(mean, result.response.radius, radial)))
     else:
@@ -144,22 +115,18 @@ def scan(result: RingAnalysis) -> Figure:
             f"Along a diameter {result.working.label} moves {abs(radial[0]):.0f} nm per volt in "
             f"the middle and {abs(radial[-1]):.0f} at the rim"
         )
-        figure = style.new_figure(title, f"{result.model}, channel driven at resonance", 4.2)
+        figure = style.new_figure(title, model, 4.2)
         below = figure.subplots()
     r = 1e3 * result.response.radius
     below.plot(r, radial, color=style.BLUE, label="at the angle of an antinode" if m else None)
     if not m:
         below.plot(-r, radial, color=style.BLUE)
-    below.axhline(0, color=style.MUTED, lw=0.8)
+    below.axhline(0, **style.ZERO)
     for number, circle in enumerate(result.circles):
         for side in (1,) if m else (1, -1):
-            below.axvline(
-                side * 1e3 * float(circle),
-                color=style.ORANGE,
-                lw=1.2,
-                ls=(0, (4, 2)),
-                label="nodal circle" if number == 0 and side == 1 else None,
-            )
+            name = "nodal circle" if number == 0 and side == 1 else None
+            dashed = {"color": style.ORANGE, "lw": 1.2, "ls": (0, (4, 2))}
+            below.axvline(side * 1e3 * float(circle), **dashed, label=name)
     below.set(xlabel="radius (mm)" if m else "along a diameter (mm)", ylabel="per volt (nm/V)")
     below.set_xlim(r[0] if m else -r[-1], r[-1])
     if below.get_legend_handles_labels()[0]:
@@ -173,7 +140,7 @@ def _around(axes: Axes, result: RingAnalysis, here: float) -> None:
     angle = np.linspace(0, 2 * np.pi, max(361, 40 * m) | 1)
     length = 1e3 * mean * angle
     axes.plot(length, here * np.cos(m * angle - _turn(result)), color=style.BLUE)
-    axes.axhline(0, color=style.MUTED, lw=0.8)
+    axes.axhline(0, **style.ZERO)
     axes.set(xlabel=f"along the circumference at a radius of {shown(mean, M)} (mm)")
     axes.set(ylabel="per volt (nm/V)", xlim=(0, float(length[-1])))
     for start, end, sign in result.body.drive.sectors:
@@ -200,15 +167,16 @@ def response(result: RingAnalysis) -> Figure:
     if result.circuit is not None:
         circuit = 1e3 * np.abs(result.circuit.admittance(swept.frequencies))
         resistance = shown(result.circuit.motional_resistance, si.Unit("ohm"), 3)
-        below.semilogy(
-            f,
-            circuit,
-            color=style.INK,
-            lw=1.0,
-            ls=(0, (1, 2)),
-            label=f"equivalent circuit, R1 = {resistance}",
-        )
+        name = f"equivalent circuit, R1 = {resistance}"
+        below.semilogy(f, circuit, color=style.INK, lw=1.0, ls=(0, (1, 2)), label=name)
     style.plain_log(below.yaxis)
     below.set(xlabel="frequency (kHz)", ylabel="admittance (mS)")
     style.legend_below(below, columns=3, gap=0.28)
     return figure
+
+
+FIGURES = (
+    FigureOf("shape", "Mode shape from above", shape, file="mode-plan"),
+    FigureOf("scan", "Line scan", scan, file="line-scan"),
+    FigureOf("response", "Frequency response", response, file="frequency-response"),
+)

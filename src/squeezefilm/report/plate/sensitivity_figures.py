@@ -52,12 +52,13 @@ def tornado(table: SensitivityTable) -> Figure:
         for y, value, width in zip(at, values, shown, strict=True):
             cut = "" if abs(value) <= limit * 1.0001 else " (cut)"
             text = "no drive" if np.isnan(value) else f"{_signed(value)} %{cut}"
+            side, aside = ("left", (3, 0)) if width >= 0 else ("right", (-3, 0))
             axes.annotate(
                 text,
                 (width, y),
-                (3 if width >= 0 else -3, 0),
+                aside,
                 textcoords="offset points",
-                ha="left" if width >= 0 else "right",
+                ha=side,
                 va="center",
                 fontsize=8.5,
             )
@@ -88,19 +89,13 @@ def tracks(found: ModeTracks) -> Figure:
     plain = [t for t in found.tracks if not t.driven]
     driven = [t for t in found.tracks if t.driven]
     for number, track in enumerate(plain):
-        axes.plot(
-            x,
-            track.frequency / 1e3,
-            color=style.MUTED,
-            lw=1.0,
-            label="not driven (symmetry)" if number == 0 else None,
-        )
+        first = None if number else "not driven (symmetry)"
+        axes.plot(x, track.frequency / 1e3, color=style.MUTED, lw=1.0, label=first)
     for number, track in enumerate(driven):
         color, dashes = style.LINES[number % len(style.LINES)]
-        axes.plot(
-            x, track.frequency / 1e3, color=color, ls=dashes, lw=2.2, label=f"{track.label}, driven"
-        )
-    axes.axvline(scale * found.own, color=style.INK, lw=0.8, ls=(0, (2, 2)), label="this plate")
+        own = f"{track.label}, driven"
+        axes.plot(x, track.frequency / 1e3, color=color, ls=dashes, lw=2.2, label=own)
+    axes.axvline(scale * found.own, **style.LANDMARK, label="this plate")
     ends: list[tuple[float, str]] = []
     for track in found.tracks:
         known = np.flatnonzero(np.isfinite(track.frequency))
@@ -109,22 +104,18 @@ def tracks(found: ModeTracks) -> Figure:
     low, high = axes.get_ylim()
     # Names may not lie on each other: each is pushed above the one below it.
     height = low
+    line = {"arrowstyle": "-", "color": style.MUTED, "lw": 0.5, "shrinkA": 0, "shrinkB": 0}
     for value, text in sorted(ends):
         height = max(value, height + 0.034 * (high - low))
+        place = x[-1] + 0.03 * (x[-1] - x[0]), height
         axes.annotate(
             text,
             (x[-1], value),
-            (x[-1] + 0.03 * (x[-1] - x[0]), height),
+            place,
             fontsize=8.5,
             va="center",
             annotation_clip=False,
-            arrowprops={
-                "arrowstyle": "-",
-                "color": style.MUTED,
-                "lw": 0.5,
-                "shrinkA": 0,
-                "shrinkB": 0,
-            },
+            arrowprops=line,
         )
     axes.set(xlim=(x[0], x[-1]), xlabel=f"{name} ({symbol})" if symbol != "1" else name)
     axes.set(ylabel="frequency (kHz)")
@@ -136,14 +127,8 @@ def _signed(percent: float) -> str:
     """A percentage with its sign and two digits; what shows none of them is 0."""
     if abs(percent) < 0.005:
         return "0"
-    digits = (
-        f"{percent:+.0f}"
-        if abs(percent) >= 10
-        else f"{percent:+.1f}"
-        if abs(percent) >= 1
-        else f"{percent:+.2g}"
-    )
-    return digits.replace("-", "−")
+    form = "+.0f" if abs(percent) >= 10 else "+.1f" if abs(percent) >= 1 else "+.2g"
+    return f"{percent:{form}}".replace("-", "−")
 
 
 def _text(value: float, unit: si.Unit) -> str:

@@ -1,65 +1,191 @@
-"""What the terminal shows of a solved film, and of a solved plate, disc or stator."""
+"""What the terminal shows of a solved film, of a solved plate, disc or stator, and of its modes
+followed over a parameter; the page shows the same rows."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+import numpy as np
+
+from squeezefilm import quantities as si
 from squeezefilm.analysis.plate.command import PlateAnalysis
 from squeezefilm.analysis.plate.ring import RingAnalysis
-from squeezefilm.report.kit.numbers import HZ, shown
-from squeezefilm.report.kit.terminal import heading, plain_console, table
-from squeezefilm.report.plate.terminal_modes import (
-    Row,
-    drive_rows,
-    fit_sentences,
-    show_guidance,
-    show_modes,
-    sound_rows,
-    working_rows,
-)
+from squeezefilm.report.kit.numbers import HZ, M, V, shown
+from squeezefilm.report.kit.terminal import heading, show_rows, table
 
 if TYPE_CHECKING:
     from rich.console import Console
 
     from squeezefilm.analysis.film.command import FilmAnswer
-    from squeezefilm.analysis.plate.solved import SolvedBody
+    from squeezefilm.analysis.plate.sensitivity import SensitivityTable
+    from squeezefilm.analysis.plate.solved import ModeRow, SolvedBody
+    from squeezefilm.analysis.plate.tracking import ModeTracks
+    from squeezefilm.plate.ring.stator import StatorFit
+    from squeezefilm.plate.sound import SoundField
+
+PER_VOLT, A, OHM = si.Unit("m/V"), si.Unit("A"), si.Unit("ohm")
+HENRY, FARAD = si.Unit("H"), si.Unit("F")
+Row = tuple[str, str, str]
+
+# Of the working mode's amplitude per volt: below it a mode is called not driven.
+_DRIVEN = 1e-4
+
+
+def working_rows(result: SolvedBody) -> list[Row]:
+    """The working mode of a solved plate, disc or stator: quantity, value, remark."""
+    mode, said = result.working, result.remarks
+    rows = [
+        (
+            f"Mode {mode.label}",
+            shown(mode.frequency, HZ, 5),
+            f"± {shown(mode.frequency_error, HZ, 2)} {said.frequency}",
+        ),
+        ("Amplitude per volt", shown(result.amplitude_per_volt, PER_VOLT), said.largest),
+        ("", shown(result.centreline_per_volt, PER_VOLT), said.centreline),
+    ]
+    if isinstance(result, RingAnalysis):
+        rows += _ring_rows(result)
+    rows.append(("Quality factor", f"{mode.quality_factor:.4g}", said.quality))
+    rows.append(("Effective coupling", f"{mode.coupling:.3g}", ""))
+    return rows
+
+
+def _ring_rows(result: RingAnalysis) -> list[Row]:
+    """What was measured of a stator, and where a disc or stator stands still."""
+    rows, half = [], result.working.half_wavelength
+    if result.described_amplitude_per_volt is not None:
+        measured = shown(result.described_amplitude_per_volt, PER_VOLT)
+        rows.append(("", measured, "described as measured"))
+    if half is not None:
+        rows.append(
+            ("Half wavelength", shown(half, M), f"along the {result.half_wavelength_along}")
+        )
+    if result.circles.size:
+        radii = ", ".join(shown(float(r), M, 3) for r in result.circles)
+        rows.append(("Nodal circles", radii, "radius"))
+    return rows
+
+
+def drive_rows(result: SolvedBody) -> list[Row]:
+    """Current and power at resonance at the display's voltage, and the equivalent circuit."""
+    volts, at = result.display.drive.voltage, result.response.resonance
+    response, c = result.response, result.circuit
+    rows = [
+        (
+            f"At {shown(volts, V)}",
+            shown(float(response.current(volts)[at]), A, 3),
+            f"{response.apparent_power(volts)[at]:.3g} VA, {response.input_power(volts)[at]:.3g} W",
+        )
+    ]
+    if c is not None:
+        motional = (
+            f"R1 {shown(c.motional_resistance, OHM, 3)}",
+            f"L1 {shown(c.motional_inductance, HENRY, 3)}",
+            f"C1 {shown(c.motional_capacitance, FARAD, 3)}",
+        )
+        static = f"C0 {shown(c.static_capacitance, FARAD, 3)}"
+        rows.append(("Equivalent circuit", static, ", ".join(motional)))
+    return rows
+
+
+def fit_sentences(fit: StatorFit) -> tuple[str, ...]:
+    """What was fitted of a stator, what the teeth leave uncertain, and what is assumed."""
+    a = fit.assumptions
+    said = [
+        f"Fitted: {shown(fit.ring_thickness, M, 4)} of metal under the teeth, so that "
+        f"{fit.mode.label} falls on {shown(fit.mode.frequency, HZ)}, with the mean diameter of "
+        f"{shown(fit.derived['mean_diameter'], M, 4)} from the wavelength. One frequency fits one "
+        "dimension and validates nothing."
+    ]
+    if a.tooth_height > 0:
+        low, high = fit.frequency_bounds
+        said.append(
+            f"Teeth: an equivalent layer of {a.tooth_fill:.0%} metal ({a.tooth_model}). Between "
+            f"teeth without hoop stiffness and teeth as stiff as their share of metal, this body "
+            f"lies between {shown(low, HZ)} and {shown(high, HZ)}; real teeth are 7 to 13 % of "
+            "the way up."
+        )
+    said.append(
+        f"Assumed: {a.metal.name}, {a.ceramic.name} of {shown(a.ceramic_thickness, M)}, teeth of "
+        f"{shown(a.tooth_height, M)}, {a.driven_sectors} half-wave sectors on the channel."
+    )
+    return tuple(said)
+
+
+def sound_rows(sound: SoundField, direction: str) -> list[Row]:
+    """Sound pressure levels by distance; `direction` says where they are loudest."""
+    guidance = sound.guidance
+    limit = "no guidance" if guidance is None else f"guidance {guidance.level_dB:.0f} dB"
+    return [
+        (
+            f"Sound at {distance:g} m",
+            f"{level:.0f} dB",
+            f"{direction}; {limit}" if number == 0 else "",
+        )
+        for number, (distance, level) in enumerate(
+            zip(sound.distances, sound.sound_pressure_level_dB, strict=True)
+        )
+    ]
+
+
+def show_guidance(console: Console, sound: SoundField) -> None:
+    """Print where the guidance on airborne ultrasound is from."""
+    if sound.guidance is not None:
+        console.print(f"Guidance ({sound.guidance.evidence}): {sound.guidance.source}")
+
+
+def mode_rows(
+    rows: Sequence[ModeRow], amplitude_per_volt: si.MetrePerVolt
+) -> list[tuple[str, str, str, str, str, str]]:
+    """Label, frequency, its error, quality factor, amplitude per volt and coupling of every mode.
+
+    `amplitude_per_volt` is the working mode's (m/V).
+    """
+    return [
+        (
+            row.label,
+            shown(row.frequency, HZ, 5),
+            shown(row.frequency_error, HZ, 2),
+            f"{row.quality_factor:.3g}",
+            "not driven"
+            if row.amplitude_per_volt < _DRIVEN * amplitude_per_volt
+            else shown(row.amplitude_per_volt, PER_VOLT, 3),
+            f"{row.coupling:.2g}",
+        )
+        for row in rows
+    ]
+
+
+def show_modes(
+    console: Console, rows: Sequence[ModeRow], amplitude_per_volt: si.MetrePerVolt
+) -> None:
+    """Print the table of modes; `amplitude_per_volt` is the working mode's (m/V)."""
+    heading(console, "Modes in the band")
+    head = ("mode", "frequency", "±", "Q", "per volt", "coupling")
+    table(console, head, mode_rows(rows, amplitude_per_volt))
 
 
 def show_film(answer: FilmAnswer) -> None:
     """Print one solved film."""
-    console = plain_console()
-    request = answer.request
-    heading(
-        console,
-        f"{request.shape}, σ = {answer.squeeze_number:.4g}, ε = {answer.excursion_ratio:.4g}",
-    )
-    table(
-        console,
-        ("", "", ""),
-        [
-            ("Mean load W", f"{answer.mean_load:.8g}", "over ambient pressure × area"),
-            (
-                "Over-pressure W − 1",
-                f"{answer.over_pressure:.6g}",
-                f"± {answer.over_pressure_error:.1g} (estimated)",
-            ),
-            ("Stiffness", f"{answer.stiffness_relative:.6g}", "of p0·A·ε, first harmonic"),
-            ("Damping", f"{answer.damping_relative:.6g}", "of p0·A·ε, first harmonic"),
-        ],
-        fixed=(0,),
-    )
-    console.print(answer.status)
+    error, harmonic = f"± {answer.over_pressure_error:.1g} (estimated)", "of p0·A·ε, first harmonic"
+    rows = [
+        ("Mean load W", f"{answer.mean_load:.8g}", "over ambient pressure × area"),
+        ("Over-pressure W − 1", f"{answer.over_pressure:.6g}", error),
+        ("Stiffness", f"{answer.stiffness_relative:.6g}", harmonic),
+        ("Damping", f"{answer.damping_relative:.6g}", harmonic),
+    ]
+    numbers = f"σ = {answer.squeeze_number:.4g}, ε = {answer.excursion_ratio:.4g}"
+    show_rows(f"{answer.request.shape}, {numbers}", rows).print(answer.status)
 
 
 def show_plate(result: SolvedBody) -> None:
     """Print a solved plate, disc or stator: the working mode, then every mode of the band."""
-    console = plain_console()
-    heading(console, f"{result.display.title} [{result.display.name}]")
     rows = working_rows(result)
     if isinstance(result, PlateAnalysis):
         rows += _theory_rows(result)
     rows += drive_rows(result) + sound_rows(result.sound, result.remarks.loudest)
-    table(console, ("", "", ""), rows, fixed=(0,))
+    console = show_rows(f"{result.display.title} [{result.display.name}]", rows)
     show_guidance(console, result.sound)
     if isinstance(result, RingAnalysis) and result.body.fit is not None:
         for sentence in fit_sentences(result.body.fit):
@@ -84,24 +210,57 @@ def _theory_rows(result: PlateAnalysis) -> list[Row]:
     ]
 
 
+def change_rows(changes: SensitivityTable) -> list[tuple[str, str, str, str, str]]:
+    """What is different, by how much, the frequency, and the shifts of it and of the amplitude."""
+    return [
+        (
+            row.name,
+            row.change,
+            shown(row.frequency, HZ, 5),
+            f"{row.frequency_shift:+.2%}",
+            "–" if row.amplitude_shift is None else f"{row.amplitude_shift:+.1%}",
+        )
+        for row in changes.rows
+    ]
+
+
 def _show_changes(console: Console, result: PlateAnalysis) -> None:
     """What other materials and dimensions would change, where that was asked for."""
     if result.sensitivities is not None:
         heading(console, "Sensitivities of the working mode")
-        table(
-            console,
-            ("what is different", "", "frequency", "per volt"),
-            [
-                (
-                    row.name,
-                    row.change,
-                    f"{row.frequency_shift:+.2%}",
-                    "–" if row.amplitude_shift is None else f"{row.amplitude_shift:+.1%}",
-                )
-                for row in result.sensitivities.rows
-            ],
-        )
+        rows = [
+            (name, change, *shifts)
+            for name, change, _, *shifts in change_rows(result.sensitivities)
+        ]
+        table(console, ("what is different", "", "frequency", "per volt"), rows)
     if result.tracks is not None:
-        from squeezefilm.report.plate.terminal_tracks import show_tracks
-
         show_tracks(console, result.tracks)
+
+
+def show_tracks(console: Console, found: ModeTracks) -> None:
+    """Print each mode's frequency at the first, the plate's own and the last value."""
+    unit = si.Unit(found.unit)
+    own = int(np.argmin(np.abs(found.values - found.begun)))
+    columns = (0, own, found.values.size - 1)
+
+    def at(value: float) -> str:
+        return f"{value:.4g}" if found.unit == "1" else shown(value, unit)
+
+    heading(console, f"Modes against {found.parameter}")
+    table(
+        console,
+        ("mode", *(at(float(found.values[k])) for k in columns), ""),
+        [
+            (
+                track.label,
+                *(
+                    "not followed"
+                    if np.isnan(track.frequency[k])
+                    else shown(float(track.frequency[k]), HZ, 5)
+                    for k in columns
+                ),
+                "driven" if track.driven else "",
+            )
+            for track in found.tracks
+        ],
+    )

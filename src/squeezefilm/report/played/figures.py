@@ -10,6 +10,7 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.report.kit import style
 from squeezefilm.report.kit.numbers import HZ, M, S, shown
+from squeezefilm.report.kit.page_style import FigureOf
 from squeezefilm.session.loop import rows as column
 from squeezefilm.session.loop.lateness import Lateness, class_ends
 
@@ -19,7 +20,6 @@ if TYPE_CHECKING:
     from squeezefilm.bench.played_session import PlayedSession, PlayedWay
 
 _WINDOW = 0.25
-_MOST_POINTS = 4000
 
 
 @style.drawn
@@ -28,9 +28,8 @@ def friction(session: PlayedSession) -> Figure:
     judged = session.by_truth or session.by_record
     way = judged.way
     if way.time.size < 8:
-        return style.message_figure(
-            "The finger was not seen", "There is no place to draw friction over."
-        )
+        said = "There is no place to draw friction over."
+        return style.message_figure("The finger was not seen", said)
     title = f"{style.plain(session.setup.name, 40)}: "
     found = judged.fidelity
     if found is None:
@@ -45,32 +44,15 @@ def friction(session: PlayedSession) -> Figure:
     axes = figure.subplots()
     part = _middle_pass(way)
     order = part[np.argsort(way.x[part])]
-    axes.plot(
-        1e3 * way.x[order],
-        way.relative_friction_wanted[order],
-        color=style.ORANGE,
-        lw=1.5,
-        ls=(0, (6, 1.6)),
-        label="wanted where the finger was",
-    )
-    axes.plot(
-        1e3 * way.x[order],
-        way.relative_friction_rendered[order],
-        color=style.BLUE,
-        lw=1.7,
-        label="rendered",
-    )
+    x, wanted = 1e3 * way.x[order], way.relative_friction_wanted[order]
+    axes.plot(x, wanted, **style.WANTED, label="wanted where the finger was")
+    axes.plot(x, way.relative_friction_rendered[order], **style.RENDERED, label="rendered")
     if session.by_truth is not None:
         seen = session.by_record.way
         inside = (seen.time >= way.time[part[0]]) & (seen.time <= way.time[part[-1]])
-        axes.plot(
-            1e3 * seen.x[inside],
-            seen.relative_friction_rendered[inside],
-            ".",
-            ms=3,
-            color=style.GREEN,
-            label="by the record (sensor and pickup)",
-        )
+        x, rendered = 1e3 * seen.x[inside], seen.relative_friction_rendered[inside]
+        named = "by the record (sensor and pickup)"
+        axes.plot(x, rendered, ".", ms=3, color=style.GREEN, label=named)
     axes.set(xlabel="place of the finger (mm)", ylabel="relative friction µ′/µ", ylim=(0, 1.05))
     style.legend_below(axes, columns=3)
     return figure
@@ -127,24 +109,15 @@ def amplitude(session: PlayedSession) -> Figure:
         lw=1.2,
         label="commanded, at its time",
     )
-    if session.by_truth is not None:
-        way = session.by_truth.way
-        near = np.abs(way.time - middle) <= 0.5 * _WINDOW
-        above.plot(
-            way.time[near], 1e6 * way.amplitude[near], color=style.BLUE, lw=1.7, label="true"
-        )
-    seen = session.by_record.way
-    near = np.abs(seen.time - middle) <= 0.5 * _WINDOW
-    above.plot(
-        seen.time[near],
-        1e6 * seen.amplitude[near],
-        ".",
-        ms=3.5,
-        color=style.GREEN,
-        label="in the record",
-    )
+    dots = {"color": style.GREEN, "marker": ".", "ls": "", "ms": 3.5, "label": "in the record"}
+    true = {**style.RENDERED, "label": "true"}
+    for judged, look in ((session.by_truth, true), (session.by_record, dots)):
+        if judged is not None:
+            way = judged.way
+            near = np.abs(way.time - middle) <= 0.5 * _WINDOW
+            above.plot(way.time[near], 1e6 * way.amplitude[near], **look)
     above.set(ylabel="amplitude (µm)", ylim=(0, 1.12e6 * largest))
-    above.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False)
+    style.legend_beside(above)
     below.plot(t, 1e3 * rows[inside, column.X], color=style.INK, lw=1.4)
     below.set(xlabel="time (s)", ylabel="place (mm)", xlim=(t[0], t[-1]))
     return figure
@@ -174,11 +147,10 @@ def lateness(session: PlayedSession) -> Figure:
     left.stairs(found.counts[:-1], edges, fill=True, color=style.BLUE)
     used = np.flatnonzero(found.counts[:-1])
     left.set_xlim(edges[max(int(used[0]) - 2, 0)], max(2e6 / found.rate, 1.5 * edges[used[-1] + 1]))
-    left.axvline(1e6 / found.rate, color=style.MUTED, lw=1.2, ls=(0, (2, 2)), label="a period")
+    left.axvline(1e6 / found.rate, **style.REFERENCE, label="a period")
     left.set(xscale="log", yscale="log", xlabel="lateness (µs)", ylabel="ticks")
     left.set_ylim(0.7, None)
-    style.plain_log(left.xaxis)
-    style.plain_log(left.yaxis)
+    style.plain_log(left.xaxis, left.yaxis)
     left.legend(loc="upper left", frameon=False)
     lag = session.trace.rows[:, column.LAG]
     lag = 1e3 * lag[np.isfinite(lag)]
@@ -186,3 +158,10 @@ def lateness(session: PlayedSession) -> Figure:
         right.hist(lag, bins=60, color=style.GREEN)
     right.set(xlabel="way from sample to its command (mm)", ylabel="ticks")
     return figure
+
+
+FIGURES = (
+    FigureOf("friction", "Friction along the finger's way", friction),
+    FigureOf("amplitude", "Amplitude", amplitude),
+    FigureOf("lateness", "Lateness and lag", lateness),
+)

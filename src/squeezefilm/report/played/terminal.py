@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from squeezefilm import quantities as si
 from squeezefilm.report.kit.numbers import HZ, M, S, V, lag_rows, printable, shown
-from squeezefilm.report.kit.terminal import heading, plain_console, table
+from squeezefilm.report.kit.terminal import heading, plain_console, show_rows, table
 
 if TYPE_CHECKING:
     from rich.console import Group
@@ -51,12 +51,11 @@ def show_check(check: DeviceCheck) -> None:
         fixed=(0,),
         styles=lambda row: "green" if row[0] == "pass" else "bold red",
     )
-    for one in check.results:
-        if not one.passed:
-            console.print(f"! {one.name}: {one.advice}")
-    bad = sum(not one.passed for one in check.results)
+    bad = [one for one in check.results if not one.passed]
+    for one in bad:
+        console.print(f"! {one.name}: {one.advice}")
     count = len(check.results)
-    console.print(f"{count - bad} of {count} checks passed")
+    console.print(f"{count - len(bad)} of {count} checks passed")
 
 
 @contextmanager
@@ -148,13 +147,9 @@ def _number(value: float, scale: float, digits: int = 2) -> str:
 
 def show_play(result: PlayResult) -> None:
     """Print a session: how it ended, what was rendered, how late, how far behind."""
-    console = plain_console()
-    session = result.session
-    setup = session.setup
-    heading(console, f"{setup.name} on {setup.display.title} [{setup.display.name}]")
-    table(console, ("", "", ""), play_rows(result), fixed=(0, 1))
-    for text in play_warnings(session):
-        console.print(f"! {text}")
+    setup = result.session.setup
+    title = f"{setup.name} on {setup.display.title} [{setup.display.name}]"
+    show_rows(title, play_rows(result), play_warnings(result.session), fixed=(0, 1))
 
 
 def play_rows(result: PlayResult) -> list[tuple[str, str, str]]:
@@ -180,14 +175,8 @@ def play_rows(result: PlayResult) -> list[tuple[str, str, str]]:
             ("Position error", shown(session.position_error, M, 3), "of the estimate, RMS, truth")
         )
     if session.lag is not None:
-        rows.append(
-            (
-                "Way predicted",
-                f"{1e3 * session.lag.median:.2f} mm",
-                f"from newest sample to its command at the plate; {1e3 * session.lag.p99:.2f} mm "
-                "at 99 %",
-            )
-        )
+        far = f"from newest sample to its command at the plate; {1e3 * session.lag.p99:.2f} mm"
+        rows.append(("Way predicted", f"{1e3 * session.lag.median:.2f} mm", f"{far} at 99 %"))
     rows += _loop_rows(session.last("loop")) + _link_rows(session)
     return rows
 
@@ -206,20 +195,11 @@ def _judged_rows(who: str, judged: Judged) -> list[tuple[str, str, str]]:
         found.spatial_frequency, found.contrast_kept, found.swing_kept, strict=True
     ):
         if math.isfinite(kept):
-            rows.append(
-                (
-                    f"{who}: contrast at {shown(1 / f, M, 3)}",
-                    f"{100 * kept:.0f} %",
-                    f"in its place; swing kept {100 * swing:.0f} %",
-                )
-            )
-    rows.append(
-        (
-            f"{who}: friction error",
-            f"{found.rms_error:.3f}",
-            f"RMS of µ′/µ, swing wanted {found.wanted_swing:.2f}; by {judged.way.source}",
-        )
-    )
+            said = f"in its place; swing kept {100 * swing:.0f} %"
+            name = f"{who}: contrast at {shown(1 / f, M, 3)}"
+            rows.append((name, f"{100 * kept:.0f} %", said))
+    said = f"RMS of µ′/µ, swing wanted {found.wanted_swing:.2f}; by {judged.way.source}"
+    rows.append((f"{who}: friction error", f"{found.rms_error:.3f}", said))
     return rows + lag_rows(found, f"{who}: lag")
 
 

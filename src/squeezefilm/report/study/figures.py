@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import textwrap
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,7 +15,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from squeezefilm.study.identification.analysis import IdentificationAnalysis
+    from squeezefilm.study.identification.choice_model import ChoiceModel
     from squeezefilm.study.identification.confusion import ConfusionMatrix
+    from squeezefilm.study.identification.sensitivity import OrderedSensitivity
 
 
 def data_of(analysis: IdentificationAnalysis) -> str:
@@ -50,18 +52,15 @@ def _draw_confusion(axes: Axes, matrix: ConfusionMatrix) -> None:
     for (i, j), value in np.ndenumerate(percent):
         count = int(matrix.counts[i, j])
         words = "–" if np.isnan(value) else f"{value:.0f} %\n({count})" if count else "·"
-        weight = "bold" if i == j and matrix.is_square else "normal"
-        axes.text(j, i, words, ha="center", va="center", weight=weight, color=style.INK)
-        if i == j and matrix.is_square:
-            axes.add_patch(
-                Rectangle((j - 0.5, i - 0.5), 1, 1, fill=False, edgecolor=style.MUTED, lw=1.2)
-            )
+        right = i == j and matrix.is_square
+        axes.text(j, i, words, ha="center", va="center", weight="bold" if right else "normal")
+        if right:
+            corner = j - 0.5, i - 0.5
+            axes.add_patch(Rectangle(corner, 1, 1, fill=False, edgecolor=style.MUTED, lw=1.2))
     axes.set_xticks(range(len(matrix.stimuli)), [style.plain(name, 16) for name in matrix.stimuli])
     axes.set_yticks(range(len(matrix.answers)), [style.plain(name, 16) for name in matrix.answers])
     axes.set(xlabel="simulated", ylabel="grating answered")
-    axes.tick_params(length=0)
-    axes.grid(visible=False)
-    axes.spines[:].set_visible(False)
+    style.bare(axes)
 
 
 def _worst(matrix: ConfusionMatrix) -> str:
@@ -91,48 +90,25 @@ def proportion_correct(analysis: IdentificationAnalysis) -> Figure:
     )
     left, right = figure.subplots(1, 2, width_ratios=[1.6, 1], sharey=True)
     chance = 100 * analysis.matrix.chance
-    for x, item in enumerate(analysis.by_stimulus):
-        left.plot([x, x], [100 * item.low, 100 * item.high], color=style.MUTED, lw=1.4)
-        left.plot(
-            [x], [100 * item.proportion_correct], "o", color=style.BLUE, ms=7, mec=style.PAPER
-        )
-    left.set_xticks(
-        range(len(analysis.by_stimulus)),
-        [style.plain(s.stimulus, 14) for s in analysis.by_stimulus],
-    )
+    by = analysis.by_stimulus
+    style.estimates(left, ((100 * s.proportion_correct, 100 * s.low, 100 * s.high) for s in by))
+    left.set_xticks(range(len(by)), [style.plain(s.stimulus, 14) for s in by])
     left.set(ylabel="right answers (%)", ylim=(0, 104), xlabel="stimulus")
-    right.hist(
-        100 * analysis.participant_correct,
-        bins=_bins(analysis),
-        orientation="horizontal",
-        color=style.PLUS,
-        edgecolor=style.MUTED,
-    )
+    scores = 100 * analysis.participant_correct
+    right.hist(scores, bins=_bins(analysis), orientation="horizontal", **style.BARS)
     right.set(xlabel="participants")
+    ground = {"facecolor": style.PAPER, "edgecolor": "none", "alpha": 0.8, "pad": 0.5}
+    words: dict[str, Any] = {"rotation": 90, "ha": "center", "va": "top", "fontsize": 8.5}
     for k, interval in enumerate(analysis.intervals):
         x = (0.6 + 0.11 * k) * right.get_xlim()[1]
-        right.plot(
-            [x, x], [100 * interval.low, 100 * interval.high], color=style.ORANGE, lw=2, zorder=4
-        )
-        right.text(
-            x,
-            100 * interval.low - 2,
-            interval.method,
-            rotation=90,
-            ha="center",
-            va="top",
-            fontsize=8.5,
-            bbox={"facecolor": style.PAPER, "edgecolor": "none", "alpha": 0.8, "pad": 0.5},
-        )
+        low, high = 100 * interval.low, 100 * interval.high
+        right.plot([x, x], [low, high], color=style.ORANGE, lw=2, zorder=4)
+        right.text(x, low - 2, interval.method, bbox=ground, **words)
     for axes in (left, right):
-        axes.axhline(chance, color=style.MUTED, lw=1, ls=(0, (1.4, 1.2)))
+        axes.axhline(chance, **style.GUIDE)
+    said = f"guessing: {chance:.3g} %"
     left.annotate(
-        f"guessing: {chance:.3g} %",
-        (0, chance),
-        (-8, 4),
-        textcoords="offset points",
-        fontsize=9,
-        color=style.MUTED,
+        said, (0, chance), (-8, 4), textcoords="offset points", fontsize=9, color=style.MUTED
     )
     left.set_title("each stimulus")
     right.set_title("people, and the mean's intervals")
@@ -150,6 +126,12 @@ def _p(p: float) -> str:
     return "< 0.001" if p < 0.001 else f"= {p:.2g}"
 
 
+def _deviance(fit: OrderedSensitivity | ChoiceModel) -> str:
+    """How well a model fits, in words."""
+    freedom = f"{fit.degrees_of_freedom} degrees of freedom"
+    return f"G² = {fit.deviance:.1f} with {freedom} (p {_p(fit.p_value)})"
+
+
 @style.drawn
 def information(analysis: IdentificationAnalysis) -> Figure:
     """Information transfer by every estimator, the recommended one marked, and where each fails."""
@@ -164,45 +146,24 @@ def information(analysis: IdentificationAnalysis) -> Figure:
     axes = figure.subplots()
     rows = np.arange(len(found.estimates))[::-1]
     for row, item in zip(rows, found.estimates, strict=True):
-        chosen = item.key == found.recommended
-        color = style.ORANGE if chosen else style.BLUE
+        look = {**style.ESTIMATE, "ms": 8, "clip_on": False, "zorder": 4}
+        if item.key == found.recommended:
+            look |= {"marker": "D", "color": style.ORANGE}
         if item.interval is not None:
-            axes.plot(
-                [item.interval.low, item.interval.high], [row, row], color=style.MUTED, lw=1.4
-            )
+            axes.plot([item.interval.low, item.interval.high], [row, row], **style.INTERVAL)
         if np.isfinite(item.estimate):
-            axes.plot(
-                [item.estimate],
-                [row],
-                "D" if chosen else "o",
-                color=color,
-                ms=8,
-                mec=style.PAPER,
-                clip_on=False,
-                zorder=4,
-            )
+            axes.plot([item.estimate], [row], **look)
     axes.set_yticks(rows, [item.name for item in found.estimates])
     for label, item in zip(axes.get_yticklabels(), found.estimates, strict=True):
         label.set_fontweight("bold" if item.key == found.recommended else "normal")
-    axes.set(
-        xlabel="information transfer (bit)", xlim=(min(0.0, *_values(analysis)), found.greatest)
-    )
+    lowest = min([0.0, *(i.estimate for i in found.estimates if np.isfinite(i.estimate))])
+    axes.set(xlabel="information transfer (bit)", xlim=(lowest, found.greatest))
+    small: dict[str, Any] = {"fontsize": 7.6, "color": style.MUTED, "va": "center"}
+    small["transform"] = axes.get_yaxis_transform()
     for row, item in zip(rows, found.estimates, strict=True):
-        axes.text(
-            1.02,
-            row,
-            textwrap.fill(item.fails, 62),
-            fontsize=7.6,
-            color=style.MUTED,
-            va="center",
-            transform=axes.get_yaxis_transform(),
-        )
+        axes.text(1.02, row, textwrap.fill(item.fails, 62), **small)
     axes.grid(visible=False, axis="y")
     return figure
-
-
-def _values(analysis: IdentificationAnalysis) -> list[float]:
-    return [i.estimate for i in analysis.information.estimates if np.isfinite(i.estimate)]
 
 
 @style.drawn
@@ -213,16 +174,12 @@ def sensitivity(analysis: IdentificationAnalysis) -> Figure:
         return style.message_figure("No d′", _note(analysis, "d′"))
     names = [style.plain(name, 14) for name in analysis.matrix.stimuli]
     weakest = int(np.argmin(fit.d_prime))
+    added = "one trial per stimulus added (some never confused): d′ too low"
+    fitted = added if fit.corrected else _deviance(fit)
     figure = style.new_figure(
         f"Δ′ = {fit.total:.2f} from {names[0]} to {names[-1]}; "
         f"{names[weakest]} and {names[weakest + 1]} lie closest, d′ = {fit.d_prime[weakest]:.2f}",
-        f"{data_of(analysis)}; equal-variance Thurstone model, "
-        + (
-            "one trial per stimulus added (some never confused): d′ too low"
-            if fit.corrected
-            else f"G² = {fit.deviance:.1f} with {fit.degrees_of_freedom} degrees of freedom "
-            f"(p {_p(fit.p_value)})"
-        ),
+        f"{data_of(analysis)}; equal-variance Thurstone model, {fitted}",
         4.6,
     )
     top, below = figure.subplots(2, 1, height_ratios=[1.25, 1])
@@ -233,25 +190,17 @@ def sensitivity(analysis: IdentificationAnalysis) -> Figure:
         top.plot(x, curve, color=style.BLUE, lw=1.3)
         top.text(place, 1.04, name, ha="center", va="bottom", fontsize=9.5)
     for k, criterion in enumerate(fit.criteria):
-        top.axvline(
-            criterion,
-            color=style.ORANGE,
-            lw=1.2,
-            ls=(0, (4, 2)),
-            label="criteria" if k == 0 else None,
-        )
+        named = "criteria" if k == 0 else None
+        top.axvline(criterion, color=style.ORANGE, lw=1.2, ls=(0, (4, 2)), label=named)
     top.set(xlim=(x[0], x[-1]), ylim=(0, 1.3), xlabel="decision axis (standard deviations)")
     top.set_yticks([])
     top.spines["left"].set_visible(False)
     top.legend(loc="upper right", frameon=False)
-    steps = np.arange(fit.d_prime.size)
-    for k in range(steps.size):
-        below.plot([k, k], [fit.low[k], fit.high[k]], color=style.MUTED, lw=1.4)
-    below.plot(steps, fit.d_prime, "o", color=style.BLUE, ms=7, mec=style.PAPER)
-    below.axhline(0, color=style.MUTED, lw=0.9)
+    style.estimates(below, zip(fit.d_prime, fit.low, fit.high, strict=True))
+    below.axhline(0, **style.ZERO)
     pairs = [f"{a} – {b}" for a, b in itertools.pairwise(names)]
-    below.set_xticks(steps, pairs)
-    below.set(ylabel="d′ of neighbours", xlim=(-0.5, steps[-1] + 0.5))
+    below.set_xticks(range(len(pairs)), pairs)
+    below.set(ylabel="d′ of neighbours", xlim=(-0.5, len(pairs) - 0.5))
     below.set_title(f"{100 * fit.level:g} % intervals: {fit.interval_method}")
     return figure
 
@@ -265,16 +214,12 @@ def similarities(analysis: IdentificationAnalysis) -> Figure:
     names = [style.plain(name, 12) for name in analysis.matrix.stimuli]
     off = np.where(np.eye(len(names), dtype=bool), -1.0, fit.similarity)
     i, j = sorted(int(v) for v in np.unravel_index(int(np.argmax(off)), off.shape))
+    added = f"{fit.pseudo_trials:g} trial per stimulus added"
     figure = style.new_figure(
         f"{names[i]} and {names[j]} are felt most alike (η = {off[i, j]:.2f}); "
         f"{names[int(np.argmax(fit.bias))]} is the answer preferred",
         f"{data_of(analysis)}; Luce–Shepard choice model"
-        + (
-            f", {fit.pseudo_trials:g} trial per stimulus added"
-            if fit.pseudo_trials
-            else f", G² = {fit.deviance:.1f} with {fit.degrees_of_freedom} degrees of freedom "
-            f"(p {_p(fit.p_value)})"
-        ),
+        f", {added if fit.pseudo_trials else _deviance(fit)}",
         4.6,
     )
     grid = figure.add_gridspec(2, 2, width_ratios=[1.1, 1], height_ratios=[1, 1])
@@ -283,14 +228,14 @@ def similarities(analysis: IdentificationAnalysis) -> Figure:
     _draw_similarity(left, fit.similarity, names)
     second = points.points[:, 1] if points.points.shape[1] > 1 else np.zeros(len(names))
     right.plot(points.points[:, 0], second, "-", color=style.METAL, lw=1.2)
-    right.plot(points.points[:, 0], second, "o", color=style.BLUE, ms=7, mec=style.PAPER)
+    right.plot(points.points[:, 0], second, **style.ESTIMATE)
     for name, a, b in zip(names, points.points[:, 0], second, strict=True):
         right.annotate(name, (a, b), (0, 7), textcoords="offset points", ha="center", fontsize=9)
     right.set_title(f"distances −ln η as points ({100 * points.explained:.0f} % of them)")
     right.set_aspect("equal", adjustable="datalim")
     right.margins(0.18)
-    bars.bar(np.arange(len(names)), 100 * fit.bias, color=style.BAND, edgecolor=style.MUTED)
-    bars.axhline(100 / len(names), color=style.MUTED, lw=1, ls=(0, (1.4, 1.2)))
+    bars.bar(np.arange(len(names)), 100 * fit.bias, **style.BARS)
+    bars.axhline(100 / len(names), **style.GUIDE)
     bars.set_xticks(np.arange(len(names)), names)
     bars.set_ylabel("bias of answer (%)")
     return figure
@@ -307,11 +252,8 @@ def _draw_similarity(axes: Axes, similarity: np.ndarray, names: list[str]) -> No
         axes.text(j, i, f"{similarity[i, j]:.2f}", ha="center", va="center")
     axes.set_xticks(range(len(names) - 1), names[:-1])
     axes.set_yticks(range(1, len(names)), names[1:])
-    axes.set_xlim(-0.5, len(names) - 1.5)
-    axes.set_ylim(len(names) - 0.5, 0.5)
-    axes.tick_params(length=0)
-    axes.grid(visible=False)
-    axes.spines[:].set_visible(False)
+    axes.set(xlim=(-0.5, len(names) - 1.5), ylim=(len(names) - 0.5, 0.5))
+    style.bare(axes)
     axes.set_title("similarity η (1: not told apart)")
 
 

@@ -34,21 +34,11 @@ def channels(tables: ChainTables) -> Figure:
     )
     axes = figure.subplots()
     for one, (color, dashes) in zip(observer.channels, style.LINES, strict=False):
-        axes.plot(
-            frequency, one.gain(frequency), color=color, ls=dashes, label=style.plain(one.name)
-        )
+        said = style.plain(one.name)
+        axes.plot(frequency, one.gain(frequency), color=color, ls=dashes, label=said)
     for name, why in tables.explain().items():
-        axes.axvline(why.texture_frequency, color=style.MUTED, lw=0.9)
-        axes.text(
-            why.texture_frequency,
-            1.03,
-            style.plain(name, 10),
-            ha="center",
-            va="bottom",
-            fontsize=9.0,
-            color=style.INK,
-            rotation=35,
-        )
+        axes.axvline(why.texture_frequency, **style.ZERO)
+        axes.text(why.texture_frequency, 1.03, style.plain(name, 10), ha="center", **style.SLANTED)
     for index in range(len(tables.design.displays)):
         width = next(iter(tables.explain(index).values())).envelope_bandwidth
         axes.axvline(width, color=style.METAL, lw=2.2, ls=":")
@@ -87,21 +77,14 @@ def percepts(tables: ChainTables) -> Figure:
             if row >= len(surfaces):
                 cell.set_axis_off()
                 continue
-            found = (
-                tables.virtual_rhythm[column, :, row]
-                if column < real
-                else tables.real_rhythm[:, row]
-            )
-            color = _DISPLAYS[column % 2] if column < real else style.INK
+            found, color = tables.real_rhythm[:, row], style.INK
+            if column < real:
+                found, color = tables.virtual_rhythm[column, :, row], _DISPLAYS[column % 2]
             cell.plot(period, found.T, color=color, lw=0.6, alpha=0.35)
             cell.plot(period, np.median(found, axis=0), color=color, lw=1.7)
             cell.axhline(observer.detection_criterion, color=style.MUTED, lw=0.9, ls=(0, (4, 2)))
             cell.axvline(1e3 * surfaces[row].period, color=style.METAL, lw=2.2, zorder=0)
-            cell.set(xscale="log", xlim=(0.25, 20))
-            if column < real:
-                cell.set_ylim(0, highest)
-            else:
-                cell.set_ylim(0, None)
+            cell.set(xscale="log", xlim=(0.25, 20), ylim=(0, highest if column < real else None))
             cell.set_title(f"{head}: {style.plain(surfaces[row].name, 14)}", fontsize=9.0)
             cell.set_xticks([0.4, 1, 2, 4, 10], ["0.4", "1", "2", "4", "10"])
             cell.minorticks_off()

@@ -8,10 +8,22 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from squeezefilm import quantities as si
-from squeezefilm.report.kit import style
 from squeezefilm.report.kit.folder import json_text, require_folder, write_folder
 from squeezefilm.report.kit.numbers import printable, shown
-from squeezefilm.report.kit.page_style import page_head, picture_sections, section, text_table
+from squeezefilm.report.kit.page_style import (
+    FigureOf,
+    bullets,
+    drawn_figures,
+    links,
+    page,
+    picture_files,
+    picture_sections,
+    section,
+    stamped,
+    text_table,
+)
+from squeezefilm.report.study import figures as draw
+from squeezefilm.report.study import time_figures as times
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -19,6 +31,18 @@ if TYPE_CHECKING:
     from squeezefilm.study.identification.analysis import IdentificationAnalysis
     from squeezefilm.study.identification.power import PowerCurve
     from squeezefilm.study.identification.proportions import Interval
+
+
+FIGURES = (
+    FigureOf("confusion", "Confusion matrix", draw.confusion),
+    FigureOf("correct", "Right answers", draw.proportion_correct),
+    FigureOf("information", "Information transfer", draw.information),
+    FigureOf("sensitivity", "Sensitivity along the stimuli", draw.sensitivity),
+    FigureOf("similarities", "Similarities and biases", draw.similarities, file="similarity"),
+    FigureOf("times", "Response times", times.response_times, has=lambda one: one.response_times),
+    FigureOf("exploration", "Exploration", times.exploration, has=lambda one: one.exploration),
+)
+"""The figures of an identification study."""
 
 
 def write_study(
@@ -39,9 +63,7 @@ def write_study(
     folder = require_folder(folder)
     tell("figures")
     figures = study_figures(analysis, power)
-    files: dict[str, str | bytes] = {
-        f"study-{key}.png": style.png(figure) for key, (_, figure) in figures.items()
-    }
+    files = picture_files(_named(figures))
     summary = analysis.summary()
     if power is not None:
         summary["power"] = power
@@ -56,22 +78,9 @@ def study_figures(
     analysis: IdentificationAnalysis, power: PowerCurve | None = None
 ) -> dict[str, tuple[str, Figure]]:
     """The figures by key: heading and drawing. What was not measured has none."""
-    from squeezefilm.report.study import figures as draw
-    from squeezefilm.report.study import time_figures as later
-
-    found = {
-        "confusion": ("Confusion matrix", draw.confusion(analysis)),
-        "correct": ("Right answers", draw.proportion_correct(analysis)),
-        "information": ("Information transfer", draw.information(analysis)),
-        "sensitivity": ("Sensitivity along the stimuli", draw.sensitivity(analysis)),
-        "similarity": ("Similarities and biases", draw.similarities(analysis)),
-    }
-    if analysis.response_times:
-        found["times"] = ("Response times", later.response_times(analysis))
-    if analysis.exploration:
-        found["exploration"] = ("Exploration", later.exploration(analysis))
+    found = drawn_figures(FIGURES, analysis)
     if power is not None:
-        found["power"] = ("How many people a study needs", later.power(power))
+        found["power"] = ("How many people a study needs", times.power(power))
     return found
 
 
@@ -82,29 +91,30 @@ def study_page(
 ) -> str:
     """The page as text; its figures lie beside it as study-KEY.png."""
     title = escape(printable(analysis.name))
-    pictures = picture_sections({f"study-{key}": one for key, one in figures.items()})
-    notes = "".join(f"<li>{escape(printable(note))}</li>" for note in analysis.notes)
+    head = ("Quantity", "Value", "Remark")
+    numbers = text_table(f"{analysis.origin} answers", head, key_rows(analysis))
     sections = (
-        section("Numbers", _numbers(analysis))
-        + pictures
+        section("Numbers", numbers)
+        + picture_sections(_named(figures))
         + section("Confusions in numbers", _confusion(analysis))
         + section("Information transfer by every estimator", _information(analysis))
         + (section("Mixed models", _mixed(analysis)) if analysis.mixed is not None else "")
-        + section("What could not be computed", f"<ul>{notes or '<li>Nothing.</li>'}</ul>")
+        + section("What could not be computed", bullets(analysis.notes, "Nothing."))
     )
-    return f"""{page_head(f"{title}: identification study")}
-<header><h1>{title}</h1>
-<p class="name"><b>{escape(printable(analysis.origin))}</b> answers, analysed by squeezefilm</p></header>
-<main>
-{sections}</main>
-<footer><p>squeezefilm {escape(str(provenance["squeezefilm_version"]))} ·
-made {escape(str(provenance["created_utc"]))} (UTC) ·
-SHA-256 of the answers <code>{escape(str(provenance["config_sha256"]))}</code> ·
-seed of the resampling {escape(str(provenance["seed"]))}.
-All numbers: <a href="identification.json">identification.json</a>.</p></footer>
-</body>
-</html>
-"""  # noqa: E501
+    return page(
+        f"{title}: identification study",
+        title,
+        f"<b>{escape(printable(analysis.origin))}</b> answers, analysed by squeezefilm",
+        sections,
+        f"{stamped(provenance, 'SHA-256 of the answers')} ·\n"
+        f"seed of the resampling {escape(str(provenance['seed']))}.\n"
+        f"All numbers: {links(['identification.json'])}.",
+    )
+
+
+def _named(figures: dict[str, tuple[str, Figure]]) -> dict[str, tuple[str, Figure]]:
+    """The figures by the name of their file."""
+    return {f"study-{key}": one for key, one in figures.items()}
 
 
 def _between(interval: Interval | None, scale: float = 1.0, unit: str = "") -> str:
@@ -164,11 +174,6 @@ def key_rows(analysis: IdentificationAnalysis) -> list[tuple[str, str, str]]:
         texts = [shown(value, si.Unit("s"), 3) for value in (g.mean, g.spread, g.tail)]
         rows.append(("Response time μ, σ, τ", ", ".join(texts), "ex-Gaussian, all trials"))
     return rows
-
-
-def _numbers(analysis: IdentificationAnalysis) -> str:
-    head = ("Quantity", "Value", "Remark")
-    return text_table(f"{analysis.origin} answers", head, key_rows(analysis))
 
 
 def _confusion(analysis: IdentificationAnalysis) -> str:

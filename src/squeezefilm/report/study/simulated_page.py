@@ -5,17 +5,29 @@ from __future__ import annotations
 from collections.abc import Callable
 from html import escape
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from squeezefilm.report.kit import style
 from squeezefilm.report.kit.folder import json_text, require_folder, write_folder
 from squeezefilm.report.kit.numbers import printable
-from squeezefilm.report.kit.page_style import page_head, section, text_table
+from squeezefilm.report.kit.page_style import (
+    FigureOf,
+    drawn_figures,
+    links,
+    page,
+    picture_files,
+    picture_sections,
+    section,
+    stamped,
+    text_table,
+)
 from squeezefilm.report.study import observer_figures
 from squeezefilm.study.record.tables import Column, csv_text
 from squeezefilm.study.simulated.participants import SimulatedStudy
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 REMARK = (
     "The one checkable remark of Biet, Giraud and Lemaire-Semail (their tables are empty in the "
@@ -54,6 +66,15 @@ LEGEND = (
 )
 
 
+FIGURES = (
+    FigureOf(
+        "percepts", "Evidence before noise", lambda one: observer_figures.percepts(one.tables)
+    ),
+    FigureOf("channels", "Channels", lambda one: observer_figures.channels(one.tables)),
+)
+"""The figures of simulated participants."""
+
+
 def write_simulated(
     study: SimulatedStudy, folder: Path, progress: Callable[[str], None] | None = None
 ) -> Path:
@@ -66,14 +87,12 @@ def write_simulated(
     folder = require_folder(folder)
     summary = study.summary()
     tell("figures")
-    files: dict[str, str | bytes] = {
-        "channels.png": style.png(observer_figures.channels(study.tables)),
-        "percepts.png": style.png(observer_figures.percepts(study.tables)),
-    }
+    figures = drawn_figures(FIGURES, study)
+    files = picture_files(figures)
     analysed = _analyses(study, folder, tell)
     files["simulated.json"] = json_text(summary)
     files["trials.csv"] = csv_text(_rows(study), COLUMNS)
-    files["index.html"] = _page(study, summary, analysed)
+    files["index.html"] = _page(study, figures, analysed, summary["provenance"])
     tell("writing the report")
     write_folder(folder, files)
     return folder / "index.html"
@@ -159,8 +178,13 @@ def reason_rows(study: SimulatedStudy, index: int) -> list[list[str]]:
     ]
 
 
-def _page(study: SimulatedStudy, summary: dict[str, Any], analysed: dict[str, str]) -> str:
-    design, provenance = study.tables.design, summary["provenance"]
+def _page(
+    study: SimulatedStudy,
+    figures: dict[str, tuple[str, Figure]],
+    analysed: dict[str, str],
+    stamp: dict[str, Any],
+) -> str:
+    design = study.tables.design
     parts = []
     for index, name in enumerate(design.displays):
         head, rows = confusion_rows(study, index)
@@ -177,21 +201,14 @@ def _page(study: SimulatedStudy, summary: dict[str, Any], analysed: dict[str, st
             )
         )
     title = escape(printable(f"{design.name}: simulated participants"))
-    return f"""{page_head(f"{title}")}
-<header><h1>{title}</h1>
-<p class="name">{study.participants} <b>simulated</b> participants, observer
-{escape(printable(study.tables.observer.name))}, seed {study.seed}; no person answered</p></header>
-<main>
-<section><h2>What can be compared</h2><p>{escape(REMARK)}</p></section>
-{"".join(parts)}<section><h2>Evidence before noise</h2>
-<figure><img src="percepts.png" alt="Evidence for rhythms by period"></figure></section>
-<section><h2>Channels</h2>
-<figure><img src="channels.png" alt="Gains of the sensory channels"></figure></section>
-</main>
-<footer><p>squeezefilm {escape(str(provenance["squeezefilm_version"]))} ·
-made {escape(str(provenance["created_utc"]))} (UTC) ·
-SHA-256 of design and observer <code>{escape(str(provenance["config_sha256"]))}</code>.
-<a href="simulated.json">simulated.json</a>, <a href="trials.csv">trials.csv</a>.</p></footer>
-</body>
-</html>
-"""
+    return page(
+        title,
+        title,
+        f"{study.participants} <b>simulated</b> participants, observer\n"
+        f"{escape(printable(study.tables.observer.name))}, seed {study.seed}; no person answered",
+        section("What can be compared", f"<p>{escape(REMARK)}</p>")
+        + "".join(parts)
+        + picture_sections(figures),
+        f"{stamped(stamp, 'SHA-256 of design and observer')}.\n"
+        f"{links(['simulated.json', 'trials.csv'])}.",
+    )

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from squeezefilm.errors import InputError
 from squeezefilm.report.kit.numbers import M, shown
-from squeezefilm.report.kit.terminal import heading, plain_console, table
+from squeezefilm.report.kit.terminal import heading, plain_console, show_rows, table
 
 if TYPE_CHECKING:
     from squeezefilm.perception.stimuli import Grating, Stimulus
@@ -22,24 +22,20 @@ if TYPE_CHECKING:
 
 def show_plan(plan: StudyPlan) -> None:
     """Print a plan: what is presented, how often, how long it takes, what is assumed."""
-    design, console = plan.design, plain_console()
-    heading(console, f"{design.name}: {design.title}")
+    design = plan.design
     minutes = plan.duration / 60
+    everyone = f"for {plan.participants} participants"
     phases = ", ".join(f"{count} {name}" for name, count in plan.phases.items())
     rows = [
         ("Task", design.task, design.spoken_question),
         ("Displays", ", ".join(design.displays), ""),
         ("Trials", f"{len(plan.schedules[0])} per participant", phases),
         ("Time", f"{minutes:.0f} min per participant", f"{design.trial_duration:g} s a trial"),
-        (
-            "In all",
-            f"{minutes * plan.participants / 60:.1f} h",
-            f"for {plan.participants} participants",
-        ),
+        ("In all", f"{minutes * plan.participants / 60:.1f} h", everyone),
         ("Order", design.order, f"balanced over every {plan.balanced_participants} participants"),
         ("Seed", str(plan.seed), f"design {design.sha256[:12]}"),
     ]
-    table(console, ("", "", ""), rows, fixed=(0,))
+    console = show_rows(f"{design.name}: {design.title}", rows)
     heading(console, "Presented")
     table(
         console,
@@ -80,12 +76,7 @@ _GRATING = ("Name", "Period", "Groove", "Length means")
 
 def _grating(one: Stimulus | Grating) -> tuple[str, str, str, str]:
     """What a virtual and a real grating both have, as `_GRATING` heads it."""
-    return (
-        one.name,
-        shown(one.period, M, 3),
-        shown(one.groove_width, M, 3),
-        one.period_means,
-    )
+    return one.name, shown(one.period, M, 3), shown(one.groove_width, M, 3), one.period_means
 
 
 def show_status(store: StudyStore) -> None:

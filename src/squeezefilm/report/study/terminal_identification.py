@@ -1,4 +1,4 @@
-"""What the terminal shows of an analysed identification study."""
+"""What the terminal shows of an analysed identification study, and of simulated participants."""
 
 from __future__ import annotations
 
@@ -7,9 +7,17 @@ from typing import TYPE_CHECKING
 
 from squeezefilm.report.kit.terminal import heading, plain_console, table
 from squeezefilm.report.study.page import key_rows
+from squeezefilm.report.study.simulated_page import (
+    LEGEND,
+    REASONS,
+    REMARK,
+    confusion_rows,
+    reason_rows,
+)
 
 if TYPE_CHECKING:
     from squeezefilm.study.identification.analysis import IdentificationAnalysis
+    from squeezefilm.study.simulated.participants import SimulatedStudy
     from squeezefilm.study.simulated.planned_power import PlannedPower
 
 
@@ -58,3 +66,20 @@ def show_power(found: PlannedPower) -> None:
         f"simulated participants '{found.observer}': what they assume, this assumes.",
         highlight=False,
     )
+
+
+def show_simulated(study: SimulatedStudy) -> None:
+    """Print each display's table of answers and the model's reasons."""
+    console = plain_console()
+    for index, name in enumerate(study.tables.design.displays):
+        heading(
+            console,
+            f"{name}, SIMULATED: {100 * study.proportion_correct(index):.1f} % right, "
+            f"{study.participants} simulated participants, seed {study.seed}",
+        )
+        head, rows = confusion_rows(study, index)
+        table(console, head, rows)
+        console.print("Per cent of each column; rows are gratings answered, columns simulated.")
+        table(console, REASONS, reason_rows(study, index))
+    console.print(LEGEND)
+    console.print(REMARK)

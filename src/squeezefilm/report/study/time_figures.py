@@ -1,4 +1,4 @@
-"""Figures of a study beside its confusions: response times, exploration, power."""
+"""Figures of a study beside its confusions: response times, exploration, power, thresholds."""
 
 from __future__ import annotations
 
@@ -10,12 +10,11 @@ from squeezefilm.report.kit import style
 from squeezefilm.report.study.figures import data_of
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
     from squeezefilm.study.identification.analysis import IdentificationAnalysis
-    from squeezefilm.study.identification.exploration import ConditionMean
     from squeezefilm.study.identification.power import PowerCurve
+    from squeezefilm.study.psychometric.fit import PsychometricFit
 
 
 @style.drawn
@@ -33,9 +32,7 @@ def response_times(analysis: IdentificationAnalysis) -> Figure:
         4.0,
     )
     left, right = figure.subplots(1, 2, width_ratios=[1.5, 1])
-    for x, item in enumerate(found):
-        left.plot([x, x], [item.low, item.high], color=style.MUTED, lw=1.4)
-        left.plot([x], [item.geometric_mean], "o", color=style.BLUE, ms=7, mec=style.PAPER)
+    style.estimates(left, ((item.geometric_mean, item.low, item.high) for item in found))
     left.set_xticks(range(len(found)), [style.plain(item.name, 14) for item in found])
     left.set(ylabel="response time (s)", xlabel="stimulus")
     left.set_ylim(0, None)
@@ -71,48 +68,33 @@ def exploration(analysis: IdentificationAnalysis) -> Figure:
     )
     panels = np.atleast_1d(figure.subplots(1, len(found)))
     for axes, (key, rows) in zip(panels, found.items(), strict=True):
-        _draw_means(axes, key, rows)
+        style.estimates(axes, ((item.mean, item.low, item.high) for item in rows))
+        names = [style.plain(item.name, 8) for item in rows]
+        axes.set_xticks(range(len(rows)), names, rotation=30)
+        axes.set_ylim(0, None)
+        axes.set_title(key_words(key))
     return figure
-
-
-def _draw_means(axes: Axes, key: str, rows: tuple[ConditionMean, ...]) -> None:
-    for x, item in enumerate(rows):
-        axes.plot([x, x], [item.low, item.high], color=style.MUTED, lw=1.4)
-        axes.plot([x], [item.mean], "o", color=style.BLUE, ms=7, mec=style.PAPER)
-    axes.set_xticks(range(len(rows)), [style.plain(item.name, 8) for item in rows], rotation=30)
-    axes.set_ylim(0, None)
-    axes.set_title(key_words(key))
 
 
 def key_words(key: str) -> str:
     """A key with its unit as a person reads it: mean_speed_m_per_s → mean speed (m/s)."""
-    for suffix, unit in (
-        ("_m_per_s", "m/s"),
-        ("_mm_per_s", "mm/s"),
-        ("_m", "m"),
-        ("_mm", "mm"),
-        ("_N", "N"),
-        ("_s", "s"),
-    ):
+    for unit in ("m/s", "mm/s", "m", "mm", "N", "s"):
+        suffix = "_" + unit.replace("/", "_per_")
         if key.endswith(suffix):
-            return f"{style.plain(key[: -len(suffix)].replace('_', ' '), 28)} ({unit})"
-    return style.plain(key.replace("_", " "), 28)
+            return f"{style.plain(key.removesuffix(suffix).replace('_', ' '))} ({unit})"
+    return style.plain(key.replace("_", " "))
 
 
 @style.drawn
 def power(curve: PowerCurve) -> Figure:
     """Power against the number of people, with the error of the simulation."""
     needed, surely = curve.needed, curve.needed_surely
-    said = (
-        f"{int(curve.participants[-1])} people do not reach {100 * curve.target:g} % power"
-        if needed is None
-        else f"{needed} people reach {100 * curve.target:g} % power"
-        + (
-            ""
-            if surely is None or surely == needed
-            else f"; {surely} do beyond the simulation's error"
-        )
-    )
+    said = f"{needed} people reach {100 * curve.target:g} % power"
+    if needed is None:
+        most = int(curve.participants[-1])
+        said = f"{most} people do not reach {100 * curve.target:g} % power"
+    elif surely is not None and surely != needed:
+        said += f"; {surely} do beyond the simulation's error"
     figure = style.new_figure(
         said,
         f"simulated studies, {curve.studies} per size; one-sided test at α = {curve.alpha:g}; bars "
@@ -122,12 +104,42 @@ def power(curve: PowerCurve) -> Figure:
     axes = figure.subplots()
     axes.plot(curve.participants, 100 * curve.power, color=style.BLUE, lw=1.3)
     for n, low, high in zip(curve.participants, curve.low, curve.high, strict=True):
-        axes.plot([n, n], [100 * low, 100 * high], color=style.MUTED, lw=1.4)
-    axes.plot(curve.participants, 100 * curve.power, "o", color=style.BLUE, ms=6, mec=style.PAPER)
+        axes.plot([n, n], [100 * low, 100 * high], **style.INTERVAL)
+    axes.plot(curve.participants, 100 * curve.power, **style.ESTIMATE)
     axes.axhline(100 * curve.target, color=style.ORANGE, lw=1.1, ls=(0, (4, 2)))
     if needed is not None:
         axes.axvline(needed, color=style.ORANGE, lw=1.1, ls=(0, (1.4, 1.2)))
-    axes.set(
-        xlabel="participants", ylabel="studies that find it (%)", ylim=(0, 103), xlim=(0, None)
+    axes.set(xlabel="participants", ylabel="studies that find it (%)")
+    axes.set(xlim=(0, None), ylim=(0, 103))
+    return figure
+
+
+@style.drawn
+def psychometric_function(fit: PsychometricFit) -> Figure:
+    """Share of positive answers against intensity; the area of a point is its number of trials."""
+    function, log = fit.function, fit.function.axis == "log"
+    low, high = fit.posterior_interval["threshold"]
+    figure = style.new_figure(
+        f"The threshold is {function.threshold:.3g}, with {fit.level:.0%} between {low:.3g} and "
+        f"{high:.3g}",
+        f"{function.shape} function, guess rate {function.guess_rate:.2g}, lapse rate "
+        f"{function.lapse_rate:.2g}; {int(fit.trials.sum())} trials; credible interval",
+        4.4,
     )
+    axes = figure.subplots()
+    first, last = float(fit.intensity[0]), float(fit.intensity[-1])
+    room = 0.0 if log else 0.04 * (last - first)
+    ends = first - room, last + room
+    x = np.geomspace(*ends, 201) if log else np.linspace(*ends, 201)
+    axes.plot(x, 100 * np.asarray(function(x)), color=style.BLUE)
+    share = 100 * fit.positive / fit.trials
+    area = 20 + 180 * fit.trials / fit.trials.max()
+    axes.scatter(fit.intensity, share, s=area, color=style.MUTED, edgecolor=style.PAPER, zorder=3)
+    middle = 100 * float(np.asarray(function(function.threshold)))
+    axes.plot([low, high], [middle, middle], color=style.ORANGE, lw=2.4, zorder=4)
+    style.mark(axes, function.threshold, middle, 7, color=style.ORANGE)
+    axes.set(xlabel="intensity", ylabel="positive answers (%)", ylim=(-2, 103))
+    if log:
+        axes.set_xscale("log")
+        style.plain_log(axes.xaxis)
     return figure

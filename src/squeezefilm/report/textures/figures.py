@@ -1,4 +1,5 @@
-"""Figures of a rendered texture: friction along the way, drive and force, contrast, the map."""
+"""Figures of a rendered texture: friction along the way, drive and force, contrast, the map; and of
+a sliding finger: its tangential force, where it sticks, how its skin vibrates."""
 
 from __future__ import annotations
 
@@ -7,18 +8,25 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from squeezefilm.report.kit import style
-from squeezefilm.report.kit.numbers import M, N, S, V, shown
+from squeezefilm.report.kit.numbers import HZ, M, N, S, V, shown
+from squeezefilm.report.kit.page_style import FigureOf
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
     from squeezefilm.chain.rendered_texture import RenderAnalysis
+    from squeezefilm.chain.stroke_force import StrokeForce
+    from squeezefilm.contact.sliding.skin_vibration import SkinVibration
     from squeezefilm.quantities import FloatArray
 
 _MOST_POINTS = 3000
 _ZOOM = 0.16
 _MAP_POINTS = 260
+_PERIODS_SHOWN = 6
+_MOST_FORCES = 4000
+# Densities so far below the highest are the window's own floor.
+_FLOOR = 3e-5
 
 
 def _thin(count: int) -> slice:
@@ -29,14 +37,9 @@ def _thin(count: int) -> slice:
 def friction(result: RenderAnalysis) -> Figure:
     """Friction asked for and rendered over time, whole and enlarged."""
     stroke = result.stroke
-    late = (
-        ""
-        if result.fidelity is None or not np.isfinite(result.fidelity.lag)
-        else (
-            f", {shown(abs(result.fidelity.lag), M, 2)} "
-            + ("late" if result.fidelity.lag >= 0 else "early")
-        )
-    )
+    late, lag = "", np.nan if result.fidelity is None else result.fidelity.lag
+    if np.isfinite(lag):
+        late = f", {shown(abs(lag), M, 2)} {'late' if lag >= 0 else 'early'}"
     figure = style.new_figure(
         f"{style.plain(result.played.name, 40)} on {style.plain(result.display.name, 24)}: "
         f"friction is rendered within {result.rms_error:.2g} RMS of µ′/µ{late}",
@@ -47,26 +50,16 @@ def friction(result: RenderAnalysis) -> Figure:
     total = float(stroke.time[-1])
     middle = 0.5 * total / _passes(result)
     near = (middle - 0.5 * _ZOOM * middle, middle + 0.5 * _ZOOM * middle)
+    least = result.played.inverse.least_friction
     for axes, (low, high) in ((left, (0.0, total)), (right, near)):
         inside = np.flatnonzero((stroke.time >= low) & (stroke.time <= high))
         inside = inside[_thin(inside.size)]
         t = stroke.time[inside]
-        axes.plot(
-            t, result.asked[inside], color=style.ORANGE, lw=1.5, ls=(0, (6, 1.6)), label="asked for"
-        )
-        axes.plot(
-            t, stroke.relative_friction_rendered[inside], color=style.BLUE, lw=1.6, label="rendered"
-        )
+        rendered = stroke.relative_friction_rendered[inside]
+        axes.plot(t, result.asked[inside], **style.WANTED, label="asked for")
+        axes.plot(t, rendered, **style.RENDERED, label="rendered")
+        axes.axhline(least, **style.REFERENCE, label=f"least this display reaches: {least:.2f}")
         axes.set(xlim=(low, high), xlabel="time (s)")
-    least = result.played.inverse.least_friction
-    left.axhline(
-        least,
-        color=style.MUTED,
-        lw=1.1,
-        ls=(0, (2, 2)),
-        label=f"least this display reaches: {least:.2f}",
-    )
-    right.axhline(least, color=style.MUTED, lw=1.1, ls=(0, (2, 2)))
     left.set(ylabel="relative friction µ′/µ", ylim=(0, max(1.05, 1.03 * float(result.asked.max()))))
     left.set_title("the whole stroke")
     right.set_title("its first pass's middle, enlarged")
@@ -84,11 +77,9 @@ def drive(result: RenderAnalysis) -> Figure:
     stroke, force = result.stroke, result.force
     largest = stroke.envelope.amplitude_limit
     saturated = stroke.saturated_top + stroke.saturated_bottom
-    shown_volts = (
-        ""
-        if result.prediction.voltage is None
-        else (f" at {shown(result.prediction.voltage, V, 3)}")
-    )
+    volts = result.prediction.voltage
+    named = f"largest: {shown(largest, M, 3)}"
+    named += "" if volts is None else f" at {shown(volts, V, 3)}"
     figure = style.new_figure(
         f"The drive is at a limit {100 * saturated:.2g} % of the time; the finger is dragged with "
         f"{shown(float(np.mean(np.abs(force.friction_force))), N, 2)} on average",
@@ -99,21 +90,15 @@ def drive(result: RenderAnalysis) -> Figure:
     thin = _thin(stroke.time.size)
     t = stroke.time[thin]
     above.plot(t, 1e6 * stroke.command[thin], color=style.ORANGE, lw=1.2, label="commanded")
-    above.plot(t, 1e6 * stroke.amplitude[thin], color=style.BLUE, lw=1.6, label="vibrating")
-    above.axhline(
-        1e6 * largest,
-        color=style.MUTED,
-        lw=1.1,
-        ls=(0, (2, 2)),
-        label=f"largest: {shown(largest, M, 3)}{shown_volts}",
-    )
+    above.plot(t, 1e6 * stroke.amplitude[thin], **style.RENDERED, label="vibrating")
+    above.axhline(1e6 * largest, **style.REFERENCE, label=named)
     above.set(ylabel="amplitude (µm)")
     below.plot(t, force.friction_force[thin], color=style.GREEN, lw=1.4, label="tangential force")
     stuck = np.where(force.sticking[thin], force.friction_force[thin], np.nan)
     below.plot(t, stuck, color=style.INK, lw=2.2, label="while the skin sticks")
     below.set(xlabel="time (s)", ylabel="force (N)", xlim=(0, float(stroke.time[-1])))
     for axes in (above, below):
-        axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False)
+        style.legend_beside(axes)
     return figure
 
 
@@ -135,7 +120,8 @@ def contrast(result: RenderAnalysis) -> Figure:
         )
     figure = style.new_figure(title, judged.model, 3.6)
     axes = figure.subplots()
-    axes.semilogx(
+    axes.set_xscale("log")
+    axes.plot(
         1e3 * period,
         100 * swing[good],
         "s",
@@ -145,16 +131,9 @@ def contrast(result: RenderAnalysis) -> Figure:
         mew=1.6,
         label="swing kept, wherever it lies",
     )
-    axes.semilogx(
-        1e3 * period,
-        100 * kept[good],
-        "o",
-        ms=6,
-        color=style.BLUE,
-        mec=style.PAPER,
-        label="contrast kept in its place",
-    )
-    axes.axhline(100, color=style.MUTED, lw=1.0, ls=(0, (2, 2)))
+    named = "contrast kept in its place"
+    axes.plot(1e3 * period, 100 * kept[good], **style.ESTIMATE, label=named)
+    axes.axhline(100, **style.REFERENCE)
     axes.set(xlabel="spatial period (mm)", ylabel="kept (%)")
     axes.set(ylim=(0, 1.1 * max(100.0, 100 * float(np.max(swing[good], initial=0.0)))))
     style.plain_log(axes.xaxis)
@@ -183,32 +162,14 @@ def way(result: RenderAnalysis) -> Figure:
     )
     axes = figure.subplots()
     picture = _picture(result, low, high, speed)
-    drawn_ = axes.imshow(
-        picture,
-        extent=(1e3 * low[0], 1e3 * high[0], 1e3 * low[1], 1e3 * high[1]),
-        origin="lower",
-        cmap="cividis",
-        aspect="equal",
-        interpolation="nearest",
-        vmin=0.0,
-        vmax=max(1.0, float(np.max(picture))),
-    )
-    figure.colorbar(drawn_, ax=axes, label="µ′/µ asked for", shrink=0.9)
+    seen = style.seen_from_above(axes, picture, low, high)
+    seen.set_clim(0.0, max(1.0, float(np.max(picture))))
+    figure.colorbar(seen, ax=axes, label="µ′/µ asked for", shrink=0.9)
     thin = _thin(finger.x.size)
-    axes.plot(1e3 * finger.x[thin], 1e3 * finger.y[thin], color=style.PAPER, lw=3.4)
-    axes.plot(
-        1e3 * finger.x[thin], 1e3 * finger.y[thin], color=style.ORANGE, lw=1.7, label="finger"
-    )
-    axes.plot(
-        [1e3 * finger.x[0]],
-        [1e3 * finger.y[0]],
-        "o",
-        color=style.INK,
-        mec=style.PAPER,
-        label="start",
-    )
-    axes.grid(visible=False)
-    axes.set(xlabel="x (mm)", ylabel="y (mm)")
+    x, y = 1e3 * finger.x[thin], 1e3 * finger.y[thin]
+    axes.plot(x, y, color=style.PAPER, lw=3.4)
+    axes.plot(x, y, color=style.ORANGE, lw=1.7, label="finger")
+    axes.plot(x[:1], y[:1], "o", color=style.INK, mec=style.PAPER, label="start")
     style.legend_below(axes, columns=2)
     return figure
 
@@ -216,10 +177,8 @@ def way(result: RenderAnalysis) -> Figure:
 def _picture(
     result: RenderAnalysis, low: tuple[float, float], high: tuple[float, float], speed: float
 ) -> Any:
-    x = np.linspace(low[0], high[0], _MAP_POINTS)
-    y = np.linspace(
-        low[1], high[1], max(2, round(_MAP_POINTS * (high[1] - low[1]) / (high[0] - low[0])))
-    )
+    rows = max(2, round(_MAP_POINTS * (high[1] - low[1]) / (high[0] - low[0])))
+    x, y = np.linspace(low[0], high[0], _MAP_POINTS), np.linspace(low[1], high[1], rows)
     return friction_of(result, result.texture.texture(x[None, :], y[:, None], speed, 0.0))
 
 
@@ -252,36 +211,98 @@ def ripple(result: RenderAnalysis) -> Figure:
     first = slice(0, int(turns[0]) if turns.size else None)
     x = 1e3 * finger.x[first]
     thin = _thin(x.size)
-    above.plot(
-        x[thin],
-        1e6 * stroke.amplitude[first][thin],
-        color=style.ORANGE,
-        lw=1.4,
-        label="at the antinodes",
-    )
-    met = (stroke.amplitude * result.factor)[first]
-    above.plot(x[thin], 1e6 * met[thin], color=style.BLUE, lw=1.6, label="met by the pad")
+    amplitude, met = stroke.amplitude, stroke.amplitude * result.factor
+    rendered = stroke.relative_friction_rendered
+    for axes, values, look in (
+        (above, 1e6 * amplitude, {**style.WANTED, "label": "at the antinodes"}),
+        (above, 1e6 * met, {**style.RENDERED, "label": "met by the pad"}),
+        (below, result.asked, {**style.WANTED, "label": "asked for"}),
+        (below, rendered, {**style.RENDERED, "label": "rendered"}),
+    ):
+        axes.plot(x[thin], values[first][thin], **look)
     above.set(ylabel="amplitude (µm)", ylim=(0, None))
-    below.plot(
-        x[thin],
-        result.asked[first][thin],
-        color=style.ORANGE,
-        lw=1.4,
-        ls=(0, (6, 1.6)),
-        label="asked for",
-    )
-    below.plot(
-        x[thin],
-        stroke.relative_friction_rendered[first][thin],
-        color=style.BLUE,
-        lw=1.6,
-        label="rendered",
-    )
     below.set(ylabel="µ′/µ", xlabel="x (mm)", ylim=(0, 1.05))
     for axes in (above, below):
-        _beside(axes)
+        style.legend_beside(axes)
     return figure
 
 
-def _beside(axes: Axes) -> None:
-    axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False)
+@style.drawn
+def tangential_force(force: StrokeForce) -> Figure:
+    """The tangential force of a stroke over a grating, with sticking shaded, and skin spectrum.
+
+    Raises:
+        InputError: a texture without a spatial period, or a stroke too short for a spectrum.
+    """
+    vibration = force.vibration()
+    motion, stroke = force.motion, force.trace.stroke
+    frequency = shown(vibration.fundamental, HZ, 3)
+    settled = motion.time >= force.settled
+    swing = float(np.ptp(motion.bone_force[settled & (motion.time <= stroke.pass_duration)]))
+    figure = style.new_figure(
+        f"At {1e3 * stroke.speed:g} mm/s the tangential force swings by {shown(swing, N, 2)}, and "
+        f"the grating shakes the skin by "
+        f"{shown(float(vibration.displacement_amplitude[0]), M, 2)} at {frequency}",
+        f"{motion.model}; pad {motion.fingerpad.stiffness:g} N/m, {motion.fingerpad.damping:g} "
+        f"N·s/m, {1e3 * motion.fingerpad.mass:g} g (unverified defaults unless given); "
+        f"µ = {force.friction_coefficient:g}, normal force {shown(force.normal_force, N, 3)}; "
+        f"texture by {force.trace.model}",
+        6.6,
+    )
+    top, bottom = figure.subplots(2, 1, height_ratios=[1.15, 1])
+    _draw_force(top, force, force.settled + _PERIODS_SHOWN / vibration.fundamental)
+    _draw_spectrum(bottom, vibration)
+    return figure
+
+
+def _draw_force(axes: Axes, force: StrokeForce, end: float) -> None:
+    motion = force.motion
+    shown_part = np.flatnonzero(motion.time <= end)
+    shown_part = shown_part[:: max(1, shown_part.size // _MOST_FORCES)]
+    t = 1e3 * motion.time[shown_part]
+    axes.fill_between(
+        t,
+        0,
+        1,
+        where=motion.sticking[shown_part].tolist(),
+        step="post",
+        color=style.SKIN,
+        lw=0,
+        transform=axes.get_xaxis_transform(),
+        label="skin sticks",
+    )
+    axes.plot(t, motion.friction_force[shown_part], **style.WANTED, label="at the surface")
+    axes.plot(t, motion.bone_force[shown_part], **style.RENDERED, label="at the bone")
+    axes.set(xlabel="time (ms)", ylabel="tangential force (N)", xlim=(0, t[-1]))
+    axes.set_title(f"start of the stroke and {_PERIODS_SHOWN} periods")
+    style.legend_below(axes, 3, 0.2)
+
+
+def _draw_spectrum(axes: Axes, vibration: SkinVibration) -> None:
+    seen = slice(1, None)  # the first bin is what is left of the drift
+    density = 1e6 * np.sqrt(vibration.displacement_psd[seen])
+    axes.loglog(vibration.frequency[seen], density, color=style.BLUE, lw=1.4)
+    top = float(density.max())
+    for k, line in enumerate(vibration.harmonic_frequency):
+        amplitude = shown(float(vibration.displacement_amplitude[k]), M, 2)
+        axes.axvline(line, **style.GUIDE)
+        axes.text(1.01 * line, 2.4 * top, amplitude, color=style.MUTED, **style.SLANTED)
+    low, high = 0.4 * vibration.fundamental, 20 * vibration.fundamental
+    axes.set(xlabel="frequency (Hz)", ylabel="skin displacement (µm/√Hz)")
+    axes.set(xlim=(low, high), ylim=(_FLOOR * top, 2 * top))
+    rungs = np.outer(10.0 ** np.arange(-1, 6), [1, 2, 5]).ravel()
+    axes.set_xticks(rungs[(rungs > low) & (rungs < high)])
+    style.plain_log(axes.xaxis, axes.yaxis)
+    axes.set_title(
+        "skin relative to the bone; dotted: the grating's frequency, harmonics, their amplitudes",
+        pad=34,
+    )
+
+
+FIGURES = (
+    FigureOf("friction", "Friction along the stroke", friction),
+    FigureOf("drive", "Drive and tangential force", drive),
+    FigureOf("contrast", "Contrast by spatial period", contrast),
+    FigureOf("way", "The finger's way over the texture", way),
+    FigureOf("wave", "The standing wave", ripple, has=lambda result: result.wave != "ignored"),
+)

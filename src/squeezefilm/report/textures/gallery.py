@@ -47,24 +47,13 @@ def picture(texture: TextureFile) -> Figure:
     left, right = figure.subplots(1, 2, width_ratios=[1.0, 1.2])
     x, y = np.linspace(0, wide, 501), np.linspace(0, high, 301)
     values = scale * texture.texture(x[None, :], y[:, None], _SPEED, 0.0)
-    seen = left.imshow(
-        values,
-        extent=(0, 1e3 * wide, 0, 1e3 * high),
-        origin="lower",
-        cmap="cividis",
-        aspect="equal",
-        interpolation="nearest",
-    )
-    bar = figure.colorbar(seen, ax=left, orientation="horizontal", label=label)
-    bar.outline.set_edgecolor(style.MUTED)
+    seen = style.seen_from_above(left, values, (0, 0), (wide, high))
+    figure.colorbar(seen, ax=left, orientation="horizontal", label=label)
     left.axhline(500 * high, color=style.PAPER, lw=2.6)
     left.axhline(500 * high, color=style.INK, lw=1.1, ls=(0, (4, 2)))
-    left.grid(visible=False)
-    left.set(xlabel="x (mm)", ylabel="y (mm)")
     fine = np.linspace(0, wide, 4001)
-    right.plot(
-        1e3 * fine, scale * texture.texture(fine, 0.5 * high, _SPEED, 0.0), color=style.BLUE, lw=1.4
-    )
+    along = scale * texture.texture(fine, 0.5 * high, _SPEED, 0.0)
+    right.plot(1e3 * fine, along, color=style.BLUE, lw=1.4)
     right.set(xlabel="x (mm), along the dashed line", ylabel=label, xlim=(0, 1e3 * wide))
     return figure
 

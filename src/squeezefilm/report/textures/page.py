@@ -15,10 +15,19 @@ from squeezefilm.errors import InputError
 from squeezefilm.formats.hjif import HjifExport, ReferenceDevice, hjif_of
 from squeezefilm.formats.traces import Table, csv_text, parquet_bytes
 from squeezefilm.formats.wav import Waveform, wav_bytes
-from squeezefilm.report.kit import style
 from squeezefilm.report.kit.folder import json_text, require_folder, write_folder
 from squeezefilm.report.kit.numbers import printable
-from squeezefilm.report.kit.page_style import html_table, page_head, picture_sections, section
+from squeezefilm.report.kit.page_style import (
+    bullets,
+    drawn_figures,
+    links,
+    page,
+    picture_files,
+    picture_sections,
+    section,
+    stamped,
+    text_table,
+)
 from squeezefilm.report.textures import figures as draw
 from squeezefilm.report.textures.terminal import render_rows
 
@@ -123,9 +132,7 @@ def write_render(
     folder = require_folder(folder)
     tell("figures")
     figures = render_figures(result)
-    files: dict[str, str | bytes] = {
-        f"{name}.png": style.png(figure) for name, (_, figure) in figures.items()
-    }
+    files = picture_files(figures)
     tell("trace")
     trace = trace_table(result)
     name = f"trace.{table}"
@@ -150,42 +157,22 @@ def write_render(
 
 def render_figures(result: RenderAnalysis) -> dict[str, tuple[str, Figure]]:
     """The figures by the name of their file: heading and drawing."""
-    found = {
-        "render-friction": ("Friction along the stroke", draw.friction(result)),
-        "render-drive": ("Drive and tangential force", draw.drive(result)),
-        "render-contrast": ("Contrast by spatial period", draw.contrast(result)),
-        "render-way": ("The finger's way over the texture", draw.way(result)),
-    }
-    if result.wave != "ignored":
-        found["render-wave"] = ("The standing wave", draw.ripple(result))
-    return found
+    return drawn_figures(draw.FIGURES, result, "render-")
 
 
 def _page(result: RenderAnalysis, figures: dict[str, tuple[str, Figure]], files: list[str]) -> str:
     title = escape(printable(result.played.name))
     stamp = result.provenance()
-    numbers = html_table(
-        "What was asked for and what the finger meets",
-        ("Quantity", "Value", "Remark"),
-        [[*map(escape, row)] for row in render_rows(result)],
-        label="Numbers",
-        between="",
+    head = ("Quantity", "Value", "Remark")
+    numbers = text_table("What was asked for and what the finger meets", head, render_rows(result))
+    beside = links(name for name in files if not name.endswith((".png", ".html")))
+    return page(
+        f"{title}: rendered texture",
+        title,
+        f"rendered on <code>{escape(printable(result.display.name))}</code> by squeezefilm",
+        section("Numbers", numbers)
+        + picture_sections(figures)
+        + section("Warnings", bullets(result.prediction.warnings)),
+        f"{stamped(stamp, 'SHA-256 of display, texture and motion')} ·\n"
+        f"seed {stamp['seed']}. Beside this page: {beside}.",
     )
-    warned = "".join(f"<li>{escape(printable(text))}</li>" for text in result.prediction.warnings)
-    warnings = f"<ul>{warned or '<li>None.</li>'}</ul>"
-    links = ", ".join(
-        f'<a href="{name}">{name}</a>' for name in files if not name.endswith((".png", ".html"))
-    )
-    return f"""{page_head(f"{title}: rendered texture")}
-<header><h1>{title}</h1>
-<p class="name">rendered on <code>{escape(printable(result.display.name))}</code> by squeezefilm
-</p></header>
-<main>
-{section("Numbers", numbers)}{picture_sections(figures)}{section("Warnings", warnings)}</main>
-<footer><p>squeezefilm {escape(str(stamp["squeezefilm_version"]))} ·
-made {escape(str(stamp["created_utc"]))} (UTC) ·
-SHA-256 of display, texture and motion <code>{escape(str(stamp["config_sha256"]))}</code> ·
-seed {escape(str(stamp["seed"]))}. Beside this page: {links}.</p></footer>
-</body>
-</html>
-"""

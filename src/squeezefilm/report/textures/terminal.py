@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from squeezefilm.report.kit.numbers import HZ, M, N, S, V, lag_rows, shown
-from squeezefilm.report.kit.terminal import heading, plain_console, table
+from squeezefilm.report.kit.terminal import heading, plain_console, show_rows, table
 
 if TYPE_CHECKING:
     from squeezefilm.chain.rendered_texture import RenderAnalysis
@@ -56,15 +56,10 @@ def render_rows(result: RenderAnalysis) -> list[tuple[str, str, str]]:
         ),
     ]
     if result.wave != "ignored":
-        rows.append(
-            (
-                "Standing wave",
-                f"{100 * float(np.min(result.factor)):.3g}–"
-                f"{100 * float(np.max(result.factor)):.3g} %",
-                f"of the amplitude on an antinode is met, {result.wave}; period "
-                f"{shown(p.mode.half_wavelength, M, 3)}",
-            )
-        )
+        low, high = 100 * float(np.min(result.factor)), 100 * float(np.max(result.factor))
+        said = f"of the amplitude on an antinode is met, {result.wave}; period"
+        period = shown(p.mode.half_wavelength, M, 3)
+        rows.append(("Standing wave", f"{low:.3g}–{high:.3g} %", f"{said} {period}"))
     return rows
 
 
@@ -84,11 +79,8 @@ def _judged_rows(result: RenderAnalysis) -> list[tuple[str, str, str]]:
 
 def show_render(result: RenderAnalysis) -> None:
     """Print a rendered texture."""
-    console = plain_console()
-    heading(console, f"{result.played.name} on {result.display.title} [{result.display.name}]")
-    table(console, ("", "", ""), render_rows(result), fixed=(0, 1))
-    for text in result.prediction.warnings:
-        console.print(f"! {text}")
+    title = f"{result.played.name} on {result.display.title} [{result.display.name}]"
+    show_rows(title, render_rows(result), result.prediction.warnings, fixed=(0, 1))
 
 
 def show_lost(export: HjifExport) -> None:

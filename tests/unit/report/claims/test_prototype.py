@@ -16,6 +16,7 @@ from squeezefilm.analysis.claims.prototype import (
     Separation,
 )
 from squeezefilm.analysis.plate.sensitivity import Sensitivity, SensitivityTable, WorkingPoint
+from squeezefilm.report.claims.page import prototype_sections
 from squeezefilm.report.claims.prototype import (
     comparison,
     explanation_table,
@@ -25,7 +26,6 @@ from squeezefilm.report.claims.prototype import (
     sentences,
     separation_table,
 )
-from squeezefilm.report.claims.prototype_page import prototype_sections
 from squeezefilm.report.kit import style
 from squeezefilm.report.kit.style import BLUE, ORANGE
 

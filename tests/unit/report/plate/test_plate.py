@@ -16,7 +16,7 @@ from tests.unit.report.made_results import made_result
 from squeezefilm.analysis.plate.command import PlateAnalysis
 from squeezefilm.report.kit import style
 from squeezefilm.report.plate import mode_surface as surface_module
-from squeezefilm.report.plate import page, plate, sensitivity_figures
+from squeezefilm.report.plate import page, plate
 from squeezefilm.report.plate.mode_surface import driven_shape, mode_surface
 from squeezefilm.report.plate.plate import (
     admittance,
@@ -244,10 +244,13 @@ def test_numbers_volume_and_pictures_are_written_each_under_its_name(
         pages.append(figures)
         return "a page"
 
-    for name in ("mode_surface", "plan_view", "line_scan", "frequency_response", "admittance"):
-        monkeypatch.setattr(plate, name, lambda _, name=name: name)
-    monkeypatch.setattr(sensitivity_figures, "tornado", lambda table: f"tornado of {table}")
-    monkeypatch.setattr(sensitivity_figures, "tracks", lambda found: f"tracks of {found}")
+    named = [
+        dataclasses.replace(one, draw=lambda _, name=one.draw.__name__: name)
+        for one in plate.FIGURES
+    ]
+    monkeypatch.setattr(plate, "FIGURES", named)
+    monkeypatch.setattr(plate, "tornado", lambda table: f"tornado of {table}")
+    monkeypatch.setattr(plate, "tracks", lambda found: f"tracks of {found}")
     monkeypatch.setattr(style, "png", lambda figure: f"PNG {figure}".encode())
     monkeypatch.setattr(plate, "write_mode", lambda _, file: written.append(file))
     monkeypatch.setattr(page, "plate_page", text)

@@ -72,10 +72,18 @@ def plate(**changes: Any) -> Any:
         "sensitivities": SimpleNamespace(
             rows=(
                 SimpleNamespace(
-                    name="glue", change="twice", frequency_shift=-0.01234, amplitude_shift=0.1234
+                    name="glue",
+                    change="twice",
+                    frequency=34e3,
+                    frequency_shift=-0.01234,
+                    amplitude_shift=0.1234,
                 ),
                 SimpleNamespace(
-                    name="losses", change="0", frequency_shift=0.0, amplitude_shift=None
+                    name="losses",
+                    change="0",
+                    frequency=34e3,
+                    frequency_shift=0.0,
+                    amplitude_shift=None,
                 ),
             )
         ),

@@ -12,7 +12,7 @@ from tests.unit.report.printed import printed
 from squeezefilm.analysis.plate.solved import ModeRow
 from squeezefilm.plate.sound import GUIDANCE
 from squeezefilm.report.kit.terminal import plain_console
-from squeezefilm.report.plate.terminal_modes import show_guidance, show_modes, sound_rows
+from squeezefilm.report.plate.terminal import show_guidance, show_modes, sound_rows
 
 
 def sound(guidance: Any = GUIDANCE[1]) -> Any:

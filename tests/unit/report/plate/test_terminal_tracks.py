@@ -7,7 +7,7 @@ from tests.unit.report.printed import printed
 
 from squeezefilm.analysis.plate.tracking import ModeTrack, ModeTracks
 from squeezefilm.report.kit.terminal import plain_console
-from squeezefilm.report.plate.terminal_tracks import show_tracks
+from squeezefilm.report.plate.terminal import show_tracks
 
 NAN = float("nan")
 

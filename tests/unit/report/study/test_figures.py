@@ -235,7 +235,10 @@ def test_stimuli_and_criteria_lie_on_the_decision_axis() -> None:
     assert criteria == [1.0, 2.5]
     assert [one.get_text() for one in top.get_legend().get_texts()] == ["criteria"]
     assert upright(below) == [(0, 1.5, 2.5), (1, 0.5, 1.75)]
-    assert [data(one) for one in below.get_lines() if one.get_marker() == "o"] == [[[0, 1], [2, 1]]]
+    assert [data(one) for one in below.get_lines() if one.get_marker() == "o"] == [
+        [[0], [2]],
+        [[1], [1]],
+    ]
     assert [one.get_text() for one in below.get_xticklabels()] == [
         "fine – middle", "middle – coarse",
     ]  # fmt: skip

@@ -10,7 +10,7 @@ import pytest
 from matplotlib.colors import to_hex
 
 from squeezefilm.report.kit.style import BLUE, ORANGE
-from squeezefilm.report.study.psychometric_figure import psychometric_function
+from squeezefilm.report.study.time_figures import psychometric_function
 from squeezefilm.study.psychometric.function import PsychometricFunction
 
 PLACES = np.array([1.0, 2.0, 4.0, 11.0])

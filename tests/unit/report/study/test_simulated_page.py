@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 from squeezefilm.errors import InputError
 from squeezefilm.perception.observer import load_observer
@@ -196,8 +197,8 @@ def test_gratings_that_do_not_pair_up_get_no_analysis_of_right_answers(
     alternatives: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(style, "png", lambda _: b"")
-    monkeypatch.setattr(simulated_page.observer_figures, "channels", lambda _: None)
-    monkeypatch.setattr(simulated_page.observer_figures, "percepts", lambda _: None)
+    monkeypatch.setattr(simulated_page.observer_figures, "channels", lambda _: Figure())
+    monkeypatch.setattr(simulated_page.observer_figures, "percepts", lambda _: Figure())
     design = dataclasses.replace(DESIGN, alternatives=alternatives)
     page = write_simulated(study(design), tmp_path).read_text(encoding="utf-8")
     assert "Full analysis" not in page

@@ -12,7 +12,7 @@ from squeezefilm.render.motion.stroke import Stroke
 from squeezefilm.render.texture.levels import Amplitude
 from squeezefilm.render.texture.shapes import SquareWave
 from squeezefilm.report.kit import style
-from squeezefilm.report.textures.sliding_figures import tangential_force
+from squeezefilm.report.textures.figures import tangential_force
 
 
 @pytest.fixture(scope="module")
