@@ -94,7 +94,6 @@ _WAVE = np.linspace(0.0, 8e-3, 8, endpoint=False)
 _SERIES = {name: np.linspace(0.0, 0.01, 5) for name in ("x", "y", "v", "t")}
 
 FOR_ONE_CALL: dict[str, dict[str, Any]] = {
-    "contact.sliding.dry_friction.sampled_profile": {"relative_friction": np.cos},
     "contact.finger.load.finger_stiffness": {"interface": 1e5 + 1e3j},
     "contact.sliding.skin_vibration.skin_vibration": {"fundamental": 50.0, "start": 0.02},
     "contact.sliding.skin_vibration.line_amplitudes": {

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from squeezefilm.film.closed.linear import relative_damping, relative_stiffness
+from squeezefilm.film.gas import FilmGas
 from squeezefilm.film.line_grid import uniform_gap
 from squeezefilm.film.periodic.film import solve_disc, solve_profile, solve_strip
 from squeezefilm.film.periodic.profile import flexural_profile
 from squeezefilm.film.planar.film import solve_ellipse, solve_rectangle
-from squeezefilm.film.records import FilmGas
 from squeezefilm.film.transient.settling import settle_to_periodic
 
 

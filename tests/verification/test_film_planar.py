@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.errors import ConvergenceError, GeometryError, InputError
+from squeezefilm.film.gas import FilmGas
 from squeezefilm.film.line_grid import uniform_gap
 from squeezefilm.film.planar.balance import Balancer, Film, derivative, resampled
 from squeezefilm.film.planar.cut import cut_ellipse_grid
@@ -15,7 +16,6 @@ from squeezefilm.film.planar.film import solve_ellipse, solve_planar, solve_rect
 from squeezefilm.film.planar.gap import PlanarGap
 from squeezefilm.film.planar.grid import disc_grid, ellipse_grid, graded_line, rectangle_grid
 from squeezefilm.film.planar.teeth import compare_teeth
-from squeezefilm.film.records import FilmGas
 from squeezefilm.film.transient.settling import settle_to_periodic
 from squeezefilm.hard_limits import PLANAR_MEMORY
 

@@ -42,30 +42,6 @@ def film_thickness(
     return roughness + vibration_amplitude * (1 + wave) + ridge_amplitude * (1 + ridges)
 
 
-@si.closed_form(
-    positive="frequency ridge_period wavelength",
-    nonnegative="roughness vibration_amplitude ridge_amplitude",
-)
-def film_thickness_printed(
-    x: si.MetreLike,
-    time: si.SecondLike,
-    frequency: si.HertzLike,
-    roughness: si.Metre,
-    vibration_amplitude: si.MetreLike,
-    ridge_amplitude: si.Metre,
-    ridge_period: si.Metre,
-    wavelength: si.Metre,
-) -> si.MetreLike:
-    """The film thickness h(x, t) in m, paper eq 1 as printed; `film_thickness` is the correct one.
-
-    h = (h_vib + h_r)[1 + cos ωt cos(2πx/λ)] + h_e [1 + cos(2πx/L)]: the roughness oscillates with
-    the plate, and the gap closes completely. Kept to reproduce the paper. Broadcasts.
-    """
-    wave = np.cos(2 * np.pi * frequency * time) * np.cos(2 * np.pi * x / wavelength)
-    ridges = np.cos(2 * np.pi * x / ridge_period)
-    return (vibration_amplitude + roughness) * (1 + wave) + ridge_amplitude * (1 + ridges)
-
-
 @si.closed_form(positive="frequency length film_thickness viscosity ambient_pressure")
 def squeeze_number(
     frequency: si.HertzLike,

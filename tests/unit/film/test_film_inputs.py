@@ -13,17 +13,16 @@ import pytest
 
 from squeezefilm.errors import ConvergenceError, GeometryError, InputError, UnreachableError
 from squeezefilm.film import compiled
+from squeezefilm.film.gas import MOST_SQUEEZE_NUMBER
 from squeezefilm.film.periodic import batch, film
 from squeezefilm.film.periodic.balance import VibratedFilm, mean_gap_for_load
 from squeezefilm.film.periodic.batch import solve_films
-from squeezefilm.film.periodic.edge import edge_layer
 from squeezefilm.film.periodic.film import solve_disc, solve_profile, solve_strip
 from squeezefilm.film.periodic.profile import (
     flexural_profile,
     profile_from_function,
     profile_from_samples,
 )
-from squeezefilm.film.solved_range import MOST_SQUEEZE_NUMBER
 
 
 @pytest.mark.parametrize("solve", [solve_strip, solve_disc, solve_films])
@@ -190,13 +189,6 @@ def test_load_balance_of_a_narrow_ridge():
     # At σ far below 1 the over-pressure is of second order and tiny over most of the search.
     balance = mean_gap_for_load(VibratedFilm(2e-6, 40e3, 250e-6, polytropic_exponent=1.2), 1e3)
     assert balance.mean_load_pressure == pytest.approx(1e3, rel=1e-3)
-
-
-def test_edge_layer_range():
-    with pytest.raises(InputError, match="excursion_ratio = 0"):
-        edge_layer(0.0)
-    with pytest.raises(InputError, match="excursion_ratio"):
-        edge_layer(0.99)
 
 
 def test_the_first_compile_is_announced(tmp_path, caplog):

@@ -11,11 +11,11 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
+from squeezefilm.film.gas import FilmGas
 from squeezefilm.film.periodic.film import solve_disc, solve_profile, solve_strip
 from squeezefilm.film.periodic.profile import GapFunction, GapProfile
 from squeezefilm.film.periodic.solution import FilmSolution
 from squeezefilm.film.planar.film import FilmPlanar, solve_ellipse, solve_rectangle
-from squeezefilm.film.records import FilmGas
 from squeezefilm.from_text import reads_text
 from squeezefilm.hard_limits import ASPECT
 from squeezefilm.results import Result, stamp, to_json

@@ -42,18 +42,11 @@ class Occlusion:
 
     @si.checked_numbers
     def factor(self, time: si.SecondLike) -> si.DimensionlessLike:
-        """What the friction coefficient is multiplied by, `time` after the motion starts (1)."""
-        return occlusion_factor(self.contact_time + time, self.rise, self.time_constant)
+        """What the friction coefficient is multiplied by, `time` (s) after the motion starts (1).
 
-
-@si.closed_form(positive="time_constant", nonnegative="contact_time")
-def occlusion_factor(
-    contact_time: si.SecondLike, rise: si.DimensionlessLike, time_constant: si.SecondLike
-) -> si.DimensionlessLike:
-    """Friction over that of a fresh contact (1): 1 + rise (1 − exp(−t/τ)).
-
-    Arguments (s, 1, s) broadcast. Raises `InputError` for a negative contact time or a time
-    constant not above 0.
-    """
-    factor: si.DimensionlessLike = 1 - rise * np.expm1(-contact_time / time_constant)
-    return factor
+        Raises `InputError` for a time before the finger touched.
+        """
+        touched = self.contact_time + time
+        si.require("contact_time", touched, si.Unit("s"), at_least=0.0)
+        factor: si.DimensionlessLike = 1 - self.rise * np.expm1(-touched / self.time_constant)
+        return factor

@@ -13,11 +13,7 @@ from typing import Annotated
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.hard_limits import (
-    SKIN_DAMPING,
-    SKIN_MASS,
-    SKIN_STIFFNESS,
-)
+from squeezefilm.hard_limits import SKIN_DAMPING, SKIN_MASS, SKIN_STIFFNESS
 
 
 @si.checked_numbers

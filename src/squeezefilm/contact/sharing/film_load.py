@@ -165,8 +165,8 @@ def line_film(
 
 
 def _open(gap: PaperGap, frequency: si.Hertz, gas: Gas, slip: str, tolerance: float) -> FilmLoad:
+    from squeezefilm.film.gas import FilmGas
     from squeezefilm.film.planar.film import solve_rectangle
-    from squeezefilm.film.records import FilmGas
 
     reference = float(gap.reference_thickness)
     sigma = _sigma(gap, frequency, gas)

@@ -18,8 +18,8 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.contact.records import CompiledFilms
 from squeezefilm.errors import ConvergenceError
+from squeezefilm.film.gas import slip_law
 from squeezefilm.film.periodic.batch import solve_films
-from squeezefilm.film.slip import slip_law
 from squeezefilm.materials import Gas
 
 DEEPEST_EXCURSION: si.Dimensionless = 0.985

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Annotated
 
@@ -95,29 +94,3 @@ class FrictionProfile:
     def end(self) -> si.Metre:
         """Place of the last value (m)."""
         return self.start + self.spacing * (np.size(self.relative_friction) - 1)
-
-
-@si.checked_numbers
-def sampled_profile(
-    relative_friction: Callable[[si.MetreArray], si.FloatArray],
-    start: si.Metre,
-    end: si.Metre,
-    points: int,
-) -> FrictionProfile:
-    """A `FrictionProfile` from a function of place (m) → factor (1), at evenly spaced points.
-
-    Raises:
-        InputError: an end not beyond the start, fewer than two points, or values that a
-            `FrictionProfile` refuses.
-    """
-    si.require("end", end, si.Unit("m"), above=start)
-    if points < 2:
-        raise InputError(f"points = {points} cannot be used: it must be at least 2")
-    places = np.linspace(start, end, points)
-    values = np.asarray(relative_friction(places), dtype=float)
-    if values.shape != places.shape:
-        raise InputError(
-            f"relative_friction returned values of shape {values.shape} where {places.shape} was "
-            f"given from {si.format_quantity(start, si.Unit('m'))} on; it must return one per place"
-        )
-    return FrictionProfile(start, (end - start) / (points - 1), values)

@@ -21,11 +21,9 @@ from numpy.typing import NDArray
 from squeezefilm import quantities as si
 from squeezefilm.errors import ConvergenceError, InputError
 from squeezefilm.film.compiled import announce
+from squeezefilm.film.gas import Aim, require_film, slip_law
 from squeezefilm.film.periodic.records import Resolution
 from squeezefilm.film.periodic.resolution import CELLS, TIMES, first_guess, refined, resolution_of
-from squeezefilm.film.records import Aim
-from squeezefilm.film.slip import slip_law
-from squeezefilm.film.solved_range import require_film
 from squeezefilm.progress import CountProgress
 
 if TYPE_CHECKING:

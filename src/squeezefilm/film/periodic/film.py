@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.film.compiled import announce
+from squeezefilm.film.gas import Aim, Gas, slip_law
 from squeezefilm.film.periodic.batch import (
     MOST_NEWTON,
     ROUNDS,
@@ -40,8 +41,6 @@ from squeezefilm.film.periodic.resolution import (
     resolution_of,
 )
 from squeezefilm.film.periodic.solution import Asked, FilmSolution, Found, assembled
-from squeezefilm.film.records import Aim, Gas
-from squeezefilm.film.slip import slip_law
 
 
 @si.checked_numbers

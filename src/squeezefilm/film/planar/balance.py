@@ -13,6 +13,7 @@ import numpy as np
 from scipy.linalg import lapack
 
 from squeezefilm import quantities as si
+from squeezefilm.film.gas import Gas
 from squeezefilm.film.planar.gap import GapFunction, gap_values
 from squeezefilm.film.planar.grid import PlanarGrid
 from squeezefilm.film.planar.kernel import (
@@ -23,7 +24,6 @@ from squeezefilm.film.planar.kernel import (
     row_block,
     take_off,
 )
-from squeezefilm.film.records import Gas
 
 _OVERSAMPLE = 6
 

@@ -14,12 +14,11 @@ from typing import Annotated
 from squeezefilm import quantities as si
 from squeezefilm.errors import ConvergenceError, InputError
 from squeezefilm.film.compiled import announce
+from squeezefilm.film.gas import ISOTHERMAL, FilmGas, require_film
 from squeezefilm.film.planar.balance import Film
 from squeezefilm.film.planar.gap import GapFunction, PlanarGap, require_periodic
 from squeezefilm.film.planar.kernel import row_block
 from squeezefilm.film.planar.ladder import RUNGS, Climb, Ladder, PlanarShape, climb_to
-from squeezefilm.film.records import ISOTHERMAL, FilmGas
-from squeezefilm.film.solved_range import require_film
 
 
 @dataclass(frozen=True)

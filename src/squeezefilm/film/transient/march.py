@@ -16,9 +16,8 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.errors import ConvergenceError, InputError
 from squeezefilm.film.compiled import announce
+from squeezefilm.film.gas import ISOTHERMAL, Aim, FilmGas, Gas, require_film
 from squeezefilm.film.line_grid import Gap, LineGrid, Shape, gap_table, line_grid, mean_over
-from squeezefilm.film.records import ISOTHERMAL, Aim, FilmGas, Gas
-from squeezefilm.film.solved_range import require_film
 from squeezefilm.film.transient.kernel import (
     BACKWARD_EULER,
     BDF2,

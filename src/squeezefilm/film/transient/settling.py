@@ -14,8 +14,8 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.errors import ConvergenceError
 from squeezefilm.film.compiled import announce
+from squeezefilm.film.gas import ISOTHERMAL, FilmGas
 from squeezefilm.film.line_grid import Gap, Shape, gap_table, line_grid, mean_over
-from squeezefilm.film.records import ISOTHERMAL, FilmGas
 from squeezefilm.film.transient.kernel import Gaps, Line, Pace, Track, march
 from squeezefilm.film.transient.march import (
     NEWTON,
