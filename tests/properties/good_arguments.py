@@ -115,8 +115,6 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
         "gap": planar_gap,
         "squeeze_number": 10.0,
     },
-    "film.planar.film.solve_rectangle": {"squeeze_number": 10.0},
-    "film.planar.film.solve_ellipse": {"squeeze_number": 10.0},
     "film.gap.PaperGap.wave_phase": {"X": _GRID},
     "film.gap.PaperGap.ridge_phase": {"X": _GRID},
     "film.planar.gap.PlanarGap.__call__": {"X": _GRID, "Y": _GRID, "T": _GRID},

@@ -36,7 +36,7 @@ NOT_CALLED = {
     film.periodic.solution.Asked film.periodic.solution.Found
     contact.sharing.film_load.FilmLoad contact.sharing.pad.PadFriction
     contact.sharing.balance.LoadSharing
-    contact.sharing.balance.TiedSharing contact.sliding.skin_vibration.SkinVibration
+    contact.sliding.skin_vibration.SkinVibration
     contact.sliding.march.Sliding
     contact.sharing.tapping.Tapping
     film.periodic.balance.LoadBalance

@@ -9,7 +9,7 @@ from squeezefilm.film.closed.limits import asymptotic_load
 from squeezefilm.film.gas import Aim, Gas
 from squeezefilm.film.periodic.balance import VibratedFilm, mean_gap_for_load
 from squeezefilm.film.periodic.batch import solve_films
-from squeezefilm.film.periodic.film import solve_disc, solve_profile, solve_strip
+from squeezefilm.film.periodic.film import solve_profile, solve_uniform
 from squeezefilm.film.periodic.kernel import newton
 from squeezefilm.film.periodic.profile import flexural_profile
 from squeezefilm.film.periodic.records import Cells, Gap, Room
@@ -43,7 +43,7 @@ def disc_force(sigma):
 @pytest.mark.parametrize(("case", "load"), STRIP_LOADS.items())
 def test_tabulated_strip_loads(case, load):
     eps, sigma = case
-    assert solve_strip(sigma, eps, tolerance=1e-7).mean_load == pytest.approx(load, abs=ROUNDED)
+    assert solve_uniform(sigma, eps, tolerance=1e-7).mean_load == pytest.approx(load, abs=ROUNDED)
     for tolerance in (2e-2, 5e-3, 1e-4):
         loose = solve_films(sigma, eps, tolerance=tolerance)
         assert abs(loose.mean_load - load) <= loose.over_pressure_error + ROUNDED
@@ -52,13 +52,15 @@ def test_tabulated_strip_loads(case, load):
 
 @pytest.mark.parametrize(("sigma", "load"), DISC_LOADS.items())
 def test_tabulated_disc_loads(sigma, load):
-    assert solve_disc(sigma, 0.5, tolerance=1e-7).mean_load == pytest.approx(load, abs=ROUNDED)
+    assert solve_uniform(sigma, 0.5, shape="disc", tolerance=1e-7).mean_load == pytest.approx(
+        load, abs=ROUNDED
+    )
 
 
 def test_tabulated_slip_and_polytropic_loads():
-    slip = solve_strip(10.0, 0.5, knudsen_number=0.026, tolerance=1e-7)
+    slip = solve_uniform(10.0, 0.5, knudsen_number=0.026, tolerance=1e-7)
     assert slip.mean_load == pytest.approx(1.139260, abs=ROUNDED)
-    polytropic = solve_strip(10.0, 0.5, polytropic_exponent=1.4, tolerance=1e-7)
+    polytropic = solve_uniform(10.0, 0.5, polytropic_exponent=1.4, tolerance=1e-7)
     assert polytropic.mean_load == pytest.approx(1.173567, abs=ROUNDED)
 
 
@@ -72,8 +74,8 @@ def test_linear_limit_of_stiffness_and_damping():
 
 
 def test_linear_values_and_crossovers():
-    ten = solve_strip(10.0, 1e-3, tolerance=1e-6)
-    hundred = solve_strip(100.0, 1e-3, tolerance=1e-6)
+    ten = solve_uniform(10.0, 1e-3, tolerance=1e-6)
+    hundred = solve_uniform(100.0, 1e-3, tolerance=1e-6)
     assert ten.stiffness_relative == pytest.approx(0.411794, abs=2e-6)
     assert ten.damping_relative == pytest.approx(0.417175, abs=2e-6)
     assert hundred.stiffness_relative == pytest.approx(0.858578, abs=2e-6)
@@ -146,7 +148,7 @@ def test_paper_geometry_with_sealed_grooves(tolerance):
 
 def test_profile_without_variation_is_the_strip_on_half_and_whole_domain():
     inputs = {"knudsen_number": 0.05, "tolerance": 1e-6}
-    strip = solve_strip(30.0, 0.6, **inputs)
+    strip = solve_uniform(30.0, 0.6, **inputs)
     half = solve_profile(30.0, flexural_profile(0.6), **inputs)
     # A tilt too small to matter, but not symmetric: the whole domain is solved.
     whole = solve_profile(30.0, flexural_profile(0.6, tilt=1e-8), **inputs)
@@ -208,7 +210,7 @@ def test_convergence_in_time_is_exponential():
 
 def test_gas_is_conserved_over_a_period():
     # The gas held changes by what flows in at both edges, at every instant and over a period.
-    solution = solve_strip(30.0, 0.6, tolerance=1e-8)
+    solution = solve_uniform(30.0, 0.6, tolerance=1e-8)
     x, H, P = solution.position, solution.gap, solution.pressure
     gas = P * H
     held = 0.5 * np.diff(x) @ (gas[1:] + gas[:-1])
@@ -223,7 +225,7 @@ def test_gas_is_conserved_over_a_period():
 
 
 def test_field_and_load_agree():
-    solution = solve_strip(30.0, 0.6, tolerance=1e-5)
+    solution = solve_uniform(30.0, 0.6, tolerance=1e-5)
     x, mean = solution.position, solution.mean_pressure
     integral = np.sum(0.5 * np.diff(x) * (mean[1:] + mean[:-1]))
     assert integral == pytest.approx(solution.mean_load, abs=5e-4)
@@ -238,7 +240,7 @@ def test_field_and_load_agree():
 def test_load_balance_carries_the_load():
     film = VibratedFilm(2e-6, 40e3, 10e-3, mean_free_path=68e-9)
     balance = mean_gap_for_load(film, 5e3, tolerance=1e-4)
-    check = solve_strip(
+    check = solve_uniform(
         balance.squeeze_number, balance.excursion_ratio,
         knudsen_number=balance.knudsen_number, tolerance=1e-5,
     )  # fmt: skip

@@ -27,7 +27,7 @@ from squeezefilm.contact.sharing.wedge import wedge_pressure
 from squeezefilm.display import load_display
 from squeezefilm.errors import InputError, OutOfRangeError, UnreachableError
 from squeezefilm.film.gap import PaperGap
-from squeezefilm.film.periodic.film import solve_strip
+from squeezefilm.film.periodic.film import solve_uniform
 from squeezefilm.materials import Gas
 
 GAS = Gas(1.85e-5, 1e5, 1.2, 67e-9)
@@ -86,7 +86,7 @@ def test_the_table_is_within_its_bound_of_films_solved_elsewhere(ambient: float,
     for _ in range(40):
         u, eps = rng.uniform(1e-6, 8e-6), rng.uniform(0.02, DEEPEST_EXCURSION - 0.005)
         found = float(table.over_pressure(u, eps * u))
-        solved = solve_strip(
+        solved = solve_uniform(
             (table.length / u) ** 2,
             eps,
             knudsen_number=gas.mean_free_path / u,

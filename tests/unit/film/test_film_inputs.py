@@ -17,7 +17,7 @@ from squeezefilm.film.gas import MOST_SQUEEZE_NUMBER
 from squeezefilm.film.periodic import batch, film
 from squeezefilm.film.periodic.balance import VibratedFilm, mean_gap_for_load
 from squeezefilm.film.periodic.batch import solve_films
-from squeezefilm.film.periodic.film import solve_disc, solve_profile, solve_strip
+from squeezefilm.film.periodic.film import solve_profile, solve_uniform
 from squeezefilm.film.periodic.profile import (
     flexural_profile,
     profile_from_function,
@@ -25,7 +25,7 @@ from squeezefilm.film.periodic.profile import (
 )
 
 
-@pytest.mark.parametrize("solve", [solve_strip, solve_disc, solve_films])
+@pytest.mark.parametrize("solve", [solve_uniform, solve_films])
 @pytest.mark.parametrize(
     ("arguments", "offender"),
     [
@@ -113,7 +113,7 @@ def test_what_does_not_converge_raises_with_its_partial_result(monkeypatch):
         monkeypatch.setattr(solver, "ROUNDS", 1)
         monkeypatch.setattr(solver, "MOST_NEWTON", 2)
     with pytest.raises(ConvergenceError) as caught:
-        solve_strip(10.0, 0.9, tolerance=1e-6)
+        solve_uniform(10.0, 0.9, tolerance=1e-6)
     error = caught.value
     assert error.residual > 1e-6
     assert error.iterations > 0
@@ -134,8 +134,8 @@ def test_a_partial_result_holds_nothing_that_was_not_computed(monkeypatch):
     monkeypatch.setattr(film.np, "empty", lambda shape, **_: np.full(shape, np.nan))
     wavy = profile_from_function(lambda x, t: 1 + 0.3 * np.cos(6 * x) + 0.5 * np.cos(t))
     for solve in (
-        lambda: solve_strip(10.0, 0.9, tolerance=1e-6),
-        lambda: solve_disc(10.0, 0.9, tolerance=1e-6),
+        lambda: solve_uniform(10.0, 0.9, tolerance=1e-6),
+        lambda: solve_uniform(10.0, 0.9, shape="disc", tolerance=1e-6),
         lambda: solve_profile(30.0, wavy, tolerance=1e-6),
     ):
         with pytest.raises(ConvergenceError) as caught:
@@ -146,7 +146,7 @@ def test_a_partial_result_holds_nothing_that_was_not_computed(monkeypatch):
 
 
 def test_still_plate_makes_no_pressure():
-    solution = solve_strip(10.0, 0.0)
+    solution = solve_uniform(10.0, 0.0)
     assert solution.over_pressure == 0.0
     assert np.all(solution.pressure == 1.0)
     assert solution.stiffness_relative == pytest.approx(0.411794, abs=1e-5)

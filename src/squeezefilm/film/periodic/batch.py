@@ -103,7 +103,7 @@ def solve_films(
 ) -> FilmBatch:
     """Mean load and first force harmonic of many films, H = 1 + ε cos T; inputs broadcast.
 
-    The equation, inputs, ranges and errors are those of `solve_strip` and `solve_disc`; the squeeze
+    The equation, inputs, ranges and errors are those of `solve_uniform`; the squeeze
     number is on a strip's full length or on a disc's radius. `tolerance` is relative, on the
     over-pressure. `workers` threads share the work (None: one per core). `progress(done, total)` is
     called after each portion. With `strict`, a case that does not reach the tolerance raises
@@ -165,20 +165,20 @@ def _as_batch(
     shape = "strip" if films.shape == u.STRIP else "disc"
     law = f"slip {slip} at local Kn" if films.law else "no slip"
     missed = int(np.count_nonzero(~solved.met))
+    columns = {
+        "mean_load": 1.0 + out[:, u.OVER],
+        "over_pressure": out[:, u.OVER],
+        "over_pressure_error": out[:, u.ERROR],
+        "stiffness_relative": out[:, u.STIFFNESS],
+        "damping_relative": out[:, u.DAMPING],
+        "iterations": out[:, u.ITERATIONS].astype(np.int64),
+        "residual": out[:, u.RESIDUAL],
+        "cells": CELLS[solved.cells],
+        "times": TIMES[solved.times],
+        **dict(zip(films._fields[:4], films[:4], strict=True)),
+    }
     return FilmBatch(
-        mean_load=1.0 + out[:, u.OVER].reshape(form),
-        over_pressure=out[:, u.OVER].reshape(form).copy(),
-        over_pressure_error=out[:, u.ERROR].reshape(form).copy(),
-        stiffness_relative=out[:, u.STIFFNESS].reshape(form).copy(),
-        damping_relative=out[:, u.DAMPING].reshape(form).copy(),
-        iterations=out[:, u.ITERATIONS].astype(np.int64).reshape(form),
-        residual=out[:, u.RESIDUAL].reshape(form).copy(),
-        cells=CELLS[solved.cells].reshape(form),
-        times=TIMES[solved.times].reshape(form),
-        squeeze_number=films.squeeze_number.reshape(form),
-        excursion_ratio=films.excursion_ratio.reshape(form),
-        polytropic_exponent=films.polytropic_exponent.reshape(form),
-        knudsen_number=films.knudsen_number.reshape(form),
+        **{name: np.array(column.reshape(form)) for name, column in columns.items()},
         slip=slip,
         shape=shape,
         tolerance=tolerance,
