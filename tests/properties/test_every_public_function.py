@@ -54,7 +54,7 @@ def test_every_public_call_is_attacked_or_left_out_by_name_for_a_reason() -> Non
     listed = [name for names in NOT_CALLED.values() for name in names.split()]
     assert len(listed) == len(NAMES_NOT_CALLED), "one is listed twice"
     assert {reason: len(names.split()) for reason, names in NOT_CALLED.items()} == LEFT_OUT
-    assert len(CALLS) - len(NAMES_NOT_CALLED) >= 340
+    assert len(CALLS) - len(NAMES_NOT_CALLED) >= 315
 
 
 def test_there_is_a_good_call_of_every_one_that_is_attacked() -> None:
