@@ -123,7 +123,6 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
         "tooth_pitch": 0.25,
         "squeeze_number": 10.0,
     },
-    "film.transient.march.check_film": {"shape": "strip", "sigma": 10.0, "n": 1.0, "knudsen": 0.0},
     "formats.hjif_read.friction_along": {"document": Later(hjif_document)},
     "formats.hjif.hjif_of": {"texture": Later(lambda: made(RelativeFriction))},
     "formats.image_file.ImageFile": {"file": "picture.png"},

@@ -16,6 +16,7 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
+from squeezefilm.materials import Gas
 
 
 @si.closed_form(
@@ -166,6 +167,12 @@ class PaperGap:
     def symmetric(self) -> bool:
         """Whether antinode and groove lie at the centre of the contact, as in the paper."""
         return self.wave_offset == 0 and self.ridge_offset == 0
+
+    @si.checked_numbers
+    def squeeze_number(self, frequency: si.Hertz, gas: Gas) -> si.DimensionlessLike:
+        """The paper's σ in a gas at a frequency (Hz): on l0 and H0 (dimensionless)."""
+        thickness, length = self.reference_thickness, self.contact_length
+        return squeeze_number(frequency, length, thickness, gas.viscosity, gas.ambient_pressure)
 
     @si.checked_numbers
     def wave_phase(self, X: si.DimensionlessLike) -> si.DimensionlessLike:

@@ -40,8 +40,8 @@ class LoadSharing:
     gap_amplitude: si.MetreArray
     skin_amplitude: si.MetreArray
     residual: si.DimensionlessArray
-    steps: si.FloatArray
     film_error: float
+    steps: si.FloatArray
     asperities: AsperityLaw
     model: str
 
@@ -87,15 +87,8 @@ def share_load(
             break
         table.build(lacking)
     _refuse(rows, a, p)
-    tie = "each plateau at its own balance"
-    return LoadSharing(
-        a.reshape(form),
-        p.reshape(form),
-        *_columns(rows, form),
-        table.relative_error,
-        asperities,
-        _model(table, asperities, skin, tie),
-    )
+    model = _model(table, asperities, skin, "each plateau at its own balance")
+    return _shared(a.reshape(form), p.reshape(form), rows, table, asperities, model)
 
 
 @si.checked_numbers
@@ -128,23 +121,38 @@ def share_load_tied(
             break
         table.build(int(row[kernel.PANEL]))
     _refuse(row[None, :], a.max(keepdims=True), np.array([plateau_pressure]))
-    tie = "all plateaus at one mean gap"
-    return LoadSharing(
-        a,
-        np.array(plateau_pressure),
-        *_columns(row, ()),
-        table.relative_error,
-        asperities,
-        _model(table, asperities, skin, tie),
-    )
+    model = _model(table, asperities, skin, "all plateaus at one mean gap")
+    return _shared(a, np.array(plateau_pressure), row, table, asperities, model)
 
 
-def _columns(rows: si.FloatArray, form: tuple[int, ...]) -> list[si.FloatArray]:
-    """What a balance gives, in the order of the fields of `LoadSharing`."""
+def _shared(
+    amplitude: si.FloatArray,
+    pressure: si.FloatArray,
+    rows: si.FloatArray,
+    table: FilmTable,
+    asperities: AsperityLaw,
+    model: str,
+) -> LoadSharing:
+    """Balances as they are handed out, in the shape of the pressure."""
     from squeezefilm.contact.sharing import kernel
 
-    order = (kernel.GAP, kernel.GAS, kernel.ASPERITIES, kernel.SWING, kernel.SKIN, kernel.RESIDUAL)
-    return [rows[..., column].reshape(form) for column in (*order, kernel.STEPS)]
+    columns = {
+        "mean_gap": kernel.GAP,
+        "gas_pressure": kernel.GAS,
+        "asperity_pressure": kernel.ASPERITIES,
+        "gap_amplitude": kernel.SWING,
+        "skin_amplitude": kernel.SKIN,
+        "residual": kernel.RESIDUAL,
+        "steps": kernel.STEPS,
+    }
+    return LoadSharing(
+        amplitude=amplitude,
+        plateau_pressure=pressure,
+        film_error=table.relative_error,
+        asperities=asperities,
+        model=model,
+        **{name: rows[..., at].reshape(pressure.shape) for name, at in columns.items()},
+    )
 
 
 def _impedance(skin: Skin | None, table: FilmTable) -> si.FloatArray:

@@ -83,13 +83,13 @@ def film_load(
     """
     if np.ndim(gap.vibration_amplitude) != 0:
         raise InputError("film_load takes a single vibration amplitude; call it for each")
-    amplitude = float(gap.vibration_amplitude)
+    amplitude, sigma = float(gap.vibration_amplitude), float(gap.squeeze_number(frequency, gas))
     if is_still(gap):
         bound = 1.25 * (amplitude / float(gap.crest_thickness)) ** 2
-        return FilmLoad(model, 0.0, bound, _sigma(gap, frequency, gas), "too still for a pressure")
+        return FilmLoad(model, 0.0, bound, sigma, "too still for a pressure")
     if model == "paper2008":
         over = float(contact_mean_pressure(gap)) - 1.0
-        return FilmLoad(model, over, 0.0, _sigma(gap, frequency, gas), "closed form")
+        return FilmLoad(model, over, 0.0, sigma, "closed form")
     if model == "film-plateau":
         return _plateaus(gap, frequency, gas, plateau_width, slip, tolerance)
     if model == "film-open":
@@ -111,18 +111,6 @@ def film_load(
 def is_still(gap: PaperGap) -> bool:
     """Whether the vibration (m, a single amplitude) is too small for a film to speak of."""
     return float(gap.vibration_amplitude) < STILL * float(gap.roughness)
-
-
-def _sigma(gap: PaperGap, frequency: si.Hertz, gas: Gas) -> float:
-    return float(
-        squeeze_number(
-            frequency,
-            gap.contact_length,
-            gap.reference_thickness,
-            gas.viscosity,
-            gas.ambient_pressure,
-        )
-    )
 
 
 @si.checked_numbers
@@ -170,7 +158,7 @@ def _open(gap: PaperGap, frequency: si.Hertz, gas: Gas, slip: str, tolerance: fl
     from squeezefilm.film.planar.gap import PlanarGap
 
     reference = float(gap.reference_thickness)
-    sigma = _sigma(gap, frequency, gas)
+    sigma = float(gap.squeeze_number(frequency, gas))
     excursion, ridges = float(gap.vibration_amplitude) / reference, gap.ridge_amplitude / reference
     film = solve_planar(
         "rectangle",

@@ -14,14 +14,14 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.errors import ConvergenceError
 from squeezefilm.film.compiled import announce
-from squeezefilm.film.gas import ISOTHERMAL, FilmGas
+from squeezefilm.film.gas import ISOTHERMAL, FilmGas, require_film
 from squeezefilm.film.line_grid import Gap, Shape, gap_table, line_grid, mean_over
 from squeezefilm.film.transient.kernel import Gaps, Line, Pace, Track, march
 from squeezefilm.film.transient.march import (
     NEWTON,
     SCHEMES,
+    MovedFilm,
     Scheme,
-    check_film,
     stage_times,
 )
 
@@ -30,7 +30,7 @@ _MEMORY = 8
 
 
 @dataclass(frozen=True)
-class FilmSettled:
+class FilmSettled(MovedFilm):
     """The periodic state a march settles into.
 
     `mean_load` W is the period's mean, `over_pressure` W − 1, `over_pressure_error` its estimated
@@ -55,12 +55,6 @@ class FilmSettled:
     cells: int
     steps: int
     status: str
-    squeeze_number: si.Dimensionless
-    polytropic_exponent: si.Dimensionless
-    knudsen_number: si.Dimensionless
-    slip: str
-    shape: Shape
-    scheme: Scheme
 
 
 class _Mixer:
@@ -117,7 +111,7 @@ def settle_to_periodic(
     best state had where the march does not settle or `max_cells` do not reach the tolerance.
     Holds for isothermal (1) to adiabatic (1.4) viscous flow at any σ and excursion below 1.
     """
-    check_film(shape, squeeze_number, gas.polytropic_exponent, gas.knudsen_number)
+    require_film(squeeze_number, gas.polytropic_exponent, gas.knudsen_number)
     announce(march, "film solver in time", 4)
     # Less than rounding leaves no march reaches.
     si.require("settled", settled, at_least=1e-14)
@@ -163,14 +157,9 @@ def _extrapolated(history: list[FilmSettled]) -> FilmSettled:
 
 
 @dataclass(frozen=True)
-class _Settling:
+class _Settling(MovedFilm):
     """What is to settle, and how."""
 
-    gap: Gap
-    squeeze_number: float
-    shape: Shape
-    gas: FilmGas
-    scheme: Scheme
     accelerate: bool
     settled: float
     max_periods: int
@@ -227,12 +216,7 @@ def _settle(
             if good
             else f"did not settle in {ended.periods} periods (change {ended.change:.2g} a period)"
         ),
-        squeeze_number=sigma,
-        polytropic_exponent=gas.polytropic_exponent,
-        knudsen_number=gas.knudsen_number,
-        slip=gas.slip,
-        shape=asked.shape,
-        scheme=asked.scheme,
+        **asked.given,
     )
     if result.residual > asked.settled:
         raise ConvergenceError(
