@@ -92,7 +92,7 @@ def solve_planar(
         raise InputError(f"a disc has aspect_ratio 1, not {aspect_ratio}; ask for an ellipse")
     announce(row_block, "film solver in the plane", 3)
     quarter = isinstance(gap, PlanarGap) if symmetric is None else symmetric
-    film = Film(gap, float(squeeze_number), *gas.compiled())
+    film = Film(gap, float(squeeze_number), gas.compiled())
     ladder = Ladder(shape, float(aspect_ratio), film, quarter, cells)
     require_periodic(gap, ladder.grid(RUNGS[0]).X, ladder.grid(RUNGS[0]).Y)
     climb = climb_to(ladder, float(tolerance))
