@@ -77,7 +77,6 @@ MINIMUM = {
         "film.validity.reduced_reynolds_number",
         "film.validity.knudsen_number",
         "film.validity.crest_squeeze_number",
-        "contact.sharing.paper.finger_pressure",
         "contact.sharing.paper.relative_friction_from_pressure",
         "contact.asperities.exponential_pressure",
         "contact.sharing.tapping.tapping_number",

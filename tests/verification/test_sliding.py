@@ -16,8 +16,7 @@ from squeezefilm.contact.finger.fingerpad import (
     slip_duration,
     stick_duration,
 )
-from squeezefilm.contact.finger.occlusion import Occlusion
-from squeezefilm.contact.sliding.dry_friction import DryFriction, FrictionProfile
+from squeezefilm.contact.sliding.dry_friction import DryFriction, FrictionProfile, Occlusion
 from squeezefilm.contact.sliding.march import Sliding, slide
 from squeezefilm.quantities import FloatArray
 

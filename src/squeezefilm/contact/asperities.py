@@ -15,7 +15,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Annotated, Literal, get_args
+from typing import Annotated, Literal
 
 import numpy as np
 
@@ -24,7 +24,6 @@ from squeezefilm.contact.records import CompiledAsperities
 from squeezefilm.hard_limits import DECAY_LENGTH, PRESSURE
 
 AsperityHeights = Literal["exponential", "gaussian"]
-ASPERITY_HEIGHTS: tuple[AsperityHeights, ...] = get_args(AsperityHeights)
 
 EXPONENTIAL, GAUSSIAN = 0, 1
 

@@ -10,8 +10,7 @@ import pytest
 
 from squeezefilm.chain.stroke_force import StrokeForce, stroke_force
 from squeezefilm.contact.finger.fingerpad import FingerpadDynamics
-from squeezefilm.contact.finger.occlusion import Occlusion
-from squeezefilm.contact.sliding.dry_friction import DryFriction, FrictionProfile
+from squeezefilm.contact.sliding.dry_friction import DryFriction, FrictionProfile, Occlusion
 from squeezefilm.contact.sliding.march import interval_speeds, slide
 from squeezefilm.contact.sliding.skin_vibration import (
     line_amplitudes,

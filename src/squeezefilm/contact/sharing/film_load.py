@@ -9,7 +9,7 @@ into plateaus whose grooves are at ambient pressure, and for a finger without ri
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, get_args
 
 import numpy as np
 
@@ -23,13 +23,7 @@ if TYPE_CHECKING:
     from squeezefilm.film.periodic.solution import FilmSolution
 
 FilmModel = Literal["paper2008", "film-sealed", "film-open", "film-plateau", "film-smooth"]
-FILM_MODELS: tuple[FilmModel, ...] = (
-    "paper2008",
-    "film-sealed",
-    "film-open",
-    "film-plateau",
-    "film-smooth",
-)
+FILM_MODELS: tuple[FilmModel, ...] = get_args(FilmModel)
 
 DESCRIPTIONS: dict[FilmModel, str] = {
     "paper2008": "the paper's asymptote: no gas escapes (σ → ∞), sinusoidal ridges",

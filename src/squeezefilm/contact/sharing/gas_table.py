@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import threading
 from functools import lru_cache
+from typing import Annotated
 
 import numpy as np
 
@@ -51,16 +52,13 @@ class FilmTable:
 
     def __init__(
         self,
-        frequency: si.Hertz,
-        width: si.Metre,
+        frequency: Annotated[si.Hertz, si.Above(0.0)],
+        width: Annotated[si.Metre, si.Above(0.0)],
         gas: Gas,
         slip: str = "first",
-        tolerance: float | None = None,
+        tolerance: Annotated[float, si.AtLeast(1e-6), si.AtMost(1e-2)] | None = None,
     ) -> None:
         tolerance = default_tolerance(slip) if tolerance is None else tolerance
-        si.require("frequency", frequency, si.Unit("Hz"), above=0)
-        si.require("width", width, si.Unit("m"), above=0)
-        si.require("tolerance", tolerance, at_least=1e-6, at_most=1e-2)
         slip_law(slip, 1.0)
         self.frequency, self.width, self.gas = frequency, width, gas
         self.slip, self.tolerance = slip, tolerance

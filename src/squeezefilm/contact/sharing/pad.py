@@ -73,7 +73,9 @@ class PadFriction:
 
 
 @si.checked_numbers
-def ridge_points(finger: Finger, contact_length: si.Metre | None = None) -> si.FloatArray:
+def ridge_points(
+    finger: Finger, contact_length: Annotated[si.Metre, si.Above(0.0)] | None = None
+) -> si.FloatArray:
     """Where along the wave (m from the pad's centre) the ridges are sampled, each point alike.
 
     Ridges stand at (i + ½) L along their normal; with ridge_angle 0 each has one x. At an angle
@@ -81,7 +83,6 @@ def ridge_points(finger: Finger, contact_length: si.Metre | None = None) -> si.F
     finer. Raises `InputError` where the contact holds no ridge.
     """
     side = finger.contact_length if contact_length is None else contact_length
-    si.require("contact_length", side, si.Unit("m"), above=0)
     si.require("ridges in the contact", side / finger.ridge_period, at_most=_MOST_RIDGES)
     half, period, angle = side / 2, finger.ridge_period, finger.ridge_angle
     reach = half * (abs(np.cos(angle)) + abs(np.sin(angle)))
@@ -194,14 +195,12 @@ def friction_ripple(
     *,
     normal_force: si.Newton | None = None,
     limit: Limit = "own",
-    positions: int = 24,
+    positions: Annotated[int, si.AtLeast(4)] = 24,
 ) -> FrictionRipple:
     """The friction as the pad crosses the wave's nodes, over half a wavelength.
 
     Raises as `pad_friction` does, and `InputError` for fewer than 4 positions.
     """
-    if positions < 4:
-        raise InputError(f"positions = {positions} cannot be used: at least 4 show a ripple")
     side = float(np.sqrt(finger.contact_area(normal_force)))
     points = ridge_points(finger, side)
     where = np.arange(positions) / positions * half_wavelength

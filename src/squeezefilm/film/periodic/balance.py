@@ -10,6 +10,7 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import ConvergenceError, OutOfRangeError, UnreachableError
+from squeezefilm.film.line_grid import Shape
 from squeezefilm.film.periodic.batch import FilmBatch, solve_films
 
 MAX_EXCURSION = 0.95
@@ -39,10 +40,7 @@ class VibratedFilm:
     polytropic_exponent: si.Dimensionless = 1.0
     mean_free_path: Annotated[si.Metre, si.AtLeast(0.0)] = 0.0
     slip: str = "first"
-    shape: str = "strip"
-
-    def __post_init__(self) -> None:
-        si.require_one_of("shape", self.shape, ("strip", "disc"))
+    shape: Shape = "strip"
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import nullcontext
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -97,7 +97,7 @@ def solve_films(
     knudsen_number: si.DimensionlessLike = 0.0,
     slip: str = "first",
     tolerance: float = 5e-3,
-    workers: int | None = None,
+    workers: Annotated[int, si.AtLeast(1)] | None = None,
     progress: CountProgress | None = None,
     strict: bool = True,
 ) -> FilmBatch:
@@ -113,8 +113,6 @@ def solve_films(
     si.require_one_of("shape", shape, ("strip", "disc"))
     check_film(squeeze_number, excursion_ratio, polytropic_exponent, knudsen_number, tolerance)
     law = slip_law(slip, float(np.max(knudsen_number)))
-    if workers is not None and workers < 1:
-        raise InputError(f"workers = {workers} cannot be used: at least 1, or None for all cores")
     inputs = _broadcast(squeeze_number, excursion_ratio, polytropic_exponent, knudsen_number)
     sigma, signed, n, kn = (np.ascontiguousarray(a.ravel()) for a in inputs)
     # ε and −ε are the same film half a period apart; ε = 0 is solved as nearly 0 and set to 1.

@@ -27,6 +27,8 @@ from squeezefilm.film.transient.march import (
 
 _MEMORY = 8
 """Periods the acceleration remembers."""
+_LEAST_CHANGE = 1e-14
+"""Less than rounding leaves no march reaches."""
 
 
 @dataclass(frozen=True)
@@ -88,13 +90,13 @@ def settle_to_periodic(
     squeeze_number: si.Dimensionless,
     *,
     shape: Shape = "strip",
-    tolerance: si.Dimensionless | None = 1e-3,
+    tolerance: Annotated[si.Dimensionless, si.AtLeast(1e-9)] | None = 1e-3,
     cells: Annotated[int, si.AtLeast(4)] = 24,
     steps: Annotated[int, si.AtLeast(4)] = 32,
     gas: FilmGas = ISOTHERMAL,
     scheme: Scheme = "bdf2",
     accelerate: bool = True,
-    settled: si.Dimensionless = 1e-10,
+    settled: Annotated[si.Dimensionless, si.AtLeast(_LEAST_CHANGE)] = 1e-10,
     max_periods: Annotated[int, si.AtLeast(1)] = 2000,
     max_cells: int = 1600,
 ) -> FilmSettled:
@@ -113,10 +115,6 @@ def settle_to_periodic(
     """
     require_film(squeeze_number, gas.polytropic_exponent, gas.knudsen_number)
     announce(march, "film solver in time", 4)
-    # Less than rounding leaves no march reaches.
-    si.require("settled", settled, at_least=1e-14)
-    if tolerance is not None:
-        si.require("tolerance", tolerance, at_least=1e-9)
     asked = _Settling(gap, squeeze_number, shape, gas, scheme, accelerate, settled, max_periods)
     history: list[FilmSettled] = []
     guess: tuple[si.FloatArray, si.FloatArray] | None = None

@@ -109,6 +109,5 @@ def test_skin_moves_by_its_mass_spring_and_damper() -> None:
     omega = 2 * math.pi * 30e3
     stiffness = complex(2e10 - 3.0 * omega**2, 4e5 * omega)
     assert skin.dynamic_stiffness(30e3) == pytest.approx(stiffness)
-    assert skin.displacement(50.0, 30e3) == pytest.approx(50.0 / abs(stiffness))
     with pytest.raises(InputError, match="frequency"):
         skin.dynamic_stiffness(0.0)
