@@ -60,7 +60,6 @@ NOT_CALLED = {
     film.periodic.batch.check_film film.periodic.batch.solve_all film.line_grid.LineGrid
     film.line_grid.edge_graded film.line_grid.edge_layer film.line_grid.gap_table
     film.line_grid.line_grid film.line_grid.mean_over film.line_grid.refined_line
-    film.line_grid.tabulated
     film.line_grid.uniform_gap film.periodic.film.load_times film.planar.balance.Balance
     film.planar.balance.Balancer film.planar.balance.Balancer.solve film.planar.balance.Film
     film.planar.balance.derivative film.planar.balance.resampled film.planar.balance.times

@@ -13,11 +13,11 @@ from scipy.optimize import brentq
 from squeezefilm.chain.friction import friction_law
 from squeezefilm.contact.asperities import (
     AsperityLaw,
+    CompiledAsperities,
     gaussian_overlap,
 )
 from squeezefilm.contact.finger.fingertip import Finger
 from squeezefilm.contact.finger.skin import Skin
-from squeezefilm.contact.records import CompiledAsperities
 from squeezefilm.contact.sharing.balance import share_load, share_load_tied
 from squeezefilm.contact.sharing.gas_table import DEEPEST_EXCURSION, FilmTable, film_table
 from squeezefilm.contact.sharing.pad import PadPosture, friction_ripple, pad_friction, ridge_points

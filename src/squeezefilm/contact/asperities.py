@@ -15,12 +15,11 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Annotated, Literal
+from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.contact.records import CompiledAsperities
 from squeezefilm.hard_limits import DECAY_LENGTH, PRESSURE
 
 AsperityHeights = Literal["exponential", "gaussian"]
@@ -31,6 +30,14 @@ EXPONENTIAL, GAUSSIAN = 0, 1
 # crushed flat, above they carry e^-200 of anything.
 _LOWEST, _HIGHEST = -8.0, 20.0
 _TERMS = 48
+
+
+class CompiledAsperities(NamedTuple):
+    """A law of asperities for compiled code: the number of its kind, its constants, its table."""
+
+    kind: int
+    constants: si.FloatArray
+    table: si.FloatArray
 
 
 @si.closed_form(positive="reference_pressure decay_length")

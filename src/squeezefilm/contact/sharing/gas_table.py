@@ -12,16 +12,18 @@ from __future__ import annotations
 
 import threading
 from functools import lru_cache
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.contact.records import CompiledFilms
 from squeezefilm.errors import ConvergenceError
 from squeezefilm.film.gas import slip_law
 from squeezefilm.film.periodic.batch import solve_films
 from squeezefilm.materials import Gas
+
+if TYPE_CHECKING:
+    from squeezefilm.contact.sharing.kernel import CompiledFilms
 
 DEEPEST_EXCURSION: si.Dimensionless = 0.985
 """The deepest excursion a/u the table holds; the gap then closes to 1.5 % of its mean."""
@@ -82,6 +84,8 @@ class FilmTable:
     @property
     def compiled(self) -> CompiledFilms:
         """The table as the compiled code takes it."""
+        from squeezefilm.contact.sharing.kernel import CompiledFilms
+
         return CompiledFilms(self._scale, self._edges, self._built, self._panels)
 
     @property

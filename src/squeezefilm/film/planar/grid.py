@@ -103,12 +103,12 @@ def _build(lines: _Lines, area: si.FloatArray, sides: _Sides, *, quarter: bool) 
         row_X=row_X,
         row_Y=row_Y,
         row_conductance=row_G.ravel(),
-        **_joined("column", ("from", "to", "X", "Y", "conductance"), within),
-        **_joined("edge", ("node", "X", "Y", "conductance"), edges),
+        **joined("column", ("from", "to", "X", "Y", "conductance"), within),
+        **joined("edge", ("node", "X", "Y", "conductance"), edges),
     )
 
 
-def _joined(side: str, names: tuple[str, ...], faces: list[Any]) -> dict[str, Any]:
+def joined(side: str, names: tuple[str, ...], faces: list[Any]) -> dict[str, Any]:
     """Lists of faces, one after the other, as `PlanarGrid` names what it has of them."""
     parts = zip(names, zip(*faces, strict=True), strict=True)
     return {f"{side}_{name}": np.concatenate(part) for name, part in parts}

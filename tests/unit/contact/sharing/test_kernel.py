@@ -12,7 +12,6 @@ from scipy.optimize import brentq
 from scipy.special import ive
 
 from squeezefilm.contact.asperities import AsperityLaw
-from squeezefilm.contact.records import CompiledFilms
 from squeezefilm.contact.sharing.kernel import (
     ASPERITIES,
     BALANCED,
@@ -29,6 +28,7 @@ from squeezefilm.contact.sharing.kernel import (
     STEPS,
     SWING,
     UNSETTLED,
+    CompiledFilms,
     asperity_mean,
     balance,
     balance_rows,
