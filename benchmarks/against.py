@@ -60,7 +60,10 @@ def film_kernels() -> Iterator[tuple[str, Callable[[], object]]]:
     waves = {"wavenumber": 20.0 * np.pi / 18.7, "ridge_wavenumber": 20.0 * np.pi / 0.35}
     ridges = film.flexural_profile(0.038, ridge_depth=0.95, **waves)
     yield "a film under 28 ridges", lambda: film.solve_profile(20.4, ridges, tolerance=1e-3)
-    yield "an ellipse in the plane", lambda: film.solve_ellipse(30.0, 0.4, 1.5, tolerance=1e-2)
+    if hasattr(film, "ellipse"):
+        yield "an ellipse in the plane", lambda: film.ellipse(30.0, 0.4, 1.5, 1e-2)
+    else:  # before the two planar shapes became one
+        yield "an ellipse in the plane", lambda: film.solve_ellipse(30.0, 0.4, 1.5, tolerance=1e-2)
 
 
 def contact_kernels() -> Iterator[tuple[str, Callable[[], object]]]:

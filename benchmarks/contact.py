@@ -4,8 +4,8 @@ Run `python benchmarks/contact.py`.
 
 Prints, on one core: a friction curve of 100 amplitudes over a whole pad (28 ridges on the standing
 wave), with and without solving its film table; a map of 50 amplitudes × 50 forces; the time of one
-load balance; the ratio to balancing each plateau with SciPy's brentq on `solve_strip`, in the same
-run and at the same error; and where the time goes.
+load balance; the ratio to balancing each plateau with SciPy's brentq on `solve_uniform`, in the
+same run and at the same error; and where the time goes.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from squeezefilm.contact.sharing.balance import share_load
 from squeezefilm.contact.sharing.gas_table import FilmTable
 from squeezefilm.contact.sharing.pad import pad_friction, ridge_points
 from squeezefilm.display import load_display
-from squeezefilm.film.periodic.film import solve_strip
+from squeezefilm.film.periodic.film import solve_uniform
 
 FREQUENCY, HALF_WAVELENGTH = 40.5e3, 9.35e-3
 
@@ -51,7 +51,7 @@ def peer(gas, width, law, amplitude, pressure, tolerance):
     def excess(u):
         nonlocal solves
         solves += 1
-        film = solve_strip(
+        film = solve_uniform(
             (length / u) ** 2,
             amplitude / u,
             knudsen_number=gas.mean_free_path / u,
@@ -141,7 +141,7 @@ def main() -> None:
     ours = share_load(table, law, a[:sample], p[:sample]).relative_friction
     theirs = np.array([value for value, _ in values])
     print(
-        f"  brentq on solve_strip at {tolerance:g}: {there * 1e3:.2f} ms in "
+        f"  brentq on solve_uniform at {tolerance:g}: {there * 1e3:.2f} ms in "
         f"{np.mean([n for _, n in values]):.1f} solves, {there / each:,.0f} times as long"
     )
     print(

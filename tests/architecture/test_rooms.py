@@ -53,13 +53,13 @@ def test_private_names_are_seen_however_they_are_reached() -> None:
     source = """
 from squeezefilm import __version__, presets
 from squeezefilm.film.gap import _hidden
-import squeezefilm.film.slip as slip
+import squeezefilm.film.gas as slip
 presets._resolved, slip._law, self._mine, presets.names
 """
     assert import_graph.read_imports(source).private == {
         "squeezefilm.film.gap._hidden",
         "squeezefilm.presets._resolved",
-        "squeezefilm.film.slip._law",
+        "squeezefilm.film.gas._law",
     }
 
 

@@ -94,7 +94,6 @@ _WAVE = np.linspace(0.0, 8e-3, 8, endpoint=False)
 _SERIES = {name: np.linspace(0.0, 0.01, 5) for name in ("x", "y", "v", "t")}
 
 FOR_ONE_CALL: dict[str, dict[str, Any]] = {
-    "contact.sliding.dry_friction.sampled_profile": {"relative_friction": np.cos},
     "contact.finger.load.finger_stiffness": {"interface": 1e5 + 1e3j},
     "contact.sliding.skin_vibration.skin_vibration": {"fundamental": 50.0, "start": 0.02},
     "contact.sliding.skin_vibration.line_amplitudes": {
@@ -116,8 +115,6 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
         "gap": planar_gap,
         "squeeze_number": 10.0,
     },
-    "film.planar.film.solve_rectangle": {"squeeze_number": 10.0},
-    "film.planar.film.solve_ellipse": {"squeeze_number": 10.0},
     "film.gap.PaperGap.wave_phase": {"X": _GRID},
     "film.gap.PaperGap.ridge_phase": {"X": _GRID},
     "film.planar.gap.PlanarGap.__call__": {"X": _GRID, "Y": _GRID, "T": _GRID},
@@ -126,7 +123,6 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
         "tooth_pitch": 0.25,
         "squeeze_number": 10.0,
     },
-    "film.transient.march.check_film": {"shape": "strip", "sigma": 10.0, "n": 1.0, "knudsen": 0.0},
     "formats.hjif_read.friction_along": {"document": Later(hjif_document)},
     "formats.hjif.hjif_of": {"texture": Later(lambda: made(RelativeFriction))},
     "formats.image_file.ImageFile": {"file": "picture.png"},

@@ -14,12 +14,11 @@ from squeezefilm.chain.friction import FrictionLaw
 from squeezefilm.contact.asperities import AsperityLaw
 from squeezefilm.contact.finger.fingerpad import FingerpadDynamics
 from squeezefilm.contact.finger.fingertip import Finger
-from squeezefilm.contact.finger.occlusion import Occlusion
 from squeezefilm.contact.finger.skin import Skin
 from squeezefilm.contact.sharing.film_load import FilmLoad, film_load
 from squeezefilm.contact.sharing.gas_table import FilmTable, film_table
 from squeezefilm.contact.sharing.pad import FrictionRipple, PadPosture
-from squeezefilm.contact.sliding.dry_friction import DryFriction, FrictionProfile
+from squeezefilm.contact.sliding.dry_friction import DryFriction, FrictionProfile, Occlusion
 from squeezefilm.contact.sliding.march import Sliding, slide
 from squeezefilm.display import Display, Surface, load_display
 from squeezefilm.distributions import Normal, Uniform

@@ -36,13 +36,14 @@ NOT_CALLED = {
     film.periodic.solution.Asked film.periodic.solution.Found
     contact.sharing.film_load.FilmLoad contact.sharing.pad.PadFriction
     contact.sharing.balance.LoadSharing
-    contact.sharing.balance.TiedSharing contact.sliding.skin_vibration.SkinVibration
+    contact.sliding.skin_vibration.SkinVibration
     contact.sliding.march.Sliding
-    contact.sharing.tapping.Tapping film.periodic.balance.LevitationLimit
+    contact.sharing.tapping.Tapping
     film.periodic.balance.LoadBalance
-    film.periodic.batch.FilmBatch film.periodic.edge.EdgeLayer film.periodic.solution.FilmSolution
+    film.periodic.batch.FilmBatch film.periodic.solution.FilmSolution
     film.planar.film.FilmPlanar film.transient.settling.FilmSettled film.planar.teeth.ToothedFilm
-    film.transient.march.FilmTransient film.validity.FilmValidity film.validity.ValidityCheck
+    film.transient.march.FilmTransient film.transient.march.MovedFilm
+    film.validity.FilmValidity film.validity.ValidityCheck
     formats.hjif.HjifExport formats.hjif_read.HjifImport plate.ring.modes.AnnularMode
     plate.beam.modes.BeamMode plate.solid.modes.PlateModes plate.solid.response.HarmonicResponse
     plate.solid.volume.PlateVolume plate.beam.response.BeamResponse plate.ring.body.RingBody
@@ -69,8 +70,8 @@ NOT_CALLED = {
     film.planar.ladder.Ladder film.planar.ladder.Ladder.grid film.planar.ladder.climb_to
     film.periodic.profile.GapProfile.grid film.periodic.profile.sampled_grid
     film.periodic.resolution.first_guess
-    film.periodic.resolution.refined film.periodic.resolution.collocation_times film.slip.slip_law
-    film.transient.march.check_film plate.ring.elements.HarmonicSystem
+    film.periodic.resolution.refined film.periodic.resolution.collocation_times film.gas.slip_law
+    plate.ring.elements.HarmonicSystem
     plate.ring.elements.HarmonicSystem.field plate.ring.elements.RingMesh
     plate.ring.elements.harmonic_system plate.elements.block_ldl.PartialLDL
     plate.elements.block_ldl.partial_ldl plate.elements.box_model.BoxModel

@@ -34,8 +34,8 @@ LEFT_OUT = {
 # Calls that neither solve nor need something solved: what the default run draws from.
 QUICK = (
     "contact.asperities.AsperityLaw", "contact.sliding.dry_friction", "contact.finger.",
-    "contact.finger.fingerpad", "contact.finger.occlusion",
-    "contact.sharing.paper.finger_pressure", "contact.skin.",
+    "contact.finger.fingerpad",
+    "contact.skin.",
     "contact.sharing.wedge", "contact.sharing.tapping.tapping_number", "distributions", "film.gap",
     "film.closed.limits", "film.closed.linear", "film.planar.gap", "film.validity.knudsen_number",
     "formats.wav", "formats.pictures", "materials", "plate.beam.modes.euler", "plate.laminate",

@@ -6,10 +6,10 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from squeezefilm.film.gas import SLIP_LAWS
 from squeezefilm.film.periodic.batch import solve_films
-from squeezefilm.film.periodic.film import solve_profile, solve_strip
+from squeezefilm.film.periodic.film import solve_profile, solve_uniform
 from squeezefilm.film.periodic.profile import flexural_profile
-from squeezefilm.film.slip import SLIP_LAWS
 
 sigmas = st.floats(-2.0, 4.0).map(lambda power: 10.0**power)
 excursions = st.floats(0.02, 0.95)
@@ -65,7 +65,7 @@ def test_load_stays_below_the_infinite_squeeze_number_limit(sigma, eps):
 @calm
 @given(st.floats(0.0, 3.0).map(lambda p: 10.0**p), st.floats(0.05, 0.9), exponents)
 def test_pressure_is_symmetric_positive_and_ambient_at_the_edges(sigma, eps, n):
-    solution = solve_strip(sigma, eps, polytropic_exponent=n)
+    solution = solve_uniform(sigma, eps, polytropic_exponent=n)
     np.testing.assert_array_equal(solution.pressure, solution.pressure[::-1])
     np.testing.assert_allclose(solution.pressure[[0, -1]], 1.0, rtol=1e-12)
     assert np.all(solution.pressure > 0.0)
@@ -88,7 +88,7 @@ def test_mirrored_profile_mirrors_the_pressure(sigma, eps, tilt):
 def test_mass_flow_over_a_period_vanishes(sigma, eps, n, kn):
     # ⟨H^(2−n) φ ∂(Ψ^((n+1)/n))⟩ = 0 inside: for n = 1 without slip, ⟨H (Ψ² − H²)⟩ does not depend
     # on X, since it is the mean mass flow's potential and none flows through the centre.
-    solution = solve_strip(sigma, eps, tolerance=1e-4)
+    solution = solve_uniform(sigma, eps, tolerance=1e-4)
     potential = np.mean(solution.gap**3 * (solution.pressure**2 - 1.0), axis=1)
     scale = np.mean(np.abs(solution.gap**3 * (solution.pressure**2 - 1.0)), axis=1).max()
     assert np.all(np.abs(potential) <= 2e-3 * scale)

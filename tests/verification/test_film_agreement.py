@@ -4,11 +4,12 @@ import numpy as np
 import pytest
 
 from squeezefilm.film.closed.linear import relative_damping, relative_stiffness
+from squeezefilm.film.gas import FilmGas
 from squeezefilm.film.line_grid import uniform_gap
-from squeezefilm.film.periodic.film import solve_disc, solve_profile, solve_strip
+from squeezefilm.film.periodic.film import solve_profile, solve_uniform
 from squeezefilm.film.periodic.profile import flexural_profile
-from squeezefilm.film.planar.film import solve_ellipse, solve_rectangle
-from squeezefilm.film.records import FilmGas
+from squeezefilm.film.planar.film import solve_planar
+from squeezefilm.film.planar.gap import PlanarGap
 from squeezefilm.film.transient.settling import settle_to_periodic
 
 
@@ -27,9 +28,10 @@ from squeezefilm.film.transient.settling import settle_to_periodic
 def test_harmonic_balance_agrees_with_the_march(
     shape: str, sigma: float, excursion: float, n: float, knudsen: float, slip: str
 ) -> None:
-    balance = (solve_strip if shape == "strip" else solve_disc)(
+    balance = solve_uniform(
         sigma,
         excursion,
+        shape=shape,
         tolerance=1e-5,
         polytropic_exponent=n,
         knudsen_number=knudsen,
@@ -47,22 +49,24 @@ def test_harmonic_balance_agrees_with_the_march(
 
 @pytest.mark.parametrize("slip", ["first", "second", "fukui-kaneko", "veijola"])
 def test_a_very_long_rectangle_is_a_strip(slip: str) -> None:
-    strip = solve_strip(20.0, 0.5, knudsen_number=0.1, slip=slip, tolerance=1e-4)
+    strip = solve_uniform(20.0, 0.5, knudsen_number=0.1, slip=slip, tolerance=1e-4)
     rare = FilmGas(knudsen_number=0.1, slip=slip)
-    long = solve_rectangle(20.0, 0.5, 400.0, gas=rare, tolerance=2e-3)
+    long = solve_planar(
+        "rectangle", PlanarGap(0.5), 20.0, aspect_ratio=400.0, gas=rare, tolerance=2e-3
+    )
     assert long.over_pressure == pytest.approx(strip.over_pressure, rel=5e-3)
 
 
 def test_a_round_ellipse_is_a_disc() -> None:
-    disc = solve_disc(10.0, 0.5, tolerance=1e-5)
-    round_ = solve_ellipse(10.0, 0.5, 1.0, tolerance=2e-3)
+    disc = solve_uniform(10.0, 0.5, shape="disc", tolerance=1e-5)
+    round_ = solve_planar("ellipse", PlanarGap(0.5), 10.0, tolerance=2e-3)
     assert abs(round_.over_pressure - disc.over_pressure) <= round_.over_pressure_error + 1e-6
     assert round_.stiffness_relative == pytest.approx(disc.stiffness_relative, rel=5e-3)
 
 
 def test_small_excursions_have_the_closed_linear_force() -> None:
     for sigma in (0.1, 1.0, 10.0, 100.0, 1000.0):
-        film = solve_strip(sigma, 0.01, tolerance=1e-5)
+        film = solve_uniform(sigma, 0.01, tolerance=1e-5)
         assert film.stiffness_relative == pytest.approx(float(relative_stiffness(sigma)), rel=1e-3)
         assert film.damping_relative == pytest.approx(float(relative_damping(sigma)), rel=1e-3)
 
@@ -78,12 +82,7 @@ def test_sealed_and_open_grooves_of_the_paper_s_finger() -> None:
         tolerance=1e-4,
     )
     assert sealed.over_pressure == pytest.approx(7.246e-3, rel=2e-4)
-    opened = solve_rectangle(
-        20.418149,
-        excursion,
-        wave_number=wave,
-        ridge_height=depth,
-        ridge_wave_number=ridges,
-        tolerance=2e-3,
+    opened = solve_planar(
+        "rectangle", PlanarGap(excursion, wave, depth, ridges), 20.418149, tolerance=2e-3
     )
     assert opened.over_pressure == pytest.approx(1.651e-4, rel=3e-3)

@@ -8,16 +8,26 @@ import numpy as np
 import pytest
 
 from squeezefilm.errors import ConvergenceError, GeometryError, InputError
+from squeezefilm.film.gas import FilmGas, Gas
 from squeezefilm.film.line_grid import uniform_gap
 from squeezefilm.film.planar.balance import Balancer, Film, derivative, resampled
 from squeezefilm.film.planar.cut import cut_ellipse_grid
-from squeezefilm.film.planar.film import solve_ellipse, solve_planar, solve_rectangle
+from squeezefilm.film.planar.film import solve_planar
 from squeezefilm.film.planar.gap import PlanarGap
 from squeezefilm.film.planar.grid import disc_grid, ellipse_grid, graded_line, rectangle_grid
 from squeezefilm.film.planar.teeth import compare_teeth
-from squeezefilm.film.records import FilmGas
 from squeezefilm.film.transient.settling import settle_to_periodic
 from squeezefilm.hard_limits import PLANAR_MEMORY
+
+
+def plane(shape, squeeze_number, excursion, aspect=1.0, *, tolerance=5e-3, **waves):
+    return solve_planar(
+        shape,
+        PlanarGap(excursion, **waves),
+        squeeze_number,
+        aspect_ratio=aspect,
+        tolerance=tolerance,
+    )
 
 
 def blech(squeeze_number: float, aspect: float, terms: int = 4001) -> tuple[float, float]:
@@ -45,14 +55,14 @@ def test_the_series_reaches_its_known_crossover():
 def test_small_motion_of_a_rectangle_agrees_with_blech(squeeze_number, aspect):
     excursion = 2e-3
     stiffness, damping = blech(squeeze_number, aspect)
-    film = solve_rectangle(squeeze_number, excursion, aspect, tolerance=1e-4)
+    film = plane("rectangle", squeeze_number, excursion, aspect, tolerance=1e-4)
     assert film.over_pressure == pytest.approx(1.25 * excursion**2 * stiffness, rel=2e-4)
     assert film.stiffness_relative == pytest.approx(stiffness, rel=3e-4)
     assert film.damping_relative == pytest.approx(damping, rel=3e-4)
 
 
 def test_square_crossover():
-    film = solve_rectangle(21.63490, 1e-3, 1.0, tolerance=1e-5)
+    film = plane("rectangle", 21.63490, 1e-3, 1.0, tolerance=1e-5)
     assert film.stiffness_relative == pytest.approx(film.damping_relative, rel=1e-4)
 
 
@@ -68,20 +78,20 @@ def test_the_disc_agrees_with_the_axisymmetric_values(squeeze_number, expected, 
 
 @pytest.mark.parametrize("aspect", [0.999, 1.001])
 def test_an_ellipse_passes_into_the_disc(aspect):
-    film = solve_ellipse(10.0, 0.5, aspect, tolerance=1e-3)
+    film = plane("ellipse", 10.0, 0.5, aspect, tolerance=1e-3)
     assert film.over_pressure == pytest.approx(0.196820, rel=2e-3)
 
 
 def test_a_long_rectangle_passes_into_the_strip():
-    film = solve_rectangle(10.0, 0.5, 100.0, tolerance=1e-4)
-    longer = solve_rectangle(10.0, 0.5, 200.0, tolerance=1e-4)
+    film = plane("rectangle", 10.0, 0.5, 100.0, tolerance=1e-4)
+    longer = plane("rectangle", 10.0, 0.5, 200.0, tolerance=1e-4)
     # What the two ends lose goes with 1/aspect.
     assert 2 * longer.over_pressure - film.over_pressure == pytest.approx(0.160251, rel=3e-4)
 
 
 def test_an_ellipse_turned_by_a_quarter_is_the_same_film():
-    tall = solve_ellipse(10.0, 0.5, 2.0, tolerance=1e-4)
-    wide = solve_ellipse(40.0, 0.5, 0.5, tolerance=1e-4)
+    tall = plane("ellipse", 10.0, 0.5, 2.0, tolerance=1e-4)
+    wide = plane("ellipse", 40.0, 0.5, 0.5, tolerance=1e-4)
     assert tall.over_pressure == pytest.approx(wide.over_pressure, rel=2e-4)
 
 
@@ -99,7 +109,7 @@ def test_a_wave_over_a_long_strip_agrees_with_the_march():
         lambda X, T: 1.0 + excursion * np.cos(wave * X) * np.cos(T), squeeze_number, tolerance=2e-4
     )
     ends = [
-        solve_rectangle(squeeze_number, excursion, a, wave_number=wave, tolerance=1e-4)
+        plane("rectangle", squeeze_number, excursion, a, wave_number=wave, tolerance=1e-4)
         for a in (50.0, 100.0)
     ]
     strip = 2 * ends[1].over_pressure - ends[0].over_pressure
@@ -107,7 +117,7 @@ def test_a_wave_over_a_long_strip_agrees_with_the_march():
 
 
 def _solved(grid, excursion=0.5, squeeze_number=10.0, count=7):
-    film = Film(PlanarGap(excursion), squeeze_number, 1.0, 0.0, 0)
+    film = Film(PlanarGap(excursion), squeeze_number, Gas(1.0, 0.0, 0))
     return Balancer(film, grid, count).solve(None, 1e-10)
 
 
@@ -169,7 +179,7 @@ def test_the_spectral_derivative_and_resampling_are_exact_on_what_they_carry():
 
 
 def test_force_harmonics_follow_the_sign_of_stiffness_and_damping():
-    film = solve_ellipse(10.0, 0.3, 1.3, tolerance=1e-3)
+    film = plane("ellipse", 10.0, 0.3, 1.3, tolerance=1e-3)
     first = film.force_harmonics[0]
     assert first == pytest.approx(
         -0.3 * (film.stiffness_relative + 1j * film.damping_relative), rel=1e-12
@@ -193,7 +203,7 @@ def test_a_given_function_is_the_same_film_as_the_gap_it_spells():
 
 
 def test_tilting_the_finger_breaks_the_symmetry_and_costs_load():
-    level = solve_ellipse(10.0, 0.5, 1.3, tolerance=5e-3)
+    level = plane("ellipse", 10.0, 0.5, 1.3, tolerance=5e-3)
     tilted = solve_planar(
         "ellipse",
         lambda X, Y, T: 1.0 + 0.5 * np.cos(T) + 0.2 * X + 0.1 * Y,
@@ -227,7 +237,7 @@ def test_grooves_sealed_at_their_ends_are_the_line_s():
     x = np.linspace(0, 0.5, 1441)
     grid = rectangle_grid(x, np.linspace(0, 0.5, 3))
     sealed = np.where(grid.edge_Y == 0.5, 0.0, grid.edge_conductance)
-    film = Film(RIDGED, 20.418, 1.0, 0.0, 0)
+    film = Film(RIDGED, 20.418, Gas(1.0, 0.0, 0))
     state = Balancer(film, replace(grid, edge_conductance=sealed), 13).solve(None, 1e-9)
     assert state.over_pressure == pytest.approx(7.246e-3, rel=5e-3)
 
@@ -261,7 +271,7 @@ def test_a_quarter_of_the_cut_ellipse_is_the_whole():
 
 @pytest.mark.parametrize("squeeze_number", [0.01, 1.0, 1e4])
 def test_the_largest_excursion_is_within_reach(squeeze_number):
-    film = solve_ellipse(squeeze_number, 0.95, 1.3, tolerance=2e-2)
+    film = plane("ellipse", squeeze_number, 0.95, 1.3, tolerance=2e-2)
     assert film.over_pressure > 0
     assert film.over_pressure_error <= 2e-2 * film.over_pressure
 
@@ -295,7 +305,7 @@ def test_the_error_estimate_is_honest():
 @pytest.mark.nightly
 def test_open_grooves_converge_on_grids_of_two_kinds():
     film = solve_planar("rectangle", RIDGED, 20.418, tolerance=3e-4)
-    equations = Film(RIDGED, 20.418, 1.0, 0.0, 0)
+    equations = Film(RIDGED, 20.418, Gas(1.0, 0.0, 0))
     uniform = []
     for k in (256, 512):
         grid = rectangle_grid(np.linspace(0, 0.5, 2 * k + 1), np.linspace(0, 0.5, k // 16 + 1))
@@ -343,18 +353,18 @@ def test_what_cannot_be_used_is_refused_with_its_value(change, error, says):
 @pytest.mark.parametrize("excursion", [0.0, 1.0, float("nan")])
 def test_an_excursion_out_of_range_is_refused(excursion):
     with pytest.raises(InputError, match="excursion_ratio"):
-        solve_rectangle(10.0, excursion)
+        plane("rectangle", 10.0, excursion)
 
 
 def test_ridges_that_reach_the_surface_are_refused():
     with pytest.raises(GeometryError, match="the gap closes"):
-        solve_rectangle(10.0, 0.5, ridge_height=0.6, ridge_wave_number=40.0)
+        plane("rectangle", 10.0, 0.5, ridge_height=0.6, ridge_wave_number=40.0)
 
 
 def test_a_tolerance_out_of_reach_raises_with_the_best_state(monkeypatch):
     lower = replace(PLANAR_MEMORY, most=2e6)
     monkeypatch.setattr("squeezefilm.film.planar.ladder.PLANAR_MEMORY", lower)
     with pytest.raises(ConvergenceError, match="memory") as caught:
-        solve_ellipse(10.0, 0.5, 1.5, tolerance=1e-5)
+        plane("ellipse", 10.0, 0.5, 1.5, tolerance=1e-5)
     assert caught.value.partial.over_pressure == pytest.approx(0.22470, rel=5e-3)
     assert caught.value.partial.over_pressure_error > 0

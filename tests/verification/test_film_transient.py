@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from squeezefilm.errors import ConvergenceError, GeometryError, InputError
+from squeezefilm.film.gas import FilmGas
 from squeezefilm.film.line_grid import uniform_gap
-from squeezefilm.film.records import FilmGas
 from squeezefilm.film.transient.march import solve_transient
 from squeezefilm.film.transient.settling import settle_to_periodic
 

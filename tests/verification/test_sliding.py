@@ -16,8 +16,7 @@ from squeezefilm.contact.finger.fingerpad import (
     slip_duration,
     stick_duration,
 )
-from squeezefilm.contact.finger.occlusion import Occlusion
-from squeezefilm.contact.sliding.dry_friction import DryFriction, FrictionProfile, sampled_profile
+from squeezefilm.contact.sliding.dry_friction import DryFriction, FrictionProfile, Occlusion
 from squeezefilm.contact.sliding.march import Sliding, slide
 from squeezefilm.quantities import FloatArray
 
@@ -163,12 +162,18 @@ def test_response_to_modulated_friction_is_the_closed_form(
     assert force == pytest.approx(friction_transmitted(*values), rel=3e-6)
 
 
+def places(start, end, points, factor):
+    """A factor of friction that belongs to places, at evenly spaced points."""
+    spacing = (end - start) / (points - 1)
+    return FrictionProfile(start, spacing, factor(np.linspace(start, end, points)))
+
+
 COVERING = (-1e-3, 9e-3, 20_001)
 CASES: dict[str, tuple[DryFriction, FrictionProfile | None]] = {
     "coulomb": (DryFriction(), None),
     "static over kinetic": (DryFriction(1.4), None),
     "falling with speed": (DryFriction(1.4, 0.5), None),
-    "of place": (DryFriction(), sampled_profile(lambda x: 1 + 0.3 * np.cos(6283 * x), *COVERING)),
+    "of place": (DryFriction(), places(*COVERING, lambda x: 1 + 0.3 * np.cos(6283 * x))),
 }
 
 
@@ -283,7 +288,7 @@ def test_a_general_integrator_with_events_finds_the_same_motion() -> None:
 
 
 def test_friction_that_belongs_to_places_is_met_there() -> None:
-    profile = sampled_profile(lambda x: 1 + 0.5 * np.sin(2 * np.pi * x / 5e-3), -1e-3, 21e-3, 2201)
+    profile = places(-1e-3, 21e-3, 2201, lambda x: 1 + 0.5 * np.sin(2 * np.pi * x / 5e-3))
     dt = 1e-4
     t = np.arange(20_001) * dt
     motion = slide(0.01 * t, dt, 0.5, 0.5, profile=profile)

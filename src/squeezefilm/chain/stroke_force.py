@@ -8,8 +8,7 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.contact.finger.fingerpad import FingerpadDynamics
-from squeezefilm.contact.finger.occlusion import Occlusion
-from squeezefilm.contact.sliding.dry_friction import DryFriction
+from squeezefilm.contact.sliding.dry_friction import DryFriction, Occlusion
 from squeezefilm.contact.sliding.march import Sliding, slide
 from squeezefilm.contact.sliding.skin_vibration import (
     SkinVibration,

@@ -15,17 +15,14 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Annotated, Literal, get_args
+from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.contact.records import CompiledAsperities
-from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import DECAY_LENGTH, PRESSURE
 
 AsperityHeights = Literal["exponential", "gaussian"]
-ASPERITY_HEIGHTS: tuple[AsperityHeights, ...] = get_args(AsperityHeights)
 
 EXPONENTIAL, GAUSSIAN = 0, 1
 
@@ -33,6 +30,14 @@ EXPONENTIAL, GAUSSIAN = 0, 1
 # crushed flat, above they carry e^-200 of anything.
 _LOWEST, _HIGHEST = -8.0, 20.0
 _TERMS = 48
+
+
+class CompiledAsperities(NamedTuple):
+    """A law of asperities for compiled code: the number of its kind, its constants, its table."""
+
+    kind: int
+    constants: si.FloatArray
+    table: si.FloatArray
 
 
 @si.closed_form(positive="reference_pressure decay_length")
@@ -48,25 +53,6 @@ def exponential_pressure(
     the asperities touch one by one.
     """
     return reference_pressure * np.exp(-(gap - reference_gap) / decay_length)
-
-
-@si.checked_numbers
-def exponential_mean_pressure(
-    mean_gap: si.MetreLike,
-    amplitude: si.MetreLike,
-    reference_pressure: si.Pascal,
-    reference_gap: si.Metre,
-    decay_length: si.Metre,
-) -> si.PascalLike:
-    """⟨p_a(u − a cos T)⟩ = p_ref exp(−(u − h_ref)/λ_r) I0(a/λ_r), in Pa; broadcasts.
-
-    The mean over a period of `exponential_pressure`; I0 is the modified Bessel function.
-    """
-    from scipy.special import i0e
-
-    least = np.asarray(mean_gap) - np.asarray(amplitude)
-    pressure = exponential_pressure(least, reference_pressure, reference_gap, decay_length)
-    return np.asarray(pressure * i0e(np.asarray(amplitude) / decay_length))[()]
 
 
 @si.checked_numbers
@@ -132,43 +118,14 @@ class AsperityLaw:
         period, which converges spectrally (128 points; below 1e-9 for a up to 33 λ_r).
         """
         if self.heights == "exponential":
-            return exponential_mean_pressure(
-                mean_gap,
-                amplitude,
-                self.reference_pressure,
-                self.reference_gap,
-                self.decay_length,
-            )
+            from scipy.special import i0e
+
+            least = self.pressure(np.asarray(mean_gap) - np.asarray(amplitude))
+            return np.asarray(least * i0e(np.asarray(amplitude) / self.decay_length))[()]
         u, a = np.broadcast_arrays(np.asarray(mean_gap, float), np.asarray(amplitude, float))
         phase = np.cos(2 * np.pi * np.arange(128) / 128)
         gap = u[..., None] - a[..., None] * phase
         return np.asarray(np.mean(self.pressure(gap), axis=-1))[()]
-
-    @si.checked_numbers
-    def gap_for(self, pressure: Annotated[si.Pascal, si.Above(0.0)]) -> si.Metre:
-        """The gap (m) at which the asperities alone, at rest, carry a pressure (Pa).
-
-        Below zero where they would be crushed: the law does not hold there. Raises `InputError`
-        for a pressure that is not positive, or outside the tabulated range of Gaussian heights.
-        """
-        if self.heights == "exponential":
-            return self.reference_gap - self.decay_length * float(
-                np.log(pressure / self.reference_pressure)
-            )
-        from scipy.optimize import brentq
-
-        reference = float(gaussian_overlap(self.reference_gap / self.decay_length))
-        wanted = float(np.log(pressure / self.reference_pressure * reference))
-
-        def excess(t: float) -> float:
-            return math.log(float(gaussian_overlap(t))) - wanted
-
-        if not excess(_HIGHEST) < 0 < excess(_LOWEST):
-            raise InputError(
-                f"pressure = {pressure:.4g} Pa is beyond what asperities of Gaussian heights carry "
-                "between −8 and 20 deviations; take other asperities or another load"
-            )
-        return float(brentq(excess, _LOWEST, _HIGHEST)) * self.decay_length
 
     @si.checked_numbers
     def scaled(self, factor: Annotated[si.Dimensionless, si.Above(0.0)]) -> AsperityLaw:

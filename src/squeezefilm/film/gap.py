@@ -16,6 +16,7 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
+from squeezefilm.materials import Gas
 
 
 @si.closed_form(
@@ -40,30 +41,6 @@ def film_thickness(
     wave = np.cos(2 * np.pi * frequency * time) * np.cos(2 * np.pi * x / wavelength)
     ridges = np.cos(2 * np.pi * x / ridge_period)
     return roughness + vibration_amplitude * (1 + wave) + ridge_amplitude * (1 + ridges)
-
-
-@si.closed_form(
-    positive="frequency ridge_period wavelength",
-    nonnegative="roughness vibration_amplitude ridge_amplitude",
-)
-def film_thickness_printed(
-    x: si.MetreLike,
-    time: si.SecondLike,
-    frequency: si.HertzLike,
-    roughness: si.Metre,
-    vibration_amplitude: si.MetreLike,
-    ridge_amplitude: si.Metre,
-    ridge_period: si.Metre,
-    wavelength: si.Metre,
-) -> si.MetreLike:
-    """The film thickness h(x, t) in m, paper eq 1 as printed; `film_thickness` is the correct one.
-
-    h = (h_vib + h_r)[1 + cos ωt cos(2πx/λ)] + h_e [1 + cos(2πx/L)]: the roughness oscillates with
-    the plate, and the gap closes completely. Kept to reproduce the paper. Broadcasts.
-    """
-    wave = np.cos(2 * np.pi * frequency * time) * np.cos(2 * np.pi * x / wavelength)
-    ridges = np.cos(2 * np.pi * x / ridge_period)
-    return (vibration_amplitude + roughness) * (1 + wave) + ridge_amplitude * (1 + ridges)
 
 
 @si.closed_form(positive="frequency length film_thickness viscosity ambient_pressure")
@@ -190,6 +167,12 @@ class PaperGap:
     def symmetric(self) -> bool:
         """Whether antinode and groove lie at the centre of the contact, as in the paper."""
         return self.wave_offset == 0 and self.ridge_offset == 0
+
+    @si.checked_numbers
+    def squeeze_number(self, frequency: si.Hertz, gas: Gas) -> si.DimensionlessLike:
+        """The paper's σ in a gas at a frequency (Hz): on l0 and H0 (dimensionless)."""
+        thickness, length = self.reference_thickness, self.contact_length
+        return squeeze_number(frequency, length, thickness, gas.viscosity, gas.ambient_pressure)
 
     @si.checked_numbers
     def wave_phase(self, X: si.DimensionlessLike) -> si.DimensionlessLike:

@@ -99,29 +99,37 @@ def uniform_gap(excursion_ratio: float) -> Gap:
     return gap
 
 
+def tabulated(
+    gap: Callable[..., si.FloatArray], axes: dict[str, tuple[si.FloatArray, int]], enough: str
+) -> si.FloatArray:
+    """H at every place and time, checked: finite and open. Each of the gap's arguments is given
+    with the axis, 0 or 1, that it runs along; `enough` says what keeps the gap open."""
+    shape = tuple(max(v.size for v, along in axes.values() if along == axis) for axis in (0, 1))
+    given = [v[:, None] if axis == 0 else v[None, :] for v, axis in axes.values()]
+    try:
+        H = np.broadcast_to(np.asarray(gap(*given), dtype=float), shape)
+    except ValueError as error:
+        asked = ", ".join(f"{name} {v.shape}" for name, v in zip(axes, given, strict=True))
+        raise InputError(
+            f"the gap must return what broadcasts to {shape} for {asked}: {error}"
+        ) from error
+    # One pass on the way through; the place is looked for only where something is wrong.
+    if H.min() > 0.0 and H.max() < np.inf:
+        return np.ascontiguousarray(H)
+    finite = np.isfinite(H)
+    worst = np.unravel_index(int(np.argmin(np.where(finite, H, -np.inf))), shape)
+    place = ", ".join(f"{name} = {v[worst[axis]]:.4g}" for name, (v, axis) in axes.items())
+    if not finite.all():
+        raise InputError(f"gap = {H[worst]} at {place} cannot be used: it must be finite")
+    raise GeometryError(
+        f"the gap closes: H = {H[worst]:.4g} at {place}; it must stay above 0. {enough}"
+    )
+
+
 def gap_table(gap: Gap, X: si.FloatArray, T: si.FloatArray) -> si.FloatArray:
     """H at every time and place, (times, places), checked: finite and open."""
-    shape = (T.size, X.size)
-    try:
-        H = np.broadcast_to(np.asarray(gap(X[None, :], T[:, None]), dtype=float), shape)
-    except ValueError as error:
-        raise InputError(
-            f"the gap must return what broadcasts to {shape} for X (1, {X.size}) and "
-            f"T ({T.size}, 1): {error}"
-        ) from error
-    if not np.all(np.isfinite(H)):
-        row, column = np.argwhere(~np.isfinite(H))[0]
-        raise InputError(
-            f"gap = {H[row, column]} at X = {X[column]:.4g}, T = {T[row]:.4g} cannot be used: "
-            "it must be finite"
-        )
-    if H.min() <= 0.0:
-        row, column = np.unravel_index(int(np.argmin(H)), shape)
-        raise GeometryError(
-            f"the gap closes: H = {H[row, column]:.4g} at X = {X[column]:.4g}, T = {T[row]:.4g}; "
-            "it must stay above 0. Reduce the vibration or raise the mean gap."
-        )
-    return np.ascontiguousarray(H)
+    enough = "Reduce the vibration or raise the mean gap."
+    return tabulated(gap, {"X": (X, 1), "T": (T, 0)}, enough)
 
 
 def mean_over(gap: Gap, T: si.FloatArray) -> Profile:

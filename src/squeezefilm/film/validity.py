@@ -11,7 +11,7 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError, OutOfRangeError, OutOfRangeWarning
 from squeezefilm.film.closed.linear import relative_stiffness
-from squeezefilm.film.gap import PaperGap, squeeze_number
+from squeezefilm.film.gap import PaperGap
 from squeezefilm.materials import Gas
 
 INERTIA_LIMIT: si.Dimensionless = 2.0
@@ -149,15 +149,7 @@ def film_validity(
     thickness = float(gap.crest_thickness)
     here = f"over a gap of {si.format_quantity(thickness, si.Unit('m'), 3)}"
     drive = si.format_quantity(frequency, si.Unit("Hz"), 3)
-    sigma = float(
-        squeeze_number(
-            frequency,
-            gap.contact_length,
-            gap.reference_thickness,
-            gas.viscosity,
-            gas.ambient_pressure,
-        )
-    )
+    sigma = float(gap.squeeze_number(frequency, gas))
     fraction = float(asymptotic_fraction(sigma))
     checks = [
         _inertia(

@@ -11,7 +11,6 @@ from scipy.special import iv
 
 from squeezefilm.contact.asperities import (
     AsperityLaw,
-    exponential_mean_pressure,
     exponential_pressure,
     gaussian_overlap,
 )
@@ -54,32 +53,12 @@ def test_pressures_fall_from_the_reference() -> None:
 def test_the_mean_over_a_period() -> None:
     expected = 4e3 * math.exp(-(3e-6 - 1.8e-6) / 0.5e-6) * iv(0, 2.4)
     assert EXPONENTIAL.mean_pressure(3e-6, 1.2e-6) == pytest.approx(expected)
-    assert exponential_mean_pressure(3e-6, 1.2e-6, 4e3, 1.8e-6, 0.5e-6) == pytest.approx(expected)
     turn = 2 * np.pi * (np.arange(1000) + 0.25) / 1000
     found = np.asarray(GAUSSIAN.mean_pressure(np.array([3e-6, 2e-6]), np.array([1.2e-6, 0.0])))
     assert found[0] == pytest.approx(
         np.mean(np.asarray(GAUSSIAN.pressure(3e-6 - 1.2e-6 * np.cos(turn)))), rel=1e-9
     )
     assert found[1] == pytest.approx(GAUSSIAN.pressure(2e-6))
-
-
-@pytest.mark.parametrize("law", [EXPONENTIAL, GAUSSIAN])
-@pytest.mark.parametrize("pressure", [1e-3, 4e3, 2e4])
-def test_the_gap_of_a_pressure_carries_it(law: AsperityLaw, pressure: float) -> None:
-    assert law.pressure(law.gap_for(pressure)) == pytest.approx(pressure, rel=1e-9)
-
-
-def test_a_gap_below_zero_is_told_and_what_no_gap_carries_is_refused() -> None:
-    assert EXPONENTIAL.gap_for(1e6) == pytest.approx(1.8e-6 - 0.5e-6 * math.log(250.0))
-    assert EXPONENTIAL.gap_for(1e6) < 0
-    most = float(np.asarray(GAUSSIAN.pressure(-8 * 0.5e-6)))
-    assert GAUSSIAN.gap_for(0.99 * most) == pytest.approx(-4e-6, rel=0.02)
-    for pressure in (1.01 * most, 1e-90):
-        with pytest.raises(InputError, match="beyond what asperities of Gaussian heights carry"):
-            GAUSSIAN.gap_for(pressure)
-    for law in (EXPONENTIAL, GAUSSIAN):
-        with pytest.raises(InputError, match="pressure"):
-            law.gap_for(0.0)
 
 
 @pytest.mark.parametrize("law", [EXPONENTIAL, GAUSSIAN])

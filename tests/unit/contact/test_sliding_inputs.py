@@ -10,8 +10,7 @@ import pytest
 
 from squeezefilm.chain.stroke_force import StrokeForce, stroke_force
 from squeezefilm.contact.finger.fingerpad import FingerpadDynamics
-from squeezefilm.contact.finger.occlusion import Occlusion
-from squeezefilm.contact.sliding.dry_friction import DryFriction, FrictionProfile, sampled_profile
+from squeezefilm.contact.sliding.dry_friction import DryFriction, FrictionProfile, Occlusion
 from squeezefilm.contact.sliding.march import interval_speeds, slide
 from squeezefilm.contact.sliding.skin_vibration import (
     line_amplitudes,
@@ -41,8 +40,6 @@ BONE = 0.08 * DT * np.arange(2000)
         (lambda: Occlusion().factor(-1.0), "contact_time"),
         (lambda: FrictionProfile(0.0, 1e-3, np.ones(1)), "at least two"),
         (lambda: FrictionProfile(0.0, 1e-3, -np.ones(3)), "relative_friction"),
-        (lambda: sampled_profile(lambda x: x[:2], 0.0, 1.0, 5), "one per place"),
-        (lambda: sampled_profile(np.ones_like, 0.0, 1.0, 1), "points"),
         (lambda: slide(BONE[:1], DT, 0.5, 0.5), "at least two"),
         (lambda: slide(BONE, 0.0, 0.5, 0.5), "time_step"),
         (lambda: slide(BONE, DT, -0.5, 0.5), "friction_coefficient"),

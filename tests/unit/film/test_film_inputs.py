@@ -13,20 +13,19 @@ import pytest
 
 from squeezefilm.errors import ConvergenceError, GeometryError, InputError, UnreachableError
 from squeezefilm.film import compiled
+from squeezefilm.film.gas import MOST_SQUEEZE_NUMBER
 from squeezefilm.film.periodic import batch, film
 from squeezefilm.film.periodic.balance import VibratedFilm, mean_gap_for_load
 from squeezefilm.film.periodic.batch import solve_films
-from squeezefilm.film.periodic.edge import edge_layer
-from squeezefilm.film.periodic.film import solve_disc, solve_profile, solve_strip
+from squeezefilm.film.periodic.film import solve_profile, solve_uniform
 from squeezefilm.film.periodic.profile import (
     flexural_profile,
     profile_from_function,
     profile_from_samples,
 )
-from squeezefilm.film.solved_range import MOST_SQUEEZE_NUMBER
 
 
-@pytest.mark.parametrize("solve", [solve_strip, solve_disc, solve_films])
+@pytest.mark.parametrize("solve", [solve_uniform, solve_films])
 @pytest.mark.parametrize(
     ("arguments", "offender"),
     [
@@ -114,7 +113,7 @@ def test_what_does_not_converge_raises_with_its_partial_result(monkeypatch):
         monkeypatch.setattr(solver, "ROUNDS", 1)
         monkeypatch.setattr(solver, "MOST_NEWTON", 2)
     with pytest.raises(ConvergenceError) as caught:
-        solve_strip(10.0, 0.9, tolerance=1e-6)
+        solve_uniform(10.0, 0.9, tolerance=1e-6)
     error = caught.value
     assert error.residual > 1e-6
     assert error.iterations > 0
@@ -135,8 +134,8 @@ def test_a_partial_result_holds_nothing_that_was_not_computed(monkeypatch):
     monkeypatch.setattr(film.np, "empty", lambda shape, **_: np.full(shape, np.nan))
     wavy = profile_from_function(lambda x, t: 1 + 0.3 * np.cos(6 * x) + 0.5 * np.cos(t))
     for solve in (
-        lambda: solve_strip(10.0, 0.9, tolerance=1e-6),
-        lambda: solve_disc(10.0, 0.9, tolerance=1e-6),
+        lambda: solve_uniform(10.0, 0.9, tolerance=1e-6),
+        lambda: solve_uniform(10.0, 0.9, shape="disc", tolerance=1e-6),
         lambda: solve_profile(30.0, wavy, tolerance=1e-6),
     ):
         with pytest.raises(ConvergenceError) as caught:
@@ -147,7 +146,7 @@ def test_a_partial_result_holds_nothing_that_was_not_computed(monkeypatch):
 
 
 def test_still_plate_makes_no_pressure():
-    solution = solve_strip(10.0, 0.0)
+    solution = solve_uniform(10.0, 0.0)
     assert solution.over_pressure == 0.0
     assert np.all(solution.pressure == 1.0)
     assert solution.stiffness_relative == pytest.approx(0.411794, abs=1e-5)
@@ -190,13 +189,6 @@ def test_load_balance_of_a_narrow_ridge():
     # At σ far below 1 the over-pressure is of second order and tiny over most of the search.
     balance = mean_gap_for_load(VibratedFilm(2e-6, 40e3, 250e-6, polytropic_exponent=1.2), 1e3)
     assert balance.mean_load_pressure == pytest.approx(1e3, rel=1e-3)
-
-
-def test_edge_layer_range():
-    with pytest.raises(InputError, match="excursion_ratio = 0"):
-        edge_layer(0.0)
-    with pytest.raises(InputError, match="excursion_ratio"):
-        edge_layer(0.99)
 
 
 def test_the_first_compile_is_announced(tmp_path, caplog):

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from squeezefilm.film.gas import FIRST, NO_SLIP, SECOND, SLIP_LAWS
 from squeezefilm.film.mobility import mobility
-from squeezefilm.film.slip import FIRST, NO_SLIP, SECOND, SLIP_LAWS
 
 H, P, KN = 0.7, 1.6, 0.08
 

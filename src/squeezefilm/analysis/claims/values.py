@@ -26,11 +26,7 @@ from squeezefilm.analysis.plate.sensitivity import (
     working_point,
 )
 from squeezefilm.chain.friction import friction_law
-from squeezefilm.contact.sharing.paper import (
-    relative_friction,
-    vibration_amplitude_for,
-    zero_friction_amplitude,
-)
+from squeezefilm.contact.sharing.paper import relative_friction, vibration_amplitude_for
 from squeezefilm.display import Display, load_display
 from squeezefilm.film.closed.limits import contact_mean_pressure, mean_pressure_profile
 from squeezefilm.film.gap import (
@@ -157,7 +153,8 @@ def _() -> ClaimValue:
 @value_of("levitation-amplitude")
 def _() -> ClaimValue:
     force, ambient = _force_and_ambient()
-    rough, smooth = (zero_friction_amplitude(_gap(0.0, r), force, ambient) for r in (6e-7, 2e-7))
+    gaps = [_gap(0.0, roughness) for roughness in (6e-7, 2e-7)]
+    rough, smooth = (vibration_amplitude_for(0.0, gap, force, ambient) for gap in gaps)
     return ClaimValue((rough,), alternative=(smooth,), note="alternative: roughness 0.2 µm")
 
 

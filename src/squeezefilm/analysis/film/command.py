@@ -11,11 +11,12 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.film.periodic.film import solve_disc, solve_profile, solve_strip
+from squeezefilm.film.gas import FilmGas
+from squeezefilm.film.periodic.film import solve_profile, solve_uniform
 from squeezefilm.film.periodic.profile import GapFunction, GapProfile
 from squeezefilm.film.periodic.solution import FilmSolution
-from squeezefilm.film.planar.film import FilmPlanar, solve_ellipse, solve_rectangle
-from squeezefilm.film.records import FilmGas
+from squeezefilm.film.planar.film import FilmPlanar, solve_planar
+from squeezefilm.film.planar.gap import PlanarGap
 from squeezefilm.from_text import reads_text
 from squeezefilm.hard_limits import ASPECT
 from squeezefilm.results import Result, stamp, to_json
@@ -137,12 +138,16 @@ def solve_film(
         film = dataclasses.replace(found, profile=None)
         return _answer(film, found.excursion_ratio, request, ", a gap of one's own")
     if shape in _LINES:
-        solve = solve_strip if shape == "strip" else solve_disc
-        film = solve(squeeze_number, gap, **gas)
+        film = solve_uniform(squeeze_number, gap, shape=shape, **gas)
     else:
-        planar = solve_rectangle if shape == "rectangle" else solve_ellipse
-        own = FilmGas(polytropic_exponent, knudsen_number, slip)
-        film = planar(squeeze_number, gap, aspect_ratio, gas=own, tolerance=tolerance)
+        film = solve_planar(
+            "rectangle" if shape == "rectangle" else "ellipse",
+            PlanarGap(gap),
+            squeeze_number,
+            aspect_ratio=aspect_ratio,
+            gas=FilmGas(polytropic_exponent, knudsen_number, slip),
+            tolerance=tolerance,
+        )
     return _answer(film, gap, request)
 
 

@@ -140,9 +140,9 @@ def _teeth(display: Display, prediction: Prediction) -> ToothResult | None:
     actuator = display.actuator
     if not isinstance(actuator, AnnularStator) or actuator.tooth_pitch is None:
         return None
+    from squeezefilm.film.gas import FilmGas
     from squeezefilm.film.planar.gap import PlanarGap
     from squeezefilm.film.planar.teeth import compare_teeth
-    from squeezefilm.film.records import FilmGas
 
     assert actuator.slot_width is not None
     p, gas = prediction, display.gas

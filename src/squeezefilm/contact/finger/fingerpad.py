@@ -14,11 +14,7 @@ from typing import Annotated, Any, cast
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.hard_limits import (
-    PAD_DAMPING,
-    PAD_MASS,
-    PAD_STIFFNESS,
-)
+from squeezefilm.hard_limits import PAD_DAMPING, PAD_MASS, PAD_STIFFNESS
 
 MetrePerNewtonComplexLike = Annotated[complex | si.ComplexArray, si.Unit("m/N")]
 
@@ -55,12 +51,12 @@ class FingerpadDynamics:
     @property
     def resonance_frequency(self) -> si.Hertz:
         """Undamped resonance frequency of the sliding skin (Hz)."""
-        return float(skin_resonance_frequency(self.stiffness, self.mass))
+        return math.sqrt(self.stiffness / self.mass) / (2 * math.pi)
 
     @property
     def damping_ratio(self) -> si.Dimensionless:
         """Damping over critical damping (1); 1.3 with the defaults: the skin does not ring."""
-        return float(skin_damping_ratio(self.stiffness, self.damping, self.mass))
+        return self.damping / (2 * math.sqrt(self.stiffness * self.mass))
 
     @property
     def settling_time_constant(self) -> si.Second:
@@ -73,31 +69,6 @@ class FingerpadDynamics:
             return 1 / decay
         # 1/(decay − √split), without subtracting like numbers.
         return (decay + math.sqrt(split)) * self.mass / self.stiffness
-
-
-@si.closed_form(positive="stiffness mass")
-def skin_resonance_frequency(
-    stiffness: si.NewtonPerMetreLike, mass: si.KilogramLike
-) -> si.HertzLike:
-    """Undamped resonance frequency of the skin on its spring (Hz): √(k/m)/2π.
-
-    `stiffness` (N/m) and `mass` (kg) broadcast. Raises `InputError` unless both are above 0.
-    """
-    frequency: si.HertzLike = np.sqrt(stiffness / mass) / (2 * math.pi)
-    return frequency
-
-
-@si.closed_form(positive="stiffness mass", nonnegative="damping")
-def skin_damping_ratio(
-    stiffness: si.NewtonPerMetreLike, damping: si.NewtonSecondPerMetreLike, mass: si.KilogramLike
-) -> si.DimensionlessLike:
-    """Damping of the skin over critical damping (1): c/(2√(k m)); below 1 it rings.
-
-    `stiffness` (N/m), `damping` (N·s/m) and `mass` (kg) broadcast. Raises `InputError` for a
-    stiffness or mass not above 0 or a negative damping.
-    """
-    ratio: si.DimensionlessLike = damping / (2 * np.sqrt(stiffness * mass))
-    return ratio
 
 
 @si.closed_form(positive="stiffness mass", nonnegative="damping frequency")

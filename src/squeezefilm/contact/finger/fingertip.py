@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Annotated, Literal, get_args
+from typing import Annotated, Literal
 
 import numpy as np
 
@@ -25,7 +25,6 @@ from squeezefilm.hard_limits import (
 )
 
 Moisture = Literal["dry", "normal", "moist"]
-MOISTURES: tuple[Moisture, ...] = get_args(Moisture)
 
 STIFFNESS_OF_MOISTURE: dict[Moisture, float] = {"dry": 2.0, "normal": 1.0, "moist": 0.4}
 """How much stiffer than normal the outermost skin is, which scales what asperities carry at a gap.

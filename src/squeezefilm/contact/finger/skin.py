@@ -13,11 +13,7 @@ from typing import Annotated
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.hard_limits import (
-    SKIN_DAMPING,
-    SKIN_MASS,
-    SKIN_STIFFNESS,
-)
+from squeezefilm.hard_limits import SKIN_DAMPING, SKIN_MASS, SKIN_STIFFNESS
 
 
 @si.checked_numbers
@@ -41,8 +37,3 @@ class Skin:
             self.stiffness_per_area - self.mass_per_area * omega**2,
             self.damping_per_area * omega,
         )
-
-    @si.checked_numbers
-    def displacement(self, pressure: si.Pascal, frequency: si.Hertz) -> float:
-        """How far (m, amplitude) an alternating pressure (Pa, amplitude) moves the skin."""
-        return float(pressure / abs(self.dynamic_stiffness(frequency)))

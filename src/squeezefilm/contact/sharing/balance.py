@@ -87,53 +87,8 @@ def share_load(
             break
         table.build(lacking)
     _refuse(rows, a, p)
-    columns = {
-        name: rows[:, column].reshape(form)
-        for name, column in (
-            ("mean_gap", kernel.GAP),
-            ("gas_pressure", kernel.GAS),
-            ("asperity_pressure", kernel.ASPERITIES),
-            ("gap_amplitude", kernel.SWING),
-            ("skin_amplitude", kernel.SKIN),
-            ("residual", kernel.RESIDUAL),
-            ("steps", kernel.STEPS),
-        )
-    }
-    return LoadSharing(
-        amplitude=a.reshape(form),
-        plateau_pressure=p.reshape(form),
-        film_error=table.relative_error,
-        asperities=asperities,
-        model=_model(table, asperities, skin, "each plateau at its own balance"),
-        **columns,
-    )
-
-
-@dataclass(frozen=True, eq=False)
-class TiedSharing:
-    """The balance of ridges that share one mean gap: one value for each, and those of the whole.
-
-    `gas_pressure` and `asperity_pressure` are means over all plateaus and the period (Pa).
-    """
-
-    amplitude: si.MetreArray
-    plateau_pressure: si.Pascal
-    mean_gap: si.Metre
-    gas_pressure: si.Pascal
-    asperity_pressure: si.Pascal
-    residual: float
-    film_error: float
-    model: str
-
-    @property
-    def relative_friction(self) -> float:
-        """µ′/µ: the asperities' share of the load (dimensionless)."""
-        return self.asperity_pressure / (self.asperity_pressure + self.gas_pressure)
-
-    @property
-    def relative_friction_error(self) -> float:
-        """The bound on the error of µ′/µ: that of the film times the gas's share."""
-        return self.film_error * (1 - self.relative_friction) + abs(self.residual)
+    model = _model(table, asperities, skin, "each plateau at its own balance")
+    return _shared(a.reshape(form), p.reshape(form), rows, table, asperities, model)
 
 
 @si.checked_numbers
@@ -145,10 +100,11 @@ def share_load_tied(
     *,
     offset: si.MetreArray | None = None,
     skin: Skin | None = None,
-) -> TiedSharing:
+) -> LoadSharing:
     """Plateaus tied to one mean gap u (ridge i at u + offset[i]) that carry a mean pressure (Pa).
 
-    `amplitude` (m) is one-dimensional, one value for each ridge. Raises as `share_load` does.
+    `amplitude` (m) is one-dimensional, one value for each ridge; all else that is given back is of
+    shape (), pressures being means over all plateaus and the period. Raises as `share_load` does.
     """
     from squeezefilm.contact.sharing import kernel
 
@@ -165,15 +121,37 @@ def share_load_tied(
             break
         table.build(int(row[kernel.PANEL]))
     _refuse(row[None, :], a.max(keepdims=True), np.array([plateau_pressure]))
-    return TiedSharing(
-        amplitude=a,
-        plateau_pressure=plateau_pressure,
-        mean_gap=float(row[kernel.GAP]),
-        gas_pressure=float(row[kernel.GAS]),
-        asperity_pressure=float(row[kernel.ASPERITIES]),
-        residual=float(row[kernel.RESIDUAL]),
+    model = _model(table, asperities, skin, "all plateaus at one mean gap")
+    return _shared(a, np.array(plateau_pressure), row, table, asperities, model)
+
+
+def _shared(
+    amplitude: si.FloatArray,
+    pressure: si.FloatArray,
+    rows: si.FloatArray,
+    table: FilmTable,
+    asperities: AsperityLaw,
+    model: str,
+) -> LoadSharing:
+    """Balances as they are handed out, in the shape of the pressure."""
+    from squeezefilm.contact.sharing import kernel
+
+    columns = {
+        "mean_gap": kernel.GAP,
+        "gas_pressure": kernel.GAS,
+        "asperity_pressure": kernel.ASPERITIES,
+        "gap_amplitude": kernel.SWING,
+        "skin_amplitude": kernel.SKIN,
+        "residual": kernel.RESIDUAL,
+        "steps": kernel.STEPS,
+    }
+    return LoadSharing(
+        amplitude=amplitude,
+        plateau_pressure=pressure,
         film_error=table.relative_error,
-        model=_model(table, asperities, skin, "all plateaus at one mean gap"),
+        asperities=asperities,
+        model=model,
+        **{name: rows[..., at].reshape(pressure.shape) for name, at in columns.items()},
     )
 
 

@@ -9,7 +9,7 @@ into plateaus whose grooves are at ambient pressure, and for a finger without ri
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, get_args
 
 import numpy as np
 
@@ -23,13 +23,7 @@ if TYPE_CHECKING:
     from squeezefilm.film.periodic.solution import FilmSolution
 
 FilmModel = Literal["paper2008", "film-sealed", "film-open", "film-plateau", "film-smooth"]
-FILM_MODELS: tuple[FilmModel, ...] = (
-    "paper2008",
-    "film-sealed",
-    "film-open",
-    "film-plateau",
-    "film-smooth",
-)
+FILM_MODELS: tuple[FilmModel, ...] = get_args(FilmModel)
 
 DESCRIPTIONS: dict[FilmModel, str] = {
     "paper2008": "the paper's asymptote: no gas escapes (σ → ∞), sinusoidal ridges",
@@ -83,13 +77,13 @@ def film_load(
     """
     if np.ndim(gap.vibration_amplitude) != 0:
         raise InputError("film_load takes a single vibration amplitude; call it for each")
-    amplitude = float(gap.vibration_amplitude)
+    amplitude, sigma = float(gap.vibration_amplitude), float(gap.squeeze_number(frequency, gas))
     if is_still(gap):
         bound = 1.25 * (amplitude / float(gap.crest_thickness)) ** 2
-        return FilmLoad(model, 0.0, bound, _sigma(gap, frequency, gas), "too still for a pressure")
+        return FilmLoad(model, 0.0, bound, sigma, "too still for a pressure")
     if model == "paper2008":
         over = float(contact_mean_pressure(gap)) - 1.0
-        return FilmLoad(model, over, 0.0, _sigma(gap, frequency, gas), "closed form")
+        return FilmLoad(model, over, 0.0, sigma, "closed form")
     if model == "film-plateau":
         return _plateaus(gap, frequency, gas, plateau_width, slip, tolerance)
     if model == "film-open":
@@ -111,18 +105,6 @@ def film_load(
 def is_still(gap: PaperGap) -> bool:
     """Whether the vibration (m, a single amplitude) is too small for a film to speak of."""
     return float(gap.vibration_amplitude) < STILL * float(gap.roughness)
-
-
-def _sigma(gap: PaperGap, frequency: si.Hertz, gas: Gas) -> float:
-    return float(
-        squeeze_number(
-            frequency,
-            gap.contact_length,
-            gap.reference_thickness,
-            gas.viscosity,
-            gas.ambient_pressure,
-        )
-    )
 
 
 @si.checked_numbers
@@ -165,17 +147,17 @@ def line_film(
 
 
 def _open(gap: PaperGap, frequency: si.Hertz, gas: Gas, slip: str, tolerance: float) -> FilmLoad:
-    from squeezefilm.film.planar.film import solve_rectangle
-    from squeezefilm.film.records import FilmGas
+    from squeezefilm.film.gas import FilmGas
+    from squeezefilm.film.planar.film import solve_planar
+    from squeezefilm.film.planar.gap import PlanarGap
 
     reference = float(gap.reference_thickness)
-    sigma = _sigma(gap, frequency, gas)
-    film = solve_rectangle(
+    sigma = float(gap.squeeze_number(frequency, gas))
+    excursion, ridges = float(gap.vibration_amplitude) / reference, gap.ridge_amplitude / reference
+    film = solve_planar(
+        "rectangle",
+        PlanarGap(excursion, gap.wave_number, ridges, gap.ridge_number),
         sigma,
-        float(gap.vibration_amplitude) / reference,
-        wave_number=gap.wave_number,
-        ridge_height=gap.ridge_amplitude / reference,
-        ridge_wave_number=gap.ridge_number,
         gas=FilmGas(knudsen_number=gas.mean_free_path / reference, slip=slip),
         # In the plane a per cent costs a tenth of a second, a tenth of that a second.
         tolerance=max(tolerance, 1e-2),

@@ -12,15 +12,18 @@ from __future__ import annotations
 
 import threading
 from functools import lru_cache
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.contact.records import CompiledFilms
 from squeezefilm.errors import ConvergenceError
+from squeezefilm.film.gas import slip_law
 from squeezefilm.film.periodic.batch import solve_films
-from squeezefilm.film.slip import slip_law
 from squeezefilm.materials import Gas
+
+if TYPE_CHECKING:
+    from squeezefilm.contact.sharing.kernel import CompiledFilms
 
 DEEPEST_EXCURSION: si.Dimensionless = 0.985
 """The deepest excursion a/u the table holds; the gap then closes to 1.5 % of its mean."""
@@ -51,16 +54,13 @@ class FilmTable:
 
     def __init__(
         self,
-        frequency: si.Hertz,
-        width: si.Metre,
+        frequency: Annotated[si.Hertz, si.Above(0.0)],
+        width: Annotated[si.Metre, si.Above(0.0)],
         gas: Gas,
         slip: str = "first",
-        tolerance: float | None = None,
+        tolerance: Annotated[float, si.AtLeast(1e-6), si.AtMost(1e-2)] | None = None,
     ) -> None:
         tolerance = default_tolerance(slip) if tolerance is None else tolerance
-        si.require("frequency", frequency, si.Unit("Hz"), above=0)
-        si.require("width", width, si.Unit("m"), above=0)
-        si.require("tolerance", tolerance, at_least=1e-6, at_most=1e-2)
         slip_law(slip, 1.0)
         self.frequency, self.width, self.gas = frequency, width, gas
         self.slip, self.tolerance = slip, tolerance
@@ -84,6 +84,8 @@ class FilmTable:
     @property
     def compiled(self) -> CompiledFilms:
         """The table as the compiled code takes it."""
+        from squeezefilm.contact.sharing.kernel import CompiledFilms
+
         return CompiledFilms(self._scale, self._edges, self._built, self._panels)
 
     @property

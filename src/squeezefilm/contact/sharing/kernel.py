@@ -7,12 +7,13 @@ solved yet says which, and is asked again once it is.
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 
 from squeezefilm import quantities as si
-from squeezefilm.contact.records import CompiledAsperities, CompiledFilms
+from squeezefilm.contact.asperities import CompiledAsperities
 
 BALANCED, NEEDS_PANEL, PRESSED_THROUGH, OUT_OF_TABLE, UNSETTLED = range(5)
 """What became of a balance."""
@@ -23,6 +24,15 @@ COLUMNS = 9
 
 _MOST_STEPS = 80
 _SETTLED = 1e-10
+
+
+class CompiledFilms(NamedTuple):
+    """A table of films: scales, edges of the rows, which panels are solved, their coefficients."""
+
+    scale: si.FloatArray
+    edges: si.FloatArray
+    built: si.IntArray
+    panels: si.FloatArray
 
 
 @njit(nogil=True, cache=True, error_model="numpy")

@@ -73,7 +73,9 @@ class PadFriction:
 
 
 @si.checked_numbers
-def ridge_points(finger: Finger, contact_length: si.Metre | None = None) -> si.FloatArray:
+def ridge_points(
+    finger: Finger, contact_length: Annotated[si.Metre, si.Above(0.0)] | None = None
+) -> si.FloatArray:
     """Where along the wave (m from the pad's centre) the ridges are sampled, each point alike.
 
     Ridges stand at (i + ½) L along their normal; with ridge_angle 0 each has one x. At an angle
@@ -81,7 +83,6 @@ def ridge_points(finger: Finger, contact_length: si.Metre | None = None) -> si.F
     finer. Raises `InputError` where the contact holds no ridge.
     """
     side = finger.contact_length if contact_length is None else contact_length
-    si.require("contact_length", side, si.Unit("m"), above=0)
     si.require("ridges in the contact", side / finger.ridge_period, at_most=_MOST_RIDGES)
     half, period, angle = side / 2, finger.ridge_period, finger.ridge_angle
     reach = half * (abs(np.cos(angle)) + abs(np.sin(angle)))
@@ -125,42 +126,37 @@ def pad_friction(
     wave = np.abs(np.cos(np.pi * (points + posture.position) / half_wavelength))
     if limit == "one-gap":
         offset = np.tan(posture.gap_tilt) * points
-        tied = [
+        shared = [
             share_load_tied(
                 table, asperities, one * wave, plateau_pressure, offset=offset, skin=skin
             )
             for one in a
         ]
-        return PadFriction(
-            amplitude=a,
-            mean_gap=np.array([item.mean_gap for item in tied]),
-            film_pressure=np.array([item.gas_pressure for item in tied]),
-            asperity_pressure=np.array([item.asperity_pressure for item in tied]),
-            relative_friction_error=np.array([item.relative_friction_error for item in tied]),
-            residual=max(abs(item.residual) for item in tied),
-            ridge_points=points.size,
-            limit=limit,
-            model=tied[0].model,
-        )
-    reach = float(np.max(np.abs(points)))
-    lean = 1 + posture.pressure_tilt * points / reach if reach > 0 else np.ones_like(points)
-    # Ridges on the two sides of an antinode do the same: each kind is balanced once.
-    kinds, counts = np.unique(np.round([wave, lean], 9), axis=1, return_counts=True)
-    shared = share_load(
-        table, asperities, np.outer(a, kinds[0]), plateau_pressure * kinds[1], skin=skin
-    )
-    weight = counts / points.size
-    error = (shared.relative_friction_error * kinds[1]) @ weight
+        lean, weight = np.ones(1), np.ones(1)
+    else:
+        reach = float(np.max(np.abs(points)))
+        lean = 1 + posture.pressure_tilt * points / reach if reach > 0 else np.ones_like(points)
+        # Ridges on the two sides of an antinode do the same: each kind is balanced once.
+        kinds, counts = np.unique(np.round([wave, lean], 9), axis=1, return_counts=True)
+        lean, weight = kinds[1], counts / points.size
+        shared = [
+            share_load(table, asperities, np.outer(a, kinds[0]), plateau_pressure * lean, skin=skin)
+        ]
+
+    def mean(values: list[si.FloatArray]) -> si.FloatArray:
+        """The mean over the plateaus at each amplitude."""
+        return values[0] @ weight if limit == "own" else np.array(values)
+
     return PadFriction(
         amplitude=a,
-        mean_gap=shared.mean_gap @ weight,
-        film_pressure=shared.gas_pressure @ weight,
-        asperity_pressure=shared.asperity_pressure @ weight,
-        relative_friction_error=error,
-        residual=float(np.max(np.abs(shared.residual))),
+        mean_gap=mean([one.mean_gap for one in shared]),
+        film_pressure=mean([one.gas_pressure for one in shared]),
+        asperity_pressure=mean([one.asperity_pressure for one in shared]),
+        relative_friction_error=mean([one.relative_friction_error * lean for one in shared]),
+        residual=max(float(np.max(np.abs(one.residual))) for one in shared),
         ridge_points=points.size,
         limit=limit,
-        model=shared.model,
+        model=shared[0].model,
     )
 
 
@@ -199,14 +195,12 @@ def friction_ripple(
     *,
     normal_force: si.Newton | None = None,
     limit: Limit = "own",
-    positions: int = 24,
+    positions: Annotated[int, si.AtLeast(4)] = 24,
 ) -> FrictionRipple:
     """The friction as the pad crosses the wave's nodes, over half a wavelength.
 
     Raises as `pad_friction` does, and `InputError` for fewer than 4 positions.
     """
-    if positions < 4:
-        raise InputError(f"positions = {positions} cannot be used: at least 4 show a ripple")
     side = float(np.sqrt(finger.contact_area(normal_force)))
     points = ridge_points(finger, side)
     where = np.arange(positions) / positions * half_wavelength

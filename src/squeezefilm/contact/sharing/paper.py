@@ -13,26 +13,8 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import UnreachableError
-from squeezefilm.film.closed.limits import PAPER_MODELS, PaperModel, contact_mean_pressure
+from squeezefilm.film.closed.limits import PaperModel, contact_mean_pressure
 from squeezefilm.film.gap import PaperGap
-
-__all__ = [
-    "PAPER_MODELS",
-    "PaperModel",
-    "finger_pressure",
-    "mean_pressure",
-    "relative_friction",
-    "relative_friction_from_pressure",
-    "relative_friction_from_pressure_printed",
-    "vibration_amplitude_for",
-    "zero_friction_amplitude",
-]
-
-
-@si.closed_form(positive="normal_force contact_length")
-def finger_pressure(normal_force: si.NewtonLike, contact_length: si.MetreLike) -> si.PascalLike:
-    """The mean pressure of the finger P_f = F/l0² in Pa, paper eq 13; broadcasts."""
-    return normal_force / contact_length**2
 
 
 @si.closed_form(positive="mean_pressure normal_force contact_length ambient_pressure")
@@ -62,15 +44,6 @@ def relative_friction_from_pressure_printed(
     Kept to show the misprint; use `relative_friction_from_pressure`.
     """
     return 1 - (mean_pressure - 1) / finger_pressure
-
-
-def mean_pressure(gap: PaperGap, model: PaperModel = "paper2008") -> si.DimensionlessLike:
-    """⟨P̄⟩ over contact and period, over ambient (dimensionless): the paper's P_moy.
-
-    Scalar, or one value for each amplitude; see `film.closed.limits.contact_mean_pressure`. The
-    printed model gives less than 1 on the paper's own stator (0.9959 at 2 µm), against its Fig 4.
-    """
-    return contact_mean_pressure(gap, model)
 
 
 def _unclipped(gap: PaperGap, force: Any, ambient: float, model: PaperModel) -> Any:
@@ -139,17 +112,3 @@ def vibration_amplitude_for(
         return 0.0
     low, high = float(amplitudes[index - 1]), float(amplitudes[index])
     return float(brentq(excess, low, high, xtol=1e-16, rtol=1e-12))
-
-
-@si.checked_numbers
-def zero_friction_amplitude(
-    gap: PaperGap,
-    normal_force: si.Newton,
-    ambient_pressure: si.Pascal,
-    model: PaperModel = "paper2008",
-) -> si.Metre:
-    """The vibration amplitude (m) at which the model's film carries the finger and µ′/µ is zero.
-
-    Raises as `vibration_amplitude_for`, of which it is the case 0.
-    """
-    return vibration_amplitude_for(0.0, gap, normal_force, ambient_pressure, model)

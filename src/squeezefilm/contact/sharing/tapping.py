@@ -54,8 +54,8 @@ class Tapping:
     """Friction under intermittent contact at one working point.
 
     `contact_fraction` is the part of the period in contact, `penetration` how deep the plate
-    presses into the skin at most (m), `shear_release` the part of the friction lost to shear that
-    does not reach slip. `intermittent` is False where the skin never leaves the plate.
+    presses into the skin at most (m). `intermittent` is False where the skin never leaves the
+    plate.
     """
 
     relative_friction: si.Dimensionless
@@ -68,11 +68,6 @@ class Tapping:
     speed: si.MetrePerSecond
     pressure: si.Pascal
     model: str = "intermittent contact, spring and Coulomb slider, no gas"
-
-    @property
-    def shear_release(self) -> si.Dimensionless:
-        """1 − µ′/µ (dimensionless)."""
-        return 1 - self.relative_friction
 
 
 @si.checked_numbers
@@ -101,7 +96,7 @@ def tapping_friction(
     pressure: Annotated[si.Pascal, si.Above(0.0)],
     *,
     friction_coefficient: Annotated[si.Dimensionless, si.Above(0.0)] = 0.9,
-    normal_stiffness: si.PascalPerMetre | None = None,
+    normal_stiffness: Annotated[si.PascalPerMetre, si.Above(0.0)] | None = None,
     stiffness_ratio: Annotated[si.Dimensionless, si.Above(0.0)] = MINDLIN_RATIO,
 ) -> Tapping:
     """Friction of a patch of skin under a mean `pressure` (Pa), tapped at `amplitude` (m).
@@ -114,7 +109,6 @@ def tapping_friction(
     """
     if normal_stiffness is None:
         normal_stiffness = pressure / ASPERITY_DECAY
-    si.require("normal_stiffness", normal_stiffness, si.Unit("Pa/m"), above=0)
     rest = pressure / normal_stiffness
     half = contact_angle(amplitude, rest)
     intermittent = half < np.pi

@@ -33,14 +33,3 @@ def wedge_pressure(
     mean_square = mean_gap / (mean_gap**2 - amplitude**2) ** 1.5
     shape = (np.log(1 + closing) - 2 * closing / (2 + closing)) / closing**2
     return 6 * viscosity * speed * width * mean_square * shape
-
-
-@si.closed_form(positive="speed width frequency")
-def sliding_ratio(
-    speed: si.MetrePerSecondLike, width: si.MetreLike, frequency: si.HertzLike
-) -> si.DimensionlessLike:
-    """U/(ω w) (dimensionless): how far a finger slides in 1/ω over the plateau's width; broadcasts.
-
-    Its square is how much sliding changes the load of a symmetric plateau.
-    """
-    return speed / (2 * np.pi * frequency * width)

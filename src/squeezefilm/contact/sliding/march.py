@@ -23,8 +23,7 @@ from numpy.typing import NDArray
 
 from squeezefilm import quantities as si
 from squeezefilm.contact.finger.fingerpad import FingerpadDynamics
-from squeezefilm.contact.finger.occlusion import Occlusion
-from squeezefilm.contact.sliding.dry_friction import DryFriction, FrictionProfile
+from squeezefilm.contact.sliding.dry_friction import DryFriction, FrictionProfile, Occlusion
 from squeezefilm.contact.sliding.kernel import (
     MOST_EVENTS,
     Drive,

@@ -68,7 +68,7 @@ def texture_frequency(speed: si.MetrePerSecondLike, spatial_period: si.MetreLike
 def skin_vibration(
     motion: Sliding,
     fundamental: si.Hertz,
-    harmonics: int = 5,
+    harmonics: Annotated[int, si.AtLeast(1)] = 5,
     *,
     start: si.Second = 0.0,
     end: si.Second | None = None,
@@ -92,8 +92,6 @@ def skin_vibration(
     si.require("start", start, si.Unit("s"), at_least=0.0, below=last)
     stop = last if end is None else end
     si.require("end", stop, si.Unit("s"), above=start, at_most=last * (1 + 1e-12))
-    if harmonics < 1:
-        raise InputError(f"harmonics = {harmonics} cannot be used: it must be at least 1")
     signals = _window(motion, start, stop, fundamental)
     from scipy.signal import (
         detrend,

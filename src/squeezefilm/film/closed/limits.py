@@ -9,7 +9,7 @@ Sources: Salbu 1964, 10.1115/1.3653080; Biet et al., equations 5 to 12.
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, get_args
 
 import numpy as np
 
@@ -18,93 +18,32 @@ from squeezefilm.errors import ConvergenceError, InputError, OutOfRangeError
 from squeezefilm.film.gap import PaperGap
 
 PaperModel = Literal["paper2008", "paper2008-printed"]
-PAPER_MODELS: tuple[PaperModel, ...] = ("paper2008", "paper2008-printed")
+PAPER_MODELS: tuple[PaperModel, ...] = get_args(PaperModel)
 
 
 @si.closed_form(nonnegative="amplitude_ratio")
 def asymptotic_load(
     amplitude_ratio: Annotated[si.DimensionlessLike, si.Below(1.0)],
+    polytropic_exponent: Annotated[si.Dimensionless, si.AtLeast(1), si.AtMost(5 / 3)] = 1.0,
 ) -> si.DimensionlessLike:
-    """The mean load W over p0 A of a uniform isothermal film as σ → ∞ (dimensionless); broadcasts.
+    """The mean load W over p0 A of a uniform film as σ → ∞ (dimensionless); broadcasts.
 
-    W = √((1 + 1.5 ε²)/(1 − ε²)), any planform, ε = amplitude over mean gap below 1. Source: Salbu
-    1964, 10.1115/1.3653080. An upper bound: see `film.validity.asymptotic_fraction`.
+    Isothermal, n = 1: W = √((1 + 1.5 ε²)/(1 − ε²)), any planform, ε = amplitude over mean gap below
+    1 (Salbu 1964, 10.1115/1.3653080). For n up to 5/3: Ψ = [⟨H³⟩/⟨H^(2−n)⟩]^(1/(n+1)) and
+    W = Ψⁿ ⟨H⁻ⁿ⟩ with H = 1 + ε cos T; the means are ⟨Hᵖ⟩ = ₂F₁(−p/2, (1−p)/2; 1; ε²). An upper
+    bound: see `film.validity.asymptotic_fraction`.
     """
-    return np.sqrt((1 + 1.5 * amplitude_ratio**2) / (1 - amplitude_ratio**2))
-
-
-@si.closed_form(nonnegative="amplitude_ratio", positive="polytropic_exponent")
-def asymptotic_load_polytropic(
-    amplitude_ratio: Annotated[si.DimensionlessLike, si.Below(1.0)],
-    polytropic_exponent: si.Dimensionless,
-) -> si.DimensionlessLike:
-    """The mean load W over p0 A of a uniform polytropic film as σ → ∞ (dimensionless); broadcasts.
-
-    Ψ = [⟨H³⟩/⟨H^(2−n)⟩]^(1/(n+1)) and W = Ψⁿ ⟨H⁻ⁿ⟩ with H = 1 + ε cos T; the means are
-    ⟨Hᵖ⟩ = ₂F₁(−p/2, (1−p)/2; 1; ε²). ε below 1, n from 1 (isothermal, Salbu) to 5/3.
-    """
+    n, trapped = polytropic_exponent, 1 + 1.5 * amplitude_ratio**2
+    if n == 1:
+        return np.sqrt(trapped / (1 - amplitude_ratio**2))
     from scipy.special import hyp2f1
-
-    si.require("polytropic_exponent", polytropic_exponent, at_least=1, at_most=5 / 3)
-    n = polytropic_exponent
 
     def mean_power(p: float) -> Any:
         return hyp2f1(-p / 2, (1 - p) / 2, 1, np.square(amplitude_ratio))
 
-    psi = ((1 + 1.5 * np.square(amplitude_ratio)) / mean_power(2 - n)) ** (1 / (n + 1))
+    psi = (trapped / mean_power(2 - n)) ** (1 / (n + 1))
     value: si.DimensionlessLike = psi**n * mean_power(-n)
     return value
-
-
-@si.closed_form(nonnegative="amplitude_ratio", positive="edge_to_area")
-def edge_layer_coefficient(
-    amplitude_ratio: si.DimensionlessLike,
-    edge_to_area: si.Dimensionless = 2.0,
-    *,
-    strict: bool = True,
-) -> si.DimensionlessLike:
-    """C(ε) of W = W∞ − C/√σ to second order in ε: (5√2/8) ε² × edge length · ℓ / area.
-
-    From W = 1 + (5/4) ε² fk and fk → 1 − (edge·ℓ/area)/√(2σ). `edge_to_area` is 2 for a strip
-    (ℓ its width) and a disc (its radius), 4 for a square (its side). Isothermal, no slip. Exact as
-    ε → 0; 6 % low at ε = 0.5. Beyond ε = 0.3 raises `OutOfRangeError`, or warns if not `strict`.
-    """
-    si.require_valid(
-        "amplitude_ratio",
-        amplitude_ratio,
-        0,
-        0.3,
-        "the second-order edge layer coefficient holds within 3 %",
-        strict=strict,
-    )
-    value: si.DimensionlessLike = 5 * np.sqrt(2) / 8 * amplitude_ratio**2 * edge_to_area
-    return value
-
-
-@si.closed_form(nonnegative="amplitude_ratio", positive="squeeze_number edge_to_area")
-def edge_layer_load(
-    amplitude_ratio: si.DimensionlessLike,
-    squeeze_number: si.DimensionlessLike,
-    edge_to_area: si.Dimensionless = 2.0,
-    *,
-    strict: bool = True,
-) -> si.DimensionlessLike:
-    """The mean load W over p0 A at large finite σ (dimensionless), W∞ − C(ε)/√σ; broadcasts.
-
-    C from `edge_layer_coefficient`, whose ε ≤ 0.3 applies. Valid for σ ≥ 50 (edge layers thinner
-    than a fifth of the width, over-pressure within 1 % on a strip; a disc or rectangle leaves
-    O(1/σ) besides). Outside, raises `OutOfRangeError`, or warns if not `strict`.
-    """
-    si.require_valid(
-        "squeeze_number",
-        squeeze_number,
-        50,
-        np.inf,
-        "the edge layers are thin and do not meet",
-        strict=strict,
-    )
-    coefficient = edge_layer_coefficient(amplitude_ratio, edge_to_area, strict=strict)
-    return asymptotic_load(amplitude_ratio) - coefficient / np.sqrt(squeeze_number)
 
 
 @si.closed_form(nonnegative="amplitude_ratio ridge_ratio", positive="wave_number ridge_number")
@@ -122,14 +61,8 @@ def paper_pressure(
     X = ½. Symmetric contact, static roughness; needs ε + δ < 1 (the gap stays open) and raises
     `OutOfRangeError` where it would not be. Valid for σ → ∞ only.
     """
-    _require_open(amplitude_ratio, ridge_ratio)
-    a = 1 + ridge_ratio * np.cos(ridge_number * X)
-    b = amplitude_ratio * np.cos(wave_number * X)
-    a_edge = 1 + ridge_ratio * np.cos(ridge_number / 2)
-    b_edge = amplitude_ratio * np.cos(wave_number / 2)
-    value: si.DimensionlessLike = (
-        a / a_edge * np.sqrt(a_edge**2 + 1.5 * b_edge**2) / (a + b * np.cos(T))
-    )
+    a, b, trapped = _trapped(X, amplitude_ratio, ridge_ratio, wave_number, ridge_number)
+    value: si.DimensionlessLike = trapped / (a + b * np.cos(T))
     return value
 
 
@@ -145,37 +78,8 @@ def paper_mean_pressure(
 
     P̄ = (a/a_B) √(a_B² + 1.5 b_B²) / √(a² − b²); letters, range and errors as `paper_pressure`.
     """
-    _require_open(amplitude_ratio, ridge_ratio)
-    a = 1 + ridge_ratio * np.cos(ridge_number * X)
-    b = amplitude_ratio * np.cos(wave_number * X)
-    a_edge = 1 + ridge_ratio * np.cos(ridge_number / 2)
-    b_edge = amplitude_ratio * np.cos(wave_number / 2)
-    value: si.DimensionlessLike = (
-        a / a_edge * np.sqrt(a_edge**2 + 1.5 * b_edge**2) / np.sqrt(a**2 - b**2)
-    )
-    return value
-
-
-@si.closed_form(nonnegative="amplitude_ratio ridge_ratio", positive="wave_number ridge_number")
-def paper_pressure_printed(
-    X: si.DimensionlessLike,
-    T: si.DimensionlessLike,
-    amplitude_ratio: si.DimensionlessLike,
-    ridge_ratio: si.DimensionlessLike,
-    wave_number: si.Dimensionless,
-    ridge_number: si.Dimensionless,
-) -> si.DimensionlessLike:
-    """Paper eq 11 as printed, over ambient: the film vibrates by ε cos(k1/2) everywhere.
-
-    Printed: cos(k1/2) where cos(k1 X) belongs. Kept to reproduce the paper; use `paper_pressure`.
-    Raises `OutOfRangeError` where the printed gap closes.
-    """
-    a = 1 + ridge_ratio * np.cos(ridge_number * X)
-    a_edge = 1 + ridge_ratio * np.cos(ridge_number / 2)
-    b_edge = amplitude_ratio * np.cos(wave_number / 2)
-    gap = a + b_edge * np.cos(T)
-    _require_positive("the printed gap a + ε cos(k1/2) cos T", gap)
-    value: si.DimensionlessLike = a * np.sqrt(a_edge**2 + 1.5 * b_edge**2) / (a_edge * gap)
+    a, b, trapped = _trapped(X, amplitude_ratio, ridge_ratio, wave_number, ridge_number)
+    value: si.DimensionlessLike = trapped / np.sqrt(a**2 - b**2)
     return value
 
 
@@ -203,8 +107,12 @@ def paper_mean_pressure_printed(
     return value
 
 
-def _require_open(amplitude_ratio: Any, ridge_ratio: Any) -> None:
-    _require_positive("the least gap 1 − ε − δ", 1 - amplitude_ratio - ridge_ratio)
+def _trapped(X: Any, epsilon: Any, delta: Any, k1: Any, k2: Any) -> tuple[Any, Any, Any]:
+    """a, b and the gas that stays, P(a + b cos T) = (a/a_B) √(a_B² + 1.5 b_B²), at X."""
+    _require_positive("the least gap 1 − ε − δ", 1 - epsilon - delta)
+    a, b = 1 + delta * np.cos(k2 * X), epsilon * np.cos(k1 * X)
+    a_edge, b_edge = 1 + delta * np.cos(k2 / 2), epsilon * np.cos(k1 / 2)
+    return a, b, a / a_edge * np.sqrt(a_edge**2 + 1.5 * b_edge**2)
 
 
 def _require_positive(what: str, value: Any) -> None:

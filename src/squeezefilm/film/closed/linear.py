@@ -11,15 +11,15 @@ Sources: Langlois 1962, Quarterly of Applied Mathematics 20, 131; Blech 1983, 10
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Annotated, Any, Literal, get_args
 
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.errors import InputError
 
 Planform = Literal["strip", "disc", "rectangle"]
-PLANFORMS: tuple[Planform, ...] = ("strip", "disc", "rectangle")
+PLANFORMS: tuple[Planform, ...] = get_args(Planform)
+_Exponent = Annotated[si.Dimensionless, si.AtLeast(1), si.AtMost(5 / 3)]
 
 # Below: continued fraction. Above: exponential (strip) or asymptotic (disc) form.
 _SWITCH = 900.0
@@ -92,55 +92,14 @@ def _rectangle(sigma: Any, beta: float) -> Any:
     return _strip(sigma) - 16 * beta / np.pi**2 * rest
 
 
-def _aspect(aspect_ratio: float) -> None:
-    si.require("aspect_ratio", aspect_ratio, above=0, at_most=1)
-
-
-@si.closed_form(nonnegative="squeeze_number")
-def strip_force(squeeze_number: si.DimensionlessLike) -> si.DimensionlessComplexLike:
-    """The complex force −fk − i fd on a long strip over p0 A ε (dimensionless); broadcasts.
-
-    fk + i fd = 1 − tanh z / z, z = √(iσ)/2, σ on the width. Relative error of either part below
-    1e-12 for every σ ≥ 0 (fd underflows nowhere, fk only where σ² does).
-    """
-    value: si.DimensionlessComplexLike = -_strip(squeeze_number)
-    return value
-
-
-@si.closed_form(nonnegative="squeeze_number")
-def disc_force(squeeze_number: si.DimensionlessLike) -> si.DimensionlessComplexLike:
-    """The complex force −fk − i fd on a disc over p0 A ε (dimensionless); broadcasts.
-
-    −1 + 2 I1(s)/(s I0(s)), s = √(iσ), σ on the radius. Accuracy as `strip_force`.
-    """
-    value: si.DimensionlessComplexLike = -_disc(squeeze_number)
-    return value
-
-
-@si.closed_form(nonnegative="squeeze_number", positive="aspect_ratio")
-def rectangle_force(
-    squeeze_number: si.DimensionlessLike, aspect_ratio: si.Dimensionless
-) -> si.DimensionlessComplexLike:
-    """The complex force −fk − i fd on a rectangle over p0 A ε (dimensionless); broadcasts over σ.
-
-    σ on the shorter side, aspect_ratio = shorter/longer side in (0, 1]; 0 is the strip. Blech's
-    double series, one sum in closed form and the tail of the other accelerated: relative error
-    below 1e-9. Raises `InputError` for an aspect ratio outside (0, 1].
-    """
-    _aspect(aspect_ratio)
-    value: si.DimensionlessComplexLike = -_rectangle(squeeze_number, aspect_ratio)
-    return value
-
-
 def _force(planform: Planform, sigma: Any, aspect_ratio: float) -> Any:
+    """fk + i fd of a planform; raises `InputError` for a rectangle's aspect ratio above 1."""
     if planform == "strip":
         return _strip(sigma)
     if planform == "disc":
         return _disc(sigma)
-    if planform == "rectangle":
-        _aspect(aspect_ratio)
-        return _rectangle(sigma, aspect_ratio)
-    raise InputError(f"planform = '{planform}' is unknown; allowed are {', '.join(PLANFORMS)}")
+    si.require("aspect_ratio", aspect_ratio, above=0, at_most=1)
+    return _rectangle(sigma, aspect_ratio)
 
 
 def _plain(value: Any) -> Any:
@@ -148,18 +107,15 @@ def _plain(value: Any) -> Any:
 
 
 def _effective(sigma: Any, n: float, knudsen: Any) -> Any:
-    si.require("polytropic_exponent", n, at_least=1, at_most=5 / 3)
     return sigma / (n * (1 + 6 * knudsen))
 
 
-@si.closed_form(
-    nonnegative="squeeze_number knudsen_number", positive="polytropic_exponent aspect_ratio"
-)
+@si.closed_form(nonnegative="squeeze_number knudsen_number", positive="aspect_ratio")
 def relative_stiffness(
     squeeze_number: si.DimensionlessLike,
     planform: Planform = "strip",
     aspect_ratio: si.Dimensionless = 1.0,
-    polytropic_exponent: si.Dimensionless = 1.0,
+    polytropic_exponent: _Exponent = 1.0,
     knudsen_number: si.DimensionlessLike = 0.0,
 ) -> si.DimensionlessLike:
     """The film's stiffness over p0 A/h: n fk(σ / (n (1 + 6 Kn))) (dimensionless); broadcasts.
@@ -175,14 +131,12 @@ def relative_stiffness(
     return value
 
 
-@si.closed_form(
-    nonnegative="squeeze_number knudsen_number", positive="polytropic_exponent aspect_ratio"
-)
+@si.closed_form(nonnegative="squeeze_number knudsen_number", positive="aspect_ratio")
 def relative_damping(
     squeeze_number: si.DimensionlessLike,
     planform: Planform = "strip",
     aspect_ratio: si.Dimensionless = 1.0,
-    polytropic_exponent: si.Dimensionless = 1.0,
+    polytropic_exponent: _Exponent = 1.0,
     knudsen_number: si.DimensionlessLike = 0.0,
 ) -> si.DimensionlessLike:
     """The film's damping times ω over p0 A/h: n fd(σ / (n (1 + 6 Kn))) (dimensionless).
@@ -196,101 +150,16 @@ def relative_damping(
     return value
 
 
-@si.closed_form(nonnegative="squeeze_number")
-def strip_damping_low_squeeze(squeeze_number: si.DimensionlessLike) -> si.DimensionlessLike:
-    """fd → σ/12 of a strip as σ → 0 (dimensionless), n = 1; the error is 0.0101 σ² of it.
-
-    A purely viscous damper: the gas does not compress."""
-    return squeeze_number / 12
-
-
-@si.closed_form(nonnegative="squeeze_number")
-def strip_stiffness_low_squeeze(squeeze_number: si.DimensionlessLike) -> si.DimensionlessLike:
-    """fk → σ²/120 of a strip as σ → 0 (dimensionless), n = 1; the error is
-    0.0103 σ² of it."""
-    return squeeze_number**2 / 120
-
-
-@si.closed_form(nonnegative="squeeze_number")
-def disc_damping_low_squeeze(squeeze_number: si.DimensionlessLike) -> si.DimensionlessLike:
-    """fd → σ/8 of a disc as σ → 0 (dimensionless), n = 1."""
-    return squeeze_number / 8
-
-
-@si.closed_form(nonnegative="squeeze_number")
-def disc_stiffness_low_squeeze(squeeze_number: si.DimensionlessLike) -> si.DimensionlessLike:
-    """fk → σ²/48 of a disc as σ → 0 (dimensionless), n = 1."""
-    return squeeze_number**2 / 48
-
-
-@si.closed_form(positive="area film_thickness ambient_pressure", nonnegative="relative_stiffness")
-def film_stiffness(
-    relative_stiffness: si.DimensionlessLike,
-    area: si.SquareMetre,
-    film_thickness: si.MetreLike,
-    ambient_pressure: si.Pascal,
-) -> si.NewtonPerMetreLike:
-    """The film's dynamic stiffness p0 A fk / h in N/m; broadcasts. Small amplitudes."""
-    return relative_stiffness * ambient_pressure * area / film_thickness
-
-
-@si.closed_form(
-    positive="area film_thickness ambient_pressure frequency", nonnegative="relative_damping"
-)
-def film_damping(
-    relative_damping: si.DimensionlessLike,
-    area: si.SquareMetre,
-    film_thickness: si.MetreLike,
-    ambient_pressure: si.Pascal,
-    frequency: si.HertzLike,
-) -> si.NewtonSecondPerMetreLike:
-    """The film's damping coefficient p0 A fd / (h ω) in N·s/m; broadcasts. Small amplitudes."""
-    omega = 2 * np.pi * frequency
-    return relative_damping * ambient_pressure * area / (film_thickness * omega)
-
-
-@si.closed_form(positive="viscosity area length film_thickness")
-def incompressible_strip_damping(
-    viscosity: si.PascalSecond,
-    area: si.SquareMetre,
-    length: si.MetreLike,
-    film_thickness: si.MetreLike,
-) -> si.NewtonSecondPerMetreLike:
-    """The damping coefficient η A ℓ²/h³ in N·s/m of a strip of width ℓ at low squeeze number.
-
-    The limit of `film_damping` as σ → 0, where the gas does not compress; broadcasts.
-    """
-    return viscosity * area * length**2 / film_thickness**3
-
-
-@si.checked_numbers
-def crossover_squeeze_number(
-    planform: Planform = "strip", aspect_ratio: si.Dimensionless = 1.0
-) -> si.Dimensionless:
-    """The squeeze number at which fk = fd (dimensionless): below it the film damps, above it
-    springs. Strip 10.134, disc 6.233 (on the radius), square 21.635 (on the side).
-
-    Raises `InputError` for an unknown planform or an aspect ratio outside (0, 1].
-    """
-    from scipy.optimize import brentq
-
-    def difference(log_sigma: float) -> float:
-        force = complex(_force(planform, np.exp(log_sigma), aspect_ratio))
-        return force.real - force.imag
-
-    return float(np.exp(brentq(difference, np.log(0.1), np.log(1e4), xtol=1e-13, rtol=1e-13)))
-
-
 @si.closed_form(
     nonnegative="amplitude_ratio squeeze_number knudsen_number",
-    positive="polytropic_exponent aspect_ratio",
+    positive="aspect_ratio",
 )
 def second_order_mean_load(
     amplitude_ratio: si.DimensionlessLike,
     squeeze_number: si.DimensionlessLike,
     planform: Planform = "strip",
     aspect_ratio: si.Dimensionless = 1.0,
-    polytropic_exponent: si.Dimensionless = 1.0,
+    polytropic_exponent: _Exponent = 1.0,
     knudsen_number: si.DimensionlessLike = 0.0,
     *,
     strict: bool = True,

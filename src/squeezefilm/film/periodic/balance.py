@@ -10,6 +10,7 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import ConvergenceError, OutOfRangeError, UnreachableError
+from squeezefilm.film.line_grid import Shape
 from squeezefilm.film.periodic.batch import FilmBatch, solve_films
 
 MAX_EXCURSION = 0.95
@@ -39,10 +40,7 @@ class VibratedFilm:
     polytropic_exponent: si.Dimensionless = 1.0
     mean_free_path: Annotated[si.Metre, si.AtLeast(0.0)] = 0.0
     slip: str = "first"
-    shape: str = "strip"
-
-    def __post_init__(self) -> None:
-        si.require_one_of("shape", self.shape, ("strip", "disc"))
+    shape: Shape = "strip"
 
 
 @dataclass(frozen=True)
@@ -67,26 +65,6 @@ class LoadBalance:
     model: str
     iterations: int
     status: str
-
-
-@dataclass(frozen=True)
-class LevitationLimit:
-    """The load a film carries when its gap nearly closes: at `excursion_ratio` of the mean gap.
-
-    As ε → 1 the load of the smooth film grows without bound, like 1/√(1 − ε) (Salbu's limit), so
-    there is no largest load of the equation; what ends levitation is contact of the asperities.
-    `load` is carried at the excursion given, with its estimated error; `load_infinite_sigma` is
-    Salbu's value there, an upper bound.
-    """
-
-    load: si.Pascal
-    load_error: si.Pascal
-    load_infinite_sigma: si.Pascal
-    mean_gap: si.Metre
-    least_gap: si.Metre
-    squeeze_number: si.Dimensionless
-    excursion_ratio: si.Dimensionless
-    model: str
 
 
 def _squeeze_number(film: VibratedFilm, excursion_ratio: si.FloatArray) -> si.FloatArray:
@@ -230,37 +208,4 @@ def _balanced(
         partial=batch,
         residual=abs(miss),
         iterations=_STEPS,
-    )
-
-
-@si.checked_numbers
-def levitation_limit(
-    film: VibratedFilm,
-    *,
-    excursion_ratio: Annotated[
-        si.Dimensionless, si.AtLeast(0.1), si.AtMost(MAX_EXCURSION)
-    ] = MAX_EXCURSION,
-    tolerance: float = 5e-3,
-) -> LevitationLimit:
-    """The highest load a film carries before its gap closes to (1 − ε) of its mean.
-
-    `excursion_ratio` (0.1 to 0.95) says how far the gap may close; choose it from the roughness
-    h_r, which must stay below the least gap: ε = 1/(1 + h_r/amplitude). Raises `InputError` for
-    values that no film has.
-    """
-    ambient_pressure, gap = film.ambient_pressure, film.amplitude / excursion_ratio
-    batch = _solved(film, np.array([excursion_ratio]), tolerance)
-    n = film.polytropic_exponent
-    H = 1.0 + excursion_ratio * np.cos(2.0 * np.pi * np.arange(512) / 512)
-    psi = (np.mean(H**3) / np.mean(H ** (2.0 - n))) ** (1.0 / (n + 1.0))
-    bound = float(psi**n * np.mean(H ** (-n))) - 1.0
-    return LevitationLimit(
-        load=float(batch.over_pressure[0]) * ambient_pressure,
-        load_error=float(batch.over_pressure_error[0]) * ambient_pressure,
-        load_infinite_sigma=bound * ambient_pressure,
-        mean_gap=gap,
-        least_gap=gap - film.amplitude,
-        squeeze_number=float(_squeeze_number(film, np.asarray(excursion_ratio))),
-        excursion_ratio=excursion_ratio,
-        model=batch.model,
     )

@@ -13,7 +13,7 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import nullcontext
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,11 +21,9 @@ from numpy.typing import NDArray
 from squeezefilm import quantities as si
 from squeezefilm.errors import ConvergenceError, InputError
 from squeezefilm.film.compiled import announce
+from squeezefilm.film.gas import Aim, require_film, slip_law
 from squeezefilm.film.periodic.records import Resolution
 from squeezefilm.film.periodic.resolution import CELLS, TIMES, first_guess, refined, resolution_of
-from squeezefilm.film.records import Aim
-from squeezefilm.film.slip import slip_law
-from squeezefilm.film.solved_range import require_film
 from squeezefilm.progress import CountProgress
 
 if TYPE_CHECKING:
@@ -99,13 +97,13 @@ def solve_films(
     knudsen_number: si.DimensionlessLike = 0.0,
     slip: str = "first",
     tolerance: float = 5e-3,
-    workers: int | None = None,
+    workers: Annotated[int, si.AtLeast(1)] | None = None,
     progress: CountProgress | None = None,
     strict: bool = True,
 ) -> FilmBatch:
     """Mean load and first force harmonic of many films, H = 1 + ε cos T; inputs broadcast.
 
-    The equation, inputs, ranges and errors are those of `solve_strip` and `solve_disc`; the squeeze
+    The equation, inputs, ranges and errors are those of `solve_uniform`; the squeeze
     number is on a strip's full length or on a disc's radius. `tolerance` is relative, on the
     over-pressure. `workers` threads share the work (None: one per core). `progress(done, total)` is
     called after each portion. With `strict`, a case that does not reach the tolerance raises
@@ -115,8 +113,6 @@ def solve_films(
     si.require_one_of("shape", shape, ("strip", "disc"))
     check_film(squeeze_number, excursion_ratio, polytropic_exponent, knudsen_number, tolerance)
     law = slip_law(slip, float(np.max(knudsen_number)))
-    if workers is not None and workers < 1:
-        raise InputError(f"workers = {workers} cannot be used: at least 1, or None for all cores")
     inputs = _broadcast(squeeze_number, excursion_ratio, polytropic_exponent, knudsen_number)
     sigma, signed, n, kn = (np.ascontiguousarray(a.ravel()) for a in inputs)
     # ε and −ε are the same film half a period apart; ε = 0 is solved as nearly 0 and set to 1.
@@ -167,20 +163,20 @@ def _as_batch(
     shape = "strip" if films.shape == u.STRIP else "disc"
     law = f"slip {slip} at local Kn" if films.law else "no slip"
     missed = int(np.count_nonzero(~solved.met))
+    columns = {
+        "mean_load": 1.0 + out[:, u.OVER],
+        "over_pressure": out[:, u.OVER],
+        "over_pressure_error": out[:, u.ERROR],
+        "stiffness_relative": out[:, u.STIFFNESS],
+        "damping_relative": out[:, u.DAMPING],
+        "iterations": out[:, u.ITERATIONS].astype(np.int64),
+        "residual": out[:, u.RESIDUAL],
+        "cells": CELLS[solved.cells],
+        "times": TIMES[solved.times],
+        **dict(zip(films._fields[:4], films[:4], strict=True)),
+    }
     return FilmBatch(
-        mean_load=1.0 + out[:, u.OVER].reshape(form),
-        over_pressure=out[:, u.OVER].reshape(form).copy(),
-        over_pressure_error=out[:, u.ERROR].reshape(form).copy(),
-        stiffness_relative=out[:, u.STIFFNESS].reshape(form).copy(),
-        damping_relative=out[:, u.DAMPING].reshape(form).copy(),
-        iterations=out[:, u.ITERATIONS].astype(np.int64).reshape(form),
-        residual=out[:, u.RESIDUAL].reshape(form).copy(),
-        cells=CELLS[solved.cells].reshape(form),
-        times=TIMES[solved.times].reshape(form),
-        squeeze_number=films.squeeze_number.reshape(form),
-        excursion_ratio=films.excursion_ratio.reshape(form),
-        polytropic_exponent=films.polytropic_exponent.reshape(form),
-        knudsen_number=films.knudsen_number.reshape(form),
+        **{name: np.array(column.reshape(form)) for name, column in columns.items()},
         slip=slip,
         shape=shape,
         tolerance=tolerance,

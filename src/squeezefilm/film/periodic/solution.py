@@ -15,7 +15,29 @@ _HARMONICS = 8
 
 
 @dataclass(frozen=True)
-class FilmSolution:
+class Asked:
+    """What a film is asked for; `profile` is None where H = 1 + ε cos T."""
+
+    shape: str
+    squeeze_number: si.Dimensionless
+    excursion_ratio: si.Dimensionless
+    polytropic_exponent: si.Dimensionless
+    knudsen_number: si.Dimensionless
+    slip: str
+    tolerance: float
+    profile: GapProfile | None
+
+    @property
+    def equation(self) -> str:
+        """What is solved, in words."""
+        n = self.polytropic_exponent
+        name = "isothermal" if n == 1.0 else f"polytropic (n = {n:g})"
+        law = f"slip {self.slip} at local Kn" if self.knudsen_number > 0.0 else "no slip"
+        return f"periodic compressible Reynolds film, {name}, {law}"
+
+
+@dataclass(frozen=True)
+class FilmSolution(Asked):
     """One period of a gas film, with the inputs and the model that made it.
 
     Pressures are relative to ambient, gaps to the reference gap, T = ωt in radians. `position`
@@ -24,7 +46,6 @@ class FilmSolution:
     over the period. `force_harmonics[k]` are complex: the area mean of P − 1 is
     Re Σ F_k e^{ikT}. F_1 = −(stiffness_relative + i damping_relative)·excursion, so that the
     film pushes back with stiffness and damping of that many p0·A per unit of H0.
-    `profile` is None where H = 1 + ε cos T.
     `over_pressure_error` estimates the absolute error of `over_pressure` = W − 1.
     """
 
@@ -45,36 +66,6 @@ class FilmSolution:
     times: int
     status: str
     model: str
-    shape: str
-    squeeze_number: si.Dimensionless
-    excursion_ratio: si.Dimensionless
-    polytropic_exponent: si.Dimensionless
-    knudsen_number: si.Dimensionless
-    slip: str
-    tolerance: float
-    profile: GapProfile | None
-
-
-@dataclass(frozen=True)
-class Asked:
-    """What a film is asked for."""
-
-    shape: str
-    squeeze_number: float
-    excursion_ratio: float
-    polytropic_exponent: float
-    knudsen_number: float
-    slip: str
-    tolerance: float
-    profile: GapProfile | None = None
-
-    @property
-    def model(self) -> str:
-        """What is solved, in words."""
-        n = self.polytropic_exponent
-        name = "isothermal" if n == 1.0 else f"polytropic (n = {n:g})"
-        law = f"slip {self.slip} at local Kn" if self.knudsen_number > 0.0 else "no slip"
-        return f"periodic compressible Reynolds film, {name}, {law}"
 
 
 @dataclass(frozen=True)
@@ -147,30 +138,19 @@ def assembled(
         cells=found.cells,
         times=found.times,
         status=found.status(asked),
-        model=asked.model,
-        shape=asked.shape,
-        squeeze_number=float(asked.squeeze_number),
-        excursion_ratio=float(asked.excursion_ratio),
-        polytropic_exponent=float(asked.polytropic_exponent),
-        knudsen_number=float(asked.knudsen_number),
-        slip=asked.slip,
-        tolerance=asked.tolerance,
-        profile=asked.profile,
+        model=asked.equation,
+        **vars(asked),
     )
     if not found.met:
-        raise _not_converged(solution)
+        raise ConvergenceError(
+            f"the film with squeeze_number {asked.squeeze_number:.4g} and excursion_ratio "
+            f"{asked.excursion_ratio:.4g} did not converge: {solution.status}. Ask a larger "
+            "tolerance",
+            partial=solution,
+            residual=found.residual,
+            iterations=found.iterations,
+        )
     return solution
-
-
-def _not_converged(partial: FilmSolution) -> ConvergenceError:
-    return ConvergenceError(
-        f"the film with squeeze_number {partial.squeeze_number:.4g} and excursion_ratio "
-        f"{partial.excursion_ratio:.4g} did not converge: {partial.status}. Ask a larger "
-        "tolerance",
-        partial=partial,
-        residual=partial.residual,
-        iterations=partial.iterations,
-    )
 
 
 def _field(

@@ -14,9 +14,9 @@ import numpy as np
 from numba import njit
 
 from squeezefilm import quantities as si
+from squeezefilm.film.gas import Aim, Gas
 from squeezefilm.film.periodic.kernel import newton, prolong
 from squeezefilm.film.periodic.records import Cells, Gap, Resolution, Room
-from squeezefilm.film.records import Aim, Gas
 
 STRIP, DISC = 0, 1
 

@@ -14,6 +14,7 @@ import numpy as np
 from numba import njit
 
 from squeezefilm import quantities as si
+from squeezefilm.film.gas import Aim, Gas
 from squeezefilm.film.periodic.kernel import newton, prolong
 from squeezefilm.film.periodic.records import Cells, Gap, Resolution, Room
 from squeezefilm.film.periodic.uniform import (
@@ -31,7 +32,6 @@ from squeezefilm.film.periodic.uniform import (
     rounding,
     space_error,
 )
-from squeezefilm.film.records import Aim, Gas
 
 
 @njit(nogil=True, cache=True, error_model="numpy")

@@ -13,6 +13,7 @@ import numpy as np
 from scipy.linalg import lapack
 
 from squeezefilm import quantities as si
+from squeezefilm.film.gas import Gas
 from squeezefilm.film.planar.gap import GapFunction, gap_values
 from squeezefilm.film.planar.grid import PlanarGrid
 from squeezefilm.film.planar.kernel import (
@@ -23,20 +24,17 @@ from squeezefilm.film.planar.kernel import (
     row_block,
     take_off,
 )
-from squeezefilm.film.records import Gas
 
 _OVERSAMPLE = 6
 
 
 @dataclass(frozen=True)
 class Film:
-    """What is solved: gap, squeeze number, polytropic exponent, Knudsen number, slip code."""
+    """What is solved: gap, squeeze number, and the gas as compiled code knows it."""
 
     gap: GapFunction
     squeeze_number: float
-    polytropic_exponent: float
-    knudsen_number: float
-    slip: int
+    gas: Gas
 
 
 @dataclass(frozen=True)
@@ -129,7 +127,6 @@ class Balancer:
         Y = np.concatenate([grid.Y, grid.row_Y, grid.column_Y, grid.edge_Y])
         self.gaps = gap_values(film.gap, X, Y, T)
         self.storage = Storage(film.squeeze_number * grid.area, derivative(count))
-        self.gas = Gas(film.polytropic_exponent, film.knudsen_number, film.slip)
         self.faces = Faces(
             grid.columns,
             grid.row_conductance,
@@ -149,12 +146,12 @@ class Balancer:
         )
         shapes = (m.shape, m.shape, rows, rows, columns, columns)
         out = Balances(*(np.empty(shape) for shape in shapes))
-        assemble(m, self.gaps, self.faces, self.storage, self.gas, out)
+        assemble(m, self.gaps, self.faces, self.storage, self.film.gas, out)
         return out
 
     def starts(self) -> list[si.FloatArray]:
         """Two guesses: gas at rest (P = 1), and gas that cannot follow at all (m constant)."""
-        n, H = self.film.polytropic_exponent, self.gaps[: self.grid.X.size]
+        n, H = self.film.gas.polytropic_exponent, self.gaps[: self.grid.X.size]
         fine = gap_values(self.film.gap, self.grid.X, self.grid.Y, times(32))
         still = (np.mean(fine**3, axis=1) / np.mean(fine ** (2 - n), axis=1)) ** (1 / (n + 1))
         return [H.copy(), np.ascontiguousarray(np.broadcast_to(still[:, None], H.shape))]
@@ -200,7 +197,7 @@ class Balancer:
     def _report(
         self, m: si.FloatArray, change: float, made: int, factored: int, good: bool
     ) -> Balance:
-        grid, n = self.grid, self.film.polytropic_exponent
+        grid, n = self.grid, self.film.gas.polytropic_exponent
         count = max(_OVERSAMPLE * self.count, 48)
         T = times(count)
         ratio = resampled(m, count) / gap_values(self.film.gap, grid.X, grid.Y, T)

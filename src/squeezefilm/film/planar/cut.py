@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.film.planar.grid import PlanarGrid
+from squeezefilm.film.planar.grid import PlanarGrid, joined
 
 _Mask = np.ndarray[tuple[int, ...], np.dtype[np.bool_]]
 
@@ -29,7 +29,7 @@ def cut_ellipse_grid(
     X, Y = np.meshgrid(x_node, y_node, indexing="ij")
     inside = X**2 + (Y / aspect_ratio) ** 2 < 1.0
     index = np.arange(rows * columns).reshape(rows, columns)
-    edge_node, edge_X, edge_Y, edge_conductance = _edges(x, y, aspect_ratio, inside, quarter)
+    edges = _edges(x, y, aspect_ratio, inside, quarter)
     row_open, column_open = inside[1:] & inside[:-1], inside[:, 1:] & inside[:, :-1]
     row_X = np.broadcast_to(x[2:-1:2, None], (rows - 1, columns))
     column_Y = np.broadcast_to(y[2:-1:2], (rows, columns - 1))
@@ -48,21 +48,19 @@ def cut_ellipse_grid(
         column_X=X[:, 1:].ravel(),
         column_Y=np.ascontiguousarray(column_Y).ravel(),
         column_conductance=(column_open * dx[:, None] / np.diff(y_node)).ravel(),
-        edge_node=edge_node,
-        edge_X=edge_X,
-        edge_Y=edge_Y,
-        edge_conductance=edge_conductance,
+        **joined("edge", ("node", "X", "Y", "conductance"), edges),
     )
 
 
 def _edges(
     x: si.FloatArray, y: si.FloatArray, aspect_ratio: float, inside: _Mask, quarter: bool
-) -> tuple[si.IntArray, si.FloatArray, si.FloatArray, si.FloatArray]:
+) -> list[tuple[si.IntArray, si.FloatArray, si.FloatArray, si.FloatArray]]:
     """Node, X, Y and conductance of the faces between a line's last node and its end, and of one
     for every node outside, which holds it at ambient pressure."""
     X, Y = np.meshgrid(x[1::2], y[1::2], indexing="ij")
     index = np.arange(X.size).reshape(X.shape)
-    node, edge_X, edge_Y, conductance = [], [], [], []
+    outside = ~inside
+    edges = [(index[outside], X[outside], Y[outside], np.ones(int(outside.sum())))]
     end_x = np.sqrt(np.maximum(1.0 - (Y / aspect_ratio) ** 2, 0.0))
     end_y = aspect_ratio * np.sqrt(np.maximum(1.0 - X**2, 0.0))
     for axis, place, end, across in (
@@ -73,22 +71,12 @@ def _edges(
             near = np.roll(inside, -side, axis)
             np.moveaxis(near, axis, 0)[-1 if side > 0 else 0] = False
             last = inside & ~near & (side * place > 0)
-            node.append(index[last])
-            edge_X.append(side * end[last] if axis == 0 else X[last])
-            edge_Y.append(side * end[last] if axis == 1 else Y[last])
+            edge_X = side * end[last] if axis == 0 else X[last]
+            edge_Y = side * end[last] if axis == 1 else Y[last]
             # A node on the boundary to rounding is ambient, not infinitely well connected.
             distance = np.maximum(end - side * place, 1e-6 * end)
-            conductance.append((across / distance)[last])
-    node.append(index[~inside])
-    edge_X.append(X[~inside])
-    edge_Y.append(Y[~inside])
-    conductance.append(np.ones(node[-1].size))
-    return (
-        np.concatenate(node),
-        np.concatenate(edge_X),
-        np.concatenate(edge_Y),
-        np.concatenate(conductance),
-    )
+            edges.append((index[last], edge_X, edge_Y, (across / distance)[last]))
+    return edges
 
 
 def _areas(

@@ -14,12 +14,11 @@ from typing import Annotated
 from squeezefilm import quantities as si
 from squeezefilm.errors import ConvergenceError, InputError
 from squeezefilm.film.compiled import announce
+from squeezefilm.film.gas import ISOTHERMAL, FilmGas, require_film
 from squeezefilm.film.planar.balance import Film
 from squeezefilm.film.planar.gap import GapFunction, PlanarGap, require_periodic
 from squeezefilm.film.planar.kernel import row_block
 from squeezefilm.film.planar.ladder import RUNGS, Climb, Ladder, PlanarShape, climb_to
-from squeezefilm.film.records import ISOTHERMAL, FilmGas
-from squeezefilm.film.solved_range import require_film
 
 
 @dataclass(frozen=True)
@@ -63,63 +62,6 @@ class FilmPlanar:
 
 
 @si.checked_numbers
-def solve_rectangle(
-    squeeze_number: si.Dimensionless,
-    excursion_ratio: si.Dimensionless,
-    aspect_ratio: si.Dimensionless = 1.0,
-    *,
-    wave_number: si.Dimensionless = 0.0,
-    ridge_height: si.Dimensionless = 0.0,
-    ridge_wave_number: si.Dimensionless = 0.0,
-    gas: FilmGas = ISOTHERMAL,
-    tolerance: si.Dimensionless = 5e-3,
-) -> FilmPlanar:
-    """The periodic film under X ∈ [−½, ½], Y ∈ [−aspect/2, aspect/2], all sides open.
-
-    `squeeze_number` σ = 12 η ω l0²/(p0 H0²) is on the side along X (length l0). The gap is
-    H = 1 + ε cos(k1 X) cos T + δ cos(k2 X) (see `PlanarGap`); grooves run along Y and are open at
-    its ends. For the rest see `solve_planar`.
-    """
-    gap = PlanarGap(excursion_ratio, wave_number, ridge_height, ridge_wave_number)
-    return solve_planar(
-        "rectangle",
-        gap,
-        squeeze_number,
-        aspect_ratio=aspect_ratio,
-        gas=gas,
-        tolerance=tolerance,
-    )
-
-
-@si.checked_numbers
-def solve_ellipse(
-    squeeze_number: si.Dimensionless,
-    excursion_ratio: si.Dimensionless,
-    aspect_ratio: si.Dimensionless = 1.0,
-    *,
-    wave_number: si.Dimensionless = 0.0,
-    ridge_height: si.Dimensionless = 0.0,
-    ridge_wave_number: si.Dimensionless = 0.0,
-    gas: FilmGas = ISOTHERMAL,
-    tolerance: si.Dimensionless = 5e-3,
-) -> FilmPlanar:
-    """The periodic film under the ellipse X² + (Y/aspect)² ≤ 1, such as a finger pad.
-
-    `squeeze_number` is on the semi-axis along X; `aspect_ratio` is the semi-axis along Y over it.
-    The gap is H = 1 + ε cos(k1 X) cos T + δ cos(k2 X). For the rest see `solve_planar`.
-    """
-    gap = PlanarGap(excursion_ratio, wave_number, ridge_height, ridge_wave_number)
-    return solve_planar(
-        "ellipse",
-        gap,
-        squeeze_number,
-        aspect_ratio=aspect_ratio,
-        gas=gas,
-        tolerance=tolerance,
-    )
-
-
-@si.checked_numbers
 def solve_planar(
     shape: PlanarShape,
     gap: GapFunction,
@@ -150,7 +92,7 @@ def solve_planar(
         raise InputError(f"a disc has aspect_ratio 1, not {aspect_ratio}; ask for an ellipse")
     announce(row_block, "film solver in the plane", 3)
     quarter = isinstance(gap, PlanarGap) if symmetric is None else symmetric
-    film = Film(gap, float(squeeze_number), *gas.compiled())
+    film = Film(gap, float(squeeze_number), gas.compiled())
     ladder = Ladder(shape, float(aspect_ratio), film, quarter, cells)
     require_periodic(gap, ladder.grid(RUNGS[0]).X, ladder.grid(RUNGS[0]).Y)
     climb = climb_to(ladder, float(tolerance))

@@ -9,7 +9,8 @@ from typing import Annotated
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.errors import GeometryError, InputError
+from squeezefilm.errors import InputError
+from squeezefilm.film.line_grid import tabulated
 
 # A thousand waves on the surface; some twenty cells a wave make a grid of it.
 _HIGHEST_WAVE_NUMBER = 2000 * np.pi
@@ -54,29 +55,9 @@ def gap_values(
     gap: GapFunction, X: si.FloatArray, Y: si.FloatArray, T: si.FloatArray
 ) -> si.FloatArray:
     """H at every place and time, (places, times), checked: finite and open."""
-    shape = (X.size, T.size)
     values = gap._at if isinstance(gap, PlanarGap) else gap
-    try:
-        given = np.asarray(values(X[:, None], Y[:, None], T[None, :]), dtype=float)
-        H = np.ascontiguousarray(np.broadcast_to(given, shape))
-    except ValueError as error:
-        raise InputError(
-            f"the gap must return what broadcasts to {shape} for X, Y ({X.size}, 1) and "
-            f"T (1, {T.size}): {error}"
-        ) from error
-    # One pass on the way through; the place is looked for only where something is wrong.
-    if H.min() > 0.0 and H.max() < np.inf:
-        return H
-    finite = np.isfinite(H)
-    worst = int(np.argmin(np.where(finite, H, -np.inf)))
-    i, k = np.unravel_index(worst, shape)
-    place = f"at X = {X[i]:.4g}, Y = {Y[i]:.4g}, T = {T[k]:.4g}"
-    if not finite.all():
-        raise InputError(f"gap = {H[i, k]} {place} cannot be used: it must be finite")
-    raise GeometryError(
-        f"the gap closes: H = {H[i, k]:.4g} {place}; it must stay above 0. "
-        "Reduce the vibration or the ridges, or raise the mean gap."
-    )
+    enough = "Reduce the vibration or the ridges, or raise the mean gap."
+    return tabulated(values, {"X": (X, 0), "Y": (Y, 0), "T": (T, 1)}, enough)
 
 
 def require_periodic(gap: GapFunction, X: si.FloatArray, Y: si.FloatArray) -> None:

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -103,16 +103,15 @@ def _build(lines: _Lines, area: si.FloatArray, sides: _Sides, *, quarter: bool) 
         row_X=row_X,
         row_Y=row_Y,
         row_conductance=row_G.ravel(),
-        column_from=np.concatenate([face[0] for face in within]),
-        column_to=np.concatenate([face[1] for face in within]),
-        column_X=np.concatenate([face[2] for face in within]),
-        column_Y=np.concatenate([face[3] for face in within]),
-        column_conductance=np.concatenate([face[4] for face in within]),
-        edge_node=np.concatenate([face[0] for face in edges]),
-        edge_X=np.concatenate([face[1] for face in edges]),
-        edge_Y=np.concatenate([face[2] for face in edges]),
-        edge_conductance=np.concatenate([face[3] for face in edges]),
+        **joined("column", ("from", "to", "X", "Y", "conductance"), within),
+        **joined("edge", ("node", "X", "Y", "conductance"), edges),
     )
+
+
+def joined(side: str, names: tuple[str, ...], faces: list[Any]) -> dict[str, Any]:
+    """Lists of faces, one after the other, as `PlanarGrid` names what it has of them."""
+    parts = zip(names, zip(*faces, strict=True), strict=True)
+    return {f"{side}_{name}": np.concatenate(part) for name, part in parts}
 
 
 def _faces_within_rows(

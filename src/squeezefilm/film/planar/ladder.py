@@ -332,13 +332,7 @@ def _solve_or_continue(
             mean = np.mean([gap(X, Y, np.full((1, 1), s)) for s in T], axis=0)
             return np.asarray(mean + part * (gap(X, Y, t) - mean))
 
-        eased = Film(
-            smaller if part < 1.0 else gap,
-            film.squeeze_number,
-            film.polytropic_exponent,
-            film.knudsen_number,
-            film.slip,
-        )
+        eased = replace(film, gap=smaller if part < 1.0 else gap)
         state = Balancer(eased, grid, count).solve(gas, accuracy if part == 1.0 else 1e-3)
         spent += state.iterations
         gas = state.gas if state.converged else None

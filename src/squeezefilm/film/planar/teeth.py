@@ -13,9 +13,9 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
+from squeezefilm.film.gas import ISOTHERMAL, FilmGas
 from squeezefilm.film.planar.film import FilmPlanar, solve_planar
 from squeezefilm.film.planar.gap import GapFunction, PlanarGap
-from squeezefilm.film.records import ISOTHERMAL, FilmGas
 
 _PHASES = 5
 

@@ -13,8 +13,8 @@ import numba
 import numpy as np
 
 from squeezefilm import quantities as si
+from squeezefilm.film.gas import Aim, Gas
 from squeezefilm.film.mobility import mobility
-from squeezefilm.film.records import Aim, Gas
 
 
 class Line(NamedTuple):

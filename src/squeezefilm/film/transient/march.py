@@ -8,17 +8,16 @@ have no period. P = p/p0, H = h/H0, T = ωt.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Annotated, Literal
+from dataclasses import dataclass, fields
+from typing import Annotated, Any, Literal
 
 import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import ConvergenceError, InputError
 from squeezefilm.film.compiled import announce
+from squeezefilm.film.gas import ISOTHERMAL, Aim, FilmGas, Gas, require_film
 from squeezefilm.film.line_grid import Gap, LineGrid, Shape, gap_table, line_grid, mean_over
-from squeezefilm.film.records import ISOTHERMAL, Aim, FilmGas, Gas
-from squeezefilm.film.solved_range import require_film
 from squeezefilm.film.transient.kernel import (
     BACKWARD_EULER,
     BDF2,
@@ -38,7 +37,23 @@ _CHUNK = 1 << 21
 
 
 @dataclass(frozen=True)
-class FilmTransient:
+class MovedFilm:
+    """A film whose gap moves, and the scheme that follows it."""
+
+    gap: Gap
+    squeeze_number: si.Dimensionless
+    shape: Shape
+    gas: FilmGas
+    scheme: Scheme
+
+    @property
+    def given(self) -> dict[str, Any]:
+        """These fields alone, for the record of what came of them."""
+        return {field.name: getattr(self, field.name) for field in fields(MovedFilm)}
+
+
+@dataclass(frozen=True)
+class FilmTransient(MovedFilm):
     """A gas film followed in time.
 
     `time` (steps+1,), `load` W(T) = ⟨P⟩ over the surface (steps+1,), `position` X or R of
@@ -56,24 +71,12 @@ class FilmTransient:
     residual: si.Dimensionless
     iterations: int
     status: str
-    squeeze_number: si.Dimensionless
-    polytropic_exponent: si.Dimensionless
-    knudsen_number: si.Dimensionless
-    slip: str
-    shape: Shape
-    scheme: Scheme
 
 
 def stage_times(scheme: str) -> si.FloatArray:
     """Where in a step (0 to 1) a scheme asks for the gap."""
     si.require_one_of("scheme", scheme, SCHEMES)
     return np.array([1.0 - np.sqrt(0.5), 1.0] if scheme == "sdirk2" else [1.0])
-
-
-def check_film(shape: str, sigma: float, n: float, knudsen: float) -> None:
-    """Refuse a shape that is not known and numbers out of range."""
-    require_film(sigma, n, knudsen)
-    si.require_one_of("shape", shape, ("strip", "disc"))
 
 
 def _gas_balanced(
@@ -114,7 +117,7 @@ def solve_transient(
     Holds for 0 < P, isothermal (n = 1) to adiabatic (1.4), viscous flow (h ≲ 10 µm at 40 kHz).
     Source: Gross, Gas Film Lubrication (1962); SDIRK2: Alexander, 10.1137/0714068.
     """
-    check_film(shape, squeeze_number, gas.polytropic_exponent, gas.knudsen_number)
+    require_film(squeeze_number, gas.polytropic_exponent, gas.knudsen_number)
     announce(march, "film solver in time", 4)
     si.require("end", end, above=start)
     si.require("snapshots", snapshots, at_least=0, at_most=steps + 1)
@@ -131,14 +134,9 @@ def solve_transient(
 
 
 @dataclass(frozen=True)
-class _Asked:
+class _Asked(MovedFilm):
     """What is to be followed, and in which steps."""
 
-    gap: Gap
-    squeeze_number: float
-    shape: Shape
-    gas: FilmGas
-    scheme: Scheme
     start: float
     end: float
     steps: int
@@ -198,12 +196,7 @@ def _followed(asked: _Asked, pressure: si.FloatArray, kept: si.IntArray) -> Film
         residual=ended.worst,
         iterations=ended.iterations,
         status=status,
-        squeeze_number=asked.squeeze_number,
-        polytropic_exponent=asked.gas.polytropic_exponent,
-        knudsen_number=asked.gas.knudsen_number,
-        slip=asked.gas.slip,
-        shape=asked.shape,
-        scheme=asked.scheme,
+        **asked.given,
     )
     if not finished:
         raise ConvergenceError(

@@ -14,23 +14,25 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.errors import ConvergenceError
 from squeezefilm.film.compiled import announce
+from squeezefilm.film.gas import ISOTHERMAL, FilmGas, require_film
 from squeezefilm.film.line_grid import Gap, Shape, gap_table, line_grid, mean_over
-from squeezefilm.film.records import ISOTHERMAL, FilmGas
 from squeezefilm.film.transient.kernel import Gaps, Line, Pace, Track, march
 from squeezefilm.film.transient.march import (
     NEWTON,
     SCHEMES,
+    MovedFilm,
     Scheme,
-    check_film,
     stage_times,
 )
 
 _MEMORY = 8
 """Periods the acceleration remembers."""
+_LEAST_CHANGE = 1e-14
+"""Less than rounding leaves no march reaches."""
 
 
 @dataclass(frozen=True)
-class FilmSettled:
+class FilmSettled(MovedFilm):
     """The periodic state a march settles into.
 
     `mean_load` W is the period's mean, `over_pressure` W − 1, `over_pressure_error` its estimated
@@ -55,12 +57,6 @@ class FilmSettled:
     cells: int
     steps: int
     status: str
-    squeeze_number: si.Dimensionless
-    polytropic_exponent: si.Dimensionless
-    knudsen_number: si.Dimensionless
-    slip: str
-    shape: Shape
-    scheme: Scheme
 
 
 class _Mixer:
@@ -94,13 +90,13 @@ def settle_to_periodic(
     squeeze_number: si.Dimensionless,
     *,
     shape: Shape = "strip",
-    tolerance: si.Dimensionless | None = 1e-3,
+    tolerance: Annotated[si.Dimensionless, si.AtLeast(1e-9)] | None = 1e-3,
     cells: Annotated[int, si.AtLeast(4)] = 24,
     steps: Annotated[int, si.AtLeast(4)] = 32,
     gas: FilmGas = ISOTHERMAL,
     scheme: Scheme = "bdf2",
     accelerate: bool = True,
-    settled: si.Dimensionless = 1e-10,
+    settled: Annotated[si.Dimensionless, si.AtLeast(_LEAST_CHANGE)] = 1e-10,
     max_periods: Annotated[int, si.AtLeast(1)] = 2000,
     max_cells: int = 1600,
 ) -> FilmSettled:
@@ -117,12 +113,8 @@ def settle_to_periodic(
     best state had where the march does not settle or `max_cells` do not reach the tolerance.
     Holds for isothermal (1) to adiabatic (1.4) viscous flow at any σ and excursion below 1.
     """
-    check_film(shape, squeeze_number, gas.polytropic_exponent, gas.knudsen_number)
+    require_film(squeeze_number, gas.polytropic_exponent, gas.knudsen_number)
     announce(march, "film solver in time", 4)
-    # Less than rounding leaves no march reaches.
-    si.require("settled", settled, at_least=1e-14)
-    if tolerance is not None:
-        si.require("tolerance", tolerance, at_least=1e-9)
     asked = _Settling(gap, squeeze_number, shape, gas, scheme, accelerate, settled, max_periods)
     history: list[FilmSettled] = []
     guess: tuple[si.FloatArray, si.FloatArray] | None = None
@@ -163,14 +155,9 @@ def _extrapolated(history: list[FilmSettled]) -> FilmSettled:
 
 
 @dataclass(frozen=True)
-class _Settling:
+class _Settling(MovedFilm):
     """What is to settle, and how."""
 
-    gap: Gap
-    squeeze_number: float
-    shape: Shape
-    gas: FilmGas
-    scheme: Scheme
     accelerate: bool
     settled: float
     max_periods: int
@@ -227,12 +214,7 @@ def _settle(
             if good
             else f"did not settle in {ended.periods} periods (change {ended.change:.2g} a period)"
         ),
-        squeeze_number=sigma,
-        polytropic_exponent=gas.polytropic_exponent,
-        knudsen_number=gas.knudsen_number,
-        slip=gas.slip,
-        shape=asked.shape,
-        scheme=asked.scheme,
+        **asked.given,
     )
     if result.residual > asked.settled:
         raise ConvergenceError(

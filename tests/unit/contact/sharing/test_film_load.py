@@ -18,7 +18,7 @@ from squeezefilm.errors import InputError
 from squeezefilm.film.closed.limits import contact_mean_pressure
 from squeezefilm.film.closed.linear import second_order_mean_load
 from squeezefilm.film.gap import PaperGap
-from squeezefilm.film.periodic.film import solve_strip
+from squeezefilm.film.periodic.film import solve_uniform
 from squeezefilm.materials import Gas
 
 # A free path so short that it does not show; and one of the size of the gap.
@@ -45,7 +45,7 @@ def test_a_smooth_finger_is_the_strip_at_the_gap_over_its_crests() -> None:
     found = film_load(GAP, 3e3, DENSE, "film-smooth")
     number = sigma(3e3, 5e-3, 2.4e-6)
     assert found.squeeze_number == pytest.approx(number)
-    strip = solve_strip(number, 0.4 / 2.4, tolerance=1e-5)
+    strip = solve_uniform(number, 0.4 / 2.4, tolerance=1e-5)
     assert abs(found.over_pressure - strip.over_pressure) <= found.error + strip.over_pressure_error
     assert 0 < found.error <= 1e-3 * found.over_pressure
     assert found.model == "film-smooth"
@@ -57,14 +57,14 @@ def test_a_smooth_finger_is_the_strip_at_the_gap_over_its_crests() -> None:
 def test_slip_and_tolerance_reach_the_solver() -> None:
     number, kn = sigma(3e3, 5e-3, 2.4e-6), 0.2 / 2.4
     for slip in ("first", "second"):
-        strip = solve_strip(number, 0.4 / 2.4, knudsen_number=kn, slip=slip, tolerance=1e-4)
+        strip = solve_uniform(number, 0.4 / 2.4, knudsen_number=kn, slip=slip, tolerance=1e-4)
         found = film_load(GAP, 3e3, RARE, "film-smooth", slip=slip, tolerance=1e-2)
         assert found.over_pressure == pytest.approx(strip.over_pressure, rel=1e-2)
         assert found.over_pressure == pytest.approx(
             film_load(GAP, 3e3, RARE, "film-smooth", slip=slip).over_pressure, rel=1e-2
         )
         crests = film_load(GAP, 1e3, RARE, "film-plateau", slip=slip)
-        plateau = solve_strip(
+        plateau = solve_uniform(
             sigma(1e3, 250e-6, 2.4e-6), 0.4 / 2.4, knudsen_number=kn, slip=slip, tolerance=1e-4
         )
         assert crests.over_pressure == pytest.approx(plateau.over_pressure / 2, rel=2e-3)

@@ -11,9 +11,9 @@ import pytest
 from squeezefilm.contact.asperities import AsperityLaw
 from squeezefilm.contact.finger.fingertip import Finger
 from squeezefilm.contact.finger.skin import Skin
-from squeezefilm.contact.records import CompiledFilms
 from squeezefilm.contact.sharing.balance import share_load, share_load_tied
 from squeezefilm.contact.sharing.gas_table import FilmTable
+from squeezefilm.contact.sharing.kernel import CompiledFilms
 from squeezefilm.contact.sharing.pad import (
     FrictionRipple,
     PadPosture,

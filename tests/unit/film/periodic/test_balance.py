@@ -11,7 +11,7 @@ import pytest
 
 from squeezefilm.errors import InputError, OutOfRangeError, UnreachableError
 from squeezefilm.film.periodic import balance
-from squeezefilm.film.periodic.balance import VibratedFilm, levitation_limit, mean_gap_for_load
+from squeezefilm.film.periodic.balance import VibratedFilm, mean_gap_for_load
 
 GIVEN: dict[str, Any] = {"viscosity": 1.8e-5, "ambient_pressure": 1e5}
 FILM = VibratedFilm(2e-6, 40e3, 10e-3, **GIVEN)
@@ -100,34 +100,6 @@ def test_the_faint_end_is_left_out_and_a_film_lost_in_rounding_refused(
         mean_gap_for_load(FILM, 40.0)
 
 
-@pytest.mark.parametrize("eps", [0.1, 0.5, 0.95])
-def test_the_limit_is_the_load_there_beside_that_of_a_film_that_lets_nothing_out(
-    monkeypatch: pytest.MonkeyPatch, eps: float
-) -> None:
-    Films(monkeypatch)
-    found = levitation_limit(VibratedFilm(3e-6, 30e3, 8e-3, **GIVEN), excursion_ratio=eps)
-    assert found.load == pytest.approx(0.2 * eps**1.5 * 1e5)
-    assert found.load_error == pytest.approx(1e-3 * found.load)
-    # Isothermal: P H is √(1 + 1.5 ε²) throughout, over the mean of 1/H.
-    bound = math.sqrt((1 + 1.5 * eps**2) / (1 - eps**2)) - 1
-    assert found.load_infinite_sigma == pytest.approx(bound * 1e5, rel=1e-9)
-    assert found.mean_gap == pytest.approx(3e-6 / eps)
-    assert found.least_gap == pytest.approx(3e-6 / eps - 3e-6)
-    sigma = 12 * 1.8e-5 * 2 * math.pi * 30e3 * 64e-6 / 1e5 / found.mean_gap**2
-    assert found.squeeze_number == pytest.approx(sigma)
-    assert (found.excursion_ratio, found.model) == (eps, "made")
-    # With n: P = (ψ/H)ⁿ, and no gas flows in the mean, ψ^{n+1} = ⟨H³⟩/⟨H^{2−n}⟩.
-    T = 2 * np.pi * (np.arange(4000) + 0.5) / 4000
-    H = 1 + eps * np.cos(T)
-    psi = (np.mean(H**3) / np.mean(H**0.6)) ** (1 / 2.4)
-    stiff = levitation_limit(
-        VibratedFilm(3e-6, 30e3, 8e-3, polytropic_exponent=1.4, **GIVEN), excursion_ratio=eps
-    )
-    assert stiff.load_infinite_sigma == pytest.approx(
-        (np.mean((psi / H) ** 1.4) - 1) * 1e5, rel=1e-7
-    )
-
-
 @pytest.mark.parametrize(
     ("changes", "says"),
     [
@@ -144,9 +116,3 @@ def test_what_no_film_has_is_refused(changes: dict[str, Any], says: str) -> None
     good: dict[str, Any] = {"amplitude": 2e-6, "frequency": 40e3, "length": 10e-3}
     with pytest.raises(InputError, match=says):
         VibratedFilm(**{**good, **changes})
-
-
-@pytest.mark.parametrize("eps", [0.09, 0.951])
-def test_an_excursion_that_is_no_limit_is_refused(eps: float) -> None:
-    with pytest.raises(InputError, match="excursion_ratio"):
-        levitation_limit(FILM, excursion_ratio=eps)

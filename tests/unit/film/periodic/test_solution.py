@@ -26,7 +26,7 @@ def put_together(*, met: bool, shift: float = 0.0) -> FilmSolution:
     levels = [(coarse, np.array([0.5, 0.5])), (fine, np.array([0.25, 0.5, 0.25]))]
     harmonics = np.ones((2, 3), dtype=complex)
     harmonics[1] = 0.5
-    asked = Asked("strip", 10.0, -0.5 if shift else 0.5, 1.0, 0.0, "first", 1e-3)
+    asked = Asked("strip", 10.0, -0.5 if shift else 0.5, 1.0, 0.0, "first", 1e-3, None)
     found = Found(0.07, 1e-5, met, 7, 1e-9, 2, TIMES)
     return assembled(asked, found, levels, harmonics, x, shift, True, 0.5)
 

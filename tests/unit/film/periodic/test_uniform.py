@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from squeezefilm.film.gas import Aim
 from squeezefilm.film.periodic.kernel import prolong
 from squeezefilm.film.periodic.resolution import resolution_of
 from squeezefilm.film.periodic.uniform import (
@@ -34,7 +35,6 @@ from squeezefilm.film.periodic.uniform import (
     solve_rows,
     space_error,
 )
-from squeezefilm.film.records import Aim
 
 
 def test_the_grading_grows_with_the_layers_sharpness() -> None:

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from squeezefilm.film.gas import Aim, Gas
 from squeezefilm.film.periodic.records import Resolution
 from squeezefilm.film.periodic.resolution import collocation_times
 from squeezefilm.film.periodic.uniform import (
@@ -29,7 +30,6 @@ from squeezefilm.film.periodic.uniform import (
     space_error,
 )
 from squeezefilm.film.periodic.varying import Profile, _gaps, _weights, solve_varying
-from squeezefilm.film.records import Aim, Gas
 
 # Two harmonics in time at five points.
 EVEN = np.array([[1.0, 1.1, 1.2, 1.3, 1.4], [0.3, 0.2, 0.1, 0.0, -0.2], [0.05] * 5])

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from squeezefilm.film.gas import Gas
 from squeezefilm.film.mobility import mobility
 from squeezefilm.film.planar.kernel import (
     Balances,
@@ -14,7 +15,6 @@ from squeezefilm.film.planar.kernel import (
     row_block,
     take_off,
 )
-from squeezefilm.film.records import Gas
 
 RNG = np.random.default_rng(5)
 ROWS, COLUMNS, M = 3, 2, 3

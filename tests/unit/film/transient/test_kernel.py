@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from squeezefilm.film.gas import Aim, Gas
 from squeezefilm.film.mobility import mobility
-from squeezefilm.film.records import Aim, Gas
 from squeezefilm.film.transient.kernel import (
     BACKWARD_EULER,
     BDF2,
