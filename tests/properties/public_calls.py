@@ -82,7 +82,7 @@ NOT_CALLED = {
     plate.solid.coarse_modes.class_fits plate.solid.coarse_modes.coarse_modes
     plate.solid.coarse_modes.estimated_frequency plate.elements.cross_section.CrossSection
     plate.elements.cross_section.cross_section plate.solid.electrode_circuits.open_values
-    plate.solid.electrode_circuits.shunted_frequencies plate.solid.extrapolated.extrapolated_class
+    plate.solid.electrode_circuits.shunted_frequencies plate.solid.refined_modes.extrapolated_class
     plate.elements.krylov.Pairs plate.elements.krylov.modes_below plate.elements.krylov.modes_near
     plate.elements.krylov.prolonged plate.elements.krylov.with_open_electrodes
     plate.elements.lobatto.LineMesh
@@ -94,11 +94,12 @@ NOT_CALLED = {
     plate.solid.mode_table.collected_modes plate.solid.mode_table.energy_shares_of
     plate.elements.nodal_basis.gauss_points plate.elements.nodal_basis.graded_edges
     plate.elements.nodal_basis.lagrange
-    plate.elements.nodal_basis.node_coordinates plate.solid.mesh.PlateModel
+    plate.elements.nodal_basis.node_coordinates plate.solid.model.PlateModel
     plate.solid.resolution.Resolution plate.solid.layers.merged
     plate.solid.layers.nearest plate.solid.layers.snapped
     plate.solid.mesh.plate_model plate.solid.mesh.wave_number
-    plate.solid.modes.SolvedModel.field plate.solid.modes.SolvedModel.force
+    plate.solid.model.PlateModel.evaluation
+    plate.solid.model.PlateModel.field plate.solid.model.PlateModel.force
     plate.solid.modes.label_of plate.solid.modes.profiles plate.solid.modes.surface_shapes
     plate.solid.modes.zero_crossings plate.solid.symmetry.mirror_map
     plate.solid.reduced.ReducedClass plate.solid.reduced.harmonic_solution

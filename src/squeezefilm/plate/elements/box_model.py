@@ -139,6 +139,11 @@ class BoxModel:
     foundations: tuple[Foundation, ...] = field(default=())
     trunk: float = np.inf
 
+    @property
+    def spring_losses(self) -> list[float]:
+        """The loss factor of each foundation."""
+        return [one.loss for one in self.foundations]
+
     @functools.cached_property
     def kept(self) -> NDArray[np.bool_]:
         """Which products of y and z functions are used, shape (y, z functions)."""

@@ -17,7 +17,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from squeezefilm.plate.elements.block_ldl import PartialLDL, partial_ldl
-from squeezefilm.plate.elements.cross_section import CrossSection
 from squeezefilm.plate.elements.lobatto import line_matrices
 from squeezefilm.plate.elements.slabs import Slabs, relabelled
 
@@ -50,20 +49,11 @@ class _Place:
 class SlabFactor:
     """(K − σM)⁻¹ of a discretised model, real for a real shift.
 
-    `sections` replaces the slice matrices (complex ones carry losses); `count` also counts the
-    modes below the shift, in `modes_below`.
+    `count` also counts the modes below the shift, in `modes_below`.
     """
 
-    def __init__(
-        self,
-        slabs: Slabs,
-        shift: float,
-        *,
-        sections: list[CrossSection] | None = None,
-        count: bool = False,
-    ) -> None:
+    def __init__(self, slabs: Slabs, shift: float, *, count: bool = False) -> None:
         self._slabs, self._shift, self._count = slabs, shift, count
-        self._sections = sections or slabs.sections
         self._dynamic: dict[int, Matrix] = {}
         self._bubbles: dict[Any, PartialLDL] = {}
         # Reflection along x turns u and nothing else.
@@ -112,8 +102,8 @@ class SlabFactor:
     def _bubble(self, e: int) -> PartialLDL:
         slabs, x = self._slabs, self._slabs.model.x
         length, order = x.edges[e + 1] - x.edges[e], x.orders[e]
-        n = slabs.sections[e].codes.size
-        section = self._sections[e]
+        section = slabs.sections[e]
+        n = section.codes.size
         key = (slabs.patterns[e], id(section.P2), round(length * 1e12), order)
         if key in self._bubbles:
             return self._bubbles[key]

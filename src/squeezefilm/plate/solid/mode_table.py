@@ -12,16 +12,16 @@ from squeezefilm.plate.elements.box_model import Medium
 from squeezefilm.plate.elements.slabs import Slabs
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.solid.electrode_circuits import open_values, shunted_frequencies
+from squeezefilm.plate.solid.model import PlateModel
 from squeezefilm.plate.solid.modes import (
     MODEL,
     Label,
     PlateModes,
-    SolvedModel,
     label_of,
     surface_shapes,
 )
 from squeezefilm.plate.solid.refined_modes import RefinedModes, extrapolated
-from squeezefilm.plate.solid.symmetry import Parity, drive_signs
+from squeezefilm.plate.solid.symmetry import Symmetry, drive_signs
 
 
 def energy_shares_of(slabs: Slabs, vectors: si.FloatArray) -> tuple[si.FloatArray, si.FloatArray]:
@@ -43,7 +43,7 @@ def energy_shares_of(slabs: Slabs, vectors: si.FloatArray) -> tuple[si.FloatArra
         energy.append(np.sum(vectors * slabs.stiffness_times(vectors, sections), axis=0))
         lost.append(energy[-1] * medium.loss)
     if model.foundations:
-        for total, springs in ((energy, 1.0), (lost, [f.loss for f in model.foundations])):
+        for total, springs in ((energy, 1.0), (lost, model.spring_losses)):
             sections = slabs.weighted_sections(lambda m: (0.0, 0.0), springs=springs)
             total.append(np.sum(vectors * slabs.stiffness_times(vectors, sections), axis=0))
     table, whole = np.stack(energy, axis=1), np.sum(energy, axis=0)
@@ -80,7 +80,7 @@ def collected_modes(
     errors = np.array([row.error for row in rows])
     opened = np.array([row.open_frequency for row in rows])
     over = int(np.sum(errors > tolerance * frequencies))
-    media = pieces[0].solved.built.model
+    media = pieces[0].solved.model
     names = [m.name for m in media.media] + (["supports"] if media.foundations else [])
     return PlateModes(
         plate=plate,
@@ -118,14 +118,14 @@ class _Mode(NamedTuple):
     error: float
     mesh_frequency: float
     label: Label | None
-    parity: tuple[Parity | None, Parity | None]
+    parity: Symmetry
     shape: si.FloatArray
     forces: si.FloatArray
     drive_force: float
     open_frequency: float
     energy_shares: si.FloatArray
     quality_factor: float
-    field: tuple[SolvedModel, si.FloatArray]
+    field: tuple[PlateModel, si.FloatArray]
 
 
 def _modes_of(
@@ -133,11 +133,11 @@ def _modes_of(
 ) -> tuple[si.FloatArray, si.FloatArray, list[_Mode]]:
     """The modes of one class, and x and y of their shapes; `signs` are those of the drive."""
     frequency, error = extrapolated(piece.coarse_values, piece.values, piece.level)
-    scale = 1 / np.sqrt(piece.solved.built.copies)
+    scale = 1 / np.sqrt(piece.solved.copies)
     vectors = piece.vectors * scale
     x, y, surface = surface_shapes(piece.solved, vectors)
     G, _ = piece.solved.slabs.electrode_columns
-    built = piece.solved.built
+    built = piece.solved
     per_electrode = -(G.T @ vectors).T
     own = np.array(built.sign_of) * np.array(built.share_of)
     forces = per_electrode[:, list(built.electrode_of)] * own[None, :]

@@ -15,7 +15,6 @@ from squeezefilm.plate.circuit import DrivenResponse, EquivalentCircuit
 from squeezefilm.plate.elements.again import SolvedAgain
 from squeezefilm.plate.elements.blas_threads import one_blas_thread
 from squeezefilm.plate.layout import RectangularPlate
-from squeezefilm.plate.solid.extrapolated import extrapolated_class
 from squeezefilm.plate.solid.modes import MODEL
 from squeezefilm.plate.solid.reduced import (
     ReducedClass,
@@ -23,6 +22,7 @@ from squeezefilm.plate.solid.reduced import (
     reduced_class,
     surface_values,
 )
+from squeezefilm.plate.solid.refined_modes import extrapolated_class
 from squeezefilm.plate.solid.resolution import NORMAL, Resolution
 from squeezefilm.plate.solid.symmetry import all_classes, drive_classes, drive_signs
 
@@ -127,7 +127,7 @@ class HarmonicResponse(SolvedAgain, DrivenResponse):
             out += omega / 2 * np.einsum("fi,ij,fj->f", q.conj(), one.loss, q).real
             for number, resistance, share in one.circuit:
                 if np.isfinite(resistance):
-                    patches = one.solved.built.copies / share
+                    patches = one.solved.copies / share
                     out += patches * np.abs(V[:, number]) ** 2 / (2 * resistance)
             start += size
         for load in self._loads:

@@ -11,6 +11,8 @@ from squeezefilm import quantities as si
 from squeezefilm.plate.layout import CeramicPatch, FoamSupport, RectangularPlate
 
 Parity = Literal["S", "A"]
+Symmetry = tuple[Parity | None, Parity | None]
+"""A class of symmetry along x and along y; None where the plate is taken whole."""
 SNAP = 1e-9  # m; edges nearer than this are one
 
 
@@ -63,7 +65,7 @@ def drive_signs(plate: RectangularPlate) -> si.FloatArray:
     )
 
 
-def drive_classes(plate: RectangularPlate) -> list[tuple[Parity | None, Parity | None]]:
+def drive_classes(plate: RectangularPlate) -> list[Symmetry]:
     """The classes of symmetry that the drive excites."""
     signs = drive_signs(plate)
     per_axis: list[list[Parity | None]] = []
@@ -82,7 +84,7 @@ def drive_classes(plate: RectangularPlate) -> list[tuple[Parity | None, Parity |
     return [(a, b) for a in per_axis[0] for b in per_axis[1]]
 
 
-def all_classes(plate: RectangularPlate) -> list[tuple[Parity | None, Parity | None]]:
+def all_classes(plate: RectangularPlate) -> list[Symmetry]:
     """Every class of symmetry that the plate has: four, two or one."""
     axes = symmetric_axes(plate)
     options: list[list[Parity | None]] = [["S", "A"] if axis else [None] for axis in axes]
