@@ -102,7 +102,9 @@ NOT_CALLED = {
     plate.solid.model.PlateModel.field plate.solid.model.PlateModel.force
     plate.solid.modes.label_of plate.solid.modes.profiles plate.solid.modes.surface_shapes
     plate.solid.modes.zero_crossings plate.solid.symmetry.mirror_map
-    plate.solid.reduced.ReducedClass plate.solid.reduced.harmonic_solution
+    plate.solid.reduced.ReducedClass plate.solid.reduced.class_drive
+    plate.solid.reduced.class_slices plate.solid.reduced.plate_circuit
+    plate.solid.reduced.harmonic_solution
     plate.solid.reduced.reduced_class plate.solid.reduced.resolved_frequency
     plate.solid.reduced.surface_values plate.solid.refined_modes.RefinedModes
     plate.solid.refined_modes.extrapolated plate.solid.refined_modes.refined_modes

@@ -7,6 +7,7 @@ out add quasi-statically, in one. Losses, loads and circuits are projected on it
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 
 import numpy as np
@@ -144,6 +145,12 @@ def _krylov_space(
     return Q
 
 
+def class_slices(parts: list[ReducedClass]) -> list[slice]:
+    """Where the coordinates of each class stand among those of all."""
+    ends = np.cumsum([0, *(one.basis.shape[1] for one in parts)]).tolist()
+    return [slice(*pair) for pair in itertools.pairwise(ends)]
+
+
 def surface_values(
     parts: list[ReducedClass], x: si.FloatArray, y: si.FloatArray, z: float
 ) -> si.FloatArray:
@@ -164,15 +171,12 @@ def harmonic_solution(
     `added` (frequencies × coordinates²) is the dynamic stiffness of surface loads, `force` outer
     forces on the coordinates.
     """
-    sizes = [one.basis.shape[1] for one in parts]
-    circuits = [len(one.circuit) for one in parts]
-    total, extra = sum(sizes), sum(circuits)
+    places = class_slices(parts)
+    total, extra = places[-1].stop, sum(len(one.circuit) for one in parts)
     A = np.zeros((omega.size, total + extra, total + extra), dtype=complex)
     b = np.zeros((omega.size, total + extra), dtype=complex)
-    start, row = 0, total
-    w2 = (omega**2)[:, None, None]
-    for one, size in zip(parts, sizes, strict=True):
-        at = slice(start, start + size)
+    row, w2 = total, (omega**2)[:, None, None]
+    for one, at in zip(parts, places, strict=True):
         A[:, at, at] = one.stiffness + 1j * one.loss - w2 * one.mass
         b[:, at] = -(one.coupling @ one.drive) * voltage
         # Charge = −(Gᵀx + C V); a shunt draws V = −iωR · charge, an open electrode none.
@@ -191,7 +195,6 @@ def harmonic_solution(
                 A[:, row, row] -= 1
             b[:, row] = -unit * held[number]
             row += 1
-        start += size
     if added is not None:
         A[:, :total, :total] += added
     if force is not None:
@@ -200,14 +203,12 @@ def harmonic_solution(
     scale_rows = np.max(np.abs(A), axis=2, keepdims=True)
     solution = np.linalg.solve(A / scale_rows, (b / scale_rows[:, :, 0])[:, :, None])[:, :, 0]
     potentials, charge = [], np.zeros(omega.size, dtype=complex)
-    start, row = 0, total
-    for one, size in zip(parts, sizes, strict=True):
+    row = total
+    for one, at in zip(parts, places, strict=True):
         V = np.broadcast_to(one.drive * voltage, (omega.size, one.drive.size)).astype(complex)
         for number, _, _ in one.circuit:
             V[:, number] = solution[:, row]
             row += 1
-        x = solution[:, start : start + size]
-        charge -= (x @ one.coupling + V @ one.capacitance) @ one.drive
+        charge -= (solution[:, at] @ one.coupling + V @ one.capacitance) @ one.drive
         potentials.append(V)
-        start += size
     return solution[:, :total], potentials, charge

@@ -20,6 +20,7 @@ from squeezefilm.plate.elements.lobatto import LineMesh
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.solid.model import PlateModel
 from squeezefilm.plate.solid.modes import PlateModes
+from squeezefilm.plate.solid.reduced import class_slices
 from squeezefilm.plate.solid.response import HarmonicResponse
 
 _CORNERS = np.array(
@@ -137,13 +138,11 @@ def harmonic_fields(
     drive at frequency number `at`."""
     moved = np.zeros(volume.points.shape, dtype=complex)
     charged = np.zeros(len(volume.points), dtype=complex)
-    start = 0
-    for one, potentials in zip(response._parts, response._potentials, strict=True):
-        size = one.basis.shape[1]
-        vector = one.basis @ response._coordinates[at, start : start + size]
+    parts = response._parts
+    for one, own, potentials in zip(parts, class_slices(parts), response._potentials, strict=True):
+        vector = one.basis @ response._coordinates[at, own]
         moved += volume.displacement(one.solved, vector)
         charged += volume.potential(one.solved, vector, potentials[at])
-        start += size
     return moved, charged
 
 
