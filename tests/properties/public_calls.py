@@ -46,7 +46,7 @@ NOT_CALLED = {
     formats.hjif.HjifExport formats.hjif_read.HjifImport plate.ring.modes.AnnularMode
     plate.beam.modes.BeamMode plate.solid.modes.PlateModes plate.solid.response.HarmonicResponse
     plate.solid.volume.PlateVolume plate.beam.response.BeamResponse plate.ring.body.RingBody
-    plate.ring.body.RingWorkingMode plate.ring.response.RingResponse
+    plate.ring.response.RingResponse
     plate.shear.modes.ShearMode plate.solid.working.SolidMode plate.sound.ExposureGuidance
     plate.sound.SoundField plate.working_mode.ModeLine plate.working_mode.WorkingMode
     plate.ring.stator.StatorFit
@@ -92,9 +92,11 @@ NOT_CALLED = {
     plate.elements.lobatto.lagrange_basis plate.elements.lobatto.line_matrices
     plate.elements.lobatto.lobatto_nodes
     plate.solid.mode_table.collected_modes plate.solid.mode_table.energy_shares_of
-    plate.elements.nodal_basis.gauss_points plate.elements.nodal_basis.graded_edges
-    plate.elements.nodal_basis.lagrange
-    plate.elements.nodal_basis.node_coordinates plate.solid.model.PlateModel
+    plate.elements.lobatto.gauss_points plate.ring.elements.graded_edges
+    plate.elements.lobatto.lagrange plate.elements.sparse_modes.nearest_modes
+    plate.elements.sparse_modes.entries plate.elements.sparse_modes.gathered
+    plate.elements.sparse_modes.shifted_inverse plate.ring.elements.node_coordinates
+    plate.solid.model.PlateModel
     plate.solid.resolution.Resolution plate.solid.layers.merged
     plate.solid.layers.nearest plate.solid.layers.snapped
     plate.solid.mesh.plate_model plate.solid.mesh.wave_number

@@ -51,6 +51,22 @@ def lagrange_basis(
 
 
 @functools.lru_cache(maxsize=64)
+def lagrange(degree: int, at: tuple[float, ...]) -> tuple[si.FloatArray, si.FloatArray]:
+    """Values and derivatives of the Lagrange polynomials on the Lobatto points at points `at`.
+
+    Two arrays of shape (len(at), degree + 1); derivatives are with respect to −1…1.
+    """
+    return lagrange_basis(lobatto_nodes(degree), np.asarray(at))
+
+
+@functools.lru_cache(maxsize=64)
+def gauss_points(count: int) -> tuple[si.FloatArray, si.FloatArray]:
+    """Gauss–Legendre points and weights on −1…1, exact to degree 2 count − 1."""
+    points, weights = legendre.leggauss(count)
+    return points, weights
+
+
+@functools.lru_cache(maxsize=64)
 def _reference_matrices(order: int) -> tuple[si.FloatArray, si.FloatArray, si.FloatArray]:
     nodes = lobatto_nodes(order)
     points, weights = legendre.leggauss(order + 1)

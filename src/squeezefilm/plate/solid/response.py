@@ -311,7 +311,8 @@ def _truncation(
 ) -> float:
     """How much the admittance changes when each space loses its last quarter."""
     pick = np.arange(0, omega.size, max(1, omega.size // 12))
-    some, shorter, indices = omega[pick], [], []
+    shorter: list[ReducedClass] = []
+    indices: list[int] = []
     for one, at in zip(parts, class_slices(parts), strict=True):
         n = max(1, (3 * one.basis.shape[1]) // 4)
         indices += range(at.start, at.start + n)
@@ -327,6 +328,6 @@ def _truncation(
         )
     kept = np.array(indices)
     less = None if added is None else added[np.ix_(pick, kept, kept)]
-    _, _, charge = harmonic_solution(shorter, some, less, None, 1.0)
-    change = np.abs(1j * some * charge - admittance[pick])
+    _, _, charge = harmonic_solution(shorter, omega[pick], less, None, 1.0)
+    change = np.abs(1j * omega[pick] * charge - admittance[pick])
     return float(np.max(change / np.max(np.abs(admittance))))

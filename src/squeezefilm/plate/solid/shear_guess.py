@@ -48,10 +48,8 @@ def screened_frequency(plate: RectangularPlate, label: tuple[int, int]) -> si.He
     if bare == 0:
         return None
     layout = shear_layout(plate)
-    signs = (1 if lines % 2 == 0 else -1 for lines in label)
-    parity = tuple(s if layout.mirrored(axis) else 0 for axis, s in enumerate(signs))
     try:
-        modes = shear_modes(layout, bare, _NEAREST, parities=((parity[0], parity[1]),))
+        modes = shear_modes(layout, bare, _NEAREST, parities=(layout.parity_of(label),))
     except (InputError, ConvergenceError):
         return None
     found = [mode for mode in modes if not mode.is_rigid and _lines(mode) == label]
