@@ -80,7 +80,7 @@ NOT_CALLED = {
     plate.elements.box_model.require_memory plate.solid.electrode_circuits.tied_electrodes
     plate.solid.coarse_modes.CoarseModes plate.solid.coarse_modes.chosen_modes
     plate.solid.coarse_modes.class_fits plate.solid.coarse_modes.coarse_modes
-    plate.solid.coarse_modes.estimated_frequency plate.elements.cross_section.CrossSection
+    plate.solid.guess.estimated_frequency plate.elements.cross_section.CrossSection
     plate.elements.cross_section.cross_section plate.solid.electrode_circuits.open_values
     plate.solid.electrode_circuits.shunted_frequencies plate.solid.refined_modes.extrapolated_class
     plate.elements.krylov.Pairs plate.elements.krylov.modes_below plate.elements.krylov.modes_near
@@ -88,7 +88,7 @@ NOT_CALLED = {
     plate.elements.lobatto.LineMesh
     plate.elements.lobatto.LineMesh.hierarchic_interpolation
     plate.elements.lobatto.LineMesh.interpolation
-    plate.elements.lobatto.hierarchic_line_matrices plate.elements.lobatto.hierarchic_values
+    plate.elements.lobatto.hierarchic_values
     plate.elements.lobatto.lagrange_basis plate.elements.lobatto.line_matrices
     plate.elements.lobatto.lobatto_nodes
     plate.solid.mode_table.collected_modes plate.solid.mode_table.energy_shares_of
@@ -97,7 +97,7 @@ NOT_CALLED = {
     plate.elements.sparse_modes.entries plate.elements.sparse_modes.gathered
     plate.elements.sparse_modes.shifted_inverse plate.ring.elements.node_coordinates
     plate.solid.model.PlateModel
-    plate.solid.resolution.Resolution plate.solid.layers.merged
+    plate.solid.layers.Resolution plate.solid.layers.merged
     plate.solid.layers.nearest plate.solid.layers.snapped
     plate.solid.mesh.plate_model plate.solid.mesh.wave_number
     plate.solid.model.PlateModel.evaluation
@@ -113,8 +113,8 @@ NOT_CALLED = {
     plate.solid.refined_modes.with_label plate.shear.elements.Axis
     plate.shear.elements.ShearSystem plate.shear.elements.ShearSystem.deflection
     plate.shear.elements.make_axis plate.shear.elements.shear_system
-    plate.solid.shear_guess.bare_frequency plate.solid.shear_guess.screened_frequency
-    plate.solid.shear_guess.straightness plate.shear.section.ShearLayout.mirrored
+    plate.solid.guess.bare_frequency plate.solid.guess.screened_frequency
+    plate.solid.guess.straightness plate.shear.section.ShearLayout.mirrored
     plate.elements.slab_factor.SlabFactor plate.elements.slabs.Slabs.grid
     plate.elements.slabs.Slabs.mass_times
     plate.elements.slabs.Slabs.places plate.elements.slabs.Slabs.stiffness_times

@@ -21,6 +21,7 @@ from squeezefilm.plate.layout import (
     RectangularPlate,
     rim_supports,
 )
+from squeezefilm.plate.solid.layers import COARSE
 from squeezefilm.plate.solid.mesh import plate_model
 from squeezefilm.plate.solid.modes import tracked
 from squeezefilm.plate.solid.reduced import (
@@ -30,7 +31,6 @@ from squeezefilm.plate.solid.reduced import (
     resolved_frequency,
     surface_values,
 )
-from squeezefilm.plate.solid.resolution import COARSE
 from squeezefilm.plate.solid.response import SurfaceLoad, harmonic_response
 from squeezefilm.plate.solid.solve import solve_modes
 from squeezefilm.plate.solid.symmetry import all_classes, drive_classes

@@ -20,6 +20,14 @@ from squeezefilm.plate.elements.lobatto import LineMesh
 
 EndCondition = Literal["free", "symmetric", "antisymmetric", "clamped"]
 
+
+def held_components(condition: EndCondition, normal: int) -> list[int]:
+    """The components (0–2 displacement, 3 potential) that vanish on a side across `normal`."""
+    if condition in ("free", "clamped"):
+        return [] if condition == "free" else [0, 1, 2]
+    return [normal] if condition == "symmetric" else [a for a in range(4) if a != normal]
+
+
 # The Voigt row of each displacement gradient (component, direction).
 _VOIGT = {
     (0, 0): 0, (1, 1): 1, (2, 2): 2, (1, 2): 3, (2, 1): 3, (0, 2): 4, (2, 0): 4, (0, 1): 5,

@@ -7,20 +7,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.errors import InputError, OutOfRangeError, SqueezefilmError
+from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import BAND_MODES, require_within
-from squeezefilm.plate.beam.modes import free_beam_mode, timoshenko_frequency
-from squeezefilm.plate.beam.response import LEAST_COVERAGE
 from squeezefilm.plate.elements.krylov import modes_below, modes_near
 from squeezefilm.plate.elements.slab_factor import SlabFactor
-from squeezefilm.plate.laminate import plate_laminate
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.solid.electrode_circuits import inverse_with_open
+from squeezefilm.plate.solid.layers import COARSE
 from squeezefilm.plate.solid.mesh import plate_model
 from squeezefilm.plate.solid.model import PlateModel
 from squeezefilm.plate.solid.modes import Label, label_of, surface_shapes
-from squeezefilm.plate.solid.resolution import COARSE
-from squeezefilm.plate.solid.shear_guess import screened_frequency
 from squeezefilm.plate.solid.symmetry import Symmetry
 
 
@@ -35,29 +31,6 @@ class CoarseModes:
     labels: list[Label | None]
     factor: SlabFactor
     shift: float
-
-
-def estimated_frequency(plate: RectangularPlate, label: Label) -> float:
-    """A first guess of a mode's frequency: a Timoshenko beam with the mode's wave number, or the
-    shear plate where ceramics cover little of it."""
-    section = plate_laminate(plate, "plane_strain")
-    lines = [(n, span) for n, span in zip(label, (plate.length, plate.width), strict=True)]
-    k2 = sum(((n - 0.5) * np.pi / span) ** 2 for n, span in lines if n >= 2)
-    k2 += 2 * (np.pi / plate.length) * (np.pi / plate.width) if label == (1, 1) else 0.0
-    if k2 == 0:
-        raise InputError(
-            f"a mode with nodal lines {label} is no elastic mode that can be guessed; solve near a "
-            "frequency or in a band",
-            quantity="mode",
-        )
-    if plate.coverage < LEAST_COVERAGE and (guess := screened_frequency(plate, label)) is not None:
-        return guess
-    if label[1] == 0:
-        try:
-            return free_beam_mode(section, plate.length, label[0]).frequency
-        except (OutOfRangeError, SqueezefilmError):
-            pass
-    return float(timoshenko_frequency(float(np.pi / np.sqrt(k2)), section))
 
 
 def class_fits(parity: Symmetry, label: Label) -> bool:

@@ -25,9 +25,15 @@ from squeezefilm.plate.elements.box_model import (
 )
 from squeezefilm.plate.elements.lobatto import MAX_ORDER, LineMesh
 from squeezefilm.plate.layout import CeramicPatch, Face, FoamSupport, RectangularPlate
-from squeezefilm.plate.solid.layers import media, merged, snapped, through_thickness
+from squeezefilm.plate.solid.layers import (
+    NORMAL,
+    Resolution,
+    media,
+    merged,
+    snapped,
+    through_thickness,
+)
 from squeezefilm.plate.solid.model import PlateModel
-from squeezefilm.plate.solid.resolution import NORMAL, Resolution
 from squeezefilm.plate.solid.symmetry import (
     SNAP,
     Symmetry,

@@ -16,9 +16,9 @@ from squeezefilm import quantities as si
 from squeezefilm.plate.elements.slab_factor import SlabFactor
 from squeezefilm.plate.elements.slabs import Slabs
 from squeezefilm.plate.layout import RectangularPlate
+from squeezefilm.plate.solid.layers import NORMAL, Resolution
 from squeezefilm.plate.solid.mesh import plate_model
 from squeezefilm.plate.solid.model import PlateModel
-from squeezefilm.plate.solid.resolution import NORMAL, Resolution
 from squeezefilm.plate.solid.symmetry import Symmetry, drive_signs
 
 

@@ -14,11 +14,11 @@ from squeezefilm.plate.elements.slab_factor import SlabFactor
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.solid.coarse_modes import CoarseModes
 from squeezefilm.plate.solid.electrode_circuits import inverse_with_open
+from squeezefilm.plate.solid.layers import COARSE, FINE, NORMAL
 from squeezefilm.plate.solid.mesh import plate_model
 from squeezefilm.plate.solid.model import PlateModel
 from squeezefilm.plate.solid.modes import Label, label_of, surface_shapes
 from squeezefilm.plate.solid.reduced import ReducedClass, resolved_frequency
-from squeezefilm.plate.solid.resolution import COARSE, FINE, NORMAL
 
 LEVELS = (NORMAL, FINE)
 # Share of the difference between two meshes that is still missing on the finer one, and the

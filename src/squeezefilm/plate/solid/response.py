@@ -17,6 +17,7 @@ from squeezefilm.plate.circuit import DrivenResponse, EquivalentCircuit
 from squeezefilm.plate.elements.again import SolvedAgain
 from squeezefilm.plate.elements.blas_threads import one_blas_thread
 from squeezefilm.plate.layout import RectangularPlate
+from squeezefilm.plate.solid.layers import NORMAL, Resolution
 from squeezefilm.plate.solid.modes import MODEL
 from squeezefilm.plate.solid.reduced import (
     ReducedClass,
@@ -26,7 +27,6 @@ from squeezefilm.plate.solid.reduced import (
     surface_values,
 )
 from squeezefilm.plate.solid.refined_modes import extrapolated_class
-from squeezefilm.plate.solid.resolution import NORMAL, Resolution
 from squeezefilm.plate.solid.symmetry import all_classes, drive_classes, drive_signs
 
 _GRID = (121, 81)

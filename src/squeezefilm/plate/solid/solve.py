@@ -20,8 +20,8 @@ from squeezefilm.plate.solid.coarse_modes import (
     chosen_modes,
     class_fits,
     coarse_modes,
-    estimated_frequency,
 )
+from squeezefilm.plate.solid.guess import estimated_frequency
 from squeezefilm.plate.solid.mode_table import collected_modes
 from squeezefilm.plate.solid.modes import Label, PlateModes, check_band
 from squeezefilm.plate.solid.refined_modes import RefinedModes, refined_modes, with_label

@@ -14,7 +14,7 @@ SPRING = np.array([[1.0, -1.0], [-1.0, 1.0]])
 
 
 def chain(count: int) -> sparse.csc_matrix:
-    """Springs between `count` masses; the first stands on the ground, by an unknown that is held."""
+    """Springs between `count` masses; the first on the ground, which is held."""
     return gathered([entries(np.array([k - 1, k]), SPRING) for k in range(count)], count)
 
 

@@ -7,9 +7,9 @@ import pytest
 
 from squeezefilm.materials import ElasticMaterial, Piezoceramic
 from squeezefilm.plate.layout import CeramicPatch, RectangularPlate
+from squeezefilm.plate.solid.layers import COARSE
 from squeezefilm.plate.solid.mesh import plate_model
 from squeezefilm.plate.solid.model import PlateModel
-from squeezefilm.plate.solid.resolution import COARSE
 from squeezefilm.plate.solid.symmetry import Parity
 
 GLASS = ElasticMaterial("glass", 72e9, 0.22, 2480)
