@@ -86,7 +86,6 @@ NOT_CALLED = {
     plate.elements.krylov.Pairs plate.elements.krylov.modes_below plate.elements.krylov.modes_near
     plate.elements.krylov.prolonged plate.elements.krylov.with_open_electrodes
     plate.elements.lobatto.LineMesh
-    plate.elements.lobatto.LineMesh.hierarchic_interpolation
     plate.elements.lobatto.LineMesh.interpolation
     plate.elements.lobatto.hierarchic_values
     plate.elements.lobatto.lagrange_basis plate.elements.lobatto.line_matrices

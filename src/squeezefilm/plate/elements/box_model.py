@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from squeezefilm import quantities as si
-from squeezefilm.errors import GeometryError, InputError
+from squeezefilm.errors import GeometryError, InputError, OutOfRangeError
 from squeezefilm.hard_limits import SOLID_MEMORY, require_within
 from squeezefilm.plate.elements.lobatto import LineMesh
 
@@ -99,6 +99,16 @@ class Foundation:
     z_plane: int
     stiffness: tuple[float, float, float]
     loss: si.Dimensionless = 0.0
+
+
+def require_aspect(name: str, height: float, on: str, extent: float, most: float) -> None:
+    """Refuse a layer or body of `height` (m) whose extent is more than `most` times that."""
+    if extent > most * height:
+        raise OutOfRangeError(
+            f"a {name} of {si.format_quantity(height, si.Unit('m'))} on a {on} of "
+            f"{si.format_quantity(extent, si.Unit('m'))} has an aspect ratio above {most:.0f}, "
+            "where three-dimensional elements lose their digits; use a plate theory"
+        )
 
 
 def kept_products(y: LineMesh, z: LineMesh, trunk: float) -> NDArray[np.bool_]:

@@ -26,6 +26,8 @@ from squeezefilm.plate.elements.lobatto import LineMesh, line_matrices
 Weight = Callable[[Medium], tuple[float, float]]
 # A factor on all foundations' stiffness, or one for each of them.
 Springs = float | Sequence[float]
+_Block = tuple[si.IntArray, si.FloatArray, si.FloatArray, si.FloatArray, si.FloatArray]
+"""Codes of an element's unknowns, and its P2, P1, P0 and R."""
 
 
 def full_weight(medium: Medium) -> tuple[float, float]:
@@ -111,9 +113,7 @@ def cross_section(
     ny, nz, base = y.nodes.size, z.nodes.size, potential_base(model)
     ceramics = max(len(model.electrodes), 1)
     size = base + ny * nz * ceramics
-    blocks: list[
-        tuple[si.IntArray, si.FloatArray, si.FloatArray, si.FloatArray, si.FloatArray]
-    ] = []
+    blocks: list[_Block] = []
     cache: dict[tuple[int, ...], tuple[si.FloatArray, si.FloatArray]] = {}
     kron_cache: dict[tuple[object, ...], tuple[si.FloatArray, ...]] = {}
     present = np.zeros(size, dtype=bool)
@@ -196,7 +196,7 @@ def _element_codes(
 
 def _assemble(
     model: BoxModel,
-    blocks: list[tuple[si.IntArray, si.FloatArray, si.FloatArray, si.FloatArray, si.FloatArray]],
+    blocks: list[_Block],
     present: si.FloatArray,
     electrode_of: si.IntArray,
 ) -> CrossSection:

@@ -150,15 +150,9 @@ class LineMesh:
             out[self.first_node[k] + 1 : self.first_node[k + 1]] = np.arange(2, order + 1)
         return out
 
-    def hierarchic_interpolation(self, points: si.FloatArray) -> si.FloatArray:
-        """The matrix that takes hierarchic coefficients to values at `points`."""
-        return self._evaluation(points, hierarchic=True)
-
-    def interpolation(self, points: si.FloatArray) -> si.FloatArray:
-        """The matrix that takes nodal values to values at `points`; shape (points, nodes)."""
-        return self._evaluation(points, hierarchic=False)
-
-    def _evaluation(self, points: si.FloatArray, hierarchic: bool) -> si.FloatArray:
+    def interpolation(self, points: si.FloatArray, *, hierarchic: bool = False) -> si.FloatArray:
+        """The matrix that takes nodal values, or hierarchic coefficients, to values at `points`;
+        shape (points, nodes)."""
         points = np.atleast_1d(np.asarray(points, dtype=float))
         edges = np.array(self.edges)
         owner = np.clip(np.searchsorted(edges, points, side="right") - 1, 0, self.elements - 1)

@@ -16,8 +16,9 @@ import numpy as np
 from scipy import sparse
 
 from squeezefilm import quantities as si
-from squeezefilm.errors import GeometryError, OutOfRangeError
+from squeezefilm.errors import GeometryError
 from squeezefilm.hard_limits import RING_ELEMENTS, require_within
+from squeezefilm.plate.elements.box_model import require_aspect
 from squeezefilm.plate.elements.lobatto import gauss_points, lagrange, lobatto_nodes
 from squeezefilm.plate.elements.sparse_modes import Entries, entries, gathered
 from squeezefilm.plate.ring.section import AnnularSection, RingLayer
@@ -85,16 +86,9 @@ def ring_mesh(section: AnnularSection, *, graded: bool = True) -> RingMesh:
     """
     layers = section.layers
     radius = max(layer.outer_radius for layer in layers)
-    for name, height, most in (
-        ("body", section.thickness, _THINNEST_BODY),
-        ("layer", min(layer.thickness for layer in layers), _THINNEST_LAYER),
-    ):
-        if radius > most * height:
-            raise OutOfRangeError(
-                f"a {name} of {si.format_quantity(height, si.Unit('m'))} on a radius of "
-                f"{si.format_quantity(radius, si.Unit('m'))} has an aspect ratio above {most:.0f}, "
-                "where three-dimensional elements lose their digits; use a plate theory"
-            )
+    thinnest = min(layer.thickness for layer in layers)
+    require_aspect("body", section.thickness, "radius", radius, _THINNEST_BODY)
+    require_aspect("layer", thinnest, "radius", radius, _THINNEST_LAYER)
     r_breaks = _unique([x for a in layers for x in (a.inner_radius, a.outer_radius)])
     z_breaks = _unique([x for a in layers for x in (a.bottom, a.top)])
     longest = max(3 * section.thickness, (r_breaks[-1] - r_breaks[0]) / 6)

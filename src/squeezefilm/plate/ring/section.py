@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Annotated, Literal
 
 import numpy as np
+from scipy.sparse import csgraph
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import GeometryError, InputError
@@ -66,31 +67,22 @@ class AnnularSection:
     def __post_init__(self) -> None:
         if not self.layers:
             raise GeometryError("layers is empty; a ring needs at least one")
-        for i, a in enumerate(self.layers):
-            for j, b in enumerate(self.layers[:i]):
-                wide = min(a.outer_radius, b.outer_radius) - max(a.inner_radius, b.inner_radius)
-                high = min(a.top, b.top) - max(a.bottom, b.bottom)
-                if wide > _SAME and high > _SAME:
-                    raise GeometryError(
-                        f"ring layers {j + 1} and {i + 1} overlap by "
-                        f"{si.format_quantity(wide, _M)} × {si.format_quantity(high, _M)}; move "
-                        "one of them"
-                    )
-        self._check_connected()
-
-    def _check_connected(self) -> None:
-        reached, todo = {0}, [0]
-        while todo:
-            a = self.layers[todo.pop()]
-            for j, b in enumerate(self.layers):
-                wide = min(a.outer_radius, b.outer_radius) - max(a.inner_radius, b.inner_radius)
-                high = min(a.top, b.top) - max(a.bottom, b.bottom)
-                touching = min(wide, high) > -_SAME and max(wide, high) > _SAME
-                if j not in reached and touching:
-                    reached.add(j)
-                    todo.append(j)
-        if len(reached) < len(self.layers):
-            loose = min(set(range(len(self.layers))) - reached)
+        count = len(self.layers)
+        touching = np.eye(count, dtype=bool)
+        for i, j in itertools.combinations(range(count), 2):
+            a, b = self.layers[i], self.layers[j]
+            wide = min(a.outer_radius, b.outer_radius) - max(a.inner_radius, b.inner_radius)
+            high = min(a.top, b.top) - max(a.bottom, b.bottom)
+            if wide > _SAME and high > _SAME:
+                raise GeometryError(
+                    f"ring layers {i + 1} and {j + 1} overlap by "
+                    f"{si.format_quantity(wide, _M)} × {si.format_quantity(high, _M)}; move one of "
+                    "them"
+                )
+            touching[i, j] = min(wide, high) > -_SAME and max(wide, high) > _SAME
+        _, piece = csgraph.connected_components(touching, directed=False)
+        if np.any(piece != piece[0]):
+            loose = int(np.argmax(piece != piece[0]))
             raise GeometryError(
                 f"ring layer {loose + 1} does not touch the others; let them share a face"
             )

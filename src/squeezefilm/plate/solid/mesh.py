@@ -21,6 +21,7 @@ from squeezefilm.plate.elements.box_model import (
     Electrode,
     EndCondition,
     Foundation,
+    require_aspect,
     require_memory,
 )
 from squeezefilm.plate.elements.lobatto import MAX_ORDER, LineMesh
@@ -193,13 +194,7 @@ def _require_thick(plate: RectangularPlate, frequency: float, wave: float) -> No
         *(patch.thickness for patch in plate.patches),
         math.inf if plate.glue is None else plate.glue.thickness,
     )
-    if max(plate.length, plate.width) > _THINNEST * thinnest:
-        raise OutOfRangeError(
-            f"a layer of {si.format_quantity(thinnest, si.Unit('m'))} on a plate of "
-            f"{si.format_quantity(max(plate.length, plate.width), si.Unit('m'))} has an aspect "
-            f"ratio above {_THINNEST:.0f}, where three-dimensional elements lose their digits; use "
-            "a plate theory"
-        )
+    require_aspect("layer", thinnest, "plate", max(plate.extent), _THINNEST)
     if math.pi / wave > _SLENDEREST * plate.thickness:
         ratio = math.pi / wave / plate.thickness
         raise OutOfRangeError(

@@ -90,7 +90,7 @@ class PlateModel:
         along, across = folded[::-1] if self.swapped else folded
         return (
             self.model.x.interpolation(along),
-            self.model.y.hierarchic_interpolation(across),
-            self.model.z.hierarchic_interpolation(z),
+            self.model.y.interpolation(across, hierarchic=True),
+            self.model.z.interpolation(z, hierarchic=True),
             signs[0][:, None, :] * signs[1][None, :, :],
         )
