@@ -13,7 +13,6 @@ from typing import Any, Literal
 
 import numpy as np
 
-from squeezefilm.plate.ring.materials import isotropic_solid
 from squeezefilm.plate.shear.section import ShearLayout, ShearSection
 from squeezefilm.plate.solid.modes import PlateModes
 from squeezefilm.plate.sound import RadiatingSurface
@@ -23,7 +22,6 @@ from squeezefilm.render.texture.gratings import Texture
 from squeezefilm.render.texture.levels import Amplitude, RelativeFriction
 
 from .made_objects import (
-    BRASS,
     MADE,
     PLATE,
     PZT,
@@ -149,9 +147,6 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
     },
     "plate.ring.section.AnnularSection": {"layers": Later(lambda: disc_section().layers)},
     "plate.ring.section.SectorDrive": {"sectors": ((0.0, 1.0, 1),)},
-    "plate.ring.materials.RingSolid": {
-        "stiffness": Later(lambda: isotropic_solid(BRASS).stiffness)
-    },
     "plate.beam.modes.BeamMode.deflection_at": {"x": WAYS},
     "plate.beam.modes.BeamMode.rotation_at": {"x": WAYS},
     "plate.laminate.Laminate.moment_arm": {"layer": 0},

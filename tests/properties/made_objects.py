@@ -36,7 +36,6 @@ from squeezefilm.plate.laminate import Laminate, Layer, plate_laminate
 from squeezefilm.plate.layout import CeramicPatch, DiscPlate, RectangularPlate
 from squeezefilm.plate.loaded_mode import LoadedMode
 from squeezefilm.plate.ring.body import RingBody
-from squeezefilm.plate.ring.materials import RingSolid, isotropic_solid
 from squeezefilm.plate.ring.modes import AnnularMode, bending_mode
 from squeezefilm.plate.ring.response import RingResponse, ring_response
 from squeezefilm.plate.ring.section import (
@@ -147,7 +146,6 @@ MADE: dict[Any, Callable[[], Any]] = {
     AnnularSection: disc_section,
     SectorDrive: full_drive,
     RingLayer: lambda: disc_section().layers[0],
-    RingSolid: lambda: isotropic_solid(BRASS),
     BeamMode: lambda: beam_response(PLATE).mode,
     Laminate: lambda: plate_laminate(PLATE),
     Layer: lambda: Layer(1e-3, 100e9, 40e9, 8500.0),

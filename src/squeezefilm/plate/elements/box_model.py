@@ -16,7 +16,9 @@ from numpy.typing import NDArray
 from squeezefilm import quantities as si
 from squeezefilm.errors import GeometryError, InputError, OutOfRangeError
 from squeezefilm.hard_limits import SOLID_MEMORY, require_within
+from squeezefilm.materials import ElasticMaterial, Piezoceramic, isotropic_stiffness
 from squeezefilm.plate.elements.lobatto import LineMesh
+from squeezefilm.plate.layout import GlueLayer
 
 EndCondition = Literal["free", "symmetric", "antisymmetric", "clamped"]
 
@@ -44,12 +46,13 @@ POTENTIAL_UNIT = 3e9
 class Medium:
     """What a cell is filled with: `stiffness` c at constant field (6 × 6, Pa), `stress_matrix` e
     (3 × 6, C/m²), `permittivity` ε at constant strain (3 × 3, F/m), density and `loss` (the
-    structural loss factor 1/Q of c). Voigt order xx, yy, zz, yz, xz, xy."""
+    structural loss factor 1/Q of c; None if only the assembly's is known). Voigt order xx, yy, zz,
+    yz, xz, xy; of rings r, θ, z in place of x, y, z."""
 
     name: str
     stiffness: si.FloatArray
     density: si.KilogramPerCubicMetre
-    loss: si.Dimensionless = 0.0
+    loss: si.Dimensionless | None = 0.0
     stress_matrix: si.FloatArray | None = None
     permittivity: si.FloatArray | None = None
 
@@ -77,6 +80,41 @@ class Medium:
         if self.permittivity is not None:
             out[3, :, 3, :] = -electrical * POTENTIAL_UNIT**2 * self.permittivity
         return out
+
+
+@si.checked_numbers
+def isotropic_solid(
+    material: ElasticMaterial | GlueLayer, loss: si.Dimensionless | None = None, name: str = ""
+) -> Medium:
+    """A metal, a glass or glue as a medium, with its own 1/Q (None if it has none) unless `loss` is
+    given."""
+    own = None if material.quality_factor is None else 1 / material.quality_factor
+    return Medium(
+        name or material.name,
+        isotropic_stiffness(material.young_modulus, material.poisson_ratio),
+        material.density,
+        own if loss is None else loss,
+    )
+
+
+@si.checked_numbers
+def piezoceramic_solid(
+    ceramic: Piezoceramic,
+    loss: si.Dimensionless | None = None,
+    name: str = "",
+    poling: Literal[1, -1] = 1,
+) -> Medium:
+    """A ceramic poled along +z or −z: its `full_constants`, isotropic across the poling (6mm) as
+    `PiezoConstants` checks, so that x and y may be r and θ. Its own 1/Q unless `loss` is given."""
+    constants = ceramic.full_constants
+    return Medium(
+        name or ceramic.name,
+        constants.stiffness_matrix,
+        ceramic.density,
+        1 / ceramic.quality_factor if loss is None else loss,
+        poling * constants.stress_matrix,
+        constants.permittivity_matrix,
+    )
 
 
 @dataclass(frozen=True)

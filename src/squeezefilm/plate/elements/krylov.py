@@ -96,7 +96,7 @@ def modes_near(
         return Pairs(before, np.zeros((slabs.unknowns, 0)))
     raise ConvergenceError(
         f"the modes did not converge in {_MOST_STEPS} steps; ask for a narrower band or fewer "
-            "modes",
+        "modes",
         iterations=_MOST_STEPS,
     )
 

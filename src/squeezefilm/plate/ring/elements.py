@@ -184,7 +184,7 @@ def harmonic_system(
         per_layer[mesh.layer[i, j]].append(entries(mechanical, stiff))
         whole = np.kron(np.eye(3), inertia) * np.outer(signs[: 3 * nodes], signs[: 3 * nodes])
         masses.append(entries(rows[: 3 * nodes], whole))
-        if layer.is_piezoelectric:
+        if layer.solid.piezoelectric:
             # One volt between the faces: E_z = ∓1/h, uniform, so that no charge is left inside.
             field = (1.0 if layer.driven_face == "lower" else -1.0) / layer.thickness
             stress = law[:6, 8] * field  # law[:6, 6:] is −eᵀ: T = c S − eᵀ E
@@ -252,11 +252,12 @@ def _strains(
 def _constitutive(layer: RingLayer) -> si.FloatArray:
     """[[c, −eᵀ], [−e, −ε]] (9, 9): the electric enthalpy is half of its quadratic form."""
     law = np.zeros((9, 9))
-    law[:6, :6] = layer.solid.stiffness
-    if layer.solid.piezoelectric is not None and layer.solid.permittivity is not None:
-        law[6:, :6] = -layer.solid.piezoelectric
-        law[:6, 6:] = -layer.solid.piezoelectric.T
-        law[6:, 6:] = -np.diag(layer.solid.permittivity)
+    solid = layer.solid
+    law[:6, :6] = (solid.stiffness + solid.stiffness.T) / 2
+    if solid.stress_matrix is not None and solid.permittivity is not None:
+        law[6:, :6] = -solid.stress_matrix
+        law[:6, 6:] = -solid.stress_matrix.T
+        law[6:, 6:] = -solid.permittivity
     return law
 
 
@@ -276,7 +277,7 @@ def _unknowns(
         cell = np.s_[i * degree : (i + 1) * degree + 1, j * degree : (j + 1) * degree + 1]
         used[cell] = True
         layer = section.layers[mesh.layer[i, j]]
-        if layer.is_piezoelectric:
+        if layer.solid.piezoelectric:
             electric[cell] = True
             faces = (np.abs(z - layer.bottom) <= _SAME) | (np.abs(z - layer.top) <= _SAME)
             held[cell] |= faces[None, j * degree : (j + 1) * degree + 1]

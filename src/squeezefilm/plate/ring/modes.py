@@ -157,9 +157,9 @@ def clamped_capacitance(section: AnnularSection, drive: SectorDrive) -> si.Farad
     """
     total = 0.0
     for layer in section.layers:
-        if layer.solid.permittivity is not None and layer.is_piezoelectric:
+        if layer.solid.permittivity is not None and layer.solid.piezoelectric:
             area = (layer.outer_radius**2 - layer.inner_radius**2) / 2
-            total += layer.solid.permittivity[2] * area / layer.thickness
+            total += layer.solid.permittivity[2, 2] * area / layer.thickness
     if total == 0:
         raise InputError("no layer is piezoelectric; add a ceramic to have an admittance")
     return float(total * drive.angle)
@@ -299,7 +299,7 @@ def _quality(
 ) -> float:
     if quality_factor is not None:
         return quality_factor
-    losses = [layer.solid.loss_factor for layer in section.layers]
+    losses = [layer.solid.loss for layer in section.layers]
     if any(loss is None for loss in losses):
         raise InputError(
             "quality_factor is not given, and not every layer has a loss_factor; give either",

@@ -12,9 +12,9 @@ from scipy.sparse import csgraph
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import GeometryError, InputError
-from squeezefilm.materials import ElasticMaterial
+from squeezefilm.plate.elements.box_model import Medium, isotropic_solid, piezoceramic_solid
 from squeezefilm.plate.layout import DiscPlate
-from squeezefilm.plate.ring.materials import RingSolid, isotropic_solid, piezoceramic_solid
+from squeezefilm.plate.ring.materials import require_decoupled
 
 _M = si.Unit("m")
 # Half a nanometre: what two edges may differ by and still be the same edge.
@@ -34,22 +34,18 @@ class RingLayer:
     outer_radius: si.Metre
     bottom: si.Metre
     top: si.Metre
-    solid: RingSolid
+    solid: Medium
     driven_face: Literal["lower", "upper"] = "lower"
 
     def __post_init__(self) -> None:
         si.require("outer_radius", self.outer_radius, _M, above=self.inner_radius)
         si.require("top", self.top, _M, above=self.bottom)
+        require_decoupled(self.solid)
 
     @property
     def thickness(self) -> si.Metre:
         """Top minus bottom."""
         return self.top - self.bottom
-
-    @property
-    def is_piezoelectric(self) -> bool:
-        """Whether the layer has electrodes."""
-        return self.solid.piezoelectric is not None
 
 
 @si.checked_numbers
@@ -201,11 +197,8 @@ def bonded_disc(disc: DiscPlate) -> AnnularSection:
     piezo = piezoceramic_solid(disc.ceramic, loss_factor)
     layers = [RingLayer(inner, outer, 0.0, base, piezo)]
     if glue is not None:
-        bond = ElasticMaterial(
-            "glue", glue.young_modulus, glue.poisson_ratio, glue.density, glue.quality_factor
-        )
         top = base + glue.thickness
-        layers.append(RingLayer(inner, outer, base, top, isotropic_solid(bond, loss_factor)))
+        layers.append(RingLayer(inner, outer, base, top, isotropic_solid(glue, loss_factor)))
         base = top
     solid, half = isotropic_solid(disc.substrate, loss_factor), disc.inner_diameter / 2
     layers.append(RingLayer(half, disc.diameter / 2, base, base + disc.thickness, solid))

@@ -11,12 +11,8 @@ from scipy.optimize import brentq
 from squeezefilm import quantities as si
 from squeezefilm.errors import GeometryError, UnreachableError
 from squeezefilm.materials import ElasticMaterial, Piezoceramic
-from squeezefilm.plate.ring.materials import (
-    isotropic_solid,
-    piezoceramic_solid,
-    soft_teeth,
-    stiff_teeth,
-)
+from squeezefilm.plate.elements.box_model import isotropic_solid, piezoceramic_solid
+from squeezefilm.plate.ring.materials import soft_teeth, stiff_teeth
 from squeezefilm.plate.ring.modes import DEFAULT_DEGREE, AnnularMode, bending_mode
 from squeezefilm.plate.ring.section import (
     AnnularSection,

@@ -9,8 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.materials import isotropic_stiffness
-from squeezefilm.plate.elements.box_model import Medium
+from squeezefilm.plate.elements.box_model import Medium, isotropic_solid, piezoceramic_solid
 from squeezefilm.plate.elements.lobatto import LineMesh
 from squeezefilm.plate.layout import Face, RectangularPlate
 from squeezefilm.plate.solid.symmetry import SNAP
@@ -54,41 +53,14 @@ def _losses(plate: RectangularPlate) -> tuple[float, float, float]:
 
 def media(plate: RectangularPlate) -> tuple[Medium, ...]:
     """Substrate, ceramic of either polarity and glue, in the order of their numbers in a mesh."""
-    constants = plate.ceramic.full_constants
     substrate, ceramic, glue = _losses(plate)
-    density = plate.ceramic.density
-
-    def piezo(name: str, sign: float) -> Medium:
-        return Medium(
-            name,
-            constants.stiffness_matrix,
-            density,
-            ceramic,
-            sign * constants.stress_matrix,
-            constants.permittivity_matrix,
-        )
-
     media = [
-        Medium(
-            "substrate",
-            isotropic_stiffness(plate.substrate.young_modulus, plate.substrate.poisson_ratio),
-            plate.substrate.density,
-            substrate,
-        ),
+        isotropic_solid(plate.substrate, substrate, "substrate"),
         # Poled away from the plate: towards −z below it, where all e change their sign.
-        piezo("ceramic_bottom", -1.0),
-        piezo("ceramic_top", 1.0),
+        piezoceramic_solid(plate.ceramic, ceramic, "ceramic_bottom", -1),
+        piezoceramic_solid(plate.ceramic, ceramic, "ceramic_top"),
     ]
-    if plate.glue is not None:
-        media.append(
-            Medium(
-                "glue",
-                isotropic_stiffness(plate.glue.young_modulus, plate.glue.poisson_ratio),
-                plate.glue.density,
-                glue,
-            )
-        )
-    return tuple(media)
+    return (*media, *([isotropic_solid(plate.glue, glue)] if plate.glue is not None else []))
 
 
 def thicknesses(plate: RectangularPlate, face: Face) -> list[si.Metre]:

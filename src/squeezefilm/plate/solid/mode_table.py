@@ -40,7 +40,7 @@ def energy_shares_of(slabs: Slabs, vectors: si.FloatArray) -> tuple[si.FloatArra
 
         sections = slabs.weighted_sections(only, springs=0.0)
         energy.append(np.sum(vectors * slabs.stiffness_times(vectors, sections), axis=0))
-        lost.append(energy[-1] * medium.loss)
+        lost.append(energy[-1] * (medium.loss or 0.0))
     if model.foundations:
         for total, springs in ((energy, 1.0), (lost, model.spring_losses)):
             sections = slabs.weighted_sections(lambda m: (0.0, 0.0), springs=springs)

@@ -95,7 +95,7 @@ def reduced_class(
     columns += [G[:, number] for number, _, _ in circuit]
     columns += [solved.force(x, y, plate.thickness, w) for x, y, w in loads]
     basis = _krylov_space(slabs, factor, np.stack(columns, axis=1), steps)
-    sections = slabs.weighted_sections(lambda m: (m.loss, 0.0), slabs.model.spring_losses)
+    sections = slabs.weighted_sections(lambda m: (m.loss or 0.0, 0.0), slabs.model.spring_losses)
     KW, LW = slabs.stiffness_times(basis), slabs.stiffness_times(basis, sections)
     n = float(solved.copies)
     return ReducedClass(

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.materials import ElasticMaterial
+from squeezefilm.plate.elements.box_model import isotropic_solid
 from squeezefilm.plate.ring.elements import (
     HarmonicSystem,
     graded_edges,
@@ -13,7 +14,6 @@ from squeezefilm.plate.ring.elements import (
     node_coordinates,
     ring_mesh,
 )
-from squeezefilm.plate.ring.materials import isotropic_solid
 from squeezefilm.plate.ring.section import AnnularSection, RingLayer
 
 
