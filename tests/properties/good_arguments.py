@@ -178,6 +178,7 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
     "plate.ring.response.ring_response": {"frequencies": np.array([30e3]), "harmonics": (0,)},
     "plate.shear.modes.shear_modes": {"near": 30e3, "count": 1, "degree": 3},
     "plate.shear.modes.shear_mode": {"near": 60e3, "degree": 3, "nodal_lines": (4, 0)},
+    "plate.shear.section.ShearLayout.parity_of": {"nodal_lines": (8, 0)},
     "plate.shear.section.ShearSection": Later(lambda: fields_of(made(ShearSection))),
     "plate.shear.section.ShearLayout": Later(lambda: fields_of(made(ShearLayout))),
     "plate.sound.rectangular_surface": _RADIATOR,

@@ -32,6 +32,7 @@ from squeezefilm.materials import ElasticMaterial, Gas, Piezoceramic, PiezoConst
 from squeezefilm.plate.beam.modes import BeamMode
 from squeezefilm.plate.beam.response import BeamResponse, beam_response
 from squeezefilm.plate.circuit import EquivalentCircuit
+from squeezefilm.plate.elements.box_model import Medium, isotropic_solid
 from squeezefilm.plate.laminate import Laminate, Layer, plate_laminate
 from squeezefilm.plate.layout import CeramicPatch, DiscPlate, RectangularPlate
 from squeezefilm.plate.loaded_mode import LoadedMode
@@ -156,6 +157,7 @@ MADE: dict[Any, Callable[[], Any]] = {
     VibratedFilm: lambda: VibratedFilm(2e-6, 40e3, 10e-3),
     EquivalentCircuit: lambda: EquivalentCircuit(30e3, 60.0, 1e-9, 100.0, 0.03, 1e-9),
     BeamResponse: lambda: beam_response(PLATE),
+    Medium: lambda: isotropic_solid(BRASS),
     ShearLayout: lambda: shear_layout(PLATE),
     ShearSection: lambda: isotropic_section(BRASS, 2e-3),
     RadiatingSurface: lambda: rectangular_surface(

@@ -77,13 +77,14 @@ NOT_CALLED = {
     plate.elements.box_model.Electrode
     plate.elements.box_model.Foundation plate.elements.box_model.Medium
     plate.elements.box_model.Medium.gradient_matrix plate.elements.box_model.kept_products
+    plate.elements.box_model.held_components plate.elements.box_model.require_aspect
     plate.elements.box_model.require_memory plate.solid.electrode_circuits.tied_electrodes
     plate.solid.coarse_modes.CoarseModes plate.solid.coarse_modes.chosen_modes
     plate.solid.coarse_modes.class_fits plate.solid.coarse_modes.coarse_modes
     plate.solid.guess.estimated_frequency plate.elements.cross_section.CrossSection
     plate.elements.cross_section.cross_section plate.solid.electrode_circuits.open_values
     plate.solid.electrode_circuits.shunted_frequencies plate.solid.refined_modes.extrapolated_class
-    plate.elements.krylov.Pairs plate.elements.krylov.modes_below plate.elements.krylov.modes_near
+    plate.elements.krylov.modes_below plate.elements.krylov.modes_near
     plate.elements.krylov.prolonged plate.elements.krylov.with_open_electrodes
     plate.elements.lobatto.LineMesh
     plate.elements.lobatto.LineMesh.interpolation
@@ -103,8 +104,7 @@ NOT_CALLED = {
     plate.solid.model.PlateModel.field plate.solid.model.PlateModel.force
     plate.solid.modes.label_of plate.solid.modes.profiles plate.solid.modes.surface_shapes
     plate.solid.modes.zero_crossings plate.solid.symmetry.mirror_map
-    plate.solid.reduced.ReducedClass plate.solid.reduced.class_drive
-    plate.solid.reduced.class_slices plate.solid.reduced.plate_circuit
+    plate.solid.reduced.ReducedClass
     plate.solid.reduced.harmonic_solution
     plate.solid.reduced.reduced_class plate.solid.reduced.resolved_frequency
     plate.solid.reduced.surface_values plate.solid.refined_modes.RefinedModes

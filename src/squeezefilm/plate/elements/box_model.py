@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import functools
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +20,7 @@ from squeezefilm.materials import ElasticMaterial, Piezoceramic, isotropic_stiff
 from squeezefilm.plate.elements.lobatto import LineMesh
 from squeezefilm.plate.layout import GlueLayer
 
+Loss = Annotated[si.Dimensionless, si.AtLeast(0), si.Below(2)]
 EndCondition = Literal["free", "symmetric", "antisymmetric", "clamped"]
 
 
@@ -84,7 +85,7 @@ class Medium:
 
 @si.checked_numbers
 def isotropic_solid(
-    material: ElasticMaterial | GlueLayer, loss: si.Dimensionless | None = None, name: str = ""
+    material: ElasticMaterial | GlueLayer, loss: Loss | None = None, name: str = ""
 ) -> Medium:
     """A metal, a glass or glue as a medium, with its own 1/Q (None if it has none) unless `loss` is
     given."""
@@ -100,7 +101,7 @@ def isotropic_solid(
 @si.checked_numbers
 def piezoceramic_solid(
     ceramic: Piezoceramic,
-    loss: si.Dimensionless | None = None,
+    loss: Loss | None = None,
     name: str = "",
     poling: Literal[1, -1] = 1,
 ) -> Medium:
