@@ -253,8 +253,9 @@ def _constitutive(layer: RingLayer) -> si.FloatArray:
     """[[c, −eᵀ], [−e, −ε]] (9, 9): the electric enthalpy is half of its quadratic form."""
     law = np.zeros((9, 9))
     solid = layer.solid
-    law[:6, :6] = (solid.stiffness + solid.stiffness.T) / 2
+    law[:6, :6] = solid.stiffness
     if solid.stress_matrix is not None and solid.permittivity is not None:
+        law[:6, :6] = (solid.stiffness + solid.stiffness.T) / 2
         law[6:, :6] = -solid.stress_matrix
         law[:6, 6:] = -solid.stress_matrix.T
         law[6:, 6:] = -solid.permittivity
