@@ -31,11 +31,11 @@ from squeezefilm.materials import ElasticMaterial, Gas, Piezoceramic, PiezoConst
 from squeezefilm.plate.beam.modes import BeamMode
 from squeezefilm.plate.beam.response import BeamResponse, beam_response
 from squeezefilm.plate.circuit import EquivalentCircuit
+from squeezefilm.plate.elements.box_model import Medium, isotropic_solid
 from squeezefilm.plate.laminate import Laminate, Layer, plate_laminate
 from squeezefilm.plate.layout import CeramicPatch, DiscPlate, RectangularPlate
 from squeezefilm.plate.loaded_mode import LoadedMode
 from squeezefilm.plate.ring.body import RingBody
-from squeezefilm.plate.ring.materials import RingSolid, isotropic_solid
 from squeezefilm.plate.ring.modes import AnnularMode, bending_mode
 from squeezefilm.plate.ring.response import RingResponse, ring_response
 from squeezefilm.plate.ring.section import (
@@ -144,7 +144,6 @@ MADE: dict[Any, Callable[[], Any]] = {
     AnnularSection: disc_section,
     SectorDrive: full_drive,
     RingLayer: lambda: disc_section().layers[0],
-    RingSolid: lambda: isotropic_solid(BRASS),
     BeamMode: lambda: beam_response(PLATE).mode,
     Laminate: lambda: plate_laminate(PLATE),
     Layer: lambda: Layer(1e-3, 100e9, 40e9, 8500.0),
@@ -155,6 +154,7 @@ MADE: dict[Any, Callable[[], Any]] = {
     VibratedFilm: lambda: VibratedFilm(2e-6, 40e3, 10e-3),
     EquivalentCircuit: lambda: EquivalentCircuit(30e3, 60.0, 1e-9, 100.0, 0.03, 1e-9),
     BeamResponse: lambda: beam_response(PLATE),
+    Medium: lambda: isotropic_solid(BRASS),
     ShearLayout: lambda: shear_layout(PLATE),
     ShearSection: lambda: isotropic_section(BRASS, 2e-3),
     RadiatingSurface: lambda: rectangular_surface(

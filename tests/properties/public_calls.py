@@ -47,7 +47,7 @@ NOT_CALLED = {
     formats.hjif.HjifExport formats.hjif_read.HjifImport plate.ring.modes.AnnularMode
     plate.beam.modes.BeamMode plate.solid.modes.PlateModes plate.solid.response.HarmonicResponse
     plate.solid.volume.PlateVolume plate.beam.response.BeamResponse plate.ring.body.RingBody
-    plate.ring.body.RingWorkingMode plate.ring.response.RingResponse
+    plate.ring.response.RingResponse
     plate.shear.modes.ShearMode plate.solid.working.SolidMode plate.sound.ExposureGuidance
     plate.sound.SoundField plate.working_mode.ModeLine plate.working_mode.WorkingMode
     plate.ring.stator.StatorFit
@@ -78,39 +78,43 @@ NOT_CALLED = {
     plate.elements.box_model.Electrode
     plate.elements.box_model.Foundation plate.elements.box_model.Medium
     plate.elements.box_model.Medium.gradient_matrix plate.elements.box_model.kept_products
+    plate.elements.box_model.held_components plate.elements.box_model.require_aspect
     plate.elements.box_model.require_memory plate.solid.electrode_circuits.tied_electrodes
     plate.solid.coarse_modes.CoarseModes plate.solid.coarse_modes.chosen_modes
     plate.solid.coarse_modes.class_fits plate.solid.coarse_modes.coarse_modes
-    plate.solid.coarse_modes.estimated_frequency plate.elements.cross_section.CrossSection
+    plate.solid.guess.estimated_frequency plate.elements.cross_section.CrossSection
     plate.elements.cross_section.cross_section plate.solid.electrode_circuits.open_values
-    plate.solid.electrode_circuits.shunted_frequencies plate.solid.extrapolated.extrapolated_class
-    plate.elements.krylov.Pairs plate.elements.krylov.modes_below plate.elements.krylov.modes_near
+    plate.solid.electrode_circuits.shunted_frequencies plate.solid.refined_modes.extrapolated_class
+    plate.elements.krylov.modes_below plate.elements.krylov.modes_near
     plate.elements.krylov.prolonged plate.elements.krylov.with_open_electrodes
     plate.elements.lobatto.LineMesh
-    plate.elements.lobatto.LineMesh.hierarchic_interpolation
     plate.elements.lobatto.LineMesh.interpolation
-    plate.elements.lobatto.hierarchic_line_matrices plate.elements.lobatto.hierarchic_values
+    plate.elements.lobatto.hierarchic_values
     plate.elements.lobatto.lagrange_basis plate.elements.lobatto.line_matrices
     plate.elements.lobatto.lobatto_nodes
     plate.solid.mode_table.collected_modes plate.solid.mode_table.energy_shares_of
-    plate.elements.nodal_basis.gauss_points plate.elements.nodal_basis.graded_edges
-    plate.elements.nodal_basis.lagrange
-    plate.elements.nodal_basis.node_coordinates plate.solid.mesh.PlateModel
-    plate.solid.resolution.Resolution plate.solid.layers.merged
+    plate.elements.lobatto.gauss_points plate.ring.elements.graded_edges
+    plate.elements.lobatto.lagrange plate.elements.sparse_modes.nearest_modes
+    plate.elements.sparse_modes.entries plate.elements.sparse_modes.gathered
+    plate.elements.sparse_modes.shifted_inverse plate.ring.elements.node_coordinates
+    plate.solid.model.PlateModel
+    plate.solid.layers.Resolution plate.solid.layers.merged
     plate.solid.layers.nearest plate.solid.layers.snapped
     plate.solid.mesh.plate_model plate.solid.mesh.wave_number
-    plate.solid.modes.SolvedModel.field plate.solid.modes.SolvedModel.force
+    plate.solid.model.PlateModel.evaluation
+    plate.solid.model.PlateModel.field plate.solid.model.PlateModel.force
     plate.solid.modes.label_of plate.solid.modes.profiles plate.solid.modes.surface_shapes
     plate.solid.modes.zero_crossings plate.solid.symmetry.mirror_map
-    plate.solid.reduced.ReducedClass plate.solid.reduced.harmonic_solution
+    plate.solid.reduced.ReducedClass
+    plate.solid.reduced.harmonic_solution
     plate.solid.reduced.reduced_class plate.solid.reduced.resolved_frequency
     plate.solid.reduced.surface_values plate.solid.refined_modes.RefinedModes
     plate.solid.refined_modes.extrapolated plate.solid.refined_modes.refined_modes
     plate.solid.refined_modes.with_label plate.shear.elements.Axis
     plate.shear.elements.ShearSystem plate.shear.elements.ShearSystem.deflection
     plate.shear.elements.make_axis plate.shear.elements.shear_system
-    plate.solid.shear_guess.bare_frequency plate.solid.shear_guess.screened_frequency
-    plate.solid.shear_guess.straightness plate.shear.section.ShearLayout.mirrored
+    plate.solid.guess.bare_frequency plate.solid.guess.screened_frequency
+    plate.solid.guess.straightness plate.shear.section.ShearLayout.mirrored
     plate.elements.slab_factor.SlabFactor plate.elements.slabs.Slabs.grid
     plate.elements.slabs.Slabs.mass_times
     plate.elements.slabs.Slabs.places plate.elements.slabs.Slabs.stiffness_times

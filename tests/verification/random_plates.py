@@ -9,9 +9,9 @@ from squeezefilm.errors import InputError
 from squeezefilm.materials import ElasticMaterial, Piezoceramic
 from squeezefilm.plate.elements.slabs import Slabs
 from squeezefilm.plate.layout import CeramicPatch, GlueLayer, RectangularPlate
-from squeezefilm.plate.solid.coarse_modes import estimated_frequency
+from squeezefilm.plate.solid.guess import estimated_frequency
+from squeezefilm.plate.solid.layers import Resolution
 from squeezefilm.plate.solid.mesh import plate_model
-from squeezefilm.plate.solid.resolution import Resolution
 from squeezefilm.plate.solid.symmetry import all_classes
 
 SUBSTRATES = (

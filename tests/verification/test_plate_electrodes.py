@@ -8,8 +8,8 @@ import pytest
 
 from squeezefilm.errors import OutOfRangeError
 from squeezefilm.plate.layout import CeramicPatch, FoamSupport, RectangularPlate
+from squeezefilm.plate.solid.layers import Resolution
 from squeezefilm.plate.solid.mesh import plate_model
-from squeezefilm.plate.solid.resolution import Resolution
 from squeezefilm.plate.solid.response import harmonic_response
 from squeezefilm.plate.solid.solve import solve_modes
 

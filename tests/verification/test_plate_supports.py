@@ -16,10 +16,10 @@ from squeezefilm.plate.layout import (
     rim_supports,
     turned,
 )
+from squeezefilm.plate.solid.guess import bare_frequency, screened_frequency, straightness
 from squeezefilm.plate.solid.mode_table import energy_shares_of
 from squeezefilm.plate.solid.modes import PlateModes
 from squeezefilm.plate.solid.response import harmonic_response
-from squeezefilm.plate.solid.shear_guess import bare_frequency, screened_frequency, straightness
 from squeezefilm.plate.solid.solve import solve_modes
 
 GLASS = ElasticMaterial("glass", 72e9, 0.22, 2480, quality_factor=1000)

@@ -63,22 +63,15 @@ def laminate(layers: Sequence[Layer]) -> Laminate:
     if not layers:
         raise InputError("a laminate of no layers was asked for; give at least one")
     bottoms = [sum(layer.thickness for layer in layers[:i]) for i in range(len(layers))]
-    spans = [(b, b + layer.thickness) for b, layer in zip(bottoms, layers, strict=True)]
+    spans = [(x, b, b + x.thickness) for x, b in zip(layers, bottoms, strict=True)]
     stretch = sum(layer.modulus * layer.thickness for layer in layers)
-    first = sum(
-        layer.modulus * (t**2 - b**2) / 2 for layer, (b, t) in zip(layers, spans, strict=True)
-    )
-    neutral = first / stretch
-    thirds = [((t - neutral) ** 3 - (b - neutral) ** 3) / 3 for b, t in spans]
+    neutral = sum(layer.modulus * (t**2 - b**2) / 2 for layer, b, t in spans) / stretch
+    thirds = [(layer, ((t - neutral) ** 3 - (b - neutral) ** 3) / 3) for layer, b, t in spans]
     return Laminate(
         neutral_axis=neutral,
-        bending_stiffness=sum(
-            layer.modulus * third for layer, third in zip(layers, thirds, strict=True)
-        ),
+        bending_stiffness=sum(layer.modulus * third for layer, third in thirds),
         mass_per_area=sum(layer.density * layer.thickness for layer in layers),
-        rotary_inertia=sum(
-            layer.density * third for layer, third in zip(layers, thirds, strict=True)
-        ),
+        rotary_inertia=sum(layer.density * third for layer, third in thirds),
         shear_stiffness=SHEAR_CORRECTION
         * sum(layer.shear_modulus * layer.thickness for layer in layers),
         layers=tuple(layers),

@@ -20,6 +20,8 @@ _M = si.Unit("m")
 class GlueLayer:
     """The glue between every ceramic and the plate, as an isotropic layer."""
 
+    name: ClassVar[str] = "glue"
+
     thickness: Annotated[si.Metre, hard.LAYER]
     young_modulus: Annotated[si.Pascal, hard.MODULUS]
     poisson_ratio: Annotated[si.Dimensionless, si.Above(-1), si.Below(0.5)] = 0.38

@@ -47,25 +47,14 @@ class ExposureGuidance:
     evidence: str
 
 
+_IRPA = (
+    "IRPA/INIRC 1984, Interim guidelines on limits of human exposure to airborne ultrasound, "
+    "Health Physics 46(4), 969-974; still the guideline in 2024: 10.1097/HP.0000000000001800",
+    "to be checked: quoted second-hand, the guideline's own text was not read",
+)
 GUIDANCE = (
-    ExposureGuidance(
-        70.0,
-        17.8e3,
-        22.4e3,
-        "public",
-        "IRPA/INIRC 1984, Interim guidelines on limits of human exposure to airborne ultrasound, "
-        "Health Physics 46(4), 969-974; still the guideline in 2024: 10.1097/HP.0000000000001800",
-        "to be checked: quoted second-hand, the guideline's own text was not read",
-    ),
-    ExposureGuidance(
-        100.0,
-        22.4e3,
-        112e3,
-        "public",
-        "IRPA/INIRC 1984, Interim guidelines on limits of human exposure to airborne ultrasound, "
-        "Health Physics 46(4), 969-974; still the guideline in 2024: 10.1097/HP.0000000000001800",
-        "to be checked: quoted second-hand, the guideline's own text was not read",
-    ),
+    ExposureGuidance(70.0, 17.8e3, 22.4e3, "public", *_IRPA),
+    ExposureGuidance(100.0, 22.4e3, 112e3, "public", *_IRPA),
     ExposureGuidance(
         110.0,
         22.4e3,

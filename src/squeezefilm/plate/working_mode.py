@@ -12,16 +12,17 @@ from typing import Literal, get_args
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.errors import OutOfRangeError
+from squeezefilm.errors import InputError, OutOfRangeError
 from squeezefilm.plate.beam.response import BeamResponse, beam_response
 from squeezefilm.plate.laminate import CrossSection
 from squeezefilm.plate.layout import Actuator, AnnularStator, DiscPlate, RectangularPlate
 from squeezefilm.plate.ring.body import (
+    half_wavelength_of,
     nodal_circles,
     ring_body,
-    ring_working_mode,
     surface_profile,
 )
+from squeezefilm.plate.ring.modes import AnnularMode
 from squeezefilm.plate.solid.working import SolidMode, solid_mode
 
 
@@ -105,8 +106,8 @@ def working_mode(
 
     A plate is solved in three dimensions (see `solid_mode`), or taken as a beam of `cross_section`
     (see `beam_response` for its range and error); a disc is solved by Fourier harmonics; a stator
-    is taken as measured, linear in the voltage. Raises `InputError` for another theory, and what
-    the plate's solver raises.
+    is taken as measured, linear in the voltage. Raises `InputError` for another theory or a disc's
+    mode that crosses no two nodal lines, and what the solvers raise.
     """
     if isinstance(actuator, AnnularStator):
         return WorkingMode(
@@ -151,23 +152,30 @@ def working_mode(
 
 
 def _disc(disc: DiscPlate) -> WorkingMode:
-    mode = ring_working_mode(disc)
+    body = ring_body(disc)
+    mode = body.mode()
+    half, _ = half_wavelength_of(mode)
+    if half is None:
+        raise InputError(
+            f"{mode.label} has no two nodal lines, so no half wavelength; choose a mode with a "
+            "nodal circle or nodal diameters",
+            quantity="nodal_circles",
+        )
     return WorkingMode(
         label=mode.label,
         resonance_frequency=mode.frequency,
-        half_wavelength=mode.half_wavelength,
+        half_wavelength=half,
         quality_factor=mode.quality_factor,
-        amplitude_per_volt=mode.amplitude_per_volt,
+        amplitude_per_volt=mode.amplitude_per_volt(body.drive),
         model=mode.model,
         frequency_error=mode.frequency_error,
         modal_mass=mode.modal_mass,
-        line=_diameter(disc),
+        line=_diameter(mode),
     )
 
 
-def _diameter(disc: DiscPlate) -> ModeLine:
+def _diameter(mode: AnnularMode) -> ModeLine:
     """The mode along a diameter, 1 at the surface's highest antinode."""
-    mode = ring_body(disc).mode()
     radius = np.linspace(mode.surface_radius[0], mode.surface_radius[-1], 401)
     shape = surface_profile(mode, radius)
     # u_z = W(r) cos mθ: on the other side of the middle the sign of cos mπ.

@@ -8,17 +8,28 @@ from __future__ import annotations
 
 import functools
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from squeezefilm import quantities as si
-from squeezefilm.errors import GeometryError, InputError
+from squeezefilm.errors import GeometryError, InputError, OutOfRangeError
 from squeezefilm.hard_limits import SOLID_MEMORY, require_within
+from squeezefilm.materials import ElasticMaterial, Piezoceramic, isotropic_stiffness
 from squeezefilm.plate.elements.lobatto import LineMesh
+from squeezefilm.plate.layout import GlueLayer
 
+Loss = Annotated[si.Dimensionless, si.AtLeast(0), si.Below(2)]
 EndCondition = Literal["free", "symmetric", "antisymmetric", "clamped"]
+
+
+def held_components(condition: EndCondition, normal: int) -> list[int]:
+    """The components (0–2 displacement, 3 potential) that vanish on a side across `normal`."""
+    if condition in ("free", "clamped"):
+        return [] if condition == "free" else [0, 1, 2]
+    return [normal] if condition == "symmetric" else [a for a in range(4) if a != normal]
+
 
 # The Voigt row of each displacement gradient (component, direction).
 _VOIGT = {
@@ -36,12 +47,13 @@ POTENTIAL_UNIT = 3e9
 class Medium:
     """What a cell is filled with: `stiffness` c at constant field (6 × 6, Pa), `stress_matrix` e
     (3 × 6, C/m²), `permittivity` ε at constant strain (3 × 3, F/m), density and `loss` (the
-    structural loss factor 1/Q of c). Voigt order xx, yy, zz, yz, xz, xy."""
+    structural loss factor 1/Q of c; None if only the assembly's is known). Voigt order xx, yy, zz,
+    yz, xz, xy; of rings r, θ, z in place of x, y, z."""
 
     name: str
     stiffness: si.FloatArray
     density: si.KilogramPerCubicMetre
-    loss: si.Dimensionless = 0.0
+    loss: si.Dimensionless | None = 0.0
     stress_matrix: si.FloatArray | None = None
     permittivity: si.FloatArray | None = None
 
@@ -71,6 +83,41 @@ class Medium:
         return out
 
 
+@si.checked_numbers
+def isotropic_solid(
+    material: ElasticMaterial | GlueLayer, loss: Loss | None = None, name: str = ""
+) -> Medium:
+    """A metal, a glass or glue as a medium, with its own 1/Q (None if it has none) unless `loss` is
+    given."""
+    own = None if material.quality_factor is None else 1 / material.quality_factor
+    return Medium(
+        name or material.name,
+        isotropic_stiffness(material.young_modulus, material.poisson_ratio),
+        material.density,
+        own if loss is None else loss,
+    )
+
+
+@si.checked_numbers
+def piezoceramic_solid(
+    ceramic: Piezoceramic,
+    loss: Loss | None = None,
+    name: str = "",
+    poling: Literal[1, -1] = 1,
+) -> Medium:
+    """A ceramic poled along +z or −z: its `full_constants`, isotropic across the poling (6mm) as
+    `PiezoConstants` checks, so that x and y may be r and θ. Its own 1/Q unless `loss` is given."""
+    constants = ceramic.full_constants
+    return Medium(
+        name or ceramic.name,
+        constants.stiffness_matrix,
+        ceramic.density,
+        1 / ceramic.quality_factor if loss is None else loss,
+        poling * constants.stress_matrix,
+        constants.permittivity_matrix,
+    )
+
+
 @dataclass(frozen=True)
 class Electrode:
     """The electrodes of one ceramic: z-node planes of the driven and of the grounded face."""
@@ -91,6 +138,16 @@ class Foundation:
     z_plane: int
     stiffness: tuple[float, float, float]
     loss: si.Dimensionless = 0.0
+
+
+def require_aspect(name: str, height: float, on: str, extent: float, most: float) -> None:
+    """Refuse a layer or body of `height` (m) whose extent is more than `most` times that."""
+    if extent > most * height:
+        raise OutOfRangeError(
+            f"a {name} of {si.format_quantity(height, si.Unit('m'))} on a {on} of "
+            f"{si.format_quantity(extent, si.Unit('m'))} has an aspect ratio above {most:.0f}, "
+            "where three-dimensional elements lose their digits; use a plate theory"
+        )
 
 
 def kept_products(y: LineMesh, z: LineMesh, trunk: float) -> NDArray[np.bool_]:
@@ -138,6 +195,11 @@ class BoxModel:
     ends: tuple[EndCondition, EndCondition, EndCondition, EndCondition] = ("free",) * 4
     foundations: tuple[Foundation, ...] = field(default=())
     trunk: float = np.inf
+
+    @property
+    def spring_losses(self) -> list[float]:
+        """The loss factor of each foundation."""
+        return [one.loss for one in self.foundations]
 
     @functools.cached_property
     def kept(self) -> NDArray[np.bool_]:

@@ -14,13 +14,20 @@ from dataclasses import dataclass
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.plate.elements.box_model import POTENTIAL_UNIT, BoxModel, Medium
-from squeezefilm.plate.elements.lobatto import LineMesh, hierarchic_line_matrices
+from squeezefilm.plate.elements.box_model import (
+    POTENTIAL_UNIT,
+    BoxModel,
+    Medium,
+    held_components,
+)
+from squeezefilm.plate.elements.lobatto import LineMesh, line_matrices
 
 # (mechanical, electrical) factors of a medium's constants; None leaves the medium out.
 Weight = Callable[[Medium], tuple[float, float]]
 # A factor on all foundations' stiffness, or one for each of them.
 Springs = float | Sequence[float]
+_Block = tuple[si.IntArray, si.FloatArray, si.FloatArray, si.FloatArray, si.FloatArray]
+"""Codes of an element's unknowns, and its P2, P1, P0 and R."""
 
 
 def full_weight(medium: Medium) -> tuple[float, float]:
@@ -75,7 +82,8 @@ def _z_arrays(
         if index < 0:
             continue
         at = slice(mesh.first_node[k], mesh.first_node[k + 1] + 1)
-        M, D, S = hierarchic_line_matrices(mesh.edges[k + 1] - mesh.edges[k], mesh.orders[k])
+        length = mesh.edges[k + 1] - mesh.edges[k]
+        M, D, S = line_matrices(length, mesh.orders[k], hierarchic=True)
         H = media[index].gradient_matrix(*weight(media[index]))
         for c in range(3):
             for d in range(3):
@@ -105,9 +113,7 @@ def cross_section(
     ny, nz, base = y.nodes.size, z.nodes.size, potential_base(model)
     ceramics = max(len(model.electrodes), 1)
     size = base + ny * nz * ceramics
-    blocks: list[
-        tuple[si.IntArray, si.FloatArray, si.FloatArray, si.FloatArray, si.FloatArray]
-    ] = []
+    blocks: list[_Block] = []
     cache: dict[tuple[int, ...], tuple[si.FloatArray, si.FloatArray]] = {}
     kron_cache: dict[tuple[object, ...], tuple[si.FloatArray, ...]] = {}
     present = np.zeros(size, dtype=bool)
@@ -122,7 +128,7 @@ def cross_section(
         length, order = y.edges[j + 1] - y.edges[j], y.orders[j]
         key = (column, round(length, 12), order)
         if key not in kron_cache:
-            M, D, S = hierarchic_line_matrices(length, order)
+            M, D, S = line_matrices(length, order, hierarchic=True)
             P2 = _kron(M, Z[0, 0])
             P1 = _kron(D.T, Z[0, 1]) + _kron(M, Z[0, 2])
             P0 = _kron(S, Z[1, 1]) + _kron(D, Z[1, 2]) + _kron(D.T, Z[2, 1]) + _kron(M, Z[2, 2])
@@ -139,7 +145,7 @@ def cross_section(
                 scale = springs if isinstance(springs, float) else springs[number]
                 for a in range(3):
                     Zs[a, spring.z_plane, a, spring.z_plane] = spring.stiffness[a] * scale
-                P0 = P0 + _kron(hierarchic_line_matrices(length, order)[0], Zs)
+                P0 = P0 + _kron(line_matrices(length, order, hierarchic=True)[0], Zs)
         codes, keep = _element_codes(model, element, j, present, electrode_of)
         at = np.ix_(keep, keep)
         blocks.append((codes[keep], P2[at], P1[at], P0[at], R[at]))
@@ -175,8 +181,8 @@ def _element_codes(
     exists[:, :, 3] = owner[None, :] >= 0
     for side, at in ((2, 0), (3, y.nodes.size - 1)):
         row = np.flatnonzero(iy == at)
-        if row.size and model.ends[side] != "free":
-            exists[row[0]][:, _held(model.ends[side], normal=1)] = False
+        if row.size:
+            exists[row[0]][:, held_components(model.ends[side], 1)] = False
     flat = codes.reshape(-1)
     exists &= model.kept[iy][:, :, None]
     keep = np.flatnonzero(exists.reshape(-1))
@@ -188,18 +194,9 @@ def _element_codes(
     return flat, keep
 
 
-def _held(condition: str, normal: int) -> list[int]:
-    """The components that vanish on a side with this condition."""
-    if condition == "clamped":
-        return [0, 1, 2]
-    if condition == "symmetric":
-        return [normal]
-    return [a for a in range(4) if a != normal]
-
-
 def _assemble(
     model: BoxModel,
-    blocks: list[tuple[si.IntArray, si.FloatArray, si.FloatArray, si.FloatArray, si.FloatArray]],
+    blocks: list[_Block],
     present: si.FloatArray,
     electrode_of: si.IntArray,
 ) -> CrossSection:

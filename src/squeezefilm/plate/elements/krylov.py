@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from scipy.linalg import eigh
@@ -15,16 +15,15 @@ from squeezefilm.plate.elements.lobatto import LineMesh
 from squeezefilm.plate.elements.slab_factor import SlabFactor
 from squeezefilm.plate.elements.slabs import Slabs
 
+_MOST_STEPS = 40
 Solve = Callable[[si.FloatArray], si.FloatArray]
 
 
-@dataclass(frozen=True, eq=False)
-class Pairs:
-    """Eigenvalues ω² (ascending) and vectors with unit modal mass of the model; `steps` taken."""
+class Pairs(NamedTuple):
+    """Eigenvalues ω² (ascending) and vectors with unit modal mass of the model."""
 
     values: si.FloatArray
     vectors: si.FloatArray
-    steps: int
 
 
 def with_open_electrodes(slabs: Slabs, solve: Solve, columns: si.FloatArray) -> Solve:
@@ -53,7 +52,6 @@ def modes_near(
     start: si.FloatArray,
     *,
     tolerance: float,
-    most_steps: int = 40,
 ) -> Pairs:
     """The modes that `wanted` picks, from the eigenvalues found so far to their indices; without it
     those that move most like the columns of `start`, one for each and in their order.
@@ -67,7 +65,7 @@ def modes_near(
     H = np.zeros((0, 0))
     X = solve(slabs.mass_times(start))
     before: si.FloatArray | None = None
-    for step in range(1, most_steps + 1):
+    for _ in range(_MOST_STEPS):
         X, MX = _orthonormal(slabs, X, Q, MQ)
         if not X.shape[1]:
             break
@@ -92,13 +90,14 @@ def modes_near(
             and np.all(np.abs(now - before) <= tolerance * np.maximum(np.abs(now), abs(shift)))
             and now.size
         ):
-            return Pairs(now, Q @ coefficients[:, index], step)
+            return Pairs(now, Q @ coefficients[:, index])
         before = now
     if before is not None and before.size == 0:
-        return Pairs(before, np.zeros((slabs.unknowns, 0)), most_steps)
+        return Pairs(before, np.zeros((slabs.unknowns, 0)))
     raise ConvergenceError(
-        f"the modes did not converge in {most_steps} steps; ask for a narrower band or fewer modes",
-        iterations=most_steps,
+        f"the modes did not converge in {_MOST_STEPS} steps; ask for a narrower band or fewer "
+        "modes",
+        iterations=_MOST_STEPS,
     )
 
 
@@ -153,8 +152,8 @@ def prolonged(source: Slabs, target: Slabs, vectors: si.FloatArray) -> si.FloatA
 
 def _transfer(source: LineMesh, target: LineMesh) -> si.FloatArray:
     """Hierarchic coefficients on one line mesh from those on another."""
-    values = source.hierarchic_interpolation(target.nodes)
-    return np.asarray(np.linalg.solve(target.hierarchic_interpolation(target.nodes), values))
+    values = source.interpolation(target.nodes, hierarchic=True)
+    return np.asarray(np.linalg.solve(target.interpolation(target.nodes, hierarchic=True), values))
 
 
 def modes_below(slabs: Slabs, shift: float) -> int:

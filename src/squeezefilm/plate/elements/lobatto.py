@@ -51,23 +51,45 @@ def lagrange_basis(
 
 
 @functools.lru_cache(maxsize=64)
-def _reference_matrices(order: int) -> tuple[si.FloatArray, si.FloatArray, si.FloatArray]:
+def lagrange(degree: int, at: tuple[float, ...]) -> tuple[si.FloatArray, si.FloatArray]:
+    """Values and derivatives of the Lagrange polynomials on the Lobatto points at points `at`.
+
+    Two arrays of shape (len(at), degree + 1); derivatives are with respect to −1…1.
+    """
+    return lagrange_basis(lobatto_nodes(degree), np.asarray(at))
+
+
+@functools.lru_cache(maxsize=64)
+def gauss_points(count: int) -> tuple[si.FloatArray, si.FloatArray]:
+    """Gauss–Legendre points and weights on −1…1, exact to degree 2 count − 1."""
+    points, weights = legendre.leggauss(count)
+    return points, weights
+
+
+@functools.lru_cache(maxsize=64)
+def _reference_matrices(
+    order: int, hierarchic: bool
+) -> tuple[si.FloatArray, si.FloatArray, si.FloatArray]:
     nodes = lobatto_nodes(order)
     points, weights = legendre.leggauss(order + 1)
     values, slopes = lagrange_basis(nodes, points)
     mass = values.T @ (weights[:, None] * values)
     slope = slopes.T @ (weights[:, None] * values)
     stiffness = slopes.T @ (weights[:, None] * slopes)
+    if hierarchic:
+        E = hierarchic_values(order)
+        mass, slope, stiffness = (E.T @ part @ E for part in (mass, slope, stiffness))
     for array in (mass, slope, stiffness):
         array.setflags(write=False)
     return mass, slope, stiffness
 
 
 def line_matrices(
-    length: si.Metre, order: int
+    length: si.Metre, order: int, *, hierarchic: bool = False
 ) -> tuple[si.FloatArray, si.FloatArray, si.FloatArray]:
-    """∫N Nᵀ, ∫N′ Nᵀ and ∫N′ N′ᵀ of one element, integrated exactly; shape (order + 1)² each."""
-    mass, slope, stiffness = _reference_matrices(order)
+    """∫N Nᵀ, ∫N′ Nᵀ and ∫N′ N′ᵀ of one element, integrated exactly, in the nodal or the hierarchic
+    basis; shape (order + 1)² each."""
+    mass, slope, stiffness = _reference_matrices(order, hierarchic)
     return mass * (length / 2), slope, stiffness * (2 / length)
 
 
@@ -87,21 +109,6 @@ def hierarchic_values(order: int, points: tuple[float, ...] | None = None) -> si
         out[:, k - 1] = (high - low) / np.sqrt(2 * (2 * k - 1))
     out.setflags(write=False)
     return out
-
-
-@functools.lru_cache(maxsize=64)
-def _hierarchic_reference(order: int) -> tuple[si.FloatArray, si.FloatArray, si.FloatArray]:
-    E = hierarchic_values(order)
-    mass, slope, stiffness = (E.T @ part @ E for part in _reference_matrices(order))
-    return mass, slope, stiffness
-
-
-def hierarchic_line_matrices(
-    length: si.Metre, order: int
-) -> tuple[si.FloatArray, si.FloatArray, si.FloatArray]:
-    """`line_matrices` in the hierarchic basis."""
-    mass, slope, stiffness = _hierarchic_reference(order)
-    return mass * (length / 2), slope, stiffness * (2 / length)
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,15 +150,9 @@ class LineMesh:
             out[self.first_node[k] + 1 : self.first_node[k + 1]] = np.arange(2, order + 1)
         return out
 
-    def hierarchic_interpolation(self, points: si.FloatArray) -> si.FloatArray:
-        """The matrix that takes hierarchic coefficients to values at `points`."""
-        return self._evaluation(points, hierarchic=True)
-
-    def interpolation(self, points: si.FloatArray) -> si.FloatArray:
-        """The matrix that takes nodal values to values at `points`; shape (points, nodes)."""
-        return self._evaluation(points, hierarchic=False)
-
-    def _evaluation(self, points: si.FloatArray, hierarchic: bool) -> si.FloatArray:
+    def interpolation(self, points: si.FloatArray, *, hierarchic: bool = False) -> si.FloatArray:
+        """The matrix that takes nodal values, or hierarchic coefficients, to values at `points`;
+        shape (points, nodes)."""
         points = np.atleast_1d(np.asarray(points, dtype=float))
         edges = np.array(self.edges)
         owner = np.clip(np.searchsorted(edges, points, side="right") - 1, 0, self.elements - 1)

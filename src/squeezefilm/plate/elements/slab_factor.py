@@ -17,7 +17,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from squeezefilm.plate.elements.block_ldl import PartialLDL, partial_ldl
-from squeezefilm.plate.elements.cross_section import CrossSection
 from squeezefilm.plate.elements.lobatto import line_matrices
 from squeezefilm.plate.elements.slabs import Slabs, relabelled
 
@@ -30,40 +29,45 @@ class _Cell:
 
     `bubbles[k]` eliminates the inner slices of its k-th element onto its two end slices;
     `joints[k]` the slice between elements k and k + 1 onto the first slice and slice k + 2.
+    `spans[k]` are the first and the last slice of an element, counted within the cell, `at[k]`
+    where its unknowns stand in these two.
     """
 
     bubbles: tuple[PartialLDL, ...]
     joints: tuple[PartialLDL, ...]
+    spans: tuple[tuple[int, int], ...]
+    at: tuple[tuple[Matrix, Matrix], ...]
     ends: Matrix
     negative: int
 
 
 @dataclass(frozen=True, eq=False)
 class _Place:
-    """Where a cell stands: its elements in the order of the cell, mirrored or not."""
+    """Where a cell stands: its slices in the order of the cell, mirrored or not."""
 
     cell: _Cell
-    elements: tuple[int, ...]
+    nodes: range
     mirrored: bool
+
+    @property
+    def left(self) -> int:
+        """The first of its slices along x."""
+        return min(self.nodes)
+
+    @property
+    def right(self) -> int:
+        """The last of its slices along x."""
+        return max(self.nodes)
 
 
 class SlabFactor:
     """(K − σM)⁻¹ of a discretised model, real for a real shift.
 
-    `sections` replaces the slice matrices (complex ones carry losses); `count` also counts the
-    modes below the shift, in `modes_below`.
+    `count` also counts the modes below the shift, in `modes_below`.
     """
 
-    def __init__(
-        self,
-        slabs: Slabs,
-        shift: float,
-        *,
-        sections: list[CrossSection] | None = None,
-        count: bool = False,
-    ) -> None:
+    def __init__(self, slabs: Slabs, shift: float, *, count: bool = False) -> None:
         self._slabs, self._shift, self._count = slabs, shift, count
-        self._sections = sections or slabs.sections
         self._dynamic: dict[int, Matrix] = {}
         self._bubbles: dict[Any, PartialLDL] = {}
         # Reflection along x turns u and nothing else.
@@ -74,10 +78,11 @@ class SlabFactor:
             forward, backward = self._key(elements), self._key(elements[::-1])
             mirrored = forward not in cells and backward in cells and _mirrors(slabs, elements)
             key = backward if mirrored else forward
-            ordered = elements[::-1] if mirrored else elements
             if key not in cells:
-                cells[key] = self._cell(ordered)
-            self._places.append(_Place(cells[key], tuple(ordered), mirrored))
+                cells[key] = self._cell(elements)
+            first = slabs.model.x.first_node
+            nodes = range(first[elements[0]], first[elements[-1] + 1] + 1)
+            self._places.append(_Place(cells[key], nodes[::-1] if mirrored else nodes, mirrored))
         self._chain()
 
     @property
@@ -100,20 +105,11 @@ class SlabFactor:
             tuple(x.orders[e] for e in elements),
         )
 
-    def _backward(self, elements: Sequence[int]) -> bool:
-        return len(elements) > 1 and elements[1] < elements[0]
-
-    def _nodes(self, elements: Sequence[int], k: int) -> list[int]:
-        x = self._slabs.model.x
-        e = elements[k]
-        nodes = list(range(x.first_node[e], x.first_node[e + 1] + 1))
-        return nodes[::-1] if self._backward(elements) else nodes
-
     def _bubble(self, e: int) -> PartialLDL:
         slabs, x = self._slabs, self._slabs.model.x
         length, order = x.edges[e + 1] - x.edges[e], x.orders[e]
-        n = slabs.sections[e].codes.size
-        section = self._sections[e]
+        section = slabs.sections[e]
+        n = section.codes.size
         key = (slabs.patterns[e], id(section.P2), round(length * 1e12), order)
         if key in self._bubbles:
             return self._bubbles[key]
@@ -134,29 +130,27 @@ class SlabFactor:
         self._bubbles[key] = partial_ldl(A, n * (order - 1), count=self._count)
         return self._bubbles[key]
 
-    def _ends(self, elements: Sequence[int], k: int, bubble: PartialLDL) -> tuple[Matrix, int]:
-        """The end matrix of element k over all unknowns of its two end slices, in the order and
-        with the signs of the cell."""
+    def _ends(self, e: int, bubble: PartialLDL) -> tuple[Matrix, int, tuple[Matrix, Matrix]]:
+        """The end matrix of an element over all unknowns of its two end slices, how many of them
+        the first has, and where those of the element stand in each."""
         slabs, x = self._slabs, self._slabs.model.x
-        e = elements[k]
-        order = x.orders[e]
-        nodes = (x.first_node[e], x.first_node[e] + order)
-        at0, at1 = slabs.places(e, 0), slabs.places(e, order)
-        sizes = (slabs.sizes[nodes[0]], slabs.sizes[nodes[1]])
+        at = slabs.places(e, 0), slabs.places(e, x.orders[e])
+        sizes = slabs.sizes[x.first_node[e]], slabs.sizes[x.first_node[e + 1]]
         out = bubble.schur
-        if at0.size != sizes[0] or at1.size != sizes[1]:
+        if (at[0].size, at[1].size) != sizes:
             out = np.zeros((sum(sizes), sum(sizes)), dtype=bubble.schur.dtype)
-            where = np.concatenate([at0, sizes[0] + at1])
+            where = np.concatenate([at[0], sizes[0] + at[1]])
             out[np.ix_(where, where)] = bubble.schur
-        return out, sizes[0]
+        return out, sizes[0], at
 
     def _cell(self, elements: Sequence[int]) -> _Cell:
         # Cells are always made in ascending order of x; mirrored ones reuse them.
         bubbles = tuple(self._bubble(e) for e in elements)
-        front, n0 = self._ends(elements, 0, bubbles[0])
-        joints = []
-        for k in range(1, len(elements)):
-            element, m0 = self._ends(elements, k, bubbles[k])
+        front, n0, first = self._ends(elements[0], bubbles[0])
+        joints, places = [], [first]
+        for e, bubble in zip(elements[1:], bubbles[1:], strict=True):
+            element, m0, at = self._ends(e, bubble)
+            places.append(at)
             m1 = element.shape[0] - m0
             A = np.zeros((m0 + n0 + m1, m0 + n0 + m1), dtype=front.dtype)
             order = np.concatenate([np.arange(m0, m0 + n0), np.arange(m0)])
@@ -167,7 +161,9 @@ class SlabFactor:
             joints.append(joint)
             front = joint.schur
         negative = sum(part.negative for part in (*bubbles, *joints))
-        return _Cell(bubbles, tuple(joints), front, negative)
+        stops = np.cumsum([0, *(self._slabs.model.x.orders[e] for e in elements)]).tolist()
+        spans = tuple(itertools.pairwise(stops))
+        return _Cell(bubbles, tuple(joints), spans, tuple(places), front, negative)
 
     def _signs(self, node: int) -> Matrix:
         offsets = self._slabs.offsets
@@ -180,7 +176,7 @@ class SlabFactor:
         carried: Matrix | None = None
         for place in self._places:
             S = place.cell.ends
-            left, right = self._left(place), self._right(place)
+            left, right = place.left, place.right
             n = self._slabs.sizes[left]
             if place.mirrored:
                 signs = np.concatenate([self._signs(right), self._signs(left)])
@@ -201,7 +197,7 @@ class SlabFactor:
             self._links.append(link)
             carried = link.schur
         assert carried is not None
-        last = np.flatnonzero(self._held(self._right(self._places[-1])))
+        last = np.flatnonzero(self._held(self._places[-1].right))
         carried[last, last] = 1
         self._final = partial_ldl(carried, carried.shape[0], count=self._count)
         self._negative += sum(link.negative for link in (*self._links, self._final))
@@ -209,12 +205,6 @@ class SlabFactor:
     def _held(self, *nodes: int) -> Matrix:
         offsets = self._slabs.offsets
         return np.concatenate([self._slabs.held[offsets[n] : offsets[n + 1]] for n in nodes])
-
-    def _left(self, place: _Place) -> int:
-        return self._slabs.model.x.first_node[min(place.elements)]
-
-    def _right(self, place: _Place) -> int:
-        return self._slabs.model.x.first_node[max(place.elements) + 1]
 
     # -- solution ---------------------------------------------------------------------------
 
@@ -232,33 +222,25 @@ class SlabFactor:
         # Places that share a cell are solved as one block of right sides.
         blocks = [self._gathered(group, slices) for group in groups.values()]
         kept = [
-            self._forward(group[0], block)
+            self._forward(group[0].cell, block)
             for group, block in zip(groups.values(), blocks, strict=True)
         ]
         for group, block in zip(groups.values(), blocks, strict=True):
             for number, place in enumerate(group):
                 columns = slice(number * vectors, (number + 1) * vectors)
-                for node, update in zip(
-                    (
-                        self._nodes(place.elements, 0)[0],
-                        self._nodes(place.elements, len(place.elements) - 1)[-1],
-                    ),
-                    (block[0], block[-1]),
-                    strict=True,
-                ):
-                    slices[node] += self._signed(place, node, update[:, columns])
+                for at in (0, -1):
+                    node = place.nodes[at]
+                    slices[node] += self._signed(place, node, block[at][:, columns])
         for node in (0, len(slices) - 1):
             slices[node][self._held(node)] = 0
         for place, link in zip(self._places, self._links, strict=True):
-            left = self._left(place)
-            slices[left], update = link.forward(slices[left])
-            slices[self._right(place)] -= update
-        last = self._right(self._places[-1])
+            slices[place.left], update = link.forward(slices[place.left])
+            slices[place.right] -= update
+        last = self._places[-1].right
         reduced, _ = self._final.forward(slices[last])
         slices[last] = self._final.backward(reduced, np.empty((0, vectors)))
         for place, link in zip(self._places[::-1], self._links[::-1], strict=True):
-            left = self._left(place)
-            slices[left] = link.backward(slices[left], slices[self._right(place)])
+            slices[place.left] = link.backward(slices[place.left], slices[place.right])
         for group, block, parts in zip(groups.values(), blocks, kept, strict=True):
             self._finish(group, slices, block, parts)
         return np.concatenate(slices)
@@ -266,39 +248,24 @@ class SlabFactor:
     def _dtype(self, right: Matrix) -> Any:
         return np.result_type(right.dtype, self._final.W.dtype)
 
-    def _cell_nodes(self, place: _Place) -> list[int]:
-        nodes = [self._nodes(place.elements, 0)[0]]
-        for k in range(len(place.elements)):
-            nodes += self._nodes(place.elements, k)[1:]
-        return nodes
-
     def _signed(self, place: _Place, node: int, values: Matrix) -> Matrix:
         """To or from the signs of a mirrored cell (u changes its sign)."""
         return values * self._signs(node)[:, None] if place.mirrored else values
 
+    def _side_by_side(self, group: list[_Place], slices: list[Matrix], at: int) -> Matrix:
+        """What all places of one cell have in its slice `at`, with the signs of the cell."""
+        parts = [self._signed(one, one.nodes[at], slices[one.nodes[at]]) for one in group]
+        return np.concatenate(parts, axis=1)
+
     def _gathered(self, group: list[_Place], slices: list[Matrix]) -> list[Matrix]:
         """The right sides of all places of one cell, side by side; none at the end slices."""
-        nodes = [self._cell_nodes(place) for place in group]
-        block = []
-        for at in range(len(nodes[0])):
-            parts = [
-                self._signed(place, own[at], slices[own[at]])
-                for place, own in zip(group, nodes, strict=True)
-            ]
-            block.append(np.concatenate(parts, axis=1))
-        block[0] = np.zeros_like(block[0])
-        block[-1] = np.zeros_like(block[-1])
+        block = [self._side_by_side(group, slices, k) for k in range(len(group[0].nodes))]
+        block[0], block[-1] = np.zeros_like(block[0]), np.zeros_like(block[-1])
         return block
 
-    def _spans(self, place: _Place) -> list[tuple[int, int]]:
-        """First and last slice of each element, counted within the cell."""
-        orders = [self._slabs.model.x.orders[e] for e in place.elements]
-        stops = np.cumsum(orders)
-        return [(int(b - p), int(b)) for b, p in zip(stops, orders, strict=True)]
-
-    def _forward(self, place: _Place, block: list[Matrix]) -> list[Matrix]:
+    def _forward(self, cell: _Cell, block: list[Matrix]) -> list[Matrix]:
         """Carry right sides inside a cell to its ends (in place); returns the reduced sides."""
-        cell, spans = place.cell, self._spans(place)
+        spans = cell.spans
         kept: list[Matrix] = []
         for k, (bubble, (start, stop)) in enumerate(zip(cell.bubbles, spans, strict=True)):
             if stop - start == 1:
@@ -306,7 +273,7 @@ class SlabFactor:
                 continue
             reduced, update = bubble.forward(np.concatenate(block[start + 1 : stop]))
             kept.append(reduced)
-            at0, at1 = self._end_places(place, k)
+            at0, at1 = cell.at[k]
             block[start][at0] -= update[: at0.size]
             block[stop][at1] -= update[at0.size :]
         n0 = block[0].shape[0]
@@ -321,17 +288,9 @@ class SlabFactor:
         self, group: list[_Place], slices: list[Matrix], block: list[Matrix], kept: list[Matrix]
     ) -> None:
         """Solve inside the cells, their end slices being known."""
-        place = group[0]
-        cell, spans = place.cell, self._spans(place)
-        nodes = [self._cell_nodes(other) for other in group]
+        cell, spans = group[0].cell, group[0].cell.spans
         for at in (0, -1):
-            block[at] = np.concatenate(
-                [
-                    self._signed(other, own[at], slices[own[at]])
-                    for other, own in zip(group, nodes, strict=True)
-                ],
-                axis=1,
-            )
+            block[at] = self._side_by_side(group, slices, at)
         for k in range(len(cell.joints) - 1, -1, -1):
             middle, after = spans[k][1], spans[k + 1][1]
             ends = np.concatenate([block[0], block[after]])
@@ -339,21 +298,15 @@ class SlabFactor:
         for k, (start, stop) in enumerate(spans):
             if stop - start == 1:
                 continue
-            at0, at1 = self._end_places(place, k)
+            at0, at1 = cell.at[k]
             ends = np.concatenate([block[start][at0], block[stop][at1]])
             inside = cell.bubbles[k].backward(kept[k], ends)
             block[start + 1 : stop] = np.split(inside, stop - start - 1)
         vectors = block[0].shape[1] // len(group)
-        for number, (other, own) in enumerate(zip(group, nodes, strict=True)):
+        for number, place in enumerate(group):
             columns = slice(number * vectors, (number + 1) * vectors)
-            for at in range(1, len(own) - 1):
-                slices[own[at]] = self._signed(other, own[at], block[at][:, columns])
-
-    def _end_places(self, place: _Place, k: int) -> tuple[Matrix, Matrix]:
-        e = place.elements[k]
-        order = self._slabs.model.x.orders[e]
-        at0, at1 = self._slabs.places(e, 0), self._slabs.places(e, order)
-        return (at1, at0) if self._backward(place.elements) else (at0, at1)
+            for node, part in zip(place.nodes[1:-1], block[1:-1], strict=True):
+                slices[node] = self._signed(place, node, part[:, columns])
 
 
 def _cut(slabs: Slabs) -> list[list[int]]:

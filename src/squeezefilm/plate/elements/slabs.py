@@ -6,29 +6,22 @@ matrices, never assembled.
 
 from __future__ import annotations
 
+import dataclasses
 import functools
-from dataclasses import dataclass
 
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.plate.elements.box_model import BoxModel, EndCondition
+from squeezefilm.plate.elements.box_model import BoxModel, held_components
 from squeezefilm.plate.elements.cross_section import (
     CrossSection,
     Springs,
     Weight,
     code_parts,
     cross_section,
+    potential_base,
 )
 from squeezefilm.plate.elements.lobatto import line_matrices
-
-
-def _held(condition: EndCondition) -> tuple[int, ...]:
-    if condition == "free":
-        return ()
-    if condition == "clamped":
-        return (0, 1, 2)
-    return (0,) if condition == "symmetric" else (1, 2, 3)
 
 
 class Slabs:
@@ -72,7 +65,7 @@ class Slabs:
         for n, condition in ((0, self.model.ends[0]), (count - 1, self.model.ends[1])):
             component = self.parts[n][0]
             at = slice(self.offsets[n], self.offsets[n + 1])
-            self.held[at] |= np.isin(component, _held(condition))
+            self.held[at] |= np.isin(component, held_components(condition, 0))
 
     def places(self, element: int, local: int) -> si.IntArray:
         """Where the unknowns of an element's section stand in the slice of its node `local`."""
@@ -152,17 +145,10 @@ class Slabs:
             local = np.stack([U[at] for at in places], axis=1)
             flat = local.reshape(n, nodes * vectors)
 
-            def along(line: si.FloatArray, values: si.FloatArray) -> si.FloatArray:
-                return np.asarray(np.matmul(line, values))
-
-            shape = local.shape
-            if mass:
-                result = along(M, (section.R @ flat).reshape(shape))
-            else:
-                result = along(S, (section.P2 @ flat).reshape(shape))
-                result += along(D, (section.P1 @ flat).reshape(shape))
-                result += along(D.T, (section.P1.T @ flat).reshape(shape))
-                result += along(M, (section.P0 @ flat).reshape(shape))
+            terms = [(S, section.P2), (D, section.P1), (D.T, section.P1.T), (M, section.P0)]
+            result = np.zeros_like(local)
+            for line, slice_matrix in [(M, section.R)] if mass else terms:
+                result += np.matmul(line, (slice_matrix @ flat).reshape(local.shape))
             for a, at in enumerate(places):
                 out[at] += result[:, a]
         out[self.held] = 0
@@ -181,24 +167,10 @@ class Slabs:
         return out
 
 
-@dataclass(frozen=True)
-class _Relabel:
-    """Ceramics numbered by first appearance."""
-
-    seen: dict[int, int]
-
-    def __call__(self, numbers: si.IntArray) -> si.IntArray:
-        out = np.full(numbers.shape, -1)
-        for index in np.ndindex(numbers.shape):
-            number = int(numbers[index])
-            if number >= 0:
-                out[index] = self.seen.setdefault(number, len(self.seen))
-        return out
-
-
 def relabelled(ceramic: si.IntArray) -> si.IntArray:
     """Ceramic numbers replaced by their order of first appearance."""
-    return _Relabel({})(ceramic)
+    seen = {n: k for k, n in enumerate(dict.fromkeys(ceramic[ceramic >= 0].tolist()))}
+    return np.array([seen.get(n, -1) for n in ceramic.ravel().tolist()]).reshape(ceramic.shape)
 
 
 def _pattern(model: BoxModel, e: int) -> tuple[bytes, bytes]:
@@ -226,7 +198,7 @@ def _renumbered(model: BoxModel, section: CrossSection, element: int) -> CrossSe
     numbers = [n for n in dict.fromkeys(own) if n >= 0]
     component, iy, iz = code_parts(model, section.codes)
     electric = component == 3
-    base = 4 * model.y.nodes.size * model.z.nodes.size
+    base = potential_base(model)
     ceramics = max(len(model.electrodes), 1)
     old = (section.codes[electric] - base) % ceramics
     # Ceramics in the order of their number, here and there, must be the same ones.
@@ -236,14 +208,4 @@ def _renumbered(model: BoxModel, section: CrossSection, element: int) -> CrossSe
     new = np.array(after, dtype=np.int64)[np.searchsorted(before, old)] if before else old
     codes = section.codes.copy()
     codes[electric] = base + (iy * model.z.nodes.size + iz)[electric] * ceramics + new
-    return CrossSection(
-        codes=codes,
-        P2=section.P2,
-        P1=section.P1,
-        P0=section.P0,
-        R=section.R,
-        electrodes=tuple(after),
-        g0=section.g0,
-        g1=section.g1,
-        c0=section.c0,
-    )
+    return dataclasses.replace(section, codes=codes, electrodes=tuple(after))

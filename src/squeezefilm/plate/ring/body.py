@@ -11,7 +11,6 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from squeezefilm import quantities as si
-from squeezefilm.errors import InputError
 from squeezefilm.plate.layout import AnnularStator, DiscPlate
 from squeezefilm.plate.ring.modes import AnnularMode, bending_mode
 from squeezefilm.plate.ring.section import (
@@ -124,50 +123,3 @@ def half_wavelength_of(mode: AnnularMode) -> tuple[si.Metre | None, Direction]:
     if not circles.size:
         return None, "diameter"
     return float(2 * circles[-1] / (2 * circles.size - 1)), "diameter"
-
-
-@dataclass(frozen=True)
-class RingWorkingMode:
-    """The working mode of a solved ring or disc: what a display's working mode is made of.
-
-    `half_wavelength_along` says along what `half_wavelength` is measured; `amplitude_per_volt` is
-    zero-to-peak at the surface's highest antinode, where `modal_mass` would move.
-    """
-
-    label: str
-    frequency: si.Hertz
-    frequency_error: si.Hertz
-    half_wavelength: si.Metre
-    half_wavelength_along: Direction
-    quality_factor: si.Dimensionless
-    amplitude_per_volt: si.MetrePerVolt
-    modal_mass: si.Kilogram
-    model: str
-
-
-def ring_working_mode(actuator: AnnularStator | DiscPlate) -> RingWorkingMode:
-    """The working mode of a disc or a stator, solved; a stator's amplitude is a prediction under
-    the assumptions of `stator_assumptions` and not its `reference_amplitude`.
-
-    Raises `InputError` for a mode that is not there or crosses no two nodal lines.
-    """
-    body = ring_body(actuator)
-    mode = body.mode()
-    half, along = half_wavelength_of(mode)
-    if half is None:
-        raise InputError(
-            f"{mode.label} has no two nodal lines, so no half wavelength; choose a mode with a "
-            "nodal circle or nodal diameters",
-            quantity="nodal_circles",
-        )
-    return RingWorkingMode(
-        label=mode.label,
-        frequency=mode.frequency,
-        frequency_error=mode.frequency_error,
-        half_wavelength=half,
-        half_wavelength_along=along,
-        quality_factor=mode.quality_factor,
-        amplitude_per_volt=mode.amplitude_per_volt(body.drive),
-        modal_mass=mode.modal_mass,
-        model=mode.model if body.fit is None else f"{mode.model}, fitted stator",
-    )

@@ -8,28 +8,30 @@ eq 178); the weak form of linear piezoelectricity after Allik and Hughes 1970,
 
 from __future__ import annotations
 
+import itertools
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from scipy import sparse
 
 from squeezefilm import quantities as si
-from squeezefilm.errors import GeometryError, OutOfRangeError
+from squeezefilm.errors import GeometryError
 from squeezefilm.hard_limits import RING_ELEMENTS, require_within
-from squeezefilm.plate.elements.nodal_basis import (
-    gauss_points,
-    graded_edges,
-    lagrange,
-    node_coordinates,
-)
+from squeezefilm.plate.elements.box_model import require_aspect
+from squeezefilm.plate.elements.lobatto import gauss_points, lagrange, lobatto_nodes
+from squeezefilm.plate.elements.sparse_modes import Entries, entries, gathered
 from squeezefilm.plate.ring.section import AnnularSection, RingLayer
 
 _SAME = 5e-10
 # Radius over thickness: a plain disc of 500 still has its lowest frequency to 1e-3.
 _THINNEST_BODY, _THINNEST_LAYER = 500.0, 20000.0
 _RADIAL, _HOOP, _AXIAL, _POTENTIAL = range(4)
-_Triple = tuple[np.ndarray, np.ndarray, si.FloatArray]
-"""Rows, columns and values of entries of a matrix."""
+
+
+CORNER_GRADING = 0.15
+"""The ratio in which elements shrink towards a singular corner; near the optimum of hp methods
+(Babuška and Guo 1986: (√2 − 1)²)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,16 +86,9 @@ def ring_mesh(section: AnnularSection, *, graded: bool = True) -> RingMesh:
     """
     layers = section.layers
     radius = max(layer.outer_radius for layer in layers)
-    for name, height, most in (
-        ("body", section.thickness, _THINNEST_BODY),
-        ("layer", min(layer.thickness for layer in layers), _THINNEST_LAYER),
-    ):
-        if radius > most * height:
-            raise OutOfRangeError(
-                f"a {name} of {si.format_quantity(height, si.Unit('m'))} on a radius of "
-                f"{si.format_quantity(radius, si.Unit('m'))} has an aspect ratio above {most:.0f}, "
-                "where three-dimensional elements lose their digits; use a plate theory"
-            )
+    thinnest = min(layer.thickness for layer in layers)
+    require_aspect("body", section.thickness, "radius", radius, _THINNEST_BODY)
+    require_aspect("layer", thinnest, "radius", radius, _THINNEST_LAYER)
     r_breaks = _unique([x for a in layers for x in (a.inner_radius, a.outer_radius)])
     z_breaks = _unique([x for a in layers for x in (a.bottom, a.top)])
     longest = max(3 * section.thickness, (r_breaks[-1] - r_breaks[0]) / 6)
@@ -116,6 +111,42 @@ def ring_mesh(section: AnnularSection, *, graded: bool = True) -> RingMesh:
     return RingMesh(r_edges, z_edges, fill)
 
 
+def node_coordinates(edges: si.FloatArray, degree: int) -> si.FloatArray:
+    """The nodes of a row of elements, shape ((len(edges) − 1) × degree + 1,), shared at edges."""
+    reference = (lobatto_nodes(degree) + 1) / 2
+    inner = edges[:-1, None] + np.diff(edges)[:, None] * reference[None, :-1]
+    return np.append(inner.ravel(), edges[-1])
+
+
+def graded_edges(
+    breaks: Sequence[float],
+    longest: float,
+    singular: Sequence[float] = (),
+    shortest: float = 0.0,
+) -> si.FloatArray:
+    """Element edges that contain all `breaks`, no element longer than `longest`.
+
+    Next to each value in `singular` an element is cut off that is shorter by `CORNER_GRADING`, if
+    that is above `shortest`.
+    """
+    edges = [breaks[0]]
+    for left, right in itertools.pairwise(breaks):
+        span = right - left
+        cuts = np.linspace(0.0, span, max(1, int(np.ceil(span / longest - 1e-9))) + 1)
+        small = cuts[1] * CORNER_GRADING
+        if small > shortest and _in(left, singular):
+            cuts = np.append(cuts, small)
+        if span - (span - small) > shortest and _in(right, singular):
+            cuts = np.append(cuts, span - small)
+        edges += [left + cut for cut in np.unique(cuts)[1:-1]]
+        edges.append(right)
+    return np.array(edges)
+
+
+def _in(value: float, values: Sequence[float]) -> bool:
+    return any(abs(value - other) <= 1e-9 for other in values)
+
+
 def harmonic_system(
     section: AnnularSection, harmonic: int, degree: int, mesh: RingMesh | None = None
 ) -> HarmonicSystem:
@@ -132,9 +163,9 @@ def harmonic_system(
     total = count + potentials
     local = np.arange(degree + 1)
     nodes = local.size**2
-    triples: list[_Triple] = []
-    masses: list[_Triple] = []
-    per_layer: list[list[_Triple]] = [[] for _ in section.layers]
+    triples: list[Entries] = []
+    masses: list[Entries] = []
+    per_layer: list[list[Entries]] = [[] for _ in section.layers]
     force = np.zeros(total + 1)
     capacitance = 0.0
     angular = 2 * np.pi if harmonic == 0 else np.pi
@@ -148,20 +179,20 @@ def harmonic_system(
         rows = unknown[grid.ravel()].T.ravel()
         signs = sign[grid.ravel()].T.ravel()
         stiff *= signs[:, None] * signs[None, :]
-        triples.append(_entries(rows, stiff))
+        triples.append(entries(rows, stiff))
         mechanical = np.where(rows < count, rows, -1)
-        per_layer[mesh.layer[i, j]].append(_entries(mechanical, stiff))
+        per_layer[mesh.layer[i, j]].append(entries(mechanical, stiff))
         whole = np.kron(np.eye(3), inertia) * np.outer(signs[: 3 * nodes], signs[: 3 * nodes])
-        masses.append(_entries(rows[: 3 * nodes], whole))
-        if layer.is_piezoelectric:
+        masses.append(entries(rows[: 3 * nodes], whole))
+        if layer.solid.piezoelectric:
             # One volt between the faces: E_z = ∓1/h, uniform, so that no charge is left inside.
             field = (1.0 if layer.driven_face == "lower" else -1.0) / layer.thickness
             stress = law[:6, 8] * field  # law[:6, 6:] is −eᵀ: T = c S − eᵀ E
             pull = np.einsum("gsi,s,g->i", B[:, :6], stress, area) * signs
             np.add.at(force, np.where(rows < count, rows, total), -pull)
             capacitance += -law[8, 8] * field**2 * area.sum()
-    matrix = _gather(triples, total)
-    mass = _gather(masses, count)
+    matrix = gathered(triples, total)
+    mass = gathered(masses, count)
     return HarmonicSystem(
         harmonic=harmonic,
         degree=degree,
@@ -173,7 +204,7 @@ def harmonic_system(
         z=np.tile(z, r.size)[used],
         unknown=unknown[used],
         sign=sign[used],
-        layer_stiffness=tuple(_gather(part, count) for part in per_layer),
+        layer_stiffness=tuple(gathered(part, count) for part in per_layer),
     )
 
 
@@ -221,11 +252,13 @@ def _strains(
 def _constitutive(layer: RingLayer) -> si.FloatArray:
     """[[c, −eᵀ], [−e, −ε]] (9, 9): the electric enthalpy is half of its quadratic form."""
     law = np.zeros((9, 9))
-    law[:6, :6] = layer.solid.stiffness
-    if layer.solid.piezoelectric is not None and layer.solid.permittivity is not None:
-        law[6:, :6] = -layer.solid.piezoelectric
-        law[:6, 6:] = -layer.solid.piezoelectric.T
-        law[6:, 6:] = -np.diag(layer.solid.permittivity)
+    solid = layer.solid
+    law[:6, :6] = solid.stiffness
+    if solid.stress_matrix is not None and solid.permittivity is not None:
+        law[:6, :6] = (solid.stiffness + solid.stiffness.T) / 2
+        law[6:, :6] = -solid.stress_matrix
+        law[:6, 6:] = -solid.stress_matrix.T
+        law[6:, 6:] = -solid.permittivity
     return law
 
 
@@ -245,7 +278,7 @@ def _unknowns(
         cell = np.s_[i * degree : (i + 1) * degree + 1, j * degree : (j + 1) * degree + 1]
         used[cell] = True
         layer = section.layers[mesh.layer[i, j]]
-        if layer.is_piezoelectric:
+        if layer.solid.piezoelectric:
             electric[cell] = True
             faces = (np.abs(z - layer.bottom) <= _SAME) | (np.abs(z - layer.top) <= _SAME)
             held[cell] |= faces[None, j * degree : (j + 1) * degree + 1]
@@ -278,14 +311,3 @@ def _unknowns(
 def _unique(values: list[float]) -> list[float]:
     ordered = sorted(values)
     return [x for k, x in enumerate(ordered) if k == 0 or x - ordered[k - 1] > _SAME]
-
-
-def _entries(rows: np.ndarray, block: si.FloatArray) -> _Triple:
-    keep = rows >= 0
-    rows, block = rows[keep], block[np.ix_(keep, keep)]
-    return np.repeat(rows, rows.size), np.tile(rows, rows.size), block.ravel()
-
-
-def _gather(triples: list[_Triple], size: int) -> sparse.csc_matrix:
-    row, column, entries = (np.concatenate([t[k] for t in triples]) for k in range(3))
-    return sparse.coo_matrix((entries, (row, column)), shape=(size, size)).tocsc()

@@ -13,11 +13,10 @@ from dataclasses import dataclass, replace
 from typing import Annotated
 
 import numpy as np
-from scipy import sparse
-from scipy.sparse.linalg import LinearOperator, eigsh, splu
 
 from squeezefilm import quantities as si
-from squeezefilm.errors import ConvergenceError, InputError
+from squeezefilm.errors import InputError
+from squeezefilm.plate.elements.sparse_modes import nearest_modes, shifted_inverse
 from squeezefilm.plate.ring.elements import HarmonicSystem, harmonic_system, ring_mesh
 from squeezefilm.plate.ring.section import AnnularSection, SectorDrive
 
@@ -158,9 +157,9 @@ def clamped_capacitance(section: AnnularSection, drive: SectorDrive) -> si.Farad
     """
     total = 0.0
     for layer in section.layers:
-        if layer.solid.permittivity is not None and layer.is_piezoelectric:
+        if layer.solid.permittivity is not None and layer.solid.piezoelectric:
             area = (layer.outer_radius**2 - layer.inner_radius**2) / 2
-            total += layer.solid.permittivity[2] * area / layer.thickness
+            total += layer.solid.permittivity[2, 2] * area / layer.thickness
     if total == 0:
         raise InputError("no layer is piezoelectric; add a ceramic to have an admittance")
     return float(total * drive.angle)
@@ -198,7 +197,8 @@ def annular_admittance(
         # What the modes left out add hardly depends on frequency: take it in the middle, from a
         # direct solve, at a point moved off the resonances by the shift.
         shift = _shift(system, middle)
-        static = float(system.force @ _factor(system, shift)(system.force))
+        inverse = shifted_inverse(system.matrix, system.mass, shift)
+        static = float(system.force @ inverse(system.force))
         for square, vector in zip(squares, vectors.T, strict=True):
             force2 = float(vector @ system.force) ** 2  # vectors have unit modal mass
             static -= force2 / (square - shift)
@@ -216,22 +216,6 @@ def _shift(system: HarmonicSystem, near: si.Hertz) -> float:
     return (2 * math.pi * near) ** 2 * (1 + 1e-7) - 1e-7 * float(scale)
 
 
-def _factor(system: HarmonicSystem, shift: float) -> LinearOperator:
-    n = system.displacements
-    size = system.matrix.shape[0]
-    mass = system.mass.tocoo()
-    padded_mass = sparse.coo_matrix((mass.data, (mass.row, mass.col)), shape=(size, size))
-    factors = splu((system.matrix - shift * padded_mass).tocsc(), diag_pivot_thresh=0.0)
-    padded = np.zeros(size)
-
-    def solve(b: si.FloatArray) -> si.FloatArray:
-        padded[:n] = np.ravel(b)
-        answer: si.FloatArray = factors.solve(padded)[:n]
-        return answer
-
-    return LinearOperator((n, n), matvec=solve, dtype=float)
-
-
 def _eigenpairs(
     system: HarmonicSystem, near: si.Hertz, count: int
 ) -> tuple[si.FloatArray, si.FloatArray]:
@@ -239,25 +223,13 @@ def _eigenpairs(
     n = system.displacements
     if count >= n:
         raise InputError(f"{count} modes were asked for of {n} unknowns; ask for fewer")
-    shift = _shift(system, near)
-    start = np.random.default_rng(1).standard_normal(n)
-    try:
-        squares, vectors = eigsh(
-            system.mass,  # not used: OPinv holds the potential too
-            k=count,
-            M=system.mass,
-            sigma=shift,
-            OPinv=_factor(system, shift),
-            v0=start,
-            tol=1e-11,
-        )
-    except (RuntimeError, ValueError) as error:  # ARPACK's and SuperLU's
-        raise ConvergenceError(
-            f"the modes of harmonic {system.harmonic} near {near:.6g} Hz did not converge "
-            f"({error}); ask for fewer modes or another degree"
-        ) from error
-    order = np.argsort(squares)
-    return squares[order], vectors[:, order]
+    return nearest_modes(
+        system.matrix,
+        system.mass,
+        _shift(system, near),
+        count,
+        f"the modes of harmonic {system.harmonic} near {near:.6g} Hz",
+    )
 
 
 def _mode(
@@ -327,7 +299,7 @@ def _quality(
 ) -> float:
     if quality_factor is not None:
         return quality_factor
-    losses = [layer.solid.loss_factor for layer in section.layers]
+    losses = [layer.solid.loss for layer in section.layers]
     if any(loss is None for loss in losses):
         raise InputError(
             "quality_factor is not given, and not every layer has a loss_factor; give either",

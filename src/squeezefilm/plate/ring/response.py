@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -101,14 +101,7 @@ def ring_circuit(body: RingBody, mode: AnnularMode, response: RingResponse) -> E
     )
     omega = 2 * np.pi * response.frequencies
     rest = (response.admittance - bare.admittance(response.frequencies)) / (1j * omega)
-    return EquivalentCircuit(
-        frequency=bare.frequency,
-        quality_factor=bare.quality_factor,
-        static_capacitance=float(np.median(rest.real)),
-        motional_resistance=bare.motional_resistance,
-        motional_inductance=bare.motional_inductance,
-        motional_capacitance=bare.motional_capacitance,
-    )
+    return replace(bare, static_capacitance=float(np.median(rest.real)))
 
 
 def static_capacitance(body: RingBody, circuit: EquivalentCircuit | None) -> si.Farad:

@@ -8,12 +8,13 @@ from dataclasses import dataclass
 from typing import Annotated, Literal
 
 import numpy as np
+from scipy.sparse import csgraph
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import GeometryError, InputError
-from squeezefilm.materials import ElasticMaterial
+from squeezefilm.plate.elements.box_model import Medium, isotropic_solid, piezoceramic_solid
 from squeezefilm.plate.layout import DiscPlate
-from squeezefilm.plate.ring.materials import RingSolid, isotropic_solid, piezoceramic_solid
+from squeezefilm.plate.ring.materials import require_decoupled
 
 _M = si.Unit("m")
 # Half a nanometre: what two edges may differ by and still be the same edge.
@@ -33,22 +34,18 @@ class RingLayer:
     outer_radius: si.Metre
     bottom: si.Metre
     top: si.Metre
-    solid: RingSolid
+    solid: Medium
     driven_face: Literal["lower", "upper"] = "lower"
 
     def __post_init__(self) -> None:
         si.require("outer_radius", self.outer_radius, _M, above=self.inner_radius)
         si.require("top", self.top, _M, above=self.bottom)
+        require_decoupled(self.solid)
 
     @property
     def thickness(self) -> si.Metre:
         """Top minus bottom."""
         return self.top - self.bottom
-
-    @property
-    def is_piezoelectric(self) -> bool:
-        """Whether the layer has electrodes."""
-        return self.solid.piezoelectric is not None
 
 
 @si.checked_numbers
@@ -66,31 +63,22 @@ class AnnularSection:
     def __post_init__(self) -> None:
         if not self.layers:
             raise GeometryError("layers is empty; a ring needs at least one")
-        for i, a in enumerate(self.layers):
-            for j, b in enumerate(self.layers[:i]):
-                wide = min(a.outer_radius, b.outer_radius) - max(a.inner_radius, b.inner_radius)
-                high = min(a.top, b.top) - max(a.bottom, b.bottom)
-                if wide > _SAME and high > _SAME:
-                    raise GeometryError(
-                        f"ring layers {j + 1} and {i + 1} overlap by "
-                        f"{si.format_quantity(wide, _M)} × {si.format_quantity(high, _M)}; move "
-                        "one of them"
-                    )
-        self._check_connected()
-
-    def _check_connected(self) -> None:
-        reached, todo = {0}, [0]
-        while todo:
-            a = self.layers[todo.pop()]
-            for j, b in enumerate(self.layers):
-                wide = min(a.outer_radius, b.outer_radius) - max(a.inner_radius, b.inner_radius)
-                high = min(a.top, b.top) - max(a.bottom, b.bottom)
-                touching = min(wide, high) > -_SAME and max(wide, high) > _SAME
-                if j not in reached and touching:
-                    reached.add(j)
-                    todo.append(j)
-        if len(reached) < len(self.layers):
-            loose = min(set(range(len(self.layers))) - reached)
+        count = len(self.layers)
+        touching = np.eye(count, dtype=bool)
+        for i, j in itertools.combinations(range(count), 2):
+            a, b = self.layers[i], self.layers[j]
+            wide = min(a.outer_radius, b.outer_radius) - max(a.inner_radius, b.inner_radius)
+            high = min(a.top, b.top) - max(a.bottom, b.bottom)
+            if wide > _SAME and high > _SAME:
+                raise GeometryError(
+                    f"ring layers {i + 1} and {j + 1} overlap by "
+                    f"{si.format_quantity(wide, _M)} × {si.format_quantity(high, _M)}; move one of "
+                    "them"
+                )
+            touching[i, j] = min(wide, high) > -_SAME and max(wide, high) > _SAME
+        _, piece = csgraph.connected_components(touching, directed=False)
+        if np.any(piece != piece[0]):
+            loose = int(np.argmax(piece != piece[0]))
             raise GeometryError(
                 f"ring layer {loose + 1} does not touch the others; let them share a face"
             )
@@ -209,11 +197,8 @@ def bonded_disc(disc: DiscPlate) -> AnnularSection:
     piezo = piezoceramic_solid(disc.ceramic, loss_factor)
     layers = [RingLayer(inner, outer, 0.0, base, piezo)]
     if glue is not None:
-        bond = ElasticMaterial(
-            "glue", glue.young_modulus, glue.poisson_ratio, glue.density, glue.quality_factor
-        )
         top = base + glue.thickness
-        layers.append(RingLayer(inner, outer, base, top, isotropic_solid(bond, loss_factor)))
+        layers.append(RingLayer(inner, outer, base, top, isotropic_solid(glue, loss_factor)))
         base = top
     solid, half = isotropic_solid(disc.substrate, loss_factor), disc.inner_diameter / 2
     layers.append(RingLayer(half, disc.diameter / 2, base, base + disc.thickness, solid))

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import dataclasses
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Annotated, Literal
 
 from scipy.optimize import brentq
@@ -12,12 +11,8 @@ from scipy.optimize import brentq
 from squeezefilm import quantities as si
 from squeezefilm.errors import GeometryError, UnreachableError
 from squeezefilm.materials import ElasticMaterial, Piezoceramic
-from squeezefilm.plate.ring.materials import (
-    isotropic_solid,
-    piezoceramic_solid,
-    soft_teeth,
-    stiff_teeth,
-)
+from squeezefilm.plate.elements.box_model import isotropic_solid, piezoceramic_solid
+from squeezefilm.plate.ring.materials import soft_teeth, stiff_teeth
 from squeezefilm.plate.ring.modes import DEFAULT_DEGREE, AnnularMode, bending_mode
 from squeezefilm.plate.ring.section import (
     AnnularSection,
@@ -73,8 +68,8 @@ class StatorAssumptions:
 class StatorFit:
     """A stator whose `ring_thickness` (metal between ceramic and teeth) was fitted.
 
-    `fitted` and `assumed` name what was fitted and what was assumed, in SI units; `derived` what
-    follows from the given wavelength. `frequency_bounds` are the frequencies that this thickness
+    `assumptions` name what was assumed, in SI units; the section's mean diameter follows from the
+    given wavelength. `frequency_bounds` are the frequencies that this thickness
     would have with the teeth soft (no hoop stiffness) and stiff (fill × E): how far the tooth
     layer is uncertain; `thickness_bounds` the thicknesses that each bound would have been fitted
     to (the thinnest allowed where the stiff bound is too high even so).
@@ -87,9 +82,6 @@ class StatorFit:
     frequency_bounds: tuple[si.Hertz, si.Hertz]
     thickness_bounds: tuple[si.Metre, si.Metre]
     assumptions: StatorAssumptions
-    fitted: dict[str, float] = field(default_factory=dict)
-    derived: dict[str, float] = field(default_factory=dict)
-    assumed: dict[str, object] = field(default_factory=dict)
 
     @si.checked_numbers
     def amplitude(self, voltage: si.Volt) -> si.Metre:
@@ -178,9 +170,6 @@ def fit_stator(
         frequency_bounds=bounds,
         thickness_bounds=(stiff, soft),
         assumptions=a,
-        fitted={"ring_thickness": thickness},
-        derived={"mean_diameter": mean_diameter},
-        assumed={f.name: getattr(a, f.name) for f in dataclasses.fields(a)},
     )
 
 

@@ -9,8 +9,8 @@ import numpy as np
 from scipy import sparse
 
 from squeezefilm import quantities as si
-from squeezefilm.plate.elements.lobatto import lobatto_nodes
-from squeezefilm.plate.elements.nodal_basis import gauss_points, lagrange
+from squeezefilm.plate.elements.lobatto import gauss_points, lagrange, lobatto_nodes
+from squeezefilm.plate.elements.sparse_modes import Entries, entries, gathered
 from squeezefilm.plate.shear.section import ShearLayout, ShearSection
 
 # Unknowns at a node: mid-plane u, v, deflection w, and the rotations a, b: u_x = u + z a, …
@@ -83,8 +83,8 @@ def shear_system(
     images = (2 if parity[0] else 1) * (2 if parity[1] else 1)
     made: dict[tuple[object, ...], tuple[si.FloatArray, si.FloatArray, si.FloatArray]] = {}
     force = np.zeros(count + 1)
-    places: list[tuple[np.ndarray, np.ndarray]] = []
-    parts: list[tuple[si.FloatArray, si.FloatArray]] = []
+    stiffness: list[Entries] = []
+    inertia: list[Entries] = []
     for i, (ci, px) in enumerate(zip(x.cell, x.degrees, strict=True)):
         for j, (cj, py) in enumerate(zip(y.cell, y.degrees, strict=True)):
             section = layout.sections[layout.section[ci, cj]]
@@ -96,23 +96,10 @@ def shear_system(
             block = unknown[x.first[i] : x.first[i] + px + 1, y.first[j] : y.first[j] + py + 1]
             rows = np.moveaxis(block, -1, 0).ravel()
             np.add.at(force, np.where(rows < 0, count, rows), drive[ci, cj] * pull)
-            keep = rows >= 0
-            rows = rows[keep]
-            inside = np.ix_(keep, keep)
-            places.append((np.repeat(rows, rows.size), np.tile(rows, rows.size)))
-            parts.append((images * stiff[inside].ravel(), images * mass[inside].ravel()))
-    row, column = (np.concatenate([place[k] for place in places]) for k in (0, 1))
-    stiffness, inertia = (np.concatenate([part[k] for part in parts]) for k in (0, 1))
-    shape = (count, count)
-    return ShearSystem(
-        parity,
-        sparse.coo_matrix((stiffness, (row, column)), shape=shape).tocsc(),
-        sparse.coo_matrix((inertia, (row, column)), shape=shape).tocsc(),
-        force[:count],
-        x,
-        y,
-        unknown,
-    )
+            stiffness.append(entries(rows, images * stiff))
+            inertia.append(entries(rows, images * mass))
+    K, M = gathered(stiffness, count), gathered(inertia, count)
+    return ShearSystem(parity, K, M, force[:count], x, y, unknown)
 
 
 def _element(

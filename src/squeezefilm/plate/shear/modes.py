@@ -11,12 +11,12 @@ from dataclasses import dataclass
 from typing import Annotated
 
 import numpy as np
-from scipy.sparse.linalg import LinearOperator, eigsh, splu
 
 from squeezefilm import quantities as si
-from squeezefilm.errors import ConvergenceError, InputError
+from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import FREQUENCY, SHEAR_UNKNOWNS, require_within
-from squeezefilm.plate.elements.nodal_basis import lagrange
+from squeezefilm.plate.elements.lobatto import lagrange
+from squeezefilm.plate.elements.sparse_modes import nearest_modes
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.shear.elements import Axis, ShearSystem, shear_system
 from squeezefilm.plate.shear.section import ShearLayout, shear_layout
@@ -75,23 +75,6 @@ class ShearMode:
         omega2 = (2 * math.pi * self.frequency) ** 2
         return quality_factor * abs(self.modal_force) / (omega2 * self.modal_mass)
 
-    @si.checked_numbers
-    def deflection_at(self, x: si.Metre, y: si.Metre) -> si.Dimensionless:
-        """The scaled deflection at a point, bilinear between nodes."""
-        si.require("x", x, si.Unit("m"), at_least=float(self.x[0]), at_most=float(self.x[-1]))
-        si.require("y", y, si.Unit("m"), at_least=float(self.y[0]), at_most=float(self.y[-1]))
-        along = [np.interp(y, self.y, row) for row in self.deflection]
-        return float(np.interp(x, self.x, along))
-
-    def centreline_nodes(self) -> si.MetreArray:
-        """Where the deflection changes sign along the length, on the middle of the width (m)."""
-        middle = (self.y[0] + self.y[-1]) / 2
-        line = np.array([np.interp(middle, self.y, row) for row in self.deflection])
-        at = np.flatnonzero(np.sign(line[:-1]) * np.sign(line[1:]) < 0)
-        share = line[at] / (line[at] - line[at + 1])
-        crossings: si.MetreArray = self.x[at] + share * (self.x[at + 1] - self.x[at])
-        return crossings
-
 
 @si.checked_numbers
 def shear_modes(
@@ -101,7 +84,6 @@ def shear_modes(
     *,
     degree: Annotated[int, si.AtLeast(3), si.AtMost(14)] = DEFAULT_DEGREE,
     parities: tuple[tuple[int, int], ...] | None = None,
-    induced_potential: bool = True,
 ) -> tuple[ShearMode, ...]:
     """The `count` modes of a free plate nearest to a frequency, in rising order.
 
@@ -112,11 +94,7 @@ def shear_modes(
     `ConvergenceError` if the eigenvalues do not converge.
     """
     si.require("near", near, si.Unit("Hz"), at_least=0, at_most=FREQUENCY.most)
-    layout = (
-        plate
-        if isinstance(plate, ShearLayout)
-        else shear_layout(plate, induced_potential=induced_potential)
-    )
+    layout = plate if isinstance(plate, ShearLayout) else shear_layout(plate)
     longest = _longest_element(layout, near)
     parts = [
         float(np.ceil(np.diff(edges) / longest).sum()) for edges in (layout.x_edges, layout.y_edges)
@@ -151,26 +129,16 @@ def shear_mode(
     near: si.Hertz,
     *,
     degree: int = DEFAULT_DEGREE,
-    induced_potential: bool = True,
 ) -> ShearMode:
     """The mode of a label nearest to a frequency, searched in its own symmetry class only.
 
     Raises `InputError` if none of the ten modes nearest to `near` in that class has the label.
     """
-    layout = (
-        plate
-        if isinstance(plate, ShearLayout)
-        else shear_layout(plate, induced_potential=induced_potential)
-    )
-    signs = [1 if lines % 2 == 0 else -1 for lines in nodal_lines]
-    parity = (
-        signs[0] if layout.mirrored(0) else 0,
-        signs[1] if layout.mirrored(1) else 0,
-    )
-    wanted = tuple(nodal_lines)
+    layout = plate if isinstance(plate, ShearLayout) else shear_layout(plate)
+    parity = layout.parity_of(nodal_lines)
     for count in (4, 10):
         modes = shear_modes(layout, near, count, degree=degree, parities=(parity,))
-        same = [mode for mode in modes if mode.nodal_lines == wanted]
+        same = [mode for mode in modes if mode.nodal_lines == tuple(nodal_lines)]
         if same:
             return min(same, key=lambda mode: abs(mode.frequency - near))
     raise InputError(
@@ -187,7 +155,7 @@ def _parities(layout: ShearLayout) -> tuple[tuple[int, int], ...]:
 
 def _longest_element(layout: ShearLayout, near: si.Hertz) -> si.Metre:
     """Three quarters of the bending wavelength of the softest section, or half the plate."""
-    half = max(np.ptp(layout.x_edges), np.ptp(layout.y_edges)) / 2
+    half = layout.extent / 2
     if near == 0:
         return float(half)
     omega = 2 * math.pi * near
@@ -200,34 +168,16 @@ def _longest_element(layout: ShearLayout, near: si.Hertz) -> si.Metre:
 def _eigenpairs(
     system: ShearSystem, layout: ShearLayout, near: si.Hertz, count: int
 ) -> tuple[si.FloatArray, si.FloatArray]:
-    n = system.force.size
-    count = min(count, n - 2)
     # Off zero, where rigid-body motions make the matrix singular.
-    low = min(s.bending[0, 0] / s.inertia[0] for s in layout.sections)
-    extent = max(np.ptp(layout.x_edges), np.ptp(layout.y_edges))
-    shift = (2 * math.pi * near) ** 2 * (1 + 1e-7) - 1e-3 * low / extent**4
-    factors = splu(
-        (system.stiffness - shift * system.mass).tocsc(),
-        permc_spec="MMD_AT_PLUS_A",
-        diag_pivot_thresh=0.0,
-        options={"SymmetricMode": True},
+    shift = (2 * math.pi * near) ** 2 * (1 + 1e-7) - 1e-3 * layout.softest / layout.extent**4
+    return nearest_modes(
+        system.stiffness,
+        system.mass,
+        shift,
+        min(count, system.force.size - 2),
+        f"the plate's modes near {near:.6g} Hz",
+        "MMD_AT_PLUS_A",
     )
-    try:
-        squares, vectors = eigsh(
-            system.mass,
-            k=count,
-            M=system.mass,
-            sigma=shift,
-            OPinv=LinearOperator((n, n), matvec=factors.solve, dtype=float),
-            v0=np.random.default_rng(1).standard_normal(n),
-            tol=1e-11,
-        )
-    except (RuntimeError, ValueError) as error:  # ARPACK's and SuperLU's
-        raise ConvergenceError(
-            f"the plate's modes near {near:.6g} Hz did not converge ({error}); ask for fewer"
-        ) from error
-    order = np.argsort(squares)
-    return squares[order], vectors[:, order]
 
 
 def _mode(
@@ -243,13 +193,9 @@ def _mode(
     w = w.T
     peak = float(w.flat[np.argmax(np.abs(w))])
     # In-plane motions and rigid shifts may have no deflection at all.
-    scale = peak if abs(peak) > 1e-9 / math.sqrt(_mass(layout)) else 1 / math.sqrt(_mass(layout))
-    rigid = (
-        square
-        < 1e-4
-        * min(s.bending[0, 0] / s.inertia[0] for s in layout.sections)
-        / max(np.ptp(layout.x_edges), np.ptp(layout.y_edges)) ** 4
-    )
+    shift = 1 / math.sqrt(layout.mass)
+    scale = peak if abs(peak) > 1e-9 * shift else shift
+    rigid = square < 1e-4 * layout.softest / layout.extent**4
     frequency = 0.0 if rigid else math.sqrt(square) / (2 * math.pi)
     other = float(rough[np.argmin(np.abs(rough - square))])
     error = 0.0 if rigid else abs(math.sqrt(max(other, 0.0)) / (2 * math.pi) - frequency)
@@ -265,12 +211,6 @@ def _mode(
         deflection=w / scale,
         unknowns=vector.size,
     )
-
-
-def _mass(layout: ShearLayout) -> float:
-    areas = np.outer(np.diff(layout.x_edges), np.diff(layout.y_edges))
-    per_area = np.array([s.inertia[0] for s in layout.sections])[layout.section]
-    return float((areas * per_area).sum())
 
 
 def _fine(axis: Axis, values: si.FloatArray) -> tuple[si.FloatArray, si.FloatArray]:

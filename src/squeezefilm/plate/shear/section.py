@@ -60,6 +60,29 @@ class ShearLayout:
     section: np.ndarray
     polarity: si.FloatArray
 
+    @property
+    def extent(self) -> si.Metre:
+        """The longer side."""
+        return float(max(np.ptp(self.x_edges), np.ptp(self.y_edges)))
+
+    @property
+    def softest(self) -> float:
+        """The least bending stiffness over mass per area of all sections (m⁴/s²)."""
+        return float(min(s.bending[0, 0] / s.inertia[0] for s in self.sections))
+
+    @property
+    def mass(self) -> si.Kilogram:
+        """The mass of the whole plate."""
+        areas = np.outer(np.diff(self.x_edges), np.diff(self.y_edges))
+        per_area = np.array([s.inertia[0] for s in self.sections])[self.section]
+        return float((areas * per_area).sum())
+
+    @si.checked_numbers
+    def parity_of(self, nodal_lines: tuple[int, int]) -> tuple[int, int]:
+        """The class of symmetry of modes with these nodal lines: ±1, or 0 where there is none."""
+        x, y = (1 if lines % 2 == 0 else -1 for lines in nodal_lines)
+        return x if self.mirrored(0) else 0, y if self.mirrored(1) else 0
+
     def mirrored(self, axis: int) -> bool:
         """Whether the laminate (not its polarity) is its own mirror image along x (0) or y (1)."""
         edges = (self.x_edges, self.y_edges)[axis]
@@ -89,14 +112,12 @@ def monomorph_section(
     thickness: si.Metre,
     ceramic: Piezoceramic,
     ceramic_thickness: Annotated[si.Metre, si.Above(0.0)],
-    *,
-    induced_potential: bool = True,
 ) -> ShearSection:
     """A substrate with a shorted ceramic perfectly bonded to its lower face.
 
-    The ceramic is in plane stress; its coupling is that of the data set believed. Where
-    `induced_potential`, bending raises a parabolic potential between the shorted faces, which
-    stiffens the ceramic's own bending by e31_p²/ε33_p (the field is linear in z, its mean zero).
+    The ceramic is in plane stress; its coupling is that of the data set believed.
+    Bending raises a parabolic potential between the shorted faces, which stiffens the ceramic's own
+    bending by e31_p²/ε33_p (the field is linear in z, its mean zero).
     Valid for layers thin against the wavelength; source: classical lamination with Mindlin's shear
     (1951, 10.1115/1.4010217), shear factor 5/6 for the sum of the layers.
     """
@@ -106,9 +127,8 @@ def monomorph_section(
     arm = -(thickness + h) / 2
     bending = reduced * (h * arm**2 + h**3 / 12)
     e = ceramic.effective_stress_coefficient
-    if induced_potential:
-        permittivity = ceramic.relative_permittivity * VACUUM_PERMITTIVITY
-        bending[:2, :2] += e**2 / permittivity * h**3 / 12
+    permittivity = ceramic.relative_permittivity * VACUUM_PERMITTIVITY
+    bending[:2, :2] += e**2 / permittivity * h**3 / 12
     moments = np.array([h, h * arm, h * arm**2 + h**3 / 12])
     return ShearSection(
         membrane=bare.membrane + reduced * h,
@@ -121,7 +141,7 @@ def monomorph_section(
     )
 
 
-def shear_layout(plate: RectangularPlate, *, induced_potential: bool = True) -> ShearLayout:
+def shear_layout(plate: RectangularPlate) -> ShearLayout:
     """The cells of a plate with ceramics: bare where there is none, laminate where there is."""
     xs = [0.0, plate.length, *(e for p in plate.patches for e in (p.x, p.x + p.length))]
     ys = [0.0, plate.width, *(e for p in plate.patches for e in (p.y, p.y + p.width))]
@@ -133,28 +153,9 @@ def shear_layout(plate: RectangularPlate, *, induced_potential: bool = True) -> 
         polarity[np.ix_(across, (ym > p.y) & (ym < p.y + p.width))] = p.polarity
     sections = (
         isotropic_section(plate.substrate, plate.thickness),
-        monomorph_section(
-            plate.substrate,
-            plate.thickness,
-            plate.ceramic,
-            plate.ceramic_thickness,
-            induced_potential=induced_potential,
-        ),
+        monomorph_section(plate.substrate, plate.thickness, plate.ceramic, plate.ceramic_thickness),
     )
     return ShearLayout(x_edges, y_edges, sections, (polarity != 0).astype(int), polarity)
-
-
-@si.checked_numbers
-def uniform_shear_layout(
-    length: Annotated[si.Metre, si.Above(0.0)],
-    width: Annotated[si.Metre, si.Above(0.0)],
-    section: ShearSection,
-) -> ShearLayout:
-    """A plate of one section, without drive."""
-    one = np.zeros((1, 1))
-    return ShearLayout(
-        np.array([0.0, length]), np.array([0.0, width]), (section,), one.astype(int), one
-    )
 
 
 def _plane_stress(modulus: float, poisson: float) -> si.FloatArray:

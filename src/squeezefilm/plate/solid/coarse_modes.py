@@ -7,29 +7,25 @@ from dataclasses import dataclass
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.errors import InputError, OutOfRangeError, SqueezefilmError
+from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import BAND_MODES, require_within
-from squeezefilm.plate.beam.modes import free_beam_mode, timoshenko_frequency
-from squeezefilm.plate.beam.response import LEAST_COVERAGE
 from squeezefilm.plate.elements.krylov import modes_below, modes_near
 from squeezefilm.plate.elements.slab_factor import SlabFactor
-from squeezefilm.plate.elements.slabs import Slabs
-from squeezefilm.plate.laminate import plate_laminate
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.solid.electrode_circuits import inverse_with_open
+from squeezefilm.plate.solid.layers import COARSE
 from squeezefilm.plate.solid.mesh import plate_model
-from squeezefilm.plate.solid.modes import Label, SolvedModel, label_of, surface_shapes
-from squeezefilm.plate.solid.resolution import COARSE
-from squeezefilm.plate.solid.shear_guess import screened_frequency
-from squeezefilm.plate.solid.symmetry import Parity
+from squeezefilm.plate.solid.model import PlateModel
+from squeezefilm.plate.solid.modes import Label, label_of, surface_shapes
+from squeezefilm.plate.solid.symmetry import Symmetry
 
 
 @dataclass(frozen=True, eq=False)
 class CoarseModes:
     """Modes of one class on the coarse mesh, with what is taken from it."""
 
-    parity: tuple[Parity | None, Parity | None]
-    solved: SolvedModel
+    parity: Symmetry
+    solved: PlateModel
     values: si.FloatArray
     vectors: si.FloatArray
     labels: list[Label | None]
@@ -37,30 +33,7 @@ class CoarseModes:
     shift: float
 
 
-def estimated_frequency(plate: RectangularPlate, label: Label) -> float:
-    """A first guess of a mode's frequency: a Timoshenko beam with the mode's wave number, or the
-    shear plate where ceramics cover little of it."""
-    section = plate_laminate(plate, "plane_strain")
-    lines = [(n, span) for n, span in zip(label, (plate.length, plate.width), strict=True)]
-    k2 = sum(((n - 0.5) * np.pi / span) ** 2 for n, span in lines if n >= 2)
-    k2 += 2 * (np.pi / plate.length) * (np.pi / plate.width) if label == (1, 1) else 0.0
-    if k2 == 0:
-        raise InputError(
-            f"a mode with nodal lines {label} is no elastic mode that can be guessed; solve near a "
-            "frequency or in a band",
-            quantity="mode",
-        )
-    if plate.coverage < LEAST_COVERAGE and (guess := screened_frequency(plate, label)) is not None:
-        return guess
-    if label[1] == 0:
-        try:
-            return free_beam_mode(section, plate.length, label[0]).frequency
-        except (OutOfRangeError, SqueezefilmError):
-            pass
-    return float(timoshenko_frequency(float(np.pi / np.sqrt(k2)), section))
-
-
-def class_fits(parity: tuple[Parity | None, Parity | None], label: Label) -> bool:
+def class_fits(parity: Symmetry, label: Label) -> bool:
     """Whether a mode with these nodal lines can belong to a class of symmetry."""
     return all(
         p is None or p == ("S" if lines % 2 == 0 else "A")
@@ -70,7 +43,7 @@ def class_fits(parity: tuple[Parity | None, Parity | None], label: Label) -> boo
 
 def coarse_modes(
     plate: RectangularPlate,
-    parity: tuple[Parity | None, Parity | None],
+    parity: Symmetry,
     centre: float,
     highest: float,
     band: tuple[float, float] | None,
@@ -78,9 +51,8 @@ def coarse_modes(
 ) -> CoarseModes:
     """The modes of one class on the coarse mesh: the `count` nearest to `centre` (Hz), or all in a
     band, their number checked by Sylvester's law where no electrode is open."""
-    built = plate_model(plate, highest, COARSE, parity)
-    slabs = Slabs(built.model)
-    solved = SolvedModel(plate, built, slabs)
+    solved = plate_model(plate, highest, COARSE, parity)
+    slabs = solved.slabs
     shift = (2 * np.pi * centre * 1.0007) ** 2
     factor = SlabFactor(slabs, shift)
     expected: int | None = None
@@ -114,7 +86,7 @@ def coarse_modes(
     else:
         start = np.random.default_rng(1).standard_normal((slabs.unknowns, 4))
         start[(slabs.components == 3) | slabs.held] = 0
-        solve = inverse_with_open(slabs, solved, factor)
+        solve = inverse_with_open(solved, factor)
         pairs = modes_near(slabs, solve, shift, wanted, start, tolerance=1e-6)
         values, vectors = pairs.values, pairs.vectors
     x, y, surface = surface_shapes(solved, vectors)

@@ -12,21 +12,20 @@ from squeezefilm import quantities as si
 from squeezefilm.errors import ConvergenceError
 from squeezefilm.plate.elements.krylov import with_open_electrodes
 from squeezefilm.plate.elements.slab_factor import SlabFactor
-from squeezefilm.plate.elements.slabs import Slabs
-from squeezefilm.plate.solid.modes import SolvedModel
+from squeezefilm.plate.solid.model import PlateModel
 from squeezefilm.plate.solid.reduced import plate_circuit
 from squeezefilm.plate.solid.symmetry import drive_signs
 
 
-def inverse_with_open(
-    slabs: Slabs, solved: SolvedModel, factor: SlabFactor
-) -> Callable[..., si.FloatArray]:
+def inverse_with_open(solved: PlateModel, factor: SlabFactor) -> Callable[..., si.FloatArray]:
     """The inverse with the plate's own open electrodes."""
     columns = _floating(solved)
-    return with_open_electrodes(slabs, factor.solve, columns) if columns.size else factor.solve
+    return (
+        with_open_electrodes(solved.slabs, factor.solve, columns) if columns.size else factor.solve
+    )
 
 
-def _floating(solved: SolvedModel) -> si.FloatArray:
+def _floating(solved: PlateModel) -> si.FloatArray:
     """The electrodes that the plate leaves open, each by itself."""
     patches = solved.plate.patches
     return tied_electrodes(
@@ -34,17 +33,17 @@ def _floating(solved: SolvedModel) -> si.FloatArray:
     )
 
 
-def tied_electrodes(solved: SolvedModel, groups: list[list[tuple[int, float]]]) -> si.FloatArray:
+def tied_electrodes(solved: PlateModel, groups: list[list[tuple[int, float]]]) -> si.FloatArray:
     """Model electrodes tied together, one column a group of (patch, sign); empty groups and
     repeated ones (mirror images) left out."""
-    electrodes = len(solved.built.model.electrodes)
+    electrodes = len(solved.model.electrodes)
     columns: list[si.FloatArray] = []
     for group in groups:
         column = np.zeros(electrodes)
         for patch, sign in group:
-            if solved.built.share_of[patch] == 0:
+            if solved.share_of[patch] == 0:
                 continue
-            column[solved.built.electrode_of[patch]] += sign * solved.built.sign_of[patch]
+            column[solved.electrode_of[patch]] += sign * solved.sign_of[patch]
         column = np.sign(np.round(column, 9))
         if np.any(column) and not any(
             np.array_equal(np.abs(column), np.abs(other)) for other in columns
@@ -54,7 +53,7 @@ def tied_electrodes(solved: SolvedModel, groups: list[list[tuple[int, float]]]) 
 
 
 def open_values(
-    solved: SolvedModel,
+    solved: PlateModel,
     factor: SlabFactor,
     shift: float,
     values: si.FloatArray,
@@ -88,7 +87,7 @@ def open_values(
 
 
 def shunted_frequencies(
-    solved: SolvedModel, factor: SlabFactor, values: si.FloatArray, vectors: si.FloatArray
+    solved: PlateModel, factor: SlabFactor, values: si.FloatArray, vectors: si.FloatArray
 ) -> si.ComplexArray:
     """Complex ω (rad/s, time factor e^{iωt}) of modes with their electrodes' resistors at work.
 
@@ -99,7 +98,7 @@ def shunted_frequencies(
     static answers to the electrodes. Raises `ConvergenceError` where that does not settle.
     """
     omega = np.sqrt(values).astype(complex)
-    circuit = [one for one in plate_circuit(solved.plate, solved) if np.isfinite(one[1])]
+    circuit = [one for one in plate_circuit(solved) if np.isfinite(one[1])]
     if not circuit or values.size == 0:
         return omega
     slabs = solved.slabs
@@ -108,7 +107,7 @@ def shunted_frequencies(
     G, C = slabs.electrode_columns
     G, C = G[:, number], C[np.ix_(number, number)]
     opened = _floating(solved)
-    solve = with_open_electrodes(slabs, factor.solve, opened) if opened.size else factor.solve
+    solve = inverse_with_open(solved, factor)
     answer = solve(G / np.max(np.abs(G)))
     more = solve(slabs.mass_times(answer))
     X = np.concatenate([vectors, answer, more, solve(slabs.mass_times(more))], axis=1)

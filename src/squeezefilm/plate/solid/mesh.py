@@ -21,15 +21,23 @@ from squeezefilm.plate.elements.box_model import (
     Electrode,
     EndCondition,
     Foundation,
+    require_aspect,
     require_memory,
 )
 from squeezefilm.plate.elements.lobatto import MAX_ORDER, LineMesh
 from squeezefilm.plate.layout import CeramicPatch, Face, FoamSupport, RectangularPlate
-from squeezefilm.plate.solid.layers import media, merged, snapped, through_thickness
-from squeezefilm.plate.solid.resolution import NORMAL, Resolution
+from squeezefilm.plate.solid.layers import (
+    NORMAL,
+    Resolution,
+    media,
+    merged,
+    snapped,
+    through_thickness,
+)
+from squeezefilm.plate.solid.model import PlateModel
 from squeezefilm.plate.solid.symmetry import (
     SNAP,
-    Parity,
+    Symmetry,
     mirror_map,
     symmetric_axes,
 )
@@ -42,26 +50,6 @@ _THINNEST = 2e4
 # 4e-5 of thin-plate theory at 290, within 1e-4 at 230, and off by 1e-3 at 430 and by 22 % at 1400,
 # where bending is lost in the rounding of membrane stiffness.
 _SLENDEREST = 250.0
-
-
-@dataclass(frozen=True, eq=False)
-class PlateModel:
-    """A plate, or the half or quarter of it that one class of symmetry needs, as a box model.
-
-    `parity` is the class along x and y (None where that half is not used); `copies` how many
-    times the model makes the plate; `swapped` whether the model's x is the plate's y;
-    `electrode_of[i]` the model's electrode for patch i and `sign_of[i]` the sign of its potential
-    relative to it; `share_of[i]` is how many times the model's part of that ceramic makes a whole
-    one (0 where antisymmetry makes its charge vanish and allows it no potential).
-    """
-
-    model: BoxModel
-    parity: tuple[Parity | None, Parity | None]
-    copies: int
-    swapped: bool
-    electrode_of: tuple[int, ...]
-    sign_of: tuple[float, ...]
-    share_of: tuple[float, ...]
 
 
 def wave_number(plate: RectangularPlate, frequency: float) -> float:
@@ -142,7 +130,7 @@ def plate_model(
     plate: RectangularPlate,
     frequency: float,
     resolution: Resolution = NORMAL,
-    parity: tuple[Parity | None, Parity | None] = (None, None),
+    parity: Symmetry = (None, None),
 ) -> PlateModel:
     """The box model of a plate for modes up to about `frequency`, in one class of symmetry.
 
@@ -188,6 +176,7 @@ def plate_model(
         resolution.trunk,
     )
     return PlateModel(
+        plate,
         model,
         parity,
         2 ** sum(half),
@@ -205,13 +194,7 @@ def _require_thick(plate: RectangularPlate, frequency: float, wave: float) -> No
         *(patch.thickness for patch in plate.patches),
         math.inf if plate.glue is None else plate.glue.thickness,
     )
-    if max(plate.length, plate.width) > _THINNEST * thinnest:
-        raise OutOfRangeError(
-            f"a layer of {si.format_quantity(thinnest, si.Unit('m'))} on a plate of "
-            f"{si.format_quantity(max(plate.length, plate.width), si.Unit('m'))} has an aspect "
-            f"ratio above {_THINNEST:.0f}, where three-dimensional elements lose their digits; use "
-            "a plate theory"
-        )
+    require_aspect("layer", thinnest, "plate", max(plate.extent), _THINNEST)
     if math.pi / wave > _SLENDEREST * plate.thickness:
         ratio = math.pi / wave / plate.thickness
         raise OutOfRangeError(
@@ -299,7 +282,7 @@ class _Cells:
 
 
 def _ends(
-    plate: RectangularPlate, parity: tuple[Parity | None, Parity | None], swapped: bool
+    plate: RectangularPlate, parity: Symmetry, swapped: bool
 ) -> tuple[EndCondition, EndCondition, EndCondition, EndCondition]:
     """How the model ends: at both ends of its x, then of its y."""
     ends: list[EndCondition] = []
@@ -314,9 +297,7 @@ def _ends(
     return ends[0], ends[1], ends[2], ends[3]
 
 
-def _share(
-    plate: RectangularPlate, patch: CeramicPatch, parity: tuple[Parity | None, Parity | None]
-) -> float:
+def _share(plate: RectangularPlate, patch: CeramicPatch, parity: Symmetry) -> float:
     share = 1.0
     for axis in (0, 1):
         middle = (plate.length, plate.width)[axis] / 2
@@ -327,7 +308,7 @@ def _share(
 
 
 def _electrode_map(
-    plate: RectangularPlate, parity: tuple[Parity | None, Parity | None]
+    plate: RectangularPlate, parity: Symmetry
 ) -> tuple[list[int], tuple[float, ...]]:
     """The patch in the modelled part that stands for each patch, and its relative sign."""
     stands = list(range(len(plate.patches)))

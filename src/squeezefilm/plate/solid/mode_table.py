@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
@@ -14,14 +15,12 @@ from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.solid.electrode_circuits import open_values, shunted_frequencies
 from squeezefilm.plate.solid.modes import (
     MODEL,
-    Label,
     PlateModes,
-    SolvedModel,
     label_of,
     surface_shapes,
 )
 from squeezefilm.plate.solid.refined_modes import RefinedModes, extrapolated
-from squeezefilm.plate.solid.symmetry import Parity, drive_signs
+from squeezefilm.plate.solid.symmetry import drive_signs
 
 
 def energy_shares_of(slabs: Slabs, vectors: si.FloatArray) -> tuple[si.FloatArray, si.FloatArray]:
@@ -41,9 +40,9 @@ def energy_shares_of(slabs: Slabs, vectors: si.FloatArray) -> tuple[si.FloatArra
 
         sections = slabs.weighted_sections(only, springs=0.0)
         energy.append(np.sum(vectors * slabs.stiffness_times(vectors, sections), axis=0))
-        lost.append(energy[-1] * medium.loss)
+        lost.append(energy[-1] * (medium.loss or 0.0))
     if model.foundations:
-        for total, springs in ((energy, 1.0), (lost, [f.loss for f in model.foundations])):
+        for total, springs in ((energy, 1.0), (lost, model.spring_losses)):
             sections = slabs.weighted_sections(lambda m: (0.0, 0.0), springs=springs)
             total.append(np.sum(vectors * slabs.stiffness_times(vectors, sections), axis=0))
     table, whole = np.stack(energy, axis=1), np.sum(energy, axis=0)
@@ -60,117 +59,81 @@ def collected_modes(
 
     Raises `InputError` where none is left.
     """
-    rows: list[_Mode] = []
-    x = y = np.zeros(0)
-    signs = drive_signs(plate)
-    for piece in pieces:
-        x, y, found = _modes_of(piece, signs)
-        rows += found
+    tables = [_table(piece, drive_signs(plate)) for piece in pieces]
+    names = list(tables[0]) if tables else []
+    table = {name: [one for some in tables for one in some[name]] for name in names}
+    every = table.get("frequencies", [])
+    order = sorted(range(len(every)), key=every.__getitem__)
     if band is not None:
-        rows = [row for row in rows if band[0] <= row.frequency <= band[1]]
-    if not rows:
+        order = [i for i in order if band[0] <= every[i] <= band[1]]
+    if not order:
         low, high = band or (0.0, 0.0)
         raise InputError(
             f"no mode lies between {low:.6g} Hz and {high:.6g} Hz; widen the band, or ask for the "
             "modes near a frequency",
             quantity="band",
         )
-    rows.sort(key=lambda row: row.frequency)
-    frequencies = np.array([row.frequency for row in rows])
-    errors = np.array([row.error for row in rows])
-    opened = np.array([row.open_frequency for row in rows])
-    over = int(np.sum(errors > tolerance * frequencies))
-    media = pieces[0].solved.built.model
-    names = [m.name for m in media.media] + (["supports"] if media.foundations else [])
+    columns: dict[str, Any] = {}
+    for name, values in table.items():
+        rows = [values[i] for i in order]
+        is_array = name not in ("labels", "parities", "_fields")
+        columns[name] = np.array(rows) if is_array else tuple(rows)
+    frequencies, opened = columns["frequencies"], columns["open_frequencies"]
+    over = int(np.sum(columns["errors"] > tolerance * frequencies))
+    model = pieces[0].solved.model
+    x, y, _ = surface_shapes(pieces[0].solved, pieces[0].vectors[:, :0])
     return PlateModes(
         plate=plate,
-        frequencies=frequencies,
-        errors=errors,
-        mesh_frequencies=np.array([row.mesh_frequency for row in rows]),
-        labels=tuple(row.label for row in rows),
-        parities=tuple(row.parity for row in rows),
         x=x,
         y=y,
-        shapes=np.stack([row.shape for row in rows]),
-        modal_forces=np.stack([row.forces for row in rows]),
-        drive_forces=np.array([row.drive_force for row in rows]),
-        open_frequencies=opened,
         couplings=np.sqrt(np.maximum(0.0, 1 - (frequencies / opened) ** 2)),
-        quality_factors=np.array([row.quality_factor for row in rows]),
-        materials=tuple(names),
-        energy_shares=np.stack([row.energy_shares for row in rows]),
+        materials=(*(m.name for m in model.media), *(["supports"] if model.foundations else [])),
         model=MODEL,
         status=(
-            f"all {len(rows)} modes within {tolerance:.1e} (estimated)"
+            f"all {len(order)} modes within {tolerance:.1e} (estimated)"
             if over == 0
-            else f"{over} of {len(rows)} modes have an estimated error above {tolerance:.1e}; the "
+            else f"{over} of {len(order)} modes have an estimated error above {tolerance:.1e}; the "
             "finest mesh was used"
         ),
         unknowns=max(piece.solved.slabs.unknowns for piece in pieces),
-        _fields=tuple(row.field for row in rows),
+        **columns,
     )
 
 
-class _Mode(NamedTuple):
-    """One mode, as `PlateModes` has many."""
-
-    frequency: float
-    error: float
-    mesh_frequency: float
-    label: Label | None
-    parity: tuple[Parity | None, Parity | None]
-    shape: si.FloatArray
-    forces: si.FloatArray
-    drive_force: float
-    open_frequency: float
-    energy_shares: si.FloatArray
-    quality_factor: float
-    field: tuple[SolvedModel, si.FloatArray]
-
-
-def _modes_of(
-    piece: RefinedModes, signs: si.FloatArray
-) -> tuple[si.FloatArray, si.FloatArray, list[_Mode]]:
-    """The modes of one class, and x and y of their shapes; `signs` are those of the drive."""
+def _table(piece: RefinedModes, signs: si.FloatArray) -> dict[str, Sequence[Any]]:
+    """What `PlateModes` has of each mode of one class; `signs` are those of the drive."""
     frequency, error = extrapolated(piece.coarse_values, piece.values, piece.level)
-    scale = 1 / np.sqrt(piece.solved.built.copies)
-    vectors = piece.vectors * scale
-    x, y, surface = surface_shapes(piece.solved, vectors)
-    G, _ = piece.solved.slabs.electrode_columns
-    built = piece.solved.built
-    per_electrode = -(G.T @ vectors).T
-    own = np.array(built.sign_of) * np.array(built.share_of)
-    forces = per_electrode[:, list(built.electrode_of)] * own[None, :]
+    solved = piece.solved
+    vectors = piece.vectors * (1 / np.sqrt(solved.copies))
+    x, y, surface = surface_shapes(solved, vectors)
+    G, _ = solved.slabs.electrode_columns
+    own = np.array(solved.sign_of) * np.array(solved.share_of)
+    forces = -(G.T @ vectors).T[:, list(solved.electrode_of)] * own[None, :]
     # Ratios need few digits: they are taken from the coarse mesh.
     rough, some = piece.found, piece.found.vectors[:, piece.index]
     shares, losses = energy_shares_of(rough.solved.slabs, some)
-    omega = shunted_frequencies(piece.solved, piece.factor, piece.values, piece.vectors)
+    omega = shunted_frequencies(solved, piece.factor, piece.values, piece.vectors)
     shunted = omega.real / np.sqrt(piece.values)
     frequency, error = frequency * shunted, error * shunted
     losses = losses + 2 * omega.imag / omega.real
     known = rough.values[piece.index]
     opened = open_values(rough.solved, rough.factor, rough.shift, known, some) / known
-    modes = []
-    for i in range(frequency.size):
-        top = surface[i]
-        driven = float(forces[i] @ signs)
-        turn = _turn(top, driven)
-        mode = _Mode(
-            frequency=frequency[i],
-            error=error[i],
-            mesh_frequency=np.sqrt(piece.values[i]) / (2 * np.pi),
-            label=label_of(top, x, y),
-            parity=piece.found.parity,
-            shape=turn * top[:, :, 2],
-            forces=turn * forces[i],
-            drive_force=abs(driven),
-            open_frequency=frequency[i] / shunted[i] * np.sqrt(opened[i]),
-            energy_shares=shares[i],
-            quality_factor=1 / max(float(losses[i]), 1e-30),
-            field=(piece.solved, turn * vectors[:, i]),
-        )
-        modes.append(mode)
-    return x, y, modes
+    driven = np.array([row @ signs for row in forces])
+    turn = np.array([_turn(top, one) for top, one in zip(surface, driven, strict=True)])
+    return {
+        "frequencies": frequency,
+        "errors": error,
+        "mesh_frequencies": np.sqrt(piece.values) / (2 * np.pi),
+        "labels": [label_of(top, x, y) for top in surface],
+        "parities": [piece.found.parity] * frequency.size,
+        "shapes": turn[:, None, None] * surface[..., 2],
+        "modal_forces": turn[:, None] * forces,
+        "drive_forces": np.abs(driven),
+        "open_frequencies": frequency / shunted * np.sqrt(opened),
+        "energy_shares": shares,
+        "quality_factors": 1 / np.maximum(losses, 1e-30),
+        "_fields": [(solved, sign * one) for sign, one in zip(turn, vectors.T, strict=True)],
+    }
 
 
 def _turn(top: si.FloatArray, driven: float) -> float:

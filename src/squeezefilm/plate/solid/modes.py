@@ -13,79 +13,12 @@ from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import FREQUENCY, require_within
 from squeezefilm.plate.elements.again import SolvedAgain
-from squeezefilm.plate.elements.slabs import Slabs
 from squeezefilm.plate.layout import RectangularPlate
-from squeezefilm.plate.solid.mesh import PlateModel
-from squeezefilm.plate.solid.symmetry import Parity
+from squeezefilm.plate.solid.model import PlateModel
+from squeezefilm.plate.solid.symmetry import Symmetry
 
 Label = tuple[int, int]
 MODEL = "piezoelectric_solid_3d"
-
-
-@dataclass(frozen=True, eq=False)
-class SolvedModel:
-    """One class of symmetry, discretised: what fields are evaluated on."""
-
-    plate: RectangularPlate
-    built: PlateModel
-    slabs: Slabs
-
-    def field(
-        self, vectors: si.FloatArray, x: si.FloatArray, y: si.FloatArray, z: float
-    ) -> si.FloatArray:
-        """Displacements at the grid of `x` and `y` (plate coordinates, m) at height `z` (m, the
-        plate's lower face at 0): shape (vectors, x, y, 3)."""
-        Ex, Ey, Ez, signs = self._evaluation(x, y, z)
-        out = np.empty((vectors.shape[1], len(x), len(y), 3), dtype=vectors.dtype)
-        for column in range(vectors.shape[1]):
-            grid = np.tensordot(self.slabs.grid(vectors[:, column]), Ez, axes=(2, 0))
-            values = np.einsum("ai,bj,ijc->abc", Ex, Ey, grid, optimize=True)
-            if self.built.swapped:
-                values = values.transpose(1, 0, 2)[:, :, [1, 0, 2]]
-            out[column] = values
-        return out * signs
-
-    def force(
-        self, x: si.FloatArray, y: si.FloatArray, z: float, w: si.FloatArray
-    ) -> si.FloatArray:
-        """The load vector of forces `w` (N, along z, shape (x, y)) at the grid of points: the
-        adjoint of `field`, projected on the class of symmetry; shape (unknowns,)."""
-        Ex, Ey, Ez, signs = self._evaluation(x, y, z)
-        weighted = np.asarray(w, dtype=float) * signs[:, :, 2]
-        if self.built.swapped:
-            weighted = weighted.T
-        plane = Ex.T @ weighted @ Ey
-        parts = []
-        for n, (component, iy, iz) in enumerate(self.slabs.parts):
-            parts.append(np.where(component == 2, plane[n, iy] * Ez[iz], 0.0))
-        out = np.concatenate(parts) / self.built.copies
-        out[self.slabs.held] = 0
-        return out
-
-    def _evaluation(
-        self, x: si.FloatArray, y: si.FloatArray, z: float
-    ) -> tuple[si.FloatArray, si.FloatArray, si.FloatArray, si.FloatArray]:
-        built, model = self.built, self.built.model
-        spans = (self.plate.length, self.plate.width)
-        folded, signs = [], []
-        for axis, points in enumerate((np.asarray(x, dtype=float), np.asarray(y, dtype=float))):
-            parity = built.parity[axis]
-            beyond = np.zeros(points.size, dtype=bool)
-            if parity is not None:
-                beyond = points > spans[axis] / 2
-            folded.append(np.where(beyond, spans[axis] - points, points))
-            normal, other = (-1.0, 1.0) if parity == "S" else (1.0, -1.0)
-            sign = np.ones((points.size, 3))
-            sign[beyond] = other
-            sign[beyond, axis] = normal
-            signs.append(sign)
-        along, across = (folded[1], folded[0]) if built.swapped else (folded[0], folded[1])
-        return (
-            model.x.interpolation(along),
-            model.y.hierarchic_interpolation(across),
-            model.z.hierarchic_interpolation(np.array([z]))[0],
-            signs[0][:, None, :] * signs[1][None, :, :],
-        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,7 +41,7 @@ class PlateModes(SolvedAgain):
     errors: si.HertzArray
     mesh_frequencies: si.HertzArray
     labels: tuple[Label | None, ...]
-    parities: tuple[tuple[Parity | None, Parity | None], ...]
+    parities: tuple[Symmetry, ...]
     x: si.MetreArray
     y: si.MetreArray
     shapes: si.FloatArray
@@ -122,7 +55,7 @@ class PlateModes(SolvedAgain):
     model: str
     status: str
     unknowns: int
-    _fields: tuple[tuple[SolvedModel, si.FloatArray], ...] = field(repr=False)
+    _fields: tuple[tuple[PlateModel, si.FloatArray], ...] = field(repr=False)
     _again: Callable[[], PlateModes] | None = field(repr=False, default=None)
     _bulk: ClassVar[tuple[str, ...]] = ("_fields",)
 
@@ -206,7 +139,7 @@ _POINTS = (97, 65)
 
 
 def surface_shapes(
-    solved: SolvedModel, vectors: si.FloatArray
+    solved: PlateModel, vectors: si.FloatArray
 ) -> tuple[si.FloatArray, si.FloatArray, si.FloatArray]:
     """A grid x, y over the whole plate and the displacements there on its upper face."""
     plate = solved.plate

@@ -7,19 +7,19 @@ out add quasi-statically, in one. Losses, loads and circuits are projected on it
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.plate.elements.box_model import Foundation, Medium
 from squeezefilm.plate.elements.slab_factor import SlabFactor
 from squeezefilm.plate.elements.slabs import Slabs
 from squeezefilm.plate.layout import RectangularPlate
+from squeezefilm.plate.solid.layers import NORMAL, Resolution
 from squeezefilm.plate.solid.mesh import plate_model
-from squeezefilm.plate.solid.modes import SolvedModel
-from squeezefilm.plate.solid.resolution import NORMAL, Resolution
-from squeezefilm.plate.solid.symmetry import Parity, drive_signs
+from squeezefilm.plate.solid.model import PlateModel
+from squeezefilm.plate.solid.symmetry import Symmetry, drive_signs
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,7 +31,7 @@ class ReducedClass:
     electrodes (number, Ω, share) that are open (infinite) or shunted.
     """
 
-    solved: SolvedModel
+    solved: PlateModel
     resolution: Resolution
     basis: si.FloatArray
     mass: si.FloatArray
@@ -43,13 +43,13 @@ class ReducedClass:
     circuit: tuple[tuple[int, float, float], ...]
 
 
-def class_drive(plate: RectangularPlate, solved: SolvedModel) -> si.FloatArray:
+def class_drive(solved: PlateModel) -> si.FloatArray:
     """The part of the drive in a class: potential of each model electrode per volt."""
-    built, signs = solved.built, drive_signs(plate)
-    out = np.zeros(len(built.model.electrodes))
+    signs = drive_signs(solved.plate)
+    out = np.zeros(len(solved.model.electrodes))
     members = np.zeros(out.size)
-    for i, electrode in enumerate(built.electrode_of):
-        out[electrode] += built.sign_of[i] * signs[i] * (built.share_of[i] != 0)
+    for i, electrode in enumerate(solved.electrode_of):
+        out[electrode] += solved.sign_of[i] * signs[i] * (solved.share_of[i] != 0)
         members[electrode] += 1
     return out / np.maximum(members, 1)
 
@@ -59,29 +59,22 @@ def resolved_frequency(band: tuple[si.Hertz, si.Hertz]) -> si.Hertz:
     return max(band[1], 1.15 * sum(band) / 2)
 
 
-def plate_circuit(
-    plate: RectangularPlate, solved: SolvedModel
-) -> tuple[tuple[int, float, float], ...]:
+def plate_circuit(solved: PlateModel) -> tuple[tuple[int, float, float], ...]:
     """Open and shunted electrodes of a class: model electrode, resistance (Ω, infinite if open) and
     how many times the model's part of the ceramic makes a whole one."""
     out: dict[int, tuple[int, float, float]] = {}
-    for i, patch in enumerate(plate.patches):
-        share = solved.built.share_of[i]
+    for i, patch in enumerate(solved.plate.patches):
+        share = solved.share_of[i]
         if patch.electrode not in ("open", "shunted") or share == 0:
             continue
         resistance = np.inf if patch.shunt_resistance is None else patch.shunt_resistance
-        out[solved.built.electrode_of[i]] = (solved.built.electrode_of[i], resistance, share)
+        out[solved.electrode_of[i]] = (solved.electrode_of[i], resistance, share)
     return tuple(out.values())
-
-
-def loss_weight(medium: Medium) -> tuple[float, float]:
-    """The weight that makes a matrix of losses: each medium's own times its stiffness."""
-    return medium.loss, 0.0
 
 
 def reduced_class(
     plate: RectangularPlate,
-    parity: tuple[Parity | None, Parity | None],
+    parity: Symmetry,
     band: tuple[si.Hertz, si.Hertz],
     steps: int,
     loads: list[tuple[si.FloatArray, si.FloatArray, si.FloatArray]],
@@ -89,23 +82,22 @@ def reduced_class(
 ) -> ReducedClass:
     """Reduce one class over a band with `steps` block Krylov steps.
 
-    `loads` are surface forces (x, y, w as in `SolvedModel.force`) whose responses the space must
+    `loads` are surface forces (x, y, w as in `PlateModel.force`) whose responses the space must
     hold too.
     """
-    built = plate_model(plate, resolved_frequency(band), resolution, parity)
-    slabs = Slabs(built.model)
-    solved = SolvedModel(plate, built, slabs)
+    solved = plate_model(plate, resolved_frequency(band), resolution, parity)
+    slabs = solved.slabs
     shift = (2 * np.pi) ** 2 * 0.5 * (band[0] ** 2 + band[1] ** 2) * 1.0007**2
     factor = SlabFactor(slabs, shift)
     G, C = slabs.electrode_columns
-    drive, circuit = class_drive(plate, solved), plate_circuit(plate, solved)
+    drive, circuit = class_drive(solved), plate_circuit(solved)
     columns = [G @ drive] if np.any(drive) else []
     columns += [G[:, number] for number, _, _ in circuit]
     columns += [solved.force(x, y, plate.thickness, w) for x, y, w in loads]
     basis = _krylov_space(slabs, factor, np.stack(columns, axis=1), steps)
-    sections = slabs.weighted_sections(loss_weight, springs=spring_losses(built.model.foundations))
+    sections = slabs.weighted_sections(lambda m: (m.loss or 0.0, 0.0), slabs.model.spring_losses)
     KW, LW = slabs.stiffness_times(basis), slabs.stiffness_times(basis, sections)
-    n = float(built.copies)
+    n = float(solved.copies)
     return ReducedClass(
         solved,
         resolution,
@@ -118,11 +110,6 @@ def reduced_class(
         drive,
         circuit,
     )
-
-
-def spring_losses(foundations: tuple[Foundation, ...]) -> list[float]:
-    """The loss factor of each spring."""
-    return [one.loss for one in foundations]
 
 
 def _symmetric(matrix: si.FloatArray) -> si.FloatArray:
@@ -158,6 +145,12 @@ def _krylov_space(
     return Q
 
 
+def class_slices(parts: list[ReducedClass]) -> list[slice]:
+    """Where the coordinates of each class stand among those of all."""
+    ends = np.cumsum([0, *(one.basis.shape[1] for one in parts)]).tolist()
+    return [slice(*pair) for pair in itertools.pairwise(ends)]
+
+
 def surface_values(
     parts: list[ReducedClass], x: si.FloatArray, y: si.FloatArray, z: float
 ) -> si.FloatArray:
@@ -178,15 +171,12 @@ def harmonic_solution(
     `added` (frequencies × coordinates²) is the dynamic stiffness of surface loads, `force` outer
     forces on the coordinates.
     """
-    sizes = [one.basis.shape[1] for one in parts]
-    circuits = [len(one.circuit) for one in parts]
-    total, extra = sum(sizes), sum(circuits)
+    places = class_slices(parts)
+    total, extra = places[-1].stop, sum(len(one.circuit) for one in parts)
     A = np.zeros((omega.size, total + extra, total + extra), dtype=complex)
     b = np.zeros((omega.size, total + extra), dtype=complex)
-    start, row = 0, total
-    w2 = (omega**2)[:, None, None]
-    for one, size in zip(parts, sizes, strict=True):
-        at = slice(start, start + size)
+    row, w2 = total, (omega**2)[:, None, None]
+    for one, at in zip(parts, places, strict=True):
         A[:, at, at] = one.stiffness + 1j * one.loss - w2 * one.mass
         b[:, at] = -(one.coupling @ one.drive) * voltage
         # Charge = −(Gᵀx + C V); a shunt draws V = −iωR · charge, an open electrode none.
@@ -194,7 +184,7 @@ def harmonic_solution(
         for number, resistance, share in one.circuit:
             A[:, at, row] = one.coupling[:, number]
             # Matrices are of the whole plate; one patch carries this part of them.
-            part = share / one.solved.built.copies
+            part = share / one.solved.copies
             scale = 1.0 if np.isinf(resistance) else 1j * omega * resistance * part
             unit = np.ones(omega.size) * scale
             A[:, row, at] = unit[:, None] * one.coupling[:, number]
@@ -205,7 +195,6 @@ def harmonic_solution(
                 A[:, row, row] -= 1
             b[:, row] = -unit * held[number]
             row += 1
-        start += size
     if added is not None:
         A[:, :total, :total] += added
     if force is not None:
@@ -214,14 +203,12 @@ def harmonic_solution(
     scale_rows = np.max(np.abs(A), axis=2, keepdims=True)
     solution = np.linalg.solve(A / scale_rows, (b / scale_rows[:, :, 0])[:, :, None])[:, :, 0]
     potentials, charge = [], np.zeros(omega.size, dtype=complex)
-    start, row = 0, total
-    for one, size in zip(parts, sizes, strict=True):
+    row = total
+    for one, at in zip(parts, places, strict=True):
         V = np.broadcast_to(one.drive * voltage, (omega.size, one.drive.size)).astype(complex)
         for number, _, _ in one.circuit:
             V[:, number] = solution[:, row]
             row += 1
-        x = solution[:, start : start + size]
-        charge -= (x @ one.coupling + V @ one.capacitance) @ one.drive
+        charge -= (solution[:, at] @ one.coupling + V @ one.capacitance) @ one.drive
         potentials.append(V)
-        start += size
     return solution[:, :total], potentials, charge

@@ -6,17 +6,19 @@ import dataclasses
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.linalg import eigh
 
 from squeezefilm import quantities as si
 from squeezefilm.plate.elements.krylov import modes_near, prolonged
 from squeezefilm.plate.elements.slab_factor import SlabFactor
-from squeezefilm.plate.elements.slabs import Slabs
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.solid.coarse_modes import CoarseModes
 from squeezefilm.plate.solid.electrode_circuits import inverse_with_open
+from squeezefilm.plate.solid.layers import COARSE, FINE, NORMAL
 from squeezefilm.plate.solid.mesh import plate_model
-from squeezefilm.plate.solid.modes import Label, SolvedModel, label_of, surface_shapes
-from squeezefilm.plate.solid.resolution import FINE, NORMAL
+from squeezefilm.plate.solid.model import PlateModel
+from squeezefilm.plate.solid.modes import Label, label_of, surface_shapes
+from squeezefilm.plate.solid.reduced import ReducedClass, resolved_frequency
 
 LEVELS = (NORMAL, FINE)
 # Share of the difference between two meshes that is still missing on the finer one, and the
@@ -35,7 +37,7 @@ class RefinedModes:
 
     found: CoarseModes
     index: si.IntArray
-    solved: SolvedModel
+    solved: PlateModel
     coarse_values: si.FloatArray
     values: si.FloatArray
     vectors: si.FloatArray
@@ -54,14 +56,13 @@ def refined_modes(
     (relative) or the finest one is reached."""
     solved, values, vectors = one.solved, one.values[index], one.vectors[:, index]
     for level, resolution in enumerate(LEVELS):
-        built = plate_model(plate, highest, resolution, one.parity)
-        slabs = Slabs(built.model)
-        finer = SolvedModel(plate, built, slabs)
+        finer = plate_model(plate, highest, resolution, one.parity)
+        slabs = finer.slabs
         start = prolonged(solved.slabs, slabs, vectors)
         # Just below the coarse values, where the finer ones are expected.
         shift = float(np.mean(values)) * (1 - 2e-3)
         factor = SlabFactor(slabs, shift)
-        solve = inverse_with_open(slabs, finer, factor)
+        solve = inverse_with_open(finer, factor)
 
         # By shape, not by value or order: a coarse value may be nearer to another mode, and
         # neighbours may change places between two meshes.
@@ -95,3 +96,39 @@ def extrapolated(
     a, b = np.sqrt(coarse) / (2 * np.pi), np.sqrt(fine) / (2 * np.pi)
     share, doubt = EXTRAPOLATION[level], UNCERTAINTY[level]
     return b - share * (a - b), doubt * np.abs(a - b) + _FLOOR * b
+
+
+def extrapolated_class(one: ReducedClass, band: tuple[si.Hertz, si.Hertz]) -> ReducedClass:
+    """The same class with its stiffness and loss scaled so that the most strongly driven mode near
+    the band stands at its frequency extrapolated from two meshes.
+
+    Other modes move by the same ratio, nearer to theirs than the mesh alone. Unchanged where no
+    driven mode is near, and on meshes that have no coarser one to compare with.
+    """
+    solved = one.solved
+    level = next((k for k, res in enumerate(LEVELS) if res == one.resolution), None)
+    coarser = (COARSE, *LEVELS)[level] if level is not None else None
+    values, shapes = eigh(one.stiffness, one.mass)
+    f = np.sqrt(np.maximum(values, 0.0)) / (2 * np.pi)
+    force = np.abs(shapes.T @ (one.coupling @ one.drive))
+    near = np.flatnonzero((f > 0.9 * band[0]) & (f < 1.1 * band[1]) & (force > 1e-3 * force.max()))
+    if coarser is None or level is None or near.size == 0:
+        return one
+    # Response at the band's nearest frequency: force squared over the distance of the squares.
+    distance = np.maximum(0.0, np.maximum(band[0] - f[near], f[near] - band[1])) / f[near]
+    mode = int(near[np.argmax(force[near] ** 2 / (distance + 0.01))])
+    vector = (one.basis @ shapes[:, mode])[:, None]
+    rough = plate_model(solved.plate, resolved_frequency(band), coarser, solved.parity).slabs
+    shift = values[mode] * (1 + 2e-3)
+    start = prolonged(solved.slabs, rough, vector)
+    pairs = modes_near(
+        rough,
+        SlabFactor(rough, shift).solve,
+        shift,
+        lambda v: np.array([np.argmin(np.abs(v - shift))]),
+        start,
+        tolerance=1e-6,
+    )
+    wanted, _ = extrapolated(pairs.values, values[mode : mode + 1], level)
+    ratio = float(wanted[0] / f[mode]) ** 2
+    return dataclasses.replace(one, stiffness=ratio * one.stiffness, loss=ratio * one.loss)

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import dataclasses
 import functools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import Annotated, ClassVar
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
+from scipy import ndimage
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import GeometryError, InputError
@@ -15,15 +17,16 @@ from squeezefilm.plate.circuit import DrivenResponse, EquivalentCircuit
 from squeezefilm.plate.elements.again import SolvedAgain
 from squeezefilm.plate.elements.blas_threads import one_blas_thread
 from squeezefilm.plate.layout import RectangularPlate
-from squeezefilm.plate.solid.extrapolated import extrapolated_class
+from squeezefilm.plate.solid.layers import NORMAL, Resolution
 from squeezefilm.plate.solid.modes import MODEL
 from squeezefilm.plate.solid.reduced import (
     ReducedClass,
+    class_slices,
     harmonic_solution,
     reduced_class,
     surface_values,
 )
-from squeezefilm.plate.solid.resolution import NORMAL, Resolution
+from squeezefilm.plate.solid.refined_modes import extrapolated_class
 from squeezefilm.plate.solid.symmetry import all_classes, drive_classes, drive_signs
 
 _GRID = (121, 81)
@@ -78,12 +81,8 @@ class HarmonicResponse(SolvedAgain, DrivenResponse):
         x, y)."""
         si.require("x", x, si.Unit("m"), axes=1)
         si.require("y", y, si.Unit("m"), axes=1)
-        values = surface_values(self._parts, x, y, self._top)
+        values = surface_values(self._parts, x, y, self.plate.thickness)
         return np.asarray(np.tensordot(self._coordinates, values, 1))
-
-    @property
-    def _top(self) -> float:
-        return self.plate.thickness
 
     @si.checked_numbers
     def amplitude_at(self, x: si.Metre, y: si.Metre) -> si.FloatArray:
@@ -99,7 +98,7 @@ class HarmonicResponse(SolvedAgain, DrivenResponse):
         si.require("at", at, at_least=-self.frequencies.size, at_most=self.frequencies.size - 1)
         x = np.linspace(0, self.plate.length, points)
         across = self.plate.width / 2 if y is None else y
-        values = surface_values(self._parts, x, np.array([across]), self._top)[:, :, 0]
+        values = surface_values(self._parts, x, np.array([across]), self.plate.thickness)[:, :, 0]
         return x, self._coordinates[at] @ values
 
     @functools.cached_property
@@ -107,7 +106,7 @@ class HarmonicResponse(SolvedAgain, DrivenResponse):
         """The largest |w| per volt (m/V) anywhere on the upper face, for every frequency."""
         x = np.linspace(0, self.plate.length, _GRID[0])
         y = np.linspace(0, self.plate.width, _GRID[1])
-        values = surface_values(self._parts, x, y, self._top).reshape(
+        values = surface_values(self._parts, x, y, self.plate.thickness).reshape(
             self._coordinates.shape[1], -1
         )
         out = np.empty(self.frequencies.size)
@@ -119,17 +118,12 @@ class HarmonicResponse(SolvedAgain, DrivenResponse):
     def dissipated_power(self, voltage: si.Volt) -> si.FloatArray:
         """Mean power (W) lost in materials, supports, shunts and loads; equals the input power."""
         omega = 2 * np.pi * self.frequencies
-        out = np.zeros(omega.size)
-        start = 0
+        out = omega / 2 * self._quadratic_form("loss")
         for one, V in zip(self._parts, self._potentials, strict=True):
-            size = one.basis.shape[1]
-            q = self._coordinates[:, start : start + size]
-            out += omega / 2 * np.einsum("fi,ij,fj->f", q.conj(), one.loss, q).real
             for number, resistance, share in one.circuit:
                 if np.isfinite(resistance):
-                    patches = one.solved.built.copies / share
+                    patches = one.solved.copies / share
                     out += patches * np.abs(V[:, number]) ** 2 / (2 * resistance)
-            start += size
         for load in self._loads:
             x, y, area = load.points()
             w = self.displacement(x, y)
@@ -140,15 +134,16 @@ class HarmonicResponse(SolvedAgain, DrivenResponse):
     def stored_energy(self, voltage: si.Volt) -> tuple[si.FloatArray, si.FloatArray]:
         """Mean kinetic and mean potential energy (J; elastic and of supports, less the electric)
         of the plate at a voltage amplitude."""
-        omega = 2 * np.pi * self.frequencies
-        kinetic, potential, start = np.zeros(omega.size), np.zeros(omega.size), 0
-        for one in self._parts:
-            size = one.basis.shape[1]
-            q = self._coordinates[:, start : start + size]
-            kinetic += omega**2 / 4 * np.einsum("fi,ij,fj->f", q.conj(), one.mass, q).real
-            potential += np.einsum("fi,ij,fj->f", q.conj(), one.stiffness, q).real / 4
-            start += size
-        return kinetic * voltage**2, potential * voltage**2
+        kinetic = (2 * np.pi * self.frequencies) ** 2 / 4 * self._quadratic_form("mass")
+        return kinetic * voltage**2, self._quadratic_form("stiffness") / 4 * voltage**2
+
+    def _quadratic_form(self, matrix: Literal["mass", "stiffness", "loss"]) -> si.FloatArray:
+        """qᴴ A q of the coordinates q per volt and one matrix of all classes, by frequency."""
+        out = np.zeros(self.frequencies.size)
+        for one, at in zip(self._parts, class_slices(self._parts), strict=True):
+            q = self._coordinates[:, at]
+            out += np.einsum("fi,ij,fj->f", q.conj(), getattr(one, matrix), q).real
+        return out
 
     def equivalent_circuit(self) -> EquivalentCircuit:
         """Butterworth–Van Dyke parameters of the strongest resonance in the band.
@@ -157,14 +152,9 @@ class HarmonicResponse(SolvedAgain, DrivenResponse):
         over the half-power band. Raises `InputError` for fewer than 8 points in it.
         """
         peak = int(np.argmax(self.admittance.real))
-        strong = np.flatnonzero(self.admittance.real > 0.3 * self.admittance.real[peak])
-        near = strong[(strong >= peak - 10**6)]
         # The contiguous stretch around the peak only.
-        gaps = np.flatnonzero(np.diff(near) > 1)
-        for gap in gaps:
-            if near[gap] < peak:
-                near = near[near > near[gap]]
-        near = near[: int(np.sum(near <= peak)) + _run(near[near > peak], peak)]
+        runs, _ = ndimage.label(self.admittance.real > 0.3 * self.admittance.real[peak])
+        near = np.flatnonzero(runs == runs[peak])
         if near.size < 8:
             raise InputError(
                 f"only {near.size} frequencies lie within the resonance; give at least 8 there "
@@ -191,13 +181,6 @@ class HarmonicResponse(SolvedAgain, DrivenResponse):
         return EquivalentCircuit(
             float(fr), q, float(fit.x[3] * c0), R1, L1, 1 / ((2 * np.pi * fr) ** 2 * L1)
         )
-
-
-def _run(after: si.IntArray, peak: int) -> int:
-    count = 0
-    while count < after.size and after[count] == peak + 1 + count:
-        count += 1
-    return count
 
 
 @si.checked_numbers
@@ -327,32 +310,24 @@ def _truncation(
     admittance: si.ComplexArray,
 ) -> float:
     """How much the admittance changes when each space loses its last quarter."""
-    some = omega[:: max(1, omega.size // 12)]
     pick = np.arange(0, omega.size, max(1, omega.size // 12))
     shorter: list[ReducedClass] = []
     indices: list[int] = []
-    start = 0
-    for one in parts:
-        size = one.basis.shape[1]
-        n = max(1, (3 * size) // 4)
-        indices += range(start, start + n)
-        start += size
+    for one, at in zip(parts, class_slices(parts), strict=True):
+        n = max(1, (3 * one.basis.shape[1]) // 4)
+        indices += range(at.start, at.start + n)
         shorter.append(
-            ReducedClass(
-                one.solved,
-                one.resolution,
-                one.basis[:, :n],
-                one.mass[:n, :n],
-                one.stiffness[:n, :n],
-                one.loss[:n, :n],
-                one.coupling[:n],
-                one.capacitance,
-                one.drive,
-                one.circuit,
+            dataclasses.replace(
+                one,
+                basis=one.basis[:, :n],
+                mass=one.mass[:n, :n],
+                stiffness=one.stiffness[:n, :n],
+                loss=one.loss[:n, :n],
+                coupling=one.coupling[:n],
             )
         )
     kept = np.array(indices)
     less = None if added is None else added[np.ix_(pick, kept, kept)]
-    _, _, charge = harmonic_solution(shorter, some, less, None, 1.0)
-    change = np.abs(1j * some * charge - admittance[pick])
+    _, _, charge = harmonic_solution(shorter, omega[pick], less, None, 1.0)
+    change = np.abs(1j * omega[pick] * charge - admittance[pick])
     return float(np.max(change / np.max(np.abs(admittance))))

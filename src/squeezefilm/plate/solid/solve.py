@@ -20,12 +20,12 @@ from squeezefilm.plate.solid.coarse_modes import (
     chosen_modes,
     class_fits,
     coarse_modes,
-    estimated_frequency,
 )
+from squeezefilm.plate.solid.guess import estimated_frequency
 from squeezefilm.plate.solid.mode_table import collected_modes
 from squeezefilm.plate.solid.modes import Label, PlateModes, check_band
 from squeezefilm.plate.solid.refined_modes import RefinedModes, refined_modes, with_label
-from squeezefilm.plate.solid.symmetry import Parity, all_classes, drive_classes
+from squeezefilm.plate.solid.symmetry import Symmetry, all_classes, drive_classes
 from squeezefilm.progress import ShareProgress
 
 # So many modes of a class are looked at around the guess of a mode that is asked for by its lines.
@@ -128,5 +128,5 @@ def _solved(
     return collected_modes(plate, pieces, tolerance, band)
 
 
-def _name(parity: tuple[Parity | None, Parity | None]) -> str:
+def _name(parity: Symmetry) -> str:
     return "".join(p or "-" for p in parity)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import itertools
 from typing import Literal
 
 import numpy as np
@@ -11,6 +12,8 @@ from squeezefilm import quantities as si
 from squeezefilm.plate.layout import CeramicPatch, FoamSupport, RectangularPlate
 
 Parity = Literal["S", "A"]
+Symmetry = tuple[Parity | None, Parity | None]
+"""A class of symmetry along x and along y; None where the plate is taken whole."""
 SNAP = 1e-9  # m; edges nearer than this are one
 
 
@@ -63,27 +66,24 @@ def drive_signs(plate: RectangularPlate) -> si.FloatArray:
     )
 
 
-def drive_classes(plate: RectangularPlate) -> list[tuple[Parity | None, Parity | None]]:
+def drive_classes(plate: RectangularPlate) -> list[Symmetry]:
     """The classes of symmetry that the drive excites."""
     signs = drive_signs(plate)
-    per_axis: list[list[Parity | None]] = []
-    for axis in (0, 1):
+
+    def excited(axis: int) -> list[Parity | None]:
         mirror = mirror_map(plate, axis)
         if mirror is None:
-            per_axis.append([None])
-            continue
+            return [None]
         image = signs[mirror]
-        some: list[Parity | None] = []
-        if np.any(signs + image != 0):
-            some.append("S")
-        if np.any(signs - image != 0):
-            some.append("A")
-        per_axis.append(some or ["S"])
-    return [(a, b) for a in per_axis[0] for b in per_axis[1]]
+        both: list[Parity | None] = ["S"] if np.any(signs + image != 0) else []
+        return [*both, "A"] if np.any(signs - image != 0) else both or ["S"]
+
+    return list(itertools.product(excited(0), excited(1)))
 
 
-def all_classes(plate: RectangularPlate) -> list[tuple[Parity | None, Parity | None]]:
+def all_classes(plate: RectangularPlate) -> list[Symmetry]:
     """Every class of symmetry that the plate has: four, two or one."""
-    axes = symmetric_axes(plate)
-    options: list[list[Parity | None]] = [["S", "A"] if axis else [None] for axis in axes]
-    return [(a, b) for a in options[0] for b in options[1]]
+    options: list[list[Parity | None]] = [
+        ["S", "A"] if axis else [None] for axis in symmetric_axes(plate)
+    ]
+    return list(itertools.product(options[0], options[1]))

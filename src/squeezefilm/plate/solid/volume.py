@@ -18,7 +18,9 @@ from squeezefilm.plate.elements.box_model import POTENTIAL_UNIT
 from squeezefilm.plate.elements.cross_section import potential_base
 from squeezefilm.plate.elements.lobatto import LineMesh
 from squeezefilm.plate.layout import RectangularPlate
-from squeezefilm.plate.solid.modes import PlateModes, SolvedModel
+from squeezefilm.plate.solid.model import PlateModel
+from squeezefilm.plate.solid.modes import PlateModes
+from squeezefilm.plate.solid.reduced import class_slices
 from squeezefilm.plate.solid.response import HarmonicResponse
 
 _CORNERS = np.array(
@@ -43,7 +45,7 @@ class PlateVolume:
     patch: si.IntArray
 
     def displacement(
-        self, solved: SolvedModel, vector: si.FloatArray | si.ComplexArray
+        self, solved: PlateModel, vector: si.FloatArray | si.ComplexArray
     ) -> si.FloatArray:
         """(u, v, w) of a solution vector at the points, shape (points, 3)."""
         x, y, z = self.axes
@@ -53,33 +55,21 @@ class PlateVolume:
 
     def potential(
         self,
-        solved: SolvedModel,
+        solved: PlateModel,
         vector: si.FloatArray | si.ComplexArray,
         electrodes: si.FloatArray | si.ComplexArray,
     ) -> si.FloatArray:
         """φ (V) at the points, for the potentials (V) of the model's electrodes."""
         coefficients = _potential_coefficients(solved, vector, electrodes)
-        model, built = solved.built.model, solved.built
-        x, y, z = self.axes
-        folded, signs = [], []
-        spans = (self.plate.length, self.plate.width)
-        for axis, values in enumerate((x, y)):
-            parity = built.parity[axis]
-            beyond = values > spans[axis] / 2 if parity is not None else np.zeros(values.size, bool)
-            folded.append(np.where(beyond, spans[axis] - values, values))
-            signs.append(np.where(beyond & (parity == "A"), -1.0, 1.0))
-        along, across = folded[::-1] if built.swapped else folded
-        Ex = model.x.interpolation(along)
-        Ey = model.y.hierarchic_interpolation(across)
-        Ez = model.z.hierarchic_interpolation(z)
+        Ex, Ey, Ez, signs = solved.evaluation(*self.axes)
         out = np.zeros(self.place.size, dtype=coefficients.dtype)
         for number, patch in enumerate(self.plate.patches):
             mine = np.flatnonzero(self.patch == number)
-            grid = coefficients[built.electrode_of[number]]
+            grid = coefficients[solved.electrode_of[number]]
             values = np.einsum("ai,bj,ck,ijk->abc", Ex, Ey, Ez, grid, optimize=True)
-            if built.swapped:
+            if solved.swapped:
                 values = values.transpose(1, 0, 2)
-            values = values * np.multiply.outer(signs[0], signs[1])[:, :, None]
+            values = values * signs[:, :, 2:]
             # A ceramic poled the other way is solved as one under the opposite potential.
             out[mine] = patch.poling * values.reshape(-1)[self.place[mine]]
         return out
@@ -88,14 +78,14 @@ class PlateVolume:
 def plate_volume(modes: PlateModes, mode: int) -> PlateVolume:
     """The volume of a solved plate, on the mesh that a mode was solved on."""
     solved, _ = modes._fields[mode]
-    plate, built, model = modes.plate, solved.built, solved.built.model
-    medium = model.medium.transpose(1, 0, 2) if built.swapped else model.medium
-    lines = (model.y, model.x) if built.swapped else (model.x, model.y)
+    plate, model = modes.plate, solved.model
+    medium = model.medium.transpose(1, 0, 2) if solved.swapped else model.medium
+    lines = (model.y, model.x) if solved.swapped else (model.x, model.y)
     nodes, owners = [], []
     for axis, span in enumerate((plate.length, plate.width)):
         line = lines[axis]
         at, owner = line.nodes, _element_of(line)
-        if built.parity[axis] is not None:
+        if solved.parity[axis] is not None:
             at = np.concatenate([at, span - at[-2::-1]])
             medium = np.concatenate([medium, np.flip(medium, axis)], axis)
             owner = np.concatenate([owner, 2 * line.elements - 1 - owner[::-1]])
@@ -148,13 +138,11 @@ def harmonic_fields(
     drive at frequency number `at`."""
     moved = np.zeros(volume.points.shape, dtype=complex)
     charged = np.zeros(len(volume.points), dtype=complex)
-    start = 0
-    for one, potentials in zip(response._parts, response._potentials, strict=True):
-        size = one.basis.shape[1]
-        vector = one.basis @ response._coordinates[at, start : start + size]
+    parts = response._parts
+    for one, own, potentials in zip(parts, class_slices(parts), response._potentials, strict=True):
+        vector = one.basis @ response._coordinates[at, own]
         moved += volume.displacement(one.solved, vector)
         charged += volume.potential(one.solved, vector, potentials[at])
-        start += size
     return moved, charged
 
 
@@ -179,28 +167,28 @@ def _patches(
     return out
 
 
-def _mode_electrodes(solved: SolvedModel, vector: si.FloatArray) -> si.FloatArray:
+def _mode_electrodes(solved: PlateModel, vector: si.FloatArray) -> si.FloatArray:
     """The potential (V) of each electrode in free vibration: none but where a patch is open and
     carries no charge."""
     G, C = solved.slabs.electrode_columns
     V = np.zeros(C.shape[0])
     is_open = np.zeros(V.size, dtype=bool)
     for number, patch in enumerate(solved.plate.patches):
-        if patch.electrode == "open" and solved.built.share_of[number] != 0:
-            is_open[solved.built.electrode_of[number]] = True
+        if patch.electrode == "open" and solved.share_of[number] != 0:
+            is_open[solved.electrode_of[number]] = True
     if is_open.any():
         V[is_open] = np.linalg.solve(C[np.ix_(is_open, is_open)], -(G.T @ vector)[is_open])
     return V
 
 
 def _potential_coefficients(
-    solved: SolvedModel,
+    solved: PlateModel,
     vector: si.FloatArray | si.ComplexArray,
     electrodes: si.FloatArray | si.ComplexArray,
 ) -> si.FloatArray:
     """φ (V) of each ceramic: nodal along x, hierarchic along y and z; shape (ceramics, x nodes,
     y functions, z functions)."""
-    slabs, model = solved.slabs, solved.built.model
+    slabs, model = solved.slabs, solved.model
     count, base = len(model.electrodes), potential_base(model)
     kind = np.result_type(vector, electrodes, float)
     out = np.zeros((count, model.x.nodes.size, model.y.nodes.size, model.z.nodes.size), dtype=kind)

@@ -73,7 +73,7 @@ def _sectors(axes: Axes, result: RingAnalysis) -> None:
     layers = result.body.section.layers
     outer = 1e3 * max(layer.outer_radius for layer in layers)
     inner = 1e3 * min(layer.inner_radius for layer in layers)
-    ceramic = next(layer for layer in layers if layer.is_piezoelectric)
+    ceramic = next(layer for layer in layers if layer.solid.piezoelectric)
     edge, width = 1e3 * ceramic.outer_radius, 1e3 * (ceramic.outer_radius - ceramic.inner_radius)
     whole = result.body.drive.angle > 2 * np.pi - 1e-9 and len(result.body.drive.sectors) == 1
     unused: dict[str, Any] = {"facecolor": "none", "edgecolor": style.MUTED}

@@ -95,7 +95,7 @@ def fit_sentences(fit: StatorFit) -> tuple[str, ...]:
     said = [
         f"Fitted: {shown(fit.ring_thickness, M, 4)} of metal under the teeth, so that "
         f"{fit.mode.label} falls on {shown(fit.mode.frequency, HZ)}, with the mean diameter of "
-        f"{shown(fit.derived['mean_diameter'], M, 4)} from the wavelength. One frequency fits one "
+        f"{shown(fit.section.mean_diameter, M, 4)} from the wavelength. One frequency fits one "
         "dimension and validates nothing."
     ]
     if a.tooth_height > 0:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.errors import ConvergenceError
-from squeezefilm.plate.elements.block_ldl import Matrix, negative_eigenvalues, partial_ldl
+from squeezefilm.plate.elements.block_ldl import Matrix, partial_ldl
 
 
 def symmetric(size: int, dtype: type = float) -> Matrix:
@@ -66,15 +66,3 @@ def test_a_singular_block_says_what_to_do() -> None:
     A[:, 70] = 0.0
     with pytest.raises(ConvergenceError, match="a frequency a little beside it"):
         partial_ldl(A, 90)
-
-
-def test_negative_eigenvalues_are_counted_through_pairs_of_pivots() -> None:
-    assert negative_eigenvalues(np.diag([1.0, -2.0, 3.0, -4.0, -5.0])) == 3
-    assert negative_eigenvalues(np.eye(4)) == 0
-    # No pivot on the diagonal: each 2 × 2 block has one eigenvalue of each sign.
-    pair = np.array([[0.0, 1.0], [1.0, 0.0]])
-    assert negative_eigenvalues(pair) == 1
-    assert negative_eigenvalues(np.kron(np.eye(3), pair)) == 3
-    for size in (5, 40, 90):
-        A = np.random.default_rng(size).normal(size=(size, size))
-        assert negative_eigenvalues(A + A.T) == np.sum(np.linalg.eigvalsh(A + A.T) < 0)

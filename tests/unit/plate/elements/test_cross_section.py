@@ -52,10 +52,10 @@ MODEL = BoxModel(X, Y, Z, MEDIA, MEDIUM, NUMBER, (Electrode(TOP, BOND), Electrod
 def shapes(mesh: LineMesh, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Values and slopes of all functions of a line at points, the slopes by differences."""
     step = 1e-6
-    slope = mesh.hierarchic_interpolation(points + step) - mesh.hierarchic_interpolation(
-        points - step
+    slope = mesh.interpolation(points + step, hierarchic=True) - mesh.interpolation(
+        points - step, hierarchic=True
     )
-    return mesh.hierarchic_interpolation(points), slope / (2 * step)
+    return mesh.interpolation(points, hierarchic=True), slope / (2 * step)
 
 
 def energy(

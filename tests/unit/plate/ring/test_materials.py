@@ -9,13 +9,15 @@ import pytest
 
 from squeezefilm.errors import InputError
 from squeezefilm.materials import ElasticMaterial
-from squeezefilm.plate.ring.materials import RingSolid, isotropic_solid, soft_teeth, stiff_teeth
+from squeezefilm.plate.elements.box_model import Medium, isotropic_solid
+from squeezefilm.plate.ring.materials import soft_teeth, stiff_teeth
+from squeezefilm.plate.ring.section import RingLayer
 
 STEEL = isotropic_solid(ElasticMaterial("steel", 200e9, 0.3, 7800.0))
 PLAIN = STEEL.stiffness
 # Rows r, θ, z; strains rr, θθ, zz, θz, rz, rθ.
 POLED = np.array([[0, 0, 0, 0, 9.0, 0], [0, 0, 0, 9.0, 0, 0], [-5.0, -5.0, 12.0, 0, 0, 0]])
-CLAMPED = np.array([8e-9, 8e-9, 7e-9])
+CLAMPED = np.diag([8e-9, 8e-9, 7e-9])
 
 
 def changed(row: int, column: int, value: float, *, both: bool = True) -> np.ndarray:
@@ -34,24 +36,24 @@ def changed(row: int, column: int, value: float, *, both: bool = True) -> np.nda
         ({"stiffness": changed(3, 3, -1e9)}, "not that of a stable solid"),
         ({"stiffness": changed(0, 3, 1e9)}, "couples θz or rθ"),
         ({"stiffness": changed(4, 5, 1e9)}, "couples θz or rθ"),
-        ({"piezoelectric": POLED}, "give its clamped permittivity"),
-        ({"piezoelectric": np.roll(POLED, 1, axis=0), "permittivity": CLAMPED}, "must be poled"),
-        ({"piezoelectric": np.eye(3, 6)[[1, 0, 2]], "permittivity": CLAMPED}, "must be poled"),
+        ({"stress_matrix": POLED}, "give its clamped permittivity"),
+        ({"stress_matrix": np.roll(POLED, 1, axis=0), "permittivity": CLAMPED}, "must be poled"),
+        ({"stress_matrix": np.eye(3, 6)[[1, 0, 2]], "permittivity": CLAMPED}, "must be poled"),
     ],
 )
 def test_a_solid_that_cannot_be_is_refused(given: dict[str, Any], says: str) -> None:
     good: dict[str, Any] = {"name": "one", "stiffness": PLAIN, "density": 7800.0}
-    RingSolid(**good, piezoelectric=POLED, permittivity=CLAMPED)
+    RingLayer(0, 1e-2, 0, 1e-3, Medium(**good, stress_matrix=POLED, permittivity=CLAMPED))
     with pytest.raises(InputError, match=says):
-        RingSolid(**{**good, **given})
+        RingLayer(0, 1e-2, 0, 1e-3, Medium(**{**good, **given}))
 
 
 def test_losses_are_the_materials_own_unless_one_is_given() -> None:
     lossy = ElasticMaterial("steel", 200e9, 0.3, 7800.0, 500.0)
-    assert STEEL.loss_factor is None
-    assert isotropic_solid(lossy).loss_factor == pytest.approx(1 / 500)
-    assert isotropic_solid(lossy, 0.01).loss_factor == 0.01
-    assert isotropic_solid(lossy, 0.0).loss_factor == 0.0
+    assert STEEL.loss is None
+    assert isotropic_solid(lossy).loss == pytest.approx(1 / 500)
+    assert isotropic_solid(lossy, 0.01).loss == 0.01
+    assert isotropic_solid(lossy, 0.0).loss == 0.0
 
 
 def test_stiff_teeth_are_a_share_of_the_metal() -> None:

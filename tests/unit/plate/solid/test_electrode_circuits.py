@@ -116,10 +116,10 @@ def test_an_open_sensor_is_open_from_the_start() -> None:
 
 def test_without_open_electrodes_the_inverse_is_the_factor_s() -> None:
     one = sensing("shorted")
-    assert inverse_with_open(one.solved.slabs, one.solved, one.factor) == one.factor.solve
+    assert inverse_with_open(one.solved, one.factor) == one.factor.solve
     free = sensing("open")
     slabs = free.solved.slabs
-    solve = inverse_with_open(slabs, free.solved, free.factor)
+    solve = inverse_with_open(free.solved, free.factor)
     bordered = with_open_electrodes(slabs, free.factor.solve, np.array([[0.0], [1.0]]))
     right = slabs.mass_times(free.vectors)
     assert solve(right) == pytest.approx(bordered(right), rel=1e-12)
@@ -151,7 +151,7 @@ def test_a_small_shunt_damps_with_the_square_of_its_force() -> None:
     G, _ = one.solved.slabs.electrode_columns
     force = float(G[:, 1] @ one.vectors[:, 0])
     # ω² gains iωR f², with the whole ceramic's charge: the class has half of it.
-    assert one.solved.built.share_of[1] == 2.0
+    assert one.solved.share_of[1] == 2.0
     omega = shunted(one)
     assert omega.imag == pytest.approx(1.0 * 2.0 * force**2 / 2, rel=1e-3)
     assert omega.imag > 0

@@ -112,7 +112,7 @@ class _Class:
         self.mass = 2 * self.loss
         self.stiffness = 5 * self.loss
         self.circuit = circuit
-        self.solved = SimpleNamespace(built=SimpleNamespace(copies=copies))
+        self.solved = SimpleNamespace(copies=copies)
 
 
 def test_power_and_energy_of_two_classes_a_shunt_and_a_load(

@@ -17,8 +17,8 @@ from squeezefilm.plate.layout import (
     RectangularPlate,
     rim_supports,
 )
+from squeezefilm.plate.solid.layers import COARSE, NORMAL
 from squeezefilm.plate.solid.mesh import plate_model
-from squeezefilm.plate.solid.resolution import COARSE, NORMAL
 from squeezefilm.plate.solid.symmetry import (
     all_classes,
     drive_classes,

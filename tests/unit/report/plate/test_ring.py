@@ -41,7 +41,9 @@ def swept(radius: np.ndarray, radial: np.ndarray) -> RingResponse:
 
 
 def layer(inner: float, outer: float, piezo: bool) -> Any:
-    return SimpleNamespace(inner_radius=inner, outer_radius=outer, is_piezoelectric=piezo)
+    return SimpleNamespace(
+        inner_radius=inner, outer_radius=outer, solid=SimpleNamespace(piezoelectric=piezo)
+    )
 
 
 def made(**changes: Any) -> Any:

@@ -26,7 +26,7 @@ def fitted(**assumed: Any) -> Any:
     return SimpleNamespace(
         ring_thickness=2.34567e-3,
         mode=SimpleNamespace(label="B(0,9)", frequency=40.5e3),
-        derived={"mean_diameter": 53.571e-3},
+        section=SimpleNamespace(mean_diameter=53.571e-3),
         assumptions=StatorAssumptions(**assumed),
         frequency_bounds=(40.5e3, 44.12e3),
     )

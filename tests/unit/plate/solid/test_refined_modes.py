@@ -11,9 +11,9 @@ from scipy.linalg import eigh
 from squeezefilm.materials import ElasticMaterial, Piezoceramic
 from squeezefilm.plate.layout import CeramicPatch, RectangularPlate
 from squeezefilm.plate.solid.coarse_modes import coarse_modes
-from squeezefilm.plate.solid.extrapolated import extrapolated_class
+from squeezefilm.plate.solid.layers import COARSE
 from squeezefilm.plate.solid.reduced import ReducedClass, reduced_class, resolved_frequency
-from squeezefilm.plate.solid.resolution import COARSE
+from squeezefilm.plate.solid.refined_modes import extrapolated_class
 
 GLASS = ElasticMaterial("glass", 72e9, 0.22, 2480)
 CERAMIC = Piezoceramic("P1-91", 67.9e9, 0.2897, 23e9, 7700, -247e-12, 1900, 60)

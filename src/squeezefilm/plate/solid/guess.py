@@ -1,7 +1,8 @@
-"""Where to look for a mode of a plate that carries ceramic on a part of its face only.
+"""Where to look for a mode of a plate.
 
-The beam takes ceramic to be everywhere and so lies far off on a glass plate with strips at two
-edges. The shear plate sees the strips where they are, and costs a second.
+For one that carries ceramic on a part of its face only the beam is no guide: it takes ceramic to be
+everywhere and so lies far off on a glass plate with strips at two edges. The shear plate sees the
+strips where they are, and costs a second.
 """
 
 from __future__ import annotations
@@ -11,18 +12,44 @@ import math
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.errors import ConvergenceError, InputError
+from squeezefilm.errors import ConvergenceError, InputError, SqueezefilmError
+from squeezefilm.plate.beam.modes import free_beam_mode, timoshenko_frequency
+from squeezefilm.plate.beam.response import LEAST_COVERAGE
+from squeezefilm.plate.laminate import plate_laminate
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.shear.modes import ShearMode, shear_modes
 from squeezefilm.plate.shear.section import shear_layout
-from squeezefilm.plate.solid.modes import profiles, zero_crossings
+from squeezefilm.plate.solid.modes import Label, profiles, zero_crossings
 
 # So many modes of one class of symmetry around the bare plate's frequency are looked at: strips on
 # a part of the face move a mode by some ten percent.
 _NEAREST = 16
 
 
-def bare_frequency(plate: RectangularPlate, label: tuple[int, int]) -> si.Hertz:
+def estimated_frequency(plate: RectangularPlate, label: Label) -> float:
+    """A first guess of a mode's frequency: a Timoshenko beam with the mode's wave number, or the
+    shear plate where ceramics cover little of it."""
+    section = plate_laminate(plate, "plane_strain")
+    lines = [(n, span) for n, span in zip(label, (plate.length, plate.width), strict=True)]
+    k2 = sum(((n - 0.5) * np.pi / span) ** 2 for n, span in lines if n >= 2)
+    k2 += 2 * (np.pi / plate.length) * (np.pi / plate.width) if label == (1, 1) else 0.0
+    if k2 == 0:
+        raise InputError(
+            f"a mode with nodal lines {label} is no elastic mode that can be guessed; solve near a "
+            "frequency or in a band",
+            quantity="mode",
+        )
+    if plate.coverage < LEAST_COVERAGE and (guess := screened_frequency(plate, label)) is not None:
+        return guess
+    if label[1] == 0:
+        try:
+            return free_beam_mode(section, plate.length, label[0]).frequency
+        except SqueezefilmError:
+            pass
+    return float(timoshenko_frequency(float(np.pi / np.sqrt(k2)), section))
+
+
+def bare_frequency(plate: RectangularPlate, label: Label) -> si.Hertz:
     """The frequency of the substrate alone (Hz), with free edges: k of a free-free beam along each
     side, Kirchhoff's plate. Good to 10 % for plates thin against the half wavelength.
 
@@ -37,7 +64,7 @@ def bare_frequency(plate: RectangularPlate, label: tuple[int, int]) -> si.Hertz:
     return k2 / (2 * math.pi) * math.sqrt(stiffness / (substrate.density * h))
 
 
-def screened_frequency(plate: RectangularPlate, label: tuple[int, int]) -> si.Hertz | None:
+def screened_frequency(plate: RectangularPlate, label: Label) -> si.Hertz | None:
     """The frequency of a mode by the shear plate (Hz), searched around the bare plate's.
 
     Of several with these nodal lines the one whose shape is most nearly that of straight lines:
@@ -48,10 +75,8 @@ def screened_frequency(plate: RectangularPlate, label: tuple[int, int]) -> si.He
     if bare == 0:
         return None
     layout = shear_layout(plate)
-    signs = (1 if lines % 2 == 0 else -1 for lines in label)
-    parity = tuple(s if layout.mirrored(axis) else 0 for axis, s in enumerate(signs))
     try:
-        modes = shear_modes(layout, bare, _NEAREST, parities=((parity[0], parity[1]),))
+        modes = shear_modes(layout, bare, _NEAREST, parities=(layout.parity_of(label),))
     except (InputError, ConvergenceError):
         return None
     found = [mode for mode in modes if not mode.is_rigid and _lines(mode) == label]
@@ -59,7 +84,7 @@ def screened_frequency(plate: RectangularPlate, label: tuple[int, int]) -> si.He
     return None if best is None else best.frequency
 
 
-def _lines(mode: ShearMode) -> tuple[int, int]:
+def _lines(mode: ShearMode) -> Label:
     """Nodal lines counted as the solved plate counts them: on the shape's dominant product."""
     along, across, _ = profiles(mode.deflection)
     return zero_crossings(mode.x, along).size, zero_crossings(mode.y, across).size
