@@ -16,7 +16,7 @@ import uvicorn
 from starlette.applications import Starlette
 from starlette.requests import Request
 from starlette.responses import FileResponse, PlainTextResponse, Response
-from starlette.routing import Route, WebSocketRoute
+from starlette.routing import BaseRoute, Route, WebSocketRoute
 from starlette.websockets import WebSocket
 
 from squeezefilm import render
@@ -97,12 +97,8 @@ class Lab:
 def application(lab: Lab) -> Guard:
     """The ASGI application of a lab, behind its guard."""
 
-    async def page(request: Request) -> Response:
-        name = "participant.html" if request.url.path == "/participant" else "index.html"
-        return page_file(name)
-
-    async def static(request: Request) -> Response:
-        return static_file(STATIC, request.path_params["path"])
+    async def page(_: Request) -> Response:
+        return page_file("index.html")
 
     async def port_of_the_renderer(_: Request) -> Response:
         return _file(RENDERER)
@@ -119,19 +115,31 @@ def application(lab: Lab) -> Guard:
     app = Starlette(
         routes=[
             Route("/", page),
-            Route("/participant", page),
             Route("/static/renderer.js", port_of_the_renderer),
-            Route("/static/{path:path}", static),
             Route("/another-station", another, methods=["POST"]),
             WebSocketRoute("/ws", lambda socket: converse(lab, lab.experimenter, socket)),
-            WebSocketRoute(
-                "/ws/participant", lambda socket: converse(lab, lab.participant, socket)
-            ),
+            *station_routes(lab),
         ],
         lifespan=life,
     )
     app.state.lab = lab
     return Guard(app, lab.keys, lab.places)
+
+
+def station_routes(lab: Lab) -> list[BaseRoute]:
+    """What a participant's station may reach: its page, static files, its messages."""
+
+    async def page(_: Request) -> Response:
+        return page_file("participant.html")
+
+    async def static(request: Request) -> Response:
+        return static_file(STATIC, request.path_params["path"])
+
+    return [
+        Route("/participant", page),
+        Route("/static/{path:path}", static),
+        WebSocketRoute("/ws/participant", lambda socket: converse(lab, lab.participant, socket)),
+    ]
 
 
 def page_file(name: str) -> Response:

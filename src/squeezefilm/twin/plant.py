@@ -192,25 +192,26 @@ def _constants(point: WorkingPoint, settings: TwinSettings, hand: Hand | None) -
     friction = display.surface().friction_coefficient * finger.friction_factor
     force = 0.0 if hand is None else hand.normal_force
     strongest = float(dry.kinetic_force(friction, force))
-    values = {
-        k.C_STEP: step, k.C_ROW: round(settings.truth_period * 1e6), k.C_SEED: settings.seed,
-        k.C_F0: mode.resonance_frequency,
-        k.C_Q: mode.quality_factor * drift.quality_factor_ratio,
-        k.C_PER_VOLT: mode.amplitude_per_volt * drift.quality_factor_ratio,
-        k.C_FACTOR: point.force_factor, k.C_OFFSET: drift.offset, k.C_AGEING: drift.ageing,
-        k.C_COEFFICIENT: drift.temperature_coefficient, k.C_SWING: drift.ambient_swing,
-        k.C_PERIOD: round(drift.ambient_period * 1e6),
-        k.C_RESISTANCE: drift.thermal_resistance, k.C_THERMAL: drift.thermal_time,
-        k.C_GAIN: amplifier.gain, k.C_RAIL: amplifier.highest_voltage,
-        k.C_CURRENT: amplifier.highest_current, k.C_SLEW: amplifier.slew_rate,
-        k.C_C0: point.capacitance, k.C_LOSS: amplifier.loss_tangent,
-        k.C_MASS: arm.mass, k.C_STIFFNESS: arm.stiffness, k.C_DAMPING: arm.damping,
-        k.C_PAD_MASS: pad.mass, k.C_PAD_DAMPING: pad.damping, k.C_PAD_STIFFNESS: pad.stiffness,
-        k.C_SUBSTEPS: substeps(step * 1e-6, pad, dry, strongest),
-        k.C_MU: friction, k.C_STATIC: dry.static_ratio, k.C_STRIBECK: dry.stribeck_speed,
-        k.C_EXPONENT: dry.load_exponent, k.C_REFERENCE: dry.reference_force, k.C_FORCE: force,
-        k.C_RATE: sensor.rate,
-        k.C_LATENCY: sensor.latency * 1e6, k.C_JITTER: sensor.jitter * 1e6,
-        k.C_NOISE: sensor.noise, k.C_QUANTUM: sensor.quantisation, k.C_SHARE_LOST: sensor.loss,
-    }  # fmt: skip
-    return np.array([values[i] for i in range(k.CONSTANTS)], dtype=float)
+    ratio = drift.quality_factor_ratio
+    c = np.full(k.CONSTANTS, math.nan)
+    c[[k.C_STEP, k.C_ROW]] = step, round(settings.truth_period * 1e6)
+    c[k.C_SEED] = settings.seed
+    c[[k.C_F0, k.C_FACTOR]] = mode.resonance_frequency, point.force_factor
+    c[[k.C_Q, k.C_PER_VOLT]] = mode.quality_factor * ratio, mode.amplitude_per_volt * ratio
+    c[[k.C_OFFSET, k.C_AGEING]] = drift.offset, drift.ageing
+    c[[k.C_COEFFICIENT, k.C_SWING]] = drift.temperature_coefficient, drift.ambient_swing
+    c[k.C_PERIOD] = round(drift.ambient_period * 1e6)
+    c[[k.C_RESISTANCE, k.C_THERMAL]] = drift.thermal_resistance, drift.thermal_time
+    c[[k.C_GAIN, k.C_RAIL]] = amplifier.gain, amplifier.highest_voltage
+    c[[k.C_CURRENT, k.C_SLEW]] = amplifier.highest_current, amplifier.slew_rate
+    c[[k.C_C0, k.C_LOSS]] = point.capacitance, amplifier.loss_tangent
+    c[[k.C_MASS, k.C_STIFFNESS, k.C_DAMPING]] = arm.mass, arm.stiffness, arm.damping
+    c[[k.C_PAD_MASS, k.C_PAD_DAMPING, k.C_PAD_STIFFNESS]] = pad.mass, pad.damping, pad.stiffness
+    c[[k.C_MU, k.C_FORCE]] = friction, force
+    c[k.C_SUBSTEPS] = substeps(step * 1e-6, pad, dry, strongest)
+    c[[k.C_STATIC, k.C_STRIBECK]] = dry.static_ratio, dry.stribeck_speed
+    c[[k.C_EXPONENT, k.C_REFERENCE]] = dry.load_exponent, dry.reference_force
+    c[[k.C_RATE, k.C_SHARE_LOST]] = sensor.rate, sensor.loss
+    c[[k.C_LATENCY, k.C_JITTER]] = sensor.latency * 1e6, sensor.jitter * 1e6
+    c[[k.C_NOISE, k.C_QUANTUM]] = sensor.noise, sensor.quantisation
+    return c

@@ -41,92 +41,23 @@ from squeezefilm.twin.envelope_step import (
 )
 from squeezefilm.twin.hand import wanted
 
-# The state, float64.
-(
-    Z_RE,
-    Z_IM,
-    WARMTH,
-    RESONANCE,
-    LOST,
-    X,
-    VX,
-    Y,
-    VY,
-    SKIN_X,
-    SKIN_V,
-    PULL,
-    PULL_BEFORE,
-    BEFORE,
-    FRICTION,
-    FORCE,
-    VOLTAGE,
-    CURRENT_A,
-    RELATIVE,
-    SEEN_X,
-    SEEN_Y,
-) = range(21)
+# The state, float64: plate; finger; skin and friction; output; what the sensor shows.
+Z_RE, Z_IM, WARMTH, RESONANCE, LOST = range(5)
+X, VX, Y, VY = range(5, 9)
+SKIN_X, SKIN_V, PULL, PULL_BEFORE, BEFORE, FRICTION, FORCE = range(9, 16)
+VOLTAGE, CURRENT_A, RELATIVE, SEEN_X, SEEN_Y = range(16, 21)
 STATE = 21
 # The counts, int64; times in µs.
-(
-    NOW,
-    SEEN_TAKEN,
-    SEEN_TOUCHING,
-    SAMPLE,
-    HEAD,
-    TAIL,
-    ARRIVED,
-    ROWS,
-    AT_RAIL,
-    AT_SLEW,
-    AT_CURRENT,
-    BEYOND,
-    FAILED,
-    LOST_SAMPLES,
-    CARRIER,
-) = range(15)
+NOW, SEEN_TAKEN, SEEN_TOUCHING, SAMPLE, HEAD, TAIL, ARRIVED, ROWS = range(8)
+AT_RAIL, AT_SLEW, AT_CURRENT, BEYOND, FAILED, LOST_SAMPLES, CARRIER = range(8, 15)
 COUNTS = 15
-# The constants, float64.
-(
-    C_STEP,
-    C_ROW,
-    C_SEED,
-    C_F0,
-    C_Q,
-    C_PER_VOLT,
-    C_FACTOR,
-    C_OFFSET,
-    C_AGEING,
-    C_COEFFICIENT,
-    C_SWING,
-    C_PERIOD,
-    C_RESISTANCE,
-    C_THERMAL,
-    C_GAIN,
-    C_RAIL,
-    C_CURRENT,
-    C_SLEW,
-    C_C0,
-    C_LOSS,
-    C_MASS,
-    C_STIFFNESS,
-    C_DAMPING,
-    C_PAD_MASS,
-    C_PAD_DAMPING,
-    C_PAD_STIFFNESS,
-    C_SUBSTEPS,
-    C_MU,
-    C_STATIC,
-    C_STRIBECK,
-    C_EXPONENT,
-    C_REFERENCE,
-    C_FORCE,
-    C_RATE,
-    C_LATENCY,
-    C_JITTER,
-    C_NOISE,
-    C_QUANTUM,
-    C_SHARE_LOST,
-) = range(39)
+# The constants, float64: steps; plate; its drift; amplifier; arm and skin; friction; sensor.
+C_STEP, C_ROW, C_SEED, C_F0, C_Q, C_PER_VOLT, C_FACTOR = range(7)
+C_OFFSET, C_AGEING, C_COEFFICIENT, C_SWING, C_PERIOD, C_RESISTANCE, C_THERMAL = range(7, 14)
+C_GAIN, C_RAIL, C_CURRENT, C_SLEW, C_C0, C_LOSS = range(14, 20)
+C_MASS, C_STIFFNESS, C_DAMPING, C_PAD_MASS, C_PAD_DAMPING, C_PAD_STIFFNESS = range(20, 26)
+C_SUBSTEPS, C_MU, C_STATIC, C_STRIBECK, C_EXPONENT, C_REFERENCE, C_FORCE = range(26, 33)
+C_RATE, C_LATENCY, C_JITTER, C_NOISE, C_QUANTUM, C_SHARE_LOST = range(33, 39)
 CONSTANTS = 39
 COLUMNS = (
     "time_s", "x_m", "y_m", "speed_m_per_s", "level_V", "frequency_Hz", "amplitude_m",

@@ -204,7 +204,7 @@ class Player:
             speed=float(row[column.SPEED]),
             wanted=float(row[column.WANTED]),
             amplitude=float(row[column.AMPLITUDE]),
-            friction=float(row[column.FRICTION]),
+            relative_friction=float(row[column.FRICTION]),
             level=float(row[column.LEVEL]),
             lag=float(row[column.LAG]),
             lateness=float(row[column.LATENESS]),

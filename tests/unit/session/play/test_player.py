@@ -438,7 +438,7 @@ def test_rows_are_recorded_tapped_and_the_newest_is_shown(play_of: PlayOf) -> No
     assert recorded[:, column.TICK].tolist() == [4, 5]
     view = bench.player.view()
     assert (view.time, view.x, view.speed, view.wanted) == (1.5, 2e-3, 0.06, 1e-6)
-    assert (view.amplitude, view.friction, view.level) == (0.9e-6, 0.7, 12.0)
+    assert (view.amplitude, view.relative_friction, view.level) == (0.9e-6, 0.7, 12.0)
     assert (view.lag, view.lateness) == (3e-4, 5e-5)
     assert (view.state, view.fault) == (State.PLAYING, Fault.NONE)
     assert (view.readings, view.rows) == (2, 77)
