@@ -48,7 +48,7 @@ def run(wire: Wire, host: DeviceHost, duration: float, step: float = 1e-3) -> li
     end = wire.clock() + duration
     while wire.clock() < end:
         wire.wait(step)
-        host.pump(wire.clock())
+        host.pump()
         came += host.poll()
     return came
 
@@ -166,7 +166,7 @@ def test_a_silent_device_and_an_unplugged_one() -> None:
     assert wire.clock() - began < 1.1
     assert wire.machine.state is State.OFF
     wire.unplugged = True
-    for call in (host.pump, host.poll, host.stop, host.keep_alive):
+    for call in (host.pump, host.poll, host.stop):
         with pytest.raises(DeviceError, match="unplugged"):
             call()
 

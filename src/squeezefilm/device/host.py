@@ -1,7 +1,7 @@
 """A device as a host uses it: SI in, messages out, and the ports of a session on top of it.
 
 One thread owns a `DeviceHost` and the drive, sensor and pickup that share it. **Who feeds the
-watchdog**: the host, by calling `pump(now)` more often than every 35 ms, in every state; it sends
+watchdog**: the host, by calling `pump` more often than every 35 ms, in every state; it sends
 a keep alive only where nothing else was sent for 15 ms. A host that does not come round in time
 is just what the watchdog is for, so no thread here does it behind its back. The commands that wait
 for an answer feed it while they wait.
@@ -191,10 +191,8 @@ class DeviceHost:
             si.require("period", seconds, si.Unit("s"), at_least=SHORTEST_REPORT / _MICRO)
         self.link.request(m.Report(round(_MICRO * seconds)))
 
-    def pump(self, now: si.Second | None = None) -> None:
+    def pump(self) -> None:
         """Hear the device and feed its watchdog if nothing was said for 15 ms; never waits.
-
-        `now` is the host's time where the caller has it already; it is not needed.
 
         Raises:
             DeviceError: as `poll`.

@@ -46,6 +46,16 @@ _PARTICIPANT = ("/participant", "/static/", "/pair", "/ws/participant", "/favico
 # What a tablet needs to type a pairing code, before it has a session; nothing secret is in them.
 _PAIRING = ("/pair", "/static/pair.js", "/static/lab.css", "/static/icon.svg")
 _SAFE = {"GET", "HEAD"}
+_TOO_LARGE = f"A request of more than {LARGEST_BODY} bytes; send less."
+_UNPAIRED = (
+    "This tablet is not paired, or not any more: open /pair here and type the six digits that the "
+    "experimenter's page shows."
+)
+_WITHOUT_LINK = (
+    "This page needs the link that squeezefilm lab printed when it started; each link works once, "
+    "for one browser. For another station, ask for a link on the Study page; to come back after "
+    "the lab was ended, start it again."
+)
 
 CONNECTION = "connection"
 """The name in a scope's state of the `door.Connection` by which a request came."""
@@ -94,37 +104,28 @@ class Guard:
         """Answer or refuse one request or websocket."""
         if scope["type"] not in ("http", "websocket"):
             await self.app(scope, receive, send)
-            return
+            return None
         headers = Headers(scope=scope)
-        refused = self._refused(scope, headers)
-        if refused is not None:
-            reason, status, text = refused
+
+        async def refuse(reason: str, status: int, text: str) -> None:
             self.refusals[reason] += 1
             await self._answer(PlainTextResponse(text, status), scope, receive, send)
-            return
+
+        refused = self._refused(scope, headers)
+        if refused is not None:
+            return await refuse(*refused)
         entered = self._entering(scope, headers)
         if entered is not None:
-            await self._answer(entered, scope, receive, send)
-            return
+            return await self._answer(entered, scope, receive, send)
         session = self._session(headers)
         path = str(scope["path"])
         if session is None and not (self.places.participants_only and path in _PAIRING):
-            self.refusals["session"] += 1
-            text = (
-                "This tablet is not paired, or not any more: open /pair here and type the six "
-                "digits that the experimenter's page shows."
-                if self.places.participants_only
-                else "This page needs the link that squeezefilm lab printed when it started; each "
-                "link works once, for one browser. For another station, ask for a link on the "
-                "Study page; to come back after the lab was ended, start it again."
+            return await refuse(
+                "session", 401, _UNPAIRED if self.places.participants_only else _WITHOUT_LINK
             )
-            await self._answer(PlainTextResponse(text, 401), scope, receive, send)
-            return
         if session is not None and session.role == "participant" and not _open_to(path):
-            self.refusals["role"] += 1
             text = "This station is paired for participants; that page is the experimenter's."
-            await self._answer(PlainTextResponse(text, 403), scope, receive, send)
-            return
+            return await refuse("role", 403, text)
         scope["lab_session"] = session
         connection = scope.get("state", {}).get(CONNECTION)
         if connection is not None and session is not None:
@@ -132,13 +133,10 @@ class Guard:
         try:
             await self.app(scope, _bounded(receive), self._with_headers(send))
         except _TooLargeError:
-            self.refusals["size"] += 1
-            text = f"A request of more than {LARGEST_BODY} bytes; send less."
-            await self._answer(PlainTextResponse(text, 413), scope, receive, send)
+            await refuse("size", 413, _TOO_LARGE)
         except _TooSlowError:
-            self.refusals["slow"] += 1
             text = f"The request was not whole within {SLOWEST_BODY:g} s; send it again."
-            await self._answer(PlainTextResponse(text, 408), scope, receive, send)
+            await refuse("slow", 408, text)
 
     def set_cookie(self, response: Response, session: Session) -> None:
         """Give a browser its session."""
@@ -168,7 +166,7 @@ class Guard:
             return "site", 403, "A page from elsewhere asked for this; that is refused."
         length = headers.get("content-length", "0")
         if not length.isdigit() or int(length) > LARGEST_BODY:
-            return "size", 413, f"A request of more than {LARGEST_BODY} bytes; send less."
+            return "size", 413, _TOO_LARGE
         return None
 
     def _session(self, headers: Headers) -> Session | None:

@@ -12,6 +12,7 @@ import datetime
 import hashlib
 import ipaddress
 import ssl
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -21,7 +22,7 @@ from starlette.responses import JSONResponse, PlainTextResponse, Response
 from starlette.routing import Route
 
 from squeezefilm.errors import InputError
-from squeezefilm.lab.door import MOST_OF_ADDRESS, MOST_OPEN
+from squeezefilm.lab.door import MOST_OF_ADDRESS, MOST_OPEN, Door
 from squeezefilm.lab.files import write_secret
 from squeezefilm.lab.guard import Guard, Places
 from squeezefilm.lab.server import (
@@ -173,8 +174,7 @@ def lan_server(
     return server_of(
         lab,
         lan_application(lab, places),
-        most=most,
-        most_of_address=MOST_OF_ADDRESS,
+        door=partial(Door, most=most, most_of_address=MOST_OF_ADDRESS),
         ssl_certfile=str(file),
         ssl_keyfile=str(file),
         lifespan="off",

@@ -22,11 +22,10 @@ from starlette.websockets import WebSocket
 from squeezefilm import render
 from squeezefilm.errors import InputError
 from squeezefilm.lab.connections import PageProtocol, TimedProtocol
-from squeezefilm.lab.door import MOST_OPEN, Connection, Door
+from squeezefilm.lab.door import Connection, Door
 from squeezefilm.lab.guard import CONNECTION, Guard, Places
 from squeezefilm.lab.keys import Keys
-from squeezefilm.lab.pages import OpenPage
-from squeezefilm.lab.playing import Playing
+from squeezefilm.lab.pages import OpenPage, Playing
 from squeezefilm.lab.wire import LARGEST_FROM_PARTICIPANT, LARGEST_MESSAGE, Dispatcher, as_text
 from squeezefilm.lab.worker import PAGE, SupersededError, Workers
 
@@ -243,14 +242,13 @@ def listening_socket(port: int, host: str = "127.0.0.1") -> socket.socket:
 class UnheardServer(uvicorn.Server):
     """A server that leaves signals to who runs it: several run side by side in one process.
 
-    `most` connections at once are let in at each of its listeners, `most_of_address` from one
-    address.
+    At each of its listeners a `door` lets in.
     """
 
-    def __init__(self, config: uvicorn.Config, most: int, most_of_address: int) -> None:
+    def __init__(self, config: uvicorn.Config, door: Callable[..., Door]) -> None:
         super().__init__(config)
         self.doors: list[Door] = []
-        self._most, self._most_of_address = most, most_of_address
+        self._door = door
 
     @contextlib.contextmanager
     def capture_signals(self) -> Iterator[None]:
@@ -261,14 +259,7 @@ class UnheardServer(uvicorn.Server):
         """Begin, and let in at doors of our own what comes to the listeners."""
         await super().startup([])
         for listener in sockets or []:
-            door = Door(
-                listener,
-                self._serving,
-                most=self._most,
-                most_of_address=self._most_of_address,
-                tls=self.config.ssl,
-            )
-            self.doors.append(door)
+            self.doors.append(self._door(listener, self._serving, tls=self.config.ssl))
 
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
         """Let nobody in any more, and end."""
@@ -282,16 +273,11 @@ class UnheardServer(uvicorn.Server):
 
 
 def server_of(
-    lab: Lab,
-    app: ASGIApp | None = None,
-    *,
-    most: int = MOST_OPEN,
-    most_of_address: int = MOST_OPEN,
-    **extra: Any,
+    lab: Lab, app: ASGIApp | None = None, *, door: Callable[..., Door] = Door, **extra: Any
 ) -> UnheardServer:
     """A uvicorn server for a lab, with its limits; `extra` goes to uvicorn's configuration.
 
-    `app` is served instead of the lab's own application. For the others see `UnheardServer`.
+    `app` is served instead of the lab's own application, `door` is made for each listener.
     """
     config = uvicorn.Config(
         app or application(lab),
@@ -310,4 +296,4 @@ def server_of(
         server_header=False,
         **extra,
     )
-    return UnheardServer(config, most, most_of_address)
+    return UnheardServer(config, door)

@@ -34,6 +34,11 @@ class Request(BaseModel):
     id: int = Field(ge=0, le=2**53)
     type: str = Field(max_length=64)
 
+    @property
+    def own(self) -> dict[str, Any]:
+        """The fields of its own, beside id and type."""
+        return self.model_dump(exclude={"id", "type"})
+
 
 _LOG = logging.getLogger("squeezefilm.lab")
 _OURS = "The lab failed on this request; the terminal it runs in shows why."

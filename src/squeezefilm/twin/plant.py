@@ -1,4 +1,5 @@
-"""The simulated plate, amplifier, film, finger, hand, sensor and pickup as one object on one clock.
+"""The simulated plate, amplifier, film, finger, hand, sensor and pickup as one object on one clock,
+and the record of what really happened.
 
 Python around `plant_kernel.advance`; everything that takes time is compiled.
 """
@@ -9,6 +10,7 @@ import math
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import TextIO
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,11 +20,9 @@ from squeezefilm.contact.sliding.march import substeps
 from squeezefilm.errors import InputError
 from squeezefilm.film.compiled import announce
 from squeezefilm.twin import plant_kernel as k
-from squeezefilm.twin.chance import gaussian
 from squeezefilm.twin.envelope_step import Fingers
 from squeezefilm.twin.hand import Hand
 from squeezefilm.twin.settings import TwinSettings
-from squeezefilm.twin.truth import TruthRecord
 from squeezefilm.twin.working_point import WorkingPoint
 
 _BUFFER = 2000  # rows between two visits to Python
@@ -43,6 +43,65 @@ class PlantCounts:
     beyond: int
     failed: int
     lost: int
+
+
+class TruthRecord:
+    """Rows of the truth, their columns named in `k.COLUMNS`. Memory is bounded; the file is not.
+
+    The file is a CSV that grows by whole lines and is flushed with each block of them; numbers
+    read back exactly.
+    """
+
+    def __init__(self, rows: int, file: Path | None = None) -> None:
+        """Keep the newest `rows`; append all to `file`. Raises `InputError` if it can't be."""
+        self._rows = np.empty((rows, len(k.COLUMNS)))
+        self._written = 0
+        self._file: TextIO | None = None
+        if file is not None:
+            try:
+                self._file = file.open("w", encoding="utf-8", newline="")
+            except OSError as error:
+                raise InputError(
+                    f"cannot write the truth to {file}: {error.strerror}; give another file"
+                ) from error
+            self._file.write(",".join(k.COLUMNS) + "\n")
+
+    def append(self, rows: si.FloatArray) -> None:
+        """Add rows, shape (n, columns)."""
+        if self._file is not None:
+            lines = (",".join(repr(float(v)) for v in row) for row in rows)
+            self._file.write("".join(line + "\n" for line in lines))
+            self._file.flush()
+        size = self._rows.shape[0]
+        newest = rows[-size:]
+        first = self._written + len(rows) - len(newest)
+        self._rows[(first + np.arange(len(newest))) % size] = newest
+        self._written += len(rows)
+
+    @property
+    def written(self) -> int:
+        """How many rows there have been."""
+        return self._written
+
+    @property
+    def rows(self) -> si.FloatArray:
+        """The rows kept, oldest first, shape (n, columns); a copy."""
+        size = self._rows.shape[0]
+        if self._written <= size:
+            return self._rows[: self._written].copy()
+        return np.roll(self._rows, -(self._written % size), axis=0)
+
+    def column(self, name: str) -> si.FloatArray:
+        """One column of the rows kept. Raises `InputError` for another name."""
+        if name not in k.COLUMNS:
+            raise InputError(f"the truth has no column '{name}'; it has {', '.join(k.COLUMNS)}")
+        return self.rows[:, k.COLUMNS.index(name)]
+
+    def close(self) -> None:
+        """Close the file."""
+        if self._file is not None:
+            self._file.close()
+            self._file = None
 
 
 class Plant:
@@ -128,11 +187,6 @@ class Plant:
         return float(self._s[k.VOLTAGE])
 
     @property
-    def current(self) -> si.Ampere:
-        """From the amplifier (A, peak)."""
-        return float(self._s[k.CURRENT_A])
-
-    @property
     def tangential_force(self) -> si.Newton:
         """Of the friction between skin and surface (N), positive while the skin goes to +x."""
         return float(self._s[k.FRICTION])
@@ -171,7 +225,7 @@ class Plant:
             signal = omega * pickup.shunt * (self.point.force_factor * z + leak)
         seed, now = self.settings.seed, self.now
         signal += pickup.noise * complex(
-            gaussian(seed, _PICKUP_RE, now), gaussian(seed, _PICKUP_IM, now)
+            k.gaussian(seed, _PICKUP_RE, now), k.gaussian(seed, _PICKUP_IM, now)
         )
         return round(abs(signal) * 1e6)
 

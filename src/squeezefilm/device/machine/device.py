@@ -8,7 +8,7 @@ The twin of `firmware/squeezefilm_fw.c`, rule by rule and number by number: inte
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import astuple, dataclass, field
+from dataclasses import asdict, dataclass, field
 
 from squeezefilm.device.machine.limits import DeviceLimits, Loads
 from squeezefilm.device.machine.playing import CLOCK, Finger, Mode, Playing, Reports, Tile
@@ -228,12 +228,12 @@ class Machine:
 
     def _info(self) -> m.Info:
         return m.Info(
-            *astuple(self.own),
-            self.tick_period,
-            int(self.sensor is not None),
-            int(self.pickup is not None),
-            m.LONGEST_TILE,
-            FIRMWARE_VERSION,
+            **asdict(self.own),
+            tick_period=self.tick_period,
+            has_sensor=int(self.sensor is not None),
+            has_pickup=int(self.pickup is not None),
+            longest_tile=m.LONGEST_TILE,
+            firmware_version=FIRMWARE_VERSION,
         )
 
     def _take(self, frame: Frame) -> Reason:

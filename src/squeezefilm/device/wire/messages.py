@@ -28,8 +28,11 @@ LONGEST_TILE = 512
 """Amplitudes a device keeps of one tile."""
 
 # How a field stands on the wire, as `struct` names it.
-U8, U16, U32 = Annotated[int, "B"], Annotated[int, "H"], Annotated[int, "I"]
-I32, Binary32 = Annotated[int, "i"], Annotated[si.Volt, "f"]
+U8 = Annotated[int, "B"]
+U16 = Annotated[int, "H"]
+U32 = Annotated[int, "I"]
+I32 = Annotated[int, "i"]
+Binary32 = Annotated[si.Volt, "f"]
 Levels = tuple[si.Volt, ...]
 """Amplitudes at a payload's end: their count in one byte, then one binary32 after the other."""
 
@@ -164,7 +167,8 @@ class _Levels(Message):
         *numbers, count = cls.LAYOUT.unpack_from(payload)
         if not 1 <= count <= MOST_LEVELS or len(payload) != size + 4 * count:
             return None
-        return cls(*numbers, struct.unpack_from(f"<{count}f", payload, size))
+        found = *numbers, struct.unpack_from(f"<{count}f", payload, size)
+        return cls(*found)
 
 
 @_message(0x07)

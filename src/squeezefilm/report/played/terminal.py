@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from squeezefilm.bench.play import PlayResult
     from squeezefilm.bench.played_session import Judged, PlayedSession
     from squeezefilm.session.play.plan import PlayView
-    from squeezefilm.session.record.export import TraceExport
+    from squeezefilm.session.record.trace import TraceExport
 
 _BAR = 28
 _LINE_PERIOD = 1.0

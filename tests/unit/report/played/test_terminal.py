@@ -25,7 +25,7 @@ from squeezefilm.report.played.terminal import (
     view_table,
 )
 from squeezefilm.session.play.plan import PlayView
-from squeezefilm.session.record.export import TraceExport
+from squeezefilm.session.record.trace import TraceExport
 
 VIEW = PlayView(
     time=1.25, x=12.34e-3, speed=0.06, wanted=1e-6, amplitude=0.9e-6, level=8.0,
