@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 from squeezefilm.device.machine.limits import NO_LEVEL, level_of
 from squeezefilm.device.machine.playing import Mode
 from squeezefilm.device.wire import messages as m
-from squeezefilm.device.wire.cobs import cobs_encode
-from squeezefilm.device.wire.frames import LONGEST_PAYLOAD, Frame
+from squeezefilm.device.wire.frames import LONGEST_PAYLOAD, Frame, cobs_encode
 from squeezefilm.device.wire.states import State
 
 from .builds import Library, Sanitized

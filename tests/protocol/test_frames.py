@@ -13,8 +13,14 @@ from hypothesis import strategies as st
 
 from squeezefilm.device.machine.device import Machine
 from squeezefilm.device.wire import messages as m
-from squeezefilm.device.wire.cobs import cobs_decode, cobs_encode
-from squeezefilm.device.wire.frames import LONGEST_PAYLOAD, Deframer, Frame, frame_from_bytes
+from squeezefilm.device.wire.frames import (
+    LONGEST_PAYLOAD,
+    Deframer,
+    Frame,
+    cobs_decode,
+    cobs_encode,
+    frame_from_bytes,
+)
 from squeezefilm.errors import InputError
 
 PAGE = Path(__file__).parents[2] / "docs" / "protocol.md"

@@ -11,8 +11,8 @@ import pytest
 from squeezefilm.device.host import DeviceHost
 from squeezefilm.device.machine.device import Machine
 from squeezefilm.device.machine.limits import DeviceLimits
-from squeezefilm.device.ports import Drive, Pickup, Sensor
-from squeezefilm.device.serial_ports import DevicePickup, DeviceSensor, SerialDrive
+from squeezefilm.device.ports import Drive
+from squeezefilm.device.serial_ports import SerialDrive
 from squeezefilm.device.wire import messages as m
 from squeezefilm.device.wire.link import Link
 from squeezefilm.device.wire.safety import Limits
@@ -48,7 +48,7 @@ def run(wire: Wire, host: DeviceHost, duration: float, step: float = 1e-3) -> li
     end = wire.clock() + duration
     while wire.clock() < end:
         wire.wait(step)
-        host.pump(wire.clock())
+        host.pump()
         came += host.poll()
     return came
 
@@ -81,25 +81,18 @@ def test_a_session_from_open_to_stop() -> None:
     assert link.statistics.sent == link.statistics.answered == wire.machine.accepted
 
 
-def test_readings_sensor_and_pickup() -> None:
+def test_readings_of_sensor_and_pickup() -> None:
     wire, _, host = made()
-    sensor, pickup = DeviceSensor(host), DevicePickup(host)
-    ports: tuple[Sensor, Pickup] = (sensor, pickup)
-    block = np.zeros(64)
-    assert ports[0].read() is None
-    assert ports[1].read(block) == 0
+    assert host.poll() == []
     host.report(1e-3)
     came = run(wire, host, 0.1)
     times = [reading.time for reading in came]
     assert len(came) in (98, 99, 100)
     assert set(np.diff(times)) == {1000}
-    sample = sensor.read()
-    assert sample is not None
-    assert (sample.x, sample.y, sample.touching) == (12_000 * 1e-6, -500 * 1e-6, True)
-    assert sample.time == pytest.approx(times[-1] * 1e-6)
-    assert sensor.read() is None
-    assert pickup.read(block) == 64
-    assert block == pytest.approx(0.25)
+    assert {(one.x, one.y, one.touching, one.pickup) for one in came} == {
+        (12_000, -500, 1, 250_000)
+    }
+    assert {one.flags for one in came} == {m.SENSOR_PRESENT | m.PICKUP_PRESENT}
     host.report(0.0)
     assert run(wire, host, 0.05)[1:] == []
 
@@ -109,13 +102,7 @@ def test_a_device_without_sensor_or_pickup_says_so() -> None:
     host = DeviceHost(Link(wire, wire.clock, wire.wait))
     host.open(LIMITS)
     host.report(1e-3)
-    run(wire, host, 0.01)
-    sensor, pickup = DeviceSensor(host), DevicePickup(host)
-    run(wire, host, 0.01)
-    with pytest.raises(DeviceError, match="no finger sensor"):
-        sensor.read()
-    with pytest.raises(DeviceError, match="no pickup"):
-        pickup.read(np.zeros(4))
+    assert {one.flags for one in run(wire, host, 0.02)} == {0}
     host.load_tile(0.0, 1e-3, [1.0, 2.0])
     host.arm()
     host.start(40e3)
@@ -179,7 +166,7 @@ def test_a_silent_device_and_an_unplugged_one() -> None:
     assert wire.clock() - began < 1.1
     assert wire.machine.state is State.OFF
     wire.unplugged = True
-    for call in (host.pump, host.poll, host.stop, host.keep_alive):
+    for call in (host.pump, host.poll, host.stop):
         with pytest.raises(DeviceError, match="unplugged"):
             call()
 

@@ -1,11 +1,8 @@
 """Sensors without a device: a recording played by a clock, and events from outside."""
 
-import threading
-
 import numpy as np
 import pytest
 
-from squeezefilm.device.pointer import PointerSensor
 from squeezefilm.device.ports import FingerSample, Sensor
 from squeezefilm.device.replay import ReplaySensor
 from squeezefilm.errors import InputError
@@ -58,35 +55,3 @@ def test_a_reader_who_is_late_gets_the_newest() -> None:
 def test_recordings_that_cannot_be_played(time: list[float], x: list[float], words: str) -> None:
     with pytest.raises(InputError, match=words):
         ReplaySensor(np.array(time), np.array(x), np.zeros(len(x)))
-
-
-def test_a_pointer_hands_out_the_newest_event_once() -> None:
-    pointer = PointerSensor()
-    sensor: Sensor = pointer
-    assert sensor.read() is None
-    for number in range(3):
-        pointer.feed(FingerSample(float(number), number * 1e-3, 0.0, True))
-    assert sensor.read() == FingerSample(2.0, 2e-3, 0.0, True)
-    assert sensor.read() is None
-    pointer.feed(FingerSample(1.5, 0.0, 0.0, True))
-    assert sensor.read() is None
-    assert (pointer.fed, pointer.dropped, pointer.stale) == (3, 2, 1)
-    with pytest.raises(InputError, match="feed finite numbers"):
-        pointer.feed(FingerSample(3.0, float("nan"), 0.0, True))
-
-
-def test_a_pointer_between_two_threads() -> None:
-    pointer, seen = PointerSensor(), []
-    feeder = threading.Thread(
-        target=lambda: [pointer.feed(FingerSample(t, t, t, True)) for t in range(20_000)]
-    )
-    feeder.start()
-    while feeder.is_alive():
-        sample = pointer.read()
-        if sample is not None:
-            seen.append(sample.time)
-    last = pointer.read()
-    seen += [] if last is None else [last.time]
-    assert seen == sorted(set(seen))
-    assert seen[-1] == 19_999
-    assert pointer.fed == 20_000 == len(seen) + pointer.dropped

@@ -213,7 +213,7 @@ def export(
     """Write a recorded trace as CSV or Parquet, with its metadata, and say what it had lost."""
     from squeezefilm.report.played.terminal import show_export
     from squeezefilm.results import to_json
-    from squeezefilm.session.record.export import export_trace
+    from squeezefilm.session.record.trace import export_trace
 
     done = export_trace(trace, to)
     if as_json:

@@ -1,7 +1,7 @@
 """A device as a host uses it: SI in, messages out, and the ports of a session on top of it.
 
 One thread owns a `DeviceHost` and the drive, sensor and pickup that share it. **Who feeds the
-watchdog**: the host, by calling `pump(now)` more often than every 35 ms, in every state; it sends
+watchdog**: the host, by calling `pump` more often than every 35 ms, in every state; it sends
 a keep alive only where nothing else was sent for 15 ms. A host that does not come round in time
 is just what the watchdog is for, so no thread here does it behind its back. The commands that wait
 for an answer feed it while they wait.
@@ -10,6 +10,7 @@ for an answer feed it while they wait.
 from __future__ import annotations
 
 import secrets
+import typing
 from collections import deque
 from collections.abc import Sequence
 from typing import Any
@@ -18,8 +19,7 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.device.device_clock import DeviceClock
-from squeezefilm.device.machine.playing import CLOCK
-from squeezefilm.device.machine.reports import LONGEST_REPORT, SHORTEST_REPORT
+from squeezefilm.device.machine.playing import CLOCK, LONGEST_REPORT, SHORTEST_REPORT
 from squeezefilm.device.wire import messages as m
 from squeezefilm.device.wire.arguments import amplitudes, binary32_below, number, whole_number
 from squeezefilm.device.wire.link import Link, refusal
@@ -32,6 +32,16 @@ MOST_READINGS = 10_000
 _ZERO_LIMIT: si.Second = 0.2
 _HARMLESS = (Reason.STATE, Reason.SEQUENCE, Reason.FULL)
 _MICRO = 1e6
+# The limits that have a most, and by how much an info's numbers are larger than SI's.
+_ON_THE_WIRE: dict[str, float] = {
+    "voltage": _MICRO,
+    "slew": 1.0,
+    "continuous_voltage": _MICRO,
+    "heat": 1e3,
+    "highest_frequency": 1e3,
+    "duty": 1e3,
+    "duty_window": 1e3,
+}
 
 
 class DeviceHost:
@@ -49,9 +59,7 @@ class DeviceHost:
         self.link = link
         self.session = secrets.randbits(32) if session is None else session
         self.info: m.Info | None = None
-        self.readings: deque[m.Reading] = deque(maxlen=MOST_READINGS)
-        self.readings_heard = 0
-        self._unread: list[m.Reading] = []
+        self._unread: deque[m.Reading] = deque(maxlen=MOST_READINGS)
         self._opened = False
         self._limits: Limits | None = None
 
@@ -179,20 +187,12 @@ class DeviceHost:
         Raises `InputError` for another period, and `DeviceError`.
         """
         seconds = number("period", period, si.Unit("s"), 0.0, LONGEST_REPORT / _MICRO)
-        if seconds > 0.0:
-            number(
-                "period", period, si.Unit("s"), SHORTEST_REPORT / _MICRO, LONGEST_REPORT / _MICRO
-            )
+        if 0.0 < seconds < SHORTEST_REPORT / _MICRO:
+            si.require("period", seconds, si.Unit("s"), at_least=SHORTEST_REPORT / _MICRO)
         self.link.request(m.Report(round(_MICRO * seconds)))
 
-    def keep_alive(self) -> None:
-        """Feed the watchdog now; does not wait."""
-        self.link.send(m.KeepAlive())
-
-    def pump(self, now: si.Second | None = None) -> None:
+    def pump(self) -> None:
         """Hear the device and feed its watchdog if nothing was said for 15 ms; never waits.
-
-        `now` is the host's time where the caller has it already; it is not needed.
 
         Raises:
             DeviceError: as `poll`.
@@ -210,7 +210,8 @@ class DeviceHost:
                 waiting for a reason that asking later does not mend.
         """
         self._hear()
-        came, self._unread = self._unread, []
+        came = list(self._unread)
+        self._unread.clear()
         return came
 
     def stop(self) -> None:
@@ -228,10 +229,7 @@ class DeviceHost:
     def _hear(self) -> None:
         for message in self.link.poll():
             if isinstance(message, m.Reading):
-                self.readings.append(message)
-                self.readings_heard += 1
                 self._unread.append(message)
-                del self._unread[:-MOST_READINGS]
             elif isinstance(message, m.Info):
                 self.info = message
         newest = self.link.status
@@ -276,24 +274,15 @@ class DeviceHost:
 
     def _set_limits(self, limits: Limits, info: m.Info) -> None:
         asked = m.limits_message(limits)
-        for what, wanted, allowed, unit in (
-            ("voltage", limits.voltage, info.voltage / _MICRO, "V"),
-            ("slew", limits.slew, info.slew, "V/s"),
-            (
-                "continuous_voltage",
-                limits.continuous_voltage,
-                info.continuous_voltage / _MICRO,
-                "V",
-            ),
-            ("heat", limits.heat, info.heat / 1e3, "V2*s"),
-            ("highest_frequency", limits.highest_frequency, info.highest_frequency / 1e3, "Hz"),
-            ("duty", limits.duty, info.duty / 1e3, ""),
-            ("duty_window", limits.duty_window, info.duty_window / 1e3, "s"),
-        ):
+        hints = typing.get_type_hints(Limits, include_extras=True)
+        for what, scale in _ON_THE_WIRE.items():
+            wanted, allowed = getattr(limits, what), getattr(info, what) / scale
             if wanted > allowed * (1 + 1e-9):
+                unit = si.unit_of(hints[what])
+                symbol = "" if unit is None or unit.symbol == "1" else unit.symbol
                 raise DeviceError(
-                    f"{what} is {wanted:g} {unit} and this device's firmware allows at most "
-                    f"{allowed:g} {unit}; lower it"
+                    f"{what} is {wanted:g} {symbol} and this device's firmware allows at most "
+                    f"{allowed:g} {symbol}; lower it"
                 )
         if limits.lowest_frequency * 1e3 < info.lowest_frequency:
             raise DeviceError(

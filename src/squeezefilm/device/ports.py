@@ -30,14 +30,6 @@ class Sensor(Protocol):
         ...
 
 
-class Pickup(Protocol):
-    """Vibration feedback: motional current, a sensing patch, or a vibrometer."""
-
-    def read(self, block: si.FloatArray) -> int:
-        """Fill `block`, shape (n,), with the newest readings; returns how many were there."""
-        ...
-
-
 class Drive(Protocol):
     """What turns drive amplitudes into voltage on the plate."""
 

@@ -1,20 +1,17 @@
-"""The ports of a session on a device: drive, sensor and pickup that share one `DeviceHost`.
+"""A drive on a device, by its `DeviceHost`.
 
-All are called from the thread that owns the host, which also calls `DeviceHost.pump`.
+It is called from the thread that owns the host, which also calls `DeviceHost.pump`.
 """
 
 from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from squeezefilm import quantities as si
 from squeezefilm.device.host import DeviceHost
 from squeezefilm.device.machine.playing import LONGEST_QUEUE, MOST_AHEAD
-from squeezefilm.device.ports import FingerSample
 from squeezefilm.device.wire.arguments import number
-from squeezefilm.device.wire.messages import MOST_LEVELS, PICKUP_PRESENT, SENSOR_PRESENT
+from squeezefilm.device.wire.messages import MOST_LEVELS
 from squeezefilm.errors import DeviceError
 
 LEAD: si.Second = 5e-3
@@ -79,52 +76,3 @@ class SerialDrive:
             self.host.play(part, self.period, clock.stamp(start))
             self._next, self._end = self._next + duration, start + duration
         return count
-
-
-class DeviceSensor:
-    """The finger as the device's own sensor sees it; its times are the device's clock (s)."""
-
-    def __init__(self, host: DeviceHost) -> None:
-        self.host = host
-        self._heard = host.readings_heard
-
-    def read(self) -> FingerSample | None:
-        """The newest sample since the last call, or None.
-
-        Raises:
-            DeviceError: the device is gone, or has no sensor.
-        """
-        self.host.pump()
-        if self.host.readings_heard == self._heard:
-            return None
-        self._heard = self.host.readings_heard
-        reading = self.host.readings[-1]
-        if not reading.flags & SENSOR_PRESENT:
-            raise DeviceError("the device has no finger sensor; connect one, or use another sensor")
-        time = self.host.clock.unwrapped(reading.time)
-        return FingerSample(time, reading.x * 1e-6, reading.y * 1e-6, reading.touching == 1)
-
-
-class DevicePickup:
-    """The amplitude at the input of the device's pickup (V, zero-to-peak)."""
-
-    def __init__(self, host: DeviceHost) -> None:
-        self.host = host
-        self._heard = host.readings_heard
-
-    def read(self, block: si.FloatArray) -> int:
-        """Fill `block`, shape (n,), with the newest readings since the last call; how many.
-
-        Raises:
-            DeviceError: the device is gone, or has no pickup.
-        """
-        self.host.pump()
-        new = min(self.host.readings_heard - self._heard, len(self.host.readings), len(block))
-        self._heard = self.host.readings_heard
-        if new == 0:
-            return 0
-        readings = [self.host.readings[i] for i in range(-new, 0)]
-        if not readings[-1].flags & PICKUP_PRESENT:
-            raise DeviceError("the device has no pickup; connect one, or play without")
-        block[:new] = np.array([reading.pickup * 1e-6 for reading in readings])
-        return new

@@ -1,7 +1,8 @@
-"""Names of files that a page may write or read: below the lab's folder, nothing else."""
+"""Names of files that a page may write or read: below the lab's folder, nothing else; secrets."""
 
 from __future__ import annotations
 
+import os
 import re
 from pathlib import Path
 
@@ -42,3 +43,20 @@ def fresh(folder: Path, name: str, suffix: str, *, replace: bool = False) -> Pat
     if file.exists() and not replace:
         raise InputError(f"{file.name} exists; choose another name, or allow replacing it")
     return file
+
+
+def write_secret(file: Path, content: bytes) -> None:
+    """Write a file that only its owner can read, whole or not at all. Raises `OSError`.
+
+    What a killed lab left half written goes with it.
+    """
+    beside = file.with_suffix(".new")
+    beside.unlink(missing_ok=True)
+    handle = os.open(beside, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
+    try:
+        with os.fdopen(handle, "wb") as out:
+            out.write(content)
+        beside.replace(file)
+    except OSError:
+        beside.unlink(missing_ok=True)
+        raise

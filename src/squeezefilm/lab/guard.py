@@ -9,13 +9,12 @@ nothing: whoever listens there can at most be a participant.
 from __future__ import annotations
 
 import asyncio
+from collections import Counter
 from collections.abc import Mapping
-from dataclasses import dataclass, field
-from http.cookies import CookieError, SimpleCookie
-from typing import Any
-from urllib.parse import parse_qs
+from dataclasses import dataclass
 
-from starlette.datastructures import Headers
+from starlette.datastructures import Headers, MutableHeaders, QueryParams
+from starlette.requests import cookie_parser
 from starlette.responses import PlainTextResponse, RedirectResponse, Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
@@ -47,6 +46,16 @@ _PARTICIPANT = ("/participant", "/static/", "/pair", "/ws/participant", "/favico
 # What a tablet needs to type a pairing code, before it has a session; nothing secret is in them.
 _PAIRING = ("/pair", "/static/pair.js", "/static/lab.css", "/static/icon.svg")
 _SAFE = {"GET", "HEAD"}
+_TOO_LARGE = f"A request of more than {LARGEST_BODY} bytes; send less."
+_UNPAIRED = (
+    "This tablet is not paired, or not any more: open /pair here and type the six digits that the "
+    "experimenter's page shows."
+)
+_WITHOUT_LINK = (
+    "This page needs the link that squeezefilm lab printed when it started; each link works once, "
+    "for one browser. For another station, ask for a link on the Study page; to come back after "
+    "the lab was ended, start it again."
+)
 
 CONNECTION = "connection"
 """The name in a scope's state of the `door.Connection` by which a request came."""
@@ -73,17 +82,6 @@ class Places:
         return frozenset(f"{scheme}://{host}" for host in self.hosts)
 
 
-@dataclass(slots=True)
-class Refusals:
-    """How many requests were refused, by reason."""
-
-    by_reason: dict[str, int] = field(default_factory=dict)
-
-    def count(self, reason: str) -> None:
-        """One more for this reason."""
-        self.by_reason[reason] = self.by_reason.get(reason, 0) + 1
-
-
 class _TooLargeError(Exception):
     pass
 
@@ -99,43 +97,35 @@ class Guard:
         self.app = app
         self.keys = keys
         self.places = places
-        self.refusals = Refusals()
+        # How many requests were refused, by reason.
+        self.refusals: Counter[str] = Counter()
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Answer or refuse one request or websocket."""
         if scope["type"] not in ("http", "websocket"):
             await self.app(scope, receive, send)
-            return
+            return None
         headers = Headers(scope=scope)
+
+        async def refuse(reason: str, status: int, text: str) -> None:
+            self.refusals[reason] += 1
+            await self._answer(PlainTextResponse(text, status), scope, receive, send)
+
         refused = self._refused(scope, headers)
         if refused is not None:
-            reason, status, text = refused
-            self.refusals.count(reason)
-            await self._answer(PlainTextResponse(text, status), scope, receive, send)
-            return
+            return await refuse(*refused)
         entered = self._entering(scope, headers)
         if entered is not None:
-            await self._answer(entered, scope, receive, send)
-            return
+            return await self._answer(entered, scope, receive, send)
         session = self._session(headers)
         path = str(scope["path"])
         if session is None and not (self.places.participants_only and path in _PAIRING):
-            self.refusals.count("session")
-            text = (
-                "This tablet is not paired, or not any more: open /pair here and type the six "
-                "digits that the experimenter's page shows."
-                if self.places.participants_only
-                else "This page needs the link that squeezefilm lab printed when it started; each "
-                "link works once, for one browser. For another station, ask for a link on the "
-                "Study page; to come back after the lab was ended, start it again."
+            return await refuse(
+                "session", 401, _UNPAIRED if self.places.participants_only else _WITHOUT_LINK
             )
-            await self._answer(PlainTextResponse(text, 401), scope, receive, send)
-            return
         if session is not None and session.role == "participant" and not _open_to(path):
-            self.refusals.count("role")
             text = "This station is paired for participants; that page is the experimenter's."
-            await self._answer(PlainTextResponse(text, 403), scope, receive, send)
-            return
+            return await refuse("role", 403, text)
         scope["lab_session"] = session
         connection = scope.get("state", {}).get(CONNECTION)
         if connection is not None and session is not None:
@@ -143,13 +133,10 @@ class Guard:
         try:
             await self.app(scope, _bounded(receive), self._with_headers(send))
         except _TooLargeError:
-            self.refusals.count("size")
-            text = f"A request of more than {LARGEST_BODY} bytes; send less."
-            await self._answer(PlainTextResponse(text, 413), scope, receive, send)
+            await refuse("size", 413, _TOO_LARGE)
         except _TooSlowError:
-            self.refusals.count("slow")
             text = f"The request was not whole within {SLOWEST_BODY:g} s; send it again."
-            await self._answer(PlainTextResponse(text, 408), scope, receive, send)
+            await refuse("slow", 408, text)
 
     def set_cookie(self, response: Response, session: Session) -> None:
         """Give a browser its session."""
@@ -179,13 +166,13 @@ class Guard:
             return "site", 403, "A page from elsewhere asked for this; that is refused."
         length = headers.get("content-length", "0")
         if not length.isdigit() or int(length) > LARGEST_BODY:
-            return "size", 413, f"A request of more than {LARGEST_BODY} bytes; send less."
+            return "size", 413, _TOO_LARGE
         return None
 
     def _session(self, headers: Headers) -> Session | None:
-        found = self.keys.session(_cookie(headers, self.places.cookie))
+        found = self.keys.session(cookie_parser(headers.get("cookie", "")).get(self.places.cookie))
         if found is not None and self.places.participants_only and found.role != "participant":
-            self.refusals.count("role")
+            self.refusals["role"] += 1
             return None
         return found
 
@@ -194,12 +181,12 @@ class Guard:
             return None
         if self.places.participants_only:
             return RedirectResponse("/pair", 303)
-        tokens = parse_qs(scope["query_string"].decode("latin-1")).get("token", [])
-        if not tokens:
+        token = QueryParams(scope["query_string"]).get("token")
+        if not token:
             return None
-        entered = self.keys.use_link(tokens[0])
+        entered = self.keys.use_link(token)
         if entered is None:
-            self.refusals.count("link")
+            self.refusals["link"] += 1
             return PlainTextResponse(
                 "This link was used already, or is older than ten minutes. Each link lets one "
                 "browser in, once.",
@@ -224,15 +211,9 @@ class Guard:
     def _with_headers(self, send: Send) -> Send:
         async def forward(message: Message) -> None:
             if message["type"] == "http.response.start":
-                own = [(name.encode(), value.encode()) for name, value in HEADERS.items()]
-                given = {name.lower() for name, _ in message.get("headers", [])}
-                message = {
-                    **message,
-                    "headers": [
-                        *message.get("headers", []),
-                        *(pair for pair in own if pair[0] not in given),
-                    ],
-                }
+                headers = MutableHeaders(scope=message)
+                for name, value in HEADERS.items():
+                    headers.setdefault(name, value)
             await send(message)
 
         return forward
@@ -240,16 +221,6 @@ class Guard:
 
 def _open_to(path: str) -> bool:
     return any(path == one or path.startswith(one) for one in _PARTICIPANT)
-
-
-def _cookie(headers: Headers, name: str) -> str | None:
-    jar: SimpleCookie = SimpleCookie()
-    try:
-        jar.load(headers.get("cookie", ""))
-    except CookieError:
-        return None
-    found: Any = jar.get(name)
-    return None if found is None else str(found.value)
 
 
 def _bounded(receive: Receive) -> Receive:

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import contextlib
 import json
-import os
 import secrets
 import time
 from collections.abc import Callable
@@ -19,6 +18,7 @@ from typing import Literal
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
+from squeezefilm.lab.files import write_secret
 
 Role = Literal["experimenter", "participant"]
 
@@ -149,15 +149,6 @@ class Keys:
         if self.file is None:
             return
         text = json.dumps([asdict(one) for one in self._sessions.values()])
-        beside = self.file.with_suffix(".new")
         # The file only lets pages go on after a crash: on a full disk nobody is turned away.
         with contextlib.suppress(OSError):
-            beside.unlink(missing_ok=True)
-            handle = os.open(beside, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
-            try:
-                with os.fdopen(handle, "w", encoding="utf-8") as out:
-                    out.write(text)
-                beside.replace(self.file)
-            except OSError:
-                beside.unlink(missing_ok=True)
-                raise
+            write_secret(self.file, text.encode())

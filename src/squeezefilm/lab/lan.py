@@ -11,29 +11,28 @@ from __future__ import annotations
 import datetime
 import hashlib
 import ipaddress
-import os
 import ssl
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from starlette.applications import Starlette
 from starlette.requests import Request
 from starlette.responses import JSONResponse, PlainTextResponse, Response
-from starlette.routing import Route, WebSocketRoute
+from starlette.routing import Route
 
 from squeezefilm.errors import InputError
-from squeezefilm.lab.door import MOST_OF_ADDRESS, MOST_OPEN
+from squeezefilm.lab.door import MOST_OF_ADDRESS, MOST_OPEN, Door
+from squeezefilm.lab.files import write_secret
 from squeezefilm.lab.guard import Guard, Places
 from squeezefilm.lab.server import (
-    STATIC,
     Lab,
     LanPlace,
     UnheardServer,
-    converse,
     listening_socket,
     page_file,
     server_of,
-    static_file,
+    station_routes,
 )
 
 if TYPE_CHECKING:
@@ -115,26 +114,15 @@ def certificate(address: str, file: Path) -> str:
         serialization.PrivateFormat.PKCS8,
         serialization.NoEncryption(),
     )
-    beside = file.with_suffix(".new")
-    beside.unlink(missing_ok=True)
-    handle = os.open(beside, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
-    with os.fdopen(handle, "wb") as out:
-        out.write(secret + made.public_bytes(serialization.Encoding.PEM))
-    beside.replace(file)
+    write_secret(file, secret + made.public_bytes(serialization.Encoding.PEM))
     return _spaced(made.public_bytes(serialization.Encoding.DER))
 
 
 def lan_application(lab: Lab, places: Places) -> Guard:
     """The ASGI application for tablets: pairing, the participant's page, its messages."""
 
-    async def participant(_: Request) -> Response:
-        return page_file("participant.html")
-
     async def pairing(_: Request) -> Response:
         return page_file("pair.html")
-
-    async def static(request: Request) -> Response:
-        return static_file(STATIC, request.path_params["path"])
 
     async def pair(request: Request) -> Response:
         code = b""
@@ -144,7 +132,7 @@ def lan_application(lab: Lab, places: Places) -> Guard:
                 return PlainTextResponse("A pairing code has six digits.", 413)
         entered = lab.keys.use_code("".join(code.decode("utf-8", "replace").split()))
         if entered is None:
-            guard.refusals.count("code")
+            guard.refusals["code"] += 1
             return PlainTextResponse(
                 "This code is not right, was used already, or is older than two minutes. Ask the "
                 "experimenter for a new one.",
@@ -160,11 +148,7 @@ def lan_application(lab: Lab, places: Places) -> Guard:
             routes=[
                 Route("/pair", pairing),
                 Route("/pair", pair, methods=["POST"]),
-                Route("/participant", participant),
-                Route("/static/{path:path}", static),
-                WebSocketRoute(
-                    "/ws/participant", lambda page: converse(lab, lab.participant, page)
-                ),
+                *station_routes(lab),
             ]
         ),
         lab.keys,
@@ -190,8 +174,7 @@ def lan_server(
     return server_of(
         lab,
         lan_application(lab, places),
-        most=most,
-        most_of_address=MOST_OF_ADDRESS,
+        door=partial(Door, most=most, most_of_address=MOST_OF_ADDRESS),
         ssl_certfile=str(file),
         ssl_keyfile=str(file),
         lifespan="off",

@@ -7,18 +7,16 @@ dies, the device's own watchdog stops it.
 
 from __future__ import annotations
 
+import contextlib
 import math
 import multiprocessing
 import os
 import signal
 import threading
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
 from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
-
-import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError, SqueezefilmError
@@ -32,25 +30,11 @@ ROW_PERIOD: si.Second = 2e-3
 _STOP_LIMIT: si.Second = 5.0
 
 _STOPPED_BEFORE = "stopped before anything was played"
+_WITHOUT_A_WORD = (
+    "the process that played ended without a word; the device stops by its own watchdog"
+)
 
 Tell = Callable[[dict[str, Any]], None]
-
-
-@dataclass(frozen=True)
-class DeviceWork:
-    """What a page asks to play: files of display and texture, a drive, and how."""
-
-    display: str
-    texture: str
-    drive: str
-    mode: str
-    stroke: str
-    sensor: str
-    duration: si.Second
-    voltage: float | None
-    compensation: str
-    out: str
-    seed: int
 
 
 class DeviceSession:
@@ -67,8 +51,8 @@ class DeviceSession:
         """Whether something plays."""
         return self._process is not None and self._process.is_alive()
 
-    def start(self, work: Callable[..., None], *arguments: Any) -> None:
-        """Begin; `work(connection, *arguments)` runs in the process.
+    def start(self, work: Callable[..., None], **arguments: Any) -> None:
+        """Begin; `work(connection, **arguments)` runs in the process.
 
         Raises:
             InputError: something plays already.
@@ -78,7 +62,7 @@ class DeviceSession:
         self._stopped = False
         context = multiprocessing.get_context("spawn")
         ours, theirs = context.Pipe(duplex=False)
-        self._process = context.Process(target=work, args=(theirs, *arguments), daemon=False)
+        self._process = context.Process(target=work, args=(theirs,), kwargs=arguments, daemon=False)
         self._process.start()
         theirs.close()
         self._reader = threading.Thread(target=self._read, args=(ours, self._process), daemon=True)
@@ -111,15 +95,9 @@ class DeviceSession:
                 self._tell(message)
         # Told only now: who hears of the end may begin again at once.
         process.join()
-        if end is None and self._stopped:
-            end = {"type": "device ended", "failed": False, "message": _STOPPED_BEFORE}
-        elif end is None:
-            end = {
-                "type": "device ended",
-                "failed": True,
-                "message": "the process that played ended without a word; the device stops by "
-                "its own watchdog",
-            }
+        if end is None:
+            message = _STOPPED_BEFORE if self._stopped else _WITHOUT_A_WORD
+            end = {"type": "device ended", "failed": not self._stopped, "message": message}
         self._tell(end)
 
 
@@ -127,13 +105,11 @@ class _Watched:
     """What a page hears of a session while it plays."""
 
     def __init__(self, tell: Tell) -> None:
-        self.stage = ""
         self._tell = tell
         self._last = -math.inf
 
     def progress(self, text: str) -> None:
         """What is done now."""
-        self.stage = text
         self._tell({"type": "device progress", "text": text})
 
     def tap(self, rows: si.FloatArray) -> None:
@@ -144,80 +120,57 @@ class _Watched:
         for row in rows:
             if row[1] - self._last >= ROW_PERIOD:
                 self._last = float(row[1])
-                kept.append([float(one) if np.isfinite(one) else None for one in row])
+                kept.append(to_json(row))
         if kept:
             self._tell({"type": "device rows", "columns": list(COLUMNS), "rows": kept})
 
     def show(self, view: PlayView) -> None:
         """The moment."""
-        self._tell(
-            {
-                "type": "device view",
-                "state": view.state.name,
-                "fault": view.fault.name,
-                "time_s": view.time,
-                "x_m": view.x,
-                "speed_m_per_s": view.speed,
-                "relative_friction": view.friction,
-                "amplitude_m": view.amplitude,
-                "wanted_m": view.wanted,
-                "level_V": view.level,
-                "lag_m": view.lag,
-                "lateness_s": view.lateness,
-                "flags": list(view.flags),
-            }
-        )
+        state, fault = view.state.name, view.fault.name
+        self._tell({"type": "device view", **to_json(view), "state": state, "fault": fault})
 
 
-def play(connection: Connection, work: DeviceWork) -> None:
-    """Play, and tell of it."""
+def play(connection: Connection, display: str, texture: str, out: str, **how: Any) -> None:
+    """Play a file's texture on a file's display into a folder, `how` as `play_texture` takes it."""
     from squeezefilm.bench.play import JUDGING, play_texture
     from squeezefilm.texture_file import load_texture
 
     tell = _telling(connection)
     page = _Watched(tell)
-    try:
+    stopped = _STOPPED_BEFORE
+
+    def progress(text: str) -> None:
+        nonlocal stopped
+        page.progress(text)
+        if text == JUDGING:
+            stopped = f"stopped during: {text}; what was played is recorded in {out}, not judged"
+
+    with _ends(tell, lambda: stopped):
         result = play_texture(
-            work.display,
-            load_texture(work.texture),
-            drive=work.drive,
-            sensor=work.sensor,
-            mode=work.mode,
-            stroke=work.stroke,
-            duration=work.duration,
-            voltage=work.voltage,
-            compensation=work.compensation,
-            out=Path(work.out),
-            seed=work.seed,
+            display,
+            load_texture(texture),
+            out=Path(out),
             show=page.show,
             tap=page.tap,
-            progress=page.progress,
+            progress=progress,
+            **how,
         )
         # The device is at zero and disarmed; what is left to be written is not to be cut short.
         signal.signal(signal.SIGINT, signal.SIG_IGN)
         from squeezefilm.report.played.page import write_play
 
-        write_play(result, Path(work.out))
+        write_play(result, Path(out))
+        outcome = result.outcome
         tell(
             {
                 "type": "device ended",
-                "failed": result.outcome.failed,
-                "ending": result.outcome.ending.name,
-                "message": result.outcome.message or result.outcome.ending.value,
+                "failed": outcome.failed,
+                "ending": outcome.ending.name,
+                "message": outcome.message or outcome.ending.value,
                 "summary": result.summary(),
-                "folder": work.out,
+                "folder": out,
             }
         )
-    except KeyboardInterrupt:
-        # Whatever was driven is at zero: only what comes before and after playing ends like this.
-        message = (
-            f"stopped during: {page.stage}; what was played is recorded in {work.out}, not judged"
-            if page.stage == JUDGING
-            else _STOPPED_BEFORE
-        )
-        tell({"type": "device ended", "failed": False, "message": message})
-    except SqueezefilmError as error:
-        tell({"type": "device ended", "failed": True, "message": str(error)})
 
 
 def check(connection: Connection, drive: str, display: str) -> None:
@@ -225,20 +178,21 @@ def check(connection: Connection, drive: str, display: str) -> None:
     from squeezefilm.bench.play import check_drive
 
     tell = _telling(connection)
-    try:
-        result = check_drive(
-            drive, display, progress=lambda text: tell({"type": "device progress", "text": text})
-        )
-        tell(
-            {
-                "type": "device checked",
-                "passed": result.passed,
-                "results": to_json(result.results),
-            }
-        )
+    with _ends(tell, lambda: "the check was stopped"):
+        result = check_drive(drive, display, progress=_Watched(tell).progress)
+        found = {"passed": result.passed, "results": to_json(result.results)}
+        tell({"type": "device checked", **found})
         tell({"type": "device ended", "failed": False, "message": "checked"})
+
+
+@contextlib.contextmanager
+def _ends(tell: Tell, stopped: Callable[[], str]) -> Iterator[None]:
+    """Tell of an end that is no success; `stopped` says what Ctrl-C left of it."""
+    try:
+        yield
     except KeyboardInterrupt:
-        tell({"type": "device ended", "failed": False, "message": "the check was stopped"})
+        # Whatever was driven is at zero: only what comes before and after playing ends like this.
+        tell({"type": "device ended", "failed": False, "message": stopped()})
     except SqueezefilmError as error:
         tell({"type": "device ended", "failed": True, "message": str(error)})
 

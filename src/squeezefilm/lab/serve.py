@@ -7,6 +7,7 @@ import contextlib
 import signal
 import webbrowser
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -15,7 +16,7 @@ from squeezefilm.lab.areas.design import DesignArea
 from squeezefilm.lab.areas.device import DeviceArea
 from squeezefilm.lab.areas.feel import FeelArea
 from squeezefilm.lab.areas.study import StudyArea
-from squeezefilm.lab.door import room_for
+from squeezefilm.lab.door import Door, room_for
 from squeezefilm.lab.guard import Places
 from squeezefilm.lab.keys import Keys
 from squeezefilm.lab.server import PORT, Lab, listening_socket, server_of
@@ -74,7 +75,7 @@ def _serve(
     link = f"http://127.0.0.1:{found}/?token={keys.new_link()}"
     secret = folder / f".lab-{found}.pem"
     most = room_for(1 if lan is None else 2)
-    servers = [(server_of(lab, most=most), listener)]
+    servers = [(server_of(lab, door=partial(Door, most=most)), listener)]
     if lan is not None:
         from squeezefilm.lab.lan import lan_listener, lan_server
 

@@ -16,17 +16,16 @@ import uvicorn
 from starlette.applications import Starlette
 from starlette.requests import Request
 from starlette.responses import FileResponse, PlainTextResponse, Response
-from starlette.routing import Route, WebSocketRoute
+from starlette.routing import BaseRoute, Route, WebSocketRoute
 from starlette.websockets import WebSocket
 
 from squeezefilm import render
 from squeezefilm.errors import InputError
 from squeezefilm.lab.connections import PageProtocol, TimedProtocol
-from squeezefilm.lab.door import MOST_OPEN, Connection, Door
+from squeezefilm.lab.door import Connection, Door
 from squeezefilm.lab.guard import CONNECTION, Guard, Places
 from squeezefilm.lab.keys import Keys
-from squeezefilm.lab.pages import OpenPage
-from squeezefilm.lab.playing import Playing
+from squeezefilm.lab.pages import OpenPage, Playing
 from squeezefilm.lab.wire import LARGEST_FROM_PARTICIPANT, LARGEST_MESSAGE, Dispatcher, as_text
 from squeezefilm.lab.worker import PAGE, SupersededError, Workers
 
@@ -97,12 +96,8 @@ class Lab:
 def application(lab: Lab) -> Guard:
     """The ASGI application of a lab, behind its guard."""
 
-    async def page(request: Request) -> Response:
-        name = "participant.html" if request.url.path == "/participant" else "index.html"
-        return page_file(name)
-
-    async def static(request: Request) -> Response:
-        return static_file(STATIC, request.path_params["path"])
+    async def page(_: Request) -> Response:
+        return page_file("index.html")
 
     async def port_of_the_renderer(_: Request) -> Response:
         return _file(RENDERER)
@@ -119,19 +114,31 @@ def application(lab: Lab) -> Guard:
     app = Starlette(
         routes=[
             Route("/", page),
-            Route("/participant", page),
             Route("/static/renderer.js", port_of_the_renderer),
-            Route("/static/{path:path}", static),
             Route("/another-station", another, methods=["POST"]),
             WebSocketRoute("/ws", lambda socket: converse(lab, lab.experimenter, socket)),
-            WebSocketRoute(
-                "/ws/participant", lambda socket: converse(lab, lab.participant, socket)
-            ),
+            *station_routes(lab),
         ],
         lifespan=life,
     )
     app.state.lab = lab
     return Guard(app, lab.keys, lab.places)
+
+
+def station_routes(lab: Lab) -> list[BaseRoute]:
+    """What a participant's station may reach: its page, static files, its messages."""
+
+    async def page(_: Request) -> Response:
+        return page_file("participant.html")
+
+    async def static(request: Request) -> Response:
+        return static_file(STATIC, request.path_params["path"])
+
+    return [
+        Route("/participant", page),
+        Route("/static/{path:path}", static),
+        WebSocketRoute("/ws/participant", lambda socket: converse(lab, lab.participant, socket)),
+    ]
 
 
 def page_file(name: str) -> Response:
@@ -235,14 +242,13 @@ def listening_socket(port: int, host: str = "127.0.0.1") -> socket.socket:
 class UnheardServer(uvicorn.Server):
     """A server that leaves signals to who runs it: several run side by side in one process.
 
-    `most` connections at once are let in at each of its listeners, `most_of_address` from one
-    address.
+    At each of its listeners a `door` lets in.
     """
 
-    def __init__(self, config: uvicorn.Config, most: int, most_of_address: int) -> None:
+    def __init__(self, config: uvicorn.Config, door: Callable[..., Door]) -> None:
         super().__init__(config)
         self.doors: list[Door] = []
-        self._most, self._most_of_address = most, most_of_address
+        self._door = door
 
     @contextlib.contextmanager
     def capture_signals(self) -> Iterator[None]:
@@ -253,14 +259,7 @@ class UnheardServer(uvicorn.Server):
         """Begin, and let in at doors of our own what comes to the listeners."""
         await super().startup([])
         for listener in sockets or []:
-            door = Door(
-                listener,
-                self._serving,
-                most=self._most,
-                most_of_address=self._most_of_address,
-                tls=self.config.ssl,
-            )
-            self.doors.append(door)
+            self.doors.append(self._door(listener, self._serving, tls=self.config.ssl))
 
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
         """Let nobody in any more, and end."""
@@ -274,16 +273,11 @@ class UnheardServer(uvicorn.Server):
 
 
 def server_of(
-    lab: Lab,
-    app: ASGIApp | None = None,
-    *,
-    most: int = MOST_OPEN,
-    most_of_address: int = MOST_OPEN,
-    **extra: Any,
+    lab: Lab, app: ASGIApp | None = None, *, door: Callable[..., Door] = Door, **extra: Any
 ) -> UnheardServer:
     """A uvicorn server for a lab, with its limits; `extra` goes to uvicorn's configuration.
 
-    `app` is served instead of the lab's own application. For the others see `UnheardServer`.
+    `app` is served instead of the lab's own application, `door` is made for each listener.
     """
     config = uvicorn.Config(
         app or application(lab),
@@ -302,4 +296,4 @@ def server_of(
         server_header=False,
         **extra,
     )
-    return UnheardServer(config, most, most_of_address)
+    return UnheardServer(config, door)

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import json
 import logging
-import math
 from collections.abc import Awaitable, Callable
 from typing import Any
 
@@ -17,6 +16,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from squeezefilm.errors import InputError, RecordError, SqueezefilmError
 from squeezefilm.lab.worker import SupersededError
+from squeezefilm.results import to_json
 
 LARGEST_MESSAGE = 8 * 1024 * 1024
 """Bytes of a websocket message."""
@@ -33,6 +33,11 @@ class Request(BaseModel):
 
     id: int = Field(ge=0, le=2**53)
     type: str = Field(max_length=64)
+
+    @property
+    def own(self) -> dict[str, Any]:
+        """The fields of its own, beside id and type."""
+        return self.model_dump(exclude={"id", "type"})
 
 
 _LOG = logging.getLogger("squeezefilm.lab")
@@ -99,17 +104,7 @@ class Dispatcher:
 
 def as_text(answer: Answer) -> str:
     """JSON text; a number that is not finite becomes null, which JSON can carry."""
-    return json.dumps(_finite(answer), ensure_ascii=False, allow_nan=False, separators=(",", ":"))
-
-
-def _finite(value: Any) -> Any:
-    if isinstance(value, float):
-        return value if math.isfinite(value) else None
-    if isinstance(value, dict):
-        return {key: _finite(item) for key, item in value.items()}
-    if isinstance(value, list | tuple):
-        return [_finite(item) for item in value]
-    return value
+    return json.dumps(to_json(answer), ensure_ascii=False, allow_nan=False, separators=(",", ":"))
 
 
 def _error(number: int | None, message: str) -> Answer:

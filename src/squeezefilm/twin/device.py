@@ -13,14 +13,13 @@ from pathlib import Path
 
 from squeezefilm.device.machine.device import Machine
 from squeezefilm.device.machine.limits import DeviceLimits
-from squeezefilm.device.machine.playing import CLOCK, Finger, until
+from squeezefilm.device.machine.playing import CLOCK, until
 from squeezefilm.device.wire.states import State
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError
 from squeezefilm.twin.hand import Hand
-from squeezefilm.twin.plant import Plant
+from squeezefilm.twin.plant import Plant, TruthRecord
 from squeezefilm.twin.settings import TwinSettings
-from squeezefilm.twin.truth import TruthRecord
 from squeezefilm.twin.working_point import WorkingPoint, working_point
 
 _QUIET_STRIDE = 5_000
@@ -59,9 +58,13 @@ class TwinDevice:
         point = point or working_point(display, self.settings)
         self._plant = Plant(point, self.settings, hand, truth_file)
         self._tick = self.settings.tick_us
-        pickup = None if self.settings.pickup.kind == "none" else self._picked_up
+        heard = self.settings.pickup.kind != "none"
         self.machine = Machine(
-            self.settings.seed, own or DeviceLimits(), self._sensed, pickup, self._tick
+            self.settings.seed,
+            own or DeviceLimits(),
+            lambda: self.plant.sensed(),
+            (lambda: self.plant.pickup_level()) if heard else None,
+            self._tick,
         )
         self.ticks = 0
         self._now = 0
@@ -150,12 +153,6 @@ class TwinDevice:
         if due is not None:
             late = min(late, -(-(now + until(due, now & CLOCK)) // self._tick))
         return max(soon, late * self._tick)
-
-    def _sensed(self) -> Finger:
-        return self.plant.sensed()
-
-    def _picked_up(self) -> int:
-        return self.plant.pickup_level()
 
     def _hold(self, until: int) -> None:
         """Hold the machine's output until then; the plate follows when it must."""

@@ -1,4 +1,5 @@
-"""The simulated plate, amplifier, film, finger, hand, sensor and pickup as one object on one clock.
+"""The simulated plate, amplifier, film, finger, hand, sensor and pickup as one object on one clock,
+and the record of what really happened.
 
 Python around `plant_kernel.advance`; everything that takes time is compiled.
 """
@@ -9,6 +10,7 @@ import math
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import TextIO
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,11 +20,9 @@ from squeezefilm.contact.sliding.march import substeps
 from squeezefilm.errors import InputError
 from squeezefilm.film.compiled import announce
 from squeezefilm.twin import plant_kernel as k
-from squeezefilm.twin.chance import gaussian
 from squeezefilm.twin.envelope_step import Fingers
 from squeezefilm.twin.hand import Hand
 from squeezefilm.twin.settings import TwinSettings
-from squeezefilm.twin.truth import TruthRecord
 from squeezefilm.twin.working_point import WorkingPoint
 
 _BUFFER = 2000  # rows between two visits to Python
@@ -43,6 +43,65 @@ class PlantCounts:
     beyond: int
     failed: int
     lost: int
+
+
+class TruthRecord:
+    """Rows of the truth, their columns named in `k.COLUMNS`. Memory is bounded; the file is not.
+
+    The file is a CSV that grows by whole lines and is flushed with each block of them; numbers
+    read back exactly.
+    """
+
+    def __init__(self, rows: int, file: Path | None = None) -> None:
+        """Keep the newest `rows`; append all to `file`. Raises `InputError` if it can't be."""
+        self._rows = np.empty((rows, len(k.COLUMNS)))
+        self._written = 0
+        self._file: TextIO | None = None
+        if file is not None:
+            try:
+                self._file = file.open("w", encoding="utf-8", newline="")
+            except OSError as error:
+                raise InputError(
+                    f"cannot write the truth to {file}: {error.strerror}; give another file"
+                ) from error
+            self._file.write(",".join(k.COLUMNS) + "\n")
+
+    def append(self, rows: si.FloatArray) -> None:
+        """Add rows, shape (n, columns)."""
+        if self._file is not None:
+            lines = (",".join(repr(float(v)) for v in row) for row in rows)
+            self._file.write("".join(line + "\n" for line in lines))
+            self._file.flush()
+        size = self._rows.shape[0]
+        newest = rows[-size:]
+        first = self._written + len(rows) - len(newest)
+        self._rows[(first + np.arange(len(newest))) % size] = newest
+        self._written += len(rows)
+
+    @property
+    def written(self) -> int:
+        """How many rows there have been."""
+        return self._written
+
+    @property
+    def rows(self) -> si.FloatArray:
+        """The rows kept, oldest first, shape (n, columns); a copy."""
+        size = self._rows.shape[0]
+        if self._written <= size:
+            return self._rows[: self._written].copy()
+        return np.roll(self._rows, -(self._written % size), axis=0)
+
+    def column(self, name: str) -> si.FloatArray:
+        """One column of the rows kept. Raises `InputError` for another name."""
+        if name not in k.COLUMNS:
+            raise InputError(f"the truth has no column '{name}'; it has {', '.join(k.COLUMNS)}")
+        return self.rows[:, k.COLUMNS.index(name)]
+
+    def close(self) -> None:
+        """Close the file."""
+        if self._file is not None:
+            self._file.close()
+            self._file = None
 
 
 class Plant:
@@ -128,11 +187,6 @@ class Plant:
         return float(self._s[k.VOLTAGE])
 
     @property
-    def current(self) -> si.Ampere:
-        """From the amplifier (A, peak)."""
-        return float(self._s[k.CURRENT_A])
-
-    @property
     def tangential_force(self) -> si.Newton:
         """Of the friction between skin and surface (N), positive while the skin goes to +x."""
         return float(self._s[k.FRICTION])
@@ -171,7 +225,7 @@ class Plant:
             signal = omega * pickup.shunt * (self.point.force_factor * z + leak)
         seed, now = self.settings.seed, self.now
         signal += pickup.noise * complex(
-            gaussian(seed, _PICKUP_RE, now), gaussian(seed, _PICKUP_IM, now)
+            k.gaussian(seed, _PICKUP_RE, now), k.gaussian(seed, _PICKUP_IM, now)
         )
         return round(abs(signal) * 1e6)
 
@@ -192,25 +246,26 @@ def _constants(point: WorkingPoint, settings: TwinSettings, hand: Hand | None) -
     friction = display.surface().friction_coefficient * finger.friction_factor
     force = 0.0 if hand is None else hand.normal_force
     strongest = float(dry.kinetic_force(friction, force))
-    values = {
-        k.C_STEP: step, k.C_ROW: round(settings.truth_period * 1e6), k.C_SEED: settings.seed,
-        k.C_F0: mode.resonance_frequency,
-        k.C_Q: mode.quality_factor * drift.quality_factor_ratio,
-        k.C_PER_VOLT: mode.amplitude_per_volt * drift.quality_factor_ratio,
-        k.C_FACTOR: point.force_factor, k.C_OFFSET: drift.offset, k.C_AGEING: drift.ageing,
-        k.C_COEFFICIENT: drift.temperature_coefficient, k.C_SWING: drift.ambient_swing,
-        k.C_PERIOD: round(drift.ambient_period * 1e6),
-        k.C_RESISTANCE: drift.thermal_resistance, k.C_THERMAL: drift.thermal_time,
-        k.C_GAIN: amplifier.gain, k.C_RAIL: amplifier.highest_voltage,
-        k.C_CURRENT: amplifier.highest_current, k.C_SLEW: amplifier.slew_rate,
-        k.C_C0: point.capacitance, k.C_LOSS: amplifier.loss_tangent,
-        k.C_MASS: arm.mass, k.C_STIFFNESS: arm.stiffness, k.C_DAMPING: arm.damping,
-        k.C_PAD_MASS: pad.mass, k.C_PAD_DAMPING: pad.damping, k.C_PAD_STIFFNESS: pad.stiffness,
-        k.C_SUBSTEPS: substeps(step * 1e-6, pad, dry, strongest),
-        k.C_MU: friction, k.C_STATIC: dry.static_ratio, k.C_STRIBECK: dry.stribeck_speed,
-        k.C_EXPONENT: dry.load_exponent, k.C_REFERENCE: dry.reference_force, k.C_FORCE: force,
-        k.C_RATE: sensor.rate,
-        k.C_LATENCY: sensor.latency * 1e6, k.C_JITTER: sensor.jitter * 1e6,
-        k.C_NOISE: sensor.noise, k.C_QUANTUM: sensor.quantisation, k.C_SHARE_LOST: sensor.loss,
-    }  # fmt: skip
-    return np.array([values[i] for i in range(k.CONSTANTS)], dtype=float)
+    ratio = drift.quality_factor_ratio
+    c = np.full(k.CONSTANTS, math.nan)
+    c[[k.C_STEP, k.C_ROW]] = step, round(settings.truth_period * 1e6)
+    c[k.C_SEED] = settings.seed
+    c[[k.C_F0, k.C_FACTOR]] = mode.resonance_frequency, point.force_factor
+    c[[k.C_Q, k.C_PER_VOLT]] = mode.quality_factor * ratio, mode.amplitude_per_volt * ratio
+    c[[k.C_OFFSET, k.C_AGEING]] = drift.offset, drift.ageing
+    c[[k.C_COEFFICIENT, k.C_SWING]] = drift.temperature_coefficient, drift.ambient_swing
+    c[k.C_PERIOD] = round(drift.ambient_period * 1e6)
+    c[[k.C_RESISTANCE, k.C_THERMAL]] = drift.thermal_resistance, drift.thermal_time
+    c[[k.C_GAIN, k.C_RAIL]] = amplifier.gain, amplifier.highest_voltage
+    c[[k.C_CURRENT, k.C_SLEW]] = amplifier.highest_current, amplifier.slew_rate
+    c[[k.C_C0, k.C_LOSS]] = point.capacitance, amplifier.loss_tangent
+    c[[k.C_MASS, k.C_STIFFNESS, k.C_DAMPING]] = arm.mass, arm.stiffness, arm.damping
+    c[[k.C_PAD_MASS, k.C_PAD_DAMPING, k.C_PAD_STIFFNESS]] = pad.mass, pad.damping, pad.stiffness
+    c[[k.C_MU, k.C_FORCE]] = friction, force
+    c[k.C_SUBSTEPS] = substeps(step * 1e-6, pad, dry, strongest)
+    c[[k.C_STATIC, k.C_STRIBECK]] = dry.static_ratio, dry.stribeck_speed
+    c[[k.C_EXPONENT, k.C_REFERENCE]] = dry.load_exponent, dry.reference_force
+    c[[k.C_RATE, k.C_SHARE_LOST]] = sensor.rate, sensor.loss
+    c[[k.C_LATENCY, k.C_JITTER]] = sensor.latency * 1e6, sensor.jitter * 1e6
+    c[[k.C_NOISE, k.C_QUANTUM]] = sensor.noise, sensor.quantisation
+    return c

@@ -11,12 +11,16 @@ and the outcome does not depend on the pieces in which time is advanced. In each
 5. the sensor takes its samples, and the truth gets a row where one is due.
 
 Motion is along x for the skin; along y the arm leads without friction.
+
+Noise is by number: the n-th value of a stream is a function of seed, stream and n alone, so that it
+does not depend on how often or in which pieces time is advanced. The mixing is that of splitmix64
+(Steele, Lea and Flood 2014, 10.1145/2714064.2660195).
 """
 
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numba
 import numpy as np
@@ -24,7 +28,6 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.contact.sliding.kernel import Drive, Ground, Law, Track, slide_march
 from squeezefilm.contact.sliding.skin_motion import Forces, Skin, slide_by, transition
-from squeezefilm.twin.chance import gaussian, uniform
 from squeezefilm.twin.envelope_step import (
     CURRENT,
     RAIL,
@@ -41,92 +44,23 @@ from squeezefilm.twin.envelope_step import (
 )
 from squeezefilm.twin.hand import wanted
 
-# The state, float64.
-(
-    Z_RE,
-    Z_IM,
-    WARMTH,
-    RESONANCE,
-    LOST,
-    X,
-    VX,
-    Y,
-    VY,
-    SKIN_X,
-    SKIN_V,
-    PULL,
-    PULL_BEFORE,
-    BEFORE,
-    FRICTION,
-    FORCE,
-    VOLTAGE,
-    CURRENT_A,
-    RELATIVE,
-    SEEN_X,
-    SEEN_Y,
-) = range(21)
+# The state, float64: plate; finger; skin and friction; output; what the sensor shows.
+Z_RE, Z_IM, WARMTH, RESONANCE, LOST = range(5)
+X, VX, Y, VY = range(5, 9)
+SKIN_X, SKIN_V, PULL, PULL_BEFORE, BEFORE, FRICTION, FORCE = range(9, 16)
+VOLTAGE, CURRENT_A, RELATIVE, SEEN_X, SEEN_Y = range(16, 21)
 STATE = 21
 # The counts, int64; times in µs.
-(
-    NOW,
-    SEEN_TAKEN,
-    SEEN_TOUCHING,
-    SAMPLE,
-    HEAD,
-    TAIL,
-    ARRIVED,
-    ROWS,
-    AT_RAIL,
-    AT_SLEW,
-    AT_CURRENT,
-    BEYOND,
-    FAILED,
-    LOST_SAMPLES,
-    CARRIER,
-) = range(15)
+NOW, SEEN_TAKEN, SEEN_TOUCHING, SAMPLE, HEAD, TAIL, ARRIVED, ROWS = range(8)
+AT_RAIL, AT_SLEW, AT_CURRENT, BEYOND, FAILED, LOST_SAMPLES, CARRIER = range(8, 15)
 COUNTS = 15
-# The constants, float64.
-(
-    C_STEP,
-    C_ROW,
-    C_SEED,
-    C_F0,
-    C_Q,
-    C_PER_VOLT,
-    C_FACTOR,
-    C_OFFSET,
-    C_AGEING,
-    C_COEFFICIENT,
-    C_SWING,
-    C_PERIOD,
-    C_RESISTANCE,
-    C_THERMAL,
-    C_GAIN,
-    C_RAIL,
-    C_CURRENT,
-    C_SLEW,
-    C_C0,
-    C_LOSS,
-    C_MASS,
-    C_STIFFNESS,
-    C_DAMPING,
-    C_PAD_MASS,
-    C_PAD_DAMPING,
-    C_PAD_STIFFNESS,
-    C_SUBSTEPS,
-    C_MU,
-    C_STATIC,
-    C_STRIBECK,
-    C_EXPONENT,
-    C_REFERENCE,
-    C_FORCE,
-    C_RATE,
-    C_LATENCY,
-    C_JITTER,
-    C_NOISE,
-    C_QUANTUM,
-    C_SHARE_LOST,
-) = range(39)
+# The constants, float64: steps; plate; its drift; amplifier; arm and skin; friction; sensor.
+C_STEP, C_ROW, C_SEED, C_F0, C_Q, C_PER_VOLT, C_FACTOR = range(7)
+C_OFFSET, C_AGEING, C_COEFFICIENT, C_SWING, C_PERIOD, C_RESISTANCE, C_THERMAL = range(7, 14)
+C_GAIN, C_RAIL, C_CURRENT, C_SLEW, C_C0, C_LOSS = range(14, 20)
+C_MASS, C_STIFFNESS, C_DAMPING, C_PAD_MASS, C_PAD_DAMPING, C_PAD_STIFFNESS = range(20, 26)
+C_SUBSTEPS, C_MU, C_STATIC, C_STRIBECK, C_EXPONENT, C_REFERENCE, C_FORCE = range(26, 33)
+C_RATE, C_LATENCY, C_JITTER, C_NOISE, C_QUANTUM, C_SHARE_LOST = range(33, 39)
 CONSTANTS = 39
 COLUMNS = (
     "time_s", "x_m", "y_m", "speed_m_per_s", "level_V", "frequency_Hz", "amplitude_m",
@@ -137,6 +71,36 @@ COLUMNS = (
 
 THERMAL = 10_000  # µs between looks at the temperature
 _NOISE_X, _NOISE_Y, _DELAY, _LOSS = 1, 2, 3, 4
+_STEP = np.uint64(0x9E3779B97F4A7C15)
+_FIRST = np.uint64(0xBF58476D1CE4E5B9)
+_SECOND = np.uint64(0x94D049BB133111EB)
+_THIRTY, _SEVEN, _ONE = np.uint64(30), np.uint64(27), np.uint64(31)
+_DROPPED = np.uint64(11)
+_TWO_53 = 2.0**-53
+
+
+@numba.njit(cache=True, nogil=True)
+def mixed(number: Any) -> Any:
+    """A 64-bit number with its bits mixed."""
+    z = np.uint64(number) + _STEP
+    z = (z ^ (z >> _THIRTY)) * _FIRST
+    z = (z ^ (z >> _SEVEN)) * _SECOND
+    return z ^ (z >> _ONE)
+
+
+@numba.njit(cache=True, nogil=True)
+def uniform(seed: int, stream: int, number: int) -> float:
+    """The `number`-th uniform value of a stream, above 0 and below 1."""
+    z = mixed(mixed(np.uint64(seed)) ^ mixed(np.uint64(stream) + _FIRST))
+    z = mixed(z ^ mixed(np.uint64(number) + _SECOND))
+    return (float(z >> _DROPPED) + 0.5) * _TWO_53
+
+
+@numba.njit(cache=True, nogil=True)
+def gaussian(seed: int, stream: int, number: int) -> float:
+    """The `number`-th standard normal value of a stream (Box and Muller)."""
+    radius = math.sqrt(-2.0 * math.log(uniform(seed, 2 * stream, number)))
+    return radius * math.cos(2.0 * math.pi * uniform(seed, 2 * stream + 1, number))
 
 
 class State(NamedTuple):

@@ -49,17 +49,13 @@ class PlateDrift:
 
     offset: Annotated[si.Dimensionless, si.Above(-0.5), si.Below(0.5)] = 0.0
     ageing: Annotated[PerSecond, si.AtLeast(-1e-06), si.AtMost(1e-06)] = 0.0
-    temperature_coefficient: PerKelvin = -1e-4
+    temperature_coefficient: Annotated[PerKelvin, si.Above(-1e-2), si.Below(1e-2)] = -1e-4
     ambient_swing: Annotated[si.Kelvin, si.AtLeast(0.0), si.AtMost(50.0)] = 1.0
     ambient_period: Annotated[si.Second, si.AtLeast(1.0), si.AtMost(1000000.0)] = 3600.0
     thermal_resistance: Annotated[KelvinPerWatt, si.AtLeast(0.0)] = 12.0
     thermal_time: Annotated[si.Second, si.Above(0.0)] = 480.0
     quality_factor_ratio: Annotated[si.Dimensionless, si.Above(0.0), si.AtMost(10.0)] = 1.0
     evidence: str = ASSUMED
-
-    def __post_init__(self) -> None:
-        coefficient = self.temperature_coefficient
-        si.require("temperature_coefficient", coefficient, si.Unit("1/K"), above=-1e-2, below=1e-2)
 
 
 @si.checked_numbers
@@ -162,7 +158,7 @@ class TwinSettings:
     steps_per_tick: Annotated[int, si.AtLeast(1), si.AtMost(100)] = 2
     truth_period: si.Second = 1e-3
     truth_rows: Annotated[int, si.AtLeast(1)] = 200_000
-    highest_amplitude_ratio: si.Dimensionless = 2.0
+    highest_amplitude_ratio: Annotated[si.Dimensionless, si.Above(0.0), si.AtMost(100.0)] = 2.0
     drift: PlateDrift = PlateDrift()
     amplifier: Amplifier = Amplifier()
     arm: Arm = Arm()
@@ -172,8 +168,6 @@ class TwinSettings:
 
     def __post_init__(self) -> None:
         si.require("truth_period", self.truth_period, si.Unit("s"), at_least=self.tick)
-        ratio = self.highest_amplitude_ratio
-        si.require("highest_amplitude_ratio", ratio, above=0.0, at_most=100.0)
         if not _whole(self.tick * 1e6):
             raise InputError(f"tick = {self.tick:g} s must be a whole number of microseconds")
         if self.tick_us % self.steps_per_tick:

@@ -13,7 +13,7 @@ from tests.e2e.program import run
 
 from squeezefilm.bench.check import CheckResult, DeviceCheck
 from squeezefilm.cli.textures import device_app
-from squeezefilm.session.record.export import TraceExport
+from squeezefilm.session.record.trace import TraceExport
 from squeezefilm.texture_file import load_texture
 
 DISPLAY, TEXTURE = "biet2008-plate", "sine-3mm"

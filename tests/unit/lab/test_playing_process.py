@@ -16,16 +16,19 @@ import pytest
 
 from squeezefilm.bench import play as bench_play
 from squeezefilm.bench.check import CheckResult
+from squeezefilm.device.wire.states import Fault, State
 from squeezefilm.errors import DeviceError, InputError
 from squeezefilm.lab import playing_process
-from squeezefilm.lab.playing_process import DeviceSession, DeviceWork, check, play
+from squeezefilm.lab.playing_process import DeviceSession, check, play
 from squeezefilm.report.played import page
 from squeezefilm.session.loop.rows import COLUMNS
+from squeezefilm.session.play.plan import PlayView
 
-WORK = DeviceWork(
-    display="d.toml", texture="biet2008-square-4mm", drive="twin", mode="stream", stroke="s",
-    sensor="device", duration=2.0, voltage=12.0, compensation="inverse", out="folder", seed=5,
-)  # fmt: skip
+WORK: Any = {
+    "display": "d.toml", "texture": "biet2008-square-4mm", "drive": "twin", "mode": "stream",
+    "stroke": "s", "sensor": "device", "duration": 2.0, "voltage": 12.0, "compensation": "inverse",
+    "out": "folder", "seed": 5,
+}  # fmt: skip
 
 
 class Pipe:
@@ -55,7 +58,7 @@ def played(monkeypatch: pytest.MonkeyPatch) -> Played:
     def session(how: Callable[..., Any]) -> Pipe:
         monkeypatch.setattr(bench_play, "play_texture", how)
         pipe: Any = Pipe()
-        play(pipe, WORK)
+        play(pipe, **WORK)
         return pipe  # type: ignore[no-any-return]
 
     return session
@@ -115,9 +118,9 @@ def test_rows_are_thinned_out_for_the_page_and_carry_null_for_none(played: Playe
 
 
 def test_what_there_is_to_see_is_told_with_its_units(played: Played) -> None:
-    view = SimpleNamespace(
-        state=SimpleNamespace(name="PLAYING"), fault=SimpleNamespace(name="NONE"), time=1.0, x=2.0,
-        speed=3.0, friction=4.0, amplitude=5.0, wanted=6.0, level=7.0, lag=8.0, lateness=9.0,
+    view = PlayView(
+        state=State.PLAYING, fault=Fault.NONE, time=1.0, x=2.0, speed=3.0, relative_friction=4.0,
+        amplitude=5.0, wanted=6.0, level=7.0, lag=8.0, lateness=9.0, readings=10, rows=11,
         flags=("a", "b"),
     )  # fmt: skip
 
@@ -128,7 +131,8 @@ def test_what_there_is_to_see_is_told_with_its_units(played: Played) -> None:
     assert played(how).said[0] == {
         "type": "device view", "state": "PLAYING", "fault": "NONE", "time_s": 1.0, "x_m": 2.0,
         "speed_m_per_s": 3.0, "relative_friction": 4.0, "amplitude_m": 5.0, "wanted_m": 6.0,
-        "level_V": 7.0, "lag_m": 8.0, "lateness_s": 9.0, "flags": ["a", "b"],
+        "level_V": 7.0, "lag_m": 8.0, "lateness_s": 9.0, "readings": 10, "rows": 11,
+        "flags": ["a", "b"],
     }  # fmt: skip
 
 

@@ -42,7 +42,7 @@ class Host:
 
     def _server(self, lab: Lab, **limits: Any) -> UnheardServer:
         self.labs.append(lab)
-        self.most.append(limits["most"])
+        self.most.append(limits["door"].keywords["most"])
         lab.closing.append(self._close)
         return server_of(lab, **limits)
 

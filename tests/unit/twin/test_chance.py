@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from squeezefilm.twin.chance import gaussian, mixed, uniform
+from squeezefilm.twin.plant_kernel import gaussian, mixed, uniform
 
 WORD = 2**64 - 1
 STEP = 0x9E3779B97F4A7C15

@@ -12,8 +12,8 @@ import pytest
 from scipy.signal import lsim
 
 from squeezefilm.twin import plant_kernel as k
-from squeezefilm.twin.chance import gaussian, uniform
 from squeezefilm.twin.envelope_step import Fingers
+from squeezefilm.twin.plant_kernel import gaussian, uniform
 
 STEP = 50  # us
 SPEED_X, SPEED_Y = 0.08, -0.03

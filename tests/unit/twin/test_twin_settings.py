@@ -9,9 +9,9 @@ import pytest
 from squeezefilm.errors import ConfigError, InputError
 from squeezefilm.render.motion.finger_path import FingerPath
 from squeezefilm.render.motion.stroke import Stroke
-from squeezefilm.twin.chance import gaussian, uniform
 from squeezefilm.twin.hand import Hand, hand_from, wanted
-from squeezefilm.twin.plant_kernel import COLUMNS
+from squeezefilm.twin.plant import TruthRecord
+from squeezefilm.twin.plant_kernel import COLUMNS, gaussian, uniform
 from squeezefilm.twin.settings import (
     Amplifier,
     Arm,
@@ -20,7 +20,6 @@ from squeezefilm.twin.settings import (
     TwinSettings,
     load_settings,
 )
-from squeezefilm.twin.truth import TruthRecord
 
 
 def test_settings_come_from_a_file_and_say_what_is_assumed(tmp_path: Path) -> None:

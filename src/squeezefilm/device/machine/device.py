@@ -8,13 +8,10 @@ The twin of `firmware/squeezefilm_fw.c`, rule by rule and number by number: inte
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 
-from squeezefilm.device.machine.limits import DeviceLimits
-from squeezefilm.device.machine.loads import Loads
-from squeezefilm.device.machine.playing import CLOCK, Finger, Mode, Playing
-from squeezefilm.device.machine.reports import Reports
-from squeezefilm.device.machine.tile import Tile
+from squeezefilm.device.machine.limits import DeviceLimits, Loads
+from squeezefilm.device.machine.playing import CLOCK, Finger, Mode, Playing, Reports, Tile
 from squeezefilm.device.wire import messages as m
 from squeezefilm.device.wire.frames import VERSION, Deframer, Frame
 from squeezefilm.device.wire.states import Fault, Reason, State
@@ -230,21 +227,13 @@ class Machine:
             self._send(self._info())
 
     def _info(self) -> m.Info:
-        own = self.own
         return m.Info(
-            own.voltage,
-            own.slew,
-            own.continuous_voltage,
-            own.heat,
-            own.lowest_frequency,
-            own.highest_frequency,
-            own.duty,
-            own.duty_window,
-            self.tick_period,
-            int(self.sensor is not None),
-            int(self.pickup is not None),
-            m.LONGEST_TILE,
-            FIRMWARE_VERSION,
+            **asdict(self.own),
+            tick_period=self.tick_period,
+            has_sensor=int(self.sensor is not None),
+            has_pickup=int(self.pickup is not None),
+            longest_tile=m.LONGEST_TILE,
+            firmware_version=FIRMWARE_VERSION,
         )
 
     def _take(self, frame: Frame) -> Reason:

@@ -1,11 +1,11 @@
-"""Limits as a device holds them: integers, and what it takes of the limits that a host asks for.
+"""Limits as a device holds them, and its heat and time on, which it counts against them.
 
-µV, V/s (= µV/µs), V²·ms, mHz, permille and ms, so that C and Python count the same numbers.
+Integers throughout, so that C and Python count the same numbers.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 from squeezefilm.device.wire.messages import SetLimits
 
@@ -14,6 +14,9 @@ RAMP = 10_000
 TOUCH_LEVEL = 42_000_000
 HIGHEST_LEVEL = 2_000_000_000
 NO_LEVEL = -1
+MICROVOLTS = 1000
+MOST = 1 << 62
+"""Where the sums saturate; above every budget that the wire can carry."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,16 +53,8 @@ class DeviceLimits:
         )
         if not good:
             return None
-        return DeviceLimits(
-            voltage,
-            asked.slew,
-            continuous,
-            asked.heat,
-            asked.lowest_frequency,
-            asked.highest_frequency,
-            asked.duty,
-            asked.duty_window,
-        )
+        taken = {one.name: getattr(asked, one.name) for one in fields(DeviceLimits)}
+        return DeviceLimits(**{**taken, "voltage": voltage, "continuous_voltage": continuous})
 
     def levels(self, volts: tuple[float, ...]) -> tuple[int, ...] | None:
         """µV of every amplitude, or None if any is outside the limits: one bad one refuses all."""
@@ -75,3 +70,28 @@ def level_of(volts: float) -> int:
         return NO_LEVEL
     # 24 bits times 10⁶ is exact in binary64, so C and Python cut the same number.
     return int(volts * 1e6 + 0.5)
+
+
+@dataclass(slots=True)
+class Loads:
+    """Sums of heat and of time on. Not thread-safe.
+
+    Heat is in mV²·µs above the continuous rating, never below zero; time on in µs·permille, as a
+    leaky bucket. Both count what the output really did, in every state and over any pause, so that
+    stopping and starting again does not reset them.
+    """
+
+    heat: int = 0
+    used: int = 0
+
+    def count(self, level: int, elapsed: int, continuous: int, duty: int) -> None:
+        """Add `elapsed` µs at `level` µV; `continuous` µV and `duty` permille are the limits'."""
+        # Rounded to the safe side: the level up, the rating down.
+        volts = (level + MICROVOLTS - 1) // MICROVOLTS
+        rating = continuous // MICROVOLTS
+        self.heat = _moved(self.heat, volts * volts - rating * rating, elapsed)
+        self.used = _moved(self.used, (1000 if level > 0 else 0) - duty, elapsed)
+
+
+def _moved(total: int, rate: int, elapsed: int) -> int:
+    return min(MOST, max(0, total + rate * elapsed))

@@ -1,4 +1,5 @@
-"""What a device plays: an envelope from now, a timed envelope, the tile at a place or a finger.
+"""What a device plays and when it reports: an envelope from now, a timed envelope, or its tile, a
+texture of amplitudes (µV) over position (µm), at a place or at the finger.
 
 One at a time; a new one takes the last one's place. Times are the device's 32 bits of µs, which
 may wrap, so they are compared by their difference.
@@ -10,7 +11,6 @@ from collections import deque
 from dataclasses import dataclass, field
 from enum import Enum, auto
 
-from squeezefilm.device.machine.tile import Tile
 from squeezefilm.device.wire.states import Reason
 
 CLOCK = 0xFFFFFFFF
@@ -18,6 +18,10 @@ LONGEST_QUEUE = 512
 """Amplitudes of a timed envelope that a device keeps."""
 MOST_AHEAD = 1_000_000
 """µs that a timed envelope may begin before or after now; more is a host with a wrong clock."""
+SHORTEST_REPORT = 200
+"""µs; readings more often than this would fill the wire."""
+LONGEST_REPORT = 1_000_000_000
+"""µs; 32 bits of µs cannot tell a longer one from one that has passed."""
 
 Finger = tuple[int, int, bool]
 """Position x and y (µm), and whether it touches."""
@@ -36,6 +40,66 @@ class Mode(Enum):
 def until(time: int, now: int) -> int:
     """µs from `now` to `time`, negative if it has passed; both 32 bits of µs within 35 min."""
     return ((time - now + 0x80000000) & CLOCK) - 0x80000000
+
+
+@dataclass(slots=True)
+class Tile:
+    """A table of amplitudes, read linearly, zero outside; it plays once it is full.
+
+    It is filled in order. Not thread-safe.
+    """
+
+    origin: int = 0
+    pitch: int = 1
+    size: int = 0
+    levels: list[int] = field(default_factory=list)
+
+    @property
+    def ready(self) -> bool:
+        """Whether every amplitude has arrived."""
+        return self.size > 0 and len(self.levels) == self.size
+
+    def fits(self, first: int, count: int) -> bool:
+        """Whether `count` amplitudes from number `first` are the next ones and find room."""
+        return first == len(self.levels) and first + count <= self.size
+
+    def level(self, x: int) -> int:
+        """The amplitude (µV) at `x` µm; towards the table's own value where division rounds."""
+        along = x - self.origin
+        if not self.ready or along < 0:
+            return 0
+        index, rest = divmod(along, self.pitch)
+        if index >= self.size - 1:
+            return self.levels[-1] if index == self.size - 1 and rest == 0 else 0
+        here, there = self.levels[index], self.levels[index + 1]
+        if there >= here:
+            return here + (there - here) * rest // self.pitch
+        return here - (here - there) * rest // self.pitch
+
+
+@dataclass(slots=True)
+class Reports:
+    """A reading every `period` µs, none for 0; `due` is when the next one is. Not thread-safe."""
+
+    period: int = 0
+    due: int = 0
+
+    def begin(self, now: int, period: int) -> Reason:
+        """Every `period` µs from now on."""
+        if period and not SHORTEST_REPORT <= period <= LONGEST_REPORT:
+            return Reason.VALUE
+        self.period, self.due = period, (now + period) & CLOCK
+        return Reason.ACCEPTED
+
+    def take(self, now: int) -> bool:
+        """Whether one is due now. One that was missed is not made up; the phase is kept."""
+        if self.period == 0:
+            return False
+        late = -until(self.due, now)
+        if late < 0:
+            return False
+        self.due = (self.due + (late // self.period + 1) * self.period) & CLOCK
+        return True
 
 
 @dataclass(slots=True)

@@ -9,8 +9,10 @@ from __future__ import annotations
 
 import math
 import struct
+import typing
+from collections.abc import Callable
 from dataclasses import dataclass, fields
-from typing import Any, ClassVar, Self
+from typing import Annotated, Any, ClassVar, Self, TypeVar
 
 from squeezefilm import quantities as si
 from squeezefilm.device.wire.arguments import amplitudes, binary32_below
@@ -18,25 +20,38 @@ from squeezefilm.device.wire.frames import Frame
 from squeezefilm.device.wire.safety import Limits
 from squeezefilm.errors import InputError
 
+T = TypeVar("T")
+
 MOST_LEVELS = 56
 """Amplitudes that fit one frame."""
 LONGEST_TILE = 512
 """Amplitudes a device keeps of one tile."""
 
+# How a field stands on the wire, as `struct` names it.
+U8 = Annotated[int, "B"]
+U16 = Annotated[int, "H"]
+U32 = Annotated[int, "I"]
+I32 = Annotated[int, "i"]
+Binary32 = Annotated[si.Volt, "f"]
+Levels = tuple[si.Volt, ...]
+"""Amplitudes at a payload's end: their count in one byte, then one binary32 after the other."""
+
+COMMANDS: dict[int, type[Message]] = {}
+"""What a host may send, by type."""
+ANSWERS: dict[int, type[Answer]] = {}
+"""What a device may send, by type."""
+
 
 @dataclass(frozen=True, slots=True)
 class Message:
-    """A message of fixed layout; its fields are the payload in order."""
+    """A message; its fields are the payload in order."""
 
     TYPE: ClassVar[int] = -1
     LAYOUT: ClassVar[struct.Struct] = struct.Struct("<")
 
     def payload(self) -> bytes:
         """The payload's bytes. Raises `InputError` for a value the layout cannot carry."""
-        try:
-            return self.LAYOUT.pack(*(getattr(self, field.name) for field in fields(self)))
-        except (struct.error, OverflowError, TypeError) as error:
-            raise InputError(f"{self} does not fit its layout: {error}") from error
+        return self._packed(*(getattr(self, field.name) for field in fields(self)))
 
     def frame(self, sequence: int) -> Frame:
         """The frame that carries this message."""
@@ -49,41 +64,57 @@ class Message:
             return None
         return cls(*cls.LAYOUT.unpack(payload))
 
+    def _packed(self, *values: Any) -> bytes:
+        try:
+            return self.LAYOUT.pack(*values)
+        except (struct.error, OverflowError, TypeError) as error:
+            raise InputError(f"{self} does not fit its layout: {error}") from error
 
-@dataclass(frozen=True, slots=True)
+
+@typing.dataclass_transform(frozen_default=True)
+def _message(number: int, known: dict[int, Any] = COMMANDS) -> Callable[[type[T]], type[T]]:
+    """Make a class the message of a type's number, its layout read from its annotations."""
+
+    def made(owner: type[Any]) -> Any:
+        kind = dataclass(frozen=True, slots=True)(owner)
+        hints = typing.get_type_hints(kind, include_extras=True)
+        codes = (hints[field.name] for field in fields(kind))
+        letters = ("B" if code == Levels else code.__metadata__[-1] for code in codes)
+        kind.TYPE, kind.LAYOUT = number, struct.Struct("<" + "".join(letters))
+        known[number] = kind
+        return kind
+
+    return made
+
+
+@_message(0x01)
 class Hello(Message):
     """Opens a session and sets the sequence; taken in OFF and FAULT only."""
 
-    TYPE: ClassVar[int] = 0x01
-    LAYOUT: ClassVar[struct.Struct] = struct.Struct("<I")
-    session: int
+    session: U32
 
 
-@dataclass(frozen=True, slots=True)
+@_message(0x02)
 class Stop(Message):
     """Ramps to zero and disarms. Taken in every state, whatever its sequence number."""
 
-    TYPE: ClassVar[int] = 0x02
 
-
-@dataclass(frozen=True, slots=True)
+@_message(0x03)
 class SetLimits(Message):
     """The limits, taken in OFF only, and only within the firmware's own; drops tile and envelope.
 
     V, V/s, V, V²·ms, mHz, mHz, permille, ms, and 1 where the touched side is insulated.
     """
 
-    TYPE: ClassVar[int] = 0x03
-    LAYOUT: ClassVar[struct.Struct] = struct.Struct("<fIfIIIHIB")
-    voltage: si.Volt
-    slew: int
-    continuous_voltage: si.Volt
-    heat: int
-    lowest_frequency: int
-    highest_frequency: int
-    duty: int
-    duty_window: int
-    insulated: int
+    voltage: Binary32
+    slew: U32
+    continuous_voltage: Binary32
+    heat: U32
+    lowest_frequency: U32
+    highest_frequency: U32
+    duty: U16
+    duty_window: U32
+    insulated: U8
 
     def payload(self) -> bytes:
         """The payload's bytes. Raises `InputError` for what is no voltage or does not fit."""
@@ -91,174 +122,147 @@ class SetLimits(Message):
         return Message.payload(self)
 
 
-@dataclass(frozen=True, slots=True)
+@_message(0x04)
 class Arm(Message):
     """OFF → ARMED, with the token of the newest status; the token is good once."""
 
-    TYPE: ClassVar[int] = 0x04
-    LAYOUT: ClassVar[struct.Struct] = struct.Struct("<I")
-    token: int
+    token: U32
 
 
-@dataclass(frozen=True, slots=True)
+@_message(0x05)
 class Start(Message):
     """ARMED → PLAYING at a carrier frequency (mHz)."""
 
-    TYPE: ClassVar[int] = 0x05
-    LAYOUT: ClassVar[struct.Struct] = struct.Struct("<I")
-    frequency: int
+    frequency: U32
 
 
-@dataclass(frozen=True, slots=True)
+@_message(0x06)
 class SetFrequency(Message):
     """Moves the carrier (mHz) while PLAYING."""
 
-    TYPE: ClassVar[int] = 0x06
-    LAYOUT: ClassVar[struct.Struct] = struct.Struct("<I")
-    frequency: int
+    frequency: U32
 
 
 class _Levels(Message):
-    """A number of 16 bits, and amplitudes (V) behind it."""
+    """Whole numbers, and amplitudes (V) behind them."""
 
     __slots__ = ()
 
     def payload(self) -> bytes:
         """The payload's bytes. Raises `InputError` for too many, or what is no amplitude."""
-        return _levels_payload(*(getattr(self, field.name) for field in fields(self)))
+        *numbers, levels = (getattr(self, field.name) for field in fields(self))
+        volts = amplitudes(levels)
+        if not 1 <= len(levels) <= MOST_LEVELS:
+            raise InputError(
+                f"{len(levels)} amplitudes in one frame; 1 to {MOST_LEVELS} fit; send them in parts"
+            )
+        return self._packed(*numbers, len(levels)) + volts.astype("<f4").tobytes()
 
     @classmethod
     def read(cls, payload: bytes) -> Self | None:
         """The message in a payload, or None if its length is wrong."""
-        parts = _levels_read(payload)
-        return None if parts is None else cls(*parts)
+        size = cls.LAYOUT.size
+        if len(payload) < size:
+            return None
+        *numbers, count = cls.LAYOUT.unpack_from(payload)
+        if not 1 <= count <= MOST_LEVELS or len(payload) != size + 4 * count:
+            return None
+        found = *numbers, struct.unpack_from(f"<{count}f", payload, size)
+        return cls(*found)
 
 
-@dataclass(frozen=True, slots=True)
+@_message(0x07)
 class Envelope(_Levels):
     """Amplitudes (V) from now on, one every `period` µs; the last one holds. While PLAYING."""
 
-    TYPE: ClassVar[int] = 0x07
-    period: int
-    levels: tuple[si.Volt, ...]
+    period: U16
+    levels: Levels
 
 
-@dataclass(frozen=True, slots=True)
+@_message(0x08)
 class TileBegin(Message):
     """Begins a tile: where its first amplitude lies and how far apart they are (µm); its size."""
 
-    TYPE: ClassVar[int] = 0x08
-    LAYOUT: ClassVar[struct.Struct] = struct.Struct("<iIH")
-    origin: int
-    pitch: int
-    size: int
+    origin: I32
+    pitch: U32
+    size: U16
 
 
-@dataclass(frozen=True, slots=True)
+@_message(0x09)
 class TileData(_Levels):
     """The tile's amplitudes (V) from number `first`, which must be how many are there already."""
 
-    TYPE: ClassVar[int] = 0x09
-    first: int
-    levels: tuple[si.Volt, ...]
+    first: U16
+    levels: Levels
 
 
-@dataclass(frozen=True, slots=True)
+@_message(0x0A)
 class Position(Message):
     """Where the finger is (µm): plays the tile there. While PLAYING."""
 
-    TYPE: ClassVar[int] = 0x0A
-    LAYOUT: ClassVar[struct.Struct] = struct.Struct("<i")
-    x: int
+    x: I32
 
 
-@dataclass(frozen=True, slots=True)
+@_message(0x0B)
 class KeepAlive(Message):
     """Feeds the watchdog, and asks for a status."""
 
-    TYPE: ClassVar[int] = 0x0B
 
-
-@dataclass(frozen=True, slots=True)
+@_message(0x0C)
 class ClearFault(Message):
     """FAULT → OFF, once the output is at zero; names the fault it clears."""
 
-    TYPE: ClassVar[int] = 0x0C
-    LAYOUT: ClassVar[struct.Struct] = struct.Struct("<B")
-    fault: int
+    fault: U8
 
 
-@dataclass(frozen=True, slots=True)
+@_message(0x0D)
 class Report(Message):
     """A reading every `period` µs from now on (at least 200), or none for 0. In every state."""
 
-    TYPE: ClassVar[int] = 0x0D
-    LAYOUT: ClassVar[struct.Struct] = struct.Struct("<I")
-    period: int
+    period: U32
 
 
-@dataclass(frozen=True, slots=True)
+@_message(0x0E)
 class Follow(Message):
     """Plays the tile at the device's own sensor, and nothing while it is not touched. PLAYING."""
 
-    TYPE: ClassVar[int] = 0x0E
 
-
-@dataclass(frozen=True, slots=True)
+@_message(0x0F)
 class AskInfo(Message):
     """Asks for an info, which follows the status. In every state."""
 
-    TYPE: ClassVar[int] = 0x0F
 
-
-@dataclass(frozen=True, slots=True)
-class TimedEnvelope(Message):
+@_message(0x10)
+class TimedEnvelope(_Levels):
     """Amplitudes (V), the first at `start` on the device's clock (µs), then one every `period` µs.
 
     Takes the place of what was queued from `start` on; the last one holds. While PLAYING.
     """
 
-    TYPE: ClassVar[int] = 0x10
-    start: int
-    period: int
-    levels: tuple[si.Volt, ...]
-
-    def payload(self) -> bytes:
-        """The payload's bytes. Raises `InputError` for too many, or what is no amplitude."""
-        try:
-            start = struct.pack("<I", self.start)
-        except (struct.error, TypeError) as error:
-            raise InputError(f"{self.start} us is not on the device's clock: {error}") from error
-        return start + _levels_payload(self.period, self.levels)
-
-    @classmethod
-    def read(cls, payload: bytes) -> Self | None:
-        """The message in a payload, or None if its length is wrong."""
-        parts = _levels_read(payload[4:])
-        return None if parts is None else cls(int.from_bytes(payload[:4], "little"), *parts)
+    start: U32
+    period: U16
+    levels: Levels
 
 
-@dataclass(frozen=True, slots=True)
+@_message(0x81, ANSWERS)
 class Status(Message):
     """The device's answer to every frame whose CRC was right; `time` is its clock (µs)."""
 
-    TYPE: ClassVar[int] = 0x81
-    LAYOUT: ClassVar[struct.Struct] = struct.Struct("<HBBBBIIIIIII")
-    answered_sequence: int
-    reason: int
-    state: int
-    fault: int
-    reserved: int
-    token: int
-    level: int
-    accepted: int
-    refused: int
-    damaged: int
-    session: int
-    time: int
+    answered_sequence: U16
+    reason: U8
+    state: U8
+    fault: U8
+    reserved: U8
+    token: U32
+    level: U32
+    accepted: U32
+    refused: U32
+    damaged: U32
+    session: U32
+    time: U32
 
 
-@dataclass(frozen=True, slots=True)
+@_message(0x82, ANSWERS)
 class Reading(Message):
     """What the device measures: its clock (µs), the finger (µm), its output (µV), its pickup (µV).
 
@@ -266,74 +270,41 @@ class Reading(Message):
     last reading, 3 some of it came late. `late_ticks` counts since boot.
     """
 
-    TYPE: ClassVar[int] = 0x82
-    LAYOUT: ClassVar[struct.Struct] = struct.Struct("<IiiBBBBIII")
-    time: int
-    x: int
-    y: int
-    touching: int
-    state: int
-    fault: int
-    flags: int
-    level: int
-    pickup: int
-    late_ticks: int
+    time: U32
+    x: I32
+    y: I32
+    touching: U8
+    state: U8
+    fault: U8
+    flags: U8
+    level: U32
+    pickup: U32
+    late_ticks: U32
 
 
-@dataclass(frozen=True, slots=True)
+@_message(0x83, ANSWERS)
 class Info(Message):
     """The firmware's own limits (µV, V/s, µV, V²·ms, mHz, permille, ms), and what it has."""
 
-    TYPE: ClassVar[int] = 0x83
-    LAYOUT: ClassVar[struct.Struct] = struct.Struct("<IIIIIIIIIBBHI")
-    voltage: int
-    slew: int
-    continuous_voltage: int
-    heat: int
-    lowest_frequency: int
-    highest_frequency: int
-    duty: int
-    duty_window: int
-    tick_period: int
-    has_sensor: int
-    has_pickup: int
-    longest_tile: int
-    firmware_version: int
+    voltage: U32
+    slew: U32
+    continuous_voltage: U32
+    heat: U32
+    lowest_frequency: U32
+    highest_frequency: U32
+    duty: U32
+    duty_window: U32
+    tick_period: U32
+    has_sensor: U8
+    has_pickup: U8
+    longest_tile: U16
+    firmware_version: U32
 
 
 SENSOR_PRESENT, PICKUP_PRESENT, RAN_DRY, CAME_LATE = 1, 2, 4, 8
 """Flags of a reading."""
 
-COMMANDS: dict[int, type[Message]] = {
-    kind.TYPE: kind
-    for kind in (
-        Hello,
-        Stop,
-        SetLimits,
-        Arm,
-        Start,
-        SetFrequency,
-        Envelope,
-        TileBegin,
-        TileData,
-        Position,
-        KeepAlive,
-        ClearFault,
-        Report,
-        Follow,
-        AskInfo,
-        TimedEnvelope,
-    )
-}
-"""What a host may send, by type."""
-
 Answer = Status | Reading | Info
-ANSWERS: dict[int, type[Status] | type[Reading] | type[Info]] = {
-    Status.TYPE: Status,
-    Reading.TYPE: Reading,
-    Info.TYPE: Info,
-}
-"""What a device may send, by type."""
 
 
 def limits_message(limits: Limits) -> SetLimits:
@@ -349,25 +320,3 @@ def limits_message(limits: Limits) -> SetLimits:
         int(limits.duty_window * 1e3),
         1 if limits.insulation.strip() else 0,
     )
-
-
-def _levels_payload(number: int, levels: tuple[float, ...]) -> bytes:
-    volts = amplitudes(levels)
-    if not 1 <= len(levels) <= MOST_LEVELS:
-        raise InputError(
-            f"{len(levels)} amplitudes in one frame; 1 to {MOST_LEVELS} fit; send them in parts"
-        )
-    try:
-        return struct.pack("<HB", number, len(levels)) + volts.astype("<f4").tobytes()
-    except (struct.error, TypeError) as error:
-        raise InputError(f"{number} before the amplitudes does not fit: {error}") from error
-
-
-def _levels_read(payload: bytes) -> tuple[Any, ...] | None:
-    """The number and the amplitudes, or None if the length is wrong."""
-    if len(payload) < 3:
-        return None
-    number, count = struct.unpack_from("<HB", payload)
-    if not 1 <= count <= MOST_LEVELS or len(payload) != 3 + 4 * count:
-        return None
-    return number, struct.unpack_from(f"<{count}f", payload, 3)

@@ -107,9 +107,7 @@ class DesignArea:
         return {"type": "field limits", "path": asked.path, "allowed": found}
 
     async def _compute(self, asked: ComputeDesign) -> Answer:
-        point = design.WorkingPoint(
-            asked.text, asked.voltage, asked.surface, asked.force, asked.path, asked.value
-        )
+        point = design.WorkingPoint(**asked.model_dump(exclude={"id", "type", "quality", "of"}))
         quick, slow, page = self._lab.workers.quick, self._lab.workers.slow, PAGE.get(None)
 
         def told(text: str, share: float) -> None:
@@ -117,16 +115,12 @@ class DesignArea:
                 line = {"type": "computing", "quality": asked.quality, "text": text, "share": share}
                 self._lab.pages[page].say(as_text(line))
 
-        if asked.quality == "screening":
-            found = await quick.do("screening", design.designed, point, "screening", gives_way=True)
-        elif asked.quality == "solved":
-            found = await slow.do(
-                "solved", design.designed, point, "solved", gives_way=True, told=told
-            )
-        else:
-            found = await slow.do("band", design.banded, point, asked.of, gives_way=True, told=told)
-            return {"type": "band", **found}
-        return {"type": "design", **found}
+        line, hears = (quick, None) if asked.quality == "screening" else (slow, told)
+        work, of = design.designed, asked.quality
+        if asked.quality == "band":
+            work, of = design.banded, asked.of
+        found = await line.do(asked.quality, work, point, of, gives_way=True, told=hears)
+        return {"type": "band" if work is design.banded else "design", **found}
 
     async def _cancel(self, _: Request) -> Answer:
         self._lab.workers.cancel(PAGE.get(None))

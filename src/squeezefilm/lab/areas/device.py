@@ -16,7 +16,7 @@ from squeezefilm.lab import playing_process as device_process
 from squeezefilm.lab.designing.form import name_of
 from squeezefilm.lab.designing.program import title_of
 from squeezefilm.lab.files import existing
-from squeezefilm.lab.playing_process import DeviceSession, DeviceWork
+from squeezefilm.lab.playing_process import DeviceSession
 from squeezefilm.lab.wire import LONGEST_TEXT, Answer, Request
 from squeezefilm.results import write_whole
 
@@ -76,9 +76,9 @@ class DeviceArea:
         if self._loop is not None and not self._loop.is_closed():
             self._loop.call_soon_threadsafe(self._told, message)
 
-    def _start(self, what: str, work: Callable[..., None], *arguments: Any) -> None:
+    def _start(self, what: str, work: Callable[..., None], **arguments: Any) -> None:
         self._loop = asyncio.get_running_loop()
-        self.session.start(work, *arguments)
+        self.session.start(work, **arguments)
         self._lab.playing.note(DEVICE, what, self.session.stop, plays=True)
 
     async def _listing(self, _: Request) -> Answer:
@@ -93,28 +93,23 @@ class DeviceArea:
     async def _play(self, asked: PlayDevice) -> Answer:
         if not asked.armed:
             raise InputError("the device is not armed; arm it on the page first")
-        duration = si.parse_quantity(asked.duration, si.Unit("s"))
-        voltage = None if asked.voltage is None else si.parse_quantity(asked.voltage, si.Unit("V"))
+        how = asked.model_dump(include={"mode", "stroke", "sensor", "compensation", "seed"})
+        how["duration"] = si.parse_quantity(asked.duration, si.Unit("s"))
+        voltage = asked.voltage
+        how["voltage"] = None if voltage is None else si.parse_quantity(voltage, si.Unit("V"))
         name = datetime.now(UTC).strftime("%Y%m%dT%H%M%S")
-        work = DeviceWork(
-            display=str(await _display(self._lab, asked.display)),
-            texture=str(await _texture(self._lab, asked)),
-            drive=_drive(asked.drive),
-            mode=asked.mode,
-            stroke=asked.stroke,
-            sensor=asked.sensor,
-            duration=duration,
-            voltage=voltage,
-            compensation=asked.compensation,
-            out=str(self._lab.folder / "sessions" / name),
-            seed=asked.seed,
-        )
-        self._start(f"a texture on {work.drive}", device_process.play, work)
+        display = str(await _display(self._lab, asked.display))
+        texture = str(await _texture(self._lab, asked))
+        drive, out = _drive(asked.drive), str(self._lab.folder / "sessions" / name)
+        files = {"display": display, "texture": texture, "out": out}
+        self._start(f"a texture on {drive}", device_process.play, drive=drive, **files, **how)
         return {"type": "playing", "folder": f"sessions/{name}"}
 
     async def _check(self, asked: OnDrive) -> Answer:
         display, drive = await _display(self._lab, asked.display), _drive(asked.drive)
-        self._start(f"the check of {drive}", device_process.check, drive, str(display))
+        self._start(
+            f"the check of {drive}", device_process.check, drive=drive, display=str(display)
+        )
         return {"type": "checking"}
 
     async def _playing(self, _: Request) -> Answer:

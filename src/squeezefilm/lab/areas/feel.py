@@ -106,8 +106,8 @@ class FeelArea:
     async def _on_display(self, work: Callable[..., Answer], asked: OnDisplay) -> Answer:
         # What takes seconds stays out of a drag's way.
         line = self._quick if asked.quality == "screening" else self._lab.workers.slow
-        texture = asked.texture, asked.preset, asked.quality, self._folder
-        return await line.do(work.__name__, work, asked.display, *texture, gives_way=True)
+        texture = feel.TextureOnDisplay(**asked.own, folder=self._folder)
+        return await line.do(work.__name__, work, texture, gives_way=True)
 
     async def _load(self, asked: OnDisplay) -> Answer:
         return {"type": "feel", **await self._on_display(feel.feel, asked)}

@@ -5,29 +5,17 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from pydantic import Field
+
 from squeezefilm.errors import DeviceError, InputError
-from squeezefilm.lab.areas.study_requests import (
-    CreateStudy,
-    DeleteParticipant,
-    ExportStudy,
-    FeelSurface,
-    MergeStudy,
-    NamedStudy,
-    OfParticipant,
-    OfSitting,
-    PlanStudy,
-    PrepareSitting,
-    RehearseStudy,
-    Respond,
-    SurfacesFelt,
-)
 from squeezefilm.lab.keys import CODE_LIFE
 from squeezefilm.lab.studying.devices import Measured, StudyDevices, require_device
 from squeezefilm.lab.studying.jobs import analysis_of, rehearsed, report_of
 from squeezefilm.lab.studying.studies import Studies
-from squeezefilm.lab.wire import Answer, Request
+from squeezefilm.lab.wire import Answer, Handler, Request
 from squeezefilm.lab.worker import PAGE
 from squeezefilm.study.conduct.run import Response
 from squeezefilm.study.conduct.sessions import Exposure, exposure
@@ -47,6 +35,94 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 _LONGEST_SESSION = 3600.0
+
+
+class NamedStudy(Request):
+    """A study by the name of its file."""
+
+    study: str = Field(max_length=100)
+
+
+class PlanStudy(Request):
+    """A preset design."""
+
+    design: str = Field(max_length=100)
+
+
+class CreateStudy(PlanStudy):
+    """A new study's file."""
+
+    study: str = Field(max_length=64)
+    seed: int = Field(ge=0, le=2**53)
+
+
+class OfParticipant(NamedStudy):
+    """A participant of a study."""
+
+    participant: str = Field(max_length=100)
+
+
+class DeleteParticipant(OfParticipant):
+    """Deleting asks for the pseudonym twice."""
+
+    confirm: str = Field(max_length=100)
+
+
+class PrepareSitting(OfParticipant):
+    """A sitting: what a `SessionConditions` has, and the consent's text."""
+
+    device: str = Field(max_length=100)
+    consent: str = Field(min_length=20, max_length=20_000)
+    conditions: dict[str, str | float | None] = Field(default_factory=dict, max_length=20)
+    acknowledged: bool = False
+
+
+class OfSitting(Request):
+    """A sitting by its id."""
+
+    sitting: str = Field(max_length=100)
+
+
+class FeelSurface(OfSitting):
+    """A surface of the trial with this token to be played, by its place from 0."""
+
+    token: str = Field(max_length=100)
+    place: int = Field(ge=0, le=9)
+
+
+class SurfacesFelt(OfSitting):
+    """All surfaces of the trial with this token were felt."""
+
+    token: str = Field(max_length=100)
+
+
+class Respond(OfSitting):
+    """An answer to the trial with this token."""
+
+    token: str = Field(max_length=100)
+    choice: str = Field("", max_length=200)
+    estimate: float | None = None
+    response_time: float | None = Field(None, ge=0.0, le=86400.0)
+    started_monotonic: float = Field(0.0, ge=0.0, le=1e12)
+    ended_monotonic: float = Field(0.0, ge=0.0, le=1e12)
+
+
+class RehearseStudy(NamedStudy):
+    """How many simulated participants do the study."""
+
+    participants: int = Field(ge=1, le=200)
+
+
+class ExportStudy(NamedStudy):
+    """A study's export."""
+
+    format: str = Field(max_length=20)
+
+
+class MergeStudy(NamedStudy):
+    """Another station's file."""
+
+    other: str = Field(max_length=100)
 
 
 class StudyThread:
@@ -93,9 +169,11 @@ class StudyArea:
         lab.left.append(self._left)
         add = lab.experimenter.add
         add("studies", Request, self._listing)
-        add("plan study", PlanStudy, self._plan)
-        add("create study", CreateStudy, self._create)
-        add("study", NamedStudy, self._status)
+        add("plan study", PlanStudy, self._passed_on(Studies.plan, "plan"))
+        add("create study", CreateStudy, self._passed_on(Studies.create, "study"))
+        add("study", NamedStudy, self._passed_on(Studies.status, "study"))
+        add("export study", ExportStudy, self._passed_on(Studies.export, "exported"))
+        add("merge study", MergeStudy, self._passed_on(Studies.merge, "study"))
         add("enrol", NamedStudy, self._enrol)
         add("exposure", OfParticipant, self._ultrasound)
         add("prepare sitting", PrepareSitting, self._prepare)
@@ -103,8 +181,6 @@ class StudyArea:
         add("pairing code", OfSitting, self._code)
         add("end sitting", OfSitting, self._end)
         add("delete participant", DeleteParticipant, self._delete)
-        add("export study", ExportStudy, self._export)
-        add("merge study", MergeStudy, self._merged)
         add("rehearse study", RehearseStudy, self._rehearse)
         add("analyze study", NamedStudy, self._analyze)
         add("report study", NamedStudy, self._report)
@@ -123,6 +199,14 @@ class StudyArea:
             del self._pages[sitting]
             self._devices.halt(sitting)
 
+    def _passed_on(self, work: Callable[..., Answer], answer: str) -> Handler:
+        """Answers by `work(studies, …)`, called with the request's own fields."""
+
+        async def passed(asked: Request) -> Answer:
+            return {"type": answer, **await self.thread.do(partial(work, **asked.own))}
+
+        return passed
+
     async def _exposed(self, display: str) -> Exposure:
         if display not in self._exposures:
             self._exposures[display] = await self._lab.workers.slow.do(None, _exposure, display)
@@ -135,16 +219,6 @@ class StudyArea:
         found = await self.thread.do(Studies.listing)
         return {"type": "studies", **found, "tablets": self._lab.lan is not None}
 
-    async def _plan(self, asked: PlanStudy) -> Answer:
-        return {"type": "plan", **await self.thread.do(Studies.plan, asked.design)}
-
-    async def _create(self, asked: CreateStudy) -> Answer:
-        found = await self.thread.do(Studies.create, asked.design, asked.study, asked.seed)
-        return {"type": "study", **found}
-
-    async def _status(self, asked: NamedStudy) -> Answer:
-        return {"type": "study", **await self.thread.do(Studies.status, asked.study)}
-
     async def _enrol(self, asked: NamedStudy) -> Answer:
         found = await self.thread.do(Studies.enrol, asked.study)
         self._changed(asked.study)
@@ -152,23 +226,13 @@ class StudyArea:
 
     async def _ultrasound(self, asked: OfParticipant) -> Answer:
         display = await self.thread.do(Studies.display_of, asked.study, asked.participant)
-        if display is None:
-            raise InputError(f"participant {asked.participant} has answered every trial")
         found = await self._exposed(display)
         return {"type": "exposure", "display": display, "statement": found.statement}
 
     async def _prepare(self, asked: PrepareSitting) -> Answer:
         display = await self.thread.do(Studies.display_of, asked.study, asked.participant)
         require_device(asked.device, display)
-        found = await self.thread.do(
-            Studies.prepare,
-            asked.study,
-            asked.participant,
-            asked.device,
-            asked.consent,
-            asked.conditions,
-            asked.acknowledged,
-        )
+        found = await self.thread.do(partial(Studies.prepare, **asked.own))
         await self._release_ended()
         return {"type": "study", **found}
 
@@ -208,31 +272,22 @@ class StudyArea:
         self._changed(asked.study)
         return {"type": "study", **found}
 
-    async def _export(self, asked: ExportStudy) -> Answer:
-        return {
-            "type": "exported",
-            **await self.thread.do(Studies.export, asked.study, asked.format),
-        }
-
     async def _rehearse(self, asked: RehearseStudy) -> Answer:
-        path = await self.thread.do(Studies.path, asked.study)
-        found = await self._lab.workers.slow.do(None, rehearsed, path, asked.participants)
+        found = await self._of_file(asked, None, rehearsed, asked.participants)
         self._changed(asked.study)
         return {"type": "rehearsed", **found}
 
     async def _analyze(self, asked: NamedStudy) -> Answer:
-        path = await self.thread.do(Studies.path, asked.study)
-        return {
-            "type": "analysis",
-            **await self._lab.workers.slow.do("analysis", analysis_of, path),
-        }
+        return {"type": "analysis", **await self._of_file(asked, "analysis", analysis_of)}
 
     async def _report(self, asked: NamedStudy) -> Answer:
-        path = await self.thread.do(Studies.path, asked.study)
-        return {"type": "report", **await self._lab.workers.slow.do("report", report_of, path)}
+        return {"type": "report", **await self._of_file(asked, "report", report_of)}
 
-    async def _merged(self, asked: MergeStudy) -> Answer:
-        return {"type": "study", **await self.thread.do(Studies.merge, asked.study, asked.other)}
+    async def _of_file(
+        self, asked: NamedStudy, slot: str | None, work: Callable[..., Answer], *more: Any
+    ) -> Answer:
+        path = await self.thread.do(Studies.path, asked.study)
+        return await self._lab.workers.slow.do(slot, work, path, *more)
 
     async def _measured(self, sitting: Sitting) -> StudyDevice:
         display = await self.thread.do(Studies.display_of_sitting, sitting.id)
@@ -308,14 +363,8 @@ class StudyArea:
         felt: tuple[Exploration, ...] = ()
         if await self.thread.do(Studies.needs_device, asked.sitting, asked.token):
             felt = await self._devices.felt(asked.sitting, asked.token)
-        response = Response(
-            choice=asked.choice,
-            estimate=asked.estimate,
-            response_time=asked.response_time,
-            started_monotonic=asked.started_monotonic,
-            ended_monotonic=asked.ended_monotonic,
-            explorations=felt,
-        )
+        told = asked.model_dump(exclude={"id", "type", "sitting", "token"})
+        response = Response(**told, explorations=felt)
         found = await self.thread.do(Studies.respond, asked.sitting, asked.token, response)
         self._devices.answered(asked.sitting, asked.token)
         self._changed(found.pop("study"))

@@ -86,28 +86,13 @@ def designed(point: WorkingPoint, quality: str) -> dict[str, Any]:
     amplitude = np.linspace(0.0, span, _POINTS)
     frequency = response_frequencies(mode.resonance_frequency, mode.quality_factor, 121)
     return {
+        **p.summary(),
         "text": text,
         "quality": quality,
         "name": display.name,
         "title": display.title,
-        "surface": p.surface.name,
         "surfaces": [one.name for one in display.surfaces],
-        "voltage_V": p.voltage,
-        "normal_force_N": p.normal_force,
-        "mode": mode.label,
-        "resonance_frequency_Hz": mode.resonance_frequency,
-        "resonance_frequency_error_Hz": mode.frequency_error,
-        "quality_factor": mode.quality_factor,
-        "half_wavelength_m": mode.half_wavelength,
-        "amplitude_per_volt_m_per_V": mode.amplitude_per_volt,
         "free_amplitude_m": p.touch.free_amplitude,
-        "vibration_amplitude_m": p.vibration_amplitude,
-        "squeeze_number": p.squeeze_number,
-        "relative_friction": p.relative_friction,
-        "friction_coefficient": p.friction_coefficient,
-        "friction_reduction": p.friction_reduction,
-        "tangential_force_N": p.tangential_force,
-        "envelope_time_constant_s": mode.quality_factor / (np.pi * mode.resonance_frequency),
         "vibration_model": p.amplitude_model,
         "friction_model": p.model,
         "friction_curve": {
@@ -121,7 +106,6 @@ def designed(point: WorkingPoint, quality: str) -> dict[str, Any]:
         },
         "line": _line(p, display.actuator),
         "shape": _shape(p),
-        "warnings": list(p.warnings),
         "provenance": stamp(display),
     }
 
@@ -220,17 +204,7 @@ def outline(text: str) -> dict[str, Any]:
             "length_m": actuator.length,
             "width_m": actuator.width,
             "thickness_m": actuator.thickness,
-            "patches": [
-                {
-                    "x_m": one.x,
-                    "y_m": one.y,
-                    "length_m": one.length,
-                    "width_m": one.width,
-                    "thickness_m": one.thickness,
-                    "polarity": one.polarity,
-                }
-                for one in actuator.patches
-            ],
+            "patches": to_json(actuator.patches),
         }
     if isinstance(actuator, DiscPlate):
         return {"kind": "disc", "diameter_m": actuator.diameter}

@@ -34,6 +34,18 @@ _LEAST_REDUCTION = 1e-6  # of friction, far below what anybody feels
 _SKIN = ("mass", "stiffness", "damping")
 
 
+@dataclass(frozen=True)
+class TextureOnDisplay:
+    """A texture, a preset's name or a TOML text, whose pictures lie in `folder`, on a display's
+    TOML text, of which the quality (see `numbers`) is asked for."""
+
+    display: str
+    texture: str | None
+    preset: str | None
+    quality: str
+    folder: Path
+
+
 @dataclass(frozen=True, eq=False)
 class _Ready:
     """A texture made ready for a display."""
@@ -45,17 +57,15 @@ class _Ready:
     program: Program
 
 
-def _ready(
-    display_text: str, texture_text: str | None, preset: str | None, quality: str, folder: Path
-) -> _Ready:
-    if (texture_text is None) == (preset is None):
-        raise InputError("say which texture: a preset or a text, one of them")
-    if preset is not None:
-        texture = load_texture(preset)
+def _ready(asked: TextureOnDisplay) -> _Ready:
+    if asked.preset is not None and asked.texture is None:
+        texture = load_texture(asked.preset)
+    elif asked.texture is not None and asked.preset is None:
+        texture = texture_from_text(asked.texture, file=asked.folder / "texture.toml")
     else:
-        texture = texture_from_text(str(texture_text), file=folder / "texture.toml")
-    display = display_of(display_text)
-    p = predicted(display, quality, WorkingPoint(display_text))
+        raise InputError("say which texture: a preset or a text, one of them")
+    display = display_of(asked.display)
+    p = predicted(display, asked.quality, WorkingPoint(asked.display))
     if p.vibration_amplitude <= 0.0 or p.relative_friction > 1.0 - _LEAST_REDUCTION:
         raise InputError(
             f"display '{display.name}' changes no friction at {p.voltage or 0.0:g} V, so it "
@@ -78,17 +88,13 @@ def pixels_of(data: bytes, name: str) -> tuple[int, int]:
     return rows, columns
 
 
-def feel(
-    display_text: str, texture_text: str | None, preset: str | None, quality: str, folder: Path
-) -> dict[str, Any]:
+def feel(asked: TextureOnDisplay) -> dict[str, Any]:
     """Program, friction curve, envelope, wave and skin of a texture on a display.
-
-    The texture is a preset's name or a TOML text, whose pictures lie in `folder`.
 
     Raises:
         InputError: a display or a texture that cannot be used, or a display that does not vibrate.
     """
-    ready = _ready(display_text, texture_text, preset, quality, folder)
+    ready = _ready(asked)
     display, texture, p = ready.display, ready.texture, ready.prediction
     largest = p.vibration_amplitude
     amplitude = np.linspace(0.0, largest, _KNOTS)
@@ -132,16 +138,9 @@ def feel(
     }
 
 
-def parity(
-    display_text: str,
-    texture_text: str | None,
-    preset: str | None,
-    quality: str,
-    folder: Path,
-    ticks: int = 2000,
-) -> dict[str, Any]:
+def parity(asked: TextureOnDisplay, ticks: int = 2000) -> dict[str, Any]:
     """A random walk of samples with the amplitudes (m) that the compiled interpreter gives."""
-    ready = _ready(display_text, texture_text, preset, quality, folder)
+    ready = _ready(asked)
     width, height = ready.display.actuator.extent
     rng = np.random.default_rng(20261121)
     t = np.cumsum(rng.uniform(1e-4, 4e-3, ticks))

@@ -26,7 +26,7 @@ from squeezefilm.study.conduct.study_device import (
 )
 
 if TYPE_CHECKING:
-    from squeezefilm.lab.playing import Playing
+    from squeezefilm.lab.pages import Playing
 
 T = TypeVar("T")
 
@@ -273,7 +273,7 @@ def _silenced(device: LabDevice) -> None:
         device.stop()
 
 
-def require_device(kind: str, display: str | None) -> None:
+def require_device(kind: str, display: str) -> None:
     """Refuse a device that no sitting may use, or that may not play this display.
 
     Raises `InputError` that says which may.
@@ -284,8 +284,7 @@ def require_device(kind: str, display: str | None) -> None:
     if kind == "none":
         return
     require_study_drive(kind)
-    if display is not None:
-        load_display(display).require_insulation(twin=kind == "twin")
+    load_display(display).require_insulation(twin=kind == "twin")
 
 
 def _session_device(display: str, kind: str, traces: Path) -> LabDevice:

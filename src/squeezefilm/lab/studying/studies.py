@@ -77,9 +77,9 @@ class Studies:
             "consent": CONSENT.format(minutes=round(expected_duration(found) / 60)),
         }
 
-    def create(self, design: str, name: str, seed: int) -> dict[str, Any]:
+    def create(self, design: str, study: str, seed: int) -> dict[str, Any]:
         """A new study's file."""
-        path = fresh(self.folder, name, SUFFIX)
+        path = fresh(self.folder, study, SUFFIX)
         self._open[path.stem] = StudyStore.create(path, load_design(design), seed)
         return self.status(path.stem)
 
@@ -89,12 +89,12 @@ class Studies:
             self._open[name] = StudyStore.open(existing(self.folder, name, SUFFIX))
         return self._open[name]
 
-    def status(self, name: str) -> dict[str, Any]:
+    def status(self, study: str) -> dict[str, Any]:
         """Design, participants with their progress, sittings, and the answers so far as counts."""
-        store = self.store(name)
+        store = self.store(study)
         design = store.design
         return {
-            "name": name,
+            "name": study,
             "seed": store.study["seed"],
             **_described(design),
             "consent": CONSENT.format(minutes=round(expected_duration(design) / 60)),
@@ -109,9 +109,9 @@ class Studies:
             ],
             "sittings": [
                 {**_shown(one), "by_hand": self._by_hand(one)}
-                for one in self.sittings.of_study(name)
+                for one in self.sittings.of_study(study)
             ],
-            "confusion": self.confusion(name),
+            "confusion": self.confusion(study),
             "origin": origin_of(store),
             "devices": devices(),
         }
@@ -149,48 +149,47 @@ class Studies:
 
     def prepare(
         self,
-        name: str,
+        study: str,
         participant: str,
         device: str,
-        consent_text: str,
+        consent: str,
         conditions: dict[str, Any],
         acknowledged: bool,
     ) -> dict[str, Any]:
         """A sitting for a participant, to be consented to on the participant's page."""
-        store = self.store(name)
+        store = self.store(study)
         store.require_participant(participant)
-        if display_wanted(store, participant) is None:
-            raise InputError(f"participant {participant} has answered every trial; enrol another")
+        self.display_of(study, participant)
         if device != "none" and not acknowledged:
             raise InputError(
                 "the exposure to airborne ultrasound was not acknowledged; read it and accept it, "
                 "or lower the display's voltage"
             )
         # Checked now, so that a mistake is the experimenter's and not the participant's to see.
-        _conditions(conditions, consent_text, consented=False)
+        _conditions(conditions, consent, consented=False)
         sitting = self.sittings.new(
-            study=name,
+            study=study,
             participant=participant,
             device=device,
-            consent_text=consent_text,
+            consent_text=consent,
             conditions=conditions,
             acknowledged=acknowledged,
         )
-        return {"sitting": sitting.id, **self.status(name)}
+        return {"sitting": sitting.id, **self.status(study)}
 
-    def display_of(self, name: str, participant: str) -> str | None:
-        """The display a participant's next trial is on."""
-        return display_wanted(self.store(name), participant)
+    def display_of(self, name: str, participant: str) -> str:
+        """The display a participant's next trial is on. Raises `InputError` if there is none."""
+        display = display_wanted(self.store(name), participant)
+        if display is None:
+            raise InputError(f"participant {participant} has answered every trial; enrol another")
+        return display
 
     def display_of_sitting(self, id: str) -> str:
         """The display of a sitting: of its session, or before it of the next trial."""
         sitting = self.sittings.get(id)
         if sitting.session is not None:
             return str(self.run(sitting).session["display"])
-        display = self.display_of(sitting.study, sitting.participant)
-        if display is None:
-            raise InputError(f"participant {sitting.participant} has answered every trial")
-        return display
+        return self.display_of(sitting.study, sitting.participant)
 
     def has_ended(self, id: str) -> bool:
         """Whether a sitting has ended, or is not known any more."""
@@ -325,23 +324,23 @@ class Studies:
         found = delete_participant(self.store(name), participant)
         return {"deleted": to_json(found), **self.status(name)}
 
-    def export(self, name: str, format: str) -> dict[str, Any]:
+    def export(self, study: str, format: str) -> dict[str, Any]:
         """Export a study beside its file."""
         si.require_one_of("format", format, ("csv", "psych-ds", "bids"))
-        path = export_study(self.store(name), format)  # type: ignore[arg-type] # checked above
+        path = export_study(self.store(study), format)  # type: ignore[arg-type] # checked above
         return {"folder": str(path.relative_to(self.folder.parent))}
 
     def path(self, name: str) -> Path:
         """A study's file."""
         return existing(self.folder, name, SUFFIX)
 
-    def merge(self, name: str, other: str) -> dict[str, Any]:
+    def merge(self, study: str, other: str) -> dict[str, Any]:
         """Take in the answers of another station's file in the folder."""
         path = existing(self.folder, other, SUFFIX)
         if other in self._open:
             self._open.pop(other).close()
-        found = merge(self.store(name), path)
-        return {"merged": to_json(found), **self.status(name)}
+        found = merge(self.store(study), path)
+        return {"merged": to_json(found), **self.status(study)}
 
     def run(self, sitting: Sitting) -> StudyRun:
         """The run of a sitting that was consented to."""

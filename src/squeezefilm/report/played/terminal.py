@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from squeezefilm.bench.play import PlayResult
     from squeezefilm.bench.played_session import Judged, PlayedSession
     from squeezefilm.session.play.plan import PlayView
-    from squeezefilm.session.record.export import TraceExport
+    from squeezefilm.session.record.trace import TraceExport
 
 _BAR = 28
 _LINE_PERIOD = 1.0
@@ -93,7 +93,7 @@ def view_line(view: PlayView) -> str:
         f"{view.time:7.2f} s",
         view.state.name.lower() + (f" ({view.fault.name.lower()})" if view.fault else ""),
         f"x {_number(view.x, 1e3):>7} mm",
-        f"µ′/µ {_number(view.friction, 1.0, 3)}",
+        f"µ′/µ {_number(view.relative_friction, 1.0, 3)}",
         f"amplitude {_number(view.amplitude, 1e6)} µm",
         f"lag {_number(view.lag, 1e3, 3)} mm",
         f"late {_number(view.lateness, 1e6, 0)} µs",
@@ -121,7 +121,7 @@ def view_table(view: PlayView) -> Group:
         ("time", f"{view.time:.1f} s", f"{view.rows} rows recorded"),
         ("state", Text(state, style=style), f"fault: {fault}"),
         ("position", known, speed),
-        ("friction µ′/µ", _number(view.friction, 1.0, 3), bar(view.friction)),
+        ("friction µ′/µ", _number(view.relative_friction, 1.0, 3), bar(view.relative_friction)),
         ("amplitude", f"{_number(view.amplitude, 1e6)} µm", wanted),
         ("output", f"{_number(view.level, 1.0)} V", ""),
         ("lag", f"{_number(view.lag, 1e3, 3)} mm", "predicted across"),

@@ -36,6 +36,7 @@ def class_ends() -> si.SecondArray:
     return np.append(_FIRST_NS * 1e-9 * 10.0**decades, math.inf)
 
 
+@si.checked_numbers
 @dataclass(frozen=True, slots=True, eq=False)
 class Lateness:
     """How late ticks were made, and how many were not made at all.
@@ -54,15 +55,13 @@ class Lateness:
         InputError: counts of another shape, below 0 or with another sum than `made`.
     """
 
-    rate: si.Hertz
+    rate: Annotated[si.Hertz, si.Above(0.0)]
     made: int
     lost: int
-    longest: si.Second
+    longest: Annotated[si.Second, si.AtLeast(0.0)]
     counts: Annotated[NDArray[np.int64], si.Unit("1")]
 
     def __post_init__(self) -> None:
-        si.require("rate", self.rate, si.Unit("Hz"), above=0.0)
-        si.require("longest", self.longest, si.Unit("s"), at_least=0.0)
         if self.counts.shape != (CLASSES,) or np.any(self.counts < 0):
             raise InputError(f"counts must be {CLASSES} numbers at least 0")
         if int(np.sum(self.counts)) != self.made or self.lost < 0:

@@ -50,12 +50,7 @@ class DriveTable:
             values = np.array(getattr(self, name), dtype=float)
             object.__setattr__(self, name, values)
             si.require(name, values, unit, at_least=0.0)
-            if (
-                values.ndim != 1
-                or values.size < 2
-                or values[0] != 0
-                or np.any(np.diff(values) <= 0)
-            ):
+            if not _rises_from_zero(values):
                 raise InputError(
                     f"{name} of the drive's table must begin with 0 and rise from each of at least "
                     "two knots to the next",
@@ -101,18 +96,16 @@ class FrictionTable:
         object.__setattr__(self, "relative_friction", friction)
         si.require("amplitude", amplitude, _METRE, at_least=0.0)
         si.require("relative_friction", friction, at_least=0.0, at_most=1.0)
-        if (
-            amplitude.ndim != 1
-            or amplitude.shape != friction.shape
-            or amplitude.size < 2
-            or amplitude[0] != 0.0
-            or np.any(np.diff(amplitude) <= 0.0)
-        ):
+        if amplitude.shape != friction.shape or not _rises_from_zero(amplitude):
             raise InputError(
                 f"amplitude and relative_friction of shapes {amplitude.shape} and "
                 f"{friction.shape} are no curve; give amplitudes that rise from 0 and as many "
                 "frictions, at least two"
             )
+
+
+def _rises_from_zero(knots: si.FloatArray) -> bool:
+    return knots.ndim == 1 and knots.size > 1 and knots[0] == 0 and bool(np.all(np.diff(knots) > 0))
 
 
 @si.checked_numbers

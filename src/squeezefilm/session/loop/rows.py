@@ -36,22 +36,8 @@ COLUMNS = (
 - `lateness_s`: from when the tick was due to when it was made; always less than a period.
 - `flags`: a sum of the flags below.
 """
-(
-    TICK,
-    TIME,
-    ROW_SAMPLE_TIME,
-    X,
-    Y,
-    SPEED,
-    WANTED,
-    VOLTAGE,
-    LEVEL,
-    AMPLITUDE,
-    FRICTION,
-    LAG,
-    LATENESS,
-    FLAGS,
-) = range(14)
+TICK, TIME, ROW_SAMPLE_TIME, X, Y, SPEED, WANTED = range(7)
+VOLTAGE, LEVEL, AMPLITUDE, FRICTION, LAG, LATENESS, FLAGS = range(7, 14)
 
 # The first ten are the renderer's own (`render.program.layout`): 1 bad place … 512 saturated.
 NEW_SAMPLE = 1 << 10

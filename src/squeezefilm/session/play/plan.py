@@ -85,16 +85,16 @@ class PlayView:
     """A moment of a session, for a live view; NaN where not known.
 
     Time (s), the finger's place (m) and speed (m/s), wanted amplitude, amplitude by the pickup
-    (m), friction, the device's level (V), lag (m), lateness of the last tick (s), the device's
-    state and fault, readings heard, rows recorded, the round trip (s), flags of the last tick.
+    (m), relative friction, the device's level (V), lag (m), lateness of the last tick (s), the
+    device's state and fault, readings heard, rows recorded, flags of the last tick.
     """
 
     time: si.Second
     x: si.Metre
-    speed: float
+    speed: si.MetrePerSecond
     wanted: si.Metre
     amplitude: si.Metre
-    friction: float
+    relative_friction: float
     level: si.Volt
     lag: si.Metre
     lateness: si.Second

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -27,6 +27,10 @@ from squeezefilm.session.loop.rows import flag_meanings
 from squeezefilm.session.play.plan import Ending, PlayPlan, PlayView
 from squeezefilm.session.record.trace_writer import TraceWriter
 
+if TYPE_CHECKING:
+    from squeezefilm.session.loop.process import LoopProcess
+    from squeezefilm.session.loop.simulated import SimulatedLoop
+
 RESTING_SAMPLE: si.Second = 20e-3
 """A sensor slower than the reports repeats its last place; such repeats are fed this seldom."""
 LOOP_LIMIT: si.Second = 25e-3
@@ -37,26 +41,6 @@ FADE: si.Second = 30e-3
 """From muting the loop to stopping the device: the last commands ramp to zero in it."""
 _STOP_LIMIT: si.Second = 0.5
 _MICRO = 1e-6
-
-
-class Loop(Protocol):
-    """What a player needs of `LoopProcess` and `SimulatedLoop`."""
-
-    def feed(self, samples: si.FloatArray) -> int:
-        """Give finger samples."""
-        ...
-
-    def take_commands(self) -> si.FloatArray:
-        """The commands since the last call."""
-        ...
-
-    def take_rows(self) -> si.FloatArray:
-        """The rows since the last call."""
-        ...
-
-    def mute(self, muted: bool = True) -> None:
-        """Play nothing."""
-        ...
 
 
 class Player:
@@ -75,7 +59,7 @@ class Player:
     def __init__(
         self,
         plan: PlayPlan,
-        loop: Loop,
+        loop: LoopProcess | SimulatedLoop,
         host: DeviceHost,
         writer: TraceWriter,
         clock: Callable[[], si.Second],
@@ -204,7 +188,7 @@ class Player:
             speed=float(row[column.SPEED]),
             wanted=float(row[column.WANTED]),
             amplitude=float(row[column.AMPLITUDE]),
-            friction=float(row[column.FRICTION]),
+            relative_friction=float(row[column.FRICTION]),
             level=float(row[column.LEVEL]),
             lag=float(row[column.LAG]),
             lateness=float(row[column.LATENESS]),
@@ -308,7 +292,7 @@ class Player:
             for part in _blocks(fresh):
                 start = clock.stamp(clock.device_time(float(part[0, column.COMMAND_TIME])))
                 self.host.play(np.abs(part[:, column.COMMAND_VOLTAGE]), period, start)
-        self.host.pump(now)
+        self.host.pump()
 
     def _write(self) -> None:
         made = self.loop.take_rows()

@@ -103,19 +103,25 @@ def run_play(
         _interruptible(until) as interrupted,
     ):
         loop = LoopProcess(plan.loop)
-        link = Link(stream, lambda: loop.time)
+
+        def clock() -> si.Second:
+            return loop.time
+
+        link = Link(stream, clock)
         host = DeviceHost(link)
         drives = SerialDrive(host, plan.loop.period)
         require_safe_drive(drives, plan.limits, study=study, bench_only=bench_only)
-        eyes = None if sensor is None else sensor(lambda: loop.time)
-        player = Player(plan, loop, host, writer, lambda: loop.time, eyes, tap)
+        eyes = None if sensor is None else sensor(clock)
+        player = Player(plan, loop, host, writer, clock, eyes, tap)
         _compile(plan)
         with _collected():
             loop.start()
             try:
                 with contextlib.nullcontext() if plan.twin else _preferred():
                     with _stopping(host):
-                        ending, message = _played(player, loop, duration, interrupted, show)
+                        ending, message = played(
+                            player, clock, lambda: time.sleep(PAUSE), duration, interrupted, show
+                        )
                     player.end(ending, time.sleep, message)
             finally:
                 report = loop.stop()
@@ -134,34 +140,38 @@ def _compile(plan: PlayPlan) -> None:
     spare.take_rows()
 
 
-def _played(
+def played(
     player: Player,
-    loop: LoopProcess,
+    clock: Callable[[], si.Second],
+    wait: Callable[[], None],
     duration: si.Second,
-    interrupted: Callable[[], bool],
-    show: Callable[[PlayView], None] | None,
+    interrupted: Callable[[], bool] = lambda: False,
+    show: Callable[[PlayView], None] | None = None,
 ) -> tuple[Ending, str]:
-    """Step until something ends it; returns what, and what to say."""
+    """Begin, step until something ends it, and fade; returns what ended it, and what to say.
+
+    `wait` lets time pass on the `clock` between two steps of the player.
+    """
     player.begin()
-    began = loop.time
+    began = clock()
     shown = 0.0
     try:
         while player.ending is None:
-            now = loop.time
+            now = clock()
             if now - began >= duration or interrupted():
                 break
+            wait()
             player.step()
             if show is not None and now - shown >= SHOW_PERIOD:
                 shown = now
                 show(player.view())
-            time.sleep(PAUSE)
         if player.faulted:
             return Ending.FAULT, fault_sentence(player)
         player.fade()
-        faded = loop.time
-        while player.ending is None and loop.time < faded + FADE:
+        faded = clock()
+        while player.ending is None and clock() < faded + FADE:
+            wait()
             player.step()
-            time.sleep(PAUSE)
     except DeviceError as error:
         return Ending.LINK, str(error)
     except LoopError as error:

@@ -15,18 +15,14 @@ from typing import Any
 from squeezefilm import quantities as si
 from squeezefilm.device.host import DeviceHost
 from squeezefilm.device.wire.link import Link
-from squeezefilm.errors import DeviceError, LoopError
 from squeezefilm.results import to_json
 from squeezefilm.session.loop.rows import COLUMNS
 from squeezefilm.session.loop.simulated import SimulatedLoop
-from squeezefilm.session.play.plan import Ending, PlayPlan
-from squeezefilm.session.play.player import FADE, Player
-from squeezefilm.session.play.real_time import PlayOutcome, fault_sentence
+from squeezefilm.session.play.plan import PlayPlan
+from squeezefilm.session.play.player import Player
+from squeezefilm.session.play.real_time import PAUSE, PlayOutcome, played
 from squeezefilm.session.record.trace_writer import TraceWriter
 from squeezefilm.twin.device import TwinDevice
-
-STEP: si.Second = 1e-3
-"""Between two looks of the player at its device."""
 
 
 @dataclass(slots=True)
@@ -81,7 +77,7 @@ def virtual_play(
     *,
     duration: si.Second,
     latency: si.Second = 0.5e-3,
-    step: si.Second = STEP,
+    step: si.Second = PAUSE,
 ) -> PlayOutcome:
     """Play on a twin for a time, as fast as the computer can; the truth is in `device.truth`.
 
@@ -108,27 +104,10 @@ def virtual_play(
         return stream.now - start
 
     stream.together = lambda now: loop.advance(now - start)
-    ending, message = Ending.DURATION, ""
     with TraceWriter(trace, COLUMNS, metadata) as writer:
         link = Link(stream, clock, stream.wait)
         player = Player(plan, loop, DeviceHost(link), writer, clock)
-        player.begin()
-        began = clock()
-        try:
-            while player.ending is None and clock() - began < duration:
-                stream.wait(step)
-                player.step()
-            player.fade()
-            faded = clock()
-            while player.ending is None and clock() < faded + FADE:
-                stream.wait(step)
-                player.step()
-            if player.faulted:
-                ending, message = Ending.FAULT, fault_sentence(player)
-        except DeviceError as error:
-            ending, message = Ending.LINK, str(error)
-        except LoopError as error:
-            ending, message = Ending.LOOP, str(error)
+        ending, message = played(player, clock, lambda: stream.wait(step), duration)
         player.end(ending, stream.wait, message)
         writer.event("loop", {"lateness": loop.lateness.to_json()})
         writer.event("link", to_json(link.statistics))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from squeezefilm.device.machine.loads import MICROVOLTS, MOST, Loads
+from squeezefilm.device.machine.limits import MICROVOLTS, MOST, Loads
 
 VOLT = 1_000_000
 

@@ -11,9 +11,9 @@ from squeezefilm.device.machine.playing import (
     MOST_AHEAD,
     Mode,
     Playing,
+    Tile,
     until,
 )
-from squeezefilm.device.machine.tile import Tile
 from squeezefilm.device.wire.states import Reason
 
 # The device's clock wraps within a block that begins here.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from squeezefilm.device.machine.reports import LONGEST_REPORT, SHORTEST_REPORT, Reports
+from squeezefilm.device.machine.playing import LONGEST_REPORT, SHORTEST_REPORT, Reports
 from squeezefilm.device.wire.states import Reason
 
 TURN = 2**32

@@ -18,7 +18,7 @@ from squeezefilm import presets
 from squeezefilm.lab import playing_process
 from squeezefilm.lab.areas.device import DEVICE, DeviceArea, OnDrive, PlayDevice
 from squeezefilm.lab.designing.form import preset_text
-from squeezefilm.lab.playing_process import DeviceSession, DeviceWork
+from squeezefilm.lab.playing_process import DeviceSession
 
 if TYPE_CHECKING:
     from .conftest import Talk
@@ -35,18 +35,19 @@ class Session:
         self.begun: list[tuple[Any, ...]] = []
         self.asked: list[str] = []
         self.running = False
-        monkeypatch.setattr(DeviceSession, "start", lambda _, *work: self.begun.append(work))
+        monkeypatch.setattr(
+            DeviceSession, "start", lambda _, work, **how: self.begun.append((work, how))
+        )
         monkeypatch.setattr(DeviceSession, "stop", lambda _: self.asked.append("stop"))
         monkeypatch.setattr(DeviceSession, "close", lambda _: self.asked.append("close"))
         monkeypatch.setattr(DeviceSession, "running", property(lambda _: self.running))
 
     @property
-    def work(self) -> DeviceWork:
+    def work(self) -> Any:
         """What was last begun to play."""
-        play, work = self.begun[-1]
+        play, how = self.begun[-1]
         assert play is playing_process.play
-        assert isinstance(work, DeviceWork)
-        return work
+        return SimpleNamespace(**how)
 
 
 @pytest.fixture
@@ -79,12 +80,12 @@ def test_what_a_page_asks_is_what_is_played(lab: Talk, session: Session) -> None
     # Named by the time in UTC, so that none is written over.
     assert re.fullmatch(r"sessions/\d{8}T\d{6}", found["folder"])
     work = session.work
-    assert work == DeviceWork(
+    assert work == SimpleNamespace(
         display=str(lab.folder / "sessions" / ".display.toml"),
         texture=str(presets.resolve_texture("bump")),
         drive="twin",
         out=str(lab.folder / found["folder"]),
-        **{**how, "duration": 2.5, "voltage": 90.0},  # type: ignore[arg-type]
+        **{**how, "duration": 2.5, "voltage": 90.0},
     )
     assert Path(work.display).read_text(encoding="utf-8") == STATOR
     assert lab.say("what plays") == {
@@ -138,7 +139,7 @@ def test_a_check_is_a_thing_that_plays(lab: Talk, session: Session) -> None:
     found = lab.say("check device", display=STATOR, drive="serial:X")
     assert found == {"type": "checking"}
     display = str(lab.folder / "sessions" / ".display.toml")
-    assert session.begun == [(playing_process.check, "serial:X", display)]
+    assert session.begun == [(playing_process.check, {"drive": "serial:X", "display": display})]
     (now,) = lab.say("what plays")["now"]
     assert now == {"key": "device", "text": "the check of serial:X", "plays": True}
     assert lab.say("stop everything") == {"type": "stopping"}

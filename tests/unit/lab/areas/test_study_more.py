@@ -14,8 +14,7 @@ from tests.unit.lab.areas.too_long import require_refused_if_longer
 from squeezefilm import presets
 from squeezefilm.errors import DeviceError
 from squeezefilm.lab.areas import study as study_area
-from squeezefilm.lab.areas.study import StudyArea
-from squeezefilm.lab.areas.study_requests import (
+from squeezefilm.lab.areas.study import (
     CreateStudy,
     DeleteParticipant,
     ExportStudy,
@@ -28,6 +27,7 @@ from squeezefilm.lab.areas.study_requests import (
     PrepareSitting,
     RehearseStudy,
     Respond,
+    StudyArea,
     SurfacesFelt,
 )
 from squeezefilm.lab.keys import CODE_LIFE
@@ -157,7 +157,7 @@ def test_who_has_answered_everything_is_exposed_to_nothing(lab: Talk) -> None:
     (one,) = lab.say("study", study="done")["participants"]
     who = one["pseudonym"]
     said = lab.refused("exposure", study="done", participant=who)
-    assert said == f"participant {who} has answered every trial"
+    assert said == f"participant {who} has answered every trial; enrol another"
 
 
 def test_a_link_leads_a_station_to_its_sitting(lab: Talk) -> None:

@@ -35,7 +35,10 @@ def test_bodies_are_drawn_from_their_sizes() -> None:
     patches = found.pop("patches")
     sizes = {"length_m": 0.1, "width_m": 0.06, "thickness_m": pytest.approx(1.1e-3)}
     assert found == {"kind": "plate", **sizes}
-    strip = {"x_m": 0.0, "length_m": 0.1, "width_m": 5e-3, "thickness_m": 0.5e-3}
+    strip = {
+        "x_m": 0.0, "length_m": 0.1, "width_m": 5e-3, "thickness_m": 0.5e-3, "face": "bottom",
+        "electrode": "driven", "poling": 1, "shunt_resistance_ohm": None,
+    }  # fmt: skip
     assert patches == [
         {**strip, "y_m": 0.0, "polarity": 1}, {**strip, "y_m": 0.055, "polarity": -1},
     ]  # fmt: skip
@@ -85,6 +88,9 @@ def test_a_stators_numbers_are_the_predictions_own() -> None:
     assert {key: found[key] for key in expected} == expected
     assert set(found) - set(expected) == {
         "friction_curve", "response", "line", "shape", "provenance",
+        # What every prediction says of itself beside.
+        "display", "frequency_Hz", "amplitude_model", "mean_pressure", "mean_pressure_error",
+        "amplitude_kept_under_finger", "model", "validity",
     }  # fmt: skip
     curve = found["friction_curve"]
     amplitude = np.linspace(0.0, max(2 * p.vibration_amplitude, 2e-6), 49)

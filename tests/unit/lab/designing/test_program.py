@@ -16,7 +16,7 @@ from squeezefilm.chain.prediction import predict
 from squeezefilm.errors import InputError, SqueezefilmError
 from squeezefilm.lab.designing import program
 from squeezefilm.lab.designing.form import edited, preset_text
-from squeezefilm.lab.designing.program import feel, parity, pixels_of, title_of
+from squeezefilm.lab.designing.program import TextureOnDisplay, feel, parity, pixels_of, title_of
 from squeezefilm.results import config_hash
 from squeezefilm.texture_file import load_texture
 
@@ -33,7 +33,7 @@ pattern = { type = "image_file", file = "islands.png", pixel = "1 mm", outside =
 
 @functools.cache
 def felt(text: str = STATOR, preset: str = "sine-3mm") -> dict[str, Any]:
-    return feel(text, None, preset, "screening", NOWHERE)
+    return feel(TextureOnDisplay(text, None, preset, "screening", NOWHERE))
 
 
 def test_a_stator_is_what_its_file_says() -> None:
@@ -104,7 +104,7 @@ def test_a_disc_has_no_wave_along_a_line(monkeypatch: pytest.MonkeyPatch) -> Non
     stator = predict(load_display("biet2008-stator"))
     monkeypatch.setattr(program, "predicted", lambda *_: stator)
     disc = preset_text("winfield2007-tpad")
-    found = feel(disc, None, "sine-3mm", "screening", NOWHERE)
+    found = feel(TextureOnDisplay(disc, None, "sine-3mm", "screening", NOWHERE))
     assert found["wave"] is None
     assert (found["width_m"], found["height_m"]) == (25e-3, 25e-3)
 
@@ -113,18 +113,18 @@ def test_a_texture_comes_from_a_preset_or_from_a_text_with_pictures_beside_it(
     tmp_path: Path,
 ) -> None:
     (tmp_path / "islands.png").write_bytes(picture_bytes(np.array([[0.0, 1.0, 0.0]])))
-    found = feel(STATOR, PICTURE, None, "screening", tmp_path)
+    found = feel(TextureOnDisplay(STATOR, PICTURE, None, "screening", tmp_path))
     assert found["title"] == "a texture of relative_friction"
     assert title_of('title = "Islands"\n' + PICTURE, tmp_path / "any.toml") == "Islands"
     assert title_of(PICTURE, tmp_path / "any.toml") == ""
     for elsewhere in (NOWHERE, tmp_path / "islands.png"):
         with pytest.raises(SqueezefilmError, match=r"islands\.png"):
-            feel(STATOR, PICTURE, None, "screening", elsewhere)
+            feel(TextureOnDisplay(STATOR, PICTURE, None, "screening", elsewhere))
     for text, preset in ((None, None), (PICTURE, "sine-3mm")):
         with pytest.raises(InputError, match="say which texture: a preset or a text"):
-            feel(STATOR, text, preset, "screening", tmp_path)
+            feel(TextureOnDisplay(STATOR, text, preset, "screening", tmp_path))
     with pytest.raises(InputError, match="quality = 'rough'"):
-        feel(STATOR, None, "bump", "rough", tmp_path)
+        feel(TextureOnDisplay(STATOR, None, "bump", "rough", tmp_path))
 
 
 def test_the_same_display_and_texture_have_one_hash() -> None:
@@ -146,7 +146,7 @@ def test_a_display_that_changes_no_friction_renders_nothing(voltage: str, said: 
 
 @pytest.mark.parametrize("preset", ["sine-3mm", "speed-stretched"])
 def test_samples_are_given_the_friction_that_the_texture_asks_for(preset: str) -> None:
-    given = parity(STATOR, None, preset, "screening", NOWHERE, ticks=400)
+    given = parity(TextureOnDisplay(STATOR, None, preset, "screening", NOWHERE), ticks=400)
     curve = felt(STATOR, preset)
     x = np.array(given["x_m"], dtype=float)
     y, v, t = (np.array(given[name]) for name in ("y_m", "v_m_per_s", "t_s"))
@@ -161,7 +161,7 @@ def test_samples_are_given_the_friction_that_the_texture_asks_for(preset: str) -
 
 
 def test_samples_lie_all_over_the_display_and_some_are_broken() -> None:
-    given = parity(PLATE, None, "sine-3mm", "screening", NOWHERE)
+    given = parity(TextureOnDisplay(PLATE, None, "sine-3mm", "screening", NOWHERE))
     assert given["display"] == "biet2008-plate"
     x, y, v, t = (given[name] for name in ("x_m", "y_m", "v_m_per_s", "t_s"))
     assert len(x) == 2000
@@ -178,7 +178,7 @@ def test_samples_lie_all_over_the_display_and_some_are_broken() -> None:
     assert 1e-4 <= steps.min() < 1.2e-4
     assert 3.9e-3 < steps.max() <= 4e-3
     # The page may ask again.
-    assert parity(PLATE, None, "sine-3mm", "screening", NOWHERE)["x_m"] == x
+    assert parity(TextureOnDisplay(PLATE, None, "sine-3mm", "screening", NOWHERE))["x_m"] == x
 
 
 def test_a_picture_has_rows_and_columns() -> None:

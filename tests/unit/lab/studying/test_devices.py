@@ -327,7 +327,7 @@ def test_a_check_is_asked_of_the_drive_with_the_display_on_the_page(
 ) -> None:
     talk = Talk(tmp_path, Fake(), monkeypatch)
     begun: list[tuple[Any, ...]] = []
-    monkeypatch.setattr(DeviceSession, "start", lambda _, *work: begun.append(work))
+    monkeypatch.setattr(DeviceSession, "start", lambda _, work, **how: begun.append((work, how)))
 
     async def named(*_: object) -> str:
         return "mine"
@@ -344,9 +344,9 @@ def test_a_check_is_asked_of_the_drive_with_the_display_on_the_page(
         assert (now["text"], now["plays"]) == ("the check of twin", True)
 
     play(work())
-    ((what, drive, display),) = begun
-    assert (what, drive) == (playing_process.check, "twin")
-    assert Path(display).read_text() == 'name = "mine"'
+    ((what, how),) = begun
+    assert (what, how["drive"]) == (playing_process.check, "twin")
+    assert Path(how["display"]).read_text() == 'name = "mine"'
 
 
 def test_the_experimenter_is_told_what_a_device_may_not_play() -> None:
@@ -356,4 +356,4 @@ def test_the_experimenter_is_told_what_a_device_may_not_play() -> None:
     with pytest.raises(InputError, match="touch-side insulation"):
         require_device("serial:/dev/ttyACM0", "biet2008-stator")
     with pytest.raises(InputError, match="is not known"):
-        require_device("sound", None)
+        require_device("sound", "biet2008-stator")

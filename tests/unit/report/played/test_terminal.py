@@ -25,16 +25,17 @@ from squeezefilm.report.played.terminal import (
     view_table,
 )
 from squeezefilm.session.play.plan import PlayView
-from squeezefilm.session.record.export import TraceExport
+from squeezefilm.session.record.trace import TraceExport
 
 VIEW = PlayView(
-    time=1.25, x=12.34e-3, speed=0.06, wanted=1e-6, amplitude=0.9e-6, friction=0.7, level=8.0,
+    time=1.25, x=12.34e-3, speed=0.06, wanted=1e-6, amplitude=0.9e-6, level=8.0,
+    relative_friction=0.7,
     lag=0.4e-3, lateness=12e-6, state=State.PLAYING, fault=Fault.NONE, readings=5, rows=7,
     flags=("ticks were lost just before this one",),
 )  # fmt: skip
 UNKNOWN = PlayView(
     time=0.0, x=math.nan, speed=math.nan, wanted=math.nan, amplitude=math.nan,
-    friction=math.nan, level=math.nan, lag=math.nan, lateness=math.nan, state=State.FAULT,
+    relative_friction=math.nan, level=math.nan, lag=math.nan, lateness=math.nan, state=State.FAULT,
     fault=Fault.WATCHDOG, readings=0, rows=0, flags=(),
 )  # fmt: skip
 

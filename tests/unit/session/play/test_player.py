@@ -64,7 +64,7 @@ class Bench:
         host: Any = SimpleNamespace(
             clock=Clock(), poll=self._poll,
             play=lambda volts, period, start: self._note("play", volts.tolist(), period, start),
-            pump=lambda now: self._note("pump", now),
+            pump=lambda: self._note("pump"),
             open=lambda limits: self._note("open", limits),
             load_tile=lambda *tile: self._note("tile", tile[0], tile[1], tile[2].tolist()),
             report=lambda period: self._note("report", period),
@@ -278,7 +278,7 @@ def test_commands_are_sent_ahead_on_the_devices_clock_without_their_sign(play_of
         ([10.0, 11.0, 12.0], pytest.approx(0.2e-3), start),
         ([15.0, 16.0], pytest.approx(0.2e-3), start + 1000),
     ]
-    assert bench.calls[-1] == ("pump", bench.now)
+    assert bench.calls[-1] == ("pump",)
     assert bench.player.late_commands == 0
 
 
@@ -438,7 +438,7 @@ def test_rows_are_recorded_tapped_and_the_newest_is_shown(play_of: PlayOf) -> No
     assert recorded[:, column.TICK].tolist() == [4, 5]
     view = bench.player.view()
     assert (view.time, view.x, view.speed, view.wanted) == (1.5, 2e-3, 0.06, 1e-6)
-    assert (view.amplitude, view.friction, view.level) == (0.9e-6, 0.7, 12.0)
+    assert (view.amplitude, view.relative_friction, view.level) == (0.9e-6, 0.7, 12.0)
     assert (view.lag, view.lateness) == (3e-4, 5e-5)
     assert (view.state, view.fault) == (State.PLAYING, Fault.NONE)
     assert (view.readings, view.rows) == (2, 77)

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from squeezefilm.device.machine.tile import Tile
+from squeezefilm.device.machine.playing import Tile
 from squeezefilm.errors import InputError, UnreachableError
 from squeezefilm.render.program.lowering import Program, lower
 from squeezefilm.render.texture.composition import Composable

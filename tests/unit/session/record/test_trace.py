@@ -14,8 +14,7 @@ from squeezefilm.errors import InputError
 from squeezefilm.formats.traces import table_from_csv, table_from_parquet
 from squeezefilm.results import stamp
 from squeezefilm.session.record import trace_file
-from squeezefilm.session.record.export import export_trace
-from squeezefilm.session.record.trace import read_trace
+from squeezefilm.session.record.trace import export_trace, read_trace
 from squeezefilm.session.record.trace_writer import TraceWriter
 
 COLUMNS = ("time_s", "x_m")
