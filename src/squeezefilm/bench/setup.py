@@ -9,10 +9,10 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.chain.prediction import Prediction, predict
 from squeezefilm.chain.rendered_texture import lowered
+from squeezefilm.compiled import announce
 from squeezefilm.device.wire.messages import LONGEST_TILE
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError
-from squeezefilm.film.compiled import announce
 from squeezefilm.render.motion.estimator import MotionEstimator
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ, SensorModel
 from squeezefilm.render.program.inverse import FrictionInverse

@@ -8,12 +8,11 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from numba import njit
-
+from squeezefilm.compiled import compiled
 from squeezefilm.film.gas import FIRST, FUKUI_KANEKO, NO_SLIP, SECOND, VEIJOLA
 
 
-@njit(nogil=True, cache=True)
+@compiled()
 def _ratio(part: int, D: float) -> tuple[float, float]:
     """Fukui–Kaneko flow rate over the viscous one, D/6, and its slope in D, in one fitted range."""
     if part == 0:
@@ -27,7 +26,7 @@ def _ratio(part: int, D: float) -> tuple[float, float]:
     return value, slope
 
 
-@njit(nogil=True, cache=True)
+@compiled()
 def _blended(part: int, D: float, joint: float) -> tuple[float, float]:
     """`_ratio` below a joint, blended into that of the range above it within ±20 %."""
     value, slope = _ratio(part, D)
@@ -41,7 +40,7 @@ def _blended(part: int, D: float, joint: float) -> tuple[float, float]:
     return value, slope
 
 
-@njit(nogil=True, cache=True)
+@compiled()
 def slip_factor(law: int, k: float) -> tuple[float, float]:
     """φ and dφ/dk at the local Knudsen number k, for a law by its number (see `gas.SLIP_LAWS`)."""
     if law == FIRST:
@@ -69,7 +68,7 @@ def slip_factor(law: int, k: float) -> tuple[float, float]:
     return 1.0, 0.0
 
 
-@njit(cache=True, nogil=True, inline="always")
+@compiled(inline="always")
 def mobility(H: float, P: float, n: float, knudsen: float, law: int) -> Any:
     """H³ P^{1/n} φ(Kn/(PH)) and its derivative in P, at one point."""
     base = H * H * H

@@ -16,9 +16,8 @@ import cmath
 import math
 from typing import Any, NamedTuple
 
-import numba
-
 from squeezefilm import quantities as si
+from squeezefilm.compiled import compiled
 
 # What keeps the amplifier from giving the voltage wanted.
 WITHIN, RAIL, SLEW, CURRENT = range(4)
@@ -59,7 +58,7 @@ class Limits(NamedTuple):
     slew_rate: float
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled()
 def table_place(force: float, amplitude: float, fingers: Fingers) -> Any:
     """Where a force (N) and an amplitude (m) stand in the tables: indices and shares of both, and
     whether the amplitude is beyond."""
@@ -77,7 +76,7 @@ def table_place(force: float, amplitude: float, fingers: Fingers) -> Any:
     return i, p, j, min(max((amplitude - low) / (high - low), 0.0), 1.0), False
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled()
 def between(table: si.Array, i: int, p: float, j: int, q: float) -> Any:
     """A table's value between four of its points."""
     low = table[i, j] + q * (table[i, j + 1] - table[i, j])
@@ -85,7 +84,7 @@ def between(table: si.Array, i: int, p: float, j: int, q: float) -> Any:
     return low + p * (high - low)
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled()
 def finger_on_mode(force: float, amplitude: float, fingers: Fingers) -> complex:
     """δ under a force (N) at an amplitude (m); in proportion to the force below the lightest."""
     if force <= 0.0:
@@ -94,7 +93,7 @@ def finger_on_mode(force: float, amplitude: float, fingers: Fingers) -> complex:
     return complex(between(fingers.load, i, p, j, q) * min(1.0, force / fingers.forces[0]))
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled()
 def decay_rate(plate: Resonance, load: complex) -> complex:
     """λ of ż = u/τ − λ z (1/s)."""
     ratio, quality, tau = plate
@@ -102,7 +101,7 @@ def decay_rate(plate: Resonance, load: complex) -> complex:
     return complex(1.0 + quality * load.imag, tuned) / tau
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled()
 def envelope_step(
     z: complex, held: float, h: float, plate: Resonance, force: float, fingers: Fingers
 ) -> complex:
@@ -122,14 +121,14 @@ def envelope_step(
     return rest + (z - rest) * cmath.exp(-h * rate)
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled()
 def drawn_current(voltage: float, z: complex, omega: float, plate: Electrical) -> complex:
     """The amplifier's current (A, complex amplitude): the capacitance's and the motional one."""
     capacitance, loss, force_factor = plate
     return complex(omega * capacitance * voltage * complex(loss, 1.0) + omega * force_factor * z)
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled()
 def voltage_given(
     wanted: float, z: complex, omega: float, plate: Electrical, limits: Limits
 ) -> Any:

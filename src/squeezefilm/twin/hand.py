@@ -11,11 +11,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
 from squeezefilm import quantities as si
+from squeezefilm.compiled import compiled
 from squeezefilm.errors import InputError
 from squeezefilm.formats.trajectories import Motion, motion_from
 from squeezefilm.render.motion.finger_path import FingerPath
@@ -99,7 +99,7 @@ def hand_from(stroke: str | Path = EXPLORING, **how: Any) -> Hand:
     return Hand(motion_from(stroke), **how)
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled()
 def wanted(time: int, places: si.Array, plan: si.Array) -> Any:
     """x, y (m), and the force over the full one (1), that the hand wants at a time (µs)."""
     since = time - plan[BEGIN]

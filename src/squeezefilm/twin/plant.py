@@ -16,9 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from squeezefilm import quantities as si
+from squeezefilm.compiled import announce
 from squeezefilm.contact.sliding.march import substeps
 from squeezefilm.errors import InputError
-from squeezefilm.film.compiled import announce
 from squeezefilm.twin import plant_kernel as k
 from squeezefilm.twin.envelope_step import Fingers
 from squeezefilm.twin.hand import Hand

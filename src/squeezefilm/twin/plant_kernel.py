@@ -22,10 +22,10 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-import numba
 import numpy as np
 
 from squeezefilm import quantities as si
+from squeezefilm.compiled import compiled
 from squeezefilm.contact.sliding.kernel import Drive, Ground, Law, Track, slide_march
 from squeezefilm.contact.sliding.skin_motion import Forces, Skin, slide_by, transition
 from squeezefilm.twin.envelope_step import (
@@ -79,7 +79,7 @@ _DROPPED = np.uint64(11)
 _TWO_53 = 2.0**-53
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled()
 def mixed(number: Any) -> Any:
     """A 64-bit number with its bits mixed."""
     z = np.uint64(number) + _STEP
@@ -88,7 +88,7 @@ def mixed(number: Any) -> Any:
     return z ^ (z >> _ONE)
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled()
 def uniform(seed: int, stream: int, number: int) -> float:
     """The `number`-th uniform value of a stream, above 0 and below 1."""
     z = mixed(mixed(np.uint64(seed)) ^ mixed(np.uint64(stream) + _FIRST))
@@ -96,7 +96,7 @@ def uniform(seed: int, stream: int, number: int) -> float:
     return (float(z >> _DROPPED) + 0.5) * _TWO_53
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled()
 def gaussian(seed: int, stream: int, number: int) -> float:
     """The `number`-th standard normal value of a stream (Box and Muller)."""
     radius = math.sqrt(-2.0 * math.log(uniform(seed, 2 * stream, number)))
@@ -118,7 +118,7 @@ class Path(NamedTuple):
     plan: si.Array
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled()
 def resonance(time: int, warmth: float, c: si.Array) -> float:
     """The plate's resonance frequency (Hz) at a time (µs) and a self-heating (K)."""
     period = np.int64(c[C_PERIOD])
@@ -128,7 +128,7 @@ def resonance(time: int, warmth: float, c: si.Array) -> float:
     return float(c[C_F0] * (1.0 + shift))
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled()
 def _sense(
     t0: int, h_us: int, x0: float, y0: float, plant: State, ring: si.Array, touching: bool
 ) -> None:
@@ -166,7 +166,7 @@ def _sense(
         n[TAIL] += 1
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled()
 def _follow(h: float, x0: float, x1: float, y0: float, y1: float, s: si.Array, c: si.Array) -> None:
     """The finger's bone after a step in which the arm's wanted place goes from 0 to 1."""
     d, k = c[C_DAMPING], c[C_STIFFNESS]
@@ -181,7 +181,7 @@ def _follow(h: float, x0: float, x1: float, y0: float, y1: float, s: si.Array, c
     s[Y], s[VY], _ = slide_by(by, h, s[Y], s[VY], Forces(pull, 0.0, 0.0), arm)
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled()
 def _drag(
     h: float, x0: float, v0: float, start: float, end: float, plant: State, ground: Ground
 ) -> None:
@@ -208,7 +208,7 @@ def _drag(
     s[SKIN_X], s[SKIN_V], s[FRICTION], s[PULL] = place[1], speed[1], friction[1], pull[1]
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled()
 def advance(
     until: int,
     level: int,

@@ -15,11 +15,11 @@ from typing import Annotated, Any
 import numpy as np
 
 from squeezefilm import quantities as si
+from squeezefilm.compiled import announce
 from squeezefilm.contact.asperities import AsperityLaw
 from squeezefilm.contact.finger.skin import Skin
 from squeezefilm.contact.sharing.gas_table import DEEPEST_EXCURSION, FilmTable
 from squeezefilm.errors import ConvergenceError, OutOfRangeError
-from squeezefilm.film.compiled import announce
 
 
 @dataclass(frozen=True, eq=False)

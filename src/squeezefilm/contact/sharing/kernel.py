@@ -10,9 +10,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from squeezefilm import quantities as si
+from squeezefilm.compiled import compiled
 from squeezefilm.contact.asperities import CompiledAsperities
 
 BALANCED, NEEDS_PANEL, PRESSED_THROUGH, OUT_OF_TABLE, UNSETTLED = range(5)
@@ -35,7 +35,7 @@ class CompiledFilms(NamedTuple):
     panels: si.FloatArray
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def bessel(order: int, z: float) -> float:
     """exp(−z) I_order(z) for order 0 or 1 and z ≥ 0: series below 18, asymptotics above."""
     if z < 18.0:
@@ -59,7 +59,7 @@ def bessel(order: int, z: float) -> float:
     return float(total / math.sqrt(2.0 * math.pi * z))
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def _gaussian(h: float, law: si.FloatArray, table: si.FloatArray) -> float:
     t = h / law[2]
     x = (2.0 * t - law[3] - law[4]) / (law[4] - law[3])
@@ -73,7 +73,7 @@ def _gaussian(h: float, law: si.FloatArray, table: si.FloatArray) -> float:
     return float(law[0] * math.exp(table[0] + x * b1 - b2 - law[5]))
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def asperity_mean(asperities: CompiledAsperities, u: float, a: float) -> tuple[float, float]:
     """⟨p_a(u − a cos T)⟩ and its first harmonic 2⟨p_a cos T⟩, in Pa."""
     kind, law, table = asperities
@@ -95,7 +95,7 @@ def asperity_mean(asperities: CompiledAsperities, u: float, a: float) -> tuple[f
     return mean / half, 2.0 * first / half
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def _panel_value(c: si.FloatArray, xi: float, eta: float) -> float:
     """A two-dimensional Chebyshev sum by Clenshaw's recurrence, along η for each row, then ξ."""
     b1, b2 = 0.0, 0.0
@@ -111,7 +111,7 @@ def _panel_value(c: si.FloatArray, xi: float, eta: float) -> float:
     return math.nan
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def film_value(which: int, u: float, a: float, films: CompiledFilms) -> tuple[float, int]:
     """A tabulated film quantity at mean gap u and amplitude a, and the panel that lacks (or −1).
 
@@ -140,7 +140,7 @@ def film_value(which: int, u: float, a: float, films: CompiledFilms) -> tuple[fl
     return scale[1] * value / u, -1
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def _swing(
     a: float,
     u: float,
@@ -196,7 +196,7 @@ def _swing(
     return b, moved, -3
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def _carried(
     u: float,
     amplitudes: si.FloatArray,
@@ -223,7 +223,7 @@ def _carried(
     return gas / count, solid / count, b, moved, -1
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def balance(
     amplitudes: si.FloatArray,
     offsets: si.FloatArray,
@@ -317,7 +317,7 @@ def balance(
     out[STATUS] = BALANCED if settled else UNSETTLED
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def balance_rows(
     amplitude: si.FloatArray,
     pressure: si.FloatArray,

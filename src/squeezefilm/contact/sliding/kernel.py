@@ -11,10 +11,10 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-import numba
 import numpy as np
 
 from squeezefilm import quantities as si
+from squeezefilm.compiled import compiled
 from squeezefilm.contact.sliding.skin_motion import (
     HALVINGS,
     Forces,
@@ -78,7 +78,7 @@ class Track(NamedTuple):
     account: si.Array
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled()
 def at_place(place: float, start: float, spacing: float, profile: si.Array) -> float:
     """The ground's factor (linear between its points, held beyond its ends) at a place (m)."""
     if profile.size == 1:
@@ -89,7 +89,7 @@ def at_place(place: float, start: float, spacing: float, profile: si.Array) -> f
     return float(profile[i] + part * (profile[i + 1] - profile[i]))
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled()
 def slide_march(drive: Drive, skin: Skin, law: Law, ground: Ground, track: Track) -> int:
     """March the skin over all n samples.
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-import numba
+from squeezefilm.compiled import compiled
 
 _ROOT_STEPS = 80
 # Slips shorter than this power of ½ of a substep are not looked for.
@@ -29,7 +29,7 @@ class Forces(NamedTuple):
     slope: float
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled()
 def transition(s: float, skin: Skin) -> Any:
     """What takes (y, ẏ) of the free skin to a time s later: y ← a y + b ẏ, ẏ ← c y + d ẏ."""
     mass, damping, stiffness = skin
@@ -56,7 +56,7 @@ def transition(s: float, skin: Skin) -> Any:
     return even + decay * odd, odd, -omega2 * odd, even - decay * odd
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled()
 def first_rise(a: float, b: float, c: float, span: float) -> float:
     """The first s in [0, span] from which a + b s + c s² is positive, or −1."""
     if a > 0.0:
@@ -74,7 +74,7 @@ def first_rise(a: float, b: float, c: float, span: float) -> float:
     return s if 0.0 <= s <= span else -1.0
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled()
 def slide_by(passed: Any, s: float, x: float, v: float, forces: Forces, skin: Skin) -> Any:
     """Position, speed and acceleration a time s into sliding from x at the speed v.
 
@@ -95,13 +95,13 @@ def slide_by(passed: Any, s: float, x: float, v: float, forces: Forces, skin: Sk
     )
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled()
 def slide_along(s: float, x: float, v: float, forces: Forces, skin: Skin) -> Any:
     """`slide_by` for any time s."""
     return slide_by(transition(s, skin), s, x, v, forces, skin)
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled()
 def end_of_slip(
     passed: Any, span: float, x: float, v: float, sign: float, forces: Forces, skin: Skin
 ) -> float:

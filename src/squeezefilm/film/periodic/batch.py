@@ -19,8 +19,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from squeezefilm import quantities as si
+from squeezefilm.compiled import announce
 from squeezefilm.errors import ConvergenceError, InputError
-from squeezefilm.film.compiled import announce
 from squeezefilm.film.gas import Aim, require_film, slip_law
 from squeezefilm.film.periodic.records import Resolution
 from squeezefilm.film.periodic.resolution import CELLS, TIMES, first_guess, refined, resolution_of

@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from squeezefilm import quantities as si
+from squeezefilm.compiled import announce
 from squeezefilm.errors import InputError
-from squeezefilm.film.compiled import announce
 from squeezefilm.film.gas import Aim, Gas, slip_law
 from squeezefilm.film.periodic.batch import (
     MOST_NEWTON,

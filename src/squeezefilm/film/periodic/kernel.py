@@ -16,9 +16,8 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from numba import njit
-
 from squeezefilm import quantities as si
+from squeezefilm.compiled import compiled
 from squeezefilm.film.gas import NO_SLIP, Aim, Gas
 from squeezefilm.film.mobility import slip_factor
 from squeezefilm.film.periodic.lanes import (
@@ -54,7 +53,7 @@ class _Flow(NamedTuple):
     right: int
 
 
-@njit(nogil=True, cache=True, fastmath=_FAST, error_model="numpy")
+@compiled(fastmath=_FAST, error_model="numpy")
 def _invert(S: si.FloatArray, start: int, nt: int, ntp: int, mask: si.FloatArray) -> None:
     """Invert the nt × nt block at `start` in place, without pivoting.
 
@@ -88,7 +87,7 @@ def _invert(S: si.FloatArray, start: int, nt: int, ntp: int, mask: si.FloatArray
                         store(S, at + v, fma(factor, row, mul(load(S, at + v), keep)))
 
 
-@njit(nogil=True, cache=True, fastmath=_FAST, error_model="numpy")
+@compiled(fastmath=_FAST, error_model="numpy")
 def _apply(
     S: si.FloatArray,
     start: int,
@@ -107,7 +106,7 @@ def _apply(
         store(work, to + v, result)
 
 
-@njit(nogil=True, cache=True, fastmath=_FAST, error_model="numpy")
+@compiled(fastmath=_FAST, error_model="numpy")
 def _coefficients(
     m: int,
     ntp: int,
@@ -188,7 +187,7 @@ def _coefficients(
             work[cr + right] = c * (factor * R_b + bend) * q_b
 
 
-@njit(nogil=True, cache=True, fastmath=_FAST, error_model="numpy")
+@compiled(fastmath=_FAST, error_model="numpy")
 def newton(
     m: int, times: Times, cells: Cells, gap: Gap, gas: Gas, p: si.FloatArray, room: Room, aim: Aim
 ) -> tuple[float, int, float]:
@@ -310,7 +309,7 @@ def newton(
     return over, iteration, remaining
 
 
-@njit(nogil=True, cache=True, fastmath=_FAST, error_model="numpy")
+@compiled(fastmath=_FAST, error_model="numpy")
 def prolong(coarse: si.FloatArray, m: int, ntp: int, closed: bool, fine: si.FloatArray) -> None:
     """Carry m rows of p to the grid with twice the cells, by cubics.
 

@@ -11,9 +11,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from squeezefilm import quantities as si
+from squeezefilm.compiled import compiled
 from squeezefilm.film.gas import Aim, Gas
 from squeezefilm.film.periodic.kernel import newton, prolong
 from squeezefilm.film.periodic.records import Cells, Gap, Resolution, Room
@@ -27,7 +27,7 @@ OVER, ERROR, STIFFNESS, DAMPING, ITERATIONS, RESIDUAL, SPACE, TIME, COARSE, MIDD
 COLUMNS = 12
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def edge_grading(sigma: float, eps: float) -> float:
     """The grading a of the grid map x = ξ (1 + a (1 − ξ²)); a = 1/2 would be quadratic at the edge.
 
@@ -38,7 +38,7 @@ def edge_grading(sigma: float, eps: float) -> float:
     return 0.44 * local / (local + 10.0)
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def load_weights(
     nt: int,
     ntp: int,
@@ -98,7 +98,7 @@ def load_weights(
         s[t] = odd / nt * power
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def grid(
     m: int,
     shape: int,
@@ -135,7 +135,7 @@ def grid(
         share[i] = 2.0 * volume
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def gap(nt: int, ntp: int, eps: float, H: si.FloatArray, H3: si.FloatArray) -> None:
     """H = 1 + ε cos T at the nt times, and its cube; 1 in the padding."""
     for t in range(ntp):
@@ -143,7 +143,7 @@ def gap(nt: int, ntp: int, eps: float, H: si.FloatArray, H3: si.FloatArray) -> N
         H3[t] = H[t] * H[t] * H[t]
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def space_error(
     coarse: float, middle: float, fine: float, sigma: float, eps: float, cells: int, shape: int
 ) -> float:
@@ -169,7 +169,7 @@ def space_error(
     return max(change / 10.0, min(floor, 1.5) * abs(fine - middle))
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def rounding(sigma: float, n: float, over: float) -> float:
     """What double precision leaves of error in the over-pressure, from the scatter of solves.
 
@@ -190,7 +190,7 @@ class Films(NamedTuple):
     shape: int
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def solve_rows(
     start: int,
     stop: int,

@@ -11,9 +11,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from squeezefilm import quantities as si
+from squeezefilm.compiled import compiled
 from squeezefilm.film.gas import Aim, Gas
 from squeezefilm.film.periodic.kernel import newton, prolong
 from squeezefilm.film.periodic.records import Cells, Gap, Resolution, Room
@@ -34,7 +34,7 @@ from squeezefilm.film.periodic.uniform import (
 )
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def _gaps(even: si.FloatArray, odd: si.FloatArray, nt: int, ntp: int, out: si.FloatArray) -> None:
     """H at all points (rows) and nt times from cosine and sine coefficients; padding 1."""
     orders, points = even.shape
@@ -52,7 +52,7 @@ def _gaps(even: si.FloatArray, odd: si.FloatArray, nt: int, ntp: int, out: si.Fl
                 out[j * ntp + t] += even[k, j] * c + odd[k, j] * s
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def _weights(
     even: si.FloatArray,
     odd: si.FloatArray,
@@ -117,7 +117,7 @@ class Profile(NamedTuple):
     closed: bool
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def solve_varying(
     sigma: float,
     gas: Gas,

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from typing import Annotated
 
 from squeezefilm import quantities as si
+from squeezefilm.compiled import announce
 from squeezefilm.errors import ConvergenceError, InputError
-from squeezefilm.film.compiled import announce
 from squeezefilm.film.gas import ISOTHERMAL, FilmGas, require_film
 from squeezefilm.film.planar.balance import Film
 from squeezefilm.film.planar.gap import GapFunction, PlanarGap, require_periodic

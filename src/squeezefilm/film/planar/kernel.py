@@ -9,10 +9,10 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-import numba
 import numpy as np
 
 from squeezefilm import quantities as si
+from squeezefilm.compiled import compiled
 from squeezefilm.film.gas import Gas
 from squeezefilm.film.mobility import mobility
 
@@ -52,7 +52,7 @@ class Balances(NamedTuple):
     column_down: si.Array
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled()
 def assemble(
     m: si.Array, gaps: si.Array, faces: Faces, storage: Storage, gas: Gas, balance: Balances
 ) -> None:
@@ -114,7 +114,7 @@ def assemble(
             diagonal[a, k] += edge_G[g] * (0.5 * slope * drop - value) * dP[a, k]
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled()
 def row_block(
     weight: si.Array,
     D: si.Array,
@@ -147,7 +147,7 @@ def row_block(
             block[b * M + k, a * M + k] += down[g, k]
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled()
 def take_off(block: si.Array, down: si.Array, inverse: si.Array, up: si.Array) -> None:
     """block −= diag(down) · inverse · diag(up)."""
     n = block.shape[0]

@@ -9,10 +9,10 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-import numba
 import numpy as np
 
 from squeezefilm import quantities as si
+from squeezefilm.compiled import compiled
 from squeezefilm.film.gas import Aim, Gas
 from squeezefilm.film.mobility import mobility
 
@@ -49,7 +49,7 @@ class Track(NamedTuple):
     keep: si.Array
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled()
 def implicit_stage(
     m: si.Array,
     held: si.Array,
@@ -146,7 +146,7 @@ def implicit_stage(
 BACKWARD_EULER, SDIRK2, BDF2 = 1, 2, 3
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled()
 def march(
     m: si.Array,
     before: si.Array,

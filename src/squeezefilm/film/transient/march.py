@@ -14,8 +14,8 @@ from typing import Annotated, Any, Literal
 import numpy as np
 
 from squeezefilm import quantities as si
+from squeezefilm.compiled import announce
 from squeezefilm.errors import ConvergenceError, InputError
-from squeezefilm.film.compiled import announce
 from squeezefilm.film.gas import ISOTHERMAL, Aim, FilmGas, Gas, require_film
 from squeezefilm.film.line_grid import Gap, LineGrid, Shape, gap_table, line_grid, mean_over
 from squeezefilm.film.transient.kernel import (

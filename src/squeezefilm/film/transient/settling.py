@@ -12,8 +12,8 @@ from typing import Annotated
 import numpy as np
 
 from squeezefilm import quantities as si
+from squeezefilm.compiled import announce
 from squeezefilm.errors import ConvergenceError
-from squeezefilm.film.compiled import announce
 from squeezefilm.film.gas import ISOTHERMAL, FilmGas, require_film
 from squeezefilm.film.line_grid import Gap, Shape, gap_table, line_grid, mean_over
 from squeezefilm.film.transient.kernel import Gaps, Line, Pace, Track, march

@@ -8,9 +8,8 @@ from __future__ import annotations
 
 import math
 
-import numba
-
 from squeezefilm import quantities as si
+from squeezefilm.compiled import compiled
 
 # Places in the state: the estimate at the last sample used, its covariance, then counters.
 X, V, A = 0, 1, 2
@@ -29,7 +28,7 @@ STEP_USED, STEP_STARTED, STEP_NOT_FINITE, STEP_DUPLICATE, STEP_BACKWARDS, STEP_O
 FRESH, STALLED, EMPTY, PAST, BAD_TIME = range(5)
 
 
-@numba.njit(cache=True, nogil=True, inline="always")
+@compiled(inline="always")
 def _begin(state: si.Array, parameters: si.Array, stamp: float, position: float) -> None:
     state[X], state[V], state[A] = position, 0.0, 0.0
     state[XX] = parameters[POSITION_VARIANCE]
@@ -40,7 +39,7 @@ def _begin(state: si.Array, parameters: si.Array, stamp: float, position: float)
     state[USED] += 1.0
 
 
-@numba.njit(cache=True, nogil=True, inline="always")
+@compiled(inline="always")
 def _ahead(state: si.Array, parameters: si.Array, h: float) -> tuple[float, ...]:
     """Mean and covariance `h` (s) after the last sample used."""
     qa, qj = parameters[ACCELERATION_DENSITY], parameters[JERK_DENSITY]
@@ -64,7 +63,7 @@ def _ahead(state: si.Array, parameters: si.Array, h: float) -> tuple[float, ...]
     return x, v, a, xx, xv, xa, vv, va, aa
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled()
 def motion_step(state: si.Array, parameters: si.Array, stamp: float, position: float) -> int:
     """Take one sample (s, m) into the state, or count why not. Returns one of the STEP codes."""
     if not (math.isfinite(stamp) and math.isfinite(position)):
@@ -119,7 +118,7 @@ def motion_step(state: si.Array, parameters: si.Array, stamp: float, position: f
     return STEP_USED
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled()
 def motion_at(
     state: si.Array, parameters: si.Array, t: float
 ) -> tuple[float, float, float, float, int]:
@@ -144,7 +143,7 @@ def motion_at(
     return x + v * min(h, 0.0), v, math.sqrt(max(xx, 0.0)), math.sqrt(max(vv, 0.0)), FRESH
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled()
 def motion_march(
     state: si.Array,
     parameters: si.Array,

@@ -10,16 +10,15 @@ from __future__ import annotations
 
 import math
 
-import numba
-
 from squeezefilm import quantities as si
+from squeezefilm.compiled import compiled
 from squeezefilm.render import opcodes as op
 from squeezefilm.render.program import layout as at
 from squeezefilm.render.program.lookup import field_noise, image, line_noise
 from squeezefilm.render.texture.noise import STEP_ALONG
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@compiled(error_model="numpy")
 def interpret(
     program: si.Array, memory: si.Array, base: int, x: float, y: float, v: float, t: float
 ) -> float:
@@ -159,7 +158,7 @@ def interpret(
             return math.nan
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@compiled(error_model="numpy")
 def _inverse(program: si.Array, wanted: float) -> float:
     """The amplitude (m) of a relative friction within the table, by bisection."""
     count = int(program[at.H_INVERSE_COUNT])
@@ -178,7 +177,7 @@ def _inverse(program: si.Array, wanted: float) -> float:
     return float((1.0 - share) * first + share * second)
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@compiled(error_model="numpy")
 def _wave_factor(program: si.Array, x: float, y: float) -> float:
     """The wave's local share of its amplitude, linear between the factors of one period."""
     count = int(program[at.H_WAVE_COUNT])
@@ -193,7 +192,7 @@ def _wave_factor(program: si.Array, x: float, y: float) -> float:
     return float((1.0 - f) * program[start + i] + f * program[start + (i + 1) % count])
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@compiled(error_model="numpy")
 def _amplitude(
     program: si.Array, state: si.Array, wanted: float, x: float, y: float
 ) -> tuple[float, int]:
@@ -236,7 +235,7 @@ def _amplitude(
     return float(amplitude), flags
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@compiled(error_model="numpy")
 def tick(program: si.Array, state: si.Array, x: float, y: float, v: float, t: float) -> float:
     """The vibration amplitude (m, zero-to-peak) for one sample of the finger.
 
@@ -293,7 +292,7 @@ def tick(program: si.Array, state: si.Array, x: float, y: float, v: float, t: fl
     return float(amplitude)
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@compiled(error_model="numpy")
 def value_march(
     program: si.Array, memory: si.Array, samples: tuple[si.Array, ...], out: si.Array
 ) -> None:
@@ -303,7 +302,7 @@ def value_march(
         out[i] = interpret(program, memory, 0, x[i], y[i], v[i], t[i])
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@compiled(error_model="numpy")
 def amplitude_march(
     program: si.Array, state: si.Array, samples: tuple[si.Array, ...], out: si.Array
 ) -> None:
@@ -314,7 +313,7 @@ def amplitude_march(
         out[i] = _amplitude(program, state, wanted, x[i], y[i])[0]
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@compiled(error_model="numpy")
 def tick_march(
     program: si.Array,
     state: si.Array,

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import math
 
-import numba
-
 from squeezefilm import quantities as si
+from squeezefilm.compiled import compiled
 from squeezefilm.render.program import layout as at
 from squeezefilm.render.texture.noise import STEP_ACROSS, STEP_ALONG, mixed
 
@@ -17,10 +16,10 @@ _FARTHEST_CELL = 2.0**31
 
 
 # Products may pass 63 bits; the low 32, which alone are kept, are right all the same.
-_mixed = numba.njit(cache=True, nogil=True, error_model="numpy")(mixed)
+_mixed = compiled(error_model="numpy")(mixed)
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@compiled(error_model="numpy")
 def _spline(f: float, a: float, b: float, c: float, d: float) -> float:
     g = 1.0 - f
     return (
@@ -31,7 +30,7 @@ def _spline(f: float, a: float, b: float, c: float, d: float) -> float:
     )
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@compiled(error_model="numpy")
 def line_noise(u: float, seed: int, step: int) -> float:
     if not abs(u) < _FARTHEST_CELL:
         return math.nan
@@ -48,7 +47,7 @@ def line_noise(u: float, seed: int, step: int) -> float:
     )
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@compiled(error_model="numpy")
 def field_noise(u: float, w: float, seed: int) -> float:
     if not abs(u) < _FARTHEST_CELL:
         return math.nan
@@ -65,7 +64,7 @@ def field_noise(u: float, w: float, seed: int) -> float:
     )
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@compiled(error_model="numpy")
 def image(program: si.Array, pc: int, x: float, y: float) -> float:
     start = int(program[at.H_TABLES]) + int(program[pc])
     rows, columns = int(program[pc + 1]), int(program[pc + 2])

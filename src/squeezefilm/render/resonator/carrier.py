@@ -10,16 +10,15 @@ from __future__ import annotations
 
 import math
 
-import numba
-
 from squeezefilm import quantities as si
+from squeezefilm.compiled import compiled
 from squeezefilm.errors import InputError
 
 DAC_RATE: si.Hertz = 192e3
 """Rate of common sound converters that reach an ultrasonic carrier (Hz)."""
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled()
 def carrier_block(
     phase: float, advance: float, command: si.Array, samples: int, gain: float, out: si.Array
 ) -> float:

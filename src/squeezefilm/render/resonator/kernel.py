@@ -9,10 +9,10 @@ from __future__ import annotations
 
 import math
 
-import numba
 import numpy as np
 
 from squeezefilm import quantities as si
+from squeezefilm.compiled import compiled
 
 # Places in a compensator's state: the amplitude it takes the resonator to have, then counters.
 AMPLITUDE, SAMPLES, AT_TOP, AT_BOTTOM, NOT_FINITE = range(5)
@@ -24,14 +24,14 @@ PARAMETERS_SIZE = 4
 FOLLOWS, TOPPED, BOTTOMED, SILENT = range(4)
 
 
-@numba.njit(cache=True, nogil=True, inline="always")
+@compiled(inline="always")
 def envelope_step(amplitude: float, command: float, keep_rise: float, keep_fall: float) -> float:
     """The amplitude one step later under a command held."""
     keep = keep_rise if command > amplitude else keep_fall
     return command + (amplitude - command) * keep
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled()
 def envelope_march(
     command: si.Array, initial: float, keep_rise: float, keep_fall: float, amplitude: si.Array
 ) -> None:
@@ -42,7 +42,7 @@ def envelope_march(
         a = envelope_step(a, command[k], keep_rise, keep_fall)
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled()
 def compensated_step(state: si.Array, parameters: si.Array, wanted: float) -> tuple[float, int]:
     """The command that brings the amplitude to `wanted` in one step, or nearest to it.
 
@@ -71,7 +71,7 @@ def compensated_step(state: si.Array, parameters: si.Array, wanted: float) -> tu
     return command, code
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled()
 def compensated_march(
     state: si.Array, parameters: si.Array, wanted: si.Array, command: si.Array, code: si.Array
 ) -> None:
@@ -82,7 +82,7 @@ def compensated_march(
         )
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled()
 def _least_place(places: si.Array, slopes: si.Array, knots: int) -> float:
     """Where a rising piecewise linear slope crosses zero, or the end nearest to it."""
     if slopes[0] >= 0.0:
@@ -94,7 +94,7 @@ def _least_place(places: si.Array, slopes: si.Array, knots: int) -> float:
     return float(places[knots - 1])
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled()
 def previewed_step(
     state: si.Array, parameters: si.Array, wanted: si.Array, work: si.Array
 ) -> tuple[float, int]:
@@ -155,7 +155,7 @@ def previewed_step(
     return compensated_step(state, parameters, goal)
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled()
 def previewed_march(
     state: si.Array,
     parameters: si.Array,
@@ -173,7 +173,7 @@ def previewed_march(
         command[k], code[k] = previewed_step(state, parameters, window, work)
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled()
 def previewed_windows(
     state: si.Array,
     parameters: si.Array,

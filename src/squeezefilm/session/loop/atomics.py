@@ -17,6 +17,7 @@ from numba.core import cgutils
 from numba.extending import intrinsic
 
 from squeezefilm import quantities as si
+from squeezefilm.compiled import compiled
 
 _INT64_BYTES = 8
 _item_pointer: Any = cgutils.get_item_pointer
@@ -62,12 +63,12 @@ if numba.config.DISABLE_JIT:  # type: ignore[attr-defined]
 
 else:
 
-    @numba.njit(cache=True, nogil=True)
+    @compiled()
     def load_acquire(array: si.Array, index: int) -> int:
         """`array[index]` of an int64 array; no later access is done before it."""
         return _load_acquire(array, index)  # type: ignore[call-arg]
 
-    @numba.njit(cache=True, nogil=True)
+    @compiled()
     def store_release(array: si.Array, index: int, value: int) -> None:
         """`array[index] = value` in an int64 array; no earlier access is done after it."""
         _store_release(array, index, value)  # type: ignore[call-arg]

@@ -18,6 +18,7 @@ import numpy as np
 from numba import types
 
 from squeezefilm import quantities as si
+from squeezefilm.compiled import compiled
 
 _MONOTONIC, _THREAD_CPU_TIME, _ABSOLUTE = 1, 3, 1
 _SECOND_NS = 1_000_000_000
@@ -49,21 +50,21 @@ def new_timespec() -> si.Array:
     return np.zeros(2, dtype=np.int64)
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled()
 def monotonic_ns(timespec: si.Array) -> int:
     """CLOCK_MONOTONIC (ns). Needs `COMPILED_CLOCK`."""
     _clock_gettime(_MONOTONIC, timespec.ctypes.data)
     return int(timespec[0] * _SECOND_NS + timespec[1])
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled()
 def thread_cpu_ns(timespec: si.Array) -> int:
     """Processor time of the calling thread (ns). Needs `COMPILED_CLOCK`."""
     _clock_gettime(_THREAD_CPU_TIME, timespec.ctypes.data)
     return int(timespec[0] * _SECOND_NS + timespec[1])
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled()
 def sleep_until_ns(timespec: si.Array, when: int) -> None:
     """Sleep until CLOCK_MONOTONIC is `when` (ns); a signal ends it. Needs `COMPILED_CLOCK`."""
     timespec[0] = when // _SECOND_NS
@@ -71,7 +72,7 @@ def sleep_until_ns(timespec: si.Array, when: int) -> None:
     _clock_nanosleep(_MONOTONIC, _ABSOLUTE, timespec.ctypes.data, 0)
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled()
 def parent_id() -> int:
     """The process that started this one, or who took it over. Needs `COMPILED_CLOCK`."""
     return int(_getppid())

@@ -7,11 +7,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
 from squeezefilm import quantities as si
+from squeezefilm.compiled import compiled
 from squeezefilm.errors import InputError
 from squeezefilm.results import to_json
 
@@ -22,7 +22,7 @@ CLASSES = CLASSES_PER_DECADE * _DECADES + 2
 """Classes of the histogram: below 100 ns, 20 per decade up to 10 s, and above."""
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled()
 def lateness_class(late: float) -> int:
     """The class of the histogram that a lateness (ns) falls into."""
     if not late >= _FIRST_NS:

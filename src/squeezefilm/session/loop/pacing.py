@@ -17,9 +17,8 @@ import os
 import time
 from typing import Any
 
-import numba
-
 from squeezefilm import quantities as si
+from squeezefilm.compiled import compiled
 from squeezefilm.session.loop import clock, shared
 from squeezefilm.session.loop import plan as at
 from squeezefilm.session.loop import rows as column
@@ -35,13 +34,13 @@ _SECOND_NS = 1e9
 _PARENT_LOOKED_AT_NS = 5_000_000
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled()
 def due_ns(number: int, period: float) -> int:
     """When a tick is due (ns after tick 0) at a period (s); exact to 1 ns for 10⁶ s."""
     return int(number * period * _SECOND_NS + 0.5)
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled()
 def make_due_tick(arrays: Any, memory: Any, now: int) -> int:
     """Make the latest tick that is due at `now` (ns after tick 0), and account for it.
 
@@ -74,7 +73,7 @@ def make_due_tick(arrays: Any, memory: Any, now: int) -> int:
     return 1
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled()
 def silence(arrays: Any, control: si.Array, now: int, timeout: int) -> None:
     """Say to the next tick whether the host muted the loop, or has not been heard for too long."""
     reasons = 0
@@ -85,7 +84,7 @@ def silence(arrays: Any, control: si.Array, now: int, timeout: int) -> None:
     arrays.memory[at.SILENCED] = float(reasons)
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled()
 def compiled_loop(
     arrays: Any, memory: Any, timespec: si.Array, margin: int, timeout: int, parent: int
 ) -> None:

@@ -10,9 +10,8 @@ wrap within the life of anything (2^63 rows).
 
 from __future__ import annotations
 
-import numba
-
 from squeezefilm import quantities as si
+from squeezefilm.compiled import compiled
 from squeezefilm.session.loop.atomics import load_acquire, store_release
 
 # Written by the writer (HEAD, DROPPED) and by the reader (TAIL), on cache lines of their own.
@@ -20,7 +19,7 @@ HEAD, DROPPED, TAIL = 0, 1, 16
 COUNTERS_SIZE = 32
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled()
 def ring_put(counters: si.Array, rows: si.Array, row: si.Array) -> bool:
     """Append a row; False, and one more dropped, if the ring is full.
 
@@ -37,7 +36,7 @@ def ring_put(counters: si.Array, rows: si.Array, row: si.Array) -> bool:
     return True
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled()
 def ring_take(counters: si.Array, rows: si.Array, out: si.Array) -> int:
     """Move the oldest rows into `out`, shape (n, width); returns how many, at most n."""
     tail = counters[TAIL]
@@ -50,7 +49,7 @@ def ring_take(counters: si.Array, rows: si.Array, out: si.Array) -> int:
     return int(count)
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled()
 def ring_put_all(counters: si.Array, rows: si.Array, block: si.Array) -> int:
     """Append the rows of a block, shape (n, width), as far as they fit; returns how many did."""
     for k in range(block.shape[0]):
@@ -60,7 +59,7 @@ def ring_put_all(counters: si.Array, rows: si.Array, block: si.Array) -> int:
     return int(block.shape[0])
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled()
 def ring_waiting(counters: si.Array) -> int:
     """How many rows wait to be read."""
     return int(load_acquire(counters, HEAD) - load_acquire(counters, TAIL))

@@ -6,10 +6,10 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-import numba
 import numpy as np
 
 from squeezefilm import quantities as si
+from squeezefilm.compiled import compiled
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import SIMULATED_TICKS, require_within
 from squeezefilm.render.motion.sensor import SensorStream
@@ -23,7 +23,7 @@ from squeezefilm.session.loop.rows import COLUMNS, COMMAND_COLUMNS, MUTED, SAMPL
 from squeezefilm.session.loop.shared import private_views
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled()
 def _advance(arrays: Any, memory: Any, until: int) -> None:
     """Make every tick that is due before `until` (ns after tick 0), each on time."""
     control, period = memory.control, arrays.settings[at.DT]
@@ -34,7 +34,7 @@ def _advance(arrays: Any, memory: Any, until: int) -> None:
         make_due_tick(arrays, memory, due)
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled()
 def _march(
     arrays: Any,
     memory: Any,

@@ -11,9 +11,8 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import numba
-
 from squeezefilm import quantities as si
+from squeezefilm.compiled import compiled
 from squeezefilm.render.motion import kernel as motion_kernel
 from squeezefilm.render.motion.kernel import motion_at, motion_step
 from squeezefilm.render.program import layout
@@ -26,7 +25,7 @@ from squeezefilm.session.loop.ring import DROPPED, ring_put, ring_take
 from squeezefilm.session.loop.shared import SAMPLES
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@compiled(error_model="numpy")
 def interpolated(places: si.Array, values: si.Array, place: float) -> float:
     """The value at a place, linear between knots that rise; held beyond the ends, NaN without."""
     last = places.size - 1
@@ -45,7 +44,7 @@ def interpolated(places: si.Array, values: si.Array, place: float) -> float:
     return float(values[low] + max(share, 0.0) * (values[high] - values[low]))
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@compiled(error_model="numpy")
 def _listen(arrays: Any, sample: si.Array) -> int:
     """Take one finger sample into the estimators; returns flags."""
     memory = arrays.memory
@@ -75,7 +74,7 @@ def _listen(arrays: Any, sample: si.Array) -> int:
     return column.REJECTED_SAMPLE
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@compiled(error_model="numpy")
 def _pass_lost_ticks(arrays: Any, lost: int) -> None:
     """What the envelope did while no command came: it followed the last, or the drive stopped."""
     state, envelope, settings = arrays.compensator, arrays.envelope, arrays.settings
@@ -89,7 +88,7 @@ def _pass_lost_ticks(arrays: Any, lost: int) -> None:
     state[place] = held + (amplitude - held) * keep**lost
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@compiled(error_model="numpy")
 def _commanded(arrays: Any, wanted: float, silent: bool) -> tuple[float, int]:
     """The amplitude to command for one that is wanted (m), and flags."""
     state, envelope = arrays.compensator, arrays.envelope
@@ -111,7 +110,7 @@ def _commanded(arrays: Any, wanted: float, silent: bool) -> tuple[float, int]:
     return command, column.AT_TOP if wanted > top else 0
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@compiled(error_model="numpy")
 def _wanted(arrays: Any, meant: float) -> tuple[float, bool, int]:
     """The amplitude wanted at the moment a command is meant for (m), whether the output is to be
     silent, and flags."""
@@ -129,7 +128,7 @@ def _wanted(arrays: Any, meant: float) -> tuple[float, bool, int]:
     return wanted, False, int(arrays.render_state[layout.S_FLAGS])
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@compiled(error_model="numpy")
 def _driven(arrays: Any, command: float) -> tuple[float, float, int]:
     """The command that may be given (m), its voltage (V), and flags."""
     volts = math.copysign(
@@ -146,7 +145,7 @@ def _driven(arrays: Any, command: float) -> tuple[float, float, int]:
     return 0.0, 0.0, column.REFUSED_COMMAND
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@compiled(error_model="numpy")
 def make_tick(arrays: Any, shared: Any, number: int, lateness: float, lost: int) -> int:
     """Make the tick of a number, `lateness` (s) after it was due, with `lost` ones just before.
 

@@ -12,10 +12,10 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from squeezefilm import quantities as si
+from squeezefilm.compiled import compiled
 
 BoolArray = NDArray[np.bool_]
 
@@ -46,7 +46,7 @@ class Model(NamedTuple):
     beta: si.FloatArray
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def sigmoid(shape: int, z: float) -> tuple[float, float, float]:
     """S, 1 − S and dS/dz of a shape at z = (x − m)/width; S(0) = ½, from 5 to 95 % over Δz = 1."""
     if shape == 0:
@@ -74,7 +74,7 @@ def sigmoid(shape: int, z: float) -> tuple[float, float, float]:
     return 2 / math.pi * up, 2 / math.pi * down, slope
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def probabilities(shape: int, theta: si.FloatArray, x: si.FloatArray) -> si.FloatArray:
     """ψ = γ + (1 − γ − λ) S at the places x, shape of x."""
     out = np.empty(x.size)
@@ -85,7 +85,7 @@ def probabilities(shape: int, theta: si.FloatArray, x: si.FloatArray) -> si.Floa
     return out
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def log_density(
     shape: int,
     theta: si.FloatArray,
@@ -113,7 +113,7 @@ def log_density(
     return total
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def _derivatives(
     shape: int,
     theta: si.FloatArray,
@@ -151,7 +151,7 @@ def _derivatives(
         information[2 + j, 2 + j] += a1 / near**2 + b1 / far**2
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def _solve(matrix: si.FloatArray, right: si.FloatArray, size: int) -> bool:
     """Cholesky in place on the lower triangle; False where the matrix is not positive."""
     for i in range(size):
@@ -176,7 +176,7 @@ def _solve(matrix: si.FloatArray, right: si.FloatArray, size: int) -> bool:
     return True
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def maximise(
     model: Model, theta: si.FloatArray, x: si.FloatArray, k: si.FloatArray, n: si.FloatArray
 ) -> float:
@@ -233,7 +233,7 @@ def maximise(
     return value
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def saturated(k: si.FloatArray, n: si.FloatArray) -> float:
     """ln likelihood of the model that has a probability of its own for every place."""
     total = 0.0
@@ -243,7 +243,7 @@ def saturated(k: si.FloatArray, n: si.FloatArray) -> float:
     return total
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def refit(
     model: Model,
     best: si.FloatArray,
@@ -266,7 +266,7 @@ def refit(
         deviances[row] = 2.0 * (saturated(k, n) - log_density(model.shape, theta, flat, x, k, n))
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def profile_drops(
     model: Model,
     held: si.FloatArray,
@@ -292,7 +292,7 @@ def profile_drops(
         drops[row] = 2.0 * (top - bottom)
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def grid_log_likelihood(
     shape: int,
     thresholds: si.FloatArray,

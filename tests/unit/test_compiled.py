@@ -1,0 +1,88 @@
+"""What is compiled is kept on disk, and compiled again when something that it took has changed."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from squeezefilm.compiled import compiled
+
+KERNEL = """
+from squeezefilm.compiled import compiled
+from {records} import Pair
+from helper import STEP, twice
+
+@compiled(error_model="numpy")
+def total(pair: Pair) -> float:
+    return twice(pair.one) + STEP * pair.two
+"""
+HELPER = """
+from squeezefilm.compiled import compiled
+STEP = {step}
+
+@compiled()
+def twice(value: float) -> float:
+    return {factor} * value
+"""
+RECORD = "from typing import NamedTuple\n\nclass Pair(NamedTuple):\n    one: float\n    two: float\n"
+RUN = """
+import sys
+from kernel import Pair, total
+value = total(Pair(1.0, 10.0))
+print(value, sum(total.stats.cache_hits.values()))
+"""
+
+
+def answer(folder: Path, records: str = "records", step: int = 1, factor: int = 2) -> str:
+    """What a new process finds, and how often it took what is on disk."""
+    files = {
+        "kernel.py": KERNEL.format(records=records),
+        "helper.py": HELPER.format(step=step, factor=factor),
+        f"{records}.py": RECORD,
+    }
+    for old in folder.glob("*.py"):
+        if old.name not in files:
+            old.unlink()
+    for name, text in files.items():
+        if not (folder / name).exists() or (folder / name).read_text() != text:
+            (folder / name).write_text(text)
+    done = subprocess.run(
+        [sys.executable, "-c", RUN],
+        cwd=folder,
+        env=os.environ | {"PYTHONDONTWRITEBYTECODE": "1"},
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout.strip()
+
+
+def test_a_cache_is_used_until_something_changes(tmp_path: Path) -> None:
+    assert answer(tmp_path) == "12.0 0"
+    assert answer(tmp_path) == "12.0 1", "nothing changed and it was compiled again"
+    # In another file than the kernel's own: a constant, and a function that was compiled in.
+    assert answer(tmp_path, step=3) == "32.0 0"
+    assert answer(tmp_path, step=3, factor=5) == "35.0 0"
+    # A record that moved: what is on disk names a module that is no longer there.
+    assert answer(tmp_path, "elsewhere", step=3, factor=5) == "35.0 0"
+    assert answer(tmp_path, "elsewhere", step=3, factor=5) == "35.0 1"
+
+
+def test_options_are_numbas() -> None:
+    @compiled(error_model="numpy")
+    def ratio(one: float, other: float) -> float:
+        return one / other
+
+    @compiled()
+    def strict(one: float, other: float) -> float:
+        return one / other
+
+    assert ratio(1.0, 0.0) == float("inf")
+    with pytest.raises(ZeroDivisionError):
+        strict(1.0, 0.0)
