@@ -110,7 +110,7 @@ def test_a_session_that_failed_ends_with_1(play: SimpleNamespace) -> None:
 
 def test_an_export_says_what_was_written(stands_in: StandsIn, tmp_path: Path) -> None:
     exported = TraceExport("a.sqft", "a.csv", "csv", 7, ("time_s", "x_m"), 2, 0, True, ("cut",))
-    asked = stands_in("session.record.export:export_trace", exported)
+    asked = stands_in("session.record.trace:export_trace", exported)
     done = run("export", "a.sqft", "--to", "a.csv")
     assert asked.given == (Path("a.sqft"), Path("a.csv"))
     assert done.stdout == "a.csv: 7 rows of 2 columns, 2 events\n! cut\n"
