@@ -32,30 +32,30 @@ def compiled(**options: Any) -> Callable[[F], F]:
 
     def compile_function(function: F) -> F:
         dispatcher = njit(nogil=True, cache=True, **options)(function)
-        dispatcher._cache = _Cache(function)
+        cast(Any, dispatcher)._cache = _Cache(function)
         return cast(F, dispatcher)
 
     return compile_function
 
 
-class _Cache(FunctionCache):  # type: ignore[misc]
+class _Cache(FunctionCache):
     """numba's cache of one function, also stamped with what it takes from other files."""
 
     def __init__(self, function: Callable[..., Any]) -> None:
-        super().__init__(function)
+        super().__init__(function)  # type: ignore[no-untyped-call]
         used = [function.__globals__.get(name) for name in function.__code__.co_names]
         said = [self._cache_file._source_stamp]
-        said += [one._cache.stamp for one in used if isinstance(one, Dispatcher)]
+        said += [cast(Any, one)._cache.stamp for one in used if isinstance(one, Dispatcher)]
         said += [one for one in used if isinstance(one, bool | int | float | str | tuple)]
         self.stamp = self._cache_file._source_stamp = blake2b(repr(said).encode()).hexdigest()
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """What was compiled before, or None where nothing is kept that can be used."""
         try:
-            return super().load_overload(sig, target_context)
+            return super().load_overload(sig, target_context)  # type: ignore[no-untyped-call]
         except (ImportError, AttributeError) as error:
             _log.info("compiled again, since its cache is another version's: %s", error)
-            self.flush()
+            self.flush()  # type: ignore[no-untyped-call]
             return None
 
 

@@ -28,7 +28,13 @@ STEP = {step}
 def twice(value: float) -> float:
     return {factor} * value
 """
-RECORD = "from typing import NamedTuple\n\nclass Pair(NamedTuple):\n    one: float\n    two: float\n"
+RECORD = """
+from typing import NamedTuple
+
+class Pair(NamedTuple):
+    one: float
+    two: float
+"""
 RUN = """
 import sys
 from kernel import Pair, total
