@@ -110,7 +110,7 @@ def test_a_session_on_a_pseudo_terminal(device: DeviceOnPty, host: DeviceHost) -
     print(f"round trip on a pty: mean {statistics.mean_round_trip * 1e3:.2f} ms")
 
 
-@pytest.mark.parametrize("what", ["poll", "pump", "stop", "keep_alive"])
+@pytest.mark.parametrize("what", ["poll", "pump", "stop"])
 def test_unplugging_is_told_and_never_hangs(
     device: DeviceOnPty, host: DeviceHost, what: str
 ) -> None:

@@ -196,8 +196,8 @@ def test_thin_piezoelectric_disc_in_its_radial_mode() -> None:
     section = AnnularSection((RingLayer(0, radius, 0, h, solid),))
     nu, c_p = ceramic.in_plane_poisson_ratio, ceramic.in_plane_stiffness
     e_p = ceramic.effective_stress_coefficient
-    c, e = solid.stiffness, solid.piezoelectric
-    epsilon = solid.permittivity[2] + e[2, 2] ** 2 / c[2, 2]  # free across the thickness
+    c, e = solid.stiffness, solid.stress_matrix
+    epsilon = solid.permittivity[2, 2] + e[2, 2] ** 2 / c[2, 2]  # free across the thickness
     nu = 4.78 / 16.5
     root = brentq(lambda x: x * special.j0(x) - (1 - nu) * special.j1(x), 1.5, 2.5)
     expected = root / (2 * math.pi * radius) * math.sqrt(c_p / ceramic.density)
@@ -408,7 +408,7 @@ def sector_frequencies(
     entries += [-math.sin(end)] * slaves.size
     T = sparse.coo_matrix((entries, (rows, columns)), shape=(n, free.size)).tocsr()
     K, M = (T.T @ K @ T).tocsc(), (T.T @ M @ T).tocsc()
-    electric = np.array([k for k, s in enumerate(solids) if s.piezoelectric is not None])
+    electric = np.array([k for k, s in enumerate(solids) if s.piezoelectric])
     if electric.size:
         scalar = skfem.Basis(mesh, skfem.ElementHex2(), intorder=6, elements=electric)
         vector = skfem.Basis(mesh, element, intorder=6, elements=electric)
@@ -418,15 +418,15 @@ def sector_frequencies(
         def coupling(u: Any, p: Any, w: Any) -> Any:
             su, dp = strain(u), grad(p)
             return sum(
-                solid.piezoelectric[k, i] * su[i] * dp[k]
+                solid.stress_matrix[k, i] * su[i] * dp[k]
                 for k in range(3)
                 for i in range(6)
-                if solid.piezoelectric[k, i]
+                if solid.stress_matrix[k, i]
             )
 
         @skfem.BilinearForm
         def dielectric(u: Any, p: Any, w: Any) -> Any:
-            return sum(solid.permittivity[k] * grad(u)[k] * grad(p)[k] for k in range(3))
+            return sum(solid.permittivity[k, k] * grad(u)[k] * grad(p)[k] for k in range(3))
 
         G, D = coupling.assemble(vector, scalar).tocsr(), dielectric.assemble(scalar).tocsr()
         Y = scalar.doflocs
