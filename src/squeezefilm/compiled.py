@@ -15,10 +15,6 @@ from hashlib import blake2b
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
-from numba import njit
-from numba.core.caching import FunctionCache
-from numba.core.dispatcher import Dispatcher
-
 F = TypeVar("F", bound=Callable[..., Any])
 
 _log = logging.getLogger(__name__)
@@ -30,33 +26,43 @@ def compiled(**options: Any) -> Callable[[F], F]:
     `options` are those of numba's ``njit``, like ``error_model="numpy"``.
     """
 
+    from numba import njit
+
     def compile_function(function: F) -> F:
-        dispatcher = njit(nogil=True, cache=True, **options)(function)
-        cast(Any, dispatcher)._cache = _Cache(function)
+        dispatcher: Any = njit(nogil=True, cache=True, **options)(function)
+        dispatcher._cache = _cache_type()(function)
         return cast(F, dispatcher)
 
     return compile_function
 
 
-class _Cache(FunctionCache):
-    """numba's cache of one function, also stamped with what it takes from other files."""
+@lru_cache(maxsize=1)
+def _cache_type() -> Any:
+    """numba's cache of one function, also stamped with what it takes from other files.
 
-    def __init__(self, function: Callable[..., Any]) -> None:
-        super().__init__(function)  # type: ignore[no-untyped-call]
-        used = [function.__globals__.get(name) for name in function.__code__.co_names]
-        said = [self._cache_file._source_stamp]
-        said += [cast(Any, one)._cache.stamp for one in used if isinstance(one, Dispatcher)]
-        said += [one for one in used if isinstance(one, bool | int | float | str | tuple)]
-        self.stamp = self._cache_file._source_stamp = blake2b(repr(said).encode()).hexdigest()
+    Made when something is compiled: whoever only says that it will be does not load numba.
+    """
+    from numba.core.caching import FunctionCache
+    from numba.core.dispatcher import Dispatcher
 
-    def load_overload(self, sig: Any, target_context: Any) -> Any:
-        """What was compiled before, or None where nothing is kept that can be used."""
-        try:
-            return super().load_overload(sig, target_context)  # type: ignore[no-untyped-call]
-        except (ImportError, AttributeError) as error:
-            _log.info("compiled again, since its cache is another version's: %s", error)
-            self.flush()  # type: ignore[no-untyped-call]
-            return None
+    class Cache(FunctionCache):
+        def __init__(self, function: Callable[..., Any]) -> None:
+            super().__init__(function)  # type: ignore[no-untyped-call]
+            used = [function.__globals__.get(name) for name in function.__code__.co_names]
+            called: list[Any] = [one for one in used if isinstance(one, Dispatcher)]
+            said = [self._cache_file._source_stamp, *(one._cache.stamp for one in called)]
+            said += [one for one in used if isinstance(one, bool | int | float | str | tuple)]
+            self.stamp = self._cache_file._source_stamp = blake2b(repr(said).encode()).hexdigest()
+
+        def load_overload(self, sig: Any, target_context: Any) -> Any:
+            try:
+                return super().load_overload(sig, target_context)  # type: ignore[no-untyped-call]
+            except (ImportError, AttributeError) as error:
+                _log.info("compiled again, since its cache is another version's: %s", error)
+                self.flush()  # type: ignore[no-untyped-call]
+                return None
+
+    return Cache
 
 
 @lru_cache(maxsize=16)

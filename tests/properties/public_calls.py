@@ -125,7 +125,7 @@ NOT_CALLED = {
     film.periodic.solution.assembled
     """,
     "no number but the index of what its other arguments hold, or an array the package made": """
-    contact.sharing.gas_table.FilmTable.build compiled.announce
+    contact.sharing.gas_table.FilmTable.build
     plate.solid.volume.PlateVolume.displacement plate.solid.volume.PlateVolume.potential
     plate.solid.volume.harmonic_fields plate.solid.volume.mode_fields
     plate.solid.volume.plate_volume render.texture.coordinate.Coordinate.at

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import inspect
+import logging
 import os
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
-from squeezefilm.compiled import compiled
+from squeezefilm.compiled import announce, compiled
+from squeezefilm.film.periodic.batch import solve_films
 
 KERNEL = """
 from squeezefilm.compiled import compiled
@@ -92,3 +96,19 @@ def test_options_are_numbas() -> None:
     assert ratio(1.0, 0.0) == float("inf")
     with pytest.raises(ZeroDivisionError):
         strict(1.0, 0.0)
+
+
+def test_the_first_compile_is_announced(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+    dispatcher = SimpleNamespace(
+        stats=SimpleNamespace(cache_path=str(tmp_path)),
+        py_func=inspect.unwrap(solve_films),
+        __name__="solve_rows",
+    )
+    with caplog.at_level(logging.INFO, logger="squeezefilm"):
+        announce.__wrapped__(dispatcher, "film solver", 20)
+    assert "compiling the film solver" in caplog.text
+    caplog.clear()
+    (tmp_path / "batch.solve_films-1.py311.nbi").touch()
+    with caplog.at_level(logging.INFO, logger="squeezefilm"):
+        announce.__wrapped__(dispatcher, "film solver", 20)
+    assert caplog.text == ""

@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-import inspect
-import logging
 import subprocess
 import sys
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from squeezefilm.errors import ConvergenceError, GeometryError, InputError, UnreachableError
-from squeezefilm.film import compiled
 from squeezefilm.film.gas import MOST_SQUEEZE_NUMBER
 from squeezefilm.film.periodic import batch, film
 from squeezefilm.film.periodic.balance import VibratedFilm, mean_gap_for_load
@@ -189,22 +185,6 @@ def test_load_balance_of_a_narrow_ridge():
     # At σ far below 1 the over-pressure is of second order and tiny over most of the search.
     balance = mean_gap_for_load(VibratedFilm(2e-6, 40e3, 250e-6, polytropic_exponent=1.2), 1e3)
     assert balance.mean_load_pressure == pytest.approx(1e3, rel=1e-3)
-
-
-def test_the_first_compile_is_announced(tmp_path, caplog):
-    dispatcher = SimpleNamespace(
-        stats=SimpleNamespace(cache_path=str(tmp_path)),
-        py_func=inspect.unwrap(solve_films),
-        __name__="solve_rows",
-    )
-    with caplog.at_level(logging.INFO, logger="squeezefilm"):
-        compiled.announce.__wrapped__(dispatcher, "film solver", 20)
-    assert "compiling the film solver" in caplog.text
-    caplog.clear()
-    (tmp_path / "batch.solve_films-1.py311.nbi").touch()
-    with caplog.at_level(logging.INFO, logger="squeezefilm"):
-        compiled.announce.__wrapped__(dispatcher, "film solver", 20)
-    assert caplog.text == ""
 
 
 def test_importing_the_film_imports_neither_scipy_nor_numba():
