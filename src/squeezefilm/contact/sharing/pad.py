@@ -132,7 +132,8 @@ def pad_friction(
             )
             for one in a
         ]
-        lean, weight = np.ones(1), np.ones(1)
+        # Each balance is already one number, the mean over all ridges.
+        lean, weight = np.ones(()), np.ones(())
     else:
         reach = float(np.max(np.abs(points)))
         lean = 1 + posture.pressure_tilt * points / reach if reach > 0 else np.ones_like(points)

@@ -103,7 +103,8 @@ def mean_gap_for_load(
     `tolerance` is relative, on the load. Searched for 0.001 ≤ ε ≤ 0.95.
 
     Raises `InputError` for values that no film has and `UnreachableError` for a load above what
-    the film carries at ε = 0.95 (see `levitation_limit`) or below that at ε = 0.001.
+    the film carries at ε = 0.95 or below that at ε = 0.001. As ε → 1 the load grows without bound;
+    what ends levitation is contact of the asperities.
     """
     grid, rough = _searched(film, load, tolerance)
     found = _balanced(film, load, grid, rough, tolerance)

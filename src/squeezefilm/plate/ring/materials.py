@@ -23,6 +23,8 @@ def require_decoupled(solid: Medium) -> None:
     c, e = solid.stiffness, solid.stress_matrix
     si.require("stiffness", c, si.Unit("Pa"))
     si.require("density", solid.density, si.Unit("kg/m3"), above=0)
+    if solid.loss is not None:
+        si.require("loss", solid.loss, at_least=0, below=2)
     if c.shape != (6, 6) or not np.allclose(c, c.T, rtol=1e-9, atol=1e-9 * np.abs(c).max()):
         raise InputError(f"the stiffness of {solid.name} must be a symmetric 6 × 6 array")
     if np.linalg.eigvalsh(c)[0] < -1e-9 * np.abs(c).max():
@@ -38,6 +40,7 @@ def require_decoupled(solid: Medium) -> None:
     si.require("piezoelectric", e, si.Unit("C/m2"))
     if solid.permittivity is None:
         raise InputError(f"{solid.name} is piezoelectric; give its clamped permittivity too")
+    si.require("permittivity", np.diag(solid.permittivity), si.Unit("F/m"), above=0)
     if np.any(e[np.ix_([0, 2], odd)]) or np.any(e[np.ix_([1], even)]):
         raise InputError(
             f"{solid.name} must be poled along z (or r): its couplings to θz and rθ shear "

@@ -166,6 +166,7 @@ def test_ridges_on_one_gap_lean_with_the_pad(table: FilmTable) -> None:
         assert found.film_pressure[i] == tied.gas_pressure
         assert found.asperity_pressure[i] == tied.asperity_pressure
         assert found.relative_friction_error[i] == tied.relative_friction_error
+    assert found.relative_friction_error.shape == found.relative_friction.shape == (2,)
     assert (found.limit, found.ridge_points) == ("one-gap", 3)
     assert "one mean gap" in found.model or "tied" in found.model
 
