@@ -17,12 +17,13 @@ from squeezefilm.film.periodic.batch import solve_films
 
 KERNEL = """
 from squeezefilm.compiled import compiled
+import constants as at
 from {records} import Pair
 from helper import STEP, twice
 
 @compiled(error_model="numpy")
 def total(pair: Pair) -> float:
-    return twice(pair.one) + STEP * pair.two
+    return twice(pair.one) + STEP * pair.two + at.SHIFT
 """
 HELPER = """
 from squeezefilm.compiled import compiled
@@ -36,23 +37,31 @@ RECORD = """
 from typing import NamedTuple
 
 class Pair(NamedTuple):
-    one: float
-    two: float
+    {first}: float
+    {second}: float
 """
 RUN = """
 import sys
 from kernel import Pair, total
-value = total(Pair(1.0, 10.0))
+value = total(Pair(one=1.0, two=10.0))
 print(value, sum(total.stats.cache_hits.values()))
 """
 
 
-def answer(folder: Path, records: str = "records", step: int = 1, factor: int = 2) -> str:
+def answer(
+    folder: Path,
+    records: str = "records",
+    step: int = 1,
+    factor: int = 2,
+    shift: float = 0.0,
+    fields: tuple[str, str] = ("one", "two"),
+) -> str:
     """What a new process finds, and how often it took what is on disk."""
     files = {
         "kernel.py": KERNEL.format(records=records),
         "helper.py": HELPER.format(step=step, factor=factor),
-        f"{records}.py": RECORD,
+        "constants.py": f"SHIFT = {shift}\n",
+        f"{records}.py": RECORD.format(first=fields[0], second=fields[1]),
     }
     for old in folder.glob("*.py"):
         if old.name not in files:
@@ -82,6 +91,15 @@ def test_a_cache_is_used_until_something_changes(tmp_path: Path) -> None:
     # A record that moved: what is on disk names a module that is no longer there.
     assert answer(tmp_path, "elsewhere", step=3, factor=5) == "35.0 0"
     assert answer(tmp_path, "elsewhere", step=3, factor=5) == "35.0 1"
+
+
+def test_a_constant_of_a_module_and_a_records_fields_are_asked_too(tmp_path: Path) -> None:
+    assert answer(tmp_path) == "12.0 0"
+    # Read as `at.SHIFT`, in a file of which no function is called.
+    assert answer(tmp_path, shift=100.0) == "112.0 0"
+    # The record is an argument; its fields changed their places.
+    assert answer(tmp_path, shift=100.0, fields=("two", "one")) == "112.0 0"
+    assert answer(tmp_path, shift=100.0, fields=("two", "one")) == "112.0 1"
 
 
 def test_options_are_numbas() -> None:

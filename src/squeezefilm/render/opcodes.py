@@ -61,10 +61,36 @@ from squeezefilm.errors import InputError
 VERSION = 1
 """Version of the instructions and of the program's layout."""
 
-END, CONSTANT, ALONG, RADIUS, TIME, SPEED, ADD, MULTIPLY, LEAST, GREATEST = range(10)
-COMPLEMENT, BETWEEN, SQUARE, SINE, GAUSSIAN, HANN, RAMP, SMOOTH, BAND, BUMP = range(10, 20)
-NOISE, NOISE_FIELD, IMAGE, WITHIN, DECAY, FADE, CROSS, ENTER_SCALE = range(20, 28)
-LEAVE_SCALE, WEIGH = range(28, 30)
+END = 0
+CONSTANT = 1
+ALONG = 2
+RADIUS = 3
+TIME = 4
+SPEED = 5
+ADD = 6
+MULTIPLY = 7
+LEAST = 8
+GREATEST = 9
+COMPLEMENT = 10
+BETWEEN = 11
+SQUARE = 12
+SINE = 13
+GAUSSIAN = 14
+HANN = 15
+RAMP = 16
+SMOOTH = 17
+BAND = 18
+BUMP = 19
+NOISE = 20
+NOISE_FIELD = 21
+IMAGE = 22
+WITHIN = 23
+DECAY = 24
+FADE = 25
+CROSS = 26
+ENTER_SCALE = 27
+LEAVE_SCALE = 28
+WEIGH = 29
 
 # Operands, values taken from the stack, values put on it; by opcode.
 SHAPES: tuple[tuple[int, int, int], ...] = (

@@ -139,6 +139,8 @@ def test_adaptive_designs_that_are_none(change: dict[str, Any], message: str) ->
 def test_states_that_are_none() -> None:
     with pytest.raises(InputError, match="no staircase's state"):
         Staircase.from_state({"rule": {"start": 1.0}})
+    with pytest.raises(InputError, match="no staircase's state"):
+        Staircase.from_state({"rule": 5, "trials": []})
     with pytest.raises(InputError, match="no Bayesian method's state"):
         BayesianAdaptive.from_state({"design": {}})
     for prior in ({"threshold": [1.0]}, {"threshold": [1.0], "width": [1.0, 2.0]}):

@@ -190,7 +190,7 @@ class Staircase:
         """
         try:
             # JSON has no infinity: a bound that is none is left out.
-            rule = {key: value for key, value in state["rule"].items() if value is not None}
+            rule = {key: value for key, value in dict(state["rule"]).items() if value is not None}
             staircase = cls(StaircaseRule(**rule))
             for intensity, correct in state["trials"]:
                 staircase.update(float(intensity), bool(correct))

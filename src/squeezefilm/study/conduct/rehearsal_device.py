@@ -67,7 +67,7 @@ class StudyTwin:
 
     def verify_device(self) -> DeviceVerification:
         """The resonance swept on the twin without a finger, see `resonance_verified`."""
-        per_volt = 1 / self.settings.pickup.sensitivity
+        per_volt = self._twin().plant.pickup_calibration
         return resonance_verified(self.display, self.point.mode, per_volt, self._swept, twin=True)
 
     def present(self, stimulus: Stimulus, seed: int) -> None:
@@ -88,7 +88,7 @@ class StudyTwin:
             TextureFile(stimulus.surface(), stimulus.name),
             device=KnownDevice(self.settings.sensor, twin=True),
         )
-        device = TwinDevice(self.display, self.settings, hand=self.hand, point=self.point)
+        device = self._twin(self.hand)
         end = self.hand.begin + (self.hand.repeats or 1) * self.hand.motion.duration
         about = {"device": "rehearsal", "settings_sha256": config_hash(self.settings)}
         with tempfile.TemporaryDirectory() as folder:
@@ -99,9 +99,12 @@ class StudyTwin:
             felt = explored(read_trace(path), "")
         return dataclasses.replace(felt, mean_normal_force=self.hand.normal_force)
 
+    def _twin(self, hand: Hand | None = None) -> TwinDevice:
+        return TwinDevice(self.display, self.settings, hand=hand, point=self.point)
+
     def _swept(
         self, limits: Limits, carriers: si.HertzArray, voltage: si.Volt, settle: si.Second
     ) -> ResonanceSweep | None:
-        stream = VirtualStream(TwinDevice(self.display, self.settings, point=self.point))
+        stream = VirtualStream(self._twin())
         host = DeviceHost(Link(stream, stream.clock, stream.wait))
         return sweep_resonance(host, limits, carriers, voltage, settle=settle, wait=stream.wait)

@@ -123,8 +123,9 @@ def proportion_interval(
     10.1093/biomet/26.4.404), which is never too short.
 
     Raises:
-        InputError: counts that do not fit, or a level not between 0 and 1.
+        InputError: another method, counts that do not fit, or a level not between 0 and 1.
     """
+    si.require_one_of("method", method, METHODS)
     si.require("level", level, above=0.0, below=1.0)
     if not 0 <= successes <= trials or trials < 1:
         raise InputError(

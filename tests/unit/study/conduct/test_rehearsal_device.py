@@ -38,6 +38,13 @@ def test_a_twin_as_described_is_in_order(point: WorkingPoint) -> None:
     assert found.amplitude == pytest.approx(found.expected_amplitude, rel=5e-3)
 
 
+def test_a_twin_that_hears_its_motional_current_is_in_order(point: WorkingPoint) -> None:
+    """What `TwinSettings` has by itself: its pickup is calibrated otherwise than a patch."""
+    found = _twin(point, pickup=PickupModel()).verify_device()
+    assert found.passed
+    assert found.amplitude == pytest.approx(found.expected_amplitude, rel=0.01)
+
+
 def test_a_weak_and_a_detuned_twin_are_off(point: WorkingPoint) -> None:
     weak = _twin(point, drift=PlateDrift(quality_factor_ratio=0.7)).verify_device()
     assert "amplitude" in weak.problems[0]

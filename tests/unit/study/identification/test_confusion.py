@@ -35,6 +35,11 @@ WILSON, JEFFREYS, CLOPPER_PEARSON = INTERVALS = [
 ]
 
 
+def test_an_interval_of_another_name_is_refused() -> None:
+    with pytest.raises(InputError, match=r"method = 'jeffreys' is not known.*Jeffreys"):
+        proportion_interval(3, 10, method="jeffreys")  # type: ignore[arg-type] # it is wrong
+
+
 def test_rows_are_answers_and_columns_stimuli() -> None:
     found = confusion_matrix([0, 0, 1, 2], [1, 0, 1, 1], NAMES)
     assert found.counts.tolist() == [[1, 0, 0], [1, 1, 1], [0, 0, 0]]
