@@ -152,24 +152,28 @@ def require_on_image(texture: Composable, motion: FingerMotion) -> None:
         if image.outside != "hold":
             continue
         rows, columns = image._grid.shape
-        right, top = image.left + columns * image.pixel, image.bottom + rows * image.pixel
+        left, bottom = image.left, image.bottom
+        right, top = left + columns * image.pixel, bottom + rows * image.pixel
         slack = 1e-9
         beyond = (
-            (motion.x < image.left - slack)
+            (motion.x < left - slack)
             | (motion.x > right + slack)
-            | (motion.y < image.bottom - slack)
+            | (motion.y < bottom - slack)
             | (motion.y > top + slack)
         )
         if np.any(beyond):
             k = int(np.flatnonzero(beyond)[0])
-            at, ends = (motion.x[k], motion.y[k]), (image.left, right, image.bottom, top)
-            x, y, *sides = (si.format_quantity(float(one), _METRE) for one in (*at, *ends))
             raise InputError(
-                f"the stroke leaves the image: at {motion.time[k]:.4g} s the finger is at x = {x}, "
-                f"y = {y}, and the image ends at x = {sides[0]} to {sides[1]}, y = {sides[2]} to "
-                f"{sides[3]}; shorten the stroke, move the image (left, bottom), or say outside = "
-                '"zero" or "repeat"'
+                f"the stroke leaves the image: at {motion.time[k]:.4g} s the finger is at "
+                f"x = {_metres(motion.x[k])}, y = {_metres(motion.y[k])}, and the image ends at "
+                f"x = {_metres(left)} to {_metres(right)}, y = {_metres(bottom)} to "
+                f"{_metres(top)}; shorten the stroke, move the image (left, bottom), or say "
+                'outside = "zero" or "repeat"'
             )
+
+
+def _metres(value: float) -> str:
+    return si.format_quantity(float(value), _METRE)
 
 
 def _images(value: Any) -> Iterator[Image]:
@@ -200,6 +204,6 @@ def require_on_display(actuator: Actuator, motion: FingerMotion) -> None:
     for name, used, there in zip("xy", (width, height), actuator.extent, strict=True):
         if used > there * (1 + 1e-9):
             raise InputError(
-                f"the stroke covers {si.format_quantity(used, _METRE)} along {name}, and the "
-                f"surface has {si.format_quantity(there, _METRE)}; shorten the stroke"
+                f"the stroke covers {_metres(used)} along {name}, and the surface has "
+                f"{_metres(there)}; shorten the stroke"
             )

@@ -157,16 +157,20 @@ def _answer(
     request: FilmRequest,
     own: str = "",
 ) -> FilmAnswer:
-    same = (
-        "squeeze_number mean_load over_pressure over_pressure_error stiffness_relative "
-        "damping_relative iterations residual status"
-    )
     return FilmAnswer(
+        squeeze_number=film.squeeze_number,
         excursion_ratio=excursion,
         request=request,
+        mean_load=film.mean_load,
+        over_pressure=film.over_pressure,
+        over_pressure_error=film.over_pressure_error,
+        stiffness_relative=film.stiffness_relative,
+        damping_relative=film.damping_relative,
+        iterations=film.iterations,
+        residual=film.residual,
+        status=film.status,
         model=f"periodic compressible Reynolds, {request.shape}{own}",
         film=film,
-        **{name: getattr(film, name) for name in same.split()},
     )
 
 

@@ -126,38 +126,40 @@ def pad_friction(
     wave = np.abs(np.cos(np.pi * (points + posture.position) / half_wavelength))
     if limit == "one-gap":
         offset = np.tan(posture.gap_tilt) * points
-        shared = [
+        # Each balance is already the mean over all ridges.
+        tied = [
             share_load_tied(
                 table, asperities, one * wave, plateau_pressure, offset=offset, skin=skin
             )
             for one in a
         ]
-        # Each balance is already one number, the mean over all ridges.
-        lean, weight = np.ones(()), np.ones(())
-    else:
-        reach = float(np.max(np.abs(points)))
-        lean = 1 + posture.pressure_tilt * points / reach if reach > 0 else np.ones_like(points)
-        # Ridges on the two sides of an antinode do the same: each kind is balanced once.
-        kinds, counts = np.unique(np.round([wave, lean], 9), axis=1, return_counts=True)
-        lean, weight = kinds[1], counts / points.size
-        shared = [
-            share_load(table, asperities, np.outer(a, kinds[0]), plateau_pressure * lean, skin=skin)
-        ]
-
-    def mean(values: list[si.FloatArray]) -> si.FloatArray:
-        """The mean over the plateaus at each amplitude."""
-        return values[0] @ weight if limit == "own" else np.array(values)
-
+        return PadFriction(
+            amplitude=a,
+            mean_gap=np.array([one.mean_gap for one in tied]),
+            film_pressure=np.array([one.gas_pressure for one in tied]),
+            asperity_pressure=np.array([one.asperity_pressure for one in tied]),
+            relative_friction_error=np.array([one.relative_friction_error for one in tied]),
+            residual=max(float(abs(one.residual)) for one in tied),
+            ridge_points=points.size,
+            limit=limit,
+            model=tied[0].model,
+        )
+    reach = float(np.max(np.abs(points)))
+    lean = 1 + posture.pressure_tilt * points / reach if reach > 0 else np.ones_like(points)
+    # Ridges on the two sides of an antinode do the same: each kind is balanced once.
+    (wave, lean), counts = np.unique(np.round([wave, lean], 9), axis=1, return_counts=True)
+    weight = counts / points.size
+    own = share_load(table, asperities, np.outer(a, wave), plateau_pressure * lean, skin=skin)
     return PadFriction(
         amplitude=a,
-        mean_gap=mean([one.mean_gap for one in shared]),
-        film_pressure=mean([one.gas_pressure for one in shared]),
-        asperity_pressure=mean([one.asperity_pressure for one in shared]),
-        relative_friction_error=mean([one.relative_friction_error * lean for one in shared]),
-        residual=max(float(np.max(np.abs(one.residual))) for one in shared),
+        mean_gap=own.mean_gap @ weight,
+        film_pressure=own.gas_pressure @ weight,
+        asperity_pressure=own.asperity_pressure @ weight,
+        relative_friction_error=(own.relative_friction_error * lean) @ weight,
+        residual=float(np.max(np.abs(own.residual))),
         ridge_points=points.size,
         limit=limit,
-        model=shared[0].model,
+        model=own.model,
     )
 
 

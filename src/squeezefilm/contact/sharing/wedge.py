@@ -1,8 +1,9 @@
 """What a finger's own sliding adds to the film: a wedge effect, three orders below the squeeze.
 
 In the Reynolds equation sliding at U stands as 6 η U ∂(ph)/∂x beside 12 η ∂(ph)/∂t. Over a
-symmetric plateau the term is odd in U and changes the load only by (U/ω w)², 1e-5 at 0.1 m/s.
-Over a plateau leaning against the surface it carries a wedge pressure, computed here.
+symmetric plateau of width w the term is odd in U and changes the load only by (U/(ω w))², the
+square of how far a finger slides in 1/ω over that width: 1e-5 at 0.1 m/s. Over a plateau leaning
+against the surface it carries a wedge pressure, computed here.
 """
 
 from __future__ import annotations

@@ -227,6 +227,9 @@ def contact_mean_pressure(
     points gathered at the crests, doubled until the over-pressure ⟨P̄⟩ − 1 changes by less than
     `tolerance` of itself (or 1e-13). Raises `ConvergenceError` where 256 points a panel are not
     enough, and whatever `mean_pressure_profile` raises.
+
+    The printed model gives less than 1 on the paper's own stator (0.9959 at 2 µm), against its
+    Fig 4.
     """
     edges, e = _panels(gap)
     middle, half = (edges[1:] + edges[:-1]) / 2, np.diff(edges) / 2

@@ -173,7 +173,10 @@ def _as_batch(
         "residual": out[:, u.RESIDUAL],
         "cells": CELLS[solved.cells],
         "times": TIMES[solved.times],
-        **dict(zip(films._fields[:4], films[:4], strict=True)),
+        "squeeze_number": films.squeeze_number,
+        "excursion_ratio": films.excursion_ratio,
+        "polytropic_exponent": films.polytropic_exponent,
+        "knudsen_number": films.knudsen_number,
     }
     return FilmBatch(
         **{name: np.array(column.reshape(form)) for name, column in columns.items()},

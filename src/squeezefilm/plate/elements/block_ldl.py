@@ -84,6 +84,7 @@ def partial_ldl(A: Matrix, pivots: int, *, count: bool = False) -> PartialLDL:
                 "a frequency a little beside it"
             ) from error
         if count:
+            # Sylvester's law of inertia: pivot blocks and `schur` together have as many as A.
             negative += int(np.count_nonzero(np.linalg.eigvalsh(block) < 0))
         inverse.append(inverted)
         np.matmul(panel, inverted, out=W[k:, k:e])

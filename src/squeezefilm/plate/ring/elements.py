@@ -136,6 +136,8 @@ def graded_edges(
         small = cuts[1] * CORNER_GRADING
         if small > shortest and _in(left, singular):
             cuts = np.append(cuts, small)
+        # The last element as the rounded cut leaves it: at a tie with `shortest`, `small` itself
+        # could decide otherwise, and the mesh would no longer be the one results were made on.
         if span - (span - small) > shortest and _in(right, singular):
             cuts = np.append(cuts, span - small)
         edges += [left + cut for cut in np.unique(cuts)[1:-1]]

@@ -54,13 +54,15 @@ def _losses(plate: RectangularPlate) -> tuple[float, float, float]:
 def media(plate: RectangularPlate) -> tuple[Medium, ...]:
     """Substrate, ceramic of either polarity and glue, in the order of their numbers in a mesh."""
     substrate, ceramic, glue = _losses(plate)
-    media = [
+    layers = [
         isotropic_solid(plate.substrate, substrate, "substrate"),
         # Poled away from the plate: towards −z below it, where all e change their sign.
         piezoceramic_solid(plate.ceramic, ceramic, "ceramic_bottom", -1),
         piezoceramic_solid(plate.ceramic, ceramic, "ceramic_top"),
     ]
-    return (*media, *([isotropic_solid(plate.glue, glue)] if plate.glue is not None else []))
+    if plate.glue is not None:
+        layers.append(isotropic_solid(plate.glue, glue))
+    return tuple(layers)
 
 
 def thicknesses(plate: RectangularPlate, face: Face) -> list[si.Metre]:

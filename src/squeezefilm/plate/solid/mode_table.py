@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any
+import itertools
+from collections.abc import Iterable
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 
@@ -13,14 +14,18 @@ from squeezefilm.plate.elements.box_model import Medium
 from squeezefilm.plate.elements.slabs import Slabs
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.solid.electrode_circuits import open_values, shunted_frequencies
+from squeezefilm.plate.solid.model import PlateModel
 from squeezefilm.plate.solid.modes import (
     MODEL,
+    Label,
     PlateModes,
     label_of,
     surface_shapes,
 )
 from squeezefilm.plate.solid.refined_modes import RefinedModes, extrapolated
-from squeezefilm.plate.solid.symmetry import drive_signs
+from squeezefilm.plate.solid.symmetry import Symmetry, drive_signs
+
+_Row = TypeVar("_Row")
 
 
 def energy_shares_of(slabs: Slabs, vectors: si.FloatArray) -> tuple[si.FloatArray, si.FloatArray]:
@@ -49,6 +54,23 @@ def energy_shares_of(slabs: Slabs, vectors: si.FloatArray) -> tuple[si.FloatArra
     return table / whole[:, None], np.sum(lost, axis=0) / whole
 
 
+class _Columns(NamedTuple):
+    """What `PlateModes` has of each mode, here of those of one class."""
+
+    frequencies: si.HertzArray
+    errors: si.HertzArray
+    mesh_frequencies: si.HertzArray
+    labels: list[Label | None]
+    parities: list[Symmetry]
+    shapes: si.FloatArray
+    modal_forces: si.FloatArray
+    drive_forces: si.FloatArray
+    open_frequencies: si.HertzArray
+    energy_shares: si.DimensionlessArray
+    quality_factors: si.DimensionlessArray
+    fields: list[tuple[PlateModel, si.FloatArray]]
+
+
 def collected_modes(
     plate: RectangularPlate,
     pieces: list[RefinedModes],
@@ -60,9 +82,52 @@ def collected_modes(
     Raises `InputError` where none is left.
     """
     tables = [_table(piece, drive_signs(plate)) for piece in pieces]
-    names = list(tables[0]) if tables else []
-    table = {name: [one for some in tables for one in some[name]] for name in names}
-    every = table.get("frequencies", [])
+    order = _order([one for table in tables for one in table.frequencies], band)
+
+    def taken(columns: Iterable[Iterable[_Row]]) -> list[_Row]:
+        rows = list(itertools.chain.from_iterable(columns))
+        return [rows[i] for i in order]
+
+    frequencies = np.array(taken(table.frequencies for table in tables))
+    errors = np.array(taken(table.errors for table in tables))
+    opened = np.array(taken(table.open_frequencies for table in tables))
+    over = int(np.sum(errors > tolerance * frequencies))
+    model = pieces[0].solved.model
+    materials = [medium.name for medium in model.media]
+    if model.foundations:
+        materials.append("supports")
+    x, y, _ = surface_shapes(pieces[0].solved, pieces[0].vectors[:, :0])
+    return PlateModes(
+        plate=plate,
+        frequencies=frequencies,
+        errors=errors,
+        mesh_frequencies=np.array(taken(table.mesh_frequencies for table in tables)),
+        labels=tuple(taken(table.labels for table in tables)),
+        parities=tuple(taken(table.parities for table in tables)),
+        x=x,
+        y=y,
+        shapes=np.array(taken(table.shapes for table in tables)),
+        modal_forces=np.array(taken(table.modal_forces for table in tables)),
+        drive_forces=np.array(taken(table.drive_forces for table in tables)),
+        open_frequencies=opened,
+        couplings=np.sqrt(np.maximum(0.0, 1 - (frequencies / opened) ** 2)),
+        quality_factors=np.array(taken(table.quality_factors for table in tables)),
+        materials=tuple(materials),
+        energy_shares=np.array(taken(table.energy_shares for table in tables)),
+        model=MODEL,
+        status=(
+            f"all {len(order)} modes within {tolerance:.1e} (estimated)"
+            if over == 0
+            else f"{over} of {len(order)} modes have an estimated error above {tolerance:.1e}; the "
+            "finest mesh was used"
+        ),
+        unknowns=max(piece.solved.slabs.unknowns for piece in pieces),
+        _fields=tuple(taken(table.fields for table in tables)),
+    )
+
+
+def _order(every: list[si.Hertz], band: tuple[float, float] | None) -> list[int]:
+    """The numbers of the frequencies in a band, ascending by frequency."""
     order = sorted(range(len(every)), key=every.__getitem__)
     if band is not None:
         order = [i for i in order if band[0] <= every[i] <= band[1]]
@@ -73,35 +138,11 @@ def collected_modes(
             "modes near a frequency",
             quantity="band",
         )
-    columns: dict[str, Any] = {}
-    for name, values in table.items():
-        rows = [values[i] for i in order]
-        is_array = name not in ("labels", "parities", "_fields")
-        columns[name] = np.array(rows) if is_array else tuple(rows)
-    frequencies, opened = columns["frequencies"], columns["open_frequencies"]
-    over = int(np.sum(columns["errors"] > tolerance * frequencies))
-    model = pieces[0].solved.model
-    x, y, _ = surface_shapes(pieces[0].solved, pieces[0].vectors[:, :0])
-    return PlateModes(
-        plate=plate,
-        x=x,
-        y=y,
-        couplings=np.sqrt(np.maximum(0.0, 1 - (frequencies / opened) ** 2)),
-        materials=(*(m.name for m in model.media), *(["supports"] if model.foundations else [])),
-        model=MODEL,
-        status=(
-            f"all {len(order)} modes within {tolerance:.1e} (estimated)"
-            if over == 0
-            else f"{over} of {len(order)} modes have an estimated error above {tolerance:.1e}; the "
-            "finest mesh was used"
-        ),
-        unknowns=max(piece.solved.slabs.unknowns for piece in pieces),
-        **columns,
-    )
+    return order
 
 
-def _table(piece: RefinedModes, signs: si.FloatArray) -> dict[str, Sequence[Any]]:
-    """What `PlateModes` has of each mode of one class; `signs` are those of the drive."""
+def _table(piece: RefinedModes, signs: si.FloatArray) -> _Columns:
+    """The modes of one class; `signs` are those of the drive."""
     frequency, error = extrapolated(piece.coarse_values, piece.values, piece.level)
     solved = piece.solved
     vectors = piece.vectors * (1 / np.sqrt(solved.copies))
@@ -118,22 +159,24 @@ def _table(piece: RefinedModes, signs: si.FloatArray) -> dict[str, Sequence[Any]
     losses = losses + 2 * omega.imag / omega.real
     known = rough.values[piece.index]
     opened = open_values(rough.solved, rough.factor, rough.shift, known, some) / known
+    # A product for each mode, as results were recorded: `forces @ signs` may differ in the last
+    # digit. (So may a mode that is alone in its class: BLAS adds in another order along its row.)
     driven = np.array([row @ signs for row in forces])
     turn = np.array([_turn(top, one) for top, one in zip(surface, driven, strict=True)])
-    return {
-        "frequencies": frequency,
-        "errors": error,
-        "mesh_frequencies": np.sqrt(piece.values) / (2 * np.pi),
-        "labels": [label_of(top, x, y) for top in surface],
-        "parities": [piece.found.parity] * frequency.size,
-        "shapes": turn[:, None, None] * surface[..., 2],
-        "modal_forces": turn[:, None] * forces,
-        "drive_forces": np.abs(driven),
-        "open_frequencies": frequency / shunted * np.sqrt(opened),
-        "energy_shares": shares,
-        "quality_factors": 1 / np.maximum(losses, 1e-30),
-        "_fields": [(solved, sign * one) for sign, one in zip(turn, vectors.T, strict=True)],
-    }
+    return _Columns(
+        frequencies=frequency,
+        errors=error,
+        mesh_frequencies=np.sqrt(piece.values) / (2 * np.pi),
+        labels=[label_of(top, x, y) for top in surface],
+        parities=[piece.found.parity] * frequency.size,
+        shapes=turn[:, None, None] * surface[..., 2],
+        modal_forces=turn[:, None] * forces,
+        drive_forces=np.abs(driven),
+        open_frequencies=frequency / shunted * np.sqrt(opened),
+        energy_shares=shares,
+        quality_factors=1 / np.maximum(losses, 1e-30),
+        fields=[(solved, sign * one) for sign, one in zip(turn, vectors.T, strict=True)],
+    )
 
 
 def _turn(top: si.FloatArray, driven: float) -> float:

@@ -75,8 +75,12 @@ def drive_classes(plate: RectangularPlate) -> list[Symmetry]:
         if mirror is None:
             return [None]
         image = signs[mirror]
-        both: list[Parity | None] = ["S"] if np.any(signs + image != 0) else []
-        return [*both, "A"] if np.any(signs - image != 0) else both or ["S"]
+        some: list[Parity | None] = []
+        if np.any(signs + image != 0):
+            some.append("S")
+        if np.any(signs - image != 0):
+            some.append("A")
+        return some or ["S"]
 
     return list(itertools.product(excited(0), excited(1)))
 

@@ -5,6 +5,9 @@ exponentially: da/dt = (c - a)/τ with τ = Q/(πf) (PHYSICS §4), where c is th
 A grating swept under a finger asks for a change every half period, so the finer the grating and
 the faster the finger, the less of its swing is left.
 
+It approximates ẍ + (ω0/Q) ẋ + ω0² x = ω0²/Q · u(t) driven near ω0: one resonance, one direction.
+Other modes, the ceramic's hysteresis and what a finger's load changes besides Q are not in it.
+
 Everything here holds for a linear resonator driven at resonance whose envelope is slow beside
 the carrier (Q ≫ 1). Q is that of the plate *with* the finger on it. The amplitude is driven
 open-loop; a control loop or an inverse filter in front shortens τ while the voltage lasts.

@@ -58,6 +58,9 @@ AT_REST: dict[Quantity, float] = {
 class Texture(Protocol):
     """The seam between what is to be felt and what renders it.
 
+    It commands an amplitude in metres, never a bare 0 to 1, so that what a value means does not
+    depend on the display.
+
     Called with the finger's position `x`, `y` (m), its velocity `v` along its path (m/s; |v| is
     its speed, and v is negative on the way back, which only a `Bump` asks for) and the time `t`
     since the stroke began (s), it returns the vibration amplitude wanted there (m, zero-to-peak).
