@@ -31,16 +31,41 @@ _SIGNALS = ("Sine", "Square", "Triangle", "SawToothUp", "SawToothDown")
 # What the type of a key is, wherever it stands, and which keys an object must have.
 _NUMBER = (int, float)
 _TYPES: dict[str, type | tuple[type, ...]] = {
-    key: kind
-    for kind, keys in (
-        (str, "version profile date description perception_modality band_type effect_type"),
-        (str, "base_signal"),
-        (int, "level timescale id avatar_id body_part_mask position relative_position"),
-        (int, "lower_frequency_limit upper_frequency_limit frequency_modulation"),
-        (_NUMBER, "gain mixing_coefficient phase amplitude_modulation"),
-        (list, "avatars perceptions syncs channels effect_library bands effects keyframes"),
-    )
-    for key in keys.split()
+    # Words.
+    "version": str,
+    "profile": str,
+    "date": str,
+    "description": str,
+    "perception_modality": str,
+    "band_type": str,
+    "effect_type": str,
+    "base_signal": str,
+    # Which one it is, and where.
+    "level": int,
+    "timescale": int,
+    "id": int,
+    "avatar_id": int,
+    "body_part_mask": int,
+    "position": int,
+    "relative_position": int,
+    # Frequencies, whole as the standard has them.
+    "lower_frequency_limit": int,
+    "upper_frequency_limit": int,
+    "frequency_modulation": int,
+    # Values.
+    "gain": _NUMBER,
+    "mixing_coefficient": _NUMBER,
+    "phase": _NUMBER,
+    "amplitude_modulation": _NUMBER,
+    # What holds more.
+    "avatars": list,
+    "perceptions": list,
+    "syncs": list,
+    "channels": list,
+    "effect_library": list,
+    "bands": list,
+    "effects": list,
+    "keyframes": list,
 }
 _NEEDED = {
     "experience": "version profile level date description timescale avatars perceptions syncs",
