@@ -284,5 +284,6 @@ def _constants(point: WorkingPoint, settings: TwinSettings, hand: Hand | None) -
     c[k.C_NOISE] = sensor.noise
     c[k.C_QUANTUM] = sensor.quantisation
     if np.isnan(c).any():
-        raise RuntimeError(f"the plant's constants {np.flatnonzero(np.isnan(c))} were not set")
+        missing = np.flatnonzero(np.isnan(c)).tolist()
+        raise RuntimeError(f"the plant's constants {missing} are not numbers; were they all set?")
     return c
