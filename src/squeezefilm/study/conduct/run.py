@@ -55,8 +55,8 @@ class Presentation:
     rest: si.Second
 
 
-# `StudyRun._response_row` writes these fields by `to_json` to the columns of the table `response`
-# (`study.record.schema`) that have their names, with their units: a field has its column there.
+# `StudyRun._response_row` writes these fields, all but `explorations`, by `to_json` to the columns
+# of the table `response` (`study.record.schema`) of their names with units: each needs its column.
 @dataclass(frozen=True)
 class Response:
     """What a participant answered, and when.
