@@ -247,3 +247,10 @@ def test_friction_drags_the_finger_back_and_its_work_is_lost(
     assert np.ptp(column(still, "skin_x_m")) < 1e-9
     assert column(plant, "time_s").size == 15_000
     assert len(COLUMNS) == plant.truth.rows.shape[1]
+
+
+@pytest.mark.slow
+def test_a_constant_that_is_no_number_is_not_played_on() -> None:
+    unknown = dataclasses.replace(point(), force_factor=math.nan)
+    with pytest.raises(RuntimeError, match=r"constants \[6\] are not numbers"):
+        Plant(unknown, CALM)

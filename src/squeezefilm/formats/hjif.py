@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from datetime import UTC, datetime
 from typing import Annotated, Any
 
@@ -64,12 +64,16 @@ class ReferenceDevice:
 
     def document(self) -> dict[str, Any]:
         """As the format has it. Displays work at one frequency: least, largest and resonance."""
-        frequencies = ("maximum_frequency", "minimum_frequency")
         return {
             "id": 0,
             "type": "Piezo",
-            **asdict(self),
-            **dict.fromkeys(frequencies, self.resonance_frequency),
+            "name": self.name,
+            "resonance_frequency": self.resonance_frequency,
+            "maximum_voltage": self.maximum_voltage,
+            "maximum_displacement": self.maximum_displacement,
+            "maximum_amplitude": self.maximum_amplitude,
+            "maximum_frequency": self.resonance_frequency,
+            "minimum_frequency": self.resonance_frequency,
         }
 
 

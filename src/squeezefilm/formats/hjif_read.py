@@ -28,28 +28,58 @@ from squeezefilm.render.texture.shapes import SineWave, SquareWave
 
 _COARSE: si.Metre = 10e-6
 _SIGNALS = ("Sine", "Square", "Triangle", "SawToothUp", "SawToothDown")
-# What the type of a key is, wherever it stands, and which keys an object must have.
+_Kind = type | tuple[type, ...]
 _NUMBER = (int, float)
-_TYPES: dict[str, type | tuple[type, ...]] = {
-    key: kind
-    for kind, keys in (
-        (str, "version profile date description perception_modality band_type effect_type"),
-        (str, "base_signal"),
-        (int, "level timescale id avatar_id body_part_mask position relative_position"),
-        (int, "lower_frequency_limit upper_frequency_limit frequency_modulation"),
-        (_NUMBER, "gain mixing_coefficient phase amplitude_modulation"),
-        (list, "avatars perceptions syncs channels effect_library bands effects keyframes"),
-    )
-    for key in keys.split()
+# Which keys an object must have, each with its type.
+_NEEDED: dict[str, dict[str, _Kind]] = {
+    "experience": {
+        "version": str,
+        "profile": str,
+        "level": int,
+        "date": str,
+        "description": str,
+        "timescale": int,
+        "avatars": list,
+        "perceptions": list,
+        "syncs": list,
+    },
+    "perception": {
+        "id": int,
+        "avatar_id": int,
+        "description": str,
+        "perception_modality": str,
+        "channels": list,
+        "effect_library": list,
+    },
+    "channel": {
+        "id": int,
+        "description": str,
+        "gain": _NUMBER,
+        "mixing_coefficient": _NUMBER,
+        "body_part_mask": int,
+        "bands": list,
+    },
+    "band": {
+        "band_type": str,
+        "lower_frequency_limit": int,
+        "upper_frequency_limit": int,
+        "effects": list,
+    },
+    "effect": {
+        "effect_type": str,
+        "position": int,
+        "phase": _NUMBER,
+        "base_signal": str,
+        "keyframes": list,
+    },
+    "reference": {"effect_type": str, "position": int, "id": int},
+    "keyframe": {},
 }
-_NEEDED = {
-    "experience": "version profile level date description timescale avatars perceptions syncs",
-    "perception": "id avatar_id description perception_modality channels effect_library",
-    "channel": "id description gain mixing_coefficient body_part_mask bands",
-    "band": "band_type lower_frequency_limit upper_frequency_limit effects",
-    "effect": "effect_type position phase base_signal keyframes",
-    "reference": "effect_type position id",
-    "keyframe": "",
+# Which keys a keyframe may have.
+_OF_KEYFRAME: dict[str, _Kind] = {
+    "relative_position": int,
+    "amplitude_modulation": _NUMBER,
+    "frequency_modulation": int,
 }
 
 
@@ -117,22 +147,22 @@ def _effect(effect: Any, where: str) -> None:
         raise InputError(f"{where}.base_signal = {effect['base_signal']!r} is not known")
     for k, keyframe in enumerate(effect["keyframes"]):
         _needs(keyframe, "keyframe", f"{where}.keyframes[{k}]")
-        for key in ("relative_position", "amplitude_modulation", "frequency_modulation"):
+        for key, kind in _OF_KEYFRAME.items():
             if key in keyframe:
-                _right(keyframe[key], key, f"{where}.keyframes[{k}].{key}")
+                _right(keyframe[key], kind, f"{where}.keyframes[{k}].{key}")
 
 
 def _needs(value: Any, kind: str, where: str) -> None:
     if not isinstance(value, dict):
         raise InputError(f"{where} is no JSON object, so the file is no HJIF")
-    for key in _NEEDED[kind].split():
+    for key, wanted in _NEEDED[kind].items():
         if key not in value:
             raise InputError(f"{where} has no '{key}', which HJIF needs")
-        _right(value[key], key, f"{where}.{key}")
+        _right(value[key], wanted, f"{where}.{key}")
 
 
-def _right(value: Any, key: str, where: str) -> None:
-    if isinstance(value, bool) or not isinstance(value, _TYPES[key]):
+def _right(value: Any, kind: _Kind, where: str) -> None:
+    if isinstance(value, bool) or not isinstance(value, kind):
         raise InputError(f"{where} = {value!r} is of the wrong type for HJIF")
     if isinstance(value, int | float) and not (math.isfinite(value) and abs(value) < 2**53):
         raise InputError(f"{where} = {value!r} is no number that HJIF can hold")

@@ -131,7 +131,11 @@ class _Watched:
 
 
 def play(connection: Connection, display: str, texture: str, out: str, **how: Any) -> None:
-    """Play a file's texture on a file's display into a folder, `how` as `play_texture` takes it."""
+    """Play a file's texture on a file's display into a folder, and tell of it.
+
+    `how` goes to `play_texture` as it is: drive, mode, stroke, sensor, compensation, seed, duration
+    (s) and voltage (V or None).
+    """
     from squeezefilm.bench.play import JUDGING, play_texture
     from squeezefilm.texture_file import load_texture
 

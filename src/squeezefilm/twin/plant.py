@@ -205,11 +205,7 @@ class Plant:
     @cached_property
     def pickup_calibration(self) -> si.MetrePerVolt:
         """Vibration amplitude per signal of the pickup (m/V), at the predicted resonance."""
-        pickup = self.settings.pickup
-        if pickup.kind == "sensing_patch":
-            return 1 / pickup.sensitivity
-        omega = 2 * math.pi * self.point.mode.resonance_frequency
-        return 1 / (omega * self.point.force_factor * pickup.shunt)
+        return self.point.pickup_calibration(self.settings.pickup)
 
     def pickup_level(self) -> int:
         """The amplitude at the pickup's input now (µV), with its noise; 0 without a pickup."""
@@ -248,24 +244,46 @@ def _constants(point: WorkingPoint, settings: TwinSettings, hand: Hand | None) -
     strongest = float(dry.kinetic_force(friction, force))
     ratio = drift.quality_factor_ratio
     c = np.full(k.CONSTANTS, math.nan)
-    c[[k.C_STEP, k.C_ROW]] = step, round(settings.truth_period * 1e6)
+    c[k.C_STEP] = step
+    c[k.C_ROW] = round(settings.truth_period * 1e6)
     c[k.C_SEED] = settings.seed
-    c[[k.C_F0, k.C_FACTOR]] = mode.resonance_frequency, point.force_factor
-    c[[k.C_Q, k.C_PER_VOLT]] = mode.quality_factor * ratio, mode.amplitude_per_volt * ratio
-    c[[k.C_OFFSET, k.C_AGEING]] = drift.offset, drift.ageing
-    c[[k.C_COEFFICIENT, k.C_SWING]] = drift.temperature_coefficient, drift.ambient_swing
+    c[k.C_F0] = mode.resonance_frequency
+    c[k.C_FACTOR] = point.force_factor
+    c[k.C_Q] = mode.quality_factor * ratio
+    c[k.C_PER_VOLT] = mode.amplitude_per_volt * ratio
+    c[k.C_OFFSET] = drift.offset
+    c[k.C_AGEING] = drift.ageing
+    c[k.C_COEFFICIENT] = drift.temperature_coefficient
+    c[k.C_SWING] = drift.ambient_swing
     c[k.C_PERIOD] = round(drift.ambient_period * 1e6)
-    c[[k.C_RESISTANCE, k.C_THERMAL]] = drift.thermal_resistance, drift.thermal_time
-    c[[k.C_GAIN, k.C_RAIL]] = amplifier.gain, amplifier.highest_voltage
-    c[[k.C_CURRENT, k.C_SLEW]] = amplifier.highest_current, amplifier.slew_rate
-    c[[k.C_C0, k.C_LOSS]] = point.capacitance, amplifier.loss_tangent
-    c[[k.C_MASS, k.C_STIFFNESS, k.C_DAMPING]] = arm.mass, arm.stiffness, arm.damping
-    c[[k.C_PAD_MASS, k.C_PAD_DAMPING, k.C_PAD_STIFFNESS]] = pad.mass, pad.damping, pad.stiffness
-    c[[k.C_MU, k.C_FORCE]] = friction, force
+    c[k.C_RESISTANCE] = drift.thermal_resistance
+    c[k.C_THERMAL] = drift.thermal_time
+    c[k.C_GAIN] = amplifier.gain
+    c[k.C_RAIL] = amplifier.highest_voltage
+    c[k.C_CURRENT] = amplifier.highest_current
+    c[k.C_SLEW] = amplifier.slew_rate
+    c[k.C_C0] = point.capacitance
+    c[k.C_LOSS] = amplifier.loss_tangent
+    c[k.C_MASS] = arm.mass
+    c[k.C_STIFFNESS] = arm.stiffness
+    c[k.C_DAMPING] = arm.damping
+    c[k.C_PAD_MASS] = pad.mass
+    c[k.C_PAD_DAMPING] = pad.damping
+    c[k.C_PAD_STIFFNESS] = pad.stiffness
+    c[k.C_MU] = friction
+    c[k.C_FORCE] = force
     c[k.C_SUBSTEPS] = substeps(step * 1e-6, pad, dry, strongest)
-    c[[k.C_STATIC, k.C_STRIBECK]] = dry.static_ratio, dry.stribeck_speed
-    c[[k.C_EXPONENT, k.C_REFERENCE]] = dry.load_exponent, dry.reference_force
-    c[[k.C_RATE, k.C_SHARE_LOST]] = sensor.rate, sensor.loss
-    c[[k.C_LATENCY, k.C_JITTER]] = sensor.latency * 1e6, sensor.jitter * 1e6
-    c[[k.C_NOISE, k.C_QUANTUM]] = sensor.noise, sensor.quantisation
+    c[k.C_STATIC] = dry.static_ratio
+    c[k.C_STRIBECK] = dry.stribeck_speed
+    c[k.C_EXPONENT] = dry.load_exponent
+    c[k.C_REFERENCE] = dry.reference_force
+    c[k.C_RATE] = sensor.rate
+    c[k.C_SHARE_LOST] = sensor.loss
+    c[k.C_LATENCY] = sensor.latency * 1e6
+    c[k.C_JITTER] = sensor.jitter * 1e6
+    c[k.C_NOISE] = sensor.noise
+    c[k.C_QUANTUM] = sensor.quantisation
+    if np.isnan(c).any():
+        missing = np.flatnonzero(np.isnan(c)).tolist()
+        raise RuntimeError(f"the plant's constants {missing} are not numbers; were they all set?")
     return c

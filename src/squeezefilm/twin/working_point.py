@@ -16,7 +16,7 @@ from squeezefilm.errors import InputError, OutOfRangeError
 from squeezefilm.plate.beam.response import patch_capacitance
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.working_mode import WorkingMode, working_mode
-from squeezefilm.twin.settings import TwinSettings
+from squeezefilm.twin.settings import PickupModel, TwinSettings
 
 _log = logging.getLogger(__name__)
 
@@ -60,6 +60,13 @@ class WorkingPoint:
         """Of the tables' columns (m)."""
         count = self.load.shape[1]
         return np.asarray(self.highest_amplitude * (np.arange(count) / (count - 1)) ** 2)
+
+    def pickup_calibration(self, pickup: PickupModel) -> si.MetrePerVolt:
+        """Vibration amplitude per signal of a pickup (m/V), at the predicted resonance."""
+        if pickup.kind == "sensing_patch":
+            return 1 / pickup.sensitivity
+        omega = 2 * math.pi * self.mode.resonance_frequency
+        return 1 / (omega * self.force_factor * pickup.shunt)
 
 
 def working_point(

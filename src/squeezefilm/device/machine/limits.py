@@ -5,7 +5,7 @@ Integers throughout, so that C and Python count the same numbers.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 from squeezefilm.device.wire.messages import SetLimits
 
@@ -21,9 +21,11 @@ MOST = 1 << 62
 
 @dataclass(frozen=True, slots=True)
 class DeviceLimits:
-    """Limits as the device holds them: µV, V/s (= µV/µs), µV, V²·ms, mHz, permille, ms.
+    """Limits as the device holds them, in units that C and Python count alike.
 
-    The defaults are the most the wire can ask for; a firmware's own are set for its amplifier.
+    Voltages are in µV, `slew` in V/s (= µV/µs), `heat` in V²·ms, frequencies in mHz, `duty` in
+    permille and `duty_window` in ms. The defaults are the most the wire can ask for; a firmware's
+    own are set for its amplifier.
     """
 
     voltage: int = HIGHEST_LEVEL
@@ -53,8 +55,16 @@ class DeviceLimits:
         )
         if not good:
             return None
-        taken = {one.name: getattr(asked, one.name) for one in fields(DeviceLimits)}
-        return DeviceLimits(**{**taken, "voltage": voltage, "continuous_voltage": continuous})
+        return DeviceLimits(
+            voltage=voltage,
+            slew=asked.slew,
+            continuous_voltage=continuous,
+            heat=asked.heat,
+            lowest_frequency=asked.lowest_frequency,
+            highest_frequency=asked.highest_frequency,
+            duty=asked.duty,
+            duty_window=asked.duty_window,
+        )
 
     def levels(self, volts: tuple[float, ...]) -> tuple[int, ...] | None:
         """µV of every amplitude, or None if any is outside the limits: one bad one refuses all."""

@@ -24,7 +24,11 @@ LONGEST_PAYLOAD = LONGEST_FRAME - OVERHEAD
 
 
 def cobs_encode(data: bytes) -> bytes:
-    """`data` without zero bytes, at most ⌈len/254⌉ bytes longer (one byte for no data)."""
+    """`data` without zero bytes, at most ⌈len/254⌉ bytes longer (one byte for no data).
+
+    Consistent overhead byte stuffing, so that a zero can end a frame (Cheshire & Baker 1999,
+    IEEE/ACM Trans. Networking 7, 159, 10.1109/90.769765).
+    """
     out = bytearray([0])
     code_at = 0
     for position, byte in enumerate(data):

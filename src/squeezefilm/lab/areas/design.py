@@ -115,12 +115,14 @@ class DesignArea:
                 line = {"type": "computing", "quality": asked.quality, "text": text, "share": share}
                 self._lab.pages[page].say(as_text(line))
 
-        line, hears = (quick, None) if asked.quality == "screening" else (slow, told)
-        work, of = design.designed, asked.quality
         if asked.quality == "band":
-            work, of = design.banded, asked.of
-        found = await line.do(asked.quality, work, point, of, gives_way=True, told=hears)
-        return {"type": "band" if work is design.banded else "design", **found}
+            found = await slow.do("band", design.banded, point, asked.of, gives_way=True, told=told)
+            return {"type": "band", **found}
+        worker, hears = (quick, None) if asked.quality == "screening" else (slow, told)
+        found = await worker.do(
+            asked.quality, design.designed, point, asked.quality, gives_way=True, told=hears
+        )
+        return {"type": "design", **found}
 
     async def _cancel(self, _: Request) -> Answer:
         self._lab.workers.cancel(PAGE.get(None))

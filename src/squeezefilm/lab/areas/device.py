@@ -101,6 +101,8 @@ class DeviceArea:
         display = str(await _display(self._lab, asked.display))
         texture = str(await _texture(self._lab, asked))
         drive, out = _drive(asked.drive), str(self._lab.folder / "sessions" / name)
+        # Both go to the process that plays: `files` are its paths as texts, `how` has mode, stroke,
+        # sensor, compensation, seed, duration (s) and voltage (V; None: the display's own).
         files = {"display": display, "texture": texture, "out": out}
         self._start(f"a texture on {drive}", device_process.play, drive=drive, **files, **how)
         return {"type": "playing", "folder": f"sessions/{name}"}

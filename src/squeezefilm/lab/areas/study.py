@@ -202,6 +202,7 @@ class StudyArea:
     def _passed_on(self, work: Callable[..., Answer], answer: str) -> Handler:
         """Answers by `work(studies, …)`, called with the request's own fields."""
 
+        # Each field is bound to the parameter of its name: they are named alike in `Studies`.
         async def passed(asked: Request) -> Answer:
             return {"type": answer, **await self.thread.do(partial(work, **asked.own))}
 

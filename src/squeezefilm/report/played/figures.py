@@ -109,13 +109,14 @@ def amplitude(session: PlayedSession) -> Figure:
         lw=1.2,
         label="commanded, at its time",
     )
-    dots = {"color": style.GREEN, "marker": ".", "ls": "", "ms": 3.5, "label": "in the record"}
-    true = {**style.RENDERED, "label": "true"}
-    for judged, look in ((session.by_truth, true), (session.by_record, dots)):
-        if judged is not None:
-            way = judged.way
-            near = np.abs(way.time - middle) <= 0.5 * _WINDOW
-            above.plot(way.time[near], 1e6 * way.amplitude[near], **look)
+    if session.by_truth is not None:
+        way = session.by_truth.way
+        near = np.abs(way.time - middle) <= 0.5 * _WINDOW
+        above.plot(way.time[near], 1e6 * way.amplitude[near], **style.RENDERED, label="true")
+    seen = session.by_record.way
+    near = np.abs(seen.time - middle) <= 0.5 * _WINDOW
+    x, y = seen.time[near], 1e6 * seen.amplitude[near]
+    above.plot(x, y, ".", ms=3.5, color=style.GREEN, label="in the record")
     above.set(ylabel="amplitude (µm)", ylim=(0, 1.12e6 * largest))
     style.legend_beside(above)
     below.plot(t, 1e3 * rows[inside, column.X], color=style.INK, lw=1.4)

@@ -16,6 +16,7 @@ import math
 import signal
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any
@@ -47,6 +48,7 @@ from squeezefilm.session.record.trace import Trace, read_trace
 from squeezefilm.study.conduct.study_device import DeviceVerification, Exploration
 from squeezefilm.texture_file import TextureFile
 from squeezefilm.twin.settings import TwinSettings
+from squeezefilm.twin.working_point import working_point
 
 LONGEST_PRESENTATION: si.Second = 600.0
 """A surface that nobody answers plays no longer; the trial then comes again."""
@@ -166,11 +168,18 @@ class Bench:
         trace = read_trace(outcome.trace)
         return _failure(outcome, trace), explored(trace, name)
 
-    @property
+    @cached_property
     def _amplitude_per_pickup(self) -> si.MetrePerVolt | None:
-        if self._orders.drive == "twin":
-            return 1 / self._orders.settings.pickup.sensitivity
-        return self._orders.amplitude_per_pickup
+        if self._orders.drive != "twin":
+            return self._orders.amplitude_per_pickup
+        pickup = self._orders.settings.pickup
+        if pickup.kind == "none":
+            return None
+        if pickup.kind == "sensing_patch":
+            # It hears the amplitude itself: no plate is to be solved for it.
+            return 1 / pickup.sensitivity
+        point = working_point(self._loaded(), self._orders.settings)
+        return point.pickup_calibration(pickup)
 
     def _loaded(self) -> Display:
         if self._display is None:

@@ -55,6 +55,8 @@ class Presentation:
     rest: si.Second
 
 
+# `StudyRun._response_row` writes these fields, all but `explorations`, by `to_json` to the columns
+# of the table `response` (`study.record.schema`) of their names with units: each needs its column.
 @dataclass(frozen=True)
 class Response:
     """What a participant answered, and when.

@@ -76,9 +76,10 @@ class Trial:
     @classmethod
     def of_row(cls, row: Mapping[str, Any]) -> Trial:
         """The trial of a row that `row` made."""
-        lists = {name: tuple(json.loads(row[name])) for name in _LISTS}
-        own = {"pause": row["pause_s"], "reference_first": bool(row["reference_first"]), **lists}
-        return cls(**{one.name: row[one.name] for one in fields(cls) if one.name not in own}, **own)
+        values = {**row, "pause": row["pause_s"], "reference_first": bool(row["reference_first"])}
+        for name in _LISTS:
+            values[name] = tuple(json.loads(row[name]))
+        return cls(**{one.name: values[one.name] for one in fields(cls)})
 
 
 def latin_square(size: int) -> tuple[tuple[int, ...], ...]:

@@ -244,5 +244,6 @@ def _significant(
 
 
 def _first_lasting(sizes: tuple[int, ...], reached: NDArray[np.bool_]) -> int | None:
+    # Reached here and at every larger size.
     lasting = np.flip(np.logical_and.accumulate(np.flip(reached)))
     return sizes[int(np.argmax(lasting))] if lasting.any() else None

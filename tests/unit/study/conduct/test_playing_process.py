@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import dataclasses
 import math
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -30,6 +31,7 @@ from squeezefilm.study.conduct.playing_process import (
     serve,
 )
 from squeezefilm.twin.settings import PickupModel, TwinSettings
+from squeezefilm.twin.working_point import WorkingPoint
 
 DISPLAY = load_display("biet2008-plate")
 GRATING = Stimulus("4 mm", 4e-3, "period")
@@ -263,6 +265,33 @@ def test_a_twin_has_a_finger_for_each_work_and_a_port_has_none(around: Around) -
         bench.done(("verify",))
         bench.done(("present", GRATING, 5, NAME))
     assert len(around.streams) == 1
+
+
+@pytest.mark.parametrize(
+    ("pickup", "calibration"),
+    [
+        (PickupModel(kind="sensing_patch", sensitivity=4e5), 1 / 4e5),
+        # A current of ω α z over the shunt.
+        (PickupModel(shunt=20.0), 1 / (2 * math.pi * 30e3 * 0.5 * 20.0)),
+        (PickupModel(kind="none"), None),
+    ],
+)
+def test_a_twins_pickup_is_read_as_what_it_is(
+    around: Around, monkeypatch: pytest.MonkeyPatch, pickup: PickupModel, calibration: float | None
+) -> None:
+    none, mode = np.zeros((1, 1)), SimpleNamespace(resonance_frequency=30e3)
+    settings = TwinSettings(pickup=pickup)
+
+    def solved(display: Any, given: TwinSettings) -> WorkingPoint:
+        assert given is settings
+        return WorkingPoint(display, mode, none, 1e-6, none, none, 20e-9, 0.5, ())  # type: ignore[arg-type]
+
+    monkeypatch.setattr(playing_process, "working_point", solved)
+    orders = dataclasses.replace(around.orders("twin"), settings=settings)
+    with Bench(Pipe(), orders) as bench:  # type: ignore[arg-type]
+        bench.done(("present", GRATING, 5, NAME))
+    given = around.setups[0][1]["amplitude_per_pickup"]
+    assert given == (None if calibration is None else pytest.approx(calibration))
 
 
 def test_the_carrier_is_swept_about_the_prediction_at_a_quarter_of_the_voltage(
