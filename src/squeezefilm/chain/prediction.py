@@ -20,9 +20,9 @@ from squeezefilm.chain.friction import (
     DEFAULT_MODEL,
     FrictionLaw,
     FrictionModel,
-    FrictionTable,
     friction_law,
 )
+from squeezefilm.chain.friction_table import FrictionTable
 from squeezefilm.chain.touch import Touch, kept_at, touch
 from squeezefilm.device.wire.safety import HIGHEST_VOLTAGE
 from squeezefilm.display import Display, NamedDisplay, Surface
