@@ -15,9 +15,11 @@ from squeezefilm.contact.asperities import AsperityLaw
 from squeezefilm.contact.finger.fingerpad import FingerpadDynamics
 from squeezefilm.contact.finger.fingertip import Finger
 from squeezefilm.contact.finger.skin import Skin
+from squeezefilm.contact.sharing.balance import LoadSharing, share_load
 from squeezefilm.contact.sharing.film_load import FilmLoad, film_load
 from squeezefilm.contact.sharing.gas_table import FilmTable, film_table
 from squeezefilm.contact.sharing.pad import FrictionRipple, PadPosture
+from squeezefilm.contact.sharing.shear import AsperityShear
 from squeezefilm.contact.sliding.dry_friction import DryFriction, FrictionProfile, Occlusion
 from squeezefilm.contact.sliding.march import Sliding, slide
 from squeezefilm.display import Display, Surface, load_display
@@ -120,6 +122,8 @@ MADE: dict[Any, Callable[[], Any]] = {
     FrictionProfile: lambda: FrictionProfile(0.0, 1e-3, np.ones(4)),
     Finger: lambda: FINGER,
     FingerpadDynamics: FingerpadDynamics,
+    AsperityShear: lambda: AsperityShear(0.1),
+    LoadSharing: lambda: share_load(MADE[FilmTable](), AsperityLaw(), 1e-6, 5e3),
     FilmTable: lambda: film_table(30e3, 250e-6, AIR),
     FilmLoad: lambda: film_load(MADE[PaperGap](), 30e3, AIR, "paper2008"),
     Occlusion: Occlusion,

@@ -15,6 +15,7 @@ from squeezefilm import quantities as si
 from squeezefilm.chain.friction_table import FrictionTable
 from squeezefilm.contact.finger.fingertip import Finger
 from squeezefilm.contact.sharing import paper
+from squeezefilm.contact.sharing.balance import share_load
 from squeezefilm.contact.sharing.film_load import FilmLoad, FilmModel, film_load
 from squeezefilm.contact.sharing.gas_table import film_table
 from squeezefilm.contact.sharing.pad import (
@@ -25,6 +26,11 @@ from squeezefilm.contact.sharing.pad import (
     friction_ripple,
     pad_friction,
     ridge_points,
+)
+from squeezefilm.contact.sharing.shear import (
+    AsperityShear,
+    TangentialStiffness,
+    sheared_friction,
 )
 from squeezefilm.contact.sharing.tapping import tapping_friction
 from squeezefilm.display import Display, Surface
@@ -199,6 +205,31 @@ class FrictionLaw:
             self.finger,
             normal_force=self.normal_force,
         )
+
+    @si.checked_numbers
+    def sheared(
+        self,
+        amplitude: si.MetreLike,
+        speed: Annotated[si.MetrePerSecond, si.Above(0.0)],
+        stiffness: TangentialStiffness = "following",
+    ) -> si.DimensionlessArray:
+        """µ′/µ at amplitudes (m) and a finger speed (m/s) where what touches within a period is
+        elastic until it slips, each ridge at its own balance, whatever the model: the mean over the
+        ridges. See `sheared_friction`.
+        """
+        swings, finger = np.atleast_1d(np.asarray(amplitude, dtype=float)), self.finger
+        points = ridge_points(finger, float(np.sqrt(finger.contact_area(self.normal_force))))
+        wave = np.abs(np.cos(np.pi * (points + self.position) / self.half_wavelength))
+        kinds, counts = np.unique(np.round(wave, 9), return_counts=True)
+        shared = share_load(
+            film_table(self.frequency, finger.plateau_width, self.gas),
+            finger.asperity_law(self.surface.roughness),
+            np.outer(swings, kinds),
+            finger.plateau_pressure(self.normal_force),
+        )
+        coefficient = self.surface.friction_coefficient * finger.friction_factor
+        shear = AsperityShear(speed, coefficient, stiffness)
+        return np.asarray(sheared_friction(shared, shear, self.frequency) @ (counts / points.size))
 
     @si.checked_numbers
     def tapped(self, amplitude: si.MetreLike, speed: si.MetrePerSecond) -> si.DimensionlessArray:

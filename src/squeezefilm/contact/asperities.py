@@ -137,6 +137,11 @@ class AsperityLaw:
             self.heights,
         )
 
+    @property
+    def words(self) -> str:
+        """What it is, for the name of a model."""
+        return f"asperities of {self.heights} heights"
+
     def compiled(self) -> CompiledAsperities:
         """The law as the compiled code takes it."""
         constants = [self.reference_pressure, self.reference_gap, self.decay_length, 0.0, 0.0, 0.0]

@@ -13,8 +13,8 @@ from typing import Annotated
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.contact.asperities import AsperityLaw
 from squeezefilm.contact.finger.skin import Skin
+from squeezefilm.contact.rough_contact import ContactLaw
 from squeezefilm.film.closed.linear import relative_damping, relative_stiffness
 from squeezefilm.film.gap import squeeze_number
 from squeezefilm.materials import Gas
@@ -29,7 +29,7 @@ def interface_stiffness(
     plateau_width: si.Metre,
     frequency: si.Hertz,
     gas: Gas,
-    asperities: AsperityLaw,
+    asperities: ContactLaw,
 ) -> complex:
     """Film and asperities between plate and a plateau: complex stiffness per area (Pa/m).
 

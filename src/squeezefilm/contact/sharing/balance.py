@@ -16,8 +16,8 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.compiled import announce
-from squeezefilm.contact.asperities import AsperityLaw
 from squeezefilm.contact.finger.skin import Skin
+from squeezefilm.contact.rough_contact import LEAST_GAP, ContactLaw, RoughContact
 from squeezefilm.contact.sharing.gas_table import DEEPEST_EXCURSION, FilmTable
 from squeezefilm.errors import ConvergenceError, OutOfRangeError
 
@@ -42,7 +42,7 @@ class LoadSharing:
     residual: si.DimensionlessArray
     film_error: float
     steps: si.FloatArray
-    asperities: AsperityLaw
+    asperities: ContactLaw
     model: str
 
     @property
@@ -59,7 +59,7 @@ class LoadSharing:
 @si.checked_numbers
 def share_load(
     table: FilmTable,
-    asperities: AsperityLaw,
+    asperities: ContactLaw,
     amplitude: Annotated[si.MetreLike, si.AtLeast(0.0), si.AtMost(1e-4)],
     plateau_pressure: Annotated[si.PascalLike, si.Above(0.0)],
     *,
@@ -94,7 +94,7 @@ def share_load(
 @si.checked_numbers
 def share_load_tied(
     table: FilmTable,
-    asperities: AsperityLaw,
+    asperities: ContactLaw,
     amplitude: Annotated[si.MetreArray, si.AtLeast(0.0), si.AtMost(1e-4)],
     plateau_pressure: Annotated[si.Pascal, si.Above(0.0)],
     *,
@@ -131,7 +131,7 @@ def _shared(
     pressure: si.FloatArray,
     rows: si.FloatArray,
     table: FilmTable,
-    asperities: AsperityLaw,
+    asperities: ContactLaw,
     model: str,
 ) -> LoadSharing:
     """Balances as they are handed out, in the shape of the pressure."""
@@ -146,6 +146,7 @@ def _shared(
         "residual": kernel.RESIDUAL,
         "steps": kernel.STEPS,
     }
+    _require_law(asperities, rows, pressure)
     return LoadSharing(
         amplitude=amplitude,
         plateau_pressure=pressure,
@@ -156,6 +157,23 @@ def _shared(
     )
 
 
+def _require_law(law: ContactLaw, rows: si.FloatArray, pressure: si.FloatArray) -> None:
+    """Refuse balances that press a rough interface nearly flat, where its law ends."""
+    from squeezefilm.contact.sharing import kernel
+
+    if not isinstance(law, RoughContact):
+        return
+    least = (rows[..., kernel.GAP] - rows[..., kernel.SWING]).reshape(pressure.shape)
+    flat = least < LEAST_GAP * law.roughness
+    if np.any(flat):
+        shown = si.format_quantity(float(np.min(pressure[flat])), si.Unit("Pa"))
+        raise OutOfRangeError(
+            f"a plateau under {shown} brings nearly everything into contact once a period: the gap "
+            f"falls below {LEAST_GAP} of the roughness, where the contact's law ends. Press less, "
+            "vibrate less, or take a rougher or stiffer skin"
+        )
+
+
 def _impedance(skin: Skin | None, table: FilmTable) -> si.FloatArray:
     if skin is None:
         return np.zeros(3)
@@ -163,11 +181,11 @@ def _impedance(skin: Skin | None, table: FilmTable) -> si.FloatArray:
     return np.array([D.real, D.imag, 1.0])
 
 
-def _model(table: FilmTable, asperities: AsperityLaw, skin: Skin | None, tie: str) -> str:
+def _model(table: FilmTable, asperities: ContactLaw, skin: Skin | None, tie: str) -> str:
     yields = "rigid" if skin is None else "yielding"
     return (
         f"partial levitation, {tie}: strip films of {table.width * 1e6:.4g} µm with slip "
-        f"'{table.slip}', asperities of {asperities.heights} heights, {yields} skin"
+        f"'{table.slip}', {asperities.words}, {yields} skin"
     )
 
 

@@ -14,6 +14,7 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.compiled import compiled
 from squeezefilm.contact.asperities import CompiledAsperities
+from squeezefilm.contact.asperity_kernel import asperity_mean, bessel
 
 BALANCED, NEEDS_PANEL, PRESSED_THROUGH, OUT_OF_TABLE, UNSETTLED = range(5)
 """What became of a balance."""
@@ -33,66 +34,6 @@ class CompiledFilms(NamedTuple):
     edges: si.FloatArray
     built: si.IntArray
     panels: si.FloatArray
-
-
-@compiled(error_model="numpy")
-def bessel(order: int, z: float) -> float:
-    """exp(−z) I_order(z) for order 0 or 1 and z ≥ 0: series below 18, asymptotics above."""
-    if z < 18.0:
-        quarter = 0.25 * z * z
-        term = 1.0 if order == 0 else 0.5 * z
-        total = term
-        for k in range(1, 80):
-            term *= quarter / (k * (k + order))
-            total += term
-            if term < 1e-17 * total:
-                break
-        return total * math.exp(-z)
-    four = 4.0 * order * order
-    term, total = 1.0, 1.0
-    for k in range(1, 30):
-        odd = 2.0 * k - 1.0
-        term *= -(four - odd * odd) / (8.0 * z * k)
-        total += term
-        if abs(term) < 1e-16:
-            break
-    return float(total / math.sqrt(2.0 * math.pi * z))
-
-
-@compiled(error_model="numpy")
-def _gaussian(h: float, law: si.FloatArray, table: si.FloatArray) -> float:
-    t = h / law[2]
-    x = (2.0 * t - law[3] - law[4]) / (law[4] - law[3])
-    if x > 1.0:
-        return 0.0
-    # Crushed flat: the balance will not be found there, but its search may pass.
-    x = max(x, -1.0)
-    b1, b2 = 0.0, 0.0
-    for k in range(len(table) - 1, 0, -1):
-        b1, b2 = table[k] + 2.0 * x * b1 - b2, b1
-    return float(law[0] * math.exp(table[0] + x * b1 - b2 - law[5]))
-
-
-@compiled(error_model="numpy")
-def asperity_mean(asperities: CompiledAsperities, u: float, a: float) -> tuple[float, float]:
-    """⟨p_a(u − a cos T)⟩ and its first harmonic 2⟨p_a cos T⟩, in Pa."""
-    kind, law, table = asperities
-    if kind == 0:
-        least = law[0] * math.exp(min(-(u - a - law[1]) / law[2], 700.0))
-        z = a / law[2]
-        return least * bessel(0, z), 2.0 * least * bessel(1, z)
-    mean = 0.5 * (_gaussian(u - a, law, table) + _gaussian(u + a, law, table))
-    first = 0.5 * (_gaussian(u - a, law, table) - _gaussian(u + a, law, table))
-    # The trapezoidal rule over the period; the deeper the swing over the length in which pressure
-    # falls by e, which is shorter out in the tail of the heights, the narrower the peak.
-    ratio = a / law[2] * max(1.0, (u - a) / law[2])
-    half = 16 if ratio < 3.0 else 32 if ratio < 10.0 else 64
-    for k in range(1, half):
-        c = math.cos(math.pi * k / half)
-        p = _gaussian(u - a * c, law, table)
-        mean += p
-        first += p * c
-    return mean / half, 2.0 * first / half
 
 
 @compiled(error_model="numpy")

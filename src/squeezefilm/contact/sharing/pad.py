@@ -14,9 +14,9 @@ from typing import Annotated, Literal
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.contact.asperities import AsperityLaw
 from squeezefilm.contact.finger.fingertip import Finger
 from squeezefilm.contact.finger.skin import Skin
+from squeezefilm.contact.rough_contact import ContactLaw
 from squeezefilm.contact.sharing.balance import share_load, share_load_tied
 from squeezefilm.contact.sharing.gas_table import FilmTable
 from squeezefilm.errors import InputError
@@ -106,7 +106,7 @@ def ridge_points(
 @si.checked_numbers
 def pad_friction(
     table: FilmTable,
-    asperities: AsperityLaw,
+    asperities: ContactLaw,
     amplitude: si.MetreLike,
     half_wavelength: Annotated[si.Metre, si.Above(0.0)],
     points: si.MetreArray,
@@ -191,7 +191,7 @@ class FrictionRipple:
 @si.checked_numbers
 def friction_ripple(
     table: FilmTable,
-    asperities: AsperityLaw,
+    asperities: ContactLaw,
     amplitude: si.Metre,
     half_wavelength: si.Metre,
     finger: Finger,

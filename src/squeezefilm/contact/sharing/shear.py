@@ -1,0 +1,83 @@
+"""Friction of what touches in bursts: elastic until it slips, anew in every period.
+
+Film and asperities share the normal load (`balance`); what remains in contact touches once a
+period. Shear q (over µ) builds up while the finger moves on at a speed U, dq/dt = k_t U/µ, until it
+reaches what friction can hold: the pressure of the asperities, or, of a rough elastic interface,
+what is in proportion to its real contact area. Where a period is too short for it the mean friction
+is less than the asperities' share of the load. Our own derivation; the element without gas is
+`tapping`.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Annotated, Any, Literal
+
+import numpy as np
+
+from squeezefilm import quantities as si
+from squeezefilm.contact.rough_contact import RoughContact
+from squeezefilm.contact.sharing.balance import LoadSharing
+from squeezefilm.contact.sharing.tapping import MINDLIN_RATIO
+
+TangentialStiffness = Literal["rigid", "constant", "following"]
+
+
+@si.checked_numbers
+@dataclass(frozen=True)
+class AsperityShear:
+    """The tangential element behind the asperities under a finger that slides at `speed`.
+
+    `stiffness` is "rigid" (all that touches slips), "constant" (k_t = κ times the normal stiffness
+    at rest under the same load) or "following" (κ times that at every moment, as many small
+    contacts have it; those that part take their share of the shear with them). κ is
+    `stiffness_ratio`.
+    """
+
+    speed: Annotated[si.MetrePerSecond, si.Above(0.0)]
+    friction_coefficient: Annotated[si.Dimensionless, si.Above(0.0)] = 0.9
+    stiffness: TangentialStiffness = "following"
+    stiffness_ratio: Annotated[si.Dimensionless, si.Above(0.0)] = MINDLIN_RATIO
+
+
+@si.checked_numbers
+def sheared_friction(
+    shared: LoadSharing, shear: AsperityShear, frequency: Annotated[si.Hertz, si.Above(0.0)]
+) -> si.DimensionlessArray:
+    """µ′/µ (dimensionless) of balanced plateaus, in their shape, at a frequency (Hz).
+
+    The mean over a period of what is held in shear, over what the same load holds at rest. With
+    "rigid" shear and `AsperityLaw` it is `LoadSharing.relative_friction` to the residual of the
+    balance. It never falls with the speed; with a stiffness that follows the load all slips, and
+    no more is gained, from U = µ ω a/κ on, a the amplitude of the gap. Toward U = 0 a constant
+    stiffness keeps the least pressure of the period, one that follows keeps nothing.
+    """
+    from squeezefilm.contact.asperity_kernel import asperities_at
+    from squeezefilm.contact.sharing import shear_kernel as kernel
+
+    law: Any = shared.asperities
+    compiled = law.compiled()
+    full = law.modulus * law.rms_slope if isinstance(law, RoughContact) else 0.0
+    kind = {"rigid": kernel.RIGID, "constant": kernel.CONSTANT, "following": kernel.FOLLOWING}
+    advance = shear.stiffness_ratio * shear.speed
+    advance /= shear.friction_coefficient * 2 * math.pi * frequency
+    form = np.broadcast_shapes(shared.mean_gap.shape, shared.plateau_pressure.shape)
+    pressure = np.broadcast_to(shared.plateau_pressure, form).ravel()
+    rest = np.array([kernel.gap_at_rest(compiled, float(p)) for p in np.unique(pressure)])
+    stiffness = np.array([asperities_at(compiled, float(u))[1] for u in rest])
+    of = np.searchsorted(np.unique(pressure), pressure)
+    held = [
+        kernel.shear_mean(
+            compiled, u, a, kernel.CompiledShear(kind[shear.stiffness], advance, k, full)
+        )
+        / kernel.friction_limit(p, full)
+        for u, a, k, p in zip(
+            np.ravel(shared.mean_gap).tolist(),
+            np.ravel(shared.gap_amplitude).tolist(),
+            stiffness[of].tolist(),
+            pressure.tolist(),
+            strict=True,
+        )
+    ]
+    return np.array(held).reshape(form)
