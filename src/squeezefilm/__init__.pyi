@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from squeezefilm.analysis.plate.ring import RingAnalysis
     from squeezefilm.analysis.plate.tracking import TrackRequest
     from squeezefilm.bench.play import PlayResult
-    from squeezefilm.chain.friction import FrictionModel
+    from squeezefilm.chain.friction_models import FrictionModel
     from squeezefilm.chain.prediction import Prediction
     from squeezefilm.chain.rendered_texture import RenderAnalysis
     from squeezefilm.display import Display, NamedDisplay

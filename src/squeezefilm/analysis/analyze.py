@@ -32,7 +32,7 @@ from squeezefilm.analysis.textures import (
 )
 from squeezefilm.analysis.uncertainty import UncertainFriction, uncertain_friction
 from squeezefilm.analysis.verdict import Finding, verdict
-from squeezefilm.chain.friction import FrictionModel
+from squeezefilm.chain.friction_models import FrictionModel
 from squeezefilm.chain.prediction import Prediction, predict
 from squeezefilm.display import Display, NamedDisplay
 from squeezefilm.errors import InputError, OutOfRangeError

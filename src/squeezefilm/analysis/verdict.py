@@ -11,7 +11,7 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.analysis.curves import PAPER_CRITERION, FrictionCurve
 from squeezefilm.analysis.film.models import FilmComparison
-from squeezefilm.chain.friction import MODEL_KINDS
+from squeezefilm.chain.friction_models import MODEL_KINDS
 from squeezefilm.chain.prediction import Prediction
 from squeezefilm.display import Display
 from squeezefilm.render.fidelity.survival import FidelityTable

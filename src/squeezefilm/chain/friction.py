@@ -7,17 +7,19 @@ curves, textures. Each law names its model.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated, Literal, NamedTuple, cast
+from typing import Annotated, cast
 
 import numpy as np
 
 from squeezefilm import quantities as si
+from squeezefilm.chain.friction_models import DEFAULT_MODEL, MODEL_KINDS, FrictionModel, ModelKind
 from squeezefilm.chain.friction_table import FrictionTable
+from squeezefilm.contact.asperities import AsperityLaw
 from squeezefilm.contact.finger.fingertip import Finger
 from squeezefilm.contact.sharing import paper
 from squeezefilm.contact.sharing.balance import share_load
 from squeezefilm.contact.sharing.film_load import FilmLoad, FilmModel, film_load
-from squeezefilm.contact.sharing.gas_table import film_table
+from squeezefilm.contact.sharing.gas_table import FilmTable, film_table
 from squeezefilm.contact.sharing.pad import (
     FrictionRipple,
     Limit,
@@ -39,44 +41,7 @@ from squeezefilm.film.closed.limits import PaperModel, contact_mean_pressure
 from squeezefilm.film.gap import PaperGap
 from squeezefilm.materials import Gas
 
-FrictionModel = Literal[
-    "paper2008",
-    "paper2008-printed",
-    "film-sealed",
-    "film-open",
-    "film-plateau",
-    "film-smooth",
-    "partial-levitation",
-    "partial-levitation-one-gap",
-]
-DEFAULT_MODEL: FrictionModel = "partial-levitation"
-"""Film and asperities share the load, each ridge at its own balance (decision 0005)."""
-
 HIGHEST_AMPLITUDE: si.Metre = 50e-6
-
-
-class ModelKind(NamedTuple):
-    """What a friction model makes of the film, and in which limit it takes the skin.
-
-    "asymptote": the paper's closed form at an infinite squeeze number; "held": a film solved (a
-    hundred times slower) at a gap that does not yield; "shared": films that carry the finger
-    together with asperities, at the gap where both balance the load.
-    """
-
-    film: Literal["asymptote", "held", "shared"]
-    limit: Limit = "own"
-
-
-MODEL_KINDS: dict[FrictionModel, ModelKind] = {
-    "paper2008": ModelKind("asymptote"),
-    "paper2008-printed": ModelKind("asymptote"),
-    "film-sealed": ModelKind("held"),
-    "film-open": ModelKind("held"),
-    "film-plateau": ModelKind("held"),
-    "film-smooth": ModelKind("held"),
-    "partial-levitation": ModelKind("shared"),
-    "partial-levitation-one-gap": ModelKind("shared", "one-gap"),
-}
 
 
 @si.checked_numbers
@@ -173,18 +138,16 @@ class FrictionLaw:
                     "partial-levitation model, or name a limit"
                 )
             limit = self.kind.limit
-        finger = self.finger
-        side = float(np.sqrt(finger.contact_area(self.normal_force)))
         return pad_friction(
-            film_table(self.frequency, finger.plateau_width, self.gas),
-            finger.asperity_law(self.surface.roughness),
+            self._films,
+            self._asperities,
             amplitude,
             self.half_wavelength,
-            ridge_points(finger, side),
-            finger.plateau_pressure(self.normal_force),
+            self._ridges,
+            self.finger.plateau_pressure(self.normal_force),
             limit=limit,
             posture=posture or PadPosture(position=self.position),
-            skin=finger.skin if yielding else None,
+            skin=self.finger.skin if yielding else None,
         )
 
     @si.checked_numbers
@@ -198,8 +161,8 @@ class FrictionLaw:
         """µ′/µ along the wave by partial levitation at an amplitude (m), each ridge at its own
         balance, whatever the model. See `friction_ripple`."""
         return friction_ripple(
-            film_table(self.frequency, self.finger.plateau_width, self.gas),
-            self.finger.asperity_law(self.surface.roughness),
+            self._films,
+            self._asperities,
             amplitude,
             self.half_wavelength,
             self.finger,
@@ -217,19 +180,12 @@ class FrictionLaw:
         elastic until it slips, each ridge at its own balance, whatever the model: the mean over the
         ridges. See `sheared_friction`.
         """
-        swings, finger = np.atleast_1d(np.asarray(amplitude, dtype=float)), self.finger
-        points = ridge_points(finger, float(np.sqrt(finger.contact_area(self.normal_force))))
-        wave = np.abs(np.cos(np.pi * (points + self.position) / self.half_wavelength))
-        kinds, counts = np.unique(np.round(wave, 9), return_counts=True)
-        shared = share_load(
-            film_table(self.frequency, finger.plateau_width, self.gas),
-            finger.asperity_law(self.surface.roughness),
-            np.outer(swings, kinds),
-            finger.plateau_pressure(self.normal_force),
-        )
-        coefficient = self.surface.friction_coefficient * finger.friction_factor
-        shear = AsperityShear(speed, coefficient, stiffness)
-        return np.asarray(sheared_friction(shared, shear, self.frequency) @ (counts / points.size))
+        swings = np.atleast_1d(np.asarray(amplitude, dtype=float))
+        kinds, weights = self._kinds_of_ridges()
+        pressure = self.finger.plateau_pressure(self.normal_force)
+        shared = share_load(self._films, self._asperities, np.outer(swings, kinds), pressure)
+        shear = AsperityShear(speed, self._coefficient, stiffness)
+        return np.asarray(sheared_friction(shared, shear, self.frequency) @ weights)
 
     @si.checked_numbers
     def tapped(self, amplitude: si.MetreLike, speed: si.MetrePerSecond) -> si.DimensionlessArray:
@@ -238,12 +194,8 @@ class FrictionLaw:
         """
         swings = np.atleast_1d(amplitude)
         si.require("amplitude", swings, si.Unit("m"), at_least=0, axes=1)
-        finger = self.finger
-        pressure = finger.plateau_pressure(self.normal_force)
-        decay = finger.asperity_law(self.surface.roughness).decay_length
-        points = ridge_points(finger, float(np.sqrt(finger.contact_area(self.normal_force))))
-        wave = np.abs(np.cos(np.pi * (points + self.position) / self.half_wavelength))
-        kinds, counts = np.unique(np.round(wave, 9), return_counts=True)
+        pressure = self.finger.plateau_pressure(self.normal_force)
+        kinds, weights = self._kinds_of_ridges()
 
         def tap(swing: float) -> float:
             return tapping_friction(
@@ -251,19 +203,44 @@ class FrictionLaw:
                 self.frequency,
                 speed,
                 pressure,
-                friction_coefficient=self.surface.friction_coefficient * finger.friction_factor,
-                normal_stiffness=pressure / decay,
+                friction_coefficient=self._coefficient,
+                normal_stiffness=pressure / self._asperities.decay_length,
             ).relative_friction
 
         each = np.array([[tap(float(a * k)) for k in kinds] for a in swings])
-        return np.asarray(each @ (counts / points.size))
+        return np.asarray(each @ weights)
+
+    @property
+    def _films(self) -> FilmTable:
+        return film_table(self.frequency, self.finger.plateau_width, self.gas)
+
+    @property
+    def _asperities(self) -> AsperityLaw:
+        return self.finger.asperity_law(self.surface.roughness)
+
+    @property
+    def _ridges(self) -> si.MetreArray:
+        side = float(np.sqrt(self.finger.contact_area(self.normal_force)))
+        return ridge_points(self.finger, side)
+
+    @property
+    def _coefficient(self) -> si.Dimensionless:
+        """The friction coefficient without vibration."""
+        return self.surface.friction_coefficient * self.finger.friction_factor
+
+    def _kinds_of_ridges(self) -> tuple[si.FloatArray, si.FloatArray]:
+        """The amplitudes that ridges meet, over an antinode's, each once, and their shares."""
+        points = self._ridges
+        wave = np.abs(np.cos(np.pi * (points + self.position) / self.half_wavelength))
+        kinds, counts = np.unique(np.round(wave, 9), return_counts=True)
+        return np.asarray(kinds, dtype=float), counts / points.size
 
     def _shared_load(self, amplitude: si.Metre) -> FilmLoad:
         shared = self.sharing(amplitude)
         # Over the whole contact, grooves included, as the other models have it.
         share = self.finger.plateau_width / self.finger.ridge_period
         over = share * float(shared.film_pressure[0]) / self.gas.ambient_pressure
-        table = film_table(self.frequency, self.finger.plateau_width, self.gas)
+        table = self._films
         return FilmLoad(
             self.model,
             over,

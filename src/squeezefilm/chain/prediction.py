@@ -16,12 +16,8 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.chain.friction import (
-    DEFAULT_MODEL,
-    FrictionLaw,
-    FrictionModel,
-    friction_law,
-)
+from squeezefilm.chain.friction import FrictionLaw, friction_law
+from squeezefilm.chain.friction_models import DEFAULT_MODEL, FrictionModel
 from squeezefilm.chain.friction_table import FrictionTable
 from squeezefilm.chain.touch import Touch, kept_at, touch
 from squeezefilm.device.wire.safety import HIGHEST_VOLTAGE

@@ -14,7 +14,7 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.arguments import called_with
-from squeezefilm.chain.friction import FrictionModel
+from squeezefilm.chain.friction_models import FrictionModel
 from squeezefilm.chain.played_texture import (
     FingerMotion,
     PlayedTexture,

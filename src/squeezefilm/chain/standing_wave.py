@@ -8,7 +8,7 @@ from typing import Literal, get_args
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.chain.friction import MODEL_KINDS
+from squeezefilm.chain.friction_models import MODEL_KINDS
 from squeezefilm.chain.friction_table import FrictionTable
 from squeezefilm.chain.played_texture import FingerMotion
 from squeezefilm.chain.prediction import Prediction

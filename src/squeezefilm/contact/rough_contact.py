@@ -23,7 +23,7 @@ flattening, and adhesion in the normal load.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import lru_cache
 from typing import Annotated, NamedTuple
 
@@ -134,7 +134,7 @@ class RoughContact:
     `roughness` h_rms is that of both faces together and `modulus` E* the effective one of the
     skin. The spectrum reaches from `longest_wavelength`, at most the width of a plateau, to
     `shortest_wavelength`. Independent of load and frequency. The values are assumed: with them
-    the law at small pressure is that of `AsperityLaw`'s defaults.
+    the law at small pressure is, within a tenth, that of `AsperityLaw`'s defaults.
 
     Raises `InputError` for values out of bounds or wavelengths the wrong way round.
     """
@@ -197,6 +197,8 @@ class RoughContact:
         Zero beyond 12 h_rms, where less than 1e-11 of the pressure scale is left. Raises
         `OutOfRangeError` below 0.05 h_rms, where nearly everything is in contact.
         """
+        from scipy.interpolate import CubicHermiteSpline
+
         t = np.asarray(gap, dtype=float) / self.roughness
         if np.any(t < LEAST_GAP):
             least, rough = (
@@ -207,21 +209,11 @@ class RoughContact:
                 f"a gap of {least} is less than {LEAST_GAP} of the roughness of {rough}: the faces "
                 "are nearly in full contact there; press less or take a rougher skin"
             )
-        inside = np.minimum(t, _LARGEST_GAP)
-        carried = self.pressure_scale * np.exp(self._logarithm(inside))
-        return np.asarray(np.where(t <= _LARGEST_GAP, carried, 0.0))[()]
-
-    def _logarithm(self, gap: si.FloatArray) -> si.FloatArray:
-        from scipy.interpolate import CubicHermiteSpline
-
         known = self.spectrum
         at = LEAST_GAP + _STEP * np.arange(known.logarithm.size)
-        return np.asarray(CubicHermiteSpline(at, known.logarithm, known.steepness)(gap))
-
-    @si.checked_numbers
-    def scaled(self, factor: Annotated[si.Dimensionless, si.Above(0.0)]) -> RoughContact:
-        """The law of an interface with all heights times `factor`."""
-        return replace(self, roughness=self.roughness * factor)
+        logarithm = CubicHermiteSpline(at, known.logarithm, known.steepness)
+        carried = self.pressure_scale * np.exp(logarithm(np.minimum(t, _LARGEST_GAP)))
+        return np.asarray(np.where(t <= _LARGEST_GAP, carried, 0.0))[()]
 
     @property
     def words(self) -> str:

@@ -9,7 +9,8 @@ import pytest
 
 from squeezefilm.analysis import curves as models
 from squeezefilm.analysis.curves import COMPARED, ModelCurve, model_curves
-from squeezefilm.chain.friction import MODEL_KINDS, FrictionLaw, FrictionModel, friction_law
+from squeezefilm.chain.friction import FrictionLaw, friction_law
+from squeezefilm.chain.friction_models import MODEL_KINDS, FrictionModel
 from squeezefilm.chain.prediction import Prediction, predict
 from squeezefilm.display import load_display
 from squeezefilm.errors import OutOfRangeError

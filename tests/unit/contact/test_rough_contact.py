@@ -108,7 +108,7 @@ def test_real_contact() -> None:
 
 def test_scales() -> None:
     """Heights scale the gap and the pressure, the modulus the pressure alone."""
-    twice = CONTACT.scaled(2.0)
+    twice = replace(CONTACT, roughness=2 * CONTACT.roughness)
     assert twice.pressure(4e-6) == pytest.approx(2 * CONTACT.pressure(2e-6))
     stiffer = replace(CONTACT, modulus=3 * CONTACT.modulus)
     assert stiffer.pressure(2e-6) == pytest.approx(3 * float(CONTACT.pressure(2e-6)))

@@ -12,7 +12,7 @@ from squeezefilm import quantities as si
 from squeezefilm.analysis.curves import ModelCurve, model_curves
 from squeezefilm.analysis.uncertainty import UncertainFriction, uncertain_friction
 from squeezefilm.arguments import called_with
-from squeezefilm.chain.friction import DEFAULT_MODEL, FrictionModel
+from squeezefilm.chain.friction_models import DEFAULT_MODEL, FrictionModel
 from squeezefilm.chain.prediction import Prediction, predict, voltage_for_friction
 from squeezefilm.contact.sharing.pad import FrictionRipple
 from squeezefilm.display import Display, NamedDisplay

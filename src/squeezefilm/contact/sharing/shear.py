@@ -53,31 +53,17 @@ def sheared_friction(
     no more is gained, from U = µ ω a/κ on, a the amplitude of the gap. Toward U = 0 a constant
     stiffness keeps the least pressure of the period, one that follows keeps nothing.
     """
-    from squeezefilm.contact.asperity_kernel import asperities_at
     from squeezefilm.contact.sharing import shear_kernel as kernel
 
     law: Any = shared.asperities
-    compiled = law.compiled()
     full = law.modulus * law.rms_slope if isinstance(law, RoughContact) else 0.0
     kind = {"rigid": kernel.RIGID, "constant": kernel.CONSTANT, "following": kernel.FOLLOWING}
     advance = shear.stiffness_ratio * shear.speed
     advance /= shear.friction_coefficient * 2 * math.pi * frequency
-    form = np.broadcast_shapes(shared.mean_gap.shape, shared.plateau_pressure.shape)
-    pressure = np.broadcast_to(shared.plateau_pressure, form).ravel()
-    rest = np.array([kernel.gap_at_rest(compiled, float(p)) for p in np.unique(pressure)])
-    stiffness = np.array([asperities_at(compiled, float(u))[1] for u in rest])
-    of = np.searchsorted(np.unique(pressure), pressure)
-    held = [
-        kernel.shear_mean(
-            compiled, u, a, kernel.CompiledShear(kind[shear.stiffness], advance, k, full)
-        )
-        / kernel.friction_limit(p, full)
-        for u, a, k, p in zip(
-            np.ravel(shared.mean_gap).tolist(),
-            np.ravel(shared.gap_amplitude).tolist(),
-            stiffness[of].tolist(),
-            pressure.tolist(),
-            strict=True,
-        )
-    ]
-    return np.array(held).reshape(form)
+    element = kernel.CompiledShear(kind[shear.stiffness], advance, 0.0, full)
+    columns = np.broadcast_arrays(shared.mean_gap, shared.gap_amplitude, shared.plateau_pressure)
+    found = np.empty(columns[0].size)
+    kernel.sheared_rows(
+        law.compiled(), np.stack([np.ravel(one) for one in columns], axis=1), element, found
+    )
+    return found.reshape(columns[0].shape)

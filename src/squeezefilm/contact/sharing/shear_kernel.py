@@ -133,20 +133,15 @@ def shear_mean(asperities: CompiledAsperities, u: float, a: float, shear: Compil
             return float(mean)
     # The period repeats where it ends with the deficit that it began with: the map from one to the
     # other is nearly straight, and its secant ends the search.
-    following = shear.kind == FOLLOWING
-    start = 0.0
-    end, total = _period(rows, following, start)
-    last_start, last_end = start, end
-    start = end
+    start, last_start, last_end, total = 0.0, math.nan, math.nan, 0.0
     for _ in range(_ROUNDS):
-        if abs(end - last_start) <= 1e-12 * rows[0, 0]:
-            break
-        end, total = _period(rows, following, start)
+        end, total = _period(rows, shear.kind == FOLLOWING, start)
         if abs(end - start) <= 1e-12 * rows[0, 0]:
             break
         gain = (end - last_end) / (start - last_start)
         last_start, last_end = start, end
-        start = max(start + (end - start) / (1.0 - gain) if gain < 1.0 else end, 0.0)
+        # The first time there is no secant yet (the gain is no number): go where it ended.
+        start = max(start + (end - start) / (1.0 - gain), 0.0) if gain < 1.0 else end
     return float(mean - total / (2.0 * math.pi))
 
 
@@ -164,3 +159,17 @@ def gap_at_rest(asperities: CompiledAsperities, pressure: float) -> float:
         if abs(step) <= 1e-12 * asperities.constants[2]:
             break
     return float(u)
+
+
+@compiled(error_model="numpy")
+def sheared_rows(
+    asperities: CompiledAsperities, shared: si.FloatArray, shear: CompiledShear, out: si.FloatArray
+) -> None:
+    """µ′/µ of plateaus, into `out`; the columns of `shared` are their mean gap and its amplitude
+    (m) and their pressure (Pa)."""
+    for i in range(len(shared)):
+        gap, swing, pressure = shared[i]
+        stiffness = asperities_at(asperities, gap_at_rest(asperities, pressure))[1]
+        element = CompiledShear(shear.kind, shear.advance, stiffness, shear.full)
+        held = shear_mean(asperities, gap, swing, element)
+        out[i] = held / friction_limit(pressure, shear.full)

@@ -1,0 +1,44 @@
+"""The models of friction that one can ask for by name, and what each makes of film and skin."""
+
+from __future__ import annotations
+
+from typing import Literal, NamedTuple
+
+from squeezefilm.contact.sharing.pad import Limit
+
+FrictionModel = Literal[
+    "paper2008",
+    "paper2008-printed",
+    "film-sealed",
+    "film-open",
+    "film-plateau",
+    "film-smooth",
+    "partial-levitation",
+    "partial-levitation-one-gap",
+]
+DEFAULT_MODEL: FrictionModel = "partial-levitation"
+"""Film and asperities share the load, each ridge at its own balance (decision 0005)."""
+
+
+class ModelKind(NamedTuple):
+    """What a friction model makes of the film, and in which limit it takes the skin.
+
+    "asymptote": the paper's closed form at an infinite squeeze number; "held": a film solved (a
+    hundred times slower) at a gap that does not yield; "shared": films that carry the finger
+    together with asperities, at the gap where both balance the load.
+    """
+
+    film: Literal["asymptote", "held", "shared"]
+    limit: Limit = "own"
+
+
+MODEL_KINDS: dict[FrictionModel, ModelKind] = {
+    "paper2008": ModelKind("asymptote"),
+    "paper2008-printed": ModelKind("asymptote"),
+    "film-sealed": ModelKind("held"),
+    "film-open": ModelKind("held"),
+    "film-plateau": ModelKind("held"),
+    "film-smooth": ModelKind("held"),
+    "partial-levitation": ModelKind("shared"),
+    "partial-levitation-one-gap": ModelKind("shared", "one-gap"),
+}

@@ -1,0 +1,15 @@
+"""Every model of friction says what it makes of the film."""
+
+from __future__ import annotations
+
+from typing import get_args
+
+from squeezefilm.chain.friction_models import DEFAULT_MODEL, MODEL_KINDS, FrictionModel
+
+
+def test_every_model_has_a_kind() -> None:
+    assert set(MODEL_KINDS) == set(get_args(FrictionModel))
+    assert MODEL_KINDS[DEFAULT_MODEL].film == "shared"
+    assert {kind.film for kind in MODEL_KINDS.values()} == {"asymptote", "held", "shared"}
+    tied = [name for name, kind in MODEL_KINDS.items() if kind.limit == "one-gap"]
+    assert tied == ["partial-levitation-one-gap"]
