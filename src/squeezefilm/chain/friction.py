@@ -1,4 +1,4 @@
-"""The friction of one display at one working point, as a law of the vibration amplitude.
+"""The friction of one display at one frequency and force, as a law of amplitude and speed.
 
 The seam between what film and contact compute and everything that needs friction: predictions,
 curves, textures. Each law names its model.
@@ -14,10 +14,9 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.chain.friction_models import DEFAULT_MODEL, MODEL_KINDS, FrictionModel, ModelKind
 from squeezefilm.chain.friction_table import FrictionTable
-from squeezefilm.contact.asperities import AsperityLaw
-from squeezefilm.contact.finger.fingertip import Finger
+from squeezefilm.contact.finger.fingertip import EXPLORING_SPEED, Finger
+from squeezefilm.contact.rough_contact import ContactLaw
 from squeezefilm.contact.sharing import paper
-from squeezefilm.contact.sharing.balance import share_load
 from squeezefilm.contact.sharing.film_load import FilmLoad, FilmModel, film_load
 from squeezefilm.contact.sharing.gas_table import FilmTable, film_table
 from squeezefilm.contact.sharing.pad import (
@@ -29,19 +28,18 @@ from squeezefilm.contact.sharing.pad import (
     pad_friction,
     ridge_points,
 )
-from squeezefilm.contact.sharing.shear import (
-    AsperityShear,
-    TangentialStiffness,
-    sheared_friction,
-)
-from squeezefilm.contact.sharing.tapping import tapping_friction
+from squeezefilm.contact.sharing.shear import AsperityShear
 from squeezefilm.display import Display, Surface
 from squeezefilm.errors import InputError, OutOfRangeError, UnreachableError
 from squeezefilm.film.closed.limits import PaperModel, contact_mean_pressure
 from squeezefilm.film.gap import PaperGap
+from squeezefilm.hard_limits import FINGER_SPEED
 from squeezefilm.materials import Gas
 
 HIGHEST_AMPLITUDE: si.Metre = 50e-6
+TABLE_SPEEDS: si.MetrePerSecondArray = np.append(0.0, np.geomspace(1e-3, 2.0, 24))
+"""Where a law that depends on the speed is tabulated: toward rest, and from creeping to faster than
+fingers explore. Linear between; held beyond."""
 
 
 @si.checked_numbers
@@ -62,13 +60,16 @@ class FrictionLimits:
 @si.checked_numbers
 @dataclass(frozen=True)
 class FrictionLaw:
-    """µ′/µ as a function of the vibration amplitude, at one frequency and force, by one model.
+    """µ′/µ as a function of amplitude and speed, at one frequency and force, by one model.
 
-    All models take what the film does not carry to be in contact, at an unchanged friction
-    coefficient (paper eq 14, corrected). "paper2008" and the "film-" models hold the gap and differ
-    in the film; the "partial-levitation" models find the gap at which film and asperities carry
-    the finger together, over each ridge ("partial-levitation") or over all of them at once
-    ("partial-levitation-one-gap"). `position` is the pad's centre from an antinode, along the wave.
+    "paper2008" and the "film-" models hold the gap and differ in the film; the "partial-levitation"
+    models find the gap at which film and asperities carry the finger together, over each ridge or
+    over all of them at once ("…-one-gap"). These take what the film does not carry to be in
+    contact, at an unchanged friction coefficient (paper eq 14, corrected). The default,
+    "partial-levitation-shear", takes friction to be in proportion to the real contact area, where
+    the finger's law of asperities knows it, and what touches within a period to be elastic until
+    it slips: it alone depends on `speed`, that of sliding, at which `at` and `curve` answer.
+    `position` is the pad's centre from an antinode, along the wave.
     """
 
     surface: Surface
@@ -79,6 +80,7 @@ class FrictionLaw:
     normal_force: Annotated[si.Newton, si.Above(0)]
     model: FrictionModel
     position: si.Metre = 0.0
+    speed: Annotated[si.MetrePerSecond, FINGER_SPEED] = EXPLORING_SPEED
 
     def __post_init__(self) -> None:
         if self.position and self.kind.film != "shared":
@@ -148,11 +150,13 @@ class FrictionLaw:
             limit=limit,
             posture=posture or PadPosture(position=self.position),
             skin=self.finger.skin if yielding else None,
+            shear=self._shear(self.speed),
         )
 
     @si.checked_numbers
     def limits(self, amplitude: si.MetreLike) -> FrictionLimits:
-        """µ′/µ in both limits of partial levitation at amplitudes (m), whatever the model."""
+        """µ′/µ in both limits of partial levitation at amplitudes (m), whatever the model; what
+        touches slips, or is elastic until it does, as the model has it."""
         a = np.atleast_1d(np.asarray(amplitude, dtype=float))
         own, tied = self.sharing(a, "own"), self.sharing(a, "one-gap")
         return FrictionLimits(a, own.relative_friction, tied.relative_friction)
@@ -167,55 +171,15 @@ class FrictionLaw:
             self.half_wavelength,
             self.finger,
             normal_force=self.normal_force,
+            shear=self._shear(self.speed),
         )
-
-    @si.checked_numbers
-    def sheared(
-        self,
-        amplitude: si.MetreLike,
-        speed: Annotated[si.MetrePerSecond, si.Above(0.0)],
-        stiffness: TangentialStiffness = "following",
-    ) -> si.DimensionlessArray:
-        """µ′/µ at amplitudes (m) and a finger speed (m/s) where what touches within a period is
-        elastic until it slips, each ridge at its own balance, whatever the model: the mean over the
-        ridges. See `sheared_friction`.
-        """
-        swings = np.atleast_1d(np.asarray(amplitude, dtype=float))
-        kinds, weights = self._kinds_of_ridges()
-        pressure = self.finger.plateau_pressure(self.normal_force)
-        shared = share_load(self._films, self._asperities, np.outer(swings, kinds), pressure)
-        shear = AsperityShear(speed, self._coefficient, stiffness)
-        return np.asarray(sheared_friction(shared, shear, self.frequency) @ weights)
-
-    @si.checked_numbers
-    def tapped(self, amplitude: si.MetreLike, speed: si.MetrePerSecond) -> si.DimensionlessArray:
-        """µ′/µ by the competing mechanism, intermittent contact without gas, at amplitudes (m) and
-        a finger speed (m/s), whatever the model: the mean over the ridges. See `contact.tapping`.
-        """
-        swings = np.atleast_1d(amplitude)
-        si.require("amplitude", swings, si.Unit("m"), at_least=0, axes=1)
-        pressure = self.finger.plateau_pressure(self.normal_force)
-        kinds, weights = self._kinds_of_ridges()
-
-        def tap(swing: float) -> float:
-            return tapping_friction(
-                swing,
-                self.frequency,
-                speed,
-                pressure,
-                friction_coefficient=self._coefficient,
-                normal_stiffness=pressure / self._asperities.decay_length,
-            ).relative_friction
-
-        each = np.array([[tap(float(a * k)) for k in kinds] for a in swings])
-        return np.asarray(each @ weights)
 
     @property
     def _films(self) -> FilmTable:
         return film_table(self.frequency, self.finger.plateau_width, self.gas)
 
     @property
-    def _asperities(self) -> AsperityLaw:
+    def _asperities(self) -> ContactLaw:
         return self.finger.asperity_law(self.surface.roughness)
 
     @property
@@ -224,12 +188,23 @@ class FrictionLaw:
         return ridge_points(self.finger, side)
 
     @property
-    def _coefficient(self) -> si.Dimensionless:
-        """The friction coefficient without vibration."""
-        return self.surface.friction_coefficient * self.finger.friction_factor
+    def friction_coefficient(self) -> si.Dimensionless:
+        """µ without vibration, at this force. See `Finger.friction_coefficient`."""
+        return self.finger.friction_coefficient(
+            self.surface.friction_coefficient, self.surface.roughness, self.normal_force
+        )
 
-    def _kinds_of_ridges(self) -> tuple[si.FloatArray, si.FloatArray]:
-        """The amplitudes that ridges meet, over an antinode's, each once, and their shares."""
+    def _shear(self, speed: si.MetrePerSecondLike) -> AsperityShear | None:
+        if not self.kind.shear:
+            return None
+        finger = self.finger
+        return AsperityShear(
+            speed, self.friction_coefficient, finger.tangential_stiffness, finger.tangential_ratio
+        )
+
+    def ridge_swings(self) -> tuple[si.DimensionlessArray, si.DimensionlessArray]:
+        """The amplitudes that ridges meet over an antinode's, each once, and the share of the
+        ridges that meets it."""
         points = self._ridges
         wave = np.abs(np.cos(np.pi * (points + self.position) / self.half_wavelength))
         kinds, counts = np.unique(np.round(wave, 9), return_counts=True)
@@ -249,6 +224,30 @@ class FrictionLaw:
             f"{shared.ridge_points} points of ridges balanced, residual {shared.residual:.1e}; "
             f"film within {table.relative_error:.1e}",
         )
+
+    @si.checked_numbers
+    def over_speeds(
+        self, amplitude: si.MetreArray, speed: si.MetrePerSecondArray
+    ) -> si.DimensionlessArray:
+        """µ′/µ at speeds (m/s, from 0) and amplitudes (m), shape (speeds, amplitudes).
+
+        Toward rest a constant tangential stiffness keeps what the least pressure of a period
+        holds, one that follows the load keeps nothing: it is sheared off by every period.
+        """
+        a, speeds = np.ravel(amplitude), np.ravel(speed)
+        if not self.kind.shear:
+            return np.repeat(self.curve(a)[None, :], speeds.size, axis=0)
+        found = pad_friction(
+            self._films,
+            self._asperities,
+            a,
+            self.half_wavelength,
+            self._ridges,
+            self.finger.plateau_pressure(self.normal_force),
+            posture=PadPosture(position=self.position),
+            shear=self._shear(speeds),
+        )
+        return found.relative_friction
 
     @si.checked_numbers
     def at(self, amplitude: si.Metre) -> si.Dimensionless:
@@ -274,6 +273,8 @@ class FrictionLaw:
     def under(self, load: FilmLoad, amplitude: si.Metre) -> si.Dimensionless:
         """µ′/µ (dimensionless) with a film already solved at an amplitude (m), as `load` has it."""
         if self.kind.film == "asymptote":
+            return self.at(amplitude)
+        if self.kind.shear:
             return self.at(amplitude)
         if self.kind.film == "shared":
             # The contact grows with the force here, so the paper's fixed area will not do.
@@ -349,13 +350,17 @@ class FrictionLaw:
 
         Holds from 0 to `highest_amplitude`, raises `OutOfRangeError` outside. With the default
         points (257; 65 where the film is solved) it is within 1e-4 (1e-3) of the law for the
-        paper's devices.
+        paper's devices; over speeds, tabulated at `TABLE_SPEEDS`, within 1e-2.
         """
         if points is not None:
             si.require("points", points, at_least=2)
         count = points or (257 if self.kind.film == "asymptote" else 65)
         # Denser at small amplitudes, where the law bends within the roughness.
         grid = highest_amplitude * np.linspace(0.0, 1.0, count) ** 2
+        if self.kind.shear:
+            return FrictionTable(
+                grid, TABLE_SPEEDS, self.over_speeds(grid, TABLE_SPEEDS), self.speed
+            )
         law = self.curve(grid)
         if law[-1] == 0:
             # The law has a kink where the finger lifts off; a point of its own keeps it sharp.
@@ -363,7 +368,7 @@ class FrictionLaw:
             at = int(np.searchsorted(grid, kink))
             grid, law = np.insert(grid, at, kink), np.insert(law, at, 0.0)
 
-        return FrictionTable(grid, law)
+        return FrictionTable(grid, np.zeros(1), law[None, :], self.speed)
 
 
 @si.checked_numbers
@@ -376,9 +381,10 @@ def friction_law(
     normal_force: si.Newton | None = None,
     model: FrictionModel = DEFAULT_MODEL,
     position: si.Metre = 0.0,
+    speed: si.MetrePerSecond | None = None,
 ) -> FrictionLaw:
-    """The friction law of a display; surface and force default to the display's own, the pad to an
-    antinode."""
+    """The friction law of a display; surface, force and the finger's speed default to the display's
+    own, the pad to an antinode."""
     return FrictionLaw(
         surface=surface or display.surface(),
         finger=display.finger,
@@ -388,4 +394,5 @@ def friction_law(
         normal_force=display.finger.normal_force if normal_force is None else normal_force,
         model=model,
         position=position,
+        speed=display.finger.speed if speed is None else speed,
     )

@@ -15,9 +15,11 @@ FrictionModel = Literal[
     "film-smooth",
     "partial-levitation",
     "partial-levitation-one-gap",
+    "partial-levitation-shear",
 ]
-DEFAULT_MODEL: FrictionModel = "partial-levitation"
-"""Film and asperities share the load, each ridge at its own balance (decision 0005)."""
+DEFAULT_MODEL: FrictionModel = "partial-levitation-shear"
+"""Film and asperities share the load, each ridge at its own balance, and what touches is elastic
+until it slips (decisions 0005 and 0013)."""
 
 
 class ModelKind(NamedTuple):
@@ -25,11 +27,14 @@ class ModelKind(NamedTuple):
 
     "asymptote": the paper's closed form at an infinite squeeze number; "held": a film solved (a
     hundred times slower) at a gap that does not yield; "shared": films that carry the finger
-    together with asperities, at the gap where both balance the load.
+    together with asperities, at the gap where both balance the load. With `shear`, what touches
+    within a period is elastic until it slips, so that friction depends on the finger's speed;
+    without it all that touches slips.
     """
 
     film: Literal["asymptote", "held", "shared"]
     limit: Limit = "own"
+    shear: bool = False
 
 
 MODEL_KINDS: dict[FrictionModel, ModelKind] = {
@@ -41,4 +46,5 @@ MODEL_KINDS: dict[FrictionModel, ModelKind] = {
     "film-smooth": ModelKind("held"),
     "partial-levitation": ModelKind("shared"),
     "partial-levitation-one-gap": ModelKind("shared", "one-gap"),
+    "partial-levitation-shear": ModelKind("shared", shear=True),
 }

@@ -59,6 +59,7 @@ class Prediction(Result):
     voltage: si.Volt | None
     frequency: si.Hertz
     normal_force: si.Newton
+    speed: si.MetrePerSecond
     mode: WorkingMode
     amplitude_model: str
     vibration_amplitude: si.Metre
@@ -108,6 +109,7 @@ class Prediction(Result):
             "voltage_V": self.voltage,
             "frequency_Hz": self.frequency,
             "normal_force_N": self.normal_force,
+            "finger_speed_m_per_s": self.speed,
             "resonance_frequency_Hz": self.mode.resonance_frequency,
             "resonance_frequency_error_Hz": self.mode.frequency_error,
             "half_wavelength_m": self.mode.half_wavelength,
@@ -143,17 +145,19 @@ def predict(
     position: si.Metre = 0.0,
     theory: PlateTheory | None = None,
     model: FrictionModel | None = None,
+    speed: si.MetrePerSecond | None = None,
     strict: bool = False,
 ) -> Prediction:
     """The friction of a display driven with a voltage (V, zero-to-peak) at a frequency (Hz).
 
-    The frequency defaults to the resonance without a finger, voltage, force and surface to the
-    display's own. A `vibration_amplitude` (m, zero-to-peak, with the finger on it) given directly
-    takes the place of voltage and plate. `position` is the pad's centre from an antinode, along the
-    wave.
+    The frequency defaults to the resonance without a finger; voltage, force, surface and the
+    finger's `speed` of sliding (m/s) to the display's own. A `vibration_amplitude` (m,
+    zero-to-peak, with the finger on it) given directly takes the place of voltage and plate.
+    `position` is the pad's centre from an antinode, along the wave.
     `theory` says how a plate is computed; without one it is solved in three dimensions, and taken
     as a beam, with a warning, where its working mode cannot be found so.
-    Without a `model`, film and asperities share the load of each ridge (partial levitation).
+    Without a `model`, film and asperities share the load of each ridge (partial levitation), and
+    what touches is elastic until it slips.
 
     What is doubtful (contradicting data, an asymptote asked for outside its range) is collected in
     `warnings`; with `strict` it raises instead: `ContradictionError`, `OutOfRangeError`. Raises
@@ -178,6 +182,7 @@ def predict(
             normal_force=force,
             model=model or DEFAULT_MODEL,
             position=position,
+            speed=speed,
         )
         asked_for_asymptote = model is not None and law.kind.film == "asymptote"
         found = _felt(display, mode, drive, law, strict=strict and asked_for_asymptote)
@@ -226,7 +231,7 @@ def _felt(
     if law.kind.film == "shared":
         found = law.limits(felt.amplitude)
         limits = float(found.own[0]), float(found.one_gap[0])
-    base = law.surface.friction_coefficient * law.finger.friction_factor
+    base = law.friction_coefficient
     sigma = squeeze_number(
         drive.frequency,
         gap.contact_length,
@@ -240,6 +245,7 @@ def _felt(
         voltage=drive.voltage,
         frequency=drive.frequency,
         normal_force=law.normal_force,
+        speed=law.speed,
         mode=mode,
         amplitude_model=drive.source,
         vibration_amplitude=felt.amplitude,
@@ -310,6 +316,7 @@ def voltage_for_friction(
     surface: str | None = None,
     theory: PlateTheory | None = None,
     model: FrictionModel | None = None,
+    speed: si.MetrePerSecond | None = None,
 ) -> tuple[si.Volt, si.Metre]:
     """The voltage (V, zero-to-peak) that brings µ′/µ down to a wanted value, and its amplitude (m).
 
@@ -327,6 +334,7 @@ def voltage_for_friction(
         surface=display.surface(surface),
         normal_force=normal_force,
         model=model or DEFAULT_MODEL,
+        speed=speed,
     )
     amplitude = law.amplitude_for(relative_friction)
     if amplitude == 0:

@@ -12,6 +12,7 @@ With exponential heights the same integral is Γ(5/2) exp(−t): the first law.
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from dataclasses import dataclass
 from functools import lru_cache
@@ -23,6 +24,12 @@ from squeezefilm import quantities as si
 from squeezefilm.hard_limits import DECAY_LENGTH, PRESSURE
 
 AsperityHeights = Literal["exponential", "gaussian"]
+TangentialStiffness = Literal["rigid", "constant", "following"]
+"""Of what touches, against shear: infinite, that at rest under the same load, or in proportion to
+the normal stiffness at every moment."""
+
+MINDLIN_RATIO: si.Dimensionless = 2 / 3
+"""Tangential over normal contact stiffness 2(1 − ν)/(2 − ν) of an incompressible body."""
 
 EXPONENTIAL, GAUSSIAN = 0, 1
 
@@ -95,6 +102,7 @@ class AsperityLaw:
     reference_gap: Annotated[si.Metre, DECAY_LENGTH] = 2e-6
     decay_length: Annotated[si.Metre, DECAY_LENGTH] = 0.6e-6
     heights: AsperityHeights = "exponential"
+    type: Literal["separate_asperities"] = "separate_asperities"
 
     @si.checked_numbers
     def pressure(self, gap: si.MetreLike) -> si.PascalLike:
@@ -136,6 +144,11 @@ class AsperityLaw:
             self.decay_length * factor,
             self.heights,
         )
+
+    @si.checked_numbers
+    def stiffened(self, factor: Annotated[si.Dimensionless, si.Above(0.0)]) -> AsperityLaw:
+        """The law of a skin whose modulus is `factor` (> 0) times as large."""
+        return dataclasses.replace(self, reference_pressure=self.reference_pressure * factor)
 
     @property
     def words(self) -> str:

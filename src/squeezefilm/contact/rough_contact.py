@@ -22,10 +22,11 @@ flattening, and adhesion in the normal load.
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Annotated, NamedTuple
+from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
 
@@ -144,6 +145,7 @@ class RoughContact:
     hurst_exponent: Annotated[si.Dimensionless, si.Above(0.0), si.AtMost(1.0)] = 0.8
     longest_wavelength: Annotated[si.Metre, ROUGHNESS] = 250e-6
     shortest_wavelength: Annotated[si.Metre, ROUGHNESS] = 2.5e-6
+    type: Literal["rough_contact"] = "rough_contact"
 
     def __post_init__(self) -> None:
         if not 1.5 <= self.longest_wavelength / self.shortest_wavelength <= 1e5:
@@ -176,6 +178,16 @@ class RoughContact:
     def rms_slope(self) -> si.Dimensionless:
         """h′_rms, the standard deviation of the slope of the interface."""
         return self.spectrum.slope * 2 * math.pi / self.longest_wavelength * self.roughness
+
+    @si.checked_numbers
+    def scaled(self, factor: Annotated[si.Dimensionless, si.Above(0.0)]) -> RoughContact:
+        """The law of an interface with heights `factor` (> 0) times as large, wavelengths kept."""
+        return dataclasses.replace(self, roughness=self.roughness * factor)
+
+    @si.checked_numbers
+    def stiffened(self, factor: Annotated[si.Dimensionless, si.Above(0.0)]) -> RoughContact:
+        """The law of a skin whose modulus is `factor` (> 0) times as large."""
+        return dataclasses.replace(self, modulus=self.modulus * factor)
 
     @si.checked_numbers
     def contact_ratio(

@@ -239,7 +239,8 @@ def _constants(point: WorkingPoint, settings: TwinSettings, hand: Hand | None) -
     drift, amplifier, arm = settings.drift, settings.amplifier, settings.arm
     sensor, dry, pad = settings.sensor, settings.dry, finger.fingerpad
     step = settings.tick_us // settings.steps_per_tick
-    friction = display.surface().friction_coefficient * finger.friction_factor
+    surface = display.surface()
+    friction = finger.friction_coefficient(surface.friction_coefficient, surface.roughness)
     force = 0.0 if hand is None else hand.normal_force
     strongest = float(dry.kinetic_force(friction, force))
     ratio = drift.quality_factor_ratio

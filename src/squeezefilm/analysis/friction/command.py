@@ -12,17 +12,16 @@ from squeezefilm import quantities as si
 from squeezefilm.analysis.curves import ModelCurve, model_curves
 from squeezefilm.analysis.uncertainty import UncertainFriction, uncertain_friction
 from squeezefilm.arguments import called_with
+from squeezefilm.chain.friction import FrictionLaw
 from squeezefilm.chain.friction_models import DEFAULT_MODEL, FrictionModel
 from squeezefilm.chain.prediction import Prediction, predict, voltage_for_friction
 from squeezefilm.contact.sharing.pad import FrictionRipple
+from squeezefilm.contact.sharing.tapping import tapping_friction
 from squeezefilm.display import Display, NamedDisplay
 from squeezefilm.errors import OutOfRangeError
 from squeezefilm.from_text import reads_text
 from squeezefilm.progress import SayProgress
 from squeezefilm.results import Result, stamp, to_json
-
-EXPLORING_SPEED: si.MetrePerSecond = 0.08
-"""Between 77 and 86 mm/s: Smith, Gosselin and Houde 2002, 10.1007/s00221-002-1240-4."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,7 +108,7 @@ class FrictionAnalysis(Result):
             if sharing is None
             else {
                 "film": float(sharing.film_share[0]),
-                "asperities": float(sharing.relative_friction[0]),
+                "asperities": 1 - float(sharing.film_share[0]),
                 "mean_gap_m": float(sharing.mean_gap[0]),
                 "residual": sharing.residual,
                 "relative_friction_error": float(sharing.relative_friction_error[0]),
@@ -143,7 +142,7 @@ class FrictionRequest:
     surface: str | None = None
     model: FrictionModel | None = None
     position: si.Metre = 0.0
-    speed: si.MetrePerSecond = EXPLORING_SPEED
+    speed: si.MetrePerSecond | None = None
     ambient_pressure: si.Pascal | None = None
     wanted_friction: si.Dimensionless | None = None
     samples: int = 64
@@ -177,6 +176,7 @@ def analyze_friction(asked: FrictionRequest) -> FrictionAnalysis:
         vibration_amplitude=asked.vibration_amplitude,
         model=asked.model,
         position=asked.position,
+        speed=asked.speed,
     )
     wanted = _wanted(display, asked)
     tell("models side by side")
@@ -189,7 +189,6 @@ def analyze_friction(asked: FrictionRequest) -> FrictionAnalysis:
             display, prediction, samples=asked.samples, seed=asked.seed, progress=asked.progress
         )
     tell("ripple of the standing wave")
-    tapped = float(prediction.law.tapped(prediction.vibration_amplitude, asked.speed)[0])
     return FrictionAnalysis(
         display,
         prediction,
@@ -198,8 +197,30 @@ def analyze_friction(asked: FrictionRequest) -> FrictionAnalysis:
         found,
         _ripple(prediction),
         wanted,
-        Tapping(asked.speed, tapped),
+        Tapping(prediction.speed, without_gas(prediction.law, prediction.vibration_amplitude)),
     )
+
+
+@si.checked_numbers
+def without_gas(law: FrictionLaw, amplitude: si.Metre) -> si.Dimensionless:
+    """µ′/µ by the competing mechanism, intermittent contact without gas, at an amplitude (m) and
+    the law's speed, whatever its model: the mean over the ridges. See `contact.sharing.tapping`.
+    """
+    pressure = law.finger.plateau_pressure(law.normal_force)
+    decay = law.finger.asperity_law(law.surface.roughness).decay_length
+    swings, weights = law.ridge_swings()
+    each = [
+        tapping_friction(
+            float(amplitude * swing),
+            law.frequency,
+            law.speed,
+            pressure,
+            friction_coefficient=law.friction_coefficient,
+            normal_stiffness=pressure / decay,
+        ).relative_friction
+        for swing in swings
+    ]
+    return float(np.array(each) @ weights)
 
 
 def _wanted(display: Display, asked: FrictionRequest) -> Wanted | None:
@@ -213,6 +234,7 @@ def _wanted(display: Display, asked: FrictionRequest) -> Wanted | None:
         normal_force=asked.normal_force,
         surface=asked.surface,
         model=asked.model,
+        speed=asked.speed,
     )
     return Wanted(asked.wanted_friction, amplitude, volts)
 

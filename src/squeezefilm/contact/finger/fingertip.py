@@ -9,13 +9,16 @@ from typing import Annotated, Literal
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.contact.asperities import AsperityLaw
+from squeezefilm.contact.asperities import MINDLIN_RATIO, TangentialStiffness
 from squeezefilm.contact.finger.fingerpad import FingerpadDynamics
 from squeezefilm.contact.finger.skin import Skin
+from squeezefilm.contact.rough_contact import ContactLaw, RoughContact
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import (
     CONTACT_LENGTH,
+    FINGER_SPEED,
     FORCE,
+    PRESSURE,
     RIDGE_AMPLITUDE,
     RIDGE_PERIOD,
     RIDGES,
@@ -27,14 +30,18 @@ from squeezefilm.hard_limits import (
 Moisture = Literal["dry", "normal", "moist"]
 
 STIFFNESS_OF_MOISTURE: dict[Moisture, float] = {"dry": 2.0, "normal": 1.0, "moist": 0.4}
-"""How much stiffer than normal the outermost skin is, which scales what asperities carry at a gap.
+"""How much stiffer than normal the outermost skin is: the factor of its modulus, and of what
+separate asperities carry at a gap.
 Assumed: water softens the stratum corneum; the factors are illustrative, not measured."""
 
 FRICTION_OF_MOISTURE: dict[Moisture, float] = {"dry": 0.6, "normal": 1.0, "moist": 1.8}
 """How much the friction without vibration differs from normal. Assumed, illustrative."""
 
+EXPLORING_SPEED: si.MetrePerSecond = 0.08
+"""Between 77 and 86 mm/s: Smith, Gosselin and Houde 2002, 10.1007/s00221-002-1240-4."""
+
 # Frozen, so that every finger may share them.
-_ASPERITIES, _SKIN, _FINGERPAD = AsperityLaw(), Skin(), FingerpadDynamics()
+_ASPERITIES, _SKIN, _FINGERPAD = RoughContact(), Skin(), FingerpadDynamics()
 
 
 @si.checked_numbers
@@ -47,14 +54,21 @@ class Finger:
     `normal_force` F. Pressed on a surface the ridges flatten: `plateau_width` is that of the flat
     part of each (illustrative; 150 to 350 µm are reported).
 
-    The area grows with the load like F^`contact_area_exponent` (0: fixed; soft pads have some 0.2
-    to 0.5) and is contact_length² at `contact_area_force` (None: at `normal_force`). `ridge_angle`
-    is between the ridges' normal and the wave: 0 where ridges run along the nodal lines.
+    The area grows with the load like F^`contact_area_exponent` (the 1/3 assumed lies within the 0.2
+    to 0.5 of soft pads; 0: fixed) and is contact_length² at `contact_area_force` (None: at
+    `normal_force`). `ridge_angle` is between the ridges' normal and the wave: 0 where ridges run
+    along the nodal lines. `speed` is that of sliding.
 
     `asperities` is the law of the contact with a surface as rough as `asperity_roughness`; on
-    another surface its heights scale with √(skin_roughness² + roughness²). `skin` is the tissue at
-    ultrasonic frequency, `fingerpad` the pad as a hand moves it. All of these defaults are
-    assumed and illustrative: they control the friction predicted, so give your own where you can.
+    another surface its heights scale with √(skin_roughness² + roughness²). What touches is elastic
+    against shear until it slips, with `tangential_stiffness` and κ = `tangential_ratio` (see
+    `contact.sharing.shear`). Of `shear_strength` τ, given with a `RoughContact`, follows the
+    friction without vibration, τ times the real contact area; without it (None) the friction
+    coefficient of the surface stands, at every load.
+
+    `skin` is the tissue at ultrasonic frequency, `fingerpad` the pad as a hand moves it. All of
+    these defaults are assumed and illustrative: they control the friction predicted, so give your
+    own where you can.
     """
 
     contact_length: Annotated[si.Metre, CONTACT_LENGTH]
@@ -62,17 +76,27 @@ class Finger:
     ridge_period: Annotated[si.Metre, RIDGE_PERIOD]
     normal_force: Annotated[si.Newton, FORCE]
     plateau_width: Annotated[si.Metre, RIDGE_PERIOD] = 250e-6
-    contact_area_exponent: Annotated[si.Dimensionless, si.AtLeast(0), si.AtMost(1)] = 0.0
+    contact_area_exponent: Annotated[si.Dimensionless, si.AtLeast(0), si.AtMost(1)] = 1 / 3
     contact_area_force: Annotated[si.Newton, FORCE] | None = None
     ridge_angle: Annotated[si.Radian, si.AtLeast(-math.pi), si.AtMost(math.pi)] = 0.0
-    asperities: AsperityLaw = _ASPERITIES
+    asperities: ContactLaw = _ASPERITIES
     asperity_roughness: Annotated[si.Metre, ROUGHNESS] = 0.6e-6
     skin_roughness: Annotated[si.Metre, SKIN_ROUGHNESS] = 0.6e-6
     skin: Skin = _SKIN
     fingerpad: FingerpadDynamics = _FINGERPAD
     moisture: Moisture = "normal"
+    speed: Annotated[si.MetrePerSecond, FINGER_SPEED] = EXPLORING_SPEED
+    tangential_stiffness: TangentialStiffness = "following"
+    tangential_ratio: Annotated[si.Dimensionless, si.Above(0), si.AtMost(100)] = MINDLIN_RATIO
+    shear_strength: Annotated[si.Pascal, PRESSURE] | None = None
 
     def __post_init__(self) -> None:
+        if self.shear_strength is not None and not isinstance(self.asperities, RoughContact):
+            raise InputError(
+                "shear_strength acts on the real contact area, which separate asperities do not "
+                'know; give asperities of type "rough_contact", or leave shear_strength out',
+                quantity="shear_strength",
+            )
         _require_ridges(self.contact_length, self.ridge_period)
         if self.plateau_width > self.ridge_period:
             raise InputError(
@@ -109,27 +133,36 @@ class Finger:
         return force / self.contact_area(force) * self.ridge_period / self.plateau_width
 
     @si.checked_numbers
-    def asperity_law(self, surface_roughness: Annotated[si.Metre, si.AtLeast(0.0)]) -> AsperityLaw:
+    def asperity_law(self, surface_roughness: Annotated[si.Metre, si.AtLeast(0.0)]) -> ContactLaw:
         """What the asperities of this skin carry on a surface of a roughness (m).
 
-        Heights add as independent ones do; the moisture scales the pressure.
+        Heights add as independent ones do; the moisture scales the modulus.
         """
         here: si.FloatLike = np.hypot(self.skin_roughness, surface_roughness)
         there = float(np.hypot(self.skin_roughness, self.asperity_roughness))
         if not here > 0:
             raise InputError("a perfectly smooth skin on a perfectly smooth surface has no law")
         law = self.asperities.scaled(float(here) / there)
-        return AsperityLaw(
-            law.reference_pressure * STIFFNESS_OF_MOISTURE[self.moisture],
-            law.reference_gap,
-            law.decay_length,
-            law.heights,
-        )
+        return law.stiffened(STIFFNESS_OF_MOISTURE[self.moisture])
 
-    @property
-    def friction_factor(self) -> si.Dimensionless:
-        """The unexcited friction over that of normally moist skin (assumed)."""
-        return FRICTION_OF_MOISTURE[self.moisture]
+    @si.checked_numbers
+    def friction_coefficient(
+        self,
+        of_surface: Annotated[si.Dimensionless, si.Above(0.0)],
+        surface_roughness: Annotated[si.Metre, si.AtLeast(0.0)],
+        normal_force: si.Newton | None = None,
+    ) -> si.Dimensionless:
+        """µ without vibration on a surface, under a force (N; None: the finger's own).
+
+        The surface's coefficient times the factor assumed for the moisture; with a
+        `shear_strength` τ instead τ A_r/F, from the real contact area of `asperity_law` on the
+        plateaus, where it falls with the load as the contact fills.
+        """
+        law = self.asperity_law(surface_roughness)
+        if self.shear_strength is None or not isinstance(law, RoughContact):
+            return of_surface * FRICTION_OF_MOISTURE[self.moisture]
+        pressure = self.plateau_pressure(normal_force)
+        return self.shear_strength * float(law.contact_ratio(pressure)) / pressure
 
 
 def _require_ridges(side: si.Metre, period: si.Metre) -> None:

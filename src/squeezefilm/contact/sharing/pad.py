@@ -8,6 +8,7 @@ lies between, and the two are reported together.
 
 from __future__ import annotations
 
+import dataclasses
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
@@ -19,6 +20,7 @@ from squeezefilm.contact.finger.skin import Skin
 from squeezefilm.contact.rough_contact import ContactLaw
 from squeezefilm.contact.sharing.balance import share_load, share_load_tied
 from squeezefilm.contact.sharing.gas_table import FilmTable
+from squeezefilm.contact.sharing.shear import AsperityShear, sheared_friction
 from squeezefilm.errors import InputError
 
 Limit = Literal["own", "one-gap"]
@@ -45,13 +47,17 @@ class PadPosture:
 class PadFriction:
     """The pad's friction at an array of amplitudes (one-dimensional), in one limit.
 
+    `relative_friction` is µ′/µ: the asperities' share of the load, or, where what touches is
+    elastic until it slips, the share of the friction at rest that it keeps.
     `mean_gap` is the mean over the plateaus (m). `film_pressure` and `asperity_pressure` are means
     over all plateaus and the period (Pa); their shares of the plateau's pressure sum to 1 within
     `residual`, the largest imbalance.
-    `relative_friction_error` bounds what the film table's error does to µ′/µ.
+    `relative_friction_error` bounds what the film table's error does to µ′/µ: that of the
+    asperities' share, in proportion.
     """
 
     amplitude: si.MetreArray
+    relative_friction: si.DimensionlessArray
     mean_gap: si.MetreArray
     film_pressure: si.PascalArray
     asperity_pressure: si.PascalArray
@@ -62,13 +68,8 @@ class PadFriction:
     model: str
 
     @property
-    def relative_friction(self) -> si.DimensionlessArray:
-        """µ′/µ: the asperities' share of the load (dimensionless)."""
-        return self.asperity_pressure / (self.asperity_pressure + self.film_pressure)
-
-    @property
     def film_share(self) -> si.DimensionlessArray:
-        """The film's share of the load (dimensionless), 1 − µ′/µ."""
+        """The film's share of the load (dimensionless); the asperities have the rest."""
         return self.film_pressure / (self.asperity_pressure + self.film_pressure)
 
 
@@ -115,52 +116,92 @@ def pad_friction(
     limit: Limit = "own",
     posture: PadPosture | None = None,
     skin: Skin | None = None,
+    shear: AsperityShear | None = None,
 ) -> PadFriction:
     """The friction of plateaus at `points` (m from the pad's centre) over a standing wave.
 
     `amplitude` (m, at an antinode) may be an array; the plate's amplitude at x is
-    a |cos(πx/half_wavelength)|. Raises as `share_load` does.
+    a |cos(πx/half_wavelength)|. Without a `shear` friction is the asperities' share of the load.
+    Raises as `share_load` does.
     """
     posture = posture or PadPosture()
     a = np.atleast_1d(np.asarray(amplitude, dtype=float))
     wave = np.abs(np.cos(np.pi * (points + posture.position) / half_wavelength))
     if limit == "one-gap":
         offset = np.tan(posture.gap_tilt) * points
-        # Each balance is already the mean over all ridges.
-        tied = [
-            share_load_tied(
-                table, asperities, one * wave, plateau_pressure, offset=offset, skin=skin
-            )
-            for one in a
-        ]
-        return PadFriction(
-            amplitude=a,
-            mean_gap=np.array([one.mean_gap for one in tied]),
-            film_pressure=np.array([one.gas_pressure for one in tied]),
-            asperity_pressure=np.array([one.asperity_pressure for one in tied]),
-            relative_friction_error=np.array([one.relative_friction_error for one in tied]),
-            residual=max(float(abs(one.residual)) for one in tied),
-            ridge_points=points.size,
-            limit=limit,
-            model=tied[0].model,
-        )
+        swings = np.outer(a, wave)
+        tied = _tied(table, asperities, swings, plateau_pressure, offset, skin, shear)
+        return dataclasses.replace(tied, amplitude=a)
     reach = float(np.max(np.abs(points)))
     lean = 1 + posture.pressure_tilt * points / reach if reach > 0 else np.ones_like(points)
     # Ridges on the two sides of an antinode do the same: each kind is balanced once.
     (wave, lean), counts = np.unique(np.round([wave, lean], 9), axis=1, return_counts=True)
     weight = counts / points.size
     own = share_load(table, asperities, np.outer(a, wave), plateau_pressure * lean, skin=skin)
+    share = own.relative_friction
+    kept = share if shear is None else sheared_friction(own, shear, table.frequency)
+    friction, carried = kept @ (weight * lean), share @ (weight * lean)
     return PadFriction(
         amplitude=a,
+        relative_friction=friction,
         mean_gap=own.mean_gap @ weight,
         film_pressure=own.gas_pressure @ weight,
         asperity_pressure=own.asperity_pressure @ weight,
-        relative_friction_error=(own.relative_friction_error * lean) @ weight,
+        relative_friction_error=(own.relative_friction_error * lean) @ weight * friction / carried,
         residual=float(np.max(np.abs(own.residual))),
         ridge_points=points.size,
-        limit=limit,
-        model=own.model,
+        limit="own",
+        model=_named(own.model, shear),
     )
+
+
+def _tied(
+    table: FilmTable,
+    asperities: ContactLaw,
+    swings: si.MetreArray,
+    plateau_pressure: si.Pascal,
+    offset: si.MetreArray,
+    skin: Skin | None,
+    shear: AsperityShear | None,
+) -> PadFriction:
+    """All plateaus at one mean gap, for rows of swings (m), shape (amplitudes, ridges)."""
+    # Each balance is already the mean over all ridges.
+    tied = [
+        share_load_tied(table, asperities, one, plateau_pressure, offset=offset, skin=skin)
+        for one in swings
+    ]
+    share = np.array([one.relative_friction for one in tied])
+    gaps = np.array([one.mean_gap for one in tied])
+    kept = share
+    if shear is not None:
+        # What the skin moves at ultrasonic frequency is left out of the shear's swing.
+        ridges = dataclasses.replace(
+            tied[0],
+            mean_gap=gaps[:, None] + offset,
+            gap_amplitude=swings,
+            plateau_pressure=np.full(swings.shape, plateau_pressure),
+        )
+        kept = sheared_friction(ridges, shear, table.frequency).mean(axis=-1)
+    return PadFriction(
+        amplitude=swings.max(axis=1),
+        relative_friction=kept,
+        mean_gap=gaps,
+        film_pressure=np.array([one.gas_pressure for one in tied]),
+        asperity_pressure=np.array([one.asperity_pressure for one in tied]),
+        relative_friction_error=np.array([one.relative_friction_error for one in tied])
+        * kept
+        / share,
+        residual=max(float(abs(one.residual)) for one in tied),
+        ridge_points=offset.size,
+        limit="one-gap",
+        model=_named(tied[0].model, shear),
+    )
+
+
+def _named(model: str, shear: AsperityShear | None) -> str:
+    if shear is None:
+        return model
+    return f"{model}, {shear.words}"
 
 
 @si.checked_numbers
@@ -199,6 +240,7 @@ def friction_ripple(
     normal_force: si.Newton | None = None,
     limit: Limit = "own",
     positions: Annotated[int, si.AtLeast(4)] = 24,
+    shear: AsperityShear | None = None,
 ) -> FrictionRipple:
     """The friction as the pad crosses the wave's nodes, over half a wavelength.
 
@@ -217,6 +259,7 @@ def friction_ripple(
             finger.plateau_pressure(normal_force),
             limit=limit,
             posture=PadPosture(position=float(x)),
+            shear=shear,
         ).relative_friction[0]
         for x in where
     ]

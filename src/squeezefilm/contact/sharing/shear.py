@@ -12,16 +12,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 import numpy as np
 
 from squeezefilm import quantities as si
+from squeezefilm.contact.asperities import MINDLIN_RATIO, TangentialStiffness
 from squeezefilm.contact.rough_contact import RoughContact
 from squeezefilm.contact.sharing.balance import LoadSharing
-from squeezefilm.contact.sharing.tapping import MINDLIN_RATIO
-
-TangentialStiffness = Literal["rigid", "constant", "following"]
 
 
 @si.checked_numbers
@@ -35,17 +33,25 @@ class AsperityShear:
     `stiffness_ratio`.
     """
 
-    speed: Annotated[si.MetrePerSecond, si.Above(0.0)]
+    speed: Annotated[si.MetrePerSecondLike, si.AtLeast(0.0)]
     friction_coefficient: Annotated[si.Dimensionless, si.Above(0.0)] = 0.9
     stiffness: TangentialStiffness = "following"
     stiffness_ratio: Annotated[si.Dimensionless, si.Above(0.0)] = MINDLIN_RATIO
+
+    @property
+    def words(self) -> str:
+        """What it is, for the name of a model."""
+        if self.stiffness == "rigid":
+            return "what touches slips"
+        return f"what touches is elastic until it slips ({self.stiffness} tangential stiffness)"
 
 
 @si.checked_numbers
 def sheared_friction(
     shared: LoadSharing, shear: AsperityShear, frequency: Annotated[si.Hertz, si.Above(0.0)]
 ) -> si.DimensionlessArray:
-    """µ′/µ (dimensionless) of balanced plateaus, in their shape, at a frequency (Hz).
+    """µ′/µ (dimensionless) of balanced plateaus at a frequency (Hz): the shape of the speed, then
+    that of the plateaus.
 
     The mean over a period of what is held in shear, over what the same load holds at rest. With
     "rigid" shear and `AsperityLaw` it is `LoadSharing.relative_friction` to the residual of the
@@ -58,12 +64,12 @@ def sheared_friction(
     law: Any = shared.asperities
     full = law.modulus * law.rms_slope if isinstance(law, RoughContact) else 0.0
     kind = {"rigid": kernel.RIGID, "constant": kernel.CONSTANT, "following": kernel.FOLLOWING}
-    advance = shear.stiffness_ratio * shear.speed
-    advance /= shear.friction_coefficient * 2 * math.pi * frequency
-    element = kernel.CompiledShear(kind[shear.stiffness], advance, 0.0, full)
+    per_speed = shear.stiffness_ratio / (shear.friction_coefficient * 2 * math.pi * frequency)
     columns = np.broadcast_arrays(shared.mean_gap, shared.gap_amplitude, shared.plateau_pressure)
-    found = np.empty(columns[0].size)
-    kernel.sheared_rows(
-        law.compiled(), np.stack([np.ravel(one) for one in columns], axis=1), element, found
-    )
-    return found.reshape(columns[0].shape)
+    rows = np.stack([np.ravel(one) for one in columns], axis=1)
+    speeds = np.ravel(np.asarray(shear.speed, dtype=float))
+    found = np.empty((speeds.size, rows.shape[0]))
+    for row, speed in zip(found, speeds, strict=True):
+        element = kernel.CompiledShear(kind[shear.stiffness], per_speed * speed, 0.0, full)
+        kernel.sheared_rows(law.compiled(), rows, element, row)
+    return found.reshape(np.shape(shear.speed) + columns[0].shape)

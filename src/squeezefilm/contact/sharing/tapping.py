@@ -24,9 +24,7 @@ from typing import Annotated
 import numpy as np
 
 from squeezefilm import quantities as si
-
-MINDLIN_RATIO: si.Dimensionless = 2 / 3
-"""Tangential over normal contact stiffness 2(1 − ν)/(2 − ν) of an incompressible body."""
+from squeezefilm.contact.asperities import MINDLIN_RATIO
 
 ASPERITY_DECAY: si.Metre = 0.6e-6
 """λ_r of the default asperities, over which their pressure falls by e (assumed)."""

@@ -74,7 +74,7 @@ def _rows(result: FrictionAnalysis) -> list[tuple[str, str, str]]:
             ("Film carries", f"{100 * float(sharing.film_share[0]):.3g} %", "of the load"),
             (
                 "Asperities carry",
-                f"{100 * float(sharing.relative_friction[0]):.3g} %",
+                f"{100 * (1 - float(sharing.film_share[0])):.3g} %",
                 f"mean gap {shown(float(sharing.mean_gap[0]), M, 3)}",
             ),
         ]
