@@ -150,6 +150,7 @@ def analyze(
     surface: str | None = None,
     theory: PlateTheory | None = None,
     model: FrictionModel | None = None,
+    speed: si.MetrePerSecond | None = None,
     strict: bool = False,
     samples: int = 32,
     progress: SayProgress | None = None,
@@ -170,6 +171,7 @@ def analyze(
         vibration_amplitude=vibration_amplitude,
         theory=theory,
         model=model,
+        speed=speed,
         strict=strict,
     )
     return _what_follows(display, prediction, samples, tell)

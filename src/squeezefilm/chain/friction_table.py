@@ -52,6 +52,13 @@ class FrictionTable:
         return np.asarray(below * (1 - along) + above * along)
 
     @si.checked_numbers
+    def over_speeds(self, amplitude: si.MetreArray) -> si.DimensionlessArray:
+        """µ′/µ at the table's speeds and amplitudes (m), shape (k, n)."""
+        return np.stack(
+            [np.interp(amplitude, self.amplitude, row) for row in self.relative_friction]
+        )
+
+    @si.checked_numbers
     def at_speed(self, speed: si.MetrePerSecond) -> si.DimensionlessArray:
         """µ′/µ at the table's amplitudes and one speed (m/s), shape (n,)."""
         if self.speed.size == 1:

@@ -74,12 +74,17 @@ Amplitude = Annotated[
     ),
 ]
 Force = Annotated[str | None, In("N"), typer.Option("--force", help='Normal force, like "0.5 N".')]
+Speed = Annotated[
+    str | None,
+    In("m/s"),
+    typer.Option("--speed", help='Of the finger that slides, like "80 mm/s"; else the display\'s.'),
+]
 OnSurface = Annotated[str | None, typer.Option("--surface", help="Which of its surfaces.")]
 Model = Annotated[
     str | None,
     typer.Option(
-        help="Friction model: partial-levitation (the default), partial-levitation-one-gap, "
-        "paper2008, film-sealed, film-open, film-plateau, film-smooth."
+        help="Friction model: partial-levitation-shear (the default), partial-levitation, "
+        "partial-levitation-one-gap, paper2008, film-sealed, film-open, film-plateau, film-smooth."
     ),
 ]
 

@@ -15,6 +15,7 @@ from squeezefilm.cli.app import (
     In,
     Model,
     OnSurface,
+    Speed,
     Strict,
     Target,
     Voltage,
@@ -73,6 +74,7 @@ class AnalyzeOptions:
     normal_force: Force = None
     surface: OnSurface = None
     model: Model = None
+    speed: Speed = None
     samples: Annotated[
         int, typer.Option(help="Base samples of the friction's interval, a power of two; 0: none.")
     ] = 32
@@ -121,11 +123,7 @@ class FrictionOptions:
     position: Annotated[
         str, In("m"), typer.Option(help="The pad's centre from an antinode, along the wave.")
     ] = "0 mm"
-    speed: Annotated[
-        str,
-        In("m/s"),
-        typer.Option(help="Of the finger, for the competing mechanism: intermittent contact."),
-    ] = "80 mm/s"
+    speed: Speed = None
     ambient_pressure: Annotated[
         str | None,
         In("Pa"),

@@ -7,14 +7,13 @@ agree.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from squeezefilm import quantities as si
+from squeezefilm.chain.friction_table import FrictionTable
 from squeezefilm.chain.prediction import Prediction
 from squeezefilm.chain.rendered_texture import lowered
 from squeezefilm.chain.standing_wave import resonance_with_finger, wave_factors
@@ -53,7 +52,7 @@ class _Ready:
     display: Display
     texture: TextureFile
     prediction: Prediction
-    friction: Callable[[si.FloatArray], si.FloatArray]
+    friction: FrictionTable
     program: Program
 
 
@@ -89,7 +88,7 @@ def pixels_of(data: bytes, name: str) -> tuple[int, int]:
 
 
 def feel(asked: TextureOnDisplay) -> dict[str, Any]:
-    """Program, friction curve, envelope, wave and skin of a texture on a display.
+    """Program, friction (a row for each speed), envelope, wave and skin of a texture on a display.
 
     Raises:
         InputError: a display or a texture that cannot be used, or a display that does not vibrate.
@@ -118,7 +117,9 @@ def feel(asked: TextureOnDisplay) -> dict[str, Any]:
         "quantity": texture.texture.quantity,
         "program": ready.program.array.tolist(),
         "amplitude_m": amplitude.tolist(),
-        "relative_friction": np.asarray(ready.friction(amplitude)).tolist(),
+        "finger_speed_m_per_s": ready.friction.speed.tolist(),
+        "nominal_finger_speed_m_per_s": ready.friction.nominal_speed,
+        "relative_friction": ready.friction.over_speeds(amplitude).tolist(),
         "friction_coefficient": p.friction_coefficient,
         "normal_force_N": p.normal_force,
         "envelope_time_constant_s": float(quality_factor / (np.pi * resonance)),

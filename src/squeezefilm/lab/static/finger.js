@@ -1,6 +1,6 @@
 // What a finger meets, in the page: place → texture → envelope → friction → tangential force.
 // The texture runs by the same program as a device's loop; the envelope is the resonator's exact
-// step response; friction is read from the display's curve.
+// step response; friction is read from the display's table over speed and amplitude.
 
 import { Renderer } from "./renderer.js";
 
@@ -13,6 +13,18 @@ export function lookup(values, last, at) {
   const place = Math.max(0, Math.min(1, at / last)) * (values.length - 1);
   const k = Math.min(values.length - 2, Math.floor(place)), share = place - k;
   return (1 - share) * values[k] + share * values[k + 1];
+}
+
+/** The relative friction at an amplitude (m) and a finger's speed (m/s; without one the nominal). */
+export function frictionAt(ready, amplitude, speed = ready.nominal_finger_speed_m_per_s) {
+  const speeds = ready.finger_speed_m_per_s, rows = ready.relative_friction;
+  const pace = Math.min(Math.abs(speed), speeds.at(-1));
+  let k = 0;
+  while (k < speeds.length - 2 && speeds[k + 1] <= pace) k += 1;
+  const below = lookup(rows[k], ready.largest_amplitude_m, amplitude);
+  if (speeds.length === 1) return below;
+  const share = (pace - speeds[k]) / (speeds[k + 1] - speeds[k]);
+  return (1 - share) * below + share * lookup(rows[k + 1], ready.largest_amplitude_m, amplitude);
 }
 
 export class Finger {
@@ -55,7 +67,8 @@ export class Finger {
     const { ready } = this;
     const place = ready.wave?.along === "y" ? this.y : this.x;
     const factor = this.wave && ready.wave ? waveFactor(ready.wave, place) : 1;
-    const friction = lookup(ready.relative_friction, ready.largest_amplitude_m, this.amplitude * factor);
+    // A finger at rest is shown what it would meet exploring.
+    const friction = frictionAt(ready, this.amplitude * factor, this.speed > RESTING ? this.speed : undefined);
     const force = this.speed > RESTING ? ready.friction_coefficient * friction * ready.normal_force_N : 0;
     return {
       x: this.x, y: this.y, speed: this.speed, wanted: this.wanted, amplitude: this.amplitude,

@@ -1,7 +1,7 @@
 // The predicted vibration of the skin as sound: the texture at the audio rate along the pointer's
 // motion, friction, and the fingerpad as mass, spring and damper. Runs on the audio thread.
 
-import { lookup } from "./finger.js";
+import { frictionAt } from "./finger.js";
 import { Renderer } from "./renderer.js";
 
 const STALE = 0.08;
@@ -49,7 +49,7 @@ class SkinSound extends AudioWorkletProcessor {
       const velocity = (this.x - before) / dt;
       const wanted = this.renderer.tick(this.x, goal.y, velocity, time);
       this.amplitude = wanted + (this.amplitude - wanted) * kept;
-      const friction = lookup(ready.relative_friction, ready.largest_amplitude_m, this.amplitude);
+      const friction = frictionAt(ready, this.amplitude, velocity);
       const force = Math.abs(velocity) > 1e-4
         ? Math.sign(velocity) * ready.friction_coefficient * friction * ready.normal_force_N : 0;
       for (let j = 0; j < 8; j += 1) {

@@ -66,6 +66,7 @@ def _rows(result: FrictionAnalysis) -> list[tuple[str, str, str]]:
     rows += [
         ("Surface", p.surface.name, f"roughness {shown(p.surface.roughness, M)}"),
         ("Normal force", shown(p.normal_force, N), ""),
+        ("Finger speed", shown(p.speed, si.Unit("m/s")), "of sliding"),
         ("Ambient pressure", shown(result.display.gas.ambient_pressure, si.Unit("Pa")), ""),
     ]
     sharing = p.touch.sharing

@@ -1,6 +1,6 @@
 // Feel: drag over a texture at true scale; what the finger meets is rendered here, in the page.
 
-import { Finger, lookup, parity } from "../finger.js";
+import { Finger, frictionAt, parity } from "../finger.js";
 import { gratingFields, gratingText } from "../grating.js";
 import { element, fixed, number, plain, quantity } from "../numbers.js";
 import { Renderer } from "../renderer.js";
@@ -173,7 +173,7 @@ class FeelView {
     this.delays.push(performance.now() - stamp);
     if (this.delays.length > 500) this.delays.shift();
     this.met = met;
-    const wanted = lookup(this.ready.relative_friction, this.ready.largest_amplitude_m, met.wanted);
+    const wanted = frictionAt(this.ready, met.wanted, met.speed);
     this.scope.add(stamp / 1e3, [wanted, met.friction]);
     if (this.recording && this.rows.length < MOST_ROWS) {
       this.rows.push([stamp / 1e3 - this.began, x, y, met.speed, met.wanted, met.amplitude, met.friction, met.force]);
@@ -281,10 +281,10 @@ class FeelView {
     this.met = null;
     this.wave.box.disabled = !ready.wave;
     this.heading.textContent = `${ready.title}, on ${ready.display}`;
-    this.under.textContent = `${plain(ready.width_m * 1e3)} mm × ${plain(ready.height_m * 1e3)} mm at true scale; blue is slippery. Friction µ = ${plain(ready.friction_coefficient)}, from ${plain(ready.relative_friction.at(-1))} to 1 of it at ${quantity(ready.voltage_V, "V")}; ${ready.vibration_model.replaceAll("_", " ")}, ${ready.friction_model}.`;
+    this.under.textContent = `${plain(ready.width_m * 1e3)} mm × ${plain(ready.height_m * 1e3)} mm at true scale; blue is slippery. Friction µ = ${plain(ready.friction_coefficient)}, from ${plain(frictionAt(ready, ready.largest_amplitude_m))} to 1 of it at ${quantity(ready.voltage_V, "V")} and ${quantity(ready.nominal_finger_speed_m_per_s, "m/s")}; ${ready.vibration_model.replaceAll("_", " ")}, ${ready.friction_model}.`;
     const renderer = new Renderer(ready.program);
     const friction = {
-      amplitude: (v) => lookup(ready.relative_friction, ready.largest_amplitude_m, v),
+      amplitude: (v) => frictionAt(ready, v),
       relative_friction: (v) => v,
       friction_reduction: (v) => 1 - v / ready.friction_coefficient,
     }[ready.quantity];
@@ -339,7 +339,7 @@ class FeelView {
     while (replaying.at < rows.length && rows[replaying.at][0] - first <= (now - replaying.began) / 1e3) {
       const [time, x, y] = rows[replaying.at];
       this.met = this.finger.move(x, y, replaying.began / 1e3 + time - first);
-      const wanted = lookup(this.ready.relative_friction, this.ready.largest_amplitude_m, this.met.wanted);
+      const wanted = frictionAt(this.ready, this.met.wanted, this.met.speed);
       this.scope.add(replaying.began / 1e3 + time - first, [wanted, this.met.friction]);
       replaying.at += 1;
     }
