@@ -10,6 +10,7 @@ import pytest
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
+from squeezefilm.analysis.friction.command import without_gas
 from squeezefilm.chain.friction import friction_law
 from squeezefilm.contact.asperities import (
     AsperityLaw,
@@ -411,7 +412,10 @@ def test_a_display_has_the_law(model: str) -> None:
 def test_the_two_mechanisms_are_compared_at_a_working_point() -> None:
     law = friction_law(load_display("biet2008-stator"), 9.35e-3, 40.5e3, model="partial-levitation")
     a = np.array([0.0, 1e-6, 3e-6])
-    slow, fast = law.tapped(a, 0.05), law.tapped(a, 0.2)
+    slow, fast = (
+        np.array([without_gas(dataclasses.replace(law, speed=v), float(one)) for one in a])
+        for v in (0.05, 0.2)
+    )
     assert slow[0] == fast[0] == pytest.approx(1)
     # Tapping depends on the speed, levitation does not know it.
     assert np.all(slow[1:] < fast[1:])

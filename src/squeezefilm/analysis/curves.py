@@ -146,7 +146,8 @@ COMPARED: tuple[tuple[FrictionModel, int], ...] = (
     ("paper2008", 101),
     ("film-smooth", 25),
     ("film-sealed", 25),
-    ("partial-levitation", 81),
+    ("partial-levitation-shear", 81),
+    ("partial-levitation", 41),
     ("partial-levitation-one-gap", 41),
 )
 

@@ -140,7 +140,8 @@ def pad_friction(
     own = share_load(table, asperities, np.outer(a, wave), plateau_pressure * lean, skin=skin)
     share = own.relative_friction
     kept = share if shear is None else sheared_friction(own, shear, table.frequency)
-    friction, carried = kept @ (weight * lean), share @ (weight * lean)
+    carrying = weight * lean / np.sum(weight * lean)
+    friction, carried = kept @ carrying, share @ carrying
     return PadFriction(
         amplitude=a,
         relative_friction=friction,

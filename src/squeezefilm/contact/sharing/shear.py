@@ -72,4 +72,6 @@ def sheared_friction(
     for row, speed in zip(found, speeds, strict=True):
         element = kernel.CompiledShear(kind[shear.stiffness], per_speed * speed, 0.0, full)
         kernel.sheared_rows(law.compiled(), rows, element, row)
+    # Without vibration all of it is held, to rounding.
+    found = np.clip(found, 0.0, 1.0)
     return found.reshape(np.shape(shear.speed) + columns[0].shape)

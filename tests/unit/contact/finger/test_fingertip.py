@@ -12,6 +12,7 @@ from squeezefilm.config import load
 from squeezefilm.contact.asperities import AsperityLaw
 from squeezefilm.contact.finger.fingertip import Finger
 from squeezefilm.contact.finger.skin import Skin
+from squeezefilm.contact.rough_contact import RoughContact
 from squeezefilm.contact.sharing.pad import ridge_points
 from squeezefilm.display import Display, load_display
 from squeezefilm.errors import ConfigError, InputError
@@ -19,9 +20,12 @@ from squeezefilm.errors import ConfigError, InputError
 FINGER = Finger(10e-3, 50e-6, 350e-6, 0.5)
 
 
-def test_the_area_is_fixed_unless_an_exponent_is_given() -> None:
-    assert FINGER.contact_area(2.0) == FINGER.contact_area(0.1) == pytest.approx(1e-4)
+def test_the_area_grows_with_the_load() -> None:
+    assert FINGER.contact_area() == pytest.approx(1e-4)
+    assert FINGER.contact_area(4.0) == pytest.approx(2e-4)
     assert FINGER.plateau_pressure() == pytest.approx(7e3)
+    fixed = dataclasses.replace(FINGER, contact_area_exponent=0.0)
+    assert fixed.contact_area(2.0) == fixed.contact_area(0.1) == pytest.approx(1e-4)
     assert FINGER.ridge_height == 100e-6
     soft = dataclasses.replace(FINGER, contact_area_exponent=0.5, contact_area_force=1.0)
     assert soft.contact_area(1.0) == pytest.approx(1e-4)
@@ -30,11 +34,16 @@ def test_the_area_is_fixed_unless_an_exponent_is_given() -> None:
 
 
 def test_the_asperity_law_is_as_given_on_its_own_roughness_and_scales_elsewhere() -> None:
-    assert FINGER.asperity_law(0.6e-6) == AsperityLaw()
-    smooth = FINGER.asperity_law(0.0)
+    assert FINGER.asperity_law(0.6e-6) == RoughContact()
+    rough = FINGER.asperity_law(0.0)
+    assert rough.decay_length == pytest.approx(RoughContact().decay_length / math.sqrt(2))
+    apart = dataclasses.replace(FINGER, asperities=AsperityLaw())
+    assert apart.asperity_law(0.6e-6) == AsperityLaw()
+    smooth = apart.asperity_law(0.0)
     assert smooth.decay_length == pytest.approx(0.6e-6 / math.sqrt(2))
+    assert isinstance(smooth, AsperityLaw)
     assert smooth.reference_gap == pytest.approx(2e-6 / math.sqrt(2))
-    bare = dataclasses.replace(FINGER, skin_roughness=0.0)
+    bare = dataclasses.replace(apart, skin_roughness=0.0)
     assert bare.asperity_law(0.3e-6).decay_length == pytest.approx(0.3e-6)
     with pytest.raises(InputError, match="perfectly smooth"):
         bare.asperity_law(0.0)
@@ -44,7 +53,23 @@ def test_moisture_softens_and_grips() -> None:
     dry, moist = (dataclasses.replace(FINGER, moisture=m) for m in ("dry", "moist"))
     pressures = [f.asperity_law(0.6e-6).pressure(2e-6) for f in (moist, FINGER, dry)]
     assert pressures == sorted(pressures)
-    assert dry.friction_factor < FINGER.friction_factor == 1 < moist.friction_factor
+    grip = [f.friction_coefficient(0.5, 0.6e-6) for f in (dry, FINGER, moist)]
+    assert grip == sorted(grip)
+    assert grip[1] == 0.5
+
+
+def test_friction_of_a_shear_strength_is_that_of_the_real_contact_area() -> None:
+    law = RoughContact()
+    strong = dataclasses.replace(FINGER, shear_strength=1e6, contact_area_exponent=0.0)
+    # In proportion to a small load, so that the coefficient is τ √(8/π)/(E* h'): no surface's.
+    light = 1e6 * math.sqrt(8 / math.pi) / (law.modulus * law.rms_slope)
+    assert strong.friction_coefficient(0.5, 0.6e-6, 1e-3) == pytest.approx(light, rel=1e-4)
+    few = strong.friction_coefficient(0.5, 0.6e-6, 50.0)
+    pressure = strong.plateau_pressure(50.0)
+    assert few == pytest.approx(1e6 * law.contact_ratio(pressure) / pressure)
+    assert few < 0.9 * light
+    with pytest.raises(InputError, match="real contact area"):
+        dataclasses.replace(strong, asperities=AsperityLaw())
 
 
 def test_ridge_points_stand_half_a_period_from_the_centre() -> None:
@@ -86,11 +111,11 @@ def test_what_no_finger_has_is_refused(changes: dict[str, object], words: str) -
 
 
 def test_a_display_file_may_say_more_of_the_finger_and_need_not(tmp_path: Path) -> None:
-    assert load_display("biet2008-stator").finger.asperities == AsperityLaw()
+    assert load_display("biet2008-stator").finger.asperities == RoughContact()
     text = presets.path("biet2008-stator").read_text(encoding="utf-8")
     more = (
         'moisture = "dry"\nridge_angle = "90 deg"\ncontact_area_exponent = 0.4\n'
-        '[finger.asperities]\nreference_gap = "1.5 um"\nheights = "gaussian"\n'
+        '[finger.asperities]\ntype = "separate_asperities"\nreference_gap = "1.5 um"\nheights = "gaussian"\n'
         '[finger.skin]\nmass_per_area = "2 kg/m2"\n\n[gas]'
     )
     file = tmp_path / "mine.toml"
@@ -99,7 +124,8 @@ def test_a_display_file_may_say_more_of_the_finger_and_need_not(tmp_path: Path) 
     assert finger.asperities == AsperityLaw(reference_gap=1.5e-6, heights="gaussian")
     assert finger.skin == Skin(mass_per_area=2.0)
     assert finger.ridge_angle == pytest.approx(math.pi / 2)
-    file.write_text(text.replace("[gas]", '[finger.asperities]\nheight = "1 um"\n[gas]'))
+    kind = 'type = "separate_asperities"'
+    file.write_text(text.replace("[gas]", f'[finger.asperities]\n{kind}\nheight = "1 um"\n[gas]'))
     with pytest.raises(ConfigError, match="Did you mean 'heights'"):
         load(Display, file)
 

@@ -73,6 +73,6 @@ def test_a_rough_interface_is_refused_where_it_would_be_flat(table: FilmTable) -
 
 def test_what_is_refused() -> None:
     with pytest.raises(InputError, match="speed"):
-        AsperityShear(0.0)
+        AsperityShear(-0.1)
     with pytest.raises(InputError, match="stiffness"):
         AsperityShear(0.1, stiffness="soft")  # type: ignore[arg-type]
