@@ -28,7 +28,7 @@ def stator() -> Display:
 
 def test_no_vibration_leaves_friction_as_it_is(plate: Display) -> None:
     still = predict(plate, voltage=0.0)
-    assert still.relative_friction == 1
+    assert still.relative_friction == pytest.approx(1, abs=1e-12)
     assert still.mean_pressure == pytest.approx(1, abs=1e-12)
     assert still.friction_reduction == 0
 
