@@ -254,8 +254,12 @@ def test_the_skin_hardly_moves_at_ultrasonic_frequency(table: FilmTable) -> None
     a = np.array([0.5, 1, 1.5, 2, 3]) * 1e-6
     rigid = share_load(table, LAW, a, 5e3)
     yielding = share_load(table, LAW, a, 5e3, skin=Skin())
-    assert np.all((yielding.skin_amplitude > 0.05e-6) & (yielding.skin_amplitude < 0.08e-6))
-    change = np.abs(yielding.relative_friction - rigid.relative_friction)
+    assert np.all((yielding.skin_amplitude > 0.035e-6) & (yielding.skin_amplitude < 0.055e-6))
+    assert np.all(np.abs(yielding.relative_friction - rigid.relative_friction) < 6e-4)
+    # By its inertia alone it would move further, and against the pressure.
+    free = share_load(table, LAW, a, 5e3, skin=Skin(damping_per_area=0.0))
+    assert np.all((free.skin_amplitude > 0.05e-6) & (free.skin_amplitude < 0.08e-6))
+    change = np.abs(free.relative_friction - rigid.relative_friction)
     assert np.all(change < 0.025)
     assert np.all(change[1:] < 0.015)
     heavy = share_load(table, LAW, a, 5e3, skin=Skin(mass_per_area=1e6))

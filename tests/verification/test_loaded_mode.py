@@ -97,7 +97,7 @@ def test_a_finger_is_mostly_damping_over_a_thin_film_and_its_skin_stands_still()
     # A massive skin holds still: only the interface is felt. A massless one is not felt at all.
     still = finger_stiffness(film, Skin(mass_per_area=1e6), 35e3, 1.0)
     assert still == pytest.approx(film, rel=1e-4)
-    gone = finger_stiffness(film, Skin(mass_per_area=1e-6), 35e3, 1.0)
+    gone = finger_stiffness(film, Skin(1e-6, 0.0, 0.0), 35e3, 1.0)
     assert abs(gone) < 1e-3 * abs(film)
 
 

@@ -44,6 +44,7 @@ _ASSUMED: dict[str, tuple[float, float, str]] = {
     "finger.contact_length": (0.8, 1.2, "fingers differ; illustrative"),
     "finger.asperities.decay_length": (0.5, 1.5, "illustrative, never measured on a display"),
     "finger.asperities.reference_gap": (0.75, 1.25, "illustrative, never measured on a display"),
+    "finger.skin.damping_per_area": (0.4, 1.6, "from one published impedance, its area not known"),
     "surface.roughness": (0.75, 1.25, "one average roughness for a whole surface; illustrative"),
     "actuator.quality_factor": (0.7, 1.3, "the losses of a bonded assembly; illustrative"),
 }
@@ -69,6 +70,8 @@ def uncertain_parameters(
         if path in found or not _matters(path, at, driven):
             continue
         nominal, unit = value_at(display, path)
+        if nominal == 0:
+            continue
         top = high * nominal
         if name == "finger.plateau_width":
             top = min(top, display.finger.ridge_period)
@@ -86,7 +89,8 @@ def uncertain_parameters(
 
 def _matters(path: str, surface: int, driven: bool) -> bool:
     head = path.split(".")
-    if head[0] in ("actuator", "drive"):
+    # The skin decides what a finger takes from the vibration, and the law takes it to be rigid.
+    if head[0] in ("actuator", "drive") or head[:2] == ["finger", "skin"]:
         return driven
     if head[0] == "surfaces":
         # The base friction scales µ′ and not µ′/µ.

@@ -121,6 +121,7 @@ class Prediction(Result):
             "mean_pressure_error": self.mean_pressure_error,
             "relative_friction": self.relative_friction,
             "amplitude_kept_under_finger": self.touch.kept,
+            "finger_impedance_N_s_per_m": to_json(self.touch.impedance),
             "tangential_force_N": self.tangential_force,
             "friction_coefficient": self.friction_coefficient,
             "friction_reduction": self.friction_reduction,

@@ -90,6 +90,7 @@ class FrictionAnalysis(Result):
             "vibration_amplitude_m": p.vibration_amplitude,
             "free_amplitude_m": p.touch.free_amplitude,
             "amplitude_kept": p.touch.kept,
+            "finger_impedance_N_s_per_m": to_json(p.touch.impedance),
             "amplitude_model": p.amplitude_model,
             "relative_friction": p.relative_friction,
             "relative_friction_interval": None if unsure is None else list(unsure.interval),

@@ -19,6 +19,8 @@ from squeezefilm.film.closed.linear import relative_damping, relative_stiffness
 from squeezefilm.film.gap import squeeze_number
 from squeezefilm.materials import Gas
 
+NewtonSecondPerMetreComplex = Annotated[complex, si.Unit("N*s/m")]
+
 _PHASES = np.cos(2 * np.pi * np.arange(64) / 64)
 
 
@@ -64,3 +66,21 @@ def finger_stiffness(
     behind = skin.dynamic_stiffness(frequency)
     felt: complex = plateau_share * interface * behind / (interface + behind)
     return felt
+
+
+@si.checked_numbers
+def finger_impedance(
+    stiffness_per_area: complex,
+    area: Annotated[si.SquareMetre, si.Above(0.0)],
+    frequency: Annotated[si.Hertz, si.Above(0.0)],
+    mean_square: Annotated[si.Dimensionless, si.AtLeast(0.0), si.AtMost(1.0)] = 1.0,
+) -> NewtonSecondPerMetreComplex:
+    """The mechanical impedance of a whole finger, Z = K A ⟨cos²⟩/(iω) (N·s/m, complex).
+
+    K is `finger_stiffness` (Pa/m), A the area of contact, `mean_square` the mean of the square of
+    the vibration's shape over it: Z is referred to the velocity v at an antinode, and the finger
+    takes the power ½ Re Z |v|². A positive imaginary part is a mass, a negative one a spring. Both
+    depend on the amplitude through the film and the asperities in K. Raises `InputError` unless
+    area and frequency are above 0 and the mean square within 0 and 1.
+    """
+    return stiffness_per_area * area * mean_square / (2j * np.pi * frequency)

@@ -60,7 +60,18 @@ def _rows(result: FrictionAnalysis) -> list[tuple[str, str, str]]:
                 "The finger leaves",
                 f"{100 * p.touch.kept:.3g} %",
                 f"of {shown(p.touch.free_amplitude, M)}; it moves the resonance by "
-                f"{p.touch.mode.resonance_frequency - p.touch.mode.free_frequency:+.1f} Hz",
+                f"{p.touch.mode.resonance_frequency - p.touch.mode.free_frequency:+.1f} Hz and Q "
+                f"from {p.touch.mode.free_quality_factor:.3g} to {p.touch.mode.quality_factor:.3g}",
+            )
+        )
+    felt = p.touch.impedance
+    if felt is not None:
+        like = "mass" if felt.imag > 0 else "spring"
+        rows.append(
+            (
+                "Finger's impedance",
+                f"{felt.real:.3g} {'+' if felt.imag > 0 else '−'} {abs(felt.imag):.3g}i N·s/m",
+                f"at an antinode, damping and {like}",
             )
         )
     rows += [

@@ -57,7 +57,9 @@ def prediction(**changes: Any) -> Any:
     values: dict[str, Any] = {
         "law": Law(), "voltage": 15.0, "vibration_amplitude": 2e-6, "frequency": 40e3,
         "normal_force": 0.5, "surface": SimpleNamespace(name="bare"),
-        "touch": SimpleNamespace(free_amplitude=2.5e-6, kept=0.8, sharing=sharing),
+        "touch": SimpleNamespace(
+            free_amplitude=2.5e-6, kept=0.8, sharing=sharing, impedance=1.5 - 2j
+        ),
         "amplitude_model": "an-amplitude", "relative_friction": 0.4, "model": "a-model",
         "relative_friction_limits": (0.35, 0.45), "friction_reduction": 0.24,
         "friction_coefficient": 0.4, "tangential_force": 0.08, "warnings": ("mind this",),
@@ -187,6 +189,7 @@ def test_a_summary_has_every_number_under_its_name(stator: Display) -> None:
         "display": "biet2008-stator", "surface": "bare", "voltage_V": 15.0, "frequency_Hz": 40e3,
         "normal_force_N": 0.5, "ambient_pressure_Pa": 1e5, "vibration_amplitude_m": 2e-6,
         "free_amplitude_m": 2.5e-6, "amplitude_kept": 0.8, "amplitude_model": "an-amplitude",
+        "finger_impedance_N_s_per_m": [1.5, -2.0],
         "relative_friction": 0.4, "relative_friction_interval": [0.3, 0.5], "interval_level": 0.9,
         "relative_friction_limits": {
             "each_ridge_at_its_own_balance": 0.35, "all_ridges_at_one_mean_gap": 0.45,
@@ -209,7 +212,7 @@ def test_a_summary_has_every_number_under_its_name(stator: Display) -> None:
 def test_a_summary_says_none_where_there_is_nothing(stator: Display) -> None:
     p = prediction(
         relative_friction_limits=None,
-        touch=SimpleNamespace(free_amplitude=2e-6, kept=1.0, sharing=None),
+        touch=SimpleNamespace(free_amplitude=2e-6, kept=1.0, sharing=None, impedance=None),
     )
     none: Any = None
     said = FrictionAnalysis(stator, p, (), none, none, none, none, Tapping(0.1, 0.5)).summary()

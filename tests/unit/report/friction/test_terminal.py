@@ -23,12 +23,17 @@ SHARING = SimpleNamespace(
     relative_friction=np.array([0.4322, 0.2]),
     mean_gap=np.array([1.2345e-6, 9e-6]),
 )
-LOADED = SimpleNamespace(resonance_frequency=33581.25, free_frequency=33578.0)
+LOADED = SimpleNamespace(
+    resonance_frequency=33581.25,
+    free_frequency=33578.0,
+    free_quality_factor=60.0,
+    quality_factor=45.25,
+)
 
 
 def touched(mode: Any = LOADED, sharing: Any = SHARING) -> Touch:
     """A finger that leaves three quarters of 2 µm."""
-    return Touch(2e-6, 1.5e-6, mode, sharing)
+    return Touch(2e-6, 1.5e-6, mode, sharing, 1.2345 - 0.6789j)
 
 
 def prediction(**changes: Any) -> SimpleNamespace:
@@ -93,7 +98,8 @@ def test_a_friction_is_said_with_why_and_what_to_measure_next() -> None:
         "µ′/µ = 0.43 (0.28–0.55), 90% interval",
         "Vibration amplitude 1.5 µm with the finger, at 15 V",
         "Drive frequency 33.58 kHz",
-        "The finger leaves 75 % of 2 µm; it moves the resonance by +3.2 Hz",
+        "The finger leaves 75 % of 2 µm; it moves the resonance by +3.2 Hz and Q from 60 to 45.2",
+        "Finger's impedance 1.23 − 0.679i N·s/m at an antinode, damping and spring",
         "Surface copper roughness 0.7 µm",
         "Normal force 0.5 N",
         "Ambient pressure 101.3 kPa",
@@ -120,6 +126,15 @@ def test_a_friction_is_said_with_why_and_what_to_measure_next() -> None:
         "! mind this",
         "! and that",
     ]
+
+
+def test_a_finger_that_is_not_there_has_no_impedance_and_a_heavy_one_a_mass() -> None:
+    heavy = dataclasses.replace(touched(), impedance=12.0 + 34.56j)
+    assert "Finger's impedance 12 + 34.6i N·s/m at an antinode, damping and mass" in said(
+        prediction=prediction(touch=heavy)
+    )
+    gone = dataclasses.replace(touched(), impedance=None)
+    assert not [line for line in said(prediction=prediction(touch=gone)) if "impedance" in line]
 
 
 def test_without_samples_a_friction_is_one_number() -> None:
