@@ -21,13 +21,14 @@ _PERIODS_SHOWN = 2
 def compensated_grating(grating: CompensatedGrating) -> Figure:
     """One grating by each drive: the amplitude over the way, and the command that makes it."""
     kept, waves = (
-        [f"{100 * share:.0f} %" for share in shares]
+        [f"{100 * share:.0f}" for share in shares]
         for shares in (grating.swing_kept, grating.fundamental_kept)
     )
     figure = style.new_figure(
         f"At {1e3 * grating.speed:.0f} mm/s a grating of {shown(grating.spatial_period, M, 3)} "
-        f"keeps {kept[0]} of its swing without compensation, {kept[1]} with it, and {kept[-1]} "
-        f"where the drive may also invert the phase; of its fundamental {', '.join(waves)}",
+        f"keeps {kept[0]} % of its swing and {waves[0]} % of its fundamental without compensation, "
+        f"{kept[1]} and {waves[1]} % with it, {kept[-1]} and {waves[-1]} % where the drive may "
+        "also invert the phase",
         f"{grating.drives[-1].model}, τ = {shown(grating.envelope.rise_time_constant, S, 3)}; "
         f"wanted: 0 to {100 * grating.level:g} % of what the full voltage holds",
         6.0,
@@ -42,7 +43,7 @@ def compensated_grating(grating: CompensatedGrating) -> Figure:
     for law, share, wave, drive, (color, dashes) in zip(
         grating.laws, kept, waves, grating.drives, style.LINES, strict=False
     ):
-        name = f"{law.name}: {share} of the swing, {wave} of the fundamental"
+        name = f"{law.name}: {share} % ({wave} % of the fundamental)"
         top.plot(x, drive.amplitude[last] / limit, color=color, ls=dashes, label=name)
         bottom.plot(x, drive.command[last] / limit, color=color, ls=dashes, drawstyle="steps-post")
     for level in (1, -1):
