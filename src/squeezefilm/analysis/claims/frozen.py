@@ -139,9 +139,8 @@ class FrozenContact:
         turned = replace(self.finger, ridge_angle=ridge_angle)
         wave = np.abs(np.cos(np.pi * ridge_points(turned) / self.half_wavelength))
         kinds, counts = np.unique(np.round(wave, 6), return_counts=True)
-        shared = share_load(
-            self._films(None), self.law(model), self.amplitude * kinds, self.plateau_pressure
-        )
+        met: si.MetreArray = self.amplitude * np.asarray(kinds, dtype=np.float64)
+        shared = share_load(self._films(None), self.law(model), met, self.plateau_pressure)
         return float(np.asarray(self._held(shared, model)) @ counts / counts.sum())
 
     def _films(self, ambient_pressure: si.Pascal | None) -> FilmTable:

@@ -223,9 +223,7 @@ def fidelity_table(
         amplitude_kept=amplitude,
         friction_kept=friction,
         # The envelope is linear, so each wave of a grating is damped as if it were alone.
-        amplitude_fundamental=np.asarray(
-            sine_swing_kept(periods[:, None], columns, time_constant)
-        ),
+        amplitude_fundamental=np.asarray(sine_swing_kept(periods[:, None], columns, time_constant)),
         friction_fundamental=friction_wave,
         finest_period=finest,
         fastest_speed=fastest,

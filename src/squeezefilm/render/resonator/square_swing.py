@@ -17,7 +17,6 @@ from squeezefilm import quantities as si
 from squeezefilm.errors import OutOfRangeError
 from squeezefilm.render.resonator.compensation import DrivenEnvelope
 
-
 Compensating = Literal["none", "inverse"]
 
 

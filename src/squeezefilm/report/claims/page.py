@@ -206,7 +206,8 @@ def _page(result: Reproduction, figures: list[str]) -> str:
 <h1>{title}</h1>
 <p>Source: Biet, Giraud, Lemaire-Semail, <em>The implementation of tactile feedback using squeeze
 film effect devices</em>. Friction against amplitude is not validated against measurements.</p>
-</header><main><section><h2>What the verdicts say</h2>{_table(verdict_table(result.results))}</section>
+</header><main>
+<section><h2>What the verdicts say</h2>{_table(verdict_table(result.results))}</section>
 <section><h2>Claims</h2>{_table(((*_HEAD, "why"), claims))}</section>
 {_direction_sections(result)}
 {"".join(figures)}
@@ -228,9 +229,7 @@ def _direction_sections(result: Reproduction) -> str:
     head, rows = direction_table(result.results)
     reasons = [_reason(item) for items in asked for item in items]
     full = [(*row, reason) for row, reason in zip(rows, reasons, strict=True)]
-    missed = "".join(
-        f"<h3>{escape(model)}</h3>{bullets(texts)}" for model, texts in missed_lists()
-    )
+    missed = "".join(f"<h3>{escape(model)}</h3>{bullets(texts)}" for model, texts in missed_lists())
     return (
         f"<section><h2>{_OBSERVED}</h2>{bullets(model_sentences())}"
         f"{_table(((*head, 'why'), full))}</section><section><h2>{_MISSED}</h2>{missed}</section>"

@@ -50,8 +50,8 @@ def show_claims(result: Reproduction) -> None:
         heading(console, "Directions of friction that others observed, at one frozen set of values")
         bullets(console, [("", text, "") for text in model_sentences()])
         rows = [_direction_row(item, first=item is items[0]) for items in asked for item in items]
-        head = ("direction", "model", "bound", "found", "verdict")
-        table(console, head, rows, fixed=(0, 1), styles=_style)
+        names = ("direction", "model", "bound", "found", "verdict")
+        table(console, names, rows, fixed=(0, 1), styles=_style)
     heading(console, "Where and why")
     for item in plain:
         heading(console, f"{item.claim.id}: {item.verdict}")

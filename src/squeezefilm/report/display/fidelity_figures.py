@@ -26,9 +26,8 @@ def compensated_grating(grating: CompensatedGrating) -> Figure:
     )
     figure = style.new_figure(
         f"At {1e3 * grating.speed:.0f} mm/s a grating of {shown(grating.spatial_period, M, 3)} "
-        f"keeps {kept[0]} % of its swing and {waves[0]} % of its fundamental without compensation, "
-        f"{kept[1]} and {waves[1]} % with it, {kept[-1]} and {waves[-1]} % where the drive may "
-        "also invert the phase",
+        f"keeps {kept[0]} % of its swing ({waves[0]} % of its fundamental) without compensation, "
+        f"{kept[1]} % ({waves[1]} %) with it, {kept[-1]} % ({waves[-1]} %) with phase inversion",
         f"{grating.drives[-1].model}, τ = {shown(grating.envelope.rise_time_constant, S, 3)}; "
         f"wanted: 0 to {100 * grating.level:g} % of what the full voltage holds",
         6.0,

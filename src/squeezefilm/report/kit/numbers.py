@@ -94,8 +94,8 @@ def key_numbers(analysis: Analysis) -> list[tuple[str, str, str]]:
         ("Envelope bandwidth", shown(analysis.envelope_bandwidth, HZ), "of a texture's changes"),
     ]
     if (table := analysis.fidelity) is not None:
-        wave = f"{100 * table.fundamental_at_limit:.0f} % of its fundamental"
-        remark = f"keeps {100 * table.kept:.0f} % of its swing, {wave}"
+        wave = f"fundamental {100 * table.fundamental_at_limit:.0f} %"
+        remark = f"swing {100 * table.kept:.0f} %, {wave} kept"
         rows += [
             (f"Finest grating at {speed}", shown(period, M, 3), remark)
             for speed, period in analysis.finest_period().items()

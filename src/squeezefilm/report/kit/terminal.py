@@ -8,7 +8,6 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
-from squeezefilm import quantities as si
 from squeezefilm.report.kit.numbers import (
     MISSED_HEADING,
     dotted,
@@ -18,7 +17,6 @@ from squeezefilm.report.kit.numbers import (
     missed_directions,
     models,
     printable,
-    shown,
     theory_rows,
     unsaid_warnings,
 )
@@ -30,6 +28,7 @@ if TYPE_CHECKING:
 
 _KINDS = {"good": "good ", "limit": "limit", "doubt": "doubt"}
 _STYLES = {"good": "green", "limit": "cyan", "doubt": "yellow"}
+
 
 @contextmanager
 def progress(enabled: bool) -> Iterator[Callable[[str], None]]:

@@ -1,4 +1,4 @@
-"""Metal on metal without a film: the fit, its predictions, and an independent march of one period."""
+"""Metal on metal without a film: the fit, its predictions, and an independent march."""
 
 from __future__ import annotations
 
@@ -88,9 +88,7 @@ def test_the_prediction_lies_in_its_interval_and_rises_with_the_speed(kind: str)
     found = metal_prediction(kind)  # type: ignore[arg-type]
     assert found.speeds == (40.6e-3, 87e-3)
     assert found.fitted_friction == pytest.approx(0.38, abs=1e-6)
-    for low, middle, high in zip(
-        found.low, found.relative_friction, found.high, strict=True
-    ):
+    for low, middle, high in zip(found.low, found.relative_friction, found.high, strict=True):
         assert 0.38 < low < middle < high < 1
     assert found.relative_friction[0] < found.relative_friction[1]
     middle, low, high = found.stiffness_over_friction

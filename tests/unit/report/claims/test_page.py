@@ -98,7 +98,8 @@ def test_the_document_says_why_and_in_which_order() -> None:
     ]
     headings = [line for line in text.splitlines() if line.startswith("## ")]
     assert headings == [
-        "## What the verdicts say", "## Claims", "## The paper's design procedure", "## Errata of the paper",
+        "## What the verdicts say", "## Claims", "## The paper's design procedure",
+        "## Errata of the paper",
     ]  # fmt: skip
     for sentence in design_sentences(DESIGN):
         assert f"\n* {sentence}\n" in text

@@ -1,4 +1,4 @@
-"""Claims at a terminal: each with what was printed, what was found, why, and what a verdict says."""
+"""Claims at a terminal: each with what was printed, what was found, why, and the verdicts."""
 
 from __future__ import annotations
 

@@ -67,9 +67,8 @@ def test_the_titles_carry_the_numbers() -> None:
         return str(figure.get_suptitle()).replace("\u00a0", " ").replace("\n", " ")
 
     assert title(FIGURES["grating"]()) == (
-        "At 239 mm/s a grating of 0.4 mm keeps 63 % of its swing and 42 % of its fundamental "
-        "without compensation, 77 and 53 % with it, 96 and 75 % where the drive may also invert "
-        "the phase"
+        "At 239 mm/s a grating of 0.4 mm keeps 63 % of its swing (42 % of its fundamental) without "
+        "compensation, 77 % (53 %) with it, 96 % (75 %) with phase inversion"
     )
     figure = FIGURES["survival"]()
     said = [one.get_text() for one in figure.axes[0].get_legend().get_texts()]
