@@ -41,9 +41,9 @@ def _(model: str) -> ClaimValue:
     path = FROZEN.gas.at_pressure(2e3).mean_free_path
     return ClaimValue(
         shares,
-        note=f"the mean free path is {1e6 * path:.1f} µm there, as wide as the gap: the laws of "
-        "Fukui and Kaneko and of Veijola are in range, that of first order is not and would give "
-        f"{left('first'):.3f}; at 300 mm/s {left('fukui-kaneko', 0.3):.3f}",
+        note=f"the mean free path is {1e6 * path:.1f} µm there, about as wide as the gap: the laws "
+        "of Fukui and Kaneko and of Veijola are in range, that of first order is not and would "
+        f"give {left('first'):.3f}; at 300 mm/s {left('fukui-kaneko', 0.3):.3f}",
     )
 
 

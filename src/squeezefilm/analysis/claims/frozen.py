@@ -91,7 +91,11 @@ def _evidence() -> Mapping[str, str]:
 class FrozenContact:
     """The parameters: a plateau at an antinode, under a skin that does not yield in a period."""
 
-    finger: Finger = field(default_factory=lambda: Finger(10e-3, 50e-6, 350e-6, 0.5))
+    finger: Finger = field(
+        default_factory=lambda: Finger(
+            10e-3, 50e-6, 350e-6, 0.5, plateau_width=250e-6, skin_roughness=0.6e-6
+        )
+    )
     gas: Gas = field(default_factory=lambda: Gas(1.85e-5, 1e5, 1.2, 67e-9))
     slip: str = "fukui-kaneko"
     frequency: si.Hertz = 40.5e3

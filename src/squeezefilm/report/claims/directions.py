@@ -49,11 +49,11 @@ def show_printed(item: ClaimResult) -> str:
 
 
 def direction_table(results: Iterable[ClaimResult]) -> Table:
-    """Every direction in every model: where, what, bound, found, verdict."""
+    """Every direction in every model: where and what, said once, then bound, found, verdict."""
     rows = [
         (
-            cited(item.claim.where),
-            item.claim.statement,
+            cited(item.claim.where) if item is items[0] else "",
+            item.claim.statement if item is items[0] else "",
             item.claim.model,
             show_printed(item),
             show_values(item.value, item.claim.unit),

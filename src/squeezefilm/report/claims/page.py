@@ -218,7 +218,7 @@ film effect devices</em>. Friction against amplitude is not validated against me
 
 def _reason(item: ClaimResult) -> str:
     """Why, and the note, which for a prediction is the prediction."""
-    return f"{item.claim.why}. {item.note}" if item.note else item.claim.why
+    return f"{item.claim.why} ({item.note})" if item.note else item.claim.why
 
 
 def _direction_sections(result: Reproduction) -> str:
