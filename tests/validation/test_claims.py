@@ -4,14 +4,16 @@ import dataclasses
 
 import pytest
 
-from squeezefilm.analysis.claims.command import Claim, ClaimResult, judge, read_claims, reproduce
+from squeezefilm.analysis.claims.command import ClaimResult, judge, reproduce
+from squeezefilm.analysis.claims.contact import DIRECTION_VALUES
+from squeezefilm.analysis.claims.record import Claim, read_claims
 from squeezefilm.analysis.claims.values import CLAIM_VALUES, ClaimValue
 from squeezefilm.errors import ConfigError
 
 
 @pytest.fixture(scope="module")
 def found() -> dict[str, ClaimResult]:
-    return {item.claim.id: item for item in reproduce().results}
+    return {item.claim.name: item for item in reproduce().results}
 
 
 def test_every_verdict_is_the_one_on_record(found: dict[str, ClaimResult]) -> None:
@@ -22,6 +24,7 @@ def test_every_verdict_is_the_one_on_record(found: dict[str, ClaimResult]) -> No
 
 def test_every_claim_is_computed_and_every_computation_is_a_claim() -> None:
     assert {claim.id for claim in read_claims().claims} == set(CLAIM_VALUES)
+    assert {one.id for one in read_claims().directions} == set(DIRECTION_VALUES)
 
 
 @pytest.mark.parametrize(
@@ -66,6 +69,16 @@ def _claim(**changes: object) -> Claim:
         (_claim(relation="above"), ClaimValue((1.0,)), "does not hold"),
         (_claim(relation="at_least"), ClaimValue((1.0,)), "holds"),
         (_claim(relation="at_most"), ClaimValue((1.1,)), "does not hold"),
+        (_claim(relation="above", grounds="sign"), ClaimValue((1.1,)), "sign only"),
+        (_claim(relation="above", grounds="sign"), ClaimValue((0.9,)), "does not hold"),
+        (_claim(grounds="construction"), ClaimValue((1.0,)), "true by construction"),
+        (_claim(grounds="construction"), ClaimValue((1.1,)), "does not reproduce"),
+        (
+            _claim(relation="at_least", grounds="our parameters"),
+            ClaimValue((1.0,)),
+            "reachable with parameters of our choice",
+        ),
+        (_claim(printed=(), grounds="prediction"), ClaimValue((0.4,)), "prediction only"),
     ],
 )
 def test_verdicts_are_computed(claim: Claim, value: ClaimValue, verdict: str) -> None:
@@ -78,6 +91,8 @@ def test_a_changed_verdict_is_reported() -> None:
     assert [item.claim.id for item in tampered.changed] == ["plate-area"]
     with pytest.raises(ConfigError, match="Did you mean 'plate-area'"):
         reproduce((dataclasses.replace(claim, id="plate-areas"),))
+    with pytest.raises(ConfigError, match="Did you mean 'speed'"):
+        reproduce((dataclasses.replace(claim, id="speeds", model="partial-levitation"),))
 
 
 def test_the_solved_plate_stands_beside_the_papers_numbers(found: dict[str, ClaimResult]) -> None:

@@ -111,6 +111,12 @@ class Analysis(Result):
             else list(self.uncertainty.interval),
             "envelope_bandwidth_Hz": self.envelope_bandwidth,
             "finest_period_m": self.finest_period(),
+            "finest_period_keeps": None
+            if self.fidelity is None
+            else {
+                "swing": self.fidelity.kept,
+                "fundamental": self.fidelity.fundamental_at_limit,
+            },
             "compensation_speed_gain": None
             if self.survival is None
             else {

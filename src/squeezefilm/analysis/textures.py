@@ -16,7 +16,12 @@ from squeezefilm.render.resonator.compensation import (
     DrivenEnvelope,
     compensated_drive,
 )
-from squeezefilm.render.resonator.square_swing import fastest_compensated_speed, least_cycle
+from squeezefilm.render.resonator.square_swing import (
+    Compensating,
+    fastest_compensated_speed,
+    least_cycle,
+    square_fundamental_compensated,
+)
 
 _STEPS_PER_PERIOD = 1000
 _PERIODS = 8
@@ -62,7 +67,9 @@ class TextureSurvival:
         name: of the display.
         time_constant: of its envelope (s).
         level: upper amplitude of the swing from 0, over what the full voltage holds (1).
-        kept: share of the swing to keep (1).
+        kept: share of the swing to keep, peak to peak (1).
+        fundamental: share of the wave of the grating's own period that is left where just `kept`
+            of the swing is (1), shape (d,).
         laws: the drives, shape (d,).
         speeds: of the finger (m/s), shape (v,).
         finest_period: that survives (m), shape (d, v).
@@ -75,6 +82,7 @@ class TextureSurvival:
     time_constant: si.Second
     level: si.Dimensionless
     kept: si.Dimensionless
+    fundamental: si.DimensionlessArray
     laws: tuple[DriveLaw, ...]
     speeds: si.MetrePerSecondArray
     finest_period: si.MetreArray
@@ -103,13 +111,14 @@ def texture_survival(
     row = np.geomspace(0.01, 0.4, 41) if speeds is None else np.array(speeds, dtype=float)
     si.require("speeds", row, si.Unit("m/s"), above=0.0)
     high = level * envelope.amplitude_limit
-    per_metre, bound = [], []
+    per_metre, bound, wave = [], [], []
     for law in DRIVE_LAWS:
         driven = dataclasses.replace(envelope, braking=law.braking)
-        compensation = "inverse" if law.compensated else "none"
-        per_metre.append(
-            fastest_compensated_speed(1.0, driven, 0.0, high, compensation, kept)  # type: ignore[arg-type]
-        )
+        compensation: Compensating = "inverse" if law.compensated else "none"
+        speed = fastest_compensated_speed(1.0, driven, 0.0, high, compensation, kept)
+        per_metre.append(speed)
+        # Scaled with the period, the speed leaves the same cycle: a metre stands for all.
+        wave.append(square_fundamental_compensated(1.0, speed, driven, 0.0, high, compensation))
         bound.append(1 / least_cycle(driven, kept * high) / per_metre[0])
     fastest = np.array(per_metre)
     return TextureSurvival(
@@ -117,6 +126,7 @@ def texture_survival(
         time_constant=max(envelope.rise_time_constant, envelope.fall_time_constant),
         level=level,
         kept=kept,
+        fundamental=np.array(wave),
         laws=DRIVE_LAWS,
         speeds=row,
         finest_period=row / fastest[:, None],
@@ -137,7 +147,8 @@ class CompensatedGrating:
         laws: the drives, shape (d,).
         time: of each sample (s), shape (n,).
         drives: wanted, command and amplitude by each law.
-        swing_kept: in the last two periods, by each law (1), shape (d,).
+        swing_kept: peak to peak in the last two periods, by each law (1), shape (d,).
+        fundamental_kept: of the wave of the grating's own period, likewise (1), shape (d,).
     """
 
     envelope: DrivenEnvelope
@@ -148,6 +159,7 @@ class CompensatedGrating:
     time: si.SecondArray
     drives: tuple[CompensatedDrive, ...]
     swing_kept: si.DimensionlessArray
+    fundamental_kept: si.DimensionlessArray
 
 
 def compensated_grating(
@@ -195,4 +207,11 @@ def compensated_grating(
         time=np.arange(wanted.size, dtype=np.float64) * step,
         drives=drives,
         swing_kept=np.array([np.ptp(drive.amplitude[last]) / high for drive in drives]),
+        fundamental_kept=np.array([_wave(drive.amplitude[last]) for drive in drives])
+        / _wave(wanted[last]),
     )
+
+
+def _wave(two_periods: si.MetreArray) -> si.Metre:
+    """The amplitude of the wave of the period in two whole periods (m)."""
+    return float(2 * np.abs(np.fft.rfft(two_periods)[2]) / two_periods.size)

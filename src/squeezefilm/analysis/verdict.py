@@ -98,9 +98,10 @@ def _of_gratings(table: FidelityTable) -> Finding:
     ]
     return Finding(
         "good" if kept else "limit",
-        f"Square gratings of {', '.join(kept) or 'no listed'} mm keep 90 % of their swing "
-        f"up to {1e3 * table.speeds[-1]:g} mm/s; {1e3 * table.spatial_periods[worst]:g} mm "
-        f"up to {1e3 * fastest[worst]:.0f} mm/s.",
+        f"Square gratings of {', '.join(kept) or 'no listed'} mm keep 90 % of their swing, peak to "
+        f"peak, up to {1e3 * table.speeds[-1]:g} mm/s; {1e3 * table.spatial_periods[worst]:g} mm "
+        f"up to {1e3 * fastest[worst]:.0f} mm/s. Of the fundamental "
+        f"{100 * table.fundamental_at_limit:.0f} % are left there.",
     )
 
 

@@ -24,7 +24,7 @@ def reproduce(
     """
     from squeezefilm.analysis.claims.command import reproduce as run
     from squeezefilm.report.claims.page import checkout, write_reproduction, write_validation_docs
-    from squeezefilm.report.kit import terminal
+    from squeezefilm.report.claims.terminal import show_claims
 
     if write_docs:
         # Minutes of work lie before the writing.
@@ -36,11 +36,11 @@ def reproduce(
             written = write_reproduction(result, out, progress=step)
     if write_docs:
         typer.echo(f"wrote {write_validation_docs(result)}", err=True)
-    answer(as_json, result, terminal.show_claims, report=written)
+    answer(as_json, result, show_claims, report=written)
     if result.changed:
         for claim in result.changed:
             typer.echo(
-                f"the verdict on '{claim.claim.id}' changed: {claim.claim.verdict} is on record, "
+                f"the verdict on '{claim.claim.name}' changed: {claim.claim.verdict} is on record, "
                 f"{claim.verdict} was found",
                 err=True,
             )

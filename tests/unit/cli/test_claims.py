@@ -22,7 +22,7 @@ def reproduced(*changed: SimpleNamespace) -> SimpleNamespace:
 
 
 CHANGED = SimpleNamespace(
-    claim=SimpleNamespace(id="two-micrometres", verdict="holds"), verdict="does not hold"
+    claim=SimpleNamespace(name="two-micrometres", verdict="holds"), verdict="does not hold"
 )
 
 
@@ -31,7 +31,7 @@ def claims(stands_in: StandsIn, tmp_path: Path) -> SimpleNamespace:
     """What `reproduce` calls."""
     return SimpleNamespace(
         asked=stands_in("analysis.claims.command:reproduce", reproduced()),
-        shown=stands_in("report.kit.terminal:show_claims"),
+        shown=stands_in("report.claims.terminal:show_claims"),
         page=stands_in("report.claims.page:write_reproduction", tmp_path / "index.html"),
         checkout=stands_in("report.claims.page:checkout"),
         docs=stands_in("report.claims.page:write_validation_docs", "docs/validation.md"),

@@ -5,60 +5,27 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any
 
 from squeezefilm import presets
 from squeezefilm import quantities as si
-from squeezefilm.analysis.claims import contact as contact_claims
+from squeezefilm.analysis.claims import metal
+from squeezefilm.analysis.claims.contact import DIRECTION_VALUES
 from squeezefilm.analysis.claims.procedure import Design
 from squeezefilm.analysis.claims.prototype import PrototypeStudy, prototype_study
+from squeezefilm.analysis.claims.record import (
+    VERDICT_OF_GROUNDS,
+    Claim,
+    Erratum,
+    Verdict,
+    read_claims,
+)
 from squeezefilm.analysis.claims.values import CLAIM_VALUES, ClaimValue, paper_design
-from squeezefilm.config import load
 from squeezefilm.errors import ConfigError
 from squeezefilm.results import stamp, to_json
 
 # Registers what it computes; named so that the import is no accident.
-FROZEN_CONTACT = contact_claims.FROZEN
-
-Verdict = Literal["reproduces", "misprint", "does not reproduce", "holds", "does not hold"]
-Relation = Literal["equals", "above", "at_least", "at_most"]
-
-
-@dataclass(frozen=True)
-class Claim:
-    """One published claim: what stands where, how near counts as the same, the verdict on record.
-
-    `printed` and the values computed for it are in the SI unit `unit`; `tolerance` is relative and
-    used for the relation "equals".
-    """
-
-    id: str
-    where: str
-    statement: str
-    printed: tuple[float, ...]
-    unit: str
-    verdict: Verdict
-    why: str
-    relation: Relation = "equals"
-    tolerance: float = 0.01
-
-
-@dataclass(frozen=True)
-class Erratum:
-    """An equation of the paper as printed and as it must be."""
-
-    equation: str
-    printed: str
-    corrected: str
-    why: str
-
-
-@dataclass(frozen=True)
-class ClaimFile:
-    """The content of claims.toml."""
-
-    claims: tuple[Claim, ...]
-    errata: tuple[Erratum, ...]
+METAL_SPEEDS = metal.PREDICTED_SPEEDS
 
 
 @dataclass(frozen=True)
@@ -95,6 +62,7 @@ class Reproduction:
             "claims": [
                 {
                     "id": item.claim.id,
+                    "model": item.claim.model or None,
                     "where": item.claim.where,
                     "statement": item.claim.statement,
                     "unit": item.claim.unit,
@@ -105,6 +73,7 @@ class Reproduction:
                     "alternative": to_json(item.alternative),
                     "verdict": item.verdict,
                     "verdict_on_record": item.claim.verdict,
+                    "grounds": item.claim.grounds,
                     "why": item.claim.why,
                     "note": item.note,
                 }
@@ -116,11 +85,6 @@ class Reproduction:
             "changed": [item.claim.id for item in self.changed],
             "provenance": stamp([item.claim for item in self.results]),
         }
-
-
-def read_claims() -> ClaimFile:
-    """The claims on record. Raises `ConfigError` where the file is not right."""
-    return load(ClaimFile, presets.claims_path())
 
 
 def reproduce(
@@ -137,18 +101,22 @@ def reproduce(
     tell = progress or (lambda _: None)
     file = read_claims()
     results = []
-    for claim in file.claims if claims is None else claims:
-        tell(f"claim {claim.id}")
-        if claim.id not in CLAIM_VALUES:
-            raise ConfigError(
-                "nothing computes the claim "
-                f"'{claim.id}'.{si.did_you_mean(claim.id, CLAIM_VALUES)}",
-                file=presets.claims_path(),
-            )
-        results.append(judge(claim, CLAIM_VALUES[claim.id]()))
+    for claim in file.all_claims if claims is None else claims:
+        tell(f"claim {claim.name}")
+        results.append(judge(claim, _found(claim)))
     tell("the paper's design procedure")
     study = prototype_study(progress) if prototype else None
     return Reproduction(tuple(results), file.errata, paper_design(), study)
+
+
+def _found(claim: Claim) -> ClaimValue:
+    known = DIRECTION_VALUES if claim.model else CLAIM_VALUES
+    if claim.id not in known:
+        raise ConfigError(
+            f"nothing computes the claim '{claim.id}'.{si.did_you_mean(claim.id, known)}",
+            file=presets.claims_path(),
+        )
+    return DIRECTION_VALUES[claim.id](claim.model) if claim.model else CLAIM_VALUES[claim.id]()
 
 
 def judge(claim: Claim, found: ClaimValue) -> ClaimResult:
@@ -157,9 +125,13 @@ def judge(claim: Claim, found: ClaimValue) -> ClaimResult:
 
 
 def _verdict(claim: Claim, found: ClaimValue) -> Verdict:
+    if claim.grounds == "prediction":
+        # Nothing was compared, whatever was found.
+        return "prediction only"
+    passed = VERDICT_OF_GROUNDS.get(claim.grounds)
     if claim.relation == "equals":
         if _near(found.value, claim):
-            return "reproduces"
+            return passed or "reproduces"
         if found.alternative is not None and _near(found.alternative, claim):
             return "misprint"
         return "does not reproduce"
@@ -172,7 +144,7 @@ def _verdict(claim: Claim, found: ClaimValue) -> Verdict:
         compare[claim.relation](value, bound)
         for value, bound in zip(found.value, claim.printed, strict=True)
     )
-    return "holds" if holds else "does not hold"
+    return (passed or "holds") if holds else "does not hold"
 
 
 def _near(values: tuple[float, ...], claim: Claim) -> bool:

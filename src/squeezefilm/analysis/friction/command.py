@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from squeezefilm import quantities as si
+from squeezefilm.analysis.claims.record import missed_by
 from squeezefilm.analysis.curves import ModelCurve, model_curves
 from squeezefilm.analysis.uncertainty import UncertainFriction, uncertain_friction
 from squeezefilm.arguments import called_with
@@ -124,6 +125,7 @@ class FrictionAnalysis(Result):
                 }
                 for curve in self.curves
             ],
+            "measurements_missed": _missed(p.model),
             "uncertainty": None if unsure is None else unsure.summary(),
             "warnings": list(p.warnings),
             "provenance": stamp(self.display),
@@ -222,6 +224,14 @@ def without_gas(law: FrictionLaw, amplitude: si.Metre) -> si.Dimensionless:
         for swing in swings
     ]
     return float(np.array(each) @ weights)
+
+
+def _missed(model: str) -> list[dict[str, str]] | None:
+    """The measured directions that the model misses; None where they were not asked of it."""
+    found = missed_by(model)
+    if found is None:
+        return None
+    return [{"says": one.says, "where": one.where, "why": one.why} for one in found]
 
 
 def _wanted(display: Display, asked: FrictionRequest) -> Wanted | None:

@@ -52,7 +52,8 @@ class FidelityReport:
         spatial_frequency: at which contrast was measured (1/m), shape (f,).
         contrast_kept: share of the wanted pattern's swing at each that is rendered *in its place*
             (1), shape (f,): |Σ R W*| / Σ |W|² over passes. NaN where the pattern has nothing.
-        swing_kept: share of its swing, wherever it lies (1), shape (f,): √(Σ|R|² / Σ|W|²).
+        swing_kept: share of the wave at each, wherever it lies (1), shape (f,):
+            √(Σ|R|² / Σ|W|²). Of a grating the first is its fundamental, and not peak to peak.
         lag: by which the rendered pattern trails the finger (m), by cross-correlation; within
             half a period for a periodic texture. Negative where it comes early.
         lag_time: `lag` over the mean speed (s).

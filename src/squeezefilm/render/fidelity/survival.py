@@ -49,12 +49,40 @@ def swing_kept(trace: FrictionTrace, signal: Signal = "amplitude") -> si.Dimensi
     turns of the finger, are left out. Friction bends with amplitude, so the share of friction
     swing kept differs from that of amplitude: what the resonator shaves off both ends of a swing
     costs more friction where the law is steepest at its ends (an exponential fall: less is kept),
-    and less where it is steepest in the middle (an S-shaped fall: more is kept).
+    and less where it is steepest in the middle (an S-shaped fall: more is kept). The peaks may be
+    left where most of the wave is not: see `fundamental_kept`.
 
     Raises:
         InputError: passes too short to settle and then show a whole period, a wanted signal that
             does not change, or an unknown signal.
     """
+    wanted, rendered = _settled(trace, signal)
+    return _swing(rendered) / _swing(wanted)
+
+
+def fundamental_kept(trace: FrictionTrace, signal: Signal = "amplitude") -> si.Dimensionless:
+    """The wave of the grating's own period rendered, divided by that wanted, on a trace (1).
+
+    Measured over the last whole periods of the settled stretch, wherever along x the wave lies.
+
+    Raises:
+        InputError: as `swing_kept`, and for a texture that is no grating along x.
+    """
+    period = period_of(trace.texture)
+    if period is None:
+        raise InputError("the texture has no period, so it has no fundamental; take a grating")
+    wanted, rendered = _settled(trace, signal)
+    rate = trace.sample_rate * period / trace.stroke.speed
+    count = round(rate * max(1, int(wanted.size / rate + 1e-6)))
+    wave = np.exp(-2j * np.pi * np.arange(count) / rate)
+    of_wanted, of_rendered = (
+        abs(complex(wave @ (one[-count:] - np.mean(one[-count:])))) for one in (wanted, rendered)
+    )
+    return of_rendered / of_wanted
+
+
+def _settled(trace: FrictionTrace, signal: Signal) -> tuple[si.FloatArray, si.FloatArray]:
+    """Wanted and rendered signal where a trace has settled. Raises as `swing_kept`."""
     if signal == "amplitude":
         wanted, rendered = trace.command, trace.amplitude
     elif signal == "relative_friction":
@@ -73,13 +101,12 @@ def swing_kept(trace: FrictionTrace, signal: Signal = "amplitude") -> si.Dimensi
             "it down"
         )
     settled = np.mod(trace.time, stroke.pass_duration) >= settling
-    wanted_swing = _swing(wanted[settled])
-    if wanted_swing == 0:
+    if _swing(wanted[settled]) == 0:
         raise InputError(
             f"the {signal.replace('_', ' ')} wanted does not change along the stroke, so no share "
             "of its swing can be kept; choose a texture, or amplitudes low and high, that change it"
         )
-    return _swing(rendered[settled]) / wanted_swing
+    return wanted[settled], rendered[settled]
 
 
 def _swing(values: si.FloatArray) -> float:
@@ -97,9 +124,12 @@ class FidelityTable:
         kept: the share of its swing a grating must keep to survive (1).
         spatial_periods: rows (m), shape (p,).
         speeds: columns (m/s), shape (v,).
-        amplitude_kept: share of the swing of amplitude, closed form (1), shape (p, v).
-        friction_kept: share of the swing of relative friction, measured on traces (1), shape
+        amplitude_kept: share of the swing of amplitude, peak to peak, closed form (1), shape
             (p, v).
+        friction_kept: share of the swing of relative friction, peak to peak, measured on traces
+            (1), shape (p, v).
+        amplitude_fundamental, friction_fundamental: the same of the wave of the grating's own
+            period (1), shape (p, v).
         finest_period: finest period whose amplitude survives at each speed (m), shape (v,).
         fastest_speed: fastest finger under which the amplitude of each period survives (m/s),
             shape (p,).
@@ -116,6 +146,8 @@ class FidelityTable:
     speeds: si.MetrePerSecondArray
     amplitude_kept: si.DimensionlessArray
     friction_kept: si.DimensionlessArray
+    amplitude_fundamental: si.DimensionlessArray
+    friction_fundamental: si.DimensionlessArray
     finest_period: si.MetreArray
     fastest_speed: si.MetrePerSecondArray
     lag: si.MetreArray
@@ -125,6 +157,12 @@ class FidelityTable:
     def amplitude_survives(self) -> Annotated[NDArray[np.bool_], si.Unit("1")]:
         """Whether each period keeps its swing of amplitude at each speed, shape (p, v)."""
         return self.amplitude_kept >= self.kept
+
+    @property
+    def fundamental_at_limit(self) -> si.Dimensionless:
+        """Share of the fundamental of amplitude left of a grating that just survives (1)."""
+        period = finest_period(1.0, self.time_constant, self.kept, self.shape)
+        return float(sine_swing_kept(period, 1.0, self.time_constant))
 
 
 @si.checked_numbers
@@ -165,7 +203,7 @@ def fidelity_table(
     fastest = np.asarray(fastest_speed(periods, time_constant, kept, shape))
     law = square_swing_kept if shape == "square" else sine_swing_kept
     amplitude = np.asarray(law(periods[:, None], columns, time_constant))
-    friction = np.empty_like(amplitude)
+    friction, friction_wave = np.empty((2, *amplitude.shape))
     for row, period in enumerate(periods.tolist()):
         wave = SquareWave(period) if shape == "square" else SineWave(period)
         texture = Amplitude(wave, low, high)
@@ -173,6 +211,7 @@ def fidelity_table(
             length = _PERIODS_SHOWN * period + _SETTLING * time_constant * speed
             trace = friction_trace(texture, Stroke(speed, length), time_constant, relative_friction)
             friction[row, column] = swing_kept(trace, "relative_friction")
+            friction_wave[row, column] = fundamental_kept(trace, "relative_friction")
     return FidelityTable(
         shape=shape,
         low=low,
@@ -183,6 +222,9 @@ def fidelity_table(
         speeds=columns,
         amplitude_kept=amplitude,
         friction_kept=friction,
+        # The envelope is linear, so each wave of a grating is damped as if it were alone.
+        amplitude_fundamental=np.asarray(sine_swing_kept(periods[:, None], columns, time_constant)),
+        friction_fundamental=friction_wave,
         finest_period=finest,
         fastest_speed=fastest,
         lag=time_constant * columns,

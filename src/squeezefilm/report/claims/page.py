@@ -2,15 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from html import escape
 from pathlib import Path
 
-from squeezefilm import quantities as si
 from squeezefilm.analysis.claims.command import ClaimResult, Reproduction
 from squeezefilm.analysis.claims.procedure import Design
 from squeezefilm.analysis.claims.prototype import PrototypeStudy
 from squeezefilm.errors import InputError
+from squeezefilm.report.claims.directions import (
+    direction_table,
+    directions,
+    missed_lists,
+    model_sentences,
+    plain_claims,
+    show_printed,
+    show_values,
+    verdict_table,
+)
 from squeezefilm.report.claims.prototype import (
     Table,
     comparison,
@@ -33,7 +42,7 @@ _HEADER = """# Validation
 Written by `squeezefilm reproduce --write-docs`; do not edit. Source of the claims, unless another
 is named: Biet, Giraud, Lemaire-Semail, *The implementation of tactile feedback using squeeze film
 effect devices*. Claims on friction by others were read in abstracts, and are compared at one frozen
-set of assumed parameters (`analysis/claims/contact.py`).
+set of assumed parameters (`analysis/claims/frozen.py`).
 
 **Friction against amplitude is not validated against measurements**: no measured curve of an
 ultrasonic display could be read anywhere. What follows compares with what the paper printed, and
@@ -41,19 +50,10 @@ says where and why the numbers differ. "Printed formula" is what the formula giv
 the paper, where that differs from the corrected one.
 """
 
+_OBSERVED = "Directions of friction that others observed, model by model"
+_MISSED = "What measurements say and the models do not"
 _HEAD = ("where", "claim", "printed", "printed formula", "recomputed", "verdict")
 _ERRATA = ("equation", "printed", "corrected", "why")
-
-
-def show_values(values: Sequence[float] | None, unit: str) -> str:
-    """The values of a claim as text with a unit, joined by slashes; a dash for none."""
-    if values is None:
-        return "–"
-    if unit == "m2":
-        return " / ".join(f"{value * 1e4:.4g} cm²" for value in values)
-    return " / ".join(
-        si.format_quantity(value, si.Unit(unit), 4).replace("um", "µm") for value in values
-    )
 
 
 def write_validation_docs(result: Reproduction, root: Path | None = None) -> Path:
@@ -79,17 +79,21 @@ def checkout(root: Path | None = None) -> Path:
 
 def validation_markdown(result: Reproduction) -> str:
     """The text of docs/validation.md: a table of all claims, their reasons, the errata."""
-    lines = [_HEADER, "## Claims", ""]
+    lines = [_HEADER, "## What the verdicts say", ""]
+    lines += markdown_table(verdict_table(result.results))
+    plain = plain_claims(result.results)
+    lines += ["", "## Claims", ""]
     claims = [
         (item.claim.where, item.claim.statement, *_found(item), f"**{item.verdict}**")
-        for item in result.results
+        for item in plain
     ]
     lines += markdown_table((_HEAD, claims))
-    lines += ["", "## Why", ""]
-    for item in result.results:
+    lines += ["", "### Why", ""]
+    for item in plain:
         lines.append(
             f"* **{item.claim.statement}** ({item.verdict}): {item.claim.why}." + _extra(item)
         )
+    lines += _direction_lines(result)
     if result.prototype is not None:
         lines += prototype_markdown(result.prototype)
     lines += ["", "## The paper's design procedure", ""]
@@ -98,6 +102,28 @@ def validation_markdown(result: Reproduction) -> str:
     errata = [(e.equation, _cell(e.printed), _cell(e.corrected), e.why) for e in result.errata]
     lines += markdown_table((_ERRATA, errata))
     return "\n".join([*lines, ""])
+
+
+def _direction_lines(result: Reproduction) -> list[str]:
+    """The directions of friction model by model, why, and what each model misses."""
+    asked = directions(result.results)
+    if not asked:
+        return []
+    lines = ["", f"## {_OBSERVED}", ""]
+    lines += [f"* {sentence}" for sentence in model_sentences()]
+    head, rows = direction_table(result.results)
+    lines += ["", *markdown_table((head, [(*row[:-1], f"**{row[-1]}**") for row in rows]))]
+    lines += ["", "### Why, model by model", ""]
+    for items in asked:
+        lines.append(f"* **{items[0].claim.statement}**")
+        lines += [
+            f"    * {item.claim.model} ({item.verdict}): {item.claim.why}." + _extra(item)
+            for item in items
+        ]
+    lines += ["", f"## {_MISSED}"]
+    for model, sentences_ in missed_lists():
+        lines += ["", f"`{model}`:", "", *(f"* {sentence}" for sentence in sentences_)]
+    return lines
 
 
 def design_sentences(design: Design) -> list[str]:
@@ -123,12 +149,7 @@ def _cell(text: str) -> str:
 
 def _found(item: ClaimResult) -> tuple[str, str, str]:
     """What was printed, what the printed formula gives, what was recomputed."""
-    return _printed(item), _formula(item), show_values(item.value, item.claim.unit)
-
-
-def _printed(item: ClaimResult) -> str:
-    sign = {"equals": "", "above": "> ", "at_least": "≥ ", "at_most": "≤ "}[item.claim.relation]
-    return sign + show_values(item.claim.printed, item.claim.unit)
+    return show_printed(item), _formula(item), show_values(item.value, item.claim.unit)
 
 
 def _formula(item: ClaimResult) -> str:
@@ -176,8 +197,8 @@ def write_reproduction(
 
 def _page(result: Reproduction, figures: list[str]) -> str:
     claims = [
-        (item.claim.where, item.claim.statement, *_found(item), item.verdict, item.claim.why)
-        for item in result.results
+        (item.claim.where, item.claim.statement, *_found(item), item.verdict, _reason(item))
+        for item in plain_claims(result.results)
     ]
     errata = [(one.equation, one.printed, one.corrected, one.why) for one in result.errata]
     title, design = "The paper's claims, recomputed", bullets(design_sentences(result.design))
@@ -185,11 +206,34 @@ def _page(result: Reproduction, figures: list[str]) -> str:
 <h1>{title}</h1>
 <p>Source: Biet, Giraud, Lemaire-Semail, <em>The implementation of tactile feedback using squeeze
 film effect devices</em>. Friction against amplitude is not validated against measurements.</p>
-</header><main><section><h2>Claims</h2>{_table(((*_HEAD, "why"), claims))}</section>
+</header><main>
+<section><h2>What the verdicts say</h2>{_table(verdict_table(result.results))}</section>
+<section><h2>Claims</h2>{_table(((*_HEAD, "why"), claims))}</section>
+{_direction_sections(result)}
 {"".join(figures)}
 <section><h2>The paper's design procedure</h2>{design}</section>
 <section><h2>Errata</h2>{_table((_ERRATA, errata))}</section></main></body></html>
 """
+
+
+def _reason(item: ClaimResult) -> str:
+    """Why, and the note, which for a prediction is the prediction."""
+    return f"{item.claim.why} ({item.note})" if item.note else item.claim.why
+
+
+def _direction_sections(result: Reproduction) -> str:
+    """HTML: the directions of friction model by model, and what each model misses."""
+    asked = directions(result.results)
+    if not asked:
+        return ""
+    head, rows = direction_table(result.results)
+    reasons = [_reason(item) for items in asked for item in items]
+    full = [(*row, reason) for row, reason in zip(rows, reasons, strict=True)]
+    missed = "".join(f"<h3>{escape(model)}</h3>{bullets(texts)}" for model, texts in missed_lists())
+    return (
+        f"<section><h2>{_OBSERVED}</h2>{bullets(model_sentences())}"
+        f"{_table(((*head, 'why'), full))}</section><section><h2>{_MISSED}</h2>{missed}</section>"
+    )
 
 
 def prototype_sections(study: PrototypeStudy) -> list[str]:

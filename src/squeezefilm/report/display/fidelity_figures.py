@@ -20,11 +20,14 @@ _PERIODS_SHOWN = 2
 @style.drawn
 def compensated_grating(grating: CompensatedGrating) -> Figure:
     """One grating by each drive: the amplitude over the way, and the command that makes it."""
-    kept = [f"{100 * share:.0f} %" for share in grating.swing_kept]
+    kept, waves = (
+        [f"{100 * share:.0f}" for share in shares]
+        for shares in (grating.swing_kept, grating.fundamental_kept)
+    )
     figure = style.new_figure(
         f"At {1e3 * grating.speed:.0f} mm/s a grating of {shown(grating.spatial_period, M, 3)} "
-        f"keeps {kept[0]} of its swing without compensation, {kept[1]} with it, and {kept[-1]} "
-        "where the drive may also invert the phase",
+        f"keeps {kept[0]} % of its swing ({waves[0]} % of its fundamental) without compensation, "
+        f"{kept[1]} % ({waves[1]} %) with it, {kept[-1]} % ({waves[-1]} %) with phase inversion",
         f"{grating.drives[-1].model}, τ = {shown(grating.envelope.rise_time_constant, S, 3)}; "
         f"wanted: 0 to {100 * grating.level:g} % of what the full voltage holds",
         6.0,
@@ -36,10 +39,10 @@ def compensated_grating(grating: CompensatedGrating) -> Figure:
     limit = grating.envelope.amplitude_limit
     wanted = grating.drives[0].wanted[last] / limit
     top.plot(x, wanted, color=style.MUTED, lw=1.2, label="wanted")
-    for law, share, drive, (color, dashes) in zip(
-        grating.laws, kept, grating.drives, style.LINES, strict=False
+    for law, share, wave, drive, (color, dashes) in zip(
+        grating.laws, kept, waves, grating.drives, style.LINES, strict=False
     ):
-        name = f"{law.name}: {share} kept"
+        name = f"{law.name}: {share} % ({wave} % of the fundamental)"
         top.plot(x, drive.amplitude[last] / limit, color=color, ls=dashes, label=name)
         bottom.plot(x, drive.command[last] / limit, color=color, ls=dashes, drawstyle="steps-post")
     for level in (1, -1):
@@ -81,16 +84,17 @@ def texture_survival(table: TextureSurvival) -> Figure:
         f"Compensation with phase inversion keeps a grating up to {table.gain[-1]:.2g} times the "
         f"finger speed, without inversion up to {table.gain[1]:.2g} times",
         f"{table.model}; swing from 0 to {100 * table.level:g} % of what the full voltage holds, "
-        f"{100 * table.kept:g} % of it kept; Q as the display states it",
+        f"{100 * table.kept:g} % of it kept, peak to peak; Q as the display states it",
         5.0,
     )
     grid = figure.add_gridspec(2, 1, height_ratios=[1, 0.1])
     strip, axes = figure.add_subplot(grid[1]), figure.add_subplot(grid[0])
     strip.set_axis_off()
-    for law, row, (color, dashes) in zip(
-        table.laws, table.finest_period, style.LINES, strict=False
+    for law, row, wave, (color, dashes) in zip(
+        table.laws, table.finest_period, table.fundamental, style.LINES, strict=False
     ):
-        axes.loglog(1e3 * table.speeds, 1e3 * row, color=color, ls=dashes, label=law.name)
+        name = f"{law.name}: {100 * wave:.0f} % of the fundamental"
+        axes.loglog(1e3 * table.speeds, 1e3 * row, color=color, ls=dashes, label=name)
     for period in PAPER_PERIODS:
         named = "the paper's gratings" if period == PAPER_PERIODS[0] else None
         axes.axhline(1e3 * period, **style.GUIDE, label=named)

@@ -80,8 +80,9 @@ FIGURES: tuple[FigureOf, ...] = (
         "fidelity",
         "Which texture survives at which finger speed",
         texture_figures.fidelity,
-        "The share of its swing that a grating keeps: of the amplitude in large print, of the "
-        "friction in small print.",
+        "The share of its swing that a grating keeps, peak to peak: of the amplitude in large "
+        "print. In small print the share of its fundamental, the wave of its own period, which "
+        "rounded edges lose first; then both of the friction.",
     ),
     FigureOf(
         "compensation",
@@ -95,6 +96,7 @@ FIGURES: tuple[FigureOf, ...] = (
         "survival",
         "Which period survives at which speed, compensated or not",
         fidelity_figures.survival,
-        "The finest square grating that keeps 90 % of a swing to 0.8 of the full amplitude.",
+        "The finest square grating that keeps 90 % of a swing to 0.8 of the full amplitude, peak "
+        "to peak; the legend says how much of its fundamental that leaves.",
     ),
 )

@@ -12,9 +12,11 @@ import numpy as np
 
 from squeezefilm.report.kit.folder import json_text, require_folder, write_folder
 from squeezefilm.report.kit.numbers import (
+    MISSED_HEADING,
     display_values,
     film_rows,
     key_numbers,
+    missed_directions,
     models,
     printable,
     theory_rows,
@@ -180,6 +182,9 @@ def _models(analysis: Analysis) -> str:
         ("Link of the chain", "Model"),
         [(escape(what), f"<code>{escape(model)}</code>") for what, model in models(analysis)],
     )
+    model = analysis.prediction.model
+    used += f"\n<h3>{escape(MISSED_HEADING.format(model))}</h3>\n"
+    used += bullets(missed_directions(model, why=True))
     films = analysis.film_models
     if films is not None:
         means: dict[str, str] = {item.model: item.description for item in films.results}

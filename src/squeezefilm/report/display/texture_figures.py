@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -84,11 +85,12 @@ def fidelity(analysis: Analysis) -> Figure:
     fastest = 1e3 * float(table.speeds[-1])
     title = (
         f"At {fastest:g} mm/s the finest {table.shape} grating that keeps {100 * table.kept:.0f} % "
-        f"of its swing has a period of {shown(float(table.finest_period[-1]), M, 3)}"
+        f"of its swing, {_percent(table.fundamental_at_limit)} of its fundamental, has a period of "
+        f"{shown(float(table.finest_period[-1]), M, 3)}"
     )
     rows, columns = table.amplitude_kept.shape
     figure = style.new_figure(
-        title, f"{table.model}; friction by {analysis.prediction.model}", 2.5 + 0.62 * rows
+        title, f"{table.model}; friction by {analysis.prediction.model}", 2.5 + 0.78 * rows
     )
     axes, strip = figure.subplots(2, 1, height_ratios=[rows, 0.35])
     strip.set_axis_off()
@@ -104,7 +106,7 @@ def fidelity(analysis: Analysis) -> Figure:
     axes.set_xticks(range(columns), columns_named)
     axes.set(xlabel="finger speed (mm/s)", ylabel="spatial period (mm)")
     style.bare(axes)
-    kept = f"✓ keeps {100 * table.kept:.0f} % of the amplitude's swing"
+    kept = f"✓ keeps {100 * table.kept:.0f} % of the amplitude's swing, peak to peak"
     handles = [
         Patch(facecolor="none", edgecolor=style.INK, lw=1.2, label=kept),
         Patch(facecolor="none", edgecolor=style.INK, lw=0.8, ls="--", label="✗ loses more"),
@@ -128,15 +130,20 @@ def _draw_cell(axes: Axes, table: FidelityTable, row: int, column: int) -> None:
     axes.add_patch(Rectangle(corner, 0.96, 0.92, facecolor=fill, edgecolor=style.INK, **edge))
     ink = "#ffffff" if _luminance(fill[:3]) < 0.2 else "#101820"
     words = f"{_percent(share, table.kept)}  {'✓' if survives else '✗'}"
-    axes.text(column, row - 0.12, words, ha="center", va="center", color=ink, fontsize=12)
-    words = f"friction {_percent(float(table.friction_kept[row, column]), table.kept)}"
-    axes.text(column, row + 0.24, words, ha="center", va="center", color=ink, fontsize=8.5)
+    axes.text(column, row - 0.15, words, ha="center", va="center", color=ink, fontsize=12)
+    waves = table.amplitude_fundamental[row, column], table.friction_fundamental[row, column]
+    felt = _percent(float(table.friction_kept[row, column]), table.kept)
+    for down, small in (
+        (0.14, f"fundamental {_percent(float(waves[0]))}"),
+        (0.33, f"friction {felt}, {_percent(float(waves[1]))}"),
+    ):
+        axes.text(column, row + down, small, ha="center", va="center", color=ink, fontsize=8)
 
 
-def _percent(share: float, kept: float) -> str:
-    """A share in whole percent, never rounded up to the share that had to be kept."""
+def _percent(share: float, kept: float = math.inf) -> str:
+    """A share in whole percent, never rounded up to a share that had to be kept."""
     rounded = round(100 * share)
-    if share < kept and rounded >= 100 * kept:
+    if math.isfinite(kept) and share < kept and rounded >= 100 * kept:
         rounded -= 1
     return f"{rounded} %"
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from squeezefilm import quantities as si
 from squeezefilm.report.kit.numbers import HZ, M, N, V, reduction_row, shown
-from squeezefilm.report.kit.terminal import heading, plain_console, table
+from squeezefilm.report.kit.terminal import heading, plain_console, show_missed, table
 
 if TYPE_CHECKING:
     from squeezefilm.analysis.friction.command import FrictionAnalysis
@@ -40,6 +40,7 @@ def show_friction(result: FrictionAnalysis) -> None:
         )
     )
     table(console, ("model", "µ′/µ"), others)
+    show_missed(console, p.model)
     if unsure is not None:
         _ranking(result, unsure)
     for text in p.warnings:

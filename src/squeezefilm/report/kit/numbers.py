@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from squeezefilm import quantities as si
+from squeezefilm.analysis.claims.record import missed_by
 
 if typing.TYPE_CHECKING:
     from squeezefilm.analysis.analyze import Analysis
@@ -92,10 +93,13 @@ def key_numbers(analysis: Analysis) -> list[tuple[str, str, str]]:
         ("Envelope time constant", shown(analysis.envelope_time_constant, S), ""),
         ("Envelope bandwidth", shown(analysis.envelope_bandwidth, HZ), "of a texture's changes"),
     ]
-    rows += [
-        (f"Finest grating at {speed}", shown(period, M, 3), "keeps 90 % of its swing")
-        for speed, period in analysis.finest_period().items()
-    ]
+    if (table := analysis.fidelity) is not None:
+        wave = f"fundamental {100 * table.fundamental_at_limit:.0f} %"
+        remark = f"swing {100 * table.kept:.0f} %, {wave} kept"
+        rows += [
+            (f"Finest grating at {speed}", shown(period, M, 3), remark)
+            for speed, period in analysis.finest_period().items()
+        ]
     return rows
 
 
@@ -142,6 +146,28 @@ def models(analysis: Analysis) -> list[tuple[str, str]]:
     if analysis.texture is not None:
         rows.append(("Envelope and textures", analysis.texture.model))
     return rows
+
+
+MISSED_HEADING = "What measurements say and '{}' does not"
+
+
+def missed_directions(model: str, *, why: bool = False) -> list[str]:
+    """The published directions that a friction model misses, as sentences with their sources, and
+    `why` where asked for; from the claims on record."""
+    missed = missed_by(model)
+    if missed is None:
+        return [f"Published directions were not asked of the model '{model}'."]
+    if not missed:
+        return ["None of those on record; `squeezefilm reproduce` lists them."]
+    return [
+        f"{one.says} ({cited(one.where)})." + (f" In the model: {one.why}." if why else "")
+        for one in missed
+    ]
+
+
+def cited(where: str) -> str:
+    """A place in the source paper by the paper's name; another source as it stands."""
+    return f"Biet et al., {where}" if where.startswith("section") else where
 
 
 def theory_rows(analysis: Analysis) -> list[tuple[str, str, str, str]]:

@@ -4,20 +4,19 @@ from __future__ import annotations
 
 import sys
 import tomllib
-from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
-from squeezefilm import quantities as si
 from squeezefilm.report.kit.numbers import (
+    MISSED_HEADING,
     dotted,
     film_rows,
     key_numbers,
     micro,
+    missed_directions,
     models,
     printable,
-    shown,
     theory_rows,
     unsaid_warnings,
 )
@@ -26,17 +25,9 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from squeezefilm.analysis.analyze import Analysis
-    from squeezefilm.analysis.claims.command import Reproduction
 
 _KINDS = {"good": "good ", "limit": "limit", "doubt": "doubt"}
 _STYLES = {"good": "green", "limit": "cyan", "doubt": "yellow"}
-_VERDICT_STYLES = {
-    "reproduces": "green",
-    "holds": "green",
-    "misprint": "cyan",
-    "does not reproduce": "yellow",
-    "does not hold": "yellow",
-}
 
 
 @contextmanager
@@ -125,7 +116,7 @@ def show_rows(
     return console
 
 
-def _bullets(console: Console, items: Iterable[tuple[str, str, str]]) -> None:
+def bullets(console: Console, items: Iterable[tuple[str, str, str]]) -> None:
     """Wrapped sentences, each behind a word that says what kind it is."""
     from rich.table import Table
     from rich.text import Text
@@ -138,12 +129,19 @@ def _bullets(console: Console, items: Iterable[tuple[str, str, str]]) -> None:
     console.print(grid)
 
 
+def show_missed(console: Console, model: str) -> None:
+    """Print what measurements say and a friction model does not."""
+    heading(console, MISSED_HEADING.format(model))
+    bullets(console, [("–", text, "yellow") for text in missed_directions(model)])
+
+
 def show_analysis(analysis: Analysis) -> None:
     """Print an analysis: verdict last, where the eye rests, after numbers, models and warnings."""
     display = analysis.display
     console = show_rows(f"{display.title} [{display.name}]", key_numbers(analysis))
     heading(console, "Models")
     table(console, ("", ""), models(analysis), fixed=(0,))
+    show_missed(console, analysis.prediction.model)
     if analysis.other_models:
         heading(console, "The same plate by other theories")
         others = [(model, at, amplitude) for model, at, _, amplitude in theory_rows(analysis)[1:]]
@@ -154,57 +152,11 @@ def show_analysis(analysis: Analysis) -> None:
     warned = unsaid_warnings(analysis)
     if warned:
         heading(console, "Warnings")
-        _bullets(console, [("!", text, "yellow") for text in warned])
+        bullets(console, [("!", text, "yellow") for text in warned])
     heading(console, "Verdict")
     verdict = [(_KINDS[item.kind], item.text, _STYLES[item.kind]) for item in analysis.verdict]
-    _bullets(console, verdict)
+    bullets(console, verdict)
     console.print()
-
-
-def show_claims(result: Reproduction) -> None:
-    """Print every published claim: printed, recomputed, verdict; then where and why, claim by
-    claim; then the errata."""
-    console = plain_console()
-    rows = []
-    for item in result.results:
-        claim, formula = item.claim, item.printed_formula_value
-        sign = {"above": "> ", "at_least": "≥ ", "at_most": "≤ "}.get(claim.relation, "")
-        rows.append(
-            (
-                claim.id,
-                _values(claim.printed, claim.unit, sign),
-                "–" if formula is None else _values(formula, claim.unit),
-                _values(item.value, claim.unit),
-                item.verdict,
-            )
-        )
-    table(
-        console,
-        ("claim", "printed", "as printed", "recomputed", "verdict"),
-        rows,
-        fixed=(0,),
-        styles=lambda row: _VERDICT_STYLES.get(row[4], ""),
-    )
-    heading(console, "Where and why")
-    for item in result.results:
-        heading(console, f"{item.claim.id}: {item.verdict}")
-        said = [f"{item.claim.where}: {item.claim.statement}", f"why: {item.claim.why}"]
-        said += [item.note] if item.note else []
-        _bullets(console, [("", text, "") for text in said])
-    if result.errata:
-        heading(console, "Errata of the paper")
-        errata = [
-            (one.equation, f"{one.printed}  must be  {one.corrected}: {one.why}", "")
-            for one in result.errata
-        ]
-        _bullets(console, errata)
-    counts = Counter(item.verdict for item in result.results)
-    total = ", ".join(f"{count} {verdict}" for verdict, count in counts.items())
-    heading(console, f"{len(result.results)} claims: {total}")
-
-
-def _values(values: Iterable[float], unit: str, sign: str = "") -> str:
-    return "\n".join(sign + shown(value, si.Unit(unit)) for value in values)
 
 
 def preset_list() -> list[dict[str, Any]]:

@@ -195,7 +195,7 @@ def _judged_rows(who: str, judged: Judged) -> list[tuple[str, str, str]]:
         found.spatial_frequency, found.contrast_kept, found.swing_kept, strict=True
     ):
         if math.isfinite(kept):
-            said = f"in its place; swing kept {100 * swing:.0f} %"
+            said = f"in its place; {100 * swing:.0f} % of that wave anywhere"
             name = f"{who}: contrast at {shown(1 / f, M, 3)}"
             rows.append((name, f"{100 * kept:.0f} %", said))
     said = f"RMS of µ′/µ, swing wanted {found.wanted_swing:.2f}; by {judged.way.source}"

@@ -129,7 +129,7 @@ def contrast(result: RenderAnalysis) -> Figure:
         color=style.ORANGE,
         mfc="none",
         mew=1.6,
-        label="swing kept, wherever it lies",
+        label="of each wave kept, wherever it lies",
     )
     named = "contrast kept in its place"
     axes.plot(1e3 * period, 100 * kept[good], **style.ESTIMATE, label=named)

@@ -10,9 +10,11 @@ import pytest
 
 from squeezefilm.errors import InputError, OutOfRangeError
 from squeezefilm.render.resonator.compensation import DrivenEnvelope
+from squeezefilm.render.resonator.envelope import sine_swing_kept
 from squeezefilm.render.resonator.square_swing import (
     fastest_compensated_speed,
     least_cycle,
+    square_fundamental_compensated,
     square_swing_compensated,
 )
 
@@ -95,3 +97,43 @@ def test_the_least_cycle_of_the_whole_room_and_what_is_refused() -> None:
     for swing, highest in ((0.0, None), (TOP, None), (2.1e-6, 2e-6), (1e-6, 1.01 * TOP)):
         with pytest.raises(InputError, match=r"swing|highest"):
             least_cycle(BRAKED, swing, highest)
+
+
+def stepped(period: float, speed: float, envelope: DrivenEnvelope, way: str) -> float:
+    """The fundamental left, of a cycle stepped until it repeats, by the discrete sum."""
+    count = 20_000
+    step = period / speed / count
+    bare = way == "none"
+    top = HIGH if bare else envelope.amplitude_limit
+    bottom = LOW if bare else envelope.lowest_command
+    rise, fall = (
+        math.exp(-step / tau) for tau in (envelope.rise_time_constant, envelope.fall_time_constant)
+    )
+    a, values = LOW, np.zeros(count)
+    for _ in range(max(6, int(30 * 5e-3 * speed / period))):
+        for k in range(count):
+            values[k] = a
+            if k < count // 2:
+                a = min(HIGH, top - (top - a) * rise)
+            else:
+                a = max(LOW, bottom + (a - bottom) * fall)
+    wanted = np.where(np.arange(count) < count // 2, HIGH, LOW)
+    return float(abs(np.fft.rfft(values)[1]) / abs(np.fft.rfft(wanted)[1]))
+
+
+@pytest.mark.parametrize("way", ["none", "inverse"])
+@pytest.mark.parametrize("speed", [0.05, 0.15, 0.4])
+def test_the_fundamental_is_that_of_the_cycle_stepped_through(speed: float, way: Way) -> None:
+    found = square_fundamental_compensated(2e-3, speed, BRAKED, LOW, HIGH, way)
+    assert found == pytest.approx(stepped(2e-3, speed, BRAKED, way), rel=1e-3)
+
+
+def test_of_one_time_constant_the_fundamental_is_that_of_a_lag() -> None:
+    plain = DrivenEnvelope(1e-3, 1e-3, TOP)
+    for speed in (1e-3, 0.1, 1.0):
+        found = square_fundamental_compensated(1e-3, speed, plain, 0.0, HIGH, "none")
+        assert found == pytest.approx(float(sine_swing_kept(1e-3, speed, 1e-3)), rel=1e-9)
+        assert found < square_swing_compensated(1e-3, speed, plain, 0.0, HIGH, "none")
+    # What has all the time it needs is the square itself.
+    slow = square_fundamental_compensated(1e-3, 1e-7, BRAKED, LOW, HIGH)
+    assert slow == pytest.approx(1.0, rel=1e-3)

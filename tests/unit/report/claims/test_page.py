@@ -10,14 +10,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from squeezefilm.analysis.claims.command import Claim, ClaimResult, Erratum, Reproduction
+from squeezefilm.analysis.claims.command import ClaimResult, Reproduction
 from squeezefilm.analysis.claims.procedure import Design
+from squeezefilm.analysis.claims.record import Claim, Erratum
 from squeezefilm.errors import InputError
 from squeezefilm.report.claims import figures, page
 from squeezefilm.report.claims.page import (
     checkout,
     design_sentences,
-    show_values,
     validation_markdown,
     write_reproduction,
     write_validation_docs,
@@ -37,7 +37,7 @@ def result(number: int, *values: float, relation: Any = "equals", **changes: Any
         id=changes.pop("id", f"claim-{number}"), where=f"section {number}",
         statement=f"statement {number} <b>", printed=(2e-6,) * len(values),
         unit=changes.pop("unit", "m"), verdict="reproduces", why=f"why {number}",
-        relation=relation,
+        relation=relation, model=changes.pop("model", ""),
     )  # fmt: skip
     given: dict[str, Any] = {
         "printed_formula_value": None, "alternative": None, "verdict": "misprint", "note": "",
@@ -62,16 +62,11 @@ def rows_of(text: str) -> list[str]:
     return [line for line in text.splitlines() if line.startswith("| ")]
 
 
-def test_values_are_shown_with_their_unit() -> None:
-    assert show_values(None, "m") == "–"
-    assert show_values((1.5e-6, 2e-3), "m") == "1.5 µm / 2 mm"
-    assert show_values((28.181e-4, 1.0), "m2") == "28.18 cm² / 1e+04 cm²"
-    assert show_values((0.123456,), "1") == "0.1235"
-
-
 def test_the_document_has_a_row_for_each_claim() -> None:
     text = validation_markdown(FOUND)
-    head, *claims, errata_head, erratum = rows_of(text)
+    meanings, misprint, head, *claims, errata_head, erratum = rows_of(text)
+    assert meanings == "| verdict | claims | what it says |"
+    assert misprint.startswith("| misprint | 5 | the printed number comes out with")
     assert head == "| where | claim | printed | printed formula | recomputed | verdict |"
     assert claims == [
         "| section 1 | statement 1 <b> | 2 µm | – | 2.5 µm | **misprint** |",
@@ -85,6 +80,7 @@ def test_the_document_has_a_row_for_each_claim() -> None:
     # A bar would end the cell.
     assert erratum == "| eq 7 | a\\|b | a&b\\|c | because <i> |"
     assert text.count("\n|---|---|---|---|\n") == 1
+    assert text.count("\n|---|---|---|\n") == 1
     assert text.count("\n|---|---|---|---|---|---|\n") == 1
 
 
@@ -102,12 +98,49 @@ def test_the_document_says_why_and_in_which_order() -> None:
     ]
     headings = [line for line in text.splitlines() if line.startswith("## ")]
     assert headings == [
-        "## Claims", "## Why", "## The paper's design procedure", "## Errata of the paper",
+        "## What the verdicts say", "## Claims", "## The paper's design procedure",
+        "## Errata of the paper",
     ]  # fmt: skip
     for sentence in design_sentences(DESIGN):
         assert f"\n* {sentence}\n" in text
     assert text.endswith("because <i> |\n")
     assert "\n\n\n" not in text
+
+
+ASKED = Reproduction(
+    results=(
+        *FOUND.results,
+        result(6, 3e-6, id="speed", model="partial-levitation", relation="at_most", note="slow"),
+        result(7, 1e-6, id="speed", model="intermittent-contact", relation="at_most"),
+    ),
+    errata=FOUND.errata,
+    design=DESIGN,
+)
+
+
+def test_directions_stand_model_by_model_with_what_each_misses() -> None:
+    text = validation_markdown(ASKED)
+    assert (
+        "| Biet et al., section 6 | statement 6 <b> | partial-levitation | ≤ 2 µm | 3 µm | "
+        "**misprint** |\n"
+        "|  |  | intermittent-contact | ≤ 2 µm | 1 µm | "
+        "**misprint** |\n" in text
+    )
+    assert "| section 6 |" not in text
+    assert (
+        "* **statement 6 <b>**\n"
+        "    * partial-levitation (misprint): why 6. *(slow)*\n"
+        "    * intermittent-contact (misprint): why 7.\n" in text
+    )
+    headings = [line for line in text.splitlines() if line.startswith("#")]
+    assert headings[3:] == [
+        "### Why", "## Directions of friction that others observed, model by model",
+        "### Why, model by model", "## What measurements say and the models do not",
+        "## The paper's design procedure", "## Errata of the paper",
+    ]  # fmt: skip
+    missed = text[text.index("## What measurements say") : text.index("## The paper's design")]
+    assert "\n`partial-levitation`:\n\n* " in missed
+    assert "the faster the finger slides (Vezzoli et al. 2017, part 1, abstract). In the" in missed
 
 
 def test_the_procedure_is_told_step_by_step() -> None:
@@ -170,6 +203,7 @@ def test_the_page_has_claims_figures_procedure_and_errata(
     listed = "".join(f"<li>{html.escape(one)}</li>" for one in design_sentences(DESIGN))
     assert f"<ul>{listed}</ul>" in text
     assert "<b>" not in text
+    assert "Directions" not in text
     places = [text.index(one) for one in ("<h2>Claims", "5 &lt; 6", "<h2>The paper", "<h2>Errata")]
     assert places == sorted(places)
     assert "not validated against measurements" in text
@@ -178,6 +212,23 @@ def test_the_page_has_claims_figures_procedure_and_errata(
     data = json.loads((tmp_path / "new" / "claims.json").read_text(encoding="utf-8"))
     assert [one["id"] for one in data["claims"]][-1] == "squeeze-number-1"
     assert data["changed"] == [one.claim.id for one in FOUND.results]
+
+
+def test_the_page_has_directions_where_they_were_asked(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    text = reproduction(tmp_path, ASKED, monkeypatch)
+    cells = (
+        "Biet et al., section 6", "statement 6 <b>", "partial-levitation", "≤ 2 µm", "3 µm",
+        "misprint", "why 6 (slow)",
+    )  # fmt: skip
+    assert f"<tr>{''.join(f'<td>{html.escape(cell)}</td>' for cell in cells)}</tr>" in text
+    assert text.count("<tr><td>section") == 5
+    assert "<h2>What measurements say and the models do not</h2><h3>partial-levitation</h3>" in text
+    data = json.loads((tmp_path / "claims.json").read_text(encoding="utf-8"))
+    assert [one["model"] for one in data["claims"]] == [
+        *[None] * 5, "partial-levitation", "intermittent-contact",
+    ]  # fmt: skip
 
 
 def test_the_prototype_is_left_out_where_it_was_not_asked_for(

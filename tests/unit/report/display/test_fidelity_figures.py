@@ -67,9 +67,12 @@ def test_the_titles_carry_the_numbers() -> None:
         return str(figure.get_suptitle()).replace("\u00a0", " ").replace("\n", " ")
 
     assert title(FIGURES["grating"]()) == (
-        "At 239 mm/s a grating of 0.4 mm keeps 63 % of its swing without compensation, 77 % with "
-        "it, and 96 % where the drive may also invert the phase"
+        "At 239 mm/s a grating of 0.4 mm keeps 63 % of its swing (42 % of its fundamental) without "
+        "compensation, 77 % (53 %) with it, 96 % (75 %) with phase inversion"
     )
+    figure = FIGURES["survival"]()
+    said = [one.get_text() for one in figure.axes[0].get_legend().get_texts()]
+    assert said[0] == "no compensation: 68 % of the fundamental"
     assert "up to 2.3 times the finger speed" in title(FIGURES["survival"]())
 
 

@@ -140,6 +140,7 @@ def survival(amplitude: np.ndarray, friction: np.ndarray) -> FidelityTable:
         shape="square", low=0.0, high=HIGH, time_constant=0.5e-3, kept=0.9,
         spatial_periods=np.array([0.4e-3, 2e-3])[:rows], speeds=0.01 * np.arange(1, columns + 1),
         amplitude_kept=amplitude, friction_kept=friction,
+        amplitude_fundamental=0.5 * amplitude, friction_fundamental=0.25 * friction,
         finest_period=1e-3 * np.arange(1, columns + 1), fastest_speed=np.full(rows, 0.1),
         lag=5e-6 * np.arange(1, columns + 1),
     )  # fmt: skip
@@ -152,14 +153,18 @@ def test_every_cell_says_what_is_kept_and_whether_it_survives() -> None:
     axes, strip = figure.axes
     # Just below what has to be kept is not rounded up to it.
     expected = [
-        ("0 %  ✗", "friction 10 %"), ("50 %  ✗", "friction 89 %"), ("89 %  ✗", "friction 90 %"),
-        ("90 %  ✓", "friction 89 %"), ("90 %  ✓", "friction 95 %"), ("100 %  ✓", "friction 100 %"),
+        ("0 %  ✗", "0 %", "10 %, 2 %"), ("50 %  ✗", "25 %", "89 %, 22 %"),
+        ("89 %  ✗", "45 %", "90 %, 22 %"), ("90 %  ✓", "45 %", "89 %, 22 %"),
+        ("90 %  ✓", "45 %", "95 %, 24 %"), ("100 %  ✓", "50 %", "100 %, 25 %"),
     ]  # fmt: skip
     said = [(one.get_text(), one.get_position()) for one in axes.texts]
-    for number, (above, below) in enumerate(expected):
+    for number, (above, wave, felt) in enumerate(expected):
         row, column = divmod(number, 3)
-        assert said[2 * number] == (above, (column, row - 0.12))
-        assert said[2 * number + 1] == (below, (column, row + 0.24))
+        assert said[3 * number : 3 * number + 3] == [
+            (above, (column, row - 0.15)),
+            (f"fundamental {wave}", (column, row + 0.14)),
+            (f"friction {felt}", (column, row + 0.33)),
+        ]
     cells = [one for one in axes.patches if isinstance(one, Rectangle)]
     for number, cell in enumerate(cells):
         row, column = divmod(number, 3)
@@ -180,21 +185,22 @@ def test_every_cell_says_what_is_kept_and_whether_it_survives() -> None:
     ]  # fmt: skip
     assert (axes.get_xlabel(), axes.get_ylabel()) == ("finger speed (mm/s)", "spatial period (mm)")
     assert [one.get_text() for one in strip.get_legend().get_texts()] == [
-        "✓ keeps 90 % of the amplitude's swing", "✗ loses more",
+        "✓ keeps 90 % of the amplitude's swing, peak to peak", "✗ loses more",
     ]  # fmt: skip
     assert words(figure.get_suptitle()) == (
-        "At 30 mm/s the finest square grating that keeps 90 % of its swing has a period of 3 mm"
+        "At 30 mm/s the finest square grating that keeps 90 % of its swing, 68 % of its "
+        "fundamental, has a period of 3 mm"
     )
     assert figure.get_supxlabel() == (
         "Model: first-order envelope at resonance, open loop; friction by a law"
     )
-    assert figure.get_figheight() == pytest.approx(2.5 + 2 * 0.62)
+    assert figure.get_figheight() == pytest.approx(2.5 + 2 * 0.78)
 
 
 def test_every_cell_s_text_can_be_read_on_its_colour() -> None:
     shares = np.linspace(0, 1, 26)[None, :]
     axes = fidelity(analysis(table=survival(shares, shares))).axes[0]
-    inks = [to_hex(one.get_color()) for one in axes.texts[::2]]
+    inks = [to_hex(one.get_color()) for one in axes.texts[::3]]
     fills = [to_hex(one.get_facecolor()) for one in axes.patches]
     assert {*inks} == {"#ffffff", "#101820"}
     assert min(map(contrast, inks, fills)) > 4.2

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from tests.unit.report.printed import printed
 
+from squeezefilm.analysis.claims.record import missed_by
 from squeezefilm.analysis.curves import ModelCurve
 from squeezefilm.analysis.friction.command import Tapping, Wanted
 from squeezefilm.analysis.parameters import Parameter
@@ -117,6 +118,8 @@ def test_a_friction_is_said_with_why_and_what_to_measure_next() -> None:
         "film-open 0.400",
         "paper2008 –",
         "intermittent contact at 80 mm/s, no gas 0.912",
+        "What measurements say and 'a-model' does not",
+        "– Published directions were not asked of the model 'a-model'.",
         "What to measure next (share of the variance, alone and in all)",
         "parameter from to alone in all",
         "finger.p0 0.15 mm 0.35 mm 25% 40% ± 5% assumed range",
@@ -135,6 +138,16 @@ def test_a_finger_that_is_not_there_has_no_impedance_and_a_heavy_one_a_mass() ->
     )
     gone = dataclasses.replace(touched(), impedance=None)
     assert not [line for line in said(prediction=prediction(touch=gone)) if "impedance" in line]
+
+
+def test_what_measurements_say_against_the_model_stands_beside_it() -> None:
+    lines = said(prediction=prediction(model="partial-levitation"))
+    at = lines.index("What measurements say and 'partial-levitation' does not")
+    missed = missed_by("partial-levitation")
+    assert missed
+    for line, one in zip(lines[at + 1 :], missed, strict=False):
+        assert line.startswith(f"– {one.says} (")
+        assert one.where in line
 
 
 def test_without_samples_a_friction_is_one_number() -> None:

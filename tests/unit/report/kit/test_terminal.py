@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 import pytest
@@ -114,38 +113,14 @@ def test_paths_of_the_report_are_those_of_the_listing(plate_analysis: Analysis) 
     assert written <= {value.path for value in display_values(plate_analysis.display)}
 
 
-@dataclass(frozen=True)
-class FakeClaim:
-    id: str = "two-micrometres"
-    where: str = "section 2.3.1"
-    statement: str = "2 µm [give] 0.7"
-    printed: tuple[float, ...] = (1.4e-6, 1.55e-6)
-    unit: str = "m"
-    relation: str = "at_least"
-    why: str = "because " * 30
-
-
-@dataclass(frozen=True)
-class FakeResult:
-    claim: FakeClaim = FakeClaim()
-    printed_formula_value: tuple[float, ...] | None = None
-    value: tuple[float, ...] = (2e-6, 3e-6)
-    verdict: str = "does not hold"
-    note: str = ""
-
-
-@dataclass(frozen=True)
-class FakeReproduction:
-    results: tuple[FakeResult, ...] = (FakeResult(), FakeResult(verdict="holds"))
-    errata: tuple[Any, ...] = ()
-
-
-def test_claims_at_80_columns(capsys: pytest.CaptureFixture[str]) -> None:
-    terminal.show_claims(FakeReproduction())  # type: ignore[arg-type]
+def test_what_a_model_misses_is_said(capsys: pytest.CaptureFixture[str]) -> None:
+    terminal.show_missed(terminal.plain_console(), "partial-levitation")
     text = printed(capsys)
-    for part in ("two-micrometres", "≥ 1.4 µm", "3 µm", "2 µm [give] 0.7", "why: because"):
-        assert part in text
-    assert "2 claims: 1 does not hold, 1 holds" in text
+    assert "What measurements say and 'partial-levitation' does not" in text
+    assert "the faster the finger slides" in " ".join(text.split())
+    assert "In the model" not in text
+    terminal.show_missed(terminal.plain_console(), "film-smooth")
+    assert "were not asked of the model 'film-smooth'" in printed(capsys)
 
 
 def test_progress_is_plain_lines_where_no_terminal_is(capsys: pytest.CaptureFixture[str]) -> None:

@@ -270,10 +270,10 @@ def test_a_session_is_told_line_by_line() -> None:
         ("Ended", "completed", "all was played"),
         ("Played", "2 s", "mode stream, 1 kHz, compensation inverse, up to 16 V at 40 kHz"),
         # Nothing is said of a period that the texture has nothing at.
-        ("Record: contrast at 2 mm", "81 %", "in its place; swing kept 92 %"),
+        ("Record: contrast at 2 mm", "81 %", "in its place; 92 % of that wave anywhere"),
         ("Record: friction error", "0.031", "RMS of µ′/µ, swing wanted 0.40; by the pickup"),
         ("Record: lag", "0.250 mm", "behind the finger, 3.1 ms at 80 mm/s"),
-        ("Truth: contrast at 2 mm", "81 %", "in its place; swing kept 92 %"),
+        ("Truth: contrast at 2 mm", "81 %", "in its place; 92 % of that wave anywhere"),
         ("Truth: friction error", "0.031", "RMS of µ′/µ, swing wanted 0.40; by the pickup"),
         ("Truth: lag", "-0.100 mm", "ahead of the finger, 1.2 ms at 80 mm/s"),
         ("Position error", "50 µm", "of the estimate, RMS, truth"),

@@ -155,7 +155,7 @@ def test_contrast_is_drawn_by_period_where_there_is_any() -> None:
     figure = contrast(RESULT)
     axes = figure.axes[0]
     lines = labelled(axes)
-    swing, kept = lines["swing kept, wherever it lies"], lines["contrast kept in its place"]
+    swing, kept = lines["of each wave kept, wherever it lies"], lines["contrast kept in its place"]
     assert swing.get_xdata() == pytest.approx([2, 1])
     assert swing.get_ydata() == pytest.approx([95, 130])
     assert kept.get_xdata() == pytest.approx([2, 1])

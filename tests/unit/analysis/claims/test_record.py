@@ -1,0 +1,76 @@
+"""The claims on record: their verdicts fit their grounds, and what a model misses is said once."""
+
+from __future__ import annotations
+
+from typing import get_args
+
+import pytest
+
+from squeezefilm.analysis.claims.frozen import MODELS
+from squeezefilm.analysis.claims.record import (
+    MEANINGS,
+    VERDICT_OF_GROUNDS,
+    Grounds,
+    Verdict,
+    missed_by,
+    read_claims,
+)
+from squeezefilm.chain.friction_models import MODEL_KINDS
+
+CLAIMS = read_claims().all_claims
+FAILED = ("does not reproduce", "does not hold")
+
+
+def test_every_verdict_has_a_meaning() -> None:
+    assert set(MEANINGS) == set(get_args(Verdict))
+    assert set(VERDICT_OF_GROUNDS) | {"compared"} == set(get_args(Grounds))
+
+
+@pytest.mark.parametrize("claim", CLAIMS, ids=lambda one: one.name)
+def test_a_verdict_is_no_more_than_its_grounds_allow(claim: object) -> None:
+    passed = VERDICT_OF_GROUNDS.get(claim.grounds)  # type: ignore[attr-defined]
+    verdict = claim.verdict  # type: ignore[attr-defined]
+    if passed is None:
+        assert verdict in ("reproduces", "misprint", "holds", *FAILED)
+    else:
+        assert verdict == passed or (verdict in FAILED and passed != "prediction only")
+
+
+def test_a_claim_is_asked_once_of_a_model() -> None:
+    assert len({one.name for one in CLAIMS}) == len(CLAIMS)
+    assert {one.model for one in CLAIMS} == {"", *MODELS}
+    # Beside the competing mechanism, models have the names that one can ask for.
+    assert {*MODELS} - {"intermittent-contact", "partial-levitation-shear"} <= {*MODEL_KINDS}
+
+
+def test_a_prediction_has_nothing_to_be_compared_with() -> None:
+    (prediction,) = (one for one in CLAIMS if one.grounds == "prediction")
+    assert prediction.printed == ()
+    assert "have not been compared" in prediction.why
+
+
+def test_what_a_model_misses_is_what_was_measured_and_does_not_hold() -> None:
+    for model in MODELS:
+        missed = missed_by(model)
+        assert missed is not None
+        expected = {
+            one.id for one in CLAIMS
+            if one.model == model and one.verdict == "does not hold" and one.id != "roughness"
+        }  # fmt: skip
+        assert {one.id for one in missed} == expected
+        assert all(one.says and one.where for one in missed)
+    ids = {one.id for one in missed_by("partial-levitation") or ()}
+    assert {"speed", "load", "damping", "orientation"} <= ids
+
+
+def test_a_limit_of_the_pad_misses_what_a_plateau_misses() -> None:
+    own, tied = missed_by("partial-levitation"), missed_by("partial-levitation-one-gap")
+    assert own is not None
+    assert tied is not None
+    assert [one.id for one in own] == [one.id for one in tied]
+    assert {one.model for one in tied} == {"partial-levitation-one-gap"}
+
+
+def test_of_a_model_that_was_not_asked_nothing_is_known() -> None:
+    assert missed_by("film-smooth") is None
+    assert missed_by("") is None
