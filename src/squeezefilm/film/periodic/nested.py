@@ -138,7 +138,7 @@ def _judged(film: Nested, kind: Kind) -> _Judged:
     if not film.levels or not np.isfinite(over):
         alone = np.full((4, HARMONICS + 1), np.nan)
         alone[:, 0] = over, row[u.SPACE], row[u.TIME], row[u.ERROR]
-        return _Judged(alone[0].astype(complex), *alone[1:], rounded)
+        return _Judged(alone[0].astype(complex), alone[1], alone[2], alone[3], rounded)
     check, coarse, middle, fine = (
         force_harmonics(level, film.harmonics, n, kind.depth) for level in film.levels
     )

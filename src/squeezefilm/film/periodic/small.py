@@ -8,7 +8,7 @@ that motion can be solved.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -35,10 +35,10 @@ def small_film(asked: Asked, gas: Gas) -> tuple[Found, Field]:
     from squeezefilm.film.closed.small import NEXT_HARMONIC, small_pressure, small_vibration
 
     eps = asked.excursion_ratio
-    shape = "strip" if asked.shape == "strip" else "disc"
+    shape: Literal["strip", "disc"] = "strip" if asked.shape == "strip" else "disc"
     n, kn, law = gas
-    one = (np.array([v], dtype=float) for v in (asked.squeeze_number, eps))
-    known = small_vibration(*one, shape, np.array([n]), np.array([kn]), law)
+    sigma, excursion, ns, kns = (np.array([v]) for v in (asked.squeeze_number, eps, n, kn))
+    known = small_vibration(sigma, excursion, shape, ns, kns, law)
     force, force_error = complex(known.force[0]), float(known.force_error[0])
     over, error = float(known.over_pressure[0]), float(known.over_pressure_error[0])
     harmonics = np.zeros(HARMONICS + 1, dtype=complex)
@@ -69,7 +69,7 @@ def fill_small(
     if len(which) == 0:
         return which
     sigma, eps, n, kn = (column[which] for column in films[:4])
-    shape = "strip" if films.shape == u.STRIP else "disc"
+    shape: Literal["strip", "disc"] = "strip" if films.shape == u.STRIP else "disc"
     known = small_vibration(sigma, eps, shape, n, kn, films.law)
     over, error = known.over_pressure, known.over_pressure_error
     allowed = tolerance * over
