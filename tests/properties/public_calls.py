@@ -66,7 +66,6 @@ NOT_CALLED = {
     film.periodic.nested.levels_of film.periodic.nested.refine film.periodic.nested.steadied
     film.periodic.small.fill_small
     film.periodic.small.reduced film.periodic.solution.extrapolated_field
-   
     film.closed.small.small_vibration film.closed.small.small_pressure
     film.closed.small.flow_factor film.closed.small.SmallVibration film.planar.balance.Balance
     film.planar.balance.Balancer film.planar.balance.Balancer.solve film.planar.balance.Film
@@ -75,7 +74,6 @@ NOT_CALLED = {
     film.planar.gap.require_periodic film.planar.grid.PlanarGrid film.planar.grid.disc_grid
     film.planar.grid.ellipse_grid film.planar.grid.graded_line
     film.planar.grid.rectangle_grid film.planar.ladder.Climb film.planar.ladder.Extrapolated
-   
     film.planar.ladder.Ladder film.planar.ladder.Ladder.grid film.planar.ladder.climb_to
     film.periodic.profile.GapProfile.grid film.periodic.profile.sampled_grid
     film.periodic.resolution.first_guess

@@ -24,7 +24,8 @@ MAP = FilmMap(
     request=FilmRequest(polytropic_exponent=1.4, knudsen_number=0.0625),
     squeeze_number=SIGMA, excursion_ratio=EXCURSION, over_pressure=np.outer(RISE, HEIGHT),
     over_pressure_error=np.zeros((121, 40)), stiffness_relative=np.zeros((121, 40)),
-    damping_relative=np.zeros((121, 40)), force_error=np.zeros((121, 40)), model="a film of nothing",
+    damping_relative=np.zeros((121, 40)),
+    force_error=np.zeros((121, 40)), model="a film of nothing",
 )  # fmt: skip
 
 

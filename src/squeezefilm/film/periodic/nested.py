@@ -7,7 +7,8 @@ what more times change on the coarsest grid.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -88,25 +89,39 @@ def levels_of(
 
 
 def force_harmonics(
-    level: Level, gap_harmonics: si.ComplexArray, n: float, depth: float
-) -> si.ComplexArray:
-    """F_0 … F_8 of the area mean of P − 1 = Re Σ F_k e^{ikT} on one grid.
+    levels: Sequence[Level], gap_harmonics: si.ComplexArray, n: float, depth: float
+) -> list[si.ComplexArray]:
+    """F_0 … F_8 of the area mean of P − 1 = Re Σ F_k e^{ikT} on each grid.
 
     (P − 1) Hⁿ is nearly constant in time, P − 1 is not: it is interpolated between the times, and
     divided by Hⁿ at as many as the harmonics of 1/H need.
     """
-    times = level.pressure.shape[1]
-    gap = gap_harmonics[:, :: (gap_harmonics.shape[1] - 1) // (len(level.share) - 1)]
-    count = 2 * (max(64, 2 * times, load_times(times, depth) + HARMONICS) // 2)
-    nodes = 2.0 * np.pi * np.arange(times) / times
-    spectrum = np.zeros((len(level.share), count // 2 + 1), dtype=complex)
-    known = np.fft.rfft(level.pressure * evaluate(gap, nodes) ** n, axis=1)
-    spectrum[:, : times // 2 + 1] = known * (count / times)
-    powered = evaluate(gap, 2.0 * np.pi * np.arange(count) / count) ** n
-    force = level.share @ (np.fft.irfft(spectrum, count, axis=1) / powered)
-    found = np.fft.rfft(force)[: HARMONICS + 1] / count
-    found[1:] *= 2.0
-    return np.asarray(found)
+    most = max(level.pressure.shape[1] for level in levels)
+    count = 2 * (max(64, 2 * most, load_times(most, depth) + HARMONICS) // 2)
+    fine = 2.0 * np.pi * np.arange(count) / count
+    inverse = evaluate(gap_harmonics, fine) ** -n
+    # Only the first harmonics of the force are wanted: sums, and no transform of every node.
+    wave = np.exp(-1j * np.outer(fine, np.arange(HARMONICS + 1))) / count
+    wave[:, 1:] *= 2.0
+    found = []
+    for level in levels:
+        times = level.pressure.shape[1]
+        every = (len(inverse) - 1) // (len(level.share) - 1)
+        nodes = 2.0 * np.pi * np.arange(times) / times
+        stored = level.pressure * evaluate(gap_harmonics[:, ::every], nodes) ** n
+        # The force at a fine time is Σ_j (share · stored_j / Hⁿ) × the interpolant's weight.
+        held = (stored * level.share[:, None]).T @ inverse[::every]
+        found.append(np.asarray((held * _interpolant(times, count)).sum(axis=0) @ wave))
+    return found
+
+
+@lru_cache(maxsize=64)
+def _interpolant(times: int, count: int) -> si.FloatArray:
+    """The weight of each of the times, an odd number, at each of `count` times of a period."""
+    unit = np.fft.rfft(np.eye(times), axis=1) * (count / times)
+    spectrum = np.zeros((times, count // 2 + 1), dtype=complex)
+    spectrum[:, : times // 2 + 1] = unit
+    return np.asarray(np.fft.irfft(spectrum, count, axis=1))
 
 
 def load_times(times: int, depth: float) -> int:
@@ -139,9 +154,7 @@ def _judged(film: Nested, kind: Kind) -> _Judged:
         alone = np.full((4, HARMONICS + 1), np.nan)
         alone[:, 0] = over, row[u.SPACE], row[u.TIME], row[u.ERROR]
         return _Judged(alone[0].astype(complex), alone[1], alone[2], alone[3], rounded)
-    check, coarse, middle, fine = (
-        force_harmonics(level, film.harmonics, n, kind.depth) for level in film.levels
-    )
+    check, coarse, middle, fine = force_harmonics(film.levels, film.harmonics, n, kind.depth)
     value = fine + (fine - middle) / 3.0
     # The mean has weights of its own in the solver.
     value[0] = over

@@ -48,7 +48,7 @@ def test_the_harmonics_are_those_of_a_film_whose_storage_the_times_resolve(
 
     gap = np.repeat(np.array([[1.0], [eps]], dtype=complex), 5, axis=1)
     level = Level(np.array([over(T), 2 * over(T), 0 * T]), np.array([0.25, 0.5, 0.25]))
-    found = force_harmonics(level, gap, n, eps)
+    (found,) = force_harmonics([level], gap, n, eps)
     exact = 1.25 * np.fft.rfft(over(every))[:9] / 4096
     exact[1:] *= 2
     assert found == pytest.approx(exact, rel=1e-7, abs=1e-8)
