@@ -272,8 +272,8 @@ class _Climber:
             value, error = value + times.correction, error + times.doubt + 1e-13
             error[1:] = steadied(error, np.abs(value))[1:]
             best = Extrapolated(value, error)
-            # Where lines are cut at the boundary the harmonics converge too slowly to be waited for:
-            # their errors are stated.
+            # Where lines are cut at the boundary the harmonics converge too slowly to be waited
+            # for: their errors are stated.
             mean = float(error[0] / abs(value[0]))
             if (mean if self.ladder.cut else best.lacking()) <= tolerance:
                 reached = f"{mean:.1g} of the over-pressure"
