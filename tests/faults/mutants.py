@@ -76,8 +76,8 @@ def counted() -> Iterator[Work]:
             work.counting(batch.solve_all, "films", films),
         ),
         mock.patch.object(
-            periodic, "solve_all",
-            work.counting(periodic.solve_all, "films", films),
+            periodic, "refine",
+            work.counting(periodic.refine, "films", one),
         ),
         mock.patch.object(
             solve_modes, "_solved", work.counting(solve_modes._solved, "solid solves", one)

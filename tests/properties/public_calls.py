@@ -62,7 +62,12 @@ NOT_CALLED = {
     film.periodic.batch.check_film film.periodic.batch.solve_all film.line_grid.LineGrid
     film.line_grid.edge_graded film.line_grid.edge_layer film.line_grid.gap_table
     film.line_grid.line_grid film.line_grid.mean_over film.line_grid.refined_line
-    film.line_grid.uniform_gap film.periodic.film.load_times film.planar.balance.Balance
+    film.line_grid.uniform_gap film.periodic.nested.load_times film.periodic.nested.force_harmonics
+    film.periodic.nested.levels_of film.periodic.nested.refine film.periodic.nested.steadied
+    film.periodic.small.fill_small
+    film.periodic.small.reduced film.periodic.solution.extrapolated_field
+    film.closed.small.small_vibration film.closed.small.small_pressure
+    film.closed.small.flow_factor film.closed.small.SmallVibration film.planar.balance.Balance
     film.planar.balance.Balancer film.planar.balance.Balancer.solve film.planar.balance.Film
     film.planar.balance.derivative film.planar.balance.resampled film.planar.balance.times
     film.planar.cut.cut_ellipse_grid film.planar.gap.gap_values

@@ -10,7 +10,7 @@ import pytest
 
 from squeezefilm.errors import ConvergenceError, GeometryError, InputError, UnreachableError
 from squeezefilm.film.gas import MOST_SQUEEZE_NUMBER
-from squeezefilm.film.periodic import batch, film
+from squeezefilm.film.periodic import batch, film, nested
 from squeezefilm.film.periodic.balance import VibratedFilm, mean_gap_for_load
 from squeezefilm.film.periodic.batch import solve_films
 from squeezefilm.film.periodic.film import solve_profile, solve_uniform
@@ -105,9 +105,9 @@ def test_samples_and_function_of_the_same_gap_agree():
 
 
 def test_what_does_not_converge_raises_with_its_partial_result(monkeypatch):
-    for solver in (batch, film):
-        monkeypatch.setattr(solver, "ROUNDS", 1)
-        monkeypatch.setattr(solver, "MOST_NEWTON", 2)
+    for rounds, newton in ((batch, batch), (nested, film)):
+        monkeypatch.setattr(rounds, "ROUNDS", 1)
+        monkeypatch.setattr(newton, "MOST_NEWTON", 2)
     with pytest.raises(ConvergenceError) as caught:
         solve_uniform(10.0, 0.9, tolerance=1e-6)
     error = caught.value
@@ -123,9 +123,9 @@ def test_what_does_not_converge_raises_with_its_partial_result(monkeypatch):
 
 
 def test_a_partial_result_holds_nothing_that_was_not_computed(monkeypatch):
-    for solver in (batch, film):
-        monkeypatch.setattr(solver, "ROUNDS", 1)
-        monkeypatch.setattr(solver, "MOST_NEWTON", 2)
+    for rounds, newton in ((batch, batch), (nested, film)):
+        monkeypatch.setattr(rounds, "ROUNDS", 1)
+        monkeypatch.setattr(newton, "MOST_NEWTON", 2)
     # What memory happens to hold is seen where it is no number.
     monkeypatch.setattr(film.np, "empty", lambda shape, **_: np.full(shape, np.nan))
     wavy = profile_from_function(lambda x, t: 1 + 0.3 * np.cos(6 * x) + 0.5 * np.cos(t))

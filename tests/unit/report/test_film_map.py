@@ -24,7 +24,8 @@ MAP = FilmMap(
     request=FilmRequest(polytropic_exponent=1.4, knudsen_number=0.0625),
     squeeze_number=SIGMA, excursion_ratio=EXCURSION, over_pressure=np.outer(RISE, HEIGHT),
     over_pressure_error=np.zeros((121, 40)), stiffness_relative=np.zeros((121, 40)),
-    damping_relative=np.zeros((121, 40)), model="a film of nothing",
+    damping_relative=np.zeros((121, 40)),
+    force_error=np.zeros((121, 40)), model="a film of nothing",
 )  # fmt: skip
 
 
@@ -117,7 +118,8 @@ def test_a_film_in_the_plane_is_cut_along_its_middle() -> None:
     count = across.size
     film = FilmPlanar(
         mean_load=1.1, over_pressure=0.1, over_pressure_error=1e-3, stiffness_relative=0.0,
-        damping_relative=0.0, force_harmonics=np.zeros(8, dtype=complex), X=along.ravel(),
+        damping_relative=0.0, force_error=0.0, force_harmonics=np.zeros(8, dtype=complex),
+        force_harmonics_error=np.zeros(8), X=along.ravel(),
         Y=across.ravel(), area=np.ones(count),
         mean_pressure=1 + along.ravel() ** 2 + 10 * across.ravel(), rows=3, columns=4,
         quarter=False, time_points=8, iterations=1, residual=0.0, status="converged",

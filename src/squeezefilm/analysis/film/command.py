@@ -28,7 +28,8 @@ _LINES = ("strip", "disc")
 @si.checked_numbers
 @dataclass(frozen=True)
 class FilmRequest:
-    """A film of plain shape and uniform gap H = 1 + ε cos T; `tolerance` is relative, on W − 1."""
+    """A film of plain shape and uniform gap H = 1 + ε cos T; `tolerance` is relative, on W − 1 and
+    on the harmonics of the force."""
 
     shape: str = "strip"
     aspect_ratio: Annotated[si.Dimensionless, ASPECT] = 1.0
@@ -44,7 +45,9 @@ class FilmRequest:
 @dataclass(frozen=True, eq=False, repr=False)
 class FilmAnswer(Result):
     """The mean load W over p0 A of one film, its over-pressure W − 1 with the estimated absolute
-    error, and the first harmonic of its force: stiffness and damping over p0 A ε.
+    error, and the first harmonic of its force: stiffness and damping over p0 A ε, `force_error` the
+    estimated absolute error of either. `force_harmonics` (8,) are the complex amplitudes F_k of the
+    force over p0 A, k from 1, `force_harmonics_error` their estimated absolute errors.
 
     `film` has its pressure at every place and time."""
 
@@ -56,6 +59,9 @@ class FilmAnswer(Result):
     over_pressure_error: si.Dimensionless
     stiffness_relative: si.Dimensionless
     damping_relative: si.Dimensionless
+    force_error: si.Dimensionless
+    force_harmonics: si.ComplexArray
+    force_harmonics_error: si.DimensionlessArray
     iterations: int
     residual: float
     status: str
@@ -83,7 +89,8 @@ class FilmAnswer(Result):
 
 @dataclass(frozen=True, eq=False)
 class FilmMap:
-    """Over-pressure, its error and the force's first harmonic over σ (rows) and ε (columns)."""
+    """Over-pressure and the force's first harmonic, with their errors, over σ (rows) and ε
+    (columns)."""
 
     request: FilmRequest
     squeeze_number: si.DimensionlessArray
@@ -92,6 +99,7 @@ class FilmMap:
     over_pressure_error: si.DimensionlessArray
     stiffness_relative: si.DimensionlessArray
     damping_relative: si.DimensionlessArray
+    force_error: si.DimensionlessArray
     model: str
 
     def summary(self) -> dict[str, Any]:
@@ -157,6 +165,8 @@ def _answer(
     request: FilmRequest,
     own: str = "",
 ) -> FilmAnswer:
+    # In the plane they begin with the first.
+    from_first = slice(1, None) if isinstance(film, FilmSolution) else slice(None)
     return FilmAnswer(
         squeeze_number=film.squeeze_number,
         excursion_ratio=excursion,
@@ -166,6 +176,9 @@ def _answer(
         over_pressure_error=film.over_pressure_error,
         stiffness_relative=film.stiffness_relative,
         damping_relative=film.damping_relative,
+        force_error=film.force_error,
+        force_harmonics=film.force_harmonics[from_first],
+        force_harmonics_error=film.force_harmonics_error[from_first],
         iterations=film.iterations,
         residual=film.residual,
         status=film.status,
@@ -209,6 +222,7 @@ def sweep_film(
         slip=request.slip,
         tolerance=request.tolerance,
         progress=told,
+        force=True,
     )
     return FilmMap(
         request=request,
@@ -218,5 +232,6 @@ def sweep_film(
         over_pressure_error=films.over_pressure_error,
         stiffness_relative=films.stiffness_relative,
         damping_relative=films.damping_relative,
+        force_error=films.force_error,
         model=films.model,
     )

@@ -24,6 +24,7 @@ from squeezefilm.errors import ConvergenceError, InputError
 from squeezefilm.film.gas import Aim, require_film, slip_law
 from squeezefilm.film.periodic.records import Resolution
 from squeezefilm.film.periodic.resolution import CELLS, TIMES, first_guess, refined, resolution_of
+from squeezefilm.film.periodic.small import fill_small
 from squeezefilm.progress import CountProgress
 
 if TYPE_CHECKING:
@@ -42,7 +43,9 @@ class FilmBatch:
     """Results of many uniform films; arrays of the broadcast shape of the inputs.
 
     `over_pressure_error` is an estimate of the absolute error of `over_pressure`. Stiffness and
-    damping are those of the first force harmonic, −(stiffness + i damping)·p0·A·ε.
+    damping are those of the first force harmonic, −(stiffness + i damping)·p0·A·ε; `force_error`
+    estimates the absolute error of stiffness + i damping, and so of either. `iterations`, `cells`
+    and `times` are 0 where the vibration is so small that its closed form was taken.
     """
 
     mean_load: si.DimensionlessArray
@@ -50,6 +53,7 @@ class FilmBatch:
     over_pressure_error: si.DimensionlessArray
     stiffness_relative: si.DimensionlessArray
     damping_relative: si.DimensionlessArray
+    force_error: si.DimensionlessArray
     iterations: si.IntArray
     residual: si.DimensionlessArray
     cells: si.IntArray
@@ -100,29 +104,28 @@ def solve_films(
     workers: Annotated[int, si.AtLeast(1)] | None = None,
     progress: CountProgress | None = None,
     strict: bool = True,
+    force: bool = False,
 ) -> FilmBatch:
     """Mean load and first force harmonic of many films, H = 1 + ε cos T; inputs broadcast.
 
     The equation, inputs, ranges and errors are those of `solve_uniform`; the squeeze
     number is on a strip's full length or on a disc's radius. `tolerance` is relative, on the
-    over-pressure. `workers` threads share the work (None: one per core). `progress(done, total)` is
-    called after each portion. With `strict`, a case that does not reach the tolerance raises
-    `ConvergenceError` carrying the batch as `partial`; without, its error estimate shows it (NaN
-    where nothing converged).
+    over-pressure, and with `force` on the first harmonic too (relative to its size). `workers`
+    threads share the work (None: one per core). `progress(done, total)` is called after each
+    portion. With `strict`, a case that does not reach the tolerance raises `ConvergenceError`
+    carrying the batch as `partial`; without, its error estimate shows it (NaN where nothing
+    converged).
     """
     si.require_one_of("shape", shape, ("strip", "disc"))
     check_film(squeeze_number, excursion_ratio, polytropic_exponent, knudsen_number, tolerance)
     law = slip_law(slip, float(np.max(knudsen_number)))
     inputs = _broadcast(squeeze_number, excursion_ratio, polytropic_exponent, knudsen_number)
     sigma, signed, n, kn = (np.ascontiguousarray(a.ravel()) for a in inputs)
-    # ε and −ε are the same film half a period apart; ε = 0 is solved as nearly 0 and set to 1.
-    eps = np.maximum(np.abs(signed), 1e-6)
+    # ε and −ε are the same film half a period apart.
+    eps = np.abs(signed)
     u = compiled()
     films = u.Films(sigma, eps, n, kn, law, u.STRIP if shape == "strip" else u.DISC)
-    solved = solve_all(films, tolerance, workers or os.cpu_count() or 1, progress)
-    still = signed == 0.0
-    solved.rows[still, u.OVER], solved.rows[still, u.ERROR] = 0.0, 0.0
-    solved = solved._replace(met=solved.met | still)
+    solved = solve_all(films, tolerance, workers or os.cpu_count() or 1, progress, force=force)
     films = films._replace(excursion_ratio=signed)
     batch = _as_batch(films, solved, inputs[0].shape, slip, tolerance)
     if strict and not solved.met.all():
@@ -169,10 +172,11 @@ def _as_batch(
         "over_pressure_error": out[:, u.ERROR],
         "stiffness_relative": out[:, u.STIFFNESS],
         "damping_relative": out[:, u.DAMPING],
+        "force_error": out[:, u.FORCE_ERROR],
         "iterations": out[:, u.ITERATIONS].astype(np.int64),
         "residual": out[:, u.RESIDUAL],
-        "cells": CELLS[solved.cells],
-        "times": TIMES[solved.times],
+        "cells": np.where(out[:, u.ITERATIONS] > 0, CELLS[solved.cells], 0),
+        "times": np.where(out[:, u.ITERATIONS] > 0, TIMES[solved.times], 0),
         "squeeze_number": films.squeeze_number,
         "excursion_ratio": films.excursion_ratio,
         "polytropic_exponent": films.polytropic_exponent,
@@ -197,14 +201,12 @@ def solve_all(
     tolerance: float,
     workers: int,
     progress: CountProgress | None = None,
-    least_cells: int = 4,
-    least_times: int = 5,
-    keep: si.FloatArray | None = None,
+    *,
+    force: bool = False,
 ) -> _Solved:
-    """Solve films, refining those that miss the tolerance.
+    """Solve films, refining those that miss the tolerance; with `force` also in the first harmonic.
 
-    Inputs are checked 1-D arrays with 0 < ε < 1. `keep` is passed to the compiled loop and makes
-    sense for one case only.
+    Inputs are checked 1-D arrays with 0 ≤ ε < 1.
     """
     u, sigma = compiled(), films.squeeze_number
     total = len(sigma)
@@ -213,23 +215,25 @@ def solve_all(
         films.excursion_ratio,
         films.knudsen_number,
         tolerance,
-        least_cells,
-        least_times,
     )
     work = _Work(
         films,
         Aim(tolerance, MOST_NEWTON),
         workers,
         progress,
-        np.empty(0) if keep is None else keep,
+        force,
         np.full((total, u.COLUMNS), np.nan),
         np.zeros(total),
         np.zeros(total, dtype=bool),
     )
     pending: si.IntArray = np.arange(total)
+    work.met[fill_small(films, tolerance, work.rows, pending, better=True)] = True
+    pending = np.flatnonzero(~work.met)
     pool = ThreadPoolExecutor(workers) if workers > 1 and total > 64 else None
     with pool or nullcontext():
         for turn in range(1, ROUNDS + 1):
+            if len(pending) == 0:
+                break
             key = cells[pending] * len(TIMES) + times[pending]
             order = np.argsort(key, kind="stable")
             bounds = np.flatnonzero(np.diff(key[order])) + 1
@@ -238,11 +242,11 @@ def solve_all(
                 work.solve(group, resolution_of(int(CELLS[cells[first]]), int(times[first])), pool)
             work.tell()
             pending = np.flatnonzero(~work.met)
-            if len(pending) == 0 or turn == ROUNDS:
+            if turn == ROUNDS:
                 break  # what is given back is of the grids that were solved
-            pending = _refine(work.rows, tolerance, pending, cells, times)
-            if len(pending) == 0:
-                break
+            pending = _refine(work, pending, cells, times)
+    closed = fill_small(films, tolerance, work.rows, np.flatnonzero(~work.met), better=False)
+    work.met[closed], work.spent[closed] = True, 0.0
     work.rows[:, u.ITERATIONS] = work.spent
     return _Solved(work.rows, cells, times, work.met)
 
@@ -255,7 +259,7 @@ class _Work:
     aim: Aim
     workers: int
     progress: CountProgress | None
-    keep: si.FloatArray
+    force: bool
     rows: si.FloatArray
     spent: si.FloatArray
     met: NDArray[np.bool_]
@@ -276,32 +280,38 @@ class _Work:
         spans = [(a, min(a + portion, len(group))) for a in range(0, len(group), portion)]
 
         def part(span: tuple[int, int]) -> None:
-            u.solve_rows(*span, films, resolution, self.aim, rows, self.keep)
+            u.solve_rows(*span, films, resolution, self.aim, rows, np.empty(0))
 
         for _ in map(part, spans) if pool is None else pool.map(part, spans):
             self.tell()
         self.rows[group] = rows
         self.spent[group] += rows[:, u.ITERATIONS]
         self.met[group] = rows[:, u.ERROR] <= self.aim.tolerance * np.abs(rows[:, u.OVER])
+        if self.force:
+            size = np.hypot(rows[:, u.STIFFNESS], rows[:, u.DAMPING])
+            self.met[group] &= rows[:, u.FORCE_ERROR] <= self.aim.tolerance * size
 
 
 def _refine(
-    rows: si.FloatArray,
-    tolerance: float,
-    pending: si.IntArray,
-    cells: si.IntArray,
-    times: si.IntArray,
+    work: _Work, pending: si.IntArray, cells: si.IntArray, times: si.IntArray
 ) -> si.IntArray:
     """Give pending films the cells and times that they lack, in place; those to solve again."""
-    u = compiled()
-    allowed = tolerance * np.abs(rows[pending, u.OVER])
-    more_cells, more_times = refined(
-        cells[pending],
-        times[pending],
-        rows[pending, u.SPACE],
-        rows[pending, u.TIME],
-        np.where(allowed > 0.0, allowed, 1e-300),
-    )
+    u, tolerance, rows = compiled(), work.aim.tolerance, work.rows[pending]
+    allowed = tolerance * np.abs(rows[:, u.OVER])
+    space, time = rows[:, u.SPACE], rows[:, u.TIME]
+    if work.force:
+        # What the first harmonic lacks, in the unit of the over-pressure.
+        unit = allowed / (tolerance * np.hypot(rows[:, u.STIFFNESS], rows[:, u.DAMPING]))
+        space = np.maximum(space, rows[:, u.FORCE_SPACE] * unit)
+        time = np.maximum(time, rows[:, u.FORCE_TIME] * unit)
+    allowed = np.where(allowed > 0.0, allowed, 1e-300)
+    more_cells, more_times = refined(cells[pending], times[pending], space, time, allowed)
     stuck = (more_cells == cells[pending]) & (more_times == times[pending])
+    # Where rounding alone is more than what is allowed, nothing is to be gained.
+    sigma, n = (
+        column[pending] for column in (work.films.squeeze_number, work.films.polytropic_exponent)
+    )
+    for at in np.flatnonzero(np.isfinite(rows[:, u.OVER])):
+        stuck[at] |= u.rounding(sigma[at], n[at], rows[at, u.OVER]) > allowed[at]
     cells[pending], times[pending] = more_cells, more_times
     return np.asarray(pending[~stuck])

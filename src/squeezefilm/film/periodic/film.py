@@ -10,7 +10,6 @@ by Fourier collocation in time and finite volumes in space; see `kernel` for the
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -19,24 +18,29 @@ from squeezefilm import quantities as si
 from squeezefilm.compiled import announce
 from squeezefilm.errors import InputError
 from squeezefilm.film.gas import Aim, Gas, slip_law
-from squeezefilm.film.periodic.batch import (
-    MOST_NEWTON,
-    ROUNDS,
-    check_film,
-    compiled,
-    solve_all,
+from squeezefilm.film.periodic.batch import MOST_NEWTON, check_film, compiled
+from squeezefilm.film.periodic.nested import (
+    NEWTON_SHARE,
+    PROFILE_MARGINS,
+    UNIFORM_MARGINS,
+    Kind,
+    Nested,
+    levels_of,
+    load_times,
+    refine,
 )
 from squeezefilm.film.periodic.profile import GapProfile, profile_from_function, sampled_grid
 from squeezefilm.film.periodic.records import Resolution
-from squeezefilm.film.periodic.resolution import (
-    CELLS,
-    TIMES,
-    collocation_times,
-    first_guess,
-    refined,
-    resolution_of,
+from squeezefilm.film.periodic.resolution import CELLS, first_guess
+from squeezefilm.film.periodic.small import LARGEST, enlarged, reduced, small_film
+from squeezefilm.film.periodic.solution import (
+    NO_FIELD,
+    Asked,
+    FilmSolution,
+    Found,
+    assembled,
+    extrapolated_field,
 )
-from squeezefilm.film.periodic.solution import Asked, FilmSolution, Found, assembled
 
 
 @si.checked_numbers
@@ -66,39 +70,53 @@ def solve_uniform(
     sigma, n, kn = squeeze_number, polytropic_exponent, knudsen_number
     asked = Asked(shape, sigma, excursion_ratio, n, kn, slip, tolerance, None)
     check_film(sigma, excursion_ratio, n, kn, tolerance)
-    law = slip_law(slip, kn)
+    gas = Gas(n, kn, slip_law(slip, kn))
+    small = small_film(asked, gas) if abs(excursion_ratio) < LARGEST else None
+    # The closed form where it is nearer than rounding lets a solve come, or where that fails.
+    if small and small[0].met and small[0].error <= compiled().rounding(sigma, n, small[0].over):
+        return assembled(asked, *small, excursion_ratio)
+    grid, found = _refined_uniform(shape, sigma, abs(excursion_ratio), gas, tolerance)
+    if small and small[0].met and not found.met:
+        return assembled(asked, *small, excursion_ratio)
+    mirrored = shape == "strip"
+    field = extrapolated_field(grid.levels, grid.x, grid.harmonics, n, mirrored=mirrored)
+    if excursion_ratio < 0.0:
+        found, field = found.later(), field.later()
+    return assembled(asked, found, field, excursion_ratio)
+
+
+def _refined_uniform(
+    shape: str, sigma: float, eps: float, gas: Gas, tolerance: float
+) -> tuple[Nested, Found]:
+    """A uniform gap's film: on half a strip, or on a disc's radius."""
     u, strip = compiled(), shape == "strip"
-    kind = u.STRIP if strip else u.DISC
-    # ε and −ε are half a period apart; zero is solved as nearly zero, which gives the limits of
-    # stiffness and damping.
-    eps = max(abs(excursion_ratio), 1e-6)
-    keep = np.empty(3 * int(CELLS[-1]) // 2 * 200)
-    one = np.array([[sigma], [eps], [n], [kn]], dtype=float)
-    films = u.Films(*one, law, kind)
-    out, c, t, met = solve_all(films, tolerance, 1, least_cells=16, least_times=11, keep=keep)
-    row, cells, times = out[0], int(CELLS[c[0]]), int(TIMES[t[0]])
-    over, error = float(row[u.OVER]), float(row[u.ERROR])
-    ntp = collocation_times(times).row
-    a = u.edge_grading(sigma * (1.0 if strip else 2.25), eps)
-    levels = []
-    start = 0
-    for m in (cells // 2, cells):
-        g, vol, share = np.zeros(m + 1), np.zeros(m + 1), np.zeros(m + 1)
-        u.grid(m, kind, 1.0, a, g, vol, share)
-        p = keep[start : start + m * ntp].reshape(m, ntp)[:, :times]
-        levels.append((np.vstack([p, np.zeros(times)]), share))
-        start += m * ntp
-    xi = np.linspace(0.0, 1.0, cells + 1)
-    x = (0.5 if strip else 1.0) * xi * (1.0 + a * (1.0 - xi * xi))
-    shift = np.pi if excursion_ratio < 0.0 else 0.0
-    harmonics = np.zeros((2, len(x)), dtype=complex)
-    harmonics[0], harmonics[1] = 1.0, eps
-    if excursion_ratio == 0.0:
-        over, error = 0.0, 0.0
-        met[0] = True
-    steps, residual = int(row[u.ITERATIONS]), float(row[u.RESIDUAL])
-    found = Found(over, error, bool(met[0]), steps, residual, cells, times)
-    return assembled(asked, found, levels, harmonics, x, shift, strip, eps)
+    # A disc of radius R films like a strip about 1.5 R wide.
+    wide = sigma * (1.0 if strip else 2.25)
+    n, kn, law = gas
+    films = u.Films(*np.array([[sigma], [eps], [n], [kn]]), law, u.STRIP if strip else u.DISC)
+    a = u.edge_grading(wide, eps)
+
+    def solve(resolution: Resolution) -> Nested:
+        cells = resolution.cells
+        out = np.full((1, u.COLUMNS), np.nan)
+        rows = 7 * resolution.times.row + resolution.check.row
+        keep = np.empty(cells // 4 * rows)
+        u.solve_rows(0, 1, films, resolution, Aim(NEWTON_SHARE * tolerance, MOST_NEWTON), out, keep)
+
+        def share(m: int) -> si.FloatArray:
+            g, vol, part = np.zeros(m + 1), np.zeros(m + 1), np.zeros(m + 1)
+            u.grid(m, films.shape, 1.0, a, g, vol, part)
+            return part
+
+        xi = np.linspace(0.0, 1.0, cells + 1)
+        x = (0.5 if strip else 1.0) * xi * (1.0 + a * (1.0 - xi * xi))
+        gap = np.repeat(np.array([[1.0], [eps]], dtype=complex), cells + 1, axis=1)
+        return Nested(resolution, x, gap, out[0], levels_of(keep, resolution, True, share))
+
+    one = (np.array([wide]), np.array([eps]), np.array([kn]))
+    c, t = first_guess(*one, tolerance, least_cells=16, least_times=11)
+    kind = Kind(wide / (n * (1.0 + 6.0 * kn)), eps, 1, films.shape, UNIFORM_MARGINS, n, sigma)
+    return refine(solve, kind, (int(CELLS[c[0]]), int(t[0])), tolerance, int(CELLS[-1]))
 
 
 @si.checked_numbers
@@ -132,131 +150,59 @@ def solve_profile(
     check_film(squeeze_number, 0.0, polytropic_exponent, knudsen_number, tolerance)
     sigma = float(squeeze_number)
     gas = Gas(float(polytropic_exponent), float(knudsen_number), slip_law(slip, knudsen_number))
-    grid, found = _refined_profile(profile, sigma, gas, tolerance)
-    closed, excursion = profile.symmetric, profile.excursion
-    n, kn = gas.polytropic_exponent, gas.knudsen_number
-    asked = Asked("profile", sigma, excursion, n, kn, slip, tolerance, profile)
-    levels = grid.levels(closed) if field else []
-    return assembled(
-        asked, found, levels, grid.harmonics[:, ::2], grid.x[::2], 0.0, closed, excursion
-    )
-
-
-class _ProfileGrid(NamedTuple):
-    """A profile on one grid and what was solved there: X, dX/dξ and the gap's harmonics at nodes
-    and faces, the result row, and p on the two finer grids, one after the other."""
-
-    resolution: Resolution
-    x: si.FloatArray
-    slope: si.FloatArray
-    harmonics: si.ComplexArray
-    row: si.FloatArray
-    keep: si.FloatArray
-
-    def levels(self, closed: bool) -> list[tuple[si.FloatArray, si.FloatArray]]:
-        """p at the nodes of the two finer grids, edges included, and their shares of the area."""
-        cells, times = self.resolution.cells, self.resolution.times
-        levels: list[tuple[si.FloatArray, si.FloatArray]] = []
-        start = 0
-        for m in (cells // 2, cells):
-            unknowns = m if closed else m - 1
-            p = self.keep[start : start + unknowns * times.row].reshape(unknowns, times.row)
-            p = p[:, : times.number]
-            start = (cells // 2 + 1) * times.row
-            edge = np.zeros((1, times.number))
-            p = np.vstack([p, edge]) if closed else np.vstack([edge, p, edge])
-            share = self.slope[:: 2 * cells // m] * ((2.0 if closed else 1.0) / m)
-            share *= 1.0 if closed else 2.0
-            share[[0, -1]] *= 0.5
-            levels.append((p, share))
-        return levels
+    n, kn, _ = gas
+    asked = Asked("profile", sigma, profile.excursion, n, kn, slip, tolerance, profile)
+    solvable, factor = enlarged(profile)
+    grid, found = _refined_profile(solvable, sigma, gas, tolerance, field)
+    shown, mirrored = NO_FIELD, profile.symmetric
+    if field:
+        shown = extrapolated_field(grid.levels, grid.x, grid.harmonics, n, mirrored=mirrored)
+    return assembled(asked, *reduced(found, shown, factor, tolerance), profile.excursion)
 
 
 def _refined_profile(
-    profile: GapProfile, sigma: float, gas: Gas, tolerance: float
-) -> tuple[_ProfileGrid, Found]:
-    """Solve and refine until the tolerance is met, or nothing more is to be gained."""
+    profile: GapProfile, sigma: float, gas: Gas, tolerance: float, field: bool
+) -> tuple[Nested, Found]:
+    """A profile's film: on half of it where it is symmetric, otherwise from edge to edge."""
     from squeezefilm.film.periodic import uniform as u
-    from squeezefilm.film.periodic.varying import solve_varying
+    from squeezefilm.film.periodic.varying import Profile, solve_varying
 
     announce(solve_varying, "solver of film profiles", 20)
-    c, t = first_guess(
+    closed, depth = profile.symmetric, profile.depth
+    # Rounded, so that a sweep over σ finds its grids again.
+    grading = round(float(u.edge_grading(sigma / (1.0 + profile.features) ** 2, depth)), 2)
+    aim = Aim(tolerance * (NEWTON_SHARE if field else 1.0), MOST_NEWTON)
+
+    def solve(resolution: Resolution) -> Nested:
+        cells, times, check = resolution
+        x, slope, harmonics = sampled_grid(profile, cells, closed, grading)
+        even, odd = np.ascontiguousarray(harmonics.real), np.ascontiguousarray(-harmonics.imag)
+        row = np.full(u.COLUMNS, np.nan)
+        keep = np.empty(cells // 4 * (7 * times.row + check.row) if field else 0)
+        loads = (load_times(times.number, depth), load_times(check.number, depth))
+        gap = Profile(slope, even, odd, depth, closed)
+        solve_varying(sigma, gas, gap, resolution, loads, aim, row, keep)
+
+        def share(m: int) -> si.FloatArray:
+            part = slope[:: 2 * cells // m] * (2.0 / m)
+            part[[0, -1]] *= 0.5
+            return part
+
+        levels = levels_of(keep, resolution, closed, share) if field else []
+        return Nested(resolution, x[::2], harmonics[:, ::2], row, levels)
+
+    one = (
         np.array([sigma]),
         np.array([max(profile.mean_depth, 1e-3)]),
         np.array([gas.knudsen_number]),
-        tolerance,
-        least_cells=8,
-        least_times=2 * profile.orders + 1,
     )
-    waves = profile.features / (2.0 if profile.symmetric else 1.0)
+    c, t = first_guess(
+        *one, tolerance, least_cells=16 if field else 8, least_times=2 * profile.orders + 1
+    )
+    waves = profile.features / (2.0 if closed else 1.0)
     cells = max(int(CELLS[c[0]]), 4 * round(4.0 * waves * (0.01 / tolerance) ** 0.25))
-    if not profile.symmetric:
-        cells = 2 * cells
-    # Rounded, so that a sweep over σ finds its grids again.
-    grading = round(float(u.edge_grading(sigma / (1.0 + profile.features) ** 2, profile.depth)), 2)
-    iterations = 0
-    for turn in range(1, ROUNDS + 1):
-        grid = _on_grid(profile, sigma, gas, resolution_of(cells, int(t[0])), grading, tolerance)
-        out = grid.row
-        iterations += int(out[u.ITERATIONS])
-        allowed = tolerance * abs(out[u.OVER])
-        met = bool(out[u.ERROR] <= allowed) or bool(abs(out[u.OVER]) < 1e-15)
-        if met or cells > 6000 or turn == ROUNDS:
-            break  # what is given back is of the grid that was solved
-        some = np.zeros(1, dtype=np.int64)
-        more, t2 = refined(
-            some,
-            t,
-            out[u.SPACE : u.SPACE + 1],
-            out[u.TIME : u.TIME + 1],
-            np.array([max(allowed, 1e-300) if np.isfinite(allowed) else 1e-300]),
-        )
-        if more[0] > 0:
-            ratio = max(out[u.SPACE] / allowed / 0.5, 1.0) ** 0.25
-            cells = 4 * round(cells * min(max(1.3, ratio), 4.0) / 4)
-        elif t2[0] == t[0]:
-            break
-        t = t2
-    over, error, residual = (float(out[column]) for column in (u.OVER, u.ERROR, u.RESIDUAL))
-    times = grid.resolution.times.number
-    return grid, Found(over, error, met, iterations, residual, grid.resolution.cells, times)
-
-
-def _on_grid(
-    profile: GapProfile,
-    sigma: float,
-    gas: Gas,
-    resolution: Resolution,
-    grading: float,
-    tolerance: float,
-) -> _ProfileGrid:
-    """The film over a profile on one grid."""
-    from squeezefilm.film.periodic.uniform import COLUMNS
-    from squeezefilm.film.periodic.varying import Profile, solve_varying
-
-    closed, depth, cells = profile.symmetric, profile.depth, resolution.cells
-    x, slope, harmonics = sampled_grid(profile, cells, closed, grading)
-    even, odd = np.ascontiguousarray(harmonics.real), np.ascontiguousarray(-harmonics.imag)
-    row = np.full(COLUMNS, np.nan)
-    keep = np.empty((cells + 1 + cells // 2 + 1) * resolution.times.row)
-    solve_varying(
-        sigma,
-        gas,
-        Profile(slope, even, odd, depth, closed),
-        resolution,
-        (load_times(resolution.times.number, depth), load_times(resolution.check.number, depth)),
-        Aim(tolerance, MOST_NEWTON),
-        row,
-        keep,
-    )
-    return _ProfileGrid(resolution, x, slope, harmonics, row, keep)
-
-
-def load_times(times: int, depth: float) -> int:
-    """How many times the load integral over 1/H needs for a relative error below 1e-10.
-
-    The harmonics of 1/H fall like r^k with r = ε/(1 + √(1 − ε²)).
-    """
-    ratio = depth / (1.0 + np.sqrt(1.0 - min(depth, 0.999) ** 2))
-    decades = np.log(1e-10) / np.log(max(ratio, 1e-3))
-    return int(times // 2 + 8 + decades)
+    cells *= 1 if closed else 2
+    n, kn = gas.polytropic_exponent, gas.knudsen_number
+    local = sigma / (n * (1.0 + 6.0 * kn))
+    kind = Kind(local, depth, 1 if closed else 2, u.STRIP, PROFILE_MARGINS, n, sigma)
+    return refine(solve, kind, (cells, int(t[0])), tolerance, 6000)

@@ -16,7 +16,7 @@ from squeezefilm import quantities as si
 from squeezefilm.compiled import compiled
 from squeezefilm.film.gas import Aim, Gas
 from squeezefilm.film.periodic.kernel import newton, prolong
-from squeezefilm.film.periodic.records import Cells, Gap, Resolution, Room
+from squeezefilm.film.periodic.records import Cells, Gap, Resolution, Room, Times
 
 STRIP, DISC = 0, 1
 
@@ -24,7 +24,8 @@ STRIP, DISC = 0, 1
 OVER, ERROR, STIFFNESS, DAMPING, ITERATIONS, RESIDUAL, SPACE, TIME, COARSE, MIDDLE, FINE, CHECK = (
     range(12)
 )
-COLUMNS = 12
+FORCE_ERROR, FORCE_SPACE, FORCE_TIME = range(12, 15)  # of stiffness + i damping
+COLUMNS = 15
 
 
 @compiled(error_model="numpy")
@@ -145,9 +146,16 @@ def gap(nt: int, ntp: int, eps: float, H: si.FloatArray, H3: si.FloatArray) -> N
 
 @compiled(error_model="numpy")
 def space_error(
-    coarse: float, middle: float, fine: float, sigma: float, eps: float, cells: int, shape: int
+    coarse: complex,
+    middle: complex,
+    fine: complex,
+    sigma: float,
+    eps: float,
+    cells: int,
+    shape: int,
 ) -> float:
-    """The error that extrapolating `middle` and `fine` leaves, from three nested grids.
+    """The error that extrapolating `middle` and `fine` leaves, from three nested grids, of the
+    over-pressure (real) or of a harmonic of the force (complex).
 
     Asymptotically it is a fifteenth of what the extrapolated value changed by; 1.5 is a margin.
     Where the grid does not yet resolve the edge layer (σ/N² is the square of cell over layer)
@@ -203,7 +211,8 @@ def solve_rows(
     """Fill rows start:stop of `out` for the films of those rows, all with the same resolution.
 
     The number of cells is a multiple of 4. NaN marks a film that did not converge. `keep`, if
-    not empty, receives p of the last film on the two finer grids, one after the other.
+    not empty, receives p of the last film: on the coarsest grid with the times that check, then
+    on the three grids, one after the other.
     """
     sigma, eps, n, kn, law, shape = films
     cells, times, fuller = resolution
@@ -218,7 +227,8 @@ def solve_rows(
     room = Room(np.zeros(10 * rows * wide), np.empty(blocks))
     nodes, gaps = Cells(g, vol, share), Gap(H, H, H3, w, 0)
     close = Aim(0.03 * aim.tolerance, aim.most)
-    level = np.empty((3, 3))
+    # Over-pressure and first harmonic, of the three grids and of the check.
+    level, harmonic = np.empty(4), np.empty(4, dtype=np.complex128)
     coarsest = cells // 4
     # A single node does not see how the time error varies over the film.
     checked = max(coarsest, 2)
@@ -233,6 +243,12 @@ def solve_rows(
         grid(checked, shape, sig, a, g, vol, share)
         p[: checked * fuller.row] = 0.0
         check, its, left = newton(checked, fuller, nodes, gaps, gas, p, room, close)
+        level[3] = check
+        harmonic[3] = _first_harmonic(checked, fuller, share, c, s, p)
+        kept = 0
+        if keep.size > 0:
+            kept = checked * fuller.row
+            keep[:kept] = p[:kept]
         gap(nt, ntp, e, H, H3)
         load_weights(nt, ntp, e, poly, H, w, c, s)
         p[: coarsest * ntp] = 0.0
@@ -247,37 +263,55 @@ def solve_rows(
             over, more, remains = newton(m, times, nodes, gaps, gas, p, room, close)
             its += more
             left = max(left, remains)
-            real, imag = 0.0, 0.0
-            for i in range(m):
-                even, odd = 0.0, 0.0
-                for t in range(nt):
-                    even += c[t] * p[i * ntp + t]
-                    odd += s[t] * p[i * ntp + t]
-                real += share[i] * even
-                imag += share[i] * odd
-            level[stage, 0], level[stage, 1], level[stage, 2] = over, real, imag
+            level[stage] = over
+            harmonic[stage] = _first_harmonic(m, times, share, c, s, p)
             if math.isnan(over):
                 break
-            if keep.size > 0 and stage > 0:
-                offset = 0 if stage == 1 else cells // 2 * ntp
-                keep[offset : offset + m * ntp] = p[: m * ntp]
+            if keep.size > 0:
+                keep[kept : kept + m * ntp] = p[: m * ntp]
+                kept += m * ntp
         out[case, ITERATIONS] = its
         out[case, RESIDUAL] = left
         if math.isnan(over) or math.isnan(check):
             out[case, OVER] = math.nan
             out[case, ERROR] = math.nan
             continue
-        L1, L2, L3 = level[0, 0], level[1, 0], level[2, 0]
+        L1, L2, L3 = level[0], level[1], level[2]
         best = L3 + (L3 - L2) / 3.0
         out[case, COARSE], out[case, MIDDLE], out[case, FINE] = L1, L2, L3
         out[case, CHECK] = check
         out[case, OVER] = best
         local = wide_sigma / (poly * (1.0 + 6.0 * rare))
+        same = 0 if checked == coarsest else 1
         out[case, SPACE] = space_error(L1, L2, L3, local, e, cells, shape)
-        out[case, TIME] = 2.0 * abs(check - (L1 if checked == coarsest else L2))
-        out[case, ERROR] = (
-            out[case, SPACE] + out[case, TIME] + left * abs(best) + rounding(sig, poly, best)
-        )
-        # p = Re[F e^{iT}] with F = −(fk + i fd) ε; `odd` weighs sin T, which is −Im F.
-        out[case, STIFFNESS] = -(level[2, 1] + (level[2, 1] - level[1, 1]) / 3.0) / e
-        out[case, DAMPING] = (level[2, 2] + (level[2, 2] - level[1, 2]) / 3.0) / e
+        out[case, TIME] = 2.0 * abs(check - level[same])
+        lost = left * abs(best) + rounding(sig, poly, best)
+        out[case, ERROR] = out[case, SPACE] + out[case, TIME] + lost
+        # p = Re[F e^{iT}] with F = −(fk + i fd) ε.
+        F1, F2, F3 = harmonic[0], harmonic[1], harmonic[2]
+        force = -(F3 + (F3 - F2) / 3.0) / e
+        out[case, STIFFNESS], out[case, DAMPING] = force.real, force.imag
+        out[case, FORCE_SPACE] = space_error(F1, F2, F3, local, e, cells, shape) / e
+        out[case, FORCE_TIME] = 2.0 * abs(harmonic[3] - harmonic[same]) / e
+        out[case, FORCE_ERROR] = out[case, FORCE_SPACE] + out[case, FORCE_TIME] + lost / e
+
+
+@compiled(error_model="numpy")
+def _first_harmonic(
+    m: int,
+    times: Times,
+    share: si.FloatArray,
+    c: si.FloatArray,
+    s: si.FloatArray,
+    p: si.FloatArray,
+) -> complex:
+    """F of the area mean Re[F e^{iT}] of p: `c` weighs cos T, `s` weighs sin T, which is −Im F."""
+    real, imag = 0.0, 0.0
+    for i in range(m):
+        even, odd = 0.0, 0.0
+        for t in range(times.number):
+            even += c[t] * p[i * times.row + t]
+            odd += s[t] * p[i * times.row + t]
+        real += share[i] * even
+        imag += share[i] * odd
+    return complex(real, -imag)

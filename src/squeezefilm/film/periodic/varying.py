@@ -128,7 +128,8 @@ def solve_varying(
     out: si.FloatArray,
     keep: si.FloatArray,
 ) -> None:
-    """Fill one result row and `keep` (p on the two finer grids, one after the other).
+    """Fill one result row and, if not empty, `keep`: p on the coarsest grid with the times that
+    check, then on the three grids, one after the other.
 
     The profile has 2·cells + 1 points; `fine` are the numbers of times of the load integral for
     the times of the resolution and for those that check them.
@@ -149,7 +150,7 @@ def solve_varying(
     room = Room(np.zeros(10 * rows * wide), np.empty(blocks))
     close = Aim(0.03 * aim.tolerance, aim.most)
     level = np.zeros(3)
-    check, left, its = 0.0, 0.0, 0
+    check, left, its, kept = 0.0, 0.0, 0, 0
     for run in range(2):
         now = times if run == 1 else fuller
         row = now.row
@@ -204,9 +205,9 @@ def solve_varying(
                 check = over
             else:
                 level[stage] = over
-                if stage > 0:
-                    at = 0 if stage == 1 else (cells // 2 + 1) * row
-                    keep[at : at + unknowns * row] = p[: unknowns * row]
+            if keep.size > 0:
+                keep[kept : kept + unknowns * row] = p[: unknowns * row]
+                kept += unknowns * row
             if math.isnan(over):
                 break
             if stage < 2:

@@ -51,6 +51,11 @@ class Balance:
     factorizations: int
     converged: bool
 
+    @property
+    def amplitudes(self) -> si.ComplexArray:
+        """The over-pressure and the harmonics, (9,)."""
+        return np.concatenate([[self.over_pressure], self.harmonics])
+
 
 def times(count: int) -> si.FloatArray:
     """The collocation times of `count` points over a period."""

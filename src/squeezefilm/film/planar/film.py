@@ -28,10 +28,11 @@ class FilmPlanar:
     `mean_load` W = ⟨P⟩ over surface and period, `over_pressure` W − 1 and its estimated absolute
     error; `stiffness_relative` fk and `damping_relative` fd: the first harmonic of the force is
     −(fk + i fd) p0 A ε, ε being the largest first harmonic of the gap; `force_harmonics` (8,) the
-    complex amplitudes F_k of W(T) = W + Re Σ F_k e^{ikT}. `mean_pressure` is the period's mean at
-    the nodes `X`, `Y` of the finest grid, with their `area`, all (nodes,) = rows × columns; on a
-    `quarter` they cover X ≥ 0, Y ≥ 0 of a symmetric film. `residual` is the last relative change
-    of the gas in Newton's method.
+    complex amplitudes F_k, k from 1, of W(T) = W + Re Σ F_k e^{ikT}, and `force_harmonics_error`
+    their estimated absolute errors |ΔF_k|; `force_error` is that of fk + i fd. `mean_pressure` is
+    the period's mean at the nodes `X`, `Y` of the finest grid, with their `area`, all (nodes,) =
+    rows × columns; on a `quarter` they cover X ≥ 0, Y ≥ 0 of a symmetric film. `residual` is the
+    last relative change of the gas in Newton's method.
     """
 
     mean_load: si.Dimensionless
@@ -39,7 +40,9 @@ class FilmPlanar:
     over_pressure_error: si.Dimensionless
     stiffness_relative: si.Dimensionless
     damping_relative: si.Dimensionless
+    force_error: si.Dimensionless
     force_harmonics: si.ComplexArray
+    force_harmonics_error: si.DimensionlessArray
     X: si.DimensionlessArray
     Y: si.DimensionlessArray
     area: si.DimensionlessArray
@@ -85,7 +88,9 @@ def solve_planar(
     `ConvergenceError` (with the best state had) where Newton's method does not converge or the
     tolerance would take more memory than 2 GB. Holds for isothermal (1) to adiabatic (1.4)
     viscous flow; slip by the local Knudsen number Kn/(PH). The tolerance is on the over-pressure,
-    down to 1e-5 of it. Sources: Gross (1962); Blech, 10.1115/1.3254692 for the linear limit.
+    down to 1e-5 of it, and on every harmonic of the force, relative to the largest of them; not
+    so for ridges across a disc or ellipse, whose harmonics have their errors stated only.
+    Sources: Gross (1962); Blech, 10.1115/1.3254692 for the linear limit.
     """
     require_film(squeeze_number, gas.polytropic_exponent, gas.knudsen_number)
     if shape == "disc" and aspect_ratio != 1.0:
@@ -110,14 +115,16 @@ def solve_planar(
 def _assembled(ladder: Ladder, climb: Climb, gas: FilmGas, tolerance: float) -> FilmPlanar:
     """The result, from where a climb of the ladder ended."""
     best, fine = climb.best, climb.fine
-    first = best.harmonics[0] / ladder.excursion
+    first = best.amplitudes[1] / ladder.excursion
     return FilmPlanar(
         mean_load=1.0 + best.over_pressure,
         over_pressure=best.over_pressure,
-        over_pressure_error=best.error,
+        over_pressure_error=float(best.errors[0]),
         stiffness_relative=-float(first.real),
         damping_relative=-float(first.imag),
-        force_harmonics=best.harmonics,
+        force_error=float(best.errors[1]) / ladder.excursion,
+        force_harmonics=best.amplitudes[1:],
+        force_harmonics_error=best.errors[1:],
         X=fine.grid.X,
         Y=fine.grid.Y,
         area=fine.grid.area,

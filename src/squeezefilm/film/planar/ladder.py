@@ -15,6 +15,7 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.film.line_grid import refined_line
+from squeezefilm.film.periodic.nested import steadied
 from squeezefilm.film.planar.balance import Balance, Balancer, Film, resampled
 from squeezefilm.film.planar.cut import cut_ellipse_grid
 from squeezefilm.film.planar.gap import PlanarGap, gap_values
@@ -135,11 +136,27 @@ class Ladder:
 
 @dataclass(frozen=True)
 class Extrapolated:
-    """What two or three rungs together say of the over-pressure, and how far that may be off."""
+    """What two or three rungs together say of the over-pressure and the harmonics of the force,
+    `amplitudes` (9,), and how far each may be off."""
 
-    over_pressure: float
-    error: float
-    harmonics: si.ComplexArray
+    amplitudes: si.ComplexArray
+    errors: si.FloatArray
+
+    @property
+    def over_pressure(self) -> float:
+        """W − 1."""
+        return float(self.amplitudes[0].real)
+
+    def lacking(self) -> float:
+        """The larger of the mean's error relative to it and that of the worst harmonic relative to
+        the largest."""
+        return float((self.errors / _norm(self.amplitudes)).max())
+
+
+def _norm(amplitudes: si.ComplexArray) -> si.FloatArray:
+    """What errors are relative to: the mean to itself, the harmonics to the largest of them."""
+    size = np.abs(amplitudes)
+    return np.concatenate([size[:1], np.full(len(size) - 1, size[1:].max())])
 
 
 @dataclass(frozen=True)
@@ -166,24 +183,24 @@ def climb_to(ladder: Ladder, tolerance: float) -> Climb:
         return climber.in_space(times)
     high, count = times.high, times.low.gas.shape[1]
     status = f"stopped: {count // 2} harmonics in time are too few or Newton's method failed"
-    best = Extrapolated(high.over_pressure, abs(times.correction), high.harmonics)
+    best = Extrapolated(high.amplitudes, np.abs(times.correction))
     return Climb(best, high, climber.iterations, False, status)
 
 
 @dataclass(frozen=True)
 class _Times:
-    """The coarsest rung with some times and with four more, and the doubt (in the over-pressure)
-    that their difference leaves; whether that is `enough`."""
+    """The coarsest rung with some times and with four more, and the doubt (in over-pressure and
+    harmonics) that their difference leaves; whether that is `enough`."""
 
     low: Balance
     high: Balance
-    doubt: float
+    doubt: si.FloatArray
     enough: bool
 
     @property
-    def correction(self) -> float:
-        """What the harmonics left out add to the over-pressure."""
-        return self.high.over_pressure - self.low.over_pressure
+    def correction(self) -> si.ComplexArray:
+        """What the harmonics of the gas that are left out add."""
+        return self.high.amplitudes - self.low.amplitudes
 
 
 @dataclass
@@ -218,15 +235,16 @@ class _Climber:
             least = 1e-3 * self.tolerance * abs(low.over_pressure)
             self.accuracy = float(np.clip(least, 1e-13, 1e-7))
             low = self.solved(RUNGS[0], count, low.gas)
-        before = 0.0
+        before = np.zeros(len(low.amplitudes))
         while True:
             guess = resampled(low.gas, count + 4) if low.converged else None
             high = self.solved(RUNGS[0], count + 4, guess)
-            correction = high.over_pressure - low.over_pressure
+            correction = np.abs(high.amplitudes - low.amplitudes)
             # Harmonics converge geometrically, but with changes of sign: one small step may be
             # chance.
-            doubt = max(abs(correction), 0.3 * abs(before))
-            enough = high.converged and doubt <= 0.5 * self.tolerance * abs(high.over_pressure)
+            doubt = np.maximum(correction, 0.3 * before)
+            known = Extrapolated(high.amplitudes, doubt).lacking() <= 0.5 * self.tolerance
+            enough = high.converged and known
             if enough or count + 4 > 2 * _MOST_HARMONICS:
                 return _Times(low, high, doubt, enough)
             count, low, before = count + 4, high, correction
@@ -234,14 +252,13 @@ class _Climber:
     def in_space(self, times: _Times) -> Climb:
         """Climb the rungs above the coarsest with the times that were enough there."""
         tolerance, count = self.tolerance, times.low.gas.shape[1]
-        shift = times.high.harmonics - times.low.harmonics
         states = [times.low]
-        best = Extrapolated(times.high.over_pressure, float("inf"), times.high.harmonics)
+        best = Extrapolated(times.high.amplitudes, np.full(len(times.doubt), np.inf))
         for place, rung in enumerate(RUNGS[1:], start=1):
             grid = self.ladder.grid(rung)
             nodes = f"{grid.rows} × {grid.columns} nodes"
             if _memory(grid.rows, grid.columns, count) > PLANAR_MEMORY.most:
-                known = f"known to {best.error / abs(best.over_pressure):.2g} of the over-pressure"
+                known = f"known to {best.lacking():.2g} of the over-pressure and the force"
                 status = f"{known}; {tolerance:.2g} would take more memory than allowed"
                 return Climb(best, states[-1], self.iterations, False, status)
             states.append(self.solved(rung, count, _moved(self.ladder.film, states[-1], grid)))
@@ -251,45 +268,43 @@ class _Climber:
             if place < 2:
                 continue
             space = _irregular if self.ladder.cut else _richardson
-            value, harmonics, error = space(states)
-            value += times.correction
-            error += times.doubt + 1e-13
-            best = Extrapolated(value, error, harmonics + shift)
-            if error <= tolerance * abs(value):
-                solved = f"solved to {error / abs(value):.1g} of the over-pressure on {nodes}"
-                status = f"{solved} at {count} times"
+            value, error = space([state.amplitudes for state in states])
+            value, error = value + times.correction, error + times.doubt + 1e-13
+            error[1:] = steadied(error, np.abs(value))[1:]
+            best = Extrapolated(value, error)
+            # Where lines are cut at the boundary the harmonics converge too slowly to be waited
+            # for: their errors are stated.
+            mean = float(error[0] / abs(value[0]))
+            if (mean if self.ladder.cut else best.lacking()) <= tolerance:
+                reached = f"{mean:.1g} of the over-pressure"
+                known = f"solved to {reached}, the force to {best.lacking():.1g},"
+                status = f"{known} on {nodes} at {count} times"
                 return Climb(best, states[-1], self.iterations, True, status)
-        status = f"known to {best.error / abs(best.over_pressure):.2g} of the over-pressure only"
+        status = f"known to {best.lacking():.2g} of the over-pressure and the force only"
         return Climb(best, states[-1], self.iterations, False, status)
 
 
-def _richardson(states: list[Balance]) -> tuple[float, si.ComplexArray, float]:
-    """Over-pressure and harmonics extrapolated from the last two rungs, and the error in space."""
+def _richardson(rungs: list[si.ComplexArray]) -> tuple[si.ComplexArray, si.FloatArray]:
+    """Over-pressure and harmonics extrapolated from the last two rungs, and the errors in space."""
 
-    def extrapolated(place: int) -> tuple[float, si.ComplexArray]:
+    def extrapolated(place: int) -> si.ComplexArray:
         gain = (RUNGS[place] / RUNGS[place - 1]) ** 2 - 1.0
-        fine, coarse = states[place], states[place - 1]
-        return (
-            fine.over_pressure + (fine.over_pressure - coarse.over_pressure) / gain,
-            fine.harmonics + (fine.harmonics - coarse.harmonics) / gain,
-        )
+        return np.asarray(rungs[place] + (rungs[place] - rungs[place - 1]) / gain)
 
-    place = len(states) - 1
-    value, harmonics = extrapolated(place)
-    before, _ = extrapolated(place - 1)
-    earlier = extrapolated(place - 2)[0] if place > 2 else before
+    place = len(rungs) - 1
+    value, before = extrapolated(place), extrapolated(place - 1)
+    earlier = extrapolated(place - 2) if place > 2 else before
     # Extrapolants of fourth order on grids 1.3 to 1.5 times finer differ by 0.5 to 4 times the
     # error left; the other terms are for those that agree by chance.
-    trend = max(0.8 * abs(value - before), 0.2 * abs(before - earlier))
+    trend = np.maximum(0.8 * np.abs(value - before), 0.2 * np.abs(before - earlier))
     chance = 0.06 if place == 2 else 0.03
-    return value, harmonics, trend + chance * abs(value - states[-1].over_pressure)
+    return value, np.asarray(trend + chance * np.abs(value - rungs[-1]))
 
 
-def _irregular(states: list[Balance]) -> tuple[float, si.ComplexArray, float]:
+def _irregular(rungs: list[si.ComplexArray]) -> tuple[si.ComplexArray, si.FloatArray]:
     """The last rung as it is: an error that jumps with the grid cannot be extrapolated."""
-    fine = states[-1]
-    steps = [abs(fine.over_pressure - state.over_pressure) for state in states[-3:-1]]
-    return fine.over_pressure, fine.harmonics, 1.3 * max(steps[1], 0.5 * steps[0])
+    steps = [np.abs(rungs[-1] - rung) for rung in rungs[-3:-1]]
+    return rungs[-1], 1.3 * np.maximum(steps[1], 0.5 * steps[0])
 
 
 def _moved(film: Film, state: Balance, grid: PlanarGrid) -> si.FloatArray:

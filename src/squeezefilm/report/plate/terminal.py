@@ -168,7 +168,8 @@ def show_modes(
 
 def show_film(answer: FilmAnswer) -> None:
     """Print one solved film."""
-    error, harmonic = f"± {answer.over_pressure_error:.1g} (estimated)", "of p0·A·ε, first harmonic"
+    error = f"± {answer.over_pressure_error:.1g} (estimated)"
+    harmonic = f"± {answer.force_error:.1g}, of p0·A·ε, first harmonic"
     rows = [
         ("Mean load W", f"{answer.mean_load:.8g}", "over ambient pressure × area"),
         ("Over-pressure W − 1", f"{answer.over_pressure:.6g}", error),

@@ -18,6 +18,9 @@ from squeezefilm.film.periodic.uniform import (
     DISC,
     ERROR,
     FINE,
+    FORCE_ERROR,
+    FORCE_SPACE,
+    FORCE_TIME,
     ITERATIONS,
     MIDDLE,
     OVER,
@@ -123,6 +126,9 @@ def test_the_error_of_space_is_a_part_of_what_the_extrapolated_value_changed_by(
     # Coarse to middle changes four times middle to fine, and a bit: the change is that bit.
     assert space_error(0.0, 4.0 + 0.3, 5.0 + 0.3, 1e-9, 0.1, 12, STRIP) == pytest.approx(0.01)
     assert space_error(1.0, 2.0, 2.0, 50.0, 0.1, 12, DISC) == pytest.approx(1 / 30)
+    # Of a harmonic, by its size.
+    grids = [(0.6 + 0.8j) * one for one in (0.0, 4.0 + 0.3, 5.0 + 0.3)]
+    assert space_error(*grids, 1e-9, 0.1, 12, STRIP) == pytest.approx(0.01)
 
 
 @pytest.mark.parametrize(("shape", "part"), [(STRIP, 0.08), (DISC, 0.06)])
@@ -155,12 +161,15 @@ def answers(
     resolution = resolution_of(cells, 9)
     row = resolution.times.row
     films = Films(*(np.array([v]) for v in (20.0, 0.5, n, kn)), 1 if kn else 0, shape)
-    out, keep = np.full((1, COLUMNS), np.nan), np.full((cells // 2 + cells) * row, np.nan)
+    check = max(cells // 4, 2) * resolution.check.row
+    size = check + (cells // 4 + cells // 2 + cells) * row
+    out, keep = np.full((1, COLUMNS), np.nan), np.full(size, np.nan)
     solve_rows(0, 1, films, resolution, aim or Aim(1e-11, 30), out, keep)
     bare = np.full((1, COLUMNS), np.nan)
     solve_rows(0, 1, films, resolution, aim or Aim(1e-11, 30), bare, np.empty(0))
     assert bare == pytest.approx(out, abs=0, nan_ok=True)
-    return out[0], resolution, keep.reshape(-1, row)
+    assert np.all(np.isfinite(keep))
+    return out[0], resolution, keep[check:].reshape(-1, row)
 
 
 @pytest.mark.parametrize("shape", [STRIP, DISC])
@@ -186,23 +195,36 @@ def test_a_row_of_answers_is_what_its_grids_say(
     )
     assert 0 <= row[RESIDUAL] < 1e-10
     assert row[ITERATIONS] == int(row[ITERATIONS])
-    # The pressures kept are those of the two finer grids.
+    # After those of the check, the pressures kept are those of the three grids.
     nt, ntp = resolution.times.number, resolution.times.row
     H, H3, w, c, s = (np.empty(ntp) for _ in range(5))
     gap(nt, ntp, 0.5, H, H3)
     load_weights(nt, ntp, 0.5, n, H, w, c, s)
     found = []
-    for m, p in ((cells // 2, keep[: cells // 2]), (cells, keep[cells // 2 :])):
+    quarter, half = cells // 4, cells // 2
+    for m, p in (
+        (quarter, keep[:quarter]),
+        (half, keep[quarter : quarter + half]),
+        (cells, keep[quarter + half :]),
+    ):
         g, vol, share = np.empty(m + 1), np.empty(m), np.empty(m)
         a = edge_grading(20.0 * (1.0 if shape == STRIP else 2.25), 0.5)
         grid(m, shape, 20.0, a, g, vol, share)
         found.append([share @ p[:, :nt] @ one[:nt] for one in (w, c, s)])
-    middle, fine = np.array(found)
+    coarse, middle, fine = np.array(found)
+    assert coarse[0] == pytest.approx(row[COARSE], rel=1e-7)
     assert (middle[0], fine[0]) == pytest.approx((row[MIDDLE], row[FINE]), rel=1e-7)
     best = fine + (fine - middle) / 3
     # p = −(k + i d) ε e^{iT}: in step with the gap −k ε, and with sin T it is d ε.
     assert row[STIFFNESS] == pytest.approx(-best[1] / 0.5, rel=1e-7)
     assert row[DAMPING] == pytest.approx(best[2] / 0.5, rel=1e-7)
+    grids = [complex(one[1], -one[2]) for one in (coarse, middle, fine)]
+    assert row[FORCE_SPACE] == pytest.approx(
+        space_error(*grids, local, 0.5, cells, shape) / 0.5, rel=1e-4
+    )
+    left = row[RESIDUAL] * abs(row[OVER]) + rounding(20.0, n, row[OVER])
+    whole = row[FORCE_SPACE] + row[FORCE_TIME] + left / 0.5
+    assert row[FORCE_ERROR] == pytest.approx(whole, rel=1e-12)
 
 
 def test_the_steps_allowed_are_those_of_each_of_four_solves() -> None:

@@ -19,7 +19,9 @@ from squeezefilm.report.plate.terminal import show_film, show_plate
 FILM = FilmAnswer(
     squeeze_number=12.3456, excursion_ratio=0.56789, request=FilmRequest("disc"),
     mean_load=1.23456789123, over_pressure=0.23456789, over_pressure_error=1.23e-4,
-    stiffness_relative=0.98765432, damping_relative=0.12345678, iterations=3, residual=0.0,
+    stiffness_relative=0.98765432, damping_relative=0.12345678, force_error=2.1e-4,
+    force_harmonics=np.zeros(8, dtype=complex), force_harmonics_error=np.zeros(8),
+    iterations=3, residual=0.0,
     status="converged", model="a-model", film=None,  # type: ignore[arg-type]
 )  # fmt: skip
 WORKING = ModeRow("(8,0)", 33581.26, 12.345, 212.34, 1.2e-7, 0.1234, 1.0, 10e-3)
@@ -101,8 +103,8 @@ def test_a_film_is_said_with_its_error_and_what_numbers_are_relative_to() -> Non
         "disc, σ = 12.35, ε = 0.5679",
         "Mean load W 1.2345679 over ambient pressure × area",
         "Over-pressure W − 1 0.234568 ± 0.0001 (estimated)",
-        "Stiffness 0.987654 of p0·A·ε, first harmonic",
-        "Damping 0.123457 of p0·A·ε, first harmonic",
+        "Stiffness 0.987654 ± 0.0002, of p0·A·ε, first harmonic",
+        "Damping 0.123457 ± 0.0002, of p0·A·ε, first harmonic",
         "converged",
     ]
 
