@@ -119,7 +119,8 @@ def slip_piece(
     down = passes(path, part, low, -1.0, (start, end, end_rate), series)
     if down >= 0.0:
         part, ended = down, _BELOW
-        end, _ = speed_on(path, part, series)
+        # A stop is a stop, whatever rounding says of its speed.
+        end = speed_on(path, part, series)[0] if low != 0.0 else 0.0
     return path, part, ended, end
 
 
