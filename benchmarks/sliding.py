@@ -115,8 +115,8 @@ def by_scipy(tolerance: float) -> tuple[np.ndarray, int]:
 
 
 def long_strokes(knots: int) -> tuple[float, float, int]:
-    """Times (s) of a stroke to and fro over a 2 mm grating, with friction over time and by rows that
-    rise from 0 where the surface vibrates, and its samples."""
+    """Times (s) of a stroke to and fro over a 2 mm grating, with friction over time and by rows
+    that rise from 0 where the surface vibrates, and its samples."""
     n = 192_000
     t = np.arange(n) / 19_200
     way = 0.02 * np.sin(2 * np.pi * 0.6 * t)
@@ -181,8 +181,9 @@ def main() -> None:
     for knots in (8, 24, 48):
         plain, by_rows, samples = long_strokes(knots)
         print(
-            f"  10 s over a grating at 19.2 kHz, rows of {knots} speeds: {samples / by_rows / 1e6:.2f} "
-            f"million samples/s, {by_rows / plain:.1f} times as long as friction over time"
+            f"  10 s over a grating at 19.2 kHz, rows of {knots} speeds: "
+            f"{samples / by_rows / 1e6:.2f} million samples/s, {by_rows / plain:.1f} times as "
+            "long as friction over time"
         )
 
     steps = 1600
