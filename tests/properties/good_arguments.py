@@ -94,6 +94,10 @@ _SERIES = {name: np.linspace(0.0, 0.01, 5) for name in ("x", "y", "v", "t")}
 FOR_ONE_CALL: dict[str, dict[str, Any]] = {
     "contact.finger.load.finger_stiffness": {"interface": 1e5 + 1e3j},
     "contact.finger.load.finger_impedance": {"stiffness_per_area": 1e10 + 1e9j},
+    "contact.sliding.dry_friction.SpeedFriction": {
+        "speed": np.array([0.0, 0.1]),
+        "coefficient": np.array([0.2, 0.5]),
+    },
     "contact.sliding.skin_vibration.skin_vibration": {"fundamental": 50.0, "start": 0.02},
     "contact.sliding.skin_vibration.line_amplitudes": {
         "signals": np.cos(np.arange(640.0)),

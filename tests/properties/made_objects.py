@@ -20,7 +20,12 @@ from squeezefilm.contact.sharing.film_load import FilmLoad, film_load
 from squeezefilm.contact.sharing.gas_table import FilmTable, film_table
 from squeezefilm.contact.sharing.pad import FrictionRipple, PadPosture
 from squeezefilm.contact.sharing.shear import AsperityShear
-from squeezefilm.contact.sliding.dry_friction import DryFriction, FrictionProfile, Occlusion
+from squeezefilm.contact.sliding.dry_friction import (
+    DryFriction,
+    FrictionProfile,
+    Occlusion,
+    SpeedFriction,
+)
 from squeezefilm.contact.sliding.march import Sliding, slide
 from squeezefilm.display import Display, Surface, load_display
 from squeezefilm.distributions import Normal, Uniform
@@ -120,6 +125,7 @@ MADE: dict[Any, Callable[[], Any]] = {
     AsperityLaw: AsperityLaw,
     DryFriction: lambda: DryFriction(1.2, 0.01),
     FrictionProfile: lambda: FrictionProfile(0.0, 1e-3, np.ones(4)),
+    SpeedFriction: lambda: SpeedFriction(np.array([0.0, 0.1]), np.array([0.2, 0.5])),
     Finger: lambda: FINGER,
     FingerpadDynamics: FingerpadDynamics,
     AsperityShear: lambda: AsperityShear(0.1),

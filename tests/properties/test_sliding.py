@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from squeezefilm.contact.finger.fingerpad import FingerpadDynamics
-from squeezefilm.contact.sliding.dry_friction import DryFriction
+from squeezefilm.contact.sliding.dry_friction import DryFriction, SpeedFriction
 from squeezefilm.contact.sliding.march import Sliding, slide
 
 SAMPLES = 200
@@ -98,3 +98,61 @@ def test_a_mirrored_motion_gives_mirrored_forces(both: Mirrored) -> None:
         assert np.array_equal(getattr(motion, name), -getattr(mirrored, name))
     assert np.array_equal(motion.sticking, mirrored.sticking)
     assert np.array_equal(motion.friction_loss, mirrored.friction_loss)
+
+
+@st.composite
+def motions_by_speed(draw: st.DrawFn) -> Mirrored:
+    """A random motion under friction by random rows over speed, rising or not, and its mirror."""
+    rng = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
+    pad = FingerpadDynamics(
+        stiffness=draw(st.floats(100, 1e4)),
+        damping=draw(st.one_of(st.just(0.0), st.floats(0.01, 10))),
+        mass=draw(st.floats(3e-5, 1e-3)),
+    )
+    first = 10 ** draw(st.floats(-6, -1.5))
+    knots = draw(st.integers(1, 5))
+    grid = np.concatenate([[0.0], first + np.geomspace(1e-9, 1, knots) * draw(st.floats(0.1, 1))])
+    many = draw(st.booleans())
+    rows = draw(st.sampled_from([0.0, 0.5, 2.0])) * rng.random((SAMPLES if many else 1, grid.size))
+    kind = draw(st.sampled_from(["as they are", "rising", "from nothing", "now and then nothing"]))
+    # What falls steeply would need more parts of a step than are allowed.
+    rows[:, 1:] = np.maximum(rows[:, 1:], rows[:, :1]) if first < 1e-3 else rows[:, 1:]
+    if kind != "as they are":
+        rows = np.sort(rows, axis=1)
+    if kind == "from nothing":
+        rows[:, 0] = 0
+    if kind == "now and then nothing":
+        rows[rng.random(len(rows)) < 0.5, 0] = 0
+    rows = np.maximum.accumulate(rows, axis=1) if knots > 1 else rows
+    law = DryFriction(draw(st.one_of(st.just(1.0), st.floats(1, 2))))
+    dt = 10 ** draw(st.floats(-5.5, -3.7))
+    speed = draw(st.floats(-0.5, 0.5))
+    jitter = draw(st.sampled_from([0.0, 1e-3, 0.1]))
+    bone = np.cumsum(speed + jitter * rng.standard_normal(SAMPLES)) * dt
+    load = draw(st.sampled_from([0.0, 1.0])) + rng.random(SAMPLES)
+    start = draw(st.one_of(st.just(0.0), st.floats(-0.3, 0.3)))
+    stretch = draw(st.floats(-1e-3, 1e-3))
+    friction = SpeedFriction(grid, rows if many else rows[0])
+    both = [
+        slide(
+            side * bone, dt, friction, load, pad, law,
+            initial_speed=side * start, initial_stretch=side * stretch,
+        )
+        for side in (1.0, -1.0)
+    ]  # fmt: skip
+    return Mirrored(*both)
+
+
+@given(motions_by_speed())
+def test_friction_by_speed_keeps_the_laws_of_energy_and_of_mirrors(both: Mirrored) -> None:
+    motion, mirrored = both
+    assert motion.energy_residual <= 1e-6 * energy_scale(motion) + 1e-30
+    assert np.all(np.diff(motion.friction_loss) >= -1e-15 * energy_scale(motion) - 1e-30)
+    assert np.all(np.diff(motion.damping_loss) >= 0)
+    assert np.all(motion.skin_speed[motion.sticking] == 0)
+    assert np.all(motion.friction_force[motion.sticking] == motion.bone_force[motion.sticking])
+    rounding = 1e-15 * np.abs(motion.bone_force).max() + 1e-30
+    assert np.all(motion.friction_force * motion.skin_speed >= -rounding)
+    for name in ("skin_position", "skin_speed", "friction_force", "bone_force"):
+        assert np.array_equal(getattr(motion, name), -getattr(mirrored, name))
+    assert np.array_equal(motion.sticking, mirrored.sticking)

@@ -19,7 +19,7 @@ import math
 import types
 import typing
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, is_dataclass
 from typing import Any, Literal, ParamSpec, TypeVar
 
 import numpy as np
@@ -50,7 +50,7 @@ class _Rule:
     """What an annotation says of an argument: one number, an array, either, a count, a row (a
     tuple or list of numbers), a table (a tuple of rows), or numbers in another container, which is
     left as it is; or a word, one of `words`. `length` is of a row, `bounds` as `require` takes
-    them."""
+    them. One of `records`, which checked its own numbers, may stand in a number's place."""
 
     kind: _Kind
     unit: Unit
@@ -59,6 +59,7 @@ class _Rule:
     limits: tuple[Limit, ...]
     length: int | None = None
     words: tuple[Any, ...] = ()
+    records: tuple[type, ...] = ()
 
     def holds(self, value: float) -> bool:
         """Whether a float is finite and within the bounds."""
@@ -87,8 +88,10 @@ def _rule(hint: Any, more: dict[str, Any]) -> _Rule | None:
     if all(typing.get_origin(member) is Literal for member in plain) and plain:
         words = tuple(word for member in plain for word in typing.get_args(member))
         return _Rule("word", _PURE, len(plain) < len(members), {}, (), words=words)
-    kinds = {typing.get_origin(member) or member for member in plain}
     unit = unit_of(hint)
+    records = tuple(m for m in plain if unit and isinstance(m, type) and is_dataclass(m))
+    plain = [member for member in plain if member not in records]
+    kinds = {typing.get_origin(member) or member for member in plain}
     kind: _Kind
     if kinds == {float}:
         kind = "number"
@@ -117,7 +120,8 @@ def _rule(hint: Any, more: dict[str, Any]) -> _Rule | None:
     parts = typing.get_args(plain[0]) if kind in ("row", "table") and is_tuple else (Ellipsis,)
     length = None if Ellipsis in parts else len(parts)
     bounds, limits = bounds_of(hint)
-    return _Rule(kind, unit or _PURE, len(plain) < len(members), bounds | more, limits, length)
+    optional = type(None) in members
+    return _Rule(kind, unit or _PURE, optional, bounds | more, limits, length, records=records)
 
 
 def _is_row(hint: Any) -> bool:
@@ -136,7 +140,7 @@ def _rows_of(hint: Any) -> Any:
 
 def _checked_value(name: str, value: Any, rule: _Rule) -> Any:
     """The value as the call takes it, floats for numbers. Raises `InputError`."""
-    if value is None and rule.optional:
+    if (value is None and rule.optional) or isinstance(value, rule.records):
         return value
     quick = type(value) is float and rule.kind in ("number", "either") and rule.holds(value)
     if not quick:

@@ -10,7 +10,12 @@ import pytest
 
 from squeezefilm.chain.stroke_force import StrokeForce, stroke_force
 from squeezefilm.contact.finger.fingerpad import FingerpadDynamics
-from squeezefilm.contact.sliding.dry_friction import DryFriction, FrictionProfile, Occlusion
+from squeezefilm.contact.sliding.dry_friction import (
+    DryFriction,
+    FrictionProfile,
+    Occlusion,
+    SpeedFriction,
+)
 from squeezefilm.contact.sliding.march import interval_speeds, slide
 from squeezefilm.contact.sliding.skin_vibration import (
     line_amplitudes,
@@ -25,6 +30,8 @@ from squeezefilm.render.texture.shapes import SquareWave
 
 DT = 1e-4
 BONE = 0.08 * DT * np.arange(2000)
+SPEEDS = np.array([0.0, 0.1, 0.5])
+RISING = SpeedFriction(SPEEDS, np.array([0.1, 0.4, 0.5]))
 
 
 @pytest.mark.parametrize(
@@ -46,6 +53,25 @@ BONE = 0.08 * DT * np.arange(2000)
         (lambda: slide(BONE, DT, 0.5, -0.5), "normal_force"),
         (lambda: slide(BONE, DT, np.ones(3), 0.5), "one value per sample"),
         (lambda: slide(BONE, DT, 0.5, 5.0, law=DryFriction(2.0, 1e-6)), "shorten it"),
+        (lambda: SpeedFriction(SPEEDS[:1], np.ones(1)), "at least two"),
+        (lambda: SpeedFriction(SPEEDS + 0.1, np.ones(3)), "begin at 0"),
+        (lambda: SpeedFriction(SPEEDS[[0, 2, 1]], np.ones(3)), "rise from each"),
+        (lambda: SpeedFriction(SPEEDS[[0, 0, 1]], np.ones(3)), "rise from each"),
+        (lambda: SpeedFriction(SPEEDS[:, np.newaxis], np.ones(3)), "row of speeds"),
+        (lambda: SpeedFriction(SPEEDS, -np.ones(3)), "coefficient"),
+        (lambda: SpeedFriction(SPEEDS, np.full(3, math.nan)), "coefficient"),
+        (lambda: SpeedFriction(SPEEDS, np.ones(4)), "does not fit 3 speeds"),
+        (lambda: SpeedFriction(SPEEDS, np.ones((3, 4))), "does not fit 3 speeds"),
+        (lambda: SpeedFriction(SPEEDS, np.ones((2, 2, 3))), "does not fit 3 speeds"),
+        (lambda: slide(BONE, DT, SpeedFriction(SPEEDS, np.ones((5, 3))), 0.5), "5 rows"),
+        (lambda: slide(BONE, DT, SpeedFriction(SPEEDS, np.ones((1, 3))), 0.5), "1 rows"),
+        (lambda: slide(BONE, DT, RISING, 0.5, law=DryFriction(1.2, 0.1)), "stribeck_speed"),
+        (lambda: slide(BONE, DT, RISING, np.ones(3)), "one value per sample"),
+        (lambda: slide(BONE, DT, RISING, -1.0), "normal_force"),
+        (
+            lambda: slide(BONE, DT, SpeedFriction(SPEEDS * 1e-6, np.array([0.5, 0.1, 0.1])), 0.5),
+            "less steeply",
+        ),
         (lambda: skin_vibration(slide(BONE, DT, 0.5, 0.5), 6000.0), "fundamental"),
         (lambda: skin_vibration(slide(BONE, DT, 0.5, 0.5), 80.0, start=0.19), "too short"),
         (lambda: skin_vibration(slide(BONE, DT, 0.5, 0.5), 80.0, 0), "harmonics"),
@@ -61,6 +87,13 @@ def test_a_skin_that_leaves_its_profile_is_told_so() -> None:
     profile = FrictionProfile(0.0, 1e-3, np.ones(5))
     with pytest.raises(OutOfRangeError, match="covers 0 m to 4 mm"):
         slide(BONE, DT, 0.5, 0.5, profile=profile)
+
+
+def test_friction_that_rises_however_steeply_is_taken() -> None:
+    steep = SpeedFriction(SPEEDS * 1e-9, np.array([0.0, 0.4, 0.5]))
+    assert slide(BONE, DT, steep, 1.0).bone_force[-1] == pytest.approx(0.5, rel=1e-9)
+    # The friction limit shown is that of fast sliding.
+    assert slide(BONE, DT, RISING, 2.0).friction_limit == pytest.approx(1.0)
 
 
 def test_corners_that_fall_on_samples_stay_corners() -> None:

@@ -217,6 +217,26 @@ def test_what_may_be_either_must_broadcast() -> None:
     assert "do not broadcast" in refusal(lambda: either(value=[1.0, 2.0], other=[1.0, 2.0, 3.0]))
 
 
+@checked_numbers
+@dataclass(frozen=True)
+class Ramp:
+    rise: Metre
+
+
+@checked_numbers
+def ramp_or_number(value: MetreLike | Ramp) -> Any:
+    return value
+
+
+def test_a_record_may_stand_in_a_numbers_place() -> None:
+    ramp = Ramp(1.0)
+    assert ramp_or_number(ramp) is ramp
+    # What is no such record is a number, and refused as one.
+    assert type(ramp_or_number(2)) is float
+    for wrong in (math.nan, "steep", None, Ramp, []):
+        refusal(lambda wrong=wrong: ramp_or_number(wrong))
+
+
 def test_a_count_is_a_whole_number_of_64_bits() -> None:
     assert count(2**64 - 1) == 2**64 - 1
     assert count(np.int32(3)) == 3

@@ -63,6 +63,50 @@ class DryFriction:
 
 @si.checked_numbers
 @dataclass(frozen=True, slots=True, eq=False)
+class SpeedFriction:
+    """Friction that depends on the skin's own speed over the surface, and on time.
+
+    Rows of friction coefficients over a common grid of speeds, linear between speeds and held
+    beyond the last. What a contact under ultrasound gives rises with speed and levels off; rows may
+    also fall, or do both.
+
+    Args:
+        speed: of the skin over the surface (m/s), shape (k,), k ≥ 2; from exactly 0, rising.
+        coefficient: kinetic friction coefficient at those speeds (1), at least 0: shape (n, k), a
+            row for each sample, linear between samples; or (k,), the same at all times. The first
+            of a row is that towards the speed 0, and what limits sticking: where it is 0, nothing
+            holds the skin, which creeps and never sticks.
+
+    Raises:
+        InputError: a value outside its range, speeds that do not rise from 0, or another shape.
+    """
+
+    speed: si.MetrePerSecondArray
+    coefficient: Annotated[si.DimensionlessArray, si.AtLeast(0.0)]
+
+    def __post_init__(self) -> None:
+        speed, shape = np.asarray(self.speed, dtype=float), np.shape(self.coefficient)
+        if speed.ndim != 1 or speed.size < 2:
+            raise InputError(
+                f"speed of shape {speed.shape} cannot be used: give a row of speeds, at least two",
+                quantity="speed",
+            )
+        if speed[0] != 0 or np.any(np.diff(speed) <= 0):
+            raise InputError(
+                "speed must begin at 0, where the value that limits sticking stands, and rise from "
+                "each to the next",
+                quantity="speed",
+            )
+        if len(shape) not in (1, 2) or shape[-1] != speed.size:
+            raise InputError(
+                f"coefficient of shape {shape} does not fit {speed.size} speeds; give one row of "
+                f"{speed.size} values per sample, or one row for all",
+                quantity="coefficient",
+            )
+
+
+@si.checked_numbers
+@dataclass(frozen=True, slots=True, eq=False)
 class FrictionProfile:
     """Friction that belongs to places of the surface: a factor by skin position, linear between.
 

@@ -10,6 +10,8 @@ The law is set-valued, as it is written: nothing is smoothed. Between samples th
 parabola and the friction limit a line; the skin's motion then has a closed form, which is stepped,
 and slips begin and end at instants solved for inside the steps. Exact where that is the input;
 second order in `time_step` for smooth inputs and for friction that depends on speed or place.
+Friction by rows over speed (`SpeedFriction`) is marched by `speed_kernel`, exactly where the rows
+stay the same.
 """
 
 from __future__ import annotations
@@ -23,7 +25,12 @@ from numpy.typing import NDArray
 
 from squeezefilm import quantities as si
 from squeezefilm.contact.finger.fingerpad import FingerpadDynamics
-from squeezefilm.contact.sliding.dry_friction import DryFriction, FrictionProfile, Occlusion
+from squeezefilm.contact.sliding.dry_friction import (
+    DryFriction,
+    FrictionProfile,
+    Occlusion,
+    SpeedFriction,
+)
 from squeezefilm.contact.sliding.kernel import (
     MOST_EVENTS,
     Drive,
@@ -33,6 +40,7 @@ from squeezefilm.contact.sliding.kernel import (
     slide_march,
 )
 from squeezefilm.contact.sliding.skin_motion import Skin
+from squeezefilm.contact.sliding.speed_kernel import Rows, rows_march, strongest_and_fall
 from squeezefilm.errors import ConvergenceError, InputError, OutOfRangeError
 
 JouleArray = Annotated[si.FloatArray, si.Unit("J")]
@@ -70,7 +78,8 @@ class Sliding:
         stuck_share: share of the time spent sticking (1).
         slips: how many times the skin began to slip.
         friction_law_error: largest relative departure of the friction used from the law at the
-            middle of a step (1); 0 where friction depends on time alone.
+            middle of a step (1); 0 where friction depends on time alone. Of a `SpeedFriction` the
+            largest within a piece of a step, over the strongest friction of all.
     """
 
     fingerpad: FingerpadDynamics
@@ -120,7 +129,7 @@ class Sliding:
 def slide(
     bone_position: si.MetreArray,
     time_step: Annotated[si.Second, si.Above(0.0)],
-    friction_coefficient: si.DimensionlessLike,
+    friction_coefficient: si.DimensionlessLike | SpeedFriction,
     normal_force: si.NewtonLike,
     fingerpad: FingerpadDynamics | None = None,
     law: DryFriction | None = None,
@@ -137,7 +146,9 @@ def slide(
             and turns that fall on samples are taken exactly; smooth motion to second order.
         time_step: between samples (s); above 0.
         friction_coefficient: kinetic, over time (1): a scalar or shape (n,), at least 0; linear
-            between samples. With a display this is µ times the relative friction rendered.
+            between samples. With a display this is µ times the relative friction rendered. Or a
+            `SpeedFriction` where it depends on the skin's speed as well: one row, or one per
+            sample. Its rows hold all that depends on speed: no `stribeck_speed` beside them.
         normal_force: over time (N): a scalar or shape (n,), at least 0; the friction limit it
             gives is linear between samples.
         fingerpad: stiffness, damping, mass; unverified defaults where not given.
@@ -149,8 +160,9 @@ def slide(
             sticks if friction holds it.
 
     Raises:
-        InputError: a value outside its range, arrays of other shapes, or a law whose friction
-            falls so steeply with speed that a step would need more than 1000 parts.
+        InputError: a value outside its range, arrays of other shapes, friction that falls so
+            steeply with speed that a step would need more than 1000 parts, or a `SpeedFriction`
+            beside a law with a `stribeck_speed`.
         OutOfRangeError: the skin left the places that `profile` covers.
         ConvergenceError: slips began and ended more than 200 times within one step; `partial`
             holds the skin positions up to there.
@@ -158,15 +170,18 @@ def slide(
     pad, law = fingerpad or FingerpadDynamics(), law or DryFriction()
     bone = _checked_bone(bone_position)
     n = bone.size
-    limit = _over_time("friction_coefficient", friction_coefficient, n)
-    limit = np.asarray(law.kinetic_force(limit, _over_time("normal_force", normal_force, n)))
+    load = _over_time("normal_force", normal_force, n)
+    rows = _rows(friction_coefficient, n, law)
+    given = 1.0 if isinstance(friction_coefficient, SpeedFriction) else friction_coefficient
+    force = np.asarray(law.kinetic_force(_over_time("friction_coefficient", given, n), load))
     if occlusion is not None:
-        limit = limit * occlusion.factor(np.arange(n, dtype=float) * time_step)
+        force = force * occlusion.factor(np.arange(n, dtype=float) * time_step)
     position, speed, friction, bone_force = (np.zeros(n) for _ in range(4))
     position[0], speed[0] = bone[0] + initial_stretch, initial_speed
     sticking, work, account = np.zeros(n, dtype=bool), np.zeros((3, n)), np.zeros(3)
     track = Track(position, speed, friction, bone_force, sticking, work, account)
-    _march(bone, float(time_step), limit, pad, law, profile, track)
+    _march(bone, float(time_step), force, rows, pad, law, profile, track)
+    limit = force if rows is None else force * rows.coefficient[:, -1]
     if profile is not None:
         limit = limit * _factor_at(position, profile)
     return _sliding(pad, law, time_step, bone, limit, track)
@@ -183,28 +198,58 @@ def _checked_bone(bone_position: si.MetreArray) -> si.FloatArray:
     return bone
 
 
+def _rows(friction: si.DimensionlessLike | SpeedFriction, n: int, law: DryFriction) -> Rows | None:
+    """Friction by speed as the march takes it, but for its force; None where time is all."""
+    if not isinstance(friction, SpeedFriction):
+        return None
+    if law.static_ratio > 1 and law.stribeck_speed > 0:
+        raise InputError(
+            "a SpeedFriction says all that friction does with speed, and cannot be used beside a "
+            "stribeck_speed above 0: let its rows fall from static_ratio times what they are, or "
+            "leave stribeck_speed at 0",
+            quantity="stribeck_speed",
+        )
+    coefficient = np.atleast_2d(np.ascontiguousarray(friction.coefficient, dtype=float))
+    if len(coefficient) != n and np.ndim(friction.coefficient) == 2:
+        raise InputError(
+            f"friction_coefficient has {len(coefficient)} rows, which do not fit {n} samples of "
+            "bone_position; give one row per sample, or one without a second axis for all",
+            quantity="friction_coefficient",
+        )
+    return Rows(np.ascontiguousarray(friction.speed, dtype=float), coefficient)
+
+
 def _march(
     bone: si.FloatArray,
     time_step: float,
-    limit: si.FloatArray,
+    force: si.FloatArray,
+    rows: Rows | None,
     pad: FingerpadDynamics,
     law: DryFriction,
     profile: FrictionProfile | None,
     track: Track,
 ) -> None:
-    """March over all samples, from what stands first in the track; raises `ConvergenceError`."""
+    """March over all samples, from what stands first in the track; raises `ConvergenceError`.
+
+    `force` is the friction force over time (N), or for each of a row's units.
+    """
     values = np.ones(1) if profile is None else np.array(profile.relative_friction, dtype=float)
     start, spacing = (0.0, 1.0) if profile is None else (profile.start, profile.spacing)
-    strongest = float(limit.max() * values.max())
     speed_in, speed_out = interval_speeds(bone, time_step)
-    parts = substeps(time_step, pad, law, strongest)
-    done = slide_march(
-        Drive(bone, speed_in, speed_out, np.ascontiguousarray(limit), time_step, parts),
-        Skin(pad.mass, pad.damping, pad.stiffness),
-        Law(law.static_ratio, law.stribeck_speed),
-        Ground(start, spacing, values),
-        track,
-    )
+    skin, ground = Skin(pad.mass, pad.damping, pad.stiffness), Ground(start, spacing, values)
+    force = np.ascontiguousarray(force)
+    if rows is None:
+        parts = substeps(time_step, pad, law, float(force.max() * values.max()))
+        drive = Drive(bone, speed_in, speed_out, force, time_step, parts)
+        stick = Law(law.static_ratio, law.stribeck_speed)
+        done = slide_march(drive, skin, stick, ground, track)
+    else:
+        strongest, steepest = strongest_and_fall(rows, force)
+        parts = row_substeps(time_step, pad, steepest * float(values.max()))
+        drive = Drive(bone, speed_in, speed_out, force, time_step, parts)
+        done = rows_march(
+            drive, skin, rows, law.static_ratio, strongest * float(values.max()), ground, track
+        )
     if done < bone.size:
         raise ConvergenceError(
             f"the skin started and stopped more than {MOST_EVENTS} times within the time step "
@@ -296,11 +341,28 @@ def substeps(
     if law.stribeck_speed > 0 and law.static_ratio > 1:
         growth = (law.static_ratio - 1) * strongest / (pad.mass * law.stribeck_speed)
         count = max(count, math.ceil(time_step * growth / _STRIBECK_SUBSTEP))
+    return _allowed_parts(count, time_step, "raise stribeck_speed or mass")
+
+
+@si.checked_numbers
+def row_substeps(
+    time_step: si.Second, pad: FingerpadDynamics, fall: si.NewtonSecondPerMetre
+) -> int:
+    """Parts of a step (s) for friction by rows over speed, however steeply it rises.
+
+    Short for the skin's swing, and where friction falls with speed, by at most `fall` (N·s/m), for
+    the growth of a slip. Raises `InputError` for more than 1000 parts.
+    """
+    fastest = max(math.sqrt(pad.stiffness / pad.mass), fall / pad.mass)
+    count = math.ceil(time_step * fastest / _SUBSTEP)
+    return _allowed_parts(count, time_step, "let friction fall less steeply with speed")
+
+
+def _allowed_parts(count: int, time_step: float, remedy: str) -> int:
     if count > _MOST_SUBSTEPS:
         raise InputError(
             f"time_step = {si.format_quantity(time_step, si.Unit('s'))} would need {count} parts "
-            f"of a step where {_MOST_SUBSTEPS} are allowed: shorten it, or raise stribeck_speed or "
-            "mass"
+            f"of a step where {_MOST_SUBSTEPS} are allowed: shorten it, or {remedy}"
         )
     return max(count, 1)
 
