@@ -6,7 +6,7 @@ from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
-from tests.unit.report.made_results import made_result
+from tests.unit.report.made_results import WARM, WARM_LINES, made_result
 from tests.unit.report.printed import printed
 
 from squeezefilm.analysis.film.command import FilmAnswer, FilmRequest
@@ -88,6 +88,7 @@ def plate(**changes: Any) -> Any:
             )
         ),
         "tracks": TRACKS,
+        "heat": WARM,
     }
     return made_result(PlateAnalysis, **{**values, **changes})
 
@@ -119,6 +120,7 @@ def test_a_plate_is_said_with_all_that_there_is() -> None:
         "As a shear plate 30.223 kHz -10.0%",
         "At 15 V 12.3 mA 0.0926 VA, 0.0432 W",
         "Equivalent circuit C0 5.43 nF R1 123 ohm, L1 0.0988 H, C1 123 pF",
+        *WARM_LINES,
         "Sound at 0.3 m 120 dB loudest direction; guidance 100 dB",
         "Guidance (doubtful): somebody 1984",
         "Modes in the band",
@@ -126,6 +128,7 @@ def test_a_plate_is_said_with_all_that_there_is() -> None:
         "(8,0) 33.581 kHz 12 Hz 212 120 nm/V 0.12",
         "(7,1) 30 kHz 12 Hz 200 not driven 0",
         "piezoelectric_solid_3d; 12 modes",
+        "! it is hot",
         "Sensitivities of the working mode",
         "what is different frequency per volt",
         "glue twice -1.23% +12.3%",
