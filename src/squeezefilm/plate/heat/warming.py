@@ -226,12 +226,13 @@ def warming(
     return replace(found, doubts=tuple(_doubts(found, source, thermal)))
 
 
+@si.checked_numbers
 def warming_of_mode(
     actuator: Actuator,
     thermal: Thermal,
     mode: WorkingMode,
-    voltage: si.Volt,
-    frequency: si.Hertz | None = None,
+    voltage: Annotated[si.Volt, si.AtLeast(0.0)],
+    frequency: Annotated[si.Hertz, si.Above(0.0)] | None = None,
 ) -> Warming | None:
     """What warmth does to a working mode at a voltage (V, zero-to-peak), see `warming`.
 
