@@ -34,9 +34,9 @@ from squeezefilm.plate.beam.modes import BeamMode
 from squeezefilm.plate.beam.response import BeamResponse, beam_response
 from squeezefilm.plate.circuit import EquivalentCircuit
 from squeezefilm.plate.elements.box_model import Medium, isotropic_solid
-from squeezefilm.plate.laminate import Laminate, Layer, plate_laminate
 from squeezefilm.plate.heat.thermal import Thermal
 from squeezefilm.plate.heat.warming import HeatSource
+from squeezefilm.plate.laminate import Laminate, Layer, plate_laminate
 from squeezefilm.plate.layout import Actuator, CeramicPatch, DiscPlate, RectangularPlate
 from squeezefilm.plate.loaded_mode import LoadedMode
 from squeezefilm.plate.ring.body import RingBody

@@ -90,7 +90,7 @@ def test_a_stators_numbers_are_the_predictions_own() -> None:
         "friction_curve", "response", "line", "shape", "provenance",
         # What every prediction says of itself beside.
         "display", "frequency_Hz", "amplitude_model", "mean_pressure", "mean_pressure_error",
-        "amplitude_kept_under_finger", "model", "validity",
+        "amplitude_kept_under_finger", "heat", "model", "validity",
     }  # fmt: skip
     curve = found["friction_curve"]
     amplitude = np.linspace(0.0, max(2 * p.vibration_amplitude, 2e-6), 49)
