@@ -15,6 +15,7 @@ from squeezefilm.errors import InputError
 from squeezefilm.from_text import ReadBy
 from squeezefilm.hard_limits import ROUGHNESS
 from squeezefilm.materials import Gas
+from squeezefilm.plate.heat.thermal import Thermal
 from squeezefilm.plate.layout import Actuator
 from squeezefilm.results import Result, write_whole
 
@@ -106,6 +107,10 @@ class Drive:
         return tuple(name for name in self._assumed(1.0) if getattr(self, name) is None)
 
 
+# Frozen, so that all displays may share it.
+_STILL_AIR = Thermal()
+
+
 @dataclass(frozen=True, repr=False)
 class Display(Result):
     """A friction-modulation display, complete enough to be analysed.
@@ -121,6 +126,7 @@ class Display(Result):
     surfaces: tuple[Surface, ...]
     finger: Finger
     gas: Gas
+    thermal: Thermal = _STILL_AIR
     provenance: Mapping[str, Provenance] = field(
         default_factory=dict, metadata={"loader": True}, compare=False, repr=False
     )

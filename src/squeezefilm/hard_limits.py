@@ -93,6 +93,7 @@ LAYER = HardLimit("the thickness of a layer", 1e-8, 1.0, "thin films to blocks; 
 MODULUS = HardLimit("a modulus", 1e-2, 1e13, "next to nothing to beyond diamond; " + _SLIP, _PA)
 SHEAR_MODULUS = HardLimit("a shear modulus", 0.0, 1e13, "up to beyond diamond; " + _SLIP, _PA)
 DENSITY = HardLimit("a density", 1.0, 1e5, "aerogel to beyond osmium; " + _SLIP, si.Unit("kg/m3"))
+SPECIFIC_HEAT = HardLimit("a specific heat", 10.0, 1e5, "of any solid; " + _SLIP, si.Unit("J/kg/K"))
 QUALITY = HardLimit("a quality factor", 0.501, 1e8, "from no resonance to beyond quartz")
 COMPLIANCE = HardLimit("a compliance", 1e-14, 1e-3, "of any solid; " + _SLIP, si.Unit("m2/N"))
 CROSS_COMPLIANCE = HardLimit("a compliance", -1e-3, 1e-3, "of any solid; " + _SLIP, si.Unit("m2/N"))

@@ -39,8 +39,10 @@ from squeezefilm.plate.beam.modes import BeamMode
 from squeezefilm.plate.beam.response import BeamResponse, beam_response
 from squeezefilm.plate.circuit import EquivalentCircuit
 from squeezefilm.plate.elements.box_model import Medium, isotropic_solid
+from squeezefilm.plate.heat.thermal import Thermal
+from squeezefilm.plate.heat.warming import HeatSource
 from squeezefilm.plate.laminate import Laminate, Layer, plate_laminate
-from squeezefilm.plate.layout import CeramicPatch, DiscPlate, RectangularPlate
+from squeezefilm.plate.layout import Actuator, CeramicPatch, DiscPlate, RectangularPlate
 from squeezefilm.plate.loaded_mode import LoadedMode
 from squeezefilm.plate.ring.body import RingBody
 from squeezefilm.plate.ring.modes import AnnularMode, bending_mode
@@ -158,6 +160,9 @@ MADE: dict[Any, Callable[[], Any]] = {
     Laminate: lambda: plate_laminate(PLATE),
     Layer: lambda: Layer(1e-3, 100e9, 40e9, 8500.0),
     RectangularPlate: lambda: PLATE,
+    Actuator: lambda: PLATE,
+    Thermal: Thermal,
+    HeatSource: lambda: HeatSource(30e3, 60.0, 1e-6, 1.0),
     CeramicPatch: lambda: PLATE.patches[0],
     LoadedMode: lambda: LoadedMode(30e3, 60.0, 0.01 + 0.01j),
     SurfaceLoad: lambda: SurfaceLoad(10e-3, 2e-3, 5e-3, 5e-3, 1.0),

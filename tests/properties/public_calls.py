@@ -48,6 +48,7 @@ NOT_CALLED = {
     film.validity.FilmValidity film.validity.ValidityCheck
     formats.hjif.HjifExport formats.hjif_read.HjifImport plate.ring.modes.AnnularMode
     plate.beam.modes.BeamMode plate.solid.modes.PlateModes plate.solid.response.HarmonicResponse
+    plate.heat.thermal.ThermalBody plate.heat.warming.Warming plate.heat.warming.WarmState
     plate.solid.volume.PlateVolume plate.beam.response.BeamResponse plate.ring.body.RingBody
     plate.ring.response.RingResponse
     plate.shear.modes.ShearMode plate.solid.working.SolidMode plate.sound.ExposureGuidance

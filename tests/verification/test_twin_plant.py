@@ -116,7 +116,8 @@ def test_the_resonance_drifts_as_told_and_takes_the_amplitude_with_it() -> None:
 
 
 def test_what_the_plate_takes_is_what_its_loss_takes_and_warms_it() -> None:
-    drift = PlateDrift(temperature_coefficient=-1e-9, ambient_swing=0.0, thermal_time=2.0)
+    drift = PlateDrift(temperature_coefficient=-1e-9, ambient_swing=0.0, thermal_resistance=12.0,
+                       thermal_time=2.0)  # fmt: skip
     amplifier = Amplifier(loss_tangent=0.0)
     plant = Plant(point(), replace(CALM, drift=drift, amplifier=amplifier))
     plant.advance(4_000_000, VOLTS, carrier())
@@ -127,6 +128,7 @@ def test_what_the_plate_takes_is_what_its_loss_takes_and_warms_it() -> None:
     in_phase = omega * point().force_factor * plant.envelope.real
     assert 0.5 * plant.voltage * in_phase == pytest.approx(power, rel=1e-6)
     warm = -1e9 * (plant.resonance_frequency / mode.resonance_frequency - 1)
+    assert plant.temperature_rise == pytest.approx(warm, rel=1e-6)
     assert warm == pytest.approx(12.0 * power * (1 - math.exp(-2)), rel=2e-3)
 
 

@@ -33,6 +33,7 @@ from squeezefilm.film.gap import squeeze_number
 from squeezefilm.film.validity import FilmValidity, film_validity
 from squeezefilm.from_text import reads_text
 from squeezefilm.plate.beam.response import beam_doubt
+from squeezefilm.plate.heat.warming import Warming, warming_of_mode
 from squeezefilm.plate.layout import Actuator, RectangularPlate
 from squeezefilm.plate.working_mode import PlateTheory, WorkingMode, working_mode
 from squeezefilm.render.program.inverse import FrictionInverse
@@ -51,7 +52,9 @@ class Prediction(Result):
     `relative_friction_limits` are µ′/µ with each ridge at its own balance and with all ridges at
     one mean gap, None for a model that shares no load. `friction_reduction` is µ − µ′,
     `tangential_force` µ′ F of a finger that slides steadily. `validity` says how far the paper's
-    asymptote is from where it holds; `law` is the friction as a function of the amplitude.
+    asymptote is from where it holds; `law` is the friction as a function of the amplitude. `heat`
+    is what the plate's losses do to it, None where they are not known: every other number is of
+    the cold plate.
     """
 
     display: str
@@ -75,6 +78,7 @@ class Prediction(Result):
     friction_reduction: si.Dimensionless
     tangential_force: si.Newton
     validity: FilmValidity
+    heat: Warming | None
     warnings: tuple[str, ...]
     _shown: ClassVar[str] = (
         "display model voltage frequency normal_force vibration_amplitude relative_friction "
@@ -129,6 +133,7 @@ class Prediction(Result):
             "quality_factor": self.mode.quality_factor,
             "envelope_time_constant_s": self.envelope_time_constant,
             "validity": to_json(self.validity),
+            "heat": to_json(self.heat),
             "warnings": list(self.warnings),
         }
 
@@ -262,6 +267,9 @@ def _felt(
         friction_reduction=base * (1 - friction),
         tangential_force=base * friction * law.normal_force,
         validity=validity,
+        heat=warming_of_mode(
+            display.actuator, display.thermal, mode, drive.voltage or 0.0, drive.frequency
+        ),
         warnings=(),
     )
 
@@ -303,7 +311,7 @@ def _doubts(caught: list[warnings.WarningMessage], p: Prediction) -> list[str]:
             "interval of squeezefilm friction. Relative friction differs by "
             f"{spread:.2f} between a skin that sinks ridge by ridge and a stiff one"
         )
-    return messages
+    return messages if p.heat is None else [*messages, *p.heat.doubts]
 
 
 @reads_text

@@ -19,6 +19,8 @@ from squeezefilm import quantities as si
 from squeezefilm.compiled import announce
 from squeezefilm.contact.sliding.march import substeps
 from squeezefilm.errors import InputError
+from squeezefilm.plate.heat.thermal import driven_thickness, thermal_body
+from squeezefilm.plate.heat.warming import cooling_of, heat_capacity
 from squeezefilm.twin import plant_kernel as k
 from squeezefilm.twin.envelope_step import Fingers
 from squeezefilm.twin.hand import Hand
@@ -125,6 +127,7 @@ class Plant:
         self._s[k.X] = self._s[k.SKIN_X] = self._places[0, 0]
         self._s[k.Y] = self._places[1, 0]
         self._s[k.RELATIVE] = math.nan
+        self._s[k.CHARGE] = 1.0
         self._s[k.RESONANCE] = k.resonance(0, 0.0, self._c)
         sensor = settings.sensor
         waiting = math.ceil((sensor.latency + 10 * sensor.jitter) * sensor.rate) + 16
@@ -182,6 +185,11 @@ class Plant:
         return float(self._s[k.RESONANCE])
 
     @property
+    def temperature_rise(self) -> si.Kelvin:
+        """How much warmer than the room its own losses have made the plate (K)."""
+        return float(self._s[k.WARMTH])
+
+    @property
     def voltage(self) -> si.Volt:
         """On the plate (V, peak), what limits allow."""
         return float(self._s[k.VOLTAGE])
@@ -218,7 +226,8 @@ class Plant:
             carrier = int(self._n[k.CARRIER])
             omega = 2 * math.pi * (carrier * 1e-3 if carrier else self.resonance_frequency)
             leak = 1j * pickup.feedthrough * self.point.capacitance * self.voltage
-            signal = omega * pickup.shunt * (self.point.force_factor * z + leak)
+            factor = self.point.force_factor * float(self._s[k.CHARGE])
+            signal = omega * pickup.shunt * (factor * z + leak)
         seed, now = self.settings.seed, self.now
         signal += pickup.noise * complex(
             k.gaussian(seed, _PICKUP_RE, now), k.gaussian(seed, _PICKUP_IM, now)
@@ -244,6 +253,8 @@ def _constants(point: WorkingPoint, settings: TwinSettings, hand: Hand | None) -
     force = 0.0 if hand is None else hand.normal_force
     strongest = float(dry.kinetic_force(friction, force))
     ratio = drift.quality_factor_ratio
+    thermal, body = drift.on(display.thermal), thermal_body(display.actuator)
+    thickness = driven_thickness(display.actuator)
     c = np.full(k.CONSTANTS, math.nan)
     c[k.C_STEP] = step
     c[k.C_ROW] = round(settings.truth_period * 1e6)
@@ -254,11 +265,16 @@ def _constants(point: WorkingPoint, settings: TwinSettings, hand: Hand | None) -
     c[k.C_PER_VOLT] = mode.amplitude_per_volt * ratio
     c[k.C_OFFSET] = drift.offset
     c[k.C_AGEING] = drift.ageing
-    c[k.C_COEFFICIENT] = drift.temperature_coefficient
+    c[k.C_COEFFICIENT] = thermal.temperature_coefficient
     c[k.C_SWING] = drift.ambient_swing
     c[k.C_PERIOD] = round(drift.ambient_period * 1e6)
-    c[k.C_RESISTANCE] = drift.thermal_resistance
-    c[k.C_THERMAL] = drift.thermal_time
+    c[k.C_COOLING : k.C_ROOM + 1] = cooling_of(thermal, body)
+    c[k.C_CAPACITY] = heat_capacity(thermal, body)
+    c[k.C_QUALITY_DRIFT] = thermal.quality_temperature_coefficient
+    c[k.C_CHARGE_DRIFT] = thermal.charge_temperature_coefficient
+    c[k.C_SOFTENING] = thermal.rayleigh_softening
+    # Of a stator no ceramic is described, and so no field.
+    c[k.C_FIELD_DRIFT] = 0.0 if thickness is None else thermal.rayleigh_charge / thickness
     c[k.C_GAIN] = amplifier.gain
     c[k.C_RAIL] = amplifier.highest_voltage
     c[k.C_CURRENT] = amplifier.highest_current

@@ -4,7 +4,8 @@ It advances to a time on a grid of steps counted in whole µs, so that no phase 
 and the outcome does not depend on the pieces in which time is advanced. In each step
 
 1. the amplifier gives what its limits allow,
-2. the plate's envelope is stepped in closed form,
+2. the plate's envelope is stepped in closed form, with the mode as warmth, speed and field leave
+   it, by the same functions as the prediction (`plate.heat.kernel`),
 3. the arm leads the finger, a mass on spring and damper, in closed form under the skin's pull,
    which is extrapolated to the middle of the step (second order),
 4. the skin follows by the compiled march of `contact.sliding`, under the friction of the law,
@@ -28,6 +29,8 @@ from squeezefilm import quantities as si
 from squeezefilm.compiled import compiled
 from squeezefilm.contact.sliding.kernel import Drive, Ground, Law, Track, slide_march
 from squeezefilm.contact.sliding.skin_motion import Forces, Skin, slide_by, transition
+from squeezefilm.plate.heat.kernel import Drifts, changed, warmed
+from squeezefilm.plate.heat.thermal import Cooling
 from squeezefilm.twin.envelope_step import (
     CURRENT,
     RAIL,
@@ -49,19 +52,22 @@ Z_RE, Z_IM, WARMTH, RESONANCE, LOST = range(5)
 X, VX, Y, VY = range(5, 9)
 SKIN_X, SKIN_V, PULL, PULL_BEFORE, BEFORE, FRICTION, FORCE = range(9, 16)
 VOLTAGE, CURRENT_A, RELATIVE, SEEN_X, SEEN_Y = range(16, 21)
-STATE = 21
+CHARGE = 21  # the charge coefficient over the cold one
+STATE = 22
 # The counts, int64; times in µs.
 NOW, SEEN_TAKEN, SEEN_TOUCHING, SAMPLE, HEAD, TAIL, ARRIVED, ROWS = range(8)
 AT_RAIL, AT_SLEW, AT_CURRENT, BEYOND, FAILED, LOST_SAMPLES, CARRIER = range(8, 15)
 COUNTS = 15
 # The constants, float64: steps; plate; its drift; amplifier; arm and skin; friction; sensor.
 C_STEP, C_ROW, C_SEED, C_F0, C_Q, C_PER_VOLT, C_FACTOR = range(7)
-C_OFFSET, C_AGEING, C_COEFFICIENT, C_SWING, C_PERIOD, C_RESISTANCE, C_THERMAL = range(7, 14)
-C_GAIN, C_RAIL, C_CURRENT, C_SLEW, C_C0, C_LOSS = range(14, 20)
-C_MASS, C_STIFFNESS, C_DAMPING, C_PAD_MASS, C_PAD_DAMPING, C_PAD_STIFFNESS = range(20, 26)
-C_SUBSTEPS, C_MU, C_STATIC, C_STRIBECK, C_EXPONENT, C_REFERENCE, C_FORCE = range(26, 33)
-C_RATE, C_LATENCY, C_JITTER, C_NOISE, C_QUANTUM, C_SHARE_LOST = range(33, 39)
-CONSTANTS = 39
+C_OFFSET, C_AGEING, C_COEFFICIENT, C_SWING, C_PERIOD = range(7, 12)
+C_QUALITY_DRIFT, C_CHARGE_DRIFT, C_SOFTENING, C_FIELD_DRIFT, C_CAPACITY = range(12, 17)
+C_COOLING, C_FACE, C_FACE_LENGTH, C_EMISSIVITY, C_ROOM = range(17, 22)  # fields of `Cooling`
+C_GAIN, C_RAIL, C_CURRENT, C_SLEW, C_C0, C_LOSS = range(22, 28)
+C_MASS, C_STIFFNESS, C_DAMPING, C_PAD_MASS, C_PAD_DAMPING, C_PAD_STIFFNESS = range(28, 34)
+C_SUBSTEPS, C_MU, C_STATIC, C_STRIBECK, C_EXPONENT, C_REFERENCE, C_FORCE = range(34, 41)
+C_RATE, C_LATENCY, C_JITTER, C_NOISE, C_QUANTUM, C_SHARE_LOST = range(41, 47)
+CONSTANTS = 47
 COLUMNS = (
     "time_s", "x_m", "y_m", "speed_m_per_s", "level_V", "frequency_Hz", "amplitude_m",
     "relative_friction", "tangential_force_N", "normal_force_N", "voltage_V", "current_A",
@@ -228,7 +234,8 @@ def advance(
     places, plan = path
     step, row = np.int64(c[C_STEP]), np.int64(c[C_ROW])
     smooth = Ground(0.0, 1.0, np.ones(1))
-    plate = Electrical(c[C_C0], c[C_LOSS], c[C_FACTOR])
+    drifts = Drifts(0.0, c[C_QUALITY_DRIFT], c[C_CHARGE_DRIFT], c[C_SOFTENING], c[C_FIELD_DRIFT])
+    cooling = Cooling(c[C_COOLING], c[C_FACE], c[C_FACE_LENGTH], c[C_EMISSIVITY], c[C_ROOM])
     limits = Limits(c[C_RAIL], c[C_CURRENT], c[C_SLEW])
     if carrier > 0:
         n[CARRIER] = carrier
@@ -244,7 +251,10 @@ def advance(
         z = complex(s[Z_RE], s[Z_IM])
         before, began = abs(z), s[FORCE]
         force = c[C_FORCE] * there[2]
-        f0 = s[RESONANCE]
+        speed = 2.0 * math.pi * s[RESONANCE] * before
+        quality, s[CHARGE], soft = changed(c[C_Q], s[WARMTH], speed, s[VOLTAGE], drifts)
+        f0 = s[RESONANCE] * soft
+        plate = Electrical(c[C_C0], c[C_LOSS], c[C_FACTOR] * s[CHARGE])
         frequency = n[CARRIER] * 1e-3 if n[CARRIER] > 0 else f0
         if level > 0 or before > 0.0:
             omega = 2.0 * math.pi * frequency
@@ -253,13 +263,15 @@ def advance(
             n[AT_RAIL] += limited == RAIL
             n[AT_SLEW] += limited == SLEW
             n[AT_CURRENT] += limited == CURRENT
-            swing = Resonance(frequency / f0, c[C_Q], c[C_Q] / (math.pi * f0))
-            held = c[C_PER_VOLT] * s[VOLTAGE]
+            swing = Resonance(frequency / f0, quality, quality / (math.pi * f0))
+            held = c[C_PER_VOLT] * s[CHARGE] * quality / c[C_Q] * s[VOLTAGE]
             z = envelope_step(z, held, h, swing, 0.5 * (began + force), fingers)
             s[Z_RE], s[Z_IM] = z.real, z.imag
             drawn = drawn_current(s[VOLTAGE], z, omega, plate)
             s[CURRENT_A] = abs(drawn)
-            s[LOST] += 0.5 * s[VOLTAGE] * drawn.real * h
+            # In the material and in the capacitance; what the finger takes warms the finger.
+            inside = c[C_FACTOR] * c[C_Q] / (c[C_PER_VOLT] * quality) * abs(z) ** 2
+            s[LOST] += 0.5 * omega * h * (inside + c[C_C0] * c[C_LOSS] * s[VOLTAGE] ** 2)
         else:
             s[VOLTAGE], s[CURRENT_A] = 0.0, 0.0
         amplitude = abs(z)
@@ -286,9 +298,7 @@ def advance(
         _sense(t0, t1 - t0, x0, y0, plant, ring, force > 0.0)
         if t1 % THERMAL == 0:
             part = THERMAL * 1e-6
-            fade = math.exp(-part / c[C_THERMAL])
-            end_warmth = c[C_RESISTANCE] * s[LOST] / part
-            s[WARMTH] = end_warmth + (s[WARMTH] - end_warmth) * fade
+            s[WARMTH] = warmed(s[WARMTH], s[LOST] / part, part, c[C_CAPACITY], cooling)
             s[LOST] = 0.0
             s[RESONANCE] = resonance(t1, s[WARMTH], c)
         if t1 % row == 0:

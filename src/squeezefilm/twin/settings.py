@@ -6,19 +6,17 @@ say so. Write the source of your own numbers there.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Literal
 
 from squeezefilm import quantities as si
 from squeezefilm.contact.sliding.dry_friction import DryFriction
 from squeezefilm.errors import InputError
+from squeezefilm.plate.heat.thermal import LOSS_TANGENT, Thermal
 from squeezefilm.render.motion.sensor import TOUCH_PANEL_240_HZ, SensorModel
 
-PerKelvin = Annotated[float, si.Unit("1/K")]
 PerSecond = Annotated[float, si.Unit("1/s")]
-KelvinPerWatt = Annotated[float, si.Unit("K/W")]
-VoltPerMetre = Annotated[float, si.Unit("V/m")]
 ASSUMED = "assumed"
 # Frozen, so that all settings may share it.
 _COULOMB = DryFriction()
@@ -34,11 +32,11 @@ class PlateDrift:
     Args:
         offset: relative, from the start (1): tolerance of the making.
         ageing: relative, per time (1/s).
-        temperature_coefficient: relative, per temperature (1/K).
         ambient_swing, ambient_period: the room's temperature goes to and fro by that much (K) as
             a sine of that period (s).
-        thermal_resistance: how much the plate warms per power lost in it (K/W); at least 0.
-        thermal_time: time constant of that (s); above 0.
+        temperature_coefficient, thermal_resistance, thermal_time: in place of what the display
+            says and its geometry gives (`plate.heat.thermal.Thermal`): 1/K, K/W, s. At a resistance
+            of 0 the plate keeps the room's temperature.
         quality_factor_ratio: Q over the predicted one (1); above 0. The drive's force per volt
             stays, so the amplitude at resonance changes with it.
         evidence: where the numbers are from.
@@ -49,13 +47,19 @@ class PlateDrift:
 
     offset: Annotated[si.Dimensionless, si.Above(-0.5), si.Below(0.5)] = 0.0
     ageing: Annotated[PerSecond, si.AtLeast(-1e-06), si.AtMost(1e-06)] = 0.0
-    temperature_coefficient: Annotated[PerKelvin, si.Above(-1e-2), si.Below(1e-2)] = -1e-4
     ambient_swing: Annotated[si.Kelvin, si.AtLeast(0.0), si.AtMost(50.0)] = 1.0
     ambient_period: Annotated[si.Second, si.AtLeast(1.0), si.AtMost(1000000.0)] = 3600.0
-    thermal_resistance: Annotated[KelvinPerWatt, si.AtLeast(0.0)] = 12.0
-    thermal_time: Annotated[si.Second, si.Above(0.0)] = 480.0
+    temperature_coefficient: Annotated[si.PerKelvin, si.Above(-1e-2), si.Below(1e-2)] | None = None
+    thermal_resistance: Annotated[si.KelvinPerWatt, si.AtLeast(0.0)] | None = None
+    thermal_time: Annotated[si.Second, si.Above(0.0)] | None = None
     quality_factor_ratio: Annotated[si.Dimensionless, si.Above(0.0), si.AtMost(10.0)] = 1.0
     evidence: str = ASSUMED
+
+    def on(self, thermal: Thermal) -> Thermal:
+        """What a display says of its warmth, with what is given here in its place."""
+        names = ("temperature_coefficient", "thermal_resistance", "thermal_time")
+        given = {name: getattr(self, name) for name in names if getattr(self, name) is not None}
+        return replace(thermal, **given)
 
 
 @si.checked_numbers
@@ -82,7 +86,7 @@ class Amplifier:
     highest_current: Annotated[si.Ampere, si.Above(0.0)] = 2.0
     slew_rate: Annotated[si.VoltPerSecond, si.Above(0.0)] = 1e8
     capacitance: Annotated[si.Farad, si.Above(0.0)] | None = None
-    loss_tangent: Annotated[si.Dimensionless, si.AtLeast(0.0)] = 0.02
+    loss_tangent: Annotated[si.Dimensionless, si.AtLeast(0.0)] = LOSS_TANGENT
     evidence: str = ASSUMED
 
 
@@ -126,7 +130,7 @@ class PickupModel:
 
     kind: PickupKind = "motional_current"
     shunt: Annotated[si.Ohm, si.Above(0.0)] = 10.0
-    sensitivity: Annotated[VoltPerMetre, si.Above(0.0)] = 5e5
+    sensitivity: Annotated[si.VoltPerMetre, si.Above(0.0)] = 5e5
     feedthrough: Annotated[si.Dimensionless, si.AtLeast(0.0)] = 0.0
     noise: Annotated[si.Volt, si.AtLeast(0.0)] = 1e-3
     evidence: str = ASSUMED

@@ -53,7 +53,9 @@ def bench(waiting: int = 64, press: int = 1, **changes: float) -> Bench:
     named: dict[str, float] = {
         "STEP": STEP, "ROW": 100, "SEED": 9, "F0": 40e3, "Q": 60.0, "PER_VOLT": 2e-8,
         "FACTOR": 0.3, "OFFSET": 0.0, "AGEING": 0.0, "COEFFICIENT": 0.0, "SWING": 0.0,
-        "PERIOD": 80_000_000, "RESISTANCE": 0.0, "THERMAL": 2.0, "GAIN": 1.0, "RAIL": 100.0,
+        "PERIOD": 80_000_000, "QUALITY_DRIFT": 0.0, "CHARGE_DRIFT": 0.0, "SOFTENING": 0.0,
+        "FIELD_DRIFT": 0.0, "CAPACITY": 1.0, "COOLING": math.inf, "FACE": 4e-3,
+        "FACE_LENGTH": 15e-3, "EMISSIVITY": 0.5, "ROOM": 293.15, "GAIN": 1.0, "RAIL": 100.0,
         "CURRENT": 10.0, "SLEW": 1e9, "C0": 20e-9, "LOSS": 0.02, "MASS": 0.05,
         "STIFFNESS": 800.0, "DAMPING": 6.0, "PAD_MASS": 0.2e-3, "PAD_DAMPING": 1.0,
         "PAD_STIFFNESS": 1000.0, "SUBSTEPS": 8, "MU": 0.4, "STATIC": 1.0, "STRIBECK": 0.01,
@@ -234,7 +236,8 @@ def test_the_resonance_moves_with_age_ambient_and_warmth() -> None:
 
 
 def test_what_is_lost_warms_the_plate_each_ten_milliseconds() -> None:
-    changes = {"RESISTANCE": 12.0, "THERMAL": 0.05, "COEFFICIENT": -1e-4, "FACTOR": 0.0}
+    # A resistance of 12 K/W and a time constant of 50 ms.
+    changes = {"COOLING": 1 / 12, "CAPACITY": 0.05 / 12, "COEFFICIENT": -1e-4, "FACTOR": 0.0}
     plant = bench(**changes)
     warmth, resonance = 0.0, 40e3
     # Without a motional current the loss is the capacitance's, whatever the plate does.

@@ -115,6 +115,7 @@ class FrictionAnalysis(Result):
                 "residual": sharing.residual,
                 "relative_friction_error": float(sharing.relative_friction_error[0]),
             },
+            "heat": to_json(p.heat),
             "standing_wave_ripple": None if self.ripple is None else self.ripple.ripple,
             "wanted": to_json(self.wanted),
             "intermittent_contact": to_json(self.tapping),

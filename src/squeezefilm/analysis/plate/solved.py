@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -10,6 +11,7 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.display import Display
 from squeezefilm.plate.circuit import DrivenResponse, EquivalentCircuit
+from squeezefilm.plate.heat.warming import Warming, heat_source, warming
 from squeezefilm.plate.sound import SoundField
 from squeezefilm.results import Result, stamp, to_json
 
@@ -62,6 +64,23 @@ class SolvedBody(Result):
         "model"
     )
 
+    @functools.cached_property
+    def heat(self) -> Warming:
+        """What the power that the body takes at resonance does to it, at the display's voltage.
+
+        All of it is lost in its materials, foam included: the solved body radiates nothing.
+        """
+        volts, at, mode = self.display.drive.voltage, self.response.resonance, self.working
+        source = heat_source(
+            self.display.actuator,
+            volts,
+            mode.frequency,
+            mode.quality_factor,
+            volts * self.amplitude_per_volt,
+            float(self.response.input_power(volts)[at]),
+        )
+        return warming(source, self.display.actuator, self.display.thermal)
+
     def summary(self) -> dict[str, Any]:
         """What ``--json`` prints; keys carry units."""
         volts, at = self.display.drive.voltage, self.response.resonance
@@ -81,6 +100,7 @@ class SolvedBody(Result):
             "current_A": float(self.response.current(volts)[at]),
             "apparent_power_VA": float(self.response.apparent_power(volts)[at]),
             "input_power_W": float(self.response.input_power(volts)[at]),
+            "heat": to_json(self.heat),
             "equivalent_circuit": to_json(self.circuit),
             **self._particulars(),
             "sound_pressure_level_dB": {f"{far:g} m": level for far, level in levels},

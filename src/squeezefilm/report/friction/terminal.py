@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from squeezefilm import quantities as si
-from squeezefilm.report.kit.numbers import HZ, M, N, V, reduction_row, shown
+from squeezefilm.report.kit.numbers import HZ, M, N, V, heat_rows, reduction_row, shown
 from squeezefilm.report.kit.terminal import heading, plain_console, show_missed, table
 
 if TYPE_CHECKING:
@@ -91,7 +91,8 @@ def _rows(result: FrictionAnalysis) -> list[tuple[str, str, str]]:
                 f"mean gap {shown(float(sharing.mean_gap[0]), M, 3)}",
             ),
         ]
-    return rows + _friction_rows(result)
+    rows += _friction_rows(result)
+    return rows + heat_rows(p.heat) if p.voltage else rows
 
 
 def _friction_rows(result: FrictionAnalysis) -> list[tuple[str, str, str]]:

@@ -17,6 +17,7 @@ if typing.TYPE_CHECKING:
     from squeezefilm.analysis.analyze import Analysis
     from squeezefilm.chain.prediction import Prediction
     from squeezefilm.display import Display
+    from squeezefilm.plate.heat.warming import Warming
     from squeezefilm.plate.working_mode import WorkingMode
     from squeezefilm.render.fidelity.report import FidelityReport
 
@@ -100,7 +101,49 @@ def key_numbers(analysis: Analysis) -> list[tuple[str, str, str]]:
             (f"Finest grating at {speed}", shown(period, M, 3), remark)
             for speed, period in analysis.finest_period().items()
         ]
-    return rows
+    return rows + heat_rows(p.heat) if p.voltage else rows
+
+
+def heat_rows(heat: Warming | None) -> list[tuple[str, str, str]]:
+    """Temperature, drift and amplitude of the warm plate: quantity, value, remark."""
+    if heat is None:
+        return [("Temperature rise", "not known", "nor is the power that the plate loses")]
+    follows, stays = heat.tracked, heat.fixed
+    at = f"at a fixed {shown(heat.frequency, HZ)}"
+    fallen = (
+        "a tenth is never gone"
+        if heat.time_to_fall is None
+        else f"a tenth is gone after {shown(heat.time_to_fall, S, 2)}"
+    )
+    resistance = si.format_quantity(heat.thermal_resistance, si.Unit("K/W"), 3)
+    return [
+        (
+            "Temperature rise",
+            f"{follows.temperature_rise:+.3g} K",
+            f"where the frequency follows; {stays.temperature_rise:+.3g} K {at}",
+        ),
+        (
+            "Drift of the resonance",
+            f"{follows.resonance_drift:+.3g} Hz",
+            f"{stays.resonance_drift:+.3g} Hz {at}; half-bandwidth "
+            f"{shown(heat.half_bandwidth, HZ, 3)}",
+        ),
+        (
+            "Amplitude warm",
+            shown(follows.amplitude, M, 3),
+            "where the frequency follows, without a finger",
+        ),
+        (
+            "",
+            shown(stays.amplitude, M, 3),
+            f"{at}, of {shown(heat.cold_amplitude, M, 3)} cold; {fallen}",
+        ),
+        (
+            "Thermal resistance",
+            resistance,
+            f"time constant {shown(heat.thermal_time, S, 2)}; assumed: " + "; ".join(heat.assumed),
+        ),
+    ]
 
 
 def reduction_row(p: Prediction) -> tuple[str, str, str]:

@@ -11,7 +11,7 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.analysis.plate.command import PlateAnalysis
 from squeezefilm.analysis.plate.ring import RingAnalysis
-from squeezefilm.report.kit.numbers import HZ, M, V, shown
+from squeezefilm.report.kit.numbers import HZ, M, V, heat_rows, shown
 from squeezefilm.report.kit.terminal import heading, show_rows, table
 
 if TYPE_CHECKING:
@@ -68,7 +68,7 @@ def _ring_rows(result: RingAnalysis) -> list[Row]:
 
 
 def drive_rows(result: SolvedBody) -> list[Row]:
-    """Current and power at resonance at the display's voltage, and the equivalent circuit."""
+    """Current and power at resonance at the display's voltage, the equivalent circuit, warmth."""
     volts, at = result.display.drive.voltage, result.response.resonance
     response, c = result.response, result.circuit
     rows = [
@@ -86,7 +86,7 @@ def drive_rows(result: SolvedBody) -> list[Row]:
         )
         static = f"C0 {shown(c.static_capacitance, FARAD, 3)}"
         rows.append(("Equivalent circuit", static, ", ".join(motional)))
-    return rows
+    return rows + heat_rows(result.heat)
 
 
 def fit_sentences(fit: StatorFit) -> tuple[str, ...]:
@@ -197,6 +197,8 @@ def show_plate(result: SolvedBody) -> None:
             "B(circles, diameters) bends; R and T move in the plane, radially and around."
         )
     console.print(f"{result.model}; {result.status}")
+    for doubt in result.heat.doubts:
+        console.print(f"! {doubt}")
     if isinstance(result, PlateAnalysis):
         _show_changes(console, result)
 

@@ -62,7 +62,8 @@ def prediction(**changes: Any) -> Any:
         ),
         "amplitude_model": "an-amplitude", "relative_friction": 0.4, "model": "a-model",
         "relative_friction_limits": (0.35, 0.45), "friction_reduction": 0.24,
-        "friction_coefficient": 0.4, "tangential_force": 0.08, "warnings": ("mind this",),
+        "friction_coefficient": 0.4, "tangential_force": 0.08, "heat": None,
+        "warnings": ("mind this",),
     }  # fmt: skip
     return SimpleNamespace(**{**values, **changes})
 
@@ -200,7 +201,7 @@ def test_a_summary_has_every_number_under_its_name(stator: Display) -> None:
             "film": 0.6, "asperities": 0.4, "mean_gap_m": 1.5e-6, "residual": 1e-9,
             "relative_friction_error": 1e-3,
         },
-        "standing_wave_ripple": 0.07,
+        "heat": None, "standing_wave_ripple": 0.07,
         "wanted": {"relative_friction": 0.6, "vibration_amplitude_m": 1.4e-6, "voltage_V": 12.0},
         "intermittent_contact": {"speed_m_per_s": 0.08, "relative_friction": 0.7},
         # In the middle of 0.8 at 1 µm and 0.4 at 3 µm.

@@ -123,6 +123,10 @@ def test_a_summary_has_every_number_under_its_name() -> None:
     assert rows == one._table()
     circuit = said.pop("equivalent_circuit")
     assert circuit["quality_factor"] == 100.0
+    heat = said.pop("heat")
+    assert heat["cold_power_W"] == pytest.approx(1.2)
+    assert heat["cold_amplitude_m"] == pytest.approx(20 * 6e-8)
+    assert heat["tracked"]["temperature_rise_K"] > heat["fixed"]["temperature_rise_K"] > 0
     # At the display's 20 V: |6 + 8i| mS are 10 mS.
     assert said == {
         "display": "winfield2007-tpad", "mode": "B(1,2)", "frequency_Hz": 40e3,

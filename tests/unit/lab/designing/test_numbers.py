@@ -90,7 +90,8 @@ def test_a_stators_numbers_are_the_predictions_own() -> None:
         "friction_curve", "response", "line", "shape", "provenance",
         # What every prediction says of itself beside.
         "display", "frequency_Hz", "amplitude_model", "mean_pressure", "mean_pressure_error",
-        "amplitude_kept_under_finger", "finger_impedance_N_s_per_m", "model", "validity",
+        "amplitude_kept_under_finger", "finger_impedance_N_s_per_m", "finger_speed_m_per_s", "heat",
+        "model", "validity",
     }  # fmt: skip
     curve = found["friction_curve"]
     amplitude = np.linspace(0.0, max(2 * p.vibration_amplitude, 2e-6), 49)

@@ -116,6 +116,8 @@ def test_page_says_the_numbers_the_doubts_and_the_origin(written: tuple[Path, An
         f"{p.relative_friction:.3f}",
         "piezoelectric_solid_3d (used)",
         "timoshenko_beam_plane_strain",
+        "Temperature rise",
+        "at a fixed 33.58 kHz",
     ):
         assert part in words
     for finding in analysis.verdict:
@@ -123,7 +125,7 @@ def test_page_says_the_numbers_the_doubts_and_the_origin(written: tuple[Path, An
     for kind in ("✓ Good", "△ Limit", "? Doubt"):
         assert kind in words
     assert "⚠ assumed" in words
-    assert words.count("⚠ assumed") == 13
+    assert words.count("⚠ assumed") == 15
     assert analysis.summary()["provenance"]["config_sha256"] in words
     assert "UTC" in words
     assert "contradict each other" in words

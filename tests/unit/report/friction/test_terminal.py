@@ -7,6 +7,7 @@ from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
+from tests.unit.report.made_results import WARM, WARM_LINES
 from tests.unit.report.printed import printed
 
 from squeezefilm.analysis.claims.record import missed_by
@@ -44,7 +45,8 @@ def prediction(**changes: Any) -> SimpleNamespace:
         "frequency": 33580.0, "touch": touched(), "normal_force": 0.5, "model": "a-model",
         "surface": SimpleNamespace(name="copper", roughness=0.7e-6), "friction_reduction": 0.11357,
         "friction_coefficient": 0.2, "tangential_force": 0.043216,
-        "relative_friction_limits": (0.41, 0.49), "warnings": ("mind this", "and that"),
+        "relative_friction_limits": (0.41, 0.49), "heat": WARM,
+        "warnings": ("mind this", "and that"),
     }  # fmt: skip
     return SimpleNamespace(**{**values, **changes})
 
@@ -112,6 +114,7 @@ def test_a_friction_is_said_with_why_and_what_to_measure_next() -> None:
         "A softer, a stiffer pad 0.410, 0.490 each ridge at its own balance, all at one mean gap",
         "Ripple of the wave 1.2 % every 9.88 mm, at constant amplitude",
         "For µ′/µ = 0.7 12.3 V 1.23 µm",
+        *WARM_LINES,
         "The same finger by other models",
         "model µ′/µ",
         # Half way down the first curve lies 1 − 0.8 · 0.75; the other ends before.
@@ -161,7 +164,9 @@ def test_an_amplitude_that_was_given_needs_no_voltage_and_no_plate() -> None:
     lines = said(prediction=prediction(voltage=None))
     assert lines[2] == "Vibration amplitude 1.5 µm with the finger, amplitude given"
     assert not [line for line in lines if line.startswith("The finger leaves")]
-    lines = said(prediction=prediction(touch=touched(mode=None)))
+    assert not [line for line in lines if line.startswith("Temperature")]
+    lines = said(prediction=prediction(touch=touched(mode=None), heat=None))
+    assert "Temperature rise not known nor is the power that the plate loses" in lines
     assert lines[2].endswith("at 15 V")
     assert not [line for line in lines if line.startswith("The finger leaves")]
 

@@ -69,11 +69,11 @@ def test_presets_are_listed_with_what_is_assumed(capsys: pytest.CaptureFixture[s
     listing = terminal.preset_list()
     by_name = {item["name"]: item for item in listing}
     assert {"biet2008-plate", "biet2008-stator", "touchpad-glass"} <= set(by_name)
-    assert by_name["biet2008-plate"]["values_assumed"] == 13
+    assert by_name["biet2008-plate"]["values_assumed"] == 15
     terminal.show_presets(listing)
     text = printed(capsys)
     assert "biet2008-stator" in text
-    assert "13 of 37" in text
+    assert "15 of 39" in text
 
 
 def test_values_are_shown_as_written(
@@ -94,7 +94,7 @@ def test_values_are_shown_as_written(
     terminal.show_values(values)
     text = printed(capsys)
     assert "* poisson_ratio" in text
-    assert "* assumed: 13 of" in text
+    assert "* assumed: 15 of" in text
     # Where there are colours, what is assumed stands out.
     styles: list[Any] = []
     monkeypatch.setattr(terminal, "table", lambda *_, **how: styles.append(how["styles"]))

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_hex
 from matplotlib.patches import Circle, Wedge
-from tests.unit.report.made_results import made_result
+from tests.unit.report.made_results import WARM, made_result
 
 from squeezefilm.analysis.plate.ring import RingAnalysis
 from squeezefilm.plate.circuit import EquivalentCircuit
@@ -266,12 +266,13 @@ def test_a_page_says_what_the_terminal_says(monkeypatch: pytest.MonkeyPatch) -> 
     ring = made(
         display=SimpleNamespace(title="A <ring>", name="r", drive=SimpleNamespace(voltage=12.0)),
         body=SimpleNamespace(fit="thickness", quality_factor=None), rows=(), status="no modes",
-        summary=lambda: told,
+        summary=lambda: told, heat=WARM,
     )  # fmt: skip
     text = page.plate_page(ring, {"line-scan": ("Scan", scan(RING))})
     for said in (
         "A &lt;ring&gt;", "Mode B(0,2)", "fitted &amp; not predicted", "At 12 V", "0.24 µm",
         "<p>Fitted: thickness &lt; all.</p>", "no modes", "line-scan.png",
+        "<p>it is hot</p>",
     ):  # fmt: skip
         assert said in text, said
     assert "ParaView" not in text

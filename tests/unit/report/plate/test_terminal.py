@@ -6,7 +6,7 @@ from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
-from tests.unit.report.made_results import made_result
+from tests.unit.report.made_results import WARM, WARM_LINES, made_result
 from tests.unit.report.printed import printed
 
 from squeezefilm.analysis.film.command import FilmAnswer, FilmRequest
@@ -90,6 +90,7 @@ def plate(**changes: Any) -> Any:
             )
         ),
         "tracks": TRACKS,
+        "heat": WARM,
     }
     return made_result(PlateAnalysis, **{**values, **changes})
 
@@ -121,6 +122,7 @@ def test_a_plate_is_said_with_all_that_there_is() -> None:
         "As a shear plate 30.223 kHz -10.0%",
         "At 15 V 12.3 mA 0.0926 VA, 0.0432 W",
         "Equivalent circuit C0 5.43 nF R1 123 ohm, L1 0.0988 H, C1 123 pF",
+        *WARM_LINES,
         "Sound at 0.3 m 120 dB loudest direction; guidance 100 dB",
         "Guidance (doubtful): somebody 1984",
         "Modes in the band",
@@ -128,6 +130,7 @@ def test_a_plate_is_said_with_all_that_there_is() -> None:
         "(8,0) 33.581 kHz 12 Hz 212 120 nm/V 0.12",
         "(7,1) 30 kHz 12 Hz 200 not driven 0",
         "piezoelectric_solid_3d; 12 modes",
+        "! it is hot",
         "Sensitivities of the working mode",
         "what is different frequency per volt",
         "glue twice -1.23% +12.3%",
@@ -140,7 +143,7 @@ def test_a_plate_is_said_with_all_that_there_is() -> None:
 
 def test_what_was_not_asked_for_is_not_there() -> None:
     lines = said(shear_frequency=None, sensitivities=None, tracks=None, circuit=None)
-    assert lines[-1] == "piezoelectric_solid_3d; 12 modes"
+    assert lines[-2:] == ["piezoelectric_solid_3d; 12 modes", "! it is hot"]
     assert not [line for line in lines if "shear" in line or "circuit" in line]
 
 

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
-from tests.unit.report.made_results import made_result
+from tests.unit.report.made_results import WARM, WARM_LINES, made_result
 from tests.unit.report.printed import printed
 
 from squeezefilm.analysis.plate.ring import RingAnalysis
@@ -67,6 +67,7 @@ def ring(**changes: Any) -> Any:
         ),
         "model": "annular_3d",
         "status": "2 modes in the band, within 1e-3 (estimated)",
+        "heat": WARM,
     }  # fmt: skip
     return made_result(RingAnalysis, **{**values, **changes})
 
@@ -88,6 +89,7 @@ def test_a_ring_is_said_with_all_that_there_is() -> None:
         "Effective coupling 0.123",
         "At 12 V 12.3 mA 0.0741 VA, 0.0212 W",
         "Equivalent circuit C0 5.43 nF R1 123 ohm, L1 0.0988 H, C1 123 pF",
+        *WARM_LINES,
         "Sound at 0.3 m 120 dB loudest direction, touched face only; guidance 100 dB",
         "Sound at 0.5 m 117 dB",
         "Guidance (to be checked): somebody 1984",
@@ -97,6 +99,7 @@ def test_a_ring_is_said_with_all_that_there_is() -> None:
         "T(0,2) 41.001 kHz 12 Hz 200 not driven 0",
         "B(circles, diameters) bends; R and T move in the plane, radially and around.",
         "annular_3d; 2 modes in the band, within 1e-3 (estimated)",
+        "! it is hot",
     ]
 
 

@@ -1,0 +1,373 @@
+"""How warm a driven plate gets, and what that costs: at a fixed frequency, and where it follows.
+
+First order in time, C dθ/dt = P(θ) − G(θ) θ, one temperature for ceramic and substrate. At a fixed
+frequency the resonance moves away (or nearer) as the plate warms, which changes P: the state is
+where both agree, and there may be several.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Annotated
+
+import numpy as np
+from scipy.optimize import brentq
+
+from squeezefilm import quantities as si
+from squeezefilm.plate.beam.response import patch_capacitance
+from squeezefilm.plate.heat.kernel import (
+    Drifts,
+    Driven,
+    conductance,
+    lost,
+    surpluses,
+    time_until,
+)
+from squeezefilm.plate.heat.thermal import (
+    LOSS_TANGENT,
+    Cooling,
+    Thermal,
+    ThermalBody,
+    driven_thickness,
+    thermal_body,
+)
+from squeezefilm.plate.layout import Actuator, RectangularPlate
+from squeezefilm.plate.working_mode import WorkingMode
+
+HARD_QUALITY = 200.0
+"""From it on a ceramic counts as hard (assumed)."""
+HARD_SPEED: si.MetrePerSecond = 0.3
+"""R.m.s. speed at which hard ceramics level off: materials of more than 1 m/s have ten times the
+power density of commercial hard ones (Uchino et al. 2006, 10.1007/s10853-005-7201-0), and power
+goes with the square of the speed. Of the ceramic alone: a bending plate strains differently."""
+SOFT_SPEED: si.MetrePerSecond = 0.1
+"""For soft ceramics (assumed: no figure was found; at a tenth of the Q as much heat per volume)."""
+FIELD_SHARE = 1 / 3
+"""Of the coercive field, warned of (assumed)."""
+KNOWN_RISE: si.Kelvin = 60.0
+"""Up to it coefficients are taken to stay what they are (assumed)."""
+
+_END: si.Kelvin = 2000.0
+_REFERENCE_RISE: si.Kelvin = 20.0
+_GRID = 1500
+_STEPS_OF_A_TIME_CONSTANT = 2000
+_FALLEN = 0.9
+
+
+@si.checked_numbers
+@dataclass(frozen=True)
+class HeatSource:
+    """A mode as it is driven, cold and without a finger, and what it loses at resonance.
+
+    Args:
+        frequency: of the resonance (Hz).
+        quality_factor: of the mode (1).
+        amplitude: zero-to-peak at resonance (m).
+        mechanical_power: lost in materials there (W). What leaves as sound or goes into a finger
+            does not warm the plate and is not in it, as far as the quality factor is without it.
+        dielectric_power: lost in the ceramic's capacitance there (W).
+        quality_of_ceramic: its own quality factor (1); None where it is not known.
+        field: in the thinnest driven ceramic (V/m, peak); None where it is not known.
+    """
+
+    frequency: Annotated[si.Hertz, si.Above(0.0), si.AtMost(1e9)]
+    quality_factor: Annotated[si.Dimensionless, si.Above(0.5), si.AtMost(1e8)]
+    amplitude: Annotated[si.Metre, si.AtLeast(0.0)]
+    mechanical_power: Annotated[si.Watt, si.AtLeast(0.0)]
+    dielectric_power: Annotated[si.Watt, si.AtLeast(0.0)] = 0.0
+    quality_of_ceramic: Annotated[si.Dimensionless, si.Above(0.0)] | None = None
+    field: Annotated[si.VoltPerMetre, si.AtLeast(0.0)] | None = None
+
+
+@dataclass(frozen=True)
+class WarmState:
+    """A state in which the plate gives away what it loses: how much warmer than the room, how far
+    its resonance has moved, the amplitude and the power lost in the plate."""
+
+    temperature_rise: si.Kelvin
+    resonance_drift: si.Hertz
+    amplitude: si.Metre
+    power: si.Watt
+
+
+@dataclass(frozen=True)
+class Warming:
+    """What warmth does to a driven plate without a finger.
+
+    `frequency` is the drive's; `cold_amplitude` and `cold_power` are those there when it is
+    switched on. `tracked` is the state where the frequency follows the resonance, `fixed` the one
+    reached from cold where it does not, `other_fixed` the further stable ones there.
+    `thermal_resistance`, `thermal_time` and `biot_number` are at the tracked state.
+    `time_to_fall` is when the amplitude at the fixed frequency has fallen by a tenth, None where it
+    does not. `speed` (r.m.s.) and `field` are at the resonance, cold. `assumed` and `doubts` are
+    for people.
+    """
+
+    frequency: si.Hertz
+    half_bandwidth: si.Hertz
+    cold_amplitude: si.Metre
+    cold_power: si.Watt
+    thermal_resistance: si.KelvinPerWatt
+    heat_capacity: si.JoulePerKelvin
+    thermal_time: si.Second
+    biot_number: si.Dimensionless
+    tracked: WarmState
+    fixed: WarmState
+    other_fixed: tuple[WarmState, ...]
+    time_to_fall: si.Second | None
+    speed: si.MetrePerSecond
+    field: si.VoltPerMetre | None
+    assumed: tuple[str, ...]
+    doubts: tuple[str, ...]
+
+
+def cooling_of(thermal: Thermal, body: ThermalBody) -> Cooling:
+    """How a body gives its heat away, by measurement where there is one."""
+    measured = thermal.thermal_resistance
+    fixed = 0.0 if measured is None else (math.inf if measured == 0 else 1 / measured)
+    length = body.face_area / body.perimeter
+    return Cooling(fixed, body.face_area, length, thermal.emissivity, thermal.ambient_temperature)
+
+
+def heat_capacity(thermal: Thermal, body: ThermalBody) -> si.JoulePerKelvin:
+    """What the body takes per kelvin (J/K): of its mass, or what a measured time constant says.
+
+    With a measured time constant and a computed resistance, by the one at a warmth of 20 K.
+    """
+    if thermal.thermal_time is None:
+        return body.heat_capacity
+    given = conductance(_REFERENCE_RISE, cooling_of(thermal, body))
+    # Held at the room's temperature any capacity is the same.
+    return thermal.thermal_time * given if math.isfinite(given) else body.heat_capacity
+
+
+def drifts_of(thermal: Thermal) -> Drifts:
+    """The coefficients as compiled code takes them."""
+    return Drifts(
+        thermal.temperature_coefficient,
+        thermal.quality_temperature_coefficient,
+        thermal.charge_temperature_coefficient,
+        thermal.rayleigh_softening,
+        thermal.rayleigh_charge,
+    )
+
+
+@si.checked_numbers
+def heat_source(
+    actuator: Actuator,
+    voltage: Annotated[si.Volt, si.AtLeast(0.0)],
+    frequency: Annotated[si.Hertz, si.Above(0.0)],
+    quality_factor: Annotated[si.Dimensionless, si.Above(0.5)],
+    amplitude: Annotated[si.Metre, si.AtLeast(0.0)],
+    mechanical_power: Annotated[si.Watt, si.AtLeast(0.0)],
+) -> HeatSource:
+    """A mode of an actuator at a voltage (V, zero-to-peak), as a source of heat.
+
+    The dielectric loss ½ ω C tan δ V² is that of a rectangular plate's ceramics, with an assumed
+    tan δ of `LOSS_TANGENT`; of others it is not counted (a percent or two of the mechanical one).
+    """
+    dielectric, quality = 0.0, None
+    if isinstance(actuator, RectangularPlate):
+        current = 2 * math.pi * frequency * patch_capacitance(actuator) * voltage
+        dielectric = 0.5 * current * voltage * LOSS_TANGENT
+    thickness = driven_thickness(actuator)
+    if thickness is not None and hasattr(actuator, "ceramic"):
+        quality = actuator.ceramic.quality_factor
+    field = None if thickness is None else voltage / thickness
+    return HeatSource(
+        frequency, quality_factor, amplitude, mechanical_power, dielectric, quality, field
+    )
+
+
+@si.checked_numbers
+def warming(
+    source: HeatSource,
+    actuator: Actuator,
+    thermal: Thermal | None = None,
+    frequency: Annotated[si.Hertz, si.Above(0.0)] | None = None,
+) -> Warming:
+    """What warmth does to a plate that is driven at a constant voltage.
+
+    `frequency` (Hz) is the fixed one; the cold resonance without one. Coefficients are constant,
+    which holds for some tens of kelvin, and neighbouring modes are left out. The plate is of one
+    temperature, horizontal, free in still air: supports, leads, housing and finger take nothing.
+    Equations and sources: `squeezefilm.plate.heat.kernel`.
+
+    A plate that finds no state below 2000 K is given as 2000 K warm, with a doubt.
+    """
+    thermal = Thermal() if thermal is None else thermal
+    body, fixed = thermal_body(actuator), source.frequency if frequency is None else frequency
+    case = _Case(source, thermal, cooling_of(thermal, body), heat_capacity(thermal, body))
+    tracked = case.states(0.0)[0]
+    states = case.states(fixed)
+    given = conductance(tracked.temperature_rise, case.cooling)
+    resistance = 1 / given
+    time = case.capacity * resistance if resistance else 0.0
+    cold, power = lost(fixed, 0.0, case.driven, case.drifts)
+    found = Warming(
+        frequency=fixed,
+        half_bandwidth=source.frequency / (2 * source.quality_factor),
+        cold_amplitude=cold,
+        cold_power=power,
+        thermal_resistance=resistance,
+        heat_capacity=case.capacity,
+        thermal_time=time,
+        biot_number=given / (2 * body.face_area) * body.through if resistance else 0.0,
+        tracked=tracked,
+        fixed=states[0],
+        other_fixed=states[1:],
+        time_to_fall=case.time_to_fall(fixed, cold, time),
+        speed=2 * math.pi * source.frequency * source.amplitude / math.sqrt(2),
+        field=source.field,
+        assumed=_assumed(thermal, body),
+        doubts=(),
+    )
+    return replace(found, doubts=tuple(_doubts(found, source, thermal)))
+
+
+@si.checked_numbers
+def warming_of_mode(
+    actuator: Actuator,
+    thermal: Thermal,
+    mode: WorkingMode,
+    voltage: Annotated[si.Volt, si.AtLeast(0.0)],
+    frequency: Annotated[si.Hertz, si.Above(0.0)] | None = None,
+) -> Warming | None:
+    """What warmth does to a working mode at a voltage (V, zero-to-peak), see `warming`.
+
+    It loses ½ M ω³ A²/Q in its materials, of its modal mass M, amplitude A and quality factor.
+    None where the modal mass is not known, as of a measured stator, or nothing drives it.
+    """
+    if mode.modal_mass is None or not voltage > 0:
+        return None
+    amplitude = voltage * mode.amplitude_per_volt
+    omega = 2 * math.pi * mode.resonance_frequency
+    power = 0.5 * mode.modal_mass * omega**3 * amplitude**2 / mode.quality_factor
+    source = heat_source(
+        actuator, voltage, mode.resonance_frequency, mode.quality_factor, amplitude, power
+    )
+    return warming(source, actuator, thermal, frequency)
+
+
+class _Case:
+    """One plate at one voltage, as compiled code takes it."""
+
+    def __init__(
+        self, source: HeatSource, thermal: Thermal, cooling: Cooling, capacity: si.JoulePerKelvin
+    ) -> None:
+        self.driven = Driven(
+            float(source.frequency),
+            float(source.quality_factor),
+            float(source.amplitude),
+            float(source.mechanical_power),
+            float(source.dielectric_power),
+            float(source.field or 0.0),
+        )
+        self.drifts = drifts_of(thermal)
+        self.cooling, self.capacity = Cooling(*map(float, cooling)), float(capacity)
+
+    def states(self, frequency: float) -> tuple[WarmState, ...]:
+        """The stable states at a frequency (0: at resonance), the one reached from cold first."""
+        if math.isinf(self.cooling.fixed):
+            return (self._state(frequency, 0.0),)
+        top = 10.0
+        while top < _END and self._surplus(frequency, top) > 0:
+            top = min(1.5 * top, _END)
+        # Beyond where the plate cools at its resonance no other drive keeps it warm.
+        while top < _END and self._surplus(0.0, top) > 0:
+            top = min(1.5 * top, _END)
+        grid = top * np.linspace(0, 1, _GRID) ** 2
+        left = surpluses(grid, frequency, self.driven, self.drifts, self.cooling)
+        stable = np.flatnonzero((left[:-1] > 0) & (left[1:] <= 0))
+        if left[0] <= 0:
+            return (self._state(frequency, 0.0),)
+        roots = [
+            brentq(lambda rise: self._surplus(frequency, rise), grid[at], grid[at + 1], xtol=1e-9)
+            for at in stable
+        ]
+        if left[-1] > 0:
+            roots.append(top)
+        return tuple(self._state(frequency, float(root)) for root in roots)
+
+    def time_to_fall(self, frequency: float, cold: si.Metre, time: si.Second) -> si.Second | None:
+        """When a tenth of the cold amplitude is gone (s)."""
+        if not (cold > 0 and time > 0):
+            return None
+        warm = (float(frequency), self.driven, self.drifts, self.capacity, self.cooling)
+        steps = 20 * _STEPS_OF_A_TIME_CONSTANT
+        found = time_until(_FALLEN * cold, time / _STEPS_OF_A_TIME_CONSTANT, steps, warm)
+        return None if found < 0 else float(found)
+
+    def _surplus(self, frequency: float, rise: float) -> float:
+        one = np.array([rise])
+        return float(surpluses(one, frequency, self.driven, self.drifts, self.cooling)[0])
+
+    def _state(self, frequency: float, rise: si.Kelvin) -> WarmState:
+        moved, power = lost(frequency, rise, self.driven, self.drifts)
+        drift = self.driven.frequency * self.drifts.frequency * rise
+        return WarmState(rise, drift, moved, power)
+
+
+def _assumed(thermal: Thermal, body: ThermalBody) -> tuple[str, ...]:
+    """What stands behind the numbers that nobody measured."""
+    said = []
+    if thermal.thermal_resistance is None:
+        said.append(
+            f"still air at both faces, an emissivity of {thermal.emissivity:g}, nothing through "
+            "supports and leads"
+        )
+    if thermal.thermal_time is None:
+        said += body.assumed
+    said.append(f"a temperature coefficient of {thermal.temperature_coefficient:g} per K")
+    if thermal.charge_temperature_coefficient == thermal.quality_temperature_coefficient == 0:
+        said.append("charge coefficient and quality factor that do not depend on temperature")
+    if thermal.rayleigh_softening == thermal.rayleigh_charge == 0:
+        said.append("a ceramic that is linear (not measured)")
+    return tuple(said)
+
+
+def _doubts(found: Warming, source: HeatSource, thermal: Thermal) -> list[str]:
+    """What speaks against the cold, linear amplitude, in sentences."""
+    said = []
+    rise, drift = found.tracked.temperature_rise, found.tracked.resonance_drift
+    if abs(drift) > 0.5 * found.half_bandwidth:
+        kept = found.fixed.amplitude / found.cold_amplitude if found.cold_amplitude > 0 else 1.0
+        said.append(
+            f"the plate loses {found.cold_power:.3g} W and warms: its resonance drifts by "
+            f"{drift:+.0f} Hz ({rise:.0f} K) where the drive follows it, against a half-bandwidth "
+            f"of {found.half_bandwidth:.0f} Hz; a drive that stays at its frequency is left with "
+            f"{kept:.0%} of the amplitude, {found.fixed.temperature_rise:.0f} K warm. Track the "
+            "resonance, or drive in bursts; resistance and coefficient are computed or assumed"
+        )
+    if found.other_fixed:
+        others = ", ".join(f"{1e6 * one.amplitude:.3g} um" for one in found.other_fixed)
+        said.append(
+            f"at a fixed {found.frequency:.0f} Hz the warm plate has several states: "
+            f"{1e6 * found.fixed.amplitude:.3g} um is reached from cold, {others} by coming down "
+            "from a higher frequency or a warmer plate"
+        )
+    if rise >= _END:
+        said.append(
+            f"the plate finds no temperature below {_END:g} K at which it gives away what it "
+            "loses: it would be destroyed; ask for a lower voltage"
+        )
+    elif max(rise, found.fixed.temperature_rise) > KNOWN_RISE:
+        said.append(
+            f"{rise:.0f} K are more than the {KNOWN_RISE:g} K up to which the ceramic is taken to "
+            "stay what it is (assumed); a long drive at this voltage is outside of the model"
+        )
+    hard = source.quality_of_ceramic is None or source.quality_of_ceramic >= HARD_QUALITY
+    most = thermal.highest_speed or (HARD_SPEED if hard else SOFT_SPEED)
+    if found.speed > most and thermal.rayleigh_softening == 0:
+        said.append(
+            f"the surface moves at {found.speed:.2g} m/s (r.m.s.), more than the {most:g} m/s at "
+            f"which {'hard' if hard else 'soft'} ceramics begin to lose more and level off; the "
+            "amplitude is linear in the voltage here, since nothing else was measured"
+        )
+    if found.field is not None and found.field > FIELD_SHARE * thermal.coercive_field:
+        said.append(
+            f"the field in the ceramic is {found.field * 1e-6:.2g} kV/mm, more than a third of its "
+            f"coercive field of {thermal.coercive_field * 1e-6:.2g} kV/mm; it may lose its poling"
+        )
+    return said
