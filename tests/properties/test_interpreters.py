@@ -111,12 +111,11 @@ def run_page(node: str, cases: list[dict]) -> list[dict]:
 
 
 def golden() -> list[dict]:
-    """Programs of version 1 with samples and what they give, for every interpreter there will be.
+    """Programs of versions 1 and 2 with samples and what they give, for every interpreter there will be.
 
     Made once. A change that makes them fail changes what stored programs mean: raise the version.
     """
     stored = json.loads(Path(__file__).with_name("golden_programs.json").read_text("utf-8"))
-    assert stored["version"] == opcodes.VERSION
     cases: list[dict] = stored["cases"]
     return cases
 

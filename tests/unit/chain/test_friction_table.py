@@ -8,7 +8,7 @@ import pytest
 from squeezefilm.chain.friction_table import FrictionTable
 from squeezefilm.errors import InputError, OutOfRangeError
 
-TABLE = FrictionTable(np.array([0.0, 1e-6, 3e-6]), np.array([1.0, 0.6, 0.2]))
+TABLE = FrictionTable.of_amplitude(np.array([0.0, 1e-6, 3e-6]), np.array([1.0, 0.6, 0.2]))
 
 
 def test_it_is_straight_between_its_points() -> None:
