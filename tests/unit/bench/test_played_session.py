@@ -365,7 +365,7 @@ def test_a_summary_says_what_was_to_be_played_and_what_became_of_it(
         surface=SimpleNamespace(name="bare"), voltage=15.0, warnings=("careful",)
     )
     plan = SimpleNamespace(
-        mode="stream", frequency=40e3, loop=setup.plan.loop, limits={"voltage_V": 20.0}
+        mode="stream", frequency=40e3, loop=setup.plan.loop, limits={"voltage_V": 20.0}, tile=None
     )
     said = SimpleNamespace(
         name="a grating", display=SimpleNamespace(name="one"), prediction=prediction, plan=plan,
@@ -381,7 +381,7 @@ def test_a_summary_says_what_was_to_be_played_and_what_became_of_it(
         "assumed_limits": ["slew"], "sensor": {"name": "LVDT"}, "rows": 20, "loop": {}, "link": {},
         "lag": None, "position_error_m": None, "flags": {}, "device": [], "by_truth": None,
         "damage": [], "provenance": {"display": "one"}, "warnings": ["careful"],
-        "end": {"why": "over", "faded_at_s": None},
+        "end": {"why": "over", "faded_at_s": None}, "tile": None,
     }  # fmt: skip
     assert {key: found[key] for key in expected} == expected
     assert set(found) - set(expected) == {"by_record"}

@@ -122,8 +122,9 @@ def rendered_stroke(
     inside: si.FloatArray = np.minimum(time, trajectory.duration)
     position = trajectory.position(inside)
     # A stroke turns at once: a difference over the turn would say that it stands still there.
-    known_speed = isinstance(trajectory, Stroke)
-    speed = trajectory.velocity(inside) if known_speed else np.gradient(position, dt)
+    speed: si.FloatArray = np.gradient(position, dt)
+    if isinstance(trajectory, Stroke):
+        speed = trajectory.velocity(inside)
     wanted = _asked(texture, position, speed, time)
     estimate, known = None, np.ones(time.size, dtype=bool)
     # For whose place a command is meant: the middle of its step, or (compensated) the next step.
