@@ -1,4 +1,4 @@
-"""What a texture of places alone was made for, and what that costs under a faster or slower finger."""
+"""What a texture of places alone was made for, and what it costs under another speed."""
 
 from __future__ import annotations
 

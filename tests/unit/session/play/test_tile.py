@@ -99,7 +99,8 @@ def test_a_tile_of_friction_is_made_for_one_speed_and_says_what_others_cost() ->
         met = _law(tile.amplitude, np.full(201, speed))
         np.testing.assert_allclose(met, texture(places, 0.0, speed, 0.0), atol=1e-3)
         made = tile.made_for
-        assert made is not None and made.speed == speed
+        assert made is not None
+        assert made.speed == speed
         least = np.max(tile.amplitude)
         for error, pace in ((made.error_at_half, speed / 2), (made.error_at_double, 2 * speed)):
             assert error == pytest.approx(float(_law(least, pace) - _law(least, speed)), rel=0.05)
