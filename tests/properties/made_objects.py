@@ -94,6 +94,10 @@ AIR = Gas(1.81e-5, 101325.0, 1.2, 68e-9)
 WAYS = np.linspace(0.0, 1e-3, 9)
 
 
+def falling_over_speeds(amplitude: Any, speed: Any) -> Any:
+    return 1 - np.asarray(amplitude) / (4e-6 + 1e-6 * np.asarray(speed)[:, None])
+
+
 def falling_friction(amplitude: Any, speed: Any = None) -> Any:
     return 1 - np.asarray(amplitude) / 4e-6
 
