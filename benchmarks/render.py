@@ -20,7 +20,7 @@ from collections.abc import Callable
 import numpy as np
 
 from squeezefilm.render import opcodes
-from squeezefilm.render.program import interpreter
+from squeezefilm.render.program import interpreter, lookup
 from squeezefilm.render.program.inverse import FrictionInverse
 from squeezefilm.render.program.lowering import Program, lower
 from squeezefilm.render.program.renderer import Renderer, evaluate, new_state
@@ -31,6 +31,11 @@ from squeezefilm.render.texture.noise import Noise, NoiseField
 from squeezefilm.render.texture.shapes import Band, Bump, Pulse, SineWave, SquareWave
 
 INVERSE = FrictionInverse.from_function(lambda a: 0.3 + 0.7 * np.exp(-((a / 2e-6) ** 2)), 4e-6)
+# As many knots and speeds as a display's friction has.
+SPEEDY = FrictionInverse.over_speeds(
+    lambda a, v: 0.3 + 0.7 * np.exp(-((a / 2e-6) ** 2) / (0.5 + 5.0 * v[:, None])),
+    4e-6 * np.linspace(0.0, 1.0, 65) ** 2, np.geomspace(1e-3, 2.0, 47), 0.08,
+)  # fmt: skip
 
 
 def textures() -> dict[str, Composable]:
@@ -58,10 +63,19 @@ def textures() -> dict[str, Composable]:
     }
 
 
-def program_of(texture: Composable) -> Program:
+def program_of(texture: Composable, inverse: FrictionInverse = INVERSE) -> Program:
     if texture.quantity == "amplitude":
         return lower(texture, largest_amplitude=4e-6)
-    return lower(texture, inverse=INVERSE)
+    return lower(texture, inverse=inverse)
+
+
+def programs() -> dict[str, tuple[Composable, Program]]:
+    """The textures lowered, two of them again for a law that depends on the finger's speed."""
+    found = {name: (one, program_of(one)) for name, one in textures().items()}
+    for name in ("square grating, friction", "composite of ten"):
+        one = textures()[name]
+        found[f"{name}, by speed"] = one, program_of(one, SPEEDY)
+    return found
 
 
 def best_time(run: Callable[[], object], repeats: int = 5) -> float:
@@ -83,13 +97,11 @@ def samples(count: int) -> tuple[np.ndarray, ...]:
 
 def plain_python() -> Callable[..., float]:
     """The tick with nothing compiled: the same functions as Python runs them."""
-    names = ("_mixed", "_spline", "_line_noise", "_field_noise", "_image", "interpret",
-             "_inverse", "_wave_factor", "_amplitude", "tick")  # fmt: skip
-    space = dict(vars(interpreter))
-    for name in names:
-        function = getattr(interpreter, name).py_func
-        made = type(function)(function.__code__, space, name)
-        space[name] = made
+    space = {**vars(lookup), **vars(interpreter)}
+    for name, one in list(space.items()):
+        if hasattr(one, "py_func"):
+            function = one.py_func
+            space[name] = type(function)(function.__code__, space, name)
     return space["tick"]
 
 
@@ -100,8 +112,7 @@ def table(count: int) -> None:
           "   NumPy÷array   Python tick÷tick")  # fmt: skip
     arrays = samples(count)
     few = [tuple(map(float, row)) for row in zip(*(one[:2000] for one in arrays), strict=True)]
-    for name, texture in textures().items():
-        program = program_of(texture)
+    for name, (texture, program) in programs().items():
         state, out = new_state(program), np.empty(count)
         flags = np.empty(count, dtype=np.int64)
 

@@ -75,6 +75,7 @@ from squeezefilm.render.motion.sensor import LVDT_10_KHZ, SensorModel, SensorStr
 from squeezefilm.render.motion.stroke import MinimumJerkStroke, Stroke, Trajectory
 from squeezefilm.render.program.inverse import FrictionInverse
 from squeezefilm.render.program.lowering import Program, lower
+from squeezefilm.render.program.made_for import MadeForSpeed
 from squeezefilm.render.program.renderer import Played, Renderer
 from squeezefilm.render.program.wave import WaveCompensation
 from squeezefilm.render.resonator.compensation import (
@@ -100,7 +101,11 @@ AIR = Gas(1.81e-5, 101325.0, 1.2, 68e-9)
 WAYS = np.linspace(0.0, 1e-3, 9)
 
 
-def falling_friction(amplitude: Any) -> Any:
+def falling_over_speeds(amplitude: Any, speed: Any) -> Any:
+    return 1 - np.asarray(amplitude) / (4e-6 + 1e-6 * np.asarray(speed)[:, None])
+
+
+def falling_friction(amplitude: Any, speed: Any = None) -> Any:
     return 1 - np.asarray(amplitude) / 4e-6
 
 
@@ -185,6 +190,7 @@ MADE: dict[Any, Callable[[], Any]] = {
     RelativeFriction: lambda: RelativeFriction(SINE, 0.5, 0.9),
     Coordinate: AlongX,
     FingerPath: lambda: FingerPath(np.linspace(0, 1, 9), np.linspace(0, 0.02, 9), np.zeros(9)),
+    MadeForSpeed: lambda: MadeForSpeed(0.08, -0.1, 0.05),
     FrictionInverse: lambda: FrictionInverse.from_function(falling_friction, 2e-6),
     MotionEstimator: lambda: MotionEstimator.for_sensor(LVDT_10_KHZ),
     MotionModel: MotionModel,

@@ -25,7 +25,7 @@ FREE = DrivenEnvelope(TAU, TAU, 100 * LIMIT, braking=True)
 TIGHT = DrivenEnvelope(TAU, TAU, LIMIT, braking=True)
 
 
-def straight(amplitude: FloatArray) -> FloatArray:
+def straight(amplitude: FloatArray, speed: object = None) -> FloatArray:
     return np.asarray(1 - amplitude / (2.5 * LIMIT))
 
 

@@ -14,6 +14,7 @@ from typing import Literal
 import numpy as np
 import pytest
 
+from squeezefilm.chain.friction_table import FrictionTable
 from squeezefilm.render.fidelity.rendered_stroke import RenderedStroke, rendered_stroke
 from squeezefilm.render.motion.estimator import MotionEstimator
 from squeezefilm.render.motion.sensor import (
@@ -33,7 +34,7 @@ from squeezefilm.render.texture.noise import Noise
 from squeezefilm.render.texture.shapes import SineWave, SquareWave
 from squeezefilm.session.loop import rows as column
 from squeezefilm.session.loop.lateness import CLASSES, lateness_class
-from squeezefilm.session.loop.plan import DriveTable, FrictionTable, LoopPlan
+from squeezefilm.session.loop.plan import DriveTable, LoopPlan
 from squeezefilm.session.loop.simulated import (
     SimulatedLoop,
     SimulatedRun,
@@ -52,7 +53,7 @@ TEXTURES: dict[str, Composable] = {
 SENSORS = (LVDT_10_KHZ, TOUCH_PANEL_240_HZ, TOUCH_PANEL_60_HZ)
 
 
-def _friction(amplitude: np.ndarray) -> np.ndarray:
+def _friction(amplitude: np.ndarray, speed: object) -> np.ndarray:
     return 1.0 - 0.4 * amplitude / LIMIT
 
 
@@ -79,7 +80,7 @@ def _both(
         drive=DriveTable.linear(PER_VOLT, LIMIT / PER_VOLT),
         estimator=MotionEstimator.for_sensor(sensor),
         compensation=compensation,
-        relative_friction=FrictionTable(np.array([0.0, LIMIT]), np.array([1.0, 0.6])),
+        relative_friction=FrictionTable.of_amplitude(np.array([0.0, LIMIT]), np.array([1.0, 0.6])),
     )
     run = run_ticks(plan, stream_samples(stream), stream.arrival, offline.time.size)
     return offline, run
@@ -226,7 +227,7 @@ def test_lost_ticks_leave_the_compensator_where_the_resonator_is() -> None:
     plan = LoopPlan(
         lower(Amplitude(SineWave(1e-3), 0.1e-6, 0.9e-6), largest_amplitude=LIMIT), 5e3, envelope,
         DriveTable.linear(PER_VOLT, 100.0), MotionEstimator.for_sensor(LVDT_10_KHZ), "inverse",
-        FrictionTable(np.array([0.0, LIMIT]), np.array([1.0, 0.0])),
+        FrictionTable.of_amplitude(np.array([0.0, LIMIT]), np.array([1.0, 0.0])),
     )  # fmt: skip
     rng = np.random.default_rng(8)
     delays = np.where(rng.random(2000) < 0.1, rng.exponential(1e-3, 2000), 0.0)

@@ -22,7 +22,7 @@ from squeezefilm.render.texture.shapes import SineWave, SquareWave
 LOW, HIGH = 0.2e-6, 2e-6
 
 
-def linear(amplitude: np.ndarray) -> np.ndarray:
+def linear(amplitude: np.ndarray, speed: object) -> np.ndarray:
     return 1 - amplitude / 5e-6
 
 
@@ -144,8 +144,8 @@ def settled_ends(ratio: float) -> tuple[float, float]:
 @pytest.mark.parametrize(
     ("law", "keeps_more"),
     [
-        (lambda a: np.exp(-a / 1e-6), False),
-        (lambda a: 1 / (1 + (a / 1e-6) ** 4), True),
+        (lambda a, v: np.exp(-a / 1e-6), False),
+        (lambda a, v: 1 / (1 + (a / 1e-6) ** 4), True),
     ],
     ids=["exponential", "S-shaped"],
 )
@@ -155,7 +155,7 @@ def test_a_bent_friction_law_keeps_another_share(law: object, keeps_more: bool) 
     for row, period in enumerate(table.spatial_periods):
         for column, speed in enumerate(table.speeds):
             reached = np.array(settled_ends(period / (speed * tau)))
-            exact = np.ptp(law(reached)) / np.ptp(law(np.array([LOW, HIGH])))
+            exact = np.ptp(law(reached, speed)) / np.ptp(law(np.array([LOW, HIGH]), speed))
             assert table.friction_kept[row, column] == pytest.approx(exact, abs=2e-4)
     assert (table.friction_kept[0, -1] > table.amplitude_kept[0, -1]) == keeps_more
 

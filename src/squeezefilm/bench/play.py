@@ -20,7 +20,7 @@ from squeezefilm.arguments import called_with
 from squeezefilm.bench.check import DeviceCheck, check_device
 from squeezefilm.bench.conversation import Conversation
 from squeezefilm.bench.loop_check import check_loop
-from squeezefilm.bench.played_session import PlayedSession, judge_session
+from squeezefilm.bench.played_session import PlayedSession, judge_session, tile_summary
 from squeezefilm.bench.setup import KnownDevice, PlaySetup, play_setup
 from squeezefilm.chain.played_texture import FingerMotion, require_on_display
 from squeezefilm.chain.prediction import predict
@@ -182,6 +182,7 @@ def _played(
         "sensor": asked.sensor,
         "stroke": None if truth is None else asked.stroke,
         "mode": asked.mode,
+        "tile": tile_summary(setup.plan),
         "assumed_limits": list(setup.assumed_limits),
     }
     if truth is not None:

@@ -25,6 +25,7 @@ from squeezefilm.render.fidelity.report import FidelityReport, fidelity_report
 from squeezefilm.render.program.renderer import render
 from squeezefilm.results import Result, to_json
 from squeezefilm.session.loop import rows as column
+from squeezefilm.session.play.plan import PlayPlan
 from squeezefilm.session.record.trace import Trace
 
 _SMOOTHING: si.Second = 20e-3
@@ -108,6 +109,7 @@ class PlayedSession(Result):
             "display": self.setup.display.name,
             "surface": p.surface.name,
             "mode": plan.mode,
+            "tile": tile_summary(plan),
             "voltage_V": p.voltage,
             "frequency_Hz": plan.frequency,
             "rate_Hz": plan.loop.rate,
@@ -192,14 +194,17 @@ def recorded_way(setup: PlaySetup, trace: Trace) -> PlayedWay:
         when, amplitude = when[rising], rows[new[rising], column.AMPLITUDE]
         place = np.interp(when, time[known], x[known])
         pace = np.interp(when, time[known], speed[known])
-        friction = setup.friction(amplitude)
+        friction = setup.friction(amplitude, pace)
         source = "the loop's estimate of the finger and the pickup's amplitude"
     else:
         when, place, pace = time[known], x[known], speed[known]
         friction = rows[known, column.FRICTION]
-        inverse = setup.inverse
-        # The record holds friction; its amplitude is the one of the display's curve.
-        amplitude = np.interp(-friction, -inverse.relative_friction, inverse.amplitude, left=0.0)
+        # The record holds friction; its amplitude is the one of the display's law at that speed.
+        amplitude = np.full(friction.shape, np.nan)
+        there = np.isfinite(friction) & np.isfinite(pace)
+        if np.any(there):
+            held = np.clip(friction[there], setup.inverse.least_friction_at(pace[there]), 1.0)
+            amplitude[there] = setup.inverse.amplitude_for(held, pace[there])
         source = "the loop's estimate of the finger and the envelope's model (no pickup)"
     return _way(setup, when, place, pace, amplitude, friction, source)
 
@@ -220,6 +225,12 @@ def _true_way(setup: PlaySetup, trace: Trace, truth: Path, offset: si.Second) ->
         friction[inside],
         "what really happened in the twin",
     )
+
+
+def tile_summary(plan: PlayPlan) -> Mapping[str, Any] | None:
+    """What the tile of a plan was made for; None without one, or where nobody can say."""
+    tile = plan.tile
+    return None if tile is None or tile.made_for is None else tile.made_for.summary()
 
 
 def _last(trace: Trace, kind: str) -> Mapping[str, Any]:
@@ -246,7 +257,8 @@ def _way(
     wanted = np.zeros(0)
     if time.size:
         wanted = render(setup.plan.loop.program, x, 0.0, speed, time).amplitude
-    return PlayedWay(time, x, wanted, amplitude, setup.friction(wanted), friction, source)
+    meant = setup.friction(wanted, np.asarray(speed))
+    return PlayedWay(time, x, wanted, amplitude, meant, friction, source)
 
 
 @dataclass(frozen=True, slots=True, repr=False)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from squeezefilm import quantities as si
+from squeezefilm.chain.friction_table import FrictionTable
 from squeezefilm.chain.prediction import Prediction, predict
 from squeezefilm.chain.rendered_texture import lowered
 from squeezefilm.compiled import announce
@@ -18,7 +19,7 @@ from squeezefilm.render.motion.sensor import LVDT_10_KHZ, SensorModel
 from squeezefilm.render.program.inverse import FrictionInverse
 from squeezefilm.render.resonator.compensation import DrivenEnvelope
 from squeezefilm.render.resonator.envelope import envelope_time_constant
-from squeezefilm.session.loop.plan import DriveTable, FrictionTable, LoopPlan
+from squeezefilm.session.loop.plan import DriveTable, LoopPlan
 from squeezefilm.session.loop.tick import make_tick
 from squeezefilm.session.play.plan import PlayPlan
 from squeezefilm.session.play.tile import TextureTile, tile_of
@@ -57,7 +58,7 @@ class PlaySetup:
 
     Attributes:
         display, texture, prediction: the inputs, and the display at its largest voltage.
-        inverse: the display's friction curve, by which amplitudes become friction again.
+        inverse: the display's friction law, by which amplitudes become friction again.
         sensor: what the finger is seen with, as the estimator believes it.
         plan: for the player.
         assumed_limits: names of the drive's limits that the display does not give.
@@ -76,10 +77,16 @@ class PlaySetup:
         """What the texture is called."""
         return self.texture.title or f"a texture of {self.texture.texture.quantity}"
 
-    def friction(self, amplitude: si.MetreArray) -> si.DimensionlessArray:
-        """Relative friction (1) by the display's law at amplitudes (m), held beyond the largest."""
-        held = np.where(np.isfinite(amplitude), amplitude, np.nan)
-        return np.interp(held, self.inverse.amplitude, self.inverse.relative_friction)
+    def friction(
+        self, amplitude: si.MetreArray, speed: si.MetrePerSecondArray
+    ) -> si.DimensionlessArray:
+        """Relative friction (1) by the display's law at amplitudes (m, held beyond the largest)
+        under a finger at speeds (m/s); not a number where one of them is none."""
+        known = np.isfinite(amplitude) & np.isfinite(speed)
+        found = np.full(np.shape(amplitude), np.nan)
+        if np.any(known):
+            found[known] = self.inverse.friction_at(amplitude[known], speed[known])
+        return found
 
 
 def play_setup(
@@ -126,7 +133,7 @@ def play_setup(
         drive=DriveTable.linear(largest / p.voltage, p.voltage),
         estimator=MotionEstimator.for_sensor(device.sensor),
         compensation=compensation,  # type: ignore[arg-type] # checked with a message by LoopPlan
-        relative_friction=FrictionTable(p.inverse.amplitude, p.inverse.relative_friction),
+        relative_friction=FrictionTable.of_inverse(p.inverse),
         output_delay=OUTPUT_DELAY,
     )
     announce(make_tick, "real-time loop", 20)
@@ -136,7 +143,7 @@ def play_setup(
         frequency=p.frequency,
         twin=device.twin,
         mode=mode,  # type: ignore[arg-type] # checked with a message by PlayPlan
-        tile=_tile(loop, device.way) if mode == "tile" else None,
+        tile=_tile(loop, device.way, p) if mode == "tile" else None,
         sensor_latency=device.sensor.latency,
         amplitude_per_pickup=device.amplitude_per_pickup,
     )
@@ -144,7 +151,7 @@ def play_setup(
     return PlaySetup(display, texture, p, p.inverse, device.sensor, plan, assumed)
 
 
-def _tile(loop: LoopPlan, way: tuple[si.Metre, si.Metre] | None) -> TextureTile:
+def _tile(loop: LoopPlan, way: tuple[si.Metre, si.Metre] | None, p: Prediction) -> TextureTile:
     first, last = (0.0, _LONGEST_TILE_WAY) if way is None else way
     if not last > first:
         raise InputError(f"a tile from {first:g} m to {last:g} m covers nothing; exchange them")
@@ -152,4 +159,5 @@ def _tile(loop: LoopPlan, way: tuple[si.Metre, si.Metre] | None) -> TextureTile:
     pitch = max(1, int(np.ceil((last - first) / ((LONGEST_TILE - 1) * _FINEST_PITCH))))
     origin = int(np.floor(first / _FINEST_PITCH))
     size = min(LONGEST_TILE, int(np.ceil((last - first) / (pitch * _FINEST_PITCH))) + 1)
-    return tile_of(loop.program, origin * _FINEST_PITCH, pitch * _FINEST_PITCH, size)
+    first, pitch_of = origin * _FINEST_PITCH, pitch * _FINEST_PITCH
+    return tile_of(loop.program, first, pitch_of, size, speed=p.speed, law=p.friction)

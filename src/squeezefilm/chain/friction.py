@@ -37,7 +37,7 @@ from squeezefilm.hard_limits import FINGER_SPEED
 from squeezefilm.materials import Gas
 
 HIGHEST_AMPLITUDE: si.Metre = 50e-6
-TABLE_SPEEDS: si.MetrePerSecondArray = np.append(0.0, np.geomspace(1e-3, 2.0, 24))
+TABLE_SPEEDS: si.MetrePerSecondArray = np.append(0.0, np.geomspace(1e-3, 2.0, 47))
 """Where a law that depends on the speed is tabulated: toward rest, and from creeping to faster than
 fingers explore. Linear between; held beyond."""
 
@@ -358,9 +358,9 @@ class FrictionLaw:
         # Denser at small amplitudes, where the law bends within the roughness.
         grid = highest_amplitude * np.linspace(0.0, 1.0, count) ** 2
         if self.kind.shear:
-            return FrictionTable(
-                grid, TABLE_SPEEDS, self.over_speeds(grid, TABLE_SPEEDS), self.speed
-            )
+            # A row of its own for the speed that is asked for most.
+            speeds = np.union1d(TABLE_SPEEDS, [self.speed])
+            return FrictionTable(grid, speeds, self.over_speeds(grid, speeds), self.speed)
         law = self.curve(grid)
         if law[-1] == 0:
             # The law has a kink where the finger lifts off; a point of its own keeps it sharp.

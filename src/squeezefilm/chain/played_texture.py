@@ -62,6 +62,9 @@ class FingerMotion:
         else:
             x, y = motion.position(time), np.zeros(time.size)
         way = trajectory.position(time)
+        if isinstance(motion, Stroke):
+            # Turns at once: a difference over the turn would say that it stands still there.
+            return cls(trajectory, time, way, x, y, motion.velocity(time), path)
         forward, sideways = np.gradient(x), np.gradient(y)
         sign = np.where(forward != 0.0, np.sign(forward), np.sign(sideways))
         speed = np.hypot(forward, sideways) * rate * sign
@@ -72,7 +75,8 @@ class FingerMotion:
 class PlayedTexture:
     """The amplitude (m) a texture wants where the finger's way is `way`; see the module.
 
-    The velocity's sign is that of the true motion at the time asked: a loop's speed has none.
+    A wanted friction becomes the amplitude that makes it at the speed the loop believes in. The
+    velocity's sign is that of the true motion at the time asked: a loop's speed has none.
     Friction that cannot be reached is brought to the nearest that can.
     """
 
@@ -101,7 +105,7 @@ class PlayedTexture:
         last = self.motion.time.size - 1
         step = np.clip(np.searchsorted(self.motion.time, t), 0, last)
         v = np.abs(speed) * np.where(self.motion.speed[step] < 0.0, -1.0, 1.0)
-        amplitude = self.amplitude(evaluate(self.program, x, y, v, t))
+        amplitude = self.amplitude(evaluate(self.program, x, y, v, t), v)
         if self.compensation is not None:
             amplitude = amplitude / self.compensation.factor(x, y)
         return np.minimum(amplitude, self.program.largest_amplitude)
@@ -118,12 +122,13 @@ class PlayedTexture:
             return np.asarray(1.0 - values / self.friction_coefficient)
         return values
 
-    def amplitude(self, values: si.FloatArray) -> si.MetreArray:
-        """The amplitude (m) that makes values of the texture, as near as the display can."""
+    def amplitude(self, values: si.FloatArray, speed: si.MetrePerSecondLike) -> si.MetreArray:
+        """The amplitude (m) that makes values of the texture under a finger at speeds (m/s), as
+        near as the display can."""
         if self.program.quantity == "amplitude":
             return np.clip(values, 0.0, self.program.largest_amplitude)
-        wanted = np.clip(self.friction(values), self.inverse.least_friction, 1.0)
-        return self.inverse.amplitude_for(wanted)
+        least = self.inverse.least_friction_at(speed)
+        return self.inverse.amplitude_for(np.clip(self.friction(values), least, 1.0), speed)
 
 
 def single_period(texture: Composable, motion: Stroke | None = None) -> si.Metre | None:

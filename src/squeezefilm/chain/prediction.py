@@ -92,11 +92,11 @@ class Prediction(Result):
 
     @functools.cached_property
     def inverse(self) -> FrictionInverse:
-        """The amplitude for a wanted µ′/µ, up to this amplitude: what a renderer needs.
+        """The amplitude for a wanted µ′/µ and speed, up to this one: what a renderer needs.
 
         Raises `InputError` where nothing vibrates or the friction does not fall.
         """
-        return FrictionInverse.from_function(self.friction, self.vibration_amplitude)
+        return self.friction.inverse(self.law.over_speeds, self.vibration_amplitude)
 
     @property
     def envelope_time_constant(self) -> si.Second:

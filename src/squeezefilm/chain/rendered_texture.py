@@ -1,7 +1,8 @@
 """What `squeezefilm render` computes: a texture on a display under a finger, link by link.
 
 texture → program → renderer along the motion (as a sensor has it, if there is one) → resonator
-with the finger on it → friction by the display's law → tangential force → fidelity.
+with the finger on it → friction by the display's law → tangential force → fidelity. The renderer
+asks for the amplitude that a speed needs as the loop estimates it; what is felt is at the true one.
 """
 
 from __future__ import annotations
@@ -93,6 +94,16 @@ class RenderAnalysis(Result):
         return float(np.sqrt(np.mean(miss**2)))
 
     @property
+    def mean_speed(self) -> si.MetrePerSecond:
+        """Of the finger over its way (m/s)."""
+        return float(np.mean(np.abs(self.finger.speed)))
+
+    @property
+    def least_friction(self) -> si.Dimensionless:
+        """The least relative friction that the display reaches at the finger's mean speed (1)."""
+        return float(self.played.inverse.least_friction_at(self.mean_speed))
+
+    @property
     def time_constant(self) -> si.Second:
         """Of the resonator's envelope with the finger on it (s)."""
         return self.stroke.envelope.rise_time_constant
@@ -145,14 +156,15 @@ class RenderAnalysis(Result):
             "voltage_V": p.voltage,
             "normal_force_N": p.normal_force,
             "largest_amplitude_m": stroke.envelope.amplitude_limit,
-            "least_relative_friction": self.played.inverse.least_friction,
+            "least_relative_friction": self.least_friction,
+            "friction_inverse_error": self.played.inverse.max_error,
             "resonance_frequency_Hz": resonance_with_finger(p)[1],
             "quality_factor": resonance_with_finger(p)[0],
             "envelope_time_constant_s": self.time_constant,
             "control_rate_Hz": stroke.control_rate,
             "duration_s": float(stroke.time[-1]),
             "way_m": float(np.sum(np.abs(np.diff(self.finger.way)))),
-            "mean_speed_m_per_s": float(np.mean(np.abs(self.finger.speed))),
+            "mean_speed_m_per_s": self.mean_speed,
             "sensor": None if stroke.sensor is None else stroke.sensor.name,
             "compensation": stroke.compensation,
             "braking": stroke.envelope.braking,
@@ -293,14 +305,14 @@ def _analysis(
     it is."""
     finger = played.motion
     values = texture.texture(finger.x, finger.y, finger.speed, finger.time)
-    amplitude = played.amplitude(values)
-    reached, factor = under.reached(amplitude), under.factor(finger)
+    amplitude = played.amplitude(values, finger.speed)
+    reached, factor = under.reached(amplitude, finger.speed), under.factor(finger)
     by_amplitude = texture.texture.quantity == "amplitude"
     nodes = "" if under.factors is None else f"; standing wave {under.wave}"
     stroke = dataclasses.replace(
         stroke,
         relative_friction_wanted=reached,
-        relative_friction_rendered=under.felt(stroke.amplitude * factor),
+        relative_friction_rendered=under.felt(stroke.amplitude * factor, finger.speed),
         model=stroke.model + nodes,
     )
     counters = render(played.program, finger.x, finger.y, finger.speed, finger.time).counters

@@ -37,6 +37,8 @@ def resonance_with_finger(p: Prediction) -> tuple[si.Dimensionless, si.Hertz]:
 def wave_factors(display: Display, p: Prediction) -> WaveCompensation:
     """The amplitude that the pad meets along the wave, over that at the best place.
 
+    It explains the friction along the wave under a finger at the prediction's speed, and is taken
+    to be the same at others: what changes with the speed is how friction follows the amplitude.
     Raises `InputError` for a disc, whose wave is none along a line.
     """
     plate = display.actuator
@@ -82,7 +84,7 @@ class UnderPad:
         centred = float(factors.factor(0.0))
         felt = p.law.table(largest / centred)
         if wave == "compensated":
-            inverse = FrictionInverse.from_function(lambda a: felt(a / centred), largest)
+            inverse = felt.inverse(p.law.over_speeds, largest, centred)
         return cls(wave, friction, felt, inverse, factors, centred)
 
     @property
@@ -90,11 +92,14 @@ class UnderPad:
         """By what the renderer drives harder, None where it does not."""
         return self.factors if self.wave == "compensated" else None
 
-    def reached(self, amplitude: si.MetreArray) -> si.DimensionlessArray:
-        """Relative friction (1) where the renderer asks for amplitudes (m)."""
+    def reached(
+        self, amplitude: si.MetreArray, speed: si.MetrePerSecondArray
+    ) -> si.DimensionlessArray:
+        """Relative friction (1) where the renderer asks for amplitudes (m), under a finger at
+        speeds (m/s)."""
         if self.wave == "compensated":
-            return self.felt(amplitude / self.centred)
-        return self.friction(amplitude)
+            return self.felt(amplitude / self.centred, speed)
+        return self.friction(amplitude, speed)
 
     def factor(self, finger: FingerMotion) -> si.DimensionlessArray:
         """The amplitude along the way over that of an antinode (1)."""

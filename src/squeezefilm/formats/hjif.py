@@ -25,6 +25,7 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
+from squeezefilm.render.program.made_for import MadeForSpeed
 from squeezefilm.render.texture.composition import Composable, require_texture
 from squeezefilm.render.texture.coordinate import AlongX
 from squeezefilm.render.texture.levels import RelativeFriction
@@ -42,6 +43,8 @@ _DRIFT = 1e-3
 _ELSEWHERE_Y = (-0.011_37, 0.002_71, 0.017_93)
 _ELSEWHERE_V = (-0.08, 0.021_3, 0.167)
 _ELSEWHERE_T = (0.113_7, 0.971_3)
+
+_USUAL_SPEED: si.MetrePerSecond = 0.08
 
 ToFriction = Callable[[si.FloatArray], si.DimensionlessArray]
 """Values of a texture, in its quantity → relative friction (1)."""
@@ -81,6 +84,9 @@ class ReferenceDevice:
 class HjifExport:
     """An export: the document (`json.dumps` it), what was lost, and how near it is.
 
+    `made_for` is the finger's speed at which the display makes this friction, and how far off it is
+    at half and double of that where its player knows the place alone; None where nobody said.
+
     `rms_error` and `largest_error` compare relative friction on the line, as the reference
     software would evaluate the file, with the texture (1). At a step keyframes are 1 µm apart, so
     the largest error may be the step itself.
@@ -90,6 +96,7 @@ class HjifExport:
     lost: tuple[str, ...]
     rms_error: si.Dimensionless
     largest_error: si.Dimensionless
+    made_for: MadeForSpeed | None = None
 
 
 @si.checked_numbers
@@ -101,7 +108,7 @@ def hjif_of(
     device: ReferenceDevice,
     title: str = "",
     to_friction: ToFriction | None = None,
-    speed: Annotated[si.MetrePerSecond, si.Above(0.0)] = 0.08,
+    made_for: MadeForSpeed | None = None,
     tolerance: Annotated[si.Dimensionless, si.Above(0.0), si.AtMost(0.1)] = 1e-4,
 ) -> HjifExport:
     """A texture along x from `start` to `end` (m, y = 0) as a document of MPEG haptics.
@@ -112,7 +119,8 @@ def hjif_of(
         device: the display.
         title: goes into the description.
         to_friction: the texture's values → relative friction; needed unless that is its quantity.
-        speed: of the finger, where the texture asks for it (m/s).
+        made_for: the finger's speed, for a texture that asks for it (without one 80 mm/s), and what
+            the friction costs on this display at others; goes into the description.
         tolerance: by which keyframes left out may change the friction (1).
 
     Raises:
@@ -127,6 +135,7 @@ def hjif_of(
             "law, or write the texture in relative_friction"
         )
     known = to_friction or (lambda values: values)
+    speed = _USUAL_SPEED if made_for is None else made_for.speed
 
     def friction(
         x: si.FloatArray, y: float = 0.0, v: float = speed, t: float = 0.0
@@ -143,9 +152,13 @@ def hjif_of(
         lost.append("the grating ends at whole millimetres, outside of its line")
     else:
         bands, exponent = [_keyframes(friction, first, last, tolerance)], MICRO
-    document = _document(bands, exponent, title, device)
+    words = title or "friction texture"
+    if made_for is not None:
+        words += f"; {made_for.sentence()}"
+        lost.append(f"the file knows places alone: {made_for.sentence()}")
+    document = _document(bands, exponent, words, device)
     rms, largest = _errors(document, friction, first * 1e-6, last * 1e-6)
-    return HjifExport(document, tuple(lost), rms, largest)
+    return HjifExport(document, tuple(lost), rms, largest, made_for)
 
 
 def _lost(
@@ -262,9 +275,8 @@ def _band(kind: str, effect: dict[str, Any], frequency: int) -> dict[str, Any]:
 
 
 def _document(
-    bands: list[dict[str, Any]], exponent: int, title: str, device: ReferenceDevice
+    bands: list[dict[str, Any]], exponent: int, words: str, device: ReferenceDevice
 ) -> dict[str, Any]:
-    words = title or "friction texture"
     return {
         "version": VERSION,
         "profile": PROFILE,

@@ -58,8 +58,10 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 
-VERSION = 1
+VERSION = 2
 """Version of the instructions and of the program's layout."""
+READ_VERSIONS = (1, 2)
+"""Versions that are understood; 2 brought the speeds of the inverse, and 1 has none."""
 
 END = 0
 CONSTANT = 1

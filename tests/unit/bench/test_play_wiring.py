@@ -15,11 +15,15 @@ from squeezefilm.bench import play as module
 from squeezefilm.bench.play import JUDGING, PlayResult, device_stream, play_texture
 from squeezefilm.errors import InputError
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ, TOUCH_PANEL_240_HZ
+from squeezefilm.render.program.made_for import MadeForSpeed
 from squeezefilm.session.play.plan import Ending
 from squeezefilm.session.play.real_time import PlayOutcome
 from squeezefilm.twin.settings import TwinSettings
 
 DISPLAY, TEXTURE = "biet2008-plate", "biet2008-square-4mm"
+
+
+PLAN = SimpleNamespace(tile=SimpleNamespace(made_for=MadeForSpeed(0.08, -0.1, 0.05)))
 
 
 class Bench:
@@ -38,7 +42,7 @@ class Bench:
     def _play_setup(self, display: Any, texture: Any, *, device: Any, **how: Any) -> Any:
         self.setup.append({"display": display.name, **how, **vars(device)})
         return SimpleNamespace(
-            display=display, texture=texture, plan="plan", name="a grating",
+            display=display, texture=texture, plan=PLAN, name="a grating",
             assumed_limits=("slew",),
         )  # fmt: skip
 
@@ -88,13 +92,14 @@ def test_a_twin_is_played_over_the_way_of_its_finger(bench: Bench, tmp_path: Pat
         7, LVDT_10_KHZ, "sensing_patch",
     )  # fmt: skip
     ((plan, stream, trace, metadata), said) = bench.runs[0]
-    assert (plan, stream, trace) == ("plan", "serial:there", folder / "trace.sqft")
+    assert (plan, stream, trace) == (PLAN, "serial:there", folder / "trace.sqft")
     assert said == {
         "duration": 4.0, "sensor": None, "show": None, "tap": None, "bench_only": False,
     }  # fmt: skip
     expected = {
         "texture": "a grating", "display": DISPLAY, "drive": "twin", "sensor": "device",
         "stroke": "60 mm/s over 4 cm", "mode": "stream", "assumed_limits": ["slew"], "seed": 7,
+        "tile": PLAN.tile.made_for.summary(),
     }  # fmt: skip
     assert {key: metadata[key] for key in expected} == expected
     (judged,) = bench.judged

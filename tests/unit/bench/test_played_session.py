@@ -17,6 +17,7 @@ from squeezefilm.errors import InputError
 from squeezefilm.quantities import FloatArray
 from squeezefilm.render.motion.estimator import MotionEstimator
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ
+from squeezefilm.render.program.inverse import FrictionInverse
 from squeezefilm.render.program.lowering import lower
 from squeezefilm.render.resonator.compensation import DrivenEnvelope
 from squeezefilm.render.texture.levels import Amplitude
@@ -30,7 +31,7 @@ REACH = 2e-6
 LATENCY = 4e-3
 
 
-def friction_of(amplitude: Any) -> Any:
+def friction_of(amplitude: Any, speed: Any = None) -> Any:
     """Of a display whose friction falls linearly to nothing at its reach."""
     return 1 - np.asarray(amplitude) / REACH
 
@@ -43,11 +44,9 @@ def setup() -> Any:
         estimator=MotionEstimator.for_sensor(LVDT_10_KHZ),
     )  # fmt: skip
     return SimpleNamespace(
-        plan=SimpleNamespace(loop=plan, sensor_latency=LATENCY, mode="stream"),
+        plan=SimpleNamespace(loop=plan, sensor_latency=LATENCY, mode="stream", tile=None),
         friction=friction_of, sensor=LVDT_10_KHZ, name="a grating",
-        inverse=SimpleNamespace(
-            amplitude=np.array([0.0, REACH]), relative_friction=np.array([1.0, 0.0])
-        ),
+        inverse=FrictionInverse.from_function(friction_of, REACH),
         texture=SimpleNamespace(texture=SQUARE),
     )  # fmt: skip
 
@@ -366,7 +365,7 @@ def test_a_summary_says_what_was_to_be_played_and_what_became_of_it(
         surface=SimpleNamespace(name="bare"), voltage=15.0, warnings=("careful",)
     )
     plan = SimpleNamespace(
-        mode="stream", frequency=40e3, loop=setup.plan.loop, limits={"voltage_V": 20.0}
+        mode="stream", frequency=40e3, loop=setup.plan.loop, limits={"voltage_V": 20.0}, tile=None
     )
     said = SimpleNamespace(
         name="a grating", display=SimpleNamespace(name="one"), prediction=prediction, plan=plan,
@@ -382,7 +381,7 @@ def test_a_summary_says_what_was_to_be_played_and_what_became_of_it(
         "assumed_limits": ["slew"], "sensor": {"name": "LVDT"}, "rows": 20, "loop": {}, "link": {},
         "lag": None, "position_error_m": None, "flags": {}, "device": [], "by_truth": None,
         "damage": [], "provenance": {"display": "one"}, "warnings": ["careful"],
-        "end": {"why": "over", "faded_at_s": None},
+        "end": {"why": "over", "faded_at_s": None}, "tile": None,
     }  # fmt: skip
     assert {key: found[key] for key in expected} == expected
     assert set(found) - set(expected) == {"by_record"}

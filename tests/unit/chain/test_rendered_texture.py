@@ -45,6 +45,10 @@ def point() -> Prediction:
     return predict(STATOR)
 
 
+def law_at_the_strokes_speed(amplitude: Any) -> Any:
+    return point().law.over_speeds(np.atleast_1d(amplitude), np.array([STROKE.speed]))[0]
+
+
 @functools.cache
 def made(
     texture: Any = GRATING, motion: Any = STROKE, wave: str = "ignored", **others: Any
@@ -78,7 +82,9 @@ def test_the_envelope_closes_in_with_the_resonators_time_constant() -> None:
 
 def test_an_even_amplitude_gives_the_friction_law_there() -> None:
     found = made(MICROMETRE)
-    law = point().law.at(1e-6)
+    law = float(law_at_the_strokes_speed(1e-6)[0])
+    # The stroke is faster than the speed of the prediction, and so stickier.
+    assert law > point().law.at(1e-6) + 0.02
     for friction in (found.asked, found.stroke.relative_friction_rendered):
         assert friction == pytest.approx(law, abs=2e-3)
     assert np.all(found.factor == 1.0)
@@ -105,7 +111,8 @@ def test_a_reduction_is_taken_from_the_coefficient_at_rest() -> None:
 
 def test_a_texture_beyond_reach_is_asked_whole_and_counted() -> None:
     least = made().summary()["least_relative_friction"]
-    assert least == pytest.approx(point().relative_friction, abs=1e-6)
+    law = float(law_at_the_strokes_speed(point().vibration_amplitude)[0])
+    assert least == pytest.approx(law, abs=point().inverse.max_error)
     found = made(RelativeFriction(SquareWave(4e-3), 0.1, 1.0))
     assert np.min(found.asked) == pytest.approx(0.1)
     assert np.min(found.stroke.relative_friction_wanted) == pytest.approx(least, abs=1e-6)
@@ -127,9 +134,9 @@ def test_the_wave_is_felt_where_it_is_not_made_up_for() -> None:
     expected = wave.factor(found.finger.x) / wave.factor(0.0)
     assert found.factor == pytest.approx(expected)
     assert np.ptp(found.factor) > 0.1
-    law = point().law.curve(1e-6 * expected[::400])
+    law = law_at_the_strokes_speed(1e-6 * expected[::400])
     assert found.stroke.relative_friction_rendered[::400] == pytest.approx(law, abs=2e-3)
-    assert found.asked == pytest.approx(point().law.at(1e-6), abs=2e-3)
+    assert found.asked == pytest.approx(float(law_at_the_strokes_speed(1e-6)[0]), abs=2e-3)
     data = found.summary()
     assert data["wave_least_factor"] == np.min(found.factor)
     assert data["wave_greatest_factor"] == np.max(found.factor)
@@ -140,15 +147,17 @@ def test_a_compensated_wave_leaves_an_even_texture_even() -> None:
     friction = made(EVEN, wave="compensated")
     felt = made(EVEN, wave="felt").stroke.relative_friction_rendered
     rendered = friction.stroke.relative_friction_rendered
-    assert rendered == pytest.approx(0.85, abs=5e-3)
-    assert np.ptp(rendered) < np.ptp(felt) / 5
+    # What the wave leaves was found at the prediction's speed, 80 mm/s, and the stroke is faster.
+    assert rendered == pytest.approx(0.85, abs=7e-3)
+    assert np.ptp(rendered) < np.ptp(felt) / 4
     assert friction.asked == pytest.approx(0.85)
     assert friction.stroke.relative_friction_wanted == pytest.approx(0.85, abs=1e-3)
     # The amplitude of an even one is that at the best place, above the antinode at x = 0.
     amplitude = made(MICROMETRE, wave="compensated")
-    best = point().law.at(1e-6 / float(wave_factors(STATOR, point()).factor(0.0)))
+    centred = float(wave_factors(STATOR, point()).factor(0.0))
+    best = float(law_at_the_strokes_speed(1e-6 / centred)[0])
     assert amplitude.asked == pytest.approx(best, abs=2e-3)
-    assert amplitude.stroke.relative_friction_rendered == pytest.approx(best, abs=5e-3)
+    assert amplitude.stroke.relative_friction_rendered == pytest.approx(best, abs=7e-3)
     assert "standing wave" not in made(MICROMETRE).stroke.model
 
 

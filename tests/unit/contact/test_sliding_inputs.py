@@ -134,7 +134,7 @@ def force() -> StrokeForce:
     """A 1 mm square grating, 40 % of friction deep, under a finger at 80 mm/s, there and back."""
     stroke = Stroke(0.08, 0.03, passes=2)
     trace = friction_trace(
-        Amplitude(SquareWave(1e-3), 0.0, 2e-6), stroke, 5e-4, lambda a: 1 - a / 5e-6
+        Amplitude(SquareWave(1e-3), 0.0, 2e-6), stroke, 5e-4, lambda a, v: 1 - a / 5e-6
     )
     return stroke_force(trace, 0.6, 0.5)
 
@@ -167,7 +167,7 @@ def test_the_spectrum_has_the_power_and_the_lines_of_the_vibration(force: Stroke
 
 def test_a_texture_without_a_period_has_no_lines(force: StrokeForce) -> None:
     trace = friction_trace(
-        lambda x, y, v, t: np.full(np.shape(x), 1e-6), Stroke(0.08), 1e-3, lambda a: 1 - a / 5e-6
+        lambda x, y, v, t: np.full(np.shape(x), 1e-6), Stroke(0.08), 1e-3, lambda a, v: 1 - a / 5e-6
     )
     with pytest.raises(InputError, match="no spatial period"):
         stroke_force(trace, 0.6, 0.5).vibration()

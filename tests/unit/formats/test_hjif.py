@@ -11,6 +11,7 @@ import pytest
 from squeezefilm.errors import InputError
 from squeezefilm.formats.hjif import HjifExport, ReferenceDevice, hjif_of
 from squeezefilm.formats.hjif_read import friction_along, read_hjif, require_hjif, texture_of_hjif
+from squeezefilm.render.program.made_for import MadeForSpeed
 from squeezefilm.render.texture.composition import Composable
 from squeezefilm.render.texture.coordinate import AlongY
 from squeezefilm.render.texture.levels import Amplitude, RelativeFriction
@@ -26,6 +27,20 @@ def through_a_file(export: HjifExport, folder: Path) -> Path:
     path = folder / "t.hjif"
     path.write_text(json.dumps(export.document))
     return path
+
+
+def test_what_it_was_made_for_is_said_in_the_file_and_among_what_is_lost() -> None:
+    made = MadeForSpeed(0.06, -0.123, 0.045)
+    export = hjif_of(
+        friction(SineWave(2e-3)), 0.0, 0.02, device=DEVICE, title="waves", made_for=made
+    )
+    assert export.made_for is made
+    assert export.document["description"] == (
+        "waves; made for a finger at 60 mm/s; at half that speed relative friction is off by up to "
+        "-0.12, at double by up to +0.045; relative friction along x, by squeezefilm"
+    )
+    assert any(made.sentence() in one for one in export.lost)
+    assert hjif_of(friction(SineWave(2e-3)), 0.0, 0.02, device=DEVICE).made_for is None
 
 
 def friction(pattern: Pattern) -> RelativeFriction:

@@ -8,13 +8,14 @@ from typing import Any
 import numpy as np
 import pytest
 
+from squeezefilm.chain.friction_table import FrictionTable
 from squeezefilm.render.motion.estimator import MotionEstimator
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ
 from squeezefilm.render.program.lowering import lower
 from squeezefilm.render.resonator.compensation import DrivenEnvelope
 from squeezefilm.render.texture.levels import Amplitude
 from squeezefilm.render.texture.shapes import SquareWave
-from squeezefilm.session.loop.plan import DriveTable, FrictionTable, LoopPlan
+from squeezefilm.session.loop.plan import DriveTable, LoopPlan
 
 
 @pytest.fixture
@@ -28,7 +29,9 @@ def plan_of() -> Callable[..., LoopPlan]:
             "envelope": DrivenEnvelope(0.5e-3, 0.7e-3, 1e-6),
             "drive": DriveTable.linear(1e-8, 100.0),
             "estimator": MotionEstimator.for_sensor(LVDT_10_KHZ),
-            "relative_friction": FrictionTable(np.array([0.0, 2e-6]), np.array([1.0, 0.0])),
+            "relative_friction": FrictionTable.of_amplitude(
+                np.array([0.0, 2e-6]), np.array([1.0, 0.0])
+            ),
         }
         return LoopPlan(**{**fields, **changes})
 

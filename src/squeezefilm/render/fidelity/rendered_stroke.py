@@ -19,7 +19,7 @@ from squeezefilm.hard_limits import RENDER_STEPS, require_motion
 from squeezefilm.render.fidelity.trace import RelativeFriction, friction_of, per_sample
 from squeezefilm.render.motion.estimator import MotionEstimate, MotionEstimator, estimate_motion
 from squeezefilm.render.motion.sensor import SensorModel, sensor_stream
-from squeezefilm.render.motion.stroke import Trajectory
+from squeezefilm.render.motion.stroke import Stroke, Trajectory
 from squeezefilm.render.resonator import kernel
 from squeezefilm.render.resonator.compensation import (
     Compensation,
@@ -46,7 +46,8 @@ class RenderedStroke:
         wanted: amplitude that the texture wants at the finger's true place (m, zero-to-peak).
         command: amplitude commanded until the next step (m); negative in inverted phase.
         amplitude: of the envelope, its magnitude (m, zero-to-peak).
-        relative_friction_wanted, relative_friction_rendered: at `wanted` and at `amplitude` (1).
+        relative_friction_wanted, relative_friction_rendered: at `wanted` and at `amplitude`, under
+            the finger's true speed (1).
         saturated_top, saturated_bottom: share of steps whose command met a limit (1).
         silent: share of steps at which the finger's place was not known and the drive was off (1).
         model: what made it.
@@ -98,8 +99,8 @@ def rendered_stroke(
         trajectory: the finger's motion: a `Stroke`, a `MinimumJerkStroke`, or anything with
             `duration` and `position(t)`.
         envelope: the resonator and the limits of its drive.
-        relative_friction: vibration amplitudes (m, zero-to-peak; shape (n,)) → relative friction
-            (1; the same shape). Called twice.
+        relative_friction: vibration amplitudes (m, zero-to-peak) and the finger's true speed (m/s,
+            signed), each of shape (n,) → relative friction (1; the same shape). Called twice.
         compensation: "none", "inverse" or "preview".
         sensor: what reports the finger's position; without one the position is known.
         estimator: of the motion; without one, the default for the sensor.
@@ -118,8 +119,12 @@ def rendered_stroke(
     steps = math.floor(rounded)
     dt = 1 / control_rate
     time: si.FloatArray = np.arange(steps + 1, dtype=np.float64) * dt
-    position = trajectory.position(np.minimum(time, trajectory.duration))
+    inside: si.FloatArray = np.minimum(time, trajectory.duration)
+    position = trajectory.position(inside)
+    # A stroke turns at once: a difference over the turn would say that it stands still there.
     speed: si.FloatArray = np.gradient(position, dt)
+    if isinstance(trajectory, Stroke):
+        speed = trajectory.velocity(inside)
     wanted = _asked(texture, position, speed, time)
     estimate, known = None, np.ones(time.size, dtype=bool)
     # For whose place a command is meant: the middle of its step, or (compensated) the next step.
@@ -161,8 +166,8 @@ def rendered_stroke(
         wanted=wanted,
         command=command,
         amplitude=amplitude,
-        relative_friction_wanted=friction_of(relative_friction, wanted),
-        relative_friction_rendered=friction_of(relative_friction, amplitude),
+        relative_friction_wanted=friction_of(relative_friction, wanted, speed),
+        relative_friction_rendered=friction_of(relative_friction, amplitude, speed),
         saturated_top=top,
         saturated_bottom=bottom,
         silent=float(np.mean(~known)),

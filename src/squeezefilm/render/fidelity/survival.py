@@ -184,9 +184,9 @@ def fidelity_table(
 
     Args:
         time_constant: of the resonator's envelope (s).
-        relative_friction: vibration amplitudes (m, zero-to-peak; shape (n,)) → relative friction
-            (1; the same shape). Called twice per cell with up to some 10⁶ samples: pass a table
-            of a friction law that is slow.
+        relative_friction: vibration amplitudes (m, zero-to-peak) and the finger's signed speed
+            (m/s), each of shape (n,) → relative friction (1; the same shape). Called twice per cell
+            with up to some 10⁶ samples: pass a table of a friction law that is slow.
         low, high: vibration amplitudes between which the grating changes (m, zero-to-peak).
         shape: "square" (equal grooves and ridges) or "sine".
         kept: share of the swing to keep (1); above 0, below 1.

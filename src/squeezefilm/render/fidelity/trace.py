@@ -14,8 +14,9 @@ from squeezefilm.render.motion.stroke import Stroke
 from squeezefilm.render.resonator.envelope import envelope_response
 from squeezefilm.render.texture.composition import Composable, Texture
 
-RelativeFriction = Callable[[si.MetreArray], si.DimensionlessArray]
-"""Vibration amplitude (m, zero-to-peak) → friction divided by that of the unexcited surface (1)."""
+RelativeFriction = Callable[[si.MetreArray, si.MetrePerSecondArray], si.DimensionlessArray]
+"""Vibration amplitude (m, zero-to-peak) and the finger's signed speed (m/s), each of shape (n,) →
+friction divided by that of the unexcited surface (1), of the same shape."""
 
 # 50 samples a time constant draw the exponential smoothly; 128 a period put the extremes of a
 # sine within 3e-4 of its swing.
@@ -76,15 +77,15 @@ def friction_trace(
     The texture's amplitude at the middle of each step is held over that step and passed through
     the resonator exactly (`envelope_response`); the amplitude begins settled at what the texture
     wants where the stroke starts, as if the finger had rested there. The stroke runs along y = 0.
-    Friction is quasi-static: it follows the amplitude at once, which leaves out the skin's own
-    transient (some 20 ms, PHYSICS §5).
+    Friction is quasi-static: it follows amplitude and speed at once, which leaves out the skin's
+    own transient (some 20 ms, PHYSICS §5).
 
     Args:
         texture: vibration amplitude wanted, by position, velocity and time.
         stroke: the finger's motion.
         time_constant: of the resonator's envelope (s), see `envelope_time_constant`.
-        relative_friction: vibration amplitudes (m, zero-to-peak; shape (n,)) → relative friction
-            (1; the same shape). Called twice.
+        relative_friction: vibration amplitudes (m, zero-to-peak) and the stroke's velocity (m/s),
+            each of shape (n,) → relative friction (1; the same shape). Called twice.
         sample_rate: of the trace (Hz). Without one: 50 samples a time constant, 128 a spatial
             period and 1000 a stroke at least, and for a grating along x a whole even number a
             period, so that the edges of a grating of duty ½ and phase 0 fall on samples. Otherwise
@@ -118,8 +119,8 @@ def friction_trace(
         position=position,
         command=command,
         amplitude=amplitude,
-        relative_friction_wanted=friction_of(relative_friction, command),
-        relative_friction_rendered=friction_of(relative_friction, amplitude),
+        relative_friction_wanted=friction_of(relative_friction, command, stroke.velocity(time)),
+        relative_friction_rendered=friction_of(relative_friction, amplitude, stroke.velocity(time)),
     )
 
 
@@ -151,9 +152,11 @@ def _rate(
     return sample_rate
 
 
-def friction_of(law: RelativeFriction, amplitude: si.MetreArray) -> si.DimensionlessArray:
-    """What a law says at amplitudes (m), as `per_sample` lets it pass (1)."""
-    return per_sample("relative_friction", law(amplitude), amplitude, si.Unit("1"))
+def friction_of(
+    law: RelativeFriction, amplitude: si.MetreArray, speed: si.MetrePerSecondArray
+) -> si.DimensionlessArray:
+    """What a law says at amplitudes (m) and speeds (m/s), as `per_sample` lets it pass (1)."""
+    return per_sample("relative_friction", law(amplitude, speed), amplitude, si.Unit("1"))
 
 
 def per_sample(

@@ -159,22 +159,57 @@ def interpret(
 
 
 @compiled(error_model="numpy")
-def _inverse(program: si.Array, wanted: float) -> float:
-    """The amplitude (m) of a relative friction within the table, by bisection."""
+def _friction_row(program: si.Array, v: float) -> tuple[int, float]:
+    """Where the inverse's row at or below the speed of `v` begins, and the share of the next."""
     count = int(program[at.H_INVERSE_COUNT])
-    amplitude = int(program[at.H_INVERSE])
-    friction = amplitude + count
-    low, high = 0, count - 1
+    speeds = int(program[at.H_INVERSE_SPEEDS])
+    first = int(program[at.H_INVERSE]) + count
+    if speeds == 0:
+        return first, 0.0
+    place = first + count * speeds
+    pace = abs(v)
+    if pace <= program[place]:
+        return first, 0.0
+    low, high = 0, speeds - 1
+    if pace >= program[place + high]:
+        return first + count * (high - 1), 1.0
     while high - low > 1:
         middle = (low + high) >> 1
-        if program[friction + middle] >= wanted:
+        if program[place + middle] <= pace:
             low = middle
         else:
             high = middle
-    above, below = program[friction + low], program[friction + high]
-    share = (above - wanted) / (above - below)
+    below = program[place + low]
+    return first + count * low, float((pace - below) / (program[place + high] - below))
+
+
+@compiled(error_model="numpy")
+def _at(program: si.Array, place: int, count: int, share: float) -> float:
+    """Friction at a knot of a row, with the share of the next row there."""
+    if share == 0.0:
+        return float(program[place])
+    return float((1.0 - share) * program[place] + share * program[place + count])
+
+
+@compiled(error_model="numpy")
+def _inverse(program: si.Array, row: int, share: float, wanted: float) -> float:
+    """The least amplitude (m) of a relative friction within a row, by bisection."""
+    count = int(program[at.H_INVERSE_COUNT])
+    low, high = 0, count - 1
+    while high - low > 1:
+        middle = (low + high) >> 1
+        if _at(program, row + middle, count, share) > wanted:
+            low = middle
+        else:
+            high = middle
+    above = _at(program, row + low, count, share)
+    part = 0.0
+    # Equal where friction is flat from rest on.
+    if above > wanted:
+        part = (above - wanted) / (above - _at(program, row + high, count, share))
+    amplitude = int(program[at.H_INVERSE])
     first, second = program[amplitude + low], program[amplitude + high]
-    return float((1.0 - share) * first + share * second)
+    return float((1.0 - part) * first + part * second)
 
 
 @compiled(error_model="numpy")
@@ -194,9 +229,12 @@ def _wave_factor(program: si.Array, x: float, y: float) -> float:
 
 @compiled(error_model="numpy")
 def _amplitude(
-    program: si.Array, state: si.Array, wanted: float, x: float, y: float
+    program: si.Array, state: si.Array, wanted: float, x: float, y: float, v: float
 ) -> tuple[float, int]:
-    """The amplitude for a value of the texture, within 0…LARGEST, and the flags it raised."""
+    """The amplitude for a value of the texture, within 0…LARGEST, and the flags it raised.
+
+    A friction becomes the amplitude that makes it under a finger at the speed of `v`.
+    """
     flags = 0
     largest = program[at.H_LARGEST]
     if program[at.H_QUANTITY] == 0.0:
@@ -206,20 +244,21 @@ def _amplitude(
         if program[at.H_QUANTITY] == 2.0:
             friction = 1.0 - wanted / program[at.H_FRICTION]
         count = int(program[at.H_INVERSE_COUNT])
-        first = int(program[at.H_INVERSE]) + count
-        most, least = program[first], program[first + count - 1]
+        row, share = _friction_row(program, v)
+        most, least = (
+            _at(program, row, count, share),
+            _at(program, row + count - 1, count, share),
+        )
         if friction > most:
             amplitude = 0.0
             if friction > most + at.REACH:
                 flags |= at.F_TOO_STICKY
                 state[at.S_TOO_STICKY] += 1.0
-        elif friction < least:
-            amplitude = program[first - 1]
+        else:
             if friction < least - at.REACH:
                 flags |= at.F_TOO_SLIPPERY
                 state[at.S_TOO_SLIPPERY] += 1.0
-        else:
-            amplitude = _inverse(program, friction)
+            amplitude = _inverse(program, row, share, max(friction, least))
     if program[at.H_WAVE_COUNT] > 0.0:
         amplitude /= _wave_factor(program, x, y)
     if amplitude < 0.0:
@@ -268,7 +307,7 @@ def tick(program: si.Array, state: si.Array, x: float, y: float, v: float, t: fl
         wanted = interpret(program, state, at.STATE, x, y, v, t)
         state[at.S_WANTED] = wanted
         if abs(wanted) < math.inf:
-            amplitude, flags = _amplitude(program, state, wanted, x, y)
+            amplitude, flags = _amplitude(program, state, wanted, x, y, v)
             state[at.S_STARTED] = 1.0
             state[at.S_LAST_TIME] = t
             state[at.S_HELD] = amplitude
@@ -310,7 +349,7 @@ def amplitude_march(
     x, y, v, t = samples
     for i in range(x.size):
         wanted = interpret(program, state, at.STATE, x[i], y[i], v[i], t[i])
-        out[i] = _amplitude(program, state, wanted, x[i], y[i])[0]
+        out[i] = _amplitude(program, state, wanted, x[i], y[i], v[i])[0]
 
 
 @compiled(error_model="numpy")

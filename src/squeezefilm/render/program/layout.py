@@ -11,7 +11,8 @@ A program is ``[header, code, tables, inverse, wave]``. The numbers of the heade
      6 QUANTITY           0 amplitude (m), 1 relative friction, 2 friction reduction
      7 FRICTION           friction coefficient at rest (quantity 2), else 0
      8 LARGEST            largest amplitude the renderer may ask for (m)
-     9 INVERSE            where the inverse friction begins: its amplitudes, then its frictions
+     9 INVERSE            where the inverse friction begins: its amplitudes, then a row of frictions
+                          (for each speed, if there are any), then the speeds (m/s)
     10 INVERSE_COUNT      knots of it; 0 for quantity 0
     11 HOLD               ticks a last good amplitude is held when no good sample comes
     12 FADE               ticks over which it is then taken to 0
@@ -20,7 +21,8 @@ A program is ``[header, code, tables, inverse, wave]``. The numbers of the heade
     15 WAVE_PERIOD        half a wavelength (m)
     16…18 WAVE_P, Q, R    the coordinate across the wave is P·x + Q·y + R
     19 FARTHEST           |x|, |y| beyond which a place is a fault (m)
-    20…23                 0
+    20 INVERSE_SPEEDS     speeds of it; 0 where friction does not depend on the finger's
+    21…23                 0
 
 The state holds counts and memory, then the stack::
 
@@ -51,7 +53,7 @@ MAGIC = 0x53515A46
 H_MAGIC, H_VERSION, H_LENGTH, H_CODE, H_TABLES, H_STACK = 0, 1, 2, 3, 4, 5
 H_QUANTITY, H_FRICTION, H_LARGEST, H_INVERSE, H_INVERSE_COUNT = 6, 7, 8, 9, 10
 H_HOLD, H_FADE, H_WAVE, H_WAVE_COUNT, H_WAVE_PERIOD = 11, 12, 13, 14, 15
-H_WAVE_P, H_WAVE_Q, H_WAVE_R, H_FARTHEST = 16, 17, 18, 19
+H_WAVE_P, H_WAVE_Q, H_WAVE_R, H_FARTHEST, H_INVERSE_SPEEDS = 16, 17, 18, 19, 20
 HEADER = 24
 """Numbers of the header."""
 

@@ -23,6 +23,8 @@ QUANTITIES: tuple[Quantity, ...] = get_args(Quantity)
 
 _LONGEST = 10_000_000
 _MOST_TICKS = 1_000_000
+# Relative friction begins with 1 at rest; a bound that keeps what is computed with it finite.
+_MOST_FRICTION = 2.0
 
 
 @si.checked_numbers
@@ -65,6 +67,21 @@ class Program:
 
         Read off the instructions: what is not named has no influence, what is named may have none.
         """
+        return self.wanted_depends_on | ({"speed"} if self.inverse_speeds.size else set())
+
+    @property
+    def inverse_speeds(self) -> si.MetrePerSecondArray:
+        """The finger's speeds for which it knows the friction (m/s), shape (k,).
+
+        Empty where friction does not depend on the speed, or none is wanted.
+        """
+        end = int(self.array[at.H_WAVE])
+        return self.array[end - int(self.array[at.H_INVERSE_SPEEDS]) : end]
+
+    @property
+    def wanted_depends_on(self) -> frozenset[str]:
+        """As `depends_on`, but without the speed by which a wanted friction becomes an amplitude:
+        what the texture and the wave depend on."""
         found: set[str] = set()
         for code, operands in _instructions(self.array):
             if code == op.ALONG:
@@ -171,7 +188,8 @@ def _assembled(
     tables = np.concatenate([np.empty(0), *assembler.tables])
     curve = np.empty(0)
     if inverse is not None:
-        curve = np.concatenate([inverse.amplitude, inverse.relative_friction])
+        speeds = inverse.speed if inverse.speed.size > 1 else np.empty(0)
+        curve = np.concatenate([inverse.amplitude, inverse.relative_friction.ravel(), speeds])
     factors = np.empty(0)
     head = np.zeros(at.HEADER)
     if compensation is not None:
@@ -187,7 +205,10 @@ def _assembled(
     head[at.H_MAGIC], head[at.H_VERSION] = at.MAGIC, op.VERSION
     head[at.H_LENGTH] = starts[5]
     head[at.H_CODE], head[at.H_TABLES] = starts[1], starts[2]
-    head[at.H_INVERSE], head[at.H_INVERSE_COUNT] = starts[3], curve.size // 2
+    head[at.H_INVERSE] = starts[3]
+    if inverse is not None:
+        head[at.H_INVERSE_COUNT] = inverse.amplitude.size
+        head[at.H_INVERSE_SPEEDS] = inverse.speed.size if inverse.speed.size > 1 else 0
     head[at.H_WAVE], head[at.H_WAVE_COUNT] = starts[4], factors.size
     head[at.H_STACK] = max(assembler.deepest, 1)
     return np.concatenate(parts)
@@ -197,9 +218,9 @@ def _assembled(
 def checked(array: si.FloatArray) -> si.FloatArray:
     """A program's array, copied and made read-only, if an interpreter can run it safely.
 
-    What is checked: that it is this version's, whole and finite, that its parts lie one after
+    What is checked: that it is of a version known, whole and finite, that its parts lie one after
     another within it, that every opcode is known, that the stack holds, that tables are where
-    instructions look for them, that the inverse is monotone and no factor is 0.
+    instructions look for them, that the inverse is monotone, its speeds rise and no factor is 0.
 
     Raises:
         InputError: an array that is no program.
@@ -207,7 +228,7 @@ def checked(array: si.FloatArray) -> si.FloatArray:
     program: Any = np.array(array, dtype=float)
     if program.ndim != 1 or not at.HEADER < program.size <= _LONGEST:
         raise InputError(f"an array of shape {program.shape} is no program")
-    if program[at.H_MAGIC] != at.MAGIC or program[at.H_VERSION] != op.VERSION:
+    if program[at.H_MAGIC] != at.MAGIC or program[at.H_VERSION] not in op.READ_VERSIONS:
         raise InputError(
             f"the array is no program of version {op.VERSION}: it begins with "
             f"{program[at.H_MAGIC]:.17g}, {program[at.H_VERSION]:.17g}"
@@ -216,7 +237,7 @@ def checked(array: si.FloatArray) -> si.FloatArray:
         raise _broken(f"is {program.size} long and should be {program[at.H_LENGTH]:g}")
     whole = (
         at.H_CODE, at.H_TABLES, at.H_STACK, at.H_QUANTITY, at.H_INVERSE, at.H_INVERSE_COUNT,
-        at.H_HOLD, at.H_FADE, at.H_WAVE, at.H_WAVE_COUNT,
+        at.H_HOLD, at.H_FADE, at.H_WAVE, at.H_WAVE_COUNT, at.H_INVERSE_SPEEDS,
     )  # fmt: skip
     if any(program[place] != int(program[place]) or program[place] < 0 for place in whole):
         raise _broken("has a header whose counts are no whole numbers")
@@ -226,7 +247,7 @@ def checked(array: si.FloatArray) -> si.FloatArray:
     ordered = at.HEADER == code < tables <= inverse <= wave
     if (
         not ordered
-        or inverse + 2 * program[at.H_INVERSE_COUNT] != wave
+        or inverse + _inverse_size(program) != wave
         or wave + program[at.H_WAVE_COUNT] != program.size
     ):
         raise _broken("has parts that do not follow one another")
@@ -239,7 +260,8 @@ def checked(array: si.FloatArray) -> si.FloatArray:
 
 def _check_header(program: si.FloatArray, inverse: int, wave: int) -> None:
     quantity, count = int(program[at.H_QUANTITY]), int(program[at.H_INVERSE_COUNT])
-    if quantity > 2 or (count == 0) != (quantity == 0) or count == 1:
+    spare = program[at.H_INVERSE_SPEEDS] > 0.0 and count == 0
+    if quantity > 2 or (count == 0) != (quantity == 0) or count == 1 or spare:
         raise _broken("has an unknown quantity, or an inverse that does not belong to it")
     if quantity == 2 and program[at.H_FRICTION] <= 0.0:
         raise _broken("reduces a friction coefficient that is not above 0")
@@ -247,11 +269,8 @@ def _check_header(program: si.FloatArray, inverse: int, wave: int) -> None:
     si.require("farthest place", program[at.H_FARTHEST], METRE, above=0.0, at_most=FARTHEST)
     si.require("stack", program[at.H_STACK], at_least=1.0, at_most=float(op.DEEPEST_STACK))
     si.require("fade ticks", program[at.H_FADE], at_least=1.0)
-    amplitude, friction = program[inverse : inverse + count], program[inverse + count : wave]
-    if count and (np.any(np.diff(amplitude) <= 0.0) or np.any(np.diff(friction) >= 0.0)):
-        raise _broken("has an inverse that is not monotone")
-    if count and amplitude[0] < 0.0:
-        raise _broken("has an inverse with a negative amplitude")
+    if count:
+        _check_inverse(program[inverse:wave], count, int(program[at.H_INVERSE_SPEEDS]))
     if program[at.H_WAVE_COUNT]:
         # These bounds keep the place within the wave a number that has an index.
         si.require("wave period", program[at.H_WAVE_PERIOD], METRE, at_least=1e-6, at_most=FARTHEST)
@@ -259,6 +278,30 @@ def _check_header(program: si.FloatArray, inverse: int, wave: int) -> None:
         si.require("wave direction", direction, at_least=-1.0, at_most=1.0)
         si.require("wave start", program[at.H_WAVE_R], METRE, at_least=-FARTHEST, at_most=FARTHEST)
         si.require("wave factors", program[wave:], above=0.0, at_most=1.0)
+
+
+def _inverse_size(program: si.FloatArray) -> float:
+    """Numbers of the inverse that a header announces, as floats so that none is too large."""
+    count, speeds = program[at.H_INVERSE_COUNT], program[at.H_INVERSE_SPEEDS]
+    return float(count * (1.0 + max(speeds, 1.0)) + speeds)
+
+
+def _check_inverse(part: si.FloatArray, count: int, speeds: int) -> None:
+    rows = max(speeds, 1)
+    amplitude, speed = part[:count], part[count * (1 + rows) :]
+    friction = part[count : count * (1 + rows)].reshape(rows, count)
+    rise = np.diff(friction, axis=1)
+    # Where small amplitudes change nothing at a high speed, rows are flat; one alone has no reason.
+    monotone = np.all(rise <= 0.0) if speeds else np.all(rise < 0.0)
+    if np.any(np.diff(amplitude) <= 0.0) or not monotone:
+        raise _broken("has an inverse that is not monotone")
+    if amplitude[0] < 0.0:
+        raise _broken("has an inverse with a negative amplitude")
+    si.require("inverse friction", friction, at_least=0.0, at_most=_MOST_FRICTION)
+    if speeds:
+        si.require("inverse speed", speed, si.Unit("m/s"), at_least=0.0, at_most=at.FASTEST)
+        if speeds == 1 or np.any(np.diff(speed) <= 0.0):
+            raise _broken("has speeds of the inverse that do not rise")
 
 
 def _instructions(program: si.FloatArray) -> list[tuple[int, si.FloatArray]]:

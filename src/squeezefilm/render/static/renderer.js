@@ -4,14 +4,14 @@
 // An ES module with no imports and no build step.
 
 export const MAGIC = 0x53515a46;
-export const VERSION = 1;
+export const VERSION = 2; // 1 is understood too: it knows no speeds of the inverse
 export const HEADER = 24;
 export const STATE = 20;
 
 const CODE = 3, TABLES = 4, STACK = 5, QUANTITY = 6, FRICTION = 7, LARGEST = 8;
 const INVERSE = 9, INVERSE_COUNT = 10, HOLD = 11, FADE = 12;
 const WAVE = 13, WAVE_COUNT = 14, WAVE_PERIOD = 15, WAVE_P = 16, WAVE_Q = 17, WAVE_R = 18;
-const FARTHEST = 19;
+const FARTHEST = 19, INVERSE_SPEEDS = 20;
 
 const LAST_TIME = 0, STARTED = 1, HELD = 2, IDLE = 3, AMPLITUDE = 4, WANTED = 5, FLAGS = 6;
 const TICKS = 7, BAD_PLACE = 8, BAD_TIME = 9, BACKWARDS = 10, REPEATED = 11, BAD_VALUE = 12;
@@ -264,19 +264,48 @@ export function interpret(program, memory, base, x, y, v, t) {
   }
 }
 
-function inverse(program, wanted) {
+// Where the inverse's row at or below the speed of v begins, and the share of the next.
+function frictionRow(program, v) {
+  const count = program[INVERSE_COUNT], speeds = program[INVERSE_SPEEDS];
+  const first = program[INVERSE] + count;
+  if (speeds === 0) return [first, 0];
+  const place = first + count * speeds;
+  const pace = Math.abs(v);
+  if (pace <= program[place]) return [first, 0];
+  let low = 0, high = speeds - 1;
+  if (pace >= program[place + high]) return [first + count * (high - 1), 1];
+  while (high - low > 1) {
+    const middle = (low + high) >> 1;
+    if (program[place + middle] <= pace) low = middle;
+    else high = middle;
+  }
+  const below = program[place + low];
+  return [first + count * low, (pace - below) / (program[place + high] - below)];
+}
+
+// Friction at a knot of a row, with the share of the next row there.
+function frictionAt(program, place, count, share) {
+  if (share === 0) return program[place];
+  return (1 - share) * program[place] + share * program[place + count];
+}
+
+// The least amplitude of a relative friction within a row, by bisection.
+function inverse(program, row, share, wanted) {
   const count = program[INVERSE_COUNT];
-  const amplitude = program[INVERSE];
-  const friction = amplitude + count;
   let low = 0, high = count - 1;
   while (high - low > 1) {
     const middle = (low + high) >> 1;
-    if (program[friction + middle] >= wanted) low = middle;
+    if (frictionAt(program, row + middle, count, share) > wanted) low = middle;
     else high = middle;
   }
-  const above = program[friction + low], below = program[friction + high];
-  const share = (above - wanted) / (above - below);
-  return (1 - share) * program[amplitude + low] + share * program[amplitude + high];
+  const above = frictionAt(program, row + low, count, share);
+  let part = 0;
+  // Equal where friction is flat from rest on.
+  if (above > wanted) {
+    part = (above - wanted) / (above - frictionAt(program, row + high, count, share));
+  }
+  const amplitude = program[INVERSE];
+  return (1 - part) * program[amplitude + low] + part * program[amplitude + high];
 }
 
 function waveFactor(program, x, y) {
@@ -318,7 +347,7 @@ export function tick(program, state, x, y, v, t) {
     state[WANTED] = wanted;
     if (Math.abs(wanted) < Infinity) {
       state[FLAGS] = 0;
-      const amplitude = reachable(program, state, wanted, x, y);
+      const amplitude = reachable(program, state, wanted, x, y, v);
       state[STARTED] = 1;
       state[LAST_TIME] = t;
       state[HELD] = amplitude;
@@ -343,22 +372,21 @@ export function tick(program, state, x, y, v, t) {
   return amplitude;
 }
 
-function reachable(program, state, wanted, x, y) {
+function reachable(program, state, wanted, x, y, v) {
   const largest = program[LARGEST];
   let amplitude = wanted;
   if (program[QUANTITY] !== 0) {
     const friction = program[QUANTITY] === 2 ? 1 - wanted / program[FRICTION] : wanted;
     const count = program[INVERSE_COUNT];
-    const first = program[INVERSE] + count;
-    const most = program[first], least = program[first + count - 1];
+    const [row, share] = frictionRow(program, v);
+    const most = frictionAt(program, row, count, share);
+    const least = frictionAt(program, row + count - 1, count, share);
     if (friction > most) {
       amplitude = 0;
       if (friction > most + REACH) raise(state, 64, TOO_STICKY);
-    } else if (friction < least) {
-      amplitude = program[first - 1];
-      if (friction < least - REACH) raise(state, 128, TOO_SLIPPERY);
     } else {
-      amplitude = inverse(program, friction);
+      if (friction < least - REACH) raise(state, 128, TOO_SLIPPERY);
+      amplitude = inverse(program, row, share, friction > least ? friction : least);
     }
   }
   if (program[WAVE_COUNT] > 0) amplitude /= waveFactor(program, x, y);
@@ -381,8 +409,9 @@ function raise(state, flag, counter) {
 export class Renderer {
   constructor(numbers) {
     const program = Float64Array.from(numbers);
-    if (program[0] !== MAGIC || program[1] !== VERSION || program[2] !== program.length) {
-      throw new Error(`this is no whole program of version ${VERSION}`);
+    const known = program[1] === 1 || program[1] === VERSION;
+    if (program[0] !== MAGIC || !known || program[2] !== program.length) {
+      throw new Error(`this is no whole program of version 1 or ${VERSION}`);
     }
     this.program = program;
     this.state = new Float64Array(STATE + program[STACK]);

@@ -50,7 +50,7 @@ def friction(result: RenderAnalysis) -> Figure:
     total = float(stroke.time[-1])
     middle = 0.5 * total / _passes(result)
     near = (middle - 0.5 * _ZOOM * middle, middle + 0.5 * _ZOOM * middle)
-    least = result.played.inverse.least_friction
+    least = result.least_friction
     for axes, (low, high) in ((left, (0.0, total)), (right, near)):
         inside = np.flatnonzero((stroke.time >= low) & (stroke.time <= high))
         inside = inside[_thin(inside.size)]
@@ -179,16 +179,15 @@ def _picture(
 ) -> Any:
     rows = max(2, round(_MAP_POINTS * (high[1] - low[1]) / (high[0] - low[0])))
     x, y = np.linspace(low[0], high[0], _MAP_POINTS), np.linspace(low[1], high[1], rows)
-    return friction_of(result, result.texture.texture(x[None, :], y[:, None], speed, 0.0))
+    return friction_of(result, result.texture.texture(x[None, :], y[:, None], speed, 0.0), speed)
 
 
-def friction_of(result: RenderAnalysis, values: FloatArray) -> FloatArray:
-    """The relative friction (1) that values of the texture, in its quantity, ask of the display."""
+def friction_of(result: RenderAnalysis, values: FloatArray, speed: float) -> FloatArray:
+    """The relative friction (1) that values of the texture, in its quantity, ask of the display
+    under a finger at a speed (m/s)."""
     played = result.played
     if result.texture.texture.quantity == "amplitude":
-        return np.interp(
-            played.amplitude(values), played.inverse.amplitude, played.inverse.relative_friction
-        )
+        return played.inverse.friction_at(played.amplitude(values, speed), speed)
     return played.friction(values)
 
 

@@ -15,6 +15,7 @@ from squeezefilm.errors import InputError
 from squeezefilm.formats.hjif import HjifExport, ReferenceDevice, hjif_of
 from squeezefilm.formats.traces import Table, csv_text, parquet_bytes
 from squeezefilm.formats.wav import Waveform, wav_bytes
+from squeezefilm.render.program.made_for import MadeForSpeed
 from squeezefilm.report.kit.folder import json_text, require_folder, write_folder
 from squeezefilm.report.kit.numbers import printable
 from squeezefilm.report.kit.page_style import (
@@ -91,7 +92,9 @@ def drive_waveform(result: RenderAnalysis) -> Waveform:
 def hjif_export(result: RenderAnalysis) -> HjifExport:
     """The texture under the stroke as MPEG haptics. Raises `InputError` as `hjif_of` does."""
     p, played = result.prediction, result.played
-
+    speed = result.mean_speed
+    wanted = result.texture.texture(result.finger.x, result.finger.y, speed, result.finger.time)
+    made_for = MadeForSpeed.of(played.inverse.friction_at, played.amplitude(wanted, speed), speed)
     frictional = result.texture.texture.quantity == "relative_friction"
     return hjif_of(
         result.texture.texture,
@@ -104,8 +107,8 @@ def hjif_export(result: RenderAnalysis) -> HjifExport:
             result.stroke.envelope.amplitude_limit,
         ),
         title=played.name,
-        to_friction=None if frictional else partial(draw.friction_of, result),
-        speed=float(np.mean(np.abs(result.finger.speed))),
+        to_friction=None if frictional else partial(draw.friction_of, result, speed=speed),
+        made_for=made_for,
     )
 
 
@@ -148,6 +151,7 @@ def write_render(
             "lost": list(export.lost),
             "rms_error": export.rms_error,
             "largest_error": export.largest_error,
+            **({} if export.made_for is None else export.made_for.summary()),
         }
     files["fidelity.json"] = json_text(summary)
     files["index.html"] = _page(result, figures, sorted({*files, "index.html"}))

@@ -6,12 +6,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.report.kit.numbers import HZ, M, N, S, V, lag_rows, shown
 from squeezefilm.report.kit.terminal import heading, plain_console, show_rows, table
 
 if TYPE_CHECKING:
     from squeezefilm.chain.rendered_texture import RenderAnalysis
     from squeezefilm.formats.hjif import HjifExport
+
+
+_SPEED = si.Unit("m/s")
 
 
 def render_rows(result: RenderAnalysis) -> list[tuple[str, str, str]]:
@@ -26,8 +30,9 @@ def render_rows(result: RenderAnalysis) -> list[tuple[str, str, str]]:
         ("Largest amplitude", shown(stroke.envelope.amplitude_limit, M, 3), drive),
         (
             "Least friction µ′/µ",
-            f"{result.played.inverse.least_friction:.3f}",
-            f"{p.model}, {shown(p.normal_force, N)} on {p.surface.name}",
+            f"{result.least_friction:.3f}",
+            f"{p.model}, {shown(p.normal_force, N)} on {p.surface.name}, "
+            f"{shown(result.mean_speed, _SPEED)}",
         ),
         ("Time constant", shown(result.time_constant, S, 3), "of the envelope, finger on it"),
         ("Loop", shown(stroke.control_rate, HZ, 3), f"{eyes}; compensation: {stroke.compensation}"),

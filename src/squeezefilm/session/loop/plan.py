@@ -8,6 +8,7 @@ from typing import Annotated, Literal, NamedTuple
 import numpy as np
 
 from squeezefilm import quantities as si
+from squeezefilm.chain.friction_table import FrictionTable
 from squeezefilm.errors import InputError
 from squeezefilm.render.motion import kernel as motion_kernel
 from squeezefilm.render.motion.estimator import MotionEstimator
@@ -76,34 +77,6 @@ class DriveTable:
         return float(self.amplitude[-1])
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class FrictionTable:
-    """Relative friction over vibration amplitude, linear between knots, to be written down.
-
-    `amplitude` rises from 0 (m, zero-to-peak), `relative_friction` lies within 0…1; shape (n,).
-
-    Raises:
-        InputError: arrays of other shapes or values outside those ranges.
-    """
-
-    amplitude: si.MetreArray
-    relative_friction: si.DimensionlessArray
-
-    def __post_init__(self) -> None:
-        amplitude = np.array(self.amplitude, dtype=float)
-        friction = np.array(self.relative_friction, dtype=float)
-        object.__setattr__(self, "amplitude", amplitude)
-        object.__setattr__(self, "relative_friction", friction)
-        si.require("amplitude", amplitude, _METRE, at_least=0.0)
-        si.require("relative_friction", friction, at_least=0.0, at_most=1.0)
-        if amplitude.shape != friction.shape or not _rises_from_zero(amplitude):
-            raise InputError(
-                f"amplitude and relative_friction of shapes {amplitude.shape} and "
-                f"{friction.shape} are no curve; give amplitudes that rise from 0 and as many "
-                "frictions, at least two"
-            )
-
-
 def _rises_from_zero(knots: si.FloatArray) -> bool:
     return knots.ndim == 1 and knots.size > 1 and knots[0] == 0 and bool(np.all(np.diff(knots) > 0))
 
@@ -122,7 +95,8 @@ class LoopPlan:
         estimator: of the finger's motion; one runs along x and one along y.
         compensation: "none" or "inverse". (A preview needs the way ahead, which a loop that knows
             only samples has to guess; it is offered offline.)
-        relative_friction: the friction to write down for an amplitude; without it, none.
+        relative_friction: the friction to write down for an amplitude under a finger at the
+            estimated speed; without it, none.
         output_delay: from when a tick is due to when its command acts at the plate (s), as for a
             device that queues; below 1 s. The loop predicts across it.
         host_timeout: time without a word from the host after which the loop plays nothing (s).
@@ -182,6 +156,7 @@ class TickArrays(NamedTuple):
     drive_amplitude: si.Array
     drive_voltage: si.Array
     friction_amplitude: si.Array
+    friction_speed: si.Array
     friction: si.Array
     memory: si.Array
     sample: si.Array
@@ -198,8 +173,13 @@ def tick_arrays(plan: LoopPlan) -> TickArrays:
     settings[LONGEST_GAP] = plan.host_timeout
     memory = np.zeros(MEMORY_SIZE)
     memory[[REPORTED_LEVEL, REPORTED_AMPLITUDE, STAMP]] = np.nan
-    curve = plan.relative_friction
-    empty: si.FloatArray = np.zeros(0)
+    law = plan.relative_friction
+    # Copies, as of the program.
+    table = (
+        (np.zeros(0), np.zeros(1), np.zeros((1, 0)))
+        if law is None
+        else (np.array(law.amplitude), np.array(law.speed), np.array(law.relative_friction))
+    )
     return TickArrays(
         settings=settings,
         # A copy that may be written to, so that the tick is compiled for one type of array only.
@@ -212,8 +192,9 @@ def tick_arrays(plan: LoopPlan) -> TickArrays:
         compensator=plan.envelope.new_state(),
         drive_amplitude=plan.drive.amplitude,
         drive_voltage=plan.drive.voltage,
-        friction_amplitude=empty if curve is None else curve.amplitude,
-        friction=empty if curve is None else curve.relative_friction,
+        friction_amplitude=table[0],
+        friction_speed=table[1],
+        friction=table[2],
         memory=memory,
         sample=np.zeros((1, len(SAMPLE_COLUMNS))),
         row=np.zeros(len(COLUMNS)),

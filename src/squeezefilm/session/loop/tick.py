@@ -45,6 +45,25 @@ def interpolated(places: si.Array, values: si.Array, place: float) -> float:
 
 
 @compiled(error_model="numpy")
+def _friction(arrays: Any, amplitude: float, speed: float) -> float:
+    """Relative friction of an amplitude (m) under a finger at a speed (m/s), linear between the
+    table's; held beyond. NaN without a table, and without a speed where friction depends on it."""
+    speeds, amplitudes, known = arrays.friction_speed, arrays.friction_amplitude, arrays.friction
+    last = speeds.size - 1
+    if last == 0:
+        return float(interpolated(amplitudes, known[0], amplitude))
+    if math.isnan(speed):
+        return math.nan
+    high = 1
+    while high < last and speeds[high] <= speed:
+        high += 1
+    share = (speed - speeds[high - 1]) / (speeds[high] - speeds[high - 1])
+    share = min(max(share, 0.0), 1.0)
+    below = interpolated(amplitudes, known[high - 1], amplitude)
+    return float((1.0 - share) * below + share * interpolated(amplitudes, known[high], amplitude))
+
+
+@compiled(error_model="numpy")
 def _listen(arrays: Any, sample: si.Array) -> int:
     """Take one finger sample into the estimators; returns flags."""
     memory = arrays.memory
@@ -196,7 +215,7 @@ def make_tick(arrays: Any, shared: Any, number: int, lateness: float, lost: int)
     row[column.VOLTAGE] = volts
     row[column.LEVEL] = memory[at.REPORTED_LEVEL]
     row[column.AMPLITUDE] = memory[at.REPORTED_AMPLITUDE]
-    row[column.FRICTION] = interpolated(arrays.friction_amplitude, arrays.friction, amplitude)
+    row[column.FRICTION] = _friction(arrays, amplitude, speed)
     row[column.LAG] = speed * (meant + lateness - memory[at.STAMP])
     row[column.LATENESS] = lateness
     row[column.FLAGS] = flags

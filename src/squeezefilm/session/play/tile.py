@@ -7,9 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from squeezefilm import quantities as si
+from squeezefilm.contact.finger.fingertip import EXPLORING_SPEED
 from squeezefilm.device.wire.messages import LONGEST_TILE
 from squeezefilm.errors import InputError, UnreachableError
+from squeezefilm.render.fidelity.trace import RelativeFriction
+from squeezefilm.render.program.layout import FASTEST
 from squeezefilm.render.program.lowering import Program
+from squeezefilm.render.program.made_for import MadeForSpeed
 from squeezefilm.render.program.renderer import render
 from squeezefilm.session.loop.plan import DriveTable
 
@@ -31,6 +35,8 @@ class TextureTile:
         largest_error: how far the tile is from the texture at most, at 16 places per pitch (m);
             at a square grating's edges that is the whole step, within one pitch.
         mean_error: the same on average (m).
+        made_for: the finger's speed for which friction became amplitude, and the error in friction
+            at half and double of it; None where no law was there to say.
     """
 
     program: Program
@@ -39,6 +45,7 @@ class TextureTile:
     amplitude: si.MetreArray
     largest_error: si.Metre
     mean_error: si.Metre
+    made_for: MadeForSpeed | None
 
     def voltage(self, drive: DriveTable) -> si.VoltArray:
         """The tile's levels (V, zero-to-peak), shape (size,).
@@ -50,23 +57,35 @@ class TextureTile:
         return np.asarray(np.interp(self.amplitude, drive.amplitude, drive.voltage))
 
 
-def tile_of(program: Program, origin: si.Metre, pitch: si.Metre, size: int) -> TextureTile:
+def tile_of(
+    program: Program,
+    origin: si.Metre,
+    pitch: si.Metre,
+    size: int,
+    *,
+    speed: si.MetrePerSecond = EXPLORING_SPEED,
+    law: RelativeFriction | None = None,
+) -> TextureTile:
     """A steady texture sampled into a device's tile.
 
-    A tile knows no speed, no time and no y, and the device plays it without compensation.
+    A tile knows no speed, no time and no y, and the device plays it without compensation. Where
+    the friction of the display depends on the finger's speed it is made for one.
 
     Args:
         program: the lowered texture.
         origin: of the first amplitude (m), a whole number of micrometres within ±2 km.
         pitch: from one to the next (m), a whole number of micrometres, at least 1 µm.
         size: how many; 2 to 512.
+        speed: of the finger for which friction becomes amplitude (m/s), above 0.
+        law: amplitude and speed → relative friction of the display, to state the error at others.
 
     Raises:
         InputError: a texture that may depend on speed, direction, time or y, or a place, pitch or
             size that the device cannot take.
         UnreachableError: a texture that wants what the display cannot reach on the tile.
     """
-    moving = sorted(program.depends_on - {"x"})
+    si.require("speed", speed, si.Unit("m/s"), above=0.0, at_most=FASTEST)
+    moving = sorted(program.wanted_depends_on - {"x"})
     if moving:
         raise InputError(
             f"the texture may depend on {', '.join(moving)}, and a tile holds amplitudes over x "
@@ -91,20 +110,26 @@ def tile_of(program: Program, origin: si.Metre, pitch: si.Metre, size: int) -> T
     places: si.FloatArray = round(origin / _MICROMETRE) + round(pitch / _MICROMETRE) * np.arange(
         float(size)
     )
-    amplitude = _amplitudes(program, places)
+    amplitude = _amplitudes(program, places, speed)
     between: si.FloatArray = np.linspace(places[0], places[-1], (size - 1) * _FINER + 1)
-    wanted = _amplitudes(program, between)
+    wanted = _amplitudes(program, between, speed)
     missed = np.abs(np.interp(between, places, amplitude) - wanted)
     return TextureTile(
-        program, origin, pitch, amplitude, float(np.max(missed)), float(np.mean(missed))
+        program=program,
+        origin=origin,
+        pitch=pitch,
+        amplitude=amplitude,
+        largest_error=float(np.max(missed)),
+        mean_error=float(np.mean(missed)),
+        made_for=None if law is None else MadeForSpeed.of(law, amplitude, speed),
     )
 
 
-def _amplitudes(program: Program, places: si.FloatArray) -> si.FloatArray:
-    """The texture's amplitudes at places along x (µm), each by itself."""
+def _amplitudes(program: Program, places: si.FloatArray, speed: si.MetrePerSecond) -> si.FloatArray:
+    """The texture's amplitudes at places along x (µm) for a speed (m/s), each by itself."""
     # Divided, not multiplied by 1e-6: so a whole number of µm is the same float as in a texture.
     x = places / 1e6
-    found = render(program, x, 0.0, 0.0, np.arange(x.size, dtype=float))
+    found = render(program, x, 0.0, speed, np.arange(x.size, dtype=float))
     met = found.counters
     if met.unreachable or met.faults:
         raise UnreachableError(

@@ -231,8 +231,7 @@ def _ripple_share(played: RenderAnalysis) -> si.Dimensionless:
     # A compensating renderer's inverse is of the driven amplitude, so there is no plain friction.
     if played.wave != "felt":
         return 0.0 if played.wave == "ignored" else float("nan")
-    law = played.played.inverse
-    plain = np.interp(played.stroke.amplitude, law.amplitude, law.relative_friction)
+    plain = played.prediction.friction(played.stroke.amplitude, played.finger.speed)
     added = float(np.std(played.stroke.relative_friction_rendered - plain))
     rest = float(np.std(plain))
     return added / (added + rest) if added + rest > 1e-9 else 0.0

@@ -24,7 +24,7 @@ GRATING = Amplitude(SquareWave(2e-3), 0.0, 0.8e-6)
 STROKE = Stroke(0.1, 0.04, 2)
 
 
-def friction(amplitude: FloatArray) -> FloatArray:
+def friction(amplitude: FloatArray, speed: object) -> FloatArray:
     return np.asarray(np.exp(-amplitude / 1e-6))
 
 
@@ -121,10 +121,10 @@ def rendered(**changed):  # type: ignore[no-untyped-def]
     (lambda: rendered(compensation="?"), "compensation"),  # type: ignore[arg-type]
     (lambda: rendered(estimator=MotionEstimator(MotionModel(), 1e-5)), "sensor"),
     (lambda: rendered_stroke(bad_texture, STROKE, ENVELOPE, friction), "texture"),
-    (lambda: rendered_stroke(GRATING, STROKE, ENVELOPE, lambda a: a[:-1]), "relative_friction"),
+    (lambda: rendered_stroke(GRATING, STROKE, ENVELOPE, lambda a, v: a[:-1]), "relative_friction"),
     (lambda: fidelity_report(rendered_stroke(GRATING, Stroke(0.1, 5e-4), ENVELOPE, friction)),
      "settled"),
-    (lambda: fidelity_report(rendered_stroke(GRATING, STROKE, ENVELOPE, np.ones_like)),
+    (lambda: fidelity_report(rendered_stroke(GRATING, STROKE, ENVELOPE, lambda a, v: 1 + 0 * a)),
      "does not change"),
     (lambda: fidelity_report(rendered(), []), "list"),
     (lambda: fidelity_report(rendered(), [-1.0]),

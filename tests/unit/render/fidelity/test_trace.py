@@ -15,7 +15,7 @@ TAU = 0.55e-3
 SQUARE = Amplitude(SquareWave(4e-3), 0.0, 2e-6)
 
 
-def falling(amplitude: np.ndarray) -> np.ndarray:
+def falling(amplitude: np.ndarray, speed: object) -> np.ndarray:
     return 1 - amplitude / 5e-6
 
 
@@ -27,8 +27,8 @@ def test_a_trace_holds_what_made_it_and_consistent_arrays() -> None:
     assert trace.time.shape == trace.position.shape == trace.command.shape
     assert trace.amplitude.shape == trace.relative_friction_rendered.shape == trace.time.shape
     assert np.array_equal(trace.command, SQUARE(trace.position, 0.0, 0.1, trace.time))
-    assert np.array_equal(trace.relative_friction_rendered, falling(trace.amplitude))
-    assert np.array_equal(trace.relative_friction_wanted, falling(trace.command))
+    assert np.array_equal(trace.relative_friction_rendered, falling(trace.amplitude, None))
+    assert np.array_equal(trace.relative_friction_wanted, falling(trace.command, None))
     assert trace.amplitude[0] == trace.command[0]
     assert trace.lag == pytest.approx(0.055e-3)
 
@@ -60,8 +60,8 @@ def test_a_texture_may_depend_on_time_and_speed() -> None:
         ((lambda x, y, v, t: np.float64(1e-6), Stroke(0.1), TAU, falling), "texture returned .*()"),
         ((lambda x, y, v, t: -1e-6 + 0 * x, Stroke(0.1), TAU, falling), "texture = -1 um"),
         ((lambda x, y, v, t: math.nan + 0 * x, Stroke(0.1), TAU, falling), "texture = nan"),
-        ((SQUARE, Stroke(0.1), TAU, lambda a: 1.0), "relative_friction returned"),
-        ((SQUARE, Stroke(0.1), TAU, lambda a: a - 1), "relative_friction = -1"),
+        ((SQUARE, Stroke(0.1), TAU, lambda a, v: 1.0), "relative_friction returned"),
+        ((SQUARE, Stroke(0.1), TAU, lambda a, v: a - 1), "relative_friction = -1"),
     ],
 )
 def test_a_trace_that_cannot_be_made_is_refused(arguments: tuple, said: str) -> None:

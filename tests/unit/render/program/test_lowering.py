@@ -13,9 +13,9 @@ from squeezefilm.quantities import FloatArray
 from squeezefilm.render import opcodes as op
 from squeezefilm.render.program import layout as at
 from squeezefilm.render.program.inverse import FrictionInverse
-from squeezefilm.render.program.lowering import checked, lower
+from squeezefilm.render.program.lowering import Program, checked, lower
 from squeezefilm.render.program.wave import WaveCompensation
-from squeezefilm.render.texture.levels import FrictionReduction
+from squeezefilm.render.texture.levels import FrictionReduction, RelativeFriction
 from squeezefilm.render.texture.shapes import SineWave
 
 CURVE = FrictionInverse.from_function(lambda a: 0.3 + 0.7 * np.exp(-((a / 2e-6) ** 2)), 4e-6)
@@ -90,6 +90,8 @@ SPOILT: list[tuple[Spoil, str]] = [
     (swap_frictions, "inverse that is not monotone"),
     (first_amplitude_below_zero, "negative amplitude"),
     (a_factor_of_zero, "wave factors"),
+    (header(at.H_INVERSE_SPEEDS, 1.5), "no whole numbers"),
+    (header(at.H_INVERSE_SPEEDS, 2.0), "do not follow one another"),
     (an_unknown_opcode, "unknown opcode"),
     (no_end, "does not end with its last instruction"),
 ]
@@ -107,6 +109,72 @@ def test_one_spoilt_number_is_refused(spoil: Spoil, says: str) -> None:
     spoil(array)
     with pytest.raises(InputError, match=says):
         checked(array)
+
+
+def with_speeds() -> FloatArray:
+    """One with a row of friction for each of three speeds."""
+    curve = FrictionInverse.over_speeds(
+        lambda a, v: 1.0 - a / (4e-6 + 1e-6 * v[:, None]),
+        0.5e-6 * np.arange(5),
+        np.array([0.01, 0.1, 1]),
+        0.1,
+    )
+    return np.array(lower(RelativeFriction.constant(0.7), inverse=curve).array)
+
+
+def last_speed(value: float) -> Spoil:
+    def spoil(array: FloatArray) -> None:
+        array[-1] = value
+
+    return spoil
+
+
+def last_friction(value: float) -> Spoil:
+    def spoil(array: FloatArray) -> None:
+        array[-4] = value
+
+    return spoil
+
+
+def test_rows_over_speeds_are_a_program() -> None:
+    made = Program(with_speeds())
+    assert made.inverse_speeds.tolist() == [0.01, 0.1, 1.0]
+    assert made.depends_on == {"speed"}
+    assert made.wanted_depends_on == set()
+    assert Program(program()).inverse_speeds.size == 0
+
+
+@pytest.mark.parametrize(
+    ("spoil", "says"),
+    [
+        (header(at.H_INVERSE_SPEEDS, 0.0), "do not follow one another"),
+        (header(at.H_INVERSE_SPEEDS, 2.0), "do not follow one another"),
+        (header(at.H_INVERSE_SPEEDS, 1e300), "do not follow one another"),
+        (header(at.H_QUANTITY, 0.0), "an inverse that does not belong to it"),
+        (last_speed(0.05), "do not rise"),
+        (last_speed(0.1), "do not rise"),
+        (last_speed(1e4), "inverse speed"),
+        (last_speed(math.nan), "must be finite"),
+        (last_friction(0.9), "not monotone"),
+        (last_friction(-0.1), "inverse friction"),
+    ],
+)
+def test_one_spoilt_number_of_the_speeds_is_refused(spoil: Spoil, says: str) -> None:
+    array = with_speeds()
+    spoil(array)
+    with pytest.raises(InputError, match=says):
+        checked(array)
+
+
+def test_an_inverse_of_one_speed_only_is_none() -> None:
+    # As long as it says: two knots, one row, and a speed that says nothing.
+    array = with_speeds()
+    start = int(array[at.H_INVERSE])
+    short = np.concatenate([array[:start], [0.0, 1e-6, 1.0, 0.5, 0.1]])
+    short[[at.H_LENGTH, at.H_WAVE]] = short.size
+    short[[at.H_INVERSE_COUNT, at.H_INVERSE_SPEEDS]] = 2, 1
+    with pytest.raises(InputError, match="do not rise"):
+        checked(short)
 
 
 @pytest.mark.parametrize("array", [np.zeros(at.HEADER), np.zeros((2, 40))])

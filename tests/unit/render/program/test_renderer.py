@@ -154,7 +154,7 @@ def test_a_texture_of_friction_is_traced_as_it_is_played() -> None:
     wanted = RelativeFriction(Bump(0.02, 3e-3), 0.6, 1.0)
     played = Played(lower(wanted, inverse=INVERSE))
     stroke = Stroke(0.1, 0.04, passes=2)
-    trace = friction_trace(played, stroke, 1e-5, lambda a: 1 - 0.5 * a / 4e-6)
+    trace = friction_trace(played, stroke, 1e-5, lambda a, v: 1 - 0.5 * a / 4e-6)
     back = trace.time > stroke.pass_duration
     there, again = trace.relative_friction_wanted[~back], trace.relative_friction_wanted[back]
     # The way up comes first both there and back.
@@ -162,7 +162,7 @@ def test_a_texture_of_friction_is_traced_as_it_is_played() -> None:
     assert again[: again.size // 2].min() >= 0.8 - 1e-9
     assert there[there.size // 2 + 5 :].max() <= 0.8 + 1e-9
     with pytest.raises(InputError, match="commands no amplitude"):
-        friction_trace(wanted, stroke, 1e-5, np.ones_like)
+        friction_trace(wanted, stroke, 1e-5, lambda a, v: np.ones_like(a))
     with pytest.raises(UnreachableError, match="at 2 of 2 samples"):
         Played(lower(RelativeFriction.constant(0.1), inverse=INVERSE))(np.zeros(2), 0, 0, 0)
 

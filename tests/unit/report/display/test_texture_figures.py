@@ -24,7 +24,7 @@ GRATING = Amplitude(SquareWave(2e-3), LOW, HIGH)
 
 def traced(grating: Any = GRATING, tau: float = 0.5e-3, swing: float = 0.2) -> FrictionTrace:
     return friction_trace(
-        grating, Stroke(0.1, 0.02, start=5e-3), tau, lambda a: 1 - swing * np.asarray(a) / HIGH
+        grating, Stroke(0.1, 0.02, start=5e-3), tau, lambda a, v: 1 - swing * np.asarray(a) / HIGH
     )
 
 

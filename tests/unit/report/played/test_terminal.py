@@ -228,7 +228,7 @@ def played(**changes: Any) -> Any:
     rows = np.zeros((3, 4))
     rows[:, 1] = [5.0, 6.0, 7.0]
     plan = SimpleNamespace(
-        mode="stream", frequency=40e3,
+        mode="stream", frequency=40e3, tile=None,
         loop=SimpleNamespace(
             rate=1e3, compensation="inverse",
             drive=SimpleNamespace(voltage=np.array([0.0, 8.0, 16.0])),

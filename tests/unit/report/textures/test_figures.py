@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from squeezefilm.render.program.inverse import FrictionInverse
 from squeezefilm.report.textures.figures import contrast, drive, friction, ripple, way
 
 STEPS = 6001
@@ -47,12 +48,11 @@ def made(**changes: Any) -> Any:
         ),
         "unjudged": None,
         "played": SimpleNamespace(
-            name="grating", friction=lambda values: 2 * values, amplitude=lambda v: v * 1e-6,
-            inverse=SimpleNamespace(
-                least_friction=0.25, amplitude=np.array([0.0, 4e-6]),
-                relative_friction=np.array([1.0, 0.2]),
-            ),
+            name="grating", friction=lambda values: 2 * values,
+            amplitude=lambda v, speed: v * 1e-6,
+            inverse=FrictionInverse.from_function(lambda a: 1 - 0.2 * a / 1e-6, 4e-6),
         ),
+        "least_friction": 0.25,
         "display": SimpleNamespace(name="plate"),
         "rms_error": 0.0321,
         "prediction": SimpleNamespace(

@@ -160,7 +160,11 @@ def test_all_files_are_written_with_what_they_are_named_after(
         "lost": list(export.lost),
         "rms_error": export.rms_error,
         "largest_error": export.largest_error,
+        "made_for_speed_m_per_s": pytest.approx(felt.mean_speed),
+        "friction_error_at_half_speed": export.made_for.error_at_half,
+        "friction_error_at_double_speed": export.made_for.error_at_double,
     }
+    assert export.made_for.sentence() in export.document["description"]
     assert json.loads(written["texture.hjif"]) == export.document
     for name, begin in (
         ("friction", "friction is rendered within"), ("drive", "The drive is at a limit"),

@@ -19,7 +19,7 @@ from squeezefilm.report.textures.figures import tangential_force
 def stick_slip() -> StrokeForce:
     """A lightly damped pad that sticks and slips over a grating."""
     trace = friction_trace(
-        Amplitude(SquareWave(2e-3), 0.0, 2e-6), Stroke(0.03, 0.02), 5e-4, lambda a: 1 - a / 3e-6
+        Amplitude(SquareWave(2e-3), 0.0, 2e-6), Stroke(0.03, 0.02), 5e-4, lambda a, v: 1 - a / 3e-6
     )
     return stroke_force(trace, 0.6, 0.5, FingerpadDynamics(damping=0.1), DryFriction(1.5))
 

@@ -60,9 +60,9 @@ def result(**changes: Any) -> Any:
         "counters": SimpleNamespace(
             unreachable=9, ticks=50, too_slippery=4, too_sticky=3, saturated=2, negative=1
         ),
-        "played": SimpleNamespace(
-            name="sine", inverse=SimpleNamespace(least_friction=0.43216)
-        ),
+        "played": SimpleNamespace(name="sine"),
+        "least_friction": 0.43216,
+        "mean_speed": 0.0601,
         "time_constant": 1.2345e-3,
         "asked": np.array([0.5, 0.9]),
         "rms_error": 0.12345,
@@ -87,7 +87,7 @@ def labels(**changes: Any) -> list[str]:
 def test_a_rendered_texture_is_said_with_all_that_there_is() -> None:
     assert render_rows(result()) == [
         ("Largest amplitude", "1.23 µm", "at 15 V, the limit"),
-        ("Least friction µ′/µ", "0.432", "a-model, 0.5 N on copper"),
+        ("Least friction µ′/µ", "0.432", "a-model, 0.5 N on copper, 60.1 mm/s"),
         ("Time constant", "1.23 ms", "of the envelope, finger on it"),
         ("Loop", "19.2 kHz", "the finger's place is known; compensation: inverse"),
         ("Friction asked for", "0.700 ± 0.200", "mean and RMS swing of µ′/µ"),

@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from squeezefilm.chain.friction_table import FrictionTable
 from squeezefilm.errors import InputError
-from squeezefilm.session.loop.plan import DriveTable, FrictionTable, LoopPlan, tick_arrays
+from squeezefilm.session.loop.plan import DriveTable, LoopPlan, tick_arrays
 
 PlanOf = Callable[..., LoopPlan]
 
@@ -43,10 +44,10 @@ def test_a_drives_table_must_rise_from_zero(amplitude: list[float], voltage: lis
 
 
 def test_a_friction_curve_must_be_one() -> None:
-    with pytest.raises(InputError, match="no curve"):
-        FrictionTable(np.array([0.0, 0.0]), np.array([1.0, 0.5]))
+    with pytest.raises(InputError, match="no table"):
+        FrictionTable.of_amplitude(np.array([0.0, 0.0]), np.array([1.0, 0.5]))
     with pytest.raises(InputError, match="relative_friction"):
-        FrictionTable(np.array([0.0, 1.0]), np.array([1.2, 0.5]))
+        FrictionTable.of_amplitude(np.array([0.0, 1.0]), np.array([1.2, 0.5]))
 
 
 def test_the_lead_is_the_middle_of_the_step_or_compensated_its_end(plan_of: PlanOf) -> None:

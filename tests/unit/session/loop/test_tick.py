@@ -9,11 +9,15 @@ import numpy as np
 import pytest
 from numba.core.runtime import _nrt_python, rtsys
 
+from squeezefilm.chain.friction_table import FrictionTable
 from squeezefilm.errors import InputError
 from squeezefilm.quantities import FloatArray
 from squeezefilm.render.program import layout
+from squeezefilm.render.program.inverse import FrictionInverse
+from squeezefilm.render.program.lowering import lower
 from squeezefilm.render.resonator import kernel as compensation_kernel
 from squeezefilm.render.resonator.compensation import DrivenEnvelope
+from squeezefilm.render.texture.levels import Amplitude, RelativeFriction
 from squeezefilm.session.loop import rows as column
 from squeezefilm.session.loop.plan import DriveTable, LoopPlan
 from squeezefilm.session.loop.shared import COMMANDS, ROWS
@@ -60,6 +64,59 @@ def test_a_finger_in_a_groove_is_played_the_groove(plan_of: PlanOf) -> None:
     assert commands.shape == (20, 4)
     assert commands[-1, column.COMMAND_VOLTAGE] == row[column.VOLTAGE]
     assert commands[-1, column.COMMAND_TIME] == pytest.approx(19 / RATE)
+
+
+def _slow_and_fast() -> FrictionTable:
+    """Friction that falls with amplitude, and less so under a faster finger."""
+    return FrictionTable(
+        np.array([0.0, 2e-6]), np.array([0.02, 0.1, 0.2]),
+        np.array([[1.0, 0.0], [1.0, 0.4], [1.0, 0.6]]), 0.1,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("speed", [0.01, 0.02, 0.06, 0.15, 0.3])
+def test_friction_is_written_down_for_the_estimated_speed(plan_of: PlanOf, speed: float) -> None:
+    texture = Amplitude.constant(0.8e-6)
+    plan = plan_of(
+        program=lower(texture, largest_amplitude=2e-6), relative_friction=_slow_and_fast()
+    )
+    loop = SimulatedLoop(plan)
+    for _ in range(400):
+        loop.feed(_sample(loop.time, x=speed * loop.time))
+        loop.make_tick()
+    row = loop.take_rows()[-1]
+    assert row[column.SPEED] == pytest.approx(speed, rel=0.02)
+    held = np.clip(row[column.SPEED], 0.02, 0.2)
+    expected = _slow_and_fast()(np.array([0.8e-6]), held)
+    assert row[column.FRICTION] == pytest.approx(expected[0], rel=1e-9)
+
+
+def test_a_wanted_friction_is_played_with_the_amplitude_for_the_estimated_speed(
+    plan_of: PlanOf,
+) -> None:
+    known = _slow_and_fast()
+
+    def law(amplitude: FloatArray, speed: FloatArray) -> FloatArray:
+        return np.asarray(known(amplitude[None, :], speed[:, None]))
+
+    inverse = FrictionInverse.over_speeds(law, np.linspace(0, 2e-6, 5), known.speed, 0.1)
+    plan = plan_of(
+        program=lower(RelativeFriction.constant(0.8), inverse=inverse), relative_friction=known
+    )
+    loop = SimulatedLoop(plan)
+    for _ in range(400):
+        loop.feed(_sample(loop.time))
+        loop.make_tick()
+    row = loop.take_rows()[-1]
+    # At 60 mm/s halfway between the rows: 0.8 at 0.5 of the amplitude's swing by 0.8.
+    assert row[column.WANTED] == pytest.approx(0.5e-6, rel=0.01)
+    assert row[column.FRICTION] == pytest.approx(0.8, abs=1e-3)
+
+
+def test_without_a_finger_no_friction_of_a_speed_is_claimed(plan_of: PlanOf) -> None:
+    loop = SimulatedLoop(plan_of(relative_friction=_slow_and_fast()))
+    loop.make_tick()
+    assert math.isnan(loop.take_rows()[0, column.FRICTION])
 
 
 def test_without_a_sample_nothing_is_played_and_no_place_is_claimed(plan_of: PlanOf) -> None:

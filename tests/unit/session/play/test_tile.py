@@ -9,11 +9,13 @@ import pytest
 
 from squeezefilm.device.machine.playing import Tile
 from squeezefilm.errors import InputError, UnreachableError
+from squeezefilm.quantities import FloatArray
+from squeezefilm.render.program.inverse import FrictionInverse
 from squeezefilm.render.program.lowering import Program, lower
 from squeezefilm.render.texture.composition import Composable
 from squeezefilm.render.texture.coordinate import AlongDirection
 from squeezefilm.render.texture.gates import Decay, Periodic, SpeedGate
-from squeezefilm.render.texture.levels import Amplitude
+from squeezefilm.render.texture.levels import Amplitude, RelativeFriction
 from squeezefilm.render.texture.noise import NoiseField
 from squeezefilm.render.texture.pattern import Pattern
 from squeezefilm.render.texture.shapes import Bump, SineWave, SquareWave
@@ -73,6 +75,44 @@ def test_the_devices_units_and_size_are_kept() -> None:
         tile_of(program, 0.0, 0.0, 100)
     with pytest.raises(InputError, match="amplitude"):
         tile_of(program, 0.0, 50e-6, 100).voltage(DriveTable.linear(1e-8, 10.0))
+
+
+def _law(amplitude: FloatArray, speed: FloatArray) -> FloatArray:
+    """Friction that a faster finger keeps more of; speeds may stand in rows."""
+    return np.asarray(np.exp(-amplitude / (1e-6 + 10e-6 * speed)))
+
+
+def _inverse() -> FrictionInverse:
+    return FrictionInverse.over_speeds(
+        lambda a, v: _law(a, v[:, None]), 4e-6 * np.linspace(0, 1, 257), np.geomspace(1e-3, 2, 200),
+        0.08,
+    )  # fmt: skip
+
+
+def test_a_tile_of_friction_is_made_for_one_speed_and_says_what_others_cost() -> None:
+    texture = RelativeFriction(SineWave(4e-3), 0.5, 0.9)
+    program = lower(texture, inverse=_inverse())
+    assert program.depends_on == {"x", "speed"}
+    for speed in (0.04, 0.16):
+        tile = tile_of(program, 0.0, 50e-6, 201, speed=speed, law=_law)
+        places = 50e-6 * np.arange(201)
+        met = _law(tile.amplitude, np.full(201, speed))
+        np.testing.assert_allclose(met, texture(places, 0.0, speed, 0.0), atol=1e-3)
+        made = tile.made_for
+        assert made is not None
+        assert made.speed == speed
+        least = np.max(tile.amplitude)
+        for error, pace in ((made.error_at_half, speed / 2), (made.error_at_double, 2 * speed)):
+            assert error == pytest.approx(float(_law(least, pace) - _law(least, speed)), rel=0.05)
+    assert tile_of(program, 0.0, 50e-6, 201).made_for is None
+    with pytest.raises(InputError, match="speed"):
+        tile_of(program, 0.0, 50e-6, 201, speed=0.0)
+
+
+def test_a_texture_that_asks_for_the_speed_is_no_tile_even_where_friction_does_too() -> None:
+    gated = RelativeFriction(SpeedGate(above=0.01), 0.5, 0.9)
+    with pytest.raises(InputError, match="depend on speed,"):
+        tile_of(lower(gated, inverse=_inverse()), 0.0, 50e-6, 100)
 
 
 def test_a_texture_out_of_reach_makes_no_tile() -> None:
