@@ -17,7 +17,7 @@ from typing import Annotated, Any, Literal
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.contact.rough_contact import RoughContact
+from squeezefilm.compiled import announce
 from squeezefilm.contact.sharing.balance import LoadSharing
 from squeezefilm.contact.sharing.tapping import MINDLIN_RATIO
 
@@ -25,17 +25,17 @@ TangentialStiffness = Literal["rigid", "constant", "following"]
 
 
 @si.checked_numbers
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class AsperityShear:
     """The tangential element behind the asperities under a finger that slides at `speed`.
 
-    `stiffness` is "rigid" (all that touches slips), "constant" (k_t = κ times the normal stiffness
-    at rest under the same load) or "following" (κ times that at every moment, as many small
-    contacts have it; those that part take their share of the shear with them). κ is
-    `stiffness_ratio`.
+    `speed` may be an array. `stiffness` is "rigid" (all that touches slips), "constant" (k_t = κ
+    times the normal stiffness at rest under the same load) or "following" (κ times that at every
+    moment, as many small contacts have it; those that part take their share of the shear with
+    them). κ is `stiffness_ratio`.
     """
 
-    speed: Annotated[si.MetrePerSecond, si.Above(0.0)]
+    speed: Annotated[si.MetrePerSecondLike, si.Above(0.0)]
     friction_coefficient: Annotated[si.Dimensionless, si.Above(0.0)] = 0.9
     stiffness: TangentialStiffness = "following"
     stiffness_ratio: Annotated[si.Dimensionless, si.Above(0.0)] = MINDLIN_RATIO
@@ -45,25 +45,27 @@ class AsperityShear:
 def sheared_friction(
     shared: LoadSharing, shear: AsperityShear, frequency: Annotated[si.Hertz, si.Above(0.0)]
 ) -> si.DimensionlessArray:
-    """µ′/µ (dimensionless) of balanced plateaus, in their shape, at a frequency (Hz).
+    """µ′/µ (dimensionless) of balanced plateaus at a frequency (Hz): of the shape of the speeds,
+    then that of the plateaus. The balance does not depend on the speed, nor does what shear sees
+    along the period: many speeds in one call cost little more than one.
 
     The mean over a period of what is held in shear, over what the same load holds at rest. With
     "rigid" shear and `AsperityLaw` it is `LoadSharing.relative_friction` to the residual of the
     balance. It never falls with the speed; with a stiffness that follows the load all slips, and
-    no more is gained, from U = µ ω a/κ on, a the amplitude of the gap. Toward U = 0 a constant
+    no more is gained, from U = µ ω a/κ on, a the amplitude of the gap; with a constant one what is
+    missing to that goes with U⁻¹ˢ. Toward U = 0 a constant
     stiffness keeps the least pressure of the period, one that follows keeps nothing.
     """
     from squeezefilm.contact.sharing import shear_kernel as kernel
 
-    law: Any = shared.asperities
-    full = law.modulus * law.rms_slope if isinstance(law, RoughContact) else 0.0
+    announce(kernel.sheared_rows, "shear of what touches", 20)
     kind = {"rigid": kernel.RIGID, "constant": kernel.CONSTANT, "following": kernel.FOLLOWING}
-    advance = shear.stiffness_ratio * shear.speed
+    speed = np.asarray(shear.speed, dtype=float)
+    advance = shear.stiffness_ratio * speed.ravel()
     advance /= shear.friction_coefficient * 2 * math.pi * frequency
-    element = kernel.CompiledShear(kind[shear.stiffness], advance, 0.0, full)
+    element = kernel.CompiledShear(kind[shear.stiffness], advance)
     columns = np.broadcast_arrays(shared.mean_gap, shared.gap_amplitude, shared.plateau_pressure)
-    found = np.empty(columns[0].size)
-    kernel.sheared_rows(
-        law.compiled(), np.stack([np.ravel(one) for one in columns], axis=1), element, found
-    )
-    return found.reshape(columns[0].shape)
+    found = np.empty((speed.size, columns[0].size))
+    rows: Any = np.stack([np.ravel(one) for one in columns], axis=1)
+    kernel.sheared_rows(shared.asperities.compiled(), rows, element, found)
+    return found.reshape(speed.shape + columns[0].shape)
