@@ -15,6 +15,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import lru_cache
+from statistics import NormalDist
 from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
@@ -148,6 +149,21 @@ class AsperityLaw:
             self.decay_length * factor,
             self.heights,
         )
+
+    @property
+    def largest_pressure(self) -> si.Pascal:
+        """The largest pressure (Pa) for which the law holds: 1/e of the asperities touch under it.
+
+        The theory takes asperities that touch apart from one another, the real contact area a
+        small part of the whole (Greenwood & Williamson 1966, 10.1098/rspa.1966.0242), and so ends
+        where most of them touch. That it ends at 1/e is our convention (assumed): exponential
+        heights are then pressed to a gap of one decay length, Gaussian ones to 0.34 deviations.
+        """
+        if self.heights == "exponential":
+            # A law that falls off in an instant holds to any pressure that a float has.
+            depth = min(self.reference_gap / self.decay_length - 1, 600.0)
+            return self.reference_pressure * math.exp(depth)
+        return float(self.pressure(NormalDist().inv_cdf(1 - 1 / math.e) * self.decay_length))
 
     @property
     def words(self) -> str:

@@ -42,7 +42,7 @@ def bessel(order: int, z: float) -> float:
 
 # What is e^-30 of the most that a period carries is left out.
 _FADED = 30.0
-_COSINE_8 = math.cos(math.pi / 8)
+
 
 @compiled(error_model="numpy")
 def asperities_at(asperities: CompiledAsperities, h: float) -> tuple[float, float]:
@@ -156,20 +156,23 @@ def _tabulated_mean(
     law: si.FloatArray, table: si.FloatArray, u: float, a: float
 ) -> tuple[float, float]:
     """`asperity_mean` by the trapezoidal rule over what touches: what is smooth and fades out, or
-    comes back, is averaged to 1e-9 by few points."""
+    comes back, is averaged by few points: to 1e-9, of rough contact to what its table holds."""
     middle, swing = (u - law[3]) / law[4], a / law[4]
     x = middle - swing
     i = np.uint64(max(x, 0.0))
     if i >= len(table):
         return 0.0, 0.0
-    x = max(x - i, 0.0)
-    fall = -(table[i, 1] + x * (2.0 * table[i, 2] + x * 3.0 * table[i, 3]))
-    steepness = swing * fall
-    phase, cosine, count = math.pi, _COSINE_8, 8
-    if steepness > 3.5:
-        reach = min(_FADED * max(1.0 / fall, law[5] / law[4]), len(table) - middle + swing)
-        phase, count = _covered(reach, swing), 12 if steepness < 10.0 else 16
-        cosine = math.cos(phase / count)
+    x -= i
+    y = max(x, 0.0)
+    fall = -(table[i, 1] + y * (2.0 * table[i, 2] + y * 3.0 * table[i, 3]))
+    end = law[4] / law[5]
+    # Rough contact, whose table is a joint of cubics, must have one number of points whatever u:
+    # where it changed, the mean would jump by more than a balance may be off.
+    steepness = swing * min(fall, end)
+    count = 8 if steepness < 0.7 else 12 if steepness < 2.0 else 16 if steepness < 4.0 else 24
+    reach = min(_FADED * max(1.0 / fall, 1.0 / end), len(table) - 1e-6 - x - i)
+    phase = _covered(reach, swing)
+    cosine = math.cos(phase / count)
     mean, first, c, before = 0.0, 0.0, 1.0, cosine
     for k in range(count + 1):
         x = middle - swing * c

@@ -218,6 +218,12 @@ class RoughContact:
         return np.asarray(np.where(t <= _LARGEST_GAP, carried, 0.0))[()]
 
     @property
+    def largest_pressure(self) -> si.Pascal:
+        """The largest pressure (Pa) for which the law holds: it presses the gap at rest to
+        `LEAST_GAP` of the roughness, where nearly everything touches and the table ends."""
+        return self.pressure_scale * math.exp(self.spectrum.logarithm[0])
+
+    @property
     def words(self) -> str:
         """What it is, for the name of a model."""
         return "a rough elastic interface by Persson's theory"

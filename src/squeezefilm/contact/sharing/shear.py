@@ -51,10 +51,12 @@ def sheared_friction(
 
     The mean over a period of what is held in shear, over what the same load holds at rest. With
     "rigid" shear and `AsperityLaw` it is `LoadSharing.relative_friction` to the residual of the
-    balance. It never falls with the speed; with a stiffness that follows the load all slips, and
-    no more is gained, from U = µ ω a/κ on, a the amplitude of the gap; with a constant one what is
-    missing to that goes with U⁻¹ˢ. Toward U = 0 a constant
-    stiffness keeps the least pressure of the period, one that follows keeps nothing.
+    balance. It never falls with the speed, and at a finite one it is what rigid shear has: with a
+    stiffness k that follows the load from U = µ ω a/κ on, a the amplitude of the gap, and with a
+    constant one from µ ω max|dp_a/dT|/(κ k) on; below that the difference goes with the square of
+    what is lacking. Toward U = 0 a constant stiffness keeps the least pressure of the period, one
+    that follows keeps nothing: what it has then is in proportion to U. Within 1e-6 of µ′/µ (5e-6
+    of a rough interface that is pressed nearly flat). Raises `InputError` for what cannot be used.
     """
     from squeezefilm.contact.sharing import shear_kernel as kernel
 
