@@ -5,8 +5,8 @@ Run `python benchmarks/contact.py`.
 Prints, on one core: a friction curve of 100 amplitudes over a whole pad (28 ridges on the standing
 wave), with and without solving its film table; a map of 50 amplitudes × 50 forces; the combined
 mechanism, rough contact that shears until it slips, as a ratio to that and as a table over force,
-speed and amplitude; the time of one load balance; the ratio to balancing each plateau with SciPy's brentq on `solve_uniform`, in the
-same run and at the same error; and where the time goes.
+speed and amplitude; the time of one load balance; the ratio to balancing each plateau with
+SciPy's brentq on `solve_uniform`, in the same run and at the same error; and where the time goes.
 """
 
 from __future__ import annotations

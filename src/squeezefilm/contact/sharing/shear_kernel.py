@@ -119,7 +119,7 @@ def _onset(rows: si.FloatArray, advance: float, k: int) -> float:
     for _ in range(2):
         miss = _between(rows[_RISE], x) - advance * _between(rows[_STIFFNESS], x)
         x = min(max(x - miss / slope, float(k)), k + 1.0)
-    return x
+    return float(x)
 
 
 @compiled(error_model="numpy")
@@ -142,7 +142,7 @@ def _slip(
         slope = step * (advance * _between(rows[_STIFFNESS], x) - _between(rows[_RISE], x))
         if slope != 0.0:
             x = min(max(x - miss / slope, low), high)
-    return x
+    return float(x)
 
 
 @compiled(error_model="numpy")
@@ -248,7 +248,8 @@ def _lost(rows: si.FloatArray, step: float, advance: float, following: bool) -> 
     level = lack * most - most
     loading = level * step * _STEPS + rows[_HELD, _STEPS]
     loading += advance * rows[_DRAGGED_TWICE, _STEPS]
-    return loading + lack * rows[_HELD, _STEPS] - advance * rows[_KEPT, _STEPS]
+    parting = lack * rows[_HELD, _STEPS] - advance * rows[_KEPT, _STEPS]
+    return float(loading + parting)
 
 
 @compiled(error_model="numpy")
