@@ -16,6 +16,7 @@ import dataclasses
 import math
 from dataclasses import dataclass
 from functools import lru_cache
+from statistics import NormalDist
 from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
@@ -31,20 +32,33 @@ the normal stiffness at every moment."""
 MINDLIN_RATIO: si.Dimensionless = 2 / 3
 """Tangential over normal contact stiffness 2(1 − ν)/(2 − ν) of an incompressible body."""
 
-EXPONENTIAL, GAUSSIAN = 0, 1
+EXPONENTIAL, TABULATED, LINEAR_OVERLAP = range(3)
 
 # ln F is tabulated between these, in units of the height deviation: below, the asperities are
 # crushed flat, above they carry e^-200 of anything.
-_LOWEST, _HIGHEST = -8.0, 20.0
-_TERMS = 48
+_LOWEST, _HIGHEST, _STEP = -8.0, 20.0, 0.025
 
 
 class CompiledAsperities(NamedTuple):
-    """A law of asperities for compiled code: the number of its kind, its constants, its table."""
+    """A law of asperities for compiled code: the number of its kind, its constants, and where it
+    is tabulated the cubics of ln p (p in Pa) between gaps at equal steps, and of what friction can
+    hold over µ p where that is not 1. For the constants see `asperity_kernel`."""
 
     kind: int
     constants: si.FloatArray
     table: si.FloatArray
+    area: si.FloatArray
+
+
+NO_CUBICS: si.FloatArray = np.zeros((0, 4))
+
+
+def cubics(values: si.FloatArray, slopes: si.FloatArray, step: float) -> si.FloatArray:
+    """The cubics in x from 0 to 1 between points `step` apart, by their values and slopes."""
+    rise, start, end = np.diff(values), slopes[:-1] * step, slopes[1:] * step
+    return np.stack(
+        [values[:-1], start, 3 * rise - 2 * start - end, start + end - 2 * rise], axis=1
+    )
 
 
 @si.closed_form(positive="reference_pressure decay_length")
@@ -78,14 +92,13 @@ def gaussian_overlap(separation: si.DimensionlessLike) -> si.DimensionlessLike:
 
 
 @lru_cache(maxsize=1)
-def _gaussian_coefficients() -> si.FloatArray:
-    """Chebyshev coefficients of ln F over the tabulated range, for the compiled code."""
-    from numpy.polynomial import chebyshev
+def _gaussian_cubics() -> si.FloatArray:
+    """ln F over the tabulated range, for the compiled code; within 1e-9."""
+    from scipy.special import pbdv
 
-    nodes = np.cos(np.pi * (np.arange(_TERMS) + 0.5) / _TERMS)
-    t = 0.5 * (_LOWEST + _HIGHEST) + 0.5 * (_HIGHEST - _LOWEST) * nodes
-    values = np.log(np.asarray(gaussian_overlap(t)))
-    return np.asarray(chebyshev.chebfit(nodes, values, _TERMS - 1))
+    t = np.linspace(_LOWEST, _HIGHEST, round((_HIGHEST - _LOWEST) / _STEP) + 1)
+    cylinder, slope = pbdv(-2.5, t)
+    return cubics(np.log(np.asarray(gaussian_overlap(t))), slope / cylinder - t / 2, _STEP)
 
 
 @si.checked_numbers
@@ -151,6 +164,21 @@ class AsperityLaw:
         return dataclasses.replace(self, reference_pressure=self.reference_pressure * factor)
 
     @property
+    def largest_pressure(self) -> si.Pascal:
+        """The largest pressure (Pa) for which the law holds: 1/e of the asperities touch under it.
+
+        The theory takes asperities that touch apart from one another, the real contact area a
+        small part of the whole (Greenwood & Williamson 1966, 10.1098/rspa.1966.0242), and so ends
+        where most of them touch. That it ends at 1/e is our convention (assumed): exponential
+        heights are then pressed to a gap of one decay length, Gaussian ones to 0.34 deviations.
+        """
+        if self.heights == "exponential":
+            # A law that falls off in an instant holds to any pressure that a float has.
+            depth = min(self.reference_gap / self.decay_length - 1, 600.0)
+            return self.reference_pressure * math.exp(depth)
+        return float(self.pressure(NormalDist().inv_cdf(1 - 1 / math.e) * self.decay_length))
+
+    @property
     def words(self) -> str:
         """What it is, for the name of a model."""
         return f"asperities of {self.heights} heights"
@@ -159,10 +187,10 @@ class AsperityLaw:
         """The law as the compiled code takes it."""
         constants = [self.reference_pressure, self.reference_gap, self.decay_length, 0.0, 0.0, 0.0]
         if self.heights == "exponential":
-            return CompiledAsperities(EXPONENTIAL, np.array(constants), np.zeros(1))
-        constants[3:] = [
-            _LOWEST,
-            _HIGHEST,
-            math.log(float(gaussian_overlap(self.reference_gap / self.decay_length))),
-        ]
-        return CompiledAsperities(GAUSSIAN, np.array(constants), _gaussian_coefficients())
+            return CompiledAsperities(EXPONENTIAL, np.array(constants), NO_CUBICS, NO_CUBICS)
+        table = _gaussian_cubics().copy()
+        overlap = float(gaussian_overlap(self.reference_gap / self.decay_length))
+        table[:, 0] += math.log(self.reference_pressure / overlap)
+        scale = self.decay_length
+        constants[3:] = [_LOWEST * scale, _STEP * scale, -_STEP * scale / table[-1, 1]]
+        return CompiledAsperities(TABULATED, np.array(constants), table, NO_CUBICS)

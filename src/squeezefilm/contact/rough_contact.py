@@ -31,12 +31,14 @@ from typing import Annotated, Literal, NamedTuple
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.contact.asperities import AsperityLaw, CompiledAsperities
+from squeezefilm.contact.asperities import (
+    TABULATED,
+    AsperityLaw,
+    CompiledAsperities,
+    cubics,
+)
 from squeezefilm.errors import InputError, OutOfRangeError
 from squeezefilm.hard_limits import MODULUS, ROUGHNESS
-
-SELF_AFFINE = 2
-"""The number of this law in the compiled code."""
 
 LEAST_GAP: si.Dimensionless = 0.05
 """The least gap, in h_rms, of the tabulated law: there nearly everything is in contact."""
@@ -228,24 +230,41 @@ class RoughContact:
         return np.asarray(np.where(t <= _LARGEST_GAP, carried, 0.0))[()]
 
     @property
+    def largest_pressure(self) -> si.Pascal:
+        """The largest pressure (Pa) for which the law holds: it presses the gap at rest to
+        `LEAST_GAP` of the roughness, where nearly everything touches and the table ends."""
+        return self.pressure_scale * math.exp(self.spectrum.logarithm[0])
+
+    @property
     def words(self) -> str:
         """What it is, for the name of a model."""
         return "a rough elastic interface by Persson's theory"
 
     def compiled(self) -> CompiledAsperities:
         """The law as the compiled code takes it."""
-        known = self.spectrum
-        constants = [
-            self.pressure_scale * known.strength,
-            0.0,
-            self.decay_length,
-            self.roughness,
-            LEAST_GAP,
-            _STEP,
-            math.log(self.pressure_scale),
-        ]
-        table = np.stack([known.logarithm, known.steepness], axis=1).ravel()
-        return CompiledAsperities(SELF_AFFINE, np.array(constants), table)
+        return _compiled(self)
+
+
+@lru_cache(maxsize=32)
+def _compiled(law: RoughContact) -> CompiledAsperities:
+    from scipy.special import erf
+
+    known, step = law.spectrum, _STEP * law.roughness
+    constants = [
+        law.pressure_scale * known.strength,
+        0.0,
+        law.decay_length,
+        LEAST_GAP * law.roughness,
+        step,
+        -law.roughness / known.steepness[-1],
+    ]
+    table = cubics(known.logarithm + math.log(law.pressure_scale), known.steepness, _STEP)
+    # Friction in proportion to the real contact area, and µ p where that is small:
+    # √π/2 erf(s)/s over the pressure, s = √2 p/(E* h′_rms).
+    s = math.sqrt(2) * law.pressure_scale * np.exp(known.logarithm) / (law.modulus * law.rms_slope)
+    share = math.sqrt(math.pi) / 2 * erf(s) / s
+    area = cubics(share, (np.exp(-(s**2)) - share) * known.steepness, _STEP)
+    return CompiledAsperities(TABULATED, np.array(constants), table, area)
 
 
 ContactLaw = AsperityLaw | RoughContact

@@ -142,3 +142,8 @@ def test_what_is_refused() -> None:
         CONTACT.pressure(0.05e-6)
     with pytest.raises(InputError, match="longest must be"):
         RoughContact(longest_wavelength=1e-6)
+
+
+def test_the_largest_pressure_is_that_of_the_least_gap() -> None:
+    most = CONTACT.largest_pressure
+    assert most == pytest.approx(float(CONTACT.pressure(LEAST_GAP * CONTACT.roughness)), rel=1e-9)

@@ -9,6 +9,7 @@ with the film solved (`gas_table`) and p_a the asperities' law, which does not k
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
 from typing import Annotated, Any
 
@@ -19,7 +20,7 @@ from squeezefilm.compiled import announce
 from squeezefilm.contact.finger.skin import Skin
 from squeezefilm.contact.rough_contact import LEAST_GAP, ContactLaw, RoughContact
 from squeezefilm.contact.sharing.gas_table import DEEPEST_EXCURSION, FilmTable
-from squeezefilm.errors import ConvergenceError, OutOfRangeError
+from squeezefilm.errors import ConvergenceError, OutOfRangeError, OutOfRangeWarning
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,7 +71,7 @@ def share_load(
     Without a `skin` the finger is rigid at the ultrasonic frequency. Raises `InputError` for
     values that cannot be used, `OutOfRangeError` where the asperities are pressed through (the gap
     would close beyond 98.5 % of its mean, or below nothing), `ConvergenceError` where no balance
-    is found.
+    is found. Warns `OutOfRangeWarning` of a pressure above the law's `largest_pressure`.
     """
     from squeezefilm.contact.sharing import kernel
 
@@ -158,19 +159,30 @@ def _shared(
 
 
 def _require_law(law: ContactLaw, rows: si.FloatArray, pressure: si.FloatArray) -> None:
-    """Refuse balances that press a rough interface nearly flat, where its law ends."""
+    """Refuse balances that press a rough interface nearly flat, where its law ends; warn of
+    plateaus pressed so hard that the law of asperities does not hold even at rest."""
     from squeezefilm.contact.sharing import kernel
 
-    if not isinstance(law, RoughContact):
-        return
-    least = (rows[..., kernel.GAP] - rows[..., kernel.SWING]).reshape(pressure.shape)
-    flat = least < LEAST_GAP * law.roughness
-    if np.any(flat):
-        shown = si.format_quantity(float(np.min(pressure[flat])), si.Unit("Pa"))
-        raise OutOfRangeError(
-            f"a plateau under {shown} brings nearly everything into contact once a period: the gap "
-            f"falls below {LEAST_GAP} of the roughness, where the contact's law ends. Press less, "
-            "vibrate less, or take a rougher or stiffer skin"
+    most = si.format_quantity(law.largest_pressure, si.Unit("Pa"))
+    if isinstance(law, RoughContact):
+        least = (rows[..., kernel.GAP] - rows[..., kernel.SWING]).reshape(pressure.shape)
+        flat = least < LEAST_GAP * law.roughness
+        if np.any(flat):
+            shown = si.format_quantity(float(np.min(pressure[flat])), si.Unit("Pa"))
+            raise OutOfRangeError(
+                f"a plateau under {shown} brings nearly everything into contact once a period: the "
+                f"gap falls below {LEAST_GAP} of the roughness, where the contact's law ends; at "
+                f"rest it holds to {most}. Press less, vibrate less, or take a rougher or stiffer "
+                "skin"
+            )
+    elif np.any(pressure > law.largest_pressure):
+        shown = si.format_quantity(float(np.max(pressure)), si.Unit("Pa"))
+        warnings.warn(
+            f"a plateau under {shown} presses most of its asperities flat even at rest, where they "
+            f"no longer carry by themselves: {law.words} hold to {most}. Press less, or take the "
+            "contact of a rough elastic interface (RoughContact)",
+            OutOfRangeWarning,
+            stacklevel=4,
         )
 
 

@@ -177,7 +177,8 @@ def balance(
     """The mean gap u at which ridges tied together carry a mean pressure (Pa), into `out`.
 
     Ridge i has the gap u + offsets[i] and the amplitude amplitudes[i]. What is carried falls
-    steadily with u; ln of it is nearly linear, hence a false position (Illinois) in logarithms.
+    steadily with u; ln of it is nearly linear, hence a false position in logarithms, with the
+    factor of Anderson and Björck where an end stays.
     """
     out[:] = 0.0
     out[PANEL] = -1.0
@@ -233,15 +234,13 @@ def balance(
             break
         at = math.log((gas + solid) / pressure)
         if at >= 0.0:
-            left, f_left = u, at
             if side == 1:
-                f_right *= 0.5
-            side = 1
+                f_right *= 1.0 - at / f_left if at < f_left else 0.5
+            left, f_left, side = u, at, 1
         else:
-            right, f_right = u, at
             if side == -1:
-                f_left *= 0.5
-            side = -1
+                f_left *= 1.0 - at / f_right if at > f_right else 0.5
+            right, f_right, side = u, at, -1
     out[STEPS] = spent + 1
     if lack >= 0:
         out[STATUS], out[PANEL] = NEEDS_PANEL, lack

@@ -1,6 +1,9 @@
 """The compiled shear of what touches within a period: stick, slip and the load that comes and goes.
 
-All functions run without the interpreter.
+Shear over µ is the limit that friction sets less a deficit, which is 0 while it slides. Phases are
+counted from the least gap. Both halves of the period see the same gaps, so that what is needed
+along them (limit, stiffness and their integrals) is found once per plateau, on points that cover
+where anything touches, and serves every speed. All functions run without the interpreter.
 """
 
 from __future__ import annotations
@@ -12,137 +15,241 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.compiled import compiled
-from squeezefilm.contact.asperities import CompiledAsperities
-from squeezefilm.contact.asperity_kernel import asperities_at, asperity_mean
+from squeezefilm.contact.asperities import LINEAR_OVERLAP, CompiledAsperities
+from squeezefilm.contact.asperity_kernel import (
+    asperities_at,
+    held_along,
+    held_at,
+    touching_phase,
+)
 
 RIGID, CONSTANT, FOLLOWING = range(3)
 
-_HALF = 64
-_ROUNDS = 12
+_STEPS = 64
+# Rows of what is known along the half period. The integrals are over phase, from the least gap on;
+# DRAGGED is that of STIFFNESS, SHED of STIFFNESS/LIMIT, KEPT of LIMIT times SHED.
+_LIMIT, _RISE, _STIFFNESS, _HELD, _DRAGGED, _DRAGGED_TWICE, _SHED, _KEPT = range(8)
+_ROWS = 8
+
+
+def _step_weights() -> si.FloatArray:
+    """The integral over step i of the polynomial through six points 0 … 5, as weights of these."""
+    powers = np.arange(6.0)
+    moments = ((powers[:5, None] + 1) ** (powers + 1) - powers[:5, None] ** (powers + 1)) / (
+        powers + 1
+    )
+    return np.asarray(np.linalg.solve(powers[None, :] ** powers[:, None], moments.T).T)
+
+
+_WEIGHTS = _step_weights()
 
 
 class CompiledShear(NamedTuple):
-    """An elastic tangential element: its kind, `advance` κ U/(µ ω) in m, and for a constant
-    stiffness −dp_a/dh at rest in Pa/m. `full` is that pressure at which real contact is full, of
-    which friction is in proportion to erf(√2 p/full); 0 where it is in proportion to the load."""
+    """An elastic tangential element: its kind, and `advance` κ U/(µ ω) in m at each speed."""
 
     kind: int
-    advance: float
-    stiffness: float
-    full: float
+    advance: si.FloatArray
 
 
 @compiled(error_model="numpy")
-def friction_limit(pressure: float, full: float) -> float:
-    """What friction can hold over µ, in Pa: the pressure, or in proportion to the real contact
-    area and equal to the pressure where that is small."""
-    if full <= 0.0:
-        return pressure
-    slope = math.sqrt(2.0) / full
-    return math.sqrt(math.pi) / (2.0 * slope) * math.erf(slope * pressure)
-
-
-@compiled(error_model="numpy")
-def _profiles(
-    asperities: CompiledAsperities, u: float, a: float, shear: CompiledShear
-) -> si.FloatArray:
-    """Limit (Pa over µ), its rise and the advance of sticking shear (Pa/rad) over half a period,
-    from the largest gap on."""
-    rows = np.empty((3, _HALF + 1))
-    for k in range(_HALF + 1):
-        theta = math.pi * k / _HALF
-        h = u + a * math.cos(theta)
-        pressure, stiffness = asperities_at(asperities, h)
-        rows[0, k] = friction_limit(pressure, shear.full)
-        rows[1, k] = stiffness * a * math.sin(theta)
-        if shear.full > 0.0:
-            rows[1, k] *= math.exp(-2.0 * (pressure / shear.full) ** 2)
-        rows[2, k] = shear.advance * (stiffness if shear.kind == FOLLOWING else shear.stiffness)
-    return rows
-
-
-@compiled(error_model="numpy")
-def _over(values: si.FloatArray, k: int) -> float:
-    """The integral from point k to k + 1, in steps, of what is even at both ends: fourth order."""
-    before = values[k - 1] if k > 0 else values[1]
-    after = values[k + 2] if k + 2 <= _HALF else values[_HALF - 1]
-    return float((13.0 * (values[k] + values[k + 1]) - before - after) / 24.0)
-
-
-@compiled(error_model="numpy")
-def _part(start: float, end: float, slope_start: float, slope_end: float) -> tuple[float, float]:
-    """How the deficit goes on over one step, and its integral, both in steps."""
-    if start == 0.0 and slope_start < 0.0:
-        # Sliding at first: sticking begins where the limit rises as fast as the shear.
-        if slope_end <= 0.0:
-            return 0.0, 0.0
-        left = slope_end / (slope_end - slope_start)
-        end = 0.5 * left * slope_end
-        return end, end * left / 3.0
-    if end <= 0.0:
-        # Sliding at the end: the shear meets the limit on the way.
-        return 0.0, 0.5 * start * start / (start - end) if start > 0.0 else 0.0
-    return end, 0.5 * (start + end) + (slope_start - slope_end) / 12.0
-
-
-@compiled(error_model="numpy")
-def _period(rows: si.FloatArray, following: bool, deficit: float) -> tuple[float, float]:
-    """A period from the largest gap on, begun with a deficit of shear under its limit (Pa over µ):
-    the deficit at its end and its integral over the phase, in steps."""
-    limit, rise, advance = rows
-    step = math.pi / _HALF
+def _integrate(values: si.FloatArray, step: float, out: si.FloatArray) -> None:
+    """The integral from the first point on, by sixth-order pieces."""
+    last = len(values) - 1
+    near, middle, far = step * _WEIGHTS[2, 2], step * _WEIGHTS[2, 1], step * _WEIGHTS[2, 0]
+    for k in range(last - 4):
+        out[k + 3] = (
+            near * (values[k + 2] + values[k + 3])
+            + middle * (values[k + 1] + values[k + 4])
+            + far * (values[k] + values[k + 5])
+        )
+    for k in range(2):
+        first, final = 0.0, 0.0
+        for j in range(6):
+            first += _WEIGHTS[k, j] * values[j]
+            final += _WEIGHTS[k, j] * values[last - j]
+        out[k + 1], out[last - k] = step * first, step * final
     total = 0.0
-    for k in range(_HALF):
-        end = deficit + limit[k + 1] - limit[k] - step * _over(advance, k)
-        slopes = step * (rise[k] - advance[k]), step * (rise[k + 1] - advance[k + 1])
-        deficit, part = _part(deficit, end, slopes[0], slopes[1])
-        total += part
-    share = advance / limit
-    for k in range(_HALF - 1, -1, -1):
-        if deficit <= 0.0:
-            break
-        if following:
-            # Asperities that part take their share of the shear with them: what sticks is scaled.
-            lack = deficit / limit[k + 1]
-            left = lack - step * _over(share, k)
-            slopes = (
-                step * (-rise[k + 1] * lack - advance[k + 1]),
-                step * (-rise[k] * left - advance[k]),
-            )
-            end = left * limit[k]
-        else:
-            end = deficit + limit[k] - limit[k + 1] - step * _over(advance, k)
-            slopes = step * (-rise[k + 1] - advance[k + 1]), step * (-rise[k] - advance[k])
-        deficit, part = _part(deficit, end, slopes[0], slopes[1])
-        total += part
-    return deficit, total * step
+    out[0] = 0.0
+    for k in range(1, last + 1):
+        total += out[k]
+        out[k] = total
 
 
 @compiled(error_model="numpy")
-def shear_mean(asperities: CompiledAsperities, u: float, a: float, shear: CompiledShear) -> float:
-    """The mean shear stress over a period, over µ (Pa), of asperities over a gap u − a cos T."""
-    if shear.full <= 0.0:
-        mean = asperity_mean(asperities, u, a)[0]
-        if shear.kind == RIGID:
-            return float(mean)
-    rows = _profiles(asperities, u, a, shear)
-    if shear.full > 0.0:
-        limit = rows[0]
-        mean = (0.5 * (limit[0] + limit[_HALF]) + limit[1:_HALF].sum()) / _HALF
-        if shear.kind == RIGID:
-            return float(mean)
-    # The period repeats where it ends with the deficit that it began with: the map from one to the
-    # other is nearly straight, and its secant ends the search.
-    start, last_start, last_end, total = 0.0, math.nan, math.nan, 0.0
-    for _ in range(_ROUNDS):
-        end, total = _period(rows, shear.kind == FOLLOWING, start)
-        if abs(end - start) <= 1e-12 * rows[0, 0]:
-            break
-        gain = (end - last_end) / (start - last_start)
-        last_start, last_end = start, end
-        # The first time there is no secant yet (the gain is no number): go where it ended.
-        start = max(start + (end - start) / (1.0 - gain), 0.0) if gain < 1.0 else end
-    return float(mean - total / (2.0 * math.pi))
+def _fill(
+    asperities: CompiledAsperities, u: float, a: float, constant: float, rows: si.FloatArray
+) -> float:
+    """What is known along the half period, into `rows`; the phase per step. A `constant` stiffness
+    (Pa/m) above 0 takes the place of that at every moment."""
+    step = touching_phase(asperities, u, a) / _STEPS
+    held_along(asperities, u, a, step, rows[:3])
+    if constant > 0.0:
+        rows[_STIFFNESS] = constant
+    _integrate(rows[_LIMIT], step, rows[_HELD])
+    _integrate(rows[_STIFFNESS], step, rows[_DRAGGED])
+    _integrate(rows[_DRAGGED], step, rows[_DRAGGED_TWICE])
+    if constant <= 0.0:
+        for k in range(_STEPS + 1):
+            rows[_KEPT, k] = rows[_STIFFNESS, k] / rows[_LIMIT, k]
+        _integrate(rows[_KEPT], step, rows[_SHED])
+        _integrate(rows[_LIMIT] * rows[_SHED], step, rows[_KEPT])
+    return step
+
+
+@compiled(error_model="numpy")
+def _between(row: si.FloatArray, x: float) -> float:
+    """A row at a place between its points, by the polynomial through the six around it."""
+    first = min(max(int(x) - 2, 0), len(row) - 6)
+    t, total = x - first, 0.0
+    for j in range(6):
+        weight = 1.0
+        for m in range(6):
+            if m != j:
+                weight *= (t - m) / (j - m)
+        total += weight * row[first + j]
+    return total
+
+
+@compiled(error_model="numpy")
+def _onset(rows: si.FloatArray, advance: float, k: int) -> float:
+    """Where between points k and k + 1 the limit begins to rise faster than the shear."""
+    near = rows[_RISE, k] - advance * rows[_STIFFNESS, k]
+    far = rows[_RISE, k + 1] - advance * rows[_STIFFNESS, k + 1]
+    x, slope = k + near / (near - far), far - near
+    for _ in range(2):
+        miss = _between(rows[_RISE], x) - advance * _between(rows[_STIFFNESS], x)
+        x = min(max(x - miss / slope, float(k)), k + 1.0)
+    return float(x)
+
+
+@compiled(error_model="numpy")
+def _along(values: si.FloatArray, integrals: si.FloatArray, advance: float, x: float) -> float:
+    return _between(values, x) + advance * _between(integrals, x)
+
+
+@compiled(error_model="numpy")
+def _slip(
+    rows: si.FloatArray, step: float, level: float, advance: float, ends: tuple[float, float]
+) -> float:
+    """Where between two places level + LIMIT + advance · DRAGGED, the deficit, is 0: by Newton's
+    method, since an error of the place counts by its square."""
+    low, high = ends
+    near = level + _along(rows[_LIMIT], rows[_DRAGGED], advance, low)
+    far = level + _along(rows[_LIMIT], rows[_DRAGGED], advance, high)
+    x = low + (high - low) * near / (near - far) if near != far else 0.5 * (low + high)
+    for _ in range(2):
+        miss = level + _along(rows[_LIMIT], rows[_DRAGGED], advance, x)
+        slope = step * (advance * _between(rows[_STIFFNESS], x) - _between(rows[_RISE], x))
+        if slope != 0.0:
+            x = min(max(x - miss / slope, low), high)
+    return float(x)
+
+
+@compiled(error_model="numpy")
+def _loading(
+    rows: si.FloatArray, step: float, advance: float, deficit: float
+) -> tuple[float, float, bool]:
+    """From the largest gap to the least: the deficit (Pa over µ) there, its integral over the
+    phase, and whether anything slid on the way.
+
+    While it sticks the deficit is level + LIMIT + advance · DRAGGED.
+    """
+    limit, dragged, held, twice = rows[_LIMIT], rows[_DRAGGED], rows[_HELD], rows[_DRAGGED_TWICE]
+    grew = rows[_RISE, _STEPS] > advance * rows[_STIFFNESS, _STEPS]
+    stuck, slid, total, begun = deficit > 0.0 or grew, deficit <= 0.0, 0.0, float(_STEPS)
+    level = deficit - limit[_STEPS] - advance * dragged[_STEPS]
+    area = held[_STEPS] + advance * twice[_STEPS]
+    for k in range(_STEPS - 1, -1, -1):
+        grows = rows[_RISE, k] > advance * rows[_STIFFNESS, k]
+        # Where the limit begins to rise faster than the shear the deficit is least.
+        trough = grows and not grew
+        x, left = float(k), level + limit[k] + advance * dragged[k]
+        if trough:
+            x = _onset(rows, advance, k)
+            left = level + _along(limit, dragged, advance, x)
+        if stuck and left <= 0.0 and not (grows and grew):
+            end = _slip(rows, step, level, advance, (x, k + 1.0))
+            total += level * (begun - end) * step + area - _along(held, twice, advance, end)
+            stuck, slid = False, True
+        if trough and not stuck:
+            stuck, begun = True, x
+            level = -_along(limit, dragged, advance, x)
+            area = _along(held, twice, advance, x)
+        grew = grows
+    if not stuck:
+        return 0.0, total, True
+    return level + limit[0], total + level * begun * step + area, slid
+
+
+@compiled(error_model="numpy")
+def _unloading(
+    rows: si.FloatArray, step: float, advance: float, deficit: float
+) -> tuple[float, float]:
+    """From the least gap to the largest under a constant stiffness: the deficit there and its
+    integral. It falls all the way."""
+    level = deficit - rows[_LIMIT, 0]
+    for k in range(1, _STEPS + 1):
+        if level + rows[_LIMIT, k] - advance * rows[_DRAGGED, k] <= 0.0:
+            end = _slip(rows, step, level, -advance, (k - 1.0, float(k)))
+            return 0.0, level * end * step + _along(
+                rows[_HELD], rows[_DRAGGED_TWICE], -advance, end
+            )
+    left = level + rows[_LIMIT, _STEPS] - advance * rows[_DRAGGED, _STEPS]
+    held = rows[_HELD, _STEPS] - advance * rows[_DRAGGED_TWICE, _STEPS]
+    return left, level * _STEPS * step + held
+
+
+@compiled(error_model="numpy")
+def _parting(
+    rows: si.FloatArray, step: float, advance: float, deficit: float
+) -> tuple[float, float]:
+    """`_unloading` where asperities that part take their share of the shear with them: what sticks
+    is scaled, and the deficit over the limit falls by the advance alone."""
+    lack = deficit / rows[_LIMIT, 0]
+    for k in range(1, _STEPS + 1):
+        if advance * rows[_SHED, k] >= lack:
+            near, far = rows[_SHED, k - 1], rows[_SHED, k]
+            end = k - 1 + (lack / advance - near) / (far - near)
+            slope = _between(rows[_STIFFNESS], end) / _between(rows[_LIMIT], end) * step
+            end += (lack / advance - _between(rows[_SHED], end)) / slope
+            return 0.0, lack * _along(rows[_HELD], rows[_KEPT], -advance / lack, end)
+    left = (lack - advance * rows[_SHED, _STEPS]) * rows[_LIMIT, _STEPS]
+    return left, lack * rows[_HELD, _STEPS] - advance * rows[_KEPT, _STEPS]
+
+
+@compiled(error_model="numpy")
+def _lost(rows: si.FloatArray, step: float, advance: float, following: bool) -> float:
+    """The deficit's integral over a period that repeats (Pa over µ, times phase).
+
+    Begun without a deficit at the largest gap, the next period begins with what is left at its
+    end. Where that one slides at all, nothing is left of how it began, and it repeats. Where it
+    does not, which a constant stiffness never does, deficits are linear in the one at the start.
+    """
+    apart = step * _STEPS < math.pi * (1.0 - 1e-12)
+    start, total = 0.0, 0.0
+    for _ in range(2):
+        deficit, total, slid = _loading(rows, step, advance, start)
+        if deficit > 0.0:
+            if following:
+                start, more = _parting(rows, step, advance, deficit)
+            else:
+                start, more = _unloading(rows, step, advance, deficit)
+            total += more
+            slid = slid or start <= 0.0
+        else:
+            start = 0.0
+        if apart or start <= 0.0:
+            return total
+    if slid or not following:
+        return total
+    most, least = rows[_LIMIT, 0], rows[_LIMIT, _STEPS]
+    dragged, shed = advance * rows[_DRAGGED, _STEPS], advance * rows[_SHED, _STEPS]
+    lack = 1.0 - (dragged + least * shed) / (most - least)
+    level = lack * most - most
+    loading = level * step * _STEPS + rows[_HELD, _STEPS]
+    loading += advance * rows[_DRAGGED_TWICE, _STEPS]
+    parting = lack * rows[_HELD, _STEPS] - advance * rows[_KEPT, _STEPS]
+    return float(loading + parting)
 
 
 @compiled(error_model="numpy")
@@ -165,11 +272,27 @@ def gap_at_rest(asperities: CompiledAsperities, pressure: float) -> float:
 def sheared_rows(
     asperities: CompiledAsperities, shared: si.FloatArray, shear: CompiledShear, out: si.FloatArray
 ) -> None:
-    """µ′/µ of plateaus, into `out`; the columns of `shared` are their mean gap and its amplitude
-    (m) and their pressure (Pa)."""
+    """µ′/µ of plateaus at speeds, into `out` (speeds by plateaus); the columns of `shared` are
+    their mean gap and its amplitude (m) and their pressure (Pa)."""
+    rows = np.empty((_ROWS, _STEPS + 1))
+    known, rest, stiffness = math.nan, math.nan, 0.0
     for i in range(len(shared)):
         gap, swing, pressure = shared[i]
-        stiffness = asperities_at(asperities, gap_at_rest(asperities, pressure))[1]
-        element = CompiledShear(shear.kind, shear.advance, stiffness, shear.full)
-        held = shear_mean(asperities, gap, swing, element)
-        out[i] = held / friction_limit(pressure, shear.full)
+        if pressure != known:
+            known = pressure
+            rest, stiffness = held_at(asperities, gap_at_rest(asperities, pressure))
+        if touching_phase(asperities, gap, swing) <= 0.0:
+            out[:, i] = 0.0
+            continue
+        constant = 0.0 if shear.kind == FOLLOWING else stiffness
+        step = _fill(asperities, gap, swing, constant, rows)
+        held = rows[_HELD, _STEPS]
+        if asperities.kind != LINEAR_OVERLAP:
+            # What is smooth over the period is averaged best by the plainest rule.
+            limit = rows[_LIMIT]
+            held = step * (0.5 * (limit[0] + limit[_STEPS]) + limit[1:_STEPS].sum())
+        for j in range(len(shear.advance)):
+            lost = 0.0
+            if shear.kind != RIGID:
+                lost = _lost(rows, step, shear.advance[j], shear.kind == FOLLOWING)
+            out[j, i] = (held - 0.5 * lost) / (math.pi * rest)

@@ -8,7 +8,8 @@ Vezzoli et al. 2017, Part 1 (10.1109/TOH.2017.2671432), of which the abstract wa
 with finite elements and a spring and Coulomb slider, and find a reduction that depends on
 amplitude, frequency, friction coefficient and the inverse of the finger's speed through one
 dimensionless group, and not on the normal force or the moduli once contact is well intermittent.
-The model here is our own derivation of such a spring and slider, not theirs.
+The model here is our own derivation of such a spring and slider, not theirs: the tangential element
+of `shear` without gas, behind a contact whose pressure is in proportion to the overlap.
 
 Assumptions: no gas; the skin's mean position does not move within a period (inertial); contact
 pressure is that of a linear spring of normal stiffness k_n per area in proportion to the overlap;
@@ -24,12 +25,11 @@ from typing import Annotated
 import numpy as np
 
 from squeezefilm import quantities as si
+from squeezefilm.compiled import announce
 from squeezefilm.contact.asperities import MINDLIN_RATIO
 
 ASPERITY_DECAY: si.Metre = 0.6e-6
 """λ_r of the default asperities, over which their pressure falls by e (assumed)."""
-
-_PHASES = 4096
 
 
 @si.closed_form(positive="friction_coefficient amplitude frequency speed")
@@ -86,6 +86,25 @@ def contact_angle(
     return float(brentq(lambda t: np.sin(t) - t * np.cos(t) - wanted, 0.0, np.pi, xtol=1e-14))
 
 
+def _sheared(
+    half: float, amplitude: si.Metre, rest: si.Metre, pressure: si.Pascal, advance: float
+) -> float:
+    """µ′/µ by the tangential element of `shear`, behind contact in proportion to the overlap."""
+    from squeezefilm.contact.asperities import LINEAR_OVERLAP, NO_CUBICS, CompiledAsperities
+    from squeezefilm.contact.sharing import shear_kernel as kernel
+
+    announce(kernel.sheared_rows, "shear of what touches", 20)
+    law = CompiledAsperities(LINEAR_OVERLAP, np.array([pressure, 0.0, rest]), NO_CUBICS, NO_CUBICS)
+    found = np.empty((1, 1))
+    kernel.sheared_rows(
+        law,
+        np.array([[amplitude * np.cos(half), amplitude, pressure]]),
+        kernel.CompiledShear(kernel.CONSTANT, np.array([advance * amplitude])),
+        found,
+    )
+    return float(found[0, 0])
+
+
 @si.checked_numbers
 def tapping_friction(
     amplitude: Annotated[si.Metre, si.AtLeast(0.0)],
@@ -117,14 +136,7 @@ def tapping_friction(
     )
     friction = 1.0
     if intermittent:
-        # In units of the overlap: limit µ (cos θ − cos θ0), shear rate s per radian of phase.
-        theta, step = np.linspace(-half, half, _PHASES + 1, retstep=True)
-        limit = friction_coefficient * (np.cos(theta) - np.cos(half))
-        slope = stiffness_ratio * speed / (2 * np.pi * frequency * amplitude)
-        # q(θ) = min over θ' ≤ θ of limit(θ') + slope (θ − θ'): a spring behind a Coulomb slider.
-        shear = np.minimum.accumulate(limit - slope * theta) + slope * theta
-        mean = float(np.sum(shear) * step) / (2 * np.pi)
-        friction = mean * amplitude / (friction_coefficient * rest)
+        friction = _sheared(half, amplitude, rest, pressure, stiffness_ratio / number)
     return Tapping(
         relative_friction=min(friction, 1.0),
         contact_fraction=half / np.pi,

@@ -11,7 +11,7 @@ from squeezefilm.contact.sharing.balance import LoadSharing, share_load
 from squeezefilm.contact.sharing.gas_table import FilmTable, film_table
 from squeezefilm.contact.sharing.shear import AsperityShear, sheared_friction
 from squeezefilm.display import load_display
-from squeezefilm.errors import InputError, OutOfRangeError
+from squeezefilm.errors import InputError, OutOfRangeError, OutOfRangeWarning
 
 FREQUENCY = 40.5e3
 AMPLITUDES = np.array([0.5e-6, 1e-6, 2e-6, 3e-6])
@@ -69,6 +69,27 @@ def test_of_real_contact_it_parts_from_the_share_of_the_load(table: FilmTable) -
 def test_a_rough_interface_is_refused_where_it_would_be_flat(table: FilmTable) -> None:
     with pytest.raises(OutOfRangeError, match="nearly everything into contact"):
         share_load(table, RoughContact(), 1e-6, 4e5)
+
+
+def test_many_speeds_are_one_call(shared: LoadSharing) -> None:
+    speeds = np.array([[0.02, 0.08, 0.3], [0.5, 1.0, 2.0]])
+    many = sheared_friction(shared, AsperityShear(speeds), FREQUENCY)
+    assert many.shape == (2, 3, 4)
+    for at in np.ndindex(2, 3):
+        alone = sheared_friction(shared, AsperityShear(float(speeds[at])), FREQUENCY)
+        assert many[at].tolist() == alone.tolist()
+
+
+@pytest.mark.parametrize("heights", ["exponential", "gaussian"])
+def test_asperities_pressed_too_hard_are_warned_of(table: FilmTable, heights: str) -> None:
+    law = AsperityLaw(heights=heights)  # type: ignore[arg-type]
+    most = law.largest_pressure
+    # 1/e of the heights are above the gap at which that pressure is carried.
+    gap = 1.0 if heights == "exponential" else 0.3374749
+    assert most == pytest.approx(float(law.pressure(gap * law.decay_length)), rel=1e-6)
+    share_load(table, law, 1e-8, 0.99 * most)
+    with pytest.warns(OutOfRangeWarning, match="hold to"):
+        share_load(table, law, 1e-8, np.array([1e3, 1.01 * most]))
 
 
 def test_what_is_refused() -> None:
