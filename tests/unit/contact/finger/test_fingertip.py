@@ -115,7 +115,8 @@ def test_a_display_file_may_say_more_of_the_finger_and_need_not(tmp_path: Path) 
     text = presets.path("biet2008-stator").read_text(encoding="utf-8")
     more = (
         'moisture = "dry"\nridge_angle = "90 deg"\ncontact_area_exponent = 0.4\n'
-        '[finger.asperities]\ntype = "separate_asperities"\nreference_gap = "1.5 um"\nheights = "gaussian"\n'
+        '[finger.asperities]\ntype = "separate_asperities"\nreference_gap = "1.5 um"\n'
+        'heights = "gaussian"\n'
         '[finger.skin]\nmass_per_area = "2 kg/m2"\n\n[gas]'
     )
     file = tmp_path / "mine.toml"
