@@ -12,9 +12,16 @@ from typing import Annotated, cast
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.chain.friction_models import DEFAULT_MODEL, MODEL_KINDS, FrictionModel, ModelKind
+from squeezefilm.chain.friction_models import (
+    DEFAULT_MODEL,
+    MODEL_KINDS,
+    FrictionLimits,
+    FrictionModel,
+    ModelKind,
+)
 from squeezefilm.chain.friction_table import FrictionTable
 from squeezefilm.contact.finger.fingertip import EXPLORING_SPEED, Finger
+from squeezefilm.contact.finger.skin import Skin
 from squeezefilm.contact.rough_contact import ContactLaw
 from squeezefilm.contact.sharing import paper
 from squeezefilm.contact.sharing.film_load import FilmLoad, FilmModel, film_load
@@ -40,21 +47,6 @@ HIGHEST_AMPLITUDE: si.Metre = 50e-6
 TABLE_SPEEDS: si.MetrePerSecondArray = np.append(0.0, np.geomspace(1e-3, 2.0, 47))
 """Where a law that depends on the speed is tabulated: toward rest, and from creeping to faster than
 fingers explore. Linear between; held beyond."""
-
-
-@si.checked_numbers
-@dataclass(frozen=True, eq=False)
-class FrictionLimits:
-    """µ′/µ (dimensionless) at amplitudes (m) in the two limits of the skin; how far they are apart
-    belongs in the uncertainty of µ′/µ.
-
-    `own`: each ridge at its own balance (a skin compliant at rest, the default); `one_gap`: all
-    ridges tied to one mean gap.
-    """
-
-    amplitude: si.MetreArray
-    own: si.DimensionlessArray
-    one_gap: si.DimensionlessArray
 
 
 @si.checked_numbers
@@ -140,18 +132,8 @@ class FrictionLaw:
                     "partial-levitation model, or name a limit"
                 )
             limit = self.kind.limit
-        return pad_friction(
-            self._films,
-            self._asperities,
-            amplitude,
-            self.half_wavelength,
-            self._ridges,
-            self.finger.plateau_pressure(self.normal_force),
-            limit=limit,
-            posture=posture or PadPosture(position=self.position),
-            skin=self.finger.skin if yielding else None,
-            shear=self._shear(self.speed),
-        )
+        skin = self.finger.skin if yielding else None
+        return self._pad(amplitude, self.speed, limit=limit, posture=posture, skin=skin)
 
     @si.checked_numbers
     def limits(self, amplitude: si.MetreLike) -> FrictionLimits:
@@ -193,6 +175,32 @@ class FrictionLaw:
         return self.finger.friction_coefficient(
             self.surface.friction_coefficient, self.surface.roughness, self.normal_force
         )
+
+    def _pad(
+        self,
+        amplitude: si.MetreLike,
+        speed: si.MetrePerSecondLike,
+        *,
+        limit: Limit,
+        posture: PadPosture | None = None,
+        skin: Skin | None = None,
+    ) -> PadFriction:
+        try:
+            return pad_friction(
+                self._films,
+                self._asperities,
+                amplitude,
+                self.half_wavelength,
+                self._ridges,
+                self.finger.plateau_pressure(self.normal_force),
+                limit=limit,
+                posture=posture or PadPosture(position=self.position),
+                skin=skin,
+                shear=self._shear(speed),
+            )
+        except OutOfRangeError as error:
+            shown = si.format_quantity(self.normal_force, si.Unit("N"))
+            raise OutOfRangeError(f"under a normal force of {shown}: {error}") from error
 
     def _shear(self, speed: si.MetrePerSecondLike) -> AsperityShear | None:
         if not self.kind.shear:
@@ -237,17 +245,7 @@ class FrictionLaw:
         a, speeds = np.ravel(amplitude), np.ravel(speed)
         if not self.kind.shear:
             return np.repeat(self.curve(a)[None, :], speeds.size, axis=0)
-        found = pad_friction(
-            self._films,
-            self._asperities,
-            a,
-            self.half_wavelength,
-            self._ridges,
-            self.finger.plateau_pressure(self.normal_force),
-            posture=PadPosture(position=self.position),
-            shear=self._shear(speeds),
-        )
-        return found.relative_friction
+        return self._pad(a, speeds, limit=self.kind.limit).relative_friction
 
     @si.checked_numbers
     def at(self, amplitude: si.Metre) -> si.Dimensionless:

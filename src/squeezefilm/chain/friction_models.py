@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
+from squeezefilm import quantities as si
 from squeezefilm.contact.sharing.pad import Limit
 
 FrictionModel = Literal[
@@ -48,3 +50,18 @@ MODEL_KINDS: dict[FrictionModel, ModelKind] = {
     "partial-levitation-one-gap": ModelKind("shared", "one-gap"),
     "partial-levitation-shear": ModelKind("shared", shear=True),
 }
+
+
+@si.checked_numbers
+@dataclass(frozen=True, eq=False)
+class FrictionLimits:
+    """µ′/µ (dimensionless) at amplitudes (m) in the two limits of the skin; how far they are apart
+    belongs in the uncertainty of µ′/µ.
+
+    `own`: each ridge at its own balance (a skin compliant at rest, the default); `one_gap`: all
+    ridges tied to one mean gap.
+    """
+
+    amplitude: si.MetreArray
+    own: si.DimensionlessArray
+    one_gap: si.DimensionlessArray

@@ -108,9 +108,9 @@ class FrictionTable:
     @si.checked_numbers
     def over_speeds(self, amplitude: si.MetreArray) -> si.DimensionlessArray:
         """µ′/µ at the table's speeds and amplitudes (m), shape (k, n)."""
-        return np.stack(
-            [np.interp(amplitude, self.amplitude, row) for row in self.relative_friction]
-        )
+        column, across = _place(self.amplitude, np.asarray(amplitude, dtype=float))
+        known = self.relative_friction
+        return np.asarray(known[:, column] * (1 - across) + known[:, column + 1] * across)
 
     @si.checked_numbers
     def at_speed(self, speed: si.MetrePerSecond) -> si.DimensionlessArray:

@@ -303,6 +303,13 @@ def _doubts(caught: list[warnings.WarningMessage], p: Prediction) -> list[str]:
             "the amplitude is the measured one; what a finger takes from it is not known and left "
             "out"
         )
+    most = p.law.finger.largest_force(p.surface.roughness)
+    if film == "shared" and p.normal_force > most:
+        asked, held = (si.format_quantity(f, si.Unit("N")) for f in (p.normal_force, most))
+        messages.append(
+            f"under {asked} most asperities are pressed flat even at rest: this contact's law "
+            f"holds to {held}. Press less, or take asperities of type 'rough_contact'"
+        )
     if limits is not None:
         spread = abs(limits[0] - limits[1])
         messages.append(

@@ -133,6 +133,19 @@ class Finger:
         return force / self.contact_area(force) * self.ridge_period / self.plateau_width
 
     @si.checked_numbers
+    def largest_force(self, surface_roughness: si.Metre) -> si.Newton:
+        """The force (N) up to which the contact's law holds at rest on a surface of a roughness
+        (m); infinite where the area grows as fast as the force."""
+        if self.contact_area_exponent == 1:
+            return math.inf
+        most = self.asperity_law(surface_roughness).largest_pressure
+        # p ∝ F^(1 − exponent)
+        force = self.contact_area_force or self.normal_force
+        return float(
+            force * (most / self.plateau_pressure(force)) ** (1 / (1 - self.contact_area_exponent))
+        )
+
+    @si.checked_numbers
     def asperity_law(self, surface_roughness: Annotated[si.Metre, si.AtLeast(0.0)]) -> ContactLaw:
         """What the asperities of this skin carry on a surface of a roughness (m).
 
