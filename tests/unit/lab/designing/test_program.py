@@ -54,7 +54,7 @@ def test_a_stator_is_what_its_file_says() -> None:
     pad = load_display("biet2008-stator").finger.fingerpad
     assert list(found["skin"].values()) == [pad.mass, pad.stiffness, pad.damping]
     assert found["vibration_model"] == "measured_stator"
-    assert found["friction_model"] == "partial-levitation"
+    assert found["friction_model"] == "partial-levitation-shear"
 
 
 def test_friction_falls_from_one_at_rest_to_what_the_display_makes() -> None:
