@@ -58,7 +58,8 @@ def _texture_on_a_display(result: Any) -> None:
     # The masks ask for no more than there is, and the lowest friction for all there is.
     assert result["largest_amplitude_m"] == pytest.approx(result["available_amplitude_m"])
     assert result["unreachable"] == 0
-    assert result["inverse_error"] < 1e-3
+    # Between the speeds of the table, on the law itself.
+    assert result["inverse_error"] < 1e-2
     # Grooves ask for all the amplitude there is, and off the antinodes for more.
     assert 0 < result["saturated"] < 0.8 * result["ticks"]
 

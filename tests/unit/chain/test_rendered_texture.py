@@ -157,7 +157,7 @@ def test_a_compensated_wave_leaves_an_even_texture_even() -> None:
     centred = float(wave_factors(STATOR, point()).factor(0.0))
     best = float(law_at_the_strokes_speed(1e-6 / centred)[0])
     assert amplitude.asked == pytest.approx(best, abs=2e-3)
-    assert amplitude.stroke.relative_friction_rendered == pytest.approx(best, abs=7e-3)
+    assert amplitude.stroke.relative_friction_rendered == pytest.approx(best, abs=9e-3)
     assert "standing wave" not in made(MICROMETRE).stroke.model
 
 

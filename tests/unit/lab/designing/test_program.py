@@ -54,7 +54,7 @@ def test_a_stator_is_what_its_file_says() -> None:
     pad = load_display("biet2008-stator").finger.fingerpad
     assert list(found["skin"].values()) == [pad.mass, pad.stiffness, pad.damping]
     assert found["vibration_model"] == "measured_stator"
-    assert found["friction_model"] == "partial-levitation"
+    assert found["friction_model"] == "partial-levitation-shear"
 
 
 def test_friction_falls_from_one_at_rest_to_what_the_display_makes() -> None:
@@ -153,9 +153,10 @@ def test_samples_are_given_the_friction_that_the_texture_asks_for(preset: str) -
     amplitude = np.array(given["amplitude_m"])
     assert x.size == y.size == v.size == t.size == amplitude.size == 400
     assert np.all((amplitude >= 0.0) & (amplitude <= curve["largest_amplitude_m"]))
-    good = np.isfinite(x)
+    # What hardly moves is given the amplitude for 5 mm/s.
+    good = np.isfinite(x) & (np.abs(v) > 5e-3)
     asked = load_texture(preset).texture(x[good], y[good], v[good], t[good])
-    made = np.interp(amplitude[good], curve["amplitude_m"], curve["relative_friction"])
+    made = predict(load_display("biet2008-stator")).friction(amplitude[good], v[good])
     assert np.ptp(asked) > 0.3
     np.testing.assert_allclose(made, asked, atol=2e-3)
 
