@@ -122,10 +122,10 @@ class FrictionOptions:
         str, In("m"), typer.Option(help="The pad's centre from an antinode, along the wave.")
     ] = "0 mm"
     speed: Annotated[
-        str,
+        str | None,
         In("m/s"),
-        typer.Option(help="Of the finger, for the competing mechanism: intermittent contact."),
-    ] = "80 mm/s"
+        typer.Option(help='Of the finger that slides, like "50 mm/s"; the display\'s own if none.'),
+    ] = None
     ambient_pressure: Annotated[
         str | None,
         In("Pa"),
@@ -137,8 +137,14 @@ class FrictionOptions:
     ] = None
     samples: Annotated[
         int, typer.Option(help="Base samples of the uncertainty, a power of two; 0 for none.")
-    ] = 64
+    ] = 32
     seed: Annotated[int, typer.Option(help="Of the samples.")] = 1
+    tell_apart: Annotated[
+        bool,
+        typer.Option(
+            "--tell-apart", help="Which experiment would tell the laws of friction apart."
+        ),
+    ] = False
     out: Annotated[Path | None, written_to("Folder for friction.json and figures.")] = None
     as_json: AsJson = False
 

@@ -14,13 +14,23 @@ from squeezefilm.report.kit.folder import json_text, require_folder, write_folde
 from squeezefilm.report.kit.numbers import (
     display_values,
     film_rows,
+    group_words,
+    influence_rows,
     key_numbers,
     models,
     printable,
     theory_rows,
     unsaid_warnings,
+    weight_rows,
 )
-from squeezefilm.report.kit.page_style import bullets, html_table, page, section, stamped
+from squeezefilm.report.kit.page_style import (
+    bullets,
+    html_table,
+    page,
+    section,
+    stamped,
+    text_table,
+)
 from squeezefilm.results import to_json
 
 if TYPE_CHECKING:
@@ -92,6 +102,7 @@ def report_page(
     parts = [
         section("Verdict", _verdict(analysis)),
         section("Key numbers", _key_numbers(analysis)),
+        section("How sure the friction is", _how_sure(analysis)),
         *_figures(analysis, progress),
         section("How far the film's model is from where it holds", _validity(analysis)),
         section("Warnings", _warnings(analysis)),
@@ -126,6 +137,23 @@ def _key_numbers(analysis: Analysis) -> str:
         for label, text, remark in key_numbers(analysis)
     ]
     return html_table("At the working point", ("Quantity", "Value", "Remark"), rows)
+
+
+def _how_sure(analysis: Analysis) -> str:
+    unsure = analysis.uncertainty
+    if unsure is None:
+        return "<p>No interval: the verdict says why.</p>"
+    said = f"{unsure.sentence}, {unsure.level:.0%} interval. {unsure.standing}."
+    parts = [f"<p>{escape(said)}</p>"]
+    head = ("Drawn", "From", "Share of the variance", "Whose")
+    for group in unsure.groups:
+        rows = influence_rows(unsure, group.knowledge, len(unsure.influences))
+        parts.append(text_table(group_words(group), head, rows))
+    caption = "Laws and states that are drawn, by weights that are assumed"
+    parts.append(text_table(caption, ("What", "Which", "Weight", "Why"), weight_rows(unsure)))
+    if unsure.refused.count:
+        parts.append(f"<p>{escape(unsure.refused.sentence)}.</p>")
+    return "\n<br>\n".join(parts)
 
 
 def _figures(analysis: Analysis, progress: Callable[[str], None] | None) -> list[str]:
