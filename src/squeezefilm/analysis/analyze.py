@@ -271,7 +271,7 @@ def _textures(
     prediction: Prediction, tau: si.Second
 ) -> tuple[FrictionTrace | None, FidelityTable | None]:
     high = prediction.vibration_amplitude
-    if prediction.relative_friction == 1:
+    if prediction.relative_friction == 1 or high == 0:
         return None, None
     friction = prediction.friction
     trace = friction_trace(

@@ -116,7 +116,7 @@ def predictions(found: Sequence[Prediction]) -> Figure:
     for number, (law, highest) in enumerate(reach.items()):
         color, dashes = style.LINES[number % len(style.LINES)]
         table = law.table(highest)
-        axes.plot(1e6 * table.amplitude, table.relative_friction, color=color, ls=dashes)
+        axes.plot(1e6 * table.amplitude, table.at_speed(law.speed), color=color, ls=dashes)
     for one in found:
         style.mark(axes, 1e6 * one.vibration_amplitude, one.relative_friction, 7)
     style.friction_axes(axes)

@@ -70,7 +70,7 @@ def told_apart(result: Any) -> Figure:
         f"{found.draws} fingers drawn, µ′/µ measured within {found.noise:.0%} (assumed)",
         6.0,
     )
-    axes = figure.subplots(2, -(-len(found.pairs) // 2), sharex=True, sharey=True)
+    axes = figure.subplots(2, -(-len(found.pairs) // 2), sharex=True, sharey=True, squeeze=False)
     columns = [f"{1e6 * a:g} µm" for a in found.amplitudes]
     for one, pair, d in zip(axes.ravel(), found.pairs, found.discriminability, strict=False):
         # Amplitudes side by side, within each the speeds.
@@ -85,7 +85,9 @@ def told_apart(result: Any) -> Figure:
         one.set_yticks(range(found.forces.size), [f"{f:g} N" for f in found.forces])
     speeds = ", ".join(f"{1e3 * v:g}" for v in found.speeds)
     figure.supylabel("normal force")
-    axes[-1, 1].set_xlabel(f"amplitude, and within each from left to right {speeds} mm/s")
+    axes[-1, axes.shape[1] // 2].set_xlabel(
+        f"amplitude, and within each from left to right {speeds} mm/s"
+    )
     figure.colorbar(image, ax=axes, label="chooses the right one (%), 50 is guessing")
     return figure
 
