@@ -94,6 +94,7 @@ class Tally:
             "pressed through": "pressed through its asperities",
             "nearly everything into contact": "pressed nearly flat",
             "film is not tabulated": "outside of the film's table",
+            "leaves the range of a float": "shear that is no finite number",
         }
         why = [short for part, short in known.items() if part in words]
         self.reasons[why[0] if why else type(error).__name__] += 1

@@ -191,7 +191,7 @@ def uncertainty(result: FrictionAnalysis) -> Figure:
             **look,
         )
     right.set_yticks(rows, [_name(i.parameter.path) for i in ranked])
-    right.set(xlabel="share of the variance of µ′/µ, with all its company (%)", xlim=(0, None))
+    right.set(xlabel="share of the variance of µ′/µ (%)", xlim=(0, None))
     right.grid(visible=False, axis="y")
     style.legend_below(right, columns=1)
     return figure

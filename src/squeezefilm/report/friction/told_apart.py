@@ -67,7 +67,8 @@ def told_apart(result: Any) -> Figure:
     figure = style.new_figure(
         f"One measurement tells {' from '.join(best.pair)} best, at {_words(best.condition)}: "
         f"right in {best.right:.0%} of the cases",
-        f"{found.draws} fingers drawn, µ′/µ measured within {found.noise:.0%} (assumed)",
+        f"{found.draws} fingers drawn, µ′/µ measured within {found.noise:.0%} (assumed); "
+        "blank where draws are refused",
         6.0,
     )
     axes = figure.subplots(2, -(-len(found.pairs) // 2), sharex=True, sharey=True, squeeze=False)

@@ -150,8 +150,8 @@ def group_words(one: GroupInfluence) -> str:
     """What a group of inputs is, and what it carries of the width, as a heading."""
     what = {"measurable": "Could be measured", "unknown": "Nobody knows"}[one.knowledge]
     return (
-        f"{what}: {one.total:.0%} ± {one.error:.0%} of the variance, {max(one.alone, 0):.0%} of it "
-        "whatever the other group does"
+        f"{what}: {one.total:.0%} ± {one.error:.0%} of the variance, {max(one.alone, 0):.0%} "
+        "without the other group"
     )
 
 

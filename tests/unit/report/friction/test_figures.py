@@ -274,7 +274,7 @@ def test_the_eight_most_important_parameters_are_ranked_from_above() -> None:
     ends = np.array([part[:, 0] for part in segments.get_segments()])[::-1]
     assert 0.5 * np.diff(ends)[:, 0] == pytest.approx([2, 3, 4, 5, 7, 8, 9])
     assert right.get_yticks().tolist() == list(range(8))
-    assert right.get_xlabel() == "share of the variance of µ′/µ, with all its company (%)"
+    assert right.get_xlabel() == "share of the variance of µ′/µ (%)"
     assert right.get_xlim()[0] == 0
 
 
