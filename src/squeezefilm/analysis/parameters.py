@@ -84,6 +84,9 @@ _ASSUMED: dict[str, _Assumed] = {
     "finger.asperities.shortest_wavelength": _Assumed(0.4, 1.6, "where roughness ends: a guess"),
     "finger.asperities.decay_length": _Assumed(0.5, 1.5, "never measured on a display"),
     "finger.asperities.reference_gap": _Assumed(0.75, 1.25, "never measured on a display"),
+    "finger.skin.damping_per_area": _Assumed(
+        0.4, 1.6, "from one published impedance, its area not known"
+    ),
     "surface.roughness": _Assumed(0.75, 1.25, "one average for a whole surface; illustrative"),
     "surface.friction_coefficient": _Assumed(0.7, 1.3, "of skin at rest; illustrative"),
     "actuator.quality_factor": _Assumed(0.7, 1.3, "the losses of a bonded assembly; illustrative"),
@@ -128,6 +131,8 @@ def uncertain_parameters(
         if path in found or not _matters(path, at, driven) or not _has(display, path):
             continue
         nominal, unit = value_at(display, path)
+        if nominal == 0 and not known.absolute:
+            continue
         nominal = force if path == FORCE else nominal
         low, high = (end if known.absolute else end * nominal for end in known[:2])
         most = display.finger.ridge_period if name == "finger.plateau_width" else known.most
@@ -156,7 +161,8 @@ def _has(display: Display, path: str) -> bool:
 
 def _matters(path: str, surface: int, driven: bool) -> bool:
     head = path.split(".")
-    if head[0] in ("actuator", "drive"):
+    # The skin decides what a finger takes from the vibration, and the law takes it to be rigid.
+    if head[0] in ("actuator", "drive") or head[:2] == ["finger", "skin"]:
         return driven
     if head[0] == "surfaces":
         return head[1] == str(surface) and head[2] in ("roughness", "friction_coefficient")
