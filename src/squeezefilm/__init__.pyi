@@ -98,6 +98,7 @@ if TYPE_CHECKING:
         position: Metre | str = ...,
         theory: PlateTheory | None = ...,
         model: FrictionModel | None = ...,
+        speed: MetrePerSecond | str | None = ...,
         strict: bool = ...,
     ) -> Prediction:
         """The friction of a display driven with a voltage (V, zero-to-peak) at a frequency (Hz)."""
@@ -110,6 +111,7 @@ if TYPE_CHECKING:
         surface: str | None = ...,
         theory: PlateTheory | None = ...,
         model: FrictionModel | None = ...,
+        speed: MetrePerSecond | str | None = ...,
     ) -> tuple[Volt, Metre]:
         """The voltage (V, zero-to-peak) that brings µ′/µ down to a wanted value, and its amplitude (m)."""
     def analyze(
@@ -137,11 +139,12 @@ if TYPE_CHECKING:
         surface: str | None = ...,
         model: FrictionModel | None = ...,
         position: Metre | str = ...,
-        speed: MetrePerSecond | str = ...,
+        speed: MetrePerSecond | str | None = ...,
         ambient_pressure: Pascal | str | None = ...,
         wanted_friction: Dimensionless | str | None = ...,
         samples: int = ...,
         seed: int = ...,
+        tell_apart: bool = ...,
         points: int = ...,
         progress: SayProgress | None = ...,
     ) -> FrictionAnalysis:

@@ -49,7 +49,7 @@ def test_analyze_prints_one_object_with_units_in_its_keys() -> None:
     ):
         assert key in result
     assert result["squeeze_number"] == pytest.approx(20.418, abs=5e-4)
-    assert result["model"] == "partial-levitation"
+    assert result["model"] == "partial-levitation-shear"
     low, high = result["relative_friction_interval"]
     assert low < result["relative_friction"] < high
     assert result["friction_reduction"] == pytest.approx(
@@ -83,9 +83,12 @@ def test_a_friction_has_its_interval_its_shares_and_what_to_measure_next(tmp_pat
     assert low < result["relative_friction"] < high
     shares = result["load_shares"]
     assert shares["film"] + shares["asperities"] == pytest.approx(1, abs=1e-6)
-    assert shares["asperities"] == pytest.approx(result["relative_friction"], abs=1e-6)
+    # What touches is elastic until it slips: it keeps less of the friction than of the load.
+    assert 0 < result["relative_friction"] < shares["asperities"]
     assert abs(shares["residual"]) < 1e-6
-    assert result["model"] == "partial-levitation"
+    assert result["model"] == "partial-levitation-shear"
+    assert f"interval {low:.2f}–{high:.2f}" in result["verdict"]["text"]
+    assert set(result["uncertainty"]["groups"]) == {"measurable", "unknown"}
     assert result["friction_reduction"] == pytest.approx(
         result["friction_coefficient"] * (1 - result["relative_friction"])
     )
@@ -99,7 +102,8 @@ def test_a_friction_has_its_interval_its_shares_and_what_to_measure_next(tmp_pat
     }  # fmt: skip
     again = run("friction", "biet2008-stator", "--amplitude", "2 um", "--samples", "16", "--json")
     repeated = json.loads(again.stdout)["relative_friction_interval"]
-    assert repeated == result["relative_friction_interval"]
+    # The same draws; a table of films that was asked before may have more nodes.
+    assert repeated == pytest.approx(result["relative_friction_interval"], rel=1e-5)
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import dataclasses
 import itertools
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -30,7 +29,11 @@ from squeezefilm.analysis.textures import (
     driven_envelope,
     texture_survival,
 )
-from squeezefilm.analysis.uncertainty import UncertainFriction, uncertain_friction
+from squeezefilm.analysis.uncertainty import (
+    SAMPLES,
+    UncertainFriction,
+    interval_or_reason,
+)
 from squeezefilm.analysis.verdict import Finding, verdict
 from squeezefilm.chain.friction_models import FrictionModel
 from squeezefilm.chain.prediction import Prediction, predict
@@ -109,6 +112,9 @@ class Analysis(Result):
             "relative_friction_interval": None
             if self.uncertainty is None
             else list(self.uncertainty.interval),
+            "relative_friction_median": None
+            if self.uncertainty is None
+            else self.uncertainty.median,
             "envelope_bandwidth_Hz": self.envelope_bandwidth,
             "finest_period_m": self.finest_period(),
             "finest_period_keeps": None
@@ -158,7 +164,7 @@ def analyze(
     model: FrictionModel | None = None,
     speed: si.MetrePerSecond | None = None,
     strict: bool = False,
-    samples: int = 32,
+    samples: int = SAMPLES,
     progress: SayProgress | None = None,
 ) -> Analysis:
     """The whole analysis of a display at one working point.
@@ -204,13 +210,7 @@ def _what_follows(
     )
     tell("friction by every model, and how sure it is")
     by_model = model_curves(prediction)
-    unsure = None
-    if samples and prediction.touch.sharing is not None:
-        try:
-            unsure = uncertain_friction(display, prediction, samples=samples)
-        except OutOfRangeError as error:
-            warned = (*prediction.warnings, f"the friction has no interval: {error}")
-            prediction = dataclasses.replace(prediction, warnings=warned)
+    unsure, why_not = interval_or_reason(display, prediction, samples=samples)
     tell("wavelength against amplitude")
     wavelengths = wavelength_curves(prediction)
     tell("the paper's film and solved films")
@@ -236,7 +236,7 @@ def _what_follows(
         fidelity=table,
         compensated=compensated,
         survival=survival,
-        verdict=tuple(verdict(display, prediction, curves, table, films)),
+        verdict=tuple(verdict(display, prediction, curves, table, films, unsure, why_not)),
     )
 
 
@@ -279,7 +279,7 @@ def _textures(
     prediction: Prediction, tau: si.Second
 ) -> tuple[FrictionTrace | None, FidelityTable | None]:
     high = prediction.vibration_amplitude
-    if prediction.relative_friction == 1:
+    if prediction.relative_friction == 1 or high == 0:
         return None, None
     friction = prediction.friction
     trace = friction_trace(

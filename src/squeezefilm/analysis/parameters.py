@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 import typing
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Literal, TypeVar
+from typing import Any, Literal, NamedTuple, TypeVar
+
+import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.display import Display, NamedDisplay
@@ -16,9 +19,12 @@ from squeezefilm.from_text import reads_text
 
 _Whole = TypeVar("_Whole")
 Origin = Literal["given", "assumed"]
+Knowledge = Literal["measurable", "unknown"]
+"""Whether an experiment on the finger or the display could settle it, or nobody knows."""
 
 SKIN_COMPLIANCE = "skin_compliance"
 """Where the pad lies between all ridges at one mean gap (0) and each at its own balance (1)."""
+FORCE = "finger.normal_force"
 
 
 @dataclass(frozen=True)
@@ -26,7 +32,8 @@ class Parameter:
     """One uncertain value: its dotted path in the display, nominal value, distribution and origin.
 
     "given" distributions stand in the description; "assumed" ones are this package's, for values
-    that control the friction and that nobody gave a spread.
+    that control the friction and that nobody gave a spread. A value is drawn in `steps` of equal
+    probability, each at its middle (None: any value), where every other one costs a table.
     """
 
     path: str
@@ -35,47 +42,104 @@ class Parameter:
     distribution: Distribution
     origin: Origin
     source: str
+    knowledge: Knowledge = "measurable"
+    steps: int | None = None
+
+    @si.checked_numbers
+    def drawn(self, share: si.DimensionlessArray) -> list[float]:
+        """The values (in its unit) that are not exceeded with probabilities `share` (0 to 1)."""
+        if self.steps is not None:
+            share = (np.minimum(np.floor(share * self.steps), self.steps - 1) + 0.5) / self.steps
+        return [float(one) for one in self.distribution.quantile(share)]
+
+    @property
+    def spread(self) -> tuple[str, ...]:
+        """Its least and its largest value, in words."""
+        return tuple(si.format_quantity(v, self.unit, 3) for v in self.distribution.support)
 
 
-# Shares of the nominal value. None was measured on a display: they keep an interval from being
-# narrow for want of anybody's saying how wide it is.
-_ASSUMED: dict[str, tuple[float, float, str]] = {
-    "finger.plateau_width": (0.6, 1.4, "150 to 350 µm are reported; illustrative"),
-    "finger.contact_length": (0.8, 1.2, "fingers differ; illustrative"),
-    "finger.asperities.decay_length": (0.5, 1.5, "illustrative, never measured on a display"),
-    "finger.asperities.reference_gap": (0.75, 1.25, "illustrative, never measured on a display"),
-    "finger.skin.damping_per_area": (0.4, 1.6, "from one published impedance, its area not known"),
-    "surface.roughness": (0.75, 1.25, "one average roughness for a whole surface; illustrative"),
-    "actuator.quality_factor": (0.7, 1.3, "the losses of a bonded assembly; illustrative"),
+class _Assumed(NamedTuple):
+    """A range in shares of the nominal value (or absolute), at most `most`, and why."""
+
+    low: float
+    high: float
+    why: str
+    most: float = math.inf
+    absolute: bool = False
+
+
+# None was measured on a display: they keep an interval from being narrow for want of anybody's
+# saying how wide it is.
+_ASSUMED: dict[str, _Assumed] = {
+    "finger.plateau_width": _Assumed(0.6, 1.4, "150 to 350 µm are reported; illustrative"),
+    "finger.contact_length": _Assumed(0.8, 1.2, "fingers differ; illustrative"),
+    "finger.contact_area_exponent": _Assumed(
+        0.0, 0.5, "0 to 0.5 of the load is reported of soft pads; illustrative", absolute=True
+    ),
+    FORCE: _Assumed(0.6, 1.4, "0.3 to 0.7 N around 0.5 N (the paper's), and in proportion"),
+    "finger.asperities.roughness": _Assumed(0.5, 1.5, "never measured on a display"),
+    "finger.asperities.modulus": _Assumed(0.4, 1.6, "of the outermost skin; illustrative"),
+    "finger.asperities.hurst_exponent": _Assumed(0.75, 1.25, "0.6 to 1; illustrative", 1.0),
+    "finger.asperities.longest_wavelength": _Assumed(0.4, 1.0, "at most a plateau's width"),
+    "finger.asperities.shortest_wavelength": _Assumed(0.4, 1.6, "where roughness ends: a guess"),
+    "finger.asperities.decay_length": _Assumed(0.5, 1.5, "never measured on a display"),
+    "finger.asperities.reference_gap": _Assumed(0.75, 1.25, "never measured on a display"),
+    "finger.skin.damping_per_area": _Assumed(
+        0.4, 1.6, "from one published impedance, its area not known"
+    ),
+    "surface.roughness": _Assumed(0.75, 1.25, "one average for a whole surface; illustrative"),
+    "surface.friction_coefficient": _Assumed(0.7, 1.3, "of skin at rest; illustrative"),
+    "actuator.quality_factor": _Assumed(0.7, 1.3, "the losses of a bonded assembly; illustrative"),
+}
+# Each other width takes a table of solved films, each other shape of a spectrum its law.
+_STEPS = {
+    "finger.plateau_width": 8,
+    "finger.asperities.hurst_exponent": 3,
+    "finger.asperities.longest_wavelength": 3,
+    "finger.asperities.shortest_wavelength": 3,
 }
 
 
 def uncertain_parameters(
-    display: Display, surface: str | None = None, *, driven: bool
+    display: Display,
+    surface: str | None = None,
+    *,
+    driven: bool,
+    normal_force: si.Newton | None = None,
 ) -> tuple[Parameter, ...]:
     """The parameters that make the friction of a display on one of its surfaces uncertain.
 
     Every value that the description gives a distribution, and the assumed ones of what controls
-    the friction. What belongs to the actuator counts only where it is `driven` by a voltage.
+    the friction. What belongs to the actuator counts only where it is `driven` by a voltage. A
+    `normal_force` (N) that was asked for is uncertain in proportion.
     """
     at = [item.name for item in display.surfaces].index(display.surface(surface).name)
+    own = display.finger.normal_force
+    force = own if normal_force is None else normal_force
     found: dict[str, Parameter] = {}
     for path, origin in display.provenance.items():
         if origin.distribution is None or not _matters(path, at, driven):
             continue
+        if path == FORCE and force != own:
+            continue
         nominal, unit = value_at(display, path)
-        found[path] = Parameter(path, nominal, unit, origin.distribution, "given", origin.source)
-    for name, (low, high, why) in _ASSUMED.items():
+        found[path] = Parameter(
+            path, nominal, unit, origin.distribution, "given", origin.source, steps=_STEPS.get(path)
+        )
+    for name, known in _ASSUMED.items():
         path = name.replace("surface.", f"surfaces.{at}.")
-        if path in found or not _matters(path, at, driven):
+        if path in found or not _matters(path, at, driven) or not _has(display, path):
             continue
         nominal, unit = value_at(display, path)
-        if nominal == 0:
+        if nominal == 0 and not known.absolute:
             continue
-        top = high * nominal
-        if name == "finger.plateau_width":
-            top = min(top, display.finger.ridge_period)
-        found[path] = Parameter(path, nominal, unit, Uniform(low * nominal, top), "assumed", why)
+        nominal = force if path == FORCE else nominal
+        low, high = (end if known.absolute else end * nominal for end in known[:2])
+        most = display.finger.ridge_period if name == "finger.plateau_width" else known.most
+        spread = Uniform(low, min(high, most))
+        found[path] = Parameter(
+            path, nominal, unit, spread, "assumed", known.why, steps=_STEPS.get(path)
+        )
     found[SKIN_COMPLIANCE] = Parameter(
         SKIN_COMPLIANCE,
         1.0,
@@ -83,8 +147,16 @@ def uncertain_parameters(
         Uniform(0.0, 1.0),
         "assumed",
         "between all ridges at one mean gap (0) and each at its own balance (1)",
+        "unknown",
     )
     return tuple(found.values())
+
+
+def _has(display: Display, path: str) -> bool:
+    """Whether there is such a value: laws of asperities have fields of their own."""
+    *_, part, name = path.split(".")
+    law = display.finger.asperities
+    return part != "asperities" or name in {one.name for one in dataclasses.fields(law)}
 
 
 def _matters(path: str, surface: int, driven: bool) -> bool:
@@ -93,9 +165,9 @@ def _matters(path: str, surface: int, driven: bool) -> bool:
     if head[0] in ("actuator", "drive") or head[:2] == ["finger", "skin"]:
         return driven
     if head[0] == "surfaces":
-        # The base friction scales µ′ and not µ′/µ.
-        return head[1] == str(surface) and head[2] == "roughness"
-    return head[0] in ("finger", "gas")
+        return head[1] == str(surface) and head[2] in ("roughness", "friction_coefficient")
+    # How fast a finger slides is what was asked, like the voltage.
+    return head[0] in ("finger", "gas") and path != "finger.speed"
 
 
 def value_at(whole: Any, path: str) -> tuple[float, si.Unit]:

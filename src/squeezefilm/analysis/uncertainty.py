@@ -1,57 +1,73 @@
-"""How sure a friction is: quasi-Monte-Carlo over what is uncertain, and which of it matters."""
+"""How sure a friction is: quasi-Monte-Carlo over parameters, laws and mechanisms, and which of them
+matters."""
 
 from __future__ import annotations
 
-import dataclasses
-import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.analysis.parameters import (
-    SKIN_COMPLIANCE,
-    Parameter,
-    replaced,
-    uncertain_parameters,
+from squeezefilm.analysis.draws import (
+    FreeAmplitude,
+    Input,
+    Mixture,
+    Refusals,
+    Tally,
+    between_limits,
+    friction_of,
 )
-from squeezefilm.chain.friction import FrictionLaw, friction_law
+from squeezefilm.analysis.parameters import Knowledge
 from squeezefilm.chain.prediction import Prediction
-from squeezefilm.chain.touch import touch
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError, OutOfRangeError, SqueezefilmError
-from squeezefilm.plate.beam.response import beam_response
-from squeezefilm.plate.layout import AnnularStator, RectangularPlate
-from squeezefilm.plate.working_mode import working_mode
 from squeezefilm.progress import SayProgress
 
 LEVEL: si.Dimensionless = 0.9
-_MOST_FAILED = 0.05
+MOST_REFUSED: si.Dimensionless = 0.02
+"""Of the draws: where more have no friction, an interval of the others would be a condition that
+nobody asked for."""
+SAMPLES, POINTS = 32, 4
+"""Base samples where none are asked for, and how many points make the interval for each: chosen by
+`tests/verification/test_uncertainty_coverage.py`."""
 
 
 @dataclass(frozen=True)
 class Influence:
-    """How much of the variance of µ′/µ one parameter explains, alone and with all its company.
+    """How much of the variance of µ′/µ one input explains, alone and with all its company.
 
     First-order and total Sobol' indices with the half width of their 95 % confidence interval.
     """
 
-    parameter: Parameter
+    parameter: Input
     first_order: si.Dimensionless
     first_order_error: si.Dimensionless
     total: si.Dimensionless
     total_error: si.Dimensionless
 
 
+@dataclass(frozen=True)
+class GroupInfluence:
+    """How much of the variance of µ′/µ goes away if all of a group were known (`alone`), and how
+    much would be left if all but the group were (`total`), with the half width of the latter's 95 %
+    confidence interval."""
+
+    knowledge: Knowledge
+    alone: si.Dimensionless
+    total: si.Dimensionless
+    error: si.Dimensionless
+
+
 @dataclass(frozen=True, eq=False)
 class UncertainFriction:
-    """µ′/µ with its interval: `nominal` at the described values, `interval` between the 5 % and
-    95 % quantiles of `samples` (µ′/µ) with their `amplitudes` (m), all parameters varied at once.
+    """µ′/µ with its interval: `nominal` as described, `interval` between the 5 % and 95 % quantiles
+    of `samples` (µ′/µ) with their `amplitudes` (m), parameters, laws and mechanisms drawn at once.
 
-    `influences` are ranked, the most important to know better first. `failed` samples had no load
-    balance (asperities pressed through) and are left out, with the whole row of the design.
+    `influences` are ranked, the most important to know better first; `groups` are what could be
+    measured and what nobody knows. Draws that are `refused` (asperities pressed through) have no
+    place in `samples` and count as outside of the interval, at both of its ends.
     """
 
     nominal: si.Dimensionless
@@ -61,16 +77,35 @@ class UncertainFriction:
     samples: si.DimensionlessArray
     amplitudes: si.MetreArray
     influences: tuple[Influence, ...]
-    failed: int
-    evaluations: int
+    groups: tuple[GroupInfluence, ...]
+    refused: Refusals
     seed: int
     model: str
 
     @property
     def sentence(self) -> str:
-        """The result as one says it: µ′/µ = 0.41 (0.28–0.55)."""
+        """The result as one says it: µ′/µ = 0.41 as described (0.28–0.55, median 0.40)."""
         low, high = self.interval
-        return f"µ′/µ = {self.nominal:.2f} ({low:.2f}–{high:.2f})"
+        return (
+            f"µ′/µ = {self.nominal:.2f} as described ({low:.2f}–{high:.2f}, median "
+            f"{self.median:.2f})"
+        )
+
+    @property
+    def standing(self) -> str:
+        """Where the value as described stands among the draws."""
+        low, high = self.interval
+        share = float(np.mean(self.samples < self.nominal))
+        where = f"{share:.0%} of the draws lie below the value as described"
+        if low <= self.nominal <= high:
+            return where
+        return f"{where}, which lies outside of the interval: the description is no typical draw"
+
+    @si.checked_numbers
+    def probability_below(self, relative_friction: si.Dimensionless) -> si.Dimensionless:
+        """The share of all draws with µ′/µ at or below a value; a refused one is not below."""
+        below = np.count_nonzero(self.samples <= relative_friction)
+        return float(below / self.samples.size * (1 - self.refused.share))
 
     def summary(self) -> dict[str, Any]:
         """The numbers for ``--json``, with units in the keys where there are any."""
@@ -79,21 +114,28 @@ class UncertainFriction:
             "relative_friction_median": self.median,
             "relative_friction_interval": list(self.interval),
             "interval_level": self.level,
-            "evaluations": self.evaluations,
-            "failed": self.failed,
+            "evaluations": self.refused.evaluations,
+            "refused": self.refused.count,
+            "refused_why": dict(self.refused.reasons),
             "seed": self.seed,
+            "groups": {
+                one.knowledge: {
+                    "first_order": one.alone,
+                    "total_order": one.total,
+                    "total_order_error": one.error,
+                }
+                for one in self.groups
+            },
             "measure_next": [
                 {
                     "parameter": item.parameter.path,
+                    "knowledge": item.parameter.knowledge,
                     "total_order": item.total,
                     "total_order_error": item.total_error,
                     "first_order": item.first_order,
                     "first_order_error": item.first_order_error,
                     "distribution": item.parameter.origin,
-                    "range": [
-                        si.format_quantity(value, item.parameter.unit)
-                        for value in item.parameter.distribution.support
-                    ],
+                    "range": list(item.parameter.spread),
                     "source": item.parameter.source,
                 }
                 for item in self.influences
@@ -105,112 +147,203 @@ def uncertain_friction(
     display: Display,
     prediction: Prediction,
     *,
-    samples: int = 128,
+    samples: int = SAMPLES,
     seed: int = 1,
     progress: SayProgress | None = None,
 ) -> UncertainFriction:
-    """A prediction's friction, by partial levitation, with all that is uncertain varied at once.
+    """A prediction's friction with all that is uncertain drawn at once, by partial levitation.
 
-    Saltelli's design over Sobol' points: `samples` (a power of two, 8 to 65 536) base points make
-    samples × (parameters + 2) evaluations. The plate's own uncertain dimensions and constants move
-    the amplitude as a beam's would (a solved plate for every sample would take hours), Q and
-    voltage in proportion; the drive is taken to follow the resonance. Source: Saltelli et al. 2010,
-    10.1016/j.cpc.2009.09.018, by SALib. Raises `InputError` for `samples` that are no power of two,
-    `OutOfRangeError` where more than 5 % of the samples have no load balance.
+    What is drawn, and with which weights, says `draws.Mixture`. The interval is that of 4 × samples
+    Sobol' points (`samples` a power of two, 8 to 65 536). The influences are by Saltelli's design,
+    in which a law is drawn by a uniform coordinate as a value is: samples × (inputs + 4) more.
+    Source: Saltelli et al. 2010, 10.1016/j.cpc.2009.09.018.
+
+    Raises `InputError` for `samples` that are no power of two, `OutOfRangeError` where more than
+    2 % of the draws have no friction.
     """
     if samples < 8 or samples > 65536 or samples & (samples - 1):
         raise InputError(
             f"samples = {samples} cannot be used: take a power of two from 8 to 65536, like 128"
         )
-    driven = prediction.voltage is not None
-    parameters = uncertain_parameters(display, prediction.surface.name, driven=driven)
-    values = _quantiles(parameters, _saltelli_points(parameters, samples, seed))
-    tell = progress or (lambda _: None)
-    friction, amplitude = _evaluate(display, prediction, parameters, values, tell)
-    blocks = friction.reshape(samples, len(parameters) + 2)
-    whole = np.isfinite(blocks).all(axis=1)
-    failed = int(np.count_nonzero(~np.isfinite(friction)))
-    if failed > _MOST_FAILED * friction.size:
-        raise OutOfRangeError(
-            f"{failed} of {friction.size} samples have no load balance: within its uncertainty "
-            "this finger presses its asperities through. Narrow the ranges, press less, or vibrate "
-            "less"
-        )
-    kept = blocks[whole]
-    independent = np.concatenate([kept[:, 0], kept[:, -1]])
-    amplitudes = amplitude.reshape(blocks.shape)[whole]
-    tails = (1 - LEVEL) / 2
-    low, middle, high = np.quantile(independent, [tails, 0.5, 1 - tails])
+    mixture = Mixture(display, prediction, driven=prediction.voltage is not None)
+    count = POINTS * samples
+    design = _design(mixture, samples, seed)
+    rows, columns, _ = design.shape
+    points = np.concatenate(
+        [sobol_points(mixture, count, seed), design.reshape(rows * columns, -1)]
+    )
+    friction, amplitude, refused = evaluate(mixture, points, progress or (lambda _: None))
+    if refused.share > MOST_REFUSED:
+        raise OutOfRangeError(refusal_words(refused))
+    drawn, blocks = friction[:count], friction[count:].reshape(rows, columns)
+    known = np.isfinite(drawn)
+    low, middle, high = (float(one) for one in quantiles(drawn))
+    kept = blocks[np.isfinite(blocks).all(axis=1)]
     return UncertainFriction(
-        nominal=_nominal(prediction),
-        median=float(middle),
-        interval=(float(low), float(high)),
+        nominal=_nominal(mixture),
+        median=middle,
+        interval=(low, high),
         level=LEVEL,
-        samples=independent,
-        amplitudes=np.concatenate([amplitudes[:, 0], amplitudes[:, -1]]),
-        influences=_influences(parameters, kept, seed),
-        failed=failed,
-        evaluations=friction.size,
+        samples=drawn[known],
+        amplitudes=amplitude[:count][known],
+        influences=_influences(mixture.inputs, kept),
+        groups=_groups(kept),
+        refused=refused,
         seed=seed,
-        model="partial levitation between its two limits; Sobol' indices by SALib",
+        model="film and asperities share the load; laws and mechanisms by their assumed weights",
     )
 
 
-def _problem(parameters: tuple[Parameter, ...]) -> dict[str, Any]:
-    """The parameters as SALib takes them: each by its share of probability."""
-    return {
-        "num_vars": len(parameters),
-        "names": [item.path for item in parameters],
-        "bounds": [[0.0, 1.0]] * len(parameters),
-    }
+def interval_or_reason(
+    display: Display,
+    prediction: Prediction,
+    *,
+    samples: int = SAMPLES,
+    seed: int = 1,
+    progress: SayProgress | None = None,
+) -> tuple[UncertainFriction | None, str]:
+    """`uncertain_friction`, or None with the reason why there is no interval (else ""). Raises
+    `InputError` as it does."""
+    if not samples:
+        return None, "no samples were asked for"
+    if prediction.touch.sharing is None:
+        return None, "nothing vibrates, or the model shares no load"
+    try:
+        found = uncertain_friction(
+            display, prediction, samples=samples, seed=seed, progress=progress
+        )
+    except OutOfRangeError as error:
+        return None, str(error)
+    return found, ""
 
 
-def _saltelli_points(parameters: tuple[Parameter, ...], samples: int, seed: int) -> si.FloatArray:
-    """The design's points in the unit cube, shape (samples · (parameters + 2), parameters)."""
-    from SALib.sample import sobol
-
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        points = sobol.sample(_problem(parameters), samples, calc_second_order=False, seed=seed)
-    return np.asarray(points)
-
-
-def _quantiles(parameters: tuple[Parameter, ...], points: si.FloatArray) -> si.FloatArray:
-    """The parameters' values at points of the unit cube; a column for each."""
-    return np.column_stack(
-        [item.distribution.quantile(points[:, k]) for k, item in enumerate(parameters)]
+def refusal_words(refused: Refusals) -> str:
+    """Why there is no interval, and what to do."""
+    return (
+        f"{refused.sentence}. An interval of the other draws would leave these out in silence, so "
+        f"above {MOST_REFUSED:.0%} there is none. The first one says: {refused.example}. Press "
+        "less or vibrate less, give measured values with their narrower ranges, or ask for one law "
+        'by evidence = "measured"'
     )
+
+
+def _design(mixture: Mixture, samples: int, seed: int) -> si.FloatArray:
+    """Points in the unit cube, shape (samples, inputs + 4, inputs): A, A with each column of B, B,
+    then A with all columns of B that could be measured and B with those of A."""
+    from scipy.stats import qmc
+
+    inputs = mixture.inputs
+    both = qmc.Sobol(2 * len(inputs), rng=seed).random(samples)
+    a, b = both[:, : len(inputs)], both[:, len(inputs) :]
+    measurable = np.array([one.knowledge == "measurable" for one in inputs])
+    taken = [
+        np.zeros_like(measurable),
+        *np.eye(len(inputs), dtype=bool),
+        ~np.zeros_like(measurable),
+    ]
+    taken += [measurable, ~measurable]
+    return np.stack([np.where(one, b, a) for one in taken], axis=1)
+
+
+def sobol_points(mixture: Mixture, count: int, seed: int) -> si.FloatArray:
+    """Scrambled Sobol' points of a mixture's unit cube, shape (count, inputs); `count` a power of
+    two."""
+    from scipy.stats import qmc
+
+    return np.asarray(qmc.Sobol(len(mixture.inputs), rng=seed).random(count))
+
+
+def evaluate(
+    mixture: Mixture, points: si.DimensionlessArray, tell: SayProgress
+) -> tuple[si.DimensionlessArray, si.MetreArray, Refusals]:
+    """µ′/µ and amplitudes (m) at points of the unit cube, shape (n, inputs), NaN where refused; and
+    what was refused. `tell` is told some twenty times."""
+    friction, amplitude = np.full((2, len(points)), np.nan)
+    scale, tally = FreeAmplitude(mixture.display, mixture.prediction), Tally()
+    every = max(len(points) // 20, 1)
+    for number, draw in enumerate(mixture.draws(points)):
+        if number % every == 0:
+            tell(f"friction of draw {number + 1} of {len(points)}")
+        try:
+            friction[number], amplitude[number] = friction_of(mixture, draw, scale(draw.display))
+        except SqueezefilmError as error:
+            tally.refuse(draw.heights, error)
+    return friction, amplitude, tally.found(len(points))
+
+
+def quantiles(friction: si.DimensionlessArray) -> si.DimensionlessArray:
+    """The lower end of the interval, the median and the upper end, of draws along the first axis.
+
+    A refused draw (NaN) may be anything: it counts as 0 at the lower end and as 1 at the upper.
+    Positions k/(n + 1), with which an interval of independent draws holds its level in the mean.
+    """
+    tails = (1 - LEVEL) / 2
+    lost = np.isnan(friction)
+    ends = [
+        np.quantile(np.where(lost, fill, friction), at, axis=0, method="weibull")
+        for fill, at in ((0.0, tails), (1.0, 1 - tails))
+    ]
+    return np.stack([ends[0], np.nanmedian(friction, axis=0), ends[1]])
 
 
 def _influences(
-    parameters: tuple[Parameter, ...], friction: si.DimensionlessArray, seed: int
+    inputs: tuple[Input, ...], friction: si.DimensionlessArray
 ) -> tuple[Influence, ...]:
-    """What each parameter explains of the design's frictions, shape (samples, parameters + 2); the
-    most important first."""
-    from SALib.analyze import sobol
-
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        indices = sobol.analyze(
-            _problem(parameters),
-            friction.ravel(),
-            calc_second_order=False,
-            seed=seed,
-            print_to_console=False,
-        )
-    found = [
-        Influence(item, *(float(indices[key][k]) for key in ("S1", "S1_conf", "ST", "ST_conf")))
-        for k, item in enumerate(parameters)
-    ]
+    """What each input explains of the design's frictions, shape (samples, inputs + 4); the most
+    important first."""
+    a, b = friction[:, 0], friction[:, -3]
+    whole = (a - b) ** 2
+    found = []
+    for k, item in enumerate(inputs):
+        with_b = friction[:, k + 1]
+        total, total_error = _ratio((a - with_b) ** 2, whole)
+        rest, rest_error = _ratio((b - with_b) ** 2, whole)
+        found.append(Influence(item, 1 - rest, rest_error, total, total_error))
     return tuple(sorted(found, key=lambda item: -item.total))
+
+
+def _groups(friction: si.DimensionlessArray) -> tuple[GroupInfluence, ...]:
+    """What could be measured, and what nobody knows, of the design's frictions.
+
+    Its last two columns share with A, and with B, what nobody knows; alone is what the other group
+    leaves.
+    """
+    a, b, like_a, like_b = friction[:, [0, -3, -2, -1]].T
+    whole = (a - b) ** 2 + (like_a - like_b) ** 2
+    measurable = _ratio((a - like_a) ** 2 + (b - like_b) ** 2, whole)
+    unknown = _ratio((b - like_a) ** 2 + (a - like_b) ** 2, whole)
+    return (
+        GroupInfluence("measurable", 1 - unknown[0], *measurable),
+        GroupInfluence("unknown", 1 - measurable[0], *unknown),
+    )
+
+
+def _ratio(part: si.FloatArray, whole: si.FloatArray) -> tuple[float, float]:
+    """Jansen's estimator of a share of the variance, and the half width of its 95 % interval.
+
+    Half the mean square of what differs where only some inputs do over that where all do: as a
+    ratio of the same rows, in which most of the noise cancels. Jansen 1999,
+    10.1016/S0010-4655(98)00154-4.
+    """
+    scale = float(np.mean(whole)) or 1.0
+    share = float(np.mean(part)) / scale
+    return share, 1.96 * float(np.std(part - share * whole)) / scale / len(part) ** 0.5
+
+
+def _nominal(mixture: Mixture) -> float:
+    """µ′/µ as described; of a model that shares no load by the one that the draws are made with."""
+    p = mixture.prediction
+    if p.law.model == mixture.model:
+        return float(p.relative_friction)
+    return mixture.law(mixture.made({}, {})).at(p.vibration_amplitude)
 
 
 @dataclass(frozen=True, eq=False)
 class FrictionBand:
     """µ′/µ over the vibration amplitude with everything but the amplitude uncertain.
 
-    `low` and `high` are quantiles that hold `level` of the samples at each amplitude; NaN where
-    more than half of them have no load balance.
+    `low` and `high` are quantiles that hold `level` of the draws at each amplitude; NaN where more
+    than 2 % of them are refused.
     """
 
     amplitude: si.MetreArray
@@ -231,125 +364,26 @@ def friction_band(
 ) -> FrictionBand:
     """The band in which µ′/µ lies at each amplitude (m, zero-to-peak, shape (n,)).
 
-    What is uncertain of finger, gas and surface is varied at once, as in `uncertain_friction`, by
-    `samples` Sobol' points (a power of two); drive and actuator stand still, since the amplitude is
-    the abscissa. `progress` is called with a text and a fraction. Raises `InputError` for
-    amplitudes below 0.
+    Parameters, laws and mechanisms are drawn as in `uncertain_friction`, by `samples` Sobol' points
+    (a power of two); drive and actuator stand still, since the amplitude is the abscissa.
+    `progress` is called with a text and a fraction. Raises `InputError` for amplitudes below 0.
     """
-    from scipy.stats import qmc
-
-    parameters = uncertain_parameters(display, prediction.surface.name, driven=False)
-    values = _quantiles(parameters, qmc.Sobol(len(parameters), rng=seed).random(samples))
+    mixture = Mixture(display, prediction, driven=False)
+    points = sobol_points(mixture, samples, seed)
     rows = np.full((samples, amplitude.size), np.nan)
-    for number, (changes, share) in enumerate(_changes(parameters, values)):
+    for number, draw in enumerate(mixture.draws(points)):
         if progress is not None:
-            progress(f"sample {number + 1} of {samples}", number / samples)
+            progress(f"draw {number + 1} of {samples}", number / samples)
+        law = mixture.law(draw)
         try:
-            limits = _law(replaced(display, changes), prediction).limits(amplitude)
+            rows[number] = between_limits(law, draw, amplitude)
         except SqueezefilmError:
-            continue
-        rows[number] = share * limits.own + (1 - share) * limits.one_gap
-    known = np.isfinite(rows).sum(axis=0) > samples / 2
-    tails = (1 - LEVEL) / 2
+            for column, one in enumerate(amplitude):
+                try:
+                    rows[number, column] = between_limits(law, draw, np.array([one]))[0]
+                except SqueezefilmError:
+                    continue
     edges = np.full((2, amplitude.size), np.nan)
-    edges[:, known] = np.nanquantile(rows[:, known], [tails, 1 - tails], axis=0)
+    known = np.isnan(rows).mean(axis=0) <= MOST_REFUSED
+    edges[:, known] = quantiles(rows[:, known])[[0, 2]]
     return FrictionBand(amplitude, edges[0], edges[1], LEVEL, samples)
-
-
-def _nominal(prediction: Prediction) -> float:
-    law = dataclasses.replace(prediction.law, model="partial-levitation")
-    return law.at(prediction.vibration_amplitude)
-
-
-def _evaluate(
-    display: Display,
-    prediction: Prediction,
-    parameters: tuple[Parameter, ...],
-    values: si.FloatArray,
-    tell: SayProgress,
-) -> tuple[si.DimensionlessArray, si.MetreArray]:
-    friction = np.full(len(values), np.nan)
-    amplitude = np.full(len(values), np.nan)
-    scale = _Amplitude(display, prediction)
-    every = len(values) // 20  # of 64 samples at least
-    for number, (changes, compliance) in enumerate(_changes(parameters, values)):
-        if number % every == 0:
-            tell(f"friction of sample {number + 1} of {len(values)}")
-        try:
-            here = replaced(display, changes)
-            friction[number], amplitude[number] = _one(here, prediction, scale(here), compliance)
-        except SqueezefilmError:
-            continue
-    return friction, amplitude
-
-
-def _changes(
-    parameters: tuple[Parameter, ...], values: si.FloatArray
-) -> Iterator[tuple[dict[str, float], float]]:
-    """Of each sample: values by their path in the display, and the skin's compliance."""
-    compliance = [item.path for item in parameters].index(SKIN_COMPLIANCE)
-    paths = [item.path for item in parameters if item.path != SKIN_COMPLIANCE]
-    for row in values:
-        changes = dict(zip(paths, np.delete(row, compliance).tolist(), strict=True))
-        yield changes, float(row[compliance])
-
-
-def _law(display: Display, prediction: Prediction) -> FrictionLaw:
-    """Partial levitation on a display with other values, at a prediction's working point."""
-    return friction_law(
-        display,
-        prediction.mode.half_wavelength,
-        prediction.frequency,
-        surface=display.surface(prediction.surface.name),
-        normal_force=prediction.normal_force,
-        model="partial-levitation",
-        position=prediction.law.position,
-    )
-
-
-def _one(
-    display: Display, prediction: Prediction, free_amplitude: si.Metre, compliance: float
-) -> tuple[float, float]:
-    p, law = prediction, _law(display, prediction)
-    amplitude = free_amplitude
-    if p.voltage is not None and p.mode.modal_mass is not None:
-        quality = getattr(display.actuator, "quality_factor", p.mode.quality_factor)
-        mode = dataclasses.replace(p.mode, quality_factor=float(quality))
-        amplitude = touch(mode, law, free_amplitude).amplitude
-    limits = law.limits(amplitude)
-    own, tied = float(limits.own[0]), float(limits.one_gap[0])
-    return compliance * own + (1 - compliance) * tied, amplitude
-
-
-class _Amplitude:
-    """The free amplitude of a display with other values, from that of the prediction."""
-
-    def __init__(self, display: Display, prediction: Prediction) -> None:
-        self.nominal, self.prediction = display, prediction
-        self.free = prediction.touch.free_amplitude
-        self.reference = self._per_volt(display) if prediction.voltage is not None else 1.0
-
-    def __call__(self, display: Display) -> si.Metre:
-        free = self.free * self._volts(display)
-        here, nominal = display.actuator, self.nominal.actuator
-        if self.prediction.voltage is None or here == nominal:
-            return free
-        if dataclasses.replace(here, quality_factor=nominal.quality_factor) == nominal:
-            # At resonance, in proportion; a stator's amplitude is measured, whatever its Q.
-            measured = isinstance(here, AnnularStator)
-            return free * (1 if measured else here.quality_factor / nominal.quality_factor)
-        return free * self._per_volt(display) / self.reference
-
-    def _volts(self, display: Display) -> float:
-        """An uncertain drive in proportion; a voltage asked for stands as it is."""
-        if self.prediction.voltage is None or self.nominal.drive.voltage == 0:
-            return 1.0
-        return display.drive.voltage / self.nominal.drive.voltage
-
-    @staticmethod
-    def _per_volt(display: Display) -> float:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            if isinstance(display.actuator, RectangularPlate):
-                return beam_response(display.actuator).amplitude_per_volt
-            return working_mode(display.actuator).amplitude_per_volt

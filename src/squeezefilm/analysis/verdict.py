@@ -11,6 +11,7 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.analysis.curves import PAPER_CRITERION, FrictionCurve
 from squeezefilm.analysis.film.models import FilmComparison
+from squeezefilm.analysis.uncertainty import UncertainFriction
 from squeezefilm.chain.friction_models import MODEL_KINDS
 from squeezefilm.chain.prediction import Prediction
 from squeezefilm.display import Display
@@ -38,10 +39,13 @@ def verdict(
     curves: tuple[FrictionCurve, ...],
     table: FidelityTable | None,
     films: FilmComparison | None,
+    unsure: UncertainFriction | None = None,
+    why_not: str = "",
 ) -> Iterator[Finding]:
-    """What an analysis amounts to, in sentences."""
+    """What an analysis amounts to, in sentences; `why_not` says why no friction is `unsure`."""
     amplitude = f"{p.vibration_amplitude * 1e6:.3g} µm"
-    yield _of_friction(p, amplitude, curves)
+    yield friction_verdict(p, unsure, why_not)
+    yield from _of_needed_amplitude(p, curves)
     if p.vibration_amplitude > PLAUSIBLE_AMPLITUDE:
         yield Finding(
             "doubt",
@@ -68,21 +72,55 @@ def verdict(
     )
 
 
-def _of_friction(p: Prediction, amplitude: str, curves: tuple[FrictionCurve, ...]) -> Finding:
-    """How far the friction falls, against the paper's criterion."""
-    here = next(c for c in curves if c.surface == p.surface.name and c.model == p.model)
+def friction_verdict(p: Prediction, unsure: UncertainFriction | None, why_not: str) -> Finding:
+    """How probable it is that the friction falls below the paper's criterion.
+
+    Good where all of the interval lies below it, a limit where it does not, a doubt where there is
+    no interval (`why_not` says why). The same sentence wherever this verdict is shown.
+    """
+    amplitude = f"{p.vibration_amplitude * 1e6:.3g} µm"
+    asked = f"{PAPER_CRITERION:.2f}, as the paper asks"
+    if unsure is None:
+        because = why_not or "no interval was computed"
+        return Finding(
+            "doubt",
+            f"µ′/µ is {p.relative_friction:.2f} as described at {amplitude} by the model "
+            f"'{p.model}'. How probable it is that it lies below {asked}, is not known: {because}.",
+        )
+    low, high = unsure.interval
+    noticed = 1 - NOTICED_DIFFERENCE
+    text = (
+        f"µ′/µ is below {asked}, with probability "
+        f"{_probability(unsure.probability_below(PAPER_CRITERION))} ({unsure.level:.0%} interval "
+        f"{low:.2f}–{high:.2f}, median {unsure.median:.2f}; {unsure.nominal:.2f} as described at "
+        f"{amplitude}); below {noticed:.2f}, where people notice it, with probability "
+        f"{_probability(unsure.probability_below(noticed))}."
+    )
+    if high < PAPER_CRITERION:
+        return Finding("good", text)
+    if low <= PAPER_CRITERION:
+        text += " The criterion lies inside the interval: whether it is met is open."
+    return Finding("limit", text)
+
+
+def _probability(value: si.Dimensionless) -> str:
+    """In two digits; never 0 or 1, which so few draws cannot say."""
+    return "above 0.99" if value > 0.99 else "below 0.01" if value < 0.01 else f"{value:.2f}"
+
+
+def _of_needed_amplitude(p: Prediction, curves: tuple[FrictionCurve, ...]) -> Iterator[Finding]:
+    """What the paper's criterion takes where the display as described misses it."""
     papers = MODEL_KINDS[p.model].film == "asymptote"
     by = "By the paper's model" if papers else f"By the model '{p.model}'"
-    lowered = (
-        f"{by} {amplitude} lower the friction to {100 * p.relative_friction:.3g} % of what it is "
-        "without vibration"
-    )
-    if p.relative_friction <= PAPER_CRITERION:
-        return Finding("good", f"{lowered}, below the 70 % that the paper asks for.")
-    needed = here.amplitude_for_criterion
-    ask = "which no amplitude reaches" if needed is None else f"which {needed * 1e6:.3g} µm reach"
-    noticed = 1 - p.relative_friction >= NOTICED_DIFFERENCE
-    return Finding("limit" if noticed else "doubt", f"{lowered}; the paper asks for 70 %, {ask}.")
+    if papers or p.relative_friction > PAPER_CRITERION:
+        here = next(c for c in curves if c.surface == p.surface.name and c.model == p.model)
+        needed = here.amplitude_for_criterion
+        ask = "no amplitude" if needed is None else f"{needed * 1e6:.3g} µm"
+        yield Finding(
+            "limit",
+            f"{by} µ′/µ is {p.relative_friction:.2f} as described; {ask} would bring it to "
+            f"{PAPER_CRITERION:.2f}.",
+        )
 
 
 def _of_gratings(table: FidelityTable) -> Finding:

@@ -61,7 +61,8 @@ class FrictionLaw:
     "partial-levitation-shear", takes friction to be in proportion to the real contact area, where
     the finger's law of asperities knows it, and what touches within a period to be elastic until
     it slips: it alone depends on `speed`, that of sliding, at which `at` and `curve` answer.
-    `position` is the pad's centre from an antinode, along the wave.
+    `position` is the pad's centre from an antinode, along the wave, `slip` the gas's law of slip
+    where the load is shared.
     """
 
     surface: Surface
@@ -73,6 +74,7 @@ class FrictionLaw:
     model: FrictionModel
     position: si.Metre = 0.0
     speed: Annotated[si.MetrePerSecond, FINGER_SPEED] = EXPLORING_SPEED
+    slip: str = "first"
 
     def __post_init__(self) -> None:
         if self.position and self.kind.film != "shared":
@@ -158,7 +160,7 @@ class FrictionLaw:
 
     @property
     def _films(self) -> FilmTable:
-        return film_table(self.frequency, self.finger.plateau_width, self.gas)
+        return film_table(self.frequency, self.finger.plateau_width, self.gas, self.slip)
 
     @property
     def _asperities(self) -> ContactLaw:
@@ -235,7 +237,7 @@ class FrictionLaw:
 
     @si.checked_numbers
     def over_speeds(
-        self, amplitude: si.MetreArray, speed: si.MetrePerSecondArray
+        self, amplitude: si.MetreArray, speed: si.MetrePerSecondArray, limit: Limit | None = None
     ) -> si.DimensionlessArray:
         """µ′/µ at speeds (m/s, from 0) and amplitudes (m), shape (speeds, amplitudes).
 
@@ -245,7 +247,7 @@ class FrictionLaw:
         a, speeds = np.ravel(amplitude), np.ravel(speed)
         if not self.kind.shear:
             return np.repeat(self.curve(a)[None, :], speeds.size, axis=0)
-        return self._pad(a, speeds, limit=self.kind.limit).relative_friction
+        return self._pad(a, speeds, limit=limit or self.kind.limit).relative_friction
 
     @si.checked_numbers
     def at(self, amplitude: si.Metre) -> si.Dimensionless:
@@ -365,7 +367,6 @@ class FrictionLaw:
             kink = self.amplitude_for(0.0)
             at = int(np.searchsorted(grid, kink))
             grid, law = np.insert(grid, at, kink), np.insert(law, at, 0.0)
-
         return FrictionTable(grid, np.zeros(1), law[None, :], self.speed)
 
 

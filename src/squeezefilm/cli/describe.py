@@ -135,8 +135,14 @@ class FrictionOptions:
     ] = None
     samples: Annotated[
         int, typer.Option(help="Base samples of the uncertainty, a power of two; 0 for none.")
-    ] = 64
+    ] = 32
     seed: Annotated[int, typer.Option(help="Of the samples.")] = 1
+    tell_apart: Annotated[
+        bool,
+        typer.Option(
+            "--tell-apart", help="Which experiment would tell the laws of friction apart."
+        ),
+    ] = False
     out: Annotated[Path | None, written_to("Folder for friction.json and figures.")] = None
     as_json: AsJson = False
 

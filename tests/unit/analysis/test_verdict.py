@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 import dataclasses
+from collections import Counter
 from typing import Any
 
 import numpy as np
 import pytest
 
 from squeezefilm.analysis.curves import FrictionCurve
+from squeezefilm.analysis.draws import Refusals
 from squeezefilm.analysis.film.models import (
     FilmComparison,
     FilmResult,
     PlateauBalance,
     ToothResult,
 )
-from squeezefilm.analysis.verdict import Finding, verdict
+from squeezefilm.analysis.uncertainty import UncertainFriction
+from squeezefilm.analysis.verdict import Finding, friction_verdict, verdict
 from squeezefilm.chain.prediction import Prediction, predict
 from squeezefilm.config.provenance import Provenance
 from squeezefilm.display import load_display
@@ -50,29 +53,63 @@ def said(p: Prediction, needed: float | None = 2.5e-6, **changes: Any) -> tuple[
     return findings(STATOR, p, curves, None, None)
 
 
-def test_friction_low_enough_is_good(point: Prediction) -> None:
-    first, *_ = said(point, relative_friction=0.7, vibration_amplitude=2e-6)
-    assert first == Finding(
-        "good",
-        "By the model 'partial-levitation' 2 µm lower the friction to 70 % of what it is without "
-        "vibration, below the 70 % that the paper asks for.",
-    )
-    paper, *_ = said(point, relative_friction=0.1234, model="paper2008")
-    assert paper.kind == "good"
-    assert paper.text.startswith("By the paper's model 2 µm lower the friction to 12.3 % of what")
+def unsure(low: float, high: float, samples: list[float], refused: int = 0) -> Any:
+    return UncertainFriction(
+        nominal=0.51, median=0.4, interval=(low, high), level=0.9, samples=np.array(samples),
+        amplitudes=np.zeros(len(samples)), influences=(), groups=(),
+        refused=Refusals(refused, 100, Counter(), Counter(), ""), seed=1, model="a-model",
+    )  # fmt: skip
 
 
-def test_friction_too_high_is_a_limit_or_not_noticed(point: Prediction) -> None:
-    first, *_ = said(point, relative_friction=0.75, vibration_amplitude=1.234567e-6)
-    assert first == Finding(
+def test_a_verdict_is_the_probability_of_the_criterion(point: Prediction) -> None:
+    p = dataclasses.replace(point, vibration_amplitude=2e-6)
+    inside = friction_verdict(p, unsure(0.2, 0.81, [0.2, 0.5, 0.75, 0.9]), "")
+    assert inside == Finding(
         "limit",
-        "By the model 'partial-levitation' 1.23 µm lower the friction to 75 % of what it is "
-        "without vibration; the paper asks for 70 %, which 2.5 µm reach.",
+        "µ′/µ is below 0.70, as the paper asks, with probability 0.50 (90% interval 0.20–0.81, "
+        "median 0.40; 0.51 as described at 2 µm); below 0.80, where people notice it, with "
+        "probability 0.75. The criterion lies inside the interval: whether it is met is open.",
     )
-    assert said(point, relative_friction=0.79)[0].kind == "limit"
-    doubt = said(point, needed=None, relative_friction=0.81)[0]
-    assert doubt.kind == "doubt"
-    assert doubt.text.endswith("the paper asks for 70 %, which no amplitude reaches.")
+    good = friction_verdict(p, unsure(0.2, 0.69, [0.2, 0.5, 0.6, 0.69]), "")
+    assert good.kind == "good"
+    assert "with probability above 0.99 (90% interval 0.20–0.69" in good.text
+    assert good.text.endswith("notice it, with probability above 0.99.")
+    # Never good where the criterion is at the very end of the interval, nor where it is missed.
+    assert friction_verdict(p, unsure(0.2, 0.7, [0.2, 0.7]), "").kind == "limit"
+    missed = friction_verdict(p, unsure(0.75, 0.9, [0.75, 0.9]), "")
+    assert missed.kind == "limit"
+    assert "probability below 0.01" in missed.text
+    assert "open" not in missed.text
+
+
+def test_refused_draws_do_not_meet_the_criterion(point: Prediction) -> None:
+    found = friction_verdict(point, unsure(0.2, 0.9, [0.2, 0.9], refused=2), "")
+    assert "with probability 0.49" in found.text
+
+
+def test_without_an_interval_nothing_is_good(point: Prediction) -> None:
+    p = dataclasses.replace(point, vibration_amplitude=2e-6, relative_friction=0.3)
+    assert friction_verdict(p, None, "too many draws are refused") == Finding(
+        "doubt",
+        f"µ′/µ is 0.30 as described at 2 µm by the model '{p.model}'. How probable it is that it "
+        "lies below 0.70, as the paper asks, is not known: too many draws are refused.",
+    )
+    assert friction_verdict(p, None, "").text.endswith("not known: no interval was computed.")
+    assert said(point)[0].kind == "doubt"
+
+
+def test_what_the_criterion_takes_is_said_where_it_is_missed(point: Prediction) -> None:
+    second = said(point, relative_friction=0.75, vibration_amplitude=1.234567e-6)[1]
+    assert second == Finding(
+        "limit",
+        f"By the model '{point.model}' µ′/µ is 0.75 as described; 2.5 µm would bring it to 0.70.",
+    )
+    out = said(point, needed=None, relative_friction=0.81)[1]
+    assert out.text.endswith("no amplitude would bring it to 0.70.")
+    assert "would bring it" not in said(point, relative_friction=0.7)[1].text
+    # The paper's own number has no interval: it stands beside that of the draws.
+    paper = said(point, relative_friction=0.1234, model="paper2008")[1]
+    assert paper.text.startswith("By the paper's model µ′/µ is 0.12 as described")
 
 
 def test_an_amplitude_beyond_belief_is_doubted(point: Prediction) -> None:

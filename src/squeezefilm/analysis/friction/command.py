@@ -11,7 +11,9 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.analysis.claims.record import missed_by
 from squeezefilm.analysis.curves import ModelCurve, model_curves
-from squeezefilm.analysis.uncertainty import UncertainFriction, uncertain_friction
+from squeezefilm.analysis.friction.tell_apart import ToldApart, tell_apart
+from squeezefilm.analysis.uncertainty import SAMPLES, UncertainFriction, interval_or_reason
+from squeezefilm.analysis.verdict import Finding, friction_verdict
 from squeezefilm.arguments import called_with
 from squeezefilm.chain.friction import FrictionLaw
 from squeezefilm.chain.friction_models import DEFAULT_MODEL, FrictionModel
@@ -60,7 +62,9 @@ class Tapping:
 class FrictionAnalysis(Result):
     """The friction at a working point: models side by side, uncertainty, map and ripple.
 
-    `ripple` is what the pad feels of the standing wave itself as it moves along it.
+    `ripple` is what the pad feels of the standing wave itself as it moves along it. `verdict` says
+    how probable the paper's criterion is, or why there is no interval; `apart`, where it was asked
+    for, which experiment would tell the laws apart.
     """
 
     display: Display
@@ -71,6 +75,8 @@ class FrictionAnalysis(Result):
     ripple: FrictionRipple | None
     wanted: Wanted | None
     tapping: Tapping
+    verdict: Finding
+    apart: ToldApart | None = None
     _shown: ClassVar[str] = (
         "display.name prediction.model prediction.voltage prediction.vibration_amplitude "
         "prediction.relative_friction uncertainty.interval wanted.voltage"
@@ -128,6 +134,8 @@ class FrictionAnalysis(Result):
             ],
             "measurements_missed": _missed(p.model),
             "uncertainty": None if unsure is None else unsure.summary(),
+            "verdict": to_json(self.verdict),
+            "tell_apart": None if self.apart is None else self.apart.summary(),
             "warnings": list(p.warnings),
             "provenance": stamp(self.display),
         }
@@ -149,8 +157,9 @@ class FrictionRequest:
     speed: si.MetrePerSecond | None = None
     ambient_pressure: si.Pascal | None = None
     wanted_friction: si.Dimensionless | None = None
-    samples: int = 64
+    samples: int = SAMPLES
     seed: int = 1
+    tell_apart: bool = False
     points: int = 40
     progress: SayProgress | None = None
 
@@ -163,8 +172,9 @@ def analyze_friction(asked: FrictionRequest) -> FrictionAnalysis:
     Arguments as `prediction.predict`; `ambient_pressure` (Pa) puts display and finger into another
     atmosphere, `speed` (m/s) is the finger's for the competing mechanism, `wanted_friction` asks
     for the voltage that reaches it, `samples` (0: none) is the base of the uncertainty's design,
-    `points` the side of the map. Raises what `predict`, `voltage_for_friction` and
-    `uncertain_friction` raise.
+    `tell_apart` asks which experiment would tell the laws apart, `points` is the side of the map.
+    Raises what `predict` and `voltage_for_friction` raise, and `InputError` for `samples` that are
+    no power of two.
     """
     tell, display = asked.progress or (lambda _: None), asked.display
     if asked.ambient_pressure is not None:
@@ -187,11 +197,14 @@ def analyze_friction(asked: FrictionRequest) -> FrictionAnalysis:
     curves = model_curves(prediction)
     tell("map over amplitude and force")
     found = friction_map(prediction, asked.points)
-    unsure = None
-    if asked.samples:
-        unsure = uncertain_friction(
-            display, prediction, samples=asked.samples, seed=asked.seed, progress=asked.progress
-        )
+    unsure, why_not = interval_or_reason(
+        display, prediction, samples=asked.samples, seed=asked.seed, progress=asked.progress
+    )
+    apart = (
+        tell_apart(display, prediction, seed=asked.seed, progress=tell)
+        if asked.tell_apart
+        else None
+    )
     tell("ripple of the standing wave")
     return FrictionAnalysis(
         display,
@@ -202,6 +215,8 @@ def analyze_friction(asked: FrictionRequest) -> FrictionAnalysis:
         _ripple(prediction),
         wanted,
         Tapping(prediction.speed, without_gas(prediction.law, prediction.vibration_amplitude)),
+        friction_verdict(prediction, unsure, why_not),
+        apart,
     )
 
 

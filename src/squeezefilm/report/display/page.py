@@ -15,14 +15,24 @@ from squeezefilm.report.kit.numbers import (
     MISSED_HEADING,
     display_values,
     film_rows,
+    group_words,
+    influence_rows,
     key_numbers,
     missed_directions,
     models,
     printable,
     theory_rows,
     unsaid_warnings,
+    weight_rows,
 )
-from squeezefilm.report.kit.page_style import bullets, html_table, page, section, stamped
+from squeezefilm.report.kit.page_style import (
+    bullets,
+    html_table,
+    page,
+    section,
+    stamped,
+    text_table,
+)
 from squeezefilm.results import to_json
 
 if TYPE_CHECKING:
@@ -94,6 +104,7 @@ def report_page(
     parts = [
         section("Verdict", _verdict(analysis)),
         section("Key numbers", _key_numbers(analysis)),
+        section("How sure the friction is", _how_sure(analysis)),
         *_figures(analysis, progress),
         section("How far the film's model is from where it holds", _validity(analysis)),
         section("Warnings", _warnings(analysis)),
@@ -128,6 +139,23 @@ def _key_numbers(analysis: Analysis) -> str:
         for label, text, remark in key_numbers(analysis)
     ]
     return html_table("At the working point", ("Quantity", "Value", "Remark"), rows)
+
+
+def _how_sure(analysis: Analysis) -> str:
+    unsure = analysis.uncertainty
+    if unsure is None:
+        return "<p>No interval: the verdict says why.</p>"
+    said = f"{unsure.sentence}, {unsure.level:.0%} interval. {unsure.standing}."
+    parts = [f"<p>{escape(said)}</p>"]
+    head = ("Drawn", "From", "Share of the variance", "Whose")
+    for group in unsure.groups:
+        rows = influence_rows(unsure, group.knowledge, len(unsure.influences))
+        parts.append(text_table(group_words(group), head, rows))
+    caption = "Laws and states that are drawn, by weights that are assumed"
+    parts.append(text_table(caption, ("What", "Which", "Weight", "Why"), weight_rows(unsure)))
+    if unsure.refused.count:
+        parts.append(f"<p>{escape(unsure.refused.sentence)}.</p>")
+    return "\n<br>\n".join(parts)
 
 
 def _figures(analysis: Analysis, progress: Callable[[str], None] | None) -> list[str]:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from squeezefilm.report.friction.told_apart import told_apart
 from squeezefilm.report.kit import style
 from squeezefilm.report.kit.folder import json_text, write_folder
 from squeezefilm.report.kit.numbers import M, N, shown
@@ -30,10 +31,21 @@ _STYLES = {
     "film-sealed": (*style.LINES[3], "film under the paper's ridges, solved"),
 }
 _NAMES_OF_PARAMETERS = {
+    "finger.asperities.roughness": "roughness of skin and surface",
+    "finger.asperities.modulus": "modulus of the outermost skin",
+    "finger.asperities.hurst_exponent": "Hurst exponent of the roughness",
+    "finger.asperities.longest_wavelength": "longest wave of the roughness",
+    "finger.asperities.shortest_wavelength": "shortest wave of the roughness",
     "finger.asperities.reference_gap": "gap of the asperities",
     "finger.asperities.decay_length": "decay length of the asperities",
     "finger.plateau_width": "width of a ridge's plateau",
     "finger.contact_length": "length of the contact",
+    "finger.contact_area_exponent": "growth of the contact with force",
+    "finger.normal_force": "force of the finger",
+    "finger.moisture": "moisture of the finger",
+    "finger.tangential_stiffness": "shear element of what touches",
+    "height_law": "law of the heights",
+    "gas.slip": "slip law of the gas",
     "actuator.quality_factor": "quality factor",
     "skin_compliance": "softness of the pad",
 }
@@ -81,7 +93,7 @@ def _models(
         axes.plot([at, at], [low, high], color=style.INK, lw=1.6, zorder=4)
         for end in (low, high):
             axes.plot([at], [end], "_", color=style.INK, ms=11, mew=1.6, zorder=4)
-        words += f" ({low:.2f}–{high:.2f}, {unsure.level:.0%})"
+        words += f" ({low:.2f}–{high:.2f}, {unsure.level:.0%}, median {unsure.median:.2f})"
     style.mark(axes, at, p.relative_friction, 8, f"this display, {p.model}: {words}")
     style.friction_axes(axes, float(x[-1]))
     style.legend_below(axes, columns=2)
@@ -104,8 +116,7 @@ def predictions(found: Sequence[Prediction]) -> Figure:
     for number, (law, highest) in enumerate(reach.items()):
         color, dashes = style.LINES[number % len(style.LINES)]
         table = law.table(highest)
-        friction = table.at_speed(law.speed)
-        axes.plot(1e6 * table.amplitude, friction, color=color, ls=dashes)
+        axes.plot(1e6 * table.amplitude, table.at_speed(law.speed), color=color, ls=dashes)
     for one in found:
         style.mark(axes, 1e6 * one.vibration_amplitude, one.relative_friction, 7)
     style.friction_axes(axes)
@@ -145,31 +156,44 @@ def uncertainty(result: FrictionAnalysis) -> Figure:
     unsure = result.uncertainty
     assert unsure is not None, "asked without samples"
     low, high = unsure.interval
-    first = _name(unsure.influences[0].parameter.path)
+    first = next(one for one in unsure.influences if one.parameter.knowledge == "measurable")
     figure = style.new_figure(
-        f"{unsure.sentence}; to know it better, measure the {first}",
-        f"{unsure.model}, {unsure.evaluations} load balances",
-        4.6,
+        f"{unsure.sentence}; to know it better, measure the {_name(first.parameter.path)}",
+        f"{unsure.model}, {unsure.refused.evaluations} draws",
+        4.8,
     )
     left, right = figure.subplots(1, 2, width_ratios=[1, 1.15])
     left.hist(unsure.samples, bins=24, range=(0, 1), color=style.BLUE, alpha=0.85)
     left.axvspan(low, high, color=style.BAND, zorder=0, label=f"{unsure.level:.0%} interval")
     name = f"as described: {unsure.nominal:.2f}"
     left.axvline(unsure.nominal, color=style.INK, lw=1.6, label=name)
-    left.set(xlabel="relative friction µ′/µ", ylabel="samples", xlim=(0, 1))
+    name = f"median: {unsure.median:.2f}"
+    left.axvline(unsure.median, color=style.INK, lw=1.6, ls=(0, (4, 2)), label=name)
+    left.set(xlabel="relative friction µ′/µ", ylabel="draws", xlim=(0, 1))
     style.legend_below(left, columns=1)
     ranked = unsure.influences[:8][::-1]
     rows = np.arange(len(ranked))
     whole = [100 * max(i.total, 0) for i in ranked]
-    alone = [100 * max(i.first_order, 0) for i in ranked]
     errors = [100 * i.total_error for i in ranked]
-    company = "with all its company"
-    right.barh(rows, whole, xerr=errors, ecolor=style.MUTED, label=company, **style.BARS)
-    right.barh(rows, alone, height=0.4, color=style.ORANGE, label="alone")
+    known = [i.parameter.knowledge == "measurable" for i in ranked]
+    for of_group, color, name in (
+        (known, style.BLUE, "could be measured"),
+        ([not one for one in known], style.ORANGE, "nobody knows"),
+    ):
+        here = np.flatnonzero(of_group)
+        look = {**style.BARS, "color": color}
+        right.barh(
+            here,
+            np.take(whole, here),
+            xerr=np.take(errors, here),
+            ecolor=style.MUTED,
+            label=name,
+            **look,
+        )
     right.set_yticks(rows, [_name(i.parameter.path) for i in ranked])
     right.set(xlabel="share of the variance of µ′/µ (%)", xlim=(0, None))
     right.grid(visible=False, axis="y")
-    style.legend_below(right, columns=2)
+    style.legend_below(right, columns=1)
     return figure
 
 
@@ -210,6 +234,9 @@ FIGURES = (
     FigureOf("map", "Friction over amplitude and force", friction_map),
     FigureOf("uncertainty", "How sure it is", uncertainty, has=lambda one: one.uncertainty),
     FigureOf("ripple", "The standing wave", ripple, has=lambda one: one.ripple),
+    FigureOf(
+        "apart", "Which experiment tells the laws apart", told_apart, has=lambda one: one.apart
+    ),
 )
 
 

@@ -5,7 +5,19 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from squeezefilm import quantities as si
-from squeezefilm.report.kit.numbers import HZ, M, N, V, heat_rows, reduction_row, shown
+from squeezefilm.report.friction.told_apart import show_told_apart
+from squeezefilm.report.kit.numbers import (
+    HZ,
+    M,
+    N,
+    V,
+    group_words,
+    heat_rows,
+    influence_rows,
+    reduction_row,
+    shown,
+    weight_rows,
+)
 from squeezefilm.report.kit.terminal import heading, plain_console, show_missed, table
 
 if TYPE_CHECKING:
@@ -20,12 +32,11 @@ def show_friction(result: FrictionAnalysis) -> None:
     console, p = plain_console(), result.prediction
     heading(console, f"{result.display.title} [{result.display.name}]")
     unsure = result.uncertainty
-    headline = (
-        f"µ′/µ = {p.relative_friction:.2f}"
-        if unsure is None
-        else f"{unsure.sentence}, {unsure.level:.0%} interval"
-    )
-    console.print(headline)
+    if unsure is None:
+        console.print(f"µ′/µ = {p.relative_friction:.2f} as described")
+    else:
+        console.print(f"{unsure.sentence}: {unsure.level:.0%} interval. {unsure.standing}.")
+    console.print(f"{result.verdict.kind}: {result.verdict.text}")
     table(console, ("", "", ""), _rows(result), fixed=(0,))
     heading(console, "The same finger by other models")
     others: list[tuple[str, str]] = [
@@ -42,7 +53,9 @@ def show_friction(result: FrictionAnalysis) -> None:
     table(console, ("model", "µ′/µ"), others)
     show_missed(console, p.model)
     if unsure is not None:
-        _ranking(result, unsure)
+        _ranking(unsure)
+    if result.apart is not None:
+        show_told_apart(result.apart)
     for text in p.warnings:
         console.print(f"! {text}")
 
@@ -117,24 +130,17 @@ def _friction_rows(result: FrictionAnalysis) -> list[tuple[str, str, str]]:
     return rows
 
 
-def _ranking(result: FrictionAnalysis, unsure: UncertainFriction) -> None:
+def _ranking(unsure: UncertainFriction) -> None:
+    """What makes the friction uncertain, in two groups, and the weights of the laws."""
     console = plain_console()
-    heading(console, "What to measure next (share of the variance, alone and in all)")
-    table(
-        console,
-        ("parameter", "from", "to", "alone", "in all", ""),
-        [
-            (
-                item.parameter.path,
-                *(shown(v, item.parameter.unit, 3) for v in item.parameter.distribution.support),
-                f"{max(item.first_order, 0):.0%}",
-                f"{item.total:.0%} ± {item.total_error:.0%}",
-                "assumed range" if item.parameter.origin == "assumed" else "as described",
-            )
-            for item in unsure.influences[:_RANKED]
-        ],
-        fixed=(0,),
-    )
+    for group in unsure.groups:
+        heading(console, group_words(group))
+        rows = influence_rows(unsure, group.knowledge, _RANKED)
+        table(console, ("drawn", "from", "share", ""), rows, fixed=(0,))
+    heading(console, "Laws and states that are drawn, by weights that are assumed")
+    table(console, ("", "", "weight", "why"), weight_rows(unsure), fixed=(0, 1))
+    refused = unsure.refused
     console.print(
-        f"{unsure.evaluations} load balances, {unsure.failed} without one; seed {unsure.seed}"
+        f"{refused.evaluations} draws; seed {unsure.seed}; "
+        + (refused.sentence if refused.count else "none was refused")
     )

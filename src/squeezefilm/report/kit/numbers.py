@@ -15,6 +15,8 @@ from squeezefilm.analysis.claims.record import missed_by
 
 if typing.TYPE_CHECKING:
     from squeezefilm.analysis.analyze import Analysis
+    from squeezefilm.analysis.parameters import Knowledge
+    from squeezefilm.analysis.uncertainty import GroupInfluence, UncertainFriction
     from squeezefilm.chain.prediction import Prediction
     from squeezefilm.display import Display
     from squeezefilm.plate.heat.warming import Warming
@@ -164,7 +166,50 @@ def _sure(analysis: Analysis) -> str:
     if unsure is None:
         return "1 without vibration"
     low, high = unsure.interval
-    return f"{low:.2f} to {high:.2f} ({unsure.level:.0%} interval)"
+    return f"{low:.2f} to {high:.2f} ({unsure.level:.0%} interval, median {unsure.median:.2f})"
+
+
+def influence_rows(unsure: UncertainFriction, knowledge: Knowledge, most: int) -> list[list[str]]:
+    """What of a group makes a friction uncertain, the most important first: its path, what is drawn
+    of it, its share of the variance with all its company, and whose range or weights these are."""
+    group = [one for one in unsure.influences if one.parameter.knowledge == knowledge]
+    return [
+        [
+            one.parameter.path,
+            micro_words(one.parameter.spread, law=hasattr(one.parameter, "options")),
+            f"{one.total:.0%} ± {one.total_error:.0%}",
+            "as described"
+            if one.parameter.origin == "given"
+            else "assumed weights"
+            if hasattr(one.parameter, "options")
+            else "assumed range",
+        ]
+        for one in group[:most]
+    ]
+
+
+def micro_words(spread: tuple[str, ...], *, law: bool) -> str:
+    """Options with their weights, or from where to where a value is drawn."""
+    return ", ".join(spread) if law else " to ".join(map(micro, spread))
+
+
+def group_words(one: GroupInfluence) -> str:
+    """What a group of inputs is, and what it carries of the width, as a heading."""
+    what = {"measurable": "Could be measured", "unknown": "Nobody knows"}[one.knowledge]
+    return (
+        f"{what}: {one.total:.0%} ± {one.error:.0%} of the variance, {max(one.alone, 0):.0%} "
+        "without the other group"
+    )
+
+
+def weight_rows(unsure: UncertainFriction) -> list[list[str]]:
+    """The laws and states that are drawn, each with its assumed weight and why."""
+    choices = [one.parameter for one in unsure.influences if hasattr(one.parameter, "options")]
+    return [
+        [choice.path, option.name, f"{option.weight:.0%}", option.why]
+        for choice in sorted(choices, key=lambda one: one.path)
+        for option in choice.options
+    ]
 
 
 def _mode(mode: WorkingMode) -> str:

@@ -18,6 +18,7 @@ from squeezefilm.analysis.friction.command import (
     analyze_friction,
     friction_map,
 )
+from squeezefilm.analysis.verdict import Finding
 from squeezefilm.display import Display, load_display
 from squeezefilm.errors import OutOfRangeError
 
@@ -64,6 +65,7 @@ def prediction(**changes: Any) -> Any:
         "relative_friction_limits": (0.35, 0.45), "friction_reduction": 0.24,
         "friction_coefficient": 0.4, "tangential_force": 0.08, "heat": None,
         "warnings": ("mind this",),
+        "speed": 0.1,
     }  # fmt: skip
     return SimpleNamespace(**{**values, **changes})
 
@@ -94,8 +96,8 @@ def test_a_map_goes_over_amplitudes_and_forces(stator: Display) -> None:
     [
         ("partial-levitation-one-gap", "partial-levitation-one-gap"),
         ("partial-levitation", "partial-levitation"),
-        ("paper2008", "partial-levitation"),
-        ("film-open", "partial-levitation"),
+        ("paper2008", "partial-levitation-shear"),
+        ("film-open", "partial-levitation-shear"),
     ],
 )
 def test_a_map_is_by_a_model_that_balances_loads(stator: Display, model: str, mapped: str) -> None:
@@ -123,12 +125,15 @@ def parts(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
 
     stand_in("predict", PREDICTION)
     stand_in("voltage_for_friction", (12.0, 1.4e-6))
-    for name in ("model_curves", "friction_map", "uncertain_friction", "_ripple"):
+    for name in ("model_curves", "friction_map", "_ripple", "tell_apart"):
         stand_in(name, f"the {name}")
+    stand_in("interval_or_reason", ("the interval", "a reason"))
+    stand_in("friction_verdict", "the verdict")
+    stand_in("without_gas", 0.6)
     return asked
 
 
-PREDICTION = prediction()
+PREDICTION = prediction(law="the law")
 
 
 def test_an_analysis_passes_on_what_was_asked(stator: Display, parts: list[Any]) -> None:
@@ -137,30 +142,32 @@ def test_an_analysis_passes_on_what_was_asked(stator: Display, parts: list[Any])
     found = analyze_friction(
         stator, voltage=100.0, frequency=41e3, normal_force=0.3, surface="bare", model="film-open",
         position=1e-3, speed=0.1, ambient_pressure=5e4, wanted_friction=0.6, samples=16, seed=9,
-        points=7, progress=said,
+        points=7, tell_apart=True, progress=said,
     )  # fmt: skip
     thin = dataclasses.replace(stator, gas=stator.gas.at_pressure(5e4))
     point = {"frequency": 41e3, "normal_force": 0.3, "surface": "bare", "model": "film-open"}
     more = {"voltage": 100.0, "vibration_amplitude": None, "position": 1e-3}
     assert parts == [
-        ("predict", (thin,), point | more),
-        ("voltage_for_friction", (thin, 0.6), point),
+        ("predict", (thin,), point | more | {"speed": 0.1}),
+        ("voltage_for_friction", (thin, 0.6), point | {"speed": 0.1}),
         ("model_curves", (PREDICTION,), {}),
         ("friction_map", (PREDICTION, 7), {}),
         (
-            "uncertain_friction", (thin, PREDICTION),
+            "interval_or_reason", (thin, PREDICTION),
             {"samples": 16, "seed": 9, "progress": said},
         ),
+        ("tell_apart", (thin, PREDICTION), {"seed": 9, "progress": said}),
         ("_ripple", (PREDICTION,), {}),
+        ("without_gas", ("the law", 2e-6), {}),
+        ("friction_verdict", (PREDICTION, "the interval", "a reason"), {}),
     ]  # fmt: skip
     assert (found.display, found.prediction) == (thin, PREDICTION)
     assert (found.curves, found.map, found.uncertainty, found.ripple) == (
-        "the model_curves", "the friction_map", "the uncertain_friction", "the _ripple",
+        "the model_curves", "the friction_map", "the interval", "the _ripple",
     )  # fmt: skip
     assert found.wanted == Wanted(0.6, 1.4e-6, 12.0)
-    # 0.9 − 0.2 − 0.1 by the made-up law.
-    assert found.tapping.speed == 0.1
-    assert found.tapping.relative_friction == pytest.approx(0.6)
+    assert found.tapping == Tapping(0.1, 0.6)
+    assert (found.verdict, found.apart) == ("the verdict", "the tell_apart")
     assert told == [
         "amplitude and load balance", "models side by side", "map over amplitude and force",
         "ripple of the standing wave",
@@ -169,12 +176,15 @@ def test_an_analysis_passes_on_what_was_asked(stator: Display, parts: list[Any])
 
 def test_what_is_not_asked_for_is_not_computed(stator: Display, parts: list[Any]) -> None:
     found = analyze_friction(stator, vibration_amplitude=2e-6, samples=0)
-    assert [name for name, *_ in parts] == ["predict", "model_curves", "friction_map", "_ripple"]
+    assert [name for name, *_ in parts] == [
+        "predict", "model_curves", "friction_map", "interval_or_reason", "_ripple", "without_gas",
+        "friction_verdict",
+    ]  # fmt: skip
     assert parts[0][1][0] is stator
     assert parts[0][2]["vibration_amplitude"] == 2e-6
-    assert (found.wanted, found.uncertainty) == (None, None)
-    # Smith, Gosselin and Houde 2002.
-    assert found.tapping.speed == 0.08
+    assert parts[0][2]["speed"] is None
+    assert parts[3][2]["samples"] == 0
+    assert (found.wanted, found.apart) == (None, None)
 
 
 def test_a_summary_has_every_number_under_its_name(stator: Display) -> None:
@@ -182,7 +192,7 @@ def test_a_summary_has_every_number_under_its_name(stator: Display) -> None:
     unsure = SimpleNamespace(interval=(0.3, 0.5), level=0.9, summary=lambda: {"seed": 1})
     found: Any = FrictionAnalysis(
         stator, PREDICTION, (curve,), unsure, None, SimpleNamespace(ripple=0.07),  # type: ignore[arg-type]
-        Wanted(0.6, 1.4e-6, 12.0), Tapping(0.08, 0.7),
+        Wanted(0.6, 1.4e-6, 12.0), Tapping(0.08, 0.7), Finding("limit", "open"),
     )  # fmt: skip
     said = found.summary()
     assert said.pop("provenance")["config_sha256"]
@@ -207,6 +217,7 @@ def test_a_summary_has_every_number_under_its_name(stator: Display) -> None:
         # In the middle of 0.8 at 1 µm and 0.4 at 3 µm.
         "models": [{"model": "paper2008", "relative_friction": pytest.approx(0.6)}],
         "uncertainty": {"seed": 1}, "warnings": ["mind this"],
+        "verdict": {"kind": "limit", "text": "open"}, "tell_apart": None,
     }  # fmt: skip
 
 
@@ -216,7 +227,9 @@ def test_a_summary_says_none_where_there_is_nothing(stator: Display) -> None:
         touch=SimpleNamespace(free_amplitude=2e-6, kept=1.0, sharing=None, impedance=None),
     )
     none: Any = None
-    said = FrictionAnalysis(stator, p, (), none, none, none, none, Tapping(0.1, 0.5)).summary()
+    said = FrictionAnalysis(
+        stator, p, (), none, none, none, none, Tapping(0.1, 0.5), Finding("doubt", "")
+    ).summary()
     for name in ("relative_friction_interval", "interval_level", "relative_friction_limits",
                  "load_shares", "standing_wave_ripple", "wanted", "uncertainty"):  # fmt: skip
         assert said[name] is None, name

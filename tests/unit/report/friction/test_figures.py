@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import json
+from collections import Counter
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -13,8 +14,9 @@ import pytest
 from matplotlib.colors import to_hex
 
 from squeezefilm.analysis.curves import ModelCurve
+from squeezefilm.analysis.draws import Refusals
 from squeezefilm.analysis.friction.command import FrictionMap
-from squeezefilm.analysis.parameters import Parameter
+from squeezefilm.analysis.parameters import Knowledge, Parameter
 from squeezefilm.analysis.uncertainty import Influence, UncertainFriction
 from squeezefilm.chain.friction import FrictionLaw, friction_law
 from squeezefilm.contact.sharing.pad import FrictionRipple
@@ -67,7 +69,8 @@ CURVES = (
 
 def influence(number: int, path: str) -> Influence:
     # The last ones are of no influence, and estimated a little below none.
-    parameter = Parameter(path, 1.0, Unit("1"), Uniform(0.5, 1.5), "assumed", "test")
+    known: Knowledge = "unknown" if path == "skin_compliance" else "measurable"
+    parameter = Parameter(path, 1.0, Unit("1"), Uniform(0.5, 1.5), "assumed", "test", known)
     total = 0.5 - 0.1 * number if number < 5 else -0.01
     return Influence(parameter, 0.5 * total, 0.01, total, 0.02 + 0.01 * number)
 
@@ -76,7 +79,8 @@ UNSURE = UncertainFriction(
     nominal=0.62, median=0.6, interval=(0.41, 0.83), level=0.9,
     samples=np.array([0.01, 0.41, 0.43, 0.83, 0.99]), amplitudes=np.full(5, 1.5e-6),
     influences=tuple(influence(number, path) for number, path in enumerate(PATHS)),
-    failed=0, evaluations=77, seed=1, model="a model of nothing",
+    groups=(), refused=Refusals(0, 77, Counter(), Counter(), ""), seed=1,
+    model="a model of nothing",
 )  # fmt: skip
 FORCES = np.geomspace(0.04, 1.6, 5)
 COLUMNS = np.linspace(0, 3e-6, 7)
@@ -85,7 +89,7 @@ FIELD[4, 6] = np.nan
 MAP = FrictionMap(COLUMNS, FORCES, FIELD, "the model of the map")
 RIPPLE = FrictionRipple(np.array([0.0, 2e-3, 4e-3]), np.array([0.5, 0.6, 0.7]), 10e-3, 6e-3)
 RESULT: Any = SimpleNamespace(
-    curves=CURVES, prediction=POINT, uncertainty=UNSURE, map=MAP, ripple=RIPPLE,
+    curves=CURVES, prediction=POINT, uncertainty=UNSURE, map=MAP, ripple=RIPPLE, apart=None,
     summary=lambda: {"display": "µ"},
 )  # fmt: skip
 
@@ -136,7 +140,7 @@ def test_the_band_lies_between_a_stiff_pad_and_a_soft_one() -> None:
 
 def test_the_working_point_stands_on_its_interval() -> None:
     axes = models(RESULT).axes[0]
-    label = "this display, partial-levitation: 0.62 (0.41–0.83, 90%)"
+    label = "this display, partial-levitation: 0.62 (0.41–0.83, 90%, median 0.60)"
     point = labelled(axes)[label]
     assert point.get_xydata().tolist() == [[pytest.approx(1.5), 0.62]]
     others = [one for one in axes.get_lines() if one.get_label().startswith("_")]
@@ -144,8 +148,8 @@ def test_the_working_point_stands_on_its_interval() -> None:
     assert all(one.get_xdata() == pytest.approx(1.5) for one in others)
     figure = models(RESULT)
     assert words(figure.get_suptitle()) == (
-        "At 1.5 µm on glass µ′/µ = 0.62 (0.41–0.83): the model decides, and no measured curve has "
-        "settled it"
+        "At 1.5 µm on glass µ′/µ = 0.62 as described (0.41–0.83, median 0.60): the model decides, "
+        "and no measured curve has settled it"
     )
     assert words(figure.get_supxlabel()) == "Model: as in the legend; 0.4 N"
 
@@ -237,14 +241,16 @@ def test_samples_are_counted_beside_their_interval() -> None:
     assert bars.datavalues.tolist() == heights.tolist()
     marks = labelled(left)
     assert marks["as described: 0.62"].get_xdata() == [0.62, 0.62]
+    assert marks["median: 0.60"].get_xdata() == [0.6, 0.6]
     box = marks["90% interval"].get_extents().transformed(left.transData.inverted())
     assert (box.x0, box.x1) == pytest.approx((0.41, 0.83))
     assert left.get_xlim() == (0, 1)
-    assert (left.get_xlabel(), left.get_ylabel()) == (FRICTION, "samples")
+    assert (left.get_xlabel(), left.get_ylabel()) == (FRICTION, "draws")
     assert words(figure.get_suptitle()) == (
-        "µ′/µ = 0.62 (0.41–0.83); to know it better, measure the gap of the asperities"
+        "µ′/µ = 0.62 as described (0.41–0.83, median 0.60); to know it better, measure the gap of "
+        "the asperities"
     )
-    assert figure.get_supxlabel() == "Model: a model of nothing, 77 load balances"
+    assert figure.get_supxlabel() == "Model: a model of nothing, 77 draws"
 
 
 def test_the_eight_most_important_parameters_are_ranked_from_above() -> None:
@@ -254,15 +260,19 @@ def test_the_eight_most_important_parameters_are_ranked_from_above() -> None:
         "ceramic.young modulus", "softness of the pad", "decay length of the asperities",
         "width of a ridge's plateau", "length of the contact",
     ]  # fmt: skip
-    total, alone = (labelled(right)[name] for name in ("with all its company", "alone"))
+    known, unknown = (labelled(right)[name] for name in ("could be measured", "nobody knows"))
     shares = np.array([50, 40, 30, 20, 10, 0, 0, 0])
-    assert total.datavalues[::-1] == pytest.approx(shares)
-    assert alone.datavalues[::-1] == pytest.approx(0.5 * shares)
-    assert [one.get_height() for one in alone] == [0.4] * 8
-    (segments,) = total.errorbar.lines[2]
+    rows = {
+        round(bar.get_y() + bar.get_height() / 2): bar.get_width()
+        for group in (known, unknown)
+        for bar in group
+    }
+    assert [rows[k] for k in range(8)][::-1] == pytest.approx(shares)
+    # The softness of the pad is the fifth, and nobody knows it.
+    assert [bar.get_width() for bar in unknown] == pytest.approx([10])
+    (segments,) = known.errorbar.lines[2]
     ends = np.array([part[:, 0] for part in segments.get_segments()])[::-1]
-    assert 0.5 * np.diff(ends)[:, 0] == pytest.approx(2 + np.arange(8))
-    assert ends.mean(axis=1) == pytest.approx(shares)
+    assert 0.5 * np.diff(ends)[:, 0] == pytest.approx([2, 3, 4, 5, 7, 8, 9])
     assert right.get_yticks().tolist() == list(range(8))
     assert right.get_xlabel() == "share of the variance of µ′/µ (%)"
     assert right.get_xlim()[0] == 0

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from collections import Counter
 from types import SimpleNamespace
 from typing import Any
 
@@ -12,9 +13,12 @@ from tests.unit.report.printed import printed
 
 from squeezefilm.analysis.claims.record import missed_by
 from squeezefilm.analysis.curves import ModelCurve
+from squeezefilm.analysis.draws import Refusals
 from squeezefilm.analysis.friction.command import Tapping, Wanted
+from squeezefilm.analysis.model_choices import Choice, Option
 from squeezefilm.analysis.parameters import Parameter
-from squeezefilm.analysis.uncertainty import Influence, UncertainFriction
+from squeezefilm.analysis.uncertainty import GroupInfluence, Influence, UncertainFriction
+from squeezefilm.analysis.verdict import Finding
 from squeezefilm.chain.touch import Touch
 from squeezefilm.distributions import Uniform
 from squeezefilm.quantities import Unit
@@ -58,6 +62,11 @@ def influence(number: int, origin: str, first: float, total: float, error: float
     return Influence(parameter, first, 0.0, total, error)
 
 
+SHEAR = Choice(
+    "finger.tangential_stiffness",
+    (Option("rigid", 0.25, "slips"), Option("following", 0.75, "comes and goes")),
+    "",
+)
 SURE = UncertainFriction(
     nominal=0.432, median=0.44, interval=(0.283, 0.551), level=0.9, samples=np.zeros(3),
     amplitudes=np.zeros(3),
@@ -65,8 +74,13 @@ SURE = UncertainFriction(
         influence(0, "assumed", 0.25, 0.4, 0.05),
         influence(1, "given", -0.02, 0.1, 0.012),
         *(influence(number, "given", 0.0, 0.0, 0.0) for number in range(2, 8)),
+        Influence(SHEAR, 0.0, 0.0, 0.4, 0.1),
     ),
-    failed=2, evaluations=640, seed=5, model="a-model",
+    groups=(
+        GroupInfluence("measurable", 0.6, 0.7, 0.1), GroupInfluence("unknown", -0.02, 0.4, 0.2),
+    ),
+    refused=Refusals(2, 640, Counter({"pressed flat": 2}), Counter({"persson": 2}), ""), seed=5,
+    model="a-model",
 )  # fmt: skip
 
 
@@ -86,6 +100,8 @@ def analysis(**changes: Any) -> Any:
         "ripple": SimpleNamespace(ripple=0.0123, half_wavelength=9.8765e-3),
         "wanted": Wanted(0.7, 1.2345e-6, 12.345),
         "tapping": Tapping(0.08, 0.91234),
+        "verdict": Finding("limit", "Whether it is met is open."),
+        "apart": None,
     }
     return SimpleNamespace(**{**values, **changes})
 
@@ -95,10 +111,12 @@ def said(columns: int = 220, **changes: Any) -> list[str]:
 
 
 def test_a_friction_is_said_with_why_and_what_to_measure_next() -> None:
-    ranks = [f"finger.p{n} 0.15 mm 0.35 mm 0% 0% ± 0% as described" for n in range(2, 6)]
+    ranks = [f"finger.p{n} 150 µm to 350 µm 0% ± 0% as described" for n in range(2, 6)]
     assert said() == [
         "A plate [plate]",
-        "µ′/µ = 0.43 (0.28–0.55), 90% interval",
+        "µ′/µ = 0.43 as described (0.28–0.55, median 0.44): 90% interval. 100% of the draws lie "
+        "below the value as described.",
+        "limit: Whether it is met is open.",
         "Vibration amplitude 1.5 µm with the finger, at 15 V",
         "Drive frequency 33.58 kHz",
         "The finger leaves 75 % of 2 µm; it moves the resonance by +3.2 Hz and Q from 60 to 45.2",
@@ -123,12 +141,20 @@ def test_a_friction_is_said_with_why_and_what_to_measure_next() -> None:
         "intermittent contact at 80 mm/s, no gas 0.912",
         "What measurements say and 'a-model' does not",
         "– Published directions were not asked of the model 'a-model'.",
-        "What to measure next (share of the variance, alone and in all)",
-        "parameter from to alone in all",
-        "finger.p0 0.15 mm 0.35 mm 25% 40% ± 5% assumed range",
-        "finger.p1 0.15 mm 0.35 mm 0% 10% ± 1% as described",
+        "Could be measured: 70% ± 10% of the variance, 60% without the other group",
+        "drawn from share",
+        "finger.p0 150 µm to 350 µm 40% ± 5% assumed range",
+        "finger.p1 150 µm to 350 µm 10% ± 1% as described",
         *ranks,
-        "640 load balances, 2 without one; seed 5",
+        "Nobody knows: 40% ± 20% of the variance, 0% without the other group",
+        "drawn from share",
+        "finger.tangential_stiffness rigid 25%, following 75% 40% ± 10% assumed weights",
+        "Laws and states that are drawn, by weights that are assumed",
+        "weight why",
+        "finger.tangential_stiffness rigid 25% slips",
+        "finger.tangential_stiffness following 75% comes and goes",
+        "640 draws; seed 5; 2 of 640 draws (0.3%) are refused: pressed flat (2); by the law of "
+        "heights persson (2)",
         "! mind this",
         "! and that",
     ]
@@ -155,19 +181,19 @@ def test_what_measurements_say_against_the_model_stands_beside_it() -> None:
 
 def test_without_samples_a_friction_is_one_number() -> None:
     lines = said(uncertainty=None, ripple=None, wanted=None)
-    assert lines[1] == "µ′/µ = 0.43"
-    assert not [line for line in lines if "measure next" in line or "seed" in line]
+    assert lines[1] == "µ′/µ = 0.43 as described"
+    assert not [line for line in lines if "variance" in line or "seed" in line]
     assert not [line for line in lines if line.startswith(("Ripple", "For µ′"))]
 
 
 def test_an_amplitude_that_was_given_needs_no_voltage_and_no_plate() -> None:
     lines = said(prediction=prediction(voltage=None))
-    assert lines[2] == "Vibration amplitude 1.5 µm with the finger, amplitude given"
+    assert lines[3] == "Vibration amplitude 1.5 µm with the finger, amplitude given"
     assert not [line for line in lines if line.startswith("The finger leaves")]
     assert not [line for line in lines if line.startswith("Temperature")]
     lines = said(prediction=prediction(touch=touched(mode=None), heat=None))
     assert "Temperature rise not known nor is the power that the plate loses" in lines
-    assert lines[2].endswith("at 15 V")
+    assert lines[3].endswith("at 15 V")
     assert not [line for line in lines if line.startswith("The finger leaves")]
 
 
@@ -178,7 +204,7 @@ def test_a_model_that_shares_no_load_has_no_shares_and_no_limits() -> None:
         )
     )
     assert not [line for line in lines if "carr" in line or "stiffer" in line]
-    assert lines[-1].endswith("seed 5")
+    assert "seed 5" in lines[-1]
 
 
 def test_labels_and_parameters_are_not_broken_on_a_narrow_terminal() -> None:

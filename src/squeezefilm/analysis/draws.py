@@ -1,0 +1,248 @@
+"""Draws from all that is uncertain of a display: parameters, laws and mechanisms, at one point."""
+
+from __future__ import annotations
+
+import dataclasses
+import warnings
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from squeezefilm import quantities as si
+from squeezefilm.analysis.model_choices import (
+    HEIGHT_LAW,
+    MOISTURE,
+    SHEAR,
+    SLIP,
+    Choice,
+    model_choices,
+    same_interface,
+)
+from squeezefilm.analysis.parameters import (
+    FORCE,
+    SKIN_COMPLIANCE,
+    Parameter,
+    uncertain_parameters,
+    with_values,
+)
+from squeezefilm.chain.friction import FrictionLaw
+from squeezefilm.chain.friction_models import DEFAULT_MODEL, FrictionModel
+from squeezefilm.chain.prediction import Prediction
+from squeezefilm.chain.touch import touch
+from squeezefilm.display import Display
+from squeezefilm.errors import SqueezefilmError
+from squeezefilm.plate.beam.response import beam_response
+from squeezefilm.plate.layout import AnnularStator, RectangularPlate
+from squeezefilm.plate.working_mode import working_mode
+
+Input = Parameter | Choice
+
+
+@dataclass(frozen=True)
+class Draw:
+    """One display of those that it may be: with other values and laws, its force (N), the pad's
+    softness (0: all ridges at one mean gap, 1: each at its own balance), the slip of its gas."""
+
+    display: Display
+    normal_force: si.Newton
+    skin_compliance: si.Dimensionless
+    slip: str
+    heights: str
+
+
+@dataclass(frozen=True, eq=False)
+class Refusals:
+    """Draws that have no friction, of how many; why (with how often), under which law of heights,
+    and what the first of them said."""
+
+    count: int
+    evaluations: int
+    reasons: Counter[str]
+    heights: Counter[str]
+    example: str
+
+    @property
+    def share(self) -> si.Dimensionless:
+        """Of all draws."""
+        return self.count / self.evaluations
+
+    @property
+    def sentence(self) -> str:
+        """How many were refused and why."""
+        why = ", ".join(f"{why} ({count})" for why, count in self.reasons.most_common())
+        laws = ", ".join(f"{name} ({count})" for name, count in self.heights.most_common())
+        return (
+            f"{self.count} of {self.evaluations} draws ({self.share:.1%}) are refused: {why}; by "
+            f"the law of heights {laws}"
+        )
+
+
+class Tally:
+    """Counts what is refused."""
+
+    def __init__(self) -> None:
+        self.reasons: Counter[str] = Counter()
+        self.heights: Counter[str] = Counter()
+        self.example = ""
+
+    def refuse(self, draw_of: str, error: SqueezefilmError) -> None:
+        """Count one."""
+        words = str(error)
+        known = {
+            "pressed through": "pressed through its asperities",
+            "nearly everything into contact": "pressed nearly flat",
+            "film is not tabulated": "outside of the film's table",
+            "leaves the range of a float": "shear that is no finite number",
+        }
+        why = [short for part, short in known.items() if part in words]
+        self.reasons[why[0] if why else type(error).__name__] += 1
+        self.heights[draw_of] += 1
+        self.example = self.example or words
+
+    def found(self, evaluations: int) -> Refusals:
+        """What was counted, of so many."""
+        count = sum(self.reasons.values())
+        return Refusals(count, evaluations, self.reasons, self.heights, self.example)
+
+
+class Mixture:
+    """All that a display may be at a prediction's working point: `inputs`, each with a coordinate
+    from 0 to 1 that says which value or law is drawn.
+
+    `driven` is whether a voltage moves it, so that its actuator is uncertain too. The model is the
+    prediction's where film and asperities share the load in it, else the default one.
+    """
+
+    def __init__(self, display: Display, prediction: Prediction, *, driven: bool) -> None:
+        self.display, self.prediction = display, prediction
+        law = prediction.law
+        shared = law.kind.film == "shared"
+        self.model: FrictionModel = law.model if shared else DEFAULT_MODEL
+        parameters = uncertain_parameters(
+            display,
+            prediction.surface.name,
+            driven=driven,
+            normal_force=prediction.normal_force,
+        )
+        sheared = law.kind.shear or not shared
+        if not sheared:
+            # µ decides when what touches slips, and nothing else.
+            parameters = tuple(
+                one for one in parameters if not one.path.endswith("friction_coefficient")
+            )
+        self.inputs: tuple[Input, ...] = parameters + model_choices(display, sheared=sheared)
+        # Laws of contact are compared at what a plateau carries as described.
+        self._pressure = display.finger.plateau_pressure()
+        self.paths = tuple(one.path for one in self.inputs)
+
+    def draws(self, points: si.DimensionlessArray) -> Iterator[Draw]:
+        """The draws at points of the unit cube, shape (n, inputs)."""
+        for values, chosen in self.values(points):
+            yield self.made(values, chosen)
+
+    def values(
+        self, points: si.DimensionlessArray
+    ) -> Iterator[tuple[dict[str, float], dict[str, str]]]:
+        """Of points of the unit cube, shape (n, inputs): values by path and options by path."""
+        columns = [one.drawn(points[:, k]) for k, one in enumerate(self.inputs)]
+        numbers = [isinstance(one, Parameter) for one in self.inputs]
+        for row in zip(*columns, strict=True):
+            named = list(zip(self.paths, row, numbers, strict=True))
+            yield (
+                {path: value for path, value, number in named if number},
+                {path: value for path, value, number in named if not number},
+            )
+
+    def made(self, values: dict[str, float], chosen: dict[str, str]) -> Draw:
+        """The draw with values by path and choices by path; what is left out is as described."""
+        p = self.prediction
+        force = values.get(FORCE, p.normal_force)
+        compliance = values.get(SKIN_COMPLIANCE, 1.0)
+        rest = {k: v for k, v in values.items() if k not in (FORCE, SKIN_COMPLIANCE)}
+        here = with_values(self.display, rest)
+        changes: dict[str, object] = {
+            path.split(".")[-1]: chosen[path] for path in (SHEAR, MOISTURE) if path in chosen
+        }
+        asperities = here.finger.asperities
+        heights = chosen.get(HEIGHT_LAW, getattr(asperities, "heights", "persson"))
+        changes["asperities"] = same_interface(asperities, heights, self._pressure)
+        if not hasattr(changes["asperities"], "modulus"):
+            # Of separate asperities no real contact area is known: µ is as described.
+            changes["shear_strength"] = None
+        finger = dataclasses.replace(here.finger, **changes)  # type: ignore[arg-type]
+        here = dataclasses.replace(here, finger=finger)
+        return Draw(here, force, compliance, chosen.get(SLIP, p.law.slip), heights)
+
+    def law(self, draw: Draw) -> FrictionLaw:
+        """The friction law of a draw, at the prediction's frequency, place and speed."""
+        p = self.prediction
+        return FrictionLaw(
+            surface=draw.display.surface(p.surface.name),
+            finger=draw.display.finger,
+            gas=draw.display.gas,
+            half_wavelength=p.mode.half_wavelength,
+            frequency=p.frequency,
+            normal_force=draw.normal_force,
+            model=self.model,
+            position=p.law.position,
+            speed=p.law.speed,
+            slip=draw.slip,
+        )
+
+
+def friction_of(mixture: Mixture, draw: Draw, free_amplitude: si.Metre) -> tuple[float, si.Metre]:
+    """µ′/µ of a draw at an amplitude (m) without its finger, and the amplitude with it."""
+    p, law = mixture.prediction, mixture.law(draw)
+    amplitude = free_amplitude
+    if p.voltage is not None and p.mode.modal_mass is not None:
+        quality = getattr(draw.display.actuator, "quality_factor", p.mode.quality_factor)
+        mode = dataclasses.replace(p.mode, quality_factor=float(quality))
+        amplitude = touch(mode, law, free_amplitude).amplitude
+    return float(between_limits(law, draw, np.array([amplitude]))[0]), amplitude
+
+
+def between_limits(law: FrictionLaw, draw: Draw, amplitude: si.MetreArray) -> si.DimensionlessArray:
+    """µ′/µ at amplitudes (m) of a pad as soft as the draw has it."""
+    limits, share = law.limits(amplitude), draw.skin_compliance
+    return np.asarray(share * limits.own + (1 - share) * limits.one_gap)
+
+
+class FreeAmplitude:
+    """The amplitude (m) without a finger of a display with other values, from a prediction's.
+
+    The plate's own dimensions and constants move it as a beam's would, Q and an uncertain voltage
+    in proportion.
+    """
+
+    def __init__(self, display: Display, prediction: Prediction) -> None:
+        self.nominal, self.prediction = display, prediction
+        self.free = prediction.touch.free_amplitude
+        self.reference = self._per_volt(display) if prediction.voltage is not None else 1.0
+
+    def __call__(self, display: Display) -> si.Metre:
+        """The amplitude of a display (m)."""
+        free = self.free * self._volts(display)
+        here, nominal = display.actuator, self.nominal.actuator
+        if self.prediction.voltage is None or here == nominal:
+            return free
+        if dataclasses.replace(here, quality_factor=nominal.quality_factor) == nominal:
+            # At resonance, in proportion; a stator's amplitude is measured, whatever its Q.
+            measured = isinstance(here, AnnularStator)
+            return free * (1 if measured else here.quality_factor / nominal.quality_factor)
+        return free * self._per_volt(display) / self.reference
+
+    def _volts(self, display: Display) -> float:
+        """An uncertain drive in proportion; a voltage asked for stands as it is."""
+        if self.prediction.voltage is None or self.nominal.drive.voltage == 0:
+            return 1.0
+        return display.drive.voltage / self.nominal.drive.voltage
+
+    @staticmethod
+    def _per_volt(display: Display) -> float:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            if isinstance(display.actuator, RectangularPlate):
+                return beam_response(display.actuator).amplitude_per_volt
+            return working_mode(display.actuator).amplitude_per_volt

@@ -1,0 +1,57 @@
+"""Whether the interval of a friction holds its level under draws from its own model.
+
+Truths are independent draws from the mixture; every interval has Sobol' points with a scrambling of
+its own. With the default number of points a 90 % interval must hold 87 to 93 % of 500 truths.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from squeezefilm import quantities as si
+from squeezefilm.analysis.draws import Mixture
+from squeezefilm.analysis.uncertainty import POINTS, SAMPLES, evaluate, quantiles, sobol_points
+from squeezefilm.chain.prediction import predict
+from squeezefilm.display import load_display
+
+
+def _mixture(name: str, force: float) -> Mixture:
+    display = load_display(name)
+    prediction = predict(display, vibration_amplitude=2e-6, normal_force=force)
+    return Mixture(display, prediction, driven=False)
+
+
+def _frictions(mixture: Mixture, points: si.FloatArray) -> si.FloatArray:
+    friction, _, refused = evaluate(mixture, points, lambda _: None)
+    assert refused.share <= 0.02
+    return friction
+
+
+def _coverage(mixture: Mixture, truths: int, intervals: int, seed: int) -> float:
+    """The share of truths inside, each of `intervals` asked for as many of them as the others."""
+    random = np.random.default_rng(seed)
+    truth = _frictions(mixture, random.random((truths, len(mixture.inputs))))
+    held = []
+    for k, some in enumerate(np.array_split(truth, intervals)):
+        points = sobol_points(mixture, POINTS * SAMPLES, 1000 * seed + k)
+        low, _, high = quantiles(_frictions(mixture, points))
+        held.append((some >= low) & (some <= high))
+    return float(np.mean(np.concatenate(held)))
+
+
+@pytest.mark.slow
+def test_an_interval_holds_its_level_under_its_own_draws() -> None:
+    """Of 250 truths against five intervals: within three standard errors of 90 %."""
+    found = _coverage(_mixture("biet2008-stator", 0.5), 250, 5, seed=11)
+    assert found == pytest.approx(0.9, abs=0.06)
+
+
+@pytest.mark.campaign
+@pytest.mark.parametrize("name", ["biet2008-stator", "touchpad-glass"])
+@pytest.mark.parametrize("force", [0.1, 0.5, 1.0])
+def test_an_interval_covers(name: str, force: float) -> None:
+    """Of 500 truths against 50 intervals with the default number of points 87 to 93 %."""
+    found = _coverage(_mixture(name, force), 500, 50, seed=12)
+    print(f"{name}, {force} N: coverage {found:.3f} of 500 draws, 90 % asked")
+    assert 0.87 <= found <= 0.93
