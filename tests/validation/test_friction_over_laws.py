@@ -1,4 +1,4 @@
-"""The table of friction over load, speed, amplitude and law is the one that docs/models.md shows."""
+"""The table of friction over load, speed, amplitude and law is that of the page on models."""
 
 from __future__ import annotations
 
