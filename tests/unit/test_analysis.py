@@ -81,7 +81,7 @@ def test_film_models_stand_side_by_side(plate: Analysis) -> None:
 def test_curves_pass_through_their_marked_points(plate: Analysis) -> None:
     for curve in plate.friction_curves:
         assert curve.amplitude_for_criterion is not None
-        if curve.model == "partial-levitation":
+        if curve.model == "partial-levitation-shear":
             # Asperities always carry something.
             assert curve.zero_friction_amplitude is None
             at = np.interp(curve.amplitude_for_criterion, curve.amplitude, curve.relative_friction)

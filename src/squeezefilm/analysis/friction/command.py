@@ -93,6 +93,7 @@ class FrictionAnalysis(Result):
             "voltage_V": p.voltage,
             "frequency_Hz": p.frequency,
             "normal_force_N": p.normal_force,
+            "finger_speed_m_per_s": p.speed,
             "ambient_pressure_Pa": self.display.gas.ambient_pressure,
             "vibration_amplitude_m": p.vibration_amplitude,
             "free_amplitude_m": p.touch.free_amplitude,

@@ -84,7 +84,8 @@ def edited(text: str, path: str, value: str) -> str:
     """
     if len(value) > LONGEST_VALUE:
         raise InputError(f"a value of {len(value)} characters; at most {LONGEST_VALUE} are taken")
-    row = next((one for one in form(text) if one["path"] == path), None)
+    rows = {one["path"]: one for one in form(text)}
+    row = rows.get(path)
     if row is None:
         raise InputError(f"the display has no value at '{path[:200]}'; open it again")
     written = _written(value.strip(), row)
@@ -92,13 +93,16 @@ def edited(text: str, path: str, value: str) -> str:
         document = tomlkit.parse(text)
         owner: Any = document
         *heads, last = path.split(".")
-        for part in heads:
+        for depth, part in enumerate(heads, 1):
             if isinstance(owner, list):
                 owner = owner[int(part)]
-            else:
-                if part not in owner:
-                    owner[part] = tomlkit.table()
-                owner = owner[part]
+                continue
+            if part not in owner:
+                owner[part] = tomlkit.table()
+                # A table that may be one of several kinds says which it is.
+                if kind := rows.get(".".join([*heads[:depth], "type"])):
+                    owner[part]["type"] = kind["text"]
+            owner = owner[part]
         old = owner.get(last) if hasattr(owner, "get") else None
         if isinstance(old, dict) and "value" in old:
             was, source = old["value"], str(old.get("source", ""))

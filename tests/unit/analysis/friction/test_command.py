@@ -198,7 +198,8 @@ def test_a_summary_has_every_number_under_its_name(stator: Display) -> None:
     assert said.pop("provenance")["config_sha256"]
     assert said == {
         "display": "biet2008-stator", "surface": "bare", "voltage_V": 15.0, "frequency_Hz": 40e3,
-        "normal_force_N": 0.5, "ambient_pressure_Pa": 1e5, "vibration_amplitude_m": 2e-6,
+        "normal_force_N": 0.5, "finger_speed_m_per_s": 0.1, "ambient_pressure_Pa": 1e5,
+        "vibration_amplitude_m": 2e-6,
         "free_amplitude_m": 2.5e-6, "amplitude_kept": 0.8, "amplitude_model": "an-amplitude",
         "finger_impedance_N_s_per_m": [1.5, -2.0],
         "relative_friction": 0.4, "relative_friction_interval": [0.3, 0.5], "interval_level": 0.9,
@@ -216,7 +217,7 @@ def test_a_summary_has_every_number_under_its_name(stator: Display) -> None:
         "intermittent_contact": {"speed_m_per_s": 0.08, "relative_friction": 0.7},
         # In the middle of 0.8 at 1 µm and 0.4 at 3 µm.
         "models": [{"model": "paper2008", "relative_friction": pytest.approx(0.6)}],
-        "uncertainty": {"seed": 1}, "warnings": ["mind this"],
+        "measurements_missed": None, "uncertainty": {"seed": 1}, "warnings": ["mind this"],
         "verdict": {"kind": "limit", "text": "open"}, "tell_apart": None,
     }  # fmt: skip
 

@@ -59,13 +59,19 @@ def test_a_stator_is_what_its_file_says() -> None:
 
 def test_friction_falls_from_one_at_rest_to_what_the_display_makes() -> None:
     found = felt()
-    amplitude = np.array(found["amplitude_m"])
-    friction = np.array(found["relative_friction"])
-    assert amplitude.size == friction.size == 257
+    amplitude, speed = np.array(found["amplitude_m"]), np.array(found["finger_speed_m_per_s"])
+    rows = np.array(found["relative_friction"])
+    assert amplitude.size == 257
+    assert rows.shape == (speed.size, 257)
+    # The faster the finger, the more of the friction at rest is left.
+    assert speed[0] == 0
+    assert np.all(np.diff(speed) > 0)
+    assert np.all(np.diff(rows, axis=0) >= -1e-9)
+    friction = rows[np.flatnonzero(speed == found["nominal_finger_speed_m_per_s"])[0]]
     assert amplitude[0] == 0.0
     assert amplitude[-1] == found["largest_amplitude_m"]
     np.testing.assert_allclose(np.diff(amplitude), amplitude[-1] / 256)
-    assert friction[0] == 1.0
+    assert friction[0] == pytest.approx(1.0, abs=1e-12)
     assert np.all(np.diff(friction) <= 0.0)
     alone = predict(load_display("biet2008-stator"))
     assert friction[-1] == pytest.approx(alone.relative_friction, abs=1e-4)

@@ -87,7 +87,7 @@ def test_a_swing_that_cannot_be_measured_is_refused() -> None:
 def test_the_fundamental_is_that_of_a_lag(shape: str) -> None:
     """A linear envelope damps each wave by itself: measured on a friction linear in amplitude it is
     the gain of a first-order lag, whatever the shape."""
-    found = table(shape=shape, relative_friction=lambda a: 1 - a / 3e-6)
+    found = table(shape=shape, relative_friction=lambda a, _: 1 - a / 3e-6)
     assert found.friction_fundamental == pytest.approx(found.amplitude_fundamental, rel=1e-3)
     turn = 2 * math.pi * found.speeds / found.spatial_periods[:, None]
     assert found.amplitude_fundamental == pytest.approx(1 / np.hypot(1, turn * TAU))

@@ -46,7 +46,8 @@ def prediction(**changes: Any) -> SimpleNamespace:
     """A plate at 15 V under a finger, with all that there can be to say."""
     values = {
         "relative_friction": 0.43216, "voltage": 15.0, "vibration_amplitude": 1.5e-6,
-        "frequency": 33580.0, "touch": touched(), "normal_force": 0.5, "model": "a-model",
+        "frequency": 33580.0, "touch": touched(), "normal_force": 0.5, "speed": 0.05,
+        "model": "a-model",
         "surface": SimpleNamespace(name="copper", roughness=0.7e-6), "friction_reduction": 0.11357,
         "friction_coefficient": 0.2, "tangential_force": 0.043216,
         "relative_friction_limits": (0.41, 0.49), "heat": WARM,
@@ -123,6 +124,7 @@ def test_a_friction_is_said_with_why_and_what_to_measure_next() -> None:
         "Finger's impedance 1.23 − 0.679i N·s/m at an antinode, damping and spring",
         "Surface copper roughness 0.7 µm",
         "Normal force 0.5 N",
+        "Finger speed 50 mm/s of sliding",
         "Ambient pressure 101.3 kPa",
         "Film carries 56.8 % of the load",
         "Asperities carry 43.2 % mean gap 1.23 µm",
