@@ -109,7 +109,7 @@ def test_the_wave_is_felt_and_made_up_for() -> None:
     done = run("render", *at, "--wave", "felt", "--stroke", "60 mm/s over 2 cm")
     assert done.returncode == 2
     assert "disc" in done.stderr
-    stroke = ("--stroke", "60 mm/s over 4 cm", "--force", "0.2 N")
+    stroke = ("--stroke", "60 mm/s over 4 cm", "--force", "0.5 N")
     ignored = rendered("sine-3mm", *STATOR, *stroke)
     felt = rendered("sine-3mm", *STATOR, *stroke, "--wave", "felt")
     mended = rendered("sine-3mm", *STATOR, *stroke, "--wave", "compensated")
