@@ -113,7 +113,7 @@ def test_with_the_same_table_both_marches_close_in_with_the_step() -> None:
         found = dragged(truth, SpeedFriction(point().speeds, coefficient() * rows), speed)
         errors.append(np.abs(truth["skin_x_m"] - found.skin_position).max())
     # They differ in the bone's speeds within a step alone, which `slide` makes of its places.
-    assert errors[1] < 1e-9
+    assert errors[1] < 1e-10
     assert np.all(np.diff(np.log2(errors)) < -2), errors
 
 
@@ -172,6 +172,22 @@ def test_at_rest_a_skin_that_is_held_stays_to_the_last_digit() -> None:
         by = 0.1 * limit / display.finger.fingerpad.stiffness
         by = -by if plant.tangential_force > 0 else by
         assert np.ptp(stretched(plant, by, level, 40)[1:]) == 0.0
+
+
+def test_friction_without_vibration_is_the_fingers_at_the_force_it_presses_with() -> None:
+    display = point().display
+    finger = dataclasses.replace(display.finger, shear_strength=2e4)
+    display, surface = dataclasses.replace(display, finger=finger), display.surface()
+    of = dataclasses.replace(point(), display=display)
+    told = []
+    for force in (0.2, 2.5):
+        plant = Plant(of, CALM, Hand(Stroke(0.05, 0.1), normal_force=force, begin=0.0))
+        plant.advance(1_000_000, 0, 0)
+        told.append(
+            finger.friction_coefficient(surface.friction_coefficient, surface.roughness, force)
+        )
+        assert plant.tangential_force == pytest.approx(told[-1] * force, rel=1e-9)
+    assert told[1] < 0.999 * told[0]
 
 
 def test_static_friction_over_a_speed_is_refused_as_slide_refuses_it() -> None:
